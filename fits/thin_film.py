@@ -4,12 +4,12 @@
 The shader sums orders while they count, averages over the hemisphere in five cosines, or in two, and
 over the visible facets in four, or in two. Each of these cosines stands for those
 around it, whose fringes damp each other. This measures what each costs at most, over films of up to 1000
-nm on each kind of substrate. The largest error is searched for: around the worst of random films, in
-ever smaller steps.
+nm on each kind of substrate. The largest error is searched for by `thin_film_search.py`.
 """
 
 import numpy as np
 
+from fits.thin_film_search import COLORED, WHITE, largest
 from mxeon.conformance.probes.thin_films import LEAST_OIL, SHARP
 from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
 from mxeon.models.thin_film import curve
@@ -17,15 +17,6 @@ from mxeon.models.thin_film import formulas as film
 from mxeon.models.thin_film.curve import SUBSTRATES, TEXT, film_curve
 from mxeon.models.thin_film.lobe import film_albedo_dir
 
-SEED, COUNT = 1, 1 << 9  # films of a step
-KEPT, STEPS = 8, (0.1, 0.05, 0.02, 0.01)  # the worst of them; distances from these, of a range of 1
-NUMBERS = 10  # of a film, its substrate and its view
-COLORED = 17  # with color82, color90 and the exponent of Schlick's curve as well
-FAR, MOVED = (
-    (0.3, 0.1, 0.1, 0.05, 0.05, 0.02, 0.01),
-    0.3,
-)  # then: distances, and the part that moves
-LEAST = 1e-3  # of these numbers, since 0 reflects nothing
 # Each in a range: roughness, cosine of the view, thickness in nm, index.
 FILMS = {"alpha": (1e-2, 1.0), "mu": (0.1, 1.0), "thickness": (0.0, 1000.0), "index": (1.0, 2.5)}
 CLEAR = {**SHARP, "index": (LEAST_OIL, 2.5)}
@@ -43,57 +34,12 @@ FACETS = (
 )  # fmt: skip
 SHARE = 0.97
 ALIKE = 0.09  # reach below which two nodes serve
-WHITE = {"color82": 1.0, "color90": 1.0}
 # Orders are summed while the square of one exceeds a limit, of a value this times the square of both
 # polarizations' mean reflectances in all channels, of a node of a rule this times the cube of its width if
 # that is more; each counts as smaller than the one before it by a factor at least.
 VALUE_ORDER, MEAN_ORDER, ORDER_RATIO = 2e-14, 2e-4, 0.6
 NARROWEST = min(film.GAUSSIANS, key=lambda gaussian: gaussian[3])  # of the sensitivities
 LEAST_PATH, LEAST_LOST = 1e-21, 1e-12  # of a path difference in m, and of light that is not trapped
-
-
-def substrates(unit):
-    """Inputs of the three nodes, by category, from numbers in [0, 1], shape (6, N) or (13, N)."""
-    count = unit.shape[1]
-    edges = {name: np.full((3, count), value) for name, value in WHITE.items()}
-    edges["exponent"] = np.full(count, 5.0)
-    if len(unit) > 6:
-        edges = {"color82": unit[6:9], "color90": unit[9:12], "exponent": 1.0 + 9.0 * unit[12]}
-    return {
-        "dielectric_bsdf": {"ior": 1.0 + 2.0 * unit[0], "tint": np.ones((3, 1))},
-        "conductor_bsdf": {"ior": 0.5 + 2.5 * unit[:3], "extinction": 0.2 + 5.8 * unit[3:6]},
-        "generalized_schlick_bsdf": {"color0": unit[:3], **edges},
-    }
-
-
-def filmed(category, ranges, unit):
-    """Inputs of a node under a film, roughness and cosine of a view, from numbers in [0, 1]."""
-    alpha, mu, thickness, index = (
-        low + (high - low) * each for (low, high), each in zip(ranges.values(), unit, strict=False)
-    )
-    films = {"thinfilm_thickness": thickness, "thinfilm_ior": index}
-    return substrates(unit[4:])[category] | films, alpha, mu
-
-
-def largest(errors, ranges, category, numbers=NUMBERS):
-    """The largest error of films in ranges that a search finds.
-
-    Where a film has more numbers, more films are kept, and each goes a way along some of its numbers alone.
-    """
-    rng = np.random.default_rng(SEED)
-    many = numbers > NUMBERS
-    count, kept, steps = (4 * COUNT, 4 * KEPT, FAR) if many else (COUNT, KEPT, STEPS)
-    unit = rng.random((numbers, count))
-    found = errors(category, *filmed(category, ranges, unit))
-    for step in steps:
-        worst = unit[:, np.argsort(found)[-kept:]].repeat(count // kept // 4, axis=1)
-        way = step * rng.standard_normal(worst.shape)
-        if many:
-            way *= rng.random(worst.shape) < MOVED
-        near = np.clip(worst + way, LEAST, 1.0)
-        found = np.append(found, errors(category, *filmed(category, ranges, near)))
-        unit = np.append(unit, near, axis=1)
-    return float(found.max())
 
 
 def shader_curve(category, material, mu, width=0.0):
@@ -191,7 +137,7 @@ def wave_slopes(category, material, _, mu):
     for interface in SUBSTRATES[category](mu, index, TEXT, **substrate(material)):
         first, second, phase = interface
         passed = 1.0 - first
-        amplitude = passed**2 * second / np.maximum(1.0 - first * second, LEAST) - passed
+        amplitude = passed**2 * second / np.maximum(1.0 - first * second, LEAST_LOST) - passed
         for k, v, position, var in film.GAUSSIANS:
             height = (
                 np.abs(np.array(TEXT.matrix)[:, k]) * v * np.sqrt(2.0 * np.pi * var) / film.NORMAL

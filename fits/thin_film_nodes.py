@@ -13,6 +13,7 @@ from collections.abc import Callable
 import numpy as np
 
 from fits import thin_film as fit
+from fits.thin_film_search import NUMBERS, filmed
 from mxeon.models.microfacet.ggx_formulas import smith_lambda
 from mxeon.models.thin_film.curve import film_curve
 
@@ -30,8 +31,8 @@ def random_films(count=COUNT):
     """Categories, materials, roughness and views."""
     rng = np.random.default_rng(SEED)
     for category in fit.MIRRORS:
-        unit = rng.random((fit.NUMBERS, count))
-        yield category, *fit.filmed(category, fit.FILMS, unit)
+        unit = rng.random((NUMBERS, count))
+        yield category, *filmed(category, fit.FILMS, unit)
 
 
 def chosen(error: Callable[..., float], start: tuple[float, ...], steps: tuple[float, ...]):

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from fits import thin_film as fit
+from fits import thin_film_search as search
 from fits import thin_film_sets as sets
 from mxeon.conformance.accuracy import thin_films as tolerances
 from mxeon.conformance.accuracy.bsdf import FRESNEL_FIT
@@ -187,8 +188,8 @@ def test_every_check_of_a_film_has_a_shader_that_it_fails():
 def test_the_shader_is_as_near_as_its_tolerances_say(monkeypatch):
     cheap = ["orders", "orders of curves"]
     errors = fit.errors(cheap)
-    monkeypatch.setattr(fit, "COUNT", 1 << 5)  # of 2^9: averages take long
-    monkeypatch.setattr(fit, "STEPS", (0.1, 0.05))
+    monkeypatch.setattr(search, "COUNT", 1 << 5)  # of 2^9: averages take long
+    monkeypatch.setattr(search, "STEPS", (0.1, 0.05))
     errors |= fit.errors([name for name in STATED if name not in cheap])
     for name, most in STATED.items():
         assert 0.2 * most < max(errors[name].values()) <= most

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Films of three kinds of substrate from numbers in [0, 1], and a search for the largest error among them.
+
+The search goes around the worst of random films, in ever smaller steps.
+"""
+
+import numpy as np
+
+SEED, COUNT = 1, 1 << 9  # films of a step
+KEPT, STEPS = 8, (0.1, 0.05, 0.02, 0.01)  # the worst of them; distances from these, of a range of 1
+NUMBERS = 10  # of a film, its substrate and its view
+COLORED = 17  # with color82, color90 and the exponent of Schlick's curve as well
+FAR = (0.3, 0.1, 0.1, 0.05, 0.05, 0.02, 0.01)  # then: distances
+MOVED = 0.3  # and the part of the numbers that moves
+LEAST = 1e-3  # of these numbers, since 0 reflects nothing
+WHITE = {"color82": 1.0, "color90": 1.0}
+
+
+def substrates(unit):
+    """Inputs of the three nodes, by category, from numbers in [0, 1], shape (6, N) or (13, N)."""
+    count = unit.shape[1]
+    edges = {name: np.full((3, count), value) for name, value in WHITE.items()}
+    edges["exponent"] = np.full(count, 5.0)
+    if len(unit) > 6:
+        edges = {"color82": unit[6:9], "color90": unit[9:12], "exponent": 1.0 + 9.0 * unit[12]}
+    return {
+        "dielectric_bsdf": {"ior": 1.0 + 2.0 * unit[0], "tint": np.ones((3, 1))},
+        "conductor_bsdf": {"ior": 0.5 + 2.5 * unit[:3], "extinction": 0.2 + 5.8 * unit[3:6]},
+        "generalized_schlick_bsdf": {"color0": unit[:3], **edges},
+    }
+
+
+def filmed(category, ranges, unit):
+    """Inputs of a node under a film, roughness and cosine of a view, from numbers in [0, 1]."""
+    alpha, mu, thickness, index = (
+        low + (high - low) * each for (low, high), each in zip(ranges.values(), unit, strict=False)
+    )
+    films = {"thinfilm_thickness": thickness, "thinfilm_ior": index}
+    return substrates(unit[4:])[category] | films, alpha, mu
+
+
+def largest(errors, ranges, category, numbers=NUMBERS):
+    """The largest error of films in ranges that a search finds.
+
+    Where a film has more numbers, more films are kept, and each goes a way along some of its numbers alone.
+    """
+    rng = np.random.default_rng(SEED)
+    many = numbers > NUMBERS
+    count, kept, steps = (4 * COUNT, 4 * KEPT, FAR) if many else (COUNT, KEPT, STEPS)
+    unit = rng.random((numbers, count))
+    found = errors(category, *filmed(category, ranges, unit))
+    for step in steps:
+        worst = unit[:, np.argsort(found)[-kept:]].repeat(count // kept // 4, axis=1)
+        way = step * rng.standard_normal(worst.shape)
+        if many:
+            way *= rng.random(worst.shape) < MOVED
+        near = np.clip(worst + way, LEAST, 1.0)
+        found = np.append(found, errors(category, *filmed(category, ranges, near)))
+        unit = np.append(unit, near, axis=1)
+    return float(found.max())
