@@ -3,7 +3,8 @@
 
 Mesa's driver RADV compiles for a chip by name, `RADV_FORCE_FAMILY`, without the hardware, and says what
 its compiler made. Its estimate of cycles counts loops as executed, so that a film's loop counts
-in a material without a film.
+in a material without a film. Shaders are compiled for one light: of two libraries the compiler may write out
+the loop over lights of one, which then counts once, and several times with the other.
 """
 
 import os
@@ -28,6 +29,10 @@ STATISTICS = {
     "Inverse Throughput": "cycles",
 }  # of the driver, and their units
 
+# The loop over lights of a generated shader, and what stands there for one light.
+LIGHTS = "for (int activeLightIndex = 0; activeLightIndex < numLights; ++activeLightIndex)"
+LIGHT = "int activeLightIndex = 0;"
+
 BINDING = re.compile(
     r"^layout \((?:std140, )?binding=(\d+)\) uniform (sampler2D|texture2D|sampler)?", re.MULTILINE
 )
@@ -50,8 +55,16 @@ def driver():
     return file
 
 
+def one_light(stages):
+    """Stages of a material with its first light alone."""
+    before, loop, after = stages["pixel"].partition(LIGHTS)
+    assert loop and LIGHTS not in after
+    return {**stages, "pixel": before + LIGHT + after}
+
+
 def statistics(stages, folder):
-    """The driver's numbers of a material's fragment shader, by name."""
+    """The driver's numbers of a material's fragment shader for one light, by name."""
+    stages = one_light(stages)
     program = folder / "statistics"
     if not program.exists():
         subprocess.run(["gcc", "-O1", PROGRAM, "-o", program, "-lvulkan"], check=True)
