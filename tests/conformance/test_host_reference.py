@@ -115,6 +115,27 @@ def test_a_color_in_srgb_becomes_linear():
     assert np.allclose(center(text), color(linear, 0.02 / 12.92, 1.0), rtol=1e-6)
 
 
+def with_alpha(space):
+    """A document whose color is a color4 in a color space."""
+    node = f"""<constant name="paint" type="color4">
+        <input name="value" type="color4" value="0.5, 0.02, 1.0, 0.5" colorspace="{space}"/></constant>
+      <convert name="opaque" type="color3"><input name="in" type="color4" nodename="paint"/></convert>
+      <{EON} name="lobe" type="BSDF"><input name="color" type="color3" nodename="opaque"/></{EON}>"""
+    return material(node).replace('version="1.39"', 'version="1.39" colorspace="lin_rec709"')
+
+
+@pytest.mark.parametrize("space", ["srgb_texture", "srgb_rec709_scene"])
+def test_a_color_with_alpha_becomes_linear(space):
+    linear = ((0.5 + 0.055) / 1.055) ** 2.4
+    expected = color(linear, 0.02 / 12.92, 1.0)
+    assert np.allclose(center(with_alpha(space)), expected, rtol=1e-6)
+
+
+def test_a_color_with_alpha_in_a_space_without_a_transform_is_not_run():
+    with pytest.raises(NotRun, match="no transform from color space g18_rec709 to lin_rec709"):
+        center(with_alpha("gamma18"))
+
+
 def test_a_document_without_a_color_space_has_no_color_management():
     node = f"""<{EON} name="lobe" type="BSDF"><input name="color" type="color3"
       value="0.5, 0.02, 1.0" colorspace="srgb_texture"/></{EON}>"""
@@ -164,7 +185,7 @@ def test_it_evaluates_pairs_like_any_host(flag, brdf):
             f"""<{EON} name="lobe" type="BSDF"><input name="color" type="color3"
             value="0.5, 0.5, 0.5" colorspace="acescg"/></{EON}>""",
             FRONT,
-            "no transform for color space 'acescg'",
+            "no transform from color space acescg to lin_rec709",
         ),
         (A.replace('"a"', '"lobe"'), Scene("sky", environment="sky.exr"), "must be uniform"),
     ],

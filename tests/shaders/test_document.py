@@ -10,6 +10,7 @@ import MaterialX as mx
 import pytest
 
 from mxeon.errors import LONGEST, DocumentError
+from mxeon.shaders.color_spaces import INTEROP, LEGACY
 from mxeon.shaders.document.notes import MissingFileWarning
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.reading import DocumentWarning, read_document
@@ -246,6 +247,16 @@ def test_a_color_space_without_a_transform_is_named():
     text = material(lobe(color="1, 1, 1")).replace('value="1', 'colorspace="srgb_txt" value="1')
     said = "must have a color space with a transform to lin_rec709; got srgb_txt, which MaterialX"
     assert said in warned(text.replace("<materialx", '<materialx colorspace="lin_rec709"'))
+
+
+@pytest.mark.parametrize("space", [*LEGACY, *INTEROP])
+def test_a_color_space_of_another_name_is_transformed(space):
+    text = material(lobe(color="0.5, 0.5, 0.5")).replace(
+        'value="0', f'colorspace="{space}" value="0'
+    )
+    [shader] = generate(text.replace("<materialx", '<materialx colorspace="lin_rec709"'), "glsl")
+    known = (LEGACY | INTEROP)[space]
+    assert (f"{known}_to_lin_rec709" in shader.stages["pixel"]) == (known != "lin_rec709")
 
 
 def test_a_nodegraph_that_is_connected_as_a_node_is_named():

@@ -12,6 +12,7 @@ from mxeon.conformance.reference.operations import Value, Values
 from mxeon.conformance.reference.points import ShadingPoints
 from mxeon.errors import NotRun
 from mxeon.io.srgb import srgb_decoded
+from mxeon.shaders.color_spaces import color_spaces
 
 Path: TypeAlias = tuple[str, ...]  # of a node: names of the nodegraphs around it, and its own
 
@@ -92,7 +93,7 @@ class Elements:
             return UNCONNECTED[port.getType()]
         constant = plain(value)
         if isinstance(constant, np.ndarray):
-            if port.getType() == "color3":
+            if port.getType() in ("color3", "color4"):
                 return self.linear(port, constant)
             if port.hasUnit():
                 return constant * self._meters(port)
@@ -106,15 +107,19 @@ class Elements:
         return float(scales.get(port.getUnit(), 1.0))
 
     def linear(self, element: mx.Element, value: Values) -> Values:
-        """Color in the document's linear space, as the generators' color management has it."""
-        space = element.getActiveColorSpace()
-        if not self._document.getColorSpace():  # no color management
+        """Color in the document's space, as the generators' color management has it; alpha stays.
+
+        Raises
+        ------
+        NotRun
+            If that takes a transform other than the decoding of sRGB.
+        """
+        spaces = color_spaces(element)
+        if spaces is None:
             return value
-        if space in ("", "none", self._document.getColorSpace()):
-            return value
-        if space != "srgb_texture":
-            raise NotRun(f"reference: there is no transform for color space {space!r}")
-        return srgb_decoded(value)
+        if spaces != ("srgb_texture", "lin_rec709"):
+            raise NotRun(f"reference: there is no transform from color space {' to '.join(spaces)}")
+        return np.concatenate([srgb_decoded(value[..., :3]), value[..., 3:]], axis=-1)
 
 
 def graph_output(node: mx.Node, output: str = "") -> mx.Output | None:

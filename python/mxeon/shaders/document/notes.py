@@ -10,6 +10,7 @@ from typing import cast
 import MaterialX as mx
 
 from mxeon.errors import DocumentError, one_line
+from mxeon.shaders.color_spaces import color_spaces
 from mxeon.shaders.document.labels import label, location
 from mxeon.shaders.document.references import files, folder, foreign_code
 from mxeon.shaders.document.values import NUMERIC, is_exact, plain
@@ -161,12 +162,10 @@ def _out_of_range(element: mx.ValueElement) -> str | None:
 
 def _unknown_space(element: mx.ValueElement) -> str | None:
     """Warning of a value without a transform from its color space to the document's."""
-    document, space = element.getDocument(), element.getActiveColorSpace()
-    target = document.getColorSpace()
-    if element.getType() not in COLORED or {"", "none"} & {space, target} or space == target:
+    spaces = color_spaces(element) if element.getType() in COLORED else None
+    if not spaces or element.getDocument().getMatchingNodeDefs("_to_".join(spaces)):
         return None
-    if document.getMatchingNodeDefs(f"{space}_to_{target}"):
-        return None
+    space, target = spaces
     rule = f"must have a color space with a transform to {target}"
     return f"{location(element)} {rule}; got {space}, which MaterialX takes as {target}"
 
