@@ -92,7 +92,8 @@ def plot(group, folder):
                 x, y = zip(*points, strict=True)
                 axes.plot(x, y, "o-", label=name.partition(": ")[2] or group.title)
         axes.set(xscale="log", xlabel=LABELS[group.name], ylabel=unit)
-        axes.set_ylim(0.0, max(1.0, axes.get_ylim()[1]))  # one unit at least, or noise fills the plot
+        # One unit at least, or noise fills the plot.
+        axes.set_ylim(0.0, max(1.0, axes.get_ylim()[1]))
         figure.legend(loc="outside right upper", fontsize="small")
         files.append(folder / f"performance_{group.name}_{unit}.png")
         folder.mkdir(parents=True, exist_ok=True)
