@@ -9,15 +9,11 @@ import pytest
 from mxeon.conformance.accuracy.bsdf import MICROFACET_VALUE
 from mxeon.conformance.pictures.document_pictures import judge_document
 from mxeon.conformance.reference import Host as Reference
-from mxeon.conformance.reference import lobes
-from mxeon.conformance.reference.lobes import TAIL, furnace
 from mxeon.errors import NotRun, OutsideModel
 from mxeon.hosts import open_host
-from mxeon.models import nodes as pbrlib
 from mxeon.models.diffuse.brdf import eon_brdf, qon_brdf
 from mxeon.models.diffuse.burley import burley_albedo_dir
 from mxeon.models.microfacet import generalized_schlick_brdf
-from mxeon.models.microfacet.albedo import conductor_albedo_dir
 from mxeon.models.sheen import (
     conty_kulla_albedo_dir,
     conty_kulla_brdf,
@@ -350,27 +346,6 @@ def test_a_picture_of_a_layer_over_white_in_a_furnace_is_white(mode, brdf, albed
     assert np.allclose(image[image > 0.0], 1.0, rtol=1e-12) and (image > 0.0).sum() > 2000
 
 
-def test_the_albedo_over_a_picture_is_interpolated_closely():
-    mu = np.linspace(0.01, 1.0, 1001)
-    wo = np.stack([np.sqrt(1.0 - mu**2), 0.0 * mu, mu], axis=1)
-    for roughness in (0.02, 0.3, 1.0):  # of which the first exceeds 1
-        inputs = {"color": np.ones((1, 3)), "roughness": np.array([roughness])}
-        values = furnace(wo, 1.0)(pbrlib.node("conty_kulla"), inputs, False).value
-        truth = conty_kulla_albedo_dir(mu, roughness)[:, None]
-        assert np.abs(values - truth).max() < 10.0 * TAIL
-
-
-def test_what_no_polynomial_follows_is_not_interpolated():
-    mu = np.linspace(0.01, 1.0, 1001)
-    wo = np.stack([np.sqrt(1.0 - mu**2), 0.0 * mu, mu], axis=1)
-    step = replace(
-        pbrlib.node("conty_kulla"), integral=lambda wo, inputs: inputs["color"] * (wo[:, 2:] > 0.5)
-    )
-    inputs = {"color": np.ones((1, 3)), "roughness": np.array([0.5])}
-    values = furnace(wo, 1.0)(step, inputs, False).value
-    assert np.array_equal(values[:, 0], mu > 0.5)
-
-
 def test_brushed_metal_is_turned_with_the_tangent_of_the_sphere():
     text = material("""<generalized_schlick_bsdf name="lobe" type="BSDF">
       <input name="color0" type="color3" value="0.9, 0.6, 0.3"/>
@@ -385,22 +360,6 @@ def test_brushed_metal_is_turned_with_the_tangent_of_the_sphere():
     colors = [0.9, 0.6, 0.3], [0.5, 0.7, 0.9], [1.0, 1.0, 1.0]
     value = generalized_schlick_brdf(wo, wi, *colors, [0.3, 0.1], 5.0)
     assert np.allclose(image[2, 6], np.pi * value * wi[2], rtol=1e-6)
-
-
-def test_the_albedo_of_brushed_metal_is_interpolated_closely(monkeypatch):
-    random = np.random.default_rng(5)
-    mu, phi = 0.05 + 0.95 * random.random(1000), random.uniform(-np.pi, np.pi, 1000)
-    wo = np.stack([np.sqrt(1 - mu**2) * f(phi) for f in (np.cos, np.sin)] + [mu], axis=1)
-    inputs = {"ior": np.full((1, 3), 0.2), "extinction": np.full((1, 3), 3.0)}
-    inputs["roughness"] = np.array([[0.3, 0.2]])
-    row = pbrlib.node("conductor")
-    values = furnace(wo, 1.0)(row, inputs, False).value[:20]
-    truth = conductor_albedo_dir(wo[:20], [0.3, 0.2], [0.2], [3.0])
-    assert np.abs(values - truth).max() < 10.0 * TAIL
-    inputs["roughness"] = np.array([[1.0, 1e-3]])
-    monkeypatch.setattr(lobes, "ANISOTROPIC", ((8, 4),))
-    with pytest.raises(NotRun, match="so anisotropic a lobe takes too long"):
-        furnace(wo, 1.0)(row, inputs, False)
 
 
 def test_burley_shows_its_albedo_in_a_furnace():
@@ -464,57 +423,3 @@ def test_a_lobe_scaled_to_nothing_hides_nothing():
 def test_what_lies_beyond_the_layers_is_said(nodes, error, words):
     with pytest.raises(error, match=words):
         center(material(nodes))
-
-
-GLASS = """<dielectric_bsdf name="{name}" type="BSDF"><input name="tint" type="color3"
-  value="0.2, 0.5, 0.9"/><input name="scatter_mode" type="string" value="{mode}"/></dielectric_bsdf>"""
-FOG = """<anisotropic_vdf name="fog" type="VDF"><input name="scattering" type="vector3"
-  value="0, 1, 0"/></anisotropic_vdf>"""
-HAZE = """<layer name="lobe" type="BSDF"><input name="top" type="BSDF" nodename="glass"/>
-  <input name="base" type="VDF" nodename="fog"/></layer>"""
-
-
-def lit(text, scene):
-    return Reference().picture(generate(material(text), "glsl")[0], replace(scene, size=32))
-
-
-def test_what_is_transmitted_of_a_furnace_is_what_is_not_reflected():
-    whole = GLASS.replace("0.2, 0.5, 0.9", "1, 1, 1").format(name="lobe", mode="RT")
-    assert np.allclose(lit(whole, FURNACE)[sphere(32).mask], 1.0, atol=1e-9)
-    assert not lit(GLASS.format(name="lobe", mode="T"), SIDE).any()
-
-
-def test_a_volume_dims_what_is_transmitted_and_not_what_is_reflected():
-    clear = lit(GLASS.format(name="lobe", mode="T"), FURNACE)
-    foggy = lit(GLASS.format(name="glass", mode="T") + FOG + HAZE, FURNACE)
-    assert np.allclose(foggy, clear * [1.0, np.exp(-1.0), 1.0], atol=1e-12)
-    reflected = lit(GLASS.format(name="glass", mode="R") + FOG + HAZE, FURNACE)
-    assert np.allclose(reflected, lit(GLASS.format(name="lobe", mode="R"), FURNACE))
-
-
-@pytest.mark.parametrize(
-    "node",
-    [
-        GLASS.format(name="lobe", mode="RT"),
-        """<subsurface_bsdf name="lobe" type="BSDF"><input name="radius" type="color3"
-        value="0.5, 0.2, 0.05"/></subsurface_bsdf>""",
-        """<chiang_hair_bsdf name="lobe" type="BSDF"/>""",
-    ],
-    ids=["transmission", "subsurface", "hair"],
-)
-def test_lobes_below_the_surface_have_a_picture_like_gl(node, tmp_path):
-    path = tmp_path / "inner.mtlx"
-    path.write_text(material(node))
-    [result], _, _ = judge_document(path, open_host("gl"), Reference(), "eonlib")
-    assert (result.check, result.verdict) == ("picture", "passed")
-
-
-@pytest.mark.parametrize("node", ["subsurface_bsdf", "dielectric_bsdf"])
-def test_a_wrong_lobe_below_the_surface_is_found(node, tmp_path):
-    rough = '<input name="roughness" type="vector2" value="0.8, 0.8"/></dielectric_bsdf>'
-    glass = GLASS.format(name="lobe", mode="T").replace("</dielectric_bsdf>", rough)
-    path = tmp_path / "inner.mtlx"
-    lobes = {"dielectric_bsdf": glass, "subsurface_bsdf": f'<{node} name="lobe" type="BSDF"/>'}
-    path.write_text(material(lobes[node]))
-    [result], _, _ = judge_document(path, open_host("gl"), Reference(), "stock")
-    assert (result.check, result.verdict) == ("picture", "failed")
