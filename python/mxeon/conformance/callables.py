@@ -4,21 +4,27 @@
 from __future__ import annotations
 
 import platform
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib.metadata import version
-from typing import ClassVar
+from typing import ClassVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import mxeon
 from mxeon.conformance.checks.application import judge_check
+from mxeon.conformance.checks.controls import Altered
 from mxeon.conformance.checks.table import CHECKS, Check
+from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.diagnosis.comparisons import VALUE
+from mxeon.conformance.diagnosis.regions import smallest
 from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.diffuse import CHANGES, ModelSubject
-from mxeon.conformance.probes.probe import LobeProbe
+from mxeon.conformance.probes.cases import edge_case
+from mxeon.conformance.probes.memory import Evaluations
+from mxeon.conformance.probes.probe import LobeProbe, Probe
 from mxeon.conformance.results import PASSED, Run
 from mxeon.conformance.samples.batch import (
     PAIRS,
@@ -31,6 +37,7 @@ from mxeon.conformance.samples.batch import (
     random_inputs,
 )
 from mxeon.conformance.samples.edge_cases import diffuse_edges, special_directions, special_inputs
+from mxeon.conformance.samples.measurement import Case, absolute, point_of
 from mxeon.errors import InputError, assert_known
 from mxeon.hosts.base import Host, Identity
 from mxeon.models import table as reference
@@ -43,13 +50,7 @@ Brdf = Callable[[Array, Array, Array, Array], ArrayLike]  # of wo, wi, rho, roug
 
 
 class CallableHost(Host):
-    """A Python function in place of an engine.
-
-    Parameters
-    ----------
-    name : str
-    brdf : callable
-    """
+    """A Python function instead of an engine."""
 
     target = ""
 
@@ -62,12 +63,7 @@ class CallableHost(Host):
 
 @dataclass(frozen=True)
 class ClaimedModel(ModelSubject):
-    """The model that a function has to be, in place of a node.
-
-    Attributes
-    ----------
-    title, model : str
-    """
+    """The model that a function has to be, instead of a node."""
 
     title: str
     model: str
@@ -109,27 +105,92 @@ class CallableProbe(LobeProbe):
         special = Batch(*exact, special_inputs(rng, len(exact[0]), row))
         return Batch(wo, wi, random_inputs(rng, PAIRS, row)), special
 
-    @property
+    @cached_property
     def edges(self) -> Batch:
-        """Pairs and inputs at the edges of the domain."""
-        return diffuse_edges()
+        """Pairs and inputs at the edges of the domain, then all others for which a check asks."""
+        asked = [diffuse_edges()]
+
+        def note(batch: Batch) -> Batch:
+            asked.append(batch)
+            return batch
+
+        for check in _checks(self.subject.model):
+            if check.key != "finite":
+                check.measured(Altered(self, note), absolute)
+        columns = zip(*map(_arguments, asked), strict=True)
+        wo, wi, rho, roughness = map(np.concatenate, columns)
+        return Batch(wo, wi, {"color": rho, "roughness": roughness})
 
     def direct(self, batch: Batch) -> Array:
-        """pi f cos(theta_i), (N, 3)."""
-        count = len(batch.wi)
-        rho = np.broadcast_to(np.asarray(batch.inputs["color"], float), (count, 3))
-        roughness = np.broadcast_to(np.asarray(batch.inputs["roughness"], float), count)
-        values = np.asarray(self.host.brdf(batch.wo, batch.wi, rho, roughness), np.float64)
-        if values.shape != (count, 3):
-            raise InputError(
-                f"values of {self.host.name} must have shape {(count, 3)}; got {values.shape}"
-            )
-        with np.errstate(invalid="ignore"):  # inf x 0 is for the checks to notice
-            return np.pi * (values * batch.wi[:, 2:])
+        """pi f cos(theta_i), (N, 3); NaN in every channel where one is not finite."""
+
+        def evaluated() -> Array:
+            values = np.asarray(self.host.brdf(*_arguments(batch)), np.float64)
+            if values.shape != batch.wi.shape:
+                raise InputError(
+                    f"values of {self.host.name} must have shape {batch.wi.shape}; got {values.shape}"
+                )
+            finite = np.isfinite(values).all(axis=1, keepdims=True)
+            return np.pi * (np.where(finite, values, np.nan) * batch.wi[:, 2:])
+
+        return self._evaluations.values(batch, (), evaluated)
+
+    @cached_property
+    def _evaluations(self) -> Evaluations:
+        """Values that several checks ask for."""
+        return Evaluations()
 
     def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
         """Nothing, (N, 0): a function has no environment branch."""
         return np.empty((len(batch.wi), 0))
+
+
+def _arguments(batch: Batch) -> tuple[Array, Array, Array, Array]:
+    """wo, wi, rho and roughness of each pair."""
+    rho = np.broadcast_to(np.asarray(batch.inputs["color"], float), batch.wi.shape)
+    roughness = np.broadcast_to(np.asarray(batch.inputs["roughness"], float), len(batch.wi))
+    return batch.wo, batch.wi, rho, roughness
+
+
+def _finite_rows(cases: Iterable[Case]) -> Iterator[Case]:
+    """Cases without the rows that are not finite, which are for one check; as they are if all are so."""
+    for case in cases:
+        expected = np.broadcast_to(case.expected, case.measured.shape)
+        rows = np.asarray(np.isfinite(case.measured + expected).all(axis=1))
+        kept = Case(case.batch.where(rows), case.measured[rows], expected[rows])
+        yield kept if rows.any() else case
+
+
+VALUE_OF_REST = replace(VALUE, cases=lambda probe: _finite_rows(VALUE.cases(probe)))
+
+
+def _explain_not_finite(probe: Probe) -> Diagnosis:
+    """How many values are not finite, where, and the arguments of the first."""
+    case = edge_case(probe)
+    wrong = np.asarray(~np.isfinite(case.measured).all(axis=1))
+    place = smallest([case.batch], [wrong])
+    point = point_of(case.batch, int(wrong.argmax()))
+    wo, wi, rho, roughness = (", ".join(f"{x:.6g}" for x in each) for each in point.values())
+    return Diagnosis(
+        f"{wrong.sum()} of {len(wrong)} values are not finite{place and f', all of them {place}'}; the "
+        f"first for wo = ({wo}), wi = ({wi}), rho = ({rho}), roughness = {roughness}"
+    )
+
+
+def _of_rest(check: Check) -> Check:
+    """A row of the table that judges the finite values; "finite" says of the others where they are."""
+    if check.key == "finite":
+        return replace(check, diagnose=_explain_not_finite)
+    if check.key == "inputs":
+        return check
+    if check.measure is VALUE:
+        return replace(check, measure=VALUE_OF_REST)
+    measure = cast(Callable[[Probe], Iterable[Case]], check.measure)
+    return replace(
+        check,
+        measure=lambda probe: _finite_rows(measure(probe)),
+        diagnose=VALUE_OF_REST.diagnose,
+    )
 
 
 def check_brdf(brdf: Brdf, model: str = "eon", name: str | None = None) -> Run:
@@ -151,6 +212,9 @@ def check_brdf(brdf: Brdf, model: str = "eon", name: str | None = None) -> Run:
     -------
     Run
         See `mxeon.report.write`.
+
+        Values that are not finite fail one check, which says how many, where and the first; the others
+        judge the rest.
 
     Raises
     ------
@@ -183,20 +247,7 @@ def brdf_test(brdf: Brdf, model: str = "eon", name: str | None = None) -> Callab
 
         test_my_brdf_is_eon = brdf_test(my_brdf, "eon")
 
-    Parameters
-    ----------
-    brdf, model, name
-        As those of `check_brdf`.
-
-    Returns
-    -------
-    callable
-        A test function; on failure it shows the error, the tolerance and the nearest known model.
-
-    Raises
-    ------
-    ImportError
-        If pytest is not installed.
+    On failure it shows the error, the tolerance and the nearest known model.
     """
     import pytest
 
@@ -207,8 +258,7 @@ def brdf_test(brdf: Brdf, model: str = "eon", name: str | None = None) -> Callab
         result = judge_check(check, probe)
         assert result.verdict == PASSED, f"{check.claim} {result.explanation}"
 
-    test: Callable[..., None] = test_brdf
-    return test
+    return cast(Callable[..., None], test_brdf)
 
 
 def _probe(brdf: Brdf, model: str, name: str | None) -> CallableProbe:
@@ -224,5 +274,7 @@ def _checks(model: str) -> tuple[Check, ...]:
     if not row.parameter:
         assert_known("model", model, (row.name for row in reference.MODELS if row.parameter))
     return tuple(
-        check for check in CHECKS if check.key in KEYS and (check.key != "albedo" or row.albedo_dir)
+        _of_rest(check)
+        for check in CHECKS
+        if check.key in KEYS and (check.key != "albedo" or row.albedo_dir)
     )

@@ -68,13 +68,13 @@ def not_measured(place: Place, error: NotRun | ShaderError) -> Result:
 
 @contextmanager
 def renderer_warnings() -> Iterator[list[str]]:
-    """The renderer's own warnings in a block, each once; others are passed on."""
+    """The renderer's own warnings in a block, each once; others are shown with their own lines."""
     notes: list[str] = []
     with warnings.catch_warnings(record=True) as records:
         warnings.simplefilter("always", RendererWarning)
         yield notes
     for record in records:
         if not isinstance(record.message, RendererWarning):
-            warnings.warn(record.message, stacklevel=3)
+            warnings.showwarning(record.message, record.category, record.filename, record.lineno)
         elif str(record.message) not in notes:
             notes.append(str(record.message))
