@@ -271,8 +271,8 @@ def _array(name: str, value: ArrayLike, check: Callable[[Numbers], Numbers]) -> 
     if not library(value):
         return check(_real(name, value))
     accept(name, value)
-    if checking():
-        check(_real(name, host_values(name, value)))
+    if checking() and (values := host_values(value)) is not None:
+        check(_real(name, values))
     return cast(Numbers, value)
 
 

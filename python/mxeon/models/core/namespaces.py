@@ -87,10 +87,10 @@ def unchecked() -> Iterator[None]:
 
     Notes
     -----
-    A transformation such as `jax.jit`, `jax.grad` or `torch.vmap` calls a function with arrays that
-    have no values yet, so their ranges cannot be checked, and outside this context they are refused.
-    Within it kinds and shapes are still checked, but a value outside its range gives whatever the
-    formula gives, which may be NaN. The setting belongs to the thread or task that enters the context.
+    Kinds and shapes are still checked, but a value outside its range gives whatever the formula gives,
+    which may be NaN. So does a value that `jax.jit`, `jax.grad` or `torch.vmap` traces, within this
+    context or without: it has no numbers yet. The setting belongs to the thread or task that enters
+    the context.
 
     Examples
     --------
@@ -280,26 +280,12 @@ def accept(name: str, value: object) -> None:
         )
 
 
-def host_values(name: str, value: object) -> Numbers:
-    """Values of an array of another library, whose argument `name` is, in NumPy.
-
-    Raises
-    ------
-    ValueError
-        If the array has no values yet.
-    """
+def host_values(value: object) -> Numbers | None:
+    """Values of another library's array in NumPy; None where a transformation traces it."""
     try:
-        return _to_numpy(value)
-    except (TypeError, RuntimeError):  # of JAX and of torch, where a transformation traces the call
-        raise ValueError(
-            f"{name} must have values, to be checked, and is traced; call within "
-            "mxeon.models.unchecked()"
-        ) from None
-
-
-def _to_numpy(value: object) -> Numbers:
-    """Copy of a whole array, without its gradient."""
-    if library(value) != "torch":
-        return np.asarray(value)
-    tensor: Callable[[], object] = value.detach  # type: ignore[attr-defined]
-    return np.asarray(tensor().cpu())  # type: ignore[attr-defined]
+        if library(value) != "torch":
+            return np.asarray(value)
+        tensor: Callable[[], object] = value.detach  # type: ignore[attr-defined]
+        return np.asarray(tensor().cpu())  # type: ignore[attr-defined]
+    except (TypeError, RuntimeError):  # of JAX, of torch
+        return None

@@ -73,8 +73,8 @@ def _axes(normal: ArrayLike, tangent: ArrayLike) -> tuple[Array, Array, Array]:
     x = along - xp.sum(along * z, axis=-1)[..., np.newaxis] * z
     length = xp.sqrt(xp.sum(x * x, axis=-1))[..., np.newaxis]
     # Refuse one of which nothing is left.
-    shortest = host_values("tangent", length) if checking() and library(length) else length
-    if checking() and not np.all(np.asarray(shortest) > PARALLEL):
+    shortest = host_values(length) if library(length) else length
+    if checking() and shortest is not None and not np.all(shortest > PARALLEL):
         raise ValueError("tangent must not be parallel to the normal; name another one")
     # The bitangent is the cross product, which the array standard has in an extension alone.
     x = x / length
