@@ -31,6 +31,10 @@ SURFACE = "open_pbr_surface"
 every_model = pytest.mark.parametrize("name", MODELS)
 SCATTERING = [name for name, each in MODELS.items() if isinstance(each, ShadingModel)]
 every_scattering = pytest.mark.parametrize("name", SCATTERING)
+SAMPLED = [name for name in SCATTERING if "sample" in MODELS[name].functions]
+ROUGH = {"roughness": 0.5, "alpha": 0.3}
+OTHER_ALBEDO = ("burley_lambert",)  # whose defect it is
+MASS = 2e-3  # of a density: noise of the share below the horizon
 
 
 @pytest.mark.parametrize("category", DEFAULTS)
@@ -92,9 +96,61 @@ def test_a_model_has_the_functions_that_it_names(name):
     assert row.albedo_dir([0.3, 0.8]).shape == (2, 3)
     if "brdf" in row.functions:
         assert_array_equal(row.brdf(WO, light), value)
-    if "sample" in row.functions:
-        wi, pdf = row.sample(WO, np.full((5, 2), 0.4))
-        assert np.allclose(row.pdf(WO, wi), pdf, rtol=1e-9) and pdf.shape == (5,)
+
+
+def sphere(low, high, count=96):
+    """Directions with cosines in an interval, and weights of their solid angles."""
+    nodes, weights = np.polynomial.legendre.leggauss(count)
+    z, phi = np.meshgrid(
+        0.5 * (low + high + (high - low) * nodes), 2.0 * np.pi * (np.arange(count) + 0.5) / count
+    )
+    S = np.sqrt(1.0 - z * z)
+    w = np.stack([S * np.cos(phi), S * np.sin(phi), z], axis=-1).reshape(-1, 3)
+    return w, np.tile(weights, count) * (high - low) * np.pi / count
+
+
+@pytest.mark.parametrize("name", SAMPLED)
+def test_every_drawn_direction_has_a_value_and_its_density(name):
+    row, wo = mxeon.model(name), np.array([np.sqrt(0.84), 0.0, 0.4])
+    inputs = {each.name: ROUGH[each.name] for each in row.parameters if each.name in ROUGH}
+    k, count = np.random.default_rng(1), 96
+    grid = np.stack(np.meshgrid(*[np.arange(count)] * 2), axis=-1).reshape(-1, 2)
+    wi, pdf = row.sample(wo, (grid + k.random(grid.shape)) / count, **inputs)
+    assert np.allclose(row.pdf(wo, wi, **inputs), pdf, rtol=1e-9)
+    # Values are 0 where the model scatters no light.
+    value, below = row.bsdf(wo, wi, **inputs), wi[:, 2] < 0.0
+    if row.lights != "all sides":
+        assert not value[below if row.lights == "front" else ~below].any()
+    # The mean of their weights is the albedo, and what is not drawn above is drawn below.
+    cosine = 1.0 if name == "hair" else np.abs(wi[:, 2:])
+    weights = value * cosine / pdf[:, np.newaxis]
+    error = np.abs(weights.mean(axis=0) - row.albedo_dir(0.4, **inputs))
+    assert name in OTHER_ALBEDO or (error <= weights.std(axis=0) / count + 1e-9).all()
+    up, solid_angle = sphere(0.0, 1.0)
+    assert row.pdf(wo, up, **inputs) @ solid_angle + below.mean() == pytest.approx(1.0, abs=MASS)
+
+
+@every_model
+def test_what_a_model_has_is_in_dir_and_what_it_lacks_is_said(name):
+    row = mxeon.model(name)
+    verbs = ("brdf", "bsdf", "albedo_dir", "albedo_avg", "sample", "pdf", "plot", "edf", "phase")
+    for verb in verbs:
+        assert (verb in dir(row)) == (verb in row.functions)
+        if verb not in row.functions:
+            with pytest.raises(
+                (ValueError, AttributeError), match=f"^{name}.* has no {verb}.*; it has"
+            ):
+                getattr(row, verb)(WO, WI) if verb != "albedo_avg" else row.albedo_avg()
+    with pytest.raises(AttributeError, match="has no attribute 'nothing'"):
+        _ = row.nothing
+
+
+@every_scattering
+def test_a_viewer_below_the_horizon_is_refused_but_by_a_fiber(name):
+    row = mxeon.model(name)
+    for call in {"bsdf", "sample", "pdf"} & set(row.functions) if name != "hair" else ():
+        with pytest.raises(ValueError, match="^wo must not point below the horizon"):
+            getattr(row, call)(-WO, [0.4, 0.3] if call == "sample" else LIGHT[row.lights])
 
 
 def test_the_words_of_a_model_show_its_inputs_with_ranges_and_units():
@@ -273,14 +329,15 @@ def test_a_number_for_roughness_is_isotropic(function, inputs):
         (lambda: mxeon.model("conducter"), ValueError, "did you mean conductor?"),
         (lambda: mxeon.model("conductor_bdsf"), ValueError, "did you mean conductor_bsdf?"),
         (lambda: mxeon.model(["eon"]), ValueError, "got ['eon']"),
-        (lambda: mxeon.model("fon").sample(WO, [0.1, 0.2]), ValueError, "fon has no sample; it has brdf"),
+        (lambda: mxeon.model("schlick_t").sample(WO, [0.1, 0.2]), ValueError, "schlick_t has no sample: no density of refracted light is implemented; it has bsdf"),
+        (lambda: mxeon.model("uniform_edf").brdf(WO, WI), AttributeError, "uniform_edf, uniform emission, has no brdf; it has edf, exitance"),
         (lambda: mxeon.model("absorption_vdf").phase(0.5), ValueError, "absorption_vdf has no phase; it has trans"),
         (lambda: mxeon.model("eon").albedo_dir(0.5, normal=WO), TypeError, "an albedo has none to turn"),
         (lambda: mxeon.model("eon").brdf(WO, WI, normal=[0.0, 0.0, 2.0]), ValueError, "normal must be unit"),
         (lambda: mxeon.model("conductor").brdf(WO, WI, tangent=[0.0, 0.0, 1.0]), ValueError, "tangent must not be parallel"),
         (lambda: mxeon.model("eon").brdf(WO, WI, weight=1.5), ValueError, "weight must lie in [0, 1]; got 1.5"),
         (lambda: mxeon.model("conductor").brdf(WO, WI, retroreflective=1), ValueError, "retroreflective must be True or False"),
-        (lambda: mxeon.model("hair").brdf(WO, WI), ValueError, "hair has no brdf; it has bsdf"),
+        (lambda: mxeon.model("hair").brdf(WO, WI), ValueError, "hair has no brdf: light passes through it, so call bsdf; it has bsdf"),
         (lambda: mxeon.model("eon").brdf(WO, WI, tint=1.0), TypeError, "inputs are color, roughness; got 'tint'"),
         (lambda: mxeon.model("eon").brdf(WO, WI, 1.0, rho=1.0), TypeError, "got 'rho' twice"),
         (lambda: mxeon.model("eon").brdf(WO, WI, 1.0, 1.0, 1.0), TypeError, "got 3 of them"),

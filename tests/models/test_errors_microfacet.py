@@ -84,7 +84,7 @@ MESSAGES = (
     ),
     (lambda: sampling.ggx_sample(UP, [0.5, 1.0], A), "u must lie in [0, 1); got 1.0 at index (1,)"),
     (lambda: sampling.ggx_sample([UP] * 2, [[0.5, 0.5]] * 3, A), "wo, u, roughness must broadcast"),
-    (lambda: sampling.ggx_pdf(UP, [0.0, 0.0, -1.0], A), "wi must not point below the horizon"),
+    (lambda: sampling.ggx_pdf([0.0, 0.0, -1.0], UP, A), "wo must not point below the horizon"),
 )
 
 

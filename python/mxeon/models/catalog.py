@@ -14,11 +14,12 @@ import numpy as np
 from mxeon.models import coat, sampling, table
 from mxeon.models.coat import openpbr
 from mxeon.models.coat import sampling as coat_sampling
-from mxeon.models.core.arguments import checked_choice
+from mxeon.models.core.arguments import checked_choice, checked_directions
 from mxeon.models.core.arrays import Array
 from mxeon.models.core.edges import cosine
-from mxeon.models.core.namespaces import array_namespace, library
+from mxeon.models.core.namespaces import any_array, array_namespace, library
 from mxeon.models.core.quadrature import albedo_dir_quadrature
+from mxeon.models.media.volume import hg_pdf, hg_sample
 from mxeon.models.media_model import EmissionModel, MediumModel
 from mxeon.models.nodes import NODES
 from mxeon.models.nodes.emissions import EMISSIONS, Emission
@@ -32,9 +33,29 @@ from mxeon.models.nodes.transmissions import TRANSMISSION_NODES, TRANSMISSIONS
 from mxeon.models.shading_model import ModelSampler, NodeModel, ShadingModel
 from mxeon.models.transmission.refraction import LEAST
 
-COSINE = ModelSampler(
-    lambda wo, u, i: sampling.cosine_sample(u), lambda wo, wi, i: sampling.cosine_pdf(wi)
-)
+
+def _cosine_sample(wo: Array, u: Array, inputs: Inputs) -> tuple[Array, Array]:
+    any_array(checked_directions)("wo", wo)
+    return sampling.cosine_sample(u)
+
+
+def _cosine_pdf(wo: Array, wi: Array, inputs: Inputs) -> Array:
+    any_array(checked_directions)("wo", wo)
+    return sampling.cosine_pdf(wi)
+
+
+def _back_sample(wo: Array, u: Array, inputs: Inputs) -> tuple[Array, Array]:
+    wi, pdf = _cosine_sample(wo, u, inputs)
+    return _mirrored(wi), pdf
+
+
+def _mirrored(w: Array) -> Array:
+    """Directions on the other side of the surface."""
+    return array_namespace(w).stack([w[..., 0], w[..., 1], -w[..., 2]], axis=-1)
+
+
+COSINE = ModelSampler(_cosine_sample, _cosine_pdf)
+BACK = ModelSampler(_back_sample, lambda wo, wi, i: _cosine_pdf(wo, _mirrored(wi), i), side=-1.0)
 EON = ModelSampler(
     lambda wo, u, i: sampling.eon_sample(wo, u, i["roughness"], rho=i["color"].mean(axis=-1)),
     lambda wo, wi, i: sampling.eon_pdf(wo, wi, i["roughness"], rho=i["color"].mean(axis=-1)),
@@ -46,10 +67,16 @@ ZELTNER = ModelSampler(
 GGX = ModelSampler(
     lambda wo, u, i: sampling.ggx_sample(wo, u, i["roughness"]),
     lambda wo, wi, i: sampling.ggx_pdf(wo, wi, i["roughness"]),
+    side=None,
+)
+SPHERE = ModelSampler(
+    lambda wo, u, i: hg_sample(wo, u, 0.0), lambda wo, wi, i: hg_pdf(wo, wi, 0.0), side=None
 )
 FACETS = ("dielectric", "conductor", "schlick")
+# Others have COSINE.
 SAMPLERS = {
-    **dict.fromkeys(("lambert", "subsurface"), COSINE),
+    "translucent": BACK,
+    "hair": SPHERE,
     "eon": EON,
     "zeltner": ZELTNER,
     **dict.fromkeys((*FACETS, *(f"{name}_film" for name in FACETS)), GGX),
@@ -104,7 +131,7 @@ def model(name: str) -> NodeModel:
     --------
     >>> gold = model("conductor")
     >>> gold
-    conductor: conductor microfacets; brdf, bsdf, albedo_dir, sample, pdf
+    conductor: conductor microfacets; brdf, bsdf, albedo_dir, sample, pdf, plot
       ior = (0.183, 0.421, 1.373), in [0, 1e50]
       extinction = (3.424, 2.346, 1.77), in [0, 1e50]
       roughness = (0.05, 0.05), in [0, 1]
@@ -130,7 +157,7 @@ def _of_node(row: PbrNode) -> ShadingModel:
         tuple(parameter(row.category, name) for name in row.inputs),
         row.value,
         row.integral or row.albedo,
-        sampler=SAMPLERS.get(row.name),
+        sampler=SAMPLERS.get(row.name, COSINE),
         lights="all sides" if row is HAIR_NODE else lights,
         by_name=BY_NAME.get(row.category, ("weight", "normal")),
     )
@@ -198,10 +225,8 @@ def _of_table(row: table.Model) -> ShadingModel:
         assert row.albedo_avg
         return row.albedo_avg(*(values[name] for name in names))
 
-    known = average if row.albedo_avg else None
-    return ShadingModel(
-        row.name, row.title, node, tuple(inputs), value, albedo, known, SAMPLERS.get(row.name)
-    )
+    known, sampler = average if row.albedo_avg else None, SAMPLERS.get(row.name, COSINE)
+    return ShadingModel(row.name, row.title, node, tuple(inputs), value, albedo, known, sampler)
 
 
 def _of_coat() -> ShadingModel:
@@ -223,6 +248,7 @@ def _of_coat() -> ShadingModel:
         ModelSampler(
             lambda wo, u, i: _per_coat(coat_sampling.dielectric_over_eon_sample, i, wo, u),
             lambda wo, wi, i: _per_coat(coat_sampling.dielectric_over_eon_pdf, i, wo, wi)[0],
+            side=None,
         ),
     )
 
@@ -252,6 +278,7 @@ def _of_openpbr() -> ShadingModel:
         parameters,
         lambda wo, wi, i: called(openpbr.openpbr_base_brdf, i, wo=wo, wi=wi),
         lambda wo, i: called(openpbr.openpbr_base_albedo_dir, i, mu=cosine(wo[:, 2])),
+        sampler=COSINE,
     )
 
 

@@ -166,9 +166,10 @@ def _draw_density(axes: Axes, model: Drawable, inputs: Mapping[str, ArrayLike]) 
         if albedo > 0.0:
             axes.plot(np.degrees(angles), lobe / albedo, color=color, linewidth=2.5, alpha=0.3)
     # Say which is which.
-    exact = "value times cosine, over the albedo"
+    exact = f"value{'' if model.node == FIBER else ' times cosine'}, over the albedo"
     axes.plot([], [], color="#444444", linewidth=1.2, label="density")
     axes.plot([], [], color="#444444", linewidth=2.5, alpha=0.3, label=exact)
-    axes.set_xticks(range(-90, 91, 30))
+    first, *_, last = np.degrees(angles).round()
+    axes.set_xticks(np.linspace(first, last, 7))
     axes.set_ylim(0.0, None)
     axes.legend(fontsize=7, frameon=False)

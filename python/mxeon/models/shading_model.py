@@ -4,13 +4,16 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
+import numpy as np
+
 from mxeon.models import lobe_plot
-from mxeon.models.core.arguments import checked_switch
+from mxeon.models.core.arguments import ROUNDING, checked_switch
 from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.namespaces import array_namespace
 from mxeon.models.nodes.frames import ALONG, UP, into_frame, out_of_frame
 from mxeon.models.nodes.inputs import Rows, bound_inputs, rows, views
 from mxeon.models.nodes.node import Inputs
@@ -18,6 +21,17 @@ from mxeon.models.nodes.parameters import WEIGHT, Parameter
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+# Functions of models, and why a model may lack them.
+LACKS = {
+    **dict.fromkeys(
+        ("bsdf", "albedo_dir", "plot", "edf", "exitance", "transmittance", "phase"), ""
+    ),
+    **dict.fromkeys(("sample", "pdf"), ": no density of refracted light is implemented"),
+    "brdf": ": light passes through it, so call bsdf",
+    "albedo_avg": ": no closed form is known",
+}
+SIDES = {"front": 1.0, "back": -1.0}
 
 
 @dataclass(frozen=True)
@@ -28,10 +42,13 @@ class ModelSampler:
     ----------
     sample : callable (wo, u, inputs) -> wi, pdf
     pdf : callable (wo, wi, inputs) -> ndarray
+    side : float or None
+        Where it draws: 1 above the horizon, -1 below it, None anywhere.
     """
 
     sample: Callable[[Array, Array, Inputs], tuple[Array, Array]]
     pdf: Callable[[Array, Array, Inputs], Array]
+    side: float | None = 1.0
 
 
 @dataclass(frozen=True, repr=False)
@@ -62,10 +79,26 @@ class NodeModel(ABC):
         inputs = "".join(f"\n  {each!r}" for each in self.parameters)
         return f"{self.name}: {self.title}; {', '.join(self.functions)}{inputs}"
 
+    def __dir__(self) -> Iterable[str]:
+        """Names of what it has."""
+        return [name for name in super().__dir__() if name in self.functions or name not in LACKS]
+
+    if not TYPE_CHECKING:  # where it would make every name an attribute
+
+        def __getattr__(self, name: str) -> None:
+            """Say what it has instead of a function of other models."""
+            if name in LACKS:
+                raise AttributeError(
+                    f"{self.name}, {self.title}, has no {name}; it has {', '.join(self.functions)}"
+                )
+            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+
     def _need(self, function: str) -> None:
-        """Raise ValueError unless the model has this function; lists those that it has."""
+        """Raise ValueError unless the model has this function: why not, and which it has."""
         if function not in self.functions:
-            raise ValueError(f"{self.name} has no {function}; it has {', '.join(self.functions)}")
+            raise ValueError(
+                f"{self.name} has no {function}{LACKS[function]}; it has {', '.join(self.functions)}"
+            )
 
     def _bound(
         self,
@@ -94,6 +127,11 @@ class ShadingModel(NodeModel):
     `tangent` or `curve_direction`, directions are those of a frame in which the node's normal is this
     unit vector, such as that of the scene; a tangent that is left out is +x. `retroreflective` mirrors
     the viewer.
+
+    wo lies on or above the horizon, and wi anywhere: the value of a wi from which the model scatters no
+    light is 0. `pdf` is the density of `sample` on the whole sphere, over which it integrates to 1. What
+    `sample` draws below the horizon for a model that reflects is wasted: its value is 0, its density
+    counts. Without a sampling of its own a model has that of the cosine, hair that of the sphere.
 
     Arrays of PyTorch and JAX give results of their library wherever the functions of the model take
     them; others refuse them by name.
@@ -132,7 +170,8 @@ class ShadingModel(NodeModel):
         """Names of the functions that it has."""
         value = ("brdf", "bsdf") if self.lights == "front" else ("bsdf",)
         average = ("albedo_avg",) if self.average else ()
-        return (*value, "albedo_dir", *average, *(("sample", "pdf") if self.sampler else ()))
+        samples = ("sample", "pdf") if self.sampler else ()
+        return (*value, "albedo_dir", *average, *samples, "plot")
 
     def brdf(self, wo: ArrayLike, wi: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
         """Value of a model that reflects, in 1/sr and without the cosine.
@@ -140,7 +179,8 @@ class ShadingModel(NodeModel):
         Parameters
         ----------
         wo, wi : array_like, shape (..., 3)
-            Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x, z >= 0.
+            Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x. That to the
+            viewer has z >= 0; the value is 0 where that to the light has z < 0.
         *inputs, **named : array_like
             Those of `parameters`.
 
@@ -158,9 +198,9 @@ class ShadingModel(NodeModel):
         return self.bsdf(wo, wi, *inputs, **named)
 
     def bsdf(self, wo: ArrayLike, wi: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
-        """Value of any model, as `brdf`; wi lies where its light comes from."""
+        """Value of any model, as `brdf`; 0 where wi is not where its light comes from."""
         call = self._rows({"wo": wo, "wi": wi}, inputs, named)
-        return call.colors(self.value(call.vectors[0], call.vectors[1], call.inputs))
+        return call.colors(_on_side(SIDES.get(self.lights), self.value, call))
 
     def albedo_dir(
         self, mu: ArrayLike, *inputs: ArrayLike, azimuth: ArrayLike = 0.0, **named: ArrayLike
@@ -219,11 +259,11 @@ class ShadingModel(NodeModel):
         return out_of_frame(wi, *frame) if frame else wi, call.shaped(pdf)
 
     def pdf(self, wo: ArrayLike, wi: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
-        """Density of `sample` at wi, in 1/sr, shape (...); inputs as those of `brdf`."""
+        """Density of `sample` at any wi, in 1/sr, shape (...); inputs as those of `brdf`."""
         self._need("pdf")
         assert self.sampler
         call = self._rows({"wo": wo, "wi": wi}, inputs, named)
-        return call.shaped(self.sampler.pdf(call.vectors[0], call.vectors[1], call.inputs))
+        return call.shaped(_on_side(self.sampler.side, self.sampler.pdf, call))
 
     def plot(self, path: str | None = None, **named: ArrayLike) -> Figure:
         """Polar lobe, albedo over the viewer's angle, and density of samples, of one material.
@@ -263,7 +303,8 @@ class ShadingModel(NodeModel):
             turned = {n: into_frame(v, *frame) for n, v in vectors.items() if n in ("wo", "wi")}
             vectors = vectors | turned
         if checked_switch("retroreflective", cast(bool, own.get("retroreflective", False))):
-            vectors = {n: _mirrored(v) if n == "wo" else v for n, v in vectors.items()}
+            back = tuple(-x for x in ALONG)  # half a turn about the normal
+            vectors |= {n: out_of_frame(v, UP, back) for n, v in vectors.items() if n == "wo"}
         return self._bound(vectors, inputs, rest, *([WEIGHT] if "weight" in own else []))
 
 
@@ -274,6 +315,15 @@ def _frame(named: Mapping[str, ArrayLike]) -> tuple[ArrayLike, ArrayLike] | None
     return named.get("normal", UP), named.get("tangent", named.get("curve_direction", ALONG))
 
 
-def _mirrored(wo: ArrayLike) -> ArrayLike:
-    """Directions turned by half a turn about the normal."""
-    return out_of_frame(wo, UP, tuple(-x for x in ALONG))
+def _on_side(
+    side: float | None, function: Callable[[Array, Array, Inputs], Array], call: Rows
+) -> Array:
+    """Values for wi on a side of the horizon, 1 above and -1 below it; 0 for the others."""
+    wo, wi = call.vectors
+    if side is None:
+        return function(wo, wi, call.inputs)
+    xp, z = array_namespace(wi), side * wi[:, 2]
+    other = z < -ROUNDING
+    mirrored = xp.stack([wi[:, 0], wi[:, 1], side * xp.where(other, -z, z)], axis=-1)
+    values = function(wo, mirrored, call.inputs)
+    return xp.where(other[:, np.newaxis] if values.ndim > 1 else other, 0.0, values)

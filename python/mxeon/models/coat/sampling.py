@@ -6,8 +6,15 @@ from __future__ import annotations
 import numpy as np
 
 from mxeon.models.coat.curves import Coat, coat_of, of_one_coat, unpack_cosine
-from mxeon.models.core.arguments import checked, checked_color, checked_directions
+from mxeon.models.core.arguments import (
+    checked,
+    checked_color,
+    checked_directions,
+    checked_sphere,
+    checked_triples,
+)
 from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.edges import magnitude
 from mxeon.models.core.namespaces import any_array, array_namespace
 from mxeon.models.core.shapes import lead_shape
 from mxeon.models.diffuse.albedo import eon_albedo_dir
@@ -66,24 +73,19 @@ def dielectric_over_eon_sample(
     xp = array_namespace(share)
     u1, first, second = _split(u, share)
     # Draw from both, and keep the one chosen.
-    reflected, density = ggx_sample(wo, first, alpha)
     wi = xp.where(
         (u1 < share)[..., np.newaxis],
-        reflected,
+        ggx_sample(wo, first, alpha)[0],
         eon_sample(wo, second, roughness, rho=_mean(rho))[0],
     )
-    # Tell the density of both above the horizon.
-    above = wi[..., 2] >= 0.0
-    upper = xp.stack([wi[..., 0], wi[..., 1], xp.abs(wi[..., 2])], axis=-1)
-    both = _mixed(wo, upper, rho, roughness, alpha, share)
-    return wi, xp.where(above, both, share * density)[()]
+    return wi, _mixed(wo, wi, rho, roughness, alpha, share)
 
 
 @of_one_coat
 def dielectric_over_eon_pdf(
     wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float
 ) -> Array:
-    """Density of `dielectric_over_eon_sample` at `wi`, above the horizon, in solid angle.
+    """Density of `dielectric_over_eon_sample` at `wi`, on the whole sphere, in solid angle.
 
         pdf = p pdf_GGX + (1 - p) pdf_EON,  p = E_r / (E_r + (1 - E_r) E_EON)
 
@@ -92,14 +94,14 @@ def dielectric_over_eon_pdf(
     Parameters
     ----------
     wo, wi : array_like, shape (..., 3)
-        Unit vectors on or above the horizon.
+        Unit vectors, wo on or above the horizon.
     rho, roughness, alpha, ior
         As those of `dielectric_over_eon_sample`.
 
     Returns
     -------
     float64 or ndarray, shape (...)
-        1/sr; its integral over the hemisphere is the probability that no sample is wasted.
+        1/sr; its integral over the upper hemisphere is the probability that no sample is wasted.
 
     Examples
     --------
@@ -112,6 +114,7 @@ def dielectric_over_eon_pdf(
     return _mixed(wo, wi, rho, roughness, alpha, share)
 
 
+@any_array
 def _mixed(
     wo: ArrayLike,
     wi: ArrayLike,
@@ -121,8 +124,12 @@ def _mixed(
     share: Array,
 ) -> Array:
     """Density of both lobes, the dielectric's with this share."""
-    base = eon_pdf(wo, wi, roughness, rho=_mean(rho))
-    return share * ggx_pdf(wo, wi, alpha) + (1.0 - share) * base
+    light = checked_triples("wi", wi)
+    xp, z = array_namespace(light), light[..., 2]
+    upper = xp.stack([light[..., 0], light[..., 1], magnitude(z)], axis=-1)
+    base = eon_pdf(wo, upper, roughness, rho=_mean(rho))
+    mixed = share * ggx_pdf(wo, wi, alpha) + xp.where(z < 0.0, 0.0, (1.0 - share) * base)
+    return mixed[()]
 
 
 def _share(wo: ArrayLike, rho: ArrayLike, roughness: ArrayLike, of: Coat) -> Array:
@@ -156,7 +163,7 @@ def _check(
     """Raise ValueError unless the arguments broadcast."""
     vectors = {"wo": checked_directions("wo", wo)}
     if wi is not None:
-        vectors["wi"] = checked_directions("wi", wi)
+        vectors["wi"] = checked_sphere("wi", wi)
     if u is not None:
         u1, u2 = unpack_uniforms(u)
         vectors["u"] = array_namespace(u1).stack([u1, u2], axis=-1)

@@ -11,6 +11,7 @@ import numpy as np
 
 from mxeon.models.core.arrays import Array
 from mxeon.models.core.namespaces import array_namespace
+from mxeon.models.diffuse.brdf import lambert_brdf
 from mxeon.models.nodes.node import PbrNode
 
 STEPS = 32  # of the circle in MaterialX
@@ -51,6 +52,6 @@ SUBSURFACE_NODE = PbrNode(
     "Subsurface scattering, which is Lambert on a plane",
     "subsurface_bsdf",
     ("color", "radius"),
-    lambda wo, wi, inputs: inputs["color"] / np.pi,
+    lambda wo, wi, inputs: lambert_brdf(wo, wi, inputs["color"]),
     lambda wo, inputs: array_namespace(wo).broadcast_to(inputs["color"], wo.shape),
 )

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mxeon.models.core.arguments import checked_directions, checked_roughness
+from mxeon.models.core.arguments import checked_directions, checked_roughness, checked_sphere
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
 from mxeon.models.core.edges import at_least_0, root
 from mxeon.models.core.namespaces import any_array, array_namespace
@@ -70,23 +70,23 @@ def ggx_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array
 
 @any_array
 def ggx_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
-    """Density of `ggx_sample` at `wi`, above the horizon, in solid angle.
+    """Density of `ggx_sample` at `wi`, on the whole sphere, in solid angle.
 
-        pdf = G1(wo) D(wh) / (4 mu_o)
+        pdf = G1(wo) D(wh) / (4 mu_o), and 0 where wh is below the horizon
 
     Errors as those of `ggx_sample`.
 
     Parameters
     ----------
     wo, wi : array_like, shape (..., 3)
-        Unit vectors on or above the horizon.
+        Unit vectors, wo on or above the horizon.
     roughness : array_like, shape (..., 2) or ()
         alpha along tangent and bitangent, dimensionless, in [0, 1]; a number is isotropic.
 
     Returns
     -------
     float64 or ndarray, shape (...)
-        1/sr; its integral over the hemisphere is the probability that no sample is wasted.
+        1/sr; its integral over the upper hemisphere is the probability that no sample is wasted.
 
     References
     ----------
@@ -97,10 +97,12 @@ def ggx_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     >>> round(float(ggx_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], [0.5, 0.25])), 6)
     0.455389
     """
-    vectors = {"wo": checked_directions("wo", wo), "wi": checked_directions("wi", wi)}
+    vectors = {"wo": checked_directions("wo", wo), "wi": checked_sphere("wi", wi)}
     vectors["roughness"] = checked_roughness(roughness)
     view, light, alpha = _components(vectors)
-    return visible_density(view, ggx.half_vector(view, light)[0], alpha)
+    wh, cosine = ggx.half_vector(view, light)
+    below = (wh[2] < 0.0) | ((cosine == 0.0) & (light[2] < 0.0))
+    return array_namespace(wh).where(below, 0.0, visible_density(view, wh, alpha))[()]
 
 
 def _components(vectors: dict[str, Numbers]) -> list[Array]:
