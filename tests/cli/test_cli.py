@@ -5,6 +5,7 @@ import json
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
@@ -21,6 +22,9 @@ from mxeon.shaders.scene import SCENES
 from tests.support.command import CLAY, PLASTER, one_line, run
 from tests.support.documents import material
 from tests.support.plans import keep_checks
+
+MIRROR = """<generalized_schlick_bsdf name="lobe" type="BSDF">
+  <input name="roughness" type="vector2" value="0, 0"/></generalized_schlick_bsdf>"""
 
 # --- status -------------------------------------------------------------------------------------
 
@@ -106,6 +110,22 @@ def test_render_writes_a_linear_exr_that_says_what_made_it(host, tmp_path):
     assert image.spec().get_string_attribute("mxeon:element") == "ochre_plaster"
     pixels = image.get_pixels(oiio.FLOAT)
     assert pixels.shape == (64, 64, 3) and pixels.max() > 0.1 and not pixels[0, 0].any()
+
+
+@pytest.mark.parametrize("host", ["gl", "webgl"])
+def test_an_environment_image_ends_at_its_poles(host, hosts, tmp_path):
+    hosts(host)  # skips where it cannot run
+    document, sky, output = (str(tmp_path / name) for name in ("a.mtlx", "sky.exr", "a.exr"))
+    Path(document).write_text(material(MIRROR))
+    rows = np.linspace(1.0, 0.0, 8, dtype=np.float32)  # white above, black below
+    oiio.ImageBuf(np.broadcast_to(rows[:, None, None], (8, 16, 3)).copy()).write(sky)
+    options = ["--host", host, "--environment", sky, "--size", "128", "--output", output]
+    assert main(["render", document, *options]) == PASSED
+    # Where a normal is tilted by 45 degrees, a mirror shows a pole.
+    pixels = oiio.ImageBuf(output).get_pixels(oiio.FLOAT)
+    above, below = pixels[16:22, 61:67], pixels[106:112, 61:67]
+    np.testing.assert_allclose(above, 1.0, atol=2.0**-7)
+    np.testing.assert_allclose(below, 0.0, atol=2.0**-7)
 
 
 def test_library_prints_the_folder_and_what_each_target_finds(capsys):

@@ -207,12 +207,15 @@ class Host(FragmentHost):
     def _textures(
         self, program: moderngl.Program, texels: Mapping[str, Array]
     ) -> dict[str, moderngl.Texture | moderngl.TextureArray]:
-        """Textures of the samplers that a program has."""
-        return {
+        """Textures of the samplers that a program has; a map of the environment ends at its poles."""
+        textures: dict[str, moderngl.Texture | moderngl.TextureArray] = {
             name: self._texture(values, name == "u_envRadiance")
             for name, values in texels.items()
             if program.get(name, None)
         }
+        for name in textures.keys() & {"u_envRadiance", "u_envIrradiance"}:
+            textures[name].repeat_y = False
+        return textures
 
     def _argument(self, rows: Array, size: tuple[int, int]) -> moderngl.Texture:
         """Texture of an argument's values."""

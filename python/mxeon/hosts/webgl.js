@@ -148,7 +148,12 @@ function render(program, job, data) {
     const bound = used.map(([name, layout], unit) => {
         gl.activeTexture(gl.TEXTURE0 + unit);
         gl.uniform1i(gl.getUniformLocation(program, name), unit);
-        return upload(layout, data);
+        const texture = upload(layout, data);
+        if (["u_envRadiance", "u_envIrradiance"].includes(name)) {
+            // A map of the environment ends at its poles.
+            gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
+        }
+        return texture;
     });
     gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 0]);
     withAttributes(program, attributes, data, () => gl.drawArrays(gl.TRIANGLES, 0, 3));
