@@ -20,13 +20,6 @@ COSINE = Parameter("cos_theta", 1.0, "cos_theta")
 class EmissionModel(NodeModel):
     """An EDF node by its name. Inputs and their shapes as those of `ShadingModel`.
 
-    Attributes
-    ----------
-    name, title, node, parameters
-        As those of `NodeModel`.
-    value : callable (wo, inputs) -> ndarray, shape (N, C)
-    power : callable (inputs) -> ndarray, shape (N, C)
-
     Examples
     --------
     >>> import mxeon
@@ -34,8 +27,8 @@ class EmissionModel(NodeModel):
     np.float64(1.251183)
     """
 
-    value: Callable[[Array, Inputs], Array]
-    power: Callable[[Inputs], Array]
+    value: Callable[[Array, Inputs], Array]  # of wo, (N, C)
+    power: Callable[[Inputs], Array]  # (N, C)
 
     @property
     def functions(self) -> tuple[str, ...]:
@@ -56,11 +49,6 @@ class EmissionModel(NodeModel):
 @dataclass(frozen=True, repr=False)
 class MediumModel(NodeModel):
     """A VDF node by its name. Inputs and their shapes as those of `ShadingModel`.
-
-    Attributes
-    ----------
-    name, title, node, parameters
-        As those of `NodeModel`.
 
     Examples
     --------

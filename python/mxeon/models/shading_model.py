@@ -36,14 +36,9 @@ SIDES = {"front": 1.0, "back": -1.0}
 
 @dataclass(frozen=True)
 class ModelSampler:
-    """Samples of a model and their density, by its inputs.
+    """Samples (wi, pdf) of a model and their density, and the side on which it draws.
 
-    Attributes
-    ----------
-    sample : callable (wo, u, inputs) -> wi, pdf
-    pdf : callable (wo, wi, inputs) -> ndarray
-    side : float or None
-        Where it draws: 1 above the horizon, -1 below it, None anywhere.
+    The side is 1 above the horizon, -1 below it, and None for any wi.
     """
 
     sample: Callable[[Array, Array, Inputs], tuple[Array, Array]]
@@ -53,22 +48,12 @@ class ModelSampler:
 
 @dataclass(frozen=True, repr=False)
 class NodeModel(ABC):
-    """What the models of all nodes have: a name, inputs, and a list of functions.
-
-    Attributes
-    ----------
-    name, title : str
-        One word, and the name in print.
-    node : str
-        Category of the node whose inputs it has.
-    parameters : tuple of Parameter
-        Its inputs: name, default, interval, unit.
-    """
+    """What the models of all nodes have: a name, inputs, and a list of functions."""
 
     name: str
-    title: str
-    node: str
-    parameters: tuple[Parameter, ...]
+    title: str  # the name in print
+    node: str  # category of the node whose inputs it has
+    parameters: tuple[Parameter, ...]  # its inputs: name, default, interval, unit
 
     @property
     @abstractmethod
@@ -136,34 +121,16 @@ class ShadingModel(NodeModel):
     Arrays of PyTorch and JAX give results of their library wherever the functions of the model take
     them; others refuse them by name.
 
-    Attributes
-    ----------
-    name, title, node, parameters
-        As those of `NodeModel`.
-    value : callable (wo, wi, inputs) -> ndarray, shape (N, C)
-    albedo : callable (wo, inputs) -> ndarray, shape (N, C)
-    average : callable (inputs) -> ndarray, or None
-    sampler : ModelSampler or None
-    lights : str
-        Where light comes from that it scatters: "front", "back" or "all sides".
-    by_name : tuple of str
-        The other inputs of the node.
-
-    Raises
-    ------
-    ValueError
-        By each function, if an input leaves its range, or a shape fits nothing or two things; or if
-        the model does not have the function.
-    TypeError
-        If an input is unknown or is there twice.
+    Each function raises ValueError if an input leaves its range, a shape fits nothing or two things, or
+    the model does not have the function; TypeError if an input is unknown or is there twice.
     """
 
-    value: Callable[[Array, Array, Inputs], Array]
-    albedo: Callable[[Array, Inputs], Array]
+    value: Callable[[Array, Array, Inputs], Array]  # (N, C)
+    albedo: Callable[[Array, Inputs], Array]  # (N, C)
     average: Callable[[Inputs], Array] | None = None
     sampler: ModelSampler | None = None
-    lights: str = "front"
-    by_name: tuple[str, ...] = ("weight", "normal")
+    lights: str = "front"  # from where it scatters light: "front", "back" or "all sides"
+    by_name: tuple[str, ...] = ("weight", "normal")  # the other inputs of the node
 
     @property
     def functions(self) -> tuple[str, ...]:
@@ -186,7 +153,7 @@ class ShadingModel(NodeModel):
 
         Returns
         -------
-        ndarray, shape (..., C) or (...), float64
+        ndarray, shape (..., C) or (...)
 
         Examples
         --------
@@ -210,15 +177,9 @@ class ShadingModel(NodeModel):
         Parameters
         ----------
         mu : array_like, shape (...)
-            Cosine of the viewer's polar angle, dimensionless, in [0, 1].
-        *inputs, **named : array_like
-            Those of `parameters`.
+            Cosine of the viewer's polar angle, in [0, 1].
         azimuth : array_like, shape (...)
             The viewer's angle from the tangent, in radian; it counts where the model is anisotropic.
-
-        Returns
-        -------
-        ndarray, shape (..., C) or (...), float64
 
         Examples
         --------
@@ -241,14 +202,8 @@ class ShadingModel(NodeModel):
     ) -> tuple[Array, Array]:
         """Directions drawn for the model, shape (..., 3), and their density in 1/sr, shape (...).
 
-        Parameters
-        ----------
-        wo : array_like, shape (..., 3)
-            Directions to the viewer.
-        u : array_like, shape (..., 2)
-            Independent uniform random numbers, in [0, 1).
-        *inputs, **named : array_like
-            Those of `parameters`. Samples of EON are exact for the mean of the channels.
+        `u`, shape (..., 2), are uniform random numbers in [0, 1). EON is sampled exactly for the mean of
+        the channels.
         """
         self._need("sample")
         assert self.sampler
@@ -268,21 +223,7 @@ class ShadingModel(NodeModel):
     def plot(self, path: str | None = None, **named: ArrayLike) -> Figure:
         """Polar lobe, albedo over the viewer's angle, and density of samples, of one material.
 
-        Parameters
-        ----------
-        path : str, optional
-            File to write, .png, .svg or .pdf.
-        **named : array_like
-            Those of `parameters`.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-
-        Raises
-        ------
-        ImportError
-            If matplotlib is missing; says how to install it.
+        It is written to `path`, a .png, .svg or .pdf. Raises ImportError if matplotlib is missing.
         """
         return lobe_plot.draw(self, named, path)
 
