@@ -12,6 +12,7 @@ PASSED, FAILED, MISUSE, NOT_RUN = 0, 1, 2, 3  # exit statuses of the command
 
 LISTED = 20  # known names of a message, unless one of more is near
 LONGEST = 1000  # characters of a message, which may quote a document
+MOST = 20  # faults of a document that are told
 CUT = " [...]"  # ends one that is cut there
 # Controls, changes of the direction of writing, and halves of characters.
 STEERING = re.compile(
@@ -47,10 +48,15 @@ class InputError(MxeonError, ValueError):
 
 
 class DocumentError(InputError):
-    """A document that no shader can be generated from."""
+    """A document that no shader can be generated from; its arguments are its faults, a line each."""
 
-    def __init__(self, message: str) -> None:
-        super().__init__(one_line(message))
+    def __init__(self, *faults: str) -> None:
+        if len(faults) > MOST + 1:
+            faults = (*faults[:MOST], f"and {len(faults) - MOST} more faults")
+        super().__init__(*map(one_line, faults))
+
+    def __str__(self) -> str:
+        return "\n".join(self.args)
 
 
 class ImageError(InputError):
@@ -91,16 +97,17 @@ class InterfaceError(NotRun):
     """A MaterialX that calls closures in another way than eonlib's sources define them."""
 
 
-def meant(name: object, known: Iterable[str]) -> str:
+def meant(name: object, known: Iterable[str], alike: float = 0.6) -> str:
     """The end of a message on an unknown name: the known one that is nearest, if one is near.
 
     Examples
     --------
-    >>> meant("cycels", ("gl", "cycles"))
-    ': did you mean cycles?'
+    >>> meant("cycels", ("gl", "cycles")), meant("EON", ("eon", "fon"))
+    (': did you mean cycles?', ': did you mean eon?')
     """
-    near = get_close_matches(str(name), tuple(known), 1)
-    return f": did you mean {near[0]}?" if near else ""
+    spelled = {each.lower(): each for each in known}
+    near = get_close_matches(str(name).lower(), spelled, 1, alike)
+    return f": did you mean {spelled[near[0]]}?" if near else ""
 
 
 def assert_known(rule: str, name: object, known: Iterable[str]) -> None:

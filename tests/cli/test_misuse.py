@@ -12,7 +12,7 @@ from mxeon.cli import generate, main
 from mxeon.cli.batch import BatchResult, WorkerCrashed
 from mxeon.errors import MISUSE, NOT_RUN, PASSED
 from tests.support.command import CLAY, PLASTER, one_line, run
-from tests.support.documents import material
+from tests.support.documents import connected, material
 from tests.support.plans import keep_checks
 
 OSL = ("generate", "--target", "osl", "--outputPath", "out")
@@ -120,6 +120,31 @@ def test_in_a_batch_the_other_files_are_done(tmp_path, capsys):
     found = json.loads(printed.out)
     assert status == MISUSE and len(found["errors"]) == 1
     assert found["files"] and str(bad) in printed.err
+
+
+def test_every_fault_of_a_document_has_its_line(tmp_path, capsys):
+    path = tmp_path / "look.mtlx"
+    image = (
+        '<image name="i" type="color3"><input name="file" type="filename" value="no.png"/></image>'
+    )
+    path.write_text(material(image + connected(color='nodename="i"')).replace('"color"', '"colr"'))
+    lines = [
+        f"{path}: input \"lobe/colr\" must be an input of oren_nayar_diffuse_bsdf; got 'colr': did "
+        "you mean color?",
+        f'{path}: input "i/file" must name a file that exists; got no.png: --path FOLDER says where '
+        "it lies",
+    ]
+    for command in (
+        ["generate", str(path), "--target", "osl", "--outputPath", str(tmp_path), "--json"],
+        ["render", str(path), "--output", str(tmp_path / "a.png")],
+        ["explore", str(path), "--output", str(tmp_path / "a.html")],
+        ["check", str(path)],
+    ):
+        assert main([*command, "--workers", "0"]) == MISUSE
+        printed = capsys.readouterr()
+        assert printed.err.splitlines() == [f"mxeon: {line}" for line in lines]
+        if "--json" in command:
+            assert json.loads(printed.out)["errors"] == lines
 
 
 def test_a_document_that_ends_its_process_did_not_run(tmp_path, monkeypatch, capsys):

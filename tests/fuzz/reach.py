@@ -182,7 +182,7 @@ def _judged(element, place, document, targets):
                 continue
             # What a prefix does wrong is said of the name of a file that it makes.
             named = "file" if place.attribute == "fileprefix" else element.tag
-            return named in said and "must" in said and said.isprintable()
+            return named in said and "must" in said and all(map(str.isprintable, error.args))
         except ValueError:  # a number that is none
             continue
         if any(POISON in source for source in sources):

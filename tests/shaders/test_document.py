@@ -2,6 +2,7 @@
 """Bad documents: each ends in one line that names the place, the rule and the value."""
 
 import os
+import pickle
 import warnings
 from math import pi
 from pathlib import Path
@@ -9,7 +10,7 @@ from pathlib import Path
 import MaterialX as mx
 import pytest
 
-from mxeon.errors import LONGEST, DocumentError
+from mxeon.errors import LONGEST, MOST, DocumentError
 from mxeon.shaders.color_spaces import INTEROP, LEGACY
 from mxeon.shaders.document.notes import MissingFileWarning
 from mxeon.shaders.document.policy import Policy
@@ -98,7 +99,10 @@ SWITCH = '<switch name="s" type="float"><input name="which" type="integer" value
 
 # Nodes around the lobe, and what is said of them.
 NODES = {
-    "unknown node": ('<nosuch_bsdf name="lobe" type="BSDF"/>', "Could not find a nodedef for node"),
+    "unknown node": (
+        '<nosuch_bsdf name="lobe" type="BSDF"/>',
+        'node "lobe" must have a definition; got nosuch_bsdf of type BSDF: load further definitions',
+    ),
     "no implementation": (DEFINED.format("a") + A, "Could not find a matching implementation"),
     "no source file": (
         DEFINED.format("a") + '<implementation name="IM_a" nodedef="ND_a" file="none.glsl"/>' + A,
@@ -141,7 +145,7 @@ NODES = {
     ),
     "unknown input": (
         connected(color="").replace('name="color"', 'name="colour"'),
-        "Input 'colour' doesn't match declaration",
+        "must be an input of oren_nayar_diffuse_bsdf; got 'colour': did you mean color?",
     ),
     "odd name": (
         lobe(name="l o;b"),
@@ -283,6 +287,46 @@ def test_a_missing_texture_is_named_and_the_shader_written(name):
     nodes = IMAGE.format(name) + connected(color='nodename="image"')
     with pytest.warns(MissingFileWarning, match='input "image/file" must name a file that exists'):
         assert generate(material(nodes), "glsl")
+
+
+def test_all_faults_of_a_document_are_told_together(tmp_path):
+    nodes = IMAGE.format("none.png") + IMAGE.replace('"image"', '"other"').format("nor.exr")
+    inputs = '<input name="in1" type="color3" nodename="image"/>'
+    inputs += '<input name="in2" type="color3" nodename="other"/><input name="inn" type="float"/>'
+    nodes += f'<add name="a" type="color3">{inputs}</add><nosuch name="n" type="float"/>'
+    text = connected(color='nodename="a"').replace(
+        "</",
+        '<input name="rougness" type="float" value="nan"/>'
+        '<input name="wight" type="float" nodename="n"/></',
+        1,
+    )
+    path = tmp_path / "look.mtlx"
+    path.write_text(material(nodes + text))
+    with pytest.raises(DocumentError) as refused:
+        read_document(path)
+    assert [line.removeprefix(f"{path}: ").split("; got")[0] for line in refused.value.args] == [
+        'input "lobe/rougness" must be a valid float of finite numbers',
+        'input "a/inn" must be an input of add',
+        'input "lobe/rougness" must be an input of oren_nayar_diffuse_bsdf',
+        'input "lobe/wight" must be an input of oren_nayar_diffuse_bsdf',
+        'node "n" must have a definition',
+        'input "image/file" must name a file that exists',
+        'input "other/file" must name a file that exists',
+    ]
+    assert "did you mean roughness?" in str(refused.value)
+
+
+def test_of_many_faults_the_first_are_told_and_the_others_counted():
+    nodes = "".join(
+        IMAGE.replace('"image"', f'"i{k}"')
+        .format(f"{k}.png")
+        .replace("<input", '<input name="x" type="float" value="1"/><input')
+        for k in range(MOST + 9)
+    )
+    with pytest.raises(DocumentError) as refused:
+        read_document(material(nodes + lobe()))
+    assert len(refused.value.args) == MOST + 1 and refused.value.args[-1] == "and 9 more faults"
+    assert pickle.loads(pickle.dumps(refused.value)).args == refused.value.args
 
 
 def test_a_missing_texture_of_another_material_is_no_fault():

@@ -8,11 +8,12 @@ import warnings
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import mxeon
-from mxeon.errors import InputError, MxeonError, NotRun, printable
+from mxeon.errors import DocumentError, InputError, MxeonError, NotRun, printable
 from mxeon.jobs.timeouts import check_timeout
 
 if TYPE_CHECKING:
@@ -95,7 +96,9 @@ def _work(work: Callable[[Any], Any], document: Any) -> BatchResult:
             value = work(document)
         except (MxeonError, OSError) as reason:
             error = reason
-    return BatchResult(value, tuple(str(record.message) for record in records), error)
+    messages = [record.message for record in records]
+    lines = (each.args if isinstance(each, DocumentError) else (str(each),) for each in messages)
+    return BatchResult(value, tuple(chain.from_iterable(lines)), error)
 
 
 @dataclass(frozen=True)

@@ -59,7 +59,8 @@ def run(options: argparse.Namespace) -> int:
             else:
                 written += _write(result.value, options.outputPath)
     # Print what was written.
-    outcome = {"files": written, "errors": list(map(str, errors))}
+    lines = [line for error in errors for line in status_of(error)[1:]]
+    outcome = {"files": written, "errors": lines}
     for line in [json.dumps(outcome)] if options.json else written:
         print(line)
     return min((fail(*status_of(error)) for error in errors), default=PASSED)

@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sized
 from typing import IO, Any
 
-from mxeon.errors import MISUSE, one_line
+from mxeon.errors import MISUSE, DocumentError, one_line
 
 
 def open_streams() -> None:
@@ -44,8 +44,10 @@ def discard(stream: IO[str]) -> None:
     os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
-def status_of(error: Exception) -> tuple[int, str]:
-    """Exit status and message of an error that has words for the user."""
+def status_of(error: Exception) -> tuple[int, *tuple[str, ...]]:
+    """Exit status of an error that has words for the user, and its lines."""
+    if isinstance(error, DocumentError):
+        return error.status, *error.args
     if isinstance(error, OSError) and not hasattr(error, "status"):
         reason = error.strerror or str(error) or type(error).__name__
         rule = "must be a folder" if isinstance(error, FileExistsError) else "must be accessible"
@@ -53,9 +55,10 @@ def status_of(error: Exception) -> tuple[int, str]:
     return getattr(error, "status", MISUSE), str(error) or type(error).__name__
 
 
-def fail(status: int, message: object) -> int:
-    """Print a message; return the exit status."""
-    _print_line(one_line(message))
+def fail(status: int, *messages: object) -> int:
+    """Print messages, a line each; return the exit status."""
+    for message in messages:
+        _print_line(one_line(message))
     return status
 
 

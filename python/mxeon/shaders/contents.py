@@ -66,21 +66,11 @@ def document_nodes(policy: Policy, source: tuple[str, str]) -> tuple[ShownNode, 
         return (
             error if isinstance(error, MxeonError) else DocumentError(f"{file}: {error.strerror}")
         )
+    if document.missing:
+        return DocumentError(*document.missing)
     # Walk from its materials to what they show.
     walk = Walk(document.renderables, values=True)
-    for path in walk.shown:
-        node = walk.node(path)
-        if node.isA(mx.Node) and not node.getNodeDef():
-            return _undefined(file, node)
     return tuple(sorted({_shown(walk, path) for path in walk.shown}))
-
-
-def _undefined(file: str, node: mx.Node) -> DocumentError:
-    """The error that no node of that category, with inputs of these types, is defined."""
-    return DocumentError(
-        f'{file}: node "{node.getNamePath()}" must have a definition; got {node.getCategory()} of type '
-        f"{node.getType()}: load further definitions by --definitions FOLDER"
-    )
 
 
 def node_of(text: str, category: str) -> ShownNode:

@@ -6,7 +6,7 @@ nodes are counted as often as they are used, by weights, without visiting them a
 here recurses, as depth is not known before.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from graphlib import CycleError
 
 import MaterialX as mx
@@ -44,6 +44,16 @@ def check_shaders(
         policy.check_limit("ports", ports, rule, "inputs of nodes in all its shaders")
         policy.check_limit("nodes", total, rule, "nodes in all its shaders")
     return total
+
+
+def upstream(
+    document: mx.Document, elements: Iterable[mx.Element], roots: Iterable[mx.Element]
+) -> list[mx.Node]:
+    """Nodes among a document's elements that lead to some of them, these included."""
+    start = [each.getNamePath() for each in roots]
+    paths = reachable(start, lambda path: _upstream(document, path))
+    nodes = (each for each in elements if each.isA(mx.Node))
+    return [each for each in nodes if each.getNamePath() in paths]
 
 
 def check_inheritance(document: mx.Document, policy: Policy) -> None:

@@ -12,7 +12,7 @@ import MaterialX as mx
 from mxeon.errors import DocumentError, one_line
 from mxeon.shaders.color_spaces import color_spaces
 from mxeon.shaders.document.labels import label, location
-from mxeon.shaders.document.references import files, folder, foreign_code
+from mxeon.shaders.document.references import foreign_code, missing_fault
 from mxeon.shaders.document.values import NUMERIC, is_exact, plain
 from mxeon.shaders.nodes import DIFFUSE_NODES, FLAG, OREN_NAYAR
 
@@ -33,7 +33,7 @@ class CodeWarning(UserWarning):
 
 
 class MissingFileWarning(DocumentError, UserWarning):
-    """A file that a shader names and that does not exist: an error wherever it has to be read."""
+    """Files that a shader names and that do not exist: an error wherever they have to be read."""
 
 
 def numbers(element: mx.ValueElement) -> tuple[float, ...]:
@@ -81,14 +81,9 @@ def warn_of_files(inputs: Iterable[tuple[str, str]], document: mx.Document) -> N
     MissingFileWarning
         Once.
     """
-    home = folder(document)
-    remedy = "--path FOLDER says where it lies"
-    texts = [
-        f'{label(document)}: input "{path}" must name a file that exists; got {name}: {remedy}'
-        for path, name in dict(inputs).items()
-        if not files(home / name)
-    ]
-    _warn(MissingFileWarning, texts)
+    texts = [missing_fault(document, path, name) for path, name in dict(inputs).items()]
+    if missing := tuple(filter(None, texts)):
+        warnings.warn(MissingFileWarning(*missing), stacklevel=3)
 
 
 def same_names(element: mx.Element) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ generation: their text before MaterialX reads it (`xml`), their elements after.
 
 import math
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeGuard
@@ -16,22 +16,35 @@ from typing import TypeGuard
 import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
 
-from mxeon.errors import DocumentError
+from mxeon.errors import DocumentError, meant
 from mxeon.io.files import AnyPath
 from mxeon.shaders.document.encoding import decode, strict
-from mxeon.shaders.document.graph_size import check_inheritance, check_interfaces, check_shaders
+from mxeon.shaders.document.graph_size import (
+    check_inheritance,
+    check_interfaces,
+    check_shaders,
+    upstream,
+)
 from mxeon.shaders.document.labels import TEXT, label, location
 from mxeon.shaders.document.notes import DocumentWarning, numbers, warn_of_elements
 from mxeon.shaders.document.policy import DEFAULT, Policy
-from mxeon.shaders.document.references import check_code, check_file, check_inside, files, folder
+from mxeon.shaders.document.references import (
+    check_inside,
+    code_faults,
+    file_fault,
+    files,
+    folder,
+    missing_fault,
+)
 from mxeon.shaders.document.values import NUMERIC
-from mxeon.shaders.document.words import check_words
+from mxeon.shaders.document.words import word_faults
 from mxeon.shaders.document.xml import XmlChecker
 from mxeon.shaders.library import load_library
 
 __all__ = ["Document", "DocumentError", "DocumentWarning", "read_document"]
 
 ERRORS = (mx.Exception, LookupError)  # raised by MaterialX
+ALIKE = 0.85  # of names of nodes, which end alike
 
 
 @dataclass(frozen=True)
@@ -46,11 +59,14 @@ class Document:
         Its renderable elements; at least one.
     nodes : int
         Number of nodes in their shaders, nodegraphs counted wherever they are used.
+    missing : tuple of str
+        A line for each file that they name and that does not exist.
     """
 
     content: mx.Document
     renderables: tuple[mx.TypedElement, ...]
     nodes: int
+    missing: tuple[str, ...] = ()
 
 
 def read_document(
@@ -79,9 +95,9 @@ def read_document(
     Raises
     ------
     DocumentError
-        If it cannot be read, is not MaterialX or breaks its rules, comes from a later version,
-        contains a number that is not finite, includes itself, exceeds a limit, needs a permission
-        that the policy does not give, or has no renderable element.
+        If it cannot be read, is not MaterialX, comes from a later version, includes itself or exceeds
+        a limit. With all of its faults, if it breaks MaterialX's rules, contains a number that is not
+        finite, needs a permission that the policy does not give, or has no renderable element.
 
     Warns
     -----
@@ -109,12 +125,25 @@ def read_document(
     _check_tokens(elements)
     _resolve_files(content, elements, [folder(content), *map(Path, policy.path)])
     content.setDataLibrary(data)
-    _check(content, elements, policy)
-    # Limit what shaders would grow from it.
+    _check_version(content, label(content))
+    check_inheritance(content, policy)
+    check_interfaces(content, elements, policy)
+    _raise([*code_faults(content, policy), *word_faults(content, elements), *_types(content)])
+    faults = list(_faults(content, elements, policy))
     renderables = _renderables(content)
+    shown = upstream(content, elements, renderables)
+    faults += _undefined(content, shown)
+    missing = tuple(_missing(shown, policy))
+    _raise([*faults, *missing] if faults else [])
+    if not renderables:
+        raise DocumentError(
+            f"{label(content)}: must contain a renderable element (a surfacematerial, a surface "
+            "shader or an output of one); there is none"
+        )
+    # Limit what shaders would grow from it.
     nodes = check_shaders(content, renderables, policy)
     warn_of_elements(content, elements)
-    return Document(content, renderables, nodes)
+    return Document(content, renderables, nodes, missing)
 
 
 def _is_text(source: AnyPath) -> TypeGuard[str]:
@@ -223,18 +252,47 @@ class _Reader:
         self.read_file(document, path)
 
 
-def _check(document: mx.Document, elements: Sequence[mx.Element], policy: Policy) -> None:
-    """Check a document that MaterialX has read. Later checks rely on earlier ones."""
-    _check_version(document, label(document))
-    check_inheritance(document, policy)
-    check_interfaces(document, elements, policy)
-    check_code(document, policy)
-    check_words(document, elements)
-    _check_types(document)
-    for element in elements:
-        if element.isA(mx.ValueElement) and element.getValueString():
-            _check_value(element, policy)
-    _check_validity(document)
+def _raise(faults: Sequence[str]) -> None:
+    """Raise DocumentError with some faults, if there are any."""
+    if faults:
+        raise DocumentError(*dict.fromkeys(faults))
+
+
+def _types(document: mx.Document) -> Iterator[str]:
+    """Members of the libraries' types: generators would end the process."""
+    for each in document.getChildren():
+        standard = each.isA(mx.TypeDef) and document.getDataLibrary().getTypeDef(each.getName())
+        if standard and (members := each.getChildren()):
+            yield (
+                f"{location(each)} must have no members, as a type of the libraries; "
+                f"got {members[0].getName()}: rename the type"
+            )
+
+
+def _faults(document: mx.Document, elements: Iterable[mx.Element], policy: Policy) -> Iterator[str]:
+    """Wrong values, and rules of MaterialX's own that are broken: it would take defaults silently."""
+    # Values, whose elements MaterialX need not name again.
+    told = set()
+    for each in elements:
+        written = each.isA(mx.ValueElement) and each.getValueString()
+        if written and (fault := _value_fault(each, policy)):
+            told.add(each.asString())
+            yield fault
+    # Its own rules. It names one wrong input of a node, without the one that was meant.
+    try:
+        valid, message = document.validate()
+    except ERRORS as error:
+        valid, message = False, str(error)
+    if valid:
+        return
+    nodes = (each for each in elements if each.isA(mx.Node))
+    wrong = [(each, fault) for node in nodes for each, fault in _input_faults(node)]
+    yield from (fault for _, fault in wrong)
+    told |= {each.asString() for each, _ in wrong}
+    for line in message.strip().splitlines():
+        interface = wrong and line.startswith("Node interface error: Input")
+        if not interface and f"<{line.partition(': <')[2]}" not in told:
+            yield f"{label(document)}: must be a valid MaterialX document; {line}"
 
 
 def _check_version(document: mx.Document, title: str) -> None:
@@ -247,51 +305,62 @@ def _check_version(document: mx.Document, title: str) -> None:
         )
 
 
-def _check_types(document: mx.Document) -> None:
-    """Raise DocumentError for members of the libraries' types: generators would end the process."""
-    for each in document.getChildren():
-        standard = each.isA(mx.TypeDef) and document.getDataLibrary().getTypeDef(each.getName())
-        if standard and (members := each.getChildren()):
-            raise DocumentError(
-                f"{location(each)} must have no members, as a type of the libraries; "
-                f"got {members[0].getName()}: rename the type"
-            )
-
-
-def _check_value(element: mx.ValueElement, policy: Policy) -> None:
+def _value_fault(element: mx.ValueElement, policy: Policy) -> str:
     kind, text = element.getType(), element.getValueString()
     if kind in NUMERIC:
         read = numbers(element)
         if not read or not all(map(math.isfinite, read)):
-            rule = f"a valid {kind} of finite numbers"
-            raise DocumentError(f"{location(element)} must be {rule}; got {text}")
-    elif kind == "filename":
-        check_file(element, policy)
+            return f"{location(element)} must be a valid {kind} of finite numbers; got {text}"
+    return file_fault(element, policy) if kind == "filename" else ""
 
 
-def _check_validity(document: mx.Document) -> None:
-    """Raise DocumentError if MaterialX's own rules are broken: it would take defaults silently."""
-    try:
-        valid, message = document.validate()
-    except ERRORS as error:
-        valid, message = False, str(error)
-    if not valid:
-        reason = message.strip().splitlines()[0]
-        raise DocumentError(f"{label(document)}: must be a valid MaterialX document; {reason}")
+def _input_faults(node: mx.Node) -> Iterator[tuple[mx.Input, str]]:
+    """Inputs that a node must not have, or not of their type, each with its fault."""
+    if not (definition := node.getNodeDef("", True)):  # the nearest one, whose inputs may differ
+        return
+    ports = {each.getName(): each.getType() for each in definition.getActiveInputs()}
+    for each in node.getInputs():
+        name, kind, own = each.getName(), each.getType(), node.getCategory()
+        rule = f"must be an input of {own}; got {name!r}{meant(name, ports)}"
+        if name in ports:
+            rule = f"must have the type {ports[name]} of {own}; got {kind}"
+        if kind != ports.get(name):
+            yield each, f"{location(each)} {rule}"
+
+
+def _undefined(document: mx.Document, nodes: Iterable[mx.Node]) -> Iterator[str]:
+    """Categories of nodes that have no definition, each at its first node."""
+    groups: dict[tuple[str, str], list[mx.Node]] = {}
+    for node in nodes:
+        if not node.getNodeDef("", True):
+            groups.setdefault((node.getCategory(), node.getType()), []).append(node)
+    for (category, kind), (first, *more) in groups.items():
+        same = (each for each in document.getNodeDefs() if each.getType() == kind)
+        near = meant(category, {each.getNodeString() for each in same} - {category}, ALIKE)
+        remedy = near or ": load further definitions by --definitions FOLDER"
+        others = f", with {len(more)} more" if more else ""
+        yield (
+            f'{label(document)}: node "{first.getNamePath()}"{others} must have a definition; got '
+            f"{category} of type {kind}{remedy}"
+        )
+
+
+def _missing(nodes: Iterable[mx.Node], policy: Policy) -> Iterator[str]:
+    """Files of nodes' inputs that may be read and do not exist."""
+    for each in (port for node in nodes for port in node.getInputs()):
+        port = each.getInterfaceInput() if each.hasInterfaceName() else each
+        if port and port.getType() == "filename" and (name := port.getValueString()):
+            missing = missing_fault(port.getDocument(), port.getNamePath(), name)
+            if missing and not file_fault(port, policy):
+                yield missing
 
 
 def _renderables(document: mx.Document) -> tuple[mx.TypedElement, ...]:
-    """Renderable elements of a document; none is a DocumentError.
+    """Renderable elements of a document.
 
     MaterialX looks for materials among the thousands of elements of the data library as well.
     """
     nodes = (each for each in document.getChildren() if each.isA(mx.Node))
     materials = [each for each in nodes if each.getType() == "material"]
     elements = tuple(filter(mx.getShaderNodes, materials))
-    elements = elements or tuple(mx_gen.findRenderableElements(document))
-    if not elements:
-        raise DocumentError(
-            f"{label(document)}: must contain a renderable element (a surfacematerial, a surface "
-            "shader or an output of one); there is none"
-        )
-    return elements
+    return elements or tuple(mx_gen.findRenderableElements(document))

@@ -4,7 +4,7 @@
 import glob
 import os
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
 
@@ -12,7 +12,7 @@ import MaterialX as mx
 
 from mxeon.errors import DocumentError
 from mxeon.io.files import AnyPath
-from mxeon.shaders.document.labels import location
+from mxeon.shaders.document.labels import label, location
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.words import ENDS_A_STRING
 from mxeon.shaders.library import data_folder, eonlib_folder
@@ -51,20 +51,32 @@ def check_inside(path: AnyPath, home: Path, policy: Policy, prefix: str) -> None
         )
 
 
-def check_file(element: mx.ValueElement, policy: Policy) -> None:
-    """Raise DocumentError unless the file that an input names may be read, if it exists.
+def file_fault(element: mx.ValueElement, policy: Policy) -> str:
+    """Why the file that an input names must not be read if it exists; "" if it may.
 
     Of a set of textures, each that exists is checked.
     """
     text, home, prefix = element.getValueString(), folder(element.getDocument()), location(element)
     if ENDS_A_STRING.search(text):
-        raise DocumentError(f"{prefix} must name a file without quotes and backslashes; got {text}")
+        return f"{prefix} must name a file without quotes and backslashes; got {text}"
     path = home / text  # relative still if no file was found
-    check_inside(path, home, policy, prefix)
-    if "<" in str(path.parent):
-        raise DocumentError(f"{prefix} must name one folder; got {text}")
-    for file in files(path):
-        check_inside(file, home, policy, prefix)
+    try:
+        check_inside(path, home, policy, prefix)
+        if "<" in str(path.parent):
+            return f"{prefix} must name one folder; got {text}"
+        for file in files(path):
+            check_inside(file, home, policy, prefix)
+    except DocumentError as error:
+        return str(error)
+    return ""
+
+
+def missing_fault(document: mx.Document, path: str, name: str) -> str:
+    """That the file which the input with this name path names does not exist; "" if it does."""
+    if files(folder(document) / name):
+        return ""
+    rule = f'{label(document)}: input "{path}" must name a file that exists; got {name}'
+    return f"{rule}: --path FOLDER says where it lies"
 
 
 def files(path: Path) -> list[Path]:
@@ -83,23 +95,22 @@ def foreign_code(document: mx.Document) -> list[mx.Implementation]:
     ]
 
 
-def check_code(document: mx.Document, policy: Policy) -> None:
-    """Raise DocumentError unless a document may bring its code, from the files where it lies."""
+def code_faults(document: mx.Document, policy: Policy) -> Iterator[str]:
+    """Code that a document must not bring, or not from the files where it lies."""
     home = folder(document)
     for element in foreign_code(document):
         prefix = location(element)
         if not policy.code:
-            raise DocumentError(
-                f"{prefix} must not bring code of its own; got {_code(element)}: "
-                "pass --allowCode to permit it"
-            )
-        for path in _sources(element, home, policy.path):
-            check_inside(path, home, policy, prefix)
-
-
-def _code(element: mx.Implementation) -> str:
-    name = next(filter(element.hasAttribute, CODE))
-    return f'{name} "{element.getAttribute(name)}"'
+            name = next(filter(element.hasAttribute, CODE))
+            got = f'{name} "{element.getAttribute(name)}"'
+            remedy = "pass --allowCode to permit it"
+            yield f"{prefix} must not bring code of its own; got {got}: {remedy}"
+            continue
+        try:
+            for path in _sources(element, home, policy.path):
+                check_inside(path, home, policy, prefix)
+        except DocumentError as error:
+            yield str(error)
 
 
 def _sources(element: mx.Implementation, home: Path, path: Iterable[str]) -> list[Path]:

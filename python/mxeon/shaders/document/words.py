@@ -8,12 +8,11 @@ which do; whatever else an attribute says (`doc`, `uiname`, an application's own
 
 import re
 from collections import defaultdict
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Iterator
 from functools import cache
 
 import MaterialX as mx
 
-from mxeon.errors import DocumentError
 from mxeon.shaders.document.graphs import reachable
 from mxeon.shaders.document.labels import location
 
@@ -73,8 +72,8 @@ ENDS_A_STRING = re.compile(r'["\\\x00-\x1f\x7f]')
 Choices = Callable[[], Collection[str]]
 
 
-def check_words(document: mx.Document, elements: Iterable[mx.Element]) -> None:
-    """Raise DocumentError unless names and text values of a document's elements are plain words.
+def word_faults(document: mx.Document, elements: Iterable[mx.Element]) -> Iterator[str]:
+    """Names and text values of a document's elements that are no plain words.
 
     Of the value of an input that names a variable, one word is permitted. The data library of the
     document is not checked.
@@ -84,7 +83,7 @@ def check_words(document: mx.Document, elements: Iterable[mx.Element]) -> None:
         for name in ("name", *element.getAttributeNames()):
             text = element.getName() if name == "name" else element.getAttribute(name)
             if text and (rule := _broken(element, name, text, choices)):
-                raise DocumentError(f"{location(element)}: {name!r} must be {rule}; got {text!r}")
+                yield f"{location(element)}: {name!r} must be {rule}; got {text!r}"
 
 
 def _broken(element: mx.Element, name: str, text: str, choices: Choices) -> str:
