@@ -2,8 +2,11 @@
 """The short answer of a run, and what is said while it works."""
 
 import io
+import json
+import shutil
 import sys
 from dataclasses import replace
+from xml.etree import ElementTree
 
 import pytest
 
@@ -16,6 +19,7 @@ from mxeon.errors import MISUSE, InputError, assert_known
 from mxeon.errors import NOT_RUN as DID_NOT_RUN
 from mxeon.hosts.base import Identity
 from tests.support.command import CLAY, PLASTER
+from tests.support.documents import connected, material
 from tests.support.plans import keep_checks
 
 EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
@@ -160,7 +164,54 @@ def test_unreadable_documents_are_said_before_any_other_work(monkeypatch, capsys
     assert main(["check", "nosuch.mtlx", PLASTER, "--workers", "0"]) == MISUSE
     assert seen == ["mxeon: document must be a readable file; got 'nosuch.mtlx'\n"]
     printed = capsys.readouterr()
-    assert printed.err == "" and "Refused: 1 document." in printed.out
+    assert printed.err == ""
+    assert printed.out.startswith("Refused and not judged: nosuch.mtlx. The check passed on gl")
+
+
+def test_nothing_says_of_a_refused_document_that_it_passed(tmp_path, monkeypatch, capsys):
+    keep_checks(monkeypatch, "value", "picture")
+    shutil.copy(PLASTER, tmp_path / "good.mtlx")
+    image = (
+        '<image name="i" type="color3"><input name="file" type="filename" value="no.png"/></image>'
+    )
+    (tmp_path / "bad.mtlx").write_text(material(image + connected(color='nodename="i"')))
+    # Of a texture inside of a definition, which its picture alone asks for.
+    inner = f'{image}<output name="out" type="color3" nodename="i"/>'
+    graph = '<nodedef name="ND_t" node="t"><output name="out" type="color3"/></nodedef>'
+    graph += f'<nodegraph name="NG_t" nodedef="ND_t">{inner}</nodegraph><t name="t" type="color3"/>'
+    (tmp_path / "late.mtlx").write_text(material(graph + connected(color='nodename="t"')))
+    options = ["--report", str(tmp_path / "out"), "--workers", "0"]
+    assert main(["check", str(tmp_path), *options]) == MISUSE
+    printed = capsys.readouterr()
+    names = [str(tmp_path / "bad.mtlx"), str(tmp_path / "late.mtlx")]
+    first, *rest = printed.out.splitlines()
+    assert first.startswith(f"Refused and not judged: {', '.join(names)}. ")
+    assert not [line for line in rest if any(name in line for name in names)]
+    assert [line.split(": ")[1] for line in printed.err.splitlines()] == names
+    report = tmp_path / "out"
+    found = json.loads((report / "results.json").read_text())
+    assert found["verdict"] == "not run" and found["refused"] == names
+    assert f"<p>{first}</p>" in (report / "report.html").read_text()
+    cases = ElementTree.parse(report / "junit.xml").iterfind(
+        "testsuite[@name='documents']/testcase"
+    )
+    assert [(case.get("name"), case[0].tag) for case in cases] == [
+        (each, "error") for each in names
+    ]
+
+
+def test_a_document_that_one_library_lacks_is_refused_in_its_column(tmp_path, monkeypatch, capsys):
+    keep_checks(monkeypatch, "value", "picture")
+    file = tmp_path / "eon.mtlx"
+    other = '<oren_nayar_diffuse_bsdf name="b" type="BSDF"/><add name="lobe" type="BSDF">'
+    other += '<input name="in1" type="BSDF" nodename="a"/><input name="in2" type="BSDF" nodename="b"/></add>'
+    file.write_text(material('<eon_diffuse_bsdf name="a" type="BSDF"/>' + other))
+    libraries = ["--library", "eonlib", "--library", "stock"]
+    assert main(["check", str(file), *libraries, "--workers", "0"]) == MISUSE
+    printed = capsys.readouterr()
+    assert printed.out.startswith(f"Refused and not judged: {file} with stock. ")
+    table = [line.split("  ")[-1].strip() for line in printed.out.splitlines() if line[:2] == "  "]
+    assert table and set(table) == {"refused"} and printed.err.endswith("(with stock)\n")
 
 
 @pytest.mark.parametrize("host", ["three", "mitsuba"])

@@ -33,7 +33,7 @@ RUN = Run(
         result("noise.mtlx: node", "value", verdict=FAILED),
     ),
     contents=dict.fromkeys(NAMES[:3], ()),
-    errors=('light.mtlx: must contain a renderable element; got "a"',),
+    refused={"light.mtlx": ('light.mtlx: must contain a renderable element; got "a"',)},
 )
 
 

@@ -241,16 +241,19 @@ def test_an_unfinished_run_says_what_is_missing(run):
 
 
 def test_a_run_with_refused_documents_says_so_everywhere(run):
-    refused = replace(run, results=(made_result(PASSED),), errors=(f"a.mtlx: {HOSTILE}",))
+    refused = replace(
+        run, results=(made_result(PASSED),), refused={"a.mtlx": (f"a.mtlx: {HOSTILE}", "a.mtlx: 2")}
+    )
     found = json.loads(to_json(refused))
-    assert found["verdict"] == NOT_RUN and found["errors"] == [f"a.mtlx: {HOSTILE}"]
-    assert found["sentence"].endswith("Refused: 1 document.")
+    assert found["verdict"] == NOT_RUN and found["errors"] == [f"a.mtlx: {HOSTILE}", "a.mtlx: 2"]
+    assert found["refused"] == ["a.mtlx"]
+    assert found["sentence"].startswith("Refused and not judged: a.mtlx. The check passed")
     page = page_of(refused)
     assert "Refused: a.mtlx: &lt;script&gt;" in page and HOSTILE not in page
     suite = ElementTree.fromstring(to_junit(refused)).find("testsuite[@name='documents']")
-    assert (
-        suite.get("errors") == "1" and suite.find("testcase/error").get("message")[:6] == "a.mtlx"
-    )
+    assert suite.get("errors") == "1" and suite.find("testcase").get("name") == "a.mtlx"
+    first, second = suite.find("testcase/error").text.splitlines()
+    assert first.startswith("a.mtlx: <script>") and second == "a.mtlx: 2"
 
 
 def test_pictures_beyond_the_first_materials_are_links_to_their_files(run, tmp_path, monkeypatch):

@@ -79,7 +79,8 @@ def test_what_one_library_lacks_is_told_with_its_name(tmp_path):
     found = survey_documents(files, ["eonlib", "stock"], DEFAULT, 0, 1.0)
     assert found.nodes[files[0]] == ("eon_diffuse_bsdf",)
     assert found.unread == {(files[0], "stock"), (files[1], "eonlib"), (files[1], "stock")}
-    undefined, missing = found.errors
+    assert list(found.refused) == [f"{files[0]} with stock", files[1]]
+    [undefined], [missing] = found.refused.values()
     assert undefined.startswith(
         f'{files[0]}: node "lobe" must have a definition; got eon_diffuse_bsdf'
     )

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from mxeon.conformance.results import DIRECT, FAILED, NOT_RUN, Result, Run, counted
 from mxeon.conformance.results.known_issues import issues_of, link
-from mxeon.conformance.run.documents import causes, document_verdicts
+from mxeon.conformance.run.documents import REFUSED, causes, document_verdicts, is_refused
 from mxeon.conformance.run.survey import model_of
 from mxeon.errors import one_line
 
@@ -28,7 +28,7 @@ def answer(run: Run) -> list[str]:
     lines = [one_line(run.summary.sentence), *_not_run(run)]
     failures, notes = list(_failures(run)), new_notes(run)
     room = LINES - len(lines) - min(len(failures), FEWEST)
-    many = len(run.contents) + len(run.errors) > MANY
+    many = len(run.contents) + len(run.refused) > MANY
     documents = summary_by_cause(run) if many else _documents(run, room)
     told = documents if many else documents[: max(room, NODES)]
     lines += told
@@ -59,7 +59,10 @@ def summary_by_cause(run: Run) -> list[str]:
 def _documents(run: Run, room: int) -> list[str]:
     """A table for each document on each host, those with failures first; short ones if room is."""
     blocks = [
-        _block(run, document, host) for document in run.contents for host in _hosts(run, document)
+        _block(run, document, host)
+        for document in run.contents
+        if document not in run.refused
+        for host in _hosts(run, document)
     ]
     blocks.sort(key=_passed)
     if sum(map(len, blocks)) > room and len(blocks) > 1:
@@ -110,14 +113,16 @@ def _block(run: Run, document: str, host: str) -> list[str]:
     kept = [title for title in titles if _failed(rows[title]) or title == "pictures"]
     kept += [title for title in titles if title not in kept][: max(1, NODES - len(kept))]
     table = [[one_line(f"{document} on {host}"), *map(one_line, libraries)]]
+    refused = {name: REFUSED if is_refused(run, document, name) else "" for name in libraries}
     for title in filter(kept.__contains__, titles):
         cells = [
-            _cell([each for each in rows[title] if each.library == library])
+            refused[library] or _cell([each for each in rows[title] if each.library == library])
             for library in libraries
         ]
         table.append([f"  {title}", *cells])
     if others := len(titles) - len(kept):
-        table.append([f"  {counted(others, 'other node')}", *["passed" for _ in libraries]])
+        cells = [refused[library] or "passed" for library in libraries]
+        table.append([f"  {counted(others, 'other node')}", *cells])
     return _aligned(table)
 
 
@@ -126,7 +131,7 @@ def _failed(results: Sequence[Result]) -> bool:
 
 
 def _passed(block: Sequence[str]) -> bool:
-    return not any("failed" in line for line in block[1:])
+    return not any(word in line for line in block[1:] for word in (FAILED, REFUSED))
 
 
 def _cell(results: Sequence[Result]) -> str:

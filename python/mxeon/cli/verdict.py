@@ -30,7 +30,6 @@ def show_run(run: Run, options: argparse.Namespace, said: Collection[str] = ()) 
 
     # Write the report.
     page = report.write(run, options.report) if options.report else None
-    summary = run.summary
     # Print the results, or what a person has to know of them.
     if options.json:
         print(report.to_json(run))
@@ -41,14 +40,10 @@ def show_run(run: Run, options: argparse.Namespace, said: Collection[str] = ()) 
             print(printable("\n".join(answer(run))))
         if page:
             print(f"report: {page}")
-    # Print the documents that were refused, unless that was done first.
-    for error in run.errors:
-        if error not in said:
-            fail(MISUSE, error)
-    # Turn the verdict into a status.
-    if run.errors:
-        return MISUSE
-    return {"passed": PASSED, "failed": FAILED, "not run": NOT_RUN}[summary.verdict]
+    # Print why documents were refused, unless that was done first.
+    if run.refused:
+        return fail(MISUSE, *(each for each in run.errors if each not in said))
+    return {"passed": PASSED, "failed": FAILED, "not run": NOT_RUN}[run.summary.verdict]
 
 
 def _print_all(run: Run) -> None:

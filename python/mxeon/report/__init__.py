@@ -52,7 +52,7 @@ def to_json(run: Run) -> str:
           specification leaves the difference open; counts: the number of checks with each.
         - sentence: the same in words.
         - missing: texts, the items that an interrupted run has not finished.
-        - errors: texts, one for each document that was refused.
+        - refused: texts, the documents that were refused; errors: texts, their faults.
         - version: of mxeon; software: name to version; documents: paths; notes: texts.
         - hosts: objects of name, version, device.
         - results: objects with the fields of `mxeon.conformance.results.Result`; control is null or an
@@ -69,6 +69,7 @@ def to_json(run: Run) -> str:
         "counts": summary.counts,
         "sentence": summary.sentence,
         "missing": run.missing,
+        "refused": tuple(run.refused),
         "errors": run.errors,
         "version": run.version,
         "software": run.software,

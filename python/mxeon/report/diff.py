@@ -87,6 +87,7 @@ class Report:
     results: tuple[Result, ...]
     pictures: tuple[ShownPicture, ...]
     curves: Any
+    refused: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if self.verdict not in VERDICTS:

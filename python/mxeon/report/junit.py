@@ -2,7 +2,7 @@
 """A run as JUnit XML, for build servers."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from xml.etree import ElementTree
 
 from mxeon.conformance.results import FAILED, NOT_RUN, Result, Run, summarize
@@ -37,27 +37,23 @@ def to_junit(run: Run) -> str:
         for result in results:
             _add_case(suite, result)
     # Add the documents that were refused.
-    if run.errors:
-        _add_errors(root, run.errors)
+    if run.refused:
+        _add_errors(root, run.refused)
     ElementTree.indent(root)
     text = ElementTree.tostring(root, encoding="unicode")
     # ElementTree would name the encoding of the system's locale.
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'
 
 
-def _add_errors(root: ElementTree.Element, errors: Sequence[str]) -> None:
-    totals = {
-        "tests": str(len(errors)),
-        "failures": "0",
-        "errors": str(len(errors)),
-        "skipped": "0",
-    }
+def _add_errors(root: ElementTree.Element, refused: Mapping[str, Sequence[str]]) -> None:
+    count = str(len(refused))
+    totals = {"tests": count, "failures": "0", "errors": count, "skipped": "0"}
     suite = ElementTree.SubElement(root, "testsuite", {"name": "documents"} | totals)
-    for error in errors:
-        case = ElementTree.SubElement(
-            suite, "testcase", classname="mxeon.documents", name="refused"
-        )
-        ElementTree.SubElement(case, "error", message=_xml(error))
+    for document, lines in refused.items():
+        named = {"classname": "mxeon.documents", "name": _xml(document)}
+        case = ElementTree.SubElement(suite, "testcase", named)
+        first = ElementTree.SubElement(case, "error", type="refused", message=_xml(lines[0]))
+        first.text = _xml("\n".join(lines))
 
 
 def _totals(results: Sequence[Result]) -> dict[str, str]:

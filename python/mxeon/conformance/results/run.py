@@ -29,8 +29,9 @@ class Run:
     curves : tuple of AlbedoCurve
     notes : tuple of str
         Warnings a reader has to see, e.g. what a host cannot express.
-    errors : tuple of str
-        One line for each document that could not be judged.
+    refused : dict of str to tuple of str
+        The faults of each document that could not be judged, a line each, by its path; if other
+        libraries can read it, the key names the library behind it: "clay.mtlx with stock".
     documents : tuple of Path
     contents : dict of str to tuple of str
         Titles of the nodes of each document that the user gave, by its path.
@@ -45,7 +46,7 @@ class Run:
     pictures: tuple[Picture, ...] = ()
     curves: tuple[AlbedoCurve, ...] = ()
     notes: tuple[str, ...] = ()
-    errors: tuple[str, ...] = ()
+    refused: dict[str, tuple[str, ...]] = field(default_factory=dict)
     documents: tuple[Path, ...] = ()
     contents: dict[str, tuple[str, ...]] = field(default_factory=dict)
     missing: tuple[str, ...] = ()
@@ -53,7 +54,12 @@ class Run:
     @cached_property
     def summary(self) -> Summary:
         """The verdict on this run."""
-        return summarize(self.results, self.missing, self.errors)
+        return summarize(self.results, self.missing, tuple(self.refused))
+
+    @property
+    def errors(self) -> tuple[str, ...]:
+        """The faults of all documents that were refused."""
+        return tuple(line for lines in self.refused.values() for line in lines)
 
     @cached_property
     def image_names(self) -> tuple[str, ...]:

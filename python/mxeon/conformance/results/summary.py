@@ -9,6 +9,8 @@ from dataclasses import dataclass, replace
 
 from mxeon.conformance.results.result import DIFFERS, FAILED, NOT_RUN, PASSED, VERDICTS, Result
 
+NAMED = 3  # documents that were refused, beside the number of the others
+
 
 @dataclass(frozen=True)
 class Summary:
@@ -31,7 +33,7 @@ class Summary:
 
 
 def summarize(
-    results: Sequence[Result], missing: Sequence[str] = (), errors: Sequence[str] = ()
+    results: Sequence[Result], missing: Sequence[str] = (), refused: Sequence[str] = ()
 ) -> Summary:
     """Verdict on `results`.
 
@@ -40,17 +42,17 @@ def summarize(
     results : sequence of Result
     missing : sequence of str
         Tasks of an interrupted run that are not done yet.
-    errors : sequence of str
-        One line for each document that was refused.
+    refused : sequence of str
+        Documents that were refused.
 
     Examples
     --------
-    >>> summarize(()).sentence
-    'No check ran.'
+    >>> summarize((), (), ["clay.mtlx"]).sentence
+    'Refused and not judged: clay.mtlx. No check ran.'
     """
     # Judge what there is.
     summary = _summarize_results(results)
-    if not missing and not errors:
+    if not missing and not refused:
         return summary
     # Say what is not there: without it nothing has passed.
     verdict = FAILED if summary.verdict == FAILED else NOT_RUN
@@ -58,8 +60,9 @@ def summarize(
     if missing:
         verb = "is" if len(missing) == 1 else "are"
         sentence += f" The run is not finished: {counted(len(missing), 'item')} {verb} missing."
-    if errors:
-        sentence += f" Refused: {counted(len(errors), 'document')}."
+    if refused:
+        more = f" and {len(refused) - NAMED} more" if len(refused) > NAMED else ""
+        sentence = f"Refused and not judged: {', '.join(refused[:NAMED])}{more}. {sentence}"
     return replace(summary, verdict=verdict, sentence=sentence)
 
 

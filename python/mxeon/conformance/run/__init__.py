@@ -84,12 +84,12 @@ def check(
     progress : callable (iterable, int) -> iterable
         Wraps the iteration over the tasks, whose number it takes; a progress bar, for example.
     refuse : callable (str)
-        Called with one line for each document that cannot be read, before any other work.
+        Called with each fault of each document that cannot be read, before any other work.
 
     Returns
     -------
     Run
-        A document that cannot be judged is among its errors; the others are judged.
+        A document that cannot be judged is among those refused; the others are judged.
 
     Raises
     ------
@@ -106,8 +106,9 @@ def check(
     libraries = tuple(dict.fromkeys(map(library_name, libraries)))
     _check_work(workers, timeout)
     survey = survey_documents(list(map(str, files)), libraries, policy, workers, timeout)
-    for error in survey.errors:
-        refuse(error)
+    for lines in survey.refused.values():
+        for line in lines:
+            refuse(line)
     resumable = folder is not None
     planned = make_plan(files, hosts, libraries, policy, resumable, nodes, survey)
     # Work; an executor that cannot work leaves the folder as it is.
@@ -158,6 +159,11 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
     done = [findings[number] for number in sorted(findings)]
     results = tuple(result for part in done for result in part.results)
     notes = tuple(note for part in done for note in part.notes)
+    refused = dict(planned.refused)
+    for number in sorted(findings):
+        if lines := findings[number].errors:
+            file = planned.tasks[number].subject
+            refused[file] = tuple(dict.fromkeys((*refused.get(file, ()), *lines)))
     notes += repaired(results, planned.software) + _untested(planned.software)
     return Run(
         version=planned.version,
@@ -167,9 +173,7 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
         pictures=tuple(picture for part in done for picture in part.pictures),
         curves=tuple(curve for part in done for curve in part.curves),
         notes=_grouped(notes),
-        errors=tuple(
-            dict.fromkeys((*planned.refused, *(error for part in done for error in part.errors)))
-        ),
+        refused=refused,
         contents=planned.contents,
         documents=tuple(map(Path, planned.documents)),
         missing=tuple(

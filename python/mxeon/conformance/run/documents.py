@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mxeon.conformance.pictures.documents import DOCUMENT_KEY
-from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Result, Run
+from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Result, Run, counted
 from mxeon.errors import InputError
 
 REFUSED = "refused"
@@ -89,8 +89,14 @@ def document_verdicts(run: Run) -> tuple[DocumentVerdict, ...]:
     verdicts = []
     for document in map(str, run.contents):
         keys = [key for key in results if key[0] in (Path(document).name, document)]
+        keys = [key for key in keys if not is_refused(run, document, key[2])]
         verdicts += [_verdict(document, key, results[key]) for key in keys]
-    return (*verdicts, *map(_refused, run.errors))
+    return (*verdicts, *(_refused(*each) for each in run.refused.items()))
+
+
+def is_refused(run: Run, document: str, library: str) -> bool:
+    """Whether a document was refused, with a library at least."""
+    return not run.refused.keys().isdisjoint((document, f"{document} with {library}"))
 
 
 def causes(verdicts: Sequence[DocumentVerdict]) -> dict[tuple[str, str], tuple[str, ...]]:
@@ -129,7 +135,10 @@ def _cause(result: Result, measured: Sequence[str]) -> str:
     return QUOTED.sub("...", reason.removeprefix("reference: ")) or result.excess
 
 
-def _refused(error: str) -> DocumentVerdict:
-    """The verdict on a document that could not be used, by the line that says so."""
-    document, _, reason = error.partition(": ")
+def _refused(document: str, lines: Sequence[str]) -> DocumentVerdict:
+    """The verdict on a document that could not be used, by the first line that says so."""
+    known = lines[0].startswith(f"{document}: ")
+    name = document if known else document.rpartition(" with ")[0]
+    reason = lines[0].removeprefix(f"{name}: ")
+    reason += f"; {counted(len(lines) - 1, 'more fault')}" if len(lines) > 1 else ""
     return DocumentVerdict(document, "", "", REFUSED, QUOTED.sub("...", reason))

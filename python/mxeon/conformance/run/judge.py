@@ -196,7 +196,7 @@ def _unread(path: Path, error: DocumentError | ImageError) -> Findings:
     """Findings of a document that cannot be read: of one of ours, the library is to blame."""
     if path.resolve().is_relative_to(examples_folder()) and isinstance(error, DocumentError):
         raise error
-    return Findings(errors=(str(error),))
+    return Findings(errors=error.args)
 
 
 def _with_pages(findings: Findings) -> Findings:

@@ -133,7 +133,7 @@ def make_plan(
         tasks=tuple(tasks),
         documents=tuple(dict.fromkeys(documents)),
         contents={file: survey.nodes.get(file, ()) for file in documents} if files else {},
-        refused=survey.errors,
+        refused=survey.refused,
         options=_options(policy),
         files=_files(documents, policy, libraries) if resumable else {},
     )

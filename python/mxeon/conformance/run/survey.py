@@ -31,13 +31,13 @@ class Survey:
         Titles of the nodes of each document, by its path.
     unread : frozenset of Source
         Documents that cannot be read, each with the library that it is read with.
-    errors : tuple of str
-        One line for each of them.
+    refused : dict of str to tuple of str
+        As of `mxeon.conformance.results.Run`.
     """
 
     nodes: dict[str, tuple[str, ...]] = field(default_factory=dict)
     unread: frozenset[Source] = frozenset()
-    errors: tuple[str, ...] = ()
+    refused: dict[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 def survey_documents(
@@ -55,29 +55,35 @@ def survey_documents(
     # Read each document with each library.
     sources = [(file, library) for file in dict.fromkeys(files) for library in libraries]
     titles: dict[str, dict[str, None]] = {file: {} for file in files}
-    refused: dict[Source, str] = {}
+    faults: dict[Source, tuple[str, ...]] = {}
     # Collect nodes, and errors; those of an example are the library's fault.
     with closing(_answers(sources, policy, workers, timeout)) as answers:
         for (file, library), answer in zip(sources, answers, strict=True):
             if isinstance(answer, DocumentError):
                 if not Path(file).resolve().is_relative_to(examples_folder()):
-                    refused[file, library] = str(answer)
+                    faults[file, library] = answer.args
             elif isinstance(answer, MxeonError):
                 raise answer
             else:
                 titles[file] |= dict.fromkeys(_titles(answer or ()))
     return Survey(
         {file: tuple(each) for file, each in titles.items()},
-        frozenset(refused),
-        tuple(dict.fromkeys(_sentence(source, refused, libraries) for source in refused)),
+        frozenset(faults),
+        _by_document(faults, libraries),
     )
 
 
-def _sentence(source: Source, refused: dict[Source, str], libraries: Sequence[str]) -> str:
-    """The error of a document; it names the library if another one can read the document."""
-    file, library = source
-    everywhere = all((file, each) in refused for each in libraries)
-    return refused[source] if everywhere else f"{refused[source]} (with {library})"
+def _by_document(
+    faults: dict[Source, tuple[str, ...]], libraries: Sequence[str]
+) -> dict[str, tuple[str, ...]]:
+    """Faults by document, and by the library too if another one can read the document."""
+    refused: dict[str, tuple[str, ...]] = {}
+    for (file, library), lines in faults.items():
+        if all((file, each) in faults for each in libraries):
+            refused[file] = tuple(dict.fromkeys((*refused.get(file, ()), *lines)))
+        else:
+            refused[f"{file} with {library}"] = tuple(f"{line} (with {library})" for line in lines)
+    return refused
 
 
 def _answers(

@@ -59,8 +59,8 @@ class Plan:
         Empty where the run is not kept.
     contents : dict of str to tuple of str
         Titles of the nodes of each document, by its path.
-    refused : tuple of str
-        One line for each document that cannot be read.
+    refused : dict of str to tuple of str
+        Documents that cannot be read; as of `mxeon.conformance.results.Run`.
     """
 
     version: str
@@ -70,7 +70,7 @@ class Plan:
     options: dict[str, str] = field(default_factory=dict)
     files: dict[str, str] = field(default_factory=dict)
     contents: dict[str, tuple[str, ...]] = field(default_factory=dict)
-    refused: tuple[str, ...] = ()
+    refused: dict[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
