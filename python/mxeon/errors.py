@@ -6,11 +6,11 @@ Every other exception is a bug of mxeon and shows its traceback.
 
 import re
 from collections.abc import Iterable
-from difflib import get_close_matches
+
+from mxeon.names import unknown
 
 PASSED, FAILED, MISUSE, NOT_RUN = 0, 1, 2, 3  # exit statuses of the command
 
-LISTED = 20  # known names of a message, unless one of more is near
 LONGEST = 1000  # characters of a message, which may quote a document
 MOST = 20  # faults of a document that are told
 CUT = " [...]"  # ends one that is cut there
@@ -97,28 +97,10 @@ class InterfaceError(NotRun):
     """A MaterialX that calls closures in another way than eonlib's sources define them."""
 
 
-def meant(name: object, known: Iterable[str], alike: float = 0.6) -> str:
-    """The end of a message on an unknown name: the known one that is nearest, if one is near.
-
-    Examples
-    --------
-    >>> meant("cycels", ("gl", "cycles")), meant("EON", ("eon", "fon"))
-    (': did you mean cycles?', ': did you mean eon?')
-    """
-    spelled = {each.lower(): each for each in known}
-    near = get_close_matches(str(name).lower(), spelled, 1, alike)
-    return f": did you mean {spelled[near[0]]}?" if near else ""
-
-
 def assert_known(rule: str, name: object, known: Iterable[str]) -> None:
-    """Raise InputError unless a name is known; list the known ones, or the nearest of many."""
-    known = tuple(known)
-    if name in known:
-        return
-    near = meant(name, known)
-    if near and len(known) > LISTED:
-        raise InputError(f"{rule} must be one of {len(known)} names; got {name!r}{near}")
-    raise InputError(f"{rule} must be one of {', '.join(known)}; got {name!r}{near}")
+    """Raise InputError unless a name is known; see `mxeon.names.unknown`."""
+    if message := unknown(rule, name, known):
+        raise InputError(message)
 
 
 def printable(text: str) -> str:

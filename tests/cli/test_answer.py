@@ -277,12 +277,33 @@ def test_nothing_is_shown_where_there_is_no_terminal(capsys):
             ["generate", CLAY, "--target", "glls", "--outputPath", "x", "--workers", "0"],
             "got 'glls': did you mean glsl?",
         ),
+        (["chek", CLAY], "got 'chek': did you mean check?"),
+        (["kit", "exprot", "k"], "got 'exprot': did you mean export?"),
+        (["check", CLAY, "--libary", "stock"], "got '--libary': did you mean --library?"),
+        (["render", CLAY, "--ouput=a.png"], "got '--ouput': did you mean --output?"),
+        (["--verison"], "got '--verison': did you mean --version?"),
+        (["kit", "export", "k", "--node", "shen_bsdf"], "'shen_bsdf': did you mean sheen_bsdf?"),
+        (["kit", "check", "k", "--claims", "EON"], "got 'EON': did you mean eon?"),
     ],
 )
 def test_a_name_that_is_nearly_right_is_answered_with_the_right_one(arguments, words, capsys):
     assert main(arguments) == MISUSE
     printed = capsys.readouterr()
     assert printed.out == "" and words in printed.err
+
+
+@pytest.mark.parametrize("arguments", [[], ["kit"], ["report"]])
+def test_without_a_command_there_is_help(arguments, capsys):
+    assert main(arguments) == MISUSE
+    printed = capsys.readouterr()
+    program = " ".join(["mxeon", *arguments])
+    assert printed.out.startswith(f"usage: {program} ")
+    assert printed.err == f"{program}: must be followed by one of the commands above; got none\n"
+
+
+def test_what_follows_two_dashes_is_no_option(capsys):
+    assert main(["check", "--", "--libary"]) == MISUSE
+    assert "must be a readable file; got '--libary'" in capsys.readouterr().err
 
 
 def test_an_unknown_name_of_many_lists_them_only_if_none_is_near():

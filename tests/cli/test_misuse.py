@@ -56,8 +56,7 @@ OSL = ("generate", "--target", "osl", "--outputPath", "out")
         (["invert", "1.2", "0", "0", "--roughness", "1"], "color must lie in [0, 1]"),
         (["invert", "1", "0", "0", "--roughness", "nan"], "roughness must lie in [0, 1]"),
         ([*OSL, "--outputPath", "\0", CLAY], "no null character"),
-        (["frobnicate"], "invalid choice"),
-        ([], "required"),
+        (["frobnicate"], "command must be one of check, generate"),
     ],
     ids=lambda value: value if isinstance(value, str) else "",
 )

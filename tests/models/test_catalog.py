@@ -328,6 +328,9 @@ def test_a_number_for_roughness_is_isotropic(function, inputs):
     [
         (lambda: mxeon.model("conducter"), ValueError, "did you mean conductor?"),
         (lambda: mxeon.model("conductor_bdsf"), ValueError, "did you mean conductor_bsdf?"),
+        (lambda: mxeon.model("EON"), ValueError, "got 'EON': did you mean eon?"),
+        (lambda: mxeon.model("sheen"), ValueError, "did you mean conty_kulla or zeltner?"),
+        (lambda: mxeon.model("conductor_bsdf_"), ValueError, "did you mean conductor_bsdf?"),
         (lambda: mxeon.model(["eon"]), ValueError, "got ['eon']"),
         (lambda: mxeon.model("schlick_t").sample(WO, [0.1, 0.2]), ValueError, "schlick_t has no sample: no density of refracted light is implemented; it has bsdf"),
         (lambda: mxeon.model("uniform_edf").brdf(WO, WI), AttributeError, "uniform_edf, uniform emission, has no brdf; it has edf, exitance"),

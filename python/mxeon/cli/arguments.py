@@ -2,12 +2,15 @@
 """Command-line arguments that several sub-commands have."""
 
 import argparse
+import itertools
 import os
-from collections.abc import Callable, Iterable
+import sys
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NoReturn
 
-from mxeon.errors import MISUSE, InputError, one_line
+from mxeon.errors import MISUSE, InputError, assert_known, one_line
 from mxeon.jobs.timeouts import TIMEOUT
+from mxeon.names import meant
 from mxeon.shaders.document.policy import LIMITS, SEARCH_PATH, Policy, environment_path
 
 STATUS = "Exit status: 0 all passed, 1 a check failed, 2 misuse, 3 something did not run."
@@ -18,10 +21,37 @@ Run = Callable[[argparse.Namespace], int]
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser whose errors are one line."""
+    """A parser whose errors are one line, with the command or the option that was meant."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(epilog=STATUS, **options)
+
+    def parse_known_args(  # type: ignore[override]
+        self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
+    ) -> tuple[argparse.Namespace, list[str]]:
+        """As argparse's, but an unknown option goes first, and a missing command prints help."""
+        words = list(sys.argv[1:] if args is None else args)
+        is_command = self.get_default("run") is not None  # no group of commands
+        if not (words or is_command):
+            self.print_help()
+            self.error("must be followed by one of the commands above; got none")
+        known = self._option_string_actions
+        for word in itertools.takewhile("--".__ne__, words):
+            if not (is_command or word.startswith("-")):
+                break
+            name = word.partition("=")[0]
+            if (
+                name[:2] == "--"
+                and " " not in name
+                and not any(each.startswith(name) for each in known)
+            ):
+                rule = f"option must be one that {self.prog} --help lists"
+                self.error(f"{rule}; got {name!r}{meant(name, known)}")
+        return super().parse_known_args(words, namespace)
+
+    def _check_value(self, action: argparse.Action, value: object) -> None:
+        if action.choices is not None:
+            assert_known(str(action.metavar or action.dest).lower(), value, action.choices)
 
     def error(self, message: str) -> NoReturn:
         self.exit(MISUSE, f"{self.prog}: {one_line(message)}\n")

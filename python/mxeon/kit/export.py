@@ -17,6 +17,7 @@ from mxeon.io.files import write_text
 from mxeon.kit.mesh import Mesh, to_obj, unit_sphere
 from mxeon.kit.usd import mesh_layer, scene_layer
 from mxeon.kit.views import MATERIALS, USUAL, Material, View, views
+from mxeon.names import meant
 from mxeon.shaders.library import load_library
 from mxeon.shaders.nodes import FLAG, INPUT_TYPES, OREN_NAYAR, material_text
 from mxeon.shaders.scene import Scene
@@ -52,13 +53,16 @@ def kit_node(category: str, definitions: tuple[str, ...] = ()) -> KitNode:
         If there is no BSDF node of that category with the inputs color and roughness.
     """
     needed = {"color": "color3", "roughness": "float"}
-    for each in load_library("eonlib", None, definitions).getMatchingNodeDefs(category):
+    library = load_library("eonlib", None, definitions)
+    for each in library.getMatchingNodeDefs(category):
         ports = {port.getName(): port.getType() for port in each.getActiveInputs()}
         if each.getType() == "BSDF" and needed.items() <= ports.items():
             return KitNode(category, each.getName(), ports.get(FLAG) == "boolean")
+    known = {each.getNodeString() for each in library.getNodeDefs() if each.getType() == "BSDF"}
+    remedy = meant(category, known - {category}) or ": load its definition by --definitions FOLDER"
     raise InputError(
         "node must be a BSDF with the inputs color (color3) and roughness (float); "
-        f"got {category!r}: load its definition by --definitions FOLDER"
+        f"got {category!r}{remedy}"
     )
 
 

@@ -125,7 +125,7 @@ def model(name: str) -> NodeModel:
     Raises
     ------
     ValueError
-        If there is none; lists the names, and the nearest one.
+        If there is none; lists the names, or those that may be meant.
 
     Examples
     --------
@@ -138,7 +138,8 @@ def model(name: str) -> NodeModel:
     >>> gold.brdf([0.6, 0.0, 0.8], [-0.6, 0.0, 0.8], roughness=0.3).round(4)
     array([1.4723, 1.1829, 0.5437])
     """
-    checked_choice("model", name, (*MODELS, *NODES_BY_CATEGORY))
+    titles = {each.name: each.title for each in MODELS.values()}
+    checked_choice("model", name, (*MODELS, *NODES_BY_CATEGORY), titles)
     return MODELS[NODES_BY_CATEGORY.get(name, name)]
 
 

@@ -13,8 +13,9 @@ from pathlib import Path
 
 import MaterialX as mx
 
-from mxeon.errors import InputError, LibraryError, assert_known, meant
+from mxeon.errors import InputError, LibraryError, assert_known
 from mxeon.io.files import AnyPath
+from mxeon.names import meant
 from mxeon.shaders.library_files import check_definitions, check_files, check_sources, read_options
 from mxeon.shaders.versions import UntestedVersionWarning, check_version, untested
 

@@ -6,8 +6,7 @@ Directions leave the surface, in a local frame with the normal +z.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
-from difflib import get_close_matches
+from collections.abc import Callable, Iterable, Mapping
 from typing import NoReturn, cast
 
 import numpy as np
@@ -23,6 +22,7 @@ from mxeon.models.core.namespaces import (
 from mxeon.models.core.ranges import CLOSED, RANGES
 from mxeon.models.core.shapes import broadcastable, channel_count, spread_pair, with_axis
 from mxeon.models.core.tiling import blocks, channels_first
+from mxeon.names import NONE, unknown
 
 # Largest error of the squared length of a direction: directions rounded to float32 pass.
 UNIT_TOLERANCE = 1e-6
@@ -141,13 +141,12 @@ def checked_count(name: str, value: int) -> int:
     return int(value)
 
 
-def checked_choice(name: str, value: str, known: Collection[str]) -> str:
-    """Argument that is one of the known words."""
-    if not isinstance(value, str) or value not in known:
-        near = "".join(
-            f": did you mean {each}?" for each in get_close_matches(str(value), known, 1)
-        )
-        raise ValueError(f"{name} must be one of {', '.join(known)}; got {value!r}{near}")
+def checked_choice(
+    name: str, value: str, known: Iterable[str], titles: Mapping[str, str] = NONE
+) -> str:
+    """Argument that is one of the known words, which may have titles; see `mxeon.names.unknown`."""
+    if message := unknown(name, value, known, titles):
+        raise ValueError(message)
     return value
 
 

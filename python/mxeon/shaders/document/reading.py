@@ -16,8 +16,9 @@ from typing import TypeGuard
 import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
 
-from mxeon.errors import DocumentError, meant
+from mxeon.errors import DocumentError
 from mxeon.io.files import AnyPath
+from mxeon.names import meant
 from mxeon.shaders.document.encoding import decode, strict
 from mxeon.shaders.document.graph_size import (
     check_inheritance,

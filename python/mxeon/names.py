@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Names that must be known: the message about one that is not, with the one that was meant."""
+
+from collections.abc import Iterable, Mapping
+from difflib import get_close_matches
+
+LISTED = 20  # known names of a message, unless one of more is near
+SOME = 4  # names that one word may mean
+NONE: Mapping[str, str] = {}
+
+
+def meant(
+    name: object, known: Iterable[str], alike: float = 0.6, titles: Mapping[str, str] = NONE
+) -> str:
+    """The end of a message on an unknown name: the known ones that it may stand for, or "".
+
+    Parameters
+    ----------
+    name : object
+    known : iterable of str
+    alike : float
+        How much a name has to be like a known one; 1 for all letters.
+    titles : mapping of str to str
+        Of known names, where a word of a title may stand for its name.
+
+    Examples
+    --------
+    >>> meant("cycels", ("gl", "cycles")), meant("EON", ("eon", "fon"))
+    (': did you mean cycles?', ': did you mean eon?')
+    >>> meant("sheen", ("zeltner", "eon"), titles={"zeltner": "Zeltner sheen"})
+    ': did you mean zeltner?'
+    """
+    word = str(name).lower()
+    near = [each for each, title in titles.items() if word in title.lower().split()]
+    if not 0 < len(near) <= SOME:
+        spelled = {each.lower(): each for each in known}
+        near = [spelled[each] for each in get_close_matches(word, spelled, 1, alike)]
+    return f": did you mean {' or '.join(near)}?" if near else ""
+
+
+def unknown(rule: str, name: object, known: Iterable[str], titles: Mapping[str, str] = NONE) -> str:
+    """The message that a name is none of the known, which are listed unless one of many is near; or ""."""
+    names = tuple(known)
+    if name in names:
+        return ""
+    near = meant(name, names, titles=titles)
+    if near and len(names) > LISTED:
+        return f"{rule} must be one of {len(names)} names; got {name!r}{near}"
+    return f"{rule} must be one of {', '.join(names)}; got {name!r}{near}"
