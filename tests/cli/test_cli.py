@@ -102,10 +102,11 @@ def test_generate_for_cycles_warns_of_what_it_approximates(tmp_path):
 
 
 @pytest.mark.parametrize("host", ["gl", "reference"])
-def test_render_writes_a_linear_exr_that_says_what_made_it(host, tmp_path):
+def test_render_writes_a_linear_exr_that_says_what_made_it(host, tmp_path, capsys):
     output = str(tmp_path / "plaster.exr")
     options = ["--element", "ochre_plaster", "--size", "64", "--scene", "front"]
     assert main(["render", PLASTER, "--host", host, "--output", output, *options]) == PASSED
+    assert capsys.readouterr().out == f"{output}\n"
     image = oiio.ImageBuf(output)
     assert image.spec().get_string_attribute("mxeon:element") == "ochre_plaster"
     pixels = image.get_pixels(oiio.FLOAT)

@@ -35,6 +35,10 @@ OSL = ("generate", "--target", "osl", "--outputPath", "out")
         (["check", "nowhere.mtlx", "--host", "msl"], "must be a readable file"),
         (["render", CLAY, "--output", "out.exr"], "--element must name one of"),
         (["render", PLASTER, "--output", "out.gif"], "output must end in .exr or .png"),
+        (
+            ["render", PLASTER, "--output", "none/out.exr"],
+            "must lie in a folder that exists; got none/",
+        ),
         (["render", PLASTER, "--output", "out.exr", "--scene", "dusk"], "scene must be one of"),
         (["render", PLASTER, "--output", "out.exr", "--environment", "sky.hdr"], "sky.hdr"),
         (["render", PLASTER, "--output", "out.exr", "--size", "0"], "size must lie in [1, 8192]"),

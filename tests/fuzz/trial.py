@@ -14,7 +14,7 @@ from pathlib import Path
 
 from mxeon.errors import STEERING
 from mxeon.shaders.library import examples_folder
-from tests.fuzz.cases import AROUND, case
+from tests.fuzz.cases import AROUND, OUT, case
 from tests.fuzz.words import CANARY, POISON
 
 STATUSES = (0, 2, 3)
@@ -92,6 +92,8 @@ def _prepared(root, tried):
     (home / "results.json").write_text('{"format": 1, "results": [{"host": "gl"}], "pictures": []}')
     for name, text in AROUND:
         (root / name).write_text(text)
+    if tried.arguments[:1] == ("render",):  # which makes no folder
+        (home / OUT).mkdir()
     for name, data in tried.files:
         (home / name).parent.mkdir(parents=True, exist_ok=True)
         (home / name).write_bytes(data)

@@ -2,12 +2,13 @@
 """`mxeon render`: draw a material on a sphere."""
 
 import argparse
+import os
 from functools import partial
 
 from mxeon.cli import arguments
 from mxeon.cli.batch import picture, run_batch
 from mxeon.cli.output import warn
-from mxeon.errors import PASSED
+from mxeon.errors import PASSED, InputError
 from mxeon.hosts import HOSTS
 from mxeon.shaders.scene import Paths
 
@@ -55,10 +56,13 @@ def add_parser(commands: arguments.Commands) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Write a picture; return the exit status."""
+    """Write a picture and print its path; return the exit status."""
     from mxeon.io.images import write_picture
 
     arguments.assert_other(options.output, [options.file, options.environment])
+    if not os.path.isdir(folder := os.path.dirname(os.path.abspath(options.output))):
+        rule = "output must lie in a folder that exists"
+        raise InputError(f"{rule}; got {options.output}: make {folder} first")
     # Draw the picture in a worker process.
     names = ("host", "scene", "environment", "size", "shape", "element", "library")
     known = {name: getattr(options, name) for name in names}
@@ -70,6 +74,7 @@ def run(options: argparse.Namespace) -> int:
         warn(warning)
     if result.error:
         raise result.error
-    # Write the picture.
+    # Write the picture, and say where it is.
     write_picture(options.output, *result.value)
+    print(options.output)
     return PASSED
