@@ -4,12 +4,14 @@
 import json
 import os
 import re
+import sys
 
 import numpy as np
 import OpenImageIO as oiio
 import pytest
 
 from mxeon.cli import main
+from mxeon.errors import MISUSE, PASSED
 from mxeon.io.images import write_exr
 from mxeon.kit.check import check_kit
 from tests.kit.conftest import (
@@ -183,6 +185,17 @@ def test_csv_that_is_none_costs_its_picture_alone(kit, data):
     run = check_kit(kit)
     assert "true_side.csv: must be" in result_of(run, "file", "true_side").diagnosis
     assert result_of(run, "setup", "lambert").verdict == "passed"
+
+
+def test_what_the_check_lacks_is_said_with_the_export_and_before_the_pictures(
+    tmp_path, monkeypatch, capsys
+):
+    monkeypatch.setitem(sys.modules, "scipy.special", None)
+    said = "kit check needs scipy: pip install '.[kit]' in a checkout of mxeon\n"
+    assert main(["kit", "export", str(tmp_path), "--size", "64"]) == PASSED
+    assert capsys.readouterr().err == f"mxeon: warning: {said}"
+    assert main(["kit", "check", str(tmp_path)]) == MISUSE
+    assert capsys.readouterr().err == f"mxeon: {said}"
 
 
 def test_a_folder_that_is_no_kit_is_refused(tmp_path, capsys):

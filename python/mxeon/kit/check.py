@@ -20,6 +20,7 @@ from mxeon.io.files import regular
 from mxeon.kit.expected import judged, pixel_means
 from mxeon.kit.export import DESCRIPTION, KIT_FORMAT, RENDERS, description
 from mxeon.kit.mesh import unit_sphere
+from mxeon.kit.noise import student_quantile
 from mxeon.kit.questions import Question, answer, one_model, questions
 from mxeon.kit.submitted import Missing, Unusable, read_render
 from mxeon.kit.views import LAMBERT, MATERIALS, View, views
@@ -70,6 +71,7 @@ def check_kit(
         If scipy, of the `kit` extra, is not installed.
     """
     # Read the kit and the submitted pictures.
+    student_quantile()  # before any work
     if not renderer.strip() or not renderer.isprintable():
         raise InputError(f"renderer must be a name on one line; got {renderer!r}")
     folder = Path(folder)

@@ -8,9 +8,9 @@ of it. Under normal noise the two are independent, so their quotient follows Stu
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -94,6 +94,20 @@ def ratio(pictures: Sequence[Tiles], share: float = 1.0) -> float:
         Above 1 with a probability of at most share (1 - CONFIDENCE) if all pictures are right:
         each of n mean errors may leave its interval with 1 / n of that (Bonferroni).
 
+    """
+    stdtrit = student_quantile()
+    total = sum(each.mean.size for each in pictures)
+    false_rate = share * (1.0 - CONFIDENCE) / total
+    largest = 0.0
+    for each in pictures:
+        reach = -stdtrit(each.squares, false_rate / 2.0)[:, None] * each.deviation
+        largest = max(largest, float(np.max(np.abs(each.mean) / (each.slack + reach))))
+    return largest
+
+
+def student_quantile() -> Callable[..., NDArray[np.float64]]:
+    """Quantiles of Student's t, by degrees of freedom and probability.
+
     Raises
     ------
     ImportError
@@ -103,14 +117,7 @@ def ratio(pictures: Sequence[Tiles], share: float = 1.0) -> float:
         from scipy.special import stdtrit  # scipy.stats is slow to import
     except ModuleNotFoundError as error:
         raise PackageError(f"kit check needs scipy: {install('kit')}") from error
-
-    total = sum(each.mean.size for each in pictures)
-    false_rate = share * (1.0 - CONFIDENCE) / total
-    largest = 0.0
-    for each in pictures:
-        reach = -stdtrit(each.squares, false_rate / 2.0)[:, None] * each.deviation
-        largest = max(largest, float(np.max(np.abs(each.mean) / (each.slack + reach))))
-    return largest
+    return cast(Callable[..., NDArray[np.float64]], stdtrit)
 
 
 def _spread(values: NDArray[np.float64], mask: NDArray[np.bool_]) -> NDArray[np.float64]:
