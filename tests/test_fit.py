@@ -226,6 +226,13 @@ def test_an_unknown_model_is_answered_with_the_known_ones():
         fit_brdf(MeasuredBrdf(UP, UP, np.array([[0.1]])), "ggx")
 
 
+def test_a_parameter_that_the_data_do_not_determine_has_no_number():
+    rng = np.random.default_rng(5)
+    black = noisy(rng, "eon", {"rho": np.zeros(1), "roughness": 0.5}, known=False)
+    rho, roughness = str(fit_brdf(black)).splitlines()[1:]
+    assert "+-" in rho and roughness.split(maxsplit=1)[1] == "not determined by the data"
+
+
 def test_scipy_is_named_where_it_is_missing(monkeypatch):
     monkeypatch.setitem(sys.modules, "scipy.optimize", None)
     with pytest.raises(PackageError, match=r"pip install '\.\[fit\]'"):

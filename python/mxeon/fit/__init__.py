@@ -30,6 +30,8 @@ __all__ = [
 MISFIT = 1.5  # scatter above which a model does not fit data whose errors are known
 LEAST_SINGULAR = 1e-12  # of the largest one: below, a direction of parameters is undetermined
 
+UNDETERMINED = "not determined by the data"  # whose error is the parameter's whole range, or more
+
 
 @dataclass(frozen=True)
 class Fit:
@@ -79,8 +81,10 @@ class Fit:
         rows = [f"{self.model}, scatter {self.scatter:.3g}{misfit}"]
         width = max(map(len, self.values))
         for name, value in self.values.items():
+            low, high = FIT_MODELS[self.model].bounds.get(name, (0.0, 1.0))
             pairs = zip(np.atleast_1d(value), np.atleast_1d(self.errors[name]), strict=True)
-            rows.append(f"  {name:{width}} " + ", ".join(f"{v:.4f} +- {e:.4f}" for v, e in pairs))
+            texts = (f"{v:.4f} +- {e:.4f}" if e < high - low else UNDETERMINED for v, e in pairs)
+            rows.append(f"  {name:{width}} " + ", ".join(texts))
         return "\n".join(rows)
 
 
@@ -109,8 +113,9 @@ def fit_brdf(measurement: MeasuredBrdf, model: str = "eon") -> Fit:
     Notes
     -----
     Errors are those of the linearized model: sqrt(diag((J^T J)^-1)), J the derivatives of the differences
-    over the errors of the data, and of 1 without them; then they are multiplied by the scatter. What the data do not determine, such as the roughness of a black surface, has a
-    very large one. At an end of a parameter's range they hold on the side that is left.
+    over the errors of the data, and of 1 without them; then they are multiplied by the scatter. What the
+    data do not determine, such as the roughness of a black surface, has a very large one, and is printed
+    without a number. At an end of a parameter's range they hold on the side that is left.
 
     Examples
     --------
