@@ -18,35 +18,7 @@ TOOLS = {
     "types": ("mypy",),  # which remembers the files that are as they were
 }
 
-STATEMENTS, STEPS = 10, 2  # a function of more statements names at least so many steps
 PACKAGES = sorted(path for path in (ROOT / "python" / "mxeon").iterdir() if path.is_dir())
-WITH_STEPS = [path.name for path in PACKAGES if path.name != "__pycache__"]
-
-
-def without_steps(text):
-    """Names of the functions of more than STATEMENTS statements that do not name their steps."""
-    lines = [line.strip() for line in text.splitlines()]
-    for node in ast.walk(ast.parse(text)):
-        if isinstance(node, ast.FunctionDef):
-            body = node.body[1:] if ast.get_docstring(node) else node.body
-            statements = [each for part in body for each in ast.walk(part)]
-            comments = [line for line in lines[node.lineno : node.end_lineno] if line[:2] == "# "]
-            count = sum(isinstance(each, ast.stmt) for each in statements)
-            if count > STATEMENTS and len(comments) < STEPS:
-                yield node.name
-
-
-@pytest.mark.parametrize("package", WITH_STEPS)
-def test_long_functions_name_their_steps(package):
-    files = sorted((ROOT / "python" / "mxeon" / package).rglob("*.py"))
-    names = [f"{path.stem}.{name}" for path in files for name in without_steps(path.read_text())]
-    assert names == []
-
-
-def test_a_long_function_without_steps_is_noticed():
-    long = "def long():\n" + "    x = 1\n" * 5 + "    # Step.\n" + "    x = 1\n" * 6
-    assert list(without_steps(long)) == ["long"]
-    assert list(without_steps(long + "    # Step.\n    return\n")) == []
 
 
 def anys(text):
