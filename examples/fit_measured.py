@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fits a measured BRDF and draws its lobes: `python fit_measured.py [FILE.binary] [--out FOLDER]`.
 
-FILE is a material of the MERL database. Without one a varnished clay is made, with noise, and written as
+FILE is a material of the MERL database. Without one a coated clay is made, with noise, and written as
 such a file, so that the fit can be compared with what was put in. Needs scipy and matplotlib:
 `pip install '.[fit,report]'` in a checkout.
 """
@@ -24,7 +24,7 @@ VIEW = np.radians(50.0)
 
 
 def write_clay(path):
-    """Write the varnished clay, with noise, as a file of MERL."""
+    """Write the coated clay, with noise, as a file of MERL."""
     rng, values = np.random.default_rng(SEED), np.full((3, *MERL_CELLS), -1.0)
     cells = np.meshgrid(*(np.arange(STEP // 2, n, STEP) for n in MERL_CELLS), indexing="ij")
     h, d, phi = ((each.ravel() + 0.5) / n for each, n in zip(cells, MERL_CELLS, strict=True))
@@ -66,7 +66,7 @@ def main():
     parser.add_argument("--out", default=Path("out"), type=Path)
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
-    path = options.file or options.out / "varnished_clay.binary"
+    path = options.file or options.out / "coated_clay.binary"
     if options.file is None:
         write_clay(path)
         print("put in:", CLAY)

@@ -29,7 +29,7 @@ from tests.support.availability import available
 EXAMPLE = Path(__file__).parents[1] / "examples" / "fit_measured.py"
 SEED = 5
 CLAY = {"rho": np.array([0.7, 0.35, 0.12]), "roughness": 0.62}
-VARNISHED = CLAY | {"alpha": 0.3, "ior": 1.5}
+COATED = CLAY | {"alpha": 0.3, "ior": 1.5}
 BASE = CLAY | {"specular_roughness": 0.5, "specular_ior": 1.6, "metalness": 0.3}
 PAGE_COAT = {"rho": [0.55, 0.28, 0.18], "roughness": 0.7, "alpha": 0.25, "ior": 1.45}
 NOISE = 0.05
@@ -73,7 +73,7 @@ def test_the_parameters_of_eon_lie_within_their_errors(known):
 
 
 @pytest.mark.parametrize(
-    ("model", "parameters"), (("dielectric_over_eon", VARNISHED), ("openpbr_base", BASE))
+    ("model", "parameters"), (("dielectric_over_eon", COATED), ("openpbr_base", BASE))
 )
 def test_the_parameters_of_lobes_over_eon_lie_within_their_errors(model, parameters):
     data = noisy(np.random.default_rng(SEED), model, parameters)
@@ -111,7 +111,7 @@ def test_the_layers_are_those_of_the_specification():
 
 
 @pytest.mark.parametrize(
-    "model, parameters", [(dielectric_over_eon, VARNISHED), (openpbr_base, BASE)]
+    "model, parameters", [(dielectric_over_eon, COATED), (openpbr_base, BASE)]
 )
 def test_lobes_over_eon_have_gradients_by_their_parameters(model, parameters):
     # Differentiate the sum of the values.
@@ -279,9 +279,9 @@ def test_the_blocks_of_the_page_run_one_after_another(tmp_path, monkeypatch, cap
     assert found == pytest.approx([*errors["rho"], errors["roughness"]], rel=1e-3)
     albedo = names["eon_albedo_dir"](0.8, fitted["rho"], fitted["roughness"])
     assert weights[0] == pytest.approx(albedo, rel=0.02)  # of deviates of 0.4 %
-    varnished = names["varnished"]
-    assert np.abs(deviates(varnished, PAGE_COAT)).max() < LARGEST_DEVIATE and varnished.fits
-    albedo = names["coat"].albedo_dir(0.8, **varnished.values)
+    coated = names["coated"]
+    assert np.abs(deviates(coated, PAGE_COAT)).max() < LARGEST_DEVIATE and coated.fits
+    albedo = names["coat"].albedo_dir(0.8, **coated.values)
     assert weights[1] == pytest.approx(albedo, rel=0.1)  # of deviates of 1.5 %
-    pictures = ("lobe.png", "rendered.png", "coat.png", "varnished.png")
+    pictures = ("lobe.png", "rendered.png", "coat.png", "coated.png")
     assert all((tmp_path / name).stat().st_size > 1000 for name in pictures)

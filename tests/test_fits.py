@@ -9,6 +9,7 @@ import re
 import numpy as np
 import pytest
 
+from docs import research
 from fits import (
     arc_tangent,
     blackbody,
@@ -21,6 +22,7 @@ from fits import (
     ggx_cosine,
     thin_film,
     thin_film_nodes,
+    varnish_walk,
 )
 from fits.minimax import least_largest, mp
 from mxeon.conformance.accuracy import bsdf
@@ -226,3 +228,27 @@ def test_the_shader_has_the_nodes_of_a_film():
     np.testing.assert_allclose(
         np.reshape(macros(r"GAUSS\d"), (-1, 2)).T, thin_film.gauss(5), atol=1e-8
     )
+
+
+def test_pages_state_how_much_brighter_a_layer_is_than_eon_below_an_interface():
+    blocks = [
+        re.findall(r"<!-- walk -->\n(.*?)<!-- end -->", page.read_text(encoding="utf-8"), re.DOTALL)
+        for page in (research.PAGE, research.PAGE.with_name("mitsuba.md"))
+    ]
+    assert blocks[0] == blocks[1] and len(blocks[0]) == 1
+    rows = re.findall(r"^\| (\S+) \| (\S+) to (\S+) \|$", blocks[0][0], re.MULTILINE)
+    assert tuple(float(rho) for rho, *_ in rows) == varnish_walk.RHO
+    for rho, *stated in rows:
+        found = varnish_walk.quotients(float(rho), 1 << 13)
+        np.testing.assert_allclose([found.min(), found.max()], np.float64(stated), rtol=0.04)
+
+
+def test_facets_pass_as_much_light_out_as_in():
+    """The light that is diffuse inside and passes is what passes inwards over the index's square."""
+    rng, count, ior = np.random.default_rng(1), 1 << 16, 1.5
+    mu = np.sqrt(rng.random(count))
+    w = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=1)
+    inwards, outwards = (
+        varnish_walk.interface(w, 0.5, each, rng)[1].mean() for each in (ior, 1.0 / ior)
+    )
+    assert abs(outwards - inwards / ior**2) < 4.0 * 0.5 / np.sqrt(count)

@@ -165,9 +165,9 @@ def test_the_example_of_the_page_runs_and_shows_gloss(mi, tmp_path, monkeypatch)
     names, seen = {}, []
     for block in blocks:
         exec(block.replace("spp=16", "spp=1"), names)
-        if "varnished.png" in block or "ball.png" in block:
+        if "coated.png" in block or "ball.png" in block:
             seen.append(brightest(names["picture"]))
     assert 0.1 < np.array(names["picture"]).mean() < 1.0
     assert seen[1] > 1.25 * seen[0]  # 1.5 measured, and 1 without a lamp
-    for name in ("clay", "ball", "varnished"):
+    for name in ("clay", "ball", "coated"):
         assert (tmp_path / f"{name}.png").stat().st_size > 1000

@@ -34,7 +34,7 @@ from tests.support.tolerances import COAT, COAT_INTEGRAL
 
 FALSE_ALARM = 1e-4
 CLAY = {"rho": np.array([0.7, 0.35, 0.12]), "roughness": 0.6}
-VARNISH = {"alpha": 0.3, "ior": 1.5}
+DIELECTRIC = {"alpha": 0.3, "ior": 1.5}
 SCENES = [(1.0, 0.3, 1.5), (0.5, 0.1, 1.5), (0.1, 0.5, 2.5), (0.0, 0.3, 1.1)]
 every_scene = pytest.mark.parametrize(("mu", "alpha", "ior"), SCENES)
 COSINES = np.append([0.0, 1e-10, 1e-8, 1e-6, 1e-5, 1e-4], np.geomspace(1e-3, 1.0, 9))
@@ -83,7 +83,7 @@ def test_the_average_albedo_is_the_average(alpha):
 
 
 def test_a_white_base_returns_all_light_and_an_index_of_1_hides_nothing():
-    albedo = dielectric_over_eon_albedo_dir(COSINES, 1.0, 0.6, **VARNISH)
+    albedo = dielectric_over_eon_albedo_dir(COSINES, 1.0, 0.6, **DIELECTRIC)
     assert np.abs(albedo - 1.0).max() < 1e-15
     bare = CLAY | {"alpha": 0.3, "ior": 1.0}
     off = dielectric_over_eon_albedo_avg(**bare) - eon_albedo_avg(**CLAY)
@@ -140,7 +140,7 @@ def test_a_black_base_and_no_interface_reflect_nothing_and_are_sampled():
 )
 def test_what_is_no_coat_is_refused(other, message):
     with pytest.raises(ValueError, match=message):
-        dielectric_over_eon_albedo_dir(0.5, **CLAY, **VARNISH | other)
+        dielectric_over_eon_albedo_dir(0.5, **CLAY, **DIELECTRIC | other)
 
 
 def test_the_model_by_name_has_a_coat_for_each_row():
@@ -225,12 +225,14 @@ def test_gradients_by_the_coat_are_those_of_differences():
     )
     for function in functions:
         given = {
-            k: torch.tensor(v, dtype=torch.float64, requires_grad=True) for k, v in VARNISH.items()
+            k: torch.tensor(v, dtype=torch.float64, requires_grad=True)
+            for k, v in DIELECTRIC.items()
         }
         function(**CLAY, **given).sum().backward()
         for name, tensor in given.items():
             ends = [
-                function(**CLAY, **VARNISH | {name: VARNISH[name] + h}).sum() for h in (1e-4, -1e-4)
+                function(**CLAY, **DIELECTRIC | {name: DIELECTRIC[name] + h}).sum()
+                for h in (1e-4, -1e-4)
             ]
             assert tensor.grad.item() == pytest.approx(
                 (ends[0] - ends[1]) / 2e-4, rel=1e-5, abs=1e-6

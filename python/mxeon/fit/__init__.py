@@ -96,7 +96,8 @@ def fit_brdf(measurement: MeasuredBrdf, model: str = "eon") -> Fit:
     measurement : MeasuredBrdf
     model : str
         "eon", with `rho` and `roughness`; "dielectric_over_eon", a GGX lobe of a dielectric layered over
-        EON, with `alpha` and `ior` besides; or "openpbr_base", mixed with a metal.
+        EON, with `alpha` and `ior` besides, whose `rho` is smaller than that of a pigment under varnish; or
+        "openpbr_base", mixed with a metal.
 
     Returns
     -------
@@ -112,6 +113,11 @@ def fit_brdf(measurement: MeasuredBrdf, model: str = "eon") -> Fit:
 
     Notes
     -----
+    Errors of the data that are set from the measured values, such as 2 % of each, bias the fit: a value
+    counts for more, the more noise has lowered it, and rho comes out too small by about twice the square of
+    the relative error, which can be one standard deviation. Fit twice, the second time with the same part
+    of the first fit's `brdf`.
+
     Errors are those of the linearized model: sqrt(diag((J^T J)^-1)), J the derivatives of the differences
     over the errors of the data, and of 1 without them; then they are multiplied by the scatter. What the
     data do not determine, such as the roughness of a black surface, has a very large one, and is printed

@@ -33,9 +33,9 @@ def register() -> None:
     Notes
     -----
     `eon` and `fon` have the textures `reflectance` and `roughness`, `qon` has `reflectance` and `sigma`, in
-    radian. `dielectric_over_eon` has those of `eon`, and the numbers `alpha` and `ior`; `openpbr_base` has
-    inputs of OpenPBR's base. All are in `mitsuba.traverse`, and can be differentiated. `eon` is sampled
-    exactly for the mean of its reflectance, what lies under facets by either lobe, the others by the
+    radian. `dielectric_over_eon`, MaterialX's `layer` and no varnish, has those of `eon`, and the numbers
+    `alpha` and `ior`; `openpbr_base` has inputs of OpenPBR's base. All are in `mitsuba.traverse`, and can be
+    differentiated. `eon` is sampled by its value for the mean of its reflectance, what lies under facets by either lobe, the others by the
     cosine. As Mitsuba's `diffuse` they reflect on the front alone.
     """
     mi = mitsuba()

@@ -6,7 +6,9 @@ The dielectric reflects E_r of the light, and EON gets the rest, as `layer` of t
     f = f_r + (1 - E_r(mu_o)) f_EON,  E = E_r + (1 - E_r) E_EON
 
 E_r, with the energy compensation, is at most the albedo of facets that reflect everything, and so at
-most 1.
+most 1. This is no varnish: what EON returns passes freely, while below an interface light is reflected
+and refracted on its way out. At index 1.5 the albedo is 1.17 to 1.80 times that of a random walk below
+the same interface for rho 0.2, 1.28 to 1.66 for 0.5, 1.17 to 1.30 for 0.8: fits/varnish_walk.py.
 """
 
 from __future__ import annotations
@@ -62,7 +64,9 @@ def dielectric_over_eon_brdf(
     Notes
     -----
     Accuracy: E_r and the energy compensation, which the first call for a dielectric tabulates, have an
-    error below 2e-7. The value is not reciprocal, as neither of both is.
+    error below 2e-7. The value is not reciprocal, as neither of both is. A layer is no varnish: EON's light
+    is not reflected on its way out, and at index 1.5 the albedo is up to 1.8 times that of EON below the
+    interface (docs/research.md).
 
     References
     ----------
