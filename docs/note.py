@@ -18,6 +18,7 @@ from docs.note_measures import (
     fresnel_errors,
     loss_errors,
     loss_figures,
+    rounding_figures,
     sampling_figures,
     variances,
 )
@@ -100,7 +101,7 @@ def figures():
 def page(text):
     """The page with its numbers and its table as they are now."""
     text = TABLE.sub(lambda match: match[1] + energy_table() + match[2], text)
-    return marks.filled(text, figures, [])
+    return marks.filled(text, lambda: figures() | rounding_figures(), [])
 
 
 def main():

@@ -30,7 +30,7 @@ from mxeon.models.transmission.schlick import READINGS
 from mxeon.models.transmission.transmittance import dielectric_transmittance_dir
 from mxeon.shaders.library import eonlib_folder
 
-GLASS = 1.5
+GLASS, DENSE = 1.5, 3.0
 SCHLICK = (0.04, 0.25, 0.6), (1.0, 0.5, 0.8), 1.0  # color0, color82, color90
 ROUGH = (1.0, 1.0)
 VIEWS = np.linspace(0.02, 1.0, 50)
@@ -101,20 +101,30 @@ def loss_errors(mu):
 
 
 def loss_figures():
-    """Largest errors in float32, absolute, and relative ones of the energy that is lost."""
+    """Largest errors of the paper's forms, absolute, and relative ones of the energy that is lost."""
     errors, exact = loss_errors(cosines())
-    largest = {name: np.abs(each).max() for name, each in errors.items()}
-    relative = {name: np.abs(each / exact).max() for name, each in errors.items()}
+    listing, quartic, *_ = errors.values()
     return {
-        "listing": largest["Listing 1"],
-        "listing relative": relative["Listing 1"],
-        "quartic": largest["quartic, Eq. (14)"],
+        "listing": np.abs(listing).max(),
+        "listing relative": np.abs(listing / exact).max(),
+        "quartic": np.abs(quartic).max(),
         "quartic excess": -quartic_loss(cosines()).min(),
-        "quartic relative": relative["quartic, Eq. (14)"],
-        "closed relative": relative["H, closed form"],
-        "fitted": largest["H, polynomials"],
-        "fitted relative": relative["H, polynomials"],
+        "quartic relative": np.abs(quartic / exact).max(),
     }
+
+
+def rounding_figures(stride=1):
+    """Largest errors of (4) and (5) over the float32 numbers from 1e-6 to 1, or each `stride`-th of them."""
+    low, high = np.float32([1e-6, 1.0]).view(np.int32)
+    found = []
+    for start in range(low, high + 1, stride << 20):
+        bits = np.arange(start, min(start + (stride << 20), high + 1), stride, dtype=np.int32)
+        mu = bits.view(np.float32)
+        exact = fon_loss(np.float64(mu)) / (1.0 + C1)
+        closed, fitted = (np.abs(each(mu) - exact) for each in (closed_loss, fitted_loss))
+        found.append(((closed / exact).max(), fitted.max(), (fitted / exact).max()))
+    names = "closed relative", "fitted", "fitted relative"
+    return dict(zip(names, np.max(found, axis=0).tolist(), strict=True))
 
 
 # Sampling of EON.
@@ -158,37 +168,40 @@ def albedo_errors(mu, alpha):
     return fitted_albedo(mu, alpha, 1.0, 1.0) - exact, ours - exact
 
 
-def fresnel_errors(mu, alpha):
-    """Errors of a dielectric's albedo without compensation, of index 1.5: three forms.
+def fresnel_errors(mu, alpha, ior=GLASS):
+    """Errors of a dielectric's albedo without compensation: three forms.
 
     F at the view; MaterialX's fit for Schlick's curve with the index's F0; F at the cosine c.
     """
     curves = cosine_fit.DIELECTRIC
-    shape = np.sqrt((GLASS - 1.0) / (GLASS + 1.0))
-    E, (mean,) = cosine_fit.averages(mu, alpha, [lambda c: curves.reflectance(c, GLASS)])
+    shape = np.sqrt((ior - 1.0) / (ior + 1.0))
+    E, (mean,) = cosine_fit.averages(mu, alpha, [lambda c: curves.reflectance(c, ior)])
     c = cosine_fit.cosine(curves, mu, alpha, shape, shipped("fresnel_dielectric", curves.prefix))
-    F0 = ((GLASS - 1.0) / (GLASS + 1.0)) ** 2
+    F0 = ((ior - 1.0) / (ior + 1.0)) ** 2
     exact = E * mean
     return {
-        "F at the view": E * curves.reflectance(mu, GLASS) - exact,
+        "F at the view": E * curves.reflectance(mu, ior) - exact,
         "MaterialX's fit": fitted_albedo(mu, alpha, F0, 1.0) - exact,
-        "F at the cosine c": E * curves.reflectance(c, GLASS) - exact,
+        "F at the cosine c": E * curves.reflectance(c, ior) - exact,
     }
 
 
 def albedo_figures():
-    """Largest errors of E_ss, and of the albedo of a dielectric."""
-    theirs, ours = albedo_errors(*grid(40))
-    at_view, fit, cosine = (np.abs(each).max() for each in fresnel_errors(*grid(16)).values())
-    stock, fitted = np.abs(theirs).max(), np.abs(ours).max()
+    """Largest errors of E_ss, and of the albedo of a dielectric, and means of some."""
+    theirs, ours = (np.abs(each) for each in albedo_errors(*grid(40)))
+    at_view, fit, cosine = (np.abs(each) for each in fresnel_errors(*grid(16)).values())
+    *_, dense = fresnel_errors(*grid(16), DENSE).values()
     return {
-        "stock E": stock,
-        "E": fitted,
-        "times E": stock / fitted,
-        "view": at_view,
-        "stock F": fit,
-        "cosine": cosine,
-        "times F": fit / cosine,
+        "stock E": theirs.max(),
+        "stock E mean": theirs.mean(),
+        "E": ours.max(),
+        "E mean": ours.mean(),
+        "view": at_view.max(),
+        "stock F": fit.max(),
+        "stock F mean": fit.mean(),
+        "cosine": cosine.max(),
+        "cosine mean": cosine.mean(),
+        "cosine dense": np.abs(dense).max(),
     }
 
 
@@ -206,15 +219,14 @@ def energy_rows():
         function(wo, 1.0, ROUGH, GLASS)[:, 0]
         for function in (dielectric_albedo_dir, dielectric_transmittance_dir)
     )
-    across = directions(np.full(2, 1e-3))
-    across[1] = across[1, [1, 0, 2]]  # seen along the tangent, and along the bitangent
+    around = np.concatenate([wo, wo[:, [1, 0, 2]]])  # along the tangent, and the bitangent
     yield "Microfacet BRDF, F = 1, alpha 1", "as it is", E
     whole = dielectric_albedo_dir(wo, 1.0, ROUGH, 0.0)  # index 0 reflects everything
     yield "", "times 1 + F_ss (1 - E_ss) / E_ss", whole
     yield (
         "alpha 0.001 and 1",
         "masking at the mean alpha",
-        ggx_albedo_dir_anisotropic(across, [0.001, 1.0]),
+        ggx_albedo_dir_anisotropic(around, [0.001, 1.0]),
     )
     yield "Microfacet BTDF, rough glass, alpha 1", "R compensated, T as printed", R + T
     single = generalized_schlick_albedo_dir(wo, *SCHLICK, (0.0, 0.0), 5.0, compensate=False)

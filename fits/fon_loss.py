@@ -3,9 +3,9 @@
 
     H(mu) = mu [P(mu) + (1 - S)(1 - mu) Q(mu)],  S = sqrt(1 - mu^2)
 
-P takes the even part of H in S, and Q the odd part, which vanishes like 1 - mu at normal incidence.
-With 1 - S in place of S the second term also vanishes at grazing, so that nothing cancels there.
-The largest relative error of H is made least, from the closed form alone.
+S carries the branch of H at mu = 1, and so both errors fall geometrically with the degrees. The second term
+vanishes at both ends, so that nothing cancels there. One fit of both makes the largest relative error of H
+least, from the closed form alone.
 
     python -m fits.fon_loss
 """
