@@ -19,6 +19,7 @@ from docs.upstream.shader_figures import (
 from docs.upstream.transmission_quantities import inside_albedo
 from mxeon.models import thin_film
 from mxeon.models.core.colorimetry import XYZ_TO_REC709
+from mxeon.models.core.quadrature import unit_rule
 from mxeon.models.diffuse import known_defects
 from mxeon.models.diffuse.brdf import eon_brdf
 from mxeon.models.diffuse.burley import burley_albedo_dir
@@ -26,6 +27,7 @@ from mxeon.models.diffuse.known_defect_albedos import qon_fitted_albedo_dir
 from mxeon.models.diffuse.qon_albedo import qon_albedo_dir
 from mxeon.models.media.blackbody import blackbody_xyz, kang_xyz
 from mxeon.models.media.subsurface import subsurface_albedo, subsurface_reflectance
+from mxeon.models.microfacet import materialx_fits
 from mxeon.models.microfacet.defects import fitted_albedo
 from mxeon.models.microfacet.ggx import smith_g1
 from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
@@ -100,12 +102,33 @@ def ggx_fit_figures():
     mu, alpha = (v.ravel() for v in np.meshgrid(*2 * [np.geomspace(1e-3, 1.0, 40)]))
     cosine, narrow = np.geomspace(1e-3, 1.0, 200), np.full(200, 0.01)
     dip = ggx_albedo_dir(1e-3 * np.linspace(0.5, 2.0, 31), np.full(31, 1e-3)).min()
-    errors = (_ggx_error(mu, alpha), _ggx_error(cosine, narrow))
-    return {"largest": errors[0], "narrow": errors[1], "dip": dip}
+    fit, exact = fitted_albedo(mu, alpha, 1.0, 1.0), ggx_albedo_dir(mu, alpha)
+    white = abs(exact / fit - 1.0)  # error of a lobe that reflects everything, compensated
+    # The mean over the square of mu and alpha.
+    x, weight = unit_rule(32)
+    square = np.repeat(x, 32), np.tile(x, 32)
+    mean = np.outer(weight, weight).ravel() @ _ggx_errors(*square)
+    return {
+        "largest": abs(fit - exact).max(),
+        "narrow": _ggx_errors(cosine, narrow).max(),
+        "dip": dip,
+        "white": white.max(),
+        "white from 0.1": white[mu >= 0.1].max(),
+        "mean": mean,
+    }
 
 
-def _ggx_error(mu, alpha):
-    return abs(fitted_albedo(mu, alpha, 1.0, 1.0) - ggx_albedo_dir(mu, alpha)).max()
+def _ggx_errors(mu, alpha):
+    return abs(fitted_albedo(mu, alpha, 1.0, 1.0) - ggx_albedo_dir(mu, alpha))
+
+
+def conty_kulla_figures():
+    """Error of the fit of the sheen's albedo for cosines from 0.02 and roughness from 0.05 on."""
+    mu, r = (v.ravel() for v in np.meshgrid(np.linspace(0.02, 1.0, 99), np.linspace(0.05, 1.0, 96)))
+    wo = np.stack([0.0 * mu, 0.0 * mu, mu], axis=-1)
+    fit = materialx_fits.conty_kulla_albedo(wo, {"roughness": r})[:, 0]
+    error = fit - np.minimum(conty_kulla_albedo_dir(mu, r), 1.0)
+    return {**mirrored_sheen(), "steep": np.abs(error).max()}
 
 
 def cone_figures():
@@ -206,7 +229,7 @@ FIGURES = {
     "genglsl_add_throughput": sum_figures,
     "genglsl_albedo_acos": acos_error,
     "genglsl_blackbody_cold": blackbody_figures,
-    "genglsl_conty_kulla_fit": mirrored_sheen,
+    "genglsl_conty_kulla_fit": conty_kulla_figures,
     "genglsl_film_choices": film_figures,
     "genglsl_ggx_fit": ggx_fit_figures,
     "genglsl_microfacet_throughput": throughput_changes,
