@@ -4,13 +4,13 @@
 The shader sums orders while they count, averages over the hemisphere in five cosines, or in two, and
 over the visible facets in four, or in two. Each of these cosines stands for those
 around it, whose fringes damp each other. This measures what each costs at most, over films of up to 1000
-nm on each kind of substrate. The largest error is searched for by `thin_film_search.py`.
+nm on each kind of substrate, for cosines from 0.1 on. `thin_film_search.py` searches for the largest.
 """
 
 import numpy as np
 
 from fits.thin_film_search import COLORED, WHITE, largest
-from mxeon.conformance.probes.thin_films import LEAST_OIL, SHARP
+from mxeon.conformance.probes.thin_films import LEAST_FILM, LEAST_OIL, SHARP
 from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
 from mxeon.models.thin_film import curve
 from mxeon.models.thin_film import formulas as film
@@ -20,6 +20,7 @@ from mxeon.models.thin_film.lobe import film_albedo_dir
 # Each in a range: roughness, cosine of the view, thickness in nm, index.
 FILMS = {"alpha": (1e-2, 1.0), "mu": (0.1, 1.0), "thickness": (0.0, 1000.0), "index": (1.0, 2.5)}
 CLEAR = {**SHARP, "index": (LEAST_OIL, 2.5)}
+DARK = 1e-3  # reflectance below which errors are no longer relative
 STEP = 1e-6  # of a thickness, relative, by which the slope of a curve is measured
 # Of the shader, chosen by `thin_film_nodes.py`: the width of five cosines; two cosines, their weights and
 # their width; for visible facets, polynomials of the mean of their cosines, of the reach of two or four
@@ -107,10 +108,10 @@ def order_count(weights, sizes, opd, spread, least):
 
 
 def orders_errors(category, material, _, mu):
-    """Errors of the sum, relative to the largest channel."""
+    """Errors of the sum, relative to the largest channel, or to DARK where that is less."""
     exact = film_curve(category).at(mu, **material)
     short = shader_curve(category, material, mu)
-    return (np.abs(short - exact) / exact.max(axis=0)).max(axis=0)
+    return (np.abs(short - exact) / np.maximum(exact.max(axis=0), DARK)).max(axis=0)
 
 
 def curve_errors(category, material, _, mu):
@@ -267,6 +268,7 @@ MEASURED = {
     "F_ss in two cosines": (pair_errors, FILMS),
     "visible facets": (visible_errors, FILMS),
     "albedo": (albedo_errors, FILMS),
+    "albedo from an index on": (albedo_errors, {**FILMS, "index": (LEAST_FILM, 2.5)}),
 }
 
 

@@ -110,9 +110,7 @@ def test_the_layers_are_those_of_the_specification():
             assert (error / np.maximum(1.0, expected)).max() < CURVES
 
 
-@pytest.mark.parametrize(
-    "model, parameters", [(dielectric_over_eon, COATED), (openpbr_base, BASE)]
-)
+@pytest.mark.parametrize("model, parameters", [(dielectric_over_eon, COATED), (openpbr_base, BASE)])
 def test_lobes_over_eon_have_gradients_by_their_parameters(model, parameters):
     # Differentiate the sum of the values.
     torch, rng = pytest.importorskip("torch"), np.random.default_rng(SEED)

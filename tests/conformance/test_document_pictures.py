@@ -6,7 +6,7 @@ import pytest
 
 from docs.upstream.pbr_quantities import MATERIAL
 from mxeon.conformance.accuracy.bsdf import UNFITTED
-from mxeon.conformance.accuracy.thin_films import FILM_ALBEDO
+from mxeon.conformance.accuracy.thin_films import FILM_ALBEDO, FILM_TRAPPED
 from mxeon.conformance.pictures.document_pictures import judge_document
 from mxeon.conformance.pictures.tolerances import ENCODED, FITTED, PLAIN, TEXTURED, tolerance_of
 from mxeon.conformance.reference import Host as Reference
@@ -86,6 +86,7 @@ def tolerance(text, **inputs):
         ({"ior": [1.5]}, 0.0),
         ({"ior": [1.5, 0.9]}, UNFITTED.value),
         ({"thinfilm_thickness": [0.0, 300.0]}, FILM_ALBEDO.value),
+        ({"thinfilm_ior": [1.2, 1.5]}, FILM_TRAPPED.value),
     ],
 )
 def test_inputs_of_lobes_add_what_their_checks_allow(inputs, more):

@@ -82,6 +82,7 @@ STATED = {
     "F_ss": tolerances.FILM_AVERAGE,
     "visible facets": tolerances.FILM_VISIBLE,
     "albedo": tolerances.FILM_SEEN,
+    "albedo from an index on": tolerances.FILM_OILED,
 }
 # Largest of sets by their names in `fits.thin_film_sets`.
 SETS = {
@@ -186,13 +187,14 @@ def test_every_check_of_a_film_has_a_shader_that_it_fails():
 
 
 def test_the_shader_is_as_near_as_its_tolerances_say(monkeypatch):
+    monkeypatch.setattr(search, "GENERATIONS", 1)
     cheap = ["orders", "orders of curves"]
     errors = fit.errors(cheap)
     monkeypatch.setattr(search, "COUNT", 1 << 5)  # of 2^9: averages take long
     monkeypatch.setattr(search, "STEPS", (0.1, 0.05))
     errors |= fit.errors([name for name in STATED if name not in cheap])
     for name, most in STATED.items():
-        assert 0.2 * most < max(errors[name].values()) <= most
+        assert 0.2 * most < max(errors[name].values()) <= most, name
 
 
 def test_five_cosines_average_a_curve_without_a_film_as_exactly_as_its_tolerance_says():

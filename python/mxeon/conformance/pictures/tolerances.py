@@ -9,8 +9,9 @@ import numpy as np
 from mxeon.conformance.accuracy import surface_shaders as surfaces
 from mxeon.conformance.accuracy.bsdf import MICROFACET_MEAN, RINGS, UNFITTED, sum_of
 from mxeon.conformance.accuracy.hair import error_of
-from mxeon.conformance.accuracy.thin_films import FILM_ALBEDO
+from mxeon.conformance.accuracy.thin_films import FILM_ALBEDO, FILM_TRAPPED
 from mxeon.conformance.accuracy.utilities import BLACKBODY
+from mxeon.conformance.probes.thin_films import LEAST_FILM
 from mxeon.conformance.reference.nodes import ShownLobe
 from mxeon.conformance.samples.measurement import absolute
 from mxeon.conformance.samples.tolerance import ROUNDING, Tolerance
@@ -117,6 +118,7 @@ def _others(lobes: tuple[ShownLobe, ...]) -> list[Tolerance]:
     """What inputs of lobes add: a film, an index without a fit, and narrow lobes of hair and sheen."""
     # A film, and an index below 1.
     others = [FILM_ALBEDO] * _any(lobes, "thinfilm_thickness", lambda value: value > 0.0)
+    others += [FILM_TRAPPED] * _any(lobes, "thinfilm_ior", lambda value: value < LEAST_FILM)
     others += [UNFITTED] * _any(lobes, "ior", lambda value: value < 1.0, "dielectric_bsdf")
     # Narrow hair.
     hairs = [

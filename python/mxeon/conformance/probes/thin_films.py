@@ -32,6 +32,7 @@ ORDERED = {"alpha": (1e-3, 1e-3), "mu": (0.1, 0.2), "thickness": (40.0, 100.0)} 
 # Films whose errors have one mean: fits/thin_film_sets.py bounds it for sets of these sizes.
 FEW_FILMS, CURVES = 1 << 6, 1 << 10
 LEAST_OIL = 1.2  # index of these films, or there is none to see
+LEAST_FILM = 1.25  # where albedos are asked: below, metals of a lower index reflect totally, in finer fringes
 LEAST_FACET = 0.1  # cosine with the half vector: next to grazing all orders of a film count
 
 
@@ -67,7 +68,11 @@ class FilmProbe(MicrofacetProbe):
         batch = self.batches[0].where(self.batches[0].wo[:, 2] >= self.least_cosine)
         easy = batch.first(self.counts.albedos)
         easy = replace(easy, inputs=simple(easy.inputs))
-        return easy, film_views(self.subject, self.counts.albedos, HARD)
+        hard = film_views(self.subject, self.counts.albedos, HARD)
+        return tuple(
+            batch.altered(thinfilm_ior=np.maximum(batch.inputs["thinfilm_ior"], LEAST_FILM))
+            for batch in (easy, hard)
+        )
 
     @cached_property
     def films(self) -> FilmViews:
