@@ -212,12 +212,20 @@ def test_a_host_with_another_model_fails_and_is_named(name):
         ("lambert", lambda wo, wi, inputs: (wo, wi, {**inputs, "roughness": 0.5})),
         ("inputs", lambda wo, wi, inputs: (wo, wi, {**inputs, "color": (0.5, 0.5, 0.5)})),
         ("black", lambda wo, wi, inputs: (wo, wi, {**inputs, "color": (0.5, 0.5, 0.5)})),
-        ("flag", lambda wo, wi, inputs: (wo, wi, inputs)),
     ],
-    ids=["azimuth", "swapped", "smooth", "rough", "grey", "not black", "no flag"],
+    ids=["azimuth", "swapped", "smooth", "rough", "grey", "not black"],
 )
 def test_a_defect_fails_the_check_made_for_it(key, change):
     assert judged(ModelHost(reference.model("eon"), change), key)[key].verdict == FAILED
+
+
+@pytest.mark.parametrize("shown", [EON, QON], ids=lambda each: each.model)
+@pytest.mark.parametrize("subject", [EON, QON], ids=lambda each: each.model)
+def test_a_flag_without_effect_is_charged_to_the_mode_that_is_wrong(shown, subject):
+    probe = PairProbe(ModelHost(reference.model(shown.model)), subject, "eonlib")
+    (result,) = judge_subject(probe, [row for row in CHECKS if row.key == "flag"])
+    assert result.verdict == (PASSED if shown is subject else FAILED)
+    assert result.control.caught
 
 
 def test_a_host_that_gives_no_numbers_fails():

@@ -24,7 +24,7 @@ EON, QON, NODE = SUBJECTS
         ("gl", "lobe", "open_pbr_surface, thin-walled", "QON tinted twice"),
         ("source", "source", f"{EON.title}, osl", "never used: energy_compensation"),
         ("source", "clamp", f"{EON.title}, glsl", "s is wrong for back-lit pairs"),
-        ("gl", "flag", QON.title, "see docs/upstream/genglsl_clamped_dot.md"),
+        ("gl", "flag", EON.title, "see docs/upstream/genglsl_clamped_dot.md"),
         ("source", "closure", f"{EON.title}, mdl", "FON + white lobe"),
         ("source", "closure", f"{EON.title}, osl", "energy_compensation is not the node's"),
     ],

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.batch import Array, Batch
+from mxeon.shaders.nodes import FLAG
 
 
 @dataclass(frozen=True)
@@ -101,6 +102,19 @@ class Altered(Probe):
 def with_inputs(words: str, **inputs: ArrayLike) -> Mistake:
     """The host gets these inputs in place of the batch's."""
     return Mistake(words, lambda probe: Altered(probe, lambda batch: batch.altered(**inputs)))
+
+
+@mistake("the mode has the values of the other one")
+def take_other_mode(probe: Probe) -> Altered:
+    """Values of the other mode: not by its flag, which a host may ignore."""
+    own, other = ("eon", "qon") if probe.subject.model == "eon" else ("qon", "eon")
+
+    def values(batch: Batch, values: Array) -> Array:
+        if batch.inputs[FLAG] != (own == "eon"):
+            return values
+        return values + batch.expected(other) - batch.expected(own)
+
+    return Altered(probe, values=values)
 
 
 @mistake("every channel gets the mean color")

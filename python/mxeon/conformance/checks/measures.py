@@ -113,19 +113,22 @@ def lambert(probe: Probe) -> Iterable[Case]:
 
 
 def flag(probe: Probe) -> Measurement:
-    """The change that the flag makes, against the models' difference, relative to the largest."""
+    """The part that the subject's own mode has in a wrong change by the flag, relative to the models'."""
     error = largest = 0.0
+    modes = ("eon", "qon") if probe.subject.model == "eon" else ("qon", "eon")
     for batch in probe.few:
         batch = batch.altered(roughness=np.minimum(batch.inputs["roughness"], 1.0))
         # Leave out the pairs for which the host has no closure of the flagged model.
         rows = slice(None)
         if front_lit_only(probe.host.name, "qon"):
             rows = (batch.wo[:, :2] * batch.wi[:, :2]).sum(axis=1) >= 0.0
-        # Compare the change of the host with that of the models.
-        on, off = (probe.direct(batch.altered(**{FLAG: state})) for state in (True, False))
-        models = batch.expected("eon") - batch.expected("qon")
-        error = np.maximum(error, absolute(on - off, models)[rows].max(initial=0.0))
-        largest = max(largest, np.abs(models[rows]).max(initial=0.0))
+        # A wrong change is charged to the mode whose values are wrong.
+        own, other = (probe.direct(batch.altered(**{FLAG: mode == "eon"})) for mode in modes)
+        expected, beside = map(batch.expected, modes)
+        change = absolute(own - other, expected - beside)
+        wrong = np.minimum(change, absolute(own, expected))
+        error = np.maximum(error, wrong[rows].max(initial=0.0))
+        largest = max(largest, np.abs(expected - beside)[rows].max(initial=0.0))
     return Measurement(float(error / largest), {"expected": [float(largest)]})
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Diagnoses of what surrounds a model: the flag, the throughput, the frame and the environment."""
+"""Diagnoses of what surrounds a model: the throughput, the frame and the environment."""
 
 from collections.abc import Callable
 
@@ -16,7 +16,6 @@ from mxeon.conformance.diagnosis.candidates import (
 from mxeon.conformance.diagnosis.comparisons import VALUE
 from mxeon.conformance.diagnosis.faults import normal_ignored
 from mxeon.conformance.diagnosis.regions import smallest
-from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.probes.cases import (
     BRANCHES,
     dead_inputs,
@@ -31,7 +30,6 @@ from mxeon.conformance.samples.batch import Array, Batch
 from mxeon.conformance.samples.measurement import absolute
 from mxeon.conformance.samples.uneven_environment import sky, sky_behind
 from mxeon.models.nodes.frames import UP
-from mxeon.shaders.nodes import FLAG
 
 UNKNOWN = "no known fault explains it"
 
@@ -50,18 +48,6 @@ LOOKUPS: dict[str, Callable[[Batch], Array]] = {
     "in the map of radiances": lambda batch: np.ones_like(batch.wo),
     "nowhere: it is black": lambda batch: np.zeros_like(batch.wo),
 }
-
-
-def diagnose_flag(probe: Probe) -> Diagnosis:
-    """The explanation of the values with the flag and of those without it."""
-    states: dict[str, list[str]] = {}
-    for subject in SUBJECTS:
-        if subject.node == probe.subject.node:
-            other = probe if subject.title == probe.subject.title else probe.of(subject)
-            text = VALUE.diagnose(other).text
-            states.setdefault(text, []).append(str(subject.flag).lower())
-    texts = (f"{FLAG} {' and '.join(flags)}: {text}" for text, flags in states.items())
-    return Diagnosis("; ".join(texts), VALUE.diagnose(probe).distances)
 
 
 def diagnose_inputs(probe: Probe) -> Diagnosis:
