@@ -159,10 +159,15 @@ def test_every_input_reaches_the_call_in_text_that_nothing_runs():
     assert all(result.verdict == PASSED and result.control.caught for result in results)
 
 
-def test_an_input_that_a_text_drops_is_named(monkeypatch):
-    monkeypatch.setattr(sources, "TEXT_ONLY", ("osl",))
-    (result,) = sources.check_calls([SUBJECTS["zeltner"]], "stock")
-    assert result.verdict == FAILED and "mode" in result.diagnosis
+@pytest.mark.parametrize(
+    "old, new", [("mxp_tint:lobe_tint", "mxp_tint:color(1.0)"), ("mxp_tint:lobe_tint, ", "")]
+)
+def test_an_input_that_a_call_drops_is_named(monkeypatch, old, new):
+    text = sources.source(SUBJECTS["dielectric"], "mdl", "stock")
+    monkeypatch.setattr(sources, "source", lambda *_: text.replace(old, new))
+    monkeypatch.setattr(sources, "TEXT_ONLY", ("mdl",))
+    (result,) = sources.check_calls([SUBJECTS["dielectric"]], "stock")
+    assert result.verdict == FAILED and "tint is never passed on" in result.diagnosis
 
 
 def test_cycles_keeps_the_energy_of_facets_of_another_distribution(hosts):

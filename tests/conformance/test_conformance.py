@@ -304,10 +304,12 @@ def test_a_node_that_is_judged_nowhere_is_refused(host, node, message):
         plan.make_plan([], [host], ["eonlib"], nodes=[node])
 
 
-def test_the_sources_of_every_target_use_every_input():
+def test_texts_are_judged_by_values_and_where_a_host_runs_them_by_the_host():
     results = check_texts(SUBJECTS, "eonlib")
-    expected = 3 * len(TARGETS) + len(BSDFS) * len(TEXT_ONLY)
-    assert len([each for each in results if each.check == "source"]) == expected
+    calls = [each.subject for each in results if each.check == "source"]
+    assert {each.rsplit(", ", 1)[1] for each in calls} == set(TEXT_ONLY)
+    assert len(calls) == len(SUBJECTS) + len(BSDFS) * len(TEXT_ONLY)
+    assert {each.check for each in results} == {"source", "closure", "entry", "languages"}
     assert {each.verdict for each in results} == {PASSED}
     assert all(each.control.caught for each in results)
 

@@ -10,7 +10,7 @@ from mxeon.conformance.text.closures import check_closures
 from mxeon.conformance.text.definitions import check_definitions
 from mxeon.conformance.text.entries import check_entries
 from mxeon.conformance.text.languages import check_languages
-from mxeon.conformance.text.sources import check_calls, check_sources
+from mxeon.conformance.text.sources import check_calls
 
 __all__ = ["check_definitions", "check_texts"]
 
@@ -30,9 +30,8 @@ def check_texts(subjects: Iterable[DiffuseSubject], library: str) -> tuple[Resul
     """
     subjects = tuple(subjects)
     return (
-        *check_sources(subjects, library),
         *check_closures(subjects, library),
         *check_languages(library),
         *check_entries(library),
-        *check_calls(BSDFS, library),
+        *check_calls((*subjects, *BSDFS), library),
     )

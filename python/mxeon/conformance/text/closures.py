@@ -11,12 +11,12 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from mxeon.conformance.nodes.diffuse import DiffuseSubject
-from mxeon.conformance.results import FAILED, NOT_RUN, SOURCE, Result
+from mxeon.conformance.results import Result
 from mxeon.conformance.samples.batch import SEED, directions
-from mxeon.conformance.text.counts import Claim, counted
+from mxeon.conformance.text.counts import Claim, judged
 from mxeon.conformance.text.interpreter import Array, Closure, Interpreter
 from mxeon.conformance.text.renderers import PBRLIB, Renderer
-from mxeon.conformance.text.sources import source, variable
+from mxeon.conformance.text.sources import ASSIGNED, FILLED, source, variable
 from mxeon.errors import NotRun, ShaderError
 from mxeon.models.diffuse import formulas
 from mxeon.shaders.library import has_profile
@@ -36,9 +36,7 @@ TINTS = {
     "qon": "black, as without energy_compensation",
 }
 WHITE_LOBE = "FON + white lobe, as MDL's module pbrlib_1_10 defines this node; read, not run"
-ASSIGNED = re.compile(r"\b(?:BSDF|material) lobe_out = ([^;]*);")
 FLOAT_FLAG = re.compile(rf'"{FLAG}", *[\d.]*\.')  # OSL looks a keyword up by its type as well
-FILLED = re.compile(r"\b(\w+)\(([^;]*), lobe_out\);")
 
 Inputs = dict[str, Array]
 
@@ -56,20 +54,18 @@ def check_closures(subjects: Iterable[DiffuseSubject], library: str) -> tuple[Re
 
 
 def _judge(subject: DiffuseSubject, target: str, profile: str | None, library: str) -> Result:
-    # Read the text, and a text without its weight as a control.
+    """Read the text, and a text without its weight as a control."""
+
+    def faults() -> tuple[list[str], int]:
+        text = source(subject, target, library, profile)
+        found, control = (
+            _faults(subject, Renderer(target, target, profile), each)
+            for each in (text, _without_weight(text))
+        )
+        return found, len(control)
+
     title = ", ".join(filter(None, (subject.title, target, profile)))
-    text = source(subject, target, library, profile)
-    try:
-        faults = _faults(subject, Renderer(target, target, profile), text)
-        weightless = _without_weight(text)
-        control = _faults(subject, Renderer(target, target, profile), weightless)
-    except (NotRun, ShaderError) as error:
-        # A text that cannot be read has not run or fails.
-        place = (CLAIM.key, CLAIM.sentence, title, SOURCE, library)
-        if isinstance(error, NotRun):
-            return Result(*place, verdict=NOT_RUN, reason=str(error))
-        return Result(*place, verdict=FAILED, diagnosis=f"{target}: {error}")
-    return counted(CLAIM, title, library, len(faults), len(control), "; ".join(faults))
+    return judged(CLAIM, title, library, faults)
 
 
 def _without_weight(text: str) -> str:

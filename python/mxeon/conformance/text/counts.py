@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Results of the checks of text: counts of faults, each of which must be 0."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from mxeon.conformance.results import FAILED, PASSED, SOURCE, Control, Result
+from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, SOURCE, Control, Result
+from mxeon.errors import NotRun, ShaderError
 
 
 @dataclass(frozen=True)
@@ -55,3 +57,17 @@ def counted(
         diagnosis=meaning if count else "",
         control=Control(claim.variant, control, caught),
     )
+
+
+def judged(
+    claim: Claim, subject: str, library: str, faults: Callable[[], tuple[Sequence[str], float]]
+) -> Result:
+    """Result of faults in words and of the number that the control has, where the text can be read."""
+    place = (claim.key, claim.sentence, subject, SOURCE, library)
+    try:
+        found, control = faults()
+    except NotRun as error:
+        return Result(*place, verdict=NOT_RUN, reason=str(error))
+    except ShaderError as error:
+        return Result(*place, verdict=FAILED, diagnosis=f"{subject.rpartition(', ')[2]}: {error}")
+    return counted(claim, subject, library, len(found), control, "; ".join(found))
