@@ -297,6 +297,11 @@ def test_a_named_node_is_judged_alone():
             "mix",
             "^node must be judged on one of the hosts msl; got mix, judged with --library eonlib on gl, ",
         ),
+        (
+            "cycles",
+            "sheen_bsdf",
+            "^node must be judged on one of the hosts cycles; .* with --library stock on .*, cycles, ",
+        ),
     ],
 )
 def test_a_node_that_is_judged_nowhere_is_refused(host, node, message):

@@ -300,3 +300,9 @@ def test_an_example_is_what_its_document_says(hosts, file):
         expected = np.pi * Reference().evaluate(other, wo, wi, {}, "direct")
         error = GRAPH.metric(told, expected).max()
         assert (error <= GRAPH.value) == (osl.name not in COLOR82)
+
+
+def test_a_probe_of_another_output_asks_the_host_of_the_first():
+    """`round_trip` of artistic_ior makes one of the probe that it has."""
+    first = evaluated(Reference())
+    assert evaluated(first) is first

@@ -93,4 +93,4 @@ class Evaluated(Host):
 @lru_cache(maxsize=4)
 def evaluated(host: Host) -> Evaluated:
     """The one host that evaluates the closures of another."""
-    return Evaluated(host)
+    return host if isinstance(host, Evaluated) else Evaluated(host)
