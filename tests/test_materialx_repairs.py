@@ -3,6 +3,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 from functools import cache, partial
@@ -12,7 +13,11 @@ import pytest
 
 from docs.upstream import ledger
 from docs.upstream import materialx_repairs as repairs
-from mxeon.conformance.results import PASSED
+from mxeon.conformance.results import FAILED, PASSED, SOURCE
+from mxeon.conformance.results.known_issues import ISSUES
+from mxeon.conformance.results.known_issues.issue import STOCK
+from mxeon.conformance.run.plan import make_plan
+from mxeon.conformance.run.selection import ALL
 from tests.support.availability import available
 from tests.support.sharing import shared
 from tests.support.wheels import MAIN, wheel
@@ -20,7 +25,18 @@ from tests.support.wheels import MAIN, wheel
 ROOT = Path(__file__).resolve().parents[1]
 # Slang compiles the repaired node; what is left is its fit.
 OF_SLANG = ("output", "blackbody", "slang")
-OTHERS = {"release": [OF_SLANG], "main": []}
+# Whatever the release fails, or differs in.
+ON_GL = {
+    (each.check, each.subject) for each in make_plan((), ("gl",), (STOCK,), nodes=(ALL,)).tasks
+}
+FAILING = [
+    (*row, issue.host)
+    for issue in ISSUES
+    if issue.library == STOCK and issue.host in ("gl", SOURCE)
+    for row in (*issue.rows, *issue.implied)
+    if row in (ON_GL if issue.host == "gl" else issue.rows)
+]
+OTHERS = {"release": [OF_SLANG, *FAILING], "main": []}
 PAGES = {change.page for change in repairs.REPAIRS}
 # Judges rows of stock MaterialX, and prints what it found.
 JUDGE = """
@@ -32,13 +48,14 @@ from mxeon.shaders.document.policy import DEFAULT
 judge = Judge(DEFAULT)
 results = {}
 for check, subject, host in json.loads(sys.argv[1]):
-    task = Task(check, EVERY_NODE if host == SOURCE else subject, host, "stock")
+    whole = SOURCE, EVERY_NODE  # the task that answers all checks of text
+    task = Task(*(whole if host == SOURCE else (check, subject)), host, "stock")
     [result] = [
         each
         for each in judge.work(task).results
         if (each.check, each.subject) == (check, subject)
     ]
-    results["|".join((check, subject, host))] = result.verdict, result.diagnosis
+    results["|".join((check, subject, host))] = result.verdict, result.diagnosis, result.pages
 judge.close()
 print(json.dumps(results))
 """
@@ -87,7 +104,8 @@ def judged(tmp_path_factory):
         if version == "main":
             package, changes = wheel("main") / "MaterialX", OF_MAIN
         with available("gl"), available("slang"):
-            make = partial(verdicts, folder, package, changes, [*ROWS[version], *OTHERS[version]])
+            rows = sorted({*ROWS[version], *OTHERS[version]}, key=lambda row: row[::-1])
+            make = partial(verdicts, folder, package, changes, rows)
             return shared(tmp_path_factory, f"repaired {version}", make)
 
     return results
@@ -108,9 +126,29 @@ def verdicts(folder, package, changes, rows):
 )
 def test_a_repair_makes_the_checks_pass_that_show_the_defect(judged, version, row):
     """Or what is left has another cause."""
-    verdict, diagnosis = judged(version)[row]
+    verdict, diagnosis, _ = judged(version)[row]
     cause = ROWS[version][row]
     assert verdict == PASSED or (cause and diagnosis.startswith(cause)), diagnosis
+
+
+def test_with_all_patches_no_check_accuses_what_they_repair(judged):
+    repaired = {issue.page: issue.repaired for issue in ISSUES}
+    results = judged("release")
+    assert {
+        (*row, page) for row in FAILING for page in results[row][2] if row[:2] in repaired[page]
+    } == set()
+
+
+def test_the_page_of_patches_lists_what_still_fails_with_them(judged):
+    block = ledger.INDEX.read_text("utf-8").split("<!-- remains -->")[1].split("<!-- end -->")[0]
+    listed = [
+        (check, subject)
+        for checks, subjects in re.findall(r"(`\w+`(?:, `\w+`)*) of ([^;|]+)", block)
+        for check in re.findall(r"\w+", checks)
+        for subject in subjects.strip().split(" and of ")
+    ]
+    failed = {row[:2] for row in FAILING if judged("release")[row][0] == FAILED}
+    assert sorted(listed) == sorted(failed)
 
 
 def test_slang_compiles_the_black_body_that_is_repaired(judged):

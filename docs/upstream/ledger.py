@@ -6,7 +6,7 @@
     host = "gl"                             # that shows it; no host if no check does
     also = ["webgl", "vulkan"]              # other hosts that show it
     library = "stock"                       # that has it; "its own nodes" of a renderer
-    unavoidable = true                      # where no text can repair it: each library has it
+    unavoidable = true                      # where each library has it, since none of ours repairs it
     differs = true                          # where the text leaves the choice
     pull = 2961                             # pull request that repairs it after the release
     [rows]                                  # check = subjects: the results of the page's table, if it
@@ -14,7 +14,8 @@
     value = ["sheen_bsdf, mode zeltner"]
     [implied]                               # other results that fail for it, or may
     [repaired]                              # results that pass with the repairs of materialx_repairs.py
-    [remains."DIAGNOSIS"]                   # results that pass with them, or are diagnosed so
+    [remains."DIAGNOSIS"]                   # results that pass with them, or are diagnosed so: for
+                                            # another cause
     [patch]                                 # for the upstream repository: patches.py tells its keys
     -->
 
@@ -26,14 +27,22 @@ import re
 import tomllib
 from collections import Counter
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from textwrap import fill
 
 from docs.upstream.marks import kinds
+from docs.upstream.materialx_repairs import REPAIRS
 
 FOLDER = Path(__file__).parent
 INDEX, NAVIGATION = FOLDER / "README.md", FOLDER.parents[1] / "mkdocs.yml"
 ISSUES = FOLDER.parents[1] / "python/mxeon/conformance/results/known_issues/issues.json"
+# Errors that were measured, by host: docs/specification.py writes them.
+SPECIFICATION = FOLDER.parent / "specification.json"
+TABLE_ROW = re.compile(
+    r"^\| (\w+) \| ([^|]+) \| (inf|[-+.e\d]+) \| [^|]+ \| [^|]+ \|$", re.MULTILINE
+)
+SAYS = re.compile(r"^The suite says: (.*)\.$", re.MULTILINE)
 ROW = re.compile(r"<!-- ledger\n(.*?)-->\n", re.DOTALL)
 GROUP = re.compile(r"<!-- pages (\w+) -->\n.*?<!-- end -->\n", re.DOTALL)
 PAGES = re.compile(r"(?: {10}- upstream/\w+\.md\n)+")
@@ -130,7 +139,15 @@ def _row(path):
             "implied": _pairs(table.get("implied", {})),
             "library": table.get("library", "stock"),
             "unavoidable": table.get("unavoidable", False),
+            "says": (SAYS.findall(text) or [""])[0],
+            "patch": _text_of_patch(path.stem),
+            "repaired": [
+                pair
+                for each in (table.get("repaired", {}), *table.get("remains", {}).values())
+                for pair in _pairs(each)
+            ],
         }
+        issue["sizes"] = _sizes(issue, text)
     return Row(
         path.stem,
         title,
@@ -148,9 +165,40 @@ def _pairs(table):
     return [(check, subject) for check, subjects in table.items() for subject in subjects]
 
 
+def _text_of_patch(page):
+    """The shortest change by the patch of a page: file, and text before and after; () for no patch."""
+    changes = [
+        (each.file, each.old, each.new) for each in REPAIRS if each.page == page and each.new
+    ]
+    return min(changes, key=lambda change: sum(map(len, change)), default=())
+
+
+def _sizes(issue, text):
+    """The largest error measured of each result of an issue, in its order; None where there is none."""
+    sizes = {}
+    found = [(check, subject, float(error)) for check, subject, error in TABLE_ROW.findall(text)]
+    for host in (issue["host"], *issue["also"]):
+        for each in _specification().get(host, ()):
+            found.append((each["check"], each["subject"], float(each["error"])))
+    for *row, size in found:
+        sizes[tuple(row)] = max(size, sizes.get(tuple(row), 0.0))
+    return [sizes.get(row) for row in (*issue["rows"], *issue["implied"])]
+
+
+@cache
+def _specification():
+    """Results of stock MaterialX that have an error, by host."""
+    hosts = json.loads(SPECIFICATION.read_text(encoding="utf-8"))
+    return {
+        host: [each for each in found["results"] if each["library"] == "stock" and each["error"]]
+        for host, found in hosts.items()
+    }
+
+
 def issues_text(ledger):
-    """The text of issues.json."""
-    return json.dumps([row.issue for row in ledger if row.issue], indent=1) + "\n"
+    """The text of issues.json, a line for each issue."""
+    lines = ",\n".join(json.dumps(row.issue) for row in ledger if row.issue)
+    return f"[\n{lines}\n]\n"
 
 
 def index_text(text, ledger):

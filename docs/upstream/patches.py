@@ -163,8 +163,8 @@ def mail(row: Row) -> str:
 def _outcome(row: Row, patch: Patch) -> str:
     """What the checks say with the change; empty where the tests of another host have it."""
     lines = [f"- {_check(pair)}: passes" for pair in row.repaired]
-    for words, pairs in row.remains.items():
-        lines += [f"- {_check(pair)}: {words}" for pair in pairs]
+    for words, pairs in row.remains.items():  # of the figures above
+        lines += [f"- {_check(pair)}: {words}" for pair in pairs if pair in row.issue["rows"]]
     needed = [f'"{_patch(each).subject}"' for each in rows() if each.page in patch.needs]
     return (
         "\n".join([f"With {' and '.join(['this change', *needed])}:", "", *lines]) if lines else ""

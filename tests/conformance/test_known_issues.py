@@ -45,3 +45,35 @@ def test_a_failure_that_no_text_can_avoid_has_its_page_with_each_library():
     mode = Result("value", "", "sheen_bsdf, mode zeltner", "osl", STOCK, FAILED, 1.0, "inputs", 0.0)
     assert with_pages(mode).pages == ("genosl_dropped_mode",)
     assert with_pages(replace(mode, library="eonlib")).pages == ()
+
+
+CLAMPED = "nearest known model: EON with clamped dot(wo, wi) (rms 0.001), then Lambert (0.2)"
+FIT = (
+    "nearest known model: MaterialX's fit of its albedo (rms 9e-09), then Conty-Kulla sheen (0.01)"
+)
+EON, SHEEN = "oren_nayar_diffuse_bsdf, energy_compensation true", "sheen_bsdf, mode conty_kulla"
+
+
+@pytest.mark.parametrize(
+    "check, subject, error, diagnosis, pages",
+    [
+        ("value", EON, 0.369, CLAMPED, ("genglsl_clamped_dot",)),
+        ("value", EON, 3.69, CLAMPED, ()),
+        ("value", EON, 0.3, "nearest known model: Lambert (rms 0.001), then EON (0.2)", ()),
+        ("value", EON, 0.3, "fault: the cosine of the light is missing (rms 1e-08)", ()),
+        ("environment", SHEEN, 0.0889, FIT, ("genglsl_conty_kulla_fit",)),
+        ("environment", SHEEN, 1e7, FIT, ()),
+        (
+            "environment",
+            SHEEN,
+            0.05,
+            "no known model is near: Conty-Kulla sheen has the distance",
+            (),
+        ),
+    ],
+)
+def test_a_page_explains_an_error_of_its_size_and_its_model(
+    check, subject, error, diagnosis, pages
+):
+    result = Result(check, "", subject, "gl", STOCK, FAILED, error, "", 1e-6, diagnosis=diagnosis)
+    assert with_pages(result).pages == pages

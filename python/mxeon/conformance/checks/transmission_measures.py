@@ -49,12 +49,10 @@ def limits(subject: TransmissionSubject, batch: Batch) -> tuple[Array, Array]:
     return batch.strength * np.minimum(rest, passed), batch.strength * np.maximum(rest, passed)
 
 
-def over_masking(subject: TransmissionSubject, batch: Batch) -> Array:
-    """The mean of 1 - F over the normals seen, divided by G_1 of the view, (N, 3)."""
-    seen = subject.functions.passed(batch.wo, batch.inputs, False)
-    G_1 = smith_g1(batch.wo, batch.inputs["roughness"])
-    value: Array = batch.strength * seen / G_1[:, np.newaxis]
-    return value
+def seen(subject: TransmissionSubject, batch: Batch, masked: bool = False) -> Array:
+    """The mean of 1 - F over the normals seen, (N, 3); divided by G_1 of the view, if that is masked."""
+    value: Array = batch.strength * subject.functions.passed(batch.wo, batch.inputs, False)
+    return value / smith_g1(batch.wo, batch.inputs["roughness"])[:, np.newaxis] if masked else value
 
 
 def clear(probe: Probe) -> Iterable[Case]:

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Known issues of stock MaterialX and of renderers: the page of `docs/upstream/` on each failing check."""
 
+import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cache
@@ -17,6 +19,7 @@ RENDERERS = {
     "luxcore": "this LuxCoreRender",
     "three-gpu-pathtracer": "this three-gpu-pathtracer",
 }
+SPREAD = 1.5  # by which engines, drivers and versions of MaterialX may exceed an issue's size
 # Written by `python -m docs.upstream.update` from the rows of the pages.
 ISSUES = read_issues(Path(__file__).with_name("issues.json").read_text(encoding="utf-8"))
 
@@ -101,4 +104,35 @@ def _issues(result: Result) -> list[Issue]:
         if (result.library == issue.library or issue.unavoidable)
         and result.host in (issue.host, *issue.also)
         and (result.check, result.subject) in (*issue.rows, *issue.implied)
+        and _explains(issue, result)
     ]
+
+
+def _explains(issue: Issue, result: Result) -> bool:
+    """Whether an issue explains what was measured, by its size, its diagnosis and its text."""
+    row = result.check, result.subject
+    if result.error is not None and result.error > SPREAD * issue.sizes.get(row, math.inf):
+        return False
+    if result.diagnosis.startswith("fault: ") or (row in issue.repaired and _is_repaired(issue)):
+        return False
+    first = result.host == issue.host and issue.rows[:1] == (row,)
+    stated = issue.says if first and result.diagnosis else ""
+    return not stated or _model(result.diagnosis) == _model(stated)
+
+
+def _model(diagnosis: str) -> str:
+    """What a diagnosis says first, without its figures."""
+    return re.split(r", then| \(|;", re.sub(r"\d[\d.e+-]*", "", diagnosis))[0]
+
+
+@cache
+def _is_repaired(issue: Issue) -> bool:
+    """Whether the installed MaterialX has the patch of an issue."""
+    if not issue.patch:
+        return False
+    import MaterialX as mx
+
+    name, old, new = issue.patch
+    file = Path(mx.__file__).parent / name
+    text = file.read_text(encoding="utf-8") if file.is_file() else ""
+    return new in text and old not in text.replace(new, "")

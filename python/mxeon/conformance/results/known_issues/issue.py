@@ -2,12 +2,13 @@
 """The type of a known issue, and who may have one."""
 
 import json
-from collections.abc import Iterable
-from dataclasses import dataclass
-from typing import TypedDict
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
 
 STOCK = "stock"
 RENDERER_NODES = "its own nodes"  # in the place of a library
+Row = tuple[str, str]  # key of a check, and subject
 
 
 @dataclass(frozen=True)
@@ -31,49 +32,39 @@ class Issue:
     library : str
         The library that has it; RENDERER_NODES for a renderer's own nodes.
     unavoidable : bool
-        Whether no text can repair it, so that each library has it.
+        Whether each library has it, since no text can repair it or none of ours does.
+    says : str
+        The diagnosis of the first of `rows`, as the page has it; "" for none.
+    patch : tuple of str
+        A file of MaterialX, and a text of it before and after the patch; () where there is no patch.
+    repaired : tuple of (str, str)
+        Results that the issue explains no longer once its patch is applied.
+    sizes : mapping of (str, str) to float
+        The largest error that was measured of results.
     """
 
     page: str
     title: str
     host: str
-    rows: tuple[tuple[str, str], ...]
+    rows: tuple[Row, ...]
     also: tuple[str, ...] = ()
-    implied: tuple[tuple[str, str], ...] = ()
+    implied: tuple[Row, ...] = ()
     library: str = STOCK
     unavoidable: bool = False
-
-
-class _Row(TypedDict):
-    """An issue in issues.json."""
-
-    page: str
-    title: str
-    host: str
-    rows: list[tuple[str, str]]
-    also: list[str]
-    implied: list[tuple[str, str]]
-    library: str
-    unavoidable: bool
+    says: str = ""
+    patch: tuple[str, ...] = ()
+    repaired: tuple[Row, ...] = ()
+    sizes: Mapping[Row, float] = field(default_factory=dict, hash=False)
 
 
 def read_issues(text: str) -> tuple[Issue, ...]:
     """The issues in a text of JSON, which `docs/upstream/ledger.py` writes from the pages."""
-    rows: list[_Row] = json.loads(text)
-    return tuple(
-        Issue(
-            row["page"],
-            row["title"],
-            row["host"],
-            _pairs(row["rows"]),
-            tuple(row["also"]),
-            _pairs(row["implied"]),
-            row["library"],
-            row["unavoidable"],
-        )
-        for row in rows
-    )
+    return tuple(map(_issue, json.loads(text)))
 
 
-def _pairs(rows: Iterable[tuple[str, str]]) -> tuple[tuple[str, str], ...]:
-    return tuple((check, subject) for check, subject in rows)
+def _issue(table: dict[str, Any]) -> Issue:
+    pairs = {key: tuple(map(tuple, table[key])) for key in ("rows", "implied", "repaired")}
+    sizes = zip((*pairs["rows"], *pairs["implied"]), table["sizes"], strict=True)
+    known = {row: size for row, size in sizes if size is not None}
+    lists = {key: tuple(table[key]) for key in ("also", "patch")}
+    return Issue(**table | pairs | lists | {"sizes": known})
