@@ -18,6 +18,7 @@ from mxeon.conformance.run import check
 from mxeon.errors import MISUSE, InputError, assert_known
 from mxeon.errors import NOT_RUN as DID_NOT_RUN
 from mxeon.hosts.base import Identity
+from mxeon.report import to_json
 from tests.support.command import CLAY, PLASTER
 from tests.support.documents import connected, material
 from tests.support.plans import keep_checks
@@ -50,6 +51,41 @@ def test_an_answer_has_the_verdict_then_each_node_with_model_error_and_bound():
     assert lines[1].split() == ["a/clay.mtlx", "on", "gl", "eonlib"]
     assert lines[2] == f"  {EON}  EON, error 1e-07, bound 2e-06"
     assert lines[3].endswith("1 as the reference's, error 1e-07, bound 2e-06")
+
+
+ZERO = "with an index of refraction of 0"
+GLASS = "dielectric_bsdf, scatter_mode R"
+
+
+def test_what_fails_for_other_inputs_than_the_documents_stands_apart():
+    wrong = made(FAILED, "finite", GLASS, diagnosis=f"values that are not finite {ZERO}")
+    known = made(FAILED, "layer", GLASS, "stock", diagnosis="nearest known model: X", pages=(NAME,))
+    new = made(FAILED, "value", GLASS, "stock", diagnosis="fault: the weight is ignored")
+    run = Run(
+        "1",
+        {},
+        (),
+        (made(key="value", subject=GLASS), wrong, known, new),
+        contents={"a.mtlx": (GLASS,), "b.mtlx": (GLASS,)},
+        unreached={"a.mtlx": {GLASS: (ZERO,)}},
+    )
+    # The document b may have the index 0.
+    assert run.is_elsewhere(wrong, "a.mtlx") and not run.is_elsewhere(wrong)
+    [entry] = json.loads(to_json(run))["elsewhere"]
+    assert entry == {
+        "document": "a.mtlx",
+        "check": "finite",
+        "subject": GLASS,
+        "host": "gl",
+        "library": "eonlib",
+    }
+    alone = replace(run, contents={"a.mtlx": (GLASS,)})
+    lines = answer(alone)
+    assert lines[0].endswith("1 of them for inputs that no document has.")
+    assert ", other inputs wrong" in lines[2] and "failed, error 0.37" in lines[2]
+    # A new failure comes before a known one, and one of other inputs last.
+    causes = ["fault: the weight is ignored", PAGE, "for other inputs than yours: "]
+    assert [cause in line for cause, line in zip(causes, lines[3:], strict=True)] == [True] * 3
 
 
 def test_two_libraries_stand_beside_each_other_and_failures_have_a_sentence_and_a_link():

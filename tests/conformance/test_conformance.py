@@ -30,6 +30,7 @@ from mxeon.conformance.probes.families import (
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, PORTRAIT, SHADER_FUNCTIONS
 from mxeon.conformance.run import check, judge, plan
+from mxeon.conformance.run.survey import survey_documents
 from mxeon.conformance.samples.batch import GRAZING, PAIRS, Batch
 from mxeon.conformance.samples.edge_cases import turned_frames
 from mxeon.conformance.samples.uneven_environment import SKY_ROWS, sky
@@ -40,7 +41,8 @@ from mxeon.hosts import HOSTS
 from mxeon.hosts.base import Host, Identity
 from mxeon.jobs import cluster
 from mxeon.models import table as reference
-from mxeon.shaders.generation import TARGETS
+from mxeon.shaders.document.policy import DEFAULT
+from mxeon.shaders.nodes import INVERSIONS, connection_text, document_text, node_text
 from tests.conformance.conftest import EXAMPLES
 from tests.support.plans import keep_checks
 
@@ -355,6 +357,31 @@ def test_an_unknown_name_lists_the_known_ones(word):
     options = {"hosts": ["abacus"]} if word == "host" else {"libraries": ["abacus"]}
     with pytest.raises(ValueError, match=f"^{word} must be one of .*; got 'abacus'$"):
         check(EXAMPLES, **options)
+
+
+@pytest.mark.parametrize("shown", ["all", "a document"])
+def test_two_libraries_are_asked_the_same(shown, tmp_path):
+    """But for nodes and functions that one does not have."""
+    libraries = ("stock", "eonlib")
+    file = tmp_path / "glow.mtlx"
+    edf = connection_text("edf", "EDF", "glow")
+    glow = node_text("uniform_edf", "EDF", "glow")
+    file.write_text(document_text(glow + node_text("surface", "surfaceshader", "shading", edf)))
+    files = [str(file)] if shown != "all" else []
+    survey = survey_documents(files, libraries, DEFAULT, 0, 1.0)
+    nodes = () if files else ("all",)
+    tasks = plan.make_plan(files, ["gl"], libraries, nodes=nodes, survey=survey).tasks
+    stock, eonlib = (
+        {
+            (each.check, each.subject)
+            for each in tasks
+            if each.library == library and each.check != "picture"
+        }
+        for library in libraries
+    )
+    own = {NODE.title, SHADER_FUNCTIONS, *INVERSIONS}
+    assert stock == {each for each in eonlib if each[1] not in own}
+    assert ("opacity", "surface, an EDF alone") in stock
 
 
 def test_the_shader_functions_are_checked_once_and_belong_to_eonlib():

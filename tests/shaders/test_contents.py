@@ -66,6 +66,39 @@ def test_lobes_inside_a_surface_shader_count_where_they_have_weight(tmp_path):
         assert ("sheen_bsdf, mode conty_kulla" in found) == (weight > 0.0)
 
 
+EMISSIONS = {
+    "standard_surface": ("emission", "float", 1.0),
+    "open_pbr_surface": ("emission_luminance", "float", 1.0),
+    "gltf_pbr": ("emissive", "color3", "1, 0, 0"),
+}
+
+
+@pytest.mark.parametrize("category", EMISSIONS)
+@pytest.mark.parametrize("lit", [False, True])
+def test_an_emission_counts_where_it_is_not_black(category, lit, tmp_path):
+    ports = port(*EMISSIONS[category]) if lit else ""
+    found = titles(document_text(node_text(category, "surfaceshader", "shading", ports)), tmp_path)
+    assert ("surface, a BSDF and an EDF" in found) == ("uniform_edf" in found) == lit
+    assert "surface, an EDF alone" not in found
+
+
+@pytest.mark.parametrize(
+    "index, reached",
+    [(port("ior", "float", 1.5), False), (port("ior", "float", 0.0), True)]
+    + [('<input name="ior" type="float" nodename="varies"/>', True)],
+    ids=["constant", "zero", "computed"],
+)
+def test_a_constant_input_that_a_document_does_not_have_is_not_reached(index, reached, tmp_path):
+    varies = '<texcoord name="uv" type="vector2"/><extract name="varies" type="float"><input name="in" type="vector2" nodename="uv"/></extract>'
+    glass = f'<dielectric_bsdf name="lobe" type="BSDF">{index}</dielectric_bsdf>'
+    file = tmp_path / "glass.mtlx"
+    file.write_text(material(varies + glass))
+    found = survey_documents([str(file)], ["eonlib"], DEFAULT, 0, 1.0).unreached[str(file)]
+    regions = found["dielectric_bsdf, scatter_mode R"]
+    assert ("with an index of refraction of 0" in regions) != reached
+    assert "with weight 0" in regions and "with an occlusion other than 1" not in regions
+
+
 def test_combinations_are_judged_in_the_structure_that_they_have(tmp_path):
     text = (examples_folder() / "mixed_lobes.mtlx").read_text()
     found = titles(text, tmp_path)

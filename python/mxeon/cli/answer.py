@@ -109,25 +109,28 @@ def _block(run: Run, document: str, host: str) -> list[str]:
         title = "pictures" if _is_picture(each, document) else each.subject
         rows.setdefault(title, []).append(each)
     # Failures first, then the nodes in their order, the pictures last.
-    titles = sorted(rows, key=lambda title: (not _failed(rows[title]), title == "pictures"))
-    kept = [title for title in titles if _failed(rows[title]) or title == "pictures"]
+    elsewhere = {id(each) for each in results if run.is_elsewhere(each, document)}
+    failed = {
+        title: any(each.verdict == FAILED and id(each) not in elsewhere for each in row)
+        for title, row in rows.items()
+    }
+    titles = sorted(rows, key=lambda title: (not failed[title], title == "pictures"))
+    kept = [title for title in titles if failed[title] or title == "pictures"]
     kept += [title for title in titles if title not in kept][: max(1, NODES - len(kept))]
     table = [[one_line(f"{document} on {host}"), *map(one_line, libraries)]]
     refused = {name: REFUSED if is_refused(run, document, name) else "" for name in libraries}
     for title in filter(kept.__contains__, titles):
-        cells = [
-            refused[library] or _cell([each for each in rows[title] if each.library == library])
-            for library in libraries
-        ]
+        cells = []
+        for library in libraries:
+            row = [each for each in rows[title] if each.library == library]
+            own = [each for each in row if id(each) not in elsewhere]
+            words = _cell(own or row) + ", other inputs wrong" * (len(own) < len(row))
+            cells.append(refused[library] or words)
         table.append([f"  {title}", *cells])
     if others := len(titles) - len(kept):
         cells = [refused[library] or "passed" for library in libraries]
         table.append([f"  {counted(others, 'other node')}", *cells])
     return _aligned(table)
-
-
-def _failed(results: Sequence[Result]) -> bool:
-    return any(result.verdict == FAILED for result in results)
 
 
 def _passed(block: Sequence[str]) -> bool:
@@ -181,17 +184,21 @@ def _not_run(run: Run) -> Iterator[str]:
 
 
 def _failures(run: Run) -> Iterator[str]:
-    """A line for each page or diagnosis that explains failures: a sentence, and its link."""
+    """A line for each page or diagnosis that explains failures: a sentence, and its link.
+
+    Failures that no page explains come first, those of other inputs than the documents' last.
+    """
     groups: dict[tuple[str, str], list[Result]] = {}
-    for each in run.results:
-        if each.verdict == FAILED:
-            reason = " ".join(each.pages) or each.explanation
-            groups.setdefault((each.location, reason), []).append(each)
+    failures = (each for each in run.results if each.verdict == FAILED)
+    for each in sorted(failures, key=lambda each: (run.is_elsewhere(each), bool(each.pages))):
+        reason = " ".join(each.pages) or each.explanation
+        other = "for other inputs than yours: " * run.is_elsewhere(each)
+        groups.setdefault((f"{each.location}: {other}", reason), []).append(each)
     # Pictures are wrong because nodes are, where some are.
     places = {place for (place, _), each in groups.items() if any(map(_is_of_node, each))}
     for (place, _), results in groups.items():
         if place not in places or any(map(_is_of_node, results)):
-            yield one_line(f"failed: {place}: {_sentence(results)}")
+            yield one_line(f"failed: {place}{_sentence(results)}")
 
 
 def _is_of_node(result: Result) -> bool:

@@ -57,6 +57,8 @@ def to_json(run: Run) -> str:
         - hosts: objects of name, version, device.
         - results: objects with the fields of `mxeon.conformance.results.Result`; control is null or an
           object of variant, figure, caught.
+        - elsewhere: objects of document, check, subject, host, library: failures for inputs that the
+          document does not have.
         - pictures: objects of document, element, host, library, scene; exr and png, paths
           beside the JSON file; reference, that of the reference's EXR file, and largest_difference
           from it, or null without one.
@@ -77,6 +79,13 @@ def to_json(run: Run) -> str:
         "notes": run.notes,
         "hosts": run.hosts,
         "results": run.results,
+        "elsewhere": [
+            {key: getattr(each, key) for key in ("check", "subject", "host", "library")}
+            | {"document": document}
+            for document in run.contents
+            for each in run.results
+            if run.is_elsewhere(each, document)
+        ],
         "pictures": _picture_fields(run),
         "curves": run.curves,
     }

@@ -88,6 +88,7 @@ class Report:
     pictures: tuple[ShownPicture, ...]
     curves: Any
     refused: tuple[str, ...] = ()
+    elsewhere: tuple[dict[str, str], ...] = ()
 
     def __post_init__(self) -> None:
         if self.verdict not in VERDICTS:
@@ -122,7 +123,11 @@ def read_results(folder: str | PathLike[str]) -> Report:
             content = json.load(file)
         # Check its format.
         if (written := content["format"]) == JSON_FORMAT:
-            return read_record(content, Report)
+            later: dict[str, object] = {
+                "elsewhere": [],
+                "refused": [],
+            }  # which earlier reports lack
+            return read_record(later | content, Report)
     except OSError as error:
         raise InputError(f"{rule}; {error.strerror}") from None
     except ERRORS as error:

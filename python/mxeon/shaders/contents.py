@@ -14,6 +14,7 @@ from mxeon.shaders.inner_lobes import Path, Walk
 CLOSURES = ("BSDF", "EDF", "VDF", "surfaceshader")
 COMBINING = ("layer", "mix", "add", "multiply")
 MODES = ("string", "boolean")  # types of inputs that select a mode of a node
+NUMBERS = ("float", "color3", "vector2", "vector3")
 FILM = "thinfilm_thickness"
 
 
@@ -31,6 +32,8 @@ class ShownNode:
         Name and value of the inputs that select a mode, where the value is constant.
     film : bool
         Whether it may have a thin film.
+    values : tuple of (str, tuple of float)
+        Name and numbers of the inputs that are constant.
     """
 
     category: str
@@ -38,6 +41,7 @@ class ShownNode:
     inputs: tuple[tuple[str, str], ...] = ()
     modes: tuple[tuple[str, str], ...] = ()
     film: bool = False
+    values: tuple[tuple[str, tuple[float, ...]], ...] = ()
 
     def has(self, other: "ShownNode") -> bool:
         """Whether it may be in the mode of another node, whose inputs are those that are set."""
@@ -99,11 +103,14 @@ def _shown(walk: Walk, path: Path) -> ShownNode:
     ports = [(port.getName(), port.getType()) for port in inputs]
     # Inputs that take a lobe count where there is one.
     sources = {name: walk.source(path, name) for name, kind in ports if kind in CLOSURES}
-    ports = [port for port in ports if sources.get(port[0], path)]
-    ports += [(name, _kind(walk.node(each))) for name, each in sources.items() if each]
+    lit = {name: each for name, each in sources.items() if each and walk.emits(each)}
+    ports = [port for port in ports if port[0] in lit or port[0] not in sources]
+    ports += [(name, _kind(walk.node(each))) for name, each in lit.items()]
     # The values that choose a mode, and whether there is a film.
     values = ((name, walk.value(path, name)) for name, kind in ports if kind in MODES)
     known = tuple((name, value) for name, value in values if value is not None)
     thickness = walk.value(path, FILM) if (FILM, "float") in ports else "0"
     film = thickness is None or float(thickness or 0.0) > 0.0
-    return ShownNode(node.getCategory(), node.getType(), tuple(ports), known, film)
+    texts = ((name, walk.value(path, name)) for name, kind in ports if kind in NUMBERS)
+    numbers = tuple((name, tuple(map(float, text.split(",")))) for name, text in texts if text)
+    return ShownNode(node.getCategory(), node.getType(), tuple(ports), known, film, numbers)

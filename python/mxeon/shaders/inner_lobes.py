@@ -93,7 +93,7 @@ class Walk:
         """Paths of the nodes from which a node's light comes."""
         node = self._nodes[path]
         # Note the kind of lobe, unless it has no weight.
-        if self._constant(path, "weight") == 0.0:
+        if self._constant(path, "weight") == 0.0 or not self.emits(path):
             self._dark.add(path)
             return ()
         kind = KINDS.get(node.getCategory())
@@ -109,6 +109,25 @@ class Walk:
         # Go on to the nodes before it.
         sources = (self.source(path, name) for name in self._effective(path, node))
         return tuple(source for source in sources if source)
+
+    def emits(self, path: Path) -> bool:
+        """Whether a node emits light, unless it is no EDF; a color that is computed counts as any."""
+        node = self._nodes[path]
+        if node.getType() != "EDF":
+            return True
+        sources = [self.source(path, name) for name in self._effective(path, node)]
+        lights = [each for each in sources if each and self._nodes[each].getType() == "EDF"]
+        if lights or node.getCategory() == "multiply":
+            return any(map(self.emits, lights))
+        return not self._black(path, "color")
+
+    def _black(self, path: Path, name: str) -> bool:
+        """Whether an input is 0, or a product with a factor of 0."""
+        if source := self.source(path, name):
+            product = self._nodes[source].getCategory() == "multiply"
+            return product and any(self._black(source, factor) for factor in ("in1", "in2"))
+        value = self.value(path, name)
+        return bool(value) and not any(map(float, str(value).split(",")))
 
     def _effective(self, path: Path, node: mx.InterfaceElement) -> tuple[str, ...]:
         """Names of the inputs that hand on light."""

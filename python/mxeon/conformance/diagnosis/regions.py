@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Named sets of pairs and inputs, to say of a shader that is wrong for some of them for which."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,6 +12,15 @@ Mask = NDArray[np.bool_]
 
 COLORS = ("color", "tint", "color0")  # inputs of which one is the color of a node
 INDICES = {"ior": "an index of refraction", "extinction": "an extinction"}
+# The inputs that words in the names of regions are about.
+NAMED = {
+    "weight": ("weight",),
+    "roughness": ("roughness",),
+    "index of": ("ior",),
+    "extinction": ("extinction",),
+    "cuticle": ("cuticle_angle",),
+    "color": COLORS,
+}
 LARGEST = 0.6  # share of the pairs that a region may have to be worth its name
 DENSITY = 0.1  # least share of a region's pairs that have to be wrong
 UPRIGHT = 1e-3  # tangent of a half vector along the normal: its cosine rounds to about 1
@@ -36,6 +45,22 @@ def smallest(batches: Sequence[Batch], wrong: Sequence[Mask]) -> str:
         if mask[bad].all() and bad[mask].mean() >= DENSITY and mask.sum() <= LARGEST * count:
             sizes[name] = int(mask.sum())
     return min(sizes, key=lambda name: sizes[name], default="")
+
+
+def unreached(values: Mapping[str, Sequence[float]]) -> tuple[str, ...]:
+    """Names of the regions that a node with constant inputs is not in, of inputs that are all known."""
+    one = np.array([[0.0, 0.0, 1.0]])
+    batch = Batch(one, one, {name: np.array([_plain(each)]) for name, each in values.items()})
+    return tuple(
+        name
+        for name, mask in _inputs(batch)
+        if not mask.any()
+        and any(word in name and port in values for word, ports in NAMED.items() for port in ports)
+    )
+
+
+def _plain(value: Sequence[float]) -> float | Sequence[float]:
+    return value if len(value) > 1 else value[0]
 
 
 def _regions(batch: Batch) -> Iterator[tuple[str, Mask]]:

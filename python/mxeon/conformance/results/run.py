@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 
 from mxeon.conformance.results.pictures import AlbedoCurve, Picture, image_names
-from mxeon.conformance.results.result import Result
+from mxeon.conformance.results.result import FAILED, Result
 from mxeon.conformance.results.summary import Summary, summarize
 from mxeon.hosts.base import Identity
 
@@ -35,6 +35,9 @@ class Run:
     documents : tuple of Path
     contents : dict of str to tuple of str
         Titles of the nodes of each document that the user gave, by its path.
+    unreached : dict of str to dict of str to tuple of str
+        For each of these, by title of a node, the regions that its inputs are not in, as diagnoses
+        name them.
     missing : tuple of str
         Tasks that are not done yet, where the run was interrupted.
     """
@@ -50,16 +53,36 @@ class Run:
     documents: tuple[Path, ...] = ()
     contents: dict[str, tuple[str, ...]] = field(default_factory=dict)
     missing: tuple[str, ...] = ()
+    unreached: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
 
     @cached_property
     def summary(self) -> Summary:
         """The verdict on this run."""
-        return summarize(self.results, self.missing, tuple(self.refused))
+        return summarize(
+            self.results,
+            self.missing,
+            tuple(self.refused),
+            sum(map(self.is_elsewhere, self.results)),
+        )
 
     @property
     def errors(self) -> tuple[str, ...]:
         """The faults of all documents that were refused."""
         return tuple(line for lines in self.refused.values() for line in lines)
+
+    def is_elsewhere(self, result: Result, *documents: str) -> bool:
+        """Whether a check fails for inputs alone that no document has that shows its node."""
+        region = result.diagnosis.split(";")[0]
+        shown = [
+            self.unreached.get(each, {}).get(result.subject, ())
+            for each in documents or self.contents
+            if result.subject in self.contents[each]
+        ]
+        return (
+            result.verdict == FAILED
+            and bool(shown)
+            and all(any(region.endswith(name) for name in names) for names in shown)
+        )
 
     @cached_property
     def image_names(self) -> tuple[str, ...]:

@@ -33,7 +33,10 @@ class Summary:
 
 
 def summarize(
-    results: Sequence[Result], missing: Sequence[str] = (), refused: Sequence[str] = ()
+    results: Sequence[Result],
+    missing: Sequence[str] = (),
+    refused: Sequence[str] = (),
+    elsewhere: int = 0,
 ) -> Summary:
     """Verdict on `results`.
 
@@ -44,6 +47,8 @@ def summarize(
         Tasks of an interrupted run that are not done yet.
     refused : sequence of str
         Documents that were refused.
+    elsewhere : int
+        Number of failures for inputs that no document has.
 
     Examples
     --------
@@ -52,6 +57,9 @@ def summarize(
     """
     # Judge what there is.
     summary = _summarize_results(results)
+    if elsewhere:
+        words = f" {elsewhere} of them for inputs that no document has."
+        summary = replace(summary, sentence=summary.sentence + words)
     if not missing and not refused:
         return summary
     # Say what is not there: without it nothing has passed.

@@ -175,6 +175,7 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
         notes=_grouped(notes),
         refused=refused,
         contents=planned.contents,
+        unreached=planned.unreached,
         documents=tuple(map(Path, planned.documents)),
         missing=tuple(
             str(task) for number, task in enumerate(planned.tasks) if number not in findings

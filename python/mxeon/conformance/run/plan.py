@@ -110,6 +110,8 @@ def make_plan(
     # Tasks of every library on every host, then of renderers' own nodes.
     tasks: list[Task] = []
     documents: list[str] = []
+    # What a document shows, and what libraries are compared in, is judged with each library.
+    everywhere = bool(files and not nodes) or len(libraries) > 1
     for library in libraries:
         readable = [str(file) for file in files if (str(file), library) not in survey.unread]
         paths = list(map(Path, readable)) if files else _examples(library)
@@ -119,7 +121,7 @@ def make_plan(
         for host in hosts:
             if not host_row(host).scenes:
                 tasks += [Task(DOCUMENT, file, host, library) for file in readable]
-            tasks += _on_host(host, library, paths, PBR_SUBJECTS)
+            tasks += _on_host(host, library, paths, PBR_SUBJECTS, everywhere)
     for host in hosts:
         tasks += _native(host)
     # Keep those that are asked for, and say where nothing would be measured.
@@ -133,6 +135,7 @@ def make_plan(
         tasks=tuple(tasks),
         documents=tuple(dict.fromkeys(documents)),
         contents={file: survey.nodes.get(file, ()) for file in documents} if files else {},
+        unreached=survey.unreached if files and not nodes else {},
         refused=survey.refused,
         options=_options(policy),
         files=_files(documents, policy, libraries) if resumable else {},
@@ -172,9 +175,13 @@ def inversions(library: str) -> list[str]:
 
 
 def _on_host(
-    host: str, library: str, files: Iterable[Path], nodes: Iterable[Subject]
+    host: str,
+    library: str,
+    files: Iterable[Path],
+    nodes: Iterable[Subject],
+    everywhere: bool = False,
 ) -> Iterator[Task]:
-    """Tasks of one host with one library, for files and nodes of pbrlib."""
+    """Tasks of one host with one library, for files and nodes of pbrlib, or those it repairs."""
     # Hosts that read text alone, or show nodes of their own.
     probe, row = probe_type(host), host_row(host)
     if probe is None:
@@ -194,11 +201,12 @@ def _on_host(
             yield Task(CURVE, subject.title, host, library)
     for each in nodes:
         left = each.closure and row.probe == "pictures" and _is_renderers(row.target, library)
-        if not left and _is_judged(each, library):
+        if not left and (everywhere or _is_judged(each, library)):
             yield from _checks_of(each, probe, host, library)
     if row.surfaces:
         for surface in SURFACES:
-            if (library if library in LIBRARIES else "eonlib") in (surface.libraries or LIBRARIES):
+            own = library if library in LIBRARIES else "eonlib"
+            if everywhere or own in (surface.libraries or LIBRARIES):
                 yield from _checks_of(surface, probe, host, library)
     if row.scenes:
         yield from (Task(PICTURE, str(file), host, library) for file in files)

@@ -2,12 +2,14 @@
 """The documents of a run, read before any other work: their nodes, and those that cannot be read."""
 
 import re
-from collections.abc import Generator, Iterable, Sequence
+from collections.abc import Generator, Iterable, Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
 from functools import cache, partial
 from pathlib import Path
 
+from mxeon.conformance.diagnosis.regions import unreached
+from mxeon.conformance.nodes.emission import SurfaceSubject
 from mxeon.conformance.nodes.subject import Subject, ValuedSubject
 from mxeon.conformance.nodes.thin_films import FilmSubject
 from mxeon.conformance.probes.families import ALL_SUBJECTS
@@ -29,6 +31,8 @@ class Survey:
     ----------
     nodes : dict of str to tuple of str
         Titles of the nodes of each document, by its path.
+    unreached : dict of str to dict of str to tuple of str
+        For each document, by title of a node, the regions that its inputs are not in.
     unread : frozenset of Source
         Documents that cannot be read, each with the library that it is read with.
     refused : dict of str to tuple of str
@@ -36,6 +40,7 @@ class Survey:
     """
 
     nodes: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    unreached: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
     unread: frozenset[Source] = frozenset()
     refused: dict[str, tuple[str, ...]] = field(default_factory=dict)
 
@@ -54,7 +59,7 @@ def survey_documents(
     """
     # Read each document with each library.
     sources = [(file, library) for file in dict.fromkeys(files) for library in libraries]
-    titles: dict[str, dict[str, None]] = {file: {} for file in files}
+    titles: dict[str, dict[str, set[str]]] = {file: {} for file in files}
     faults: dict[Source, tuple[str, ...]] = {}
     # Collect nodes, and errors; those of an example are the library's fault.
     with closing(_answers(sources, policy, workers, timeout)) as answers:
@@ -65,9 +70,14 @@ def survey_documents(
             elif isinstance(answer, MxeonError):
                 raise answer
             else:
-                titles[file] |= dict.fromkeys(_titles(answer or ()))
+                for title, regions in _titles(answer or ()):
+                    titles[file].setdefault(title, regions).intersection_update(regions)
     return Survey(
         {file: tuple(each) for file, each in titles.items()},
+        {
+            file: {title: tuple(sorted(each)) for title, each in found.items() if each}
+            for file, found in titles.items()
+        },
         frozenset(faults),
         _by_document(faults, libraries),
     )
@@ -101,16 +111,17 @@ def _answers(
             yield outcome.value
 
 
-def _titles(nodes: Iterable[ShownNode]) -> list[str]:
-    """Titles of the subjects that nodes of a document are."""
-    return [
-        subject.title
-        for subject, mode in _modes()
-        if any(_is(node, subject, mode) for node in nodes)
-    ]
+def _titles(nodes: Iterable[ShownNode]) -> Iterator[tuple[str, set[str]]]:
+    """Titles of the subjects that nodes of a document are, each with regions its inputs are not in."""
+    for subject, mode in _modes():
+        for node in nodes:
+            if _is(node, subject, mode):
+                yield subject.title, set(unreached(dict(node.values)))
 
 
 def _is(node: ShownNode, subject: Subject, mode: ShownNode) -> bool:
+    if isinstance(subject, SurfaceSubject) and subject.lit != ("bsdf" in dict(node.inputs)):
+        return False
     return node.has(mode) and (node.film or not isinstance(subject, FilmSubject))
 
 

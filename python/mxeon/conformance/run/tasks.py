@@ -59,6 +59,8 @@ class Plan:
         Empty where the run is not kept.
     contents : dict of str to tuple of str
         Titles of the nodes of each document, by its path.
+    unreached : dict of str to dict of str to tuple of str
+        For each document, by title of a node, the regions that its inputs are not in.
     refused : dict of str to tuple of str
         Documents that cannot be read; as of `mxeon.conformance.results.Run`.
     """
@@ -70,6 +72,7 @@ class Plan:
     options: dict[str, str] = field(default_factory=dict)
     files: dict[str, str] = field(default_factory=dict)
     contents: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    unreached: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
     refused: dict[str, tuple[str, ...]] = field(default_factory=dict)
 
 
