@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The table of mutants: single textual changes of eonlib's sources, read from `table/*.toml`."""
+"""The table of mutants: single textual changes of eonlib's sources, read from `table/*.toml`.
+
+Beside them, for each file a change of its first comment: a negative control, which must survive.
+"""
 
 import re
 import tomllib
@@ -13,6 +16,8 @@ TABLE = Path(__file__).with_name("table")
 ROOT = Path(__file__).resolve().parents[2]
 TWINS = (*STEMS, "hair_parameters")  # files whose functions have one text in two languages
 FOLDERS = ("eonlib", "profiles")  # that hold eonlib
+CONTROLS = "Negative controls"  # group of the mutants that change a comment
+COMMENT = "SPDX-License-Identifier"  # in the first comment of every file
 
 
 @dataclass(frozen=True)
@@ -73,15 +78,20 @@ class Mutant:
         return text
 
     @property
+    def control(self) -> bool:
+        """Whether it changes a comment alone."""
+        return self.group == CONTROLS
+
+    @property
     def digest(self) -> str:
         """Digest of the mutated files."""
         return sha256("".join(self.texts().values()).encode()).hexdigest()[:16]
 
 
 def read_table() -> tuple[Mutant, ...]:
-    """All mutants, in the order of the page."""
+    """All mutants, in the order of the page, and the negative controls of their files."""
     files = [tomllib.loads(path.read_text(encoding="utf-8")) for path in TABLE.glob("*.toml")]
-    return tuple(
+    table = [
         Mutant(
             name,
             group["title"],
@@ -97,4 +107,20 @@ def read_table() -> tuple[Mutant, ...]:
         for part in group["files"]
         for key, equivalent in (("mutants", False), ("equivalents", True))
         for name, old, new, reason in part.get(key, ())
+    ]
+    asked = {mutant.file: mutant.tests for mutant in table}
+    controls = (
+        Mutant(
+            f"control: {file}",
+            CONTROLS,
+            file,
+            COMMENT,
+            COMMENT.lower(),
+            "Only a comment changes.",
+            "",
+            True,
+            tests,
+        )
+        for file, tests in asked.items()
     )
+    return (*table, *controls)

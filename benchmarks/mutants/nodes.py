@@ -39,6 +39,8 @@ def changed_nodes(mutant: Mutant) -> set[tuple[str, str]]:
         before = _entries(document, (ROOT / document).read_text(encoding="utf-8"))
         after = _entries(document, texts[document]) if document in texts else before
         entries |= before ^ after
+        if mutant.control and document in texts:
+            entries |= before
         entries |= {entry for entry in before if not texts.keys().isdisjoint(_sources(entry[2]))}
     return {(target, title) for nodedef, target, *_ in entries for title in _titles(nodedef)}
 

@@ -2,7 +2,8 @@
 """Checks of the nodes of pbrlib as a mutant needs them: up to the first error, and nothing else.
 
 What does not depend on the library is computed once: pairs, quadratures, and the float64 reference.
-Neither controls nor diagnoses are asked for, since a check that fails is judged already.
+Neither controls nor diagnoses are asked for, since a check that fails is judged already. A check that
+fails with eonlib as it is, on the same host, says nothing about a mutant.
 """
 
 import re
@@ -57,6 +58,7 @@ class Quick:
         self._hosts: dict[str, Host] = {}
         self._probes: dict[tuple[str, str], Any] = {}
         self._current: set[tuple[str, str]] = set()  # probes of the library that is judged
+        self._clean: dict[Task, dict[tuple[str, str], str]] = {}  # failures without a mutant
 
     def close(self) -> None:
         """Close the hosts."""
@@ -68,24 +70,33 @@ class Quick:
         self._current.clear()
 
     def failure(self, task: Task) -> dict[str, str] | None:
-        """The failure of a task, or None: check, excess, host and diagnosis."""
-        if task.check == SOURCE:
-            failed = [each for each in check_entries(task.library) if each.verdict != PASSED]
-            words = (failed[0].check, failed[0].diagnosis) if failed else None
-        else:
-            words = self._on_host(task)
-        if words is None:
-            return None
-        return {"check": words[0], "excess": "", "host": task.host, "diagnosis": words[1]}
+        """The first failure of a task that eonlib as it is does not share: check, excess, host and
+        diagnosis. None if there is none.
+        """
+        found = self._failures(task)
+        clean = replace(task, library="eonlib")
+        if found and clean not in self._clean:
+            self._clean[clean] = self._failures(clean)
+        for key, diagnosis in found.items():
+            if key not in self._clean[clean]:
+                return {"check": key[0], "excess": "", "host": task.host, "diagnosis": diagnosis}
+        return None
 
-    def _on_host(self, task: Task) -> tuple[str, str] | None:
+    def _failures(self, task: Task) -> dict[tuple[str, str], str]:
+        """Diagnoses of what fails, by check and subject."""
+        if task.check == SOURCE:
+            return {
+                (each.check, each.subject): each.diagnosis
+                for each in check_entries(task.library)
+                if each.verdict != PASSED
+            }
         row, probe = ROWS[task.check], self._probe(task)
         try:
             with renderer_warnings():
                 excess = exceeds(row, probe)
         except MxeonError as error:
             excess = FOLDER.sub("", str(error).strip().partition("\n")[0])
-        return (task.check, excess) if excess else None
+        return {(task.check, task.subject): excess} if excess else {}
 
     def _probe(self, task: Task) -> Any:
         """The probe of a task, with all that one of another library has computed."""
@@ -98,7 +109,7 @@ class Quick:
             kind = probe_type_of(subject, probe_type(task.host))  # type: ignore[arg-type]
             assert kind is not None  # or there were no task
             self._probes[key] = kind(host, remembered(subject), task.library)
-        elif key not in self._current:
+        elif key not in self._current or first.library != task.library:
             probe = type(first)(host, first.subject, task.library)
             kept = {name: value for name, value in vars(first).items() if name in SHARED}
             vars(probe).update(kept)

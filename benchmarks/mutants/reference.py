@@ -6,6 +6,8 @@ import re
 import shutil
 import subprocess
 import sys
+from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -38,11 +40,22 @@ def trial_of_reference(mutant: Mutant) -> dict[str, Any] | None:
         shutil.copytree(ROOT / "python", copy)
         for file, text in mutant.texts().items():
             Path(base, file).write_text(text, encoding="utf-8")
-        named = [f"{FOLDER}/{name}" for name in mutant.tests]
-        return first_failure(copy, named) or first_failure(copy, [FOLDER])
+        named = tuple(f"{FOLDER}/{name}" for name in mutant.tests)
+        for tests in (named,) if mutant.equivalent else (named, (FOLDER,)):
+            assert_pass(tests)
+            if failure := first_failure(copy, tests):
+                return failure
+    return None
 
 
-def first_failure(package: Path, tests: list[str]) -> dict[str, str] | None:
+@cache
+def assert_pass(tests: tuple[str, ...]) -> None:
+    """Raise RuntimeError if some tests fail without any change: then they judge no mutant."""
+    if failure := first_failure(ROOT / "python", tests):
+        raise RuntimeError(f"a test fails without any change: {failure}")
+
+
+def first_failure(package: Path, tests: Sequence[str]) -> dict[str, str] | None:
     """The first of some tests that fails with the package of a folder, or None."""
     ended = subprocess.run(
         [sys.executable, "-m", "pytest", *OPTIONS, *tests],

@@ -5,6 +5,7 @@ import atexit
 import shutil
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from functools import cache
 from itertools import islice
 from pathlib import Path
@@ -51,7 +52,7 @@ def trial(mutant: Mutant, judge: Judge, quick: Quick, every: bool = False) -> di
     Parameters
     ----------
     mutant : Mutant
-        An equivalent one is judged by its text and the nodes alone.
+        An equivalent one is judged by its text and the nodes alone, a control by all.
     judge : Judge
     quick : Quick
         Judges the nodes of pbrlib.
@@ -74,8 +75,10 @@ def trial(mutant: Mutant, judge: Judge, quick: Quick, every: bool = False) -> di
         try:
             if nodes:
                 return trial_of_nodes(mutant, path, quick)
-            assert_changed(mutant, path)
-            for host, stage in islice(stages(mutant, path), 1 if mutant.equivalent else None):
+            if not mutant.control:
+                assert_changed(mutant, path)
+            limit = 1 if mutant.equivalent and not mutant.control else None
+            for host, stage in islice(stages(mutant, path), limit):
                 if failures := failures_of(stage, judge, every):
                     rows = ordered(failures)
                     seen = TEXT if rows[0]["host"] == SOURCE else host
@@ -173,13 +176,26 @@ def _on_cycles(path: str) -> Iterator[tuple[str, list[Task]]]:
 
 
 def failures_of(tasks: Sequence[Task], judge: Judge, every: bool = True) -> list[Result]:
-    """Results that did not pass, of all tasks or of the first that has any."""
+    """Results that pass with eonlib as it is alone: of all tasks, or of the first that has any."""
     failures: list[Result] = []
     for task in tasks:
-        failures += [each for each in judge.work(task).results if each.verdict != PASSED]
+        found = _failed(task, judge)
+        clean = found and _clean_failures(replace(task, library="eonlib"), judge)
+        failures += [each for key, each in found.items() if key not in clean]
         if failures and not every:
             break
     return failures
+
+
+def _failed(task: Task, judge: Judge) -> dict[tuple[str, str], Result]:
+    """Results that did not pass, by check and subject."""
+    results = judge.work(task).results
+    return {(each.check, each.subject): each for each in results if each.verdict != PASSED}
+
+
+@cache
+def _clean_failures(task: Task, judge: Judge) -> frozenset[tuple[str, str]]:
+    return frozenset(_failed(task, judge))
 
 
 def ordered(failures: list[Result]) -> list[dict[str, str]]:
