@@ -106,7 +106,7 @@ CHECKS = (
     ),
     Check(
         "kept",
-        "Mode RT reflects and passes to its base what mode R does; mode T reflects nothing.",
+        "Mode RT reflects and passes to its base what mode R does; mode T reflects nothing, and mode R transmits nothing.",
         MODELS,
         measures.kept,
         offset,

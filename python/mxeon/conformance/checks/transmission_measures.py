@@ -65,7 +65,7 @@ def clear(probe: Probe) -> Iterable[Case]:
 
 
 def kept(probe: Probe) -> Iterable[Case]:
-    """Reflection beside transmission, against that of the node that only reflects, or none."""
+    """Reflection beside transmission, against that of mode R, or none; and none through mode R."""
     cases = []
     only = probe.reflection if subject_of(probe, TransmissionSubject).reflects else None
     for batch in probe.cosines:
@@ -77,6 +77,8 @@ def kept(probe: Probe) -> Iterable[Case]:
         for branch in SCATTERING if only else SCATTERING[:2]:
             expected = only.throughput(batch, branch) if only else ONE
             cases.append(Case(batch, probe.throughput(batch, branch), expected))
+        if only:
+            cases.append(Case(batch, only.transmitted(batch), none))
     return cases
 
 

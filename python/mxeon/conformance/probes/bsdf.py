@@ -127,6 +127,9 @@ class MicrofacetProbe(BsdfProbe):
     usual: ClassVar[Counts] = replace(BsdfProbe.usual, diagnosed=1 << 8)  # references take long
     least_cosine: ClassVar[float] = FIT_COSINE
 
+    def transmitted(self, batch: Batch, radiance: NDArray[np.float32] | None = None) -> Array:
+        return self._evaluate(batch, "transmission", irradiance=radiance)
+
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
         """Those of any node, and pairs near the mirror direction."""
@@ -241,9 +244,6 @@ class TransmissionProbe(MicrofacetProbe):
     """A node that transmits, on a host that evaluates any pairs."""
 
     subject: TransmissionSubject
-
-    def transmitted(self, batch: Batch, radiance: NDArray[np.float32] | None = None) -> Array:
-        return self._evaluate(batch, "transmission", irradiance=radiance)
 
     @cached_property
     def reflection(self) -> MicrofacetProbe:

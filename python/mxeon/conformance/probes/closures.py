@@ -35,8 +35,11 @@ class ClosureSamples(Probe):
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        """The same pairs with weights of at least 0: OSL multiplies a closure by any number."""
-        random, *others = map(_weighed, super().batches)
+        """The same pairs with weights of at least 0: OSL multiplies a closure by any number.
+
+        Some dielectrics have the index 0, for which a shader may make another closure.
+        """
+        random, *others = map(_altered, super().batches)
         return (random, *(batch.first(SOME) for batch in others))
 
     @cached_property
@@ -91,7 +94,11 @@ def _each(batch: Batch, name: str) -> Array:
     return np.broadcast_to(values, (len(batch.wo), *values.shape)) if constant else values
 
 
-def _weighed(batch: Batch) -> Batch:
-    if "weight" not in batch.inputs:
-        return batch
-    return batch.altered(weight=np.maximum(batch.inputs["weight"], 0.0))
+def _altered(batch: Batch) -> Batch:
+    changes: dict[str, Array] = {}
+    if "weight" in batch.inputs:
+        changes["weight"] = np.maximum(batch.inputs["weight"], 0.0)
+    if {"tint", "ior"} <= batch.inputs.keys():
+        index = _each(batch, "ior")
+        changes["ior"] = np.where(np.arange(len(index)) % 16 == 0, 0.0, index)
+    return batch.altered(**changes)
