@@ -90,6 +90,8 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
             'scatter_mode == "T" ? color(0.0) : color(1.0)',
         ),
         ('scatter_mode == "T" ?', 'scatter_mode == "R" ?'),
+        ("weight * generalized", "generalized"),  # where the index is 0
+        ("schlick_bsdf(N, U, reflection", "schlick_bsdf(N, U, color(1.0)"),
         (
             "reflection, transmission, roughness.x, roughness.y, ior",
             "transmission, reflection, roughness.x, roughness.y, ior",
@@ -270,6 +272,13 @@ def largest_kept(probe: Probe) -> float:
     """The largest error of what a mode with transmission reflects and lets through."""
     cases = transmission_measures.kept(probe)
     return max(float(scaled(case.measured, case.expected).max()) for case in cases)
+
+
+def test_mode_r_that_transmits_is_noticed(hosts):
+    host = hosts("osl")
+    wrong = Changed(host, 'scatter_mode == "R" ?', 'scatter_mode == "" ?')
+    for judged, right in ((host, True), (wrong, False)):
+        assert (excess(probe_of(judged, RT), host, transmission_measures.kept) <= 1.0) == right
 
 
 def test_mode_t_of_schlicks_curve_reflects_nothing(hosts):
