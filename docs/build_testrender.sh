@@ -31,25 +31,27 @@ sources robin "$robin" https://github.com/Tessil/robin-map
 
 prefix=$folder/prefix
 if [ ! -d "$prefix" ]; then
-    mkdir -p prefix/include prefix/lib/cmake/OpenImageIO
-    cp -r oiio/src/include/OpenImageIO robin/include/tsl prefix/include/
-    mkdir -p prefix/include/OpenImageIO/detail/fmt
+    # It gets its name when it is whole, as the clones do.
+    rm -rf prefix.part wheel
+    mkdir -p prefix.part/include prefix.part/lib/cmake/OpenImageIO
+    cp -r oiio/src/include/OpenImageIO robin/include/tsl prefix.part/include/
+    mkdir -p prefix.part/include/OpenImageIO/detail/fmt
     for header in format ostream printf; do
-        echo "#include <fmt/$header.h>" >"prefix/include/OpenImageIO/detail/fmt/$header.h"
+        echo "#include <fmt/$header.h>" >"prefix.part/include/OpenImageIO/detail/fmt/$header.h"
     done
     sed -e "s/@PROJECT_VERSION_MAJOR@/3/; s/@PROJECT_VERSION_MINOR@/1/; s/@PROJECT_VERSION_PATCH@/16/" \
         -e "s/@PROJECT_VERSION_TWEAK@/0/; s/@PROJECT_VERSION_RELEASE_TYPE@//" \
         -e "s/@PROJ_NAMESPACE@/OpenImageIO/g; s/@PROJ_VERSION_NAMESPACE@/v3_1/g" \
         -e "s/@Imath_VERSION_MAJOR@/3/; s/@Imath_VERSION_MINOR@/1/; s/@CMAKE_CXX_STANDARD@/17/" \
         -e "s/^#cmakedefine01 \(.*\)/#define \1 0/" \
-        oiio/src/include/OpenImageIO/oiioversion.h.in >prefix/include/OpenImageIO/oiioversion.h
+        oiio/src/include/OpenImageIO/oiioversion.h.in >prefix.part/include/OpenImageIO/oiioversion.h
     python3 -m pip download --quiet --no-deps --dest wheel "openimageio==$oiio"
     python3 -m zipfile -e wheel/*.whl wheel
     for name in OpenImageIO OpenImageIO_Util; do
-        cp "wheel/OpenImageIO/lib/lib$name.so.3.1.16" prefix/lib/
-        ln -s "lib$name.so.3.1.16" "prefix/lib/lib$name.so"
+        cp "wheel/OpenImageIO/lib/lib$name.so.3.1.16" prefix.part/lib/
+        ln -s "lib$name.so.3.1.16" "prefix.part/lib/lib$name.so"
     done
-    cat >prefix/lib/cmake/OpenImageIO/OpenImageIOConfig.cmake <<'END'
+    cat >prefix.part/lib/cmake/OpenImageIO/OpenImageIOConfig.cmake <<'END'
 get_filename_component(prefix "${CMAKE_CURRENT_LIST_DIR}/../../.." ABSOLUTE)
 find_package(Imath REQUIRED)
 foreach(name OpenImageIO_Util OpenImageIO)
@@ -66,10 +68,11 @@ set(OpenImageIO_INCLUDES "${prefix}/include")
 set(OpenImageIO_LIBRARIES OpenImageIO::OpenImageIO OpenImageIO::OpenImageIO_Util)
 set(OpenImageIO_LIB_DIR "${prefix}/lib")
 END
-    cat >prefix/lib/cmake/OpenImageIO/OpenImageIOConfigVersion.cmake <<'END'
+    cat >prefix.part/lib/cmake/OpenImageIO/OpenImageIOConfigVersion.cmake <<'END'
 set(PACKAGE_VERSION 3.1.16.0)
 set(PACKAGE_VERSION_COMPATIBLE TRUE)
 END
+    mv prefix.part prefix
 fi
 
 cmake -S osl -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$prefix" \
