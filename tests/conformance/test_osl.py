@@ -17,6 +17,8 @@ from mxeon.conformance.probes.families import ALL_SUBJECTS, ClosureProbe, probe_
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.reference.evaluated import evaluated
+from mxeon.conformance.results import PASSED
+from mxeon.conformance.run import check
 from mxeon.conformance.samples.batch import Counts, directions
 from mxeon.conformance.samples.measurement import Case, scaled
 from mxeon.errors import ShaderError
@@ -286,6 +288,11 @@ def test_mode_t_of_schlicks_curve_reflects_nothing(hosts):
     assert largest_kept(probe_of(host, title)) == 0.0
     tinted = Changed(host, '"T") ? color(0.0)', '"T") ? color(0.5)')
     assert largest_kept(probe_of(tinted, title)) > 0.01
+
+
+def test_every_check_of_an_artistic_index_is_run():
+    run = check((), ["osl"], nodes=["artistic_ior"])
+    assert {each.verdict for each in run.results} == {PASSED}
 
 
 def test_frames_that_a_text_takes_from_the_surface_are_not_asked(hosts):
