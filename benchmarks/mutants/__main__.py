@@ -4,7 +4,7 @@
     python -m benchmarks.mutants [--only PATTERN] [--resume] [--output DIR]
     python -m benchmarks.mutants --page           the page alone, from the JSON that is there
 
-Exit status: 0, or 1 if a mutant survives that is not listed as equivalent, or one that is does not.
+Exit status: 0, or 1 if a mutant survives that is not listed so, or one that is does not.
 """
 
 import argparse
@@ -93,8 +93,8 @@ def _tried(mutant: Mutant, trials: dict[str, Any]) -> bool:
 
 
 def _is_wrong(mutant: Mutant, found: dict[str, Any]) -> bool:
-    """Whether a mutant survived, or one that is equivalent did not."""
-    return (found["verdict"] == KILLED) == mutant.equivalent
+    """Whether a mutant survived, or one that is listed as a survivor did not."""
+    return (found["verdict"] == KILLED) == mutant.survives
 
 
 if __name__ == "__main__":

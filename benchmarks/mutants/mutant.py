@@ -40,6 +40,8 @@ class Mutant:
         The cheapest host that can see it; "text" where no host is needed.
     equivalent : bool
         Whether it computes the same function on the whole valid domain.
+    survives : bool
+        Whether no check notices it, for that reason.
     tests : tuple of str
         Files of tests that are asked first about a wrong reference.
     """
@@ -52,6 +54,7 @@ class Mutant:
     reason: str
     host: str
     equivalent: bool
+    survives: bool
     tests: tuple[str, ...] = ()
 
     def texts(self) -> dict[str, str]:
@@ -100,12 +103,13 @@ def read_table() -> tuple[Mutant, ...]:
             new,
             reason,
             group["host"],
-            equivalent,
+            key == "equivalents",
+            key != "mutants",
             tuple(part.get("tests", ())),
         )
         for group in sorted(files, key=lambda group: group["order"])
         for part in group["files"]
-        for key, equivalent in (("mutants", False), ("equivalents", True))
+        for key in ("mutants", "survivors", "equivalents")
         for name, old, new, reason in part.get(key, ())
     ]
     asked = {mutant.file: mutant.tests for mutant in table}
@@ -118,6 +122,7 @@ def read_table() -> tuple[Mutant, ...]:
             COMMENT.lower(),
             "Only a comment changes.",
             "",
+            True,
             True,
             tests,
         )

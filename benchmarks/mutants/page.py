@@ -47,7 +47,8 @@ def counted_by(rows: Sequence[tuple[Mutant, Any]], name: str) -> list[dict[str, 
 
 
 def counts(rows: Sequence[tuple[Mutant, Any]]) -> dict[str, int]:
-    """Numbers of mutants: those that count, killed, killed on gl or by text, and equivalent."""
+    """Numbers of mutants but controls: those that count, killed, on gl or by text, equivalent."""
+    rows = [row for row in rows if not row[0].control]
     wrong = [trial for mutant, trial in rows if not mutant.equivalent]
     killed = [trial for trial in wrong if trial["verdict"] == "killed"]
     return {

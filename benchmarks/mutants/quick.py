@@ -54,7 +54,8 @@ def remembered(subject: Any) -> Any:
 class Quick:
     """Judges nodes with one library after the other, and keeps the hosts and what they share."""
 
-    def __init__(self) -> None:
+    def __init__(self, clean: str = "eonlib") -> None:
+        self._library = clean  # without a mutant
         self._hosts: dict[str, Host] = {}
         self._probes: dict[tuple[str, str], Any] = {}
         self._current: set[tuple[str, str]] = set()  # probes of the library that is judged
@@ -70,11 +71,11 @@ class Quick:
         self._current.clear()
 
     def failure(self, task: Task) -> dict[str, str] | None:
-        """The first failure of a task that eonlib as it is does not share: check, excess, host and
+        """The first failure of a task that the library without a mutant does not share: check, excess, host and
         diagnosis. None if there is none.
         """
         found = self._failures(task)
-        clean = replace(task, library="eonlib")
+        clean = replace(task, library=self._library)
         if found and clean not in self._clean:
             self._clean[clean] = self._failures(clean)
         for key, diagnosis in found.items():

@@ -175,13 +175,15 @@ def _on_cycles(path: str) -> Iterator[tuple[str, list[Task]]]:
         yield "cycles", [task]
 
 
-def failures_of(tasks: Sequence[Task], judge: Judge, every: bool = True) -> list[Result]:
-    """Results that pass with eonlib as it is alone: of all tasks, or of the first that has any."""
+def failures_of(
+    tasks: Sequence[Task], judge: Judge, every: bool = True, clean: str = "eonlib"
+) -> list[Result]:
+    """Results that pass with the library without a mutant alone: of all tasks, or of the first."""
     failures: list[Result] = []
     for task in tasks:
         found = _failed(task, judge)
-        clean = found and _clean_failures(replace(task, library="eonlib"), judge)
-        failures += [each for key, each in found.items() if key not in clean]
+        known = found and _clean_failures(replace(task, library=clean), judge)
+        failures += [each for key, each in found.items() if key not in known]
         if failures and not every:
             break
     return failures
