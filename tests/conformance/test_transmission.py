@@ -33,6 +33,7 @@ OTHER = "mx_init_fresnel_dielectric({}, thinfilm_thickness, thinfilm_ior)"
 # By name: model, text, the text in its place, and key of the check.
 WRONG = {
     "reflection in mode T": ("dielectric_t", "scatter_mode == 1)", "scatter_mode == 7)", "kept"),
+    "transmission in mode R": ("dielectric_rt", "scatter_mode != 0)", "scatter_mode != 7)", "kept"),
     "throughput of mode RT": (
         "dielectric_rt", "1.0 - dirAlbedo * weight;", "scatter_mode == 2 ? vec3(1.0) : 1.0 - dirAlbedo;", "kept",
     ),
