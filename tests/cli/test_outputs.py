@@ -8,7 +8,6 @@ from mxeon.doc.markdown import read_tables, table_text
 from mxeon.doc.ports import PortRow, Table
 from mxeon.errors import MISUSE
 from mxeon.explorer.documents import document_sources
-from mxeon.kit.export import export_kit
 from tests.support.documents import lobe, material
 
 
@@ -42,19 +41,64 @@ def test_a_kit_is_written_over_a_kit_alone(tmp_path, monkeypatch, capsys):
     assert [each.name for each in tmp_path.iterdir()] == ["README.md"]
 
 
-@pytest.mark.parametrize("name", ("kit.json", "README.md", "sphere.obj", "materials"))
-def test_a_kit_is_not_written_through_a_link(name, tmp_path):
-    other, kit = tmp_path / "other", tmp_path / "kit"
-    other.write_text("mine")
-    export_kit(kit, 64)
-    path = kit / name
-    if path.is_dir():
-        path.rename(tmp_path / "moved")
-    path.unlink(missing_ok=True)
-    path.symlink_to(other)
-    with pytest.raises(ValueError, match=f"{path}: must be no link"):
-        export_kit(kit, 64)
-    assert other.read_text() == "mine"
+def generated(folder):
+    """Generate a shader into a folder; return the exit status."""
+    file = folder.parent / "a.mtlx"
+    file.write_text(material(lobe(roughness=0.5)))
+    return main(
+        ["generate", str(file), "--target", "osl", "--workers", "0", "--outputPath", str(folder)]
+    )
+
+
+def checked(folder):
+    """Check that shader's text with a report in a folder; return the exit status."""
+    file = folder.parent / "a.mtlx"
+    file.write_text(material(lobe(roughness=0.5)))
+    return main(["check", str(file), "--host", "msl", "--workers", "0", "--report", str(folder)])
+
+
+def exported(folder):
+    """Export a kit into a folder; return the exit status."""
+    return main(["kit", "export", str(folder), "--size", "64"])
+
+
+# What writes a folder that it was told, and names in it under which a link may lie.
+FOLDERS = {
+    "generate": (generated, ("a.look.osl",)),
+    "kit export": (exported, ("kit.json", "README.md", "sphere.obj", "materials", "renders")),
+    "check --report": (
+        checked,
+        ("results.json", "junit.xml", "report.html", "journal", "journal/items.jsonl", ".journal.lock"),
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("dangling", (False, True), ids=("file", "dangling"))
+@pytest.mark.parametrize(
+    "write, name",
+    [(write, name) for write, names in FOLDERS.values() for name in names],
+    ids=[f"{title} {name}" for title, (_, names) in FOLDERS.items() for name in names],
+)
+def test_nothing_is_written_through_a_link_in_a_folder(write, name, dangling, tmp_path, capsys):
+    other, link, folder = tmp_path / "other", tmp_path / "out" / name, tmp_path / "out"
+    write(folder)
+    assert link.exists()
+    link.rename(tmp_path / "moved")
+    link.symlink_to(other)
+    if not dangling:
+        other.write_text("mine")
+    capsys.readouterr()
+    assert write(folder) == MISUSE
+    assert capsys.readouterr().err == (
+        f"mxeon: {link}: must not be a link, which leads to another file; remove it\n"
+    )
+    assert other.exists() is not dangling and (dangling or other.read_text() == "mine")
+
+
+def test_a_folder_that_is_a_link_is_written_to(tmp_path):
+    (tmp_path / "there").mkdir()
+    (tmp_path / "out").symlink_to("there")
+    assert generated(tmp_path / "out") == 0 and (tmp_path / "there" / "a.look.osl").exists()
 
 
 def test_a_description_breaks_no_table_and_steers_no_terminal():

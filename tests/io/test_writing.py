@@ -5,6 +5,7 @@ import os
 import stat
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -58,7 +59,7 @@ def test_an_image_that_finds_no_room_is_an_error_and_nothing_stays(
     path.unlink()
     with room_for(room(size)), pytest.raises(OSError) as error:
         write_image(path, pixels, {})
-    assert error.value.filename == str(path) and f".a{ending}" not in error.value.strerror
+    assert error.value.filename == str(path) and ".mxeon" not in error.value.strerror
     assert not files(tmp_path) and capfd.readouterr() == ("", "")
 
 
@@ -140,7 +141,7 @@ def test_a_kit_on_a_full_disk_is_one_line(tmp_path):
     assert ended.returncode == 2 and ended.stderr.count("\n") == 1
     assert "must be accessible; File too large" in ended.stderr
     assert all(Path(tmp_path, name).stat().st_size <= 1000 for name in files(tmp_path))
-    assert not list(tmp_path.rglob(".[0-9]*"))
+    assert not list(tmp_path.rglob(".mxeon*"))
 
 
 @pytest.mark.parametrize("suffix", ["svg", "png"])
@@ -172,3 +173,29 @@ def test_the_file_that_a_link_leads_to_is_replaced(tmp_path):
 def test_an_empty_name_is_no_file():
     with pytest.raises(OSError, match="not the name of a file"):
         write_text("", "text")
+
+
+def test_writers_of_one_name_in_many_threads_and_readers_meet_whole_files(tmp_path):
+    texts = {letter * 40_000 for letter in "abcdefgh"}
+    write_text(tmp_path / "a", min(texts))
+
+    def write_and_read(text):
+        write_text(tmp_path / "a", text)
+        return (tmp_path / "a").read_text()
+
+    with ThreadPoolExecutor(8) as pool:
+        assert texts.issuperset(pool.map(write_and_read, sorted(texts) * 20))
+    assert files(tmp_path) == ["a"]
+
+
+@pytest.mark.parametrize("planted", ["link", "file"])
+def test_a_temporary_name_that_exists_is_neither_followed_nor_replaced(
+    tmp_path, monkeypatch, planted
+):
+    monkeypatch.setattr("mxeon.io.files.token_hex", lambda _: "guessed")
+    other, beside = tmp_path / "other", tmp_path / ".mxeon-guessed.txt"
+    other.write_text("mine")
+    beside.symlink_to(other) if planted == "link" else beside.write_text("mine")
+    with pytest.raises(FileExistsError):
+        write_text(tmp_path / "a.txt", "text")
+    assert other.read_text() == "mine" and not (tmp_path / "a.txt").exists()

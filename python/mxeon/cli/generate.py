@@ -80,9 +80,9 @@ def _collision(
 
 def _write(texts: Mapping[str, str], folder: str) -> list[str]:
     """Write texts by file name; return their paths."""
-    from mxeon.io.files import write_text
+    from mxeon.io.files import below, write_text
 
-    files = {str(Path(folder, name)): text for name, text in texts.items()}
+    files = {below(folder, name): text for name, text in texts.items()}
     for path, text in files.items():
         write_text(path, text)
-    return list(files)
+    return list(map(str, files))

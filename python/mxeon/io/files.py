@@ -7,24 +7,45 @@ import stat
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from secrets import token_hex
+
+from mxeon.errors import InputError
 
 AnyPath = str | os.PathLike[str]
+TEMPORARY = ".mxeon-"  # begins the names of files and folders that are not whole yet
+
+
+def below(folder: AnyPath, name: AnyPath) -> Path:
+    """Path of the file `name` in a folder that the user named, unless a link would lead out of it.
+
+    Raises
+    ------
+    InputError
+        If a part of `name` is a symbolic link. The folder itself may be one.
+    """
+    path = Path(folder)
+    for part in Path(name).parts:
+        path /= part
+        if path.is_symlink():
+            raise InputError(f"{path}: must not be a link, which leads to another file; remove it")
+    return path
 
 
 @contextmanager
 def replacing(path: AnyPath) -> Iterator[Path]:
-    """Path beside `path` to write to, moved onto it when the block ends without an error.
+    """New empty file beside `path` to write to, moved onto it when the block ends without an error.
 
     Parameters
     ----------
     path : path-like
         Its folder is created if need be. A file already there is replaced whole; of a link, the file
-        that it leads to.
+        that it leads to: see `below` for names that the user did not write.
 
     Yields
     ------
     Path
-        In the same folder and with the same suffix, from which image writers take the format.
+        In the same folder, with a random name and the same suffix, from which image writers take the
+        format.
 
     Raises
     ------
@@ -38,22 +59,31 @@ def replacing(path: AnyPath) -> Iterator[Path]:
         raise OSError(errno.EINVAL, "not the name of a file", str(path))
     if path.exists() and not path.is_file():  # a device that is replaced is gone
         raise OSError(errno.EINVAL, "not a regular file", str(path))
-    # Let the caller write a file beside it.
+    # A name that nobody can guess, and that no link or other writer has.
     path.parent.mkdir(parents=True, exist_ok=True)
-    beside = path.with_name(f".{os.getpid()}.{path.name}")
+    beside = path.with_name(f"{TEMPORARY}{token_hex(8)}{path.suffix}")
+    with naming(path):
+        os.close(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
+        try:
+            yield beside
+            # Move the whole file onto the path.
+            with beside.open("rb") as file:
+                os.fsync(file.fileno())  # some file systems report a full disk only here
+            os.replace(beside, path)
+        finally:
+            with suppress(OSError):  # of a folder that cannot be written: the first error says so
+                beside.unlink(missing_ok=True)
+
+
+@contextmanager
+def naming(path: AnyPath) -> Iterator[None]:
+    """Let the system's errors name `path`: they name a temporary file, or none on a full disk."""
     try:
-        yield beside
-        # Move the whole file onto the path.
-        with beside.open("rb") as file:
-            os.fsync(file.fileno())  # some file systems report a full disk only here
-        os.replace(beside, path)
+        yield
     except OSError as error:
-        if error.errno:  # the system's error names the temporary file, or none on a full disk
-            error.filename = str(path)
+        if error.errno:
+            error.filename, error.filename2 = str(path), None
         raise
-    finally:
-        with suppress(OSError):  # of a folder that cannot be written: the first error says so
-            beside.unlink(missing_ok=True)
 
 
 def write_text(path: AnyPath, text: str) -> None:

@@ -3,6 +3,7 @@
 
 import json
 import math
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.resources import files
@@ -13,7 +14,7 @@ from typing import Any
 
 import mxeon
 from mxeon.errors import InputError
-from mxeon.io.files import write_text
+from mxeon.io.files import below, write_text
 from mxeon.kit.mesh import Mesh, to_obj, unit_sphere
 from mxeon.kit.usd import mesh_layer, scene_layer
 from mxeon.kit.views import MATERIALS, USUAL, Material, View, views
@@ -25,6 +26,7 @@ from mxeon.shaders.scene import Scene
 KIT_FORMAT = 1
 DESCRIPTION = "kit.json"
 RENDERS = "renders"
+README = "README.md"
 
 
 @dataclass(frozen=True)
@@ -92,45 +94,34 @@ def export_kit(folder: str | PathLike[str], size: int = USUAL, node: KitNode = K
         If a file cannot be written.
     """
     _assert_own(folder)
-    # Write materials and scenes.
-    folder, pictures, mesh = Path(folder), views(size), unit_sphere()
-    for material in MATERIALS:
-        write_text(
-            folder / "materials" / f"{material.name}.mtlx", material_document(material, node)
-        )
-    for view in pictures:
-        write_text(
-            folder / "scenes" / f"{view.name}.usda",
-            scene_layer(view, node.definition, node.flagged),
-        )
-    # Write the sphere.
-    write_text(folder / "sphere.obj", to_obj(mesh))
-    write_text(folder / "sphere.usda", mesh_layer(mesh))
-    # Write the description, and the page for a person.
-    write_text(
-        folder / DESCRIPTION,
-        json.dumps(description(pictures, size, node.category), indent=1) + "\n",
-    )
-    (folder / RENDERS).mkdir(exist_ok=True)
-    write_text(folder / "README.md", _page(pictures, size, mesh, node.category))
-    return folder / "README.md"
+    pictures, mesh = views(size), unit_sphere()
+    files = {f"materials/{each.name}.mtlx": material_document(each, node) for each in MATERIALS} | {
+        f"scenes/{view.name}.usda": scene_layer(view, node.definition, node.flagged)
+        for view in pictures
+    }
+    numbers = description(pictures, size, node.category)
+    files |= {
+        "sphere.obj": to_obj(mesh),
+        "sphere.usda": mesh_layer(mesh),
+        DESCRIPTION: json.dumps(numbers, indent=1) + "\n",
+        README: _page(pictures, size, mesh, node.category),
+    }
+    paths = {below(folder, name): text for name, text in files.items()}
+    for path, text in paths.items():
+        write_text(path, text)
+    below(folder, RENDERS).mkdir(exist_ok=True)
+    return Path(folder, README)
 
 
 def _assert_own(folder: str | PathLike[str]) -> None:
-    """Raise InputError unless a folder is new, empty or a kit's, whose files are no links."""
-    # Refuse a folder with other files.
+    """Raise InputError unless a folder is new, empty or a kit's."""
     if not str(folder):
         raise InputError("folder must have a name; got ''")
     path = Path(folder)
     if not path.is_dir():
         return
-    if any(path.iterdir()) and not (path / DESCRIPTION).exists():
+    if any(path.iterdir()) and not os.path.lexists(path / DESCRIPTION):
         raise InputError(f"{folder}: must be new, empty or a kit; it holds other files")
-    # Refuse links, through which other files would be replaced.
-    names = (DESCRIPTION, "README.md", "sphere.obj", "sphere.usda", "materials", "scenes")
-    links = [each for name in names for each in (path / name, *path.glob(f"{name}/*"))]
-    for link in filter(Path.is_symlink, links):
-        raise InputError(f"{link}: must be no link, through which another file would be replaced")
 
 
 def material_document(material: Material, node: KitNode = KitNode()) -> str:

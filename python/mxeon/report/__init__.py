@@ -7,6 +7,7 @@ import json
 from collections.abc import Generator, Iterable, Iterator, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import replace
+from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,7 +18,7 @@ from mxeon.conformance.results import Picture, Run, image_names
 from mxeon.conformance.results.known_issues import issues_of, page_file
 from mxeon.conformance.results.records import make_converter
 from mxeon.errors import PackageError, install
-from mxeon.io.files import replacing, write_text
+from mxeon.io.files import below, replacing, write_text
 from mxeon.io.images import difference, without_threads, write_exr, write_png
 from mxeon.report.junit import to_junit
 from mxeon.report.threads import in_threads
@@ -89,12 +90,7 @@ def to_json(run: Run) -> str:
         "pictures": _picture_fields(run),
         "curves": run.curves,
     }
-    return (
-        json.dumps(
-            make_converter().unstructure(data), indent=1, allow_nan=False, ensure_ascii=False
-        )
-        + "\n"
-    )
+    return json.dumps(make_converter().unstructure(data), indent=1, allow_nan=False) + "\n"
 
 
 def _picture_fields(run: Run) -> list[dict[str, Any]]:
@@ -153,37 +149,37 @@ def write(run: Run, folder: str | PathLike[str]) -> Path:
     """
     folder = Path(folder)
     # Write the results for machines.
-    write_text(folder / "results.json", to_json(run))
-    write_text(folder / "junit.xml", to_junit(run))
+    write_text(below(folder, "results.json"), to_json(run))
+    write_text(below(folder, "junit.xml"), to_junit(run))
     # Write the pictures.
     pictures = _with_references(run.pictures)
-    stems = [folder / "pictures" / stem for stem in image_names(pictures)]
+    stems = [f"pictures/{stem}" for stem in image_names(pictures)]
     with (
         without_threads(),
-        in_threads(_write_picture, zip(pictures, stems, strict=True)) as written,
+        in_threads(partial(_write_picture, folder), zip(pictures, stems, strict=True)) as written,
     ):
         for _ in written:
             pass
     # Write the pages on the defects beside it, for a site that has no address.
     for issue in {each for one in run.results for each in issues_of(one)}:
         text = page_file(issue).read_text(encoding="utf-8")
-        write_text(folder / PAGES / f"{issue.page}.md", text)
+        write_text(below(folder, f"{PAGES}/{issue.page}.md"), text)
     # Write the page, piece by piece.
     with (
         closing(html(run)) as pieces,
-        replacing(folder / "report.html") as beside,
+        replacing(below(folder, "report.html")) as beside,
         open(beside, "w", encoding="utf-8") as page,
     ):
         page.writelines(pieces)
     return folder / "report.html"
 
 
-def _write_picture(place: tuple[Picture, Path]) -> None:
-    """Write a picture as EXR and as PNG, under a path without an ending."""
-    picture, path = place
+def _write_picture(folder: Path, place: tuple[Picture, str]) -> None:
+    """Write a picture as EXR and as PNG, under a name without an ending."""
+    picture, name = place
     image = np.asarray(picture.image)
-    write_exr(f"{path}.exr", image, picture.metadata)
-    write_png(f"{path}.png", image, picture.metadata)
+    write_exr(below(folder, f"{name}.exr"), image, picture.metadata)
+    write_png(below(folder, f"{name}.png"), image, picture.metadata)
 
 
 def write_field(entries: Sequence[Entry], file: str | PathLike[str], pages: str = "") -> Path:

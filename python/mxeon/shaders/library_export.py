@@ -4,11 +4,12 @@
 import os
 import shutil
 from pathlib import Path
+from secrets import token_hex
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 import mxeon
 from mxeon.errors import InputError
-from mxeon.io.files import AnyPath, replacing
+from mxeon.io.files import TEMPORARY, AnyPath, naming, replacing
 from mxeon.shaders.library import SOURCES, data_folder, eonlib_folder
 
 README = """eonlib {version}, a MaterialX data library.
@@ -85,11 +86,13 @@ def _write_folder(target: Path) -> None:
     if target.exists() and not (target.is_dir() and not any(target.iterdir())):
         raise InputError(f"{target}: must be a new or empty folder, or end in .zip")
     target.parent.mkdir(parents=True, exist_ok=True)
-    beside = target.with_name(f".{os.getpid()}.{target.name}")
-    try:
-        for name, data in _content().items():
-            (beside / name).parent.mkdir(parents=True, exist_ok=True)
-            (beside / name).write_bytes(data)
-        os.replace(beside, target)
-    finally:
-        shutil.rmtree(beside, ignore_errors=True)
+    beside = target.with_name(f"{TEMPORARY}{token_hex(8)}")
+    with naming(target):
+        beside.mkdir()
+        try:
+            for name, data in _content().items():
+                (beside / name).parent.mkdir(parents=True, exist_ok=True)
+                (beside / name).write_bytes(data)
+            os.replace(beside, target)
+        finally:
+            shutil.rmtree(beside, ignore_errors=True)

@@ -34,7 +34,7 @@ from mxeon.conformance.run.journal_lines import (
 )
 from mxeon.conformance.run.tasks import Findings, Plan
 from mxeon.errors import InputError
-from mxeon.io.files import replacing
+from mxeon.io.files import below, replacing
 
 PREVIOUS, LOCK = "journal.previous", ".journal.lock"  # beside the folder `journal`
 LISTED = 8  # names in a message
@@ -77,6 +77,8 @@ class Journal:
 
     def __enter__(self) -> Self:
         with ExitStack() as stack:
+            for name in (JOURNAL, PREVIOUS, LOCK):
+                below(self._folder, name)
             stack.enter_context(_locked(self._folder))
             lines = self._continue() if self._resume and self._path.exists() else self._begin()
             self._file = os.open(self._path, os.O_WRONLY | os.O_APPEND)
@@ -157,7 +159,7 @@ class Journal:
         parts = header.getvalue(), pixels.data
         digest = hashlib.sha256(parts[0])
         digest.update(parts[1])
-        path = self._path.with_name(f"{digest.hexdigest()}.npy")
+        path = below(self._path.parent, f"{digest.hexdigest()}.npy")
         with replacing(path) as beside, open(beside, "wb") as file:
             file.writelines(parts)
         return cast(NDArray[np.float32], StoredImage(path))  # read anew by each use
