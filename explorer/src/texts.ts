@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texts of shaders and documents, which the page holds by paragraphs, and references, each once.
+// Texts of shaders and documents, which the page holds by paragraphs, references and images, each once.
 
-import type { ModelSource, PageData, ReferenceTable, ShaderSource } from "./data";
+import type { ModelSource, PageData, Port, ReferenceTable, ShaderSource, Texels } from "./data";
 
-/** A shader whose texts and reference are places in the tables. */
-interface Packed extends Omit<ShaderSource, "pixel" | "document" | "reference"> {
+interface PackedPort extends Omit<Port, "image"> {
+  readonly image: number | null;
+}
+
+/** A shader whose texts, reference and images are places in the tables. */
+interface Packed extends Omit<ShaderSource, "pixel" | "document" | "reference" | "inputs"> {
+  readonly inputs: readonly PackedPort[];
   readonly pixel: readonly number[];
   readonly document: readonly number[];
   readonly reference: number | null;
@@ -14,11 +19,12 @@ interface PackedData extends Omit<PageData, "sources"> {
   readonly sources: readonly (ModelSource | Packed)[];
   readonly texts: readonly string[];
   readonly references: readonly ReferenceTable[];
+  readonly images: readonly Texels[];
 }
 
 /** The data that Python embeds, with the texts in their places. */
 export function page_data(json: string): PageData {
-  const { texts, references, sources, ...rest } = JSON.parse(json) as PackedData;
+  const { texts, references, images, sources, ...rest } = JSON.parse(json) as PackedData;
   const whole = (places: readonly number[]) => places.map((place) => texts[place]).join("\n\n");
   const unpacked = sources.map((source) =>
     source.kind === "model"
@@ -27,6 +33,10 @@ export function page_data(json: string): PageData {
           ...source,
           pixel: whole(source.pixel),
           document: whole(source.document),
+          inputs: source.inputs.map((port) => ({
+            ...port,
+            image: port.image === null ? null : images[port.image]!,
+          })),
           reference: source.reference === null ? null : references[source.reference]!,
         },
   );

@@ -16,12 +16,13 @@ from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Result
 from mxeon.errors import MISUSE, NotRun
 from mxeon.errors import PASSED as PASSED_STATUS
-from mxeon.explorer import PARAGRAPH, TEXTS, page, page_data
+from mxeon.explorer import PARAGRAPH, TEXTS, documents, page, page_data
 from mxeon.explorer.data import Models, PageData
 from mxeon.explorer.diagnosis import measured_models
 from mxeon.explorer.documents import _texels, document_sources
 from mxeon.explorer.sources import RENDERERS
 from mxeon.explorer.stills import COLOR, LIGHT, picture
+from mxeon.hosts.textures import read_texture
 from mxeon.io.images import write_image
 from mxeon.models.table import KNOWN_DEFECTS, MODELS, model
 from mxeon.shaders.library import examples_folder
@@ -41,6 +42,9 @@ def data_of(text):
     for each in data["sources"]:
         if each.get("reference") is not None:
             each["reference"] = data["references"][each["reference"]]
+        for port in each.get("inputs", ()):
+            if port["image"] is not None:
+                port["image"] = data["images"][port["image"]]
         for name in filter(each.__contains__, TEXTS):
             each[name] = PARAGRAPH.join(data["texts"][place] for place in each[name])
     return data
@@ -296,8 +300,49 @@ def test_more_materials_than_a_page_may_hold_are_refused(tmp_path, capsys):
 
 def test_a_texture_of_one_row_is_reduced_along_it(tmp_path):
     write_image(tmp_path / "row.png", np.full((1, 5000, 3), 255, np.uint8), {})
-    texels = _texels(str(tmp_path / "row.png"))
+    texels = _texels(str(tmp_path / "row.png"), 256)
     assert (texels.width, texels.height) == (250, 1)
+
+
+def textured(folder, sizes, uses=1):
+    """A document in a folder with gray images of these sides, each used so often in every material."""
+    nodes = []
+    for name, side in enumerate(sizes):
+        codes = np.random.default_rng(name).integers(0, 256, (side, side, 1), np.uint8)
+        write_image(folder / f"{name}.png", codes, {})
+        for use in range(uses):
+            file = f'<input name="file" type="filename" value="{name}.png"/>'
+            color = f'<input name="color" type="color3" nodename="i{name}_{use}"/>'
+            nodes.append(
+                f'<image name="i{name}_{use}" type="color3">{file}</image>'
+                f'<eon_diffuse_bsdf name="d{name}_{use}" type="BSDF">{color}</eon_diffuse_bsdf>'
+                f'<surface name="s{name}_{use}" type="surfaceshader">'
+                f'<input name="bsdf" type="BSDF" nodename="d{name}_{use}"/></surface>'
+                f'<surfacematerial name="m{name}_{use}" type="material">'
+                f'<input name="surfaceshader" type="surfaceshader" nodename="s{name}_{use}"/>'
+                "</surfacematerial>"
+            )
+    path = folder / "textured.mtlx"
+    path.write_text(f'<materialx version="1.39">{"".join(nodes)}</materialx>')
+    return str(path)
+
+
+def test_a_page_holds_each_image_once_however_often_it_is_used(tmp_path):
+    page_of = [document_sources(textured(tmp_path, (64,), uses)) for uses in (1, 20)]
+    texts = [page(page_data([sources])) for sources in page_of]
+    rgba = {port.image.rgba for source in page_of[1] for port in source.inputs if port.image}
+    assert len(rgba) == 1 and [text.count(min(rgba)) for text in texts] == [1, 1]
+
+
+def test_images_are_read_once_and_smaller_the_more_a_page_has_of_them(tmp_path, monkeypatch):
+    reads = []
+    monkeypatch.setattr(documents, "ALL_IMAGES", 4 * 32**2)
+    monkeypatch.setattr(
+        documents, "read_texture", lambda path: reads.append(path) or read_texture(path)
+    )
+    sources = document_sources(textured(tmp_path, (64, 8, 64, 64), 3))
+    sides = sorted({(port.image.width) for each in sources for port in each.inputs if port.image})
+    assert sides == [8, 32] and len(reads) == 4
 
 
 def test_the_data_are_the_fields_that_the_page_reads():

@@ -100,21 +100,29 @@ def page(data: PageData) -> str:
 
 
 def _with_texts(fields: dict[str, Any]) -> dict[str, Any]:
-    """The data with each paragraph and each reference once; `explorer/src/texts.ts` undoes it.
+    """The data with each paragraph, reference and image once; `explorer/src/texts.ts` undoes it.
 
     Shaders share nearly all of their functions, and materials of one file the whole document; both
-    libraries share the reference.
+    libraries share the reference and the images.
     """
     places: dict[str, int] = {}
     references: list[object] = []
+    images: dict[tuple[int, int, str], int] = {}
     for each in fields["sources"]:
         # Name the place of its reference.
         if (reference := each.get("reference")) is not None:
             if reference not in references:
                 references.append(reference)
             each["reference"] = references.index(reference)
+        # Name the places of its images.
+        for port in each.get("inputs", ()):
+            if image := port["image"]:
+                key = image["width"], image["height"], image["rgba"]
+                port["image"] = images.setdefault(key, len(images))
         # Name the places of its paragraphs.
         for name in filter(each.__contains__, TEXTS):
             parts = each[name].split(PARAGRAPH)
             each[name] = [places.setdefault(part, len(places)) for part in parts]
-    return fields | {"texts": list(places), "references": references}
+    tables = {"texts": list(places), "references": references}
+    whole = [{"width": wide, "height": high, "rgba": rgba} for wide, high, rgba in images]
+    return fields | tables | {"images": whole}

@@ -3,10 +3,11 @@
 
 import math
 from base64 import b64encode
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from types import MappingProxyType
 from xml.etree import ElementTree
 
 import MaterialX as mx
@@ -15,7 +16,7 @@ import numpy as np
 from mxeon.errors import MxeonError, printable
 from mxeon.explorer.data import Controls, Models, ReferenceTable, ShaderInput, ShaderSource, Texels
 from mxeon.explorer.references import reference_of
-from mxeon.hosts.textures import read_texture
+from mxeon.hosts.textures import check_images, image_files, read_texture
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.document.values import Plain, members
 from mxeon.shaders.generation import Input, Shader, generate
@@ -25,6 +26,9 @@ LIBRARIES = ("eonlib", "stock")
 LAYOUT = ("comment", "newline")
 REFERENCES = 20  # materials of a document that are compared with models, some 0.1 s each
 LARGEST_IMAGE = 256  # texels on a side: a quarter of a mebibyte
+ALL_IMAGES = (
+    64 * LARGEST_IMAGE**2
+)  # texels of a document: 22 MB of the page; more images are smaller
 RANGE = (("uimin", "uisoftmin"), ("uimax", "uisoftmax"))
 
 # What the diffuse nodes are meant to be, with the flag and without.
@@ -54,7 +58,9 @@ def document_sources(file: str, policy: Policy = DEFAULT) -> tuple[ShaderSource,
     """
     name = " ".join(printable(Path(file).name).split())
     sources: list[ShaderSource] = []
-    references: dict[str, ReferenceTable | None] = {}  # by element, alike for both libraries
+    # By element and by file, alike for both libraries.
+    references: dict[str, ReferenceTable | None] = {}
+    images: dict[str, Texels | None] = {}
     for library in LIBRARIES:
         # Generate with each library; a node may be in eonlib alone.
         try:
@@ -63,11 +69,17 @@ def document_sources(file: str, policy: Policy = DEFAULT) -> tuple[ShaderSource,
             if library == LIBRARIES[0]:
                 raise
             continue  # a node that stock MaterialX lacks
+        # Read each image once, as large as the page has room for all of them.
+        check_images(shaders, policy)
+        names = image_files(shaders)
+        side = min(LARGEST_IMAGE, math.isqrt(ALL_IMAGES // max(len(names), 1)))
+        images |= {name: _texels(name, side) for name in names if name not in images}
         text = document_text(shaders[0].document) if shaders else ""  # one for all of them
         # Describe each shader to the page.
         for shader in shaders:
             title = f"{shader.element}, {library}"
-            source = shader_source(shader, text, f"{shader.name}/{library}", title, name, library)
+            own = f"{shader.name}/{library}"
+            source = shader_source(shader, text, own, title, name, library, images)
             if shader.element not in references and len(references) < REFERENCES:
                 references[shader.element] = reference_of(shader)
             sources.append(replace(source, reference=references.get(shader.element)))
@@ -101,7 +113,13 @@ def _tree(element: mx.Element) -> ElementTree.Element:
 
 
 def shader_source(
-    shader: Shader, document: str, name: str, title: str, group: str, library: str
+    shader: Shader,
+    document: str,
+    name: str,
+    title: str,
+    group: str,
+    library: str,
+    images: Mapping[str, Texels | None] = MappingProxyType({}),
 ) -> ShaderSource:
     """A generated shader as a source of a page.
 
@@ -113,6 +131,8 @@ def shader_source(
         Its MaterialX text.
     name, title, group, library : str
         As those of `ShaderSource`.
+    images : mapping of str to Texels or None
+        Those of its inputs, by file.
 
     Returns
     -------
@@ -126,7 +146,7 @@ def shader_source(
         note="",
         library=library,
         pixel=shader.stages["pixel"],
-        inputs=tuple(_ports(shader)),
+        inputs=tuple(_ports(shader, images)),
         controls=Controls(),
         document=document,
     )
@@ -166,12 +186,12 @@ def _only_diffuse_node(shader: Shader) -> mx.Node | None:
     return diffuse[0] if len(diffuse) == 1 and not others else None
 
 
-def _ports(shader: Shader) -> Iterator[ShaderInput]:
+def _ports(shader: Shader, images: Mapping[str, Texels | None]) -> Iterator[ShaderInput]:
     """The inputs of a shader that are numbers or images; members of structures one by one."""
     for port in shader.inputs:
         if port.type == "filename":
             if port.value:
-                yield replace(_port(shader, port), image=_texels(str(port.value)))
+                yield replace(_port(shader, port), image=images.get(str(port.value)))
         else:
             for name, kind, value in _numbers(port.name, port.type, port.value, shader.document):
                 yield replace(_port(shader, port), name=name, type=kind, value=_short(value))
@@ -240,13 +260,13 @@ def _short(value: Plain) -> Plain:
     return float(str(np.float32(value))) if isinstance(value, float) else value
 
 
-def _texels(path: str) -> Texels | None:
-    """An image, reduced to LARGEST_IMAGE; None if there is no such file."""
+def _texels(path: str, side: int) -> Texels | None:
+    """An image of at most `side` texels on a side; None if there is no such file."""
     if not Path(path).is_file():
         return None
     # Choose blocks of pixels that make the image small enough.
     pixels = read_texture(path)
-    high, wide = (-(-size // LARGEST_IMAGE) for size in pixels.shape[:2])
+    high, wide = (-(-size // side) for size in pixels.shape[:2])
     rows, columns = pixels.shape[0] // high, pixels.shape[1] // wide
     # Average the blocks.
     blocks = pixels[: rows * high, : columns * wide].reshape(rows, high, columns, wide, -1)

@@ -134,10 +134,14 @@ class Host(Engine):
         library: str = "eonlib",
         policy: Policy = DEFAULT,
     ) -> tuple[Shader, ...]:
-        """Shaders of a document for this host; arguments and errors are those of `mxeon.generate`."""
+        """Shaders of a document for this host; arguments and errors are those of `mxeon.generate`.
+
+        Images that are too large together are refused too; see `mxeon.hosts.textures.check_images`.
+        """
+        from mxeon.hosts.textures import check_images
         from mxeon.shaders.generation import generate
 
-        return generate(
+        shaders = generate(
             document,
             self.target,
             element,
@@ -146,6 +150,8 @@ class Host(Engine):
             lights=True,
             policy=policy,
         )
+        check_images(shaders, policy)
+        return shaders
 
     def picture(self, shader: Shader, scene: Scene) -> Array:
         """Picture of the unit sphere with a shader on it.

@@ -19,6 +19,7 @@ from mxeon.shaders.generation import Shader
 from mxeon.shaders.scene import Scene
 
 PROGRAMS = 6  # that are kept, of 10 MB each: a document's scenes and a node's checks share theirs
+ROWS = 256  # of a texture that are copied at a time
 CONSTANTS = 64  # textures of one value that are kept: most inputs are the same for all pixels
 POINTS = 4  # textures of points that are kept: most materials have the same vertex stage
 
@@ -207,15 +208,19 @@ class Host(FragmentHost):
     def _textures(
         self, program: moderngl.Program, texels: Mapping[str, Array]
     ) -> dict[str, moderngl.Texture | moderngl.TextureArray]:
-        """Textures of the samplers that a program has; a map of the environment ends at its poles."""
-        textures: dict[str, moderngl.Texture | moderngl.TextureArray] = {
-            name: self._texture(values, name == "u_envRadiance")
-            for name, values in texels.items()
-            if program.get(name, None)
-        }
-        for name in textures.keys() & {"u_envRadiance", "u_envIrradiance"}:
-            textures[name].repeat_y = False
-        return textures
+        """Textures of the samplers that a program has; those of one array share one.
+
+        A map of the environment ends at its poles.
+        """
+        made: dict[tuple[int, bool], moderngl.Texture] = {}
+        own: dict[str, moderngl.Texture | moderngl.TextureArray] = {}
+        for name, values in texels.items():
+            if program.get(name, None):
+                key = id(values), name == "u_envRadiance"
+                own[name] = made[key] = made.get(key) or self._texture(values, key[1])
+        for name in own.keys() & {"u_envRadiance", "u_envIrradiance"}:
+            own[name].repeat_y = False
+        return own
 
     def _argument(self, rows: Array, size: tuple[int, int]) -> moderngl.Texture:
         """Texture of an argument's values."""
@@ -229,9 +234,15 @@ class Host(FragmentHost):
         return self._texture(fragment.texels(row, size, fragment.ODD), mipmaps=False)
 
     def _texture(self, texels: Array, mipmaps: bool) -> moderngl.Texture:
+        if gray := not texels.strides[-1]:  # one channel that is repeated; see read_texture
+            texels = texels[..., :1]
         height, width, components = texels.shape
-        data = np.ascontiguousarray(texels, dtype=np.float32)
-        texture = self._context.texture((width, height), components, data, dtype="f4")
+        texture = self._context.texture((width, height), components, dtype="f4")
+        for row in range(0, height, ROWS):
+            rows = np.ascontiguousarray(texels[row : row + ROWS], dtype=np.float32)
+            texture.write(rows, viewport=(0, row, width, len(rows)))
+        if gray:
+            texture.swizzle = "RRR1"
         if mipmaps:
             texture.build_mipmaps()
         return texture

@@ -10,7 +10,7 @@ import numpy as np
 
 from mxeon.hosts.base import Array
 from mxeon.hosts.points import visible
-from mxeon.hosts.textures import irradiance, read_latlong, read_texture
+from mxeon.hosts.textures import image_files, irradiance, read_latlong, read_texture
 from mxeon.shaders.document.values import Plain, members
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import SUBSURFACE, TRANSMISSION, VOLUME, inner_lobes
@@ -51,10 +51,14 @@ def approximations(shader: Shader) -> tuple[str, ...]:
 
 
 def textures(shader: Shader, scene: Scene) -> dict[str, Array]:
-    """Texels by sampler: images of a shader's document and the environment, row 0 first in v."""
+    """Texels by sampler: images of a shader's document and the environment, row 0 first in v.
+
+    Samplers of one file have the same array.
+    """
     radiance = read_latlong(scene.environment)
+    pixels = {name: read_texture(name) for name in image_files([shader])}
     images = {
-        port.name: read_texture(str(port.value))
+        port.name: pixels[str(port.value)]
         for port in shader.inputs
         if port.type == "filename" and port.value
     }

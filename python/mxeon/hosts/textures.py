@@ -6,24 +6,61 @@ transforms are the shader's.
 """
 
 import warnings
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.errors import ImageError
-from mxeon.io.images import ImageWarning, read_image
+from mxeon.io.images import ImageWarning, open_image, read_image
+from mxeon.shaders.document.labels import label
+from mxeon.shaders.document.policy import Policy
+from mxeon.shaders.document.references import files
+from mxeon.shaders.generation import Shader
 
 IRRADIANCE_SIZE = 32  # rows of an irradiance map: a cosine lobe has no finer detail
 FIRST_TILE = {"<UDIM>": "1001", "<UVTILE>": "u1_v1"}  # MaterialX's names of it
 RADIANCE_SIZE = 64  # rows and columns, or a few more, of the radiance that is summed
 
 
+def image_files(shaders: Iterable[Shader]) -> tuple[str, ...]:
+    """Names of the images that shaders read, each once."""
+    inputs = (port for shader in shaders for port in shader.inputs)
+    names = (str(port.value) for port in inputs if port.type == "filename" and port.value)
+    return tuple(dict.fromkeys(names))
+
+
+def check_images(shaders: Iterable[Shader], policy: Policy) -> None:
+    """Refuse images of a document that are too large together, before any of them is read.
+
+    Raises
+    ------
+    DocumentError
+        If they have more pixels than the policy permits.
+    ImageError
+        If one is no image, or has more channels than a color.
+    """
+    shaders, texels = tuple(shaders), 0
+    for file in {file for name in image_files(shaders) for file in files(Path(name))}:
+        texels += _texels(file)
+        rule = f"{label(shaders[0].document)}: images must have"
+        policy.check_limit("texels", texels, rule, "pixels together")
+
+
+def _texels(path: str | Path) -> int:
+    """The number of pixels of a texture, from its header."""
+    spec = open_image(path).spec()
+    if spec.nchannels > 4:
+        raise ImageError(f"{path}: must have at most 4 channels; got {spec.nchannels}")
+    return int(spec.image_pixels())
+
+
 def read_texture(path: str | Path) -> NDArray[np.float32]:
     """Pixels of a texture, row 0 at the bottom, where MaterialX has v = 0.
 
     Of a set of textures it is that of [0, 1]^2, in which all coordinates of a sphere lie. One channel
-    is repeated for all colors, as in MaterialX.
+    is repeated for all colors, as in MaterialX: by a view, whose last stride is 0.
 
     Raises
     ------
@@ -37,12 +74,12 @@ def read_texture(path: str | Path) -> NDArray[np.float32]:
     """
     for token, word in FIRST_TILE.items():
         path = str(path).replace(token, word)
+    _texels(path)
     pixels = read_image(path)
-    if pixels.shape[-1] > 4:
-        raise ImageError(f"{path}: must have at most 4 channels; got {pixels.shape[-1]}")
     if reason := _not_finite(pixels):
         warnings.warn(ImageWarning(f"{path}: should hold finite numbers; {reason}"), stacklevel=2)
-    return (np.repeat(pixels, 3, axis=-1) if pixels.shape[-1] == 1 else pixels)[::-1]
+    gray = pixels.shape[-1] == 1
+    return (np.broadcast_to(pixels, (*pixels.shape[:2], 3)) if gray else pixels)[::-1]
 
 
 def read_latlong(environment: float | str | Path | None) -> NDArray[np.float32]:
@@ -73,11 +110,12 @@ def read_latlong(environment: float | str | Path | None) -> NDArray[np.float32]:
 
 def _not_finite(pixels: NDArray[np.float32]) -> str:
     """The first value that is not a finite number, and how many there are; empty if none is."""
-    bad = np.argwhere(~np.isfinite(pixels))
-    if not len(bad):
+    if np.isfinite([pixels.min(), pixels.max()]).all():  # either is NaN if a value is
         return ""
-    row, column, _ = bad[0]
-    return f"got {pixels[tuple(bad[0])]} at row {row}, column {column}, {len(bad)} in all"
+    finite = np.isfinite(pixels)
+    place = np.unravel_index(finite.argmin(), finite.shape)
+    count = finite.size - np.count_nonzero(finite)
+    return f"got {pixels[place]} at row {place[0]}, column {place[1]}, {count} in all"
 
 
 def irradiance(radiance: NDArray[np.float32]) -> NDArray[np.float32]:

@@ -199,7 +199,8 @@ class Host(FragmentHost):
 
     def _generated(self, text: str, textures: Mapping[str, Array]) -> Bindings:
         """Bindings that generated text declares: textures, white ones unless given, and blocks."""
-        halves = {name: texels.astype(np.float16) for name, texels in textures.items()}
+        unique = {id(texels): texels.astype(np.float16) for texels in textures.values()}
+        halves = {name: unique[id(texels)] for name, texels in textures.items()}
         return {
             int(match["number"]): self._binding(match, halves)
             for match in DECLARATION.finditer(text)

@@ -236,14 +236,17 @@ def _inputs(shader: Shader) -> raster.Uniforms:
 
 
 def _write(path: Path, groups: Mapping[str, Mapping[str, Array]]) -> dict[str, Layout]:
-    """Write arrays one after the other; return shapes and offsets in the file by group and name."""
+    """Write each array once; return shapes and offsets in the file by group and name."""
     layout: dict[str, Layout] = {}
+    places: dict[int, object] = {}  # of the arrays that are written, by identity
     offset = 0
     with path.open("wb") as file:
         for group, arrays in groups.items():
             layout[group] = {}
             for name, values in arrays.items():
-                data = np.ascontiguousarray(values, dtype=np.float32)
-                layout[group][name] = {"shape": data.shape, "offset": offset}
-                offset += file.write(data.tobytes())
+                if id(values) not in places:
+                    data = np.ascontiguousarray(values, dtype=np.float32)
+                    places[id(values)] = {"shape": data.shape, "offset": offset}
+                    offset += file.write(data.data)
+                layout[group][name] = places[id(values)]
     return layout

@@ -8,6 +8,7 @@ from functools import lru_cache
 
 import MaterialX as mx
 import numpy as np
+from numpy.typing import NDArray
 
 from mxeon.conformance.reference.operations import Values
 from mxeon.errors import NotRun
@@ -59,10 +60,10 @@ def lookup(
 def _texels(path: str, texcoord: bytes) -> Values:
     """Values of all channels of an image at points, (N, channels)."""
     where = np.frombuffer(texcoord).reshape(-1, 2)
-    return _bilinear(read_texture(path).astype(np.float64), where)
+    return _bilinear(read_texture(path), where)
 
 
-def _bilinear(texels: Values, texcoord: Values) -> Values:
+def _bilinear(texels: NDArray[np.float32], texcoord: Values) -> Values:
     # The texel's corner, and the place between it and the next one.
     height, width = texels.shape[:2]
     texel = texcoord * [width, height] - 0.5
@@ -71,8 +72,7 @@ def _bilinear(texels: Values, texcoord: Values) -> Values:
     x, y = corner.T
 
     def at(dx: int, dy: int) -> Values:
-        values: Values = texels[(y + dy) % height, (x + dx) % width]
-        return values
+        return np.asarray(texels[(y + dy) % height, (x + dx) % width], np.float64)
 
     # Two interpolations along u, one along v.
     lower = at(0, 0) * (1.0 - u) + at(1, 0) * u

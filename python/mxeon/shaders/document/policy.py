@@ -23,6 +23,7 @@ LIMITS = {
     "shaders": "renderable elements",
     "ports": "inputs of the nodes of all shaders, nodegraphs counted as one node",
     "text": "characters that code of the document's own may have in all its shaders",
+    "texels": "pixels of all images of a document that are read",
 }
 
 
@@ -75,6 +76,8 @@ class Policy:
     text : int
         Characters that its own code may have in all its shaders: its functions once for each shader,
         its longest expression once for each node.
+    texels : int
+        Pixels of all images that its shaders name, each file counted once.
 
     Raises
     ------
@@ -119,6 +122,7 @@ class Policy:
     shaders: int = 3_000
     ports: int = 200_000
     text: int = 64 * 2**20
+    texels: int = 64 * 2**20
 
     def __post_init__(self) -> None:
         for name in LIMITS:
