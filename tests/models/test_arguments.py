@@ -3,6 +3,7 @@
 
 import functools
 import re
+import warnings
 from collections import defaultdict
 from pathlib import Path
 
@@ -79,6 +80,35 @@ def test_what_is_wrong_with_an_answer_is_told(answer):
         return {}["mu"] if "Key" in answer else np.array([np.nan])
 
     assert arguments.answer(function, {"mu": 0.5})[1].startswith(answer)
+
+
+def computed(function, values):
+    """The arrays that a function returns, or "refused"."""
+    try:
+        with warnings.catch_warnings(action="ignore"), np.errstate(all="ignore"):
+            result = arguments.call(function, values)
+    except ValueError:
+        return "refused"
+    if isinstance(result, arguments.Bsdf | arguments.SimpleNamespace):
+        result = tuple(vars(result).values())
+    parts = map(np.asarray, result if isinstance(result, tuple) else (result,))
+    return [(each.dtype, each.tolist()) for each in parts]
+
+
+@pytest.mark.parametrize("kind", (np.float16, np.float32, np.longdouble))
+def test_every_function_computes_in_float64_whatever_the_type_of_its_arguments(kind):
+    tried = 0
+    for function in arguments.functions().values():
+        base = arguments.base(function)
+        for name in arguments.tried(function, arrays=True):
+            if isinstance(base[name], int | float | tuple | np.ndarray):
+                # No number of float64, where the type has more digits.
+                exact = np.asarray(base[name], np.longdouble) * (1.0 - np.longdouble(2.0) ** -57)
+                value = exact.astype(kind)
+                found = computed(function, base | {name: value})
+                assert found == computed(function, base | {name: value.astype(np.float64)}), name
+                tried += 1
+    assert tried > 400
 
 
 def test_there_are_forty_bad_values():

@@ -440,6 +440,18 @@ def test_arrays_of_two_libraries_do_not_mix():
         fon_albedo_dir(tensor, array)
 
 
+def test_arrays_of_jax_without_numbers_are_refused():
+    library = pytest.importorskip("jax")
+    deleted = library.numpy.asarray([0.0, 0.6, 0.8])
+    deleted.delete()
+    for array, rule in (
+        (library.random.key(0), "arrays must be of real numbers; got one of key<fry>"),
+        (deleted, "arrays must have values; got one that was deleted"),
+    ):
+        with pytest.raises(ValueError, match=f"^{rule}$"):
+            eon_brdf(array, [0.0, 0.6, 0.8], 0.5, 0.5)
+
+
 def test_torch_asks_for_the_package_that_gives_it_the_standard(monkeypatch):
     torch = pytest.importorskip("torch")
     monkeypatch.setitem(sys.modules, "array_api_compat.torch", None)

@@ -46,7 +46,7 @@ def checked(name: str, value: ArrayLike, quantity: str = "") -> Numbers:
     Returns
     -------
     ndarray
-        `value`, in the precision in which it came.
+        `value`, in float64.
 
     Raises
     ------
@@ -163,7 +163,7 @@ def checked_directions(name: str, value: ArrayLike) -> Numbers:
     Returns
     -------
     ndarray, shape (..., 3)
-        `value`, in the precision in which it came.
+        `value`, in float64.
 
     Raises
     ------
@@ -266,9 +266,9 @@ def refuse_direction(name: str, w: Numbers) -> NoReturn:
 
 
 def _array(name: str, value: ArrayLike, check: Callable[[Numbers], Numbers]) -> Numbers:
-    """Argument as an array of real numbers that a check returns; another library's as it came."""
+    """Argument as a float64 array that a check returns; another library's as it came."""
     if not library(value):
-        return check(_real(name, value))
+        return np.asarray(check(_real(name, value)), np.float64)
     accept(name, value)
     if checking() and (values := host_values(value)) is not None:
         check(_real(name, values))

@@ -69,7 +69,7 @@ def throughput(albedo: ArrayLike) -> Array:
     >>> throughput([0.25, 1.5])
     array([ 0.75, -0.5 ])
     """
-    return 1.0 - np.asarray(checked("albedo", albedo), np.float64)
+    return 1.0 - checked("albedo", albedo)
 
 
 def layer(top: Bsdf, base: Bsdf) -> Bsdf:
@@ -134,7 +134,7 @@ def mix(fg: Bsdf, bg: Bsdf, amount: ArrayLike) -> Bsdf:
     >>> float(both.value), float(both.throughput)
     (0.25, 0.75)
     """
-    w = np.asarray(checked("amount", amount), np.float64)
+    w = checked("amount", amount)
     return Bsdf((1.0 - w) * bg.value + w * fg.value, (1.0 - w) * bg.throughput + w * fg.throughput)
 
 
@@ -199,5 +199,5 @@ def multiply(in1: Bsdf, weight: ArrayLike) -> Bsdf:
     >>> float(scaled.value), float(scaled.throughput)
     (0.5, 0.75)
     """
-    s = np.asarray(checked("weight", weight), np.float64)
+    s = checked("weight", weight)
     return Bsdf(s * in1.value, 1.0 - s * (1.0 - in1.throughput))

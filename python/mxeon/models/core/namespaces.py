@@ -165,7 +165,11 @@ def _others_namespace(others: Sequence[object]) -> Namespace:
 def _own_namespace(array: object) -> object:
     """What an array of the standard says itself."""
     namespace: Callable[[], object] = array.__array_namespace__  # type: ignore[attr-defined]
-    return namespace()
+    try:
+        return namespace()
+    except NotImplementedError:  # of JAX's keys of random numbers
+        dtype = getattr(array, "dtype", type(array).__name__)
+        raise ValueError(f"arrays must be of real numbers; got one of {dtype}") from None
 
 
 def any_array(function: Callable[P, R]) -> Callable[P, R]:
@@ -287,5 +291,7 @@ def host_values(value: object) -> Numbers | None:
             return np.asarray(value)
         tensor: Callable[[], object] = value.detach  # type: ignore[attr-defined]
         return np.asarray(tensor().cpu())  # type: ignore[attr-defined]
-    except (TypeError, RuntimeError):  # of JAX, of torch
+    except (TypeError, RuntimeError) as error:  # of JAX, of torch
+        if "deleted" in str(error):
+            raise ValueError("arrays must have values; got one that was deleted") from None
         return None

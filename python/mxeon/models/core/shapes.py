@@ -10,7 +10,7 @@ import numpy as np
 
 from mxeon.models.core.arrays import Array, Numbers
 from mxeon.models.core.drjit_arrays import Columns, is_drjit
-from mxeon.models.core.namespaces import NUMPY, array_namespace
+from mxeon.models.core.namespaces import array_namespace
 
 
 def spread_pair(name: str, array: Numbers) -> Numbers:
@@ -99,12 +99,9 @@ def lead_shape(vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]) -
 
 
 def broadcastable(vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]) -> list[Array]:
-    """Checked vectors and numbers, in this order, as float64 arrays whose shapes broadcast."""
+    """Checked vectors and numbers, in this order, whose shapes broadcast."""
     lead_shape(vectors, numbers)
-    arrays = [*vectors.values(), *numbers.values()]
-    if array_namespace(*arrays) is not NUMPY:
-        return arrays
-    return [np.asarray(array, np.float64) for array in arrays]
+    return [*vectors.values(), *numbers.values()]
 
 
 def channel_count(colors: Mapping[str, Numbers]) -> int:
