@@ -4,6 +4,7 @@
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -24,7 +25,7 @@ def failing(monkeypatch, error):
     "error, status, words",
     [
         (InputError(), MISUSE, "InputError"),
-        (OSError(), MISUSE, "file: must be accessible; OSError"),
+        (OSError(), MISUSE, "file or standard output: must be accessible; OSError"),
         (FileExistsError(17, "File exists", "out"), MISUSE, "out: must be a folder; File exists"),
         (NotRun("gl: none"), NOT_RUN, "gl: none"),
         (ShaderError("gl: no shader"), FAILED, "gl: no shader"),
@@ -47,6 +48,37 @@ def test_a_bug_shows_its_traceback_and_is_no_failed_check(monkeypatch, capsys, e
     assert printed.startswith("Traceback") and printed.endswith(f"{error}\n")
 
 
+def test_a_working_folder_that_may_not_be_entered_changes_nothing(tmp_path):
+    folder, drop = tmp_path / "closed", "-dac_override,-dac_read_search"
+    folder.mkdir()
+    drops = ["setpriv", f"--bounding-set={drop}", f"--inh-caps={drop}"] if os.geteuid() == 0 else []
+    ended = subprocess.run(
+        [*drops, "sh", "-c", 'chmod 0 . && exec "$@"', "sh", sys.executable, "-P", "-m", "mxeon"]
+        + ["generate", CLAY, "--target", "osl", "--workers", "1", "--outputPath", tmp_path / "out"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    folder.chmod(0o700)
+    assert (ended.returncode, ended.stderr) == (PASSED, "") and ended.stdout
+
+
+@pytest.mark.parametrize("arguments", (["check", "--host", "msl"], ["generate", "--target", "osl"]))
+def test_a_name_that_the_terminal_cannot_encode_loses_nothing(tmp_path, arguments):
+    file = tmp_path / "t\xf6ne.mtlx"
+    file.write_bytes(Path(CLAY).read_bytes())
+    more = ["--outputPath", tmp_path] if arguments[0] == "generate" else []
+    ended = subprocess.run(
+        [sys.executable, "-m", "mxeon", *arguments, file, "--workers", "0", *more],
+        env=os.environ | {"PYTHONIOENCODING": "ascii"},
+        capture_output=True,
+        check=False,
+    )
+    assert ended.returncode in (PASSED, NOT_RUN) and b"Traceback" not in ended.stderr
+    assert b"t\\xf6ne" in ended.stdout
+
+
 def test_a_deleted_working_folder_is_one_line(tmp_path, monkeypatch, capsys):
     (tmp_path / "gone").mkdir()
     monkeypatch.chdir(tmp_path / "gone")
@@ -54,6 +86,19 @@ def test_a_deleted_working_folder_is_one_line(tmp_path, monkeypatch, capsys):
     options = ["--target", "osl", "--outputPath", str(tmp_path), "--workers", "1"]
     assert main(["generate", CLAY, *options]) == NOT_RUN
     assert one_line(capsys.readouterr().err).startswith("mxeon: working folder must exist, as ")
+
+
+def test_too_little_memory_for_numpy_is_one_line():
+    ended = subprocess.run(
+        ["prlimit", "--as=200000000", sys.executable, "-m", "mxeon", "library"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert ended.returncode == NOT_RUN
+    assert one_line(ended.stderr).startswith(
+        "mxeon: address space must be at least 268435456 bytes"
+    )
 
 
 @pytest.mark.parametrize("count", [6, 8, 10, 12])

@@ -10,16 +10,11 @@ import time
 
 import pytest
 
-from mxeon.jobs.signals import ENDING, SignalExit, block_signals, raise_signals
+from mxeon.jobs.signals import ENDING, OTHERS, SignalExit, block_signals, raise_signals
 from mxeon.shaders.library import examples_folder
 
 PLASTER = str(examples_folder() / "plaster.mtlx")
 CHECK = ["check", PLASTER, "--workers", "1", "--report", "report"]
-LINES = {
-    signal.SIGINT: "mxeon: interrupted",
-    signal.SIGTERM: "mxeon: ended by SIGTERM",
-    signal.SIGHUP: "mxeon: ended by SIGHUP",
-}
 DEADLINE = 300.0  # seconds, for a machine that is busy
 
 of_each_signal = pytest.mark.parametrize("number", ENDING, ids=[each.name for each in ENDING])
@@ -53,17 +48,19 @@ def test_a_signal_ends_the_command_in_one_line_and_nothing_stays(tmp_path, numbe
     wait_for(lambda: journal.exists() and journal.read_bytes().count(b"\n") > 1, process)
     (os.kill if to == "command" else os.killpg)(process.pid, number)
     _, errors = process.communicate(timeout=DEADLINE)
-    assert (process.returncode, errors) == (128 + number, f"{LINES[number]}\n")
+    line = "interrupted" if number == signal.SIGINT else f"ended by {number.name}"
+    assert (process.returncode, errors) == (128 + number, f"mxeon: {line}\n")
     assert not list((tmp_path / "tmp").iterdir())
     assert not list(tmp_path.rglob(".mxeon*"))
 
 
-def test_a_signal_before_the_workers_work_ends_them_too(tmp_path):
+@pytest.mark.parametrize("number", (signal.SIGTERM, *OTHERS), ids=lambda each: each.name)
+def test_a_signal_before_the_workers_work_ends_them_too(tmp_path, number):
     process = start(tmp_path, *CHECK)
     wait_for(lambda: list((tmp_path / "tmp").iterdir()), process)
-    os.killpg(process.pid, signal.SIGTERM)
+    (os.killpg if number == signal.SIGTERM else os.kill)(process.pid, number)
     _, errors = process.communicate(timeout=DEADLINE)
-    assert (process.returncode, errors) == (143, "mxeon: ended by SIGTERM\n")
+    assert (process.returncode, errors) == (128 + number, f"mxeon: ended by {number.name}\n")
     assert not list((tmp_path / "tmp").iterdir())
 
 
@@ -85,6 +82,17 @@ def test_a_blocked_signal_comes_afterwards(number):
             steps.append("whole")
         steps.append("never")
     assert ended.value.status == 128 + number and steps == ["whole"]
+
+
+def test_a_timer_of_the_caller_stays_the_callers():
+    heard = []
+    before = signal.signal(signal.SIGALRM, lambda *_: heard.append("caller"))
+    try:
+        with raise_signals():
+            signal.raise_signal(signal.SIGALRM)
+    finally:
+        signal.signal(signal.SIGALRM, before)
+    assert heard == ["caller"]
 
 
 def test_handlers_are_as_before_afterwards():

@@ -7,10 +7,12 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
-from mxeon.errors import ImageError
+from mxeon.cli import main
+from mxeon.errors import MISUSE, NOT_RUN, PASSED, ImageError
 from mxeon.hosts.textures import read_latlong, read_texture
 from mxeon.io.images import ImageWarning, read_image, write_image
 from mxeon.io.srgb import srgb_decoded, srgb_encoded
+from tests.support.documents import material
 
 PIXELS = np.arange(24.0, dtype=np.float32).reshape(2, 4, 3)
 
@@ -67,6 +69,70 @@ def test_an_environment_that_is_not_finite_is_refused_and_a_texture_is_told(tmp_
         read_latlong(path)
     with pytest.warns(ImageWarning, match=reason):
         read_texture(path)
+
+
+def test_gray_pixels_of_a_texture_are_kept_once(tmp_path):
+    write_image(tmp_path / "a.exr", PIXELS[..., :1].copy(), {})
+    gray = read_texture(tmp_path / "a.exr")
+    assert gray.tolist() == PIXELS[::-1, :, :1].repeat(3, axis=-1).tolist() and not gray.strides[-1]
+
+
+def textured(folder, files):
+    """A document in a folder whose color is the sum of images."""
+    image = (
+        '<image name="i{0}" type="color3"><input name="file" type="filename" value="{1}"/></image>'
+    )
+    add = (
+        '<add name="s{0}" type="color3"><input name="in1" type="color3" nodename="{1}"/>'
+        '<input name="in2" type="color3" nodename="i{0}"/></add>'
+    )
+    nodes = [image.format(number, file) for number, file in enumerate(files)]
+    nodes += [
+        add.format(number, f"s{number - 1}" if number > 1 else "i0")
+        for number in range(1, len(files))
+    ]
+    last = f"s{len(files) - 1}" if len(files) > 1 else "i0"
+    color = f'<input name="color" type="color3" nodename="{last}"/>'
+    lobe = f'<eon_diffuse_bsdf name="lobe" type="BSDF">{color}</eon_diffuse_bsdf>'
+    (folder / "a.mtlx").write_text(material("".join(nodes) + lobe))
+    return str(folder / "a.mtlx")
+
+
+# Files of a document with images of 4 x 2 pixels, and how many pixels those are.
+TOGETHER = {"one": (["a.exr"], 8), "two": (["a.exr", "b.exr"], 16), "same": (["a.exr"] * 3, 8)}
+
+
+@pytest.mark.parametrize("command", (["render", "--size", "4"], ["explore"], ["check"]))
+@pytest.mark.parametrize("files, texels", TOGETHER.values(), ids=TOGETHER)
+def test_images_of_a_document_have_a_limit_together(tmp_path, capsys, command, files, texels):
+    for name in set(files):
+        write_image(tmp_path / name, PIXELS / 96.0, {})
+    host = [] if "explore" in command else ["--host", "reference" if "render" in command else "gl"]
+    output = ["--output", str(tmp_path / ("o.html" if "explore" in command else "o.exr"))]
+    line = [*command, textured(tmp_path, files), "--workers", "0", *host]
+    line += output if "check" not in command else []
+    assert main([*line, "--maxTexels", str(texels - 1)]) == MISUSE
+    assert capsys.readouterr().err == (
+        f"mxeon: {tmp_path / 'a.mtlx'}: images must have at most {texels - 1} pixels together; "
+        f"got {texels}: raise it with --maxTexels\n"
+    )
+    if "check" not in command:
+        assert main([*line, "--maxTexels", str(texels)]) == PASSED
+
+
+def test_a_gray_image_is_drawn_as_one_of_three_channels(tmp_path):
+    gray = np.float32(0.5) * PIXELS[..., :1] / np.float32(24.0)
+    write_image(tmp_path / "gray.exr", np.ascontiguousarray(gray), {})
+    write_image(tmp_path / "rgb.exr", gray.repeat(3, axis=-1), {})
+    pictures = []
+    for name in ("gray", "rgb"):
+        output = str(tmp_path / f"{name}_picture.exr")
+        line = ["render", textured(tmp_path, [f"{name}.exr"]), "--size", "16", "--workers", "0"]
+        if (status := main([*line, "--output", output])) == NOT_RUN:
+            pytest.skip("gl does not run here")
+        assert status == PASSED
+        pictures.append(read_image(output))
+    assert np.ptp(pictures[0]) > 0.01 and np.array_equal(*pictures)
 
 
 def test_the_codes_of_srgb_are_decoded_to_what_was_encoded():

@@ -13,7 +13,7 @@ import OpenImageIO as oiio
 import pytest
 
 from mxeon.io.files import replacing, write_text
-from mxeon.io.images import without_threads, write_image
+from mxeon.io.images import without_threads, write_image, write_picture
 from mxeon.shaders.library import examples_folder
 from tests.support.faults import room_for
 
@@ -72,6 +72,14 @@ def test_an_image_is_kept_as_it_is(tmp_path, ending):
     image = oiio.ImageInput.open(str(tmp_path / f"a{ending}"))
     assert image.read_image(oiio.UNKNOWN).tobytes() == pixels.tobytes()
     assert image.spec().get_string_attribute("mxeon:host") == "gl"
+
+
+@pytest.mark.parametrize("ending", IMAGES)
+def test_half_a_character_of_the_metadata_is_replaced(tmp_path, ending):
+    path = tmp_path / f"a{ending}"
+    write_picture(path, NOISE, {"document": "half \ud83d.mtlx"})
+    spec = oiio.ImageInput.open(str(path)).spec()
+    assert spec.get_string_attribute("mxeon:document") == "half \ufffd.mtlx"
 
 
 @pytest.mark.parametrize("ending", IMAGES)

@@ -271,6 +271,14 @@ def test_a_token_that_would_end_the_process_is_refused(kind, outer):
     )
 
 
+def test_a_structure_holds_no_image():
+    pair = '<typedef name="pair"><member name="map" type="filename" value="a.png"/></typedef>'
+    assert refusal(SMALL.replace("</materialx>", pair + "</materialx>")) == (
+        'document text: typedef "pair" must have no member of type filename, as a structure of a '
+        "shader holds no image; got map: make it an input"
+    )
+
+
 def test_a_type_of_the_libraries_gets_no_members():
     members = '<typedef name="float"><member name="a" type="float"/></typedef>'
     assert refusal(SMALL.replace("</materialx>", members + "</materialx>")) == (

@@ -5,6 +5,7 @@ A sub-command imports what it needs when it runs, so that `mxeon --help` answers
 """
 
 import argparse
+import resource
 import sys
 import traceback
 import warnings
@@ -25,13 +26,14 @@ from mxeon.cli import (
 )
 from mxeon.cli.arguments import Parser
 from mxeon.cli.output import discard, fail, flush, open_streams, show_warning, status_of
-from mxeon.errors import NOT_RUN, InputError, MxeonError
+from mxeon.errors import NOT_RUN, InputError, MxeonError, NotRun
 from mxeon.jobs.signals import SignalExit, raise_signals
 
 DESCRIPTION = (
     "MaterialX's specification of physically based shading, executable: a reference, checks of "
     "generated shaders, and a library that repairs rough diffuse, sheen and layered lobes."
 )
+LEAST_MEMORY = 2**28  # bytes of address space
 COMMANDS = (check, generate, render, explore, library, invert, figures, report, kit, doc)
 
 
@@ -73,6 +75,7 @@ def _run(arguments: Sequence[str]) -> int:
         # Read the arguments.
         _check_encoding(arguments)
         options = parser().parse_args(arguments)
+        _check_memory()
         # Run the sub-command, with its warnings on standard error.
         with warnings.catch_warnings():
             warnings.showwarning = show_warning
@@ -90,6 +93,15 @@ def _run(arguments: Sequence[str]) -> int:
     except Exception:  # a bug of ours
         traceback.print_exc()
         return NOT_RUN
+
+
+def _check_memory() -> None:
+    """Raise NotRun if the process may have too little memory for OpenBLAS, which would end it."""
+    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
+    if limit != resource.RLIM_INFINITY and limit < LEAST_MEMORY:
+        raise NotRun(
+            f"address space must be at least {LEAST_MEMORY} bytes; got {limit}: raise it by ulimit -v"
+        )
 
 
 def _check_encoding(arguments: Sequence[str]) -> None:

@@ -6,18 +6,25 @@ import shutil
 import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Sized
+from io import TextIOWrapper
 from typing import IO, Any
 
 from mxeon.errors import MISUSE, DocumentError, one_line
 
 
 def open_streams() -> None:
-    """Open the standard streams that the process was started without: workers print to them."""
-    for stream in range(3):
+    """Open the standard streams that the process was started without: workers print to them.
+
+    A character that a stream cannot encode is printed as a backslash and its number.
+    """
+    for number in range(3):
         try:
-            os.fstat(stream)
+            os.fstat(number)
         except OSError:
             os.set_inheritable(os.open(os.devnull, os.O_RDWR), True)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
 
 
 def flush(status: int) -> int:
@@ -51,7 +58,7 @@ def status_of(error: Exception) -> tuple[int, *tuple[str, ...]]:
     if isinstance(error, OSError) and not hasattr(error, "status"):
         reason = error.strerror or str(error) or type(error).__name__
         rule = "must be a folder" if isinstance(error, FileExistsError) else "must be accessible"
-        return MISUSE, f"{error.filename or 'file'}: {rule}; {reason}"
+        return MISUSE, f"{error.filename or 'file or standard output'}: {rule}; {reason}"
     return getattr(error, "status", MISUSE), str(error) or type(error).__name__
 
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.errors import ImageError, InputError
+from mxeon.errors import ImageError, InputError, printable
 from mxeon.io.files import AnyPath, assert_regular, replacing
 from mxeon.io.srgb import Codes, srgb_encoded
 
@@ -275,7 +275,7 @@ def write_exr(path: AnyPath, image: ArrayLike, metadata: Mapping[str, object]) -
         Ends in .exr; replaced whole.
     image : array_like, shape (height, width, 3)
     metadata : mapping of str to object
-        As text in the file, under "mxeon:" and the key.
+        As text in the file, under "mxeon:" and the key; see `mxeon.errors.printable`.
 
     Raises
     ------
@@ -292,5 +292,5 @@ def write_png(path: AnyPath, image: ArrayLike, metadata: Mapping[str, object]) -
 
 
 def _texts(metadata: Mapping[str, object]) -> dict[str, str | int]:
-    values: dict[str, str | int] = {f"mxeon:{key}": str(value) for key, value in metadata.items()}
-    return {"Software": "mxeon"} | values
+    texts = {f"mxeon:{key}": printable(str(value)) for key, value in metadata.items()}
+    return {"Software": "mxeon"} | texts

@@ -40,12 +40,15 @@ def safe_path() -> Iterator[None]:
 
     The flag is passed on the command line since PYTHONSAFEPATH has no effect beside -E. The
     parent's own path goes to its workers, but for "", its working folder if it is `python -c` or
-    interactive.
+    interactive. They inherit the working folder itself, which they may not be able to enter.
     """
     with _patching:
         flags, data = _util._args_from_interpreter_flags, spawn.get_preparation_data
         _util._args_from_interpreter_flags = lambda: [*flags(), "-P"]
-        spawn.get_preparation_data = lambda name: data(name) | {"sys_path": _path()}
+        spawn.get_preparation_data = lambda name: (
+            {key: value for key, value in data(name).items() if key != "dir"}
+            | {"sys_path": _path()}
+        )
         try:
             yield
         finally:

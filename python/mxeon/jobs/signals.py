@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The signals that end a command: Ctrl-C, `kill`, and a terminal that is closed."""
+"""The signals that end a command: Ctrl-C, `kill`, a terminal that is closed, and timers."""
 
 import signal
 import threading
@@ -9,6 +9,12 @@ from types import FrameType
 
 TERMINAL = (signal.SIGINT, signal.SIGHUP)  # come to all processes of a terminal
 ENDING = (*TERMINAL, signal.SIGTERM)
+OTHERS = (
+    signal.SIGALRM,
+    signal.SIGUSR1,
+    signal.SIGUSR2,
+    signal.SIGXCPU,
+)  # end what does not listen
 
 _pending: list[int] | None = None  # numbers of the signals that came while they are blocked
 
@@ -32,7 +38,10 @@ class SignalExit(KeyboardInterrupt):
 
 @contextmanager
 def raise_signals() -> Iterator[None]:
-    """Raise SignalExit at such a signal, so that all is cleaned up; an ignored one stays ignored."""
+    """Raise SignalExit at such a signal, so that all is cleaned up; an ignored one stays ignored.
+
+    So does one of OTHERS that the caller listens to.
+    """
 
     # Raise at a signal, unless signals are blocked.
     def end(number: int, _: FrameType | None) -> None:
@@ -43,6 +52,7 @@ def raise_signals() -> Iterator[None]:
     # Listen to the signals that are not ignored.
     main = threading.current_thread() is threading.main_thread()  # Python lets no other listen
     numbers = [each for each in ENDING if main and signal.getsignal(each) != signal.SIG_IGN]
+    numbers += [each for each in OTHERS if main and signal.getsignal(each) == signal.SIG_DFL]
     before = {number: signal.signal(number, end) for number in numbers}
     # Put the former handlers back.
     try:

@@ -260,9 +260,15 @@ def _raise(faults: Sequence[str]) -> None:
 
 
 def _types(document: mx.Document) -> Iterator[str]:
-    """Members of the libraries' types: generators would end the process."""
-    for each in document.getChildren():
-        standard = each.isA(mx.TypeDef) and document.getDataLibrary().getTypeDef(each.getName())
+    """Members that end a generator's process, or that no shader can have."""
+    for each in filter(lambda child: child.isA(mx.TypeDef), document.getChildren()):
+        for member in each.getChildren():
+            if member.getAttribute("type") == "filename":
+                yield (
+                    f"{location(each)} must have no member of type filename, as a structure of a "
+                    f"shader holds no image; got {member.getName()}: make it an input"
+                )
+        standard = document.getDataLibrary().getTypeDef(each.getName())
         if standard and (members := each.getChildren()):
             yield (
                 f"{location(each)} must have no members, as a type of the libraries; "
