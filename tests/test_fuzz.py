@@ -105,6 +105,8 @@ WRONG = {
     "another status": (lambda _: 7, "ended with 7"),
     "no reason": (lambda _: 2, "did not say why"),
     "two lines": (lambda _: print("more", file=sys.stderr) or 0, "said 'more'"),
+    "a command": (lambda _: print("  ::error::x") or 0, "said '  ::error::x' to a runner"),
+    "a command in it": (lambda _: print("a ##[error]x") or 0, "said '##[error]x' to a runner"),
     "a long line": (lambda _: print("mxeon" + 2000 * ".", file=sys.stderr) or 0, "of 2005 char"),
     "a file elsewhere": (lambda _: write("../stray", "x"), "wrote stray"),
     "a file changed": (lambda _: write("base.mtlx", "x"), "wrote documents"),

@@ -18,6 +18,8 @@ CUT = " [...]"  # ends one that is cut there
 STEERING = re.compile(
     "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
 )
+# What begins a command to GitHub's runner: in a line, or anywhere.
+COMMAND = re.compile(r"(?:^|(?<=\r))\s*::|##\[", re.MULTILINE)
 
 
 def install(extra: str) -> str:
@@ -104,8 +106,13 @@ def assert_known(rule: str, name: object, known: Iterable[str]) -> None:
 
 
 def printable(text: str) -> str:
-    """Text with U+FFFD for characters that steer a terminal or fit in no encoding."""
-    return STEERING.sub("\ufffd", text)
+    """Text with U+FFFD for what steers a terminal or GitHub's runner, or fits in no encoding."""
+    return COMMAND.sub("\ufffd", STEERING.sub("\ufffd", text))
+
+
+def as_output(text: str) -> str:
+    """JSON text without what steers GitHub's runner; of the same value."""
+    return text.replace("##[", "#\\u0023[")
 
 
 def one_line(text: object) -> str:

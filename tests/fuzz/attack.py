@@ -30,6 +30,7 @@ from tests.fuzz import (
     journals,
     kits,
     libraries,
+    outputs,
     pages,
     results,
     signals,
@@ -190,6 +191,8 @@ FAMILIES = {
     "signals": Family(signals.rows, lambda _, row: row, 150, signals.struck),
     "includes": Family(includes.rows, includes.to_case, 1000),
     "libraries": Family(libraries.rows, libraries.to_case, 500),
+    "links": Family(outputs.link_rows, outputs.to_link, 200),
+    "names": Family(outputs.name_rows, outputs.to_name, 400),
 }
 
 

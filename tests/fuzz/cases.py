@@ -50,12 +50,15 @@ class Case:
     arguments : tuple of str
     links : tuple of (str, str)
         Symbolic links and where they lead; pipes, where that is "".
+    encoding : str
+        Of the standard output.
     """
 
     name: str
     files: tuple[tuple[str, bytes], ...]
     arguments: tuple[str, ...]
     links: tuple[tuple[str, str], ...] = ()
+    encoding: str = "utf-8"
 
 
 def case(seed, number):

@@ -12,7 +12,7 @@ import traceback
 from functools import cache
 from pathlib import Path
 
-from mxeon.errors import STEERING
+from mxeon.errors import COMMAND, STEERING
 from mxeon.shaders.library import examples_folder
 from tests.fuzz.cases import AROUND, OUT, case
 from tests.fuzz.words import CANARY, POISON
@@ -63,7 +63,7 @@ def _run(tried):
         home = _prepared(root, tried)
         before = _contents(root)
         with contextlib.chdir(home):
-            status, out, err = _called(tried.arguments)
+            status, out, err = _called(tried.arguments, tried.encoding)
         judging = set(tried.arguments[:1]) & set(JUDGING)
         named = tuple(os.path.realpath(home / each) for each in _outputs(tried.arguments))
         allowed = 0 if status == 1 and judging else status
@@ -98,15 +98,16 @@ def _prepared(root, tried):
         (home / name).parent.mkdir(parents=True, exist_ok=True)
         (home / name).write_bytes(data)
     for name, end in tried.links:
+        (home / name).parent.mkdir(parents=True, exist_ok=True)
         (home / name).symlink_to(end) if end else os.mkfifo(home / name)
     return home
 
 
-def _called(arguments):
+def _called(arguments, encoding):
     """Exit status, output and errors; a traceback counts as an error."""
     from mxeon.cli import main
 
-    out, err = io.StringIO(), io.StringIO()
+    out, err = (io.TextIOWrapper(io.BytesIO(), encoding, newline="") for _ in range(2))
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
         try:
             here = ("--workers", "0") if arguments[:1] and arguments[0] in MAKING else ()
@@ -115,7 +116,9 @@ def _called(arguments):
             status = ended.code or 0
         except BaseException:
             status = traceback.format_exc()
-    return status, out.getvalue(), err.getvalue()
+    for stream in (out, err):
+        stream.flush()
+    return status, *(stream.buffer.getvalue().decode(encoding) for stream in (out, err))
 
 
 def _faults(root, named, before, status, out, err):
@@ -129,6 +132,8 @@ def _faults(root, named, before, status, out, err):
         yield f"said a line of {max(map(len, lines))} characters"
     if status == 2 and not lines:
         yield "did not say why"
+    if command := COMMAND.search(f"{out}\n{err}"):
+        yield f"said {command.string[command.start() :].splitlines()[0]!r} to a runner"
     after = _contents(root)
     written = {name: data for name, data in after.items() if before.get(name) != data}
     yield from (f"wrote {name}" for name in written if not str(root / name).startswith(named))

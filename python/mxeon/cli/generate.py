@@ -11,7 +11,7 @@ from pathlib import Path
 from mxeon.cli import arguments
 from mxeon.cli.batch import Source, run_batch, shader_texts
 from mxeon.cli.output import fail, status_of, warn
-from mxeon.errors import PASSED, InputError
+from mxeon.errors import PASSED, InputError, as_output
 from mxeon.shaders.targets import CLASSES
 
 
@@ -61,7 +61,7 @@ def run(options: argparse.Namespace) -> int:
     # Print what was written.
     lines = [line for error in errors for line in status_of(error)[1:]]
     outcome = {"files": written, "errors": lines}
-    for line in [json.dumps(outcome)] if options.json else written:
+    for line in [as_output(json.dumps(outcome))] if options.json else written:
         print(line)
     return min((fail(*status_of(error)) for error in errors), default=PASSED)
 

@@ -6,7 +6,7 @@ import json
 
 from mxeon.cli import arguments
 from mxeon.cli.verdict import show_run
-from mxeon.errors import FAILED, PASSED, one_line
+from mxeon.errors import FAILED, PASSED, as_output, one_line
 
 
 def add_parser(commands: arguments.Commands) -> None:
@@ -62,7 +62,7 @@ def run_diff(options: argparse.Namespace) -> int:
 
     changes = compare(read_results(options.before), read_results(options.after))
     if options.json:
-        print(json.dumps([vars(change) for change in changes], indent=1))
+        print(as_output(json.dumps([vars(change) for change in changes], indent=1)))
     else:
         print("\n".join(map(one_line, changes)) or "no difference")
     return FAILED if any(change.kind == WORSE for change in changes) else PASSED

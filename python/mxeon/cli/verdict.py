@@ -8,7 +8,7 @@ from collections.abc import Collection
 from typing import TYPE_CHECKING
 
 from mxeon.cli.output import fail
-from mxeon.errors import FAILED, MISUSE, NOT_RUN, PASSED, one_line, printable
+from mxeon.errors import FAILED, MISUSE, NOT_RUN, PASSED, as_output, one_line, printable
 
 if TYPE_CHECKING:
     from mxeon.conformance.results import Result, Run
@@ -32,7 +32,7 @@ def show_run(run: Run, options: argparse.Namespace, said: Collection[str] = ()) 
     page = report.write(run, options.report) if options.report else None
     # Print the results, or what a person has to know of them.
     if options.json:
-        print(report.to_json(run))
+        print(as_output(report.to_json(run)))
     else:
         if options.full:
             _print_all(run)
