@@ -21,7 +21,15 @@ from tests.support.sharing import shared
 
 LIMIT = 60.0  # seconds for one case
 IN_BROWSER = ("explorer documents", "explorer addresses", "unescaped")
-SLOW = ("signals", "kits", "results", "templates", "explorer documents")  # a second for each case
+SLOW = (
+    "signals",
+    "hosts",
+    "images",
+    "kits",
+    "results",
+    "templates",
+    "explorer documents",
+)  # a second for each case
 
 
 def unescaped(text):

@@ -23,9 +23,11 @@ from xml.etree import ElementTree
 
 from tqdm import tqdm
 
+from mxeon.hosts import HOSTS
 from mxeon.jobs import pool
 from tests.fuzz import (
     arguments,
+    bombs,
     includes,
     journals,
     kits,
@@ -40,12 +42,12 @@ from tests.fuzz.__main__ import FIGURES, keep
 from tests.fuzz.cases import COMMANDS, OUT, TARGETS, Case
 from tests.fuzz.documents import originals
 from tests.fuzz.found import LOBE
-from tests.fuzz.trial import judged
+from tests.fuzz.trial import judged, unlimited
 from tests.fuzz.words import ATTRIBUTES, CATEGORIES, PATHS, SNIPPETS, TYPES, VALUES
 from tests.support.documents import material
 
 SEED = 1
-LIMIT = 60.0  # seconds for one case
+LIMIT = 300.0  # seconds for one case, on a machine that is busy
 STATUSES = {0: "accepted", 1: "failed", 2: "refused", 3: "not_run"}
 
 NUMBERS = (
@@ -146,6 +148,20 @@ def _line_case(_, row):
     return Case(" ".join(arguments), (("base.mtlx", data), ("part.mtlx", data)), arguments + host)
 
 
+def _host_case(rng, row):
+    host, nodes = row
+    arguments = ("render", "base.mtlx", "--host", host, "--size", "4", "--output", f"{OUT}/a.png")
+    return Case(host, (("base.mtlx", material(nodes).encode()),), arguments)
+
+
+def hosts():
+    """Documents with every pair of snippets on every host that draws spheres, gl apart."""
+    others = [row.name for row in HOSTS if row.scenes and row.name != "gl"]
+    for first, second in product(SNIPPETS, SNIPPETS):
+        for host in others:
+            yield host, first + second + LOBE.format("")
+
+
 def _arguments(rng):
     """A command that reads the document: mostly it is generated, sometimes drawn."""
     if rng.random() < 0.1:
@@ -166,7 +182,8 @@ class Family:
     count : int
         How many are tried.
     trial : callable (case) -> (int, str)
-        Exit status and fault of a case; can be imported by name.
+        Exit status and fault of a case, and what it took of seconds and mebibytes where that is
+        measured; can be imported by name.
     """
 
     rows: Callable
@@ -191,6 +208,8 @@ FAMILIES = {
     "signals": Family(signals.rows, lambda _, row: row, 150, signals.struck),
     "includes": Family(includes.rows, includes.to_case, 1000),
     "libraries": Family(libraries.rows, libraries.to_case, 500),
+    "images": Family(bombs.rows, lambda _, row: row, 30, bombs.weighed),
+    "hosts": Family(hosts, _host_case, 60, unlimited),
     "links": Family(outputs.link_rows, outputs.to_link, 200),
     "names": Family(outputs.name_rows, outputs.to_name, 400),
 }
@@ -210,19 +229,22 @@ def measure(families=FAMILIES, count=None, workers=1, progress=tqdm):
     Returns
     -------
     dict
-        Of each family: tried, accepted, refused, failed, not_run, and faults, which are told.
+        Of each family: tried, accepted, refused, failed, not_run, and faults, which are told; and the
+        most seconds of a processor and mebibytes that a case took, where they are measured.
     """
     figures = {}
     for family in families:
         tried = cases(family, count)
         outcomes = pool.run(FAMILIES[family].trial, tried, workers, LIMIT)
-        tally = Counter()
+        tally, most = Counter(), [0.0, 0]
         for place, outcome in progress(outcomes, total=len(tried), desc=family, disable=None):
-            status, fault = outcome.value or (None, outcome.failure)
+            status, fault, *taken = outcome.value or (None, outcome.failure)
+            most = list(map(max, most, taken)) if taken else most
             tally["faults" if fault else STATUSES.get(status, "ended")] += 1
             if fault:
                 print(f"{family}: {tried[place]}: {fault}", file=sys.stderr, flush=True)
-        figures[family] = {"tried": len(tried), **tally}
+        taken = {"seconds": round(most[0], 1), "mebibytes": most[1]} if most[1] else {}
+        figures[family] = {"tried": len(tried), **tally, **taken}
     return figures
 
 
