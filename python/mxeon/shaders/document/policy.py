@@ -86,8 +86,8 @@ class Policy:
 
     Notes
     -----
-    The limits keep MaterialX 1.39.5 below 15 s and 512 MiB for the worst documents known. Seconds of
-    a processor shared with others, for documents as large as each limit lets them be:
+    The limits keep MaterialX 1.39.5 below 15 s and 512 MiB for the worst documents known; images that
+    are read for pictures take below 15 s and 2.75 GiB more. Seconds of a processor shared with others, for documents as large as each limit lets them be:
 
     ======================================================  =====
     9,800 names of files, with tokens                          12
