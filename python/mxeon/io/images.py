@@ -292,5 +292,7 @@ def write_png(path: AnyPath, image: ArrayLike, metadata: Mapping[str, object]) -
 
 
 def _texts(metadata: Mapping[str, object]) -> dict[str, str | int]:
-    texts = {f"mxeon:{key}": printable(str(value)) for key, value in metadata.items()}
+    texts: dict[str, str | int] = {
+        f"mxeon:{key}": printable(str(value)) for key, value in metadata.items()
+    }
     return {"Software": "mxeon"} | texts

@@ -102,10 +102,11 @@ def _read_image(file: Path, size: int) -> NDArray[np.float64]:
     except UnicodeDecodeError:
         raise Unusable(f"{file.name}: must have names of channels in UTF-8") from None
     # One by one: a small file may have a thousand others.
-    pixels = [image.read_image(0, 0, each, each + 1, oiio.FLOAT) for each in channels]
+    read = [image.read_image(0, 0, each, each + 1, oiio.FLOAT) for each in channels]
+    pixels = [each for each in read if each is not None]
     reason = words(image.geterror)
     image.close()
-    if reason or any(each is None for each in pixels):
+    if reason or len(pixels) < len(read):
         raise Unusable(f"{file.name}: must be a whole image; {reason}")
     return np.concatenate(pixels, axis=-1, dtype=np.float64)
 
