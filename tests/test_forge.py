@@ -98,11 +98,14 @@ def test_the_five_lines_of_the_page_call_the_action():
     assert {name for name, each in inputs.items() if each.get("required")} == set(step["with"])
 
 
-def ended(library, folder):
+LINES = "--node oren_nayar_diffuse_bsdf\n--host gl  --workers\n0"
+
+
+def ended(library, folder, options=LINES, command=TOOLS / "mxeon"):
     """The action's step that checks, as the forge starts it, for one node."""
     # Put the command where the action installs it.
     (folder / "mxeon" / "bin").mkdir(parents=True)
-    (folder / "mxeon" / "bin" / "mxeon").symlink_to(TOOLS / "mxeon")
+    (folder / "mxeon" / "bin" / "mxeon").symlink_to(command)
     # Take the step's script.
     steps = yaml.safe_load(ACTION.read_text())["runs"]["steps"]
     [script] = [step["run"] for step in steps if step.get("name") == "Check"]
@@ -112,7 +115,8 @@ def ended(library, folder):
         "GITHUB_STEP_SUMMARY": str(folder / "summary.md"),
         "LIBRARY": str(library),
         "REPORT": str(folder / "report"),
-        "OPTIONS": "--node oren_nayar_diffuse_bsdf --host gl --workers 0",
+        "OPTIONS": options,
+        "MATERIALX": "",
     }
     command = ["bash", "--noprofile", "--norc", "-e", "-o", "pipefail", folder / "script.sh"]
     return subprocess.run(command, env=os.environ | variables, capture_output=True, text=True)
@@ -131,3 +135,25 @@ def test_the_action_fails_where_the_library_does_and_keeps_the_report(wrong, sta
     sentence = done.stdout.splitlines()[0]
     assert f"on gl with {library}" in sentence and ("failed" in sentence) == wrong
     assert (tmp_path / "summary.md").read_text().startswith(f"    {sentence}\n")
+
+
+OPTIONS = {
+    "": [],
+    "\n--full\n": ["--full"],
+    "--node a\n\n--node  b c.mtlx": ["--node", "a", "--node", "b", "c.mtlx"],
+    "'a b.mtlx' \"$HOME/*\"\nc\\ d": ["a b.mtlx", "$HOME/*", "c d"],
+}
+
+
+@pytest.mark.parametrize("text", OPTIONS)
+def test_the_action_takes_every_line_of_its_options(text, tmp_path):
+    echo = tmp_path / "echo"
+    echo.write_text('#!/bin/sh\nprintf "%s\\n" "$@"\n')
+    echo.chmod(0o755)
+    done = ended("library", tmp_path, text, echo)
+    given = ["check", "--library", "library", "--report", str(tmp_path / "report")]
+    assert done.stdout.splitlines() == [*given, *OPTIONS[text]]
+
+
+def test_the_action_fails_where_a_quote_has_no_end(tmp_path):
+    assert ended("library", tmp_path, "--node 'a\n--full").returncode != 0
