@@ -16,7 +16,7 @@ from mxeon.conformance.results import DIFFERS, FAILED, PASSED
 from mxeon.conformance.samples.batch import Batch
 from mxeon.hosts import open_host
 from mxeon.models.nodes.utilities import UTILITIES
-from mxeon.shaders.library import standard_folders
+from mxeon.shaders.library_tree import standard_folders
 from mxeon.shaders.nodes import document_text
 from tests.support.availability import available
 from tests.support.wrong_libraries import wrong_stock_node

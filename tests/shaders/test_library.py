@@ -14,7 +14,7 @@ import pytest
 from mxeon.errors import InputError
 from mxeon.hosts.cycles.process import interpreter
 from mxeon.models.diffuse.albedo import fon_albedo_avg
-from mxeon.shaders import library
+from mxeon.shaders import library, library_tree
 from mxeon.shaders.generation import TARGETS, generate
 from mxeon.shaders.nodes import EON, NODEDEFS, OREN_NAYAR
 from tests.support.availability import available
@@ -124,7 +124,7 @@ def written(folders):
 
 EONLIB = (library.eonlib_folder(),)
 DIFFUSE = (library.eonlib_folder() / "diffuse",)
-STANDARD = library.standard_folders()[0].resolve()
+STANDARD = library_tree.standard_folders()[0].resolve()
 SHIPPED = (
     ("diffuse", None, DIFFUSE),
     ("eonlib", None, EONLIB),

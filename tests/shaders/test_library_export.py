@@ -38,6 +38,9 @@ def test_a_copy_is_eonlib_with_its_license_and_recipes(copy):
     found, whole = contents(copy), contents(eonlib_folder())
     license_text = (data_folder() / "LICENSE").read_bytes()
     readme = found.pop("README.txt").decode()
+    profile = found.pop("profiles/cycles/eonlib_genosl_impl.xml").decode()
+    own = (data_folder() / "profiles" / "cycles" / "eonlib_genosl_impl.mtlx").read_text("utf-8")
+    assert profile == own.replace("../../eonlib/", "../../")
     assert mxeon.__version__ in readme and recipes("FOLDER") in readme
     assert found == whole | {"LICENSE": license_text}
 

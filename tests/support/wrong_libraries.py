@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Libraries with one wrong text: a copy of eonlib, or one node of stock MaterialX or of eonlib alone."""
+"""Libraries with one wrong text: copies of eonlib, and of MaterialX's libraries or a part of them."""
 
 import re
 import shutil
-from pathlib import Path
 
-import MaterialX as mx
+from mxeon.shaders.library import data_folder
+from mxeon.shaders.library_tree import standard_folders
 
-from mxeon.shaders.library import data_folder, eonlib_folder, standard_folders
+STOCK, GLSL = standard_folders()[0], "pbrlib/genglsl"
 
 
 def copy_of_eonlib(folder):
@@ -32,43 +32,27 @@ def wrong_copy(folder, old, new, *files):
     return str(library)
 
 
+def copy_of_stock(folder, *parts):
+    """Folder of a copy of MaterialX's libraries, or of files and folders of them at their paths."""
+    for part in parts or ["."]:
+        (folder / part).parent.mkdir(parents=True, exist_ok=True)
+        if (STOCK / part).is_dir():
+            shutil.copytree(STOCK / part, folder / part, dirs_exist_ok=True)
+        else:
+            shutil.copy(STOCK / part, folder / part)
+    return folder
+
+
 def wrong_stock_node(folder, name, old, new):
-    """Path of a library of a stock node in GLSL, by its name or that of its file, with another text."""
-    [sources] = [
-        path for each in standard_folders() if (path := each / "pbrlib" / "genglsl").is_dir()
-    ]
-    rows = sources / "pbrlib_genglsl_impl.mtlx"
-    library = _node_alone(folder, name, rows, sources)
-    [file] = folder.glob("*.glsl")
-    text = file.read_text(encoding="utf-8")
-    text = text.replace('#include "lib/', '#include "libraries/pbrlib/genglsl/lib/')
-    file.write_text(text, encoding="utf-8")
-    replace_text(folder, old, new, file.name)
-    return library
+    """Path of a part of MaterialX's libraries: the GLSL of a node, by its name or that of its file, with another text."""
+    file = name if name.endswith(".glsl") else f"mx_{name}.glsl"
+    if not (STOCK / GLSL / file).is_file():  # of a node that shares one
+        rows = (STOCK / GLSL / "pbrlib_genglsl_impl.mtlx").read_text(encoding="utf-8")
+        [file] = re.findall(rf'nodedef="ND_{name}" file="([^"]+)"', rows)
+    replace_text(copy_of_stock(folder, f"{GLSL}/{file}"), old, new, f"{GLSL}/{file}")
+    return str(folder)
 
 
 def wrong_eonlib_node(folder, name, old, new):
-    """Path of a library of one of eonlib's other nodes of pbrlib in GLSL, with another text."""
-    rows = eonlib_folder() / "pbrlib" / "eonlib_pbrlib_genglsl_impl.mtlx"
-    library = _node_alone(folder, f"{name}.glsl", rows, eonlib_folder() / "genglsl")
-    replace_text(folder, old, new, f"{name}.glsl")
-    return library
-
-
-def _node_alone(folder, name, rows, sources):
-    """Path of a library of one node, with the file that implements it and those that this includes."""
-    document, alone = mx.createDocument(), mx.createDocument()
-    mx.readFromXmlFile(document, str(rows))
-    [row] = [
-        each
-        for each in document.getImplementations()
-        if name in (each.getNodeDefString().removeprefix("ND_"), Path(each.getFile()).name)
-    ]
-    file = Path(row.getFile()).name
-    text = shutil.copy(sources / file, folder / file).read_text(encoding="utf-8")
-    for name in re.findall(r'^#include "(\w+\.glsl)"', text, re.MULTILINE):
-        shutil.copy(sources / name, folder / name)
-    alone.addImplementation(row.getName()).copyContentFrom(row)
-    alone.getImplementation(row.getName()).setFile(file)
-    mx.writeToXmlFile(alone, str(folder / "implementations.mtlx"))
-    return str(folder)
+    """Path of a copy of eonlib with another text in the GLSL of one of its nodes."""
+    return wrong_copy(folder, old, new, f"eonlib/genglsl/{name}.glsl")

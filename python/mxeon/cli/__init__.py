@@ -24,7 +24,7 @@ from mxeon.cli import (
     render,
     report,
 )
-from mxeon.cli.arguments import Parser
+from mxeon.cli.arguments import Parser, use_materialx
 from mxeon.cli.output import discard, fail, flush, open_streams, show_warning, status_of
 from mxeon.errors import NOT_RUN, InputError, MxeonError, NotRun
 from mxeon.jobs.signals import SignalExit, raise_signals
@@ -76,6 +76,7 @@ def _run(arguments: Sequence[str]) -> int:
         _check_encoding(arguments)
         options = parser().parse_args(arguments)
         _check_memory()
+        use_materialx(getattr(options, "materialx", None))
         # Run the sub-command, with its warnings on standard error.
         with warnings.catch_warnings():
             warnings.showwarning = show_warning

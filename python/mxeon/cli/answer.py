@@ -25,7 +25,7 @@ PICTURES = ("picture", "finite", "document")  # checks of documents
 def answer(run: Run) -> list[str]:
     """The lines of a run's short answer."""
     # The verdict, what did not run, and the documents.
-    lines = [one_line(run.summary.sentence), *_not_run(run)]
+    lines = [*map(one_line, (run.sentence, *run.origins)), *_not_run(run)]
     failures, notes = list(_failures(run)), new_notes(run)
     room = LINES - len(lines) - min(len(failures), FEWEST)
     many = len(run.contents) + len(run.refused) > MANY

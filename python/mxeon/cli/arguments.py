@@ -6,6 +6,7 @@ import itertools
 import os
 import sys
 from collections.abc import Callable, Iterable, Sequence
+from importlib import import_module
 from typing import Any, NoReturn
 
 from mxeon.errors import MISUSE, InputError, assert_known, one_line
@@ -14,7 +15,12 @@ from mxeon.names import meant
 from mxeon.shaders.document.policy import LIMITS, SEARCH_PATH, Policy, environment_path
 
 STATUS = "Exit status: 0 all passed, 1 a check failed, 2 misuse, 3 something did not run."
-LIBRARY = "eonlib (the default), stock, or a folder of MaterialX documents to load first"
+LIBRARY = (
+    "eonlib (the default), stock, or a folder: MaterialX's libraries or a part of them, which it replaces, "
+    "or others, which are loaded first"
+)
+
+MATERIALX = "MXEON_MATERIALX"  # names the folder of --materialx to processes of hosts
 
 Commands = Any  # what `add_subparsers` returns; argparse keeps its type private
 Run = Callable[[argparse.Namespace], int]
@@ -84,6 +90,42 @@ def add_full(command: argparse.ArgumentParser) -> None:
 def add_library(command: argparse.ArgumentParser) -> None:
     """Add --library, of which there may be one."""
     command.add_argument("--library", default="eonlib", metavar="NAME", help=LIBRARY)
+
+
+def add_materialx(command: argparse.ArgumentParser) -> None:
+    """Add --materialx."""
+    command.add_argument(
+        "--materialx",
+        type=_folder,
+        metavar="FOLDER",
+        help="use the build of MaterialX whose Python package, MaterialX/, is in FOLDER",
+    )
+
+
+def use_materialx(folder: str | None) -> None:
+    """Import MaterialX from a folder, here and in worker processes, unless it is None.
+
+    Raises
+    ------
+    InputError
+        If it is not there or cannot be imported, or another one was imported before.
+    """
+    if folder is None:
+        return
+    folder = os.path.abspath(folder)
+    rule = f"--materialx {folder}: must hold the package MaterialX/ of a build for this Python"
+    if not os.path.isfile(os.path.join(folder, "MaterialX", "__init__.py")):
+        raise InputError(f"{rule}; there is no MaterialX/__init__.py")
+    if known := sys.modules.get("MaterialX"):
+        raise InputError(
+            f"{rule}, the first that a process imports; it has imported {known.__file__}"
+        )
+    sys.path.insert(0, folder)
+    os.environ[MATERIALX] = folder
+    try:
+        import_module("MaterialX")
+    except ImportError as error:
+        raise InputError(f"{rule}; {error}") from None
 
 
 def add_workers(command: argparse.ArgumentParser) -> None:

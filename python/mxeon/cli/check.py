@@ -65,6 +65,7 @@ def add_parser(commands: arguments.Commands) -> None:
         metavar="SECONDS",
         help=f"how long the cluster may be without a compatible worker; {WAIT:g}",
     )
+    arguments.add_materialx(command)
     arguments.add_workers(command)
     arguments.add_policy(command, runs_code=True)
     arguments.add_full(command)
@@ -80,6 +81,11 @@ def run(options: argparse.Namespace) -> int:
     # Refuse what cannot be meant.
     if options.resume and not options.report:
         raise InputError("--resume needs the folder of the run to continue; pass --report DIR")
+    if options.scheduler and options.materialx:
+        raise InputError(
+            "--materialx reaches no machine of a --scheduler; start its workers with that package on "
+            "PYTHONPATH"
+        )
     hosts, nodes = options.host or ("gl",), options.node or ()
     refused: list[str] = []
 

@@ -22,7 +22,14 @@ def add_parser(commands: arguments.Commands) -> None:
     command.add_argument(
         "--report", metavar="RUN", help="the folder of a run, whose diagnoses can be chosen too"
     )
+    command.add_argument(
+        "--library",
+        default="stock",
+        metavar="NAME",
+        help="what the documents are shown with beside eonlib: stock (the default), or a folder",
+    )
     command.add_argument("--output", metavar="OUT", required=True, help="the .html file to write")
+    arguments.add_materialx(command)
     arguments.add_workers(command)
     arguments.add_policy(command, runs_code=True, shaders=MATERIALS)
 
@@ -36,7 +43,7 @@ def run(options: argparse.Namespace) -> int:
     arguments.assert_other(options.output, options.files)
     # Generate the shaders of the documents.
     results = read_run(options.report).results if options.report else ()
-    work = partial(document_sources, policy=arguments.policy(options))
+    work = partial(document_sources, policy=arguments.policy(options), library=options.library)
     documents = list(run_batch(work, options.files, options.workers, options.timeout))
     # Repeat each warning once.
     texts = (str(text) for each in documents for text in each.warnings)

@@ -30,6 +30,7 @@ def add_parser(commands: arguments.Commands) -> None:
     command.add_argument("--profile", metavar="NAME", help="cycles: osl for Blender's Cycles")
     command.add_argument("--outputPath", metavar="DIR", required=True, help="where to write")
     arguments.add_library(command)
+    arguments.add_materialx(command)
     arguments.add_workers(command)
     arguments.add_policy(command)
     arguments.add_json(command)

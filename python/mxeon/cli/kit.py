@@ -30,6 +30,8 @@ def add_parser(commands: arguments.Commands) -> None:
         help="BSDF node of the materials, with color and roughness; %(default)s",
     )
     arguments.add_definitions(export)
+    arguments.add_library(export)
+    arguments.add_materialx(export)
     # Add the action that judges pictures.
     check = arguments.add_command(actions, "check", "check the images in DIR/renders", run_check)
     check.add_argument("folder", metavar="DIR", help="the folder of the kit")
@@ -55,7 +57,7 @@ def run_export(options: argparse.Namespace) -> int:
     from mxeon.kit.export import export_kit, kit_node
     from mxeon.kit.noise import student_quantile
 
-    node = kit_node(options.node, arguments.definitions(options))
+    node = kit_node(options.node, arguments.definitions(options), options.library)
     print(export_kit(options.folder, options.size, node))
     try:
         student_quantile()

@@ -43,7 +43,7 @@ def run(options: argparse.Namespace) -> int:
         # Say how the library is loaded where it lies, with the profile that no copy has.
         _explain(eonlib_folder())
         own = f"{profile_folder('cycles')} {eonlib_folder()}"
-        print(f"Blender's Cycles      generateshader.py --library {own} --target osl FILE")
+        print(f"Blender's Cycles      generateshader --library {own} --target osl FILE")
     return PASSED
 
 

@@ -51,6 +51,7 @@ def add_parser(commands: arguments.Commands) -> None:
     )
     # Choose the library and the limits.
     arguments.add_library(command)
+    arguments.add_materialx(command)
     arguments.add_workers(command)
     arguments.add_policy(command, runs_code=True)
 

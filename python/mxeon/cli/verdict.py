@@ -55,7 +55,11 @@ def _print_all(run: Run) -> None:
         print(one_line(f"{result.verdict}: {where}: {_numbers(result)}"))
     for note in new_notes(run):
         print(printable(" ".join(f"note: {note}".split())))
-    print(printable(run.summary.sentence))
+    for folder, files in run.libraries.items():
+        for origin, names in files.items():
+            print(one_line(f"library {folder}: {origin}: {', '.join(names) or 'nothing'}"))
+    for line in (*run.origins, run.sentence):
+        print(printable(line))
 
 
 def _numbers(result: Result) -> str:

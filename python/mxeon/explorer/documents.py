@@ -35,8 +35,10 @@ RANGE = (("uimin", "uisoftmin"), ("uimax", "uisoftmax"))
 MEANT = {OREN_NAYAR: Models("eon", "qon"), EON: Models("eon", "eon")}
 
 
-def document_sources(file: str, policy: Policy = DEFAULT) -> tuple[ShaderSource, ...]:
-    """The materials of a document, each with eonlib and, where it can, with stock MaterialX.
+def document_sources(
+    file: str, policy: Policy = DEFAULT, library: str = LIBRARIES[1]
+) -> tuple[ShaderSource, ...]:
+    """The materials of a document, each with eonlib and, where it can, with another library.
 
     Parameters
     ----------
@@ -44,6 +46,8 @@ def document_sources(file: str, policy: Policy = DEFAULT) -> tuple[ShaderSource,
         A MaterialX document; its name becomes the heading of its materials.
     policy : Policy
         Permissions, limits and search path.
+    library : str
+        The other one; see `mxeon.shaders.library.load_library`.
 
     Returns
     -------
@@ -61,12 +65,12 @@ def document_sources(file: str, policy: Policy = DEFAULT) -> tuple[ShaderSource,
     # By element and by file, alike for both libraries.
     references: dict[str, ReferenceTable | None] = {}
     images: dict[str, Texels | None] = {}
-    for library in LIBRARIES:
+    for half, each in zip(LIBRARIES, (LIBRARIES[0], library), strict=True):
         # Generate with each library; a node may be in eonlib alone.
         try:
-            shaders = generate(file, "essl", library=library, lights=True, policy=policy)
+            shaders = generate(file, "essl", library=each, lights=True, policy=policy)
         except MxeonError:
-            if library == LIBRARIES[0]:
+            if half == LIBRARIES[0] or library != LIBRARIES[1]:
                 raise
             continue  # a node that stock MaterialX lacks
         # Read each image once, as large as the page has room for all of them.
@@ -77,9 +81,9 @@ def document_sources(file: str, policy: Policy = DEFAULT) -> tuple[ShaderSource,
         text = document_text(shaders[0].document) if shaders else ""  # one for all of them
         # Describe each shader to the page.
         for shader in shaders:
-            title = f"{shader.element}, {library}"
-            own = f"{shader.name}/{library}"
-            source = shader_source(shader, text, own, title, name, library, images)
+            title = f"{shader.element}, {Path(each).name.replace(',', ' ')}"
+            own = f"{shader.name}/{half}"
+            source = shader_source(shader, text, own, title, name, each, images)
             if shader.element not in references and len(references) < REFERENCES:
                 references[shader.element] = reference_of(shader)
             sources.append(replace(source, reference=references.get(shader.element)))

@@ -36,7 +36,8 @@ PICTURES = 64  # that are kept: the checks of a node ask for some of them again
 class DocumentHost(base.Host):
     """A renderer that reads documents, with a process for each library, one at a time, and a folder.
 
-    Beside the module of a host lies `worker.py`, which gets the folders of the libraries as arguments.
+    Beside the module of a host lies `worker.py`, which gets the folder whose `libraries` replace
+    MaterialX's own, or "", and those of the libraries that are loaded before these, as arguments.
 
     Parameters
     ----------
@@ -55,7 +56,7 @@ class DocumentHost(base.Host):
         self._python, self._limit = self._interpreter(), limit
         self._temporary = TemporaryDirectory(prefix=f"mxeon-{self.name}-")
         self._folder = Path(self._temporary.name)
-        self._folders: tuple[str, ...] = ()
+        self._folders: tuple[str, ...] = ("",)
         self.worker = self._worker()
         self._picture = lru_cache(maxsize=PICTURES)(self._drawn)
 
@@ -95,9 +96,10 @@ class DocumentHost(base.Host):
         self.refuse_shape(scene)
         if isinstance(scene.environment, (str, Path)):
             raise NotRun(f"{self.name}: environment must be uniform; got an image")
-        if shader.folders != self._folders:
+        folders = (shader.root, *shader.folders)
+        if folders != self._folders:
             self.worker.close()
-            self._folders = shader.folders
+            self._folders = folders
             self.worker = self._worker()
         blocks = self._needs_blocks(shader)
         return self._picture(*self._document(shader), scene, self._folders, blocks)

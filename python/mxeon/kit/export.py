@@ -46,8 +46,8 @@ class KitNode:
     flagged: bool = True
 
 
-def kit_node(category: str, definitions: tuple[str, ...] = ()) -> KitNode:
-    """A node of eonlib's, of MaterialX's or of folders of definitions, as the node of a kit.
+def kit_node(category: str, definitions: tuple[str, ...] = (), library: str = "eonlib") -> KitNode:
+    """A node of a library, of MaterialX's or of folders of definitions, as the node of a kit.
 
     Raises
     ------
@@ -55,12 +55,12 @@ def kit_node(category: str, definitions: tuple[str, ...] = ()) -> KitNode:
         If there is no BSDF node of that category with the inputs color and roughness.
     """
     needed = {"color": "color3", "roughness": "float"}
-    library = load_library("eonlib", None, definitions)
-    for each in library.getMatchingNodeDefs(category):
+    data = load_library(library, None, definitions)
+    for each in data.getMatchingNodeDefs(category):
         ports = {port.getName(): port.getType() for port in each.getActiveInputs()}
         if each.getType() == "BSDF" and needed.items() <= ports.items():
             return KitNode(category, each.getName(), ports.get(FLAG) == "boolean")
-    known = {each.getNodeString() for each in library.getNodeDefs() if each.getType() == "BSDF"}
+    known = {each.getNodeString() for each in data.getNodeDefs() if each.getType() == "BSDF"}
     remedy = meant(category, known - {category}) or ": load its definition by --definitions FOLDER"
     raise InputError(
         "node must be a BSDF with the inputs color (color3) and roughness (float); "

@@ -55,6 +55,7 @@ def to_json(run: Run) -> str:
         - missing: texts, the items that an interrupted run has not finished.
         - refused: texts, the documents that were refused; errors: texts, their faults.
         - version: of mxeon; software: name to version; documents: paths; notes: texts.
+        - libraries: by folder, its files under "folder", and under "MaterialX" those that complete it.
         - hosts: objects of name, version, device.
         - results: objects with the fields of `mxeon.conformance.results.Result`; control is null or an
           object of variant, figure, caught.
@@ -78,6 +79,7 @@ def to_json(run: Run) -> str:
         "software": run.software,
         "documents": [str(path) for path in run.documents],
         "notes": run.notes,
+        "libraries": run.libraries,
         "hosts": run.hosts,
         "results": run.results,
         "elsewhere": [

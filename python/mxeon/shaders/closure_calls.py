@@ -18,7 +18,8 @@ import MaterialX.PyMaterialXGenShader as mx_gen
 
 from mxeon.errors import InterfaceError
 from mxeon.shaders.generators import context_of, generated, generator_of
-from mxeon.shaders.library import load_library, standard_folders
+from mxeon.shaders.library import load_library
+from mxeon.shaders.library_tree import root, standard_folders
 
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 NODE = "asked"  # name of the node whose call is asked for
@@ -28,17 +29,7 @@ CLOSURES = {"BSDF": "bsdf", "EDF": "edf"}  # inputs of a surface, which calls wh
 def check_closure_calls(
     stage: mx_gen.ShaderStage, target: str, library: str, profile: str | None
 ) -> None:
-    """Raise InterfaceError unless a stage calls the functions of a library as they are defined.
-
-    Parameters
-    ----------
-    stage : MaterialX.PyMaterialXGenShader.ShaderStage
-        Of a generated shader; it knows the sources that it is made of.
-    target : str
-        The target it was generated for.
-    library, profile : str
-        See `mxeon.shaders.library.load_library`.
-    """
+    """Raise InterfaceError unless a generated stage calls the functions of a library as they are defined."""
     known = _functions(library, profile)
     for file in stage.getSourceDependencies():
         for nodedef, function in known.get(file, ()):
@@ -53,8 +44,10 @@ def check_closure_calls(
 
 @cache
 def _functions(library: str, profile: str | None) -> Mapping[str, list[tuple[str, str]]]:
-    """Nodedefs and functions of each source of a library, but for MaterialX's own."""
+    """Nodedefs and functions of each source of a library, but for MaterialX's own and those in their place."""
     functions: dict[str, list[tuple[str, str]]] = defaultdict(list)
+    if root(library):
+        return functions
     for each in load_library(library, profile).getImplementations():
         uri = each.getActiveSourceUri()
         if each.hasFile() and each.hasFunction() and not _is_standard(uri):
@@ -83,7 +76,7 @@ def _call(target: str, library: str, profile: str | None, nodedef: str, function
     document = mx.createDocument()
     document.setDataLibrary(load_library(library, profile))
     generator = generator_of(document, target, library, profile)
-    context = context_of(document, target, generator, False, ())
+    context = context_of(document, target, generator, library, False, ())
     text = generated(generator, NODE, _surface(document, nodedef), context).getSourceCode("pixel")
     calls = list(re.finditer(rf"(?<!void )\b{function}\(", text))
     return _arguments(text, calls[-1].end()) if calls else []

@@ -7,7 +7,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from mxeon.errors import InputError, ShaderError
-from mxeon.shaders.library import source_folder
+from mxeon.shaders.library import kind_of, source_folder
 
 LANGUAGES = ("glsl", "osl")
 FAMILY = "oren_nayar_family"
@@ -45,7 +45,7 @@ def source(language: str, stem: str = ALL, library: str = "eonlib") -> str:
 
 def has_functions(library: str, language: str = "glsl") -> bool:
     """Whether a library brings shader functions of its own: eonlib, or a folder beside them."""
-    return library != "stock" and _path(language, ALL, library).is_file()
+    return kind_of(library) != "stock" and _path(language, ALL, library).is_file()
 
 
 def twins(language: str, library: str) -> str:

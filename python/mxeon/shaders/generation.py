@@ -1,17 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Shader source from a MaterialX document, for every target that MaterialX has."""
 
+import os
 import re
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import partial
+from dataclasses import dataclass, field, replace
+from functools import cache, partial
 from types import MappingProxyType
 
 import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
 
-from mxeon.errors import DocumentError, assert_known
+from mxeon.errors import DocumentError, InterfaceError, assert_known
 from mxeon.io.files import AnyPath
 from mxeon.shaders.closure_calls import check_closure_calls
 from mxeon.shaders.document.labels import label
@@ -28,7 +29,8 @@ from mxeon.shaders.generators import (
     generator_of,
     tokens_of,
 )
-from mxeon.shaders.library import own_folders
+from mxeon.shaders.library import load_library, own_folders
+from mxeon.shaders.library_tree import in_words, root
 from mxeon.shaders.names import shader_names
 
 __all__ = [
@@ -51,17 +53,13 @@ CYCLES_APPROXIMATION = (
 # Calls of the Cycles profile's closure, whose last two arguments are the flag and the result.
 CYCLES_CALL = re.compile(r"\boren_nayar_diffuse_bsdf_cycles\([^;{]*?(\w+), *\w+\);")
 
+# Functions of MaterialX's own in a text.
+CALLED = re.compile(r"\b(mx_\w+)\s*\(")
+DEFINED = re.compile(r"(?:#define|\b(?!return\b|else\b)\w+)\s+(mx_\w+)")
+
 
 class ApproximationWarning(UserWarning):
-    """A shader whose renderer has only an approximation of a model.
-
-    Attributes
-    ----------
-    element : str
-        Name path of the renderable element.
-    approximation : str
-        The closure in use, and where it differs from the model.
-    """
+    """A shader whose renderer has only an approximation of a model, and where it differs from that."""
 
     def __init__(self, element: str, approximation: str) -> None:
         super().__init__(f"{element}: {approximation}")
@@ -111,6 +109,8 @@ class Shader:
         The checked document that it was generated from, with its data library.
     folders : tuple of str
         Folders of that library which are loaded before MaterialX's own.
+    root : str
+        Folder whose `libraries` replace MaterialX's own; "" for the installed ones.
     """
 
     name: str
@@ -120,6 +120,7 @@ class Shader:
     inputs: tuple[Input, ...]
     document: mx.Document = field(repr=False, compare=False)
     folders: tuple[str, ...] = ()
+    root: str = ""
 
 
 def generate(
@@ -191,27 +192,56 @@ def generate(
     """
     # Read and check the document.
     assert_known("target", target, TARGETS)
+    if os.path.isdir(library) and root(library):
+        check_generator(library, target)
     checked = read_document(document, library, profile, policy)
     content, names = checked.content, shader_names(checked.renderables)
     # Generate each shader.
     generator = generator_of(content, target, library, profile, policy.definitions)
-    context = context_of(content, target, generator, lights, policy.path)
+    context = context_of(content, target, generator, library, lights, policy.path)
     elements = _select(checked.renderables, element)
     tokens = partial(tokens_of, target, library, profile)
-    folders = (*policy.definitions, *own_folders(library, profile))
+    folders = (*policy.definitions, *own_folders(library))
     with copied_sources(content, context, policy, tokens) as sources:
         sources.check_limit(len(elements), checked.nodes)
         shaders = []
         for each in elements:
-            source = _generate(content, each, names[each.getNamePath()], target, context, sources)
+            name = names[each.getNamePath()]
+            source = _generate(content, each, name, target, context, sources, library)
             check_closure_calls(source.getStage("pixel"), target, library, profile)
-            shaders.append(_shader(source, each.getNamePath(), target, content, folders))
+            text = _shader(source, each.getNamePath(), target, content)
+            shaders.append(replace(text, folders=folders, root=root(library)))
     # Warn of what the shaders lack.
     warn_of_files(_files(shaders), content)
     warn_of_names(elements, content)
     if profile == "cycles" and target == "osl":
         _warn_of_approximation(shaders)
     return tuple(shaders)
+
+
+@cache
+def check_generator(library: str, target: str) -> None:
+    """Raise InterfaceError unless the generator of a target can use a library in MaterialX's place."""
+    document = mx.createDocument()
+    document.setDataLibrary(load_library(library))
+    surface = document.addNode("surface", "surface", "surfaceshader")
+    lobe = document.addNode("oren_nayar_diffuse_bsdf", "lobe", "BSDF")
+    surface.addInput("bsdf", "BSDF").setConnectedNode(lobe)
+    generator = generator_of(document, target, library, None)
+    try:
+        context = context_of(document, target, generator, library, True, ())
+        shader = generated(generator, "surface", surface, context)
+        stages = () if target in ("osl", "mdl") else filter(shader.hasStage, STAGES)
+        text = "\n".join(map(shader.getSourceCode, stages))
+        missing = {*CALLED.findall(text)} - {*DEFINED.findall(text)}
+        reason = f"it has no {min(missing)}, which {target} calls" if missing else ""
+    except (mx.Exception, LookupError) as error:
+        reason = in_words(library, str(error).strip().splitlines()[0])
+    if reason:
+        raise InterfaceError(
+            f"library {library}: cannot be combined with the generator of MaterialX "
+            f"{mx.getVersionString()}; {reason}: name the build that it belongs to by --materialx"
+        )
 
 
 def _select(elements: Sequence[mx.TypedElement], name: str | None) -> Sequence[mx.TypedElement]:
@@ -231,12 +261,13 @@ def _generate(
     target: str,
     context: mx_gen.GenContext,
     sources: Sources,
+    library: str,
 ) -> mx_gen.Shader:
     path, generator = element.getNamePath(), context.getShaderGenerator()
     try:
         return generated(generator, name, element, context)
     except (mx.Exception, LookupError) as error:
-        reason = sources.in_words(str(error).strip().splitlines()[0])
+        reason = in_words(library, sources.in_words(str(error).strip().splitlines()[0]))
         if "nodedef" in reason:
             reason += ": load further definitions by --definitions FOLDER"
         raise DocumentError(
@@ -244,13 +275,11 @@ def _generate(
         ) from None
 
 
-def _shader(
-    source: mx_gen.Shader, path: str, target: str, document: mx.Document, folders: tuple[str, ...]
-) -> Shader:
+def _shader(source: mx_gen.Shader, path: str, target: str, document: mx.Document) -> Shader:
     stages = {stage: source.getSourceCode(stage) for stage in STAGES if source.hasStage(stage)}
     inputs = _inputs(source, document)
     text = MappingProxyType(stages)
-    return Shader(source.getName(), path, target, text, inputs, document, folders)
+    return Shader(source.getName(), path, target, text, inputs, document)
 
 
 def _inputs(shader: mx_gen.Shader, document: mx.Document) -> tuple[Input, ...]:

@@ -11,6 +11,7 @@ import MaterialX.PyMaterialXGenShader as mx_gen
 
 from mxeon.io.words import lines_left_out
 from mxeon.shaders.library import LOADED, load_library
+from mxeon.shaders.library_tree import search_path
 from mxeon.shaders.targets import CLASSES
 
 GENERATORS: dict[str, type[mx_gen.ShaderGenerator]] = {}
@@ -29,16 +30,7 @@ def generator_of(
     profile: str | None,
     definitions: tuple[str, ...] = (),
 ) -> mx_gen.ShaderGenerator:
-    """A generator that knows a document's types, shared by all documents without their own.
-
-    Parameters
-    ----------
-    document : MaterialX.Document
-    target : str
-        One of TARGETS.
-    library, profile, definitions
-        See `mxeon.shaders.library.load_library`.
-    """
+    """A generator that knows a document's types, shared by all documents without their own."""
     if not any(each.isA(mx.TypeDef) for each in document.getChildren()):
         return _library_generator(target, library, profile, definitions)
     generator = _new_generator(target, library, profile, definitions)
@@ -76,25 +68,17 @@ def context_of(
     document: mx.Document,
     target: str,
     generator: mx_gen.ShaderGenerator,
+    library: str,
     lights: bool,
     path: Iterable[str],
 ) -> mx_gen.GenContext:
     """A context for one document only, as it keeps implementations by name.
 
-    Parameters
-    ----------
-    document : MaterialX.Document
-        With its data library.
-    target : str
-        One of TARGETS.
-    generator : MaterialX.PyMaterialXGenShader.ShaderGenerator
-    lights : bool
-        Whether MaterialX's directional light is bound, as light type 1, if the target has lights.
-    path : iterable of str
-        Folders of source files, after MaterialX's own.
+    With `lights` MaterialX's directional light is bound, as light type 1, if the target has lights. `path` has
+    folders of source files, after those of the library.
     """
     context = mx_gen.GenContext(generator)
-    context.registerSourceCodeSearchPath(mx.getDefaultDataSearchPath())
+    context.registerSourceCodeSearchPath(search_path(library))
     for folder in path:
         context.registerSourceCodeSearchPath(mx.FilePath(folder))
     context.getOptions().targetDistanceUnit = "meter"
@@ -122,5 +106,6 @@ def tokens_of(target: str, library: str, profile: str | None) -> Mapping[str, st
     document.setDataLibrary(load_library(library, profile))
     generator = generator_of(document, target, library, profile)
     surface = document.addNode("surface", "surface", "surfaceshader")
-    generated(generator, "surface", surface, context_of(document, target, generator, False, ()))
+    context = context_of(document, target, generator, library, False, ())
+    generated(generator, "surface", surface, context)
     return dict(generator.getTokenSubstitutions())

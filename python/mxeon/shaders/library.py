@@ -17,13 +17,21 @@ from mxeon.errors import InputError, LibraryError, assert_known
 from mxeon.io.files import AnyPath
 from mxeon.names import meant
 from mxeon.shaders.library_files import check_definitions, check_files, check_sources, read_options
+from mxeon.shaders.library_tree import (
+    DOCUMENT,
+    FILES,
+    LIBRARIES,
+    OVERLAY,
+    PART,
+    in_words,
+    root,
+    search_path,
+    tree,
+)
 from mxeon.shaders.versions import UntestedVersionWarning, check_version, untested
 
 SOURCE_FOLDERS = ("genglsl", "genosl")
-SOURCES = (".mtlx", ".glsl", ".osl")  # endings of the files that a library is made of
 
-# eonlib as a whole, its diffuse nodes alone, and MaterialX as it comes.
-LIBRARIES = ("eonlib", "diffuse", "stock")
 PROFILES = ("cycles",)
 LOADED = 16  # libraries that a process keeps, of some 10 MB each
 
@@ -33,17 +41,7 @@ TARGETS = ("genglsl", "essl", "genmsl", "genslang", "genosl", "genmdl")
 
 @dataclass(frozen=True)
 class Implementation:
-    """The implementation that MaterialX chooses for a node on a target.
-
-    Attributes
-    ----------
-    node, target : str
-        Name of the nodedef and of the target.
-    name : str
-        Name of the implementation element, or "" if there is none.
-    document : str
-        The file that it comes from.
-    """
+    """The implementation that MaterialX chooses for a nodedef on a target, and its file; "" for none."""
 
     node: str
     target: str
@@ -69,6 +67,23 @@ def eonlib_folder() -> Path:
     return data_folder() / "eonlib"
 
 
+@cache
+def kind_of(library: str) -> str:
+    """The one of LIBRARIES that a library is or holds a copy of, as far as its documents go, or OVERLAY.
+
+    A folder that takes the place of MaterialX's own libraries, or of a part of them, is "stock".
+    """
+    if library in LIBRARIES:
+        return library
+    if tree(library).kind != OVERLAY:
+        return "stock"
+    for name, folder in (("eonlib", eonlib_folder()), ("diffuse", eonlib_folder() / "diffuse")):
+        documents = {path.relative_to(folder).as_posix() for path in folder.rglob("*.mtlx")}
+        if documents == {path for path in tree(library).own if path.endswith(DOCUMENT)}:
+            return name
+    return OVERLAY
+
+
 def source_folder(library: str) -> Path:
     """Folder that holds the shader functions of a library: its own, or of a part, the whole's."""
     folder = eonlib_folder() if library in LIBRARIES else Path(library)
@@ -83,15 +98,26 @@ def library_folders(library: str) -> list[Path]:
     return [Path(library), *(folder for folder in beside if folder.is_dir())]
 
 
-def profile_folder(profile: str, library: str = "eonlib") -> Path:
-    """Folder of a profile's MaterialX documents, to be loaded before the library's."""
-    home = data_folder() if library in LIBRARIES else Path(library).parent
-    return home / "profiles" / profile
+def profile_folder(profile: str) -> Path:
+    """Folder of the MaterialX documents of a profile of eonlib, to be loaded before it."""
+    return data_folder() / "profiles" / profile
+
+
+def profile_documents(library: str, profile: str) -> list[Path]:
+    """MaterialX documents of a profile, to be loaded before a library's.
+
+    A copy has them inside, with the ending .xml: whatever loads all of a folder leaves them out.
+    """
+    if kind_of(library) == "stock":
+        return []
+    homes = [data_folder()] if library in LIBRARIES else [Path(library), Path(library).parent]
+    found = [sorted((home / "profiles" / profile).glob("*.[mx]*l*")) for home in homes]
+    return next(filter(None, found), [])
 
 
 def has_profile(library: str, profile: str) -> bool:
     """Whether a library has implementations of its own for a profile."""
-    return library != "stock" and profile_folder(profile, library).is_dir()
+    return bool(profile_documents(library, profile))
 
 
 def examples_folder() -> Path:
@@ -99,25 +125,12 @@ def examples_folder() -> Path:
     return data_folder() / "examples"
 
 
-def standard_folders() -> list[Path]:
-    """Folders of MaterialX's own data libraries."""
-    paths = mx.getDefaultDataSearchPath().asString().split(mx.PATH_LIST_SEPARATOR)
-    return [Path(path, name) for path in paths for name in mx.getDefaultDataLibraryFolders()]
-
-
-def own_folders(library: str, profile: str | None = None) -> list[str]:
-    """Folders that are loaded before MaterialX's own, in order: the profile's, the library's."""
-    library = library_name(library)
-    if profile is not None:
-        assert_known("profile", profile, PROFILES)
-    folders = {
-        "eonlib": [eonlib_folder()],
-        "diffuse": [eonlib_folder() / "diffuse"],
-        "stock": [],
-    }.get(library, [Path(library)])
-    if profile is not None and has_profile(library, profile):
-        folders.insert(0, profile_folder(profile, library))
-    return [str(folder) for folder in folders]
+def own_folders(library: str) -> list[str]:
+    """Folders that are loaded before MaterialX's own."""
+    if library in LIBRARIES:
+        ours = {"eonlib": eonlib_folder(), "diffuse": eonlib_folder() / "diffuse"}
+        return [str(ours[library])] if library in ours else []
+    return [] if root(library) else [os.path.abspath(library)]
 
 
 def library_name(library: str | os.PathLike[str]) -> str:
@@ -126,8 +139,8 @@ def library_name(library: str | os.PathLike[str]) -> str:
     Raises
     ------
     InputError
-        If it is neither a name nor a folder that holds MaterialX documents, or a file of it is no
-        text in UTF-8.
+        If it is neither a name nor a folder that holds MaterialX documents or replaces some of
+        MaterialX's files, if it cannot be combined with these, or a file of it is no text in UTF-8.
     OSError
         If one cannot be read.
     """
@@ -136,9 +149,15 @@ def library_name(library: str | os.PathLike[str]) -> str:
     rule = (
         f"library must be one of {', '.join(LIBRARIES)}, or a folder that holds MaterialX documents"
     )
-    documents = _documents(library, rule, meant(library, LIBRARIES))
+    if not os.path.isdir(library):
+        raise InputError(f"{rule}; got {str(library)!r}{meant(library, LIBRARIES)}")
     library = os.path.abspath(library)
-    check_files([*documents, *_sources(library)])
+    known = tree(library)
+    if known.kind == OVERLAY:
+        profiles = [file for each in PROFILES for file in profile_documents(library, each)]
+        check_files([*_documents(library, rule), *_sources(library), *profiles])
+    else:
+        check_files(os.path.join(library, path) for path in known.own)
     return library
 
 
@@ -148,7 +167,7 @@ def _sources(library: str) -> list[Path]:
         path
         for folder in library_folders(library)[1:]
         for path in sorted(folder.rglob("*.*"))
-        if path.suffix in SOURCES and not path.is_dir()
+        if path.suffix in FILES and not path.is_dir()
     ]
 
 
@@ -162,8 +181,8 @@ def load_library(
     Parameters
     ----------
     library : str
-        "eonlib", "stock" for MaterialX as it comes, or a folder of MaterialX documents, which are
-        loaded before the standard libraries.
+        "eonlib", "stock" for MaterialX as it comes, or a folder: MaterialX's libraries or a part of
+        them, which it replaces, or others, which are loaded first; see `mxeon.shaders.library_tree`.
     profile : str or None
         "cycles" for the OSL implementations that eonlib has for Blender's Cycles.
     definitions : tuple of str
@@ -197,29 +216,44 @@ def load_library(
 def read_library(library: str, profile: str | None, definitions: tuple[str, ...]) -> mx.Document:
     """As `load_library`: the cache would take an argument that is left out for another."""
     check_version()
+    if profile is not None:
+        assert_known("profile", profile, PROFILES)
     if note := untested(mx.getVersionString()):
         warnings.warn(UntestedVersionWarning(note), stacklevel=3)
     # Load the folders.
+    library = library_name(library)
     document = mx.createDocument()
     for folder in definitions:
         check_files(_documents(folder, f"definitions {folder}: must hold MaterialX documents"))
+    path, options = search_path(library), read_options()
     try:
-        mx.loadLibraries(
-            [*definitions, *own_folders(library, profile), *mx.getDefaultDataLibraryFolders()],
-            mx.getDefaultDataSearchPath(),
-            document,
-            readOptions=read_options(),
-        )
+        if definitions:  # for none MaterialX loads everything
+            mx.loadLibraries(list(definitions), path, document, readOptions=options)
+        for file in _first(library, profile):  # within a folder MaterialX sorts nothing
+            mx.loadLibrary(mx.FilePath(str(file)), document, path, options)
+        folders = [*own_folders(library), *mx.getDefaultDataLibraryFolders()]
+        mx.loadLibraries(folders, path, document, readOptions=options)
     except (mx.Exception, mx.ExceptionParseError, LookupError) as error:
-        raise InputError(f"{' '.join(('library', library, *definitions))}: {error}") from None
+        reason = in_words(library, str(error))
+        raise InputError(f"{' '.join(('library', library, *definitions))}: {reason}") from None
     # Check what is not MaterialX's own.
     if library not in LIBRARIES:
-        check_sources(document, library_name(library))
+        check_sources(document, root(library) or library, path)
     if definitions:
-        check_definitions(document, load_library(library, profile), definitions)
+        check_definitions(document, load_library(library, profile), definitions, path)
     if library in ("eonlib", "diffuse"):
         assert_ours(document, library, profile)
     return document
+
+
+def _first(library: str, profile: str | None) -> list[Path]:
+    """Documents of a profile, or of a part in the tree that it is loaded from."""
+    if profile and has_profile(library, profile):
+        return profile_documents(library, profile)
+    if library in LIBRARIES or tree(library).kind != PART:
+        return []
+    home = Path(root(library), "libraries", tree(library).place)
+    return [home / each for each in tree(library).own if each.endswith(DOCUMENT)]
 
 
 def _documents(folder: AnyPath, rule: str, remedy: str = "") -> list[Path]:
@@ -235,18 +269,8 @@ def implementations(
 ) -> tuple[Implementation, ...]:
     """Implementations that a document and its data library have of all that eonlib ships.
 
-    Parameters
-    ----------
-    document : MaterialX.Document
-    library : str
-        "eonlib", or "diffuse" for what its diffuse part ships.
-    profile : str or None
-        Ships more.
-
-    Returns
-    -------
-    tuple of Implementation
-        One for each nodedef of eonlib's documents on each target that they implement it for.
+    One for each nodedef of the documents of "eonlib" or "diffuse", and of a profile's, on each target that
+    they implement it for.
     """
     data = document.getDataLibrary() or document
     return tuple(
@@ -260,7 +284,9 @@ def implementations(
 def _shipped(library: str, profile: str | None) -> tuple[tuple[str, str], ...]:
     """Nodedefs and targets of the implementations in eonlib's documents; "" for every target."""
     document = mx.createDocument()
-    mx.loadLibraries(own_folders(library, profile), mx.FileSearchPath(), document)
+    for file in profile_documents(library, profile) if profile else ():
+        mx.loadLibrary(mx.FilePath(str(file)), document)
+    mx.loadLibraries(own_folders(library), mx.FileSearchPath(), document)
     elements = (*document.getImplementations(), *document.getNodeGraphs())
     pairs = ((each.getNodeDefString(), each.getTarget()) for each in elements)
     return tuple(dict.fromkeys(pair for pair in pairs if pair[0]))

@@ -10,13 +10,15 @@ from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 import mxeon
 from mxeon.errors import InputError
 from mxeon.io.files import TEMPORARY, AnyPath, naming, replacing
-from mxeon.shaders.library import SOURCES, data_folder, eonlib_folder
+from mxeon.shaders.library import data_folder, eonlib_folder, profile_folder
+from mxeon.shaders.library_tree import FILES
 
 README = """eonlib {version}, a MaterialX data library.
 
 Load this folder, FOLDER below, before the libraries of MaterialX, which ignores later definitions of a
 name. FOLDER/diffuse can be loaded alone; it changes rough diffuse nodes only. MaterialX must be 1.39.3 or
-later. Blender's Cycles needs a profile, which comes with mxeon alone: mxeon generate --profile cycles.
+later. Blender's Cycles needs other implementations: they lie in FOLDER/profiles, named .xml so that they are
+loaded by mxeon alone: mxeon generate --library FOLDER --profile cycles.
 
 {recipes}
 
@@ -25,7 +27,7 @@ License: Apache-2.0, see LICENSE.
 CLIENTS = {
     "Python": 'mx.loadLibraries(["{}", "libraries"], mx.getDefaultDataSearchPath(), library)',
     "C++": 'mx::loadLibraries({{"{}", "libraries"}}, mx::getDefaultDataSearchPath(), library);',
-    "generateshader": "generateshader.py --library {} --target glsl FILE",
+    "generateshader": "generateshader --library {} --target glsl FILE",
     "MaterialX's viewer": "MaterialXView --library {}",
     "USD": "export PXR_MTLX_PLUGIN_SEARCH_PATHS={}",
 }
@@ -68,8 +70,11 @@ def export_library(path: AnyPath) -> Path:
 def _content() -> dict[str, bytes]:
     """Files of the copy, by their paths in it."""
     data, library = data_folder(), eonlib_folder()
-    files = [path for path in sorted(library.rglob("*.*")) if path.suffix in SOURCES]
+    files = [path for path in sorted(library.rglob("*.*")) if path.suffix in FILES]
     content = {path.relative_to(library).as_posix(): path.read_bytes() for path in files}
+    for path in sorted(profile_folder("cycles").glob("*.mtlx")):
+        text = path.read_text(encoding="utf-8").replace('"../../eonlib/', '"../../')
+        content[f"profiles/cycles/{path.stem}.xml"] = text.encode()
     text = README.format(version=mxeon.__version__, recipes=recipes("FOLDER"))
     return content | {"LICENSE": (data / "LICENSE").read_bytes(), "README.txt": text.encode()}
 

@@ -25,18 +25,13 @@ def check_files(paths: Iterable[AnyPath]) -> None:
         _text(path)
 
 
-def check_sources(document: mx.Document, library: str) -> None:
-    """Check every source that the implementations of a library name, and all that it includes.
+def check_sources(document: mx.Document, library: str, search: mx.FileSearchPath) -> None:
+    """Check every source that a library's implementations in a document name, and all that it includes.
 
-    Parameters
-    ----------
-    document : MaterialX.Document
-        Into which the library was loaded.
-    library : str
-        Its folder.
+    The library is given by its folder; MaterialX's own sources are looked for on the search path.
     """
     # The sources that the library's own implementations name.
-    search, folder = mx.getDefaultDataSearchPath(), Path(library)
+    folder = Path(library)
     parents = cache(lambda uri: Path(uri).parents)  # of few documents, for many implementations
     waiting = [
         (each.getFile(), parents(uri)[0])
@@ -87,10 +82,12 @@ def _find(search: mx.FileSearchPath, name: str, local: Path) -> str:
     return str(path.find(name).getNormalized().asString())
 
 
-def check_definitions(document: mx.Document, base: mx.Document, folders: Iterable[str]) -> None:
+def check_definitions(
+    document: mx.Document, base: mx.Document, folders: Iterable[str], search: mx.FileSearchPath
+) -> None:
     """Raise InputError if folders of definitions replace names or implementations of a library."""
     for folder in folders:
-        check_sources(document, folder)
+        check_sources(document, folder, search)
         for each in document.getChildren():
             file = each.getActiveSourceUri()
             if Path(folder) in Path(file).parents and _replaces(each, base):

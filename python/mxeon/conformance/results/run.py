@@ -9,7 +9,7 @@ from pathlib import Path
 
 from mxeon.conformance.results.pictures import AlbedoCurve, Picture, image_names
 from mxeon.conformance.results.result import FAILED, Result
-from mxeon.conformance.results.summary import Summary, summarize
+from mxeon.conformance.results.summary import Summary, counted, summarize
 from mxeon.hosts.base import Identity
 
 
@@ -40,6 +40,9 @@ class Run:
         name them.
     missing : tuple of str
         Tasks that are not done yet, where the run was interrupted.
+    libraries : dict of str to dict of str to tuple of str
+        By folder that was judged as a library: its files, under "folder", and those of MaterialX that
+        complete it, under "MaterialX", unless it is loaded before all of them.
     """
 
     version: str
@@ -54,6 +57,7 @@ class Run:
     contents: dict[str, tuple[str, ...]] = field(default_factory=dict)
     missing: tuple[str, ...] = ()
     unreached: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
+    libraries: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
 
     @cached_property
     def summary(self) -> Summary:
@@ -82,6 +86,27 @@ class Run:
             result.verdict == FAILED
             and bool(shown)
             and all(any(region.endswith(name) for name in names) for names in shown)
+        )
+
+    @property
+    def sentence(self) -> str:
+        """The verdict, and the MaterialX that was judged, with its folder if it is not the installed one."""
+        version, folder = (self.software.get(name) for name in ("MaterialX", "MaterialX folder"))
+        judged = f" MaterialX {version}{f', of {folder}' if folder else ''}." if version else ""
+        return self.summary.sentence + judged
+
+    @property
+    def origins(self) -> tuple[str, ...]:
+        """For each folder judged as a library, how many files are its own and how many MaterialX's."""
+        return tuple(
+            f"library {folder}: {counted(len(files['folder']), 'file')} of the folder, "
+            + (
+                f"{len(files['MaterialX']) or 'none'} of"
+                if "MaterialX" in files
+                else "loaded before"
+            )
+            + f" MaterialX {self.software['MaterialX']}"
+            for folder, files in self.libraries.items()
         )
 
     @cached_property

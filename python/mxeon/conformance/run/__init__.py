@@ -16,13 +16,15 @@ from mxeon.conformance.run.plan import make_plan
 from mxeon.conformance.run.selection import assert_known_names
 from mxeon.conformance.run.survey import survey_documents
 from mxeon.conformance.run.tasks import Findings, Plan, Task
-from mxeon.errors import InputError, NotRun
-from mxeon.hosts import HOSTS
+from mxeon.errors import InputError, InterfaceError, NotRun
+from mxeon.hosts import HOSTS, host_row
 from mxeon.jobs import cluster, dask, pool
 from mxeon.jobs.attempts import by_group
 from mxeon.jobs.timeouts import TIMEOUT, WAIT, check_timeout
 from mxeon.shaders.document.policy import DEFAULT, Policy
+from mxeon.shaders.generation import TARGETS, check_generator
 from mxeon.shaders.library import library_name
+from mxeon.shaders.library_tree import root
 from mxeon.shaders.versions import untested
 
 __all__ = ["check", "read_run", "to_run", "work"]
@@ -104,6 +106,12 @@ def check(
     assert_known_names(hosts, nodes)
     files = documents_in(files)
     libraries = tuple(dict.fromkeys(map(library_name, libraries)))
+    for library in filter(root, libraries):
+        for target in {host_row(host).target for host in hosts} & {*TARGETS}:
+            try:
+                check_generator(library, target)
+            except InterfaceError as reason:  # nothing would run
+                raise InputError(str(reason)) from None
     _check_work(workers, timeout)
     survey = survey_documents(list(map(str, files)), libraries, policy, workers, timeout)
     for lines in survey.refused.values():
@@ -177,6 +185,7 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
         contents=planned.contents,
         unreached=planned.unreached,
         documents=tuple(map(Path, planned.documents)),
+        libraries=planned.libraries,
         missing=tuple(
             str(task) for number, task in enumerate(planned.tasks) if number not in findings
         ),

@@ -21,12 +21,11 @@ from mxeon.shaders.document.encoding import decode, strict
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.references import inside
 from mxeon.shaders.library import (
-    LIBRARIES,
     data_folder,
     eonlib_folder,
     library_folders,
-    standard_folders,
 )
+from mxeon.shaders.library_tree import LIBRARIES, standard_folders
 
 INCLUDE, NAMING = "href", ("value", "file", "href")  # attributes
 # A part of a file's name that is filled in later: <UDIM>, [token], {frame}.
@@ -38,20 +37,9 @@ def digests(
 ) -> dict[str, str]:
     """SHA-256 of every file that findings on documents depend on.
 
-    Parameters
-    ----------
-    documents : sequence of path-like
-    policy : Policy
-        Files that a document may not name are not looked at.
-    libraries : sequence of str
-        Of which folders are looked through; see `mxeon.shaders.library.load_library`.
-
-    Returns
-    -------
-    dict of str to str
-        By path: the documents, what they include and name; by names that begin with "mxeon",
-        "eonlib" or "MaterialX": the code and the data libraries. "" for a document that is no
-        regular file or cannot be read.
+    By path: the documents, what they include and name as far as the policy permits, and what lies in folders of
+    libraries; by names that begin with "mxeon", "eonlib" or "MaterialX": the code and the data libraries. ""
+    for what is no regular file or cannot be read.
     """
     found = {}
     for document in documents:

@@ -3,6 +3,7 @@
 
 import os
 import platform
+import sysconfig
 from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
@@ -55,11 +56,12 @@ from mxeon.hosts import HOSTS, host_row
 from mxeon.shaders.document.policy import DEFAULT, LIMITS, Policy
 from mxeon.shaders.functions import has_functions
 from mxeon.shaders.library import (
-    LIBRARIES,
     examples_folder,
+    kind_of,
     library_name,
     load_library,
 )
+from mxeon.shaders.library_tree import LIBRARIES, origins
 from mxeon.shaders.nodes import INVERSIONS
 
 EMPTY = Survey()
@@ -137,6 +139,7 @@ def make_plan(
         contents={file: survey.nodes.get(file, ()) for file in documents} if files else {},
         unreached=survey.unreached if files and not nodes else {},
         refused=survey.refused,
+        libraries={each: origins(each) for each in libraries if each not in LIBRARIES},
         options=_options(policy),
         files=_files(documents, policy, libraries) if resumable else {},
     )
@@ -204,9 +207,9 @@ def _on_host(
         if not left and (everywhere or _is_judged(each, library)):
             yield from _checks_of(each, probe, host, library)
     if row.surfaces:
+        kind = kind_of(library) if kind_of(library) in LIBRARIES else "eonlib"
         for surface in SURFACES:
-            own = library if library in LIBRARIES else "eonlib"
-            if everywhere or own in (surface.libraries or LIBRARIES):
+            if everywhere or kind in (surface.libraries or LIBRARIES):
                 yield from _checks_of(surface, probe, host, library)
     if row.scenes:
         yield from (Task(PICTURE, str(file), host, library) for file in files)
@@ -217,12 +220,13 @@ def _is_renderers(target: str, library: str) -> bool:
 
     Where pictures show it, the renderer's closures are judged with the stock library alone.
     """
-    return target == "osl" and library in LIBRARIES and library != "stock"
+    return target == "osl" and kind_of(library) in ("eonlib", "diffuse")
 
 
 def _is_judged(subject: Subject, library: str) -> bool:
     """Whether a node is judged with a library: one that no library of ours repairs, with stock."""
-    return library not in LIBRARIES or library in (subject.libraries or LIBRARIES)
+    kind = kind_of(library)
+    return kind not in LIBRARIES or kind in (subject.libraries or LIBRARIES)
 
 
 def _native(host: str) -> Iterator[Task]:
@@ -241,11 +245,18 @@ def _checks_of(subject: Subject, own: type[Probe], host: str, library: str) -> I
             yield Task(check.key, subject.title, host, library)
 
 
+def _folder_of_materialx() -> dict[str, str]:
+    """The folder of a MaterialX that is not the installed one."""
+    folder = str(Path(mx.__file__).parents[1])
+    return {} if folder in sysconfig.get_paths().values() else {"MaterialX folder": folder}
+
+
 def _software() -> dict[str, str]:
     """Versions of the packages, as the modules have them: a build from source has no metadata."""
     return {
         "Python": platform.python_version(),
         "MaterialX": mx.getVersionString(),
+        **_folder_of_materialx(),
         "numpy": np.__version__,
         "OpenImageIO": oiio.__version__,
         "moderngl": moderngl.__version__,  # type: ignore[attr-defined]

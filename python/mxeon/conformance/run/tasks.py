@@ -63,6 +63,8 @@ class Plan:
         For each document, by title of a node, the regions that its inputs are not in.
     refused : dict of str to tuple of str
         Documents that cannot be read; as of `mxeon.conformance.results.Run`.
+    libraries : dict of str to dict of str to tuple of str
+        As those of `mxeon.conformance.results.Run`.
     """
 
     version: str
@@ -74,6 +76,7 @@ class Plan:
     contents: dict[str, tuple[str, ...]] = field(default_factory=dict)
     unreached: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
     refused: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    libraries: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,6 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TypeAlias
 
-import MaterialX as mx
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -22,6 +21,7 @@ from mxeon.errors import ImageError, InputError, NotRun, ShaderError
 from mxeon.hosts.base import Array, Identity, Inputs
 from mxeon.hosts.cycles import calls, closures, graphs, pairs, tracing
 from mxeon.hosts.cycles.process import interpreter
+from mxeon.hosts.osl.texts import with_header
 from mxeon.hosts.pairs import PairHost
 from mxeon.hosts.process import Worker
 from mxeon.io.images import read_image
@@ -114,7 +114,7 @@ class Host(PairHost):
         self.refuse_shape(scene)
         if isinstance(scene.environment, (str, Path)):
             raise NotRun("cycles: environment must be uniform; got an image")
-        text = _on_sphere(shader.stages["pixel"])
+        text = _on_sphere(with_header(shader.stages["pixel"], shader))
         return self._picture(scene, inner_lobes(shader), text=text)
 
     def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
@@ -138,7 +138,7 @@ class Host(PairHost):
                 shader, wo, wi, inputs, branch, output=output, irradiance=irradiance
             )
         source, arguments = graphs.graph_function(shader, inputs)
-        return self.execute(_with_header(source), graphs.FUNCTION, *arguments)
+        return self.execute(with_header(source, shader), graphs.FUNCTION, *arguments)
 
     def _pixels(
         self, shader: Shader, wo: Array, wi: Array, inputs: Inputs, last: str, light: str
@@ -147,7 +147,7 @@ class Host(PairHost):
         with self._folder() as name:
             folder = Path(name)
             text, frame, scale = pairs.request(folder, shader, wo, wi, inputs, last, light)
-            pixels = self._render(folder, _with_header(text), **frame)
+            pixels = self._render(folder, with_header(text, shader), **frame)
         return np.asarray(pixels.reshape(-1, 3)[: len(wo)].astype(np.float64) / scale)
 
     def blender_node(self, kind: str, inputs: Mapping[str, Socket], scene: Scene) -> Array:
@@ -273,13 +273,7 @@ class Host(PairHost):
             raise NotRun(f"cycles: Blender wrote no picture that can be read; {error}") from None
 
 
-def _with_header(text: str) -> str:
-    """A generated text with the path of its include."""
-    header = mx.getDefaultDataSearchPath().find("libraries/stdlib/genosl/include/mx_funcs.h")
-    return text.replace('"mx_funcs.h"', f'"{header.asString()}"')
-
-
 def _on_sphere(text: str) -> str:
-    """A generated shader with the path of its include and the sphere's texture coordinates."""
-    head, brace, body = _with_header(text).rpartition("\n)\n{\n")
+    """A generated shader with the sphere's texture coordinates."""
+    head, brace, body = text.rpartition("\n)\n{\n")
     return head + brace + TEXCOORD + body + "}"

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The half of the `materialx` host in which MaterialX's renderer runs, started by its path.
 
-Its arguments are the folders of the libraries. It reads one JSON object per line on standard input and
-answers each with one on standard output: first `{"version": ..., "device": ...}`, then `{}` or
+Its arguments are the folder whose `libraries` replace MaterialX's own, or "", and those of other libraries.
+It reads one JSON object per line on standard input and answers each with one on standard output: first `{"version": ..., "device": ...}`, then `{}` or
 `{"error": ...}` per request. The process ends when standard input does, and its display with it.
 """
 
@@ -24,6 +24,7 @@ from typing import NoReturn
 REPLIES = os.fdopen(os.dup(1), "w", buffering=1)
 os.dup2(2, 1)
 
+sys.path[:0] = filter(None, [os.environ.get("MXEON_MATERIALX")])
 import MaterialX as mx  # noqa: E402
 import MaterialX.PyMaterialXGenGlsl as mx_glsl  # noqa: E402
 import MaterialX.PyMaterialXGenShader as mx_gen  # noqa: E402
@@ -39,6 +40,9 @@ ANISOTROPY = ("GL_ARB_texture_filter_anisotropic", "GL_EXT_texture_filter_anisot
 SCREEN = ("-screen", "0", "64x64x24", "-nolisten", "tcp")
 DIES_WITH_PARENT = 1  # PR_SET_PDEATHSIG of prctl
 RENDERER = 0x1F01  # of glGetString
+SEARCH_PATH = mx.getDefaultDataSearchPath()
+if sys.argv[1]:
+    SEARCH_PATH = mx.FileSearchPath(sys.argv[1])
 ERRORS = (mx.Exception, mx_render.ExceptionRenderError, LookupError)
 
 
@@ -91,7 +95,7 @@ class ShownElement:
         # Generate the shader.
         generator = viewer_generator(content, library)
         context = mx_gen.GenContext(generator)
-        context.registerSourceCodeSearchPath(mx.getDefaultDataSearchPath())
+        context.registerSourceCodeSearchPath(SEARCH_PATH)
         context.getOptions().targetDistanceUnit = "meter"
         context.getOptions().fileTextureVerticalFlip = True
         self._lights.registerLights(content, [self._sun], context)
@@ -163,8 +167,7 @@ def viewer_generator(document: mx.Document, library: mx.Document) -> mx_gen.Shad
 def load(folders: list[str]) -> mx.Document:
     """The libraries in folders, before MaterialX's own."""
     library = mx.createDocument()
-    folders = [*folders, *mx.getDefaultDataLibraryFolders()]
-    mx.loadLibraries(folders, mx.getDefaultDataSearchPath(), library)
+    mx.loadLibraries([*folders, *mx.getDefaultDataLibraryFolders()], SEARCH_PATH, library)
     return library
 
 
@@ -221,7 +224,7 @@ def device(renderer: mx_render_glsl.GlslRenderer) -> str:
 def main() -> None:
     """Serve requests until standard input ends."""
     # Say who is there.
-    library, first = load(sys.argv[1:]), open_renderer()
+    library, first = load(sys.argv[2:]), open_renderer()
     picture = lru_cache(maxsize=PICTURES)(partial(ShownElement, library))
     version = f"MaterialX {mx.getVersionString()}"
     print(json.dumps({"version": version, "device": device(first)}), file=REPLIES)

@@ -27,7 +27,7 @@ from mxeon.hosts.osl.carriers import prelude
 from mxeon.hosts.osl.kept import KeptTrees, keys_of
 from mxeon.hosts.osl.points import IMAGE, Column, row, statements
 from mxeon.hosts.osl.testshade import Testshade
-from mxeon.hosts.osl.texts import columns_of, header, indented, with_variables
+from mxeon.hosts.osl.texts import columns_of, indented, with_header, with_variables
 from mxeon.hosts.osl.trees import TreeRows, read_trees, whole_label, with_roots
 from mxeon.hosts.testrender.programs import VARIABLES
 from mxeon.shaders import functions
@@ -104,7 +104,7 @@ class Host(base.Host):
             block = statements(columns, folder / IMAGE, count, place)
             [read] = statements({"view": view}, folder / "view.tif", count, place)
             shown = with_variables(shader, block, _printed_closure)
-            text = VIEW.format(read=read) + shown.replace('"mx_funcs.h"', f'"{header()}"')
+            text = VIEW.format(read=read) + with_header(shown, shader)
             rows = self._printed(folder, text, count)
         # Read them as this OSL means them.
         found = read_trees([whole_label(each, ROOT) for each in rows])

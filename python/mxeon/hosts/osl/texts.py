@@ -57,8 +57,8 @@ def indented(lines: Iterable[str]) -> str:
     return "".join(f"    {line}\n" for line in lines)
 
 
-def header() -> str:
-    """Path of the file that generated OSL includes."""
-    name = "libraries/stdlib/genosl/include/mx_funcs.h"
-    path: str = mx.getDefaultDataSearchPath().find(name).asString()
-    return path
+def with_header(text: str, shader: Shader) -> str:
+    """A generated text with the path of the file that it includes, of the shader's library."""
+    path = mx.FileSearchPath(shader.root) if shader.root else mx.getDefaultDataSearchPath()
+    header = path.find("libraries/stdlib/genosl/include/mx_funcs.h").asString()
+    return text.replace('"mx_funcs.h"', f'"{header}"')

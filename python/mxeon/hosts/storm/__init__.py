@@ -56,7 +56,8 @@ class Host(DocumentHost):
         if reason.startswith(COMPILE):
             raise ShaderError(f"storm: {reason}")
         if reason:
-            raise NotRun(f"storm: {self.worker.version} cannot show the document: {reason}")
+            what = "use libraries in place of its own" if self._folders[0] else "show the document"
+            raise NotRun(f"storm: {self.worker.version} cannot {what}: {reason}")
 
 
 def _enumerated(node: mx.Node) -> Iterator[str]:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The half of the `storm` host that runs in the Python that has Blender's package, started by its path.
 
-Its arguments are the folders of the libraries. It reads one JSON object per line on standard input and
-answers each with one on standard output: first `{"version": ..., "device": ...}`, then `{}` or
+Its arguments are the folder whose `libraries` replace those of Blender's MaterialX, or "", and those of
+other libraries. It reads one JSON object per line on standard input and answers each with one on standard output: first `{"version": ..., "device": ...}`, then `{}` or
 `{"error": ...}` per request. What OpenUSD prints goes to standard error. The process ends when standard
 input does.
 """
@@ -211,8 +211,8 @@ class Stage:
             self._dome.CreateIntensityAttr(environment / WHITE_DOME)
 
 
-def import_usd(libraries: str) -> Foreign:
-    """OpenUSD of Blender's package, with libraries before MaterialX's own."""
+def import_usd(root: str, libraries: str) -> Foreign:
+    """OpenUSD of Blender's package, with libraries before MaterialX's own or those of a root."""
     # Find it without importing Blender.
     found = find_spec("bpy")
     if found is None or not found.submodule_search_locations:
@@ -221,7 +221,8 @@ def import_usd(libraries: str) -> Foreign:
     sys.path += map(str, package.glob("*/python/lib/python*/site-packages"))
     # Tell it where its plugins and libraries lie, before it looks.
     os.environ["PXR_PLUGINPATH_NAME"] = str(package / "lib" / "usd")
-    os.environ["PXR_MTLX_STDLIB_SEARCH_PATHS"] = str(package / "lib" / "materialx" / "libraries")
+    standard = Path(root or package / "lib" / "materialx", "libraries")
+    os.environ["PXR_MTLX_STDLIB_SEARCH_PATHS"] = str(standard)
     os.environ["PXR_MTLX_PLUGIN_SEARCH_PATHS"] = libraries
     # Mesa's filter of an anisotropic texture blurs, and Storm shows its picture by a texture.
     os.environ["HGI_MAX_ANISOTROPY"] = "1"
@@ -261,7 +262,7 @@ if __name__ == "__main__":
     except OSError as error:
         fail(f"no OpenGL 4.5 through EGL ({error}); on Debian: {DEBIAN}")
     try:
-        usd = import_usd(os.pathsep.join(sys.argv[1:]))
+        usd = import_usd(sys.argv[1], os.pathsep.join(sys.argv[2:]))
         materialx = import_module("MaterialX").getVersionString()
     except ImportError as error:
         fail(f"{error}; {INSTALL} in the environment of {sys.executable}")

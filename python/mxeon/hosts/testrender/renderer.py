@@ -17,7 +17,7 @@ from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import fragment
 from mxeon.hosts.base import Array, Identity, Inputs
 from mxeon.hosts.osl.points import IMAGE, side, statements
-from mxeon.hosts.osl.texts import columns_of, header, with_variables
+from mxeon.hosts.osl.texts import columns_of, with_header, with_variables
 from mxeon.hosts.pairs import LAMP, SKY, PairHost
 from mxeon.hosts.testrender import calls, scenes
 from mxeon.hosts.testrender.programs import find_program, output, version
@@ -69,7 +69,7 @@ class Host(PairHost):
         # Compile the shaders, and write the scene.
         block = statements(columns, self._folder / IMAGE, len(wo), scenes.PLACE)
         text = with_variables(shader, block, lambda output: last.format(output=output))
-        for name, each in {shader.name: text, **HELPERS}.items():
+        for name, each in {shader.name: with_header(text, shader), **HELPERS}.items():
             self._compile(name, each)
         for name, each in scene.files(shader.name, lit).items():
             (self._folder / name).write_text(each, encoding="utf-8")
@@ -107,8 +107,7 @@ class Host(PairHost):
         if self._compiled.get(name) == text:
             return
         (self._folder / f"{name}.osl").write_text(text, encoding="utf-8")
-        include = f"-I{Path(header()).parent}"
-        output([self._oslc, "-q", include, f"{name}.osl"], self._folder, ShaderError)
+        output([self._oslc, "-q", f"{name}.osl"], self._folder, ShaderError)
         self._compiled[name] = text
 
     def _image(self, command: list[str]) -> NDArray[np.float64]:

@@ -16,6 +16,7 @@ from mxeon.shaders.document.labels import label, location
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.words import ENDS_A_STRING
 from mxeon.shaders.library import data_folder, eonlib_folder
+from mxeon.shaders.library_tree import roots
 
 CODE = ("file", "sourcecode")
 
@@ -123,6 +124,8 @@ def _sources(element: mx.Implementation, home: Path, path: Iterable[str]) -> lis
 
 def library_path(path: AnyPath) -> str:
     """Path by which MaterialX opens a file of the libraries; "" for any other file."""
+    if any(Path(path).is_relative_to(each) for each in roots()):
+        return str(path)
     real = os.path.realpath(path)
     for root, known in _libraries().items():
         if Path(real).is_relative_to(root):

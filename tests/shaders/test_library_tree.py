@@ -1,0 +1,271 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Copies of MaterialX's libraries, whole and in part, in place of the installed ones."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from dataclasses import replace
+
+import MaterialX as mx
+import pytest
+
+import mxeon
+from mxeon.cli import main
+from mxeon.shaders.document.policy import DEFAULT
+from mxeon.shaders.library_export import export_library
+from mxeon.shaders.library_tree import OVERLAY, PART, tree
+from tests.support.availability import available
+from tests.support.documents import material
+from tests.support.wheels import wheel
+from tests.support.wrong_libraries import GLSL, STOCK, copy_of_stock, replace_text
+
+SHEEN, LIB = f"{GLSL}/mx_sheen_bsdf.glsl", f"{GLSL}/lib/mx_microfacet_sheen.glsl"
+IMPLEMENTATIONS = f"{GLSL}/pbrlib_genglsl_impl.mtlx"
+NODES = ("translucent_bsdf", "surface", "measured_edf", "glossiness_anisotropy")
+BURLEY = [f"{GLSL}/mx_burley_diffuse_bsdf.glsl", f"{GLSL}/lib/mx_microfacet_diffuse.glsl"]
+PARTS = {"pbrlib": ["pbrlib"], "a node and its lib": BURLEY, "a file of lib": BURLEY[1:]}
+
+
+def findings(libraries, nodes, hosts=("gl",)):
+    """By library: verdict, error and diagnosis of each check."""
+    run = mxeon.check((), hosts, libraries, nodes=nodes)
+    found = {library: {} for library in libraries}
+    for each in run.results:
+        key = each.host, each.check, each.subject
+        found[each.library][key] = each.verdict, each.error, each.diagnosis
+    return found.values()
+
+
+def test_an_unchanged_copy_of_materialx_has_the_verdicts_of_stock(gl, tmp_path):
+    copy = str(copy_of_stock(tmp_path / "whole"))
+    stock, whole = findings(["stock", copy], NODES)
+    assert len(stock) > 8 and whole == stock
+
+
+@pytest.mark.parametrize("name", PARTS)
+def test_a_part_is_completed_by_the_installed_libraries(gl, tmp_path, name):
+    copy = copy_of_stock(tmp_path, *PARTS[name])
+    # The part by itself: its folder is found by the names of its files.
+    copy = copy / {"pbrlib": "pbrlib"}.get(name, GLSL)
+    stock, part = findings(["stock", str(copy)], ["burley_diffuse_bsdf"])
+    assert part == stock
+    files = tree(str(copy))
+    assert files.kind == PART and len(files.own) + len(files.package) == len(tree(str(STOCK)).own)
+
+
+@pytest.mark.parametrize("part, name", [("", "eonlib"), ("diffuse", "diffuse")])
+def test_an_export_of_eonlib_has_its_verdicts(gl, tmp_path, part, name):
+    copy = export_library(tmp_path / "export") / part
+    eonlib, export = findings([name, str(copy)], ["surface", "measured_edf", "eon_diffuse_bsdf"])
+    assert eonlib and export == eonlib
+    assert tree(str(copy)).kind == OVERLAY
+
+
+def test_an_export_of_eonlib_has_the_profile_of_cycles(tmp_path):
+    copy = str(export_library(tmp_path / "export"))
+    with available("cycles"):
+        eonlib, export = findings(["eonlib", copy], ["eon_diffuse_bsdf"], ["cycles"])
+    assert eonlib and export == eonlib
+    data = mx.createDocument()
+    mx.loadLibraries([copy], mx.FileSearchPath(), data)  # which does not reach it
+    assert not any("/profiles/" in each.getSourceUri() for each in data.getChildren())
+
+
+# A fault in a copy: the file, a text, the text in its place, the node, the first check that fails for it, words.
+FAULTS = {
+    "a file of lib": (LIB, "D = mx_", "D = 3.0 * mx_", "sheen_bsdf", "value", "3 times the right"),
+    "a node's file": (
+        f"{GLSL}/mx_translucent_bsdf.glsl",
+        "NdotL * M_PI_INV",
+        "NdotL",
+        "translucent_bsdf",
+        "value",
+        "the factor 1/pi is missing",
+    ),
+    "an implementation": (
+        IMPLEMENTATIONS,
+        'file="mx_layer_bsdf.glsl" function="mx_layer_bsdf"',
+        'file="mx_add_bsdf.glsl" function="mx_add_bsdf"',
+        "layer",
+        "combination",
+        "61 % of the pairs are wrong",
+    ),
+    "a nodegraph": (
+        "pbrlib/pbrlib_ng.mtlx",
+        'nodename="invert1"',
+        'interfacename="glossiness"',
+        "glossiness_anisotropy",
+        "output",
+        "97 % of the pairs are wrong",
+    ),
+}
+
+
+IN_PART = "a file of lib"  # found in a part as well
+
+
+@pytest.mark.parametrize("name, parts", [(IN_PART, ["pbrlib"]), *((each, []) for each in FAULTS)])
+def test_a_fault_in_a_copy_is_found_and_told_first(gl, tmp_path, capsys, name, parts):
+    file, old, new, node, key, words = FAULTS[name]
+    copy = copy_of_stock(tmp_path / "copy", *parts)
+    replace_text(copy, old, new, file)
+    assert main(["check", "--library", str(copy), "--node", node, "--workers", "0"]) == 1
+    verdict, origin, first, *_ = capsys.readouterr().out.splitlines()
+    own = len(tree(str(copy)).own)
+    rest = len(tree(str(STOCK)).own) - own or "none"
+    assert verdict.endswith(f"MaterialX {mx.getVersionString()}.")
+    assert origin.startswith(f"library {copy}: {own} files of the folder, {rest} of MaterialX ")
+    assert first.startswith(f"failed: gl with {copy}: {node}") and f"({key}" in first
+    assert words in first
+
+
+def test_json_lists_the_files_of_the_folder_and_of_the_package(gl, tmp_path, capsys):
+    copy, report = copy_of_stock(tmp_path / "copy", SHEEN, LIB), tmp_path / "report"
+    options = [
+        "--node",
+        "glossiness_anisotropy",
+        "--workers",
+        "0",
+        "--json",
+        "--report",
+        str(report),
+    ]
+    assert main(["check", "--library", str(copy), *options]) == 0
+    [(folder, files)] = json.loads(capsys.readouterr().out)["libraries"].items()
+    assert folder == str(copy) and sorted(files["folder"]) == sorted([SHEEN, LIB])
+    assert set(files["folder"] + files["MaterialX"]) == set(tree(str(STOCK)).own)
+    line = f"<p>library {copy}: 2 files of the folder, {len(files['MaterialX'])} of MaterialX "
+    assert line in (report / "report.html").read_text()
+
+
+def elsewhere(folder):
+    copy_of_stock(folder, SHEEN)
+    (folder / GLSL).rename(folder / "gl")
+    return f"gl/mx_sheen_bsdf.glsl must lie at {SHEEN}, as MaterialX's file of that name"
+
+
+def package(folder):
+    copy_of_stock(folder / "libraries")
+    return f"must be the folder with targets, stdlib, pbrlib; pass {folder}/libraries"
+
+
+def other_generator(folder):
+    replace_text(
+        copy_of_stock(folder), "mx_matrix_mul(", "own_mul(", "stdlib/genglsl/lib/mx_math.glsl"
+    )
+    return (
+        "has no mx_matrix_mul, which glsl calls: name the build that it belongs to by --materialx"
+    )
+
+
+def two_parts(folder):
+    (folder / "genglsl").mkdir()
+    for each in ("nprlib", "pbrlib"):
+        file = f"{each}/{each}_ng.mtlx"
+        shutil.copy(STOCK / file, folder / f"{each}_ng.mtlx")
+    return "must be one part of MaterialX's libraries; its files may be those of nprlib/ or pbrlib/"
+
+
+@pytest.mark.parametrize("make", [elsewhere, package, other_generator, two_parts])
+def test_what_cannot_be_combined_is_refused_in_one_sentence(tmp_path, capsys, make):
+    words = make(tmp_path)
+    arguments = ["--library", str(tmp_path), "--node", "sheen_bsdf", "--workers", "0"]
+    assert main(["check", *arguments]) == 2
+    out, error = capsys.readouterr()
+    assert out == "" and error.count("\n") == 1
+    assert error.startswith(f"mxeon: library {tmp_path}: ") and words in error
+
+
+OWN = """<nodedef name="ND_own" node="own"><output name="out" type="BSDF"/></nodedef>
+<implementation name="IM_own" nodedef="ND_own" file="own.glsl" function="own" target="genglsl"/>"""
+BOTH = """<own name="a" type="BSDF"/><sheen_bsdf name="b" type="BSDF"/>
+<add name="lobe" type="BSDF"><input name="in1" type="BSDF" nodename="a"/>
+<input name="in2" type="BSDF" nodename="b"/></add>"""
+
+
+CODE = replace(DEFAULT, code=True)
+
+
+def test_code_of_a_document_includes_the_files_of_a_copy_once(tmp_path):
+    copy = copy_of_stock(tmp_path / "copy")
+    replace_text(
+        copy, "float mx_imageworks_sheen_NDF(", "// own\nfloat mx_imageworks_sheen_NDF(", LIB
+    )
+    (tmp_path / "own.glsl").write_text(
+        f'#include "libraries/{LIB}"\nvoid own(ClosureData data, inout BSDF bsdf) {{}}\n'
+    )
+    (tmp_path / "code.mtlx").write_text(
+        material(BOTH).replace("</materialx>", f"{OWN}</materialx>")
+    )
+    with pytest.warns(match="code"):
+        [shader] = mxeon.generate(tmp_path / "code.mtlx", "glsl", library=str(copy), policy=CODE)
+    assert shader.stages["pixel"].count("// own\nfloat mx_imageworks_sheen_NDF(") == 1
+
+
+def test_generate_takes_a_copy_in_worker_processes_and_leaves_no_file(tmp_path):
+    copy = copy_of_stock(tmp_path / "copy", LIB)
+    replace_text(
+        copy, "float mx_imageworks_sheen_NDF(", "// own\nfloat mx_imageworks_sheen_NDF(", LIB
+    )
+    for name in ("temporary", "out"):
+        (tmp_path / name).mkdir()
+    (tmp_path / "a.mtlx").write_text(material('<sheen_bsdf name="lobe" type="BSDF"/>'))
+    for workers in "01":
+        options = ["--target", "glsl", "--outputPath", tmp_path / "out", "--workers", workers]
+        mxeon_run(
+            "generate",
+            tmp_path / "a.mtlx",
+            "--library",
+            copy,
+            *options,
+            TMPDIR=tmp_path / "temporary",
+        )
+        [text] = (tmp_path / "out").glob("*.frag")
+        assert "// own" in text.read_text()
+        text.unlink()
+    assert list((tmp_path / "temporary").iterdir()) == []
+
+
+def mxeon_run(*arguments, **variables):
+    """Output of the command in a process of its own, which has to end with 0 or 1."""
+    command = [sys.executable, "-m", "mxeon", *map(str, arguments)]
+    environment = os.environ | {name: str(value) for name, value in variables.items()}
+    done = subprocess.run(command, capture_output=True, text=True, env=environment)
+    assert done.returncode < 2, done.stderr
+    return done.stdout
+
+
+@pytest.mark.parametrize("workers", "01")
+def test_materialx_takes_a_build_in_every_process(gl, tmp_path, workers):
+    build = wheel("1.39.4")
+    copy = shutil.copytree(build / "MaterialX" / "libraries", tmp_path / "libraries")
+    options = ["--materialx", build, "--node", "translucent_bsdf", "--workers", workers]
+    stock, whole = (mxeon_run("check", "--library", each, *options) for each in ("stock", copy))
+    assert f"MaterialX 1.39.4, of {build}." in stock.splitlines()[0]
+    first, second = whole.splitlines()[:2]
+    assert first == stock.splitlines()[0].replace("stock", str(copy))
+    assert second.endswith("of the folder, none of MaterialX 1.39.4")
+
+
+@pytest.mark.parametrize(
+    "make, words",
+    [
+        (lambda folder: None, "there is no MaterialX/__init__.py"),
+        (package, "there is no MaterialX/"),
+    ],
+)
+def test_what_is_no_build_of_materialx_is_refused(tmp_path, capsys, make, words):
+    make(tmp_path)
+    arguments = ["--library", "stock", "--materialx", str(tmp_path)]
+    assert main(["check", *arguments]) == 2
+    assert words in capsys.readouterr().err
+
+
+def test_a_build_is_named_before_materialx_is_imported(tmp_path, capsys):
+    (tmp_path / "MaterialX").mkdir()
+    (tmp_path / "MaterialX" / "__init__.py").touch()
+    assert main(["check", "--materialx", str(tmp_path)]) == 2
+    assert "the first that a process imports; it has imported" in capsys.readouterr().err
+    assert str(tmp_path) not in sys.path
