@@ -8,8 +8,12 @@ from functools import cache
 import numpy as np
 import pytest
 
-from benchmarks import __main__ as command
-from benchmarks import (
+from mxeon.models import eon_brdf
+from mxeon.models.sampling import SAMPLERS
+from mxeon.shaders.library import examples_folder
+from tests.support.availability import available
+from tools.benchmarks import __main__ as command
+from tools.benchmarks import (
     check,
     cycles,
     lights,
@@ -23,11 +27,7 @@ from benchmarks import (
     shares,
     tool,
 )  # fmt: skip
-from benchmarks.rounds import Check, Figure, Group, figure, interleave, ratio
-from mxeon.models import eon_brdf
-from mxeon.models.sampling import SAMPLERS
-from mxeon.shaders.library import examples_folder
-from tests.support.availability import available
+from tools.benchmarks.rounds import Check, Figure, Group, figure, interleave, ratio
 
 
 def assert_right(group):
@@ -168,7 +168,7 @@ def test_a_run_that_takes_too_long_is_stopped():
 
 def test_compiled_values_and_errors_are_those_of_the_models():
     pytest.importorskip("numba")
-    from benchmarks import numba_eon as compiled
+    from tools.benchmarks import numba_eon as compiled
 
     rng = np.random.default_rng(3)
     wo, wi = models.directions(3000, rng), models.directions(3000, rng)
@@ -227,7 +227,7 @@ def test_names_of_table_1_are_names_of_rivals():
 
 def test_compiled_values_of_no_pair_and_of_any_number_of_channels_have_their_shape():
     pytest.importorskip("numba")
-    from benchmarks import numba_eon as compiled
+    from tools.benchmarks import numba_eon as compiled
 
     up = np.array([[0.0, 0.0, 1.0]] * 5)
     for pairs, channels in ((0, 3), (1, 3), (5, 2), (5, 3)):

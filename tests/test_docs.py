@@ -18,25 +18,25 @@ import pytest
 import yaml
 from playwright.sync_api import sync_playwright
 
-from docs import size
-from docs.siblings import names, sections
-from docs.upstream.update import figures, written
 from mxeon import albedo, inversion, models, sampling
 from mxeon.conformance.results.known_issues import ISSUES
 from mxeon.conformance.results.known_issues.issue import STOCK
 from mxeon.hosts import HOSTS
 from mxeon.hosts.webgl import program
 from tests.support.tolerances import PRINTED
+from tools.site import size
+from tools.site.siblings import names, sections
+from tools.site.upstream.update import figures, written
 
 ROOT = Path(__file__).resolve().parents[1]
-PROSE = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "fits/README.md")
+PROSE = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "tools/fits/README.md")
 QUIET = os.environ | {"NO_MKDOCS_2_WARNING": "1"}
 # Attributes whose files a browser loads by itself.
 LOADED = {"script": "src", "img": "src", "iframe": "src", "source": "src", "link": "href"}
 LINK = re.compile(r"\]\(([^)\s]+)\)")
-FOLDERS = "docs|tests|fits|benchmarks|examples|eonlib|python|profiles"
+FOLDERS = "docs|tests|tools|examples|libraries|genglsl|genosl|python"
 PATH = re.compile(rf"`((?:{FOLDERS})/[^`<\s]*[^`<\s:.])(?::\d+)?`")  # without placeholders
-SCRIPT = re.compile(r"python -m ((?:tests|fits|benchmarks|docs)[\w.]*\w)")
+SCRIPT = re.compile(r"python -m ((?:tests|tools)[\w.]*\w)")
 NAME = re.compile(r"`(mxeon(?:\.\w+)+)")
 PLACE = re.compile(r"`([\w/]+)\.py:([\w.]+)`")  # of a name, below the package
 
@@ -212,7 +212,7 @@ def test_the_sizes_on_the_design_are_near_those_of_the_package():
             shown = shown.strip("| ").split(" | ")[1:]
             for one, other in zip(counts, shown, strict=True):
                 now, then = (int(each.replace(",", "")) for each in (one, other))
-                assert abs(now - then) <= max(0.2 * now, 100), f"{row}: python -m docs.size"
+                assert abs(now - then) <= max(0.2 * now, 100), f"{row}: python -m tools.site.size"
 
 
 def test_the_page_on_hosts_says_what_each_host_is_asked():
@@ -238,7 +238,7 @@ def test_the_python_example_of_the_readme_runs(tmp_path):
 
 
 def test_the_gallery_page_is_the_one_that_its_script_writes():
-    gallery = runpy.run_path(str(ROOT / "docs" / "gallery.py"))
+    gallery = runpy.run_path(str(ROOT / "tools" / "site" / "gallery.py"))
     assert (ROOT / "docs" / "gallery.md").read_text(encoding="utf-8") == gallery["page"]()
     documents = gallery["EXAMPLES"].glob("*.mtlx")
     materials = {name for file in documents for name in gallery["materials"](file)}
@@ -246,7 +246,7 @@ def test_the_gallery_page_is_the_one_that_its_script_writes():
 
 
 def test_the_page_on_the_specification_is_the_one_that_its_script_writes():
-    script = runpy.run_path(str(ROOT / "docs" / "specification.py"))
+    script = runpy.run_path(str(ROOT / "tools" / "site" / "specification.py"))
     text = script["PAGE"].read_text(encoding="utf-8")
     data = json.loads(script["DATA"].read_text(encoding="utf-8"))
     assert text == script["page"](text, data[script["HOST"]])
@@ -286,7 +286,7 @@ def test_prose_has_american_spelling():
 @pytest.fixture(scope="module")
 def described():
     """Functions of the API reference as the site describes them, by their names there."""
-    extensions = griffe.load_extensions(ROOT / "docs" / "siblings.py")
+    extensions = griffe.load_extensions(ROOT / "tools" / "site" / "siblings.py")
     package = griffe.load(
         "mxeon", search_paths=[ROOT / "python"], extensions=extensions, allow_inspection=False
     )

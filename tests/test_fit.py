@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from mxeon.models.layering import Bsdf, layer, throughput
 
-from docs import research
 from mxeon.albedo import dielectric_albedo_dir
 from mxeon.errors import InputError, PackageError
 from mxeon.fit import (
@@ -25,6 +24,7 @@ from mxeon.fit.lobes import FIT_MODELS
 from mxeon.fit.measured import MERL_CELLS, MERL_SCALES
 from mxeon.models import dielectric_brdf, eon_brdf, generalized_schlick_brdf
 from tests.support.availability import available
+from tools.site import research
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "fit_measured.py"
 SEED = 5

@@ -9,8 +9,15 @@ import re
 import numpy as np
 import pytest
 
-from docs import research
-from fits import (
+from mxeon.conformance.accuracy import bsdf
+from mxeon.models.diffuse import inversion
+from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
+from mxeon.models.sampling import eon as shipped
+from mxeon.models.sheen import conty_kulla_albedo_dir
+from mxeon.shaders import functions as twins
+from mxeon.shaders.functions import source_file
+from tests.support import tolerances
+from tools.fits import (
     arc_tangent,
     blackbody,
     conty_kulla_albedo,
@@ -24,15 +31,8 @@ from fits import (
     thin_film_nodes,
     varnish_walk,
 )
-from fits.minimax import least_largest, mp
-from mxeon.conformance.accuracy import bsdf
-from mxeon.models.diffuse import inversion
-from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
-from mxeon.models.sampling import eon as shipped
-from mxeon.models.sheen import conty_kulla_albedo_dir
-from mxeon.shaders import functions as twins
-from mxeon.shaders.library import eonlib_folder
-from tests.support import tolerances
+from tools.fits.minimax import least_largest, mp
+from tools.site import research
 
 by_language = pytest.mark.parametrize("language", twins.LANGUAGES)
 
@@ -101,7 +101,7 @@ def test_the_script_gives_the_series_of_the_angle(language):
 
 def test_the_script_gives_the_arc_tangent_of_the_compiled_models():
     pytest.importorskip("numba")
-    from benchmarks import numba_eon as compiled
+    from tools.benchmarks import numba_eon as compiled
 
     series = arc_tangent.coefficients(**arc_tangent.COMPILED)
     assert np.ravel(compiled.ATAN).tolist() == series
@@ -111,7 +111,7 @@ def test_the_script_gives_the_arc_tangent_of_the_compiled_models():
 def shipped_in(stem, prefix):
     """Coefficients of a rational fit in a GLSL file, numerator first."""
     pattern = rf"#define {prefix}_([ND])\d+ (\S+)"
-    found = re.findall(pattern, (eonlib_folder() / "genglsl" / f"{stem}.glsl").read_text())
+    found = re.findall(pattern, source_file("glsl", stem).read_text())
     assert [letter for letter, _ in found] == sorted((each for each, _ in found), reverse=True)
     return tuple(float(number) for _, number in found)
 
@@ -176,7 +176,7 @@ def test_the_average_of_a_dielectric_has_the_error_that_stands_beside_it():
 
 
 def test_the_colors_of_a_black_body_have_the_errors_that_stand_beside_them():
-    text = (eonlib_folder() / "genglsl" / "blackbody.glsl").read_text(encoding="utf-8")
+    text = source_file("glsl", "blackbody").read_text(encoding="utf-8")
     stated = re.findall(r"Largest absolute errors: (\S+) and (\S+)\.", text)
     rows = {
         name: [float(each) for each in re.findall(rf"#define BLACKBODY_{name}_\w\d (\S+)", text)]
@@ -206,9 +206,8 @@ def test_the_script_gives_the_width_and_the_coefficients_of_the_facets():
 
 
 def test_the_shader_has_the_nodes_of_a_film():
-    folder = eonlib_folder() / "genglsl"
     text = "".join(
-        (folder / f"{name}.glsl").read_text() for name in ("thin_film", "microfacet_lobe")
+        source_file("glsl", each).read_text() for each in ("thin_film", "microfacet_lobe")
     )
 
     def macros(pattern):

@@ -3,7 +3,6 @@
 
 import os
 import re
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -11,7 +10,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from mxeon.shaders.library import eonlib_folder
+from mxeon.shaders.library_export import export_library
 
 ROOT = Path(__file__).parents[1]
 WORKFLOW = ROOT / ".github" / "workflows" / "ci.yml"
@@ -124,10 +123,9 @@ def ended(library, folder, options=LINES, command=TOOLS / "mxeon"):
 
 @pytest.mark.parametrize(("wrong", "status"), [(False, 0), (True, 1)])
 def test_the_action_fails_where_the_library_does_and_keeps_the_report(wrong, status, tmp_path):
-    library = tmp_path / "libraries"
-    shutil.copytree(eonlib_folder(), library)
+    library = export_library(tmp_path / "libraries")
     if wrong:
-        source = library / "genglsl" / "eon.glsl"
+        source = library / "genglsl" / "lib" / "eon.glsl"
         source.write_text(source.read_text().replace("0.5 - 2.0 / (3.0", "0.4 - 2.0 / (3.0"))
     done = ended(library, tmp_path)
     assert done.returncode == status, done.stdout + done.stderr

@@ -11,8 +11,6 @@ from pathlib import Path
 
 import pytest
 
-from docs.upstream import ledger
-from docs.upstream import materialx_repairs as repairs
 from mxeon.conformance.results import FAILED, PASSED, SOURCE
 from mxeon.conformance.results.known_issues import ISSUES
 from mxeon.conformance.results.known_issues.issue import STOCK
@@ -21,6 +19,8 @@ from mxeon.conformance.run.selection import ALL
 from tests.support.availability import available
 from tests.support.sharing import shared
 from tests.support.wheels import MAIN, wheel
+from tools.site.upstream import ledger
+from tools.site.upstream import materialx_repairs as repairs
 
 ROOT = Path(__file__).resolve().parents[1]
 # Slang compiles the repaired node; what is left is its fit.

@@ -7,13 +7,13 @@ from functools import cache
 
 import pytest
 
-from benchmarks.mutants import trial
-from benchmarks.mutants.mutant import FOLDERS, read_table
-from benchmarks.mutants.quick import Quick
 from mxeon.conformance.results import SOURCE
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.tasks import Task
 from mxeon.shaders.document.policy import DEFAULT
+from tools.benchmarks.mutants import trial
+from tools.benchmarks.mutants.mutant import FOLDERS, read_table
+from tools.benchmarks.mutants.quick import Quick
 
 TABLE = read_table()
 NAMED = {mutant.name: mutant for mutant in TABLE}
@@ -129,5 +129,5 @@ def test_a_result_that_fails_without_a_mutant_kills_none(gl, judge):
 
 
 def test_a_changed_comment_survives(gl, quick):
-    control = NAMED["control: eonlib/genglsl/blackbody.glsl"]
+    control = NAMED["control: genglsl/blackbody.glsl"]
     assert trial.trial(control, None, quick) == {"verdict": trial.SURVIVED}

@@ -6,12 +6,12 @@ import re
 import numpy as np
 import pytest
 
-from docs import note
-from docs.note_measures import rounding_figures
-from docs.upstream import marks
 from mxeon.models.diffuse.albedo import eon_albedo_dir, fon_albedo_avg, fon_albedo_dir
 from mxeon.models.diffuse.brdf import eon_brdf, fon_brdf
 from mxeon.models.diffuse.formulas import C1, C2, fon_loss
+from tools.site import note
+from tools.site.note_measures import rounding_figures
+from tools.site.upstream import marks
 
 TEXT = note.PAGE.read_text(encoding="utf-8")
 ROUNDING = 1e-14

@@ -7,9 +7,9 @@ from functools import cache
 
 import pytest
 
-from docs.upstream import ledger, patches, pictures
 from tests.support.availability import available
 from tests.support.wheels import MAIN, git
+from tools.site.upstream import ledger, patches, pictures
 
 MATERIALX, *_ = patches.PROJECTS
 ROWS = {row.page: row for row in ledger.rows()}
@@ -28,7 +28,7 @@ def made(project):
 
 @of_each_project
 def test_the_patches_are_those_of_the_pages_and_changes(project):
-    """`python -m docs.upstream.patches` writes them."""
+    """`python -m tools.site.upstream.patches` writes them."""
     folder = patches.PATCHES / project.name
     assert {path.name: path.read_text() for path in folder.iterdir()} == made(project)
 

@@ -17,7 +17,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-DATA = ("eonlib", "profiles", "examples", "renderers")
+DATA = ("libraries", "genglsl", "genosl", "examples")
 
 # By the file that a recipe changes: texts, each before the one at which it is put in.
 
@@ -226,7 +226,7 @@ def test_a_node_takes_its_model_and_its_ports(results):
 
 
 def test_the_third_place_of_a_node_is_its_section_with_a_mark(results):
-    script = runpy.run_path(str(ROOT / "docs" / "specification.py"))
+    script = runpy.run_path(str(ROOT / "tools" / "site" / "specification.py"))
     columns = {"right": "eonlib", "wrong": "stock"}
     rows = [
         {"check": check, "subject": subject, "library": columns[library], "verdict": row[0]}

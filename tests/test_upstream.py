@@ -8,14 +8,14 @@ from functools import cache, partial
 import numpy as np
 import pytest
 
-from docs.upstream import ledger as rows
-from docs.upstream import marks
-from docs.upstream import update as ledger
 from mxeon.conformance.results.known_issues.issue import Issue, read_issues
 from mxeon.errors import NotRun
 from tests.support.availability import available
 from tests.support.sharing import shared
 from tests.support.tolerances import PRINTED
+from tools.site.upstream import ledger as rows
+from tools.site.upstream import marks
+from tools.site.upstream import update as ledger
 
 PAGES = [defect.page for defect in ledger.CHECKED] + list(ledger.OF_QUANTITIES)
 # Hosts whose packages the pages name files of, by the beginning of a page.

@@ -6,10 +6,10 @@ from copy import deepcopy
 
 import pytest
 
-from docs import versions
-from docs.upstream import ledger, update
 from tests.support.tolerances import PRINTED
 from tests.support.wheels import MAIN
+from tools.site import versions
+from tools.site.upstream import ledger, update
 
 KNOWN = json.loads(versions.RECORD.read_text())
 LAST = versions.VERSIONS[-2:]  # the release, and main

@@ -17,8 +17,13 @@ from mxeon.shaders.nodes import EON
 from tests.support.documents import lobe, material
 
 CHECKOUT = Path(__file__).parents[1]
-DATA = ("eonlib", "profiles", "examples")
-SUFFIXES = (".mtlx", ".glsl", ".osl", ".png")
+DATA = {
+    "libraries": "eonlib/documents",
+    "genglsl": "eonlib/genglsl",
+    "genosl": "eonlib/genosl",
+    "examples": "examples",
+}  # folders of the checkout, and where they lie in the wheel
+SUFFIXES = (".mtlx", ".glsl", ".osl", ".xml", ".png")
 SCRIPT = Path(mx.__file__).parent / "_scripts" / "generateshader.py"
 
 LOAD = """
@@ -80,11 +85,13 @@ def contents(wheel):
 
 def test_the_wheel_holds_the_data_of_the_checkout(wheel):
     files = {name for name in contents(wheel) if name.startswith("mxeon/data/")}
-    assert {name.split("/")[2] for name in files} == {*DATA, "renderers", "upstream", "LICENSE"}
-    for folder in DATA:
+    assert {name.split("/")[2] for name in files} == {
+        *("eonlib", "examples", "renderers", "upstream", "LICENSE")
+    }
+    for folder, place in DATA.items():
         source = CHECKOUT / folder
         sources = [path for path in source.rglob("*") if path.suffix in SUFFIXES]
-        names = {f"mxeon/data/{folder}/{path.relative_to(source).as_posix()}" for path in sources}
+        names = {f"mxeon/data/{place}/{path.relative_to(source).as_posix()}" for path in sources}
         assert names and names <= files
 
 
@@ -112,7 +119,7 @@ def test_the_wheel_holds_the_page_of_the_explorer(wheel):
 def test_the_wheel_writes_a_copy_of_eonlib_for_others(environment, tmp_path):
     run([environment / "bin" / "mxeon", "library", "--export", tmp_path / "copy"], tmp_path)
     files = {path.relative_to(tmp_path / "copy").as_posix() for path in tmp_path.rglob("*.*")}
-    assert {"genglsl/eon.glsl", "README.txt"} <= files
+    assert {"genglsl/lib/eon.glsl", "README.txt"} <= files
     assert (tmp_path / "copy" / "LICENSE").read_bytes() == (CHECKOUT / "LICENSE").read_bytes()
 
 

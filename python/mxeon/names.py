@@ -41,7 +41,7 @@ def meant(
 def unknown(rule: str, name: object, known: Iterable[str], titles: Mapping[str, str] = NONE) -> str:
     """The message that a name is none of the known, which are listed unless one of many is near; or ""."""
     names = tuple(known)
-    if name in names:
+    if isinstance(name, str) and name in names:
         return ""
     near = meant(name, names, titles=titles)
     if near and len(names) > LISTED:

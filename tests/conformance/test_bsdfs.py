@@ -232,7 +232,7 @@ def test_a_wrong_line_of_a_bsdf_fails_a_check_and_is_named(gl, tmp_path, name):
 
 
 # Wrong lines of `microfacet_lobe` in GLSL: text, the text in its place, and key of the check.
-LOBE = "eonlib/genglsl/microfacet_lobe.glsl"
+LOBE = "genglsl/lib/microfacet_lobe.glsl"
 WRONG_LOBE = {
     "no retroreflection": ("mirrored ? reflect(-closureData.V, N) :", "", "retroreflection"),
     "normal not turned": ("mx_forward_facing_normal(N, lobe.wo)", "N", "frame"),

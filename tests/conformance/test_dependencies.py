@@ -112,10 +112,11 @@ def test_a_pipe_or_a_folder_has_no_digest(tmp_path):
 
 def test_the_code_and_the_libraries_are_dependencies():
     found = digests([], Policy())
-    names = ["mxeon/jobs/pool.py", "eonlib/diffuse/eonlib_defs.mtlx", "eonlib/genglsl/eon.glsl"]
-    names += ["eonlib/genosl/eon.osl", "MaterialX/libraries/pbrlib/pbrlib_defs.mtlx"]
+    names = ["mxeon/jobs/pool.py", "eonlib/diffuse/eonlib_defs.mtlx"]
+    names += ["eonlib/genglsl/lib/eon.glsl", "eonlib/genosl/lib/eon.osl"]
+    names += ["MaterialX/libraries/pbrlib/pbrlib_defs.mtlx"]
     assert all(len(found[name]) == 64 for name in names)
-    assert any(name.startswith("eonlib/profiles/cycles/") for name in found)
+    assert any(name.startswith("eonlib/genosl/cycles/") for name in found)
 
 
 @pytest.fixture

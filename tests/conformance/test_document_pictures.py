@@ -4,7 +4,6 @@
 import numpy as np
 import pytest
 
-from docs.upstream.pbr_quantities import MATERIAL
 from mxeon.conformance.accuracy.bsdf import UNFITTED
 from mxeon.conformance.accuracy.thin_films import FILM_ALBEDO, FILM_TRAPPED
 from mxeon.conformance.pictures.document_pictures import judge_document
@@ -16,6 +15,7 @@ from mxeon.shaders.document.notes import DocumentWarning
 from mxeon.shaders.generation import generate
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.nodes import SURFACE, document_text
+from tools.site.upstream.pbr_quantities import MATERIAL
 
 IMAGE = examples_folder() / "textures" / "brick_color.png"
 

@@ -5,7 +5,6 @@ import shutil
 
 import pytest
 
-from docs.documents import lines
 from mxeon.cli import main
 from mxeon.cli.answer import MANY, summary_by_cause
 from mxeon.conformance.results import FAILED, PASSED, Result, Run
@@ -13,6 +12,7 @@ from mxeon.conformance.run.documents import causes, document_verdicts, documents
 from mxeon.errors import MISUSE, InputError
 from mxeon.hosts.base import Identity
 from tests.support.command import CLAY
+from tools.site.documents import lines
 
 NAMES = ("a/clay.mtlx", "a/glass.mtlx", "b/noise.mtlx", "light.mtlx")
 

@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fits import surface_shaders as fit
 from mxeon.conformance.accuracy import surface_shaders as tolerances
 from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
@@ -22,17 +21,18 @@ from mxeon.conformance.run.selection import node_names
 from mxeon.errors import NotRun
 from mxeon.shaders.library import load_library
 from tests.support.wrong_libraries import wrong_copy
+from tools.fits import surface_shaders as fit
 
 ROWS = {check.key: check for check in CHECKS if SHADERS[0].model in check.models}
 # Long shaders take seconds to compile: the shortest stands for all, and the rest for their sums.
 SHORT = SHADERS[-1]
-# By kinds of values and the end of their names in `fits.surface_shaders`.
+# By kinds of values and the end of their names in `tools.fits.surface_shaders`.
 FITTED = {
     (("values",), ""): tolerances.FITTED_VALUE,
     (("albedos",), ""): tolerances.FITTED_ALBEDO,
     (("values", "albedos"), " in the mean"): tolerances.FITTED_MEAN,
 }
-LOBE = "eonlib/genglsl/microfacet_lobe.glsl"
+LOBE = "genglsl/lib/microfacet_lobe.glsl"
 STOCK = {*ROWS} - {"reach"}  # what fails there
 
 

@@ -7,9 +7,6 @@ from functools import cache
 import numpy as np
 import pytest
 
-from fits import thin_film as fit
-from fits import thin_film_search as search
-from fits import thin_film_sets as sets
 from mxeon.conformance.accuracy import thin_films as tolerances
 from mxeon.conformance.accuracy.bsdf import FRESNEL_FIT
 from mxeon.conformance.checks.application import applies, judge_check
@@ -23,6 +20,9 @@ from mxeon.shaders.nodes import document_text, input_text, node_text
 from mxeon.shaders.scene import SIDE
 from tests.support.checks import undiagnosed
 from tests.support.wrong_libraries import wrong_copy
+from tools.fits import thin_film as fit
+from tools.fits import thin_film_search as search
+from tools.fits import thin_film_sets as sets
 
 SUBJECTS = {subject.node: subject for subject in FILMS}
 ROWS = {check.key: check for check in CHECKS}
@@ -72,7 +72,7 @@ STOCK = {
         "film_throughput": (FAILED, f"{HALF}: {FITTED}"),
     },
 }
-# Largest errors by their names in `fits.thin_film`.
+# Largest errors by their names in `tools.fits.thin_film`.
 STATED = {
     "orders": tolerances.FILM_ORDERS,
     "orders of curves": tolerances.FILM_SHARP_ORDERS,
@@ -84,7 +84,7 @@ STATED = {
     "albedo": tolerances.FILM_SEEN,
     "albedo from an index on": tolerances.FILM_OILED,
 }
-# Largest of sets by their names in `fits.thin_film_sets`.
+# Largest of sets by their names in `tools.fits.thin_film_sets`.
 SETS = {
     "all orders": tolerances.FILM_FAINT_ORDERS,
     "F_ss": tolerances.FILM_MEAN.value,
@@ -92,7 +92,7 @@ SETS = {
     "visible facets": tolerances.FILM_STEEP.value,
     "visible facets that are much alike": tolerances.FILM_GLOSSY.value,
 }
-FILMS_IN = ("eonlib/genglsl/thin_film.glsl", "eonlib/genglsl/microfacet_lobe.glsl")
+FILMS_IN = ("genglsl/lib/thin_film.glsl", "genglsl/lib/microfacet_lobe.glsl")
 # By name: node, text of the film, the text in its place, key of the check.
 WRONG = {
     "phase": ("conductor_bsdf", "-r_s * im_s,", "r_s * im_s,", "film"),

@@ -33,9 +33,9 @@ from tests.support.plans import keep_checks
 from tests.support.wrong_libraries import copy_of_eonlib, replace_text
 
 ON, OFF, NODE = SUBJECTS
-MDL, OSL = "eonlib/diffuse/eonlib_genmdl_impl.mtlx", "eonlib/diffuse/eonlib_genosl_impl.mtlx"
-DEFINITIONS, GRAPHS = "eonlib/diffuse/eonlib_defs.mtlx", "eonlib/diffuse/eonlib_ng.mtlx"
-CYCLES = "eonlib/genosl/cycles_closures.osl"
+MDL, OSL = "libraries/diffuse/eonlib_genmdl_impl.mtlx", "libraries/diffuse/eonlib_genosl_impl.mtlx"
+DEFINITIONS, GRAPHS = "libraries/diffuse/eonlib_defs.mtlx", "libraries/diffuse/eonlib_ng.mtlx"
+CYCLES = "genosl/cycles/cycles_closures.osl"
 FLAG = "{{energy_compensation}}"
 KEYWORD = "&quot;energy_compensation&quot;"
 MDL_NORMAL = "normal: {{normal}}, "
@@ -147,9 +147,9 @@ def test_a_range_that_pbrlib_does_not_state_may_be_missing_in_its_node_alone(cop
         (OSL, "{{weight}} * ", "{{weight}} * {{weight}} * ", "osl", "weight is not the node's"),
         (CYCLES, "rho * rho *", "rho * rho * rho *", "osl, cycles", "the sum of closures is not EON"),
         (CYCLES, "EON_C2 * r", "EON_C1 * r", "osl, cycles", "the sum of closures is not EON"),
-        ("eonlib/genosl/oren_nayar_diffuse_bsdf_cycles.osl", "weight * eon", "eon", "osl, cycles",
+        ("genosl/cycles/oren_nayar_diffuse_bsdf_cycles.osl", "weight * eon", "eon", "osl, cycles",
          "the sum of closures is not EON"),
-        ("eonlib/genosl/oren_nayar_diffuse_bsdf_cycles.osl", "(energy", "(!energy", "osl, cycles",
+        ("genosl/cycles/oren_nayar_diffuse_bsdf_cycles.osl", "(energy", "(!energy", "osl, cycles",
          "the sum of closures is not EON"),
     ],
 )  # fmt: skip
@@ -168,7 +168,7 @@ def test_a_wrong_closure_is_told_by_its_argument(copy, file, old, new, title, wo
         (NODE, OSL, KEYWORD + ", 1", KEYWORD + ", 0", "osl"),
         (NODE, MDL, "28.0", "27.0", "mdl"),
         (OFF, CYCLES, "(A - B)", "(A + B)", "osl, cycles"),
-        (OFF, "eonlib/genosl/eon.osl", "0.33)", "0.57)", "osl, cycles"),
+        (OFF, "genosl/lib/eon.osl", "0.33)", "0.57)", "osl, cycles"),
     ],
 )
 def test_the_closures_of_every_subject_are_read(copy, subject, file, old, new, title):
@@ -193,7 +193,7 @@ def test_a_closure_that_is_defined_elsewhere_is_not_run(copy):
     ],
 )
 def test_statements_that_the_reader_lacks_are_not_run(copy, body, words):
-    file = "eonlib/genosl/eon_diffuse_bsdf_cycles.osl"
+    file = "genosl/cycles/eon_diffuse_bsdf_cycles.osl"
     library = copy(file, "    bsdf = weight", f"    {body}\n    bsdf = weight")
     verdicts = {each.subject: each for each in check_closures([NODE], library)}
     result = verdicts[f"{NODE.title}, osl, cycles"]
@@ -239,7 +239,7 @@ def test_a_wrong_shader_function_is_named_by_its_cause(gl, copy, file, old, new,
 
 
 def test_shader_functions_that_do_not_compile_fail_with_the_words_of_the_compiler(gl, copy):
-    library = copy("eonlib/genglsl/eon.glsl", "float m = 1.0 - mu;", "float m = 1.0 - nu;")
+    library = copy("genglsl/lib/eon.glsl", "float m = 1.0 - mu;", "float m = 1.0 - nu;")
     found = failed(judge_functions(FunctionProbe(gl, library)))
     assert len(found) == len(FUNCTION_CHECKS) and all("nu" in words for words in found.values())
 
@@ -258,7 +258,7 @@ def test_functions_that_differ_in_osl_are_named(copy, file, old, new, words):
 
 
 def test_a_comment_may_differ_between_the_languages(copy):
-    (result,) = check_languages(copy("eonlib/genosl/eon.osl", "// A_F of", "// Albedo's A of"))
+    (result,) = check_languages(copy("genosl/lib/eon.osl", "// A_F of", "// Albedo's A of"))
     assert result.verdict == PASSED
 
 
@@ -353,30 +353,30 @@ def test_a_definition_that_the_documents_do_not_fit_is_named_before_they_are_ref
 
 # --- entry points in OSL ------------------------------------------------------------------------
 
-PBRLIB = "eonlib/pbrlib/eonlib_pbrlib_genosl_impl.mtlx"
+PBRLIB = "libraries/pbrlib/eonlib_pbrlib_genosl_impl.mtlx"
 CONE, CYCLES_CONE = "conical_edf, {}, osl", "conical_edf, {}, osl, cycles"
 
 
 @pytest.mark.parametrize(
     "file, old, new, title, words",
     [
-        ("eonlib/genosl/conical_edf.osl", "-I", "I", CONE.format("soft"), "weight is off"),
+        ("genosl/conical_edf.osl", "-I", "I", CONE.format("soft"), "weight is off"),
         (
-            "eonlib/genosl/conical_falloff.osl",
+            "genosl/lib/conical_falloff.osl",
             ">= inner",
             "<= inner",
             CONE.format("hard"),
             "weight is off",
         ),
         (
-            "eonlib/genosl/conical_edf_cycles.osl",
+            "genosl/cycles/conical_edf_cycles.osl",
             "uniform_edf(c)",
             "uniform_edf(c) + uniform_edf(c)",
             CYCLES_CONE.format("soft"),
             "the closure is not uniform_edf",
         ),
         (
-            "eonlib/genosl/subsurface_bsdf_cycles.osl",
+            "genosl/cycles/subsurface_bsdf_cycles.osl",
             "rho, radius, anisotropy)",
             "radius, rho, anisotropy)",
             "subsurface_bsdf, osl, cycles",

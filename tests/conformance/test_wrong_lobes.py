@@ -12,7 +12,7 @@ from mxeon.conformance.results import FAILED, PASSED
 from tests.support.wrong_libraries import wrong_copy
 
 EON, QON, NODE = SUBJECTS
-LOBE = "eonlib/genglsl/oren_nayar_lobe.glsl"
+LOBE = "genglsl/lib/oren_nayar_lobe.glsl"
 DIRECT = "brdf * mu_i * weight * closureData.occlusion"
 ENVIRONMENT = "mx_environment_irradiance(N) * weight"
 FACING = "N = mx_forward_facing_normal(N, wo);"

@@ -74,7 +74,7 @@ def test_the_page_of_the_documentation_is_that_of_the_command():
     for each in data:
         for source in each["sources"]:
             source.pop("reference", None)
-    assert data[0] == data[1], "make it again: python docs/explorer.py"
+    assert data[0] == data[1], "make it again: python tools/site/explorer.py"
     # The last digit of seven is that of the machine.
     assert np.allclose(*map(numbers, tables), rtol=1e-5, atol=1e-12)
     mark = 'type="application/json">'

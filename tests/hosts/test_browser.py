@@ -7,8 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from docs.upstream import repairs
-from docs.upstream import update as ledger
 from mxeon.conformance.accuracy import diffuse as tolerances
 from mxeon.conformance.checks.application import judge_check
 from mxeon.conformance.checks.table import CHECKS
@@ -23,6 +21,8 @@ from mxeon.shaders.nodes import material_text
 from mxeon.shaders.scene import SIDE, sphere
 from tests.support.availability import available
 from tests.support.tolerances import PRINTED
+from tools.site.upstream import repairs
+from tools.site.upstream import update as ledger
 
 QUARTIC = "EON with the paper's quartic"
 # The nodes whose pictures are looked at: one for each engine of a host.

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from docs.upstream.patches import changed
-from docs.upstream.repairs import CYCLES_REPAIRS, kernel
 from mxeon.models import eon_brdf
 from tests import support
 from tests.support.availability import available
+from tools.site.upstream.patches import changed
+from tools.site.upstream.repairs import CYCLES_REPAIRS, kernel
 
 PROGRAM = Path(support.__file__).with_name("oren_nayar.cpp")
 FLOAT32 = 2e-6  # of values up to 1: the arc cosine in G, and ten roundings

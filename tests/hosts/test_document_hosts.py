@@ -2,7 +2,6 @@
 """Storm and MaterialX's own renderer: the models from all sides, the defects of stock, and what may go wrong."""
 
 import os
-import shutil
 import signal
 import sys
 from dataclasses import replace
@@ -25,7 +24,8 @@ from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import host_row, materialx, storm
 from mxeon.hosts.documents import PLACE
 from mxeon.hosts.quads import quads
-from mxeon.shaders.library import eonlib_folder, examples_folder
+from mxeon.shaders.library import examples_folder
+from mxeon.shaders.library_export import export_library
 from mxeon.shaders.nodes import OREN_NAYAR, material_text, node_text
 from mxeon.shaders.scene import FRONT, FURNACE, SIDE, sphere
 from tests.support.documents import lobe, material
@@ -68,8 +68,8 @@ def copy_of_eonlib(tmp_path):
     """A function that makes a copy of eonlib with another line in the place of one."""
 
     def copy(old, new):
-        folder = shutil.copytree(eonlib_folder(), tmp_path / "eonlib")
-        path = folder / "genglsl" / "oren_nayar_lobe.glsl"
+        folder = export_library(tmp_path / "eonlib")
+        path = folder / "genglsl" / "lib" / "oren_nayar_lobe.glsl"
         text = path.read_text()
         assert old in text
         path.write_text(text.replace(old, new))

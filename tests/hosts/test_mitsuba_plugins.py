@@ -9,7 +9,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from benchmarks import mitsuba_noise
 from mxeon import mitsuba as plugins
 from mxeon import models
 from mxeon.errors import NotRun, PackageError
@@ -25,6 +24,7 @@ from tests.support.bsdfs import (
     surface,
 )
 from tests.support.tolerances import MITSUBA_EVAL, MITSUBA_WEIGHT
+from tools.benchmarks import mitsuba_noise
 
 PAGE = Path(__file__).parents[2] / "docs" / "mitsuba.md"
 ANGLES = (0.0, 0.8, 1.5)

@@ -4,7 +4,6 @@
 import numpy as np
 import pytest
 
-from docs.upstream import repairs
 from mxeon.conformance.checks.application import judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
@@ -17,6 +16,7 @@ from mxeon.hosts import browser
 from mxeon.hosts.browser import pathtracer
 from mxeon.models.sampling.cltc import eon_cltc_sample
 from tests.support.availability import available
+from tools.site.upstream import repairs
 
 NAME = "three-gpu-pathtracer"
 EON, FON, LOBE = "WebGPUPathTracer, eonBrdf", "WebGPUPathTracer, fonBrdf", pathtracer.LOBE

@@ -154,7 +154,7 @@ def test_a_kit_on_a_full_disk_is_one_line(tmp_path):
 
 @pytest.mark.parametrize("suffix", ["svg", "png"])
 def test_a_figure_that_finds_no_room_is_an_error(tmp_path, suffix):
-    from paper.sheet import Sheet
+    from tools.paper.sheet import Sheet
 
     sheet = Sheet(tmp_path, host=None)
     figure, _ = sheet.axes(1, 1, 2.0, 2.0)

@@ -16,7 +16,6 @@ import numpy as np
 import pytest
 
 import mxeon
-from docs import arrays as table
 from mxeon.albedo import fon_albedo_dir, fon_loss
 from mxeon.models import eon_brdf, lambert_brdf, smith_g1, unchecked
 from mxeon.models.core import edges
@@ -25,6 +24,7 @@ from mxeon.models.core.ranges import RANGES
 from mxeon.sampling import eon_sample
 from tests.fuzz import arguments
 from tests.support.tracing import untraced
+from tools.site import arrays as table
 
 TINTS = ("rho", "color", "tint", "radiance", "base", "absorption_coefficient")
 COLORS = {"rho", "color", "color0", "color82", "color90", "tint", "ior", "extinction"} | set(TINTS)

@@ -6,7 +6,6 @@ from functools import partial
 import numpy as np
 import pytest
 
-from docs.arrays import takes_drjit
 from mxeon import mitsuba, models
 from mxeon.albedo import fon_albedo_dir
 from mxeon.models import eon_brdf, unchecked
@@ -17,6 +16,7 @@ from mxeon.models.microfacet.missing import missing_light
 from tests.fuzz import arguments
 from tests.support.availability import available
 from tests.support.tolerances import DRJIT_MISSING, DRJIT_SLOPE, DRJIT_VALUE
+from tools.site.arrays import takes_drjit
 
 SEED, PAIRS = 3, 500
 COLOR = (0.25, 0.5, 1.0)  # exact in float32

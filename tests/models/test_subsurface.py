@@ -4,7 +4,6 @@
 import numpy as np
 import pytest
 
-from docs.upstream.random_walk import distances, reflectance_of_h
 from mxeon.models.media.subsurface import (
     GAIN,
     LINEAR,
@@ -25,6 +24,7 @@ from tests.support.tolerances import (
     SUBSURFACE_ROUNDED,
     SUBSURFACE_SIMILARITY,
 )
+from tools.site.upstream.random_walk import distances, reflectance_of_h
 
 COLORS = np.linspace(0.0, 1.0, 1001)
 PATHS = 20_000

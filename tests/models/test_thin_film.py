@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 import tmm
 
-from docs.upstream import film_quantities
 from mxeon.models.core.colorimetry import XYZ_TO_REC709, XYZ_TO_REC709_E
 from mxeon.models.microfacet.fresnel import fresnel_conductor, fresnel_dielectric, fresnel_schlick
 from mxeon.models.nodes.thin_films import FILM_NODES
@@ -22,6 +21,7 @@ from mxeon.models.thin_film.curve import film_curve, without_clamp
 from mxeon.models.thin_film.lobe import PolynomialCurve, film_albedo_dir, film_brdf
 from mxeon.models.thin_film.spectrum import film_spectrum, film_spectrum_xyz
 from tests.models.test_pbrlib import directions, inputs
+from tools.site.upstream import film_quantities
 
 MU = np.linspace(0.05, 1.0, 40)
 GOLD = (0.183, 0.421, 1.373), (3.424, 2.346, 1.770)

@@ -9,13 +9,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-import paper as figures
+import tools.paper as figures
 from mxeon.cli import main
 from mxeon.models import table
 from mxeon.models.diffuse.brdf import lambert_brdf
 from mxeon.shaders import library
-from paper import FIGURES, SECTIONS, claims, curves, renders, tracer
-from paper.claims import FAILS, HOLDS, IN_PART, inversion, sampling, specification, verdict
+from tools.paper import FIGURES, SECTIONS, claims, curves, renders, tracer
+from tools.paper.claims import FAILS, HOLDS, IN_PART, inversion, sampling, specification, verdict
 
 SMALL = {"size": 16, "samples": 2, "draws": 100}
 RENDERS = ("01", "02", "04a", "04b", "05", "08", "09", "10", "14")

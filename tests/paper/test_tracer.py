@@ -8,8 +8,8 @@ import pytest
 
 from mxeon.models import table as reference
 from mxeon.shaders.scene import SIDE, sphere
-from paper.tracer import MODELS, SAMPLERS, Trace, program, trace
 from tests.support.tolerances import FURNACE_OPENED, TRACER_GRID, TWIN_VALUE, TWIN_WEIGHT
+from tools.paper.tracer import MODELS, SAMPLERS, Trace, program, trace
 
 # A mean is held to this many standard errors: a false alarm in 1e-5 of the tests, whose seeds are
 # fixed.

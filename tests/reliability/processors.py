@@ -31,7 +31,7 @@ FILES = (
     "coat",
     "errors_models",
     "errors_sampling",
-    "fits",
+    "tools",
     "fresnel",
     "host_reference",
     "images",

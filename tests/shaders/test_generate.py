@@ -15,7 +15,7 @@ from mxeon.errors import DocumentError
 from mxeon.hosts.cycles.process import interpreter
 from mxeon.shaders.document.reading import read_document
 from mxeon.shaders.generation import TARGETS, ApproximationWarning, Input, generate
-from mxeon.shaders.library import eonlib_folder, examples_folder, load_library
+from mxeon.shaders.library import examples_folder, load_library, source_folder
 from mxeon.shaders.nodes import EON, OREN_NAYAR
 from tests.support.availability import available
 from tests.support.documents import COMPENSATED, lobe, material
@@ -149,14 +149,13 @@ def test_stock_osl_does_not_use_the_flag():
     assert [name for name in FIRST if f"lobe_{name}" not in used] == ["energy_compensation"]
 
 
+SOURCES = source_folder("eonlib")
 COMBINING = ("add_bsdf", "layer_bsdf")  # entry points that take what other nodes return
 
 
 @pytest.mark.parametrize(
     "path",
-    sorted(
-        [*eonlib_folder().glob("genglsl/*_bsdf.glsl"), *eonlib_folder().glob("genosl/*_bsdf_*.osl")]
-    ),
+    sorted([*SOURCES.glob("genglsl/*_bsdf.glsl"), *SOURCES.glob("genosl/cycles/*_bsdf_*.osl")]),
     ids=lambda path: path.name,
 )
 def test_every_parameter_of_an_entry_point_is_used_in_its_body(path):

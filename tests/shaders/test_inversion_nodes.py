@@ -10,7 +10,7 @@ import pytest
 from mxeon.models.diffuse.formulas import C1, C2
 from mxeon.models.diffuse.inversion import eon_rho_from_albedo_avg, eon_rho_from_albedo_normal
 from mxeon.shaders.generation import TARGETS, generate
-from mxeon.shaders.library import eonlib_folder, examples_folder
+from mxeon.shaders.library import documents_folder, examples_folder
 from mxeon.shaders.scene import FURNACE, Scene
 from tests.support.documents import material
 from tests.support.tolerances import INVERSION_NODE
@@ -56,14 +56,14 @@ def test_the_node_reaches_the_lobe_on_every_target(node, target):
 
 
 def test_the_decimals_are_the_constants():
-    text = (eonlib_folder() / "diffuse" / "eonlib_ng.mtlx").read_text(encoding="utf-8")
+    text = (documents_folder("diffuse") / "eonlib_ng.mtlx").read_text(encoding="utf-8")
     decimals = {float(value) for value in re.findall(r'value="(0\.\d{6,})"', text)}
     assert decimals == {C1, C2, C1 - C2, 4.0 * C2}
 
 
 def test_the_graphs_hold_standard_nodes_alone():
     document = mx.createDocument()
-    mx.readFromXmlFile(document, str(eonlib_folder() / "diffuse" / "eonlib_ng.mtlx"))
+    mx.readFromXmlFile(document, str(documents_folder("diffuse") / "eonlib_ng.mtlx"))
     found = {node.getCategory() for graph in document.getNodeGraphs() for node in graph.getNodes()}
     assert found <= {"add", "convert", "divide", "invert", "multiply", "sqrt"}
 

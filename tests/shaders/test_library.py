@@ -16,6 +16,7 @@ from mxeon.hosts.cycles.process import interpreter
 from mxeon.models.diffuse.albedo import fon_albedo_avg
 from mxeon.shaders import library, library_tree
 from mxeon.shaders.generation import TARGETS, generate
+from mxeon.shaders.library_export import export_library
 from mxeon.shaders.nodes import EON, NODEDEFS, OREN_NAYAR
 from tests.support.availability import available
 from tests.support.documents import connected, lobe, material
@@ -27,7 +28,7 @@ OURS = str(library.eonlib_folder())
 DOCUMENTS = sorted(
     [
         *library.eonlib_folder().rglob("*.mtlx"),
-        *library.data_folder().glob("profiles/*/*.mtlx"),
+        *library.profile_documents("eonlib", "cycles"),
         *library.examples_folder().glob("*.mtlx"),
     ]
 )
@@ -113,7 +114,9 @@ def test_the_profile_takes_the_place_of_the_osl_implementations(profile, folder)
 
 def written(folders):
     """Nodedefs and targets of the implementations in the documents of some folders, as XML has them."""
-    roots = [ElementTree.parse(path).getroot() for each in folders for path in each.rglob("*.mtlx")]
+    roots = [
+        ElementTree.parse(path).getroot() for each in folders for path in each.rglob("*.[mx]*l*")
+    ]
     elements = [each for root in roots for each in root]
     return {
         (each.get("nodedef"), each.get("target", ""))
@@ -123,12 +126,12 @@ def written(folders):
 
 
 EONLIB = (library.eonlib_folder(),)
-DIFFUSE = (library.eonlib_folder() / "diffuse",)
+DIFFUSE = (library.documents_folder("diffuse"),)
 STANDARD = library_tree.standard_folders()[0].resolve()
 SHIPPED = (
     ("diffuse", None, DIFFUSE),
     ("eonlib", None, EONLIB),
-    ("eonlib", "cycles", (*EONLIB, library.profile_folder("cycles"))),
+    ("eonlib", "cycles", (*EONLIB, library.source_folder("eonlib") / "genosl" / "cycles")),
 )
 
 
@@ -200,7 +203,7 @@ def test_the_microfacet_nodes_are_eonlibs_unless_the_diffuse_part_alone_is_loade
         for node in ("dielectric", "conductor", "generalized_schlick", "sheen"):
             definition = library.load_library(name).getNodeDef(f"ND_{node}_bsdf")
             found = Path(definition.getImplementation("genglsl").getActiveSourceUri())
-            assert (library.eonlib_folder() / "pbrlib" in found.parents) == ours
+            assert (library.documents_folder() / "pbrlib" in found.parents) == ours
 
 
 def test_a_missing_library_raises_too():
@@ -291,7 +294,10 @@ def test_generateshader_finds_the_library_by_its_absolute_folder(tmp_path, targe
 def test_generateshader_takes_the_profile_before_the_library(tmp_path):
     file = tmp_path / "both.mtlx"
     file.write_text(material(BOTH))
-    folders = library.data_folder() / "profiles" / "cycles", OURS
+    copy = export_library(tmp_path / "eonlib")
+    [profile] = (copy / "genosl" / "cycles").glob("*.xml")
+    profile.rename(profile.with_suffix(".mtlx"))
+    folders = profile.parent, copy / "documents"
     options = "--library", *folders, "--target", "osl", "--outputPath", tmp_path
     run(SCRIPTS / "generateshader.py", *options, file, cwd=tmp_path)
     assert "oren_nayar_diffuse_bsdf_cycles(first_" in (tmp_path / "look.osl").read_text()
@@ -308,7 +314,7 @@ def test_usd_finds_the_library_by_its_plugin_search_path(monkeypatch):
     monkeypatch.setenv("PXR_MTLX_PLUGIN_SEARCH_PATHS", OURS)
     command = [python, "-c", USD, *NODEDEFS]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
-    definitions = library.eonlib_folder() / "diffuse" / "eonlib_defs.mtlx"
+    definitions = library.documents_folder("diffuse") / "eonlib_defs.mtlx"
     assert re.findall("found .*", done.stdout) == [
         f"found {node} {definitions}" for node in NODEDEFS
     ]

@@ -70,7 +70,7 @@ def test_an_export_of_eonlib_has_the_profile_of_cycles(tmp_path):
     assert eonlib and export == eonlib
     data = mx.createDocument()
     mx.loadLibraries([copy], mx.FileSearchPath(), data)  # which does not reach it
-    assert not any("/profiles/" in each.getSourceUri() for each in data.getChildren())
+    assert not any("/cycles/" in each.getSourceUri() for each in data.getChildren())
 
 
 # A fault in a copy: the file, a text, the text in its place, the node, the first check that fails for it, words.

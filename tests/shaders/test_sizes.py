@@ -3,8 +3,8 @@
 
 import pytest
 
-from benchmarks.instructions import compiled, sources
 from tests.support.availability import available
+from tools.benchmarks.instructions import compiled, sources
 
 # Factors of text and of SPIR-V instructions, as counted. A twentieth more fails, and so does a tenth
 # less, after which they are to be counted anew.

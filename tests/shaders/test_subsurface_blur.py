@@ -3,20 +3,19 @@
 
 import re
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from docs.upstream.update import FOLDER
 from mxeon.hosts import open_host
 from mxeon.models.media.subsurface import diffusion_blur
 from mxeon.models.nodes.subsurface import circle_blur
-from mxeon.shaders.library import eonlib_folder
+from mxeon.shaders.functions import source_file
 from mxeon.shaders.nodes import material_text
 from mxeon.shaders.scene import SIDE, sphere
 from tests.support.availability import available
 from tests.support.tolerances import SUBSURFACE_RINGS, SUBSURFACE_SPHERE, TWIN_VALUE
+from tools.site.upstream.update import FOLDER
 
 COSINES = np.linspace(-1.0, 1.0, 401).astype(np.float32).astype(np.float64)
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(200)
@@ -40,7 +39,7 @@ def gl():
 
 
 def blurred(host, mu, reach):
-    source = Path(eonlib_folder(), "genglsl", "subsurface_blur.glsl").read_text()
+    source = source_file("glsl", "subsurface_blur").read_text()
     return host.execute(source, "subsurface_blur", mu, np.full((len(mu), 3), reach))[:, 0]
 
 

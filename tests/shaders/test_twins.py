@@ -14,7 +14,7 @@ from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
 from mxeon.models.sampling import cltc, eon, ltc
 from mxeon.models.sheen import conty_kulla_albedo_dir
 from mxeon.shaders import functions as twins
-from mxeon.shaders.library import eonlib_folder
+from mxeon.shaders.functions import source_file
 from tests.support.cases import directions_32
 from tests.support.tolerances import TWIN_ALBEDO, TWIN_LOSS, TWIN_VALUE
 
@@ -50,7 +50,7 @@ by_language = pytest.mark.parametrize("language", twins.LANGUAGES)
 
 
 def text(language, stem):
-    return (eonlib_folder() / f"gen{language}" / f"{stem}.{language}").read_text(encoding="utf-8")
+    return source_file(language, stem).read_text(encoding="utf-8")
 
 
 def code(stem):

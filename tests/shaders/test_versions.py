@@ -14,6 +14,7 @@ from mxeon.errors import InterfaceError, NotRun
 from mxeon.hosts import open_host
 from mxeon.shaders import closure_calls, generation, generators, library, versions
 from mxeon.shaders.closure_calls import check_closure_calls
+from mxeon.shaders.functions import source_file
 from mxeon.shaders.library import load_library
 from mxeon.shaders.nodes import EON, OREN_NAYAR
 from mxeon.shaders.versions import UntestedVersionWarning
@@ -45,9 +46,9 @@ def fresh():
 @pytest.fixture
 def other_interface(fresh, monkeypatch, tmp_path):
     """A checkout whose oren_nayar_diffuse_bsdf takes one argument more than MaterialX passes."""
-    for name in ("eonlib", "profiles"):
+    for name in ("libraries", "genglsl", "genosl"):
         shutil.copytree(library.data_folder() / name, tmp_path / name)
-    source = tmp_path / "eonlib" / "genglsl" / "oren_nayar_diffuse_bsdf.glsl"
+    source = tmp_path / "genglsl" / "oren_nayar_diffuse_bsdf.glsl"
     text = source.read_text().replace(
         "float weight, vec3 color", "float gain, float weight, vec3 color"
     )
@@ -184,7 +185,7 @@ def test_a_generator_with_calls_of_another_form_is_refused(fresh, monkeypatch, c
     text = f"void eon_diffuse_bsdf(ClosureData closureData) {{}}\nvoid main() {{ {call}; }}"
     monkeypatch.setattr(closure_calls, "generator_of", lambda *_: Generator(text))
     monkeypatch.setattr(closure_calls, "context_of", lambda *_: None)
-    file = str(library.eonlib_folder() / "genglsl" / "eon_diffuse_bsdf.glsl")
+    file = str(source_file("glsl", "eon_diffuse_bsdf"))
     with pytest.raises(
         InterfaceError, match="eon_diffuse_bsdf.ClosureData closureData, float weight"
     ):

@@ -16,9 +16,9 @@ from tempfile import mkdtemp
 import MaterialX as mx
 import pytest
 
-from docs.upstream.materialx_repairs import linked
 from tests.reliability.versions import ROOT, install, run
 from tests.support.availability import required
+from tools.site.upstream.materialx_repairs import linked
 
 KEPT = ROOT / "out" / "materialx"
 # What the data of MaterialX's main branch has over those of the release.

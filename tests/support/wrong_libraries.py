@@ -4,6 +4,7 @@
 import re
 import shutil
 
+from mxeon.shaders.functions import source_file
 from mxeon.shaders.library import data_folder
 from mxeon.shaders.library_tree import standard_folders
 
@@ -11,10 +12,10 @@ STOCK, GLSL = standard_folders()[0], "pbrlib/genglsl"
 
 
 def copy_of_eonlib(folder):
-    """Folder of a copy of eonlib in a folder, with its profiles beside it."""
-    for name in ("eonlib", "profiles"):
+    """Documents of a copy of eonlib in a folder, with its sources beside them."""
+    for name in ("libraries", "genglsl", "genosl"):
         shutil.copytree(data_folder() / name, folder / name)
-    return folder / "eonlib"
+    return folder / "libraries"
 
 
 def replace_text(folder, old, new, *files):
@@ -55,4 +56,4 @@ def wrong_stock_node(folder, name, old, new):
 
 def wrong_eonlib_node(folder, name, old, new):
     """Path of a copy of eonlib with another text in the GLSL of one of its nodes."""
-    return wrong_copy(folder, old, new, f"eonlib/genglsl/{name}.glsl")
+    return wrong_copy(folder, old, new, source_file("glsl", name).relative_to(data_folder()))

@@ -24,13 +24,13 @@ def run(options: argparse.Namespace) -> int:
     from mxeon.shaders.library import data_folder
 
     checkout = data_folder()
-    if not (checkout / "paper" / "__init__.py").is_file():
+    if not (checkout / "tools" / "paper" / "__init__.py").is_file():
         raise NotRun(
             "figures: they are not part of the wheel; "
             "install a checkout of the repository: pip install --editable '.[report]'"
         )
     sys.path.append(str(checkout))  # as the last folder, which hides no package
-    from paper import figures
+    from tools.paper import figures
 
     print(figures(options.folder, Progress("mxeon figures", lambda _: "")))
     return PASSED

@@ -24,15 +24,14 @@ def add_parser(commands: arguments.Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print the folder, or write a copy; return the exit status."""
-    from mxeon.shaders.library import eonlib_folder, profile_folder
+    from mxeon.shaders.library import documents_folder, eonlib_folder
 
     if options.export is not None:
         from mxeon.shaders.library_export import export_library
 
-        # Write a copy, and say how it is loaded.
         copy = export_library(options.export)
         if copy.is_dir():
-            _explain(copy)
+            _explain(copy, copy / "documents")
         else:
             print(copy)
     elif options.folder:
@@ -40,10 +39,7 @@ def run(options: argparse.Namespace) -> int:
     elif options.verify:
         _verify()
     else:
-        # Say how the library is loaded where it lies, with the profile that no copy has.
-        _explain(eonlib_folder())
-        own = f"{profile_folder('cycles')} {eonlib_folder()}"
-        print(f"Blender's Cycles      generateshader --library {own} --target osl FILE")
+        _explain(eonlib_folder(), documents_folder())
     return PASSED
 
 
@@ -57,10 +53,10 @@ def _verify() -> None:
     assert_ours(document)
 
 
-def _explain(folder: Path) -> None:
+def _explain(folder: Path, documents: Path) -> None:
     """Print a folder of eonlib, and how each client loads it."""
     from mxeon.shaders.library_export import recipes
 
     print(f"folder                {folder}")
-    print(f"diffuse nodes alone   {folder / 'diffuse'}")
+    print(f"diffuse nodes alone   {documents / 'diffuse'}")
     print(recipes(folder))

@@ -18,7 +18,7 @@ TWINS = (
     "ggx_albedo",
     "conty_kulla_albedo",
 )  # that have, with their includes, one text in two languages
-INCLUDE = re.compile(r'^#include "(\w+\.\w+)"$', re.MULTILINE)
+INCLUDE = re.compile(r'^#include "((?:\.\./)?(?:lib/|sampling/)?\w+\.\w+)"$', re.MULTILINE)
 SIGNATURE = re.compile(r"^(?:float|vec3|color|vector)\s+(\w+)\s*\(([^)]*)\)\s*(?={)", re.MULTILINE)
 EACH = "mxeon_each"  # the function that `dispatched` adds
 TYPES = {"glsl": ("float", "vec3"), "osl": ("float", "color", "vector")}
@@ -40,18 +40,20 @@ def source(language: str, stem: str = ALL, library: str = "eonlib") -> str:
     -------
     str
     """
-    return expanded(_path(language, stem, library))
+    return expanded(source_file(language, stem, library))
 
 
 def has_functions(library: str, language: str = "glsl") -> bool:
     """Whether a library brings shader functions of its own: eonlib, or a folder beside them."""
-    return kind_of(library) != "stock" and _path(language, ALL, library).is_file()
+    return kind_of(library) != "stock" and source_file(language, ALL, library).is_file()
 
 
 def twins(language: str, library: str) -> str:
     """Text of the files of a library that have one text in two languages, their includes expanded."""
     stems = [
-        stem for stem in TWINS if all(_path(each, stem, library).is_file() for each in LANGUAGES)
+        stem
+        for stem in TWINS
+        if all(source_file(each, stem, library).is_file() for each in LANGUAGES)
     ]
     return "\n".join(source(language, stem, library) for stem in stems)
 
@@ -157,8 +159,10 @@ def slot_names(kinds: Iterable[str]) -> list[str]:
     return result
 
 
-def _path(language: str, stem: str, library: str) -> Path:
-    return source_folder(library) / f"gen{language}" / f"{stem}.{language}"
+def source_file(language: str, stem: str, library: str = "eonlib") -> Path:
+    """File of a library that holds shader functions, in whichever folder it lies."""
+    folder, name = source_folder(library) / f"gen{language}", f"{stem}.{language}"
+    return next(folder.rglob(name), folder / name)
 
 
 def _parameters(text: str) -> tuple[tuple[str, str], ...]:

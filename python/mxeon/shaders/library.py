@@ -51,7 +51,7 @@ class Implementation:
     @property
     def ours(self) -> bool:
         """Whether it lies in one of eonlib's folders."""
-        folders = {eonlib_folder(), data_folder() / "profiles"}
+        folders = {eonlib_folder(), source_folder("eonlib") / "genosl"}
         return bool(self.document) and not folders.isdisjoint(Path(self.document).resolve().parents)
 
 
@@ -63,8 +63,16 @@ def data_folder() -> Path:
 
 
 def eonlib_folder() -> Path:
-    """Folder of eonlib, with its shader sources: what a C++ host, USD or generateshader loads first."""
-    return data_folder() / "eonlib"
+    """Folder of eonlib that a C++ host, USD or generateshader loads first; `libraries` in a checkout."""
+    installed = data_folder() / "eonlib"
+    return installed if installed.is_dir() else data_folder() / "libraries"
+
+
+def documents_folder(part: str = "eonlib") -> Path:
+    """Folder of eonlib's MaterialX documents, or those of its part "diffuse"."""
+    inside = eonlib_folder() / "documents"  # a folder called libraries would hide MaterialX's own
+    folder = inside if inside.is_dir() else eonlib_folder()
+    return folder / part if part == "diffuse" else folder
 
 
 @cache
@@ -77,42 +85,36 @@ def kind_of(library: str) -> str:
         return library
     if tree(library).kind != OVERLAY:
         return "stock"
-    for name, folder in (("eonlib", eonlib_folder()), ("diffuse", eonlib_folder() / "diffuse")):
-        documents = {path.relative_to(folder).as_posix() for path in folder.rglob("*.mtlx")}
-        if documents == {path for path in tree(library).own if path.endswith(DOCUMENT)}:
+    own = {Path(path).name for path in tree(library).own if path.endswith(DOCUMENT)}
+    for name in ("eonlib", "diffuse"):
+        if own == {path.name for path in documents_folder(name).rglob("*.mtlx")}:
             return name
     return OVERLAY
 
 
 def source_folder(library: str) -> Path:
-    """Folder that holds the shader functions of a library: its own, or of a part, the whole's."""
+    """Folder that holds genglsl and genosl of a library: its own, or one or two above its documents."""
     folder = eonlib_folder() if library in LIBRARIES else Path(library)
-    own = any((folder / name).is_dir() for name in SOURCE_FOLDERS)
-    return folder if own else folder.parent
+    homes = (folder, *folder.parents[:2])
+    return next(
+        (each for each in homes if any((each / name).is_dir() for name in SOURCE_FOLDERS)), folder
+    )
 
 
 def library_folders(library: str) -> list[Path]:
     """A folder that is loaded as a library, and those that it may take sources from."""
     sources = (source_folder(library) / name for name in SOURCE_FOLDERS)
-    beside = (*sources, Path(library).parent / "profiles")
-    return [Path(library), *(folder for folder in beside if folder.is_dir())]
-
-
-def profile_folder(profile: str) -> Path:
-    """Folder of the MaterialX documents of a profile of eonlib, to be loaded before it."""
-    return data_folder() / "profiles" / profile
+    return [Path(library), *(folder for folder in sources if folder.is_dir())]
 
 
 def profile_documents(library: str, profile: str) -> list[Path]:
     """MaterialX documents of a profile, to be loaded before a library's.
 
-    A copy has them inside, with the ending .xml: whatever loads all of a folder leaves them out.
+    They end in .xml, so that whatever loads all of a folder leaves them out.
     """
     if kind_of(library) == "stock":
         return []
-    homes = [data_folder()] if library in LIBRARIES else [Path(library), Path(library).parent]
-    found = [sorted((home / "profiles" / profile).glob("*.[mx]*l*")) for home in homes]
-    return next(filter(None, found), [])
+    return sorted((source_folder(library) / "genosl" / profile).glob("*.xml"))
 
 
 def has_profile(library: str, profile: str) -> bool:
@@ -128,8 +130,7 @@ def examples_folder() -> Path:
 def own_folders(library: str) -> list[str]:
     """Folders that are loaded before MaterialX's own."""
     if library in LIBRARIES:
-        ours = {"eonlib": eonlib_folder(), "diffuse": eonlib_folder() / "diffuse"}
-        return [str(ours[library])] if library in ours else []
+        return [] if library == "stock" else [str(documents_folder(library))]
     return [] if root(library) else [os.path.abspath(library)]
 
 

@@ -10,15 +10,15 @@ from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 import mxeon
 from mxeon.errors import InputError
 from mxeon.io.files import TEMPORARY, AnyPath, naming, replacing
-from mxeon.shaders.library import data_folder, eonlib_folder, profile_folder
-from mxeon.shaders.library_tree import FILES
+from mxeon.shaders.library import SOURCE_FOLDERS, data_folder, documents_folder, source_folder
 
 README = """eonlib {version}, a MaterialX data library.
 
 Load this folder, FOLDER below, before the libraries of MaterialX, which ignores later definitions of a
-name. FOLDER/diffuse can be loaded alone; it changes rough diffuse nodes only. MaterialX must be 1.39.3 or
-later. Blender's Cycles needs other implementations: they lie in FOLDER/profiles, named .xml so that they are
-loaded by mxeon alone: mxeon generate --library FOLDER --profile cycles.
+name. FOLDER/documents/diffuse can be loaded alone; it changes rough diffuse nodes only. MaterialX must be 1.39.3 or
+later. Blender's Cycles needs other implementations in OSL. They lie in FOLDER/genosl/cycles in a document that
+ends in .xml, so that loading FOLDER leaves them out. Other programs can load that folder before
+FOLDER/documents once the document is renamed to end in .mtlx.
 
 {recipes}
 
@@ -30,6 +30,7 @@ CLIENTS = {
     "generateshader": "generateshader --library {} --target glsl FILE",
     "MaterialX's viewer": "MaterialXView --library {}",
     "USD": "export PXR_MTLX_PLUGIN_SEARCH_PATHS={}",
+    "Blender's Cycles": "mxeon generate --library {} --profile cycles --target osl FILE",
 }
 
 
@@ -69,14 +70,17 @@ def export_library(path: AnyPath) -> Path:
 
 def _content() -> dict[str, bytes]:
     """Files of the copy, by their paths in it."""
-    data, library = data_folder(), eonlib_folder()
-    files = [path for path in sorted(library.rglob("*.*")) if path.suffix in FILES]
-    content = {path.relative_to(library).as_posix(): path.read_bytes() for path in files}
-    for path in sorted(profile_folder("cycles").glob("*.mtlx")):
-        text = path.read_text(encoding="utf-8").replace('"../../eonlib/', '"../../')
-        content[f"profiles/cycles/{path.stem}.xml"] = text.encode()
+    folders = {name: source_folder("eonlib") / name for name in SOURCE_FOLDERS}
+    content = {
+        f"{name}/{path.relative_to(folder).as_posix()}": path.read_bytes()
+        for name, folder in {"documents": documents_folder(), **folders}.items()
+        for path in sorted(folder.rglob("*.*"))
+    }
     text = README.format(version=mxeon.__version__, recipes=recipes("FOLDER"))
-    return content | {"LICENSE": (data / "LICENSE").read_bytes(), "README.txt": text.encode()}
+    return content | {
+        "LICENSE": (data_folder() / "LICENSE").read_bytes(),
+        "README.txt": text.encode(),
+    }
 
 
 def _write_archive(target: Path) -> None:

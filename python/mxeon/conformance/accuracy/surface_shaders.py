@@ -6,7 +6,7 @@ from mxeon.conformance.samples.measurement import absolute, mean_scaled, scaled
 from mxeon.conformance.samples.tolerance import SCALED, Tolerance, rounded_up
 
 # Largest errors by the fits of all lobes of a material, of 32 sets of the size that a check asks for, with
-# the layer equation in float64: fits/surface_shaders.py. They are a third of the sum of what each lobe's
+# the layer equation in float64: tools/fits/surface_shaders.py. They are a third of the sum of what each lobe's
 # fits change at most, since no material has the worst of all.
 FITTED_VALUE = 3.5e-3
 FITTED_ALBEDO = 2.6e-3

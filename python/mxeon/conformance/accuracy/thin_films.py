@@ -9,7 +9,7 @@ from mxeon.conformance.accuracy.bsdf import (
 from mxeon.conformance.samples.measurement import absolute, root_mean_square, scaled
 from mxeon.conformance.samples.tolerance import ROUNDING, SCALED, Tolerance, rounded_up
 
-# Largest errors of the shader's thin film, for cosines from 0.1 on and up to 1000 nm: fits/thin_film.py
+# Largest errors of the shader's thin film, for cosines from 0.1 on and up to 1000 nm: tools/fits/thin_film.py
 # searches for each.
 FILM_ORDERS = 8e-4  # orders that are summed, relative to the largest channel, of 1e-3 at least
 FILM_AVERAGE = 1.9e-2  # F_ss in five cosines: of metals, 1.3e-2 of other substrates
@@ -54,35 +54,35 @@ FILM_ALL_ORDERS = Tolerance(
     root_mean_square,
     "the fit of E_ss, 1.5e-4 at roughness 1e-3 and cosines of 0.1 to 0.2, which an average counts; and the orders that are "
     "not summed, 8.7e-7 for 1024 films of 40 to 100 nm: the largest of 64 sets, by "
-    "fits/thin_film_sets.py; rounded up",
+    "tools/fits/thin_film_sets.py; rounded up",
 )
 FILM_MEAN = Tolerance(
     2e-3,
     "reflectance, rms",
     root_mean_square,
     "F_ss in five cosines of 64 films of 50 to 1000 nm: the largest of 64 sets, by "
-    "fits/thin_film_sets.py",
+    "tools/fits/thin_film_sets.py",
 )
 FILM_SMOOTH_MEAN = Tolerance(
     2e-5,
     "reflectance, rms",
     root_mean_square,
     "F_ss of the same films in two cosines, times what a lobe of alpha 0.04 loses: the largest of 64 "
-    "sets, by fits/thin_film_sets.py, and roundings",
+    "sets, by tools/fits/thin_film_sets.py, and roundings",
 )
 FILM_STEEP = Tolerance(
     3.7e-4,
     "reflectance, rms",
     root_mean_square,
     "the mean over visible facets in four cosines of 64 films of 50 to 100 nm on rough lobes: the "
-    "largest of 64 sets, by fits/thin_film_sets.py",
+    "largest of 64 sets, by tools/fits/thin_film_sets.py",
 )
 FILM_GLOSSY = Tolerance(
     7.4e-4,
     "reflectance, rms",
     root_mean_square,
     "the mean over visible facets in two cosines, or in four, of 64 films of 50 to 100 nm on lobes of alpha "
-    "0.03 to 0.1: the largest of 64 sets, by fits/thin_film_sets.py",
+    "0.03 to 0.1: the largest of 64 sets, by tools/fits/thin_film_sets.py",
 )
 FILM_CURVE = Tolerance(
     rounded_up(FILM_SHARP_ORDERS + FILM_KEPT * SHARP_ESS_FIT + (10 * FILM_SLOPE + 16) * ROUNDING),

@@ -43,7 +43,7 @@ ROUND_TRIP = Tolerance(
     "k^2 makes up for the error of n, so that 16 roundings, 2^-24 each, of terms that are 1 at most "
     "are left; rounded up",
 )
-BLACKBODY_FIT = 1.9e-4  # see fits/blackbody.py
+BLACKBODY_FIT = 1.9e-4  # see tools/fits/blackbody.py
 BLACKBODY = Tolerance(
     rounded_up(BLACKBODY_FIT),
     UNIT,

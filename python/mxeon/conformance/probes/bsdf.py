@@ -24,7 +24,7 @@ FIT_COSINE = 1e-4  # least cosine of the domain of the fits
 LEAST_STRETCHED = 0.05  # alpha and cosine of anisotropic albedos: a sum over directions is coarse
 LEAST_VIEW = 0.02  # cosine of their views
 LEAST_INVERTED = 0.1  # index of a dielectric of which the inverse is taken
-LEAST_INDEX = 1.05  # above 1, to which shaders fit their averages: fits/ggx_cosine.py
+LEAST_INDEX = 1.05  # above 1, to which shaders fit their averages: tools/fits/ggx_cosine.py
 
 
 class BsdfProbe(PairProbe):

@@ -29,7 +29,7 @@ FRINGED = {**STEEP, "thickness": (50.0, 1000.0)}  # see `FilmViews`
 GLOSSY = {**STEEP, "alpha": (0.03, 0.1)}  # see `FilmViews`
 SHARP = {"alpha": (1e-3, 1e-3), "mu": (0.3, 1.0), "thickness": (200.0, 1000.0)}  # see `FilmViews`
 ORDERED = {"alpha": (1e-3, 1e-3), "mu": (0.1, 0.2), "thickness": (40.0, 100.0)}  # see `FilmViews`
-# Films whose errors have one mean: fits/thin_film_sets.py bounds it for sets of these sizes.
+# Films whose errors have one mean: tools/fits/thin_film_sets.py bounds it for sets of these sizes.
 FEW_FILMS, CURVES = 1 << 6, 1 << 10
 LEAST_OIL = 1.2  # index of these films, or there is none to see
 LEAST_FILM = 1.25  # where albedos are asked: below, metals of a lower index reflect totally, in finer fringes

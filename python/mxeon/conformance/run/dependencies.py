@@ -21,9 +21,10 @@ from mxeon.shaders.document.encoding import decode, strict
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.references import inside
 from mxeon.shaders.library import (
-    data_folder,
-    eonlib_folder,
+    SOURCE_FOLDERS,
+    documents_folder,
     library_folders,
+    source_folder,
 )
 from mxeon.shaders.library_tree import LIBRARIES, standard_folders
 
@@ -117,8 +118,8 @@ def _paths(name: str, folders: Iterable[Path]) -> Iterator[str]:
 
 def _installed() -> dict[str, str]:
     """Digests of mxeon's code and of the data libraries, by names that hold on any machine."""
-    folders = [("mxeon", Path(mxeon.__file__).parent), ("eonlib", eonlib_folder())]
-    folders += [("eonlib/profiles", data_folder() / "profiles")]
+    folders = [("mxeon", Path(mxeon.__file__).parent), ("eonlib", documents_folder())]
+    folders += [(f"eonlib/{name}", source_folder("eonlib") / name) for name in SOURCE_FOLDERS]
     folders += [("MaterialX/libraries", folder) for folder in standard_folders()]
     return {
         f"{name}/{path.relative_to(folder)}": _digest(path)

@@ -51,7 +51,8 @@ TYPES = {".js": "text/javascript", ".mjs": "text/javascript", ".json": "applicat
 
 def packages_folder() -> Path:
     """Folder of the package.json and the lock file that pin the renderers."""
-    return data_folder() / "renderers"
+    installed = data_folder() / "renderers"
+    return installed if installed.is_dir() else data_folder() / "tools" / "renderers"
 
 
 def modules_folder(package: str, host: str) -> Path:

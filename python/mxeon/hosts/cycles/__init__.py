@@ -28,7 +28,7 @@ from mxeon.io.images import read_image
 from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import inner_lobes
-from mxeon.shaders.library import eonlib_folder
+from mxeon.shaders.library import source_folder
 from mxeon.shaders.scene import FRONT, Scene, sphere
 
 Socket: TypeAlias = float | Sequence[float]  # value of a Blender node's input
@@ -65,7 +65,7 @@ class Host(PairHost):
 
     def __init__(self, sources: Path | None = None, limit: float = 300.0) -> None:
         python = interpreter()
-        self._sources = Path(sources or eonlib_folder() / "genosl").resolve()
+        self._sources = Path(sources or source_folder("eonlib") / "genosl").resolve()
         self._temporary = TemporaryDirectory(prefix="mxeon-cycles-")
         log = Path(self._temporary.name, "log.txt")
         script = Path(__file__).with_name("worker.py")

@@ -42,7 +42,7 @@ def find_program(name: str, host: str = "testrender") -> str:
     path = shutil.which(program)
     if path is None:
         raise NotRun(
-            f"{host}: no program {program!r}; build Open Shading Language, as docs/build_testrender.sh "
+            f"{host}: no program {program!r}; build Open Shading Language, as tools/build_testrender.sh "
             f"does on Debian 12, and name it in {variable}"
         )
     return os.path.abspath(path)

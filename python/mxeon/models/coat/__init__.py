@@ -8,7 +8,7 @@ The dielectric reflects E_r of the light, and EON gets the rest, as `layer` of t
 E_r, with the energy compensation, is at most the albedo of facets that reflect everything, and so at
 most 1. This is no varnish: what EON returns passes freely, while below an interface light is reflected
 and refracted on its way out. At index 1.5 the albedo is 1.17 to 1.80 times that of a random walk below
-the same interface for rho 0.2, 1.28 to 1.66 for 0.5, 1.17 to 1.30 for 0.8: fits/varnish_walk.py.
+the same interface for rho 0.2, 1.28 to 1.66 for 0.5, 1.17 to 1.30 for 0.8: tools/fits/varnish_walk.py.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Formulas of the Oren-Nayar family on valid float64 arrays, term by term as in the paper.
 
-Names and arguments are those of the shader functions in `eonlib/genglsl/eon.glsl` and
-`eonlib/genglsl/oren_nayar_family.glsl`. Directions are (..., 3), everything else (...), but `rho` has its
+Names and arguments are those of the shader functions in `genglsl/lib/eon.glsl` and
+`genglsl/sampling/oren_nayar_family.glsl`. Directions are (..., 3), everything else (...), but `rho` has its
 channels on the first axis, so that it broadcasts against the rest.
 """
 

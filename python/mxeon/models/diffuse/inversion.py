@@ -17,7 +17,7 @@ from mxeon.models.diffuse.formulas import C1, C2
 NORMAL = (0.258831, 0.98995)
 AVERAGE = 0.189468
 
-# Our fits to the same forms, fits/eon_inversion.py; largest error of rho 2.96e-3 and 1.86e-3.
+# Our fits to the same forms, tools/fits/eon_inversion.py; largest error of rho 2.96e-3 and 1.86e-3.
 NORMAL_REFIT = (0.2531091, 0.9883170)
 AVERAGE_REFIT = 0.1843278
 
@@ -139,7 +139,7 @@ def eon_rho_from_albedo_normal_refit_approx(color: ArrayLike, roughness: ArrayLi
 
     References
     ----------
-    fits/eon_inversion.py; the form is [Portsmouth2025], Eq. (32).
+    tools/fits/eon_inversion.py; the form is [Portsmouth2025], Eq. (32).
 
     Examples
     --------
@@ -185,7 +185,7 @@ def eon_rho_from_albedo_avg_refit_approx(color: ArrayLike, roughness: ArrayLike)
 
     References
     ----------
-    fits/eon_inversion.py; the form is [Portsmouth2025], Eq. (34).
+    tools/fits/eon_inversion.py; the form is [Portsmouth2025], Eq. (34).
 
     Examples
     --------

@@ -48,7 +48,7 @@ from mxeon.models.sampling.hemisphere import (
 
 LEAST_COSINE = 2.0**-53  # of a sample
 
-# Our fits, fits/eon_sampling.py. Random number and fitted root of it in [0, 1]; largest relative
+# Our fits, tools/fits/eon_sampling.py. Random number and fitted root of it in [0, 1]; largest relative
 # error of the density 1.27e-5 and 5.7e-6.
 MULTIPLE = (
     -0.1221923217,

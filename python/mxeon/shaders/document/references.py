@@ -15,7 +15,7 @@ from mxeon.io.files import AnyPath
 from mxeon.shaders.document.labels import label, location
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.words import ENDS_A_STRING
-from mxeon.shaders.library import data_folder, eonlib_folder
+from mxeon.shaders.library import SOURCE_FOLDERS, eonlib_folder, source_folder
 from mxeon.shaders.library_tree import roots
 
 CODE = ("file", "sourcecode")
@@ -137,5 +137,5 @@ def library_path(path: AnyPath) -> str:
 def _libraries() -> dict[Path, str]:
     """Folders whose files any document may use: MaterialX's own and eonlib's, as MaterialX has them."""
     standard = mx.getDefaultDataSearchPath().asString().split(mx.PATH_LIST_SEPARATOR)
-    ours = (eonlib_folder(), data_folder() / "profiles")
+    ours = (eonlib_folder(), *(source_folder("eonlib") / name for name in SOURCE_FOLDERS))
     return {Path(each).resolve(): str(each) for each in (*standard, *ours)}

@@ -58,7 +58,7 @@ class Issue:
 
 
 def read_issues(text: str) -> tuple[Issue, ...]:
-    """The issues in a text of JSON, which `docs/upstream/ledger.py` writes from the pages."""
+    """The issues in a text of JSON, which `tools/site/upstream/ledger.py` writes from the pages."""
     return tuple(map(_issue, json.loads(text)))
 
 

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// Entry point of the node absorption_vdf: Beer's law over one meter, since a surface has no
+// thickness.
+
+#include "lib/medium.glsl"
+
+void absorption_vdf(ClosureData closureData, vec3 absorption, inout VDF vdf)
+{
+    if (closureData.closureType == CLOSURE_TYPE_TRANSMISSION)
+    {
+        vdf.response = vec3(0.0);
+        vdf.throughput = exp(-absorption);
+    }
+}

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// Entry point of the node anisotropic_vdf: what neither absorption nor scattering takes from a ray in
+// one meter. Light that is scattered into the ray is left out, and with it the anisotropy.
+
+#include "lib/medium.glsl"
+
+void anisotropic_vdf(ClosureData closureData, vec3 absorption, vec3 scattering, float anisotropy,
+                     inout VDF vdf)
+{
+    if (closureData.closureType == CLOSURE_TYPE_TRANSMISSION)
+    {
+        vdf.response = vec3(0.0);
+        vdf.throughput = exp(-(absorption + scattering));
+    }
+}

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+// Entry point of chiang_hair_bsdf, and its lobes, after [MaterialX2026], Chiang Hair Model.
+//
+// Roughness is at least (1e-8, 1e-4), square radian and radian: float32 has no narrower lobes, and
+// (0, 0) has no value. A direction in the fiber's frame has x along it, and z along the normal.
+
+#include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
+#include "libraries/pbrlib/genglsl/lib/mx_microfacet_diffuse.glsl"
+
+// exp(-x) I_0(x) for x >= 0: [AbramowitzStegun1964], 9.8.1 and 9.8.2, to 5e-7 of the value.
+float chiang_hair_bessel(float x)
+{
+    float t = x / 3.75;
+    if (t < 1.0)
+    {
+        t *= t;
+        return exp(-x) * (1.0 + t * (3.5156229 + t * (3.0899424 + t * (1.2067492
+             + t * (0.2659732 + t * (0.0360768 + t * 0.0045813))))));
+    }
+    t = 1.0 / t;
+    return (0.39894228 + t * (0.01328592 + t * (0.00225319 + t * (-0.00157565
+          + t * (0.00916281 + t * (-0.02057706 + t * (0.02635537
+          + t * (-0.01647633 + t * 0.00392377)))))))) / sqrt(x);
+}
+
+// 2 v sinh(1 / v) exp(-1 / v). The series is cut after the eighth power: 3e-8 of the value.
+float chiang_hair_norm(float v)
+{
+    float u = 1.0 / v;
+    float u2 = u * u;
+    return v < 1.0 ? v * (1.0 - exp(-2.0 * u))
+                   : 2.0 * exp(-u)
+                     * (1.0 + u2 / 6.0 * (1.0 + u2 / 20.0 * (1.0 + u2 / 42.0 * (1.0 + u2 / 72.0))));
+}
+
+// M_p of two points (cosine, sine), by the distance of one from the mirror image of the other: the
+// exponents themselves would cancel. I_0 is even, so that a tilted cosine may lose its sign.
+float chiang_hair_longitudinal(vec2 inclined_i, vec2 inclined_o, float v)
+{
+    float c = abs(inclined_i.x);
+    vec2 d = vec2(c - inclined_o.x, inclined_i.y + inclined_o.y);
+    return exp(-0.5 * dot(d, d) / v) * chiang_hair_bessel(c * inclined_o.x / v)
+           / chiang_hair_norm(v);
+}
+
+// The angle of a vector from the first axis, without its sign. The arc tangent of half of it or
+// less is a polynomial (tools/fits/arc_tangent.py): those of engines are off by 1e-6 and more.
+float chiang_hair_angle(vec2 w)
+{
+    vec2 a = abs(w);
+    float r = min(a.x, a.y) / max(max(a.x, a.y), 1e-30);
+    float t = r / (1.0 + sqrt(1.0 + r * r));
+    float z = t * t;
+    float series = 0.99999998
+                   + z * (-0.33332786 + z * (0.19974082 + z * (-0.13848490 + z * 0.07976292)));
+    float angle = 2.0 * t * series;
+    angle = a.y > a.x ? 0.5 * M_PI - angle : angle;
+    return w.x < 0.0 ? M_PI - angle : angle;
+}
+
+// N_p of the angle of a vector in the cross-section, which needs no wrapping.
+float chiang_hair_azimuthal(vec2 exit, float s)
+{
+    float scale = sqrt(M_PI / 8.0) * s;
+    float fall = exp(-chiang_hair_angle(exit) / scale);
+    float rest = exp(-M_PI / scale);
+    return fall * (1.0 + rest) / (scale * (1.0 + fall) * (1.0 + fall) * (1.0 - rest));
+}
+
+// F: [MaterialX2026], Dielectric Fresnel Equations, without a difference of nearly equal numbers.
+float chiang_hair_fresnel(float mu, float ior)
+{
+    float gap = (ior - 1.0) * (ior + 1.0);
+    float g2 = gap + mu * mu;
+    if (g2 <= 0.0)
+    {
+        return gap < 0.0 ? 1.0 : 0.0;
+    }
+    float product = mu * sqrt(g2);
+    float S2 = 1.0 - mu * mu;
+    float amplitude = gap / ((sqrt(g2) + mu) * (sqrt(g2) + mu));
+    float ratio = (product - S2) / (product + S2);
+    return min(0.5 * amplitude * amplitude * (1.0 + ratio * ratio), 1.0);
+}
+
+// Product of two complex numbers: it adds the angles.
+vec2 complex_multiply(vec2 a, vec2 b)
+{
+    return vec2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x);
+}
+
+// Cosine and sine of alpha in [-pi/2, pi/2], from the series of its half: engines have none in
+// common (SwiftShader's are off by 1.9e-4). They are cut after the ninth power: 2e-9.
+vec2 chiang_hair_tilt(float alpha)
+{
+    float x = 0.5 * alpha;
+    float z = x * x;
+    float S = x * (1.0 - z / 6.0 * (1.0 - z / 20.0 * (1.0 - z / 42.0 * (1.0 - z / 72.0))));
+    float C = 1.0
+              - z / 2.0 * (1.0 - z / 12.0 * (1.0 - z / 30.0 * (1.0 - z / 56.0 * (1.0 - z / 90.0))));
+    return complex_multiply(vec2(C, S), vec2(C, S));
+}
+
+// A_p of R, TT, TRT and TRRT+, the view (cosine, sine) in the cross-section, and that of the
+// refracted ray.
+void chiang_hair_section(vec3 wo, float ior, vec3 absorption, out vec3 A[4], out vec2 gamma_o,
+                         out vec2 gamma_t)
+{
+    float c = length(wo.yz);
+    gamma_o = c > 0.0 ? vec2(wo.z, -wo.y) / c : vec2(1.0, 0.0);
+    float inside = sqrt(max((ior - wo.x) * (ior + wo.x), 1e-12));
+    float sine = clamp(-wo.y / inside, -1.0, 1.0);
+    gamma_t = vec2(sqrt((1.0 - sine) * (1.0 + sine)), sine);
+
+    float F = chiang_hair_fresnel(clamp(wo.z, 0.0, 1.0), ior);
+    vec3 T = exp(-absorption * (2.0 * gamma_t.x * max(ior, 1e-6) / inside));
+    A[0] = vec3(F);
+    A[1] = (1.0 - F) * (1.0 - F) * T;
+    A[2] = A[1] * F * T;
+    A[3] = A[2] * F * T / max(1.0 - F * T, 1e-7);  // the limit of 0 / 0 is 0
+}
+
+// Sum of the lobes, times pi.
+vec3 chiang_hair_sum(vec3 wo, vec3 wi, vec3 tint[3], vec2 roughness[3], float ior,
+                     float cuticle_angle, vec3 absorption)
+{
+    // Attenuate each lobe in the cross-section.
+    vec3 A[4];
+    vec2 gamma_o;
+    vec2 gamma_t;
+    chiang_hair_section(wo, ior, absorption, A, gamma_o, gamma_t);
+
+    // Tilt the light for R, and turn it to where R leaves.
+    vec2 inclined_o = vec2(length(wo.yz), wo.x);
+    vec2 inclined_i = vec2(length(wi.yz), wi.x);
+    vec2 alpha = chiang_hair_tilt(M_PI * (cuticle_angle - 0.5));
+    vec2 back = alpha * vec2(1.0, -1.0);  // by -alpha
+    vec2 tilted = complex_multiply(inclined_i, complex_multiply(alpha, alpha));
+    vec2 exit = vec2(dot(wi.yz, wo.yz), wi.z * wo.y - wo.z * wi.y);
+    exit = complex_multiply(exit, complex_multiply(gamma_o, gamma_o));
+    vec2 inside = -complex_multiply(gamma_t, gamma_t) * vec2(1.0, -1.0);  // by pi - 2 gamma_t
+
+    // Add R, TT and TRT, each turned on from the one before.
+    vec3 total = vec3(0.0);
+    for (int p = 0; p < 3; ++p)
+    {
+        vec2 r = max(roughness[p], vec2(1e-8, 1e-4));
+        float M = chiang_hair_longitudinal(tilted, inclined_o, r.x);
+        total += tint[p] * A[p] * M * chiang_hair_azimuthal(exit, r.y);
+        exit = complex_multiply(exit, inside);
+        tilted = complex_multiply(complex_multiply(tilted, back), complex_multiply(back, back));
+    }
+
+    // Add the rest, TRRT+, which leaves at all azimuths alike.
+    float v = max(roughness[2].x, 1e-8);
+    float M = chiang_hair_longitudinal(inclined_i, inclined_o, v);
+    return total + tint[2] * A[3] * M * 0.5 * M_PI_INV;
+}
+
+void chiang_hair_bsdf(ClosureData closureData, vec3 tint_R, vec3 tint_TT, vec3 tint_TRT, float ior,
+                      vec2 roughness_R, vec2 roughness_TT, vec2 roughness_TRT, float cuticle_angle,
+                      vec3 absorption_coefficient, vec3 N, vec3 X, inout BSDF bsdf)
+{
+    bsdf.throughput = vec3(0.0);
+
+    vec3 V = closureData.V;
+    vec3 L = closureData.L;
+    N = mx_forward_facing_normal(N, V);
+    X = normalize(X - dot(X, N) * N);
+    vec3 Y = cross(N, X);
+
+    vec3 wo = vec3(dot(V, X), dot(V, Y), dot(V, N));
+    vec3 tint[3];
+    tint[0] = max(tint_R, vec3(0.0));
+    tint[1] = max(tint_TT, vec3(0.0));
+    tint[2] = max(tint_TRT, vec3(0.0));
+
+    if (closureData.closureType == CLOSURE_TYPE_REFLECTION)
+    {
+        vec3 wi = vec3(dot(L, X), dot(L, Y), dot(L, N));
+        vec2 roughness[3];
+        roughness[0] = roughness_R;
+        roughness[1] = roughness_TT;
+        roughness[2] = roughness_TRT;
+        vec3 total = chiang_hair_sum(wo, wi, tint, roughness, ior, cuticle_angle,
+                                     absorption_coefficient);
+        bsdf.response = total * closureData.occlusion * M_PI_INV;
+    }
+    else if (closureData.closureType == CLOSURE_TYPE_INDIRECT)
+    {
+        // Exact for a cuticle without tilt in a uniform environment. In an uneven one, R and TRT
+        // take the light from the viewer's side, TT that from the other, and TRRT+ half of both.
+        vec3 A[4];
+        vec2 gamma_o;
+        vec2 gamma_t;
+        chiang_hair_section(wo, ior, absorption_coefficient, A, gamma_o, gamma_t);
+        vec3 both = 0.5 * tint[2] * A[3];
+        vec3 front = tint[0] * A[0] + tint[2] * A[2] + both;
+        vec3 back = tint[1] * A[1] + both;
+        vec3 light = front * mx_environment_irradiance(N) + back * mx_environment_irradiance(-N);
+        bsdf.response = light * M_PI_INV;
+    }
+}

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Entry point of the node conductor_bsdf, which lets nothing through.
+
+#include "lib/microfacet_lobe.glsl"
+#include "lib/fresnel_conductor.glsl"
+
+void conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 extinction,
+                    vec2 roughness, bool retroreflective, float thinfilm_thickness,
+                    float thinfilm_ior, vec3 N, vec3 X, int distribution, inout BSDF bsdf)
+{
+    if (!microfacet_is_off(closureData, weight, 0))
+    {
+        MicrofacetLobe lobe = microfacet_lobe(closureData, N, X, roughness, retroreflective);
+        FresnelData fd = mx_init_fresnel_conductor(ior, extinction, thinfilm_thickness,
+                                                   thinfilm_ior);
+        MicrofacetFresnel F;
+        F.value = mx_fresnel_conductor(lobe.mu_h, ior, extinction);
+        F.average = fresnel_conductor_avg(ior, extinction);
+        F.visible = vec3(1.0);  // without a film the environment's sum has the curve
+        microfacet_add_film(lobe, fd, F);
+        microfacet_bsdf(closureData, lobe, fd, F, vec3(1.0), weight, distribution, 0, bsdf);
+    }
+    bsdf.throughput = vec3(0.0);
+}
+
+// As MaterialX before 1.39.5 calls it, which has no retroreflection.
+void conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 extinction,
+                    vec2 roughness, float thinfilm_thickness, float thinfilm_ior, vec3 N, vec3 X,
+                    int distribution, inout BSDF bsdf)
+{
+    conductor_bsdf(closureData, weight, ior, extinction, roughness, false, thinfilm_thickness,
+                   thinfilm_ior, N, X, distribution, bsdf);
+}

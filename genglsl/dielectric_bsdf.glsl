@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Entry point of the node dielectric_bsdf. With ior 0 it reflects everything.
+
+#include "lib/microfacet_lobe.glsl"
+#include "lib/fresnel_dielectric.glsl"
+
+void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior, vec2 roughness,
+                     bool retroreflective, float thinfilm_thickness, float thinfilm_ior, vec3 N,
+                     vec3 X, int distribution, int scatter_mode, inout BSDF bsdf)
+{
+    if (microfacet_is_off(closureData, weight, scatter_mode))
+    {
+        return;
+    }
+    MicrofacetLobe lobe = microfacet_lobe(closureData, N, X, roughness, retroreflective);
+    FresnelData fd = mx_init_fresnel_dielectric(ior, thinfilm_thickness, thinfilm_ior);
+    float mu_visible = ggx_cosine_dielectric(lobe.mu_o, lobe.alpha, ior);
+    MicrofacetFresnel F;
+    F.value = vec3(fresnel_dielectric(lobe.mu_h, ior));
+    F.average = vec3(fresnel_dielectric_avg(ior));
+    F.visible = vec3(fresnel_dielectric(mu_visible, ior));
+    microfacet_add_film(lobe, fd, F);
+    microfacet_bsdf(closureData, lobe, fd, F, max(tint, 0.0), weight, distribution, scatter_mode,
+                    bsdf);
+}
+
+// As MaterialX before 1.39.5 calls it, which has no retroreflection.
+void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior, vec2 roughness,
+                     float thinfilm_thickness, float thinfilm_ior, vec3 N, vec3 X, int distribution,
+                     int scatter_mode, inout BSDF bsdf)
+{
+    dielectric_bsdf(closureData, weight, tint, ior, roughness, false, thinfilm_thickness,
+                    thinfilm_ior, N, X, distribution, scatter_mode, bsdf);
+}

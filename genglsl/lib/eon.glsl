@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// Albedos and values of qualitative (QON), Fujii (FON) and energy-preserving (EON) Oren-Nayar.
+//
+// mu_o and mu_i are the cosines of wo and wi with the normal, in [0, 1]; s is signed,
+// s = dot(wo, wi) - mu_o * mu_i. Values are BRDFs, without the cosine.
+
+#define EON_PI 3.14159265358979
+#define EON_C1 (0.5 - 2.0 / (3.0 * EON_PI))
+#define EON_C2 (2.0 / 3.0 - 28.0 / (15.0 * EON_PI))
+
+// Average of fon_loss over the projected hemisphere: EON_C1 - EON_C2.
+#define EON_LOSS_AVG (6.0 / (5.0 * EON_PI) - 1.0 / 6.0)
+
+// fon_loss(mu) = mu [P(mu) + (1 - S)(1 - mu) Q(mu)], S = sqrt(1 - mu^2).
+// Source: tools/fits/fon_loss.py. Domain: mu in [0, 1]. Largest relative error: 2.7e-7, and 5.4e-7 with
+// the roundings of float32.
+#define EON_P0 0.318309971
+#define EON_P1 0.143885045
+#define EON_P2 -0.449159307
+#define EON_P3 0.42190335
+#define EON_P4 -0.147145689
+#define EON_Q0 0.527481849
+#define EON_Q1 -0.248895342
+#define EON_Q2 -0.125382218
+#define EON_Q3 0.0571913429
+
+// H(mu) = c1 - G_F(mu) / pi, with G_F of [Portsmouth2025], Eq. (13). It carries the energy that FON
+// loses, 1 - E(mu) = r H(mu) / (1 + c1 r), and vanishes at grazing like mu / pi.
+float fon_loss(float mu)
+{
+    float m = 1.0 - mu;
+    float S = sqrt(m * (1.0 + mu));
+    float P = EON_P0 + mu * (EON_P1 + mu * (EON_P2 + mu * (EON_P3 + mu * EON_P4)));
+    float Q = EON_Q0 + mu * (EON_Q1 + mu * (EON_Q2 + mu * EON_Q3));
+    return mu * (P + (1.0 - S) * m * Q);
+}
+
+// A_F of [Portsmouth2025], below Eq. (11).
+float fon_a(float roughness)
+{
+    return 1.0 / (1.0 + EON_C1 * roughness);
+}
+
+// rho A_F / pi of [Portsmouth2025], Eq. (10).
+vec3 fon_scale(vec3 rho, float roughness)
+{
+    return 1.0 / EON_PI * fon_a(roughness) * rho;
+}
+
+// A_q of [Portsmouth2025], below Eq. (1).
+float qon_a(float sigma)
+{
+    float sigma2 = sigma * sigma;
+    return 1.0 - 0.5 * sigma2 / (sigma2 + 0.33);
+}
+
+// B_q of [Portsmouth2025], below Eq. (1).
+float qon_b(float sigma)
+{
+    float sigma2 = sigma * sigma;
+    return 0.45 * sigma2 / (sigma2 + 0.09);
+}
+
+// D = (1 + c1 r)(1 - rho (1 - <E>)), at least 1; the denominator of [Portsmouth2025], Eq. (18).
+vec3 eon_denominator(vec3 rho, float roughness)
+{
+    return vec3(1.0 + EON_C1 * roughness) - roughness * EON_LOSS_AVG * rho;
+}
+
+// [Portsmouth2025], Eqs. (5), (8) at rho = 1, with G_q = G_F + (2/3) S from Eq. (13).
+float qon_albedo_dir(float mu, float sigma)
+{
+    float S = sqrt((1.0 - mu) * (1.0 + mu));
+    float G_over_pi = EON_C1 - fon_loss(mu) + 2.0 / (3.0 * EON_PI) * S;
+    return qon_a(sigma) + qon_b(sigma) * G_over_pi;
+}
+
+// [Portsmouth2025], Eq. (28), where all but a loss cancels: rho (1 - r H (1 - rho) / D).
+vec3 eon_albedo_dir(float mu, vec3 rho, float roughness)
+{
+    vec3 loss = roughness * fon_loss(mu) * (vec3(1.0) - rho) / eon_denominator(rho, roughness);
+    return rho * (vec3(1.0) - loss);
+}
+
+// A divisor at or below 1e-37, a cosine or sine, counts as 0, and the quotient as 0: there it might
+// overflow, and overflow times a cosine of 0 is NaN.
+float oren_nayar_quotient(float value, float divisor)
+{
+    return divisor > 1.0e-37 ? value / divisor : 0.0;
+}
+
+// s / t_q of [Portsmouth2025], Eq. (4); 0 with both directions at grazing, where it has no limit.
+float qon_quotient(float mu_o, float mu_i, float s)
+{
+    return oren_nayar_quotient(max(s, 0.0), max(mu_o, mu_i));
+}
+
+// s / t_F of [Portsmouth2025], Eq. (11).
+float fon_quotient(float mu_o, float mu_i, float s)
+{
+    return s > 0.0 ? oren_nayar_quotient(s, max(mu_o, mu_i)) : s;
+}
+
+// Weight of H(mu_o) H(mu_i) beside 1 + r s / t_F: [Portsmouth2025], Eq. (19) over Eq. (10). With
+// 1 - E = r H / (1 + c1 r) the powers of r cancel, and nothing in it vanishes.
+vec3 eon_multiple_weight(vec3 rho, float roughness)
+{
+    float weight = roughness * (1.0 + EON_C2 * roughness) * (1.0 / EON_LOSS_AVG);
+    return weight * rho / eon_denominator(rho, roughness);
+}
+
+// [Portsmouth2025], Eqs. (1), (3).
+vec3 qon_brdf_mu(float mu_o, float mu_i, float s, vec3 rho, float sigma)
+{
+    float quotient = qon_quotient(mu_o, mu_i, s);
+    return 1.0 / EON_PI * (qon_a(sigma) + qon_b(sigma) * quotient) * rho;
+}
+
+// [Portsmouth2025], Eq. (16).
+vec3 eon_brdf_mu(float mu_o, float mu_i, float s, vec3 rho, float roughness)
+{
+    vec3 weight = eon_multiple_weight(rho, roughness);
+    vec3 scale = fon_scale(rho, roughness);
+    float single_scatter = 1.0 + roughness * fon_quotient(mu_o, mu_i, s);
+    return scale * (vec3(single_scatter) + fon_loss(mu_o) * fon_loss(mu_i) * weight);
+}

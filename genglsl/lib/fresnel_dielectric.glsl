@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// Fresnel reflectance of a dielectric, F_ss, its cosine-weighted average over the hemisphere, and the cosine
+// at which it has its average over the visible facets of GGX. mu is the cosine of wo with the normal.
+
+// 1 - F_ss of a dielectric is t N / D, t = 1 / ior. Source: tools/fits/fresnel_average.py.
+// Domain: ior >= 1. Largest absolute error: 5.3e-5.
+#define FRESNEL_AVG_N0 5.2782628
+#define FRESNEL_AVG_N1 94.973875
+#define FRESNEL_AVG_N2 -107.33376
+#define FRESNEL_AVG_N3 30.075991
+#define FRESNEL_AVG_N4 -7.6046715
+#define FRESNEL_AVG_D1 24.314418
+#define FRESNEL_AVG_D2 43.891479
+#define FRESNEL_AVG_D3 -53.815382
+
+// That cosine is mu + alpha^2 / (mu + alpha) N / D, x = mu / (mu + alpha).
+// Source: tools/fits/ggx_cosine.py. Domain: mu and alpha in [1e-4, 1], index of refraction in [1.03, 3].
+// Largest absolute error of the albedo: 0.003, in [1.05, 2.5] 0.0017.
+#define GGX_DIELECTRIC_N000 121.31539
+#define GGX_DIELECTRIC_N001 695.29722
+#define GGX_DIELECTRIC_N002 -852.70243
+#define GGX_DIELECTRIC_N003 0.95958787
+#define GGX_DIELECTRIC_N010 -79.111812
+#define GGX_DIELECTRIC_N011 -404.20459
+#define GGX_DIELECTRIC_N012 719.38075
+#define GGX_DIELECTRIC_N020 -87.272915
+#define GGX_DIELECTRIC_N021 -153.03073
+#define GGX_DIELECTRIC_N030 79.441552
+#define GGX_DIELECTRIC_N100 -107.09138
+#define GGX_DIELECTRIC_N101 -328.78907
+#define GGX_DIELECTRIC_N102 356.88066
+#define GGX_DIELECTRIC_N110 -2.5500696
+#define GGX_DIELECTRIC_N111 -40.596539
+#define GGX_DIELECTRIC_N120 68.03638
+#define GGX_DIELECTRIC_N200 10.033399
+#define GGX_DIELECTRIC_N201 16.886608
+#define GGX_DIELECTRIC_N210 -50.014696
+#define GGX_DIELECTRIC_N300 -7.2080572
+#define GGX_DIELECTRIC_D001 57.90553
+#define GGX_DIELECTRIC_D002 -67.41115
+#define GGX_DIELECTRIC_D010 181.8611
+#define GGX_DIELECTRIC_D011 -7.478896
+#define GGX_DIELECTRIC_D020 -50.38694
+#define GGX_DIELECTRIC_D100 3.325208
+#define GGX_DIELECTRIC_D101 0.0942464
+#define GGX_DIELECTRIC_D110 -261.2011
+#define GGX_DIELECTRIC_D200 -4.144666
+#define GGX_DIELECTRIC_D120 -6.590822
+#define GGX_DIELECTRIC_D210 107.1744
+
+// [MaterialX2026], Dielectric Fresnel Equations, from the amplitudes: no quotient of 0 at ior 0.
+float fresnel_dielectric(float mu, float ior)
+{
+    float n2 = ior * ior;
+    float g2 = (ior - 1.0) * (ior + 1.0) + mu * mu;  // n^2 + mu^2 - 1 loses mu^2 at grazing
+    float g = sqrt(max(g2, 0.0));
+    float s = (mu - g) / (mu + g);
+    float p = (n2 * mu - g) / (n2 * mu + g);
+    return g2 <= 0.0 ? 1.0 : 0.5 * (s * s + p * p);
+}
+
+// F_ss of a dielectric; below 1 from the other side, 1 - F_ss(n) = n^2 (1 - F_ss(1 / n)).
+float fresnel_dielectric_avg(float ior)
+{
+    float t = ior > 1.0 ? 1.0 / ior : ior;
+    float N = FRESNEL_AVG_N0 + t * (FRESNEL_AVG_N1 + t * (FRESNEL_AVG_N2
+              + t * (FRESNEL_AVG_N3 + t * FRESNEL_AVG_N4)));
+    float D = 1.0 + t * (FRESNEL_AVG_D1 + t * (FRESNEL_AVG_D2 + t * FRESNEL_AVG_D3));
+    float lost = t * N / D;
+    return 1.0 - (ior > 1.0 ? lost : ior * ior * lost);
+}
+
+// Cosine for a dielectric. Indices beyond the domain have that of its end, and indices below 1 that
+// of the other side of the interface.
+float ggx_cosine_dielectric(float mu, float alpha, float ior)
+{
+    float n = clamp(max(ior, 1.0 / max(ior, 0.1)), 1.03, 3.0);
+    float x = mu / (mu + alpha);
+    float y = sqrt(sqrt(alpha));
+    float s = sqrt((n - 1.0) / (n + 1.0));
+    float N0 = GGX_DIELECTRIC_N000
+               + s * (GGX_DIELECTRIC_N001 + s * (GGX_DIELECTRIC_N002 + s * GGX_DIELECTRIC_N003))
+               + y * (GGX_DIELECTRIC_N010 + s * (GGX_DIELECTRIC_N011 + s * GGX_DIELECTRIC_N012)
+                      + y * (GGX_DIELECTRIC_N020 + s * GGX_DIELECTRIC_N021
+                             + y * GGX_DIELECTRIC_N030));
+    float N1 = GGX_DIELECTRIC_N100 + s * (GGX_DIELECTRIC_N101 + s * GGX_DIELECTRIC_N102)
+               + y * (GGX_DIELECTRIC_N110 + s * GGX_DIELECTRIC_N111 + y * GGX_DIELECTRIC_N120);
+    float N2 = GGX_DIELECTRIC_N200 + s * GGX_DIELECTRIC_N201 + y * GGX_DIELECTRIC_N210;
+    float N = N0 + x * (N1 + x * (N2 + x * GGX_DIELECTRIC_N300));
+    float D0 = 1.0 + s * (GGX_DIELECTRIC_D001 + s * GGX_DIELECTRIC_D002)
+               + y * (GGX_DIELECTRIC_D010 + s * GGX_DIELECTRIC_D011 + y * GGX_DIELECTRIC_D020);
+    float D1 = GGX_DIELECTRIC_D100 + s * GGX_DIELECTRIC_D101
+               + y * (GGX_DIELECTRIC_D110 + y * GGX_DIELECTRIC_D120);
+    float D2 = GGX_DIELECTRIC_D200 + y * GGX_DIELECTRIC_D210;
+    float D = D0 + x * (D1 + x * D2);
+    return clamp(mu + alpha * (1.0 - x) * N / D, 0.0, 1.0);
+}

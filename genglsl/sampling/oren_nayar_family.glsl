@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every model of the Oren-Nayar family as plain functions, with the names of the Python package.
+//
+// wo and wi are unit vectors that leave the surface, in a local frame with the normal +z, neither
+// below the horizon. Values are BRDFs, without the cosine. Albedos of QON and FON are at rho = 1.
+
+#include "../lib/eon.glsl"
+
+// [Portsmouth2025], Eq. (14); mu in [0, 1]; largest error of G_F / pi: 6.0e-4.
+#define EON_G1 0.0571085289
+#define EON_G2 0.491881867
+#define EON_G3 -0.332181442
+#define EON_G4 0.0714429953
+
+// [Portsmouth2025], Eq. (9).
+float qon_albedo_avg(float sigma)
+{
+    return qon_a(sigma) + (2.0 / 3.0 - 64.0 / (45.0 * EON_PI)) * qon_b(sigma);
+}
+
+// [Portsmouth2025], Eq. (12), as 1 - r H / (1 + c1 r).
+float fon_albedo_dir(float mu, float roughness)
+{
+    return 1.0 - roughness * fon_loss(mu) * fon_a(roughness);
+}
+
+// [Portsmouth2025], Eq. (15).
+float fon_albedo_avg(float roughness)
+{
+    return (1.0 + EON_C2 * roughness) * fon_a(roughness);
+}
+
+// fon_loss with G_F of [Portsmouth2025], Eq. (14).
+float fon_loss_approx(float mu)
+{
+    float m = 1.0 - mu;
+    return EON_C1 - m * (EON_G1 + m * (EON_G2 + m * (EON_G3 + m * EON_G4)));
+}
+
+// [Portsmouth2025], Eqs. (12), (14).
+float fon_albedo_dir_approx(float mu, float roughness)
+{
+    return 1.0 - roughness * fon_loss_approx(mu) * fon_a(roughness);
+}
+
+// [Portsmouth2025], Eq. (28) with the albedo of Eq. (14), in the form of eon_albedo_dir.
+vec3 eon_albedo_dir_approx(float mu, vec3 rho, float roughness)
+{
+    vec3 D = eon_denominator(rho, roughness);
+    return rho * (vec3(1.0) - roughness * fon_loss_approx(mu) * (vec3(1.0) - rho) / D);
+}
+
+// The average of eon_albedo_dir, in which H enters linearly.
+vec3 eon_albedo_avg(vec3 rho, float roughness)
+{
+    vec3 D = eon_denominator(rho, roughness);
+    return rho * (vec3(1.0) - roughness * EON_LOSS_AVG * (vec3(1.0) - rho) / D);
+}
+
+// [Portsmouth2025], the s of Eq. (3), which in this frame needs no difference.
+float oren_nayar_s(vec3 wo, vec3 wi)
+{
+    return wo.x * wi.x + wo.y * wi.y;
+}
+
+// The same in every direction.
+vec3 lambert_brdf(vec3 wo, vec3 wi, vec3 rho)
+{
+    return rho / EON_PI;
+}
+
+// The angle whose sine is y and whose cosine is x, as a fraction of a right angle: four times the arc
+// tangent of a quarter of it (tools/fits/arc_tangent.py). Engines have no better one in common: SwiftShader's
+// cosine is off by 1.9e-4, OSL's arc tangent by 1.2e-5.
+float oren_nayar_angle(float y, float x)
+{
+    float t_half = y / (1.0 + x);
+    float t = t_half / (1.0 + sqrt(1.0 + t_half * t_half));
+    float z = t * t;
+    float series = 0.99999998 + z * (-0.33332786 + z * (0.19974082 + z * (-0.13848490 + z * 0.07976292)));
+    return 8.0 / EON_PI * t * series;
+}
+
+// (sin(alpha) - (2 beta / pi)^3) / cos(beta), and its limit 6 / pi with both directions at grazing.
+// With q = 1 - 2 beta / pi the cube is 1 - q (3 - 3 q + q^2), and 1 - sin(alpha) is
+// cos(alpha)^2 / (1 + sin(alpha)): the ones cancel, not the digits.
+float oren_nayar_behind_slope(float mu_o, float mu_i, float S_o, float S_i)
+{
+    float high = max(mu_o, mu_i);
+    float low = min(mu_o, mu_i);
+    float q = oren_nayar_angle(high, min(S_o, S_i));
+    float rise = q * (3.0 - 3.0 * q + q * q) - low * low / (1.0 + max(S_o, S_i));
+    return high > 1.0e-37 ? rise / high : 6.0 / EON_PI;
+}
+
+// [OrenNayar1994], the functional approximation for Gaussian slopes, with interreflection:
+//   f = rho / pi [C1 + C2 cos(phi) tan(beta) + C3 (1 - |cos(phi)|) tan((alpha + beta) / 2)]
+//       + 0.17 rho^2 / pi k (1 - (2 beta / pi)^2 cos(phi)),  k = sigma^2 / (sigma^2 + 0.13)
+// alpha is the larger polar angle, beta the smaller; both as fractions of a right angle below.
+vec3 oren_nayar_brdf(vec3 wo, vec3 wi, vec3 rho, float sigma)
+{
+    float mu_o = min(wo.z, 1.0);
+    float mu_i = min(wi.z, 1.0);
+    float s = oren_nayar_s(wo, wi);
+    float S_o = sqrt(wo.x * wo.x + wo.y * wo.y);
+    float S_i = sqrt(wi.x * wi.x + wi.y * wi.y);
+    float alpha = oren_nayar_angle(max(S_o, S_i), min(mu_o, mu_i));
+    float beta = oren_nayar_angle(min(S_o, S_i), max(mu_o, mu_i));
+    float cos_phi = oren_nayar_quotient(s, S_o * S_i);
+    float behind = oren_nayar_quotient(min(s, 0.0), max(S_o, S_i))
+                   * oren_nayar_behind_slope(mu_o, mu_i, S_o, S_i);
+    float C3 = 0.125 / 0.45 * qon_b(sigma) * (alpha * beta) * (alpha * beta);
+    float aside = (1.0 - abs(cos_phi)) * oren_nayar_quotient(S_o + S_i, mu_o + mu_i);
+    float single_scatter = qon_a(sigma) + qon_b(sigma) * (qon_quotient(mu_o, mu_i, s) + behind);
+    float k = sigma * sigma / (sigma * sigma + 0.13);
+    float interreflection = 0.17 * k * (1.0 - beta * beta * cos_phi);
+    return 1.0 / EON_PI * rho * (vec3(single_scatter + C3 * aside) + interreflection * rho);
+}
+
+// [Portsmouth2025], Eqs. (1), (3), (4).
+vec3 qon_brdf(vec3 wo, vec3 wi, vec3 rho, float sigma)
+{
+    return qon_brdf_mu(min(wo.z, 1.0), min(wi.z, 1.0), oren_nayar_s(wo, wi), rho, sigma);
+}
+
+// QON with 0.57 in place of 0.33 in A_q: [OrenNayar1994], in [Portsmouth2025], footnote 1.
+vec3 qon_footnote_brdf(vec3 wo, vec3 wi, vec3 rho, float sigma)
+{
+    float quotient = qon_quotient(wo.z, wi.z, oren_nayar_s(wo, wi));
+    float A = 1.0 - 0.5 * sigma * sigma / (sigma * sigma + 0.57);
+    return 1.0 / EON_PI * (A + qon_b(sigma) * quotient) * rho;
+}
+
+// QON's B_q, FON's s/t and an A that grows with rho: the first formula proposed in [Fujii2013].
+vec3 qon_fujii_brdf(vec3 wo, vec3 wi, vec3 rho, float sigma)
+{
+    float quotient = fon_quotient(wo.z, wi.z, oren_nayar_s(wo, wi));
+    vec3 tinted = 0.17 * sigma * sigma / (sigma * sigma + 0.13) * rho;
+    return 1.0 / EON_PI * rho * (vec3(qon_a(sigma) + qon_b(sigma) * quotient) + tinted);
+}
+
+// [Portsmouth2025], Eq. (10).
+vec3 fon_brdf(vec3 wo, vec3 wi, vec3 rho, float roughness)
+{
+    float quotient = fon_quotient(wo.z, wi.z, oren_nayar_s(wo, wi));
+    return 1.0 / EON_PI * fon_a(roughness) * (1.0 + roughness * quotient) * rho;
+}
+
+// [Portsmouth2025], Eq. (16).
+vec3 eon_brdf(vec3 wo, vec3 wi, vec3 rho, float roughness)
+{
+    return eon_brdf_mu(min(wo.z, 1.0), min(wi.z, 1.0), oren_nayar_s(wo, wi), rho, roughness);
+}
+
+// [Portsmouth2025], Eq. (16) with the albedo of Eq. (14). The quartic turns the loss into a gain
+// below mu = 0.0014; there it counts as 0, where the listing of the paper raises 1 - E to 1e-7.
+vec3 eon_brdf_approx(vec3 wo, vec3 wi, vec3 rho, float roughness)
+{
+    float single_scatter = 1.0 + roughness * fon_quotient(wo.z, wi.z, oren_nayar_s(wo, wi));
+    float losses = max(fon_loss_approx(wo.z), 0.0) * max(fon_loss_approx(wi.z), 0.0);
+    vec3 multi_scatter = losses * eon_multiple_weight(rho, roughness);
+    return 1.0 / EON_PI * fon_a(roughness) * rho * (vec3(single_scatter) + multi_scatter);
+}

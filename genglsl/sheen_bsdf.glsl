@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Entry point of the node sheen_bsdf, and the lobe of Conty and Kulla.
+//
+// Roughness is kept in [1e-4, 1], the domain of the albedo: below it only grazing pairs reflect.
+
+#include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
+#include "libraries/pbrlib/genglsl/lib/mx_microfacet_sheen.glsl"
+#include "lib/conty_kulla_albedo.glsl"
+
+// Logarithm of the squared sine of the half vector's angle, from whichever of sine and cosine does
+// not cancel. The series is cut after the cube: 2e-9 of the logarithm.
+float conty_kulla_log_sine(vec3 N, vec3 H)
+{
+    float cosine = dot(N, H);
+    float c2 = cosine * cosine;
+    vec3 sine = cross(N, H);
+    return c2 < 0.01 ? -c2 * (1.0 + c2 * (1.0 / 2.0 + c2 * (1.0 / 3.0 + c2 / 4.0)))
+                     : log(max(dot(sine, sine), 1e-30));
+}
+
+// [MaterialX2026], Conty-Kulla Sheen Equations, at unit color.
+float conty_kulla_brdf(float mu_o, float mu_i, vec3 N, vec3 H, float roughness)
+{
+    float shape = 0.5 / roughness;
+    float density = (1.0 + shape) * exp(shape * conty_kulla_log_sine(N, H)) * M_PI_INV;
+    return density / (4.0 * (mu_i + mu_o - mu_i * mu_o));
+}
+
+// [MaterialX2026], Zeltner Sheen Model, times the cosine, at unit albedo. The frame comes from a
+// cross product: a view along the normal would leave the rounding of a difference, which points anywhere.
+float zeltner_lobe(vec3 wo, vec3 wi, vec3 N, float mu_o, float roughness)
+{
+    vec3 Y = cross(N, wo);
+    if (dot(Y, Y) < 1e-12)
+    {
+        Y = cross(N, abs(N.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0));
+    }
+    Y = normalize(Y);
+    float a = mx_zeltner_sheen_ltc_aInv(mu_o, roughness);
+    float b = mx_zeltner_sheen_ltc_bInv(mu_o, roughness);
+    float mu_i = dot(N, wi);
+    vec3 w = vec3(a * dot(cross(Y, N), wi) + b * mu_i, a * dot(Y, wi), mu_i);
+    float quotient = a / dot(w, w);
+    return max(mu_i, 0.0) * M_PI_INV * quotient * quotient;
+}
+
+void sheen_bsdf(ClosureData closureData, float weight, vec3 color, float roughness, vec3 N,
+                int mode, inout BSDF bsdf)
+{
+    // A lobe that is switched off costs nothing; a negative weight, never valid, counts as 0.
+    if (weight <= 0.0)
+    {
+        return;
+    }
+
+    vec3 wo = closureData.V;
+    vec3 wi = closureData.L;
+    N = mx_forward_facing_normal(N, wo);
+
+    // Cosines of 0 would divide by 0 where both directions graze.
+    float mu_o = clamp(dot(N, wo), M_FLOAT_EPS, 1.0);
+    float rough = clamp(roughness, mode == 0 ? 1e-4 : 0.01, 1.0);
+    float albedo = mode == 0 ? conty_kulla_albedo_dir(mu_o, rough)
+                             : mx_zeltner_sheen_dir_albedo(mu_o, rough);
+
+    // Light through the base passes the sheen as well.
+    bsdf.throughput = max(1.0 - albedo * color * weight, 0.0);
+
+    if (closureData.closureType == CLOSURE_TYPE_REFLECTION)
+    {
+        float mu_i = clamp(dot(N, wi), 0.0, 1.0);
+        float lobe = mode == 0
+            ? mu_i * conty_kulla_brdf(mu_o, mu_i, N, normalize(wi + wo), rough)
+            : albedo * zeltner_lobe(wo, wi, N, mu_o, rough);
+        bsdf.response = lobe * color * closureData.occlusion * weight;
+    }
+    else if (closureData.closureType == CLOSURE_TYPE_INDIRECT)
+    {
+        bsdf.response = albedo * mx_environment_irradiance(N) * color * weight;
+    }
+}

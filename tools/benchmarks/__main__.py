@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs the benchmarks: prints the tables, and writes docs/performance.json and the page from it.
+
+    python -m tools.benchmarks [GROUP ...] [--quick] [--kind TEXT] [--output DIR]
+    python -m tools.benchmarks --page           the page alone, from the JSON that is there
+
+Exit status: 0, or 1 if a value that was timed is wrong. A missed goal is shown and no error.
+"""
+
+import argparse
+import os
+import sys
+import time
+from functools import partial
+from importlib import import_module
+from pathlib import Path
+from unittest.mock import patch
+
+from mxeon.errors import NotRun
+from tools.benchmarks import page, record
+from tools.benchmarks.check import CACHE
+
+GROUPS = (
+    "shaders", "noise", "materials", "texts", "instructions", "registers", "shares", "cycles", "models", "values",
+    "tool", "check", "parts",
+)  # fmt: skip
+QUICK = {
+    "shaders": {"rounds": 5},
+    "noise": {"rounds": 3, "invocations": 2**12, "size": 64, "pictures": 8, "spokes": 6},
+    "materials": {"processes": 3, "size": 256},
+    "texts": {"nodes": ("oren_nayar", "dielectric_bsdf")},
+    "instructions": {"nodes": ("oren_nayar", "dielectric_bsdf")},
+    "registers": {"nodes": ("oren_nayar", "dielectric_bsdf")},
+    "shares": {"nodes": ("dielectric_bsdf",)},
+    "cycles": {"rounds": 2, "size": 32, "samples": (16,)},
+    "models": {"rounds": 3, "pairs": (10_000, 100_000)},
+    "values": {"rounds": 2, "pairs": 100_000, "calls": 200},
+    "tool": {"rounds": 2, "counts": (1, 10), "documents": 10},
+    "check": {"rounds": 1, "whole": False},
+    "parts": {"rounds": 1},
+}
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+
+
+def keep(file, kind, start, group):
+    """Write a group's figures as far as they are, so that no later failure loses them."""
+    record.write(file, [group], kind, time.monotonic() - start)
+
+
+def measure(options, file):
+    """Measure the groups that are asked for, each printed and kept as it is done."""
+    record.write(file, [])
+    for name in options.groups or GROUPS:
+        sizes = dict(QUICK[name]) if options.quick else {}
+        kept = partial(keep, file, options.kind, time.monotonic())
+        if name in ("materials", "check"):  # which take longest: each part is kept as it is done
+            sizes["keep"] = kept
+        try:
+            group = import_module(f"benchmarks.{name}").measure(**sizes)
+        except NotRun as reason:
+            print(f"benchmarks: {name} not run: {reason}", file=sys.stderr)
+            continue
+        print(page.table(group), flush=True)
+        kept(group)
+
+
+def main(arguments=None):
+    """Run what is asked for; the exit status."""
+    parser = argparse.ArgumentParser(prog="benchmarks", description=__doc__.splitlines()[0])
+    parser.add_argument("groups", nargs="*", metavar="GROUP", help=", ".join(GROUPS))
+    parser.add_argument("--quick", action="store_true", help="small sizes, few rounds")
+    parser.add_argument(
+        "--kind", default="", help="kind of machine; its results stand beside others"
+    )
+    parser.add_argument("--output", type=Path, default=DOCS, help="folder of JSON and page")
+    parser.add_argument("--page", action="store_true", help="make the page alone")
+    options = parser.parse_args(arguments)
+    unknown = set(options.groups) - set(GROUPS)
+    if unknown:
+        parser.error(f"group must be one of {', '.join(GROUPS)}; got {', '.join(unknown)}")
+    file = options.output / "performance.json"
+    if not options.page:
+        with patch.dict(os.environ, {CACHE: "true"}):  # or a compilation is read from a file
+            measure(options, file)
+    groups = page.write(options.output, file)
+    wrong = [each.name for group in groups for each in group.checks if not each.passed]
+    if wrong:
+        print(f"benchmarks: wrong values: {', '.join(wrong)}", file=sys.stderr)
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`mxeon check` as a user starts it: time and memory, with and without Mesa's cache of compiled shaders.
+
+The caches are folders of this benchmark alone, so that no row depends on what ran before it.
+"""
+
+import json
+import os
+import statistics
+import sys
+import time
+from collections.abc import Callable
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from subprocess import Popen
+from tempfile import NamedTemporaryFile, TemporaryDirectory, TemporaryFile
+from threading import Timer
+
+import numpy as np
+
+from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES
+from mxeon.hosts import HOSTS
+from mxeon.shaders.library import examples_folder
+from mxeon.shaders.library_export import export_library
+from tools.benchmarks.rounds import Check, Group, figure, ratio
+
+BOTH = ("--library", "eonlib", "--library", "stock")
+# The field as tools/site/field.py asks it: the diffuse nodes on hosts, and all common ones of renderers' own.
+EXAMPLE = str(examples_folder() / "clay.mtlx")
+DIFFUSE = tuple(dict.fromkeys(row.node for row in (*SUBJECTS, *SURFACES)))
+FIELD = {
+    "hosts": ([row.name for row in HOSTS if row.module and not row.nodes], DIFFUSE),
+    "renderers": ([row.name for row in HOSTS if row.module and row.nodes], ("common",)),
+}
+LONGEST = 240.0  # seconds of each half of the field, which is stopped then
+CACHE, FOLDER = "MESA_SHADER_CACHE_DISABLE", "MESA_SHADER_CACHE_DIR"
+NONE, TWO = "gl, no workers", "gl, 2 workers"
+MEMORY = 600.0  # MiB
+# What starts the command, and writes the KiB of its largest process to a file: Linux counts what the process
+# that starts a program had in memory as the program's, and this one is small.
+LAUNCHER = """
+import os, resource, signal, sys
+child = os.spawnv(os.P_NOWAIT, sys.argv[2], sys.argv[2:])
+signal.signal(signal.SIGTERM, lambda *_: os.kill(child, signal.SIGTERM))
+_, status = os.waitpid(child, 0)
+with open(sys.argv[1], "w") as file:
+    file.write(str(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss))
+sys.exit(os.waitstatus_to_exitcode(status))
+"""
+# A coefficient of EON's albedo, and a wrong one, of which the first digits are right.
+RIGHT, WRONG = "#define EON_Q0 0.527481849\n", "#define EON_Q0 0.52\n"
+
+
+@dataclass(frozen=True)
+class Job:
+    """One run: seconds, the MiB of its largest process, what did not pass, and whether it was stopped."""
+
+    seconds: float
+    memory: float
+    wrong: float
+    stopped: bool = False
+
+
+def job(*options, cache=None, longest=None):
+    """The command with options, in a process of its own; the driver's cache is a folder.
+
+    A run that takes longer than so many seconds is stopped.
+    """
+    environment = {name: value for name, value in os.environ.items() if name != CACHE}
+    environment |= {} if cache is None else {FOLDER: str(cache)}
+    command = [sys.executable, "-P", "-m", "mxeon", "check", "--json", *options]
+    with TemporaryFile() as output, TemporaryFile() as errors, NamedTemporaryFile() as size:
+        start = time.perf_counter()
+        launch = [sys.executable, "-ISc", LAUNCHER, size.name, *command]
+        process = Popen(launch, stdout=output, stderr=errors, env=environment)
+        stop = Timer(longest or 0.0, process.terminate)
+        if longest:
+            stop.start()
+        process.wait()
+        seconds = time.perf_counter() - start
+        stop.cancel()
+        output.seek(0)
+        errors.seek(0)
+        text, memory = output.read(), float(size.read() or 0.0) / 1024.0
+        if longest and seconds >= longest:
+            return Job(seconds, memory, np.inf, True)
+        if not text:
+            raise RuntimeError(f"{' '.join(command)}: {errors.read().decode().strip()}")
+        counts = json.loads(text)["counts"]
+    wrong = np.inf if not counts["passed"] else float(counts["failed"])
+    return Job(seconds, memory, wrong)
+
+
+def memory(name, jobs, goal=None):
+    """Figure of the largest process of some runs."""
+    return figure(f"{name}, largest process", "MiB", [max(each.memory for each in jobs)], goal)
+
+
+def share(name, jobs, usual, goal):
+    """Figure of the time of some runs, relative to a usual one."""
+    return figure(name, "x", [each.seconds / usual for each in jobs], goal)
+
+
+def main_job(rounds, files, cache):
+    """Figures and checks of the examples on gl, without and with workers in turn; and its seconds."""
+    options = {NONE: (*files, "--workers", "0"), TWO: (*files, "--workers", "2")}
+    cold = job(*options[TWO], cache=cache)  # fills the cache for both
+    found = {name: [] for name in options}
+    for _ in range(rounds):
+        for name, each in options.items():
+            found[name].append(job(*each, cache=cache))
+    seconds = {name: [each.seconds for each in jobs] for name, jobs in found.items()}
+    figures = [
+        figure(NONE, "s", seconds[NONE], goal=12.0),
+        figure(TWO, "s", seconds[TWO], goal=9.0),
+        ratio(f"{TWO} / no workers", seconds[TWO], seconds[NONE], goal=1.0),
+        figure("gl, the driver's cache empty", "s", [cold.seconds], goal=30.0),
+        memory("gl", [cold, *found[NONE], *found[TWO]], MEMORY),
+    ]
+    wrong = [Check(name, max(each.wrong for each in jobs), 0.0) for name, jobs in found.items()]
+    return figures, wrong, statistics.median(seconds[TWO])
+
+
+@contextmanager
+def wrong_library():
+    """A copy of eonlib with one wrong coefficient."""
+    with TemporaryDirectory() as folder:
+        library = export_library(Path(folder, "eonlib"))
+        path = library / "genglsl" / "lib" / "eon.glsl"
+        text = path.read_text(encoding="utf-8")
+        assert RIGHT in text
+        path.write_text(text.replace(RIGHT, WRONG), encoding="utf-8")
+        yield library
+
+
+def reporting(rounds, files, cache, usual):
+    """Figures of a report, and of the same run again, which finds it finished."""
+    found = {"first": [], "again": []}
+    for _ in range(rounds):
+        with TemporaryDirectory() as folder:
+            options = (*files, "--workers", "2", "--report", folder)
+            found["first"].append(job(*options, cache=cache))
+            found["again"].append(job(*options, "--resume", cache=cache))
+    beyond = [each.seconds - usual for each in found["first"]]
+    figures = [
+        figure("gl, beyond that with --report", "s", beyond, goal=2.0),
+        figure("gl, again with --resume", "s", [each.seconds for each in found["again"]], goal=5.0),
+        memory("gl, --report", found["first"], MEMORY),
+    ]
+    return figures, []
+
+
+def libraries(rounds, files, cache, usual):
+    """Figures and checks of two libraries, and of a wrong one with its diagnosis."""
+
+    def warm(*options):
+        """Runs after one that fills the cache."""
+        jobs = [job(*files, "--workers", "2", *options, cache=cache) for _ in range(rounds + 1)]
+        return jobs[1:]
+
+    two = warm(*BOTH)
+    with wrong_library() as library:
+        wrong = warm("--library", str(library))
+    figures = [
+        share("gl, two libraries / one", two, usual, 1.6),
+        share("gl, a wrong coefficient / none", wrong, usual, 1.5),
+        memory("gl, two libraries", two, MEMORY),
+    ]
+    missed = 0.0 if all(each.wrong > 0.0 for each in wrong) else np.inf
+    return figures, [Check("a wrong coefficient is found", missed, 0.0)]
+
+
+def all_nodes(files):
+    """Figures and checks of all nodes, with an empty cache and again."""
+    with TemporaryDirectory() as cache:
+        runs = [job(*files, "--workers", "2", "--node", "all", cache=cache) for _ in range(2)]
+    figures = [
+        figure("gl, --node all, the driver's cache empty", "s", [runs[0].seconds], goal=40.0),
+        figure("gl, --node all", "s", [runs[1].seconds], goal=20.0),
+        memory("gl, --node all", runs, MEMORY),
+    ]
+    return figures, [Check("gl, --node all", max(each.wrong for each in runs), 0.0)]
+
+
+def field(cache):
+    """Figures of all hosts that run here with both libraries, of which stock MaterialX fails."""
+    found = {
+        name: job(
+            *(word for host in hosts for word in ("--host", host)),
+            *(word for node in nodes for word in ("--node", node)),
+            *(*BOTH, "--workers", "2", EXAMPLE),
+            cache=cache,
+            longest=LONGEST,
+        )
+        for name, (hosts, nodes) in FIELD.items()
+    }
+    figures = [
+        figure(f"field, {name}{', stopped' if each.stopped else ''}", "s", [each.seconds])
+        for name, each in found.items()
+    ]
+    seconds = sum(each.seconds for each in found.values())
+    figures.append(figure("field, eonlib and stock, 2 workers", "s", [seconds], goal=90.0))
+    return [*figures, memory("field", list(found.values()))], []
+
+
+def measure(rounds=3, files=(), whole=True, keep: Callable[[Group], None] | None = None):
+    """The `Group` of all that, or of the main job alone; `keep` is handed it after each part."""
+    with TemporaryDirectory() as cache:
+        figures, checks, usual = main_job(rounds, files, cache)
+        parts = (
+            partial(reporting, rounds, files, cache, usual),
+            partial(libraries, rounds, files, cache, usual),
+            partial(all_nodes, files),
+            partial(field, cache),
+        )
+        for part in (lambda: ([], []), *(parts if whole else ())):
+            found, more = part()
+            figures, checks = [*figures, *found], [*checks, *more]
+            title = "`mxeon check`, bundled examples"
+            group = Group("check", title, tuple(figures), tuple(checks), {})
+            if keep:
+                keep(group)
+    return group

@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The table of mutants: single textual changes of eonlib's sources, read from `table/*.toml`.
+
+Beside them, for each file a change of its first comment: a negative control, which must survive.
+"""
+
+import re
+import tomllib
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+
+from mxeon.shaders.functions import STEMS
+
+TABLE = Path(__file__).with_name("table")
+ROOT = Path(__file__).resolve().parents[3]
+TWINS = (*STEMS, "hair_parameters")  # files whose functions have one text in two languages
+FOLDERS = ("libraries", "genglsl", "genosl")  # that hold eonlib
+CONTROLS = "Negative controls"  # group of the mutants that change a comment
+COMMENT = "SPDX-License-Identifier"  # in the first comment of every file
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """One wrong library.
+
+    Attributes
+    ----------
+    name : str
+        Unique in the table.
+    group : str
+        Title of the implementation that it belongs to.
+    file : str
+        Path from the root of the repository.
+    old, new : str
+        The text that occurs once in the file, and what takes its place.
+    reason : str
+        Why it is wrong, or the proof that it is equivalent.
+    host : str
+        The cheapest host that can see it; "text" where no host is needed.
+    equivalent : bool
+        Whether it computes the same function on the whole valid domain.
+    survives : bool
+        Whether no check notices it, for that reason.
+    tests : tuple of str
+        Files of tests that are asked first about a wrong reference.
+    """
+
+    name: str
+    group: str
+    file: str
+    old: str
+    new: str
+    reason: str
+    host: str
+    equivalent: bool
+    survives: bool
+    tests: tuple[str, ...] = ()
+
+    def texts(self) -> dict[str, str]:
+        """Text of each mutated file, by its path: of the functions in GLSL, that in OSL as well.
+
+        Raises
+        ------
+        ValueError
+            If the old text does not occur once.
+        """
+        texts = {self.file: self._replaced(self.file, re.escape(self.old), self.new)}
+        twin = self.file.replace("glsl", "osl")
+        if self.file.startswith("genglsl/") and Path(self.file).stem in TWINS:
+            old = re.sub(r"\bvec3\b", "(?:color|vector)", re.escape(self.old))
+            texts[twin] = self._replaced(twin, old, re.sub(r"\bvec3\b", "color", self.new))
+        return texts
+
+    def _replaced(self, file: str, old: str, new: str) -> str:
+        text, count = re.subn(old, lambda _: new, (ROOT / file).read_text(encoding="utf-8"))
+        if count != 1:
+            raise ValueError(
+                f"{self.name}: the old text must occur once in {file}; got {count} times"
+            )
+        return text
+
+    @property
+    def control(self) -> bool:
+        """Whether it changes a comment alone."""
+        return self.group == CONTROLS
+
+    @property
+    def digest(self) -> str:
+        """Digest of the mutated files."""
+        return sha256("".join(self.texts().values()).encode()).hexdigest()[:16]
+
+
+def read_table() -> tuple[Mutant, ...]:
+    """All mutants, in the order of the page, and the negative controls of their files."""
+    files = [tomllib.loads(path.read_text(encoding="utf-8")) for path in TABLE.glob("*.toml")]
+    table = [
+        Mutant(
+            name,
+            group["title"],
+            part["file"],
+            old,
+            new,
+            reason,
+            group["host"],
+            key == "equivalents",
+            key != "mutants",
+            tuple(part.get("tests", ())),
+        )
+        for group in sorted(files, key=lambda group: group["order"])
+        for part in group["files"]
+        for key in ("mutants", "survivors", "equivalents")
+        for name, old, new, reason in part.get(key, ())
+    ]
+    asked = {mutant.file: mutant.tests for mutant in table}
+    controls = (
+        Mutant(
+            f"control: {file}",
+            CONTROLS,
+            file,
+            COMMENT,
+            COMMENT.lower(),
+            "Only a comment changes.",
+            "",
+            True,
+            True,
+            tests,
+        )
+        for file, tests in asked.items()
+    )
+    return (*table, *controls)

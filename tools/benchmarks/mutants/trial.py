@@ -1,0 +1,246 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The trial of a mutant: `mxeon check` of a copy of eonlib that holds it, cheapest tasks first."""
+
+import atexit
+import shutil
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import replace
+from functools import cache
+from itertools import islice
+from pathlib import Path
+from tempfile import TemporaryDirectory, mkdtemp
+from typing import Any
+
+from mxeon.conformance.nodes.diffuse import SUBJECTS
+from mxeon.conformance.results import PASSED, SOURCE, Result
+from mxeon.conformance.run.judge import Judge
+from mxeon.conformance.run.plan import make_plan
+from mxeon.conformance.run.tasks import CURVE, PICTURE, Task
+from mxeon.errors import MxeonError
+from mxeon.shaders import generators, library
+from mxeon.shaders.generation import generate
+from tools.benchmarks.mutants.mutant import FOLDERS, ROOT, Mutant
+from tools.benchmarks.mutants.nodes import changed_nodes, node_tasks
+from tools.benchmarks.mutants.quick import Quick
+from tools.benchmarks.mutants.reference import TESTS, trial_of_reference
+
+KILLED, SURVIVED = "killed", "survived"
+CRASHED = "crashed"  # a traceback in place of a verdict
+TEXT = "text"
+
+NOISY = ("environment", "furnace")  # checks that take Cycles longest
+# Files that no shader for gl holds: there the gl host has nothing to see.
+ON_CYCLES = ("genosl/",)
+NOT_ON_GL = (*ON_CYCLES, "libraries/diffuse/eonlib_genosl", "libraries/diffuse/eonlib_genmdl")
+TEXT_FIRST = ("libraries/diffuse/eonlib_defs.mtlx",)  # other checks fail for what its check names
+# Files of the implementations, and the target whose text has to differ.
+CHANGED = {
+    "genglsl/lib/oren_nayar_lobe.glsl": "glsl",
+    "genglsl/oren_nayar_diffuse_bsdf.glsl": "glsl",
+    "genglsl/eon_diffuse_bsdf.glsl": "glsl",
+    "genglsl/lib/eon.glsl": "glsl",
+    "libraries/diffuse/eonlib_genglsl_impl.mtlx": "glsl",
+    "libraries/diffuse/eonlib_genosl_impl.mtlx": "osl",
+    "libraries/diffuse/eonlib_genmdl_impl.mtlx": "mdl",
+}
+
+
+def trial(mutant: Mutant, judge: Judge, quick: Quick, every: bool = False) -> dict[str, Any]:
+    """Verdict on a mutant, and the failures that it caused on the first host that saw any.
+
+    Parameters
+    ----------
+    mutant : Mutant
+        An equivalent one is judged by its text and the nodes alone, a control by all.
+    judge : Judge
+    quick : Quick
+        Judges the nodes of pbrlib.
+    every : bool
+        Whether to go on after the first failure, to the end of the stage.
+
+    Returns
+    -------
+    dict
+        verdict, KILLED, SURVIVED or CRASHED; host; failures: check, subject, excess and diagnosis
+        of each, the largest excess first; or refusal: the message that ended the command.
+    """
+    if mutant.tests:
+        failure = trial_of_reference(mutant)
+        found = {"host": TESTS, "failures": [failure]} if failure else {}
+        return {"verdict": KILLED if failure else SURVIVED} | found
+    nodes = bool(changed_nodes(mutant))
+    sources = nodes and not any(file.endswith(".mtlx") for file in mutant.texts())
+    with (wrong_sources if sources else wrong_library)(mutant) as path:
+        try:
+            if nodes:
+                return trial_of_nodes(mutant, path, quick)
+            if not mutant.control:
+                assert_changed(mutant, path)
+            limit = 1 if mutant.equivalent and not mutant.control else None
+            for host, stage in islice(stages(mutant, path), limit):
+                if failures := failures_of(stage, judge, every):
+                    rows = ordered(failures)
+                    seen = TEXT if rows[0]["host"] == SOURCE else host
+                    return {"verdict": KILLED, "host": seen, "failures": rows}
+        except MxeonError as error:
+            message = first_line(str(error).replace(f"{Path(path).parent}/", ""))
+            return {"verdict": KILLED, "host": TEXT, "refusal": message}
+        except Exception as error:
+            return {"verdict": CRASHED, "error": f"{type(error).__name__}: {error}"}
+        return {"verdict": SURVIVED}
+
+
+def trial_of_nodes(mutant: Mutant, path: str, quick: Quick) -> dict[str, Any]:
+    """Verdict of the nodes that a mutant changes, up to the first failure."""
+    quick.renew()
+    for host, tasks in node_tasks(mutant, path):
+        for task in tasks:
+            if failure := quick.failure(task):
+                seen = TEXT if host == SOURCE else host
+                return {"verdict": KILLED, "host": seen, "failures": [failure]}
+    return {"verdict": SURVIVED}
+
+
+@contextmanager
+def wrong_library(mutant: Mutant) -> Iterator[str]:
+    """Path of a library that is eonlib with one change, in a folder that no cache knows."""
+    with TemporaryDirectory(prefix="mxeon-mutant-") as base:
+        _copy(base, mutant.texts())
+        try:
+            yield str(Path(base, "libraries"))
+        finally:
+            library.read_library.cache_clear()
+            generators._library_generator.cache_clear()
+
+
+@contextmanager
+def wrong_sources(mutant: Mutant) -> Iterator[str]:
+    """The same where no document changes: one copy for all mutants, which is loaded once."""
+    base = _shared()
+    for file, text in mutant.texts().items():
+        Path(base, file).write_text(text, encoding="utf-8")
+    try:
+        yield str(Path(base, "libraries"))
+    finally:
+        for file in mutant.texts():
+            shutil.copyfile(ROOT / file, Path(base, file))
+
+
+def _copy(base: str, texts: Mapping[str, str]) -> None:
+    """Copy eonlib, with other texts in the place of some files."""
+    for name in FOLDERS:
+        shutil.copytree(ROOT / name, Path(base, name))
+    for file, text in texts.items():
+        Path(base, file).write_text(text, encoding="utf-8")
+
+
+@cache
+def _shared() -> str:
+    """A folder with a copy of eonlib, which is removed as the program ends."""
+    base = mkdtemp(prefix="mxeon-mutants-")
+    atexit.register(shutil.rmtree, base)
+    _copy(base, {})
+    return base
+
+
+def tasks_on_gl(path: str) -> list[Task]:
+    """Tasks of `mxeon check --library` that judge something, on the first host."""
+    return [task for task in make_plan((), ["gl"], [path]).tasks if task.check != CURVE]
+
+
+def stages(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
+    """Hosts and tasks that can see a mutant, the cheapest first.
+
+    The text and the nodes come first, then surface shaders, then pictures of documents one by one.
+    """
+    tasks = tasks_on_gl(path)
+    if mutant.file.startswith(NOT_ON_GL):
+        yield TEXT, [task for task in tasks if task.host == SOURCE]
+    else:
+        nodes = [task for task in tasks if task.check not in ("lobe", PICTURE)]
+        text_first = mutant.file in TEXT_FIRST
+        yield "gl", sorted(nodes, key=lambda task: (task.host == SOURCE) != text_first)
+        yield "gl", [task for task in tasks if task.check == "lobe"]
+        yield from (("gl", [task]) for task in tasks if task.check == PICTURE)
+    if mutant.file.startswith(ON_CYCLES):
+        yield from _on_cycles(path)
+
+
+def _on_cycles(path: str) -> Iterator[tuple[str, list[Task]]]:
+    """Tasks on Cycles, one by one."""
+    tasks = make_plan((), ["cycles"], [path]).tasks
+    tasks = [task for task in tasks if task.host == "cycles" and task.check != PICTURE]
+    for task in sorted(tasks, key=lambda task: task.check in NOISY):
+        yield "cycles", [task]
+
+
+def failures_of(
+    tasks: Sequence[Task], judge: Judge, every: bool = True, clean: str = "eonlib"
+) -> list[Result]:
+    """Results that pass with the library without a mutant alone: of all tasks, or of the first."""
+    failures: list[Result] = []
+    for task in tasks:
+        found = _failed(task, judge)
+        known = found and _clean_failures(replace(task, library=clean), judge)
+        failures += [each for key, each in found.items() if key not in known]
+        if failures and not every:
+            break
+    return failures
+
+
+def _failed(task: Task, judge: Judge) -> dict[tuple[str, str], Result]:
+    """Results that did not pass, by check and subject."""
+    results = judge.work(task).results
+    return {(each.check, each.subject): each for each in results if each.verdict != PASSED}
+
+
+@cache
+def _clean_failures(task: Task, judge: Judge) -> frozenset[tuple[str, str]]:
+    return frozenset(_failed(task, judge))
+
+
+def ordered(failures: list[Result]) -> list[dict[str, str]]:
+    """Failures as plain data, those with the largest error in tolerances first."""
+    return [
+        {
+            "check": each.check,
+            "subject": Path(each.subject).name if each.subject.startswith("/") else each.subject,
+            "host": each.host,
+            "excess": each.excess,
+            "diagnosis": first_line(each.diagnosis or f"not run: {each.reason}"),
+        }
+        for each in sorted(failures, key=_ratio, reverse=True)
+    ]
+
+
+def _ratio(result: Result) -> float:
+    """Error in tolerances; infinite where a shader does not compile."""
+    if result.error is None:
+        return float("inf")
+    return result.error / max(result.tolerance or 0.0, 1e-9)
+
+
+def assert_changed(mutant: Mutant, path: str) -> None:
+    """Raise RuntimeError unless the generated text has the change, where text must have it."""
+    target = CHANGED.get(mutant.file)
+    if target is None:
+        return
+    with suppress(MxeonError):
+        if _texts(target, path) == _original(target):
+            raise RuntimeError(f"{mutant.name}: the generated text for {target} is the same")
+
+
+@cache
+def _original(target: str) -> list[str]:
+    return _texts(target, "eonlib")
+
+
+def _texts(target: str, name: str) -> list[str]:
+    documents = [subject.document() for subject in SUBJECTS]
+    return [generate(text, target, library=name)[0].stages["pixel"] for text in documents]
+
+
+def first_line(text: str) -> str:
+    """The first line of a text, where compilers print many."""
+    return text.strip().splitlines()[0] if text.strip() else ""

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The tool itself: imports, the command, the library, and generation over many documents."""
+
+import os
+import subprocess
+import sys
+import time
+from contextlib import contextmanager
+from functools import partial
+
+import MaterialX as mx
+import MaterialX.PyMaterialXGenShader as mx_gen
+
+from mxeon.shaders.generation import GENERATORS, TARGETS, generate
+from mxeon.shaders.library import examples_folder, load_library, read_library
+from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
+from tools.benchmarks.models import peak_memory, reset_memory
+from tools.benchmarks.rounds import Check, Group, figure, interleave, less, ratio, scaled
+
+DOCUMENTS = (1, 10, 100, 1000)
+
+
+def _process(*arguments):
+    subprocess.run([sys.executable, *arguments], check=True, capture_output=True)
+
+
+def starting(rounds):
+    """Figures of imports and of the command's help, each in a process of its own."""
+    codes = {"numpy": "import numpy", "mxeon": "import numpy, mxeon, mxeon.models.table"}
+    rivals = {name: partial(_process, "-c", code) for name, code in codes.items()}
+    rivals["help"] = partial(_process, "-c", "from mxeon.cli import main; main(['--help'])")
+    seconds = interleave(rivals, rounds)
+    over = [1e3 * each for each in less(seconds["mxeon"], seconds["numpy"])]
+    helped = [1e3 * each for each in seconds["help"]]
+    return [
+        figure("import mxeon and its models, beyond import numpy", "ms", over, goal=30.0),
+        figure("mxeon --help", "ms", helped, goal=300.0),
+    ]
+
+
+def raw(library, text, target):
+    """The calls that a MaterialX script makes for the same text, on a library already loaded."""
+    document = mx.createDocument()
+    mx.readFromXmlString(document, text)
+    document.setDataLibrary(library)
+    generator = GENERATORS[target].create()
+    context = mx_gen.GenContext(generator)
+    context.registerSourceCodeSearchPath(mx.getDefaultDataSearchPath())
+    generator.registerTypeDefs(document)
+    colors = mx_gen.DefaultColorManagementSystem.create(generator.getTarget())
+    colors.loadLibrary(document)
+    generator.setColorManagementSystem(colors)
+    units = mx_gen.UnitSystem.create(generator.getTarget())
+    converters = mx.UnitConverterRegistry.create()
+    for name in ("distance", "angle"):
+        definition = document.getUnitTypeDef(name)
+        converters.addUnitConverter(definition, mx.LinearUnitConverter.create(definition))
+    units.loadLibrary(document)
+    units.setUnitConverterRegistry(converters)
+    generator.setUnitSystem(units)
+    context.getOptions().targetDistanceUnit = "meter"
+    context.getOptions().fileTextureVerticalFlip = target == "osl"
+    found = mx_gen.findRenderableElements(document)
+    return [generator.generate(each.getName(), each, context) for each in found]
+
+
+def same_text(library, text, target):
+    """Whether `generate` and `raw` give one text; 0 or 1."""
+    ours = [dict(each.stages) for each in generate(text, target)]
+    theirs = [
+        {stage: each.getSourceCode(stage) for stage in ("pixel", "vertex") if each.hasStage(stage)}
+        for each in raw(library, text, target)
+    ]
+    return float(ours != theirs)
+
+
+@contextmanager
+def unwarned():
+    """Without what MaterialX writes to the standard error of the process itself."""
+    kept, nothing = os.dup(2), os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nothing, 2)
+    try:
+        yield
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
+        os.close(nothing)
+
+
+def generating(rounds, documents=100):
+    """Figures of generation over documents of one lobe, against the raw calls, by target."""
+    library, figures, checks = load_library(), [], []
+    texts = [
+        material_text(OREN_NAYAR, {"roughness": 0.5 + 0.004 * k, FLAG: True})
+        for k in range(documents)
+    ]
+    for target in TARGETS:
+        rivals = {
+            "ours": lambda target=target: [generate(text, target) for text in texts],
+            "raw": lambda target=target: [raw(library, text, target) for text in texts],
+        }
+        checks.append(Check(f"same text, {target}", same_text(library, texts[0], target), 0.0))
+        seconds = interleave(rivals, rounds)
+        name = f"generate, {target}, per document"
+        figures.append(scaled(name, "ms", seconds["ours"], 1e3 / documents))
+        name = f"generate / raw MaterialX calls, {target}, {documents} documents"
+        figures.append(ratio(name, seconds["ours"], seconds["raw"], goal=1.2))
+    return figures, checks
+
+
+def growing(counts):
+    """Figures and series of time and memory over the number of documents, in glsl."""
+    files = sorted(examples_folder().glob("*.mtlx"))
+    generate(files[0], "glsl")
+    figures, series = [], {"s": [], "MiB": []}
+    for count in counts:
+        before, start = reset_memory(), time.perf_counter()
+        for k in range(count):
+            generate(files[k % len(files)], "glsl")
+        seconds, memory = time.perf_counter() - start, max(0.0, peak_memory() - before)
+        figures.append(figure(f"{count} documents", "s", [seconds]))
+        name = f"{count} documents, peak memory beyond the start"
+        figures.append(figure(name, "MiB", [memory], goal=1.0))
+        series["s"].append((count, seconds))
+        series["MiB"].append((count, memory))
+    return figures, series
+
+
+def loading(rounds):
+    """Figures of loading the library anew."""
+    fresh = partial(read_library.__wrapped__, profile=None, definitions=())
+    work = {name: partial(fresh, name) for name in ("eonlib", "stock")}
+    seconds = interleave(work, rounds)
+    return [
+        scaled("library load, eonlib", "ms", seconds["eonlib"], 1e3),
+        ratio("library load, eonlib / stock", seconds["eonlib"], seconds["stock"]),
+    ]
+
+
+def measure(rounds=5, counts=DOCUMENTS, documents=100):
+    """The `Group` of all that."""
+    with unwarned():
+        figures, checks = generating(rounds, documents)
+    grown, series = growing(counts)
+    figures = starting(4 * rounds) + loading(rounds) + figures + grown
+    return Group("tool", "The tool", tuple(figures), tuple(checks), series)

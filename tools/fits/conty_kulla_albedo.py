@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Fit of the directional albedo of the Conty-Kulla sheen, at most 1, for the shaders.
+
+    E(mu, r) = exp(-mu^2 / (r (8 - 4 mu^2))) s^2 / (mu + s)^3 N / D,
+    s = sqrt(r),  z = sqrt(mu / (mu + s)),
+
+with polynomials N and D in z and s. At small roughness r the lobe keeps light near the horizon
+alone: the exponential is what is left of sin(theta_h)^(1 / r) at the lowest half vector that light
+above the horizon leaves, and the quotient has the limits at mu = 0 and 1. The largest absolute
+error of min(E, 1) is least. The quadrature takes sums, products, quotients and square roots alone,
+as that of `ggx_albedo.py`: roughness is 4 / k with whole k, so that its powers are products of roots.
+
+    python -m tools.fits.conty_kulla_albedo
+"""
+
+import numpy as np
+
+from tools.fits.ggx_albedo import graded, legendre
+from tools.fits.minimax import mp
+from tools.fits.rational import Form, defines, refined
+
+FORM = Form(
+    above=((0, 0), (0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 2), (3, 0), (3, 2)),
+    below=((0, 1), (0, 2), (0, 3), (1, 0), (1, 1), (1, 2), (2, 0), (3, 0)),
+)
+START = (
+    *(0.377934, -0.0814393, 0.196272, -0.816149, -0.489525, 0.899376),
+    *(0.695761, -0.478227, -0.475273),
+    *(-0.498106, 0.297915, -0.0293167, -1.9829, 0.46172, -0.258082, 1.08952, -0.102918),
+)
+EIGHTHS = (
+    *(4, 5, 6, 7, 8, 10, 12, 14, 16, 18, 20, 24, 28, 32, 36, 40, 44, 48, 56, 64, 80, 100, 128),
+    *(170, 230, 320, 450, 640, 900, 1300, 2000, 3000, 5000, 8000, 13000, 20000, 40000),
+)
+TOP, LEAST = 1.02, 1e-4  # albedos of the fit: above 1 the shaders clamp it, below it is no matter
+NODES = 20  # of a half turn, twice
+
+
+def power(x, eighths):
+    """x to the power of eighths / 8, by square roots and products."""
+    base = np.sqrt(np.sqrt(np.sqrt(x)))
+    result = np.ones_like(x)
+    while eighths:
+        if eighths & 1:
+            result = result * base
+        base, eighths = base * base, eighths >> 1
+    return result
+
+
+def albedo(mu, eighths):
+    """E by quadrature at roughness 4 / eighths; its error is below 1e-4 of max(E, 1).
+
+    f cos = (1 + p) sin(theta_h)^(2 p) / (4 pi) mu_i / (mu + mu_i - mu mu_i),  p = 1 / (2 r)
+    """
+    mu_i, weight = (each[:, None, None] for each in graded())
+    x, w = (each[None, :, None] for each in legendre(NODES))
+    s, s_i = np.sqrt((1.0 - mu) * (1.0 + mu)), np.sqrt((1.0 - mu_i) * (1.0 + mu_i))
+    M = mu + mu_i
+    total = np.zeros_like(mu)
+    # tan(phi / 2) = x from the azimuth of wo to a right angle, and 1 / x beyond.
+    for near, far in ((1.0, x * x), (x * x, 1.0)):
+        half = near / (near + far)
+        flat = (s - s_i) * (s - s_i) + 4.0 * s * s_i * half
+        lobe = power(flat / (flat + M * M), eighths) * (4.0 * w / (1.0 + x * x))
+        inner = np.add.reduce(lobe, axis=1)
+        total += np.add.reduce((weight * mu_i / (M - mu * mu_i))[:, 0] * inner, axis=0)
+    return (1.0 + eighths / 8.0) / (4.0 * PI) * total
+
+
+PI = float(mp.pi)
+
+
+def variables(mu, roughness):
+    """z and s, and the factor of N / D but for the exponential, and the exponent."""
+    s = np.sqrt(roughness)
+    factor = roughness / ((mu + s) * (mu + s) * (mu + s))
+    exponent = -mu * mu / (roughness * (8.0 - 4.0 * mu * mu))
+    return (np.sqrt(mu / (mu + s)), s), factor, exponent
+
+
+def fitted(mu, roughness, coefficients):
+    """min(E, 1) from coefficients."""
+    arguments, factor, exponent = variables(mu, roughness)
+    return np.minimum(np.exp(exponent) * factor * FORM.value(arguments, coefficients), 1.0)
+
+
+def points(count=37):
+    """Cosines, roughnesses and albedos where these lie between `LEAST` and `TOP`."""
+    ends = np.array([float((1 - mp.cos(mp.pi * k / (count - 1))) / 2) for k in range(count)])
+    rows = []
+    for eighths in EIGHTHS:
+        roughness = 4.0 / eighths
+        scaled = np.arange(1, count + 1) * 6.0 / count * np.sqrt(roughness)
+        mu = np.unique(np.concatenate([ends[1:], scaled[scaled < 1.0], [1e-4, 1e-3]]))
+        E = albedo(mu, eighths)
+        kept = (E > LEAST) & (E < TOP)
+        rows.append((mu[kept], np.full_like(mu, roughness)[kept], E[kept]))
+    return tuple(np.concatenate(each) for each in zip(*rows, strict=True))
+
+
+def fit():
+    """Coefficients, numerator first, rounded as printed."""
+    mu, roughness, E = points()
+    arguments, factor, exponent = variables(mu, roughness)
+    factor = factor * np.array([float(mp.exp(mp.mpf(float(x)))) for x in exponent])
+    return refined(FORM, arguments, E / factor, factor / np.maximum(E, 1.0), START)
+
+
+def largest_error(coefficients, count=75):
+    """Largest absolute error of min(E, 1) on a grid that is finer than that of the fit."""
+    mu, roughness, E = points(count)
+    return float(np.max(np.abs(fitted(mu, roughness, coefficients) - np.minimum(E, 1.0))))
+
+
+def main():
+    """Print the lines for the shaders and the error of the fit."""
+    coefficients = fit()
+    print(*defines(FORM, coefficients, "CONTY_KULLA_ALBEDO"), sep="\n")
+    print(f"largest absolute error {largest_error(coefficients):.3g}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Fits of `mxeon.models.sampling.eon` and of the shaders; prints coefficients and errors.
+
+    python -m tools.fits.eon_sampling
+
+Two inverse distributions map a random number to a cosine without any parameter. Written
+x = p + sum(a_k B_k(p)), with p the root of the random number that makes x analytic in it, they keep
+both ends whatever the coefficients are. What counts is the density that results, so that is what the fit makes as nearly
+right as it can: the largest relative error of the density is least (minimax fits on Newton steps,
+which need the exact density but not the exact inverse).
+
+ROOT, of the shaders alone, is the root y of K for a given cosine, y = (K / K(pi / 2))^(2/5), which
+is analytic in m = 1 - cos: it takes an arc tangent, a cancellation and a power from them.
+"""
+
+from tools.fits.fon_loss import closed_form
+from tools.fits.minimax import least_largest, mp
+
+COUNT = 400  # points of a fit
+STEPS = 4  # after which Newton's last changes no digit that is printed
+
+# Average of H over the projected hemisphere: c1 - c2 of [Portsmouth2025].
+LOSS_AVG = 6 / (5 * mp.pi) - mp.one / 6
+
+# Total of `upper_density` over [0, 1], before it is divided by it.
+UPPER_TOTAL = mp.pi / 4 - mp.one / 3
+
+MULTIPLE_POWERS = (2, 4, 5, 6, 7, 11)
+UPPER_POWERS = (0, 1, 2, 3, 4, 5)
+
+
+def multiple_density(mu):
+    """Density of the cosine in the part `multiple`, 2 H(mu) mu / (c1 - c2)."""
+    return 2 * closed_form(mu) * mu / LOSS_AVG
+
+
+def upper_density(m):
+    """Density of m = 1 - mu in the part `upper` for wo at the horizon, S m / (pi/4 - 1/3)."""
+    return mp.sqrt(m * (2 - m)) * m / UPPER_TOTAL
+
+
+def multiple_basis(t):
+    """t w^k with w^2 = 1 - t, and the derivatives by t."""
+    w = mp.sqrt(1 - t)
+    values = [t * w**k for k in MULTIPLE_POWERS]
+    return values, [w**k - k * t * w ** (k - 2) / 2 for k in MULTIPLE_POWERS]
+
+
+def upper_basis(y):
+    """(1 - y) y^(1 + k), and the derivatives by y."""
+    values = [(1 - y) * y ** (1 + k) for k in UPPER_POWERS]
+    return values, [(1 + k) * y**k - (2 + k) * y ** (1 + k) for k in UPPER_POWERS]
+
+
+def density_error(p, basis, density, root, coefficients):
+    """Relative error of the density of x, at x(p), where the random number is p^root.
+
+    Returns
+    -------
+    error : mpf
+    gradient : list of mpf
+        Its derivatives by the coefficients.
+    """
+    values, slopes = basis(p)
+    x, slope = p + mp.fdot(values, coefficients), 1 + mp.fdot(slopes, coefficients)
+    step = mp.sqrt(mp.eps)
+    exact = density(x)
+    growth = (exact - density(x - step)) / step
+    scale = root * p ** (root - 1)
+    gradient = [
+        (b * exact + slope * growth * a) / scale for a, b in zip(values, slopes, strict=True)
+    ]
+    return slope * exact / scale - 1, gradient
+
+
+def fitted(points, basis, density, root):
+    """Coefficients with the least largest error of the density, by Newton steps."""
+    coefficients = [mp.zero] * len(basis(points[0])[0])
+    for _ in range(STEPS):
+        errors = [density_error(p, basis, density, root, coefficients) for p in points]
+        change, _ = least_largest([row for _, row in errors], [-error for error, _ in errors])
+        coefficients = [a + b for a, b in zip(coefficients, change, strict=True)]
+    return coefficients
+
+
+def largest_error(points, basis, density, root, coefficients):
+    """Largest relative error of the density that the coefficients have on points."""
+    errors = (density_error(p, basis, density, root, coefficients)[0] for p in points)
+    return float(max(abs(error) for error in errors))
+
+
+def upper_root(m):
+    """y at the cosine 1 - m, y = (K / K(pi / 2))^(2/5); of 40 digits at most 14 cancel here."""
+    mu, S = 1 - m, mp.sqrt(m * (2 - m))
+    K = (mp.acos(mu) - S * mu) / 2 - S**3 / 3
+    return (K / UPPER_TOTAL) ** (mp.one * 2 / 5)
+
+
+def root_rows(points):
+    """Factors of the coefficients of y / m in powers of m, relative to y / m."""
+    return [[m ** (k + 1) / upper_root(m) for k in range(6)] for m in points]
+
+
+def root_fit():
+    """Coefficients of y / m in powers of m with the least largest relative error, and that."""
+    return least_largest(root_rows(nodes(COUNT)), [mp.one] * COUNT)
+
+
+def nodes(count):
+    """Points of (0, 1), dense at both ends."""
+    return [mp.sin(mp.pi * (2 * k + 1) / (4 * count)) ** 2 for k in range(count)]
+
+
+def multiple_nodes(count):
+    """The same for `multiple`, as t = 1 - w^2."""
+    return [1 - w**2 for w in nodes(count)]
+
+
+# Name, points, basis, density, exponent of the random number.
+ROWS = (
+    ("MULTIPLE", multiple_nodes, multiple_basis, multiple_density, mp.mpf(3)),
+    ("UPPER", nodes, upper_basis, upper_density, mp.mpf(5) / 2),
+)
+
+
+def printed(coefficients):
+    """Coefficients with the ten decimals that stand in the package."""
+    return tuple(round(float(each), 10) for each in coefficients)
+
+
+def main():
+    """Print each fit as it stands in the package, and its error after rounding."""
+    for name, points, *row in ROWS:
+        coefficients = printed(fitted(points(COUNT), *row))
+        print(f"{name} = ({', '.join(f'{c:.10f}' for c in coefficients)})")
+        error = largest_error(points(10 * COUNT + 1), *row, coefficients)
+        print(f"largest relative error of the density {error:.3g}")
+    coefficients, error = root_fit()
+    print(f"ROOT = ({', '.join(f'{c:.10f}' for c in printed(coefficients))})")
+    print(f"largest relative error {float(error):.3g}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Coefficients of `fon_loss` in the shaders: H(mu) without an inverse cosine and without a division.
+
+    H(mu) = mu [P(mu) + (1 - S)(1 - mu) Q(mu)],  S = sqrt(1 - mu^2)
+
+S carries the branch of H at mu = 1, and so both errors fall geometrically with the degrees. The second term
+vanishes at both ends, so that nothing cancels there. One fit of both makes the largest relative error of H
+least, from the closed form alone.
+
+    python -m tools.fits.fon_loss
+"""
+
+import numpy as np
+
+from mxeon.models.diffuse import formulas
+from tools.fits.minimax import least_largest, mp
+
+# One degree less in either costs a factor above ten; the table that this script prints says so.
+DEGREE_P, DEGREE_Q = 4, 3
+DIGITS = 9  # decimal digits that tell any two float32 numbers apart
+COUNT = 200  # points of the fit
+
+# Every decade from 1e-8 and every part of [0, 1], exactly representable.
+CHECKED = np.unique(
+    np.concatenate([np.logspace(-8, 0, 100_000), np.linspace(1e-5, 1, 100_000)]).astype("f4")
+)
+
+
+def closed_form(mu):
+    """H(mu) = c1 - G_F(mu) / pi, [Portsmouth2025], Eq. (13), in 40 digits, mu > 0."""
+    S = mp.sqrt((1 - mu) * (1 + mu))
+    G = S * (mp.acos(mu) - mu * S) + mp.mpf(2) / 3 * (S * (1 - S**3) / mu - S)
+    return mp.mpf(1) / 2 - 2 / (3 * mp.pi) - G / mp.pi
+
+
+def fitted(mu, p, q):
+    """H(mu) from coefficients, in the precision of `mu`, operation by operation as the shaders."""
+    one = mu.dtype.type(1.0)
+    m = one - mu
+    S = np.sqrt(m * (one + mu))
+    return mu * (_horner(mu, p) + (one - S) * m * _horner(mu, q))
+
+
+def fit(degree_p=DEGREE_P, degree_q=DEGREE_Q):
+    """Coefficients with the least largest relative error on `COUNT` points.
+
+    Parameters
+    ----------
+    degree_p, degree_q : int
+        Degrees of P and Q.
+
+    Returns
+    -------
+    p, q : ndarray, shapes (degree_p + 1,) and (degree_q + 1,)
+        Rounded to `DIGITS` digits, lowest power first.
+    """
+    rows = [_row(mu, degree_p, degree_q) for mu in _points()]
+    x, _ = least_largest(rows, [mp.one] * len(rows))
+    rounded = np.array([float(mp.nstr(each, DIGITS)) for each in x])
+    return rounded[: degree_p + 1], rounded[degree_p + 1 :]
+
+
+def largest_errors(p, q):
+    """Largest relative error of H over `CHECKED` in float64, and in simulated float32."""
+    exact = formulas.fon_loss(np.float64(CHECKED))
+    double = fitted(np.float64(CHECKED), p, q)
+    single = fitted(CHECKED, np.float32(p), np.float32(q))
+    return tuple(float(np.max(np.abs(each / exact - 1.0))) for each in (double, single))
+
+
+def defines():
+    """The coefficients as the lines that stand in the shaders.
+
+    Returns
+    -------
+    list of str
+    """
+    rows = zip("PQ", fit(), strict=True)
+    return [
+        f"#define EON_{name}{k} {x:.{DIGITS}g}" for name, row in rows for k, x in enumerate(row)
+    ]
+
+
+def _points():
+    """Extrema of a Chebyshev polynomial, dense towards both ends, where errors are largest."""
+    return [(1 - mp.cos(mp.pi * k / COUNT)) / 2 for k in range(1, COUNT + 1)]
+
+
+def _row(mu, degree_p, degree_q):
+    """Factors of the coefficients, relative to H(mu)."""
+    factor = mu / closed_form(mu)
+    odd = factor * (1 - mp.sqrt(1 - mu**2)) * (1 - mu)
+    even = [factor * mu**k for k in range(degree_p + 1)]
+    return even + [odd * mu**k for k in range(degree_q + 1)]
+
+
+def _horner(mu, coefficients):
+    value = np.full_like(mu, coefficients[-1])
+    for coefficient in coefficients[-2::-1]:
+        value = coefficient + mu * value
+    return value
+
+
+def main():
+    """Print the lines for the shaders, and what other degrees would give."""
+    print(*defines(), sep="\n")
+    print("\ncoefficients  P  Q   float64   float32   (largest relative error of H)")
+    for total in (8, 9, 10):
+        for degree_q in range(5):
+            degree_p = total - 2 - degree_q
+            double, single = largest_errors(*fit(degree_p, degree_q))
+            chosen = " <" if (degree_p, degree_q) == (DEGREE_P, DEGREE_Q) else ""
+            print(f"{total:12}  {degree_p}  {degree_q}  {double:.2e}  {single:.2e}{chosen}")
+
+
+if __name__ == "__main__":
+    main()

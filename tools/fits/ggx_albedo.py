@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Fit of E_ss, the directional albedo of GGX at unit Fresnel reflectance, for the shaders.
+
+    E_ss(mu, alpha) = 1 - z^2 N / D,  z = sqrt(mu / (mu + alpha)),
+
+with polynomials N and D in z and alpha. At small alpha E_ss depends on mu / alpha alone, which z
+carries; and 1 - E_ss vanishes at grazing like mu log(mu), which a polynomial in z follows better
+than one in mu. The largest absolute error is least. The quadrature takes sums, products, quotients
+and square roots of float64 alone, which are the same on every processor.
+
+    python -m tools.fits.ggx_albedo
+"""
+
+from itertools import pairwise
+
+import numpy as np
+
+from tools.fits.minimax import mp
+from tools.fits.rational import Form, defines, refined
+
+FORM = Form(
+    above=(
+        *((0, 0), (0, 2), (1, 0), (1, 1), (1, 2), (2, 0)),
+        *((2, 1), (2, 2), (3, 0), (3, 1), (3, 2)),
+    ),
+    below=((0, 2), (0, 3), (1, 0), (1, 1), (1, 3), (2, 0), (2, 1), (2, 2), (3, 0)),
+)
+START = (
+    *(0.129206, 8.7067, 1.32179, 0.740364, -16.0591, -3.05397),
+    *(-1.49084, 5.82249, 1.60299, 0.74937, 1.79916),
+    *(0.225562, -0.0983618, 4.00769, 1.57355, 0.538882, -12.0367, -1.69065, -1.00164, 7.53262),
+)
+DEGREE, PANELS = 12, 10  # of the quadrature: nodes of a panel, panels towards the mirror direction
+NEWTON = 6  # steps to 40 digits from the asymptotic root
+LEAST = 1e-4  # least alpha and least cosine of the fit
+
+
+def legendre(count):
+    """Gauss-Legendre nodes and weights on [0, 1], rounded from 40 digits."""
+    nodes, weights = [], []
+    for k in range(count):
+        x = mp.cos(mp.pi * (k + mp.mpf(3) / 4) / (count + mp.mpf(1) / 2))
+        for _ in range(NEWTON):
+            x -= mp.legendre(count, x) / (_slope(count, x))
+        nodes.append(float((1 + x) / 2))
+        weights.append(float(1 / ((1 - x * x) * _slope(count, x) ** 2)))
+    return np.array(nodes), np.array(weights)
+
+
+def _slope(count, x):
+    return count * (mp.legendre(count - 1, x) - x * mp.legendre(count, x)) / (1 - x * x)
+
+
+def graded(degree=DEGREE, panels=PANELS):
+    """Nodes and weights on [0, 1] in panels, each a quarter of the next."""
+    x, w = legendre(degree)
+    ends = [0.0] + [4.0 ** (k - panels + 1) for k in range(panels)]
+    pairs = list(pairwise(ends))
+    nodes = np.concatenate([a + (b - a) * x for a, b in pairs])
+    return nodes, np.concatenate([(b - a) * w for a, b in pairs])
+
+
+def incident(mu, alpha):
+    """Geometry and weights of light around the mirror direction, nodes along the first axis.
+
+    With t = tan((theta_o - theta_i) / 2), the azimuth integral of D G2 / (4 mu_o) is that of
+    pre (u / (u - k))^2, u - k between `low` at the mirror's azimuth and `high` opposite.
+
+    Returns
+    -------
+    k, low, high, pre : ndarray, shape (nodes, ...)
+    """
+    node, weight = (each.reshape(-1, *(1,) * np.ndim(mu)) for each in graded())
+    s = np.sqrt((1.0 - mu) * (1.0 + mu))
+    ends = s / (1.0 + mu), -mu / (1.0 + s)
+    t = np.concatenate([node * end for end in ends])
+    step = np.concatenate([weight * np.abs(end) for end in ends])
+    secant2, alpha2 = 1.0 + t * t, alpha * alpha
+    cos_d, sin_d = (1.0 - t * t) / secant2, 2.0 * t / secant2
+    mu_i = np.maximum(mu * cos_d + s * sin_d, 0.0)
+    s_i = np.maximum(s * cos_d - mu * sin_d, 0.0)
+    M = mu + mu_i
+    rest = (1.0 - alpha) * (1.0 + alpha)
+    lambdas = [np.sqrt(alpha2 + rest * each * each) for each in (mu, mu_i)]
+    smith = lambdas[0] * mu_i + lambdas[1] * mu
+    pre = step * 2.0 / secant2 * s_i * mu_i / (2.0 * smith) * alpha2
+    return rest * M * M, M * M * (t * t + alpha2), (s + s_i) * (s + s_i) + alpha2 * M * M, pre
+
+
+def albedo(mu, alpha):
+    """E_ss by quadrature; its error is below 1e-7 for mu and alpha above `LEAST`."""
+    k, low, high, pre = incident(mu, alpha)
+    ratio = k / np.sqrt(low * high)
+    azimuth = 1.0 + ratio * (2.0 + ratio * 0.5 * (low + high) / np.sqrt(low * high))
+    return np.add.reduce(2.0 * pre * azimuth, axis=0)
+
+
+def variables(mu, alpha):
+    """z and alpha, and the factor z^2 of the fit."""
+    z2 = mu / (mu + alpha)
+    return (np.sqrt(z2), alpha), z2
+
+
+def fitted(mu, alpha, coefficients):
+    """E_ss from coefficients."""
+    arguments, z2 = variables(mu, alpha)
+    return 1.0 - z2 * FORM.value(arguments, coefficients)
+
+
+def points(across=61, along=41):
+    """Cosines and roughnesses, dense where lambda = mu / sqrt(alpha^2 + (1 - alpha^2) mu^2) or alpha is near 0 or 1."""
+
+    def ends(count):
+        return np.array([float((1 - mp.cos(mp.pi * k / (count - 1))) / 2) for k in range(count)])
+
+    x, alpha = np.meshgrid(np.maximum(ends(across), LEAST), np.maximum(ends(along), LEAST))
+    mu = x * alpha / np.sqrt((1.0 - x * x) + x * x * alpha * alpha)
+    return np.minimum(mu.ravel(), 1.0), alpha.ravel()
+
+
+def fit():
+    """Coefficients, numerator first, rounded as printed."""
+    mu, alpha = points()
+    arguments, z2 = variables(mu, alpha)
+    return refined(FORM, arguments, (1.0 - albedo(mu, alpha)) / z2, z2, START)
+
+
+def largest_error(coefficients, across=145, along=97):
+    """Largest absolute error of E_ss on a grid that is finer than that of the fit."""
+    mu, alpha = points(across, along)
+    return float(np.max(np.abs(fitted(mu, alpha, coefficients) - albedo(mu, alpha))))
+
+
+def main():
+    """Print the lines for the shaders and the error of the fit."""
+    coefficients = fit()
+    print(*defines(FORM, coefficients, "GGX_ALBEDO"), sep="\n")
+    print(f"largest absolute error {largest_error(coefficients):.3g}")
+
+
+if __name__ == "__main__":
+    main()

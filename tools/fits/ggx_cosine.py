@@ -1,0 +1,296 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Fits of the cosine at which a Fresnel curve has its average over the visible facets of GGX.
+
+The directional albedo of GGX with a Fresnel reflectance F is E_ss F(c) for one cosine c, which
+depends on mu, alpha and a little on the curve. At alpha 0 it is mu:
+
+    c = mu + alpha^2 / (mu + alpha) N / D,
+
+N and D being polynomials in x = mu / (mu + alpha), a root y of alpha, and s, which tells the curves
+of a kind apart. What is fitted is c, and the largest error of the albedo E_ss F(c) is least. Of the
+curves of Schlick, (1 - c)^q, the exponent 5 counts twice as much as the others.
+
+A third fit is for Hoffman's dip c (1 - c)^6, which is not monotone: its average is that at the
+cosine c of Schlick's curve of exponent 5 plus alpha^2 / (mu + alpha) N / D in mu and sqrt(alpha).
+
+The arithmetic is that of `ggx_albedo.py`.
+
+    python -m tools.fits.ggx_cosine
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise, product
+
+import numpy as np
+
+from tools.fits.ggx_albedo import incident, legendre
+from tools.fits.minimax import mp
+from tools.fits.rational import Form, defines, numerator
+
+LEAST = 1e-4  # least alpha and least cosine of the fits
+BLOCK = 20  # points that are integrated together
+BISECTIONS = 50
+FLAT = 0.01  # least slope that counts
+DEGREE, OUTER = 8, 12  # nodes of the azimuth: of a panel, and beyond the panels
+
+
+def dielectric(c, ior):
+    """Fresnel reflectance at an index of refraction above 1."""
+    g = np.sqrt(ior * ior - 1.0 + c * c)
+    s, p = (c - g) / (c + g), (ior * ior * c - g) / (ior * ior * c + g)
+    return 0.5 * (s * s + p * p)
+
+
+def schlick(c, exponent):
+    """(1 - c)^q for whole q."""
+    m, power = 1.0 - c, 1.0
+    for _ in range(exponent):
+        power = power * m
+    return power
+
+
+def dip(c):
+    """c (1 - c)^6."""
+    return c * schlick(c, 6)
+
+
+@dataclass(frozen=True)
+class Curves:
+    """Fresnel curves of one kind, and the fit of their cosine.
+
+    Attributes
+    ----------
+    prefix : str
+        Of the names of the coefficients.
+    reflectance : callable
+        F of cosine and parameter.
+    parameters, shapes, counts : tuple of float
+        Parameters of the curves, s of each, and how much each counts.
+    roots : int
+        y is the square root of alpha, taken so often.
+    form : Form
+    below : tuple of float
+        Coefficients of its denominator, from a search.
+    """
+
+    prefix: str
+    reflectance: Callable
+    parameters: tuple
+    shapes: tuple
+    counts: tuple
+    roots: int
+    form: Form
+    below: tuple
+
+
+def below(total, count):
+    """Monomials of so many variables of at most a total degree."""
+    return tuple(m for m in product(range(total + 1), repeat=count) if sum(m) <= total)
+
+
+FORM = Form(above=below(3, 3), below=(*below(2, 3)[1:], (1, 2, 0), (2, 1, 0)))
+IORS = (1.03, 1.05, 1.08, 1.12, 1.2, 1.3, 1.45, 1.7, 2.0, 2.5, 3.0)
+EXPONENTS = (1, 2, 3, 4, 5, 6, 8, 10)
+
+DIELECTRIC = Curves(
+    prefix="GGX_DIELECTRIC",
+    reflectance=dielectric,
+    parameters=IORS,
+    shapes=tuple(float(mp.sqrt((mp.mpf(n) - 1) / (mp.mpf(n) + 1))) for n in IORS),
+    counts=tuple(1.0 if 1.05 <= n <= 2.5 else 0.5 for n in IORS),
+    roots=2,
+    form=FORM,
+    below=(
+        *(57.90553, -67.41115, 181.8611, -7.478896, -50.38694, 3.325208),
+        *(0.0942464, -261.2011, -4.144666, -6.590822, 107.1744),
+    ),
+)
+SCHLICK = Curves(
+    prefix="GGX_SCHLICK",
+    reflectance=schlick,
+    parameters=EXPONENTS,
+    shapes=tuple(4.0 / (3.0 + q) for q in EXPONENTS),
+    counts=tuple(1.0 if q == 5 else 0.5 for q in EXPONENTS),
+    roots=1,
+    form=FORM,
+    below=(
+        *(5.765519, -1.515595, 42.67342, -0.008712644, -2.671278, -2.909114),
+        *(-3.69908, -69.11994, 1.541857, -6.01911, 28.88318),
+    ),
+)
+DIP_FORM = Form(above=below(4, 2), below=below(3, 2)[1:])
+DIP_BELOW = (
+    *(-0.6779946, 31.30452, -13.03859, 40.59569, -261.7102),
+    *(996.3608, 110.6571, -565.9562, 358.4267),
+)
+
+
+def points(across=43, along=25):
+    """Cosines and roughnesses as those of `ggx_albedo.points`, alpha denser near 0."""
+    ends = [
+        np.array([float((1 - mp.cos(mp.pi * k / (n - 1))) / 2) for k in range(n)])
+        for n in (across, along)
+    ]
+    ends[1] = ends[1] * np.sqrt(ends[1])
+    x, alpha = np.meshgrid(np.maximum(ends[0], 2 * LEAST), np.maximum(ends[1], LEAST))
+    mu = x * alpha / np.sqrt((1.0 - x * x) + x * x * alpha * alpha)
+    return np.minimum(mu.ravel(), 1.0), alpha.ravel()
+
+
+def averages(mu, alpha, functions):
+    """E_ss, and averages of functions of the cosine, weighted as E_ss is.
+
+    Returns
+    -------
+    albedo : ndarray, shape (M,)
+    means : ndarray, shape (functions, M)
+    """
+    blocks = [
+        _averages(mu[i : i + BLOCK], alpha[i : i + BLOCK], functions)
+        for i in range(0, len(mu), BLOCK)
+    ]
+    total = np.concatenate(blocks, axis=1)
+    return total[0], total[1:] / total[0]
+
+
+def azimuths(scale):
+    """Nodes and weights on [0, 1], along axis 1: panels [0, scale], [scale^(7/8), ...], ..., [.., 1].
+
+    Beyond the first they are even in the reciprocal, which suits the tail of a peak at 0.
+    """
+    x, w = (each[None, :, None] for each in legendre(DEGREE))
+    root = np.sqrt(np.sqrt(np.sqrt(scale)))
+    ends = [np.ones_like(scale)]
+    for _ in range(8):
+        ends.append(ends[-1] * root)
+    nodes, weights = [ends[8] * x], [ends[8] * w]
+    for b, a in pairwise(ends):
+        divisor = b - (b - a) * x
+        nodes.append(a * b / divisor)
+        weights.append(a * b * (b - a) / (divisor * divisor) * w)
+    return np.concatenate(nodes, axis=1), np.concatenate(weights, axis=1)
+
+
+def _averages(mu, alpha, functions):
+    k, low, high, pre = (each[:, None] for each in incident(mu, alpha))
+    tangents, widths = azimuths(np.sqrt(low / high))
+    far, rest = (each[None, :, None] for each in legendre(OUTER))
+    # Squared sine of half the azimuth from the mirror's, whose tangent is 1 / far beyond 1.
+    shape = (len(low), OUTER, low.shape[-1])
+    sine2 = np.concatenate(
+        [
+            tangents * tangents / (1.0 + tangents * tangents),
+            np.broadcast_to(1.0 / (1.0 + far * far), shape),
+        ],
+        axis=1,
+    )
+    step = np.concatenate(
+        [widths / (1.0 + tangents * tangents), np.broadcast_to(rest / (1.0 + far * far), shape)],
+        axis=1,
+    ) * (4.0 / PI)
+    w = low * (1.0 - sine2) + high * sine2
+    density = step * pre * (1.0 + k / w) * (1.0 + k / w)
+    c = np.minimum(0.5 * np.sqrt(w + k), 1.0)
+    values = [density] + [density * function(c) for function in functions]
+    return np.stack([np.add.reduce(np.add.reduce(each, axis=1), axis=0) for each in values])
+
+
+PI = float(mp.pi)
+
+
+def inverse(values, reflectance):
+    """Cosines at which a falling curve has the values."""
+    low, high = np.zeros_like(values), np.ones_like(values)
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        above = reflectance(middle) > values
+        low, high = np.where(above, middle, low), np.where(above, high, middle)
+    return 0.5 * (low + high)
+
+
+def variables(curves, mu, alpha, shape):
+    """x, y and s of the fit, and its factor."""
+    y = alpha
+    for _ in range(curves.roots):
+        y = np.sqrt(y)
+    return (mu / (mu + alpha), y, shape + 0.0 * mu), alpha * alpha / (mu + alpha)
+
+
+def cosine(curves, mu, alpha, shape, coefficients):
+    """c from coefficients."""
+    arguments, factor = variables(curves, mu, alpha, shape)
+    return mu + factor * curves.form.value(arguments, coefficients)
+
+
+def sample(curves, mu, alpha):
+    """Variables, values and weights of the fit of the cosine, every third curve at each point.
+
+    At one point of x and y a cubic in s takes four residuals; more would make the exchange singular.
+    """
+    functions = [lambda c, n=n: curves.reflectance(c, n) for n in curves.parameters]
+    albedo, means = averages(mu, alpha, functions)
+    columns = []
+    for j, (function, shape, count) in enumerate(
+        zip(functions, curves.shapes, curves.counts, strict=True)
+    ):
+        kept = (np.arange(len(mu)) + j) % 3 == 0
+        c = inverse(means[j][kept], function)
+        low, high = np.maximum(c - 1e-5, 0.0), np.minimum(c + 1e-5, 1.0)
+        slope = (function(low) - function(high)) / (high - low)
+        arguments, factor = variables(curves, mu[kept], alpha[kept], shape)
+        # Where the curve is flat c must still be about right, lest it end where the curve is steep.
+        weight = np.maximum(count * slope, FLAT) * albedo[kept] * factor
+        columns.append((*arguments, (c - mu[kept]) / factor, weight))
+    *arguments, value, weight = (np.concatenate(each) for each in zip(*columns, strict=True))
+    return arguments, value, weight
+
+
+def fit(curves):
+    """Coefficients, numerator first, rounded as printed."""
+    return numerator(curves.form, *sample(curves, *points()), curves.below)
+
+
+def errors(curves, coefficients, mu, alpha):
+    """Largest absolute error of the albedo E_ss F(c) for each curve."""
+    functions = [lambda c, n=n: curves.reflectance(c, n) for n in curves.parameters]
+    albedo, means = averages(mu, alpha, functions)
+    return [
+        float(
+            np.max(albedo * np.abs(function(cosine(curves, mu, alpha, shape, coefficients)) - mean))
+        )
+        for function, mean, shape in zip(functions, means, curves.shapes, strict=True)
+    ]
+
+
+def dip_sample(mu, alpha, schlick_coefficients):
+    """Variables, values and weights of the fit of the dip's average.
+
+    Compensation for a white surface multiplies the albedo by 1 / E_ss, so that all points count.
+    """
+    _, (mean,) = averages(mu, alpha, [dip])
+    c = cosine(SCHLICK, mu, alpha, 0.5, schlick_coefficients)
+    factor = alpha * alpha / (mu + alpha)
+    return (mu, np.sqrt(alpha)), (mean - dip(c)) / factor, factor
+
+
+def main():
+    """Print the lines for the shaders and the errors of the fits."""
+    found = {}
+    for curves in (DIELECTRIC, SCHLICK):
+        found[curves.prefix] = coefficients = fit(curves)
+        print(*defines(curves.form, coefficients, curves.prefix), sep="\n")
+        for n, error in zip(
+            curves.parameters, errors(curves, coefficients, *points(49, 33)), strict=True
+        ):
+            print(f"largest absolute error at {n}: {error:.3g}")
+    sampled = dip_sample(*points(41, 29), found[SCHLICK.prefix])
+    coefficients = numerator(DIP_FORM, *sampled, DIP_BELOW)
+    print(*defines(DIP_FORM, coefficients, "GGX_DIP"), sep="\n")
+    arguments, value, weight = dip_sample(*points(49, 33), found[SCHLICK.prefix])
+    error = np.max(weight * np.abs(DIP_FORM.value(arguments, coefficients) - value))
+    print(f"largest absolute error, for a dip to 0: {error / dip(1.0 / 7.0):.3g}")
+
+
+if __name__ == "__main__":
+    main()

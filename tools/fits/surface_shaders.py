@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Errors of surface shaders by the fits of eonlib's lobes: python -m tools.fits.surface_shaders.
+
+The layer equation takes each lobe's albedo by quadrature; eonlib takes fits. Here both are computed in
+float64, for the pairs and materials that checks ask for, drawn with other seeds: how much all fits
+together change a value and an albedo at most, and in the mean of a set.
+"""
+
+import re
+from contextlib import ExitStack, contextmanager, suppress
+from itertools import count
+from unittest.mock import patch
+
+import numpy as np
+
+from mxeon.conformance.nodes.surface_shaders import SHADERS
+from mxeon.conformance.probes import surface_shaders as probes
+from mxeon.conformance.reference import lobes
+from mxeon.conformance.samples.batch import SEED
+from mxeon.conformance.samples.measurement import mean_scaled, scaled
+from mxeon.errors import OutsideModel
+from mxeon.models.microfacet import fresnel_formulas as fresnel
+from mxeon.models.microfacet import lobe as microfacets
+from mxeon.shaders.functions import source_file
+from tools.fits import conty_kulla_albedo, fresnel_average, ggx_albedo, ggx_cosine
+
+SETS = 32
+LEAST = 1e-6  # cosine and roughness from which on shaders take their fits
+EXACT = lobes._albedo
+
+
+def shipped(stem, prefix, kinds="ND"):
+    """Coefficients of a fit in a GLSL file, numerator first."""
+    text = source_file("glsl", stem).read_text(encoding="utf-8")
+    return [float(each) for each in re.findall(rf"#define {prefix}_[{kinds}]\d+ (\S+)", text)]
+
+
+GGX = shipped("ggx_albedo", "GGX_ALBEDO")
+DIELECTRIC = shipped("fresnel_dielectric", "GGX_DIELECTRIC")
+SCHLICK = shipped("fresnel_schlick", "GGX_SCHLICK")
+SHEEN = shipped("conty_kulla_albedo", "CONTY_KULLA_ALBEDO")
+AVERAGE = shipped("fresnel_dielectric", "FRESNEL_AVG")
+COSINES, WEIGHTS = (shipped("fresnel_conductor", "FRESNEL_AVG", kind) for kind in "CW")
+
+
+def albedo(mu, alpha):
+    """E_ss by its fit."""
+    return ggx_albedo.fitted(*np.broadcast_arrays(np.maximum(mu, LEAST), alpha), GGX)
+
+
+def missing_light(mu, alpha):
+    """(1 - E_ss) / E_ss by the fit of E_ss."""
+    E = albedo(mu, alpha)
+    return (1.0 - E) / E
+
+
+def dielectric_average(ior):
+    """F_ss of a dielectric from index 1 on by its fit."""
+    t, above = 1.0 / ior, fresnel_average.ABOVE + 1
+    N = sum(c * t**k for k, c in enumerate(AVERAGE[:above]))
+    return 1.0 - t * N / (1.0 + sum(c * t**k for k, c in enumerate(AVERAGE[above:], 1)))
+
+
+def conductor_average(ior, extinction):
+    """F_ss of a metal in three cosines."""
+    return 1.0 - sum(
+        weight * (1.0 - fresnel.conductor(np.asarray(cosine), ior, extinction))
+        for cosine, weight in zip(COSINES, WEIGHTS, strict=True)
+    )
+
+
+def fitted_albedo(exact, node, wo, inputs, points, most):
+    """Albedo of a lobe that lies over others as the shader takes it; that of others is exact."""
+    fit = LAYERED.get(node.name)
+    if fit is None or exact is not node.albedo:
+        return EXACT(exact, node, wo, inputs, points, most)
+    return np.broadcast_to(fit(wo[:, 2], lobes._at(inputs, points)), (len(wo), 3))
+
+
+def _microfacets(mu, inputs, curve):
+    """E_ss F(c) (1 + F_ss (1 - E_ss) / E_ss), of F(c) and F_ss from mu and alpha."""
+    alpha = np.sqrt(inputs["roughness"].prod(axis=-1))
+    E, lost = (each(mu, alpha)[:, np.newaxis] for each in (albedo, missing_light))
+    F, average = curve(mu, alpha)
+    return E * F * (1.0 + average * lost)
+
+
+def _dielectric(mu, inputs):
+    def curve(mu, alpha):
+        n = inputs["ior"]
+        shape = np.sqrt((n - 1.0) / (n + 1.0))
+        c = ggx_cosine.cosine(ggx_cosine.DIELECTRIC, mu, alpha, shape, DIELECTRIC)
+        return (each[:, np.newaxis] for each in (fresnel.dielectric(c, n), dielectric_average(n)))
+
+    return inputs["tint"] * _microfacets(mu, inputs, curve)
+
+
+def _schlick(mu, inputs):
+    assert np.all(inputs["color82"] == 1.0)  # no material puts a lobe with a dip over others
+
+    def curve(mu, alpha):
+        exponent = inputs["exponent"]
+        shape = 4.0 / (3.0 + exponent)
+        c = ggx_cosine.cosine(ggx_cosine.SCHLICK, mu, alpha, shape, SCHLICK)
+        low, high = inputs["color0"], inputs["color90"]
+        shares = (1.0 - c) ** exponent, 2.0 / ((exponent + 1.0) * (exponent + 2.0))
+        return (low + (high - low) * share[:, np.newaxis] for share in shares)
+
+    return _microfacets(mu, inputs, curve)
+
+
+def _sheen(mu, inputs):
+    E = conty_kulla_albedo.fitted(mu, inputs["roughness"], SHEEN)
+    return inputs["color"] * E[:, np.newaxis]
+
+
+# By the name of a node.
+LAYERED = {"dielectric": _dielectric, "schlick": _schlick, "conty_kulla": _sheen}
+
+
+@contextmanager
+def fits():
+    """The reference with the shader's fits in the place of quadratures."""
+    curve = microfacets.CONDUCTOR
+    exact = curve.average
+    with ExitStack() as stack:
+        stack.enter_context(patch.object(lobes, "_albedo", fitted_albedo))
+        stack.enter_context(patch.object(microfacets, "missing_light", missing_light))
+        stack.enter_context(patch.object(fresnel, "dielectric_avg", dielectric_average))
+        stack.callback(object.__setattr__, curve, "average", exact)  # of a frozen class
+        object.__setattr__(curve, "average", conductor_average)
+        yield
+
+
+def errors(shader, seed):
+    """Errors of one set, by name: of values and albedos the largest, and those of their means."""
+    with patch.object(probes, "SEED", seed):
+        probe = probes.SurfaceShaderProbe(None, shader, "eonlib")
+        [batch], [views] = probe.batches, probe.cosines
+    asked = ((batch, "direct"), (views, "environment"))  # of which a probe keeps the first answer
+    exact = [probe._reference(*each) for each in asked]
+    with fits():
+        fitted = [probe._reference(*each) for each in asked]
+    exact[0], fitted[0] = np.pi * exact[0], np.pi * fitted[0]
+    pairs = {"values": (fitted[0], exact[0]), "albedos": (fitted[1], exact[1])}
+    return {
+        f"{kind}{suffix}": float(metric(*pair).max())
+        for kind, pair in pairs.items()
+        for suffix, metric in {"": scaled, " in the mean": mean_scaled}.items()
+    }
+
+
+def largest(shader, sets=SETS):
+    """The largest errors of sets, by name."""
+    found = []
+    for seed in count(SEED + 1):
+        with suppress(OutsideModel):  # a material that the layer equation does not have
+            found.append(errors(shader, seed))
+        if len(found) == sets:
+            return {name: max(each[name] for each in found) for name in found[0]}
+
+
+if __name__ == "__main__":
+    for shader in SHADERS:
+        text = ", ".join(f"{name} {error:.2g}" for name, error in largest(shader).items())
+        print(f"{shader.node}: {text}")

@@ -1,0 +1,289 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Errors of `genglsl/lib/thin_film.glsl` against all orders and whole averages: python -m tools.fits.thin_film.
+
+The shader sums orders while they count, averages over the hemisphere in five cosines, or in two, and
+over the visible facets in four, or in two. Each of these cosines stands for those
+around it, whose fringes damp each other. This measures what each costs at most, over films of up to 1000
+nm on each kind of substrate, for cosines from 0.1 on. `thin_film_search.py` searches for the largest.
+"""
+
+import numpy as np
+
+from mxeon.conformance.probes.thin_films import LEAST_FILM, LEAST_OIL, SHARP
+from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
+from mxeon.models.thin_film import curve
+from mxeon.models.thin_film import formulas as film
+from mxeon.models.thin_film.curve import SUBSTRATES, TEXT, film_curve
+from mxeon.models.thin_film.lobe import film_albedo_dir
+from tools.fits.thin_film_search import COLORED, WHITE, largest
+
+# Each in a range: roughness, cosine of the view, thickness in nm, index.
+FILMS = {"alpha": (1e-2, 1.0), "mu": (0.1, 1.0), "thickness": (0.0, 1000.0), "index": (1.0, 2.5)}
+CLEAR = {**SHARP, "index": (LEAST_OIL, 2.5)}
+DARK = 1e-3  # reflectance below which errors are no longer relative
+STEP = 1e-6  # of a thickness, relative, by which the slope of a curve is measured
+# Of the shader, chosen by `thin_film_nodes.py`: the width of five cosines; two cosines, their weights and
+# their width; for visible facets, polynomials of the mean of their cosines, of the reach of two or four
+# nodes around it and of their bend; the width of all together, as a part of the reach.
+WIDTH = 0.07
+PAIR = ((0.294, 0.785), (0.275, 0.725), 0.165)
+STEEP = 0.2
+FACETS = (
+    (3.4303, -1.7007, -3.1011, 1.3698, 0.046978, 2.3613, -2.8816, -7.968, 8.4497, 0.062022),
+    (-0.000094979, 4.6952, -6.0773, 1.3104, 3.7667, -7.8535, 3.6722, -2.5177, 3.4417, -0.39209),
+    (0.44939, -0.93653, 0.78291, -0.55497, 0.66991, -0.19493, -0.84088, -1.7317, 2.096, -0.02136),
+)  # fmt: skip
+SHARE = 0.97
+ALIKE = 0.09  # reach below which two nodes serve
+# Orders are summed while the square of one exceeds a limit, of a value this times the square of both
+# polarizations' mean reflectances in all channels, of a node of a rule this times the cube of its width if
+# that is more; each counts as smaller than the one before it by a factor at least.
+VALUE_ORDER, MEAN_ORDER, ORDER_RATIO = 2e-14, 2e-4, 0.6
+NARROWEST = min(film.GAUSSIANS, key=lambda gaussian: gaussian[3])  # of the sensitivities
+LEAST_PATH, LEAST_LOST = 1e-21, 1e-12  # of a path difference in m, and of light that is not trapped
+
+
+def shader_curve(category, material, mu, width=0.0):
+    """`thin_film_fresnel`: the mean of a film's curve over cosines of a standard deviation around mu."""
+    # Both interfaces at each cosine.
+    films = (material[f"thinfilm_{name}"] for name in ("thickness", "ior"))
+    mu, thickness, n = np.broadcast_arrays(mu, *films)
+    opd = film.path_difference(mu, thickness, n)
+    spread = (2.0 * film.METERS * thickness) ** 2 * width * mu / np.maximum(opd, LEAST_PATH)
+    interfaces = SUBSTRATES[category](mu, n, TEXT, **substrate(material))
+    # Their mean over all phases, and the weight of orders and the amplitude of the first.
+    pairs = [np.broadcast_arrays(first, second) for first, second, _ in interfaces]
+    lost = [np.maximum(1.0 - first * second, LEAST_LOST) for first, second in pairs]
+    means = [R + (1.0 - R) ** 2 * S / each for (R, S), each in zip(pairs, lost, strict=True)]
+    weights = [(1.0 - R) * (1.0 - S) / each for (R, S), each in zip(pairs, lost, strict=True)]
+    sizes = [np.sqrt(R * S) for R, S in pairs]
+    # As many orders as count of both polarizations and all channels.
+    bright = 3.0 * (sum(means) ** 2).mean(axis=0)
+    least = np.maximum(VALUE_ORDER * bright, MEAN_ORDER * np.power(width, 3))
+    count = order_count(np.stack(weights), np.stack(sizes), opd, spread, least)
+    xyz = sum(
+        mean - 2.0 * weight * counted_orders(r * np.exp(1j * each.phase), opd, spread, count)
+        for mean, weight, r, each in zip(means, weights, sizes, interfaces, strict=True)
+    )
+    return np.clip(curve._to_rgb(0.5 * xyz, TEXT), 0.0, 1.0)
+
+
+def substrate(material):
+    """Inputs of a curve without its film."""
+    return {k: v for k, v in material.items() if k != "tint" and not k.startswith("thinfilm")}
+
+
+def counted_orders(z, opd, spread, count):
+    """Sum of so many orders, shape (3, ...), in each tristimulus.
+
+    `spread` is the standard deviation of the path differences in m, whose fringes damp each other.
+    """
+    total = np.zeros((3, *np.broadcast_shapes(z.shape, opd.shape)))
+    for k, v, mu, var in film.GAUSSIANS:
+        height = v * np.sqrt(2.0 * np.pi * var) / film.NORMAL
+        wave, fade = z * np.exp(2j * np.pi * mu * opd), np.exp(-decay(mu, var, opd, spread))
+        # The order m is wave^m fade^(m^2).
+        order, step = height * wave * fade, wave * fade**3
+        for m in range(1, int(count.max()) + 1):
+            total[k] += np.where(m <= count, order.real, 0.0)
+            order, step = order * step, step * fade * fade
+    return total
+
+
+def decay(mu, var, opd, spread):
+    """Exponent by which a sensitivity damps the first order."""
+    return var * (2.0 * np.pi * opd) ** 2 + 0.25 * (2.0 * np.pi * mu * spread) ** 4
+
+
+def order_count(weights, sizes, opd, spread, least):
+    """Orders that the shader sums, at least one, of weights and amplitudes of polarizations and channels."""
+    k2 = np.exp(-2.0 * decay(*NARROWEST[2:], opd, spread))
+    largest, first = ((each**2).max(axis=(0, 1)) for each in (sizes, weights * sizes))
+    ratio, order = np.minimum(largest * k2**3, ORDER_RATIO), first * k2
+    count = np.ones_like(order)
+    while np.any(order * ratio > least):
+        order, ratio = order * ratio, ratio * k2 * k2
+        count += order > least
+    return count
+
+
+def orders_errors(category, material, _, mu):
+    """Errors of the sum, relative to the largest channel, or to DARK where that is less."""
+    exact = film_curve(category).at(mu, **material)
+    short = shader_curve(category, material, mu)
+    return (np.abs(short - exact) / np.maximum(exact.max(axis=0), DARK)).max(axis=0)
+
+
+def curve_errors(category, material, _, mu):
+    """Errors of the sum."""
+    short, exact = shader_curve(category, material, mu), film_curve(category).at(mu, **material)
+    return np.abs(short - exact).max(axis=0)
+
+
+def slopes(category, material, _, mu):
+    """Slopes of a curve in the logarithm of the thickness, as which a path difference rounds."""
+    curve, thickness = film_curve(category), material["thinfilm_thickness"]
+    up, down = (
+        curve.at(mu, **{**material, "thinfilm_thickness": thickness * (1.0 + step)})
+        for step in (STEP, -STEP)
+    )
+    return np.abs(up - down).max(axis=0) / (2.0 * STEP)
+
+
+def wave_slopes(category, material, _, mu):
+    """Slopes of a curve in the waves of each Gaussian, whose errors may have any sign."""
+    thickness, index = (material[f"thinfilm_{name}"] for name in ("thickness", "ior"))
+    opd = film.path_difference(mu, thickness, index)
+    slopes = 0.0
+    for interface in SUBSTRATES[category](mu, index, TEXT, **substrate(material)):
+        first, second, phase = interface
+        passed = 1.0 - first
+        amplitude = passed**2 * second / np.maximum(1.0 - first * second, LEAST_LOST) - passed
+        for k, v, position, var in film.GAUSSIANS:
+            height = (
+                np.abs(np.array(TEXT.matrix)[:, k]) * v * np.sqrt(2.0 * np.pi * var) / film.NORMAL
+            )
+            wave = np.sqrt(first * second) * np.exp(1j * (2.0 * np.pi * position * opd + phase))
+            decay = var * (2.0 * np.pi * opd) ** 2
+            orders = sum(m * wave**m * np.exp(-decay * m * m) for m in range(1, 30))
+            slopes = slopes + height[:, np.newaxis] * np.abs(amplitude * orders)
+    return slopes.max(axis=0)
+
+
+def kept(category, material, _, mu):
+    """F (1 - F_ss), by which an error of E_ss enters a smooth lobe's F (E_ss + F_ss (1 - E_ss))."""
+    airy = film_curve(category)
+    return (airy.at(mu, **material) * (1.0 - airy.average(**material))).max(axis=0)
+
+
+def average_errors(category, material, *_, rule=None):
+    """Errors of F_ss in five cosines, or by another rule."""
+    exact = film_curve(category).average(**material)
+    found = average(category, material, rule or (*gauss(5), WIDTH))
+    return np.abs(found - exact).max(axis=0)
+
+
+def average(category, material, rule):
+    """F_ss by a rule: cosines, weights and their width."""
+    *rule, width = rule
+    return sum(
+        weight * shader_curve(category, material, np.asarray(mu), width)
+        for mu, weight in zip(*rule, strict=True)
+    )
+
+
+def pair_errors(category, material, *_):
+    """Errors of F_ss in two cosines."""
+    return average_errors(category, material, rule=PAIR)
+
+
+def gauss(count):
+    """Gauss's rule for 2 F(mu) mu dmu on [0, 1], from the moments 2 / (k + 2)."""
+    # Golub and Welsch, for the Jacobi weight 1 + x on [-1, 1].
+    k = np.arange(count)
+    diagonal = 1.0 / ((2.0 * k + 1.0) * (2.0 * k + 3.0))
+    j = np.arange(1, count)
+    side = np.sqrt(j * (j + 1.0)) / (2.0 * j + 1.0)
+    nodes, vectors = np.linalg.eigh(np.diag(diagonal) + np.diag(side, 1) + np.diag(side, -1))
+    return 0.5 * (1.0 + nodes), vectors[0] ** 2
+
+
+def visible_errors(category, material, alpha, mu):
+    """Errors of the average over the visible facets in four cosines, or in two."""
+    exact = visible_average(category, material, alpha, mu)
+    return np.abs(visible_mean(category, material, alpha, mu) - exact).max(axis=0)
+
+
+def albedo_errors(category, material, alpha, mu):
+    """Errors of the average over the visible facets and of F_ss, times the light that is lost."""
+    lost = 1.0 - ggx_albedo_dir(mu, alpha)
+    return visible_errors(category, material, alpha, mu) + lost * average_errors(category, material)
+
+
+def visible_average(category, material, alpha, mu):
+    """The average over the visible facets, by quadrature of two albedos."""
+    wo = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=-1)
+    inputs = {name: value.T for name, value in material.items()}
+    inputs["roughness"] = np.repeat(alpha[:, np.newaxis], 2, axis=1)
+    white = inputs | {"thinfilm_thickness": np.zeros_like(mu)} | MIRRORS[category]
+    film, mirror = (
+        film_albedo_dir(category, wo, each, compensate=False) for each in (inputs, white)
+    )
+    return (film / mirror).T
+
+
+def visible_mean(category, material, alpha, mu, coefficients=FACETS, count=4, share=SHARE):
+    """The same in the shader's cosines, or by other coefficients, or in another number of cosines."""
+    many, few = (
+        sum(
+            weight * shader_curve(category, material, cosine, width)
+            for cosine, weight, width in _nodes(mu, alpha, coefficients, number, share)
+        )
+        for number in (count, min(count, 2))
+    )
+    return np.where(facets(mu, alpha, coefficients)[1] < ALIKE, few, many)
+
+
+MIRRORS = {
+    "dielectric_bsdf": {"ior": np.zeros(1)},
+    "conductor_bsdf": {"ior": np.zeros((1, 3))},
+    "generalized_schlick_bsdf": dict.fromkeys(("color0", *WHITE), np.ones((1, 3))),
+}
+
+
+def _nodes(mu, alpha, coefficients, count, share):
+    """Cosines that stand for the visible facets, their weights and widths.
+
+    These are Gauss's nodes for a semicircle, which has fewer facets at its ends than in its middle.
+    """
+    mean, reach, bend = facets(mu, alpha, coefficients)
+    for angle in np.pi * np.arange(1, count + 1) / (count + 1):
+        node, weight = np.cos(angle), 2.0 * np.sin(angle) ** 2 / (count + 1)
+        offset = reach * (node + bend * (4.0 * node * node - 1.0))
+        yield np.clip(mean + offset, 0.0, 1.0), weight, share / count * reach
+
+
+def facets(mu, alpha, coefficients):
+    """Mean of the cosines of visible facets with their view, the reach of nodes around it, and their bend."""
+    factors = alpha * alpha / (mu + alpha), alpha / np.sqrt(mu + alpha), 1.0
+    polynomials = np.reshape(coefficients, (3, -1)) @ monomials(mu, alpha)
+    mean, reach, bend = (a * b for a, b in zip(factors, polynomials, strict=True))
+    return mu + mean, reach, bend
+
+
+def monomials(mu, alpha):
+    """Those of third degree in the cosine of the view and in alpha / (alpha + 1/5)."""
+    y = alpha / (alpha + STEEP)
+    return np.stack([mu**i * y**j for i in range(4) for j in range(4 - i)])
+
+
+# What is measured, by name: errors, and the ranges of films.
+MEASURED = {
+    "orders": (orders_errors, FILMS, COLORED),
+    "orders of curves": (curve_errors, CLEAR, COLORED),
+    "slope of curves": (slopes, CLEAR),
+    "waves of curves": (wave_slopes, CLEAR),
+    "E_ss in curves": (kept, CLEAR, COLORED),
+    "F_ss": (average_errors, FILMS, COLORED),
+    "F_ss in two cosines": (pair_errors, FILMS),
+    "visible facets": (visible_errors, FILMS),
+    "albedo": (albedo_errors, FILMS),
+    "albedo from an index on": (albedo_errors, {**FILMS, "index": (LEAST_FILM, 2.5)}),
+}
+
+
+def search(name, category):
+    """The largest error of a name that a search finds."""
+    measured, ranges, *numbers = MEASURED[name]
+    return largest(measured, ranges, category, *numbers)
+
+
+def errors(names):
+    """Largest errors by name, each by category."""
+    return {name: {category: search(name, category) for category in MIRRORS} for name in names}
+
+
+if __name__ == "__main__":
+    for name, found in errors([*MEASURED]).items():
+        text = ", ".join(f"{category} {error:.3g}" for category, error in found.items())
+        print(f"{name}: {text}")

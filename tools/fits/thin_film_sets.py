@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Root mean square errors of eonlib's thin film over sets of films: python -m tools.fits.thin_film_sets.
+
+Checks ask for the errors of one set of films. Here are those of other sets that are drawn in the same
+way: the largest is what a check allows. It is a third of the largest error of a film, or less, and so a
+wrong digit, which is wrong for all films, shows where a bound on the largest error hides it.
+"""
+
+import numpy as np
+
+from mxeon.conformance.checks.film_measures import SMOOTH
+from mxeon.conformance.nodes.thin_films import FILMS
+from mxeon.conformance.probes import thin_films as probes
+from mxeon.conformance.samples.batch import SEED
+from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
+from tools.fits import thin_film as fit
+
+SETS = 64
+
+
+def smooth_errors(category, material, _, mu):
+    """Errors of a smooth lobe's value by F_ss in two cosines: it is F (1 + F_ss (1 - E_ss) / E_ss)."""
+    E_ss = ggx_albedo_dir(mu, SMOOTH[0])
+    F = fit.film_curve(category).at(mu, **material).max(axis=0)
+    return fit.pair_errors(category, material) * F * (1.0 - E_ss) / E_ss
+
+
+# What is measured, by name: errors, size of a set, and the ranges of its films.
+MEASURED = {
+    "all orders": (fit.curve_errors, probes.CURVES, probes.ORDERED),
+    "F_ss": (fit.average_errors, probes.FEW_FILMS, probes.FRINGED),
+    "compensation in two cosines": (smooth_errors, probes.FEW_FILMS, probes.FRINGED),
+    "visible facets": (fit.visible_errors, probes.FEW_FILMS, probes.STEEP),
+    "visible facets that are much alike": (fit.visible_errors, probes.FEW_FILMS, probes.GLOSSY),
+}
+
+
+def films(subject, count, ranges, seed):
+    """Category, material, roughness and cosine of the films that a check asks for, of another seed."""
+    batch = probes.film_views(subject, count, ranges, seed)
+    material = {
+        name: np.moveaxis(batch.inputs[name], -1, 0)
+        for name in batch.inputs
+        if name not in ("roughness", "retroreflective")
+    }
+    return subject.node, material, batch.inputs["roughness"][:, 0], batch.wo[:, 2]
+
+
+def largest(errors, count, ranges, sets=SETS):
+    """The largest root mean square of errors, by category."""
+    return {
+        subject.node: max(
+            float(np.sqrt(np.mean(errors(*films(subject, count, ranges, seed)) ** 2)))
+            for seed in range(SEED + 1, SEED + 1 + sets)
+        )
+        for subject in FILMS
+    }
+
+
+if __name__ == "__main__":
+    for name, row in MEASURED.items():
+        text = ", ".join(f"{category} {error:.3g}" for category, error in largest(*row).items())
+        print(f"{name}: {text}")

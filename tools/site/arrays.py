@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Write the table of the page on arrays: which functions take those of other libraries.
+
+python tools/site/arrays.py
+"""
+
+import inspect
+import re
+from pathlib import Path
+from pkgutil import resolve_name
+
+from mxeon.io.files import write_text
+
+FOLDER = Path(__file__).resolve().parents[2] / "docs"
+PAGE = FOLDER / "arrays.md"
+BLOCK = re.compile(r"(<!-- functions -->\n).*?(<!-- end -->)", re.DOTALL)
+ARRAYS = "ArrayLike", "Mapping[str, ArrayLike]"
+PUBLIC = re.compile(r"^::: (mxeon\.(?:models|albedo|inversion|sampling)\.[\w.]*[a-z]\w*)$", re.M)
+
+
+def public():
+    """Public functions of arrays by their documented names."""
+    pages = sorted((FOLDER / "api").glob("*.md"))
+    names = [name for page in pages for name in PUBLIC.findall(page.read_text(encoding="utf-8"))]
+    functions = {name: resolve_name(name) for name in names}
+    return {
+        name: each for name, each in functions.items() if inspect.isfunction(each) and arrays(each)
+    }
+
+
+def arrays(function):
+    """Names of the arguments that are arrays: by these it has gradients."""
+    parameters = inspect.signature(function).parameters.values()
+    return [each.name for each in parameters if each.annotation in ARRAYS]
+
+
+def takes_any(function):
+    """Whether a function takes arrays of any library."""
+    return inspect.unwrap(function) is not function
+
+
+def takes_drjit(function):
+    """Whether a function takes arrays of Dr.Jit."""
+    return getattr(function, "takes_drjit", False)
+
+
+def table():
+    """Lines of the table, and of the list of the other functions."""
+    rows = [
+        f"| `{name.removeprefix('mxeon.')}` | {', '.join(f'`{each}`' for each in arrays(function))} |"
+        for name, function in public().items()
+        if takes_any(function)
+    ]
+    others = [
+        f"`{name.rpartition('.')[2]}`" for name, each in public().items() if not takes_any(each)
+    ]
+    head = ["| function | arrays, and gradients by |", "|---|---|"]
+    mitsuba = [
+        f"`{name.rpartition('.')[2]}`" for name, each in public().items() if takes_drjit(each)
+    ]
+    compiled = f"These {len(mitsuba)} take arrays of Dr.Jit too: {', '.join(mitsuba)}."
+    rest = f"These {len(others)} take arrays of NumPy alone: {', '.join(others)}."
+    return "\n".join([*head, *rows, "", compiled, "", rest, ""])
+
+
+def page(text):
+    """The page with its table as it is now."""
+    return BLOCK.sub(lambda match: match[1] + table() + match[2], text)
+
+
+if __name__ == "__main__":
+    write_text(PAGE, page(PAGE.read_text(encoding="utf-8")))

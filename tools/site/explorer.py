@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Make `docs/explore.html`, and its picture on the page about it: `python tools/site/explorer.py`."""
+
+import os
+from pathlib import Path
+
+from playwright.sync_api import sync_playwright
+
+from mxeon.explorer import page, page_data
+from mxeon.hosts.webgl import FLAGS, program
+from mxeon.io.files import write_text
+
+FOLDER = Path(__file__).resolve().parents[2] / "docs"
+PAGE = FOLDER / "explore.html"
+PICTURE = FOLDER / "images" / "explorer.png"
+PAGES = "upstream/{}.html"  # beside the page in the built site
+SIZE = {"width": 1280, "height": 900}
+
+
+def main() -> None:
+    """Write both files."""
+    write_text(PAGE, page(page_data(pages=PAGES)))
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(
+            executable_path=program(), args=FLAGS, chromium_sandbox=os.geteuid() != 0
+        )
+        sheet = browser.new_page(viewport=SIZE)
+        sheet.goto(PAGE.as_uri())
+        sheet.get_by_text("shader, float32").first.wait_for()
+        sheet.wait_for_timeout(5000)  # until the edges of the picture are smooth
+        sheet.screenshot(path=PICTURE)
+        browser.close()
+
+
+if __name__ == "__main__":
+    main()

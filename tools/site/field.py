@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Make `docs/field.html`: `python tools/site/field.py` checks every host that runs here, one after the other.
+
+`python tools/site/field.py DIR` makes it from the reports in a folder instead.
+"""
+
+import sys
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from mxeon import report
+from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES
+from mxeon.conformance.results import NOT_RUN
+from mxeon.conformance.run import check
+from mxeon.hosts import HOSTS
+from mxeon.report.field import read_field
+from mxeon.shaders.library import examples_folder
+
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "field.html"
+PAGES = "upstream/{}.md"  # in the checkout; the site has pages in their place, see hooks.py
+EXAMPLE = examples_folder() / "clay.mtlx"
+DIFFUSE = tuple(dict.fromkeys(row.node for row in (*SUBJECTS, *SURFACES)))
+LIBRARIES = ("eonlib", "stock")
+TIMEOUT = 600.0
+
+
+def main(folder: str = "") -> None:
+    """Write the page."""
+    if folder:
+        report.write_field(read_field([folder]), PAGE, PAGES)
+        return
+    with TemporaryDirectory(prefix="mxeon-field-") as new:
+        for row in HOSTS:
+            if row.module:
+                nodes = ("common",) if row.nodes else DIFFUSE
+                run = check(
+                    [EXAMPLE], [row.name], LIBRARIES, workers=1, timeout=TIMEOUT, nodes=nodes
+                )
+                if any(e.host == row.name and e.verdict != NOT_RUN for e in run.results):
+                    report.write(run, Path(new, row.name))
+                print(row.name, run.summary.sentence, flush=True)
+        report.write_field(read_field([new]), PAGE, PAGES)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Render the materials of `examples/` with stock and with eonlib, and write the gallery page.
+
+python tools/site/gallery.py           the pictures, their differences, and gallery.md
+python tools/site/gallery.py --page    gallery.md alone
+"""
+
+import json
+import sys
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+from PIL import Image
+
+from mxeon.errors import DocumentError
+from mxeon.hosts import open_host
+from mxeon.hosts.points import visible
+from mxeon.io.images import write_exr
+from mxeon.io.srgb import srgb_encoded
+from mxeon.shaders.scene import BACK, FURNACE
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+EXAMPLES = DOCS.parent / "examples"
+PICTURES = DOCS / "images" / "gallery"
+DIFFERENCES = PICTURES / "differences.json"  # in sRGB codes, by material; null without stock
+SKY = DOCS / "images" / "studio.exr"
+SIZE = 512  # pixels
+QUALITY = 85  # of WebP
+ROWS = 64  # of the studio's picture
+BOXES = (  # soft boxes of the studio: towards them, half of their width in radian, radiance
+    ((-1.0, 1.0, 0.6), 0.45, (5.0, 4.8, 4.4)),
+    ((1.2, 0.4, -0.4), 0.35, (4.0, 4.2, 5.0)),
+    ((0.3, 0.2, 1.0), 0.15, (1.0, 1.0, 1.0)),
+)
+BACKGROUND = 30  # sRGB code
+SEEN = 3  # sRGB codes: the least difference that an eye may find side by side
+WIPE = DOCS / "images" / "wipe.webp"
+WIPED = DOCS / "images" / "anodized_titanium.mtlx"
+LINE = 2  # pixels between the halves
+
+HEAD = """<!-- Made by `python tools/site/gallery.py`. -->
+# Gallery
+
+Each material of the folder `examples/` on a shader ball in a studio, drawn by the `gl` host: left with stock
+MaterialX, right with eonlib. Documents that are called a furnace show a sphere in white surroundings, which
+vanishes where no energy is lost or made. Nothing casts a shadow here.
+
+"""
+
+
+def studio():
+    """Radiance of a studio, a latitude-longitude picture: a floor, a ceiling and soft boxes."""
+    polar = (np.arange(ROWS)[:, None] + 0.5) / ROWS * np.pi
+    azimuth = ((np.arange(2 * ROWS) + 0.5) / ROWS - 1.0) * np.pi
+    up = np.broadcast_to(np.cos(polar), (ROWS, 2 * ROWS))
+    ring = np.sin(polar)
+    towards = np.stack([ring * np.sin(azimuth), up, ring * np.cos(azimuth)], axis=-1)
+    ceiling, floor = (
+        0.35 + up[..., None] * [0.2, 0.28, 0.4],
+        0.12 + (1.0 + up[..., None]) * [0.1, 0.08, 0.06],
+    )
+    radiance = np.where(up[..., None] > 0.0, ceiling, floor)
+    for direction, width, light in BOXES:
+        inside = towards @ direction / np.linalg.norm(direction) - np.cos(width)
+        radiance += light / (1.0 + np.exp(-40.0 * inside[..., None]))
+    return radiance.astype(np.float32)
+
+
+def materials(document):
+    """Names of the materials in a document, in its order."""
+    return [each.get("name") for each in ElementTree.parse(document).iter("surfacematerial")]
+
+
+def scene(document):
+    """The scene that shows a document."""
+    if "furnace" in document.stem:
+        return replace(FURNACE, size=SIZE)
+    return replace(BACK, environment=SKY, size=SIZE, shape="ball")
+
+
+def options(document):
+    """The scene as options of `mxeon render`."""
+    if "furnace" in document.stem:
+        return "--scene furnace"
+    return f"--shape ball --scene back --environment {SKY.relative_to(DOCS.parent).as_posix()}"
+
+
+def pictures(host, document):
+    """A document's materials, each with its sRGB codes with stock, where that can generate it, and eonlib."""
+    shaders = []
+    for library in ("stock", "eonlib"):
+        with suppress(DocumentError):
+            shaders.append(host.compile(document, library=library))
+    mask = visible(SIZE, scene(document).shape).mask[..., None]
+    for pair in zip(*shaders, strict=True):
+        images = [srgb_encoded(host.picture(each, scene(document))) for each in pair]
+        yield pair[0].element, [np.where(mask, each, np.uint8(BACKGROUND)) for each in images]
+
+
+def save(path, codes):
+    """Write sRGB codes as WebP."""
+    Image.fromarray(codes).save(path, quality=QUALITY, method=6)
+
+
+def difference(stock, own):
+    """The difference in sRGB codes that one pixel in a hundred exceeds."""
+    apart = np.abs(stock.astype(int) - own.astype(int)).max(axis=-1)
+    return float(np.percentile(apart, 99))
+
+
+def render():
+    """Write the pictures, the difference of each material, and the README's picture of two halves."""
+    PICTURES.mkdir(parents=True, exist_ok=True)
+    write_exr(SKY, studio(), {})
+    differences = {}
+    with open_host("gl") as host:
+        for document in sorted(EXAMPLES.glob("*.mtlx")):
+            for name, codes in pictures(host, document):
+                save(PICTURES / f"{name}.webp", np.hstack(codes))
+                differences[name] = difference(*codes) if len(codes) > 1 else None
+        [(_, (stock, own))] = pictures(host, WIPED)
+    half = SIZE // 2
+    own[:, :half] = stock[:, :half]
+    own[:, half - LINE // 2 : half + LINE // 2] = 255
+    save(WIPE, own)
+    DIFFERENCES.write_text(json.dumps(differences, indent=1) + "\n", encoding="utf-8")
+
+
+def words(difference):
+    """What to look for, by the difference of the pictures."""
+    if difference is None:
+        return "stock MaterialX cannot generate its nodes"
+    if difference < SEEN:
+        return "nothing to see: the two are alike here"
+    return f"one pixel in a hundred differs by {difference:.0f} of 255 sRGB codes or more"
+
+
+def section(document, differences):
+    """Heading, description, pictures and command of one document, as Markdown."""
+    description = document.read_text(encoding="utf-8").splitlines()[2]
+    names = materials(document)
+    shown = "\n\n".join(
+        f"![{name}](images/gallery/{name}.webp)\n\n*{name}: {words(differences[name])}.*"
+        for name in names
+    )
+    command = f"    mxeon render examples/{document.name} --element {names[0]} "
+    return (
+        f"## {document.stem}\n\n{description.removeprefix('<!-- ').removesuffix(' -->')}\n\n"
+        f"{shown}\n\n{command}{options(document)} --output {names[0]}.png\n"
+    )
+
+
+def page():
+    """The gallery as Markdown."""
+    differences = json.loads(DIFFERENCES.read_text(encoding="utf-8"))
+    documents = sorted(EXAMPLES.glob("*.mtlx"))
+    return HEAD + "\n".join(section(each, differences) for each in documents)
+
+
+def main():
+    """Write the pictures, unless `--page` asks for the page alone, and the page."""
+    if "--page" not in sys.argv:
+        render()
+    (DOCS / "gallery.md").write_text(page(), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

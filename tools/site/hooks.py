@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Add the pages of the site that lie outside `docs/`, and fit others to the site."""
+
+import re
+from pathlib import Path
+
+from mkdocs.structure.files import File
+
+ROOT = Path(__file__).resolve().parents[2]
+# Page of the site -> file of the repository, whose links are relative to the root.
+OUTSIDE = {
+    "index.md": "README.md",
+    "changelog.md": "CHANGELOG.md",
+    "contributing.md": "CONTRIBUTING.md",
+}
+
+
+def on_files(files, config):
+    """Add the home page, the changelog and contributing."""
+    pages = {page: ROOT / name for page, name in OUTSIDE.items()}
+    for page, path in pages.items():
+        files.append(File.generated(config, page, abs_src_path=str(path)))
+    return files
+
+
+def on_page_markdown(markdown, page, **_):
+    """Make links relative to `docs/`, and leave out the column of a section where there is none."""
+    if page.parent is None:
+        page.meta["hide"] = ["navigation"]
+    is_outside = page.file.src_uri in OUTSIDE
+    root = "" if is_outside else "../"
+    for page_name, name in OUTSIDE.items():
+        markdown = markdown.replace(f"]({root}{name}", f"]({page_name}")
+    return markdown.replace("](docs/", "](") if is_outside else markdown
+
+
+def on_page_content(html, page, **_):
+    """Show the halves of each picture of the gallery as two, which stand below each other on a phone."""
+    if page.file.src_uri != "gallery.md":
+        return html
+    picture = r'<p><img alt="(.*?)" src="(.*?)" ?/?></p>'
+    whole = r"(?!\n<p><em>[^<]*: stock MaterialX cannot)"  # eonlib's picture alone
+    half = r'<span data-library="{0}"><img alt="\1, {0}" src="\2" loading="lazy"></span>'
+    halves = half.format("stock") + half.format("eonlib")
+    return re.sub(picture + whole, f'<p class="halves">{halves}</p>', html)
+
+
+def on_post_build(config):
+    """Lead the links of the page of the field, which are to files of the checkout, to the site's pages."""
+    page = Path(config.site_dir, "field.html")
+    text = page.read_text(encoding="utf-8")
+    page.write_text(re.sub(r'href="(upstream/\w+)\.md"', r'href="\1.html"', text), encoding="utf-8")

@@ -1,0 +1,224 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures of defects: `python -m tools.site.upstream.pictures` draws stock, its repair, and their difference.
+
+It draws each page's document on gl with MaterialX as installed, and with the patch of the page and those that it
+needs applied, and writes the picture and the page's sentence on it.
+"""
+
+import re
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from textwrap import fill
+
+import numpy as np
+from PIL import Image
+
+from mxeon.hosts import open_host
+from mxeon.hosts.points import visible
+from mxeon.io.files import write_text
+from mxeon.io.srgb import srgb_encoded
+from mxeon.shaders.nodes import SURFACE, document_text, input_text, lobe_text, node_text
+from mxeon.shaders.scene import SCENES
+from tests.reliability.versions import run
+from tools.site.upstream import patches
+from tools.site.upstream.ledger import FOLDER, rows
+from tools.site.upstream.materialx_repairs import REPAIRS, installed, repaired
+
+PICTURES = FOLDER / "pictures"
+SIZE, QUALITY, BACKGROUND, LINE, WIDTH = 192, 90, 30, 4, 110
+BLOCK = re.compile(r"<!-- measured picture -->\n.*?<!-- end -->\n\n", re.DOTALL)
+WHITE = {"color": (1.0, 1.0, 1.0)}
+BASE = lobe_text("oren_nayar_diffuse_bsdf", WHITE, "base")
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What a page's picture shows: a document, in a scene, in words."""
+
+    scene: str
+    words: str
+    document: str
+
+
+def _operator(category: str, name: str, **inputs: str) -> str:
+    """XML of a node of BSDFs, whose inputs are names of nodes, or numbers."""
+    text = "".join(
+        input_text(each, "float", value)
+        if value[0].isdigit()
+        else f'    <input name="{each}" type="BSDF" nodename="{value}" />\n'
+        for each, value in inputs.items()
+    )
+    return node_text(category, "BSDF", name, text)
+
+
+def _lobe(category: str, inputs: Mapping[str, object]) -> str:
+    return document_text(lobe_text(category, inputs) + SURFACE)
+
+
+def _surface(category: str, inputs: Mapping[str, tuple[str, object]]) -> str:
+    text = "".join(input_text(name, kind, value) for name, (kind, value) in inputs.items())
+    return document_text(node_text(category, "surfaceshader", "shading", text))
+
+
+def _layered(*nodes: str) -> str:
+    return document_text("".join((BASE, *nodes)) + SURFACE)
+
+
+ROUGH = {"color": (0.8, 0.8, 0.8), "roughness": 1.0, "energy_compensation": True}
+FILM = {
+    "color0": (0.9, 0.9, 0.9),
+    "roughness": (0.3, 0.3),
+    "thinfilm_thickness": 550.0,
+    "thinfilm_ior": 1.4,
+}
+GLASS = {"roughness": (0.8, 0.8), "scatter_mode": "RT"}
+THIN = {
+    "base_diffuse_roughness": ("float", 1.0),
+    "specular_weight": ("float", 0.0),
+    "subsurface_weight": ("float", 1.0),
+    "subsurface_color": ("color3", (0.6, 0.4, 0.3)),
+    "geometry_thin_walled": ("boolean", True),
+}
+SHEEN = {"color": (0.8, 0.1, 0.1), "roughness": 0.5, "mode": "zeltner"}
+FUZZ = {"color": (1.0, 1.0, 1.0), "roughness": 1.0, "mode": "zeltner"}
+LEAF = {"color": (0.4, 0.7, 0.2), "normal": (0.0, 0.0, -1.0)}
+LOBES = ("roughness_R", "roughness_TT", "roughness_TRT")
+
+
+def _hair(variance: float, scale: float) -> str:
+    """White hair whose lobes all have a variance and a scale."""
+    clear = {"absorption_coefficient": (0.0, 0.0, 0.0)}
+    return _lobe("chiang_hair_bsdf", {**dict.fromkeys(LOBES, (variance, scale)), **clear})
+
+
+PAGES = {
+    "genglsl_clamped_dot": Shown(
+        "back", "EON of roughness 1, lit from behind", _lobe("oren_nayar_diffuse_bsdf", ROUGH)
+    ),
+    "genglsl_film_half": Shown(
+        "side",
+        "a film of 550 nm over a Schlick lobe of color0 0.9",
+        _lobe("generalized_schlick_bsdf", FILM),
+    ),
+    "openpbr_thin_walled_tint": Shown(
+        "front",
+        "a thin-walled OpenPBR surface of diffuse roughness 1",
+        _surface("open_pbr_surface", THIN),
+    ),
+    "genglsl_transmission_masking": Shown(
+        "furnace", "glass of alpha 0.8 in white surroundings", _lobe("dielectric_bsdf", GLASS)
+    ),
+    "genglsl_sheen_throughput": Shown(
+        "side",
+        "a red Zeltner sheen over white Oren-Nayar",
+        _layered(
+            lobe_text("sheen_bsdf", SHEEN, "top"),
+            _operator("layer", "lobe", top="top", base="base"),
+        ),
+    ),
+    "genglsl_multiply_throughput": Shown(
+        "side",
+        "a Zeltner sheen of roughness 1, multiplied by 0, over white Oren-Nayar",
+        _layered(
+            lobe_text("sheen_bsdf", FUZZ, "fuzz"),
+            _operator("multiply", "top", in1="fuzz", in2="0.0"),
+            _operator("layer", "lobe", top="top", base="base"),
+        ),
+    ),
+    "genglsl_translucent_side": Shown(
+        "side",
+        "a translucent surface whose normal faces away, lit from the viewer's side",
+        _lobe("translucent_bsdf", LEAF),
+    ),
+    "genglsl_hair_uniform_lobe": Shown(
+        "side", "white hair of variance 0.1 and scale 0.3", _hair(0.1, 0.3)
+    ),
+    "genglsl_hair_roughness": Shown(
+        "side", "white hair of variance 20 and scale 5", _hair(20.0, 5.0)
+    ),
+    "openpbr_thin_walled": Shown(
+        "front",
+        "a thin-walled OpenPBR surface of diffuse roughness 1 and white color",
+        _surface("open_pbr_surface", {**THIN, "subsurface_color": ("color3", (1.0, 1.0, 1.0))}),
+    ),
+    "genglsl_add_throughput": Shown(
+        "furnace",
+        "two white Zeltner sheens of roughness 1, added, mixed half with nothing, over white",
+        _layered(
+            lobe_text("sheen_bsdf", FUZZ, "one"),
+            lobe_text("sheen_bsdf", FUZZ, "two"),
+            lobe_text("sheen_bsdf", {"weight": 0.0}, "nothing"),
+            _operator("add", "sum", in1="one", in2="two"),
+            _operator("mix", "half", fg="sum", bg="nothing", mix="0.5"),
+            _operator("layer", "lobe", top="half", base="base"),
+        ),
+    ),
+}
+
+
+def draw(folder: str, *pages: str) -> None:
+    """Write pictures with the MaterialX of this process: an array for each page."""
+    scenes = {each.name: each for each in SCENES}
+    with open_host("gl") as host:
+        for page in pages:
+            shown = PAGES[page]
+            [shader] = host.compile(shown.document, library="stock")
+            image = host.picture(shader, replace(scenes[shown.scene], size=SIZE))
+            np.save(Path(folder, f"{page}.npy"), image)
+
+
+def measure(page: str) -> str:
+    """Write the picture of a page: stock, repaired, difference; and the sentence on it."""
+    # Draw both.
+    with TemporaryDirectory(prefix="mxeon-picture-") as base:
+        stock, own = (_drawn(page, Path(base, name), name == "own") for name in ("stock", "own"))
+    # Compare them where the sphere is.
+    shown, mask = PAGES[page], visible(SIZE, "sphere").mask
+    apart = np.where(mask[..., None], np.abs(stock - own), 0.0)
+    most, mean, radiance = apart.max(), apart[mask].mean(), own[mask].mean()
+    # Put them side by side; white surroundings are shown gray, so that more light than comes is seen.
+    gain = 0.5 if shown.scene == "furnace" else 1.0
+    codes = [srgb_encoded(each) for each in (gain * stock, gain * own, apart / most)]
+    codes = [np.where(mask[..., None], each, np.uint8(BACKGROUND)) for each in codes]
+    line = np.full((SIZE, LINE, 3), 255, np.uint8)
+    picture = np.hstack([codes[0], line, codes[1], line, codes[2]])
+    PICTURES.mkdir(exist_ok=True)
+    Image.fromarray(picture).save(PICTURES / f"{page}.webp", quality=QUALITY, method=6)
+    # Say what is seen.
+    text = (
+        f"{shown.words[0].upper()}{shown.words[1:]}, scene `{shown.scene}`{', at half its radiance' if gain < 1.0 else ''}:"
+        f" stock, repaired, and the difference, which is {mean:.2g} in the mean, of a mean radiance of {radiance:.2g}, and"
+        f" {most:.2g} where it is white. `python -m tools.site.upstream.pictures` draws it."
+    )
+    return f"![Stock, repaired, difference](pictures/{page}.webp)\n\n{fill(text, WIDTH, break_on_hyphens=False)}"
+
+
+def _drawn(page: str, folder: Path, repair: bool) -> np.ndarray:
+    """The picture of a page with MaterialX, or with the page's patch and those that it needs."""
+    needed = {page}
+    known = {row.page: row for row in rows()}
+    while more := {each for found in needed for each in known[found].patch.needs} - needed:
+        needed |= more
+    changes = [each for each in REPAIRS if repair and each.page in needed]
+    path = repaired(folder, installed(), changes)
+    done = run(path, "draw", str(folder), page, module="tools.site.upstream.pictures")
+    if done.returncode:
+        raise RuntimeError(done.stderr)
+    return np.load(folder / f"{page}.npy")
+
+
+def main() -> None:
+    """Draw the pictures, and write their sentences into the pages, before the section Cause."""
+    for page in PAGES:
+        path = FOLDER / f"{page}.md"
+        block = f"<!-- measured picture -->\n{measure(page)}\n<!-- end -->\n\n"
+        text = BLOCK.sub("", path.read_text(encoding="utf-8"))
+        write_text(path, text.replace("## Cause\n", f"{block}## Cause\n"))
+    patches.main()  # whose index has the changes of pictures
+
+
+if __name__ == "__main__":
+    draw(*sys.argv[2:]) if sys.argv[1:2] == ["draw"] else main()

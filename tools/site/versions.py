@@ -1,0 +1,235 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Judge eonlib and stock with every version of MaterialX: `python -m tools.site.versions` writes the page.
+
+It runs `mxeon check --host gl --node all` with each version, 13 minutes of processor time in all, and keeps
+what the page shows in `versions.json`; `python -m tools.site.versions page` writes the page from that file alone,
+and the lines of the upstream pages on versions and patches.
+"""
+
+import json
+import re
+import sys
+from collections import Counter
+from pathlib import Path
+
+from mxeon.io.files import write_text
+from mxeon.shaders.versions import TESTED
+from tests.reliability.versions import run
+from tests.support.wheels import MAIN, wheel
+from tools.site.upstream import patches
+from tools.site.upstream.ledger import FOLDER, rows
+
+HERE = Path(__file__).parents[2] / "docs"
+PAGE, RECORD = HERE / "versions.md", HERE / "versions.json"
+VERSIONS = (*TESTED, "main")
+LIBRARIES = ("eonlib", "stock")
+COMMAND = ("check", "--host", "gl", "--node", "all", "--workers", "0", "--json")
+COUNTS = 1e6  # figures below it that are integers are printed whole
+STATE = re.compile(r"<!-- measured state -->\n.*?<!-- end -->\n\n", re.DOTALL)
+TEXT = """\
+# Versions of MaterialX
+
+    python -m tools.site.versions
+
+`mxeon check --host gl --node all` with each version: what its checks say of eonlib, and of MaterialX alone. The
+versions are wheels, with their own code and data; main is the data of MaterialX's main branch at commit
+{commit}, of {date}, with the code of {release}. `tests/shaders/test_library_export.py` judges the
+values of every node of eonlib with each of them, and `tests/test_materialx_repairs.py` the repairs with the
+data of main.
+
+## Nodes
+
+How many checks pass, of all. Where the text leaves a choice, a check that *differs* is counted apart, behind a +.
+
+{nodes}
+What of eonlib does not pass:
+
+{open}
+MaterialX 1.39.3 and 1.39.4 have no input `retroreflective`, and their GLSL adds what a medium passes to what the
+layer above it passes. Their `gltf_pbr` has no input `dispersion`, so that `reach` cannot vary it, and
+`opacityMode` of their `UsdPreviewSurface` changes nothing that `reach` sees.
+
+## Upstream pages
+
+The largest error of a page's first row in each version, and the pull request that repairs it after the release.
+What that row shows in main then belongs to other pages: with the repairs of those alone it passes.
+
+{pages}"""
+
+
+def judged(version):
+    """What a run with a version says, as it prints it."""
+    libraries = [word for each in LIBRARIES for word in ("--library", each)]
+    done = run(wheel(version), *COMMAND, *libraries)
+    if done.returncode not in (0, 1):
+        raise RuntimeError(f"MaterialX {version}: {done.stderr}")
+    return json.loads(done.stdout)
+
+
+def record(reports):
+    """What the page shows, of the reports of all versions by their names."""
+    found = {name: report["results"] for name, report in reports.items()}
+    return {
+        "commit": (MAIN.parent / "commits.txt").read_text().split(" ", 2)[:2],
+        "nodes": {
+            library: {name: _counts(each, library) for name, each in found.items()}
+            for library in LIBRARIES
+        },
+        "open": {name: _open(each) for name, each in found.items()},
+        "pages": {
+            row.page: {name: _shown(row, each) for name, each in found.items()} for row in _ours()
+        },
+    }
+
+
+def _ours():
+    """Rows of the pages that checks of MaterialX on gl, or of its texts, show."""
+    return [
+        row
+        for row in rows()
+        if row.issue.get("library") == "stock"
+        and row.issue["host"] in ("gl", "source")
+        and row.issue["rows"]
+    ]
+
+
+def _node(subject):
+    """The node of the subject of a result, or what else it is about."""
+    return "documents" if ".mtlx" in subject else subject.split(",")[0]
+
+
+def _counts(results, library):
+    """Number of results by node and verdict."""
+    counts = {}
+    for each in results:
+        if each["library"] == library:
+            counts.setdefault(_node(each["subject"]), Counter())[each["verdict"]] += 1
+    return dict(sorted(counts.items()))
+
+
+def _open(results):
+    """Subjects of eonlib's results that do not pass, by check and verdict."""
+    found = {}
+    for each in results:
+        if each["library"] == "eonlib" and each["verdict"] != "passed":
+            found.setdefault(f"`{each['check']}` {each['verdict']}", []).append(each["subject"])
+    return {check: sorted(subjects) for check, subjects in sorted(found.items())}
+
+
+def _shown(row, results):
+    """Verdict and figure of the first row of a page, and whether all of its rows pass."""
+    found = {
+        (each["check"], each["subject"]): each for each in results if each["library"] == "stock"
+    }
+    shown = [found[pair] for pair in row.issue["rows"]]
+    passed = all(each["verdict"] == "passed" for each in shown)
+    return {"figure": float(shown[0]["figure"]), "passed": passed}
+
+
+def page_text(known):
+    """The page."""
+    commit, date = known["commit"]
+    return TEXT.format(
+        commit=commit,
+        date=date,
+        release=TESTED[-1],
+        nodes=_nodes_table(known["nodes"]),
+        open="".join(f"- {name}: {_listed(each)}.\n" for name, each in known["open"].items()),
+        pages=_pages_table(known["pages"]),
+    )
+
+
+def _listed(found):
+    """Subjects by check, in words."""
+    return "; ".join(f"{check}: {'; '.join(each)}" for check, each in found.items()) or "nothing"
+
+
+def _nodes_table(nodes):
+    columns = [(library, name) for name in VERSIONS for library in LIBRARIES]
+    text = f"| node | {' | '.join(f'{library}, {name}' for library, name in columns)} |\n"
+    text += f"|---|{len(columns) * '---|'}\n"
+    for node in nodes["eonlib"][VERSIONS[-1]]:
+        cells = [_share(Counter(nodes[library][name].get(node, {}))) for library, name in columns]
+        text += f"| {node} | {' | '.join(cells)} |\n"
+    return text
+
+
+def _share(counts):
+    """Checks that pass, of all."""
+    if not counts.total():
+        return "none"
+    differs = f" + {counts['differs']}" if counts["differs"] else ""
+    return f"{counts['passed']}{differs} of {counts.total()}"
+
+
+def _pages_table(pages):
+    text = f"| page | {' | '.join(VERSIONS)} | pull request |\n|---|{len(VERSIONS) * '---|'}---|\n"
+    for row in _ours():
+        cells = [_figure(pages[row.page][name]) for name in VERSIONS]
+        text += (
+            f"| [{row.title}](upstream/{row.page}.md) | {' | '.join(cells)} | {row.pull or ''} |\n"
+        )
+    return text
+
+
+def _figure(shown):
+    if shown["passed"]:
+        return "passes"
+    count = shown["figure"].is_integer() and shown["figure"] < COUNTS
+    return f"{shown['figure']:.0f}" if count else f"{shown['figure']:.2g}"
+
+
+def states(known):
+    """The upstream pages with their lines on versions and patches, by path."""
+    files = {
+        page: f"patches/{project.name}/{name}"
+        for project in reversed(patches.PROJECTS)
+        for page, name in zip(patches.topics(project), sorted(_files(project)), strict=True)
+    }
+    texts = {}
+    for row in rows():
+        path = FOLDER / f"{row.page}.md"
+        lines = [
+            *_versions(row, known),
+            *([f"Patch: `{files[row.page]}`."] if row.page in files else []),
+        ]
+        block = "\n".join(["<!-- measured state -->", *lines, "<!-- end -->\n\n"]) if lines else ""
+        text = STATE.sub("", path.read_text(encoding="utf-8"))
+        texts[path] = text.replace("<!-- ledger\n", f"{block}<!-- ledger\n")
+    return texts
+
+
+def _files(project):
+    return [path.name for path in (patches.PATCHES / project.name).iterdir()]
+
+
+def _versions(row, known):
+    """The line on the versions that have a defect; none for pages that no check here shows."""
+    if row.page not in known["pages"]:
+        return []
+    shown = known["pages"][row.page]
+    gone = [name for name in VERSIONS if shown[name]["passed"] or (row.pull and name == "main")]
+    text = f"Seen in MaterialX {_joined(name for name in VERSIONS if name not in gone)}"
+    text += f"; gone in {_joined(gone)}" if gone else ""
+    text += f", repaired by pull request {row.pull}" if row.pull else ""
+    commit, date = known["commit"]
+    return [f"{text}. Main is that of {date}, {commit}."]
+
+
+def _joined(names):
+    *first, last = names
+    return f"{', '.join(first)} and {last}" if first else last
+
+
+def main():
+    """Judge every version, or take what is known, and write the pages."""
+    if sys.argv[1:] != ["page"]:
+        known = record({name: judged(name) for name in VERSIONS})
+        write_text(RECORD, json.dumps(known, indent=1) + "\n")
+    known = json.loads(RECORD.read_text(encoding="utf-8"))
+    for path, text in {PAGE: page_text(known), **states(known)}.items():
+        write_text(path, text)
+
+
+if __name__ == "__main__":
+    main()
