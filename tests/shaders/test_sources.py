@@ -100,7 +100,7 @@ def test_the_generated_text_is_the_one_that_materialx_makes(home):
     mx.readFromXmlFile(document, str(home / "look.mtlx"))
     document.setDataLibrary(load_library())
     generator = generator_of(document, "glsl", "eonlib", None)
-    context = context_of(document, "glsl", generator, False, ())
+    context = context_of(document, "glsl", generator, "eonlib", False, ())
     expected = generator.generate("look", document.getDescendant("look"), context)
     assert code(home) == expected.getSourceCode("pixel")
 

@@ -16,7 +16,8 @@ import numpy as np
 from mxeon.errors import MxeonError, printable
 from mxeon.explorer.data import Controls, Models, ReferenceTable, ShaderInput, ShaderSource, Texels
 from mxeon.explorer.references import reference_of
-from mxeon.hosts.textures import check_images, image_files, read_texture
+from mxeon.hosts.image_limit import check_images, image_files
+from mxeon.hosts.textures import read_texture
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.document.values import Plain, members
 from mxeon.shaders.generation import Input, Shader, generate

@@ -138,7 +138,7 @@ class Host(Engine):
 
         Images that are too large together are refused too; see `mxeon.hosts.textures.check_images`.
         """
-        from mxeon.hosts.textures import check_images
+        from mxeon.hosts.image_limit import check_images
         from mxeon.shaders.generation import generate
 
         shaders = generate(

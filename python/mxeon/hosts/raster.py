@@ -9,8 +9,9 @@ from typing import TypeAlias
 import numpy as np
 
 from mxeon.hosts.base import Array
+from mxeon.hosts.image_limit import image_files
 from mxeon.hosts.points import visible
-from mxeon.hosts.textures import image_files, irradiance, read_latlong, read_texture
+from mxeon.hosts.textures import irradiance, read_latlong, read_texture
 from mxeon.shaders.document.values import Plain, members
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import SUBSURFACE, TRANSMISSION, VOLUME, inner_lobes

@@ -6,7 +6,6 @@ transforms are the shader's.
 """
 
 import warnings
-from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
@@ -14,41 +13,13 @@ from numpy.typing import NDArray
 
 from mxeon.errors import ImageError
 from mxeon.io.images import ImageWarning, open_image, read_image
-from mxeon.shaders.document.labels import label
-from mxeon.shaders.document.policy import Policy
-from mxeon.shaders.document.references import files
-from mxeon.shaders.generation import Shader
 
 IRRADIANCE_SIZE = 32  # rows of an irradiance map: a cosine lobe has no finer detail
 FIRST_TILE = {"<UDIM>": "1001", "<UVTILE>": "u1_v1"}  # MaterialX's names of it
 RADIANCE_SIZE = 64  # rows and columns, or a few more, of the radiance that is summed
 
 
-def image_files(shaders: Iterable[Shader]) -> tuple[str, ...]:
-    """Names of the images that shaders read, each once."""
-    inputs = (port for shader in shaders for port in shader.inputs)
-    names = (str(port.value) for port in inputs if port.type == "filename" and port.value)
-    return tuple(dict.fromkeys(names))
-
-
-def check_images(shaders: Iterable[Shader], policy: Policy) -> None:
-    """Refuse images of a document that are too large together, before any of them is read.
-
-    Raises
-    ------
-    DocumentError
-        If they have more pixels than the policy permits.
-    ImageError
-        If one is no image, or has more channels than a color.
-    """
-    shaders, texels = tuple(shaders), 0
-    for file in {file for name in image_files(shaders) for file in files(Path(name))}:
-        texels += _texels(file)
-        rule = f"{label(shaders[0].document)}: images must have"
-        policy.check_limit("texels", texels, rule, "pixels together")
-
-
-def _texels(path: str | Path) -> int:
+def texels_of(path: str | Path) -> int:
     """The number of pixels of a texture, from its header."""
     spec = open_image(path).spec()
     if spec.nchannels > 4:
@@ -74,7 +45,7 @@ def read_texture(path: str | Path) -> NDArray[np.float32]:
     """
     for token, word in FIRST_TILE.items():
         path = str(path).replace(token, word)
-    _texels(path)
+    texels_of(path)
     pixels = read_image(path)
     if reason := _not_finite(pixels):
         warnings.warn(ImageWarning(f"{path}: should hold finite numbers; {reason}"), stacklevel=2)
