@@ -12,22 +12,12 @@ NONE = ("", "__zero__", "__empty__")  # defaults that are no value
 
 @dataclass(frozen=True)
 class Difference:
-    """A difference between a specification and a library.
-
-    Attributes
-    ----------
-    node, port : str
-        `port` is "" where the node as a whole differs.
-    subject : str
-        "node", "port", "type", "default" or "accepted values".
-    specification, library : str
-        What each states; "" for nothing.
-    """
+    """A difference between a specification and a library."""
 
     node: str
-    port: str
-    subject: str
-    specification: str
+    port: str  # "" where the node as a whole differs
+    subject: str  # "node", "port", "type", "default" or "accepted values"
+    specification: str  # "" for nothing
     library: str
 
     def __str__(self) -> str:
@@ -44,17 +34,7 @@ class Difference:
 def compare(
     specification: Mapping[str, Table], library: Mapping[str, Table]
 ) -> tuple[Difference, ...]:
-    """Differences of all nodes of a specification, in its order.
-
-    Parameters
-    ----------
-    specification, library : mapping of str to Table
-        By node. Nodes that the library alone has are left out.
-
-    Returns
-    -------
-    tuple of Difference
-    """
+    """Differences in the nodes that a specification has, in its order."""
     return tuple(
         difference
         for node, table in specification.items()
@@ -63,18 +43,15 @@ def compare(
 
 
 def _of_node(table: Table, defined: Table | None) -> Iterator[Difference]:
-    # Name a node that the library lacks.
     if defined is None:
         yield Difference(table.node, "", "node", table.node, "")
         return
-    # Compare the ports that the specification states.
     ours = {port.name: port for port in defined.ports}
     for port in table.ports:
         if port.name in ours:
             yield from _of_port(table.node, port, ours[port.name])
         else:
             yield Difference(table.node, port.name, "port", port.name, "")
-    # Name the ports that it leaves out.
     stated = {port.name for port in table.ports}
     for name in (name for name in ours if name not in stated):
         yield Difference(table.node, name, "port", "", name)

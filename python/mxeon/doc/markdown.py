@@ -13,20 +13,7 @@ COLUMNS = ("Port", "Description", "Type", "Default", "Accepted Values")
 
 
 def fill(template: str, tables: Mapping[str, Table]) -> str:
-    """A template with every @MX_TABLE_node@ replaced by the table of that node.
-
-    Parameters
-    ----------
-    template : str
-        Markdown.
-    tables : mapping of str to Table
-        By node; see `mxeon.doc.library_tables`.
-
-    Raises
-    ------
-    ValueError
-        If there is no such node.
-    """
+    """A template with every @MX_TABLE_node@ replaced by the table of that node."""
 
     def table(marker: re.Match[str]) -> str:
         node = marker[1]
@@ -52,33 +39,17 @@ def _cell(text: str) -> str:
 
 
 def read_tables(text: str) -> dict[str, Table]:
-    """Port tables of a specification, by the node that the heading above names.
-
-    Parameters
-    ----------
-    text : str
-        Markdown. A table of ports has "Port" above its first column.
-
-    Raises
-    ------
-    ValueError
-        If a table of ports follows no heading, a node has two, or there is none at all.
-    PackageError
-        If markdown-it-py is not installed.
-    """
+    """Tables of a specification whose first column is headed Port, by the node of the heading above."""
     tables: dict[str, Table] = {}
     for heading, rows in _headed_tables(text):
-        # Skip tables of something else.
         columns = [cell.lower() for cell in rows[0]]
         if columns[:1] != ["port"]:
             continue
-        # Refuse a table without a node, or a second one.
         node = heading.strip("` ")
         if not node:
             raise DocumentError("a table of ports must follow a heading that names its node")
         if node in tables:
             raise DocumentError(f"there must be one table of ports below the heading {node}")
-        # Read the rows.
         ports = tuple(_port(dict(zip(columns, row, strict=True))) for row in rows[1:] if row[0])
         tables[node] = Table(node, _resolved(ports))
     if not tables:
@@ -128,13 +99,11 @@ def _resolved(ports: Sequence[PortRow]) -> tuple[PortRow, ...]:
 
 def _headed_tables(text: str) -> list[tuple[str, list[list[str]]]]:
     """Every table as its rows of cells, with the heading above it."""
-    # Load the parser of Markdown.
     try:
         from markdown_it import MarkdownIt
     except ImportError:
         raise PackageError(f"doc --compare needs markdown-it-py: {install('doc')}") from None
 
-    # Collect cells between the marks of headings, tables, rows and cells.
     heading = ""
     tables: list[tuple[str, list[list[str]]]] = []
     tokens = MarkdownIt("commonmark").enable("table").parse(text)

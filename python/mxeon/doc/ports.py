@@ -14,56 +14,25 @@ FLOATS = ("float", "vector2", "vector3", "vector4", "color3", "color4")
 
 @dataclass(frozen=True)
 class PortRow:
-    """An input or an output of a node.
-
-    Attributes
-    ----------
-    name, description : str
-    types : tuple of str
-        Its types, of which each definition of the node has one.
-    default : str
-        Value, or name of the geometric property, that an input has without a connection; "" for
-        none.
-    accepted : str
-        Range, as [0, 1], or names with commas between them; "" where nothing is stated.
-    """
+    """An input or an output of a node."""
 
     name: str
     description: str
-    types: tuple[str, ...]
-    default: str = ""
-    accepted: str = ""
+    types: tuple[str, ...]  # one for each definition of the node
+    default: str = ""  # value without a connection, or the name of its geometric property
+    accepted: str = ""  # a range, as [0, 1], or names with commas between them
 
 
 @dataclass(frozen=True)
 class Table:
-    """The ports of a node, inputs first.
-
-    Attributes
-    ----------
-    node : str
-        Category.
-    ports : tuple of PortRow
-    """
+    """The ports of a node, inputs first."""
 
     node: str
     ports: tuple[PortRow, ...]
 
 
 def library_tables(library: str = "stock") -> dict[str, Table]:
-    """Tables of the nodes that a library defines, by category.
-
-    Parameters
-    ----------
-    library : str
-        As for `mxeon.generate`.
-
-    Returns
-    -------
-    dict of str to Table
-        Of a category with definitions in the group "pbr", those alone count; of definitions with
-        versions, the default one.
-    """
+    """Tables by category: of definitions in GROUP if there are any, and of default versions."""
     definitions: dict[str, list[mx.NodeDef]] = {}
     for definition in load_library(library).getNodeDefs():
         if not definition.getVersionString() or definition.getDefaultVersion():

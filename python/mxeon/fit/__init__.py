@@ -142,13 +142,11 @@ def fit_brdf(measurement: MeasuredBrdf, model: str = "eon") -> Fit:
         difference: Array = (row.value(data.wo, data.wi, **parameters(x)) - data.value) / scale
         return difference.ravel()
 
-    # Search from each start, and keep the best.
     lows, highs = zip(*([(0.0, 1.0)] * channels + list(row.bounds.values())), strict=True)
     albedo = list(np.clip(np.pi * data.value.mean(axis=0), 0.05, 0.95))
     starts = ([*albedo, *start] for start in product(*row.starts.values()))
     best = min((_search(residuals, start, lows, highs) for start in starts), key=lambda s: s[1])
     x, cost, jacobian = best
-    # Tell the uncertainty.
     covariance = _inverse_normal(jacobian)
     scatter = float(np.sqrt(cost / max(data.value.size - len(x), 1)))
     covariance = covariance if data.error is not None else covariance * scatter**2

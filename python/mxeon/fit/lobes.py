@@ -20,20 +20,11 @@ LEAST_ALPHA = 0.02  # below, a lobe is narrower than what is measured
 
 @dataclass(frozen=True)
 class FitModel:
-    """A model to fit: `value(wo, wi, rho, **scalars)`, shape (N, C).
-
-    Attributes
-    ----------
-    value : callable
-    bounds : dict of str to tuple
-        Range of each scalar.
-    starts : dict of str to tuple
-        Values of each scalar from which the search starts.
-    """
+    """A model to fit: `value(wo, wi, rho, **scalars)`, shape (N, C)."""
 
     value: Callable[..., Array]
-    bounds: Mapping[str, tuple[float, float]]
-    starts: Mapping[str, tuple[float, ...]]
+    bounds: Mapping[str, tuple[float, float]]  # of each scalar
+    starts: Mapping[str, tuple[float, ...]]  # values of each scalar from which the search starts
 
 
 FIT_MODELS = {

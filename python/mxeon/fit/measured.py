@@ -42,11 +42,9 @@ class MeasuredBrdf:
     error: Array | None = None
 
     def __post_init__(self) -> None:
-        # Bring everything to arrays.
         for name in ("wo", "wi", "value", "error"):
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, np.asarray(getattr(self, name), np.float64))
-        # Look at shapes and numbers.
         count = len(np.atleast_1d(self.wo))
         if self.wo.shape != (count, 3) or self.wi.shape != (count, 3) or not count:
             raise InputError(f"wo, wi must have shape (N, 3); got {self.wo.shape}, {self.wi.shape}")
@@ -84,18 +82,15 @@ def read_merl(path: str | Path, step: int = 6) -> MeasuredBrdf:
     ----------
     [Matusik2003]; [Rusinkiewicz1998] for the angles.
     """
-    # Read the file.
     raw = Path(path).read_bytes()
     header, count = np.frombuffer(raw[:12], "<i4"), int(np.prod(MERL_CELLS))
     if tuple(header) != MERL_CELLS or len(raw) != 12 + 3 * 8 * count:
         raise InputError(f"{path}: must be a MERL file of 90 x 90 x 180 cells and 3 channels")
     values = np.frombuffer(raw[12:], "<f8").reshape(3, *MERL_CELLS)
-    # Choose cells, and find their directions.
     grid = np.meshgrid(*(np.arange(step // 2, n, step) for n in MERL_CELLS), indexing="ij")
     cells = [each.ravel() for each in grid]
     theta_h, theta_d, phi_d = ((each + 0.5) / n for each, n in zip(cells, MERL_CELLS, strict=True))
     wo, wi = merl_directions(0.5 * np.pi * theta_h**2, 0.5 * np.pi * theta_d, np.pi * phi_d)
-    # Keep what was measured.
     value = np.stack([each[tuple(cells)] for each in values], axis=-1) * MERL_SCALES
     kept = (wo[:, 2] > 0.0) & (wi[:, 2] > 0.0) & (value >= 0.0).all(axis=1)
     return MeasuredBrdf(wo[kept], wi[kept], value[kept])

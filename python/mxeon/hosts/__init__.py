@@ -15,75 +15,29 @@ from mxeon.shaders.scene import BACK, FURNACE, SIDE, Scene
 
 @dataclass(frozen=True)
 class OwnNode:
-    """A node of a renderer's own, with the model that its documentation claims.
+    """A node of a renderer's own, with the model that its documentation claims."""
 
-    Attributes
-    ----------
-    title : str
-        Name in reports, by which the renderer is asked for it.
-    model : str
-        Name of a row of `mxeon.models.table`.
-    inputs : tuple of str
-    forms : tuple of str
-        Forms of the model that its paper publishes, if there are several. The one that is nearest to
-        what is measured is judged.
-    others : bool
-        Whether other lobes lie beside the diffuse one, which do not depend on the color.
-    sampled : bool
-        Whether its renderer draws directions for it by a function that can be called.
-    """
-
-    title: str
-    model: str
+    title: str  # in reports and in requests to the renderer
+    model: str  # a row of `mxeon.models.table`
     inputs: tuple[str, ...] = ("color", "roughness")
-    forms: tuple[str, ...] = ()
-    others: bool = False
-    sampled: bool = False
+    forms: tuple[str, ...] = ()  # published; the nearest to what is measured is judged
+    others: bool = False  # whether lobes that ignore the color lie beside the diffuse one
+    sampled: bool = False  # whether the function that draws its directions can be called
 
 
 @dataclass(frozen=True)
 class Row:
-    """One host of the table.
-
-    Attributes
-    ----------
-    name : str
-        On the command line.
-    target : str
-        Target of the shaders that it executes; "" for a renderer of its own materials alone.
-    module : str
-        Module with its class `Host`; "" where only the text of the target is checked.
-    probe : str
-        How checks ask it: for "pairs" of directions, for "rendered" ones, with its own closures and
-        what a camera shows, for "pictures" of a sphere, for the "closures" of a shader, for "drawn
-        pictures" of a sphere whose points are exact,
-        for "half pictures", the same in half floats, for pictures of "native" nodes of its own, for
-        "exact" ones, without noise and with the points of float32, for those of "facets" of a
-        polyhedron, "coarse" ones or not, for these and for "facet pairs" of directions, or "" for
-        nothing.
-    needs : str
-        What running it would take, where only its text is checked.
-    scenes : tuple of Scene
-        Lights under which it shows the materials of documents.
-    surfaces : bool
-        Whether surface shaders are judged on it.
-    rounding : float
-        Of the pixels of its pictures beyond float32's, relative to their values.
-    front_lit : tuple of str
-        Models that it has for s >= 0 alone.
-    nodes : tuple of OwnNode
-        Materials of a renderer's own that are judged.
-    """
+    """One host of the table."""
 
     name: str
-    target: str
-    module: str = ""
-    probe: str = ""
-    needs: str = ""
-    scenes: tuple[Scene, ...] = ()
-    surfaces: bool = False
-    rounding: float = 0.0
-    front_lit: tuple[str, ...] = ()
+    target: str  # of its shaders; "" for a renderer of its own materials alone
+    module: str = ""  # with its class `Host`; "" where only the text of the target is checked
+    probe: str = ""  # of `mxeon.conformance.probes.families.HOST_PROBES`; "" for none
+    needs: str = ""  # what running it would take, where only its text is checked
+    scenes: tuple[Scene, ...] = ()  # lights under which it renders the materials of documents
+    surfaces: bool = False  # whether surface shaders are judged on it
+    rounding: float = 0.0  # relative, of its pixels beyond float32's
+    front_lit: tuple[str, ...] = ()  # models that it has for s >= 0 alone
     nodes: tuple[OwnNode, ...] = ()
 
 
@@ -229,13 +183,7 @@ def host_names() -> tuple[str, ...]:
 
 
 def host_row(name: str, *others: Row) -> Row:
-    """The row of a host, from the table or from `others`.
-
-    Raises
-    ------
-    ValueError
-        If there is no such host; lists the known ones.
-    """
+    """The row of a host, from the table or from `others`; InputError lists the known ones."""
     rows = {row.name: row for row in (*HOSTS, *others)}
     assert_known("host", name, rows)
     return rows[name]
@@ -247,13 +195,7 @@ def front_lit_only(host: str, model: str) -> bool:
 
 
 def open_host(name: str, *others: Row) -> Host:
-    """The host of a name, started; arguments and errors are those of `open_engine`.
-
-    Raises
-    ------
-    Unsupported
-        If it is a renderer that shows materials of its own alone.
-    """
+    """The host of a name, started; Unsupported for a renderer of its own materials alone."""
     engine = open_engine(name, *others)
     if isinstance(engine, Host):
         return engine
@@ -262,21 +204,7 @@ def open_host(name: str, *others: Row) -> Host:
 
 
 def open_engine(name: str, *others: Row) -> Host | RendererHost:
-    """The host or renderer of a name, started.
-
-    Parameters
-    ----------
-    name : str
-    *others : Row
-        Hosts beside those of the table.
-
-    Raises
-    ------
-    ValueError
-        If there is no such host; lists the known ones.
-    NotRun
-        If it cannot run on this machine.
-    """
+    """The host or renderer of a name, started, or NotRun; `others` are rows beside the table's."""
     from mxeon.shaders.generation import TARGETS
 
     row = host_row(name, *others)

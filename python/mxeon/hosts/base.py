@@ -51,13 +51,7 @@ class Identity:
 
 
 class Engine(ABC):
-    """A program that executes shaders or renders; a context manager, which closes it.
-
-    Attributes
-    ----------
-    name : str
-        On the command line.
-    """
+    """A program that executes shaders or renders; a context manager, which closes it."""
 
     name: str
 
@@ -75,26 +69,14 @@ class Engine(ABC):
         self.close()
 
     def refuse_paths(self, scene: Scene) -> None:
-        """Raise InputError if a scene asks for paths: where none are traced, or their number is fixed.
-
-        Raises
-        ------
-        ValueError
-            If the samples or the bounces of the scene are set.
-        """
+        """Raise InputError if a scene sets samples or bounces, of which this host has none or a fixed number."""
         if scene.paths != Paths():
             raise InputError(
                 f"{self.name}: this host takes no number of samples or bounces; cycles does"
             )
 
     def refuse_shape(self, scene: Scene) -> None:
-        """Raise InputError if a scene shows anything but a sphere.
-
-        Raises
-        ------
-        ValueError
-            If the scene has another shape.
-        """
+        """Raise InputError if a scene shows anything but a sphere."""
         if scene.shape != "sphere":
             raise InputError(
                 f"{self.name}: shape must be sphere; got {scene.shape}, which gl and webgl draw"
@@ -107,19 +89,10 @@ class Engine(ABC):
 class Host(Engine):
     """An engine that executes generated shaders.
 
-    A caller may rely on this: a verb that a host lacks raises `Unsupported`, here and nowhere else;
-    `compile` alone knows the target, the profile and the lights; pairs, rows and pixels come back
-    in the order in which they were asked for, as linear radiance or 1/sr, and never silently from
-    another shader. A host overrides the verbs that it has.
-
-    Attributes
-    ----------
-    target : str
-        Target of the shaders that it executes.
-    profile : str or None
-        Profile of the data library; see `mxeon.shaders.library.load_library`.
-    language : str
-        Language of the shader functions that it executes, "glsl" or "osl".
+    A caller may rely on this: a verb that a host lacks raises `Unsupported`, here and nowhere else; a
+    shader that the host's compiler refuses raises `ShaderError`; `compile` alone knows the target, the
+    profile and the lights; pairs, rows and pixels come back in the order of the request, as linear
+    radiance or 1/sr, and never silently from another shader. A host overrides the verbs that it has.
     """
 
     target: ClassVar[str]
@@ -154,23 +127,9 @@ class Host(Engine):
         return shaders
 
     def picture(self, shader: Shader, scene: Scene) -> Array:
-        """Picture of the unit sphere with a shader on it.
+        """Picture of the unit sphere with a shader on it: linear, row 0 at the top, 0 off the sphere.
 
-        Returns
-        -------
-        ndarray, shape (size, size, 3)
-            Linear radiance, row 0 at the top, 0 off the sphere.
-
-        Raises
-        ------
-        Unsupported
-            If the host has no such verb.
-        ShaderError
-            If the host's compiler refuses the shader.
-        NotRun
-            If the host cannot show the scene, or fails.
-        ValueError
-            If the scene asks for paths and the host traces none.
+        `NotRun` if the host cannot show the scene, or fails; `InputError` for paths where it traces none.
         """
         raise self._unsupported("pictures of a sphere", "gl")
 
@@ -193,7 +152,7 @@ class Host(Engine):
         output: str = "response",
         irradiance: Array | None = None,
     ) -> Array:
-        """Values of a shader's BSDF for pairs of directions.
+        """Values of a shader's BSDF for pairs of directions, shape (N, 3).
 
         Parameters
         ----------
@@ -204,60 +163,34 @@ class Host(Engine):
             Node inputs by name, (N, ...) or constant, and "occlusion", 1 unless given. The node's
             normal is that of the surface unless given.
         branch : str
-            "direct", "environment", "transmission" or "emission": what the shader asks of its BSDF;
-            or "graph": the color that it gives to its uniform EDF, which the directions do not change.
+            "direct", "environment", "transmission" or "emission"; or "graph": the color of the
+            uniform EDF, which the directions do not change.
         output : str
-            "response"; "throughput", the share of the light from below that passes the BSDF; or
-            "radiance", what the EDF emits towards `wo`, in any branch.
+            "response", f cos(theta_i) in 1/sr or the directional albedo times the irradiance;
+            "throughput", the share of the light from below that passes the BSDF; or "radiance", what
+            the EDF emits towards `wo`, in any branch.
         irradiance : ndarray, shape (rows, columns, 3), or None
             Irradiance over pi of the environment for every normal, as a latitude-longitude map with
-            row 0 upwards (+y) and its middle towards +z; None for a uniform environment of radiance 1.
-            What looks up radiance finds the same map.
-
-        Returns
-        -------
-        ndarray, shape (N, 3)
-            The response is f cos(theta_i) in 1/sr, or the directional albedo times the irradiance.
+            row 0 upwards (+y) and its middle towards +z; lookups of radiance find it too. None for a
+            uniform environment of radiance 1.
 
         Raises
         ------
-        Unsupported
-            If the host has no such verb.
         ValueError
             If the shader calls no BSDF, or branch or output is unknown.
-        ShaderError
-            If the host's compiler refuses the shader.
         """
         raise self._unsupported("values for pairs of directions", "gl")
 
     def trees(self, shader: Shader, wo: Array, inputs: Inputs) -> tuple[TreeRows, ...]:
-        """Trees of the closures that a shader makes, with their arguments and weights.
+        """Trees of the closures that an OSL shader makes, with their arguments and weights.
 
-        Parameters
-        ----------
-        shader : Shader
-            Of the target "osl".
-        wo : ndarray, shape (N, 3)
-            Directions to the viewer.
-        inputs : mapping of str to array
-            As in `evaluate`.
-
-        Returns
-        -------
-        tuple of mxeon.hosts.osl.trees.TreeRows
-            TreeRows whose closures differ in numbers alone share one tree.
-
-        Raises
-        ------
-        Unsupported
-            If the host has no such verb.
-        ShaderError
-            If the shader does not compile, or makes a closure that OSL does not document.
+        `wo`, shape (N, 3), and `inputs` are those of `evaluate`. Points whose closures differ in numbers
+        alone share one tree. `ShaderError` also for a closure that OSL does not document.
         """
         raise self._unsupported("trees of closures", "osl")
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
-        """Values of a function that a text defines.
+        """Values of a function that a text defines, shape (N, 3); a float is in all three columns.
 
         Parameters
         ----------
@@ -267,19 +200,10 @@ class Host(Engine):
         *arguments : array_like, shape (N, 3) for a vector or color, (N,) for a float
             Taken as float32; what is the same for all N may have one row.
 
-        Returns
-        -------
-        ndarray, shape (N, 3)
-            A float in all three columns.
-
         Raises
         ------
-        Unsupported
-            If the host has no such verb.
         ValueError
             If there is no such function.
-        ShaderError
-            If the host's compiler refuses the text.
         """
         raise self._unsupported("calls of a shader function", "gl")
 

@@ -41,22 +41,11 @@ Arguments: TypeAlias = dict[str, tuple[str, ArrayLike]]  # type and values by na
 
 @dataclass(frozen=True)
 class BsdfCall:
-    """How a generated shader calls its BSDFs.
+    """How a generated shader calls its BSDFs."""
 
-    Attributes
-    ----------
-    statements : str
-        Statements of the shader's main up to the call.
-    value : str
-        Expression of the output that is asked for, a color. It is the same for every output, so
-        that they share a program.
-    arguments : dict of str to (str, array_like)
-        Type and values of every variable that the statements and the expression read, but P.
-    """
-
-    statements: str
-    value: str
-    arguments: Arguments
+    statements: str  # of the shader's main up to the call
+    value: str  # a color; the same for every output, so that they share a program
+    arguments: Arguments  # types and values of what both read, but P
 
 
 def bsdf_call(
@@ -67,37 +56,20 @@ def bsdf_call(
     branch: str,
     output: str = OUTPUTS[0],
 ) -> BsdfCall:
-    """Call of a shader's BSDF, with the values of its arguments.
+    """Call of a rasterized shader's BSDF with the arguments of `Host.evaluate`.
 
-    Parameters
-    ----------
-    shader : Shader
-        Of a rasterized target.
-    wo, wi, inputs, branch, output
-        As in `mxeon.hosts.base.Host.evaluate`.
-
-    Returns
-    -------
-    BsdfCall
-
-    Raises
-    ------
-    ValueError
-        If the shader calls no BSDF or, for GRAPH, no uniform EDF, or branch or output is unknown.
+    InputError if it calls no BSDF or, for GRAPH, no uniform EDF, or branch or output is unknown.
     """
-    # Refuse unknown branches and outputs.
     branches = (GRAPH, *CLOSURES)
     for rule, word, known in (("branch", branch, branches), ("output", output, OUTPUTS)):
         if word not in known:
             raise InputError(f"{rule} must be one of {', '.join(known)}; got {word!r}")
     if branch == GRAPH:
         return _graph_call(shader, wo, inputs)
-    # Find the statements of the branch in the shader.
     emitted = output == "radiance"
     called, closure = (EMISSION, EMISSION) if emitted else CLOSURES[branch]
     text = shader.stages["pixel"]
     start, statements, result, names = _find_calls(text, called, shader.element)
-    # Give directions, occlusion and node inputs their values.
     arguments: Arguments = {"V": ("vector3", wo), "L": ("vector3", wi), "N": ("vector3", NORMAL)}
     arguments["occlusion"] = ("float", inputs.get("occlusion", 1.0))
     if not emitted:
@@ -108,7 +80,6 @@ def bsdf_call(
     else:
         ports = _ports(shader)
         arguments |= {name: _argument(name, ports, inputs) for name in names}
-    # Choose what the statements leave behind.
     value = result if emitted else f"{ASKED} ? {result}.throughput : {result}.response"
     return BsdfCall(statements.replace(called, closure), value, arguments)
 
@@ -120,18 +91,15 @@ def _find_calls(text: str, closure: str, element: str) -> tuple[int, str, str, l
     The last call combines what the others before it return, or is the only one.
     """
     # MaterialX before 1.39.5 calls the constructor itself.
-    # Find the block of the closure type.
     constructor = r"(?:makeClosureData|ClosureData)"
     match = re.search(rf"ClosureData closureData = {constructor}\({closure}[^}}]*", text)
     block = match[0] if match else ""
-    # Find the closures that it calls.
     calls = re.findall(r"\w+\(closureData, ([^;]*), (\w+)\);", block)
     if not calls:
         kind = "an EDF" if closure == EMISSION else "a BSDF"
         raise InputError(
             f"element {element!r} must call {kind} to be evaluated; its shader calls none"
         )
-    # Take the arguments that no call before it makes.
     end, results = f", {calls[-1][1]});", [result for _, result in calls]
     names = [name for arguments, _ in calls for name in arguments.split(", ")]
     arguments = [name for name in dict.fromkeys(names) if name not in results]
@@ -151,18 +119,15 @@ def _surface_arguments(shader: Shader, before: Prelude, inputs: Inputs) -> Argum
 
 def _graph_call(shader: Shader, wo: ArrayLike, inputs: Inputs) -> BsdfCall:
     """Call of a shader's graph: the statements before its surface, and the color of its uniform EDF."""
-    # Find the uniform EDF.
     text = shader.stages["pixel"]
     color = re.search(r"\bmx_uniform_edf\(closureData, (\w+), \w+\);", text)
     if not color:
         raise InputError(
             f"element {shader.element!r} must call a uniform EDF; its shader calls none"
         )
-    # Take the statements of main before its surface.
     before = re.split(r"\n *surfaceshader \w+ = ", text)[0]
     # Slang's own main begins with its stage's inputs and outputs.
     statements = re.split(r"\n\{\n|_vd;\n|float4 out1;\n", before)[-1]
-    # Give the words that are inputs their values.
     ports = _ports(shader)
     words = dict.fromkeys(re.findall(r"\w+", statements + color[1]))
     arguments: Arguments = {"V": ("vector3", wo)}  # of a graph that reads nothing

@@ -37,17 +37,8 @@ class DocumentHost(base.Host):
     """A renderer that reads documents, with a process for each library, one at a time, and a folder.
 
     Beside the module of a host lies `worker.py`, which gets the folder whose `libraries` replace
-    MaterialX's own, or "", and those of the libraries that are loaded before these, as arguments.
-
-    Parameters
-    ----------
-    limit : float
-        Seconds that one picture may take, which is to compile its shader first.
-
-    Raises
-    ------
-    NotRun
-        If the interpreter that is to have the renderer is missing.
+    MaterialX's own, or "", and those of the libraries that are loaded before these, as arguments. One
+    picture may take `limit` seconds, in which its shader is compiled.
     """
 
     target: ClassVar[str] = "glsl"
@@ -61,37 +52,15 @@ class DocumentHost(base.Host):
         self._picture = lru_cache(maxsize=PICTURES)(self._drawn)
 
     def close(self) -> None:
-        """End the process and remove the temporary files."""
         self.worker.close()
         self._temporary.cleanup()
 
     def identity(self) -> Identity:
-        """Versions of what reads the document, and the device that draws."""
         self.worker.start()
         return Identity(self.name, str(self.worker.version), self.worker.device)
 
     def picture(self, shader: Shader, scene: Scene) -> Array:
-        """Picture of the unit sphere with a document's material on it.
-
-        Parameters
-        ----------
-        shader : Shader
-            Its document and folders are read; its text is generated again.
-        scene : Scene
-            Its environment, if any, uniform.
-
-        Returns
-        -------
-        ndarray, shape (size, size, 3), float32
-            Linear, row 0 at the top, 0 off the sphere.
-
-        Raises
-        ------
-        ShaderError
-            If the shader does not compile.
-        NotRun
-            If the environment is an image, the document cannot be read, or the process fails.
-        """
+        """Picture of the sphere with a document's material on it; the worker generates it again."""
         self.refuse_paths(scene)
         self.refuse_shape(scene)
         if isinstance(scene.environment, (str, Path)):
@@ -105,7 +74,6 @@ class DocumentHost(base.Host):
         return self._picture(*self._document(shader), scene, self._folders, blocks)
 
     def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
-        """What takes the place of lobes below the surface, as in all GLSL, and what is not read."""
         return (*raster.approximations(shader), *filter(None, [self.unread(shader)]))
 
     @abstractmethod
@@ -138,7 +106,6 @@ class DocumentHost(base.Host):
         # Write the document, by a name of its own: OpenUSD keeps what it has read.
         document = self._folder / f"{sha256(text.encode()).hexdigest()}.mtlx"
         document.write_text(text, encoding="utf-8")
-        # Draw it.
         output = self._folder / "output.npy"
         reply = self.worker.ask(
             output=str(output),
@@ -150,7 +117,6 @@ class DocumentHost(base.Host):
             environment=scene.environment,
         )
         self._check(reply.get("error", ""), self.worker.printed())
-        # Read the picture.
         pixels = np.load(output)
         if blocks:
             pixels = pixels[BLOCK // 2 :: BLOCK, BLOCK // 2 :: BLOCK]

@@ -48,27 +48,13 @@ Columns: TypeAlias = dict[str, NDArray[np.float32]]  # rows of 1 to 3 values, or
 
 @dataclass(frozen=True)
 class Dialect:
-    """Text that a language of the GLSL family needs around a function.
+    """Text that a language of the GLSL family needs around a function."""
 
-    Attributes
-    ----------
-    version : str
-        First line of a stage.
-    prelude : str
-        Lines between the version and a generated text.
-    output : str
-        Declaration of a pixel stage's output, for text that has none.
-    sampler : str
-        Declaration of an argument's sampler, with its name and its number.
-    vertex : str
-        Vertex stage for text that reads nothing from one.
-    """
-
-    version: str
-    prelude: str
-    output: str
-    sampler: str
-    vertex: str
+    version: str  # first line of a stage
+    prelude: str  # between the version and a generated text
+    output: str  # declares a pixel stage's output, for text that has none
+    sampler: str  # declares an argument's sampler, with its name and its number
+    vertex: str  # stage for text that reads nothing from one
 
 
 RENAME = "#define main mxeon_generated_main\n"
@@ -122,25 +108,7 @@ def bsdf_evaluation(
     branch: str,
     output: str = OUTPUTS[0],
 ) -> tuple[str, Columns]:
-    """Pixel stage that evaluates the BSDF of a generated shader, and its arguments.
-
-    Parameters
-    ----------
-    shader : Shader
-        Of a target in DIALECTS.
-    wo, wi, inputs, branch, output
-        As in `mxeon.hosts.base.Host.evaluate`.
-
-    Returns
-    -------
-    str, dict of str to ndarray
-        The text, and float32 texels (N, 1 to 3) by sampler name.
-
-    Raises
-    ------
-    ValueError
-        If the shader calls no BSDF, or branch or output is unknown.
-    """
+    """Pixel stage that evaluates a shader's BSDF, and its texels (N, 1 to 3) by sampler."""
     dialect = DIALECTS[shader.target]
     call = bsdf_call(shader, wo, wi, inputs, branch, output)
     version, text = shader.stages["pixel"].split("\n", 1)
@@ -198,13 +166,11 @@ def texels(values: Array, size: tuple[int, int], margin: int = 0) -> NDArray[np.
 
     With a margin a layer has so many columns and rows more.
     """
-    # Make room for layers, one above the other.
     width, height = size
     layers = values[np.newaxis] if values.ndim == 2 else values
     number, count, components = layers.shape
     shape = (number, height + margin, width + margin, components)
     frames = np.zeros(shape, dtype=np.float32)
-    # Fill them with one value, or row by row.
     if count == 1:
         frames[:, :height, :width] = layers[:, :, np.newaxis]
     else:
@@ -233,7 +199,6 @@ def _main(
     dialect: Dialect, arguments: Mapping[str, tuple[str, ArrayLike]], body: Sequence[str]
 ) -> tuple[str, Columns]:
     """A main that reads the arguments and then executes `body`, and the arguments' texels."""
-    # Lay the arguments out as textures, stacked where they are many.
     rows = columns(arguments)
     if len(rows) <= MOST:
         values = {f"mxeon_{name}": each for name, each in rows.items()}
@@ -241,13 +206,11 @@ def _main(
     else:
         values = {STACK: _stacked(rows)}
         texels = [LAYER.format(index, len(rows)) for index in range(len(rows))]
-    # Read them at the pixel.
     fetches = [
         FETCH[kind].format(name, texel)
         for (name, (kind, _)), texel in zip(arguments.items(), texels, strict=True)
     ]
     lines = ["ivec2 mxeon_pixel = ivec2(gl_FragCoord.xy);", *fetches, *body]
-    # Write samplers and main.
     samplers = [
         dialect.sampler.format(name=name, number=number) for number, name in enumerate(values)
     ]

@@ -22,7 +22,6 @@ class FragmentHost(base.Host):
     """
 
     def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
-        """What takes the place of lobes below the surface; see `base.Host`."""
         return raster.approximations(shader)
 
     def evaluate(
@@ -36,12 +35,10 @@ class FragmentHost(base.Host):
         output: str = "response",
         irradiance: Array | None = None,
     ) -> Array:
-        """Values of the shader's own BSDF function; see `base.Host`."""
         pixel, arguments = fragment.bsdf_evaluation(shader, wo, wi, inputs, branch, output)
         return self._evaluate(shader.stages["vertex"], pixel, arguments, irradiance)
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
-        """Values of a GLSL function; see `base.Host`."""
         parameters = functions.parameters(source, function)
         pixel, texels = fragment.function_evaluation(
             source, function, parameters, arguments, self.target

@@ -46,13 +46,7 @@ def _current(verb: Callable[Concatenate[Host, P], T]) -> Callable[Concatenate[Ho
 
 
 class Host(FragmentHost):
-    """OpenGL through EGL.
-
-    Raises
-    ------
-    NotRun
-        If there is no EGL or no OpenGL 4.3.
-    """
+    """OpenGL 4.3 through EGL."""
 
     name = "gl"
     target = "glsl"
@@ -76,13 +70,11 @@ class Host(FragmentHost):
 
     @_current
     def identity(self) -> Identity:
-        """Version and device as the driver names them."""
         info = self._context.info
         return Identity(self.name, info["GL_VERSION"], info["GL_RENDERER"])
 
     @_current
     def picture(self, shader: Shader, scene: Scene) -> Array:
-        """Picture of the sphere; see `mxeon.hosts.base.Host`."""
         self.refuse_paths(scene)
         program = self._program(fragment.DIALECTS["glsl"].vertex, points.pixel_stage(shader))
         _set(program, raster.inputs(shader) | raster.light(scene))
@@ -103,49 +95,30 @@ class Host(FragmentHost):
         size: tuple[int, int],
         passes: Iterable[int],
     ) -> NDArray[np.float32]:
-        """Sum over passes of what a fragment shader draws; the uniform `tracer_pass` counts them.
+        """Sum of what a fragment shader draws in `passes`, each the value of the uniform `tracer_pass`.
 
-        Parameters
-        ----------
-        pixel : str
-            Fragment shader.
-        uniforms : mapping of str to value
-            Their values; those that the shader does not use are left out.
-        size : tuple of int
-            Width and height.
-        passes : iterable of int
-            Value of `tracer_pass` in each pass.
-
-        Returns
-        -------
-        ndarray, shape (height, width, 4), float32
-            Row 0 at the bottom.
+        Shape (height, width, 4), row 0 at the bottom. Uniforms that the shader does not use are left out.
         """
-        # Compile the program.
         context = self._context
         program = self._program(fragment.DIALECTS["glsl"].vertex, pixel)
         _set(program, uniforms)
         triangle = context.vertex_array(program, _buffers(context, program, raster.TRIANGLE))
-        # Prepare a frame that adds.
         frame = context.framebuffer([context.renderbuffer(size, components=4, dtype="f4")])
         frame.use()
         frame.clear()
         context.enable(context.BLEND)
         context.blend_func = context.ONE, context.ONE
-        # Draw the passes.
         for index in passes:
             _set(program, {"tracer_pass": index})
             triangle.render()
             context.finish()
         context.disable(context.BLEND)
-        # Read the sum.
         image: NDArray[np.float32] = np.frombuffer(
             frame.read(components=4, dtype="f4"), dtype=np.float32
         )
         return image.reshape(size[1], size[0], 4)
 
     def close(self) -> None:
-        """Release the context, and all that is in it."""
         self._program.cache_clear()
         self._constant.cache_clear()
         self._points.cache_clear()
@@ -159,7 +132,6 @@ class Host(FragmentHost):
         arguments: Mapping[str, Array],
         irradiance: Array | None = None,
     ) -> Array:
-        """Values, one pixel per element, as many as the longest argument has."""
         program = self._program(vertex, pixel)
         _set(program, raster.EVALUATION)
         environment = self._textures(program, raster.environment(irradiance))
@@ -189,7 +161,6 @@ class Host(FragmentHost):
         parts: Sequence[raster.Rectangle] = (),
     ) -> Array:
         """One frame as float32 (height, width, 3), row 0 at the bottom; all of it, or only some parts."""
-        # Prepare an empty frame and the textures.
         context = self._context
         frame = context.framebuffer([context.renderbuffer(size, components=4, dtype="f4")])
         frame.use()
@@ -197,7 +168,6 @@ class Host(FragmentHost):
         for unit, (name, texture) in enumerate(textures.items()):
             texture.use(location=unit)
             _set(program, {name: unit})
-        # Draw the parts.
         triangle = context.vertex_array(program, _buffers(context, program, raster.TRIANGLE))
         for part in parts or [(0, 0, *size)]:
             frame.scissor = part

@@ -40,16 +40,9 @@ class PairHost(base.Host):
         """Values that a renderer gives to the closures of a shader; see `mxeon.hosts.base.Host`.
 
         The throughput is what is seen of a white emission below. The environment is sampled, so that it
-        has noise; what comes through the surface is part of it.
-
-        Raises
-        ------
-        Unsupported
-            If the environment is not uniform, or is asked for its light from below alone.
-        ValueError
-            If a pair in the light of a point is not `mxeon.hosts.pair_frames.visible`.
+        has noise; what comes through the surface is part of it. InputError if a pair in the light of a
+        point is not `mxeon.hosts.pair_frames.visible`.
         """
-        # Values in the light of a point.
         through = output == "throughput"
         if irradiance is not None or (branch == TRANSMITTED and not through):
             raise self._unsupported("uneven environment, and none below alone", "gl")
@@ -59,8 +52,7 @@ class PairHost(base.Host):
                     f"{self.name}: the sine of each pair must be at least {LEAST_SINE}"
                 )
             return self._pixels(shader, wo, wi, inputs, "", LAMP)
-        # What does not depend on the light: each view has one across it.
-        # A sky is shown by several pixels of each view.
+        # What does not depend on the light: each view has one across it, and a sky several pixels.
         sky = not through and branch != EMITTED
         repeats = max(1, PATHS // len(wo)) if sky else 1
         rows = np.repeat(np.arange(len(wo)), repeats)
@@ -76,15 +68,7 @@ class PairHost(base.Host):
     def _pixels(
         self, shader: Shader, wo: Array, wi: Array, inputs: Inputs, last: str, light: str
     ) -> NDArray[np.float64]:
-        """What pairs look like, (N, 3).
+        """What pairs look like, (N, 3), where the OSL `last`, a pattern of its `output`, ends the shader.
 
-        Parameters
-        ----------
-        shader : Shader
-        wo, wi : ndarray, shape (N, 3)
-        inputs : mapping of str to array
-        last : str
-            OSL at the end of the shader, a pattern of its `output`.
-        light : str
-            LAMP for a light of irradiance 1 on what faces it, SKY for a uniform radiance 1, or DARK.
+        `light` is LAMP, of irradiance 1 on what faces it, SKY, a uniform radiance 1, or DARK.
         """

@@ -37,17 +37,11 @@ FORMATS = {"float": "f4", "vec2": "2f4", "vec3": "3f4", "vec4": "4f4", "int": "i
 
 @dataclass(frozen=True)
 class Output:
-    """An output of the vertex stage that the pixel stage reads.
+    """An output of the vertex stage that the pixel stage reads."""
 
-    Attributes
-    ----------
-    kind, name, variable : str
-        GLSL type, name for the capture, and name in the pixel stage.
-    """
-
-    kind: str
-    name: str
-    variable: str
+    kind: str  # GLSL type
+    name: str  # for the capture
+    variable: str  # in the pixel stage
 
 
 def outputs(shader: Shader) -> tuple[Output, ...]:

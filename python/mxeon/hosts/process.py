@@ -24,28 +24,9 @@ Reply: TypeAlias = dict[str, str]  # of a renderer's process
 class Worker:
     """The process of a script, started by the first request and again after a crash.
 
-    Parameters
-    ----------
-    name : str
-        The host's, for messages.
-    python : Path
-        Interpreter that has the renderer.
-    script : Path
-        It prints `{"version": ...}`, then one JSON object for each that it reads; or `{"error": ...}`,
-        and ends.
-    log : Path
-        File for what the renderer prints.
-    limit : float
-        Seconds that a request may take; after them the process is killed.
-    *arguments : str
-        Of the script.
-
-    Attributes
-    ----------
-    version : str or None
-        The renderer's, once it has been started.
-    device : str
-        That on which it draws, if the script prints one with the version.
+    The script prints `{"version": ...}`, then one JSON object for each that it reads; or `{"error": ...}`,
+    and ends. What the renderer prints goes to the file `log`. A request may take `limit` seconds; then
+    the process is killed. Once it runs, `version` and `device` are those that it printed.
     """
 
     def __init__(
@@ -65,16 +46,9 @@ class Worker:
         return self._process.pid if self._process and self._process.poll() is None else None
 
     def start(self) -> None:
-        """Start the process unless it runs; wait for its version.
-
-        Raises
-        ------
-        NotRun
-            If it ends, or says what it lacks.
-        """
+        """Start the process unless it runs, and wait for its version."""
         if self.pid is not None:
             return
-        # Start it, with what it prints in the log.
         self.close()
         self._read = 0
         with self.log.open("w") as log:
@@ -87,7 +61,6 @@ class Worker:
                 errors="replace",
                 env=os.environ | {"TMPDIR": str(self.log.parent)},  # Blender leaves a folder
             )
-        # Read who it is, or what it lacks.
         greeting = self._reply()
         if "error" in greeting:
             self.close()
@@ -95,13 +68,7 @@ class Worker:
         self.version, self.device = greeting["version"], greeting.get("device", "")
 
     def ask(self, **request: object) -> Reply:
-        """The reply to a request.
-
-        Raises
-        ------
-        NotRun
-            If the process ends or is silent for too long; with the last lines it printed.
-        """
+        """The reply to a request; NotRun, with its last lines, if the process ends or is silent."""
         self.start()
         self._read = self.log.stat().st_size
         assert self._process
@@ -111,17 +78,14 @@ class Worker:
 
     def _reply(self) -> Reply:
         assert self._process and self._process.stdout
-        # Read one line within the limit.
         begin = time.monotonic()
         killer = Timer(self.limit, self._process.kill)
         killer.start()
         line = self._process.stdout.readline()
         killer.cancel()
-        # Return a whole answer.
         if line.endswith("}\n"):
             reply: Reply = json.loads(line)
             return reply
-        # Say how the process ended.
         if line:  # an answer cut short: the process is on its way out
             self._process.kill()
         status = self._process.wait()
@@ -141,7 +105,6 @@ class Worker:
         return [line.strip() for line in text.splitlines() if line.strip()]
 
     def close(self) -> None:
-        """End the process if it runs."""
         if self._process:
             self._process.kill()
             self._process.communicate()

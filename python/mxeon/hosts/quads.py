@@ -26,16 +26,8 @@ STEEPEST = (
 def quads(size: int, place: tuple[float, float] = (0.0, 0.0)) -> dict[str, NDArray[np.float32]]:
     """The quads of a picture of `size` x `size` pixels, four vertices each, counterclockwise.
 
-    Parameters
-    ----------
-    size : int
-    place : tuple of 2 floats
-        Where in its pixel a point lies, in half widths from the middle.
-
-    Returns
-    -------
-    dict of ndarray, shape (4 N, 3) or (4 N, 2)
-        "position", "normal" and "texcoord", by the pixels of the sphere, row 0 at the top first.
+    A point lies at `place` in its pixel, in half widths from the middle. "position", "normal" and
+    "texcoord", by the pixels of the sphere, row 0 at the top first.
     """
     points = sphere(size)
     normal = points.normal[points.mask][:, np.newaxis]

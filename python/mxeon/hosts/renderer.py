@@ -18,31 +18,7 @@ class RendererHost(Engine):
     """
 
     def node(self, title: str, color: Sequence[float], roughness: float, scene: Scene) -> Array:
-        """Picture of the unit sphere, or of the polyhedron, with a node of the renderer's own on it.
-
-        Parameters
-        ----------
-        title : str
-            Of the node.
-        color : sequence of float
-            Linear, per channel.
-        roughness : float
-        scene : Scene
-
-        Returns
-        -------
-        ndarray, shape (size, size, 3)
-            Linear radiance, row 0 at the top, 0 off the object.
-
-        Raises
-        ------
-        Unsupported
-            If the renderer has no such verb.
-        NotRun
-            If it cannot show the scene, or fails.
-        ValueError
-            If the scene asks for paths and their number is fixed.
-        """
+        """Picture of the sphere or the polyhedron with one of `mxeon.hosts.Row.nodes` on it; see `Host.picture`."""
         raise self._unsupported("nodes of its own", "cycles-native")
 
     def pairs(
@@ -53,47 +29,11 @@ class RendererHost(Engine):
         color: Array,
         roughness: Array,
     ) -> Array:
-        """Values of a node of the renderer's own for pairs of directions.
-
-        Parameters
-        ----------
-        title : str
-        wo, wi, color : ndarray, shape (N, 3)
-            The directions are unit vectors, normal +z.
-        roughness : ndarray, shape (N,)
-
-        Returns
-        -------
-        ndarray, shape (N, 3)
-            f cos(theta_i), in 1/sr.
-
-        Raises
-        ------
-        Unsupported
-            If the host has no such verb.
-        """
+        """f cos(theta_i) of a node of the renderer's own, (N, 3) in 1/sr, for unit vectors with normal +z."""
         raise self._unsupported("values of its own nodes", "mitsuba")
 
     def sample(self, wo: Array, u: Array, roughness: Array) -> Array:
-        """Directions to the light that the renderer draws for EON.
-
-        Parameters
-        ----------
-        wo : ndarray, shape (N, 3)
-            Unit vectors, normal +z.
-        u : ndarray, shape (N, 2)
-            Random numbers in [0, 1).
-        roughness : ndarray, shape (N,)
-
-        Returns
-        -------
-        ndarray, shape (N, 3)
-
-        Raises
-        ------
-        Unsupported
-            If the host has no such verb.
-        """
+        """Directions to the light (N, 3) that the renderer draws for EON from u (N, 2) in [0, 1)."""
         raise self._unsupported("sampling of its own", "three-gpu-pathtracer")
 
     def density(self, wo: Array, wi: Array, roughness: Array) -> Array:

@@ -98,23 +98,15 @@ void {ENTRY}(uint3 mxeon_thread : SV_DispatchThreadID)
 
 
 class Host(base.Host):
-    """The first of DEVICES on which slangpy runs a kernel.
-
-    Raises
-    ------
-    NotRun
-        If there is no slangpy, or neither a GPU nor a C++ compiler for it.
-    """
+    """The first of DEVICES on which slangpy runs a kernel."""
 
     name = "slang"
     target = "slang"
 
     def __init__(self) -> None:
-        # Check that slangpy is there.
         if slangpy is None:
             raise NotRun(f"slang: slangpy is not installed; {install('slang')}")
         slangpy.Logger.get().level = slangpy.LogLevel.error  # it warns of what a CPU lacks
-        # Take the first device that fills a texture.
         for device in DEVICES:
             self._kernels: dict[str, Resource] = {}
             self._names = itertools.count()
@@ -127,7 +119,6 @@ class Host(base.Host):
         raise NotRun(f"slang: no kernel for the CPU; {reason}")
 
     def identity(self) -> Identity:
-        """slangpy's version and device."""
         info = self._device.info
         return Identity(self.name, f"slangpy {slangpy.__version__}", info.adapter_name)
 
@@ -142,7 +133,6 @@ class Host(base.Host):
         output: str = "response",
         irradiance: Array | None = None,
     ) -> Array:
-        """Values of the shader's own BSDF function; see `mxeon.hosts.base.Host`."""
         if "subsurface_bsdf(closureData" in shader.stages["pixel"]:
             raise NotRun(
                 "slang: subsurface scattering reads the change from pixel to pixel, and a kernel has "
@@ -155,7 +145,6 @@ class Host(base.Host):
         return self._evaluate(shader.stages["pixel"], call.arguments, body, environment)
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
-        """Values of a GLSL function compiled as Slang; see `mxeon.hosts.base.Host`."""
         parameters = functions.parameters(source, function)
         values = {
             name: (kind, value) for (kind, name), value in zip(parameters, arguments, strict=True)
@@ -164,7 +153,6 @@ class Host(base.Host):
         return self._evaluate(GLSL + source, values, body, {})
 
     def close(self) -> None:
-        """Release the device."""
         self._device.close()
 
     def _evaluate(
@@ -174,7 +162,6 @@ class Host(base.Host):
         body: Sequence[str],
         uniforms: Mapping[str, Resource],
     ) -> Array:
-        """Values, one thread per element, as many as the longest argument has."""
         rows = fragment.columns(arguments)
         count = max(map(len, rows.values()))
         reads = [

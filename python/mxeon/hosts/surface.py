@@ -28,30 +28,15 @@ KINDS = {
 
 @dataclass(frozen=True)
 class Prelude:
-    """What a surface shader computes of its inputs.
-
-    Attributes
-    ----------
-    statements : str
-    inputs : dict of str to str
-        Types of the variables that they read, by name: parameters, and properties of the surface.
-    """
+    """What a surface shader computes of its inputs."""
 
     statements: str
-    inputs: dict[str, str]
+    inputs: dict[str, str]  # types of what they read: parameters, and properties of the surface
 
 
 @lru_cache(maxsize=16)  # the checks of a node share its shader
 def prelude(text: str, end: int) -> Prelude | None:
-    """What is computed before a place in a text; None if that is in no surface shader's function.
-
-    Parameters
-    ----------
-    text : str
-        Pixel stage of a target of the GLSL family, or Slang.
-    end : int
-        Place of the first call of a BSDF.
-    """
+    """What is computed before the first BSDF, at `end`; None outside a surface shader's function."""
     *_, function = [None, *FUNCTION.finditer(text, 0, end)]
     if function is None or "\n}\n" in text[function.end() : end]:
         return None

@@ -31,17 +31,8 @@ def read_texture(path: str | Path) -> NDArray[np.float32]:
     """Pixels of a texture, row 0 at the bottom, where MaterialX has v = 0.
 
     Of a set of textures it is that of [0, 1]^2, in which all coordinates of a sphere lie. One channel
-    is repeated for all colors, as in MaterialX: by a view, whose last stride is 0.
-
-    Raises
-    ------
-    ImageError
-        As `mxeon.io.images.read_image` does; or if it has more channels than a color.
-
-    Warns
-    -----
-    ImageWarning
-        As `mxeon.io.images.read_image` does; or if a value is not a finite number.
+    is repeated for all colors, as in MaterialX: by a view, whose last stride is 0. More channels than
+    those of a color raise ImageError; a value that is not finite warns.
     """
     for token, word in FIRST_TILE.items():
         path = str(path).replace(token, word)
@@ -54,18 +45,7 @@ def read_texture(path: str | Path) -> NDArray[np.float32]:
 
 
 def read_latlong(environment: float | str | Path | None) -> NDArray[np.float32]:
-    """Radiance of an environment as a latitude-longitude map, row 0 upwards (+y).
-
-    Parameters
-    ----------
-    environment : None, float or Path
-        No environment, its uniform radiance, or an image file.
-
-    Raises
-    ------
-    ImageError
-        If the image cannot be read, has fewer than 3 channels, or a value that is not finite.
-    """
+    """Radiance of an environment as a latitude-longitude map, row 0 upwards (+y)."""
     if isinstance(environment, (str, Path)):
         pixels = read_image(environment)
         if pixels.shape[-1] < 3:
@@ -98,17 +78,14 @@ def irradiance(radiance: NDArray[np.float32]) -> NDArray[np.float32]:
     """
     if radiance.shape[:2] == (1, 1):
         return radiance
-    # Reduce the map to a coarse one.
     high, wide = (max(1, size // RADIANCE_SIZE) for size in radiance.shape[:2])
     rows, columns = radiance.shape[0] // high, radiance.shape[1] // wide
     blocks = radiance[: rows * high, : columns * wide].reshape(rows, high, columns, wide, -1)
     coarse = blocks.mean(axis=(1, 3)).reshape(rows * columns, -1)
-    # Weight its texels by the cosine with each normal.
     incoming, solid_angle = latlong_directions(rows, columns)
     normals, _ = latlong_directions(IRRADIANCE_SIZE, 2 * IRRADIANCE_SIZE)
     weights = np.maximum(0.0, normals @ incoming.T) * solid_angle
     weights /= weights.sum(axis=1, keepdims=True)
-    # Sum over the texels.
     pixels = (weights @ coarse).reshape(IRRADIANCE_SIZE, 2 * IRRADIANCE_SIZE, -1)
     irradiance: NDArray[np.float32] = pixels.astype(np.float32)
     return irradiance

@@ -29,23 +29,12 @@ VIEW = np.array([0.0, 0.0, 1.0])
 
 @dataclass(frozen=True)
 class TiltedTriangles:
-    """Triangles that show pairs of directions to a camera.
+    """Triangles that show pairs of directions to a camera."""
 
-    Attributes
-    ----------
-    width : float
-        Of the picture.
-    corners : ndarray, shape (N, 3, 3)
-    turn : ndarray, shape (N, 3, 3)
-        Matrix from the frame of the pairs to that of the scene.
-    irradiance : ndarray, shape (N, 1)
-        Of a surface that faces the light, of radiant intensity 1.
-    """
-
-    width: float
-    corners: Vectors
-    turn: Vectors
-    irradiance: Vectors
+    width: float  # of the picture
+    corners: Vectors  # (N, 3, 3)
+    turn: Vectors  # (N, 3, 3), from the frame of the pairs to that of the scene
+    irradiance: Vectors  # (N, 1), of a surface that faces the light, of radiant intensity 1
 
     def turned(self, vectors: Array) -> Vectors:
         """Vectors of the frame of the pairs, (N or 1, 3), in that of the scene."""
@@ -59,15 +48,7 @@ class TiltedTriangles:
 
 
 def tilted_triangles(wo: Array, wi: Array, size: int) -> TiltedTriangles:
-    """Triangles that show pairs of directions with a sine of at least LEAST_SINE between them.
-
-    Parameters
-    ----------
-    wo, wi : ndarray, shape (N, 3)
-        Unit vectors.
-    size : int
-        Pixels on a side of the picture, at least the root of N.
-    """
+    """Triangles that show pairs (N, 3), N <= size^2, with a sine of at least LEAST_SINE."""
     # Points at which the light appears at the angle.
     wo, wi = (np.asarray(each, np.float64) for each in (wo, wi))
     axis = PIXEL * (np.arange(size) + 0.5 - size / 2.0)

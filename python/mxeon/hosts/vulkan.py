@@ -66,13 +66,7 @@ Bindings: TypeAlias = dict[int, tuple[Kind, Resource]]  # by number
 
 
 class Host(FragmentHost):
-    """The first Vulkan adapter that wgpu finds.
-
-    Raises
-    ------
-    NotRun
-        If there is no wgpu, no glslang or no Vulkan device.
-    """
+    """The first Vulkan adapter that wgpu finds."""
 
     name = "vulkan"
     target = "vulkan"
@@ -92,7 +86,6 @@ class Host(FragmentHost):
         self._programs: dict[str, tuple[tuple[Resource, ...], Resource]] = {}
 
     def identity(self) -> Identity:
-        """Version and device as the driver names them."""
         info = self._adapter.info
         version = f"{self.path}, {info['description']}; wgpu {wgpu.__version__}"
         return Identity(self.name, version, info["device"])
@@ -106,7 +99,6 @@ class Host(FragmentHost):
         )
 
     def close(self) -> None:
-        """Release the device."""
         self._device.destroy()
 
     def _evaluate(
@@ -147,11 +139,9 @@ class Host(FragmentHost):
 
     def _draw(self, pipeline: Resource, groups: Iterable[Resource], size: tuple[int, int]) -> Array:
         """One frame as float32 rows, pixel after pixel."""
-        # Prepare the frame.
         usage = wgpu.TextureUsage.RENDER_ATTACHMENT | wgpu.TextureUsage.COPY_SRC
         target = self._device.create_texture(size=size, format=FLOATS[4], usage=usage)
         attachment = {"view": target.create_view(), "load_op": "clear", "store_op": "store"}
-        # Record one triangle that covers it.
         commands = self._device.create_command_encoder()
         render = commands.begin_render_pass(color_attachments=[attachment])
         render.set_pipeline(pipeline)
@@ -161,7 +151,6 @@ class Host(FragmentHost):
         render.set_vertex_buffer(0, corners)
         render.draw(3)
         render.end()
-        # Draw, and read the frame.
         queue = self._device.queue
         queue.submit([commands.finish()])
         layout = {"bytes_per_row": 16 * size[0]}
@@ -276,13 +265,10 @@ def _std140(members: str) -> bytes:
     """Bytes of a block: up to the first structure, after which none of UNIFORMS comes."""
     data, offset = bytearray(BLOCK_SIZE), 0
     for kind, name in re.findall(r"(\w+) (\w+);", members):
-        # End at the first structure.
         if kind not in STD140:
             break
-        # Align the member.
         alignment, size = STD140[kind]
         offset = -(-offset // alignment) * alignment
-        # Write its values.
         values = UNIFORMS.get(name, ())
         form = "i" if kind == "int" else "f"
         struct.pack_into(f"<{len(values)}{form}", data, offset, *values)

@@ -64,30 +64,18 @@ IMAGE = {"uv_scale": (1.0, 1.0), "uv_offset": (0.0, 0.0)}  # of every image that
 
 
 class Host(FragmentHost):
-    """A browser, started anew after it died.
+    """A browser, started anew after it died; a frame may take `limit` seconds.
 
     Playwright wants a thread without an event loop, and always the same: it gets one of its own.
-
-    Parameters
-    ----------
-    limit : float
-        Seconds that a frame may take.
-
-    Raises
-    ------
-    NotRun
-        If there is no Playwright, no Chromium, or no WebGL2 with float32 frames in it.
     """
 
     name = "webgl"
     target = "essl"
 
     def __init__(self, limit: float = 300.0) -> None:
-        # Check that Playwright and a browser are there.
         if sync_api is None:
             raise NotRun(f"webgl: Playwright is not installed; {install('webgl')}")
         self._program = program()
-        # Prepare the page, which the first request opens.
         self._limit = 1000.0 * limit
         self._page: Page = None
         self._points = lru_cache(maxsize=POINTS)(self._capture)
@@ -101,12 +89,10 @@ class Host(FragmentHost):
             raise
 
     def identity(self) -> Identity:
-        """Version and device as the browser names them."""
         answer = self._ask("identify")
         return Identity(self.name, f"Chromium {answer['version']}, WebGL2", answer["device"])
 
     def picture(self, shader: Shader, scene: Scene) -> Array:
-        """Picture of the sphere; see `mxeon.hosts.base.Host`."""
         self.refuse_paths(scene)
         captured, frame = points.outputs(shader), (scene.size, scene.size)
         stages = {"vertex": VERTEX, "pixel": points.pixel_stage(shader)}
@@ -119,7 +105,6 @@ class Host(FragmentHost):
         return raster.picture(self._draw(stages, uniforms, textures, frame), scene)
 
     def close(self) -> None:
-        """End the browser; the next request starts another."""
         self._thread.submit(self._stop).result()
 
     def _evaluate(
@@ -129,7 +114,6 @@ class Host(FragmentHost):
         arguments: Mapping[str, Array],
         irradiance: Array | None = None,
     ) -> Array:
-        """Values, one pixel per element, as many as the longest argument has."""
         count, size = fragment.frame(arguments)
         textures = {name: fragment.texels(rows, size) for name, rows in arguments.items()}
         textures |= raster.environment(irradiance)

@@ -15,13 +15,7 @@ BLOCK = re.compile(r"^layout \(location = 0\) in (\w+\s*\{[^}]*\} \w+;)", re.MUL
 
 
 class Host(vulkan.Host):
-    """The first Vulkan adapter that wgpu finds, with naga in place of glslang.
-
-    Raises
-    ------
-    NotRun
-        If there is no wgpu or no Vulkan device.
-    """
+    """The first Vulkan adapter that wgpu finds, with naga instead of glslang."""
 
     name = "wgsl"
     target = "wgsl"

@@ -25,8 +25,6 @@ class Attempt:
 def by_group(groups: Sequence[Hashable]) -> list[int]:
     """Positions of items by their groups, those of one group after each other, in the order of the first.
 
-    Examples
-    --------
     >>> by_group(["a", "b", "a"])
     [0, 2, 1]
     """

@@ -25,24 +25,10 @@ POLL = 1.0  # seconds between looks at the workers that come and go
 
 @contextmanager
 def connect(address: str, wait: float = WAIT) -> Iterator[Workers]:
-    """Connect to the workers of a cluster.
+    """Connect to the workers of a cluster by the address of its scheduler, "tcp://host:8786".
 
-    Parameters
-    ----------
-    address : str
-        Of the scheduler, "tcp://host:8786".
-    wait : float
-        Seconds that the cluster may be without a compatible worker, now and later.
-
-    Raises
-    ------
-    InputError
-        If no scheduler answers at the address, none of its workers is compatible, or `wait` is out
-        of range.
-    NotRun
-        If it has no workers and none comes in time.
-    PackageError
-        If Dask is not installed; says what to install.
+    It may be without a compatible worker for `wait` seconds, now and later: else NotRun. InputError if no
+    scheduler answers, or none of the workers is compatible.
     """
     check_timeout(wait, "waitForWorkers")
     client = _client(address, wait)
@@ -57,14 +43,12 @@ def _client(address: str, wait: float) -> Any:
         from distributed import Client
     except ModuleNotFoundError:
         raise PackageError(f"--scheduler needs distributed: {install('dask')}") from None
-    # Silence what is told here in one line.
     for name in (*LOGGERS, *logging.root.manager.loggerDict):
         if name.partition(".")[0] in LOGGERS:  # what these tell is told here in one line
             logging.getLogger(name).setLevel(logging.CRITICAL + 1)
     rule = f"scheduler must be the address of a running Dask scheduler; got {address!r}"
     if not address.strip():
         raise InputError(rule)
-    # Connect.
     try:
         client = _in_time(partial(Client, address, timeout=min(ANSWER, wait)), wait)
     except (OSError, ValueError) as error:
@@ -75,11 +59,10 @@ def _client(address: str, wait: float) -> Any:
 
 
 def _in_time(work: Callable[[], Any], seconds: float) -> Any:
-    """What work returns, or raises, within some seconds; None if it goes on, in a thread of its own.
+    """What work returns or raises within some seconds; None if it goes on, in a thread that nobody joins.
 
     Dask waits for a scheduler that takes a connection and says nothing for minutes.
     """
-    # Work in a thread that nobody waits for.
     answers: SimpleQueue[tuple[Any, Exception | None]] = SimpleQueue()
 
     def answer() -> None:
@@ -89,7 +72,6 @@ def _in_time(work: Callable[[], Any], seconds: float) -> Any:
             answers.put((None, error))
 
     Thread(target=answer, daemon=True).start()
-    # Take its answer.
     try:
         value, error = answers.get(timeout=seconds)
     except Empty:
@@ -114,13 +96,7 @@ class Workers:
         self.await_compatible()
 
     def await_compatible(self) -> None:
-        """Wait for a compatible worker.
-
-        Raises
-        ------
-        NotRun
-            If none comes in time.
-        """
+        """Wait for a compatible worker; NotRun if none comes in time."""
         end = time.monotonic() + self._wait
         while not self.compatible():
             if time.monotonic() > end:
@@ -132,12 +108,10 @@ class Workers:
 
     def compatible(self) -> frozenset[str]:
         """Addresses of the compatible workers; warns once of each other one."""
-        # List the workers.
         info = self.client.scheduler_info(n_workers=-1)
         if "workers" not in info:  # the client has closed
             raise NotRun(GONE)
         threads = {address: worker["nthreads"] for address, worker in info["workers"].items()}
-        # Ask new ones for their versions, and warn of those that differ.
         new = sorted(threads.keys() - self._compatible.keys())
         versions = self.client.run(_version, workers=new, on_error="return") if new else {}
         for address, version in versions.items():

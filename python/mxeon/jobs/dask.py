@@ -32,25 +32,9 @@ def run(
 ) -> Iterator[tuple[int, Outcome]]:
     """Outcomes of `work` on every item, as they come; see `mxeon.jobs.pool.run`.
 
-    Parameters
-    ----------
-    work : callable (item) -> object
-        Can be imported by name on the workers.
-    items : sequence
-    workers : Workers
-    timeout : float
-        Seconds for one item, after which its worker process ends and its nanny starts another.
-    unavailable : type of exception
-        What `work` raises when this worker cannot do the item; it is then sent to others.
-
-    Yields
-    ------
-    int, Outcome
-
-    Raises
-    ------
-    NotRun
-        If the cluster is without a compatible worker for too long, or its scheduler is gone.
+    An item that takes `timeout` seconds ends its worker process, and the nanny starts another. Where
+    `work` raises `unavailable`, the item goes to other workers. NotRun if the cluster is without a
+    compatible worker for too long, or its scheduler is gone.
     """
     try:
         yield from _outcomes(work, items, workers, timeout, unavailable)
@@ -71,7 +55,6 @@ def _outcomes(
     waiting = deque(_Task(index, item) for index, item in enumerate(items))
     running: dict[Any, _Task] = {}
     while waiting or running:
-        # Keep the workers busy.
         compatible = workers.compatible()
         while waiting and len(running) < WINDOW * len(compatible):
             task = waiting.popleft()
@@ -81,10 +64,8 @@ def _outcomes(
         if not running:
             workers.await_compatible()
             continue
-        # Wait for answers.
         with suppress(TimeoutError):
             wait(list(running), timeout=POLL, return_when="FIRST_COMPLETED")
-        # Take what has ended, and try again what a worker lost.
         for future, task in list(running.items()):
             outcome, retry = _progress(future, task, compatible)
             if outcome or retry:

@@ -38,19 +38,10 @@ LAST_LINES = 4  # of a worker's output, in the reason
 
 @dataclass(frozen=True)
 class Outcome:
-    """Outcome of the work on one item.
+    """Outcome of the work on one item."""
 
-    Attributes
-    ----------
-    value : object
-        Return value of the work, or None.
-    failure : str
-        Reason why there is no value, in one line, or "".
-    attempts : int
-    """
-
-    value: Any
-    failure: str = ""
+    value: Any  # what the work returned
+    failure: str = ""  # why there is no value, in one line
     attempts: int = 1
 
 
@@ -61,39 +52,13 @@ def run(
     timeout: float,
     group: Callable[[Any], Hashable] = lambda item: None,
 ) -> Iterator[tuple[int, Outcome]]:
-    """Outcomes of `work` on every item, as they come.
+    """Index and outcome of `work` on every item, as they come.
 
-    An exception that has no words for the user (see `mxeon.errors`) is a bug: its traceback is
-    logged, which prints it on standard error unless logging is configured.
+    `work` can be imported by name, and runs in `workers` processes. An item that takes `timeout` seconds
+    has its process killed. A crash or timeout affects that item alone, which is tried once more. One
+    process works on the items of a `group`, as long as there are groups for all. An exception that has no
+    words for the user (see `mxeon.errors`) is a bug: its traceback is logged. NotRun if no process starts.
 
-    Parameters
-    ----------
-    work : callable (item) -> object
-        Can be imported by name; runs in another process, which serves many items.
-    items : sequence
-    workers : int
-        Number of processes, at least 1.
-    timeout : float
-        Seconds for one item, after which its process is killed.
-    group : callable (item) -> hashable
-        Items of one group have something in common: one process works on them, as long as there are
-        groups for all.
-
-    Yields
-    ------
-    int, Outcome
-        Index of the item in `items`. A crash or timeout affects that item alone, which is tried
-        once more.
-
-    Raises
-    ------
-    InputError
-        If `workers` is below 1 or `timeout` is out of range.
-    NotRun
-        If no process can start; says why.
-
-    Notes
-    -----
     No process imports anything from the working folder. At most two items per worker are under way,
     so results do not pile up in memory. What a worker prints goes to a file; its last lines are
     quoted when it fails.
@@ -101,13 +66,11 @@ def run(
     The processes end with the iterator. Close it where an error may leave it: garbage collection may run in
     any thread, and in one that this has to join it would be a deadlock.
     """
-    # Check the options.
     if workers < 1:
         raise InputError(f"workers must be at least 1; got {workers}")
     check_timeout(timeout)
     _check_working_folder()
     workers = min(workers, len(items))
-    # Serve the items; a pool that breaks is started again.
     waiting = Queue([Attempt(index, item, group(item)) for index, item in enumerate(items)])
     with tempfile.TemporaryDirectory(prefix="mxeon-pool-") as logs:
         breaks = 0
@@ -116,7 +79,6 @@ def run(
             for outcome in _serve(work, waiting, workers, timeout, logs):
                 breaks = 0
                 yield outcome
-    # Give up what no process begins.
     for attempt in waiting:
         failure = "worker processes end before they begin to work"
         yield attempt.index, Outcome(None, failure, attempt.number)
@@ -156,7 +118,6 @@ def _serve(
     pools = [ProcessPool(1, initializer=_prepare, context=Context()) for _ in range(workers)]
     running: list[dict[Future[Any], Attempt]] = [{} for _ in pools]
     try:
-        # Start the processes.
         active = all([_start(pool) for pool in pools])
         while active and (waiting or any(running)) and all(pool.active for pool in pools):
             # Keep two tasks a worker scheduled, and one where few are left to share.
@@ -166,14 +127,12 @@ def _serve(
                     arguments = (work, attempt.item, attempt.log)
                     future = pool.schedule(_work_logged, args=arguments, timeout=timeout)
                     own[future] = attempt
-            # Wait for outcomes.
             begun = dict(pair for own in running for pair in own.items())
             done = wait(begun, timeout=START + timeout, return_when=FIRST_COMPLETED).done
             for ended in done or begun:  # none: the processes hang before they begin
                 attempt = begun[ended]
                 for own in running:
                     own.pop(ended, None)
-                # Yield an outcome, or let the item wait once more.
                 if again := _again(ended, attempt, outcome := _outcome(ended, attempt, timeout)):
                     waiting.put(again)
                 else:
@@ -220,15 +179,12 @@ def _again(future: Future[Any], attempt: Attempt, outcome: Outcome) -> Attempt |
 
 
 def _outcome(future: Future[Any], attempt: Attempt, timeout: float) -> Outcome:
-    # Return a result.
     error = future.exception() if future.done() else TimeoutError()
     if error is None:
         return Outcome(future.result(), attempts=attempt.number)
-    # Log a bug at the last attempt.
     raised = error.__cause__ is not None  # by the work; pebble chains its traceback
     if raised and attempt.number == ATTEMPTS:
         log_bug(error)
-    # Say how the attempt ended, with its last output.
     end = f"{type(error).__name__}: {error}" if raised else _end(error, timeout)
     path = Path(attempt.log)
     lines = path.read_text(errors="replace").split("\n") if path.exists() else []

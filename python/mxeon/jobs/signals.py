@@ -20,13 +20,7 @@ _pending: list[int] | None = None  # numbers of the signals that came while they
 
 
 class SignalExit(KeyboardInterrupt):
-    """A signal that ends the command.
-
-    Attributes
-    ----------
-    status : int
-        Exit status of the command: 128 and the number of the signal, as a shell has it.
-    """
+    """A signal that ends the command, with the exit status 128 + number, as a shell has it."""
 
     def __init__(self, number: int) -> None:
         interrupted = number == signal.SIGINT
@@ -43,18 +37,15 @@ def raise_signals() -> Iterator[None]:
     So does one of OTHERS that the caller listens to.
     """
 
-    # Raise at a signal, unless signals are blocked.
     def end(number: int, _: FrameType | None) -> None:
         if _pending is None:
             raise SignalExit(number)
         _pending.append(number)
 
-    # Listen to the signals that are not ignored.
     main = threading.current_thread() is threading.main_thread()  # Python lets no other listen
     numbers = [each for each in ENDING if main and signal.getsignal(each) != signal.SIG_IGN]
     numbers += [each for each in OTHERS if main and signal.getsignal(each) == signal.SIG_DFL]
     before = {number: signal.signal(number, end) for number in numbers}
-    # Put the former handlers back.
     try:
         yield
     finally:

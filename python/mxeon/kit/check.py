@@ -41,36 +41,11 @@ def check_kit(
     progress: Callable[[Sequence[Question]], Iterable[Question]] = list,
     claims: str = "",
 ) -> Run:
-    """Results of the checks of a kit's pictures, which lie in its folder `renders/`.
+    """Run of the checks of a kit's pictures, which lie in its folder `renders/`.
 
-    Parameters
-    ----------
-    folder : path-like
-        Of the kit; it holds `kit.json` and `renders/`.
-    renderer : str
-        Name of the renderer in the report.
-    progress : callable (sequence) -> iterable
-        Iterates over the questions, such as a progress bar.
-    claims : str
-        "eon", "qon", "fon" or "lambert" for a renderer that has this model alone, for which
-        pictures of the others are not needed; "" for one that has both EON and QON.
-
-    Returns
-    -------
-    Run
-        Its notes name the nearest models, first the one that all pictures show, if there is one.
-
-    Raises
-    ------
-    ValueError
-        If `folder` is not a kit of this format, `renderer` is not a printable name, or there is no
-        such claim.
-    NotRun
-        If the kit holds none of the pictures.
-    ImportError
-        If scipy, of the `kit` extra, is not installed.
+    `claims` is the one model that a renderer has, so that pictures of the others are not needed; "" for
+    both EON and QON. The run's notes name the nearest models, first the one that all pictures show.
     """
-    # Read the kit and the submitted pictures.
     student_quantile()  # before any work
     if not renderer.strip() or not renderer.isprintable():
         raise InputError(f"renderer must be a name on one line; got {renderer!r}")
@@ -98,7 +73,6 @@ def check_kit(
     wrong = any(each.check == "model" and each.verdict == FAILED for each in results)
     if wrong and (title := one_model(asked, pictures, images, depth)):
         notes.insert(0, f"every picture of a rough material shows one model: {title}")
-    # Make a run of the answers.
     return Run(
         version=mxeon.__version__,
         software={"Python": platform.python_version()} | {name: version(name) for name in SOFTWARE},
@@ -112,17 +86,14 @@ def check_kit(
 
 def _size(folder: Path) -> int:
     """Width of the kit's pictures; refuse a description that another version wrote."""
-    # Check the format.
     file = folder / DESCRIPTION
     kit = _description(file)
     if type(kit.get("format")) is not int or kit["format"] != KIT_FORMAT:
         got = repr(kit.get("format"))
         raise InputError(f"{file}: format must be {KIT_FORMAT}; got {got}: export it again")
-    # Check the size.
     size = kit.get("size")
     if type(size) is not int:
         raise InputError(f"{file}: size must be a whole number; got {size!r}: export it again")
-    # Compare the description with that of this version.
     try:
         exported = json.loads(json.dumps(description(views(size), size, _node(kit))))
     except ValueError as error:

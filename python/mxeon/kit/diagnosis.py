@@ -23,35 +23,15 @@ TOO_NEAR = ("eon_approx",)
 
 @dataclass(frozen=True)
 class ModelDistance:
-    """Distance of a known model or defect from the pictures of one question.
-
-    Attributes
-    ----------
-    title : str
-    distance : float
-        Root mean square of the tiles' mean errors, in units of pi f cos or of albedo.
-    ratio : float
-        See `mxeon.kit.noise.ratio`; up to 1 the pictures agree with this model.
-    """
+    """Distance of a known model or defect from the pictures of one question."""
 
     title: str
-    distance: float
-    ratio: float
+    distance: float  # rms of the tiles' mean errors, in units of pi f cos or of albedo
+    ratio: float  # see `mxeon.kit.noise.ratio`; up to 1 the pictures agree
 
 
 def candidates(pictures: Sequence[JudgedPicture], depth: float) -> list[ModelDistance]:
-    """Every known model and defect, nearest first; models with the same values once.
-
-    Parameters
-    ----------
-    pictures : sequence of mxeon.kit.questions.JudgedPicture
-    depth : float
-        Of the mesh.
-
-    Returns
-    -------
-    list of ModelDistance
-    """
+    """Every known model and defect, nearest first; models with the same values once."""
     rows = reference.KNOWN_DEFECTS + reference.MODELS + reference.PARAMETRIZATIONS
     rows = tuple(row for row in rows if row.name not in TOO_NEAR)
     if all(case.view.scene.light for case in pictures):

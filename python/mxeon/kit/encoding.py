@@ -34,31 +34,15 @@ FACTORS = ((np.pi, "pi"), (1.0 / np.pi, "1/pi"), (np.pi**2, "pi^2"), (2.0, "2"),
 
 
 def fault(image: NDArray[np.float64], model: Expected, mask: NDArray[np.bool_]) -> str:
-    """The fault that explains how a picture differs from the model, in words.
-
-    Parameters
-    ----------
-    image : ndarray, shape (size, size, 3)
-    model : mxeon.kit.expected.Expected
-        Values of the pixels of the mask.
-    mask : ndarray of bool, shape (size, size)
-
-    Returns
-    -------
-    str
-        "" if the picture is right within LIKENESS.
-    """
-    # Name a black picture.
+    """The fault that explains how a picture differs from the model, in words; "" within LIKENESS."""
     if not image[mask].any():
         return "black"
-    # Try each known encoding.
     likeness = {words: _likeness(undo(image)[mask], model, mask) for words, undo in FAULTS}
     words = min(likeness, key=lambda each: likeness[each][1])
     factor, miss = likeness[words]
     if miss <= LIKENESS:
         scale = "" if abs(factor - 1.0) <= SAME_SCALE else f"{_spelled(factor)} times as bright"
         return " and ".join(filter(None, (words, scale)))
-    # Name what is left.
     if _clipped(image[mask], model.value):
         return "clipped"
     return "not Lambert's cosine in any known encoding: tone-mapped, or lit otherwise"
@@ -67,10 +51,7 @@ def fault(image: NDArray[np.float64], model: Expected, mask: NDArray[np.bool_]) 
 def _likeness(
     values: NDArray[np.float64], model: Expected, mask: NDArray[np.bool_]
 ) -> tuple[float, float]:
-    """Best factor between values and model, and the relative error that remains beyond noise.
-
-    The error is infinite if no positive factor fits.
-    """
+    """Best factor between values and model, and the error beyond noise; infinite if it is not positive."""
     value = model.value
     if not np.isfinite(values).all():
         return 0.0, np.inf

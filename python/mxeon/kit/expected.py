@@ -34,19 +34,10 @@ HALF_STEP = 2.0**-24
 
 @dataclass(frozen=True)
 class Expected:
-    """Expected values of a picture's judged pixels.
+    """Expected values of a picture's judged pixels."""
 
-    Attributes
-    ----------
-    value : ndarray, shape (N, 3)
-        Mean over each pixel.
-    slack : ndarray, shape (N, 3)
-        Allowed deviation: the value at the pixel's center minus the mean, plus the change by the
-        depth of the mesh, plus rounding to half.
-    """
-
-    value: np.ndarray
-    slack: np.ndarray
+    value: np.ndarray  # (N, 3), mean over each pixel
+    slack: np.ndarray  # (N, 3): pixel's center less mean, depth of the mesh, rounding to half
 
 
 @lru_cache(maxsize=16)
@@ -60,19 +51,7 @@ def judged(scene: Scene) -> NDArray[np.bool_]:
 
 
 def expected(row: Model, view: View, depth: float) -> Expected:
-    """Expected values of a view for the model of a row of `mxeon.models.table`.
-
-    Parameters
-    ----------
-    row : mxeon.models.table.Model
-    view : mxeon.kit.views.View
-    depth : float
-        How far the surface may lie below the unit sphere.
-
-    Returns
-    -------
-    Expected
-    """
+    """Expected values of a view, whose surface may lie up to `depth` below the unit sphere."""
     place = sphere(view.scene.size).normal[judged(view.scene)][:, :2]
     value = pixel_means(row, view)
     center = _values(row, view, place)

@@ -31,29 +31,15 @@ README = "README.md"
 
 @dataclass(frozen=True)
 class KitNode:
-    """The node that the materials of a kit are made of.
-
-    Attributes
-    ----------
-    category, definition : str
-        Its category, and the name of its nodedef.
-    flagged : bool
-        Whether it has the input energy_compensation.
-    """
+    """The node that the materials of a kit are made of."""
 
     category: str = OREN_NAYAR
-    definition: str = f"ND_{OREN_NAYAR}"
-    flagged: bool = True
+    definition: str = f"ND_{OREN_NAYAR}"  # name of its nodedef
+    flagged: bool = True  # whether it has the input energy_compensation
 
 
 def kit_node(category: str, definitions: tuple[str, ...] = (), library: str = "eonlib") -> KitNode:
-    """A node of a library, of MaterialX's or of folders of definitions, as the node of a kit.
-
-    Raises
-    ------
-    ValueError
-        If there is no BSDF node of that category with the inputs color and roughness.
-    """
+    """A BSDF node with color and roughness, of a library, MaterialX or folders of definitions."""
     needed = {"color": "color3", "roughness": "float"}
     data = load_library(library, None, definitions)
     for each in data.getMatchingNodeDefs(category):
@@ -69,29 +55,10 @@ def kit_node(category: str, definitions: tuple[str, ...] = (), library: str = "e
 
 
 def export_kit(folder: str | PathLike[str], size: int = USUAL, node: KitNode = KitNode()) -> Path:
-    """Write the kit into `folder`. Replaces an earlier kit; keeps submitted pictures.
+    """Write the kit, return its README.md; replaces an earlier kit, and keeps submitted pictures.
 
-    Parameters
-    ----------
-    folder : path-like
-        Created if it does not exist; empty, or of an earlier kit.
-    size : int
-        Width and height of the pictures in pixels.
-    node : KitNode
-        Of the materials.
-
-    Returns
-    -------
-    Path
-        README.md of the kit.
-
-    Raises
-    ------
-    ValueError
-        If the size is out of range, or the folder has no name, holds something else than a kit, or
-        a link under a name of the kit's files.
-    OSError
-        If a file cannot be written.
+    InputError for a size out of range, or a folder that has no name, holds something else than a kit, or a
+    link under a name of the kit's files.
     """
     _assert_own(folder)
     pictures, mesh = views(size), unit_sphere()
@@ -138,14 +105,8 @@ def material_document(material: Material, node: KitNode = KitNode()) -> str:
 def description(pictures: Sequence[View], size: int, node: str = OREN_NAYAR) -> dict[str, Any]:
     """The numbers of the kit, as kit.json holds them.
 
-    Returns
-    -------
-    dict
-        - format: this layout's number, raised when a key changes or goes; mxeon: the version.
-        - size: width and height of every picture; camera, sphere: as in `mxeon.shaders.scene`.
-        - materials: node and inputs by name; scenes: the light by name; a distant light has
-          `direction`, the unit vector towards it, and `irradiance`, an environment its `radiance`.
-        - pictures: the material, the scene and the file of each.
+    `format` rises when a key changes or goes. A distant light has `direction`, the unit vector towards it,
+    and `irradiance`; an environment its `radiance`.
     """
     scenes = {view.scene.name: view.scene for view in pictures}
     return {

@@ -17,18 +17,10 @@ SUBDIVISIONS = 5  # 20 480 triangles of about two degrees; each more quarters th
 
 @dataclass(frozen=True)
 class Mesh:
-    """Triangles between points of the unit sphere.
+    """Triangles between points of the unit sphere."""
 
-    Attributes
-    ----------
-    vertices : ndarray, shape (V, 3)
-        Positions, and normals.
-    triangles : ndarray of int, shape (T, 3)
-        Counter-clockwise as seen from outside.
-    """
-
-    vertices: NDArray[np.float64]
-    triangles: NDArray[np.int64]
+    vertices: NDArray[np.float64]  # (V, 3), positions and normals
+    triangles: NDArray[np.int64]  # (T, 3), counter-clockwise as seen from outside
 
     @property
     def depth(self) -> float:
@@ -40,13 +32,7 @@ class Mesh:
 
 
 def unit_sphere(subdivisions: int = SUBDIVISIONS) -> Mesh:
-    """The unit sphere: an icosahedron whose triangles are split in four, again and again.
-
-    Examples
-    --------
-    >>> unit_sphere(2).triangles.shape
-    (320, 3)
-    """
+    """The unit sphere: an icosahedron whose triangles are split in four, again and again."""
     golden = (1.0 + np.sqrt(5.0)) / 2.0
     rectangle = np.array([[0, 1, golden], [0, -1, golden], [0, 1, -golden], [0, -1, -golden]])
     vertices = np.concatenate([np.roll(rectangle, shift, axis=1) for shift in range(3)])

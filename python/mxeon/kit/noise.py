@@ -24,24 +24,12 @@ CONFIDENCE = 0.999  # probability that a kit of correct pictures passes
 
 @dataclass(frozen=True)
 class Tiles:
-    """The judged tiles of a picture.
+    """The judged tiles of a picture."""
 
-    Attributes
-    ----------
-    mean : ndarray, shape (T, 3)
-        Mean error of a tile.
-    deviation : ndarray, shape (T, 3)
-        Estimated standard deviation of that mean.
-    slack : ndarray, shape (T, 3)
-        Mean of the pixels' slack.
-    squares : ndarray of int, shape (T,)
-        The degrees of freedom.
-    """
-
-    mean: NDArray[np.float64]
-    deviation: NDArray[np.float64]
-    slack: NDArray[np.float64]
-    squares: NDArray[np.int64]
+    mean: NDArray[np.float64]  # (T, 3), error of a tile
+    deviation: NDArray[np.float64]  # (T, 3), estimated, of that mean
+    slack: NDArray[np.float64]  # (T, 3), mean of the pixels'
+    squares: NDArray[np.int64]  # (T,), the degrees of freedom
 
     @property
     def pixel_noise(self) -> float:
@@ -50,23 +38,10 @@ class Tiles:
 
 
 def tiles(error: NDArray[np.float64], slack: NDArray[np.float64], mask: NDArray[np.bool_]) -> Tiles:
-    """Tiles of a picture.
-
-    Parameters
-    ----------
-    error, slack : ndarray, shape (N, 3)
-        At the pixels of the mask.
-    mask : ndarray of bool, shape (size, size)
-
-    Returns
-    -------
-    Tiles
-    """
-    # Split the error into squares of 2 x 2 pixels.
+    """Tiles of a picture, of errors and slack (N, 3) at the pixels of the mask."""
     whole = np.asarray(_squares(mask[..., None]).all(axis=(-1, -2)))
     square = _squares(_spread(error, mask))
     contrast = (square @ [1.0, -1.0, -1.0, 1.0]) / 2.0
-    # Keep the tiles with enough whole squares.
     count = _sum(whole[..., None])[:, 0]
     kept = np.asarray(count >= FEWEST)
     count = count[kept]
@@ -81,19 +56,8 @@ def tiles(error: NDArray[np.float64], slack: NDArray[np.float64], mask: NDArray[
 def ratio(pictures: Sequence[Tiles], share: float = 1.0) -> float:
     """The largest mean error of a tile, relative to what slack and noise allow.
 
-    Parameters
-    ----------
-    pictures : sequence of Tiles
-        Judged together.
-    share : float
-        Of the kit's false rate, 1 - CONFIDENCE, that these pictures may use.
-
-    Returns
-    -------
-    float
-        Above 1 with a probability of at most share (1 - CONFIDENCE) if all pictures are right:
-        each of n mean errors may leave its interval with 1 / n of that (Bonferroni).
-
+    Above 1 with a probability of at most share (1 - CONFIDENCE) if all pictures are right: each of n mean
+    errors may leave its interval with 1 / n of that (Bonferroni).
     """
     stdtrit = student_quantile()
     total = sum(each.mean.size for each in pictures)
@@ -106,13 +70,7 @@ def ratio(pictures: Sequence[Tiles], share: float = 1.0) -> float:
 
 
 def student_quantile() -> Callable[..., NDArray[np.float64]]:
-    """Quantiles of Student's t, by degrees of freedom and probability.
-
-    Raises
-    ------
-    ImportError
-        If scipy, of the `kit` extra, is not installed.
-    """
+    """Quantiles of Student's t, by degrees of freedom and probability; needs scipy."""
     try:
         from scipy.special import stdtrit  # scipy.stats is slow to import
     except ModuleNotFoundError as error:

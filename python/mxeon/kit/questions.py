@@ -32,30 +32,15 @@ DERIVATION = (
 
 @dataclass(frozen=True)
 class Question:
-    """A check of one or more pictures, and its negative control.
-
-    Attributes
-    ----------
-    key, claim : str
-        Name of the check, and the sentence that it tests.
-    materials : tuple of Material
-    lit : bool
-        Whether the light is distant; else an environment. A rasterizer has a formula for each.
-    variant : str
-        Description of the negative control.
-    wrong : callable (View) -> ndarray, shape (N, 3)
-        Values of the negative control at the judged pixels.
-    model : str
-        Name of the model of every material; "" for that of each material's node.
-    """
+    """A check of one or more pictures, and its negative control."""
 
     key: str
     claim: str
     materials: tuple[Material, ...]
-    lit: bool
-    variant: str
-    wrong: Callable[[View], NDArray[np.float64]]
-    model: str = ""
+    lit: bool  # by the distant light, else by the environment: a rasterizer has a formula for each
+    variant: str  # describes the negative control
+    wrong: Callable[[View], NDArray[np.float64]]  # the control's values (N, 3)
+    model: str = ""  # of every material; "" for that of each material's node
 
     @property
     def title(self) -> str:
@@ -76,18 +61,11 @@ class Question:
 
 @dataclass(frozen=True)
 class JudgedPicture:
-    """A submitted picture at its judged pixels.
-
-    Attributes
-    ----------
-    view : View
-    mask : ndarray of bool, shape (size, size)
-    values : ndarray, shape (N, 3)
-    """
+    """A submitted picture at its judged pixels."""
 
     view: View
     mask: NDArray[np.bool_]
-    values: NDArray[np.float64]
+    values: NDArray[np.float64]  # (N, 3), at the pixels of the mask
 
 
 def _of(name: str, factor: float = 1.0) -> Callable[[View], NDArray[np.float64]]:
@@ -114,18 +92,7 @@ CLAIMS = ("eon", "qon", "fon", "lambert")  # models of renderers that have one
 
 
 def questions(claim: str = "") -> tuple[Question, ...]:
-    """The questions to a renderer.
-
-    Parameters
-    ----------
-    claim : str
-        One of CLAIMS for a renderer that has this model alone; "" for one that has the flag.
-
-    Raises
-    ------
-    ValueError
-        If there is no such claim; lists the known ones.
-    """
+    """The questions to a renderer that has the claimed model alone, or, for "", the flag."""
     if not claim:
         return QUESTIONS
     assert_known("claims", claim, CLAIMS)
@@ -149,14 +116,7 @@ def one_model(
     images: Mapping[str, NDArray[np.float64]],
     depth: float,
 ) -> str:
-    """Title of the one model that all pictures of rough materials show; "" if there is none.
-
-    Parameters
-    ----------
-    asked : sequence of Question
-    views, images, depth
-        Those of `answer`.
-    """
+    """Title of the one model that all pictures of rough materials show; "" if there is none."""
     rough = [each for each in asked if each.key == "model"]
     chosen = [view for view in views if any(each.includes(view) for each in rough)]
     if any(view.name not in images for view in chosen):
@@ -173,50 +133,28 @@ def answer(
     place: Mapping[str, Any],
     obstacle: str = "",
 ) -> tuple[Result, str]:
-    """The result of a question.
+    """The result of a question, and the model or fault that the pictures show, if it determines one.
 
-    Parameters
-    ----------
-    question : Question
-    views : sequence of View
-        All views of the kit.
-    images : mapping of str to ndarray
-        The usable pictures by name.
-    depth : float
-        How far the surface may lie below the unit sphere.
-    place : mapping
-        Host and library of the result.
-    obstacle : str
-        Reason why nothing can be judged; "" if there is none.
-
-    Returns
-    -------
-    Result
-    str
-        The model or fault that the pictures show; "" if the question does not determine one.
+    `obstacle` is the reason why nothing can be judged, or "".
     """
-    # Find the pictures of the question.
     chosen = [view for view in views if question.includes(view)]
     place = {"check": question.key, "claim": question.claim, "subject": question.title, **place}
     missing = [view.name for view in chosen if view.name not in images]
     if obstacle or missing:
         reason = obstacle or f"no usable picture: {', '.join(missing)}"
         return Result(**place, verdict=NOT_RUN, reason=reason), ""
-    # Compare them with the model, and with its mistake.
     cases = _judged(chosen, images)
     models = [expected(question.row(view), view, depth) for view in chosen]
     errors = _tiles(cases, models)
     error = _ratio(errors)
     wrong = _ratio(_tiles(cases, models, [question.wrong(view) for view in chosen]))
     noise = float(np.sqrt(np.mean([each.pixel_noise**2 for each in errors])))
-    # Refuse an answer that noise could give.
     if max(error, wrong) <= 1.0:
         reason = (
             f"too noisy to detect that {question.variant}: {noise:.2g} rms per pixel; "
             "render with more samples"
         )
         return Result(**place, verdict=NOT_RUN, reason=reason), ""
-    # Say which model or fault it is.
     ranking = candidates(cases, depth) if question.key == "model" else []
     words = ranking_sentence(ranking) if ranking else ""
     if question.key == "setup" and error > 1.0:

@@ -35,38 +35,14 @@ class Unusable(ValueError):
 
 
 def read_render(folder: str | PathLike[str], view: View) -> NDArray[np.float64]:
-    """The submitted picture of a view.
-
-    Parameters
-    ----------
-    folder : path-like
-        Folder of the renderer's files.
-    view : mxeon.kit.views.View
-
-    Returns
-    -------
-    ndarray, shape (size, size, 3), float64
-        Linear; 0 off the sphere.
-
-    Raises
-    ------
-    Missing
-        If there is no file of that name.
-    Unusable
-        If the file is none of EXR and CSV, is damaged, has another size or place, not one red, green
-        and blue, eight bits (also in a float file), or a pixel on the sphere that is missing or not
-        finite.
-    """
-    # Find the one file of the view.
+    """The picture of a view: linear float64, 0 off the sphere; else Missing or Unusable."""
     files = sorted(Path(folder).glob(f"{view.name}.*"))
     if not files:
         raise Missing(f"{view.name}.exr: must be in {folder}; got no such file")
     file, size = files[0], view.scene.size
     if len(files) > 1:
         raise Unusable(f"{view.name}: must be one file; got {', '.join(f.name for f in files)}")
-    # Read it.
     image = _read_csv(file, size) if file.suffix.lower() == ".csv" else _read_image(file, size)
-    # Refuse pixels of the sphere that are not finite.
     mask = sphere(size).mask
     bad = ~np.isfinite(image).all(axis=-1) & mask
     if bad.any():
@@ -80,13 +56,11 @@ def read_render(folder: str | PathLike[str], view: View) -> NDArray[np.float64]:
 
 
 def _read_image(file: Path, size: int) -> NDArray[np.float64]:
-    # Open the file.
     try:
         image = open_image(file)
     except ImageError as error:
         reason = str(error).partition("; ")[2]
         raise Unusable(f"{file.name}: must be an EXR or CSV file; {reason}") from None
-    # Refuse another size, offset or type.
     spec = image.spec()
     if (spec.width, spec.height) != (size, size):
         raise Unusable(
@@ -97,7 +71,6 @@ def _read_image(file: Path, size: int) -> NDArray[np.float64]:
     if str(spec.format) not in FLOATS:
         raise Unusable(f"{file.name}: must hold half or float numbers; got {spec.format}")
     try:
-        # Read the three channels.
         channels = _channels(file, spec.channelnames)
     except UnicodeDecodeError:
         raise Unusable(f"{file.name}: must have names of channels in UTF-8") from None
@@ -134,11 +107,9 @@ def _read_csv(file: Path, size: int) -> NDArray[np.float64]:
 
 
 def _table(file: Path, lines: Any, size: int) -> NDArray[np.float64]:
-    # Check the columns.
     header: list[str] = next(lines, [])
     if header != COLUMNS:
         raise Unusable(f"{file.name}: must begin with {','.join(COLUMNS)}; got {','.join(header)}")
-    # Read a pixel from each line.
     image, present = np.full((size, size, 3), np.nan), np.zeros((size, size), dtype=bool)
     for line in filter(None, lines):
         try:
@@ -146,7 +117,6 @@ def _table(file: Path, lines: Any, size: int) -> NDArray[np.float64]:
             fits = min(row, column) >= 0 and len(values) == 3 and not present[row, column]
         except (ValueError, IndexError):
             fits = False
-        # Refuse a line that is no pixel, or repeats one.
         if not fits:
             raise Unusable(
                 f"{file.name}: line {lines.line_num} must hold row and column of a pixel, of "

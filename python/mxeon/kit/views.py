@@ -15,16 +15,7 @@ USUAL = 128
 
 @dataclass(frozen=True)
 class Material:
-    """A rough diffuse material.
-
-    Attributes
-    ----------
-    name : str
-        One lower-case word.
-    color : tuple of 3 floats
-    roughness : float
-    energy_compensation : bool
-    """
+    """A rough diffuse material, named by one lower-case word."""
 
     name: str
     color: tuple[float, float, float]
@@ -48,13 +39,7 @@ MATERIALS = (LAMBERT, TRUE, HALF, FALSE, BLACK, WHITE)
 
 @dataclass(frozen=True)
 class View:
-    """One picture: a material under a light.
-
-    Attributes
-    ----------
-    material : Material
-    scene : Scene
-    """
+    """One picture: a material under a light."""
 
     material: Material
     scene: Scene
@@ -84,13 +69,7 @@ PICTURES = (
 
 
 def views(size: int) -> tuple[View, ...]:
-    """The views of the kit, `size` pixels wide and high.
-
-    Raises
-    ------
-    ValueError
-        If the size is out of range.
-    """
+    """The views of the kit, `size` pixels wide and high."""
     if not SMALLEST <= size <= LARGEST:
         raise InputError(f"size must lie in [{SMALLEST}, {LARGEST}]; got {size}")
     return tuple(replace(view, scene=replace(view.scene, size=size)) for view in PICTURES)

@@ -23,20 +23,11 @@ PLUGINS = {
 def register() -> None:
     """Register the BSDFs of `PLUGINS`, such as `eon`, for the variant of Mitsuba that is set.
 
-    Raises
-    ------
-    PackageError
-        If Mitsuba is missing.
-    NotRun
-        If no variant is set, or its LLVM is missing or too old for Dr.Jit.
-
-    Notes
-    -----
     `eon` and `fon` have the textures `reflectance` and `roughness`, `qon` has `reflectance` and `sigma`, in
     radian. `dielectric_over_eon`, MaterialX's `layer` and no varnish, has those of `eon`, and the numbers
     `alpha` and `ior`; `openpbr_base` has inputs of OpenPBR's base. All are in `mitsuba.traverse`, and can be
-    differentiated. `eon` is sampled by its value for the mean of its reflectance, what lies under facets by either lobe, the others by the
-    cosine. As Mitsuba's `diffuse` they reflect on the front alone.
+    differentiated. `eon` is sampled by its value for the mean of its reflectance, a lobe under facets
+    with these, the others by the cosine. As Mitsuba's `diffuse` they reflect on the front alone.
     """
     mi = mitsuba()
     for name, kind in PLUGINS.items():

@@ -31,10 +31,8 @@ STEP = 1e-4  # of the differences that stand for the derivatives of the coeffici
 class CoatPlugin(EonPlugin):
     """EON under a dielectric, sampled by their albedos.
 
-    Attributes
-    ----------
-    numbers : dict of str to tuple
-        Default and range of each number for the whole surface: `alpha` and `ior`, or what they follow from.
+    `numbers` are the default and range of each number of the whole surface: `alpha` and `ior`, or what they
+    follow from.
     """
 
     numbers: ClassVar[dict[str, tuple[float, ...]]] = {
@@ -45,7 +43,6 @@ class CoatPlugin(EonPlugin):
     def configure(self, properties: Mitsuba) -> None:
         """Take the textures and numbers, and say which lobes there are."""
         EonPlugin.configure(self, properties)
-        # Take both numbers.
         for name, (default, low, high) in self.numbers.items():
             value = properties.get(name, default)
             if not isinstance(value, int | float):
@@ -53,7 +50,6 @@ class CoatPlugin(EonPlugin):
             if not low <= value <= high:
                 raise ValueError(f"{name} must lie in [{low:g}, {high:g}]; got {value:g}")
             setattr(self, name, self.mi.Float(value))
-        # Name both lobes.
         flags, front = self.mi.BSDFFlags, self.mi.BSDFFlags.FrontSide
         self.m_components = [flags.GlossyReflection | front, flags.DiffuseReflection | front]
         self.m_flags = self.m_components[0] | self.m_components[1]
@@ -71,13 +67,11 @@ class CoatPlugin(EonPlugin):
 
     def tabulate(self) -> None:
         """Compute the coefficients: linear in numbers that have gradients, about their values."""
-        # Read the numbers.
         numbers = self._dielectric()
         values = [float(np.array(self.dr.detach(each)).item()) for each in numbers]
         self.coat, self.average = constant_coat(*values), dielectric_avg(numbers[1])
         if not self._compiled:
             return
-        # Write the table, whose changes follow those of the numbers.
         self.table = self.mi.Float(_table(*values))
         for k, number in enumerate(numbers):
             if self.dr.grad_enabled(number):
@@ -111,13 +105,11 @@ class CoatPlugin(EonPlugin):
         self, context: Mitsuba, si: Mitsuba, choice: Mitsuba, u: Mitsuba, active: Mitsuba
     ) -> tuple[Mitsuba, Mitsuba, Mitsuba]:
         """Direction from one of both lobes, its type and its component."""
-        # Choose a lobe, and stretch what is left of the number.
         dr, flags = self.dr, self.mi.BSDFFlags
         rho, amount = map(dr.detach, self._gray(si, active))
         share = dr.detach(self._share(context, si, rho, amount, active))
         is_reflected = choice < share
         rest = dr.maximum(choice - share, 0.0) / dr.maximum(1.0 - share, 1e-7)
-        # Draw from both, and keep the one chosen.
         view, roughness = self._vector(si.wi), dr.detach(self._roughness())
         wh = self.mi.Vector3f(*visible_normal(view, u.x, u.y, roughness))
         base = self._draw(si.wi, rest, u, rho, amount)
@@ -179,7 +171,6 @@ class CoatPlugin(EonPlugin):
         # Sum the curves themselves in scalar variants.
         if not self._compiled:
             return self.coat.at(mu)
-        # Find the cell, and evaluate both cubics.
         cell, x = octave_cells(mu)
         missing, reflected = (gather_cubic(self.table, 2 * cell + k, x) for k in range(2))
         return self.dr.maximum(missing, 0.0), self.dr.clip(reflected, 0.0, 1.0)

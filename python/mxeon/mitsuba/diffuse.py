@@ -14,16 +14,7 @@ from mxeon.models.sampling import eon as sampling
 
 
 class RoughDiffusePlugin:
-    """Methods of a BSDF of Mitsuba with a reflectance and one more parameter.
-
-    Attributes
-    ----------
-    mi, dr : module
-    color, parameter : str
-        Names of the reflectance and of the parameter.
-    largest : float
-        End of its range.
-    """
+    """Methods of a BSDF of Mitsuba with a reflectance and one more parameter, in [0, `largest`]."""
 
     mi: Mitsuba
     dr: Mitsuba
@@ -77,16 +68,13 @@ class RoughDiffusePlugin:
         active: Mitsuba = True,
     ) -> tuple[Mitsuba, Mitsuba]:
         """Direction to the light, and `eval` over `pdf`."""
-        # Draw a direction.
         wo, kind, component = self._pick(context, si, sample1, sample2, active)
         pdf = self.pdf(context, si, wo, active)
         active = self._front(context, si.wi, wo, active) & (pdf > 0.0)
-        # Fill in the record.
         record = self.mi.BSDFSample3f(wo)
         record.pdf = self.dr.select(active, self.dr.detach(pdf), 0.0)
         record.eta = 1.0
         record.sampled_type, record.sampled_component = kind, component
-        # Weigh it.
         value = self.eval(context, si, wo, active)
         return record, self.dr.select(active, value / self.dr.select(active, record.pdf, 1.0), 0.0)
 
@@ -95,7 +83,6 @@ class RoughDiffusePlugin:
         return self.reflectance.eval(si, active)
 
     def to_string(self) -> str:
-        """Name and textures."""
         return f"{self.parameter}: {self.amount}, reflectance: {self.reflectance}"
 
     def _pick(
@@ -180,14 +167,12 @@ class EonPlugin(RoughDiffusePlugin):
         self, view: Mitsuba, choice: Mitsuba, u: Mitsuba, rho: Mitsuba, amount: Mitsuba
     ) -> Mitsuba:
         """Direction from one of the four parts, drawn as `eon_draw` does it."""
-        # Choose a part.
         dr, number = self.dr, self.mi.Float
         mu_o, S_o = view.z, dr.safe_sqrt(view.x * view.x + view.y * view.y)
         lower, upper, multiple, flat = sampling.eon_integrals(mu_o, S_o, rho, amount)
         place = choice * number(lower + upper + multiple + flat)
         is_lower, is_towards = place < number(lower), place < number(lower + upper)
         is_flat = place >= number(lower + upper + multiple)
-        # Draw a cosine from each part, and keep the one chosen; the flat part has no cosine first.
         v, u2 = u.x, u.y
         x = number(v * mu_o * sampling.eon_cube_gap(mu_o, S_o))
         mu_lower = number(sampling.eon_lower_cosine(x, dr.cbrt(1.0 - x)))
@@ -205,7 +190,6 @@ class EonPlugin(RoughDiffusePlugin):
             dr.select(is_flat, number(each), other)
             for each, other in zip(point, (S * ahead, S * aside, mu), strict=True)
         ]
-        # Turn it to the azimuth of wo.
         tilted = S_o > 0.0
         to_x = dr.select(tilted, view.x / dr.select(tilted, S_o, 1.0), 1.0)
         to_y = dr.select(tilted, view.y / dr.select(tilted, S_o, 1.0), 0.0)

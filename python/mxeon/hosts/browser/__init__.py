@@ -56,13 +56,7 @@ def packages_folder() -> Path:
 
 
 def modules_folder(package: str, host: str) -> Path:
-    """The node_modules that holds a package: MXEON_NODE_MODULES, or that beside the lock file.
-
-    Raises
-    ------
-    NotRun
-        If it is not there; says how to install it.
-    """
+    """The node_modules that holds a package: MXEON_NODE_MODULES, or that beside the lock file."""
     folder = Path(os.environ.get(MODULES) or packages_folder() / "node_modules")
     if not (folder / package / "package.json").is_file():
         raise NotRun(
@@ -81,26 +75,10 @@ class Browser:
     """A page with a renderer, started by the first request and again after it died.
 
     Playwright wants a thread without an event loop, and always the same: it gets one of its own.
-
-    Parameters
-    ----------
-    host : str
-        Name in messages.
-    page : Path
-        ES module that exports `draw(job)`; its answer has `pixels`, or `failed`.
-    imports : mapping of str to str
-        Paths of modules in node_modules, by their names in the page.
-    modules : Path
-        The folder node_modules.
-    assets : mapping of str to bytes
-        PNG files that the renderer would load from the network, by address.
-    limit : float
-        Seconds that a request may take; after them the browser is ended.
-
-    Raises
-    ------
-    NotRun
-        If there is no Playwright or no Chromium.
+    `page` is an ES module that exports `draw(job)`, whose answer has `pixels` or `failed`. `imports`
+    maps names in the page to paths in `modules`, the folder node_modules; `assets` are PNG files that
+    the renderer would load from the network, by address. A request that takes `limit` seconds ends the
+    browser.
     """
 
     def __init__(
@@ -115,7 +93,6 @@ class Browser:
     ) -> None:
         if sync_api is None:
             raise NotRun(f"{host}: Playwright is not installed; {install('webgl')}")
-        # Keep what the page is made of.
         self._host = host
         self._script = page
         self._imports = {name: f"/{path}" for name, path in imports.items()}
@@ -123,37 +100,22 @@ class Browser:
         self._assets = assets or {}
         self._program = webgl.program(host)
         self._limit = 1000.0 * limit
-        # Prepare the browser, which the first request starts.
         self._page: Page = None
         self._stack = ExitStack()
         self._thread = ThreadPoolExecutor(max_workers=1)
         self._picture = lru_cache(maxsize=PICTURES)(self._drawn)
 
     def picture(self, job: Mapping[str, object], size: int) -> NDArray[np.float32]:
-        """Picture of the page's answer to a job, (size, size, 3), row 0 at the top; read-only.
-
-        Raises
-        ------
-        NotRun
-            As `ask`.
-        """
         return self._picture(json.dumps(job), size)
 
     def ask(self, job: Mapping[str, object]) -> Answer:
-        """The page's answer to a job, with the version of the browser.
-
-        Raises
-        ------
-        NotRun
-            If the page fails, or the browser dies or hangs, which is then ended.
-        """
+        """The page's answer to a job, with the version of the browser; NotRun ends a browser that hangs."""
         answer = self._thread.submit(self._answer, dict(job)).result()
         if "failed" in answer:
             raise NotRun(f"{self._host}: {answer['failed']}")
         return answer
 
     def close(self) -> None:
-        """End the browser; the next request starts another."""
         self._thread.submit(self._stop).result()
 
     def _drawn(self, job: str, size: int) -> NDArray[np.float32]:
@@ -188,18 +150,15 @@ class Browser:
 
     def _serve(self, route: Page) -> None:
         """Answer a request of the page from this machine."""
-        # Answer with an asset.
         if route.request.url in self._assets:
             body = self._assets[route.request.url]
             route.fulfill(body=body, content_type="image/png", headers=SHARED)
             return
-        # Answer with the page itself.
         path = route.request.url.removeprefix(ORIGIN)
         if not path:
             imports = json.dumps({"imports": self._imports})
             route.fulfill(body=HTML.format(imports=imports), content_type="text/html")
             return
-        # Answer with a module, or with nothing.
         own = {"page.js": self._script, "sphere.js": Path(__file__).with_name("sphere.js")}
         file = own.get(path, self._modules / path)
         if file.suffix in TYPES and file.is_file():

@@ -41,13 +41,7 @@ NODES = {
 
 
 class Host(RendererHost):
-    """Babylon.js in a headless Chromium.
-
-    Raises
-    ------
-    NotRun
-        If Babylon.js, Playwright or Chromium is missing; says how to install it.
-    """
+    """Babylon.js in a headless Chromium."""
 
     name = "babylon"
 
@@ -60,13 +54,11 @@ class Host(RendererHost):
         )
 
     def identity(self) -> Identity:
-        """Version of the package and the browser; the devices of both engines."""
         answers = [self._browser.ask({"backend": backend}) for backend in BACKENDS.values()]
         version = f"Babylon.js {self._version}, Chromium {answers[0]['browser']}"
         return Identity(self.name, version, "; ".join(answer["device"] for answer in answers))
 
     def node(self, title: str, color: Sequence[float], roughness: float, scene: Scene) -> Array:
-        """Picture of the unit sphere with one of NODES on it; see `RendererHost`."""
         self.refuse_paths(scene)
         backend, model = NODES[title]
         job = {
@@ -82,5 +74,4 @@ class Host(RendererHost):
         return self._browser.picture(job, scene.size)
 
     def close(self) -> None:
-        """End the browser."""
         self._browser.close()

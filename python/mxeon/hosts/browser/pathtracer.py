@@ -51,13 +51,7 @@ vec3 diffuse_value(vec3 wo, vec3 wi, vec3 rho, float roughness, float scale)
 
 
 class Host(RendererHost):
-    """three-gpu-pathtracer in a headless Chromium.
-
-    Raises
-    ------
-    NotRun
-        If the package, Playwright or Chromium is missing; says how to install it.
-    """
+    """three-gpu-pathtracer in a headless Chromium."""
 
     name = "three-gpu-pathtracer"
 
@@ -69,7 +63,6 @@ class Host(RendererHost):
         self._webgl: webgl.Host | None = None
 
     def identity(self) -> Identity:
-        """Version of the package and the browser, and the WebGPU device."""
         answer = self._browser.ask({})
         version = f"{self.name} {self._version}, Chromium {answer['browser']}"
         return Identity(self.name, version, answer["device"])
@@ -82,7 +75,6 @@ class Host(RendererHost):
         color: Array,
         roughness: Array,
     ) -> Array:
-        """f cos(theta_i) by the package's own function; see `RendererHost`."""
         if NODES[title]:
             return self._execute(NODES[title], wo, wi, color, roughness)
         scale = np.full(len(wo), SHORTER if title.endswith("shorter wh") else 1.0)
@@ -90,7 +82,6 @@ class Host(RendererHost):
         return self._glsl().execute(self._source(), "diffuse_value", *arguments)
 
     def node(self, title: str, color: Sequence[float], roughness: float, scene: Scene) -> Array:
-        """Raise NotRun: no path tracer of the package draws here."""
         raise NotRun(
             f"{self.name}: its path tracers do not draw here: with three 0.187.0 the wavefront "
             "kernels do not compile, and the megakernel ends the software device"
@@ -106,7 +97,6 @@ class Host(RendererHost):
         return self._execute("sample", wo, numbers, np.zeros_like(wo), roughness)
 
     def close(self) -> None:
-        """End the browsers."""
         self._browser.close()
         if self._webgl:
             self._webgl.close()

@@ -36,13 +36,7 @@ INPUTS = {
 
 
 class Host(RendererHost):
-    """three.js in a headless Chromium.
-
-    Raises
-    ------
-    NotRun
-        If three.js, Playwright or Chromium is missing; says how to install it.
-    """
+    """three.js in a headless Chromium."""
 
     name = "three"
 
@@ -53,13 +47,11 @@ class Host(RendererHost):
         self._browser = browser.Browser(self.name, page, IMPORTS, modules, limit=limit)
 
     def identity(self) -> Identity:
-        """Version of the package and the browser; the devices of both renderers."""
         answers = [self._browser.ask({"backend": backend}) for backend in ("webgl", "webgpu")]
         version = f"three {self._version}, Chromium {answers[0]['browser']}"
         return Identity(self.name, version, "; ".join(answer["device"] for answer in answers))
 
     def node(self, title: str, color: Sequence[float], roughness: float, scene: Scene) -> Array:
-        """Picture of the unit sphere with one of NODES on it; see `RendererHost`."""
         self.refuse_paths(scene)
         backend, category = NODES[title]
         job = {
@@ -75,7 +67,6 @@ class Host(RendererHost):
         return self._browser.picture(job, scene.size)
 
     def close(self) -> None:
-        """End the browser."""
         self._browser.close()
 
 

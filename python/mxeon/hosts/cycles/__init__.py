@@ -47,17 +47,8 @@ TEXCOORD = """{
 class Host(PairHost):
     """Blender's Cycles, with a process and a temporary folder.
 
-    Parameters
-    ----------
-    sources : Path or None
-        Folder of the OSL files whose functions `call` executes; None for eonlib's.
-    limit : float
-        Seconds that one picture may take.
-
-    Raises
-    ------
-    NotRun
-        If no interpreter with Blender is found.
+    `sources` is the folder of the OSL files whose functions `call` executes, eonlib's unless given;
+    `limit` the seconds that one picture may take.
     """
 
     name = "cycles"
@@ -73,43 +64,19 @@ class Host(PairHost):
         self._picture = lru_cache(maxsize=PICTURES)(self._rendered)
 
     def close(self) -> None:
-        """End the process and remove the temporary files."""
         self.worker.close()
         self._temporary.cleanup()
 
     def identity(self) -> Identity:
-        """Name and version; the device is always the CPU."""
         self.worker.start()
         return Identity(self.name, f"Blender {self.worker.version}", "CPU, OSL")
 
     def picture(self, shader: Shader, scene: Scene) -> Array:
-        """Picture of the unit sphere with a generated OSL shader on it.
+        """Picture of the sphere with an OSL shader on it, float32, under a uniform environment at most.
 
-        Parameters
-        ----------
-        shader : Shader
-            Of the target "osl".
-        scene : Scene
-            Its environment, if any, uniform.
-
-        Returns
-        -------
-        ndarray, shape (size, size, 3), float32
-            Linear, row 0 at the top, 0 off the sphere.
-
-        Raises
-        ------
-        ShaderError
-            If the shader does not compile.
-        NotRun
-            If the environment is an image, the shader uses a closure that Cycles lacks, or the
-            process fails.
-
-        Notes
-        -----
-        Accuracy: float32 rounding under a distant light. Under an environment a pixel is a mean of
+        Exact but for float32 under a distant light. Under an environment a pixel is a mean of
         `tracing.ENVIRONMENT_SAMPLES` samples, always the same; at roughness 1 its error is 2e-3 rms, 0.1 at
-        the rim, and 2e-5 in the mean over the sphere.
+        the rim, and 2e-5 in the mean over the sphere. NotRun where Cycles lacks a closure.
         """
         self.refuse_shape(scene)
         if isinstance(scene.environment, (str, Path)):
@@ -118,7 +85,6 @@ class Host(PairHost):
         return self._picture(scene, inner_lobes(shader), text=text)
 
     def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
-        """Paths that are too few or too short; see `mxeon.hosts.base.Host`."""
         return tracing.approximations(scene, inner_lobes(shader))
 
     def evaluate(
@@ -132,7 +98,6 @@ class Host(PairHost):
         output: str = "response",
         irradiance: Array | None = None,
     ) -> Array:
-        """Values of closures, or of a graph without any; see `mxeon.hosts.pairs.PairHost`."""
         if branch != graphs.BRANCH:
             return super().evaluate(
                 shader, wo, wi, inputs, branch, output=output, irradiance=irradiance
@@ -151,43 +116,14 @@ class Host(PairHost):
         return np.asarray(pixels.reshape(-1, 3)[: len(wo)].astype(np.float64) / scale)
 
     def blender_node(self, kind: str, inputs: Mapping[str, Socket], scene: Scene) -> Array:
-        """Picture of the unit sphere with a node of Blender's on it, rendered without OSL.
-
-        Parameters
-        ----------
-        kind : str
-            Blender's name of the node's type.
-        inputs : dict of str to float or sequence of float
-            Values by the names of the node's sockets.
-        scene : Scene
-            Its environment, if any, uniform.
-
-        Returns
-        -------
-        ndarray, shape (size, size, 3), float32
-            As `picture`.
-
-        Raises
-        ------
-        NotRun
-            If the process fails.
-        """
+        """Picture of the sphere with a Blender node, of a type, with inputs by the names of its sockets."""
         return self._picture(scene, (), kind=kind, inputs=tuple(inputs.items()))
 
     def call(self, function: str, *arguments: ArrayLike) -> Array:
-        """Values of a function of the OSL sources; see `execute`.
-
-        Raises
-        ------
-        ValueError
-            If no source defines the function, or the arguments do not fit its parameters.
-        NotRun
-            If the process fails.
-        """
+        """Values of a function of the OSL sources; see `execute`."""
         return self.execute(functions.expanded(self._file(function)), function, *arguments)
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
-        """Values of an OSL function; see `mxeon.hosts.base.Host`."""
         with self._folder() as name:
             folder = Path(name)
             text, frame, count = calls.request(folder, source, function, *arguments)
@@ -195,13 +131,7 @@ class Host(PairHost):
         return pixels.reshape(-1, 3)[:count]
 
     def closures(self) -> dict[str, str]:
-        """For each of MaterialX's closures, "" if Cycles renders it, else its reason not to.
-
-        Raises
-        ------
-        NotRun
-            If the process fails.
-        """
+        """For each of MaterialX's closures, "" if Cycles renders it, else its reason not to."""
         return {name: self._reason(name) for name in closures.CALLS}
 
     def _reason(self, closure: str) -> str:
@@ -256,7 +186,6 @@ class Host(PairHost):
 
     def _request(self, folder: Path, **request: object) -> Array:
         """Picture that the worker renders."""
-        # Ask the worker for a picture.
         output = folder / "output.exr"
         reply = self.worker.ask(output=str(output), **request)
         if "error" in reply:
@@ -266,7 +195,6 @@ class Host(PairHost):
         for line in self.worker.printed():
             if line.startswith("ERROR"):
                 raise NotRun(f"cycles: {line.partition(', called from')[0]}")
-        # Read the picture.
         try:
             return read_image(output)
         except ImageError as error:

@@ -38,30 +38,19 @@ READ = '    {type} {name} = texture("{image}", s, t, 0.0, 0.0, 0.0, 0.0, "interp
 def request(
     folder: Path, source: str, function: str, *arguments: ArrayLike
 ) -> tuple[str, dict[str, object], int]:
-    """Text of a shader, what the worker needs beside it, and how many pixels have a value.
-
-    Parameters
-    ----------
-    folder : Path
-        For files of the source and of the arguments.
-    source, function, arguments
-        As in `mxeon.hosts.base.Host.execute`.
-    """
-    # Bring the arguments into columns of one length.
+    """Text of a shader, what the worker needs beside it, and how many pixels have a value."""
     types = [kind for kind, _ in functions.parameters(source, function)]
     if len(types) != len(arguments):
         raise InputError(f"{function} takes {len(types)} arguments; got {len(arguments)}")
     columns = [_columns(*pair) for pair in zip(types, arguments, strict=True)]
     count = max(map(len, columns))
     size = max(LEAST_SIZE, math.isqrt(count - 1) + 1)
-    # Write each column as an image that the shader reads.
     names = [f"argument{index}" for index in range(len(types))]
     reads = []
     for kind, name, column in zip(types, names, columns, strict=True):
         image = folder / f"{name}.exr"
         _write(image, np.broadcast_to(column, (count, column.shape[1])), size)
         reads.append(READ.format(type=kind, name=name, image=image.as_posix()))
-    # Write the shader that calls the function for its pixel.
     path = folder / "functions.osl"
     path.write_text(source, encoding="utf-8")
     text = CALL.format(

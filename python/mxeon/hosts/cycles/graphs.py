@@ -21,23 +21,8 @@ BRANCH = "graph"  # see `mxeon.hosts.base.Host.evaluate`
 def graph_function(shader: Shader, inputs: Inputs) -> tuple[str, list[ArrayLike]]:
     """Text that defines FUNCTION, and the values of its arguments.
 
-    Parameters
-    ----------
-    shader : Shader
-        Of the target "osl", with a uniform EDF.
-    inputs : mapping of str to array
-        Values by path or by name, (N, ...) or constant; others have the document's.
-
-    Returns
-    -------
-    str, list of array_like
-
-    Raises
-    ------
-    ValueError
-        If the shader has no uniform EDF.
+    `inputs` has values by path or by name; others have the document's. InputError without a uniform EDF.
     """
-    # Find the uniform EDF, and the statements before it.
     text = shader.stages["pixel"]
     head, _, body = text.rpartition("\n)\n{\n")
     call = re.search(r"\n *EDF \w+ = uniform_edf\((\w+)\);", "\n" + body)
@@ -47,7 +32,6 @@ def graph_function(shader: Shader, inputs: Inputs) -> tuple[str, list[ArrayLike]
         )
     statements = ("\n" + body)[: call.start()]
     functions = head[: head.rindex("\nshader ")]
-    # Turn the inputs that these read into parameters.
     words = set(re.findall(r"\w+", statements + call[1]))
     count = max([np.shape(value)[0] for value in inputs.values() if np.ndim(value)], default=1)
     parameters, locals_ = ["float mxeon_row"], []  # of a graph that reads nothing
@@ -66,7 +50,6 @@ def graph_function(shader: Shader, inputs: Inputs) -> tuple[str, list[ArrayLike]
             kind = {"color3": "color", "vector3": "vector"}.get(port.type, port.type)
             parameters.append(f"{kind} {port.name}")
             arguments.append(value)
-    # Write the function.
     lines = [
         functions,
         f"color {FUNCTION}({', '.join(parameters)})",

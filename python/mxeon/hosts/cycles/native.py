@@ -24,13 +24,7 @@ NODES: dict[str, tuple[str, str, str, dict[str, float]]] = {
 
 
 class Host(RendererHost):
-    """Blender's Cycles with its own shading nodes.
-
-    Raises
-    ------
-    NotRun
-        If no interpreter with Blender is found.
-    """
+    """Blender's Cycles with its own shading nodes."""
 
     name = "cycles-native"
 
@@ -38,11 +32,9 @@ class Host(RendererHost):
         self._cycles = cycles.Host()
 
     def identity(self) -> Identity:
-        """Name and version; the device is always the CPU."""
         return Identity(self.name, self._cycles.identity().version, "CPU, SVM")
 
     def node(self, title: str, color: Sequence[float], roughness: float, scene: Scene) -> Array:
-        """Picture of the unit sphere with one of NODES on it; see `mxeon.hosts.cycles`."""
         kind, color_socket, roughness_socket, fixed = NODES[title]
         inputs: dict[str, cycles.Socket] = {
             color_socket: (*color, 1.0),
@@ -52,5 +44,4 @@ class Host(RendererHost):
         return self._cycles.blender_node(kind, inputs, scene)
 
     def close(self) -> None:
-        """End the process."""
         self._cycles.close()

@@ -24,28 +24,17 @@ SKY_SAMPLES = 64  # paths of a pixel
 def request(
     folder: Path, shader: Shader, wo: Array, wi: Array, inputs: Inputs, last: str, light: str
 ) -> tuple[str, dict[str, object], NDArray[np.float64]]:
-    """Text of a shader, what the worker needs beside it, and what its values are multiplied by.
-
-    Parameters
-    ----------
-    folder : Path
-        For files of the inputs and of the triangles.
-    shader, wo, wi, inputs, last, light
-        As in `mxeon.hosts.pairs.PairHost`.
-    """
-    # Turn what has a direction into the frame of the scene.
+    """Text of a shader, what the worker needs beside it, and what its values are multiplied by."""
     count, size = len(wo), side(len(wo))
     scene = tilted_triangles(wo, wi, size)
     columns = {
         name: replace(each, values=scene.turned(each.rows)) if each.directed else each
         for name, each in columns_of(shader, inputs).items()
     }
-    # Write the inputs that the shader reads, and the triangles.
     block = statements(columns, folder / IMAGE, count, scene.place)
     text = with_variables(shader, block, lambda output: last.format(output=output))
     corners = folder / "triangles.npy"
     np.save(corners, scene.corners.astype(np.float32))
-    # Ask for the light.
     frame: dict[str, object] = {**tracing.request(Scene("pairs"), ()), "size": size}
     frame |= {"radius": 0.5 * HEIGHT, "width": scene.width, "triangles": str(corners)}
     if light == LAMP:

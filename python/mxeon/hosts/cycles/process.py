@@ -16,16 +16,6 @@ def interpreter(name: str = "cycles") -> Path:
     """Path of the Python that has `bpy`: MXEON_CYCLES_PYTHON, or in the checkout's `.venv-cycles`.
 
     A `.venv-cycles` in the working folder is not used: anyone may have put it there.
-
-    Parameters
-    ----------
-    name : str
-        The host's, for the message.
-
-    Raises
-    ------
-    NotRun
-        If there is none; says how to get one.
     """
     path = os.environ.get("MXEON_CYCLES_PYTHON")
     python = Path(path or Path(CHECKOUT, ".venv-cycles", "bin", "python"))

@@ -39,14 +39,7 @@ FEWEST_SAMPLES = 16  # below the surface, less is noise rather than a picture
 
 
 def request(scene: Scene, lobes: Sequence[str]) -> SceneParts:
-    """Parts of a scene that the worker needs.
-
-    Parameters
-    ----------
-    scene : Scene
-    lobes : sequence of str
-        Kinds of the material's lobes below the surface; see `mxeon.shaders.inner_lobes`.
-    """
+    """Parts of a scene that the worker needs, for a material with such lobes below its surface."""
     samples = ENVIRONMENT_SAMPLES if scene.environment is not None else 1
     return {
         "size": scene.size,

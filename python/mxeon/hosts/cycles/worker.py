@@ -69,22 +69,18 @@ def set_output(scene: Blender, path: str, size: int) -> None:
 
 def set_sampling(scene: Blender, samples: int, bounces: int, osl: bool) -> None:
     """Make `scene` render with Cycles, with or without OSL, every sample at its pixel's center."""
-    # Choose the engine and its shading system.
     scene.render.engine = "CYCLES"
     cycles = scene.cycles
     cycles.device = "CPU"
     cycles.shading_system = osl
-    # Take every sample as it is.
     cycles.samples = samples
     cycles.use_adaptive_sampling = False
     cycles.light_sampling_threshold = 0.0
     cycles.use_denoising = False
     cycles.sample_clamp_indirect = 0.0
-    # Limit the bounces of each kind.
     cycles.max_bounces = bounces
     cycles.diffuse_bounces = cycles.glossy_bounces = bounces
     cycles.transmission_bounces = cycles.volume_bounces = bounces
-    # Put the samples at the centers of the pixels.
     cycles.pixel_filter_type = "BLACKMAN_HARRIS"
     cycles.filter_width = 0.01
 
@@ -216,12 +212,10 @@ def render(
     lamp: float | None = None,
 ) -> dict[str, str]:
     """Render the OSL file `shader`, or a node of Blender's, on one of BODIES or on triangles; return the reply."""
-    # Compile the shader.
     if shader:
         compiled = os.path.splitext(shader)[0] + ".oso"
         if not _cycles.osl_compile(shader, compiled):
             return {"error": "compile"}
-    # Build the scene.
     scene = unit_scene(2.0 * radius)
     set_output(scene, output, size)
     set_sampling(scene, samples, bounces, osl=native is None)
@@ -236,7 +230,6 @@ def render(
         add_light(scene, light)
     if environment:
         add_environment(scene, environment)
-    # Render it to the file.
     bpy.ops.render.render(write_still=True)
     return {}
 

@@ -50,7 +50,6 @@ def open_display() -> None:
     """Make DISPLAY name a display: the one that there is, or an Xvfb that ends with this process."""
     if os.environ.get("DISPLAY"):
         return
-    # Start the server.
     program = shutil.which("Xvfb")
     if program is None:
         fail(
@@ -63,7 +62,6 @@ def open_display() -> None:
         pass_fds=[write],
         preexec_fn=lambda: prctl(DIES_WITH_PARENT, signal.SIGKILL),
     )
-    # Read its number, which it writes when it is ready.
     os.close(write)
     with os.fdopen(read) as pipe:
         number = pipe.readline().strip()
@@ -82,7 +80,6 @@ class ShownElement:
     """A renderer with the shader of one element of a document."""
 
     def __init__(self, library: mx.Document, document: str, element: str) -> None:
-        # Read the document, and the light that its shader is to know.
         content = mx.createDocument()
         mx.readFromXmlFile(content, document)
         content.setDataLibrary(library)
@@ -92,7 +89,6 @@ class ShownElement:
         self._lights = mx_render.LightHandler.create()
         self._lights.setLightSources([self._sun])
         self._lights.setEnvSampleCount(DIRECTIONS)
-        # Generate the shader.
         generator = viewer_generator(content, library)
         context = mx_gen.GenContext(generator)
         context.registerSourceCodeSearchPath(SEARCH_PATH)
@@ -100,7 +96,6 @@ class ShownElement:
         context.getOptions().fileTextureVerticalFlip = True
         self._lights.registerLights(content, [self._sun], context)
         shader = generator.generate("shader", content.getDescendant(element), context)
-        # Open a renderer for it.
         self._renderer, self._mesh = open_renderer(), ""
         images = mx_render_glsl.GLTextureHandler.create(mx_render.StbImageLoader.create())
         self._renderer.setImageHandler(images)
@@ -117,11 +112,9 @@ class ShownElement:
         environment: float | None,
     ) -> NDArray[np.float32]:
         """Picture of the square [-1, 1]^2, seen along -z, (size, size, 3), row 0 at the top."""
-        # Take the quads in a file.
         if mesh != self._mesh:
             self._renderer.setGeometryHandler(geometry(mesh))
             self._mesh = mesh
-        # Light them from a direction, or from everywhere.
         self._lights.setDirectLighting(light is not None)
         if light is not None:
             self._sun.setInputValue("direction", mx.Vector3(*(-x for x in light)))
@@ -131,7 +124,6 @@ class ShownElement:
         self._lights.setEnvRadianceMap(image)
         self._lights.setEnvIrradianceMap(image)
         self._lights.setEnvSampleCount(DIRECTIONS if environment else 1)
-        # Draw.
         self._renderer.setSize(size, size)
         self._renderer.render()
         return pixels(self._renderer.captureImage(None))
@@ -146,13 +138,11 @@ def open_renderer() -> mx_render_glsl.GlslRenderer:
 
 def viewer_generator(document: mx.Document, library: mx.Document) -> mx_gen.ShaderGenerator:
     """MaterialX's generator with the colors and units of MaterialXView."""
-    # Colors.
     generator = mx_glsl.GlslShaderGenerator.create()
     target = generator.getTarget()
     colors = mx_gen.DefaultColorManagementSystem.create(target)
     colors.loadLibrary(library)
     generator.setColorManagementSystem(colors)
-    # Units.
     units, converters = mx_gen.UnitSystem.create(target), mx.UnitConverterRegistry.create()
     for name in ("distance", "angle"):
         definition = library.getUnitTypeDef(name)
@@ -223,12 +213,10 @@ def device(renderer: mx_render_glsl.GlslRenderer) -> str:
 
 def main() -> None:
     """Serve requests until standard input ends."""
-    # Say who is there.
     library, first = load(sys.argv[2:]), open_renderer()
     picture = lru_cache(maxsize=PICTURES)(partial(ShownElement, library))
     version = f"MaterialX {mx.getVersionString()}"
     print(json.dumps({"version": version, "device": device(first)}), file=REPLIES)
-    # Answer each request.
     for line in sys.stdin:
         request = json.loads(line)
         output = request.pop("output")

@@ -50,13 +50,7 @@ PRINT = '    printf("mxeon %d {root} %s\\n", MXEON_ROW, {text});\n'
 
 
 class Host(base.Host):
-    """Blender's OSL, or a build's testshade that MXEON_TESTSHADE names; with a temporary folder.
-
-    Raises
-    ------
-    NotRun
-        If no interpreter with Blender is found, or no program of the build.
-    """
+    """Blender's OSL, or a build's testshade that MXEON_TESTSHADE names; with a temporary folder."""
 
     name = "osl"
     target = "osl"
@@ -67,11 +61,9 @@ class Host(base.Host):
         self._kept = lru_cache(maxsize=SHADERS)(lambda text, names: KeptTrees())
 
     def close(self) -> None:
-        """End the process and remove its files."""
         self._engine.close()
 
     def identity(self) -> Identity:
-        """Version of OSL, as its compiler knows it, and of what runs it."""
         return Identity(self.name, f"{self._version} in {self._engine.version}", "CPU")
 
     @cached_property
@@ -80,11 +72,9 @@ class Host(base.Host):
         return f"OSL {number // 10000}.{number // 100 % 100}.{number % 100}"
 
     def trees(self, shader: Shader, wo: Array, inputs: Inputs) -> tuple[TreeRows, ...]:
-        """Closures that a generated shader makes; see `mxeon.hosts.base.Host`."""
         # Its inputs and its surface have values of each point.
         columns, view = columns_of(shader, inputs), Column("vector", wo)
         keys = keys_of(shader.stages["pixel"], columns, view, len(wo))
-        # Run it where it has not run yet.
         kept = self._kept(shader.stages["pixel"], tuple(columns))
         rows = kept.missing(keys)
         if len(rows):
@@ -100,21 +90,17 @@ class Host(base.Host):
         """Closures that a shader makes of so many values of its variables."""
         with self._engine.folder() as name:
             folder, place = Path(name), self._engine.place
-            # Print its closures at each point.
             block = statements(columns, folder / IMAGE, count, place)
             [read] = statements({"view": view}, folder / "view.tif", count, place)
             shown = with_variables(shader, block, _printed_closure)
             text = VIEW.format(read=read) + with_header(shown, shader)
             rows = self._printed(folder, text, count)
-        # Read them as this OSL means them.
         found = read_trees([whole_label(each, ROOT) for each in rows])
         if not self._engine.rooted:
             return found
         return tuple(replace(each, tree=with_roots(each.tree)) for each in found)
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
-        """Values of an OSL function; see `mxeon.hosts.base.Host`."""
-        # Bring the arguments into columns.
         parameters = functions.parameters(source, function)
         if len(parameters) != len(arguments):
             raise InputError(f"{function} takes {len(parameters)} arguments; got {len(arguments)}")
@@ -123,7 +109,6 @@ class Host(base.Host):
             for n, ((kind, _), value) in enumerate(zip(parameters, arguments, strict=True))
         }
         count = max((len(column.rows) for column in columns.values()), default=1)
-        # Run a shader that prints its value.
         with self._engine.folder() as name:
             block = indented(statements(columns, Path(name, IMAGE), count, self._engine.place))
             last = _print(f"mxeon_text((color) {function}({', '.join(columns)}))")
@@ -132,13 +117,7 @@ class Host(base.Host):
         return np.array([row[ROOT].split() for row in rows], np.float32)
 
     def _printed(self, folder: Path, text: str, count: int) -> list[dict[str, str]]:
-        """What a shader says at each of so many points, by the label of each line.
-
-        Raises
-        ------
-        NotRun
-            If it says nothing of one of them.
-        """
+        """Lines that a shader prints at each of so many points, by the label of each line."""
         rows: list[dict[str, str]] = [{} for _ in range(count)]
         engine = self._engine
         head = f"{row(count, engine.place)}{prelude(text, engine.carrier)}"

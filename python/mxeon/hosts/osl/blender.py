@@ -20,21 +20,7 @@ TROUBLE = ("ERROR", "WARNING")  # first words of what the engine has to say
 
 
 class Blender:
-    """A process of Blender, started by the first run.
-
-    Attributes
-    ----------
-    carrier : Carrier
-    place : str
-        OSL expressions of the coordinates at which a point reads its pixel of an image.
-    rooted : bool
-        Whether its OSL takes the root of the roughness of a Zeltner sheen.
-
-    Raises
-    ------
-    NotRun
-        If no interpreter with Blender is found.
-    """
+    """A process of Blender, started by the first run."""
 
     carrier = HOLDOUT
     rooted = False
@@ -58,22 +44,12 @@ class Blender:
         return TemporaryDirectory(dir=self._temporary.name)
 
     def printed(self, folder: Path, text: str, count: int) -> list[str]:
-        """Lines that a shader prints, run once for each of so many points.
-
-        Raises
-        ------
-        ShaderError
-            If OSL's compiler refuses the shader, or its engine warns of it.
-        NotRun
-            If the process fails.
-        """
-        # Compile the shader and run it.
+        """Lines that a shader prints, run once for each of so many points."""
         shader = folder / "shader.osl"
         shader.write_text(text, encoding="utf-8")
         frame = tracing.request(DARK, ()) | {"body": "plane", "size": side(count)}
         reply = self._worker.ask(output=str(folder / "output.exr"), shader=str(shader), **frame)
         lines = self._worker.printed()
-        # Raise what the compiler or the engine says of it.
         if "error" in reply:
             raise ShaderError(f"osl: the shader does not compile: {' | '.join(lines[:4])}")
         for line in lines:
@@ -82,6 +58,5 @@ class Blender:
         return lines
 
     def close(self) -> None:
-        """End the process and remove its files."""
         self._worker.close()
         self._temporary.cleanup()

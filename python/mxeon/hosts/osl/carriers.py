@@ -11,7 +11,7 @@ label is its text, with nine digits, from which a float32 is read back exactly. 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import product
 
 MULTIPLE, SUM, MIX, LAYER = OPERATIONS = ("mul", "add", "mix", "layer")
@@ -21,18 +21,10 @@ WORDS = ("float", "string")  # types of their values; an int is passed as a floa
 
 @dataclass(frozen=True)
 class Signature:
-    """Arguments of a closure, as OSL's stdosl.h documents them.
+    """Arguments of a closure, as OSL's stdosl.h documents them."""
 
-    Attributes
-    ----------
-    arguments : mapping of str to str
-        OSL's type of each by its name, in their order.
-    keywords : tuple of str
-        Names of the optional ones. `label`, which every closure has, changes no light.
-    """
-
-    arguments: Mapping[str, str]
-    keywords: tuple[str, ...] = field(default=())
+    arguments: Mapping[str, str]  # OSL types by name, in their order
+    keywords: tuple[str, ...] = ()  # besides `label`, which changes no light
 
 
 FRAME = {"normal": "normal", "tangent": "vector"}
@@ -82,18 +74,10 @@ CLOSURES = {
 
 @dataclass(frozen=True)
 class Carrier:
-    """A closure that an engine has, which carries a label.
+    """A closure that an engine has, which carries a label."""
 
-    Attributes
-    ----------
-    call : str
-        OSL that makes it of the string `label`.
-    before : str
-        What the engine prints of it before the label.
-    """
-
-    call: str
-    before: str
+    call: str  # OSL that makes it of the string `label`
+    before: str  # what the engine prints of it before the label
 
 
 HOLDOUT = Carrier('holdout("label", label)', '(1, 1, 1) * holdout ("label", "')

@@ -36,21 +36,11 @@ IMAGE = (
 
 @dataclass(frozen=True)
 class Column:
-    """Values of one variable.
+    """Values of one variable."""
 
-    Attributes
-    ----------
-    kind : str
-        OSL's type.
-    values : array_like
-        One for each point, or one for all.
-    declared : bool
-        Whether the variable is declared; one that OSL has, which all functions read, is assigned.
-    """
-
-    kind: str
-    values: ArrayLike
-    declared: bool = True
+    kind: str  # OSL's type
+    values: ArrayLike  # one for each point, or one for all
+    declared: bool = True  # else assigned, to a variable of OSL that all functions read
 
     @property
     def rows(self) -> NDArray[np.float32]:
@@ -78,24 +68,12 @@ def row(count: int, place: str) -> str:
 
 
 def statements(columns: Mapping[str, Column], image: Path, count: int, place: str) -> list[str]:
-    """OSL statements that give variables a value for each point, from an image that is written.
+    """OSL statements that give variables the values of a point, exactly, from a float32 image.
 
-    Each float of a variable is exact: an image of float32, read without a filter.
-
-    Parameters
-    ----------
-    columns : mapping of str to Column
-        Variables by name.
-    image : Path
-        Of all of them, each with channels of its own.
-    count : int
-        Points.
-    place : str
-        OSL expressions of the two coordinates at which a point reads its pixel.
+    `place` is OSL for the two coordinates at which a point reads its pixel, without a filter.
     """
     lines, values = [], [np.zeros((count, 0), np.float32)]
     for name, column in columns.items():
-        # Write one row for each point, and read it where the shader runs.
         rows = np.broadcast_to(column.rows, (count, column.rows.shape[1]))
         first = sum(each.shape[1] for each in values)
         values.append(rows)

@@ -16,13 +16,7 @@ ROOTED = (1, 15, 2)  # the first OSL whose closure takes the root of Zeltner's r
 
 
 class Testshade:
-    """oslc and testshade, on PATH or named by variables; see `mxeon.hosts.osl.blender.Blender`.
-
-    Attributes
-    ----------
-    carrier, place, version, rooted
-        As there.
-    """
+    """oslc and testshade, on PATH or named by variables; see `mxeon.hosts.osl.blender.Blender`."""
 
     carrier = DEBUG
     place = "u, v"
@@ -48,5 +42,4 @@ class Testshade:
         return output(command, folder, ShaderError, HOST).splitlines()
 
     def close(self) -> None:
-        """Remove its files."""
         self._temporary.cleanup()

@@ -38,13 +38,8 @@ def columns_of(shader: Shader, inputs: Inputs) -> Mapping[str, Column]:
 def with_variables(shader: Shader, block: Iterable[str], last: Callable[[str], str]) -> str:
     """Text of a shader whose body has statements before it, and one more at its end.
 
-    Parameters
-    ----------
-    shader : Shader
-    block : iterable of str
-        Statements of `points.statements`, in a scope of their own, so that what they declare hides the inputs.
-    last : callable (output) -> str
-        What follows, by the name of the shader's output.
+    `block` is a scope of its own, so that what it declares hides the inputs; `last` takes the name of
+    the shader's output.
     """
     head, brace, body = shader.stages["pixel"].rpartition("\n)\n{\n")
     main, end, _ = body.rpartition("}")

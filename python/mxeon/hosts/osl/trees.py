@@ -27,45 +27,24 @@ TOKEN = re.compile(r"(\w+)<|(#(?: #)*)|'([^'<>|]*)'|([|>])")
 
 @dataclass(frozen=True)
 class ClosureTree:
-    """A closure, or an operation on closures, at some points.
+    """A closure, or an operation on closures, at some points."""
 
-    Attributes
-    ----------
-    name : str
-        In CLOSURES or in OPERATIONS.
-    parts : tuple of ClosureTree or None
-        What an operation combines.
-    arguments : mapping of str to ndarray or str
-        Values by name, (N,) or (N, 3); of an operation its `factor` alone.
-    """
-
-    name: str
-    parts: tuple[ClosureTree | None, ...] = ()
+    name: str  # in CLOSURES or in OPERATIONS
+    parts: tuple[ClosureTree | None, ...] = ()  # what an operation combines
+    # By name, (N,) or (N, 3); of an operation its `factor` alone.
     arguments: Mapping[str, Values | str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class TreeRows:
-    """The points at which a shader makes closures of one shape.
-
-    Attributes
-    ----------
-    rows : ndarray of int, shape (N,)
-    tree : ClosureTree or None
-    """
+    """The points, by number, at which a shader makes closures of one shape."""
 
     rows: NDArray[np.intp]
     tree: ClosureTree | None
 
 
 def whole_label(texts: Mapping[str, str], root: str) -> str:
-    """Text of a label in which every label has its own text in its place.
-
-    Raises
-    ------
-    NotRun
-        If it grows too long or too deep.
-    """
+    """Text of a label in which every label has its own text in its place."""
     text = texts[root]
     for _ in range(DEEPEST):
         if not LABEL.search(text):
@@ -77,18 +56,7 @@ def whole_label(texts: Mapping[str, str], root: str) -> str:
 
 
 def read_trees(labels: Sequence[str]) -> tuple[TreeRows, ...]:
-    """Trees of labels, one for each shape that occurs.
-
-    Parameters
-    ----------
-    labels : sequence of str
-        One for each point; see `mxeon.hosts.osl.carriers`.
-
-    Raises
-    ------
-    ShaderError
-        If a label holds a closure or a keyword that OSL does not document.
-    """
+    """Trees of labels, one for each shape; ShaderError for what OSL does not document."""
     shapes: dict[str, list[int]] = {}
     numbers = []
     for row, label in enumerate(labels):
@@ -125,7 +93,6 @@ def _tree(shape: str, numbers: Values) -> ClosureTree | None:
     expected = "closure"
     position = 0
     while position < len(shape):
-        # Read a name, numbers, a text, or the end of an argument.
         token = TOKEN.match(shape, position)
         if token is None:
             raise ShaderError(_unreadable(shape[position:]))

@@ -33,18 +33,9 @@ MESH = "polyhedron.npz"
 class PolyhedronHost(RendererHost):
     """A renderer that shows its own nodes on the polyhedron, with a process and a folder.
 
-    Parameters
-    ----------
-    limit : float
-        Seconds that one request may take.
-
-    Attributes
-    ----------
-    nodes : dict of str to dict of str
-        Properties of the renderer's material by the title of a node: "{color}" and "{roughness}"
-        stand for the inputs.
-    samples : int
-        Samples per pixel under an environment, 1 being enough under a distant light.
+    `nodes` has the properties of the renderer's material by the title of a node: "{color}" and
+    "{roughness}" stand for the inputs. `samples` are those per pixel under an environment; one is
+    enough under a distant light. A request may take `limit` seconds.
     """
 
     nodes: ClassVar[Mapping[str, Material]]
@@ -62,13 +53,7 @@ class PolyhedronHost(RendererHost):
         self._picture = lru_cache(maxsize=PICTURES)(self._rendered)
 
     def identity(self) -> Identity:
-        """Name and version; the device is always the CPU.
-
-        Raises
-        ------
-        NotRun
-            If the package is missing; says how to get it.
-        """
+        """Name and version; the device is always the CPU."""
         try:
             self.worker.start()
         except NotRun as error:
@@ -78,12 +63,10 @@ class PolyhedronHost(RendererHost):
         return Identity(self.name, f"{self.name} {self.worker.version}", self.device)
 
     def node(self, title: str, color: Sequence[float], roughness: float, scene: Scene) -> Array:
-        """Picture of the polyhedron with one of the renderer's nodes on it."""
         self.refuse_paths(scene)
         return self._picture(title, tuple(map(float, color)), float(roughness), scene)
 
     def close(self) -> None:
-        """End the process and remove the temporary files."""
         self.worker.close()
         self._temporary.cleanup()
 

@@ -12,13 +12,7 @@ from mxeon.hosts.polyhedron import Material, PolyhedronHost
 
 
 class Host(PolyhedronHost):
-    """Blender's EEVEE with its own shading nodes.
-
-    Raises
-    ------
-    NotRun
-        If no interpreter with Blender is found.
-    """
+    """Blender's EEVEE with its own shading nodes."""
 
     name = "eevee"
     samples = 1  # it has no noise

@@ -29,11 +29,9 @@ KINDS = ("objects", "cameras", "meshes", "materials", "lights", "worlds", "image
 
 def empty_scene(size: int, path: str) -> Blender:
     """A scene that EEVEE draws to a linear float32 file, the square [-1, 1]^2 seen along -z."""
-    # Empty the file.
     bpy.data.batch_remove([each for kind in KINDS for each in getattr(bpy.data, kind)])
     scene = bpy.context.scene
     render = scene.render
-    # Write linear float32, one sample at the center of a pixel.
     render.engine = "BLENDER_EEVEE"
     render.filepath = path
     render.resolution_x = render.resolution_y = size
@@ -46,7 +44,6 @@ def empty_scene(size: int, path: str) -> Blender:
     scene.eevee.taa_render_samples = 1
     scene.eevee.use_shadows = scene.eevee.use_raytracing = False
     scene.eevee.light_threshold = 0.0
-    # Look along -z at the square.
     camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
     camera.data.type, camera.data.ortho_scale = "ORTHO", 2.0
     camera.location.z = 2.0
@@ -96,7 +93,6 @@ def render(
     samples: int,
 ) -> None:
     """Draw the mesh with a node on it, and write the picture's numbers, row 0 at the top."""
-    # Build the scene: mesh, material and light.
     path = f"{output}.exr"
     scene, data = empty_scene(size, path), np.load(mesh)
     polyhedron = bpy.data.meshes.new("polyhedron")
@@ -106,9 +102,7 @@ def render(
     if light is not None:
         add_light(scene, light)
     add_environment(scene, environment or 0.0)
-    # Render it.
     bpy.ops.render.render(write_still=True)
-    # Read the picture as numbers.
     image = bpy.data.images.load(path)
     image.colorspace_settings.name = "Non-Color"
     pixels = np.zeros(4 * size * size, np.float32)

@@ -28,13 +28,7 @@ DISNEY = dict.fromkeys(
 
 
 class Host(PolyhedronHost):
-    """LuxCoreRender with its own materials.
-
-    Raises
-    ------
-    NotRun
-        If the interpreter that is to have it is missing.
-    """
+    """LuxCoreRender with its own materials."""
 
     name = "luxcore"
     samples = 64

@@ -78,7 +78,6 @@ def build(
     environment: float | None,
 ) -> LuxCore:
     """The scene: the mesh with a material on it, and a light."""
-    # Define the mesh, the camera and the material.
     data, scene = np.load(mesh), pyluxcore.Scene()
     vertices = [tuple(each) for each in data["vertices"].tolist()]
     triangles = [tuple(each) for each in data["triangles"].tolist()]
@@ -86,7 +85,6 @@ def build(
     scene.Parse(define("camera", camera(size)))
     scene.Parse(define("materials.material", material))
     scene.Parse(define("objects.object", {"shape": "polyhedron", "material": "material"}))
-    # Add the lights.
     if light is not None:
         sun = {"type": "sharpdistant", "direction": [-each for each in light]}
         scene.Parse(define("lights.light", {**sun, "gain": [math.pi] * 3, "color": [1.0] * 3}))

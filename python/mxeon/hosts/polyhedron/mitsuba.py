@@ -13,13 +13,7 @@ from mxeon.hosts.polyhedron import Material, PolyhedronHost
 
 
 class Host(PolyhedronHost):
-    """Mitsuba with its own BSDFs, which it evaluates for any pair of directions.
-
-    Raises
-    ------
-    NotRun
-        If the interpreter that is to have it is missing.
-    """
+    """Mitsuba with its own BSDFs, which it evaluates for any pair of directions."""
 
     name = "mitsuba"
     samples = 64
@@ -68,7 +62,6 @@ class Host(PolyhedronHost):
         color: Array,
         roughness: Array,
     ) -> Array:
-        """f cos(theta_i) of a BSDF by its own function; see `RendererHost`."""
         path = self._folder / "pairs.npz"
         np.savez(path, wo=wo, wi=wi, color=color, roughness=roughness)
         material = self._material(title, "{color}", "{roughness}")

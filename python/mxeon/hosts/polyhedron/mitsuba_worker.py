@@ -54,7 +54,6 @@ def evaluate(material: Values, pairs: str) -> Mitsuba:
     columns = np.load(pairs)
     if mi.variant() == COMPILED:
         return evaluate_at_once(material, columns)
-    # Else evaluate one after another.
     context, point = mi.BSDFContext(), mi.SurfaceInteraction3f()
     point.t, point.n, point.sh_frame = 1.0, [0.0, 0.0, 1.0], mi.Frame3f([0.0, 0.0, 1.0])
     rows = []
@@ -68,7 +67,6 @@ def evaluate(material: Values, pairs: str) -> Mitsuba:
 
 def evaluate_at_once(material: Values, columns: Values) -> Mitsuba:
     """The same for all pairs together, whose inputs are texels."""
-    # Put the inputs into textures of one row.
     inputs = {
         name: {
             "type": "bitmap",
@@ -81,7 +79,6 @@ def evaluate_at_once(material: Values, columns: Values) -> Mitsuba:
         for name in ("color", "roughness")
     }
     made = mi.load_dict(bsdf(material, **inputs))
-    # Look at each texel from its direction.
     wo, wi = (mi.Vector3f(columns[name].T.astype(np.float32)) for name in ("wo", "wi"))
     point = mi.SurfaceInteraction3f()
     point.wi = wo

@@ -56,20 +56,12 @@ class Handle(c_void_p):
 
 
 class Canvas:
-    """Float32 pixels that OpenGL draws without a window, through EGL.
-
-    Raises
-    ------
-    OSError
-        If there is no EGL or no OpenGL 4.5.
-    """
+    """Float32 pixels that OpenGL 4.5 draws without a window, through EGL."""
 
     def __init__(self) -> None:
-        # Load EGL, by which OpenGL's functions are found.
         self._size, self._name = 0, c_uint()
         self._egl = ctypes.CDLL("libEGL.so.1")
         self._egl.eglGetProcAddress.restype = c_void_p
-        # Open a context on the first device, as the host `gl` does.
         devices, config, count = (Handle * 8)(), Handle(), c_int()
         self._call("eglQueryDevicesEXT", c_uint, 8, devices, byref(count))
         display = self._call("eglGetPlatformDisplayEXT", Handle, DEVICE, devices[0], None)
@@ -122,7 +114,6 @@ class Stage:
 
     def __init__(self, canvas: Canvas) -> None:
         self._canvas, self._mesh_path = canvas, ""
-        # The mesh, with a place for its material.
         self._stage = usd.Usd.Stage.CreateInMemory()
         self._mesh = usd.UsdGeom.Mesh.Define(self._stage, "/mesh")
         self._mesh.CreateSubdivisionSchemeAttr("none")
@@ -130,18 +121,15 @@ class Stage:
         kind = usd.Sdf.ValueTypeNames.TexCoord2fArray
         self._texcoord = usd.UsdGeom.PrimvarsAPI(self._mesh).CreatePrimvar("st", kind, "vertex")
         self._look = self._stage.OverridePrim("/look")
-        # The distant light, of irradiance pi.
         self._sun = usd.UsdLux.DistantLight.Define(self._stage, "/sun")
         self._sun.CreateIntensityAttr(math.pi)
         self._sun.CreateNormalizeAttr(True)
         self._sun.CreateAngleAttr(ANGLE)
         self._turn = usd.UsdGeom.Xformable(self._sun).AddTransformOp()
-        # The dome, which is white.
         white = Path(os.environ["TMPDIR"], "white.hdr")
         white.write_bytes(WHITE)
         self._dome = usd.UsdLux.DomeLight.Define(self._stage, "/dome")
         self._dome.CreateTextureFileAttr(str(white))
-        # Storm.
         self._engine = usd.UsdImagingGL.Engine()
         self._engine.SetRendererAov("color")
 
@@ -158,7 +146,6 @@ class Stage:
         self._set_mesh(mesh)
         self._set_material(document, element)
         self._set_lights(light, environment)
-        # Look from far away.
         frustum = usd.Gf.Frustum()
         frustum.projectionType = usd.Gf.Frustum.Orthographic
         frustum.window = usd.Gf.Range2d((-1.0, -1.0), (1.0, 1.0))
@@ -167,7 +154,6 @@ class Stage:
         view, projection = frustum.ComputeViewMatrix(), frustum.ComputeProjectionMatrix()
         self._engine.SetCameraState(view, projection)
         self._engine.SetRenderViewport(usd.Gf.Vec4d(0.0, 0.0, size, size))
-        # Draw linear colors.
         options = usd.UsdImagingGL.RenderParams()
         options.colorCorrectionMode = "disabled"
         self._canvas.clear(size)
@@ -233,12 +219,10 @@ def import_usd(root: str, libraries: str) -> Foreign:
 
 def main() -> None:
     """Serve requests until standard input ends."""
-    # Say who is there.
     stage = Stage(canvas)
     _, minor, patch = usd.Usd.GetVersion()
     version = f"OpenUSD {minor}.{patch}, MaterialX {materialx}"
     print(json.dumps({"version": version, "device": canvas.device}), file=REPLIES)
-    # Answer each request.
     for line in sys.stdin:
         request = json.loads(line)
         output = request.pop("output")

@@ -18,16 +18,7 @@ def texture(argument: str) -> str:
 
 
 def text(source: str, function: str, parameters: Sequence[tuple[str, str]]) -> str:
-    """Text of a shader whose output `result` is a function of its textures.
-
-    Parameters
-    ----------
-    source : str
-        Text that defines the function.
-    function : str
-    parameters : sequence of (str, str)
-        Type and name of each argument.
-    """
+    """Text of a shader whose output `result` is a function of its textures."""
     reads = [
         TEXEL.format(
             kind=kind,

@@ -24,19 +24,7 @@ TITLE = re.compile(r"^oslc -- (Open Shading Language) compiler (\S+)", re.MULTIL
 
 
 def find_program(name: str, host: str = "testrender") -> str:
-    """Path of a program, named by its variable or on PATH.
-
-    Parameters
-    ----------
-    name : str
-    host : str
-        That needs it, for the message.
-
-    Raises
-    ------
-    NotRun
-        If there is none.
-    """
+    """Path of a program that a host needs, named by its variable or on PATH."""
     variable = VARIABLES[name]
     program = os.environ.get(variable) or name
     path = shutil.which(program)
@@ -49,13 +37,7 @@ def find_program(name: str, host: str = "testrender") -> str:
 
 
 def version(oslc: str) -> str:
-    """Name and version of the language that an oslc compiles, as its help states them.
-
-    Raises
-    ------
-    NotRun
-        If its help names no version.
-    """
+    """Name and version of the language that an oslc compiles, as its help states them."""
     title = TITLE.search(output([oslc, "--help"]))
     if title is None:
         raise NotRun(f"testrender: {oslc} must be OSL's compiler; its help names no version")
@@ -70,29 +52,15 @@ def output(
 ) -> str:
     """Standard output of a program; its warnings are passed on as `RendererWarning`.
 
-    Parameters
-    ----------
-    command : sequence of str
-    folder : Path or None
-        Working folder.
-    failure : type
-        Of the error that is raised with the program's last lines where it fails.
-    host : str
-        That needs it, for the messages.
-
-    Raises
-    ------
-    ShaderError
-        If it ends well but reports an error: testrender goes on without the lobes that it has no room for.
+    `failure` is raised with the last lines of a program that fails, ShaderError for an error reported by
+    one that ends well: testrender goes on without the lobes that it has no room for.
     """
-    # Run the program.
     try:
         process = subprocess.run(
             command, cwd=folder, capture_output=True, text=True, timeout=TIMEOUT, errors="replace"
         )
     except (OSError, subprocess.TimeoutExpired) as error:
         raise NotRun(f"{host}: {error}") from None
-    # Raise its failure.
     lines = (process.stdout + process.stderr).strip().splitlines()
     program = Path(command[0]).name
     if process.returncode:
@@ -102,7 +70,6 @@ def output(
     for line in lines:
         if line.startswith("ERROR") or "Assertion" in line:
             raise ShaderError(f"{host}: {program}: {line}")
-    # Pass its warnings on.
     for line in dict.fromkeys(lines):
         if line.startswith("WARNING"):
             warnings.warn(f"{program}: {line}", RendererWarning, stacklevel=2)

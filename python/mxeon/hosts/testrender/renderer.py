@@ -33,13 +33,7 @@ HELPERS = {
 
 
 class Host(PairHost):
-    """oslc, testrender and testshade, on PATH or named by variables; see `programs.VARIABLES`.
-
-    Raises
-    ------
-    NotRun
-        If one of them is missing, or oslc does not start.
-    """
+    """oslc, testrender and testshade, on PATH or named by variables; see `programs.VARIABLES`."""
 
     name = "testrender"
 
@@ -51,7 +45,6 @@ class Host(PairHost):
         self._compiled: dict[str, str] = {}
 
     def identity(self) -> Identity:
-        """Version of oslc; the device is the CPU."""
         return Identity(self.name, self._version, "CPU")
 
     def _pixels(
@@ -59,21 +52,18 @@ class Host(PairHost):
     ) -> NDArray[np.float64]:
         """What pairs look like; the light of one point is too small to add to an emission."""
         lit = light != SKY
-        # Turn what has a direction into the frame of the scene.
         wo, wi = (np.asarray(each, np.float64) for each in (wo, wi))
         scene = scenes.pair_scene(wo, wi, side(len(wo)))
         columns = {
             name: replace(each, values=scene.turned(each.rows)) if each.directed else each
             for name, each in columns_of(shader, inputs).items()
         }
-        # Compile the shaders, and write the scene.
         block = statements(columns, self._folder / IMAGE, len(wo), scenes.PLACE)
         text = with_variables(shader, block, lambda output: last.format(output=output))
         for name, each in {shader.name: with_header(text, shader), **HELPERS}.items():
             self._compile(name, each)
         for name, each in scene.files(shader.name, lit).items():
             (self._folder / name).write_text(each, encoding="utf-8")
-        # Render it; a worker has one core.
         samples = scenes.LIGHT_SAMPLES if lit else scenes.SKY_SAMPLES
         options = ["-t", "1", "-aa", str(samples), "--res", str(scene.size), str(scene.size)]
         pixels = self._image([self._testrender, *options, scenes.SCENE])
@@ -81,25 +71,20 @@ class Host(PairHost):
         return values / scene.irradiance[:, np.newaxis] if light == LAMP else values
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
-        """Values of an OSL function; see `mxeon.hosts.base.Host`."""
-        # Compile a shader that calls the function.
         parameters = functions.parameters(source, function)
         kinds = {name: kind for kind, name in parameters}
         self._compile(calls.SHADER, calls.text(source, function, parameters))
-        # Write the arguments as textures.
         values = {name: (kinds[name], value) for name, value in zip(kinds, arguments, strict=True)}
         columns = fragment.columns(values)
         count, (width, height) = fragment.frame(columns)
         for name, rows in columns.items():
             image = fragment.texels(rows, (width, height))
             write_image(self._folder / calls.texture(name), image, {})
-        # Run it for each pixel.
         size = ["-t", "1", "--res", str(width), str(height)]
         pixels = self._image([find_program("testshade"), *size, *calls.OPTIONS])
         return pixels.reshape(-1, 3)[:count]
 
     def close(self) -> None:
-        """Remove the host's files."""
         self._temporary.cleanup()
 
     def _compile(self, name: str, text: str) -> None:

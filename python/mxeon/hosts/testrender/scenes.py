@@ -60,24 +60,12 @@ SKY_GROUP = """  <ShaderGroup name="sky">
 
 @dataclass(frozen=True)
 class PairScene:
-    """Points that show pairs of directions to a camera.
+    """Points that show pairs of directions to a camera."""
 
-    Attributes
-    ----------
-    size : int
-        Pixels on a side of the picture.
-    rays : ndarray, shape (N, 3)
-        Unit vectors from the camera through the pixels' centers, row 0 first.
-    points : ndarray, shape (N, 3)
-        Float32 numbers.
-    turn : ndarray, shape (N, 3, 3)
-        Matrix from the frame of the pairs to that of the scene.
-    """
-
-    size: int
-    rays: Vectors
-    points: Vectors
-    turn: NDArray[np.float64]
+    size: int  # pixels on a side of the picture
+    rays: Vectors  # unit vectors (N, 3) from the camera through the pixels' centers, row 0 first
+    points: Vectors  # (N, 3), float32 numbers
+    turn: NDArray[np.float64]  # (N, 3, 3), from the frame of the pairs to that of the scene
 
     @property
     def irradiance(self) -> NDArray[np.float64]:
@@ -92,14 +80,7 @@ class PairScene:
         return np.asarray((self.turn @ each[:, :, np.newaxis])[:, :, 0])
 
     def files(self, shader: str, lit: bool) -> dict[str, str]:
-        """Texts of the files of the scene, by name, with its light or with a white sky.
-
-        Parameters
-        ----------
-        shader : str
-            Name of the points' shader, whose output is `out`.
-        lit : bool
-        """
+        """Texts of the files of the scene, by name, with its light or with a white sky."""
         light = LIGHT_GROUP if lit else SKY_GROUP
         world = WORLD.format(
             eye=EYE, center=CENTER, fov=FOV, shader=shader, points=POINTS, light=light
@@ -122,15 +103,7 @@ class PairScene:
 
 
 def pair_scene(wo: Array, wi: Array, size: int) -> PairScene:
-    """Scene of pairs of directions with a sine of at least LEAST_SINE between them.
-
-    Parameters
-    ----------
-    wo, wi : ndarray, shape (N, 3)
-        Unit vectors.
-    size : int
-        Pixels on a side of the picture, at least the root of N.
-    """
+    """Scene of pairs (N, 3), N <= size^2, with a sine of at least LEAST_SINE between wo and wi."""
     # Points at which the light appears at the angle.
     rays = _rays(size)[: len(wo)]
     eye = np.array([0.0, 0.0, EYE])
