@@ -13,6 +13,7 @@ from mxeon.models.layering import Bsdf, layer, throughput
 from mxeon.albedo import dielectric_albedo_dir
 from mxeon.errors import InputError, PackageError
 from mxeon.fit import (
+    FIT_MODELS,
     MeasuredBrdf,
     dielectric_over_eon,
     fit_brdf,
@@ -20,7 +21,6 @@ from mxeon.fit import (
     openpbr_base,
     read_merl,
 )
-from mxeon.fit.lobes import FIT_MODELS
 from mxeon.fit.measured import MERL_CELLS, MERL_SCALES
 from mxeon.models import dielectric_brdf, eon_brdf, generalized_schlick_brdf
 from tests.support.availability import available

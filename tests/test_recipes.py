@@ -100,7 +100,7 @@ RENDERER = {
         "": """import numpy as np
 
 from mxeon.hosts.base import Identity
-from mxeon.hosts.renderer import RendererHost
+from mxeon.hosts.base import RendererHost
 from mxeon.shaders.scene import sphere
 
 

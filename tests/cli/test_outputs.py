@@ -4,8 +4,7 @@
 import pytest
 
 from mxeon.cli import main
-from mxeon.doc.markdown import read_tables, table_text
-from mxeon.doc.ports import PortRow, Table
+from mxeon.doc import PortRow, read_tables, table_text
 from mxeon.errors import MISUSE
 from mxeon.explorer.documents import document_sources
 from tests.support.documents import lobe, material
@@ -103,9 +102,9 @@ def test_a_folder_that_is_a_link_is_written_to(tmp_path):
 
 def test_a_description_breaks_no_table_and_steers_no_terminal():
     text = "two\nlines | a bar \x1b[31m"
-    table = table_text(Table("node", (PortRow("in", text, ("float",)),)))
+    table = table_text((PortRow("in", text, ("float",)),))
     assert len(table.splitlines()) == 3 and "\x1b" not in table
-    [port] = read_tables(f"# node\n\n{table}\n")["node"].ports
+    [port] = read_tables(f"# node\n\n{table}\n")["node"]
     assert port.description == "two lines | a bar \ufffd[31m"
 
 

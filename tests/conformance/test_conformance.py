@@ -39,7 +39,6 @@ from mxeon.conformance.text.sources import TEXT_ONLY
 from mxeon.errors import InputError, NotRun, ShaderError
 from mxeon.hosts import HOSTS
 from mxeon.hosts.base import Host, Identity
-from mxeon.jobs import cluster
 from mxeon.models import table as reference
 from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.nodes import INVERSIONS, connection_text, document_text, node_text
@@ -412,7 +411,7 @@ def test_a_black_material_passes(tmp_path, monkeypatch):
 
 def test_misuse_leaves_the_journal_of_an_earlier_run_alone(tmp_path, monkeypatch):
     keep_checks(monkeypatch, plan.HOST)
-    monkeypatch.setattr(cluster, "ANSWER", 1.0)
+    monkeypatch.setattr(dask, "ANSWER", 1.0)
     check(EXAMPLES[:1], ["msl"], folder=tmp_path)
     before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
     for wrong in ({"workers": -1}, {"timeout": 0.0}, {"scheduler": "tcp://127.0.0.1:9"}):

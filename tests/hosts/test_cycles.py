@@ -16,8 +16,7 @@ from mxeon.conformance.reference import Host as Reference
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import cycles
 from mxeon.hosts.cycles import process as cycles_process
-from mxeon.hosts.pair_frames import visible
-from mxeon.hosts.tilted_triangles import DISTANCE, HEIGHT, tilted_triangles
+from mxeon.hosts.pairs import DISTANCE, HEIGHT, tilted_triangles, visible
 from mxeon.models.diffuse.brdf import eon_brdf
 from mxeon.shaders.generation import ApproximationWarning, generate
 from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, material_text, node_text

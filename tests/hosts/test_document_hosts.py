@@ -22,8 +22,7 @@ from mxeon.conformance.results import FAILED, PASSED
 from mxeon.conformance.results.known_issues import with_pages
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import host_row, materialx, storm
-from mxeon.hosts.documents import PLACE
-from mxeon.hosts.quads import quads
+from mxeon.hosts.documents import PLACE, quads
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.library_export import export_library
 from mxeon.shaders.nodes import OREN_NAYAR, material_text, node_text

@@ -9,8 +9,8 @@ import pytest
 
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts.osl import LINE, carriers, trees
-from mxeon.hosts.osl.kept import KeptTrees, keys_of
 from mxeon.hosts.osl.points import Column
+from mxeon.hosts.osl.trees import KeptTrees, keys_of
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import document_text, lobe_text, material_text, node_text
 

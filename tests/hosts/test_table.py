@@ -15,7 +15,7 @@ from mxeon.conformance.pictures.documents import generate_document
 from mxeon.conformance.run import check
 from mxeon.errors import NotRun, Unsupported
 from mxeon.hosts import base
-from mxeon.hosts.renderer import RendererHost
+from mxeon.hosts.base import RendererHost
 from mxeon.models import table
 from mxeon.shaders.generation import generate
 from mxeon.shaders.library import examples_folder

@@ -23,7 +23,7 @@ from mxeon.conformance.results import FAILED, PASSED
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import make_plan
 from mxeon.errors import InputError, NotRun, ShaderError
-from mxeon.hosts import base, pair_frames
+from mxeon.hosts import base, pairs
 from mxeon.hosts.base import RendererWarning
 from mxeon.hosts.testrender import calls, programs, scenes
 from mxeon.hosts.testrender.renderer import Host
@@ -128,7 +128,7 @@ def random_pairs(count):
     """Pairs that a scene shows, of all angles between view and light."""
     pairs = np.random.default_rng(1).normal(size=(2, count, 3))
     wo, wi = pairs / np.linalg.norm(pairs, axis=2, keepdims=True)
-    shown = pair_frames.visible(wo, wi)
+    shown = pairs.visible(wo, wi)
     return wo[shown], wi[shown]
 
 
@@ -153,7 +153,7 @@ def test_the_light_sees_a_triangle_from_its_edge_and_the_camera_its_front():
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     light = scene.points / np.linalg.norm(scene.points, axis=1, keepdims=True)
     assert np.abs((normal * light).sum(axis=1)).max() < 1e-3
-    assert ((normal * scene.rays).sum(axis=1) < -0.9 * pair_frames.LEAST_SINE).all()
+    assert ((normal * scene.rays).sum(axis=1) < -0.9 * pairs.LEAST_SINE).all()
 
 
 def test_a_pair_that_no_scene_shows_is_refused(host):
@@ -165,8 +165,8 @@ def test_a_light_next_to_the_view_is_moved_apart():
     wo = np.array([[0.6, 0.0, 0.8], [0.6, 0.0, 0.8], [0.0, 0.0, 1.0]])
     wi = np.array([[0.6, 0.0, 0.8], [0.6, 0.01, 0.8], [0.6, 0.0, 0.8]])
     moved = apart(wo, wi / np.linalg.norm(wi, axis=1, keepdims=True))
-    assert pair_frames.visible(wo, moved).all() and (moved[2] == wi[2]).all()
-    assert moved[1, 1] > 0.0 and np.abs(moved - wi).max() < 1.1 * pair_frames.LEAST_SINE
+    assert pairs.visible(wo, moved).all() and (moved[2] == wi[2]).all()
+    assert moved[1, 1] > 0.0 and np.abs(moved - wi).max() < 1.1 * pairs.LEAST_SINE
 
 
 @pytest.mark.parametrize("subject", BSDFS, ids=lambda subject: subject.title)

@@ -14,7 +14,7 @@ import pytest
 import mxeon
 from mxeon.conformance.run import check
 from mxeon.errors import InputError, NotRun
-from mxeon.jobs import cluster, dask
+from mxeon.jobs import dask
 from mxeon.jobs.pool import Outcome
 from mxeon.shaders.library import examples_folder
 from tests.support.faults import need, once, process, square
@@ -31,7 +31,7 @@ EXAMPLE = examples_folder() / "plaster.mtlx"
 
 
 def run(work, items, address, timeout=60.0):
-    with cluster.connect(address) as workers:
+    with dask.connect(address) as workers:
         return dict(dask.run(work, items, workers, timeout, NotRun))
 
 
@@ -114,7 +114,7 @@ def test_workers_that_do_not_fit_get_no_work_and_are_named(tmp_path):
 def test_a_cluster_without_a_fitting_worker_is_one_line():
     rule = f"must have a worker with mxeon {mxeon.__version__} and --nthreads 1; got 1 others"
     with pytest.warns(UserWarning), pytest.raises(InputError, match=rule):
-        cluster.Workers(Client(TWO_THREADS), 60.0)
+        dask.Workers(Client(TWO_THREADS), 60.0)
 
 
 NOBODY, SOMEBODY, TWO_THREADS = (
@@ -132,13 +132,13 @@ class Client:
     def scheduler_info(self, n_workers):
         return self._answers.pop(0) if len(self._answers) > 1 else self._answers[0]
 
-    def run(self, function, workers, on_error):
+    def run(self, *_, workers, on_error):
         return dict.fromkeys(workers, mxeon.__version__)
 
 
 def test_workers_that_all_restart_are_waited_for(monkeypatch):
-    monkeypatch.setattr(cluster, "POLL", 0.0)
-    workers = cluster.Workers(Client(NOBODY, NOBODY, SOMEBODY, NOBODY, NOBODY, SOMEBODY), 60.0)
+    monkeypatch.setattr(dask, "POLL", 0.0)
+    workers = dask.Workers(Client(NOBODY, NOBODY, SOMEBODY, NOBODY, NOBODY, SOMEBODY), 60.0)
     workers.await_compatible()
     assert workers.compatible() == {"tcp://a"}
 
@@ -147,11 +147,11 @@ def test_workers_that_all_restart_are_waited_for(monkeypatch):
 def test_workers_that_do_not_come_are_one_line(answers):
     rule = "no compatible Dask worker came within 0.01 s; raise it with --waitForWorkers"
     with pytest.raises(NotRun, match=rule):
-        list(dask.run(square, [1], cluster.Workers(Client(*answers), 0.01), 1.0, NotRun))
+        list(dask.run(square, [1], dask.Workers(Client(*answers), 0.01), 1.0, NotRun))
 
 
 def test_a_scheduler_that_ends_is_one_line():
-    workers = cluster.Workers(Client(SOMEBODY, SOMEBODY, {}), 60.0)
+    workers = dask.Workers(Client(SOMEBODY, SOMEBODY, {}), 60.0)
     with pytest.raises(NotRun, match="scheduler must run until the end; it answers no more"):
         list(dask.run(square, [1], workers, 1.0, NotRun))
 
@@ -163,8 +163,8 @@ def test_a_scheduler_whose_connection_breaks_is_one_line(error):
 
     client = Client(SOMEBODY)
     client.submit = submit
-    with pytest.raises(NotRun, match=f"^{cluster.GONE}$"):
-        list(dask.run(square, [1], cluster.Workers(client, 60.0), 1.0, NotRun))
+    with pytest.raises(NotRun, match=f"^{dask.GONE}$"):
+        list(dask.run(square, [1], dask.Workers(client, 60.0), 1.0, NotRun))
 
 
 def test_what_dask_tells_by_itself_is_silent():
@@ -194,7 +194,7 @@ def test_an_impossible_wait_is_one_line():
 
 
 def test_a_scheduler_that_does_not_answer_is_one_line(monkeypatch):
-    monkeypatch.setattr(cluster, "ANSWER", 1.0)
+    monkeypatch.setattr(dask, "ANSWER", 1.0)
     with pytest.raises(ValueError, match="scheduler must be the address of a running") as error:
         run(square, [1], "tcp://127.0.0.1:9")
     assert "\n" not in str(error.value)

@@ -12,8 +12,7 @@ import pytest
 from pebble import CONSTS
 
 from mxeon.jobs import pool
-from mxeon.jobs.attempts import Attempt, Queue
-from mxeon.jobs.pool import ATTEMPTS, LOCK, Outcome, in_order, run
+from mxeon.jobs.pool import ATTEMPTS, LOCK, Attempt, Outcome, Queue, in_order, run
 from tests.support.faults import Tar, misbehave, need, once, square
 
 NUMBERS = [1, 2, 3, 4]

@@ -11,7 +11,7 @@ import pytest
 
 from mxeon.io.images import write_exr
 from mxeon.kit import check as judging
-from mxeon.kit import diagnosis, questions
+from mxeon.kit import questions
 from mxeon.kit.check import check_kit
 from mxeon.kit.expected import expected, judged, pixel_means
 from mxeon.kit.export import export_kit
@@ -29,7 +29,7 @@ def remembered():
     with pytest.MonkeyPatch.context() as patch:
         for function in (expected, pixel_means):
             once = cache(function)
-            for module in (diagnosis, questions, judging):
+            for module in (questions, judging):
                 if hasattr(module, function.__name__):
                     patch.setattr(module, function.__name__, once)
         yield

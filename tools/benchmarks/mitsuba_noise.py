@@ -17,8 +17,7 @@ import numpy as np
 
 from mxeon.io.files import write_text
 from mxeon.mitsuba import register
-from mxeon.mitsuba.diffuse import EonPlugin, RoughDiffusePlugin
-from mxeon.mitsuba.plugin import register_plugin
+from mxeon.mitsuba.diffuse import EonPlugin, RoughDiffusePlugin, register_plugin
 from tools.benchmarks.values import mitsuba_version
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "sampling.md"

@@ -35,8 +35,7 @@ def add_parser(commands: arguments.Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Fill or compare; return FAILED if a specification differs."""
-    from mxeon.doc import compare, fill, library_tables, read_tables
-    from mxeon.doc.markdown import MARKER
+    from mxeon.doc import MARKER, compare, fill, library_tables, read_tables
 
     # Check the options, and read the text and the library.
     if options.json and not options.compare:

@@ -8,8 +8,7 @@ from importlib import import_module
 from typing import cast
 
 from mxeon.errors import NotRun, Unsupported, assert_known
-from mxeon.hosts.base import Host
-from mxeon.hosts.renderer import RendererHost
+from mxeon.hosts.base import Host, RendererHost
 from mxeon.shaders.scene import BACK, FURNACE, SIDE, Scene
 
 

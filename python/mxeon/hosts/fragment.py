@@ -191,7 +191,6 @@ def columns(arguments: Mapping[str, tuple[str, ArrayLike]]) -> Columns:
 
 @lru_cache(maxsize=16)
 def _output(text: str) -> str:
-    """Name of the output of a pixel stage."""
     return str(re.findall(r"\bout vec4 (\w+);", text)[0])
 
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import fragment, points, raster
 from mxeon.hosts.base import Array, Identity
-from mxeon.hosts.fragment_host import FragmentHost
+from mxeon.hosts.raster import FragmentHost
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.scene import Scene
 
@@ -144,7 +144,6 @@ class Host(FragmentHost):
         arguments: Mapping[str, Array],
         environment: Mapping[str, moderngl.Texture | moderngl.TextureArray],
     ) -> Array:
-        """Values of one frame of elements."""
         count, size = fragment.frame(arguments)
         values = {
             name: self._argument(rows, size)
@@ -193,13 +192,11 @@ class Host(FragmentHost):
         return own
 
     def _argument(self, rows: Array, size: tuple[int, int]) -> moderngl.Texture:
-        """Texture of an argument's values."""
         if rows.ndim == 2 and len(rows) == 1:
             return self._constant(rows.tobytes(), size)
         return self._texture(fragment.texels(rows, size, fragment.ODD), mipmaps=False)
 
     def _filled(self, value: bytes, size: tuple[int, int]) -> moderngl.Texture:
-        """Texture of one value, as float32."""
         row = np.frombuffer(value, np.float32)[np.newaxis]
         return self._texture(fragment.texels(row, size, fragment.ODD), mipmaps=False)
 
@@ -248,7 +245,6 @@ def _points(
 def _buffers(
     context: moderngl.Context, program: moderngl.Program, vertices: Mapping[str, Array]
 ) -> list[tuple[moderngl.Buffer, str, str]]:
-    """Buffers of the attributes that a program has."""
     return [
         (context.buffer(values), f"{values.shape[1]}f", name)
         for name, values in vertices.items()
@@ -257,7 +253,6 @@ def _buffers(
 
 
 def _set(program: moderngl.Program, values: Mapping[str, object]) -> None:
-    """Set the uniforms that the program has."""
     for name, value in values.items():
         if member := program.get(name, None):
             cast(moderngl.Uniform, member).value = value

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,6 @@ from numpy.typing import NDArray
 from mxeon.errors import InputError
 from mxeon.hosts import base
 from mxeon.hosts.base import Array, Inputs
-from mxeon.hosts.pair_frames import LEAST_SINE, perpendicular, visible
 from mxeon.shaders.generation import Shader
 
 PATHS = 1 << 12  # pixels of a picture with a sky, each of the host's own number of paths
@@ -41,7 +41,7 @@ class PairHost(base.Host):
 
         The throughput is what is seen of a white emission below. The environment is sampled, so that it
         has noise; what comes through the surface is part of it. InputError if a pair in the light of a
-        point is not `mxeon.hosts.pair_frames.visible`.
+        point is not `mxeon.hosts.pairs.visible`.
         """
         through = output == "throughput"
         if irradiance is not None or (branch == TRANSMITTED and not through):
@@ -72,3 +72,84 @@ class PairHost(base.Host):
 
         `light` is LAMP, of irradiance 1 on what faces it, SKY, a uniform radiance 1, or DARK.
         """
+
+
+Vectors = NDArray[np.float64]
+
+LEAST_SINE = 0.08  # of the angle between view and light: the camera would see the light, or have points behind it
+CORNERS = ((1.0, 0.0), (-0.5, 0.75**0.5), (-0.5, -(0.75**0.5)))  # of a triangle
+
+
+def frames(first: Vectors, other: Vectors) -> Vectors:
+    """Axes as columns, (N, 3, 3): the first vector, what is across both, and what is across these."""
+    across = unit(np.cross(first, other))
+    return np.stack([first, across, np.cross(first, across)], axis=-1)
+
+
+def perpendicular(vectors: Array) -> Vectors:
+    """Unit vectors across others, (N, 3)."""
+    axes = np.where(np.abs(vectors[:, 1:2]) < 0.9, [[0.0, 1.0, 0.0]], [[1.0, 0.0, 0.0]])
+    return unit(np.cross(vectors, axes))
+
+
+def visible(wo: Array, wi: Array) -> NDArray[np.bool_]:
+    """Which pairs of directions a scene can show, (N,)."""
+    return np.asarray(np.linalg.norm(np.cross(wo, wi), axis=1) >= LEAST_SINE)
+
+
+def unit(vectors: Vectors) -> Vectors:
+    return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))
+
+
+Vectors = NDArray[np.float64]
+PIXEL = 2.0**-5  # width
+JITTER = (
+    0.5 * 0.01 * 2.0**0.5
+)  # of a sample beside the middle of its pixel, in pixels, by its filter
+DISTANCE = 256.0  # of the light from the middle of the picture, at its height
+TRIANGLE = 0.4 * PIXEL  # of its corners from the middle of the pixel
+HEIGHT = 16.0 * DISTANCE  # of the camera: the nearest point is 12.5 times the distance high
+VIEW = np.array([0.0, 0.0, 1.0])
+
+
+@dataclass(frozen=True)
+class TiltedTriangles:
+    """Triangles that show pairs of directions to a camera."""
+
+    width: float  # of the picture
+    corners: Vectors  # (N, 3, 3)
+    turn: Vectors  # (N, 3, 3), from the frame of the pairs to that of the scene
+    irradiance: Vectors  # (N, 1), of a surface that faces the light, of radiant intensity 1
+
+    def turned(self, vectors: Array) -> Vectors:
+        """Vectors of the frame of the pairs, (N or 1, 3), in that of the scene."""
+        each = np.broadcast_to(np.asarray(vectors, np.float64), (len(self.turn), 3))
+        return np.asarray((self.turn @ each[:, :, np.newaxis])[:, :, 0])
+
+    @property
+    def place(self) -> str:
+        """OSL expressions of the coordinates at which a point reads its pixel of an image."""
+        return f"0.5 + P[0] / {self.width:.9g}, 0.5 - P[1] / {self.width:.9g}"
+
+
+def tilted_triangles(wo: Array, wi: Array, size: int) -> TiltedTriangles:
+    """Triangles that show pairs (N, 3), N <= size^2, with a sine of at least LEAST_SINE."""
+    # Points at which the light appears at the angle.
+    wo, wi = (np.asarray(each, np.float64) for each in (wo, wi))
+    axis = PIXEL * (np.arange(size) + 0.5 - size / 2.0)
+    x, y = (each.ravel()[: len(wo)] for each in np.meshgrid(axis, -axis))
+    cotangent = (wo * wi).sum(axis=1) / np.linalg.norm(np.cross(wo, wi), axis=1)
+    z = -np.hypot(DISTANCE + x, y) * cotangent
+    points = np.stack([x, y, z], axis=1).astype(np.float32).astype(np.float64)
+    # The frames of both pairs, which have the view as their first axis.
+    light = np.array([-DISTANCE, 0.0, 0.0]) - points
+    world = frames(np.broadcast_to(VIEW, points.shape), unit(light))
+    turn = world @ np.swapaxes(frames(wo, wi), 1, 2)
+    # Corners in the plane across the shaded normal.
+    normal = turn[:, :, 2]
+    offsets = TRIANGLE * np.array(CORNERS)
+    depth = -(normal[:, :2] @ offsets.T) / normal[:, 2:]
+    flat = np.broadcast_to(offsets, (len(points), 3, 2))
+    corners = points[:, np.newaxis] + np.concatenate([flat, depth[:, :, np.newaxis]], axis=2)
+    squared = (light * light).sum(axis=1, keepdims=True)
+    return TiltedTriangles(PIXEL * size, corners, turn, 1.0 / squared)

@@ -42,7 +42,6 @@ class Worker:
 
     @property
     def pid(self) -> int | None:
-        """Number of the running process, or None."""
         return self._process.pid if self._process and self._process.poll() is None else None
 
     def start(self) -> None:

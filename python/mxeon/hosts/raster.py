@@ -3,15 +3,20 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
+from collections.abc import Mapping
 from functools import lru_cache
 from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from mxeon.hosts.base import Array
-from mxeon.hosts.image_limit import image_files
+from mxeon.hosts import base, fragment
+from mxeon.hosts.base import Array, Inputs
 from mxeon.hosts.points import visible
+from mxeon.hosts.image_limit import image_files
 from mxeon.hosts.textures import irradiance, read_latlong, read_texture
+from mxeon.shaders import functions
 from mxeon.shaders.document.values import Plain, members
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import SUBSURFACE, TRANSMISSION, VOLUME, inner_lobes
@@ -128,3 +133,44 @@ def bands(size: int, shape: str) -> tuple[Rectangle, ...]:
 def picture(image: Array, scene: Scene) -> Array:
     """Picture of a frame whose row 0 is at the bottom: 0 off the shape, row 0 at the top."""
     return np.where(visible(scene.size, scene.shape).mask[..., None], image[::-1], np.float32(0.0))
+
+
+class FragmentHost(base.Host):
+    """A host whose engine draws frames: an evaluation has one pixel per element.
+
+    It writes the pixel stage of an evaluation or of a call; its engine draws it.
+    """
+
+    def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
+        return approximations(shader)
+
+    def evaluate(
+        self,
+        shader: Shader,
+        wo: Array,
+        wi: Array,
+        inputs: Inputs,
+        branch: str,
+        *,
+        output: str = "response",
+        irradiance: Array | None = None,
+    ) -> Array:
+        pixel, arguments = fragment.bsdf_evaluation(shader, wo, wi, inputs, branch, output)
+        return self._evaluate(shader.stages["vertex"], pixel, arguments, irradiance)
+
+    def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
+        parameters = functions.parameters(source, function)
+        pixel, texels = fragment.function_evaluation(
+            source, function, parameters, arguments, self.target
+        )
+        return self._evaluate(fragment.DIALECTS[self.target].vertex, pixel, texels)
+
+    @abstractmethod
+    def _evaluate(
+        self,
+        vertex: str,
+        pixel: str,
+        arguments: Mapping[str, Array],
+        irradiance: Array | None = None,
+    ) -> Array:
+        """Values of a pixel stage, one pixel per element, as many as the longest argument has."""

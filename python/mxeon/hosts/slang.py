@@ -179,7 +179,6 @@ class Host(base.Host):
         return result
 
     def _kernel(self, text: str) -> Resource:
-        """Kernel of a text, compiled once."""
         if text not in self._kernels:
             try:
                 name = f"mxeon_{next(self._names)}"  # a text that does not compile keeps its own

@@ -22,7 +22,7 @@ import numpy as np
 from mxeon.errors import NotRun, ShaderError, install
 from mxeon.hosts import fragment, raster
 from mxeon.hosts.base import TURN, Array, Identity
-from mxeon.hosts.fragment_host import FragmentHost
+from mxeon.hosts.raster import FragmentHost
 
 try:
     import wgpu
@@ -170,7 +170,6 @@ class Host(FragmentHost):
         )
 
     def _stage(self, stage: str, text: str) -> dict[str, Resource]:
-        """A stage, "vert" or "frag", of a pipeline."""
         code = self._code(stage, text)
         try:
             module = self._device.create_shader_module(label=stage, code=code)
@@ -183,7 +182,6 @@ class Host(FragmentHost):
         return fragment.DIALECTS[self.target].vertex
 
     def _code(self, stage: str, text: str) -> bytes | str:
-        """What wgpu is given for a stage."""
         return _spirv(stage, text)
 
     def _generated(self, text: str, textures: Mapping[str, Array]) -> Bindings:
@@ -207,7 +205,6 @@ class Host(FragmentHost):
         return FILTERED, self._texture(texels)
 
     def _layout(self, bindings: Bindings) -> Resource:
-        """Layout of one set of bindings."""
         kinds = [
             {"binding": number, "visibility": "FRAGMENT", **kind}
             for number, (kind, _) in bindings.items()
@@ -215,7 +212,6 @@ class Host(FragmentHost):
         return self._device.create_bind_group_layout(entries=kinds)
 
     def _group(self, layout: Resource, bindings: Bindings) -> Resource:
-        """Group of one set of bindings."""
         entries = [
             {"binding": number, "resource": resource} for number, (_, resource) in bindings.items()
         ]
@@ -242,7 +238,6 @@ class Host(FragmentHost):
 
 @lru_cache(maxsize=8)  # the vertex stage is always the same
 def _spirv(stage: str, text: str) -> bytes:
-    """SPIR-V of a stage."""
     with TemporaryDirectory(prefix="mxeon-vulkan-") as folder:
         whole, used = str(Path(folder, "whole")), Path(folder, "used")
         _run([*COMPILER, "-S", stage, "-o", whole], text)

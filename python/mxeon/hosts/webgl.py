@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from mxeon.errors import NotRun, ShaderError, install
 from mxeon.hosts import fragment, points, raster
 from mxeon.hosts.base import TURN, Array, Identity
-from mxeon.hosts.fragment_host import FragmentHost
+from mxeon.hosts.raster import FragmentHost
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.scene import Scene
 
@@ -202,7 +202,6 @@ class Host(FragmentHost):
 
 
 def program(host: str = "webgl") -> str:
-    """Path of the browser, for a host."""
     name = os.environ.get(PROGRAM) or "chromium"
     path = shutil.which(name)
     if path is None:
@@ -214,7 +213,6 @@ def program(host: str = "webgl") -> str:
 
 
 def _inputs(shader: Shader) -> raster.Uniforms:
-    """Values of the uniforms that carry a shader's inputs."""
     names = re.findall(r"^uniform vec2 (\w+_(uv_scale|uv_offset));", shader.stages["pixel"], re.M)
     return {name: IMAGE[kind] for name, kind in names} | raster.inputs(shader)
 

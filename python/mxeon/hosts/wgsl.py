@@ -32,5 +32,4 @@ class Host(vulkan.Host):
         return "".join([f"{head}\n", *outputs, rest])
 
     def _code(self, stage: str, text: str) -> str:
-        """The text itself."""
         return text

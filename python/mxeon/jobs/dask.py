@@ -2,25 +2,140 @@
 """Work on many items on the machines of a Dask cluster. Needs the `dask` extra.
 
 Dask places the items, restarts workers and tries items again. This module adds what Dask does not
-have: items that only some machines can do, and timeouts. Which workers are compatible says `cluster`.
+have: items that only some machines can do, and timeouts.
 """
 
 from __future__ import annotations
 
 import faulthandler
+import logging
 import sys
+import time
+import warnings
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import CancelledError
-from contextlib import suppress
+from concurrent import futures
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
+from functools import partial
+from operator import attrgetter
+from threading import Thread
 from typing import Any
 
-from mxeon.errors import NotRun
-from mxeon.jobs.cluster import GONE, POLL, Workers
+import mxeon
+from mxeon.errors import InputError, NotRun, PackageError, install
 from mxeon.jobs.pool import Outcome, log_bug
+from mxeon.jobs.processes import WAIT, check_timeout
 
+ANSWER = 10.0  # seconds until a scheduler answers
+GONE = "scheduler must run until the end; it answers no more"
+LOGGERS = ("distributed", "tornado", "asyncio")
 WINDOW = 2  # items under way for each worker: results do not pile up, newcomers get their share
+POLL = 1.0  # seconds between looks at the workers that come and go
+
+
+@contextmanager
+def connect(address: str, wait: float = WAIT) -> Iterator[Workers]:
+    """Connect to the workers of a cluster by the address of its scheduler, "tcp://host:8786".
+
+    It may be without a compatible worker for `wait` seconds, now and later: else NotRun. InputError if no
+    scheduler answers, or none of the workers is compatible.
+    """
+    check_timeout(wait, "waitForWorkers")
+    client = _client(address, wait)
+    try:
+        yield Workers(client, wait)
+    finally:
+        _in_time(partial(client.close, timeout=ANSWER), 2.0 * ANSWER)
+
+
+def _client(address: str, wait: float) -> Any:
+    try:
+        from distributed import Client
+    except ModuleNotFoundError:
+        raise PackageError(f"--scheduler needs distributed: {install('dask')}") from None
+    for name in (*LOGGERS, *logging.root.manager.loggerDict):
+        if name.partition(".")[0] in LOGGERS:  # what these tell is told here in one line
+            logging.getLogger(name).setLevel(logging.CRITICAL + 1)
+    rule = f"scheduler must be the address of a running Dask scheduler; got {address!r}"
+    if not address.strip():
+        raise InputError(rule)
+    try:
+        client = _in_time(partial(Client, address, timeout=min(ANSWER, wait)), wait)
+    except (OSError, ValueError) as error:
+        raise InputError(f"{rule}: {str(error).partition(chr(10))[0]}") from None
+    if client is None:
+        raise InputError(f"{rule}: no answer within {wait:g} s; raise it with --waitForWorkers")
+    return client
+
+
+def _in_time(work: Callable[[], Any], seconds: float) -> Any:
+    """What work returns or raises within some seconds; None if it goes on, in a thread that nobody joins.
+
+    Dask waits for a scheduler that takes a connection and says nothing for minutes.
+    """
+    future: futures.Future[Any] = futures.Future()
+
+    def fulfill() -> None:
+        try:
+            future.set_result(work())
+        except Exception as error:
+            future.set_exception(error)
+
+    Thread(target=fulfill, daemon=True).start()
+    futures.wait([future], seconds)
+    return future.result() if future.done() else None
+
+
+class Workers:
+    """The workers of a cluster; those that have this version and one thread are compatible."""
+
+    def __init__(self, client: Any, wait: float) -> None:
+        self.client = client
+        self._wait = wait
+        self._compatible: dict[str, bool] = {}
+        if not self.compatible() and self._compatible:  # these workers will not change
+            raise InputError(
+                f"cluster must have a worker with mxeon {mxeon.__version__} and --nthreads 1; "
+                f"got {len(self._compatible)} others"
+            )
+        self.await_compatible()
+
+    def await_compatible(self) -> None:
+        """Wait for a compatible worker; NotRun if none comes in time."""
+        end = time.monotonic() + self._wait
+        while not self.compatible():
+            if time.monotonic() > end:
+                raise NotRun(
+                    f"no compatible Dask worker came within {self._wait:g} s; "
+                    "raise it with --waitForWorkers"
+                )
+            time.sleep(min(POLL, self._wait))
+
+    def compatible(self) -> frozenset[str]:
+        """Addresses of the compatible workers; warns once of each other one."""
+        info = self.client.scheduler_info(n_workers=-1)
+        if "workers" not in info:  # the client has closed
+            raise NotRun(GONE)
+        threads = {address: worker["nthreads"] for address, worker in info["workers"].items()}
+        new = sorted(threads.keys() - self._compatible.keys())
+        ask = partial(self.client.run, attrgetter("__version__"), mxeon, on_error="return")
+        versions = ask(workers=new) if new else {}
+        for address, version in versions.items():
+            reason = ""
+            if version != mxeon.__version__:
+                reason = f"it must have mxeon {mxeon.__version__}; got {version}"
+            elif threads[address] != 1:
+                needs = "it must have one thread, --nthreads 1, as OpenGL needs"
+                reason = f"{needs}; got {threads[address]}"
+            self._compatible[address] = not reason
+            if reason:
+                warnings.warn(f"worker {address} gets no work: {reason}", stacklevel=2)
+        return frozenset(address for address in threads if self._compatible.get(address))
+
+    def submit(self, *task: Any, on: frozenset[str]) -> Any:
+        """The future of a task that some of the workers may do."""
+        return self.client.submit(*task, workers=sorted(on), pure=False)
 
 
 def run(
@@ -36,44 +151,35 @@ def run(
     `work` raises `unavailable`, the item goes to other workers. NotRun if the cluster is without a
     compatible worker for too long, or its scheduler is gone.
     """
-    try:
-        yield from _outcomes(work, items, workers, timeout, unavailable)
-    except (OSError, CancelledError):  # of the connection: what items raise is in their outcomes
-        raise NotRun(GONE) from None
-
-
-def _outcomes(
-    work: Callable[[Any], Any],
-    items: Sequence[Any],
-    workers: Workers,
-    timeout: float,
-    unavailable: type[Exception],
-) -> Iterator[tuple[int, Outcome]]:
-    """Outcomes as those of `run`, while the scheduler runs."""
     from distributed import wait
 
     waiting = deque(_Task(index, item) for index, item in enumerate(items))
     running: dict[Any, _Task] = {}
-    while waiting or running:
-        compatible = workers.compatible()
-        while waiting and len(running) < WINDOW * len(compatible):
-            task = waiting.popleft()
-            chosen = compatible - task.tried or compatible
-            future = workers.submit(_work_timed, work, task.item, timeout, unavailable, on=chosen)
-            running[future] = replace(task, chosen=chosen)
-        if not running:
-            workers.await_compatible()
-            continue
-        with suppress(TimeoutError):
-            wait(list(running), timeout=POLL, return_when="FIRST_COMPLETED")
-        for future, task in list(running.items()):
-            outcome, retry = _progress(future, task, compatible)
-            if outcome or retry:
-                del running[future]
-            if outcome:
-                yield task.index, outcome
-            elif retry:
-                waiting.append(retry)
+    try:
+        while waiting or running:
+            compatible = workers.compatible()
+            while waiting and len(running) < WINDOW * len(compatible):
+                task = waiting.popleft()
+                chosen = compatible - task.tried or compatible
+                future = workers.submit(
+                    _work_timed, work, task.item, timeout, unavailable, on=chosen
+                )
+                running[future] = replace(task, chosen=chosen)
+            if not running:
+                workers.await_compatible()
+                continue
+            with suppress(TimeoutError):
+                wait(list(running), timeout=POLL, return_when="FIRST_COMPLETED")
+            for future, task in list(running.items()):
+                outcome, retry = _progress(future, task, compatible)
+                if outcome or retry:
+                    del running[future]
+                if outcome:
+                    yield task.index, outcome
+                elif retry:
+                    waiting.append(retry)
+    except (OSError, futures.CancelledError):  # the connection's: items' errors are in outcomes
+        raise NotRun(GONE) from None
 
 
 @dataclass(frozen=True)

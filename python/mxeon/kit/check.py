@@ -165,7 +165,6 @@ def _pictures(
 
 
 def _model_picture(view: View, model: str) -> NDArray[np.float64]:
-    """Values of the model at the judged pixels, 0 elsewhere."""
     image = np.zeros((*sphere(view.scene.size).mask.shape, 3))
     image[judged(view.scene)] = pixel_means(reference.model(model), view)
     return image

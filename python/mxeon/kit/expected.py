@@ -62,7 +62,6 @@ def expected(row: Model, view: View, depth: float) -> Expected:
 
 
 def pixel_means(row: Model, view: View) -> NDArray[np.float64]:
-    """Means over the judged pixels, shape (N, 3)."""
     place = sphere(view.scene.size).normal[judged(view.scene)][:, :2]
     step = GAUSS / view.scene.size
     offsets = [(x, y) for x in (-step, step) for y in (-step, step)]

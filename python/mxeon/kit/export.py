@@ -92,7 +92,6 @@ def _assert_own(folder: str | PathLike[str]) -> None:
 
 
 def material_document(material: Material, node: KitNode = KitNode()) -> str:
-    """A material of the kit as MaterialX text."""
     inputs: dict[str, Any] = {
         "color": material.color,
         "roughness": material.roughness,

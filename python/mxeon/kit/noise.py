@@ -79,7 +79,6 @@ def student_quantile() -> Callable[..., NDArray[np.float64]]:
 
 
 def _spread(values: NDArray[np.float64], mask: NDArray[np.bool_]) -> NDArray[np.float64]:
-    """A picture with these values at the mask's pixels, 0 elsewhere."""
     image = np.zeros((*mask.shape, values.shape[-1]))
     image[mask] = values
     return image

@@ -6,10 +6,8 @@ The values are those of the formulas of `mxeon.models`, which Dr.Jit evaluates a
 
 from __future__ import annotations
 
-from mxeon.mitsuba.coat import CoatPlugin
-from mxeon.mitsuba.diffuse import EonPlugin, FonPlugin, QonPlugin
-from mxeon.mitsuba.openpbr import OpenPbrBasePlugin
-from mxeon.mitsuba.plugin import mitsuba, register_plugin
+from mxeon.mitsuba.coat import CoatPlugin, OpenPbrBasePlugin
+from mxeon.mitsuba.diffuse import EonPlugin, FonPlugin, QonPlugin, mitsuba, register_plugin
 
 PLUGINS = {
     "eon": EonPlugin,

@@ -12,8 +12,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from mxeon.mitsuba.diffuse import EonPlugin
-from mxeon.mitsuba.plugin import Mitsuba
+from mxeon.mitsuba.diffuse import EonPlugin, Mitsuba
+from mxeon.models.coat import openpbr
 from mxeon.models.coat.curves import constant_coat
 from mxeon.models.core.arrays import Array
 from mxeon.models.core.octaves import gather_cubic, octave_cells, octave_cubics
@@ -21,7 +21,12 @@ from mxeon.models.core.ranges import RANGES
 from mxeon.models.diffuse.albedo import eon_albedo
 from mxeon.models.diffuse.formulas import fon_loss
 from mxeon.models.microfacet import ggx_formulas as ggx
-from mxeon.models.microfacet.fresnel_formulas import dielectric, dielectric_avg
+from mxeon.models.microfacet.fresnel_formulas import (
+    dielectric,
+    dielectric_avg,
+    schlick,
+    schlick_avg,
+)
 from mxeon.models.sampling.visible_normals import visible_density, visible_normal
 
 ALPHAS, IORS = (RANGES[name][:2] for name in ("coat_alpha", "coat_ior"))
@@ -41,7 +46,6 @@ class CoatPlugin(EonPlugin):
     }
 
     def configure(self, properties: Mitsuba) -> None:
-        """Take the textures and numbers, and say which lobes there are."""
         EonPlugin.configure(self, properties)
         for name, (default, low, high) in self.numbers.items():
             value = properties.get(name, default)
@@ -56,13 +60,11 @@ class CoatPlugin(EonPlugin):
         self.tabulate()
 
     def traverse(self, callback: Mitsuba) -> None:
-        """Show textures and numbers to `mitsuba.traverse`."""
         EonPlugin.traverse(self, callback)
         for name in self.numbers:
             callback.put(name, getattr(self, name), self.mi.ParamFlags.Differentiable)
 
     def parameters_changed(self, keys: list[str]) -> None:
-        """Take new numbers."""
         self.tabulate()
 
     def tabulate(self) -> None:
@@ -80,7 +82,6 @@ class CoatPlugin(EonPlugin):
         self.dr.make_opaque(self.average, self.table, *(getattr(self, n) for n in self.numbers))
 
     def eval(self, context: Mitsuba, si: Mitsuba, wo: Mitsuba, active: Mitsuba = True) -> Mitsuba:
-        """BSDF times the cosine, 0 where a direction is not in front."""
         active = self._front(context, si.wi, wo, active)
         is_glossy, is_diffuse = self._enabled(context)
         color, number = self.reflectance.eval(si, active), self.mi.Float
@@ -125,7 +126,6 @@ class CoatPlugin(EonPlugin):
         return self.mi.Bool(active) & wanted & (view.z > 0.0) & (light.z > 0.0)
 
     def _enabled(self, context: Mitsuba) -> tuple[bool, bool]:
-        """Whether the glossy and the diffuse lobe are asked for."""
         flags = self.mi.BSDFFlags
         return (
             context.is_enabled(flags.GlossyReflection, 0),
@@ -176,11 +176,9 @@ class CoatPlugin(EonPlugin):
         return self.dr.maximum(missing, 0.0), self.dr.clip(reflected, 0.0, 1.0)
 
     def _roughness(self) -> Mitsuba:
-        """alpha along tangent and bitangent."""
         return (self._dielectric()[0],) * 2
 
     def _dielectric(self) -> tuple[Mitsuba, Mitsuba]:
-        """alpha and ior."""
         return self._inside("alpha"), self._inside("ior")
 
     def _inside(self, name: str) -> Mitsuba:
@@ -193,7 +191,6 @@ class CoatPlugin(EonPlugin):
 
     @property
     def _compiled(self) -> bool:
-        """Whether the variant compiles."""
         return bool(self.dr.is_jit_v(self.mi.Float))
 
 
@@ -211,3 +208,48 @@ def _slopes(values: list[float], k: int) -> Array:
     ends = [min(max(values[k] + step, low), high) for step in (STEP, -STEP)]
     rows = [_table(*(end if n == k else v for n, v in enumerate(values))) for end in ends]
     return (rows[0] - rows[1]) / (ends[0] - ends[1])
+
+
+EDGE: Mitsuba = openpbr.EDGE
+
+
+class OpenPbrBasePlugin(CoatPlugin):
+    """A metal and a dielectric over EON, mixed, with one roughness of facets."""
+
+    color = "base_color"
+    parameter = "base_diffuse_roughness"
+    numbers: ClassVar[dict[str, tuple[float, ...]]] = {
+        "specular_roughness": (0.3, *RANGES["specular_roughness"][:2]),
+        "specular_ior": (1.5, *RANGES["specular_ior"][:2]),
+    }
+
+    def configure(self, properties: Mitsuba) -> None:
+        CoatPlugin.configure(self, properties)
+        self.metalness = properties.get_texture("base_metalness", 0.0)
+
+    def traverse(self, callback: Mitsuba) -> None:
+        CoatPlugin.traverse(self, callback)
+        callback.put("base_metalness", self.metalness, self.mi.ParamFlags.Differentiable)
+
+    def _dielectric(self) -> tuple[Mitsuba, Mitsuba]:
+        return self._inside("specular_roughness") ** 2, self._inside("specular_ior")
+
+    def _dielectric_share(self, si: Mitsuba, active: Mitsuba) -> Mitsuba:
+        return 1.0 - self.dr.clip(self.metalness.eval_1(si, active), 0.0, 1.0)
+
+    def _glossy(self, si: Mitsuba, rho: Mitsuba, reflected: Mitsuba, active: Mitsuba) -> Mitsuba:
+        """Albedo of both glossy lobes; of the metal about that of a smooth one."""
+        share = self._dielectric_share(si, active)
+        return share * reflected + (1.0 - share) * schlick(si.wi.z, rho, *EDGE)
+
+    def _fresnel(
+        self, si: Mitsuba, color: Mitsuba, c: Mitsuba, missing: Mitsuba, active: Mitsuba
+    ) -> Mitsuba:
+        share, number = self._dielectric_share(si, active), self.mi.Float
+        channels = [
+            schlick(c, rho, *EDGE) * (1.0 + schlick_avg(rho, *EDGE) * missing) for rho in color
+        ]
+        metal = type(color)(*map(number, channels))
+        return (
+            share * CoatPlugin._fresnel(self, si, color, c, missing, active) + (1.0 - share) * metal
+        )

@@ -6,11 +6,55 @@ In Mitsuba's words `si.wi` is the direction to the viewer and `wo` the one to th
 
 from __future__ import annotations
 
+from importlib import import_module
+from typing import Any, TypeAlias
+
 import numpy as np
 
-from mxeon.mitsuba.plugin import Mitsuba
+from mxeon.errors import NotRun, PackageError, install
 from mxeon.models.diffuse import formulas
 from mxeon.models.sampling import eon as sampling
+
+# Objects of Mitsuba and Dr.Jit, whose types are those of the variant.
+Mitsuba: TypeAlias = Any
+
+# LLVM 15 and older cannot compile what Dr.Jit 1.5 makes of a minimum; it ends the process.
+OLDEST_LLVM = (16, 0, 0)
+
+
+def register_plugin(mi: Mitsuba, name: str, kind: type) -> None:
+    """Register the BSDF of this name, which has the methods of a class, for the variant that is set."""
+    members = {"__init__": _initialize, "mi": mi, "dr": import_module("drjit")}
+    mi.register_bsdf(name, type(name, (mi.BSDF,), members | _members(kind)))
+
+
+def mitsuba() -> Mitsuba:
+    """Mitsuba, with a variant that can run."""
+    try:
+        mi = import_module("mitsuba")
+    except ModuleNotFoundError:
+        raise PackageError(f"mitsuba is not installed: {install('mitsuba')}") from None
+    variant = mi.variant()
+    if not variant:
+        raise NotRun("mitsuba: no variant is set; call mitsuba.set_variant('llvm_ad_rgb') first")
+    version = import_module("drjit").detail.llvm_version() if "llvm" in variant else OLDEST_LLVM
+    if version < OLDEST_LLVM:
+        raise NotRun(
+            f"mitsuba: Dr.Jit found LLVM {version[0]}, with which it ends the process; install LLVM 16 "
+            "or later (Debian: libllvm19), or name its library in DRJIT_LIBLLVM_PATH"
+        )
+    return mi
+
+
+def _members(kind: type) -> dict[str, object]:
+    """What a class and its bases define: a class of Mitsuba's must have one base alone."""
+    named = [item for each in reversed(kind.__mro__) for item in vars(each).items()]
+    return {name: member for name, member in named if not name.startswith("__")}
+
+
+def _initialize(self: Mitsuba, properties: Mitsuba) -> None:
+    self.mi.BSDF.__init__(self, properties)
+    self.configure(properties)
 
 
 class RoughDiffusePlugin:
@@ -23,7 +67,6 @@ class RoughDiffusePlugin:
     largest = 1.0
 
     def configure(self, properties: Mitsuba) -> None:
-        """Take the textures, and say which lobes there are."""
         if self.parameter in properties:
             value = properties[self.parameter]
             if isinstance(value, int | float) and not 0.0 <= value <= self.largest:
@@ -36,19 +79,16 @@ class RoughDiffusePlugin:
         self.m_components, self.m_flags = [flags], flags
 
     def traverse(self, callback: Mitsuba) -> None:
-        """Show the textures to `mitsuba.traverse`."""
         for name, texture in ((self.color, self.reflectance), (self.parameter, self.amount)):
             callback.put(name, texture, self.mi.ParamFlags.Differentiable)
 
     def eval(self, context: Mitsuba, si: Mitsuba, wo: Mitsuba, active: Mitsuba = True) -> Mitsuba:
-        """BSDF times the cosine, 0 where a direction is not in front."""
         active = self._front(context, si.wi, wo, active)
         color = self.reflectance.eval(si, active)
         amount = self._clipped(self.amount.eval_1(si, active))
         return self.dr.select(active, self._reflected(si.wi, wo, color, amount), 0.0)
 
     def pdf(self, context: Mitsuba, si: Mitsuba, wo: Mitsuba, active: Mitsuba = True) -> Mitsuba:
-        """Density in solid angle of `sample`."""
         active = self._front(context, si.wi, wo, active)
         rho, amount = self._gray(si, active)
         return self.dr.select(active, self._density(si.wi, wo, rho, amount), 0.0)
@@ -56,7 +96,6 @@ class RoughDiffusePlugin:
     def eval_pdf(
         self, context: Mitsuba, si: Mitsuba, wo: Mitsuba, active: Mitsuba = True
     ) -> tuple[Mitsuba, Mitsuba]:
-        """`eval` and `pdf`."""
         return self.eval(context, si, wo, active), self.pdf(context, si, wo, active)
 
     def sample(
@@ -79,7 +118,6 @@ class RoughDiffusePlugin:
         return record, self.dr.select(active, value / self.dr.select(active, record.pdf, 1.0), 0.0)
 
     def eval_diffuse_reflectance(self, si: Mitsuba, active: Mitsuba = True) -> Mitsuba:
-        """Reflectance, for denoisers."""
         return self.reflectance.eval(si, active)
 
     def to_string(self) -> str:
@@ -116,7 +154,6 @@ class RoughDiffusePlugin:
     def _brdf(
         self, mu_o: Mitsuba, mu_i: Mitsuba, s: Mitsuba, rho: Mitsuba, amount: Mitsuba
     ) -> Mitsuba:
-        """BRDF of one channel, in 1/sr."""
         raise NotImplementedError
 
     def _density(self, view: Mitsuba, light: Mitsuba, rho: Mitsuba, amount: Mitsuba) -> Mitsuba:

@@ -11,8 +11,8 @@ from mxeon.conformance.samples.edge_cases import LEAST_TURNED
 from mxeon.conformance.samples.measurement import absolute, scaled
 from mxeon.conformance.samples.tolerance import ROUNDING, SCALED, Tolerance, rounded_up
 from mxeon.hosts.base import Host
+from mxeon.hosts.pairs import DISTANCE, JITTER, PIXEL
 from mxeon.hosts.testrender.scenes import EYE, NEAREST
-from mxeon.hosts.tilted_triangles import DISTANCE, JITTER, PIXEL
 
 FLAT_KINDS = (kinds.DIFFUSE, kinds.CLOSED, kinds.SUBSURFACE)  # of lobes without a peak
 ANGLE = 3.0 * EYE / NEAREST * ROUNDING  # of a point, which float32 holds along its ray

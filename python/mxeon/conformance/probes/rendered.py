@@ -29,7 +29,7 @@ from mxeon.conformance.samples.batch import (
 )
 from mxeon.conformance.samples.edge_cases import LEAST_TURNED
 from mxeon.hosts.base import Host
-from mxeon.hosts.pair_frames import LEAST_SINE, perpendicular, visible
+from mxeon.hosts.pairs import LEAST_SINE, perpendicular, visible
 from mxeon.models.nodes.bsdl import BSDL_VARIANTS
 from mxeon.models.nodes.cycles import CYCLES_VARIANTS
 from mxeon.models.nodes.node import Scattering, Variant

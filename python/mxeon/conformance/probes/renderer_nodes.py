@@ -13,7 +13,7 @@ from mxeon.conformance.nodes.renderer_nodes import RendererNode
 from mxeon.conformance.probes.pictures import PICTURE_SIZE, Mask, PictureProbe, scene_of
 from mxeon.conformance.results import Claims
 from mxeon.conformance.samples.batch import Array, Batch, Values
-from mxeon.hosts.renderer import RendererHost
+from mxeon.hosts.base import RendererHost
 from mxeon.models import table as reference
 from mxeon.shaders.scene import Scene, sphere
 

@@ -18,9 +18,9 @@ from mxeon.conformance.run.survey import survey_documents
 from mxeon.conformance.run.tasks import Findings, Plan, Task
 from mxeon.errors import InputError, InterfaceError, NotRun
 from mxeon.hosts import HOSTS, host_row
-from mxeon.jobs import cluster, dask, pool
-from mxeon.jobs.attempts import by_group
-from mxeon.jobs.timeouts import TIMEOUT, WAIT, check_timeout
+from mxeon.jobs import dask, pool
+from mxeon.jobs.pool import by_group
+from mxeon.jobs.processes import TIMEOUT, WAIT, check_timeout
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.generation import TARGETS, check_generator
 from mxeon.shaders.library import library_name
@@ -240,7 +240,7 @@ def _executor(
 ) -> Iterator[Executor]:
     """The executor: maps tasks to their outcomes."""
     if scheduler is not None:
-        with cluster.connect(scheduler, wait) as remote:
+        with dask.connect(scheduler, wait) as remote:
             job = partial(work, policy)
             yield partial(dask.run, job, workers=remote, timeout=timeout, unavailable=NotRun)
     elif workers:

@@ -35,8 +35,7 @@ from mxeon.conformance.run.tasks import (
 from mxeon.conformance.text import check_definitions, check_texts
 from mxeon.errors import DocumentError, ImageError, InterfaceError, NotRun, ShaderError
 from mxeon.hosts import open_engine
-from mxeon.hosts.base import Host
-from mxeon.hosts.renderer import RendererHost
+from mxeon.hosts.base import Host, RendererHost
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.library import examples_folder
 

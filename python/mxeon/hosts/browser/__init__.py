@@ -66,7 +66,6 @@ def modules_folder(package: str, host: str) -> Path:
 
 
 def package_version(folder: Path, package: str) -> str:
-    """Version of an installed package."""
     version: str = json.loads((folder / package / "package.json").read_text("utf-8"))["version"]
     return version
 
@@ -119,7 +118,6 @@ class Browser:
         self._thread.submit(self._stop).result()
 
     def _drawn(self, job: str, size: int) -> NDArray[np.float32]:
-        """Picture of the answer to a job in JSON."""
         return pixels(self.ask(json.loads(job)), size)
 
     def _answer(self, job: dict[str, object]) -> Answer:
@@ -149,7 +147,6 @@ class Browser:
         self._page.wait_for_function("window.answer")
 
     def _serve(self, route: Page) -> None:
-        """Answer a request of the page from this machine."""
         if route.request.url in self._assets:
             body = self._assets[route.request.url]
             route.fulfill(body=body, content_type="image/png", headers=SHARED)

@@ -9,8 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from mxeon.hosts import browser
-from mxeon.hosts.base import Array, Identity
-from mxeon.hosts.renderer import RendererHost
+from mxeon.hosts.base import Array, Identity, RendererHost
 from mxeon.shaders.scene import Scene
 
 PACKAGE = "@babylonjs/core"

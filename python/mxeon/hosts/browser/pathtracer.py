@@ -13,9 +13,8 @@ from numpy.typing import ArrayLike
 
 from mxeon.errors import NotRun
 from mxeon.hosts import browser, webgl
-from mxeon.hosts.base import Array, Identity
+from mxeon.hosts.base import Array, Identity, RendererHost
 from mxeon.hosts.browser import three
-from mxeon.hosts.renderer import RendererHost
 from mxeon.shaders.scene import Scene
 
 PACKAGE = "three-gpu-pathtracer"
@@ -88,11 +87,9 @@ class Host(RendererHost):
         )
 
     def density(self, wo: Array, wi: Array, roughness: Array) -> Array:
-        """Density of the directions that `sample` draws; see `RendererHost`."""
         return self._execute("density", wo, wi, np.zeros_like(wo), roughness)[:, 0]
 
     def sample(self, wo: Array, u: Array, roughness: Array) -> Array:
-        """Directions drawn by the package; see `RendererHost`."""
         numbers = np.concatenate([u, np.zeros((len(u), 1))], axis=1)
         return self._execute("sample", wo, numbers, np.zeros_like(wo), roughness)
 

@@ -8,8 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from mxeon.hosts import browser
-from mxeon.hosts.base import Array, Identity
-from mxeon.hosts.renderer import RendererHost
+from mxeon.hosts.base import Array, Identity, RendererHost
 from mxeon.shaders.nodes import document_text, input_text, node_text
 from mxeon.shaders.scene import Scene
 

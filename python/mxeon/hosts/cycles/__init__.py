@@ -21,7 +21,7 @@ from mxeon.errors import ImageError, InputError, NotRun, ShaderError
 from mxeon.hosts.base import Array, Identity, Inputs
 from mxeon.hosts.cycles import calls, closures, graphs, pairs, tracing
 from mxeon.hosts.cycles.process import interpreter
-from mxeon.hosts.osl.texts import with_header
+from mxeon.hosts.osl.points import with_header
 from mxeon.hosts.pairs import PairHost
 from mxeon.hosts.process import Worker
 from mxeon.io.images import read_image
@@ -108,7 +108,6 @@ class Host(PairHost):
     def _pixels(
         self, shader: Shader, wo: Array, wi: Array, inputs: Inputs, last: str, light: str
     ) -> NDArray[np.float64]:
-        """What pairs look like; see `mxeon.hosts.pairs.PairHost`."""
         with self._folder() as name:
             folder = Path(name)
             text, frame, scale = pairs.request(folder, shader, wo, wi, inputs, last, light)
@@ -120,7 +119,6 @@ class Host(PairHost):
         return self._picture(scene, (), kind=kind, inputs=tuple(inputs.items()))
 
     def call(self, function: str, *arguments: ArrayLike) -> Array:
-        """Values of a function of the OSL sources; see `execute`."""
         return self.execute(functions.expanded(self._file(function)), function, *arguments)
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
@@ -144,7 +142,6 @@ class Host(PairHost):
         return ""
 
     def forget(self) -> None:
-        """Forget the pictures that are kept."""
         self._picture.cache_clear()
 
     def _rendered(
@@ -168,11 +165,9 @@ class Host(PairHost):
         return image
 
     def _folder(self) -> TemporaryDirectory[str]:
-        """Folder for the files of one request."""
         return TemporaryDirectory(dir=self._temporary.name)
 
     def _file(self, function: str) -> Path:
-        """File that defines a function."""
         for path in sorted(self._sources.glob("*.osl")):
             if function in functions.signatures(path.read_text(encoding="utf-8")):
                 return path
@@ -185,7 +180,6 @@ class Host(PairHost):
         return self._request(folder, shader=str(shader), **frame)
 
     def _request(self, folder: Path, **request: object) -> Array:
-        """Picture that the worker renders."""
         output = folder / "output.exr"
         reply = self.worker.ask(output=str(output), **request)
         if "error" in reply:

@@ -20,6 +20,5 @@ CALLS = {
 
 
 def text(closure: str) -> str:
-    """OSL of a surface that is one closure of CALLS."""
     call = f"{closure}({CALLS[closure]})"
     return f"shader asked(output closure color out = 0)\n{{\n    out = {call};\n}}\n"

@@ -6,8 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from mxeon.hosts import cycles
-from mxeon.hosts.base import Array, Identity
-from mxeon.hosts.renderer import RendererHost
+from mxeon.hosts.base import Array, Identity, RendererHost
 from mxeon.shaders.scene import Scene
 
 # Title of a node -> Blender's type, its sockets for color and roughness, and what switches all

@@ -11,10 +11,8 @@ from numpy.typing import NDArray
 
 from mxeon.hosts.base import Array, Inputs
 from mxeon.hosts.cycles import tracing
-from mxeon.hosts.osl.points import IMAGE, side, statements
-from mxeon.hosts.osl.texts import columns_of, with_variables
-from mxeon.hosts.pairs import LAMP, SKY
-from mxeon.hosts.tilted_triangles import DISTANCE, HEIGHT, tilted_triangles
+from mxeon.hosts.osl.points import IMAGE, columns_of, side, statements, with_variables
+from mxeon.hosts.pairs import DISTANCE, HEIGHT, LAMP, SKY, tilted_triangles
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.scene import Scene
 

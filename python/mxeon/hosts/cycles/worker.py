@@ -155,7 +155,6 @@ def script_material(shader: str) -> Blender:
 
 
 def native_material(kind: str, inputs: Values) -> Blender:
-    """A material whose surface is a node of Blender's, with some of its inputs set."""
     material, node = surface_material(kind)
     for name, value in inputs.items():
         node.inputs[name].default_value = value
@@ -164,7 +163,6 @@ def native_material(kind: str, inputs: Values) -> Blender:
 
 
 def surface_material(kind: str) -> tuple[Blender, Blender]:
-    """A new material that holds one node of a kind, and that node."""
     material = bpy.data.materials.new("material")
     nodes = material.node_tree.nodes
     nodes.clear()
@@ -172,7 +170,6 @@ def surface_material(kind: str) -> tuple[Blender, Blender]:
 
 
 def connect(material: Blender, node: Blender) -> None:
-    """Make the first output of a node the surface of its material."""
     surface = material.node_tree.nodes.new("ShaderNodeOutputMaterial").inputs["Surface"]
     material.node_tree.links.new(node.outputs[0], surface)
 
@@ -189,7 +186,6 @@ def add_light(scene: Blender, direction: tuple[float, float, float]) -> None:
 
 
 def add_environment(scene: Blender, radiance: float) -> None:
-    """Surround the scene by a uniform `radiance`."""
     world = bpy.data.worlds.new("environment")
     world.node_tree.nodes["Background"].inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
     world.node_tree.nodes["Background"].inputs["Strength"].default_value = radiance

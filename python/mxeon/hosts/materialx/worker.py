@@ -77,8 +77,6 @@ def fail(reason: str) -> NoReturn:
 
 
 class ShownElement:
-    """A renderer with the shader of one element of a document."""
-
     def __init__(self, library: mx.Document, document: str, element: str) -> None:
         content = mx.createDocument()
         mx.readFromXmlFile(content, document)
@@ -130,7 +128,6 @@ class ShownElement:
 
 
 def open_renderer() -> mx_render_glsl.GlslRenderer:
-    """A renderer of float32 pixels, with a context of OpenGL."""
     renderer = mx_render_glsl.GlslRenderer.create(1, 1, mx_render.FLOAT)
     renderer.initialize()
     return renderer

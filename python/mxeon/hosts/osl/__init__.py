@@ -22,13 +22,19 @@ from numpy.typing import ArrayLike
 from mxeon.errors import InputError, NotRun
 from mxeon.hosts import base
 from mxeon.hosts.base import Array, Identity, Inputs
-from mxeon.hosts.osl.blender import Blender
 from mxeon.hosts.osl.carriers import prelude
-from mxeon.hosts.osl.kept import KeptTrees, keys_of
-from mxeon.hosts.osl.points import IMAGE, Column, row, statements
-from mxeon.hosts.osl.testshade import Testshade
-from mxeon.hosts.osl.texts import columns_of, indented, with_header, with_variables
-from mxeon.hosts.osl.trees import TreeRows, read_trees, whole_label, with_roots
+from mxeon.hosts.osl.engines import Blender, Testshade
+from mxeon.hosts.osl.points import (
+    IMAGE,
+    Column,
+    columns_of,
+    indented,
+    row,
+    statements,
+    with_header,
+    with_variables,
+)
+from mxeon.hosts.osl.trees import KeptTrees, TreeRows, keys_of, read_trees, whole_label, with_roots
 from mxeon.hosts.testrender.programs import VARIABLES
 from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
@@ -135,5 +141,4 @@ def _print(text: str) -> str:
 
 
 def _printed_closure(output: str) -> str:
-    """Statements that print a closure and drop it."""
     return _print(f"mxeon_text({output})") + f"    {output} = 0;\n"

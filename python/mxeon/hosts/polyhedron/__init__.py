@@ -18,9 +18,8 @@ from typing import ClassVar, TypeAlias
 import numpy as np
 
 from mxeon.errors import NotRun, install
-from mxeon.hosts.base import Array, Identity
+from mxeon.hosts.base import Array, Identity, RendererHost
 from mxeon.hosts.process import Worker
-from mxeon.hosts.renderer import RendererHost
 from mxeon.shaders.facets import polyhedron
 from mxeon.shaders.scene import Scene
 
@@ -53,7 +52,6 @@ class PolyhedronHost(RendererHost):
         self._picture = lru_cache(maxsize=PICTURES)(self._rendered)
 
     def identity(self) -> Identity:
-        """Name and version; the device is always the CPU."""
         try:
             self.worker.start()
         except NotRun as error:
@@ -73,7 +71,6 @@ class PolyhedronHost(RendererHost):
     def _material(
         self, title: str, color: Sequence[float] | str, roughness: float | str
     ) -> dict[str, object]:
-        """Properties of a material with these inputs."""
         inputs = {"{color}": color, "{roughness}": roughness}
         return {
             name: inputs.get(value, value) if isinstance(value, str) else value
@@ -96,7 +93,6 @@ class PolyhedronHost(RendererHost):
         return picture
 
     def _ask(self, **request: object) -> Array:
-        """The array that the worker makes of a request."""
         self.identity()
         output = self._folder / "output.npy"
         output.unlink(missing_ok=True)
@@ -116,7 +112,6 @@ class PolyhedronHost(RendererHost):
         return f"MXEON_{self.name.upper()}_PYTHON"
 
     def _missing(self) -> str:
-        """How to install the renderer."""
         return (
             f"{self.name}: not installed: {install(self.name)}, or name an interpreter "
             f"that has it in {self._variable()}"

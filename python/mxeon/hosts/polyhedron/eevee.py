@@ -32,11 +32,9 @@ class Host(PolyhedronHost):
     }
 
     def _interpreter(self) -> Path:
-        """Path of the Python that has Blender."""
         return interpreter()
 
     def _missing(self) -> str:
-        """How to install Blender."""
         return (
             "eevee: no Blender: pip install bpy==5.0.1 in an environment of Python 3.11 and name "
             "its interpreter in MXEON_CYCLES_PYTHON"

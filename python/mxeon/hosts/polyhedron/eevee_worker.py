@@ -75,7 +75,6 @@ def add_light(scene: Blender, direction: list[float]) -> None:
 
 
 def add_environment(scene: Blender, radiance: float) -> None:
-    """Surround the scene by a uniform radiance, or by darkness."""
     world = bpy.data.worlds.new("environment")
     inputs = world.node_tree.nodes["Background"].inputs
     inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)

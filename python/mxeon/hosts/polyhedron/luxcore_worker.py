@@ -42,7 +42,6 @@ RENDERER = {
 
 
 def properties(values: Values) -> LuxCore:
-    """Properties as LuxCore takes them."""
     result = pyluxcore.Properties()
     for name, value in values.items():
         result.Set(pyluxcore.Property(name, value))
@@ -66,7 +65,6 @@ def camera(size: int) -> Values:
 
 
 def define(kind: str, values: Values) -> LuxCore:
-    """Properties of one part of a scene."""
     return properties({f"scene.{kind}.{name}": value for name, value in values.items()})
 
 
@@ -77,7 +75,6 @@ def build(
     light: list[float] | None,
     environment: float | None,
 ) -> LuxCore:
-    """The scene: the mesh with a material on it, and a light."""
     data, scene = np.load(mesh), pyluxcore.Scene()
     vertices = [tuple(each) for each in data["vertices"].tolist()]
     triangles = [tuple(each) for each in data["triangles"].tolist()]

@@ -91,7 +91,6 @@ class Canvas:
         return image[::-1, :, :3]
 
     def _allocate(self, size: int) -> None:
-        """Give it colors and depths."""
         buffers = (c_uint * 2)()
         self._call("glGenFramebuffers", None, 1, byref(self._name))
         self._call("glBindFramebuffer", None, FRAME, self._name)
@@ -110,8 +109,6 @@ class Canvas:
 
 
 class Stage:
-    """A mesh, a distant light and a dome, drawn by Storm."""
-
     def __init__(self, canvas: Canvas) -> None:
         self._canvas, self._mesh_path = canvas, ""
         self._stage = usd.Usd.Stage.CreateInMemory()
@@ -161,7 +158,6 @@ class Stage:
         return self._canvas.pixels()
 
     def _set_mesh(self, path: str) -> None:
-        """Take the quads in a file."""
         if path == self._mesh_path:
             return
         data, self._mesh_path = np.load(path), path
@@ -174,7 +170,6 @@ class Stage:
         self._texcoord.Set(usd.Vt.Vec2fArray.FromNumpy(data["texcoord"]))
 
     def _set_material(self, document: str, name: str) -> None:
-        """Take a material of a document."""
         references = self._look.GetReferences()
         references.ClearReferences()
         references.AddReference(document, "/MaterialX")
@@ -187,7 +182,6 @@ class Stage:
     def _set_lights(
         self, light: tuple[float, float, float] | None, environment: float | None
     ) -> None:
-        """Light it from a direction, or from everywhere."""
         self._sun.GetPrim().SetActive(light is not None)
         self._dome.GetPrim().SetActive(environment is not None)
         if light is not None:

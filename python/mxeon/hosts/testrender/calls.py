@@ -13,7 +13,6 @@ SCALARS = ("float", "int")
 
 
 def texture(argument: str) -> str:
-    """Name of the file with the values of an argument."""
     return f"{argument}.tif"
 
 

@@ -16,8 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import fragment
 from mxeon.hosts.base import Array, Identity, Inputs
-from mxeon.hosts.osl.points import IMAGE, side, statements
-from mxeon.hosts.osl.texts import columns_of, with_header, with_variables
+from mxeon.hosts.osl.points import IMAGE, columns_of, side, statements, with_header, with_variables
 from mxeon.hosts.pairs import LAMP, SKY, PairHost
 from mxeon.hosts.testrender import calls, scenes
 from mxeon.hosts.testrender.programs import find_program, output, version

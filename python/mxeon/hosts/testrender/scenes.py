@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.hosts.base import Array
-from mxeon.hosts.pair_frames import CORNERS, frames, unit
+from mxeon.hosts.pairs import CORNERS, frames, unit
 
 Vectors = NDArray[np.float64]
 

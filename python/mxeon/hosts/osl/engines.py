@@ -9,9 +9,10 @@ from tempfile import TemporaryDirectory
 from mxeon.errors import ShaderError
 from mxeon.hosts.cycles import tracing
 from mxeon.hosts.cycles.process import interpreter
-from mxeon.hosts.osl.carriers import HOLDOUT
+from mxeon.hosts.osl.carriers import DEBUG, HOLDOUT
 from mxeon.hosts.osl.points import side
 from mxeon.hosts.process import Worker
+from mxeon.hosts.testrender.programs import find_program, output, version
 from mxeon.shaders.scene import Scene
 
 DARK = Scene("dark")
@@ -35,16 +36,13 @@ class Blender:
 
     @property
     def version(self) -> str:
-        """Blender and its version."""
         self._worker.start()
         return f"Blender {self._worker.version}"
 
     def folder(self) -> TemporaryDirectory[str]:
-        """Folder for the files of one run."""
         return TemporaryDirectory(dir=self._temporary.name)
 
     def printed(self, folder: Path, text: str, count: int) -> list[str]:
-        """Lines that a shader prints, run once for each of so many points."""
         shader = folder / "shader.osl"
         shader.write_text(text, encoding="utf-8")
         frame = tracing.request(DARK, ()) | {"body": "plane", "size": side(count)}
@@ -59,4 +57,36 @@ class Blender:
 
     def close(self) -> None:
         self._worker.close()
+        self._temporary.cleanup()
+
+
+HOST = "osl"
+ROOTED = (1, 15, 2)  # the first OSL whose closure takes the root of Zeltner's roughness
+
+
+class Testshade:
+    """oslc and testshade, on PATH or named by variables; see `mxeon.hosts.osl.engines.Blender`."""
+
+    carrier = DEBUG
+    place = "u, v"
+    version = "testshade"
+
+    def __init__(self) -> None:
+        self._programs = find_program("oslc", HOST), find_program("testshade", HOST)
+        words = version(self._programs[0]).split()[-1]
+        self.rooted = tuple(map(int, words.split(".")[:3])) >= ROOTED
+        self._temporary = TemporaryDirectory(prefix="mxeon-osl-")
+
+    def folder(self) -> TemporaryDirectory[str]:
+        return TemporaryDirectory(dir=self._temporary.name)
+
+    def printed(self, folder: Path, text: str, count: int) -> list[str]:
+        oslc, testshade = self._programs
+        (folder / "shader.osl").write_text(text, encoding="utf-8")
+        output([oslc, "-q", "-o", "shader.oso", "shader.osl"], folder, ShaderError, HOST)
+        size = str(side(count))
+        command = [testshade, "-t", "1", "--res", size, size, "--center", "shader"]
+        return output(command, folder, ShaderError, HOST).splitlines()
+
+    def close(self) -> None:
         self._temporary.cleanup()
