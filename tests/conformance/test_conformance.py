@@ -39,6 +39,7 @@ from mxeon.conformance.text.sources import TEXT_ONLY
 from mxeon.errors import InputError, NotRun, ShaderError
 from mxeon.hosts import HOSTS
 from mxeon.hosts.base import Host, Identity
+from mxeon.jobs import dask
 from mxeon.models import table as reference
 from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.nodes import INVERSIONS, connection_text, document_text, node_text

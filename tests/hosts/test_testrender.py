@@ -25,8 +25,8 @@ from mxeon.conformance.run.plan import make_plan
 from mxeon.errors import InputError, NotRun, ShaderError
 from mxeon.hosts import base, pairs
 from mxeon.hosts.base import RendererWarning
-from mxeon.hosts.testrender import calls, programs, scenes
-from mxeon.hosts.testrender.renderer import Host
+from mxeon.hosts.testrender import programs, scenes
+from mxeon.hosts.testrender.renderer import Host, call_text
 from mxeon.models import eon_brdf
 from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.nodes import document_text, input_text, node_text
@@ -188,7 +188,7 @@ class Named(base.Host):
 
 
 def test_a_called_function_reads_a_texel_for_each_argument():
-    text = calls.text("float twice(float x) { return 2.0 * x; }", "twice", [("float", "x")])
+    text = call_text("float twice(float x) { return 2.0 * x; }", "twice", [("float", "x")])
     assert 'float mxeon_x = (float) (float) texture("x.tif", u, v' in text
     assert "result = (color) twice(mxeon_x);" in text
 

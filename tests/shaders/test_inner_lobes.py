@@ -10,7 +10,7 @@ from mxeon.conformance.reference import Host as Reference
 from mxeon.errors import InputError
 from mxeon.hosts import open_host
 from mxeon.hosts.base import LobeWarning
-from mxeon.hosts.cycles import tracing
+from mxeon.hosts.cycles import process
 from mxeon.shaders.generation import generate
 from mxeon.shaders.inner_lobes import inner_lobes
 from mxeon.shaders.nodes import document_text
@@ -88,11 +88,11 @@ def test_a_weight_that_a_graph_computes_counts_as_any():
     assert inner_lobes(generate(text, "glsl")[0]) == ("subsurface",)
 
 
-@pytest.mark.parametrize("scene, samples", [(SIDE, 1), (FURNACE, tracing.ENVIRONMENT_SAMPLES)])
+@pytest.mark.parametrize("scene, samples", [(SIDE, 1), (FURNACE, process.ENVIRONMENT_SAMPLES)])
 def test_without_such_lobes_cycles_samples_as_before(scene, samples):
-    request = tracing.request(scene, ())
+    request = process.request(scene, ())
     assert (request["samples"], request["bounces"], request["body"]) == (samples, 1, "points")
-    assert not tracing.approximations(replace(scene, paths=Paths(1, 1)), ())
+    assert not process.approximations(replace(scene, paths=Paths(1, 1)), ())
 
 
 @pytest.mark.parametrize(
@@ -100,13 +100,13 @@ def test_without_such_lobes_cycles_samples_as_before(scene, samples):
     [
         (("subsurface",), Paths(), ""),
         (("subsurface",), Paths(1), "needs at least 16 samples of a pixel; with 1"),
-        (("subsurface",), Paths(tracing.FEWEST_SAMPLES, 1), ""),
+        (("subsurface",), Paths(process.FEWEST_SAMPLES, 1), ""),
         (("transmission",), Paths(None, 1), "needs 8 bounces; with 1"),
         (("transmission", "volume"), Paths(64, 8), ""),
     ],
 )
 def test_paths_that_are_too_few_are_named(lobes, paths, words):
-    reasons = tracing.approximations(replace(SIDE, paths=paths), lobes)
+    reasons = process.approximations(replace(SIDE, paths=paths), lobes)
     assert len(reasons) == bool(words) and words in "".join(reasons)
 
 

@@ -7,6 +7,7 @@ OSL files, `worker.py` renders them there, and this half reads the float32 pictu
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
@@ -19,12 +20,20 @@ from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import ImageError, InputError, NotRun, ShaderError
 from mxeon.hosts.base import Array, Identity, Inputs
-from mxeon.hosts.cycles import calls, closures, graphs, pairs, tracing
+from mxeon.hosts.calls import GRAPH
+from mxeon.hosts.cycles import process
 from mxeon.hosts.cycles.process import interpreter
-from mxeon.hosts.osl.points import with_header
-from mxeon.hosts.pairs import PairHost
+from mxeon.hosts.osl.points import (
+    IMAGE,
+    columns_of,
+    side,
+    statements,
+    with_header,
+    with_variables,
+)
+from mxeon.hosts.pairs import DISTANCE, HEIGHT, LAMP, SKY, PairHost, tilted_triangles
 from mxeon.hosts.process import Worker
-from mxeon.io.images import read_image
+from mxeon.io.images import read_image, write_image
 from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import inner_lobes
@@ -42,6 +51,41 @@ TEXCOORD = """{
     float u = 0.5 + atan2(N[0], N[2]) / M_2PI;
     float v = 0.5 + atan2(N[1], hypot(N[0], N[2])) / M_PI;
 """
+
+
+SKY_SAMPLES = 64  # paths of a pixel that shows a sky
+EMITTER = Scene("emitter")  # without light, for what shines by itself
+CALL = """#include "{source}"
+
+shader call(output closure color out = 0)
+{{
+    float s = 0.5 + 0.5 * P[0];
+    float t = 0.5 - 0.5 * P[1];
+{reads}
+    color value = {function}({names});
+    out = value * emission();
+}}
+"""
+READ = '    {type} {name} = texture("{image}", s, t, 0.0, 0.0, 0.0, 0.0, "interp", "closest");'
+# The graph of a generated shader as a function: the functions before the shader stay as they are; one
+# more repeats the statements before the shader's uniform EDF, and returns its color.
+GRAPH_FUNCTION = "mxeon_graph"
+# Calls with the arguments that MaterialX's generated text has.
+_SURFACE = "N, dPdu"
+CLOSURES = {
+    "oren_nayar_diffuse_bsdf": "N, color(0.5), 0.5",
+    "burley_diffuse_bsdf": "N, color(0.5), 0.5",
+    "translucent_bsdf": "N, color(0.5)",
+    "dielectric_bsdf": f'{_SURFACE}, color(1.0), color(0.0), 0.5, 0.5, 1.5, "ggx"',
+    "conductor_bsdf": f'{_SURFACE}, 0.5, 0.5, color(0.2), color(3.9), "ggx"',
+    "generalized_schlick_bsdf": f"{_SURFACE}, color(1.0), color(0.0), 0.5, 0.5, color(0.04), "
+    'color(1.0), 5.0, "ggx"',
+    "sheen_bsdf": "N, color(0.5), 0.5",
+    "chiang_hair_bsdf": f"{_SURFACE}, color(1.0), color(1.0), color(1.0), 1.55, 0.1, 0.05, 0.2, 0.1, 0.05, "
+    "0.2, 0.5, vector(0.0)",
+    "subsurface_bssrdf": "N, color(0.5), color(0.1), 0.0",
+    "layer": "sheen_bsdf(N, color(0.5), 0.5), oren_nayar_diffuse_bsdf(N, color(0.5), 0.5)",
+}
 
 
 class Host(PairHost):
@@ -75,7 +119,7 @@ class Host(PairHost):
         """Picture of the sphere with an OSL shader on it, float32, under a uniform environment at most.
 
         Exact but for float32 under a distant light. Under an environment a pixel is a mean of
-        `tracing.ENVIRONMENT_SAMPLES` samples, always the same; at roughness 1 its error is 2e-3 rms, 0.1 at
+        `process.ENVIRONMENT_SAMPLES` samples, always the same; at roughness 1 its error is 2e-3 rms, 0.1 at
         the rim, and 2e-5 in the mean over the sphere. NotRun where Cycles lacks a closure.
         """
         self.refuse_shape(scene)
@@ -85,7 +129,7 @@ class Host(PairHost):
         return self._picture(scene, inner_lobes(shader), text=text)
 
     def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
-        return tracing.approximations(scene, inner_lobes(shader))
+        return process.approximations(scene, inner_lobes(shader))
 
     def evaluate(
         self,
@@ -98,21 +142,39 @@ class Host(PairHost):
         output: str = "response",
         irradiance: Array | None = None,
     ) -> Array:
-        if branch != graphs.BRANCH:
+        if branch != GRAPH:
             return super().evaluate(
                 shader, wo, wi, inputs, branch, output=output, irradiance=irradiance
             )
-        source, arguments = graphs.graph_function(shader, inputs)
-        return self.execute(with_header(source, shader), graphs.FUNCTION, *arguments)
+        source, arguments = _graph_function(shader, inputs)
+        return self.execute(with_header(source, shader), GRAPH_FUNCTION, *arguments)
 
     def _pixels(
         self, shader: Shader, wo: Array, wi: Array, inputs: Inputs, last: str, light: str
     ) -> NDArray[np.float64]:
+        scene = tilted_triangles(wo, wi, side(len(wo)))
+        columns = {
+            name: replace(each, values=scene.turned(each.rows)) if each.directed else each
+            for name, each in columns_of(shader, inputs).items()
+        }
         with self._folder() as name:
             folder = Path(name)
-            text, frame, scale = pairs.request(folder, shader, wo, wi, inputs, last, light)
+            block = statements(columns, folder / IMAGE, len(wo), scene.place)
+            text = with_variables(shader, block, lambda output: last.format(output=output))
+            corners = folder / "triangles.npy"
+            np.save(corners, scene.corners.astype(np.float32))
+            frame: dict[str, object] = {
+                **process.request(Scene("pairs"), ()),
+                "size": side(len(wo)),
+            }
+            frame |= {"radius": 0.5 * HEIGHT, "width": scene.width, "triangles": str(corners)}
+            if light == LAMP:
+                frame["lamp"] = DISTANCE
+            if light == SKY:
+                frame |= {"samples": SKY_SAMPLES, "environment": 1.0}
             pixels = self._render(folder, with_header(text, shader), **frame)
-        return np.asarray(pixels.reshape(-1, 3)[: len(wo)].astype(np.float64) / scale)
+        values = np.asarray(pixels.reshape(-1, 3)[: len(wo)].astype(np.float64))
+        return values / (DISTANCE**2 * scene.irradiance) if light == LAMP else values
 
     def blender_node(self, kind: str, inputs: Mapping[str, Socket], scene: Scene) -> Array:
         """Picture of the sphere with a Blender node, of a type, with inputs by the names of its sockets."""
@@ -122,21 +184,53 @@ class Host(PairHost):
         return self.execute(functions.expanded(self._file(function)), function, *arguments)
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
-        with self._folder() as name:
-            folder = Path(name)
-            text, frame, count = calls.request(folder, source, function, *arguments)
-            pixels = self._render(folder, text, **frame)
-        return pixels.reshape(-1, 3)[:count]
+        """Values of a function: the light of a plane, whose shader reads the arguments pixel by pixel.
+
+        It reads images by position and without a filter, so that every bit of a float32 survives.
+        """
+        types = [kind for kind, _ in functions.parameters(source, function)]
+        if len(types) != len(arguments):
+            raise InputError(f"{function} takes {len(types)} arguments; got {len(arguments)}")
+        columns = [
+            np.asarray(values, np.float32).reshape(-1, 1 if kind == "float" else 3)
+            for kind, values in zip(types, arguments, strict=True)
+        ]
+        count = max(map(len, columns))
+        size = side(count)
+        names = [f"argument{index}" for index in range(len(types))]
+        with self._folder() as place:
+            folder = Path(place)
+            reads = []
+            for kind, name, column in zip(types, names, columns, strict=True):
+                image, pixels = (
+                    folder / f"{name}.exr",
+                    np.zeros((size * size, column.shape[1]), "f4"),
+                )
+                pixels[:count] = column
+                write_image(image, pixels.reshape(size, size, -1), {})
+                reads.append(READ.format(type=kind, name=name, image=image.as_posix()))
+            path = folder / "functions.osl"
+            path.write_text(source, encoding="utf-8")
+            text = CALL.format(
+                source=path.as_posix(),
+                reads="\n".join(reads),
+                function=function,
+                names=", ".join(names),
+            )
+            frame = {**process.request(EMITTER, ()), "size": size, "radius": 2.0}
+            return self._render(folder, text, **frame).reshape(-1, 3)[:count]
 
     def closures(self) -> dict[str, str]:
         """For each of MaterialX's closures, "" if Cycles renders it, else its reason not to."""
-        return {name: self._reason(name) for name in closures.CALLS}
+        return {name: self._reason(name) for name in CLOSURES}
 
     def _reason(self, closure: str) -> str:
-        frame = tracing.request(replace(FRONT, size=4), ())
+        frame = process.request(replace(FRONT, size=4), ())
+        call = f"{closure}({CLOSURES[closure]})"
+        text = f"shader asked(output closure color out = 0)\n{{\n    out = {call};\n}}\n"
         try:
             with self._folder() as folder:
-                self._render(Path(folder), closures.text(closure), **frame)
+                self._render(Path(folder), text, **frame)
         except (NotRun, ShaderError) as error:
             return str(error)
         return ""
@@ -153,7 +247,7 @@ class Host(PairHost):
         inputs: tuple[tuple[str, Socket], ...] = (),
     ) -> Array:
         """Picture of the sphere with an OSL shader or a node of Blender's on it; read-only."""
-        frame = tracing.request(scene, lobes)
+        frame = process.request(scene, lobes)
         with self._folder() as folder:
             if text:
                 pixels = self._render(Path(folder), text, **frame)
@@ -199,3 +293,48 @@ def _on_sphere(text: str) -> str:
     """A generated shader with the sphere's texture coordinates."""
     head, brace, body = text.rpartition("\n)\n{\n")
     return head + brace + TEXCOORD + body + "}"
+
+
+def _graph_function(shader: Shader, inputs: Inputs) -> tuple[str, list[ArrayLike]]:
+    """Text that defines GRAPH_FUNCTION, and the values of its arguments.
+
+    `inputs` has values by path or by name; others have the document's. InputError without a uniform EDF.
+    """
+    text = shader.stages["pixel"]
+    head, _, body = text.rpartition("\n)\n{\n")
+    call = re.search(r"\n *EDF \w+ = uniform_edf\((\w+)\);", "\n" + body)
+    if not call:
+        raise InputError(
+            f"element {shader.element!r} must call a uniform EDF; its shader calls none"
+        )
+    statements = ("\n" + body)[: call.start()]
+    before = head[: head.rindex("\nshader ")]
+    words = set(re.findall(r"\w+", statements + call[1]))
+    count = max([np.shape(value)[0] for value in inputs.values() if np.ndim(value)], default=1)
+    parameters, locals_ = ["float mxeon_row"], []  # of a graph that reads nothing
+    arguments: list[ArrayLike] = [np.zeros(count)]
+    for port in shader.inputs:
+        if port.name not in words:
+            continue
+        key = port.path if port.path in inputs else port.path.rsplit("/", 1)[-1]
+        value = np.asarray(inputs.get(key, port.value), np.float32)
+        if port.type == "vector2":  # which OSL's textures do not have
+            parts = [f"{port.name}_{axis}" for axis in "xy"]
+            parameters += [f"float {part}" for part in parts]
+            locals_.append(f"    vector2 {port.name} = vector2({', '.join(parts)});")
+            arguments += [value[..., 0], value[..., 1]]
+        else:
+            kind = {"color3": "color", "vector3": "vector"}.get(port.type, port.type)
+            parameters.append(f"{kind} {port.name}")
+            arguments.append(value)
+    lines = [
+        before,
+        f"color {GRAPH_FUNCTION}({', '.join(parameters)})",
+        "{",
+        *locals_,
+        statements,
+        f"    return {call[1]};",
+        "}",
+        "",
+    ]
+    return "\n".join(lines), arguments

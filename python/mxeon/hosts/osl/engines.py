@@ -7,7 +7,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from mxeon.errors import ShaderError
-from mxeon.hosts.cycles import tracing
+from mxeon.hosts.cycles import process
 from mxeon.hosts.cycles.process import interpreter
 from mxeon.hosts.osl.carriers import DEBUG, HOLDOUT
 from mxeon.hosts.osl.points import side
@@ -30,7 +30,7 @@ class Blender:
     def __init__(self) -> None:
         python = interpreter("osl")
         self._temporary = TemporaryDirectory(prefix="mxeon-osl-")
-        script = Path(tracing.__file__).with_name("worker.py")
+        script = Path(process.__file__).with_name("worker.py")
         log = Path(self._temporary.name, "log.txt")
         self._worker = Worker("osl", python, script, log, SECONDS)
 
@@ -45,7 +45,7 @@ class Blender:
     def printed(self, folder: Path, text: str, count: int) -> list[str]:
         shader = folder / "shader.osl"
         shader.write_text(text, encoding="utf-8")
-        frame = tracing.request(DARK, ()) | {"body": "plane", "size": side(count)}
+        frame = process.request(DARK, ()) | {"body": "plane", "size": side(count)}
         reply = self._worker.ask(output=str(folder / "output.exr"), shader=str(shader), **frame)
         lines = self._worker.printed()
         if "error" in reply:

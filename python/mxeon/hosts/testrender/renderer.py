@@ -6,6 +6,7 @@ Each pixel of a picture shows a pair of directions of its own; see `scenes`. tes
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -18,7 +19,7 @@ from mxeon.hosts import fragment
 from mxeon.hosts.base import Array, Identity, Inputs
 from mxeon.hosts.osl.points import IMAGE, columns_of, side, statements, with_header, with_variables
 from mxeon.hosts.pairs import LAMP, SKY, PairHost
-from mxeon.hosts.testrender import calls, scenes
+from mxeon.hosts.testrender import scenes
 from mxeon.hosts.testrender.programs import find_program, output, version
 from mxeon.io.images import read_image, write_image
 from mxeon.shaders import functions
@@ -29,6 +30,12 @@ HELPERS = {
     "mxeon_light": "shader mxeon_light() { Ci = emission(); }",
     "mxeon_sky": "shader mxeon_sky() { Ci = background(); }",
 }
+
+# The shader that evaluates a function at every point of the grid, with a texel for each argument.
+SHADER = "mxeon_call"
+OPTIONS = ("--center", "-d", "float", SHADER, "-o", "result")
+TEXEL = '{kind} mxeon_{name} = ({kind}) {read} texture("{file}", u, v, 0.0, 0.0, 0.0, 0.0, "interp", "closest");'
+SCALARS = ("float", "int")
 
 
 class Host(PairHost):
@@ -72,15 +79,15 @@ class Host(PairHost):
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
         parameters = functions.parameters(source, function)
         kinds = {name: kind for kind, name in parameters}
-        self._compile(calls.SHADER, calls.text(source, function, parameters))
+        self._compile(SHADER, call_text(source, function, parameters))
         values = {name: (kinds[name], value) for name, value in zip(kinds, arguments, strict=True)}
         columns = fragment.columns(values)
         count, (width, height) = fragment.frame(columns)
         for name, rows in columns.items():
             image = fragment.texels(rows, (width, height))
-            write_image(self._folder / calls.texture(name), image, {})
+            write_image(self._folder / f"{name}.tif", image, {})
         size = ["-t", "1", "--res", str(width), str(height)]
-        pixels = self._image([find_program("testshade"), *size, *calls.OPTIONS])
+        pixels = self._image([find_program("testshade"), *size, *OPTIONS])
         return pixels.reshape(-1, 3)[:count]
 
     def close(self) -> None:
@@ -103,3 +110,20 @@ class Host(PairHost):
             return read_image(picture).astype(np.float64)
         except ValueError as error:
             raise NotRun(f"testrender: {error}") from None
+
+
+def call_text(source: str, function: str, parameters: Sequence[tuple[str, str]]) -> str:
+    """Text of a shader whose output `result` is a function of its textures."""
+    reads = [
+        TEXEL.format(
+            kind=kind,
+            name=name,
+            read="(float)" if kind in SCALARS else "(color)",
+            file=f"{name}.tif",
+        )
+        for kind, name in parameters
+    ]
+    names = ", ".join(f"mxeon_{name}" for _, name in parameters)
+    lines = [*reads, f"result = (color) {function}({names});"]
+    body = "\n".join(f"    {line}" for line in lines)
+    return f"{source}\nshader {SHADER}(output color result = 0)\n{{\n{body}\n}}\n"
