@@ -126,8 +126,8 @@ def test_what_the_renderer_warns_of_is_passed_on(host):
 
 def random_pairs(count):
     """Pairs that a scene shows, of all angles between view and light."""
-    pairs = np.random.default_rng(1).normal(size=(2, count, 3))
-    wo, wi = pairs / np.linalg.norm(pairs, axis=2, keepdims=True)
+    drawn = np.random.default_rng(1).normal(size=(2, count, 3))
+    wo, wi = drawn / np.linalg.norm(drawn, axis=2, keepdims=True)
     shown = pairs.visible(wo, wi)
     return wo[shown], wi[shown]
 

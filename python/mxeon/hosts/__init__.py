@@ -46,14 +46,7 @@ BROWSER = ("WebGL2", "WebGPU")
 
 HOSTS = (
     # Its pictures are exact and take no time.
-    Row(
-        "gl",
-        "glsl",
-        "mxeon.hosts.gl",
-        "pairs",
-        scenes=(SIDE, BACK, FURNACE),
-        surfaces=True,
-    ),
+    Row("gl", "glsl", "mxeon.hosts.gl", "pairs", scenes=(SIDE, BACK, FURNACE), surfaces=True),
     Row("webgl", "essl", "mxeon.hosts.webgl", "pairs", scenes=(SIDE, BACK, FURNACE)),
     Row("vulkan", "vulkan", "mxeon.hosts.vulkan", "pairs"),
     Row("wgsl", "wgsl", "mxeon.hosts.wgsl", "pairs"),
@@ -78,14 +71,7 @@ HOSTS = (
         rounding=2.0**-10,  # half floats, cut off
     ),
     # Its environment has noise. No closure of Cycles is QON for s < 0.
-    Row(
-        "cycles",
-        "osl",
-        "mxeon.hosts.cycles",
-        "pictures",
-        scenes=(SIDE, BACK),
-        front_lit=("qon",),
-    ),
+    Row("cycles", "osl", "mxeon.hosts.cycles", "pictures", scenes=(SIDE, BACK), front_lit=("qon",)),
     Row(
         "cycles-native",
         "",

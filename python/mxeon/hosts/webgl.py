@@ -63,24 +63,79 @@ UNIFORMS = {
 IMAGE = {"uv_scale": (1.0, 1.0), "uv_offset": (0.0, 0.0)}  # of every image that is no atlas
 
 
-class Host(FragmentHost):
-    """A browser, started anew after it died; a frame may take `limit` seconds.
+class Chromium:
+    """A headless browser with a page, started by the first request and again after it died.
 
-    Playwright wants a thread without an event loop, and always the same: it gets one of its own.
+    Playwright wants a thread without an event loop, and always the same: it gets one of its own. A
+    request that takes `limit` seconds ends the browser.
     """
+
+    flags = FLAGS
+
+    def __init__(self, host: str, limit: float) -> None:
+        if sync_api is None:
+            raise NotRun(f"{host}: Playwright is not installed; {install('webgl')}")
+        self._host = host
+        self._program = program(host)
+        self._limit = 1000.0 * limit
+        self._page: Page = None
+        self._stack = ExitStack()
+        self._thread = ThreadPoolExecutor(max_workers=1)
+
+    def close(self) -> None:
+        """End the browser; the next request starts another."""
+        self._thread.submit(self._stop).result()
+
+    def _load(self) -> None:
+        """Load the page."""
+        self._page.set_content(PAGE.format(Path(__file__).with_suffix(".js").read_text("utf-8")))
+
+    def _ask(
+        self, function: str, job: dict[str, object] | None = None, file: Path | None = None
+    ) -> Answer:
+        """Answer of a function of the page, with the version of the browser."""
+        answer = self._thread.submit(self._answer, function, job, file).result()
+        if "failed" in answer:
+            raise NotRun(f"{self._host}: {answer['failed']}")
+        return answer
+
+    def _answer(self, function: str, job: dict[str, object] | None, file: Path | None) -> Answer:
+        try:
+            if self._page is None:
+                self._start()
+            if file is not None:
+                self._page.set_input_files("input", file)
+            handle = self._page.wait_for_function(function, arg=job, timeout=self._limit)
+            answer: Answer = handle.json_value()
+            return answer | {"browser": self._page.context.browser.version}
+        except sync_api.Error as error:
+            self._stop()
+            return {"failed": f"the browser fails; {error.message.splitlines()[0]}"}
+
+    def _start(self) -> None:
+        playwright = self._stack.enter_context(sync_api.sync_playwright())
+        browser = self._stack.enter_context(
+            playwright.chromium.launch(
+                executable_path=self._program, args=self.flags, chromium_sandbox=os.geteuid() != 0
+            )
+        )
+        self._page = browser.new_page()
+        self._load()
+
+    def _stop(self) -> None:
+        self._page = None
+        self._stack.close()
+
+
+class Host(Chromium, FragmentHost):
+    """WebGL2 in a browser; a frame may take `limit` seconds."""
 
     name = "webgl"
     target = "essl"
 
     def __init__(self, limit: float = 300.0) -> None:
-        if sync_api is None:
-            raise NotRun(f"webgl: Playwright is not installed; {install('webgl')}")
-        self._program = program()
-        self._limit = 1000.0 * limit
-        self._page: Page = None
+        super().__init__(self.name, limit)
         self._points = lru_cache(maxsize=POINTS)(self._capture)
-        self._stack = ExitStack()
-        self._thread = ThreadPoolExecutor(max_workers=1)
         # Ask for the device at once: there may be no WebGL2.
         try:
             self._ask("identify")
@@ -90,7 +145,7 @@ class Host(FragmentHost):
 
     def identity(self) -> Identity:
         answer = self._ask("identify")
-        return Identity(self.name, f"Chromium {answer['version']}, WebGL2", answer["device"])
+        return Identity(self.name, f"Chromium {answer['browser']}, WebGL2", answer["device"])
 
     def picture(self, shader: Shader, scene: Scene) -> Array:
         self.refuse_paths(scene)
@@ -103,9 +158,6 @@ class Host(FragmentHost):
                 shader.stages["vertex"], captured, scene.size, scene.shape
             )
         return raster.picture(self._draw(stages, uniforms, textures, frame), scene)
-
-    def close(self) -> None:
-        self._thread.submit(self._stop).result()
 
     def _evaluate(
         self,
@@ -163,42 +215,6 @@ class Host(FragmentHost):
         if "refused" in answer:
             raise ShaderError(f"webgl: {answer['refused'].strip()}")
         return base64.b64decode(answer["bytes"])
-
-    def _ask(
-        self, function: str, job: dict[str, object] | None = None, file: Path | None = None
-    ) -> Answer:
-        """Answer of a function of the page; a browser that dies or hangs is ended."""
-        answer = self._thread.submit(self._answer, function, job, file).result()
-        if "failed" in answer:
-            raise NotRun(f"webgl: {answer['failed']}")
-        return answer
-
-    def _answer(self, function: str, job: dict[str, object] | None, file: Path | None) -> Answer:
-        try:
-            if self._page is None:
-                self._start()
-            if file is not None:
-                self._page.set_input_files("input", file)
-            handle = self._page.wait_for_function(function, arg=job, timeout=self._limit)
-            answer: Answer = handle.json_value() | {"version": self._page.context.browser.version}
-            return answer
-        except sync_api.Error as error:
-            self._stop()
-            return {"failed": f"the browser fails; {error.message.splitlines()[0]}"}
-
-    def _start(self) -> None:
-        playwright = self._stack.enter_context(sync_api.sync_playwright())
-        browser = self._stack.enter_context(
-            playwright.chromium.launch(
-                executable_path=self._program, args=FLAGS, chromium_sandbox=os.geteuid() != 0
-            )
-        )
-        self._page = browser.new_page()
-        self._page.set_content(PAGE.format(Path(__file__).with_suffix(".js").read_text("utf-8")))
-
-    def _stop(self) -> None:
-        self._page = None
-        self._stack.close()
 
 
 def program(host: str = "webgl") -> str:

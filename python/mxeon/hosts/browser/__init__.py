@@ -8,30 +8,27 @@ inside the browser serves: nothing is bundled, and nothing leaves the machine.
 from __future__ import annotations
 
 import base64
+import inspect
 import json
+import math
 import os
-from collections.abc import Mapping
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.errors import NotRun, install
+from mxeon.errors import NotRun
 from mxeon.hosts import webgl
+from mxeon.hosts.base import Array, Identity, RendererHost
 from mxeon.hosts.webgl import Answer, Page
 from mxeon.shaders.library import data_folder
-
-try:
-    from playwright import sync_api
-except ImportError:
-    sync_api = None
+from mxeon.shaders.scene import Scene
 
 MODULES = "MXEON_NODE_MODULES"  # environment variable that names another node_modules
 ORIGIN = "https://renderers.invalid/"  # a secure origin, without which there is no WebGPU
-FLAGS = (*webgl.FLAGS, "--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader")
 HTML = """<!doctype html><script type="importmap">{imports}</script>
 <script type="module">
 import * as page from "/page.js";
@@ -70,15 +67,15 @@ def package_version(folder: Path, package: str) -> str:
     return version
 
 
-class Browser:
-    """A page with a renderer, started by the first request and again after it died.
+class Browser(webgl.Chromium):
+    """A page with a renderer.
 
-    Playwright wants a thread without an event loop, and always the same: it gets one of its own.
     `page` is an ES module that exports `draw(job)`, whose answer has `pixels` or `failed`. `imports`
     maps names in the page to paths in `modules`, the folder node_modules; `assets` are PNG files that
-    the renderer would load from the network, by address. A request that takes `limit` seconds ends the
-    browser.
+    the renderer would load from the network, by address.
     """
+
+    flags = (*webgl.FLAGS, "--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader")
 
     def __init__(
         self,
@@ -90,57 +87,24 @@ class Browser:
         assets: Mapping[str, bytes] | None = None,
         limit: float = LIMIT,
     ) -> None:
-        if sync_api is None:
-            raise NotRun(f"{host}: Playwright is not installed; {install('webgl')}")
-        self._host = host
+        super().__init__(host, limit)
         self._script = page
         self._imports = {name: f"/{path}" for name, path in imports.items()}
         self._modules = modules
         self._assets = assets or {}
-        self._program = webgl.program(host)
-        self._limit = 1000.0 * limit
-        self._page: Page = None
-        self._stack = ExitStack()
-        self._thread = ThreadPoolExecutor(max_workers=1)
-        self._picture = lru_cache(maxsize=PICTURES)(self._drawn)
+        self._picture = lru_cache(maxsize=PICTURES)(
+            lambda job, size: pixels(self.ask(json.loads(job)), size)
+        )
 
     def picture(self, job: Mapping[str, object], size: int) -> NDArray[np.float32]:
+        """Picture of the page's answer to a job, (size, size, 3), row 0 at the top; read-only."""
         return self._picture(json.dumps(job), size)
 
     def ask(self, job: Mapping[str, object]) -> Answer:
-        """The page's answer to a job, with the version of the browser; NotRun ends a browser that hangs."""
-        answer = self._thread.submit(self._answer, dict(job)).result()
-        if "failed" in answer:
-            raise NotRun(f"{self._host}: {answer['failed']}")
-        return answer
+        """The page's answer to a job."""
+        return self._ask("job => answer(job)", dict(job))
 
-    def close(self) -> None:
-        self._thread.submit(self._stop).result()
-
-    def _drawn(self, job: str, size: int) -> NDArray[np.float32]:
-        return pixels(self.ask(json.loads(job)), size)
-
-    def _answer(self, job: dict[str, object]) -> Answer:
-        try:
-            if self._page is None:
-                self._start()
-            handle = self._page.wait_for_function(
-                "job => answer(job)", arg=job, timeout=self._limit
-            )
-            answer: Answer = handle.json_value()
-            return answer | {"browser": self._page.context.browser.version}
-        except sync_api.Error as error:
-            self._stop()
-            return {"failed": f"the browser fails; {error.message.splitlines()[0]}"}
-
-    def _start(self) -> None:
-        playwright = self._stack.enter_context(sync_api.sync_playwright())
-        browser = self._stack.enter_context(
-            playwright.chromium.launch(
-                executable_path=self._program, args=FLAGS, chromium_sandbox=os.geteuid() != 0
-            )
-        )
-        self._page = browser.new_page()
+    def _load(self) -> None:
         self._page.set_default_timeout(self._limit)
         self._page.route("**/*", self._serve)
         self._page.goto(ORIGIN)
@@ -163,12 +127,50 @@ class Browser:
         else:
             route.fulfill(status=404, body="")
 
-    def _stop(self) -> None:
-        self._page = None
-        self._stack.close()
-
 
 def pixels(answer: Answer, size: int) -> NDArray[np.float32]:
     """Picture of an answer, (size, size, 3), row 0 at the top."""
     values = np.frombuffer(base64.b64decode(answer["pixels"]), dtype=np.float32)
     return values.reshape(size, size, 4)[..., :3]
+
+
+class PackageHost(RendererHost):
+    """The materials of an npm package, drawn on its backends by the page beside a host's module."""
+
+    title: ClassVar[str]  # of the package, in the version
+    package: ClassVar[str]
+    imports: ClassVar[Mapping[str, str]]
+    assets: ClassVar[Mapping[str, bytes]] = {}
+    backends: ClassVar[tuple[str, ...]] = ("webgl", "webgpu")
+
+    def __init__(self, limit: float = LIMIT) -> None:
+        self._modules = modules_folder(self.package, self.name)
+        self._version = package_version(self._modules, self.package)
+        page = Path(inspect.getfile(type(self))).with_suffix(".js")
+        self._browser = Browser(
+            self.name, page, self.imports, self._modules, assets=self.assets, limit=limit
+        )
+
+    def identity(self) -> Identity:
+        answers = [self._browser.ask({"backend": backend}) for backend in self.backends]
+        version = f"{self.title} {self._version}, Chromium {answers[0]['browser']}"
+        return Identity(self.name, version, "; ".join(answer["device"] for answer in answers))
+
+    def close(self) -> None:
+        self._browser.close()
+
+    def _draw(
+        self, color: Sequence[float], roughness: float, scene: Scene, **more: object
+    ) -> Array:
+        """Picture of a material by a backend."""
+        self.refuse_paths(scene)
+        job = {
+            "color": [float(channel) for channel in color],
+            "roughness": float(roughness),
+            "size": scene.size,
+            "light": scene.light,
+            "irradiance": math.pi,
+            "environment": scene.environment,
+            **more,
+        }
+        return self._browser.picture(job, scene.size)

@@ -4,12 +4,10 @@
 from __future__ import annotations
 
 import base64
-import math
 from collections.abc import Sequence
-from pathlib import Path
 
 from mxeon.hosts import browser
-from mxeon.hosts.base import Array, Identity, RendererHost
+from mxeon.hosts.base import Array
 from mxeon.shaders.scene import Scene
 
 PACKAGE = "@babylonjs/core"
@@ -39,38 +37,12 @@ NODES = {
 }
 
 
-class Host(RendererHost):
+class Host(browser.PackageHost):
     """Babylon.js in a headless Chromium."""
 
-    name = "babylon"
-
-    def __init__(self, limit: float = browser.LIMIT) -> None:
-        modules = browser.modules_folder(PACKAGE, self.name)
-        self._version = browser.package_version(modules, PACKAGE)
-        page = Path(__file__).with_suffix(".js")
-        self._browser = browser.Browser(
-            self.name, page, IMPORTS, modules, assets=ASSETS, limit=limit
-        )
-
-    def identity(self) -> Identity:
-        answers = [self._browser.ask({"backend": backend}) for backend in BACKENDS.values()]
-        version = f"Babylon.js {self._version}, Chromium {answers[0]['browser']}"
-        return Identity(self.name, version, "; ".join(answer["device"] for answer in answers))
+    name, title, package = "babylon", "Babylon.js", PACKAGE
+    imports, assets = IMPORTS, ASSETS
 
     def node(self, title: str, color: Sequence[float], roughness: float, scene: Scene) -> Array:
-        self.refuse_paths(scene)
         backend, model = NODES[title]
-        job = {
-            "backend": backend,
-            "model": model,
-            "color": [float(channel) for channel in color],
-            "roughness": float(roughness),
-            "size": scene.size,
-            "light": scene.light,
-            "irradiance": math.pi,
-            "environment": scene.environment,
-        }
-        return self._browser.picture(job, scene.size)
-
-    def close(self) -> None:
-        self._browser.close()
+        return self._draw(color, roughness, scene, backend=backend, model=model)

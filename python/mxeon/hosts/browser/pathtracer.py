@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from mxeon.errors import NotRun
 from mxeon.hosts import browser, webgl
-from mxeon.hosts.base import Array, Identity, RendererHost
+from mxeon.hosts.base import Array
 from mxeon.hosts.browser import three
 from mxeon.shaders.scene import Scene
 
@@ -49,22 +49,16 @@ vec3 diffuse_value(vec3 wo, vec3 wi, vec3 rho, float roughness, float scale)
 """
 
 
-class Host(RendererHost):
+class Host(browser.PackageHost):
     """three-gpu-pathtracer in a headless Chromium."""
 
-    name = "three-gpu-pathtracer"
+    name = title = package = PACKAGE
+    imports = IMPORTS
+    backends = ("",)
 
     def __init__(self) -> None:
-        self._modules = browser.modules_folder(PACKAGE, self.name)
-        self._version = browser.package_version(self._modules, PACKAGE)
-        page = Path(__file__).with_suffix(".js")
-        self._browser = browser.Browser(self.name, page, IMPORTS, self._modules)
+        super().__init__()
         self._webgl: webgl.Host | None = None
-
-    def identity(self) -> Identity:
-        answer = self._browser.ask({})
-        version = f"{self.name} {self._version}, Chromium {answer['browser']}"
-        return Identity(self.name, version, answer["device"])
 
     def pairs(
         self,
@@ -94,7 +88,7 @@ class Host(RendererHost):
         return self._execute("sample", wo, numbers, np.zeros_like(wo), roughness)
 
     def close(self) -> None:
-        self._browser.close()
+        super().close()
         if self._webgl:
             self._webgl.close()
 

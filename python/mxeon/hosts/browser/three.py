@@ -3,12 +3,10 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from pathlib import Path
 
 from mxeon.hosts import browser
-from mxeon.hosts.base import Array, Identity, RendererHost
+from mxeon.hosts.base import Array
 from mxeon.shaders.nodes import document_text, input_text, node_text
 from mxeon.shaders.scene import Scene
 
@@ -34,39 +32,16 @@ INPUTS = {
 }
 
 
-class Host(RendererHost):
+class Host(browser.PackageHost):
     """three.js in a headless Chromium."""
 
-    name = "three"
-
-    def __init__(self, limit: float = browser.LIMIT) -> None:
-        modules = browser.modules_folder(PACKAGE, self.name)
-        self._version = browser.package_version(modules, PACKAGE)
-        page = Path(__file__).with_suffix(".js")
-        self._browser = browser.Browser(self.name, page, IMPORTS, modules, limit=limit)
-
-    def identity(self) -> Identity:
-        answers = [self._browser.ask({"backend": backend}) for backend in ("webgl", "webgpu")]
-        version = f"three {self._version}, Chromium {answers[0]['browser']}"
-        return Identity(self.name, version, "; ".join(answer["device"] for answer in answers))
+    name = title = package = PACKAGE
+    imports = IMPORTS
 
     def node(self, title: str, color: Sequence[float], roughness: float, scene: Scene) -> Array:
-        self.refuse_paths(scene)
         backend, category = NODES[title]
-        job = {
-            "backend": backend,
-            "color": [float(channel) for channel in color],
-            "roughness": float(roughness),
-            "size": scene.size,
-            "light": scene.light,
-            "irradiance": math.pi,
-            "environment": scene.environment,
-            "document": document(category, color, roughness) if category else None,
-        }
-        return self._browser.picture(job, scene.size)
-
-    def close(self) -> None:
-        self._browser.close()
+        text = document(category, color, roughness) if category else None
+        return self._draw(color, roughness, scene, backend=backend, document=text)
 
 
 def document(category: str, color: Sequence[float], roughness: float) -> str:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The half of the `cycles` host that runs in Blender's Python, started by its path.
+"""The half of the hosts `cycles`, `osl` and `eevee` that runs in Blender's Python, started by its path.
 
 It reads one JSON object per line on standard input and answers each with one on standard output:
 first `{"version": ...}`, then `{}` or `{"error": ...}` per request. Output of Blender and of the OSL
@@ -174,11 +174,12 @@ def connect(material: Blender, node: Blender) -> None:
     material.node_tree.links.new(node.outputs[0], surface)
 
 
-def add_light(scene: Blender, direction: tuple[float, float, float]) -> None:
+def add_light(scene: Blender, direction: tuple[float, float, float], shadow: bool = True) -> None:
     """Add a distant light of irradiance pi that shines from `direction`."""
     sun = bpy.data.lights.new("light", "SUN")
     sun.angle = 0.0
     sun.energy = math.pi
+    sun.use_shadow = shadow
     light = bpy.data.objects.new("light", sun)
     light.rotation_mode = "QUATERNION"
     light.rotation_quaternion = Vector(direction).to_track_quat("Z", "Y")
@@ -230,12 +231,49 @@ def render(
     return {}
 
 
+def draw(
+    output: str,
+    material: Values,
+    mesh: str,
+    size: int,
+    light: tuple[float, float, float] | None,
+    environment: float | None,
+    samples: int,
+) -> dict[str, str]:
+    """Draw the mesh in a file with EEVEE and a node on it; write its numbers, row 0 at the top."""
+    path, data, scene = f"{output}.exr", np.load(mesh), unit_scene(2.0)
+    set_output(scene, path, size)
+    scene.render.engine = "BLENDER_EEVEE"
+    scene.render.filter_size = 0.01
+    scene.eevee.taa_render_samples = samples
+    scene.eevee.use_shadows = scene.eevee.use_raytracing = False
+    scene.eevee.light_threshold = 0.0
+    polyhedron = bpy.data.meshes.new("polyhedron")
+    polyhedron.from_pydata(data["vertices"].tolist(), [], data["triangles"].tolist())
+    kind = material.pop("kind")
+    inputs = {k: (*v, 1.0) if isinstance(v, list) else v for k, v in material.items()}
+    polyhedron.materials.append(native_material(kind, inputs))
+    scene.collection.objects.link(bpy.data.objects.new("polyhedron", polyhedron))
+    if light is not None:
+        add_light(scene, light, shadow=False)
+    add_environment(scene, environment or 0.0)
+    bpy.ops.render.render(write_still=True)
+    image = bpy.data.images.load(path)
+    image.colorspace_settings.name = "Non-Color"
+    pixels = np.zeros(4 * size * size, np.float32)
+    image.pixels.foreach_get(pixels)
+    np.save(output, pixels.reshape(size, size, 4)[::-1, :, :3])
+    return {}
+
+
 def main() -> None:
     """Serve requests until standard input ends."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     print(json.dumps({"version": bpy.app.version_string}), file=REPLIES)
     for line in sys.stdin:
-        print(json.dumps(render(**json.loads(line))), file=REPLIES)
+        request = json.loads(line)
+        reply = draw(**request) if "mesh" in request else render(**request)
+        print(json.dumps(reply), file=REPLIES)
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Renderers with a Python package, whose own nodes are shown on the polyhedron.
 
-Each runs in a process of its own: `<name>_worker.py` renders, `<name>.py` asks it. The samples of
-these renderers spread over a pixel, so they show `mxeon.shaders.facets` in place of a sphere.
+Each runs in a process of its own: a worker renders, `<name>.py` asks it. The samples of
+these renderers spread over a pixel, so they show `mxeon.shaders.facets` instead of a sphere.
 """
 
 from __future__ import annotations
@@ -39,6 +39,7 @@ class PolyhedronHost(RendererHost):
 
     nodes: ClassVar[Mapping[str, Material]]
     samples: ClassVar[int]
+    script: ClassVar[str]  # of the worker
     device: ClassVar[str]
 
     def __init__(self, limit: float = 120.0) -> None:
@@ -47,7 +48,7 @@ class PolyhedronHost(RendererHost):
         self._folder = Path(self._temporary.name)
         mesh = polyhedron()
         np.savez(self._folder / MESH, vertices=mesh.vertices, triangles=mesh.triangles)
-        script = Path(__file__).with_name(f"{self.name}_worker.py")
+        script = Path(__file__).parent / self.script
         self.worker = Worker(self.name, python, script, self._folder / "log.txt", limit)
         self._picture = lru_cache(maxsize=PICTURES)(self._rendered)
 

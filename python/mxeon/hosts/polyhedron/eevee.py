@@ -15,6 +15,7 @@ class Host(PolyhedronHost):
     """Blender's EEVEE with its own shading nodes."""
 
     name = "eevee"
+    script = "../cycles/worker.py"
     samples = 1  # it has no noise
     device = "OpenGL"
     nodes: ClassVar[Mapping[str, Material]] = {

@@ -31,6 +31,7 @@ class Host(PolyhedronHost):
     """LuxCoreRender with its own materials."""
 
     name = "luxcore"
+    script = "luxcore_worker.py"
     samples = 64
     device = "CPU, PATHCPU"
     nodes: ClassVar[Mapping[str, Material]] = {

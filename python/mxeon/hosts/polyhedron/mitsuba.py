@@ -16,6 +16,7 @@ class Host(PolyhedronHost):
     """Mitsuba with its own BSDFs, which it evaluates for any pair of directions."""
 
     name = "mitsuba"
+    script = "mitsuba_worker.py"
     samples = 64
     device = "CPU, scalar_rgb; plugins llvm_ad_rgb"
     # Without specular reflection nothing but the diffuse lobe is left of the principled BSDF.
