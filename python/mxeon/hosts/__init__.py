@@ -26,8 +26,6 @@ class OwnNode:
 
 @dataclass(frozen=True)
 class Row:
-    """One host of the table."""
-
     name: str
     target: str  # of its shaders; "" for a renderer of its own materials alone
     module: str = ""  # with its class `Host`; "" where only the text of the target is checked
@@ -163,7 +161,6 @@ HOSTS = (
 
 
 def host_names() -> tuple[str, ...]:
-    """Names of all hosts, in the order of the table."""
     return tuple(row.name for row in HOSTS)
 
 
@@ -196,16 +193,12 @@ def open_engine(name: str, *others: Row) -> Host | RendererHost:
     if not row.module:
         raise NotRun(f"{name}: running it needs {row.needs}; its text is checked")
     if row.target and row.target not in TARGETS:
-        raise NotRun(_no_generator(row))
+        import MaterialX as mx
+
+        from mxeon.shaders.versions import TESTED
+
+        raise NotRun(
+            f"{name}: MaterialX must have a generator for {row.target}; {mx.__version__} has none: "
+            f"pip install materialx=={TESTED[-1]}"
+        )
     return cast(Host | RendererHost, import_module(row.module).Host())
-
-
-def _no_generator(row: Row) -> str:
-    import MaterialX as mx
-
-    from mxeon.shaders.versions import TESTED
-
-    return (
-        f"{row.name}: MaterialX must have a generator for {row.target}; {mx.__version__} has none: "
-        f"pip install materialx=={TESTED[-1]}"
-    )

@@ -70,7 +70,7 @@ class Engine(ABC):
         self.close()
 
     def refuse_paths(self, scene: Scene) -> None:
-        """Raise InputError if a scene sets samples or bounces, of which this host has none or a fixed number."""
+        """Raise InputError if a scene sets samples or bounces, which this host cannot change."""
         if scene.paths != Paths():
             raise InputError(
                 f"{self.name}: this host takes no number of samples or bounces; cycles does"

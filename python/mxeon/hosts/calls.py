@@ -40,8 +40,6 @@ KINDS = {
 
 @dataclass(frozen=True)
 class Prelude:
-    """What a surface shader computes of its inputs."""
-
     statements: str
     inputs: dict[str, str]  # types of what they read: parameters, and properties of the surface
 
@@ -67,7 +65,7 @@ CLOSURES = {
     "emission": ("CLOSURE_TYPE_REFLECTION", "CLOSURE_TYPE_EMISSION"),
 }
 EMISSION = "CLOSURE_TYPE_EMISSION"  # of the call of an EDF, in every branch
-GRAPH = "graph"  # in place of a branch: the color that the shader gives to its uniform EDF
+GRAPH = "graph"  # instead of a branch: the color that the shader gives to its uniform EDF
 OUTPUTS = ("response", "throughput", "radiance")  # the last is that of an EDF
 NORMAL, TANGENT = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
 ASKED = "throughput_asked"  # variable of an evaluation
@@ -79,8 +77,6 @@ Arguments: TypeAlias = dict[str, tuple[str, ArrayLike]]  # type and values by na
 
 @dataclass(frozen=True)
 class BsdfCall:
-    """How a generated shader calls its BSDFs."""
-
     statements: str  # of the shader's main up to the call
     value: str  # a color; the same for every output, so that they share a program
     arguments: Arguments  # types and values of what both read, but P

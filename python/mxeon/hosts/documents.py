@@ -145,7 +145,6 @@ class DocumentHost(base.Host):
     def _drawn(
         self, text: str, element: str, scene: Scene, folders: tuple[str, ...], blocks: bool
     ) -> Array:
-        """Picture of an element of a document; read-only."""
         # Write the document, by a name of its own: OpenUSD keeps what it has read.
         document = self._folder / f"{sha256(text.encode()).hexdigest()}.mtlx"
         document.write_text(text, encoding="utf-8")

@@ -32,7 +32,7 @@ FETCH["vector2"] = "vec2 {0} = {1}.xy;"
 FETCH["integer"] = "int {0} = int({1}.x);"
 # More arguments than a stage may have textures share one, whose layers lie above each other.
 STACK = "mxeon_stack"
-MOST = 12  # textures of arguments; every device has 16, of which some are the environment's
+MOST = 12  # textures of arguments; every device has 16, and the environment takes some
 LAYER = (
     f"texelFetch({STACK}, mxeon_pixel + ivec2(0, {{0}} * (textureSize({STACK}, 0).y / {{1}})), 0)"
 )
@@ -152,7 +152,7 @@ def frame(arguments: Mapping[str, Array]) -> tuple[int, tuple[int, int]]:
 
 
 def parts(arguments: Mapping[str, Array]) -> Iterator[dict[str, Array]]:
-    """Arguments of PART elements at a time, whose textures and frames take less memory than those of all."""
+    """Arguments of PART elements at a time: smaller textures and frames take less memory."""
     count, _ = frame(arguments)
     for start in range(0, count, PART):
         yield {

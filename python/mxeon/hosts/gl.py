@@ -46,8 +46,6 @@ def _current(verb: Callable[Concatenate[Host, P], T]) -> Callable[Concatenate[Ho
 
 
 class Host(FragmentHost):
-    """OpenGL 4.3 through EGL."""
-
     name = "gl"
     target = "glsl"
 
@@ -229,7 +227,6 @@ def _points(
     size: int,
     shape: str,
 ) -> moderngl.TextureArray:
-    """Texture of what a vertex stage gives at the points of a picture."""
     program = context.program(vertex_shader=vertex, varyings=tuple(each.name for each in captured))
     vertices = points.vertices(size, shape)
     count = len(vertices["i_position"])

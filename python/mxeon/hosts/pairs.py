@@ -114,8 +114,6 @@ VIEW = np.array([0.0, 0.0, 1.0])
 
 @dataclass(frozen=True)
 class TiltedTriangles:
-    """Triangles that show pairs of directions to a camera."""
-
     width: float  # of the picture
     corners: Vectors  # (N, 3, 3)
     turn: Vectors  # (N, 3, 3), from the frame of the pairs to that of the scene

@@ -37,8 +37,6 @@ FORMATS = {"float": "f4", "vec2": "2f4", "vec3": "3f4", "vec4": "4f4", "int": "i
 
 @dataclass(frozen=True)
 class Output:
-    """An output of the vertex stage that the pixel stage reads."""
-
     kind: str  # GLSL type
     name: str  # for the capture
     variable: str  # in the pixel stage
@@ -95,7 +93,6 @@ def vertices(size: int, shape: str) -> dict[str, NDArray[np.float32]]:
 
 
 def stride(captured: Iterable[Output]) -> int:
-    """Bytes of the outputs of one point."""
     return _row(captured).itemsize
 
 

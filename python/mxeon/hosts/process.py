@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A process of a renderer's own, which answers one request after the other.
 
-The other end of the pipe is a script of the host.
+The other end of the pipe is a script of the host, started by its path. It reads one JSON object per line
+on standard input and answers each with one on standard output, the first one with its version. The process
+ends when standard input does.
 """
 
 from __future__ import annotations
@@ -97,7 +99,6 @@ class Worker:
         raise NotRun(f"{self._name}: {end}; last output: {last}")
 
     def printed(self) -> list[str]:
-        """The lines printed since the last request."""
         with self.log.open("rb") as log:
             log.seek(self._read)
             text = log.read().decode(errors="replace")

@@ -41,7 +41,7 @@ TRIANGLE = {  # attributes of its three vertices
     "i_normal": np.array([[0, 0, 1]] * 3, dtype="f4"),
 }
 
-# What generated GLSL does in place of a lobe below the surface.
+# What generated GLSL does instead of a lobe below the surface.
 IN_PLACE = {
     SUBSURFACE: "subsurface_bsdf is rasterized: its direct light is blurred as on a sphere of the "
     "surface's curvature, and under an environment it is Lambert of its color",
@@ -52,7 +52,7 @@ IN_PLACE = {
 
 
 def approximations(shader: Shader) -> tuple[str, ...]:
-    """What generated GLSL does in place of a shader's lobes below the surface."""
+    """What generated GLSL does instead of a shader's lobes below the surface."""
     return tuple(IN_PLACE[kind] for kind in inner_lobes(shader))
 
 

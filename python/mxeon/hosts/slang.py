@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import itertools
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, TypeAlias, cast
 
 import numpy as np
@@ -115,8 +115,9 @@ class Host(base.Host):
                 self._white = self._texture(np.ones((1, 1, 3)))
                 return
             except RuntimeError as error:
-                reason = _reason(error)
-        raise NotRun(f"slang: no kernel for the CPU; {reason}")
+                lines = [line.strip() for line in str(error).splitlines() if "error" in line]
+        remedy = "without a GPU it needs a C++ compiler: on Debian: apt-get install g++"
+        raise NotRun(f"slang: no kernel for the CPU; {'; '.join([*lines, remedy])}")
 
     def identity(self) -> Identity:
         info = self._device.info
@@ -168,7 +169,13 @@ class Host(base.Host):
             READ[rows[name].shape[1]].format(name=name, kind=KINDS.get(kind, kind))
             for name, (kind, _) in arguments.items()
         ]
-        kernel = self._kernel(text + _kernel_text(rows, [*reads, *body]))
+        main = KERNEL.format(
+            buffers="\n".join(f"StructuredBuffer<float> mxeon_{name};" for name in rows),
+            body="\n".join(f"    {line}" for line in (*reads, *body)),
+            threads=THREADS,
+            entry=ENTRY,
+        )
+        kernel = self._kernel(text + main)
         output = self._device.create_buffer(
             size=12 * count, struct_size=4, usage=slangpy.BufferUsage.unordered_access
         )
@@ -219,21 +226,3 @@ class Host(base.Host):
         values = {"u_envRadiance": tinted, "u_envIrradiance": tinted, "u_envLightIntensity": 1.0}
         matrix = slangpy.float4x4(TURN.astype(np.float32))
         return {"pixelCB": {**values, **raster.EVALUATION, "u_envMatrix": matrix}}
-
-
-def _kernel_text(names: Iterable[str], body: Sequence[str]) -> str:
-    """Kernel that evaluates `body`, with a buffer for each argument."""
-    return KERNEL.format(
-        buffers="\n".join(f"StructuredBuffer<float> mxeon_{name};" for name in names),
-        body="\n".join("    " + line for line in body),
-        threads=THREADS,
-        entry=ENTRY,
-    )
-
-
-def _reason(error: Exception) -> str:
-    """Message of slangpy, and the remedy where it misses a C++ compiler."""
-    lines = [line.strip() for line in str(error).splitlines() if "error" in line]
-    return "; ".join(
-        [*lines, "without a GPU it needs a C++ compiler: on Debian: apt-get install g++"]
-    )

@@ -122,7 +122,11 @@ class Host(FragmentHost):
         )
         layouts, pipeline = self._program(pixel, sets)
         groups = [
-            self._group(layout, bindings) for layout, bindings in zip(layouts, sets, strict=True)
+            self._device.create_bind_group(
+                layout=layout,
+                entries=[{"binding": n, "resource": each} for n, (_, each) in bindings.items()],
+            )
+            for layout, bindings in zip(layouts, sets, strict=True)
         ]
         return self._draw(pipeline, groups, size)[:count]
 
@@ -133,7 +137,15 @@ class Host(FragmentHost):
         if pixel not in self._programs:
             if len(self._programs) == PROGRAMS:
                 self._programs.clear()
-            layouts = tuple(map(self._layout, sets))
+            layouts = tuple(
+                self._device.create_bind_group_layout(
+                    entries=[
+                        {"binding": number, "visibility": "FRAGMENT", **kind}
+                        for number, (kind, _) in bindings.items()
+                    ]
+                )
+                for bindings in sets
+            )
             self._programs[pixel] = layouts, self._pipeline(pixel, layouts)
         return self._programs[pixel]
 
@@ -198,24 +210,12 @@ class Host(FragmentHost):
     ) -> tuple[Kind, Resource]:
         """Kind and resource of a declaration; a separate texture's name ends in _texture."""
         if declaration["block"] is not None:
-            return BLOCK, self._block(declaration["block"])
+            data = _std140(declaration["block"])
+            return BLOCK, self._device.create_buffer_with_data(data=data, usage="UNIFORM")
         if declaration["kind"] == "sampler":
             return SAMPLER, self._device.create_sampler()
         texels = textures.get(declaration["name"].removesuffix("_texture"), WHITE)
         return FILTERED, self._texture(texels)
-
-    def _layout(self, bindings: Bindings) -> Resource:
-        kinds = [
-            {"binding": number, "visibility": "FRAGMENT", **kind}
-            for number, (kind, _) in bindings.items()
-        ]
-        return self._device.create_bind_group_layout(entries=kinds)
-
-    def _group(self, layout: Resource, bindings: Bindings) -> Resource:
-        entries = [
-            {"binding": number, "resource": resource} for number, (_, resource) in bindings.items()
-        ]
-        return self._device.create_bind_group(layout=layout, entries=entries)
 
     def _texture(self, texels: Array) -> Resource:
         """A texture of 8-bit, float16 or float32 texels, of one to four components."""
@@ -229,11 +229,6 @@ class Host(FragmentHost):
         layout = {"bytes_per_row": texels[0].nbytes, "rows_per_image": height}
         self._device.queue.write_texture({"texture": texture}, texels, layout, size)
         return texture.create_view()
-
-    def _block(self, members: str) -> Resource:
-        """A uniform block with the values of UNIFORMS in it, and 0 elsewhere."""
-        data = _std140(members)
-        return self._device.create_buffer_with_data(data=data, usage="UNIFORM")
 
 
 @lru_cache(maxsize=8)  # the vertex stage is always the same

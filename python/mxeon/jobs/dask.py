@@ -184,8 +184,6 @@ def run(
 
 @dataclass(frozen=True)
 class _Task:
-    """An item, the workers that could not do it, and those it is bound to."""
-
     index: int
     item: Any
     tried: frozenset[str] = frozenset()
@@ -232,7 +230,7 @@ def _outcome(future: Any) -> Outcome:
 def _work_timed(
     work: Callable[[Any], Any], item: Any, timeout: float, unavailable: type[Exception]
 ) -> Any:
-    """Work on an item, on a worker, whose process ends at the timeout."""
+    """Work on an item, on a worker; its process ends at the timeout."""
     from distributed import get_worker
 
     faulthandler.dump_traceback_later(timeout, exit=True, file=sys.__stderr__ or 2)

@@ -168,11 +168,7 @@ def in_order(outcomes: Iterable[tuple[int, Outcome]]) -> Iterator[Outcome]:
 
 
 def _serve(
-    work: Callable[[Any], Any],
-    waiting: Queue,
-    workers: int,
-    timeout: float,
-    logs: str,
+    work: Callable[[Any], Any], waiting: Queue, workers: int, timeout: float, logs: str
 ) -> Iterator[tuple[int, Outcome]]:
     """Outcomes until nothing waits or a pool breaks, which leaves its items waiting.
 
@@ -279,7 +275,6 @@ def _signal(number: int) -> str:
 
 
 def _prepare() -> None:
-    """Make this process a worker that exits when its parent does."""
     CONSTS.channel_lock_timeout = LOCK
     parent = multiprocessing.parent_process()
     assert parent is not None  # a worker has one

@@ -3,7 +3,7 @@
 
 import json
 import platform
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from importlib.metadata import version
 from os import PathLike
 from pathlib import Path
@@ -24,8 +24,7 @@ from mxeon.kit.noise import student_quantile
 from mxeon.kit.questions import Question, answer, one_model, questions
 from mxeon.kit.submitted import Missing, Unusable, read_render
 from mxeon.kit.views import LAMBERT, MATERIALS, View, views
-from mxeon.models import table as reference
-from mxeon.shaders.scene import sphere
+from mxeon.models import table
 
 RENDERER = "renderer"
 LIBRARY = "its own library"
@@ -85,7 +84,6 @@ def check_kit(
 
 
 def _size(folder: Path) -> int:
-    """Width of the kit's pictures; refuse a description that another version wrote."""
     file = folder / DESCRIPTION
     kit = _description(file)
     if type(kit.get("format")) is not int or kit["format"] != KIT_FORMAT:
@@ -94,22 +92,19 @@ def _size(folder: Path) -> int:
     size = kit.get("size")
     if type(size) is not int:
         raise InputError(f"{file}: size must be a whole number; got {size!r}: export it again")
+    match kit.get("materials"):
+        case {LAMBERT.name: {"node": str(node)}}:  # any node
+            pass
+        case _:
+            node = ""
     try:
-        exported = json.loads(json.dumps(description(views(size), size, _node(kit))))
+        exported = json.loads(json.dumps(description(views(size), size, node)))
     except ValueError as error:
         raise InputError(f"{file}: {error}: export it again") from None
     for key in EXACT:
         if kit.get(key) != exported[key]:
             raise InputError(f"{file}: {key} must be as kit export writes it: export it again")
     return size
-
-
-def _node(kit: Mapping[str, object]) -> str:
-    """Category of the node of a kit's materials, which may be any one."""
-    match kit.get("materials"):
-        case {LAMBERT.name: {"node": str(node)}}:
-            return node
-    return ""
 
 
 def _description(file: Path) -> dict[str, Any]:
@@ -153,18 +148,15 @@ def _pictures(
     for view in pictures:
         if view.name in images:
             metadata = {"version": mxeon.__version__, "scene": view.scene.name}
+            mask = judged(view.scene)
+            reference = np.zeros((*mask.shape, 3))
+            reference[mask] = pixel_means(table.model(claims or view.material.model), view)
             yield Picture(
                 document=f"{view.material.name}.mtlx",
                 element=view.material.name,
                 **place,
                 scene=view.scene.name,
-                image=images[view.name].astype(np.float32) * judged(view.scene)[..., None],
-                reference=_model_picture(view, claims or view.material.model),
+                image=images[view.name].astype(np.float32) * mask[..., None],
+                reference=reference,
                 metadata=metadata | place,
             )
-
-
-def _model_picture(view: View, model: str) -> NDArray[np.float64]:
-    image = np.zeros((*sphere(view.scene.size).mask.shape, 3))
-    image[judged(view.scene)] = pixel_means(reference.model(model), view)
-    return image

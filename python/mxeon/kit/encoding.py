@@ -41,7 +41,9 @@ def fault(image: NDArray[np.float64], model: Expected, mask: NDArray[np.bool_]) 
     words = min(likeness, key=lambda each: likeness[each][1])
     factor, miss = likeness[words]
     if miss <= LIKENESS:
-        scale = "" if abs(factor - 1.0) <= SAME_SCALE else f"{_spelled(factor)} times as bright"
+        known = (name for each, name in FACTORS if abs(factor / each - 1.0) <= SAME_SCALE)
+        times = next(known, f"{factor:.3g}")
+        scale = "" if abs(factor - 1.0) <= SAME_SCALE else f"{times} times as bright"
         return " and ".join(filter(None, (words, scale)))
     if _clipped(image[mask], model.value):
         return "clipped"
@@ -62,11 +64,6 @@ def _likeness(
     noise = tiles(error, model.slack, mask).pixel_noise
     rest = np.sqrt(max(0.0, np.mean(error**2) - noise**2))
     return factor, rest / np.sqrt(np.mean((factor * value) ** 2))
-
-
-def _spelled(factor: float) -> str:
-    names = (name for known, name in FACTORS if abs(factor / known - 1.0) <= SAME_SCALE)
-    return next(names, f"{factor:.3g}")
 
 
 def _clipped(values: NDArray[np.float64], expected: NDArray[np.float64]) -> bool:

@@ -34,8 +34,6 @@ HALF_STEP = 2.0**-24
 
 @dataclass(frozen=True)
 class Expected:
-    """Expected values of a picture's judged pixels."""
-
     value: np.ndarray  # (N, 3), mean over each pixel
     slack: np.ndarray  # (N, 3): pixel's center less mean, depth of the mesh, rounding to half
 
@@ -70,7 +68,6 @@ def pixel_means(row: Model, view: View) -> NDArray[np.float64]:
 
 
 def _values(row: Model, view: View, place: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Values at points of the picture, shape (N, 3)."""
     x, y = place.T
     normal = np.stack([x, y, np.sqrt(1.0 - x * x - y * y)], axis=-1)
     if view.scene.light is None:

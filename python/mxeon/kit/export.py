@@ -149,7 +149,6 @@ def _light(scene: Scene) -> dict[str, Any]:
 
 
 def _page(pictures: Sequence[View], size: int, mesh: Mesh, node: str) -> str:
-    """README.md of the kit."""
     text = files("mxeon.kit").joinpath("templates", "kit.md").read_text(encoding="utf-8")
     rows = [
         f"| `{RENDERS}/{view.name}.exr` | {view.material.name} | {view.scene.name} |"

@@ -24,8 +24,6 @@ CONFIDENCE = 0.999  # probability that a kit of correct pictures passes
 
 @dataclass(frozen=True)
 class Tiles:
-    """The judged tiles of a picture."""
-
     mean: NDArray[np.float64]  # (T, 3), error of a tile
     deviation: NDArray[np.float64]  # (T, 3), estimated, of that mean
     slack: NDArray[np.float64]  # (T, 3), mean of the pixels'

@@ -117,8 +117,6 @@ class Question:
 
 @dataclass(frozen=True)
 class JudgedPicture:
-    """A submitted picture at its judged pixels."""
-
     view: View
     mask: NDArray[np.bool_]
     values: NDArray[np.float64]  # (N, 3), at the pixels of the mask
@@ -202,8 +200,9 @@ def answer(
     cases = _judged(chosen, images)
     models = [expected(question.row(view), view, depth) for view in chosen]
     errors = _tiles(cases, models)
-    error = _ratio(errors)
-    wrong = _ratio(_tiles(cases, models, [question.wrong(view) for view in chosen]))
+    share = 1.0 / len(QUESTIONS)
+    error = ratio(errors, share)
+    wrong = ratio(_tiles(cases, models, [question.wrong(view) for view in chosen]), share)
     noise = float(np.sqrt(np.mean([each.pixel_noise**2 for each in errors])))
     if max(error, wrong) <= 1.0:
         reason = (
@@ -214,7 +213,9 @@ def answer(
     ranking = candidates(cases, depth) if question.key == "model" else []
     words = ranking_sentence(ranking) if ranking else ""
     if question.key == "setup" and error > 1.0:
-        words = _fault(cases[0], models[0], images)
+        name = cases[0].view.name
+        words = fault(images[name], models[0], cases[0].mask)
+        words = words and f"{name} is {words}"
     return Result(
         **place,
         verdict=PASSED if error <= 1.0 < wrong else FAILED,
@@ -237,16 +238,6 @@ def _judged(
         JudgedPicture(view, mask, images[view.name][mask])
         for view, mask in zip(chosen, masks, strict=True)
     ]
-
-
-def _fault(case: JudgedPicture, model: Expected, images: Mapping[str, NDArray[np.float64]]) -> str:
-    """The fault of light, orientation or encoding, in words."""
-    words = fault(images[case.view.name], model, case.mask)
-    return f"{case.view.name} is {words}" if words else ""
-
-
-def _ratio(errors: Sequence[Tiles]) -> float:
-    return ratio(errors, share=1.0 / len(QUESTIONS))
 
 
 def _tiles(

@@ -109,7 +109,6 @@ DOME = """    def DomeLight "light"
 
 
 def mesh_layer(mesh: Mesh) -> str:
-    """The sphere as a layer that the scenes refer to."""
     return MESH.format(
         counts=", ".join(["3"] * len(mesh.triangles)),
         indices=", ".join(map(str, mesh.triangles.ravel())),
@@ -118,7 +117,7 @@ def mesh_layer(mesh: Mesh) -> str:
 
 
 def scene_layer(view: View, node: str, flagged: bool) -> str:
-    """The scene of one picture, whose material is of a nodedef, with energy_compensation if it has it."""
+    """The scene of one picture with a material of a nodedef, flagged by energy_compensation or not."""
     material, scene = view.material, view.scene
     if scene.light is None:
         light = DOME.format(radiance=scene.environment)

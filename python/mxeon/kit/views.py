@@ -39,14 +39,11 @@ MATERIALS = (LAMBERT, TRUE, HALF, FALSE, BLACK, WHITE)
 
 @dataclass(frozen=True)
 class View:
-    """One picture: a material under a light."""
-
     material: Material
     scene: Scene
 
     @property
     def name(self) -> str:
-        """Name of its files, without suffix."""
         return f"{self.material.name}_{self.scene.name}"
 
 

@@ -93,7 +93,6 @@ class CoatPlugin(EonPlugin):
         return self.dr.select(active, top + base * number(is_diffuse * (1.0 - reflected)), 0.0)
 
     def pdf(self, context: Mitsuba, si: Mitsuba, wo: Mitsuba, active: Mitsuba = True) -> Mitsuba:
-        """Density in solid angle of `sample`: that of both lobes."""
         active = self._front(context, si.wi, wo, active)
         rho, amount = self._gray(si, active)
         share = self._share(context, si, rho, amount, active)
@@ -105,7 +104,6 @@ class CoatPlugin(EonPlugin):
     def _pick(
         self, context: Mitsuba, si: Mitsuba, choice: Mitsuba, u: Mitsuba, active: Mitsuba
     ) -> tuple[Mitsuba, Mitsuba, Mitsuba]:
-        """Direction from one of both lobes, its type and its component."""
         dr, flags = self.dr, self.mi.BSDFFlags
         rho, amount = map(dr.detach, self._gray(si, active))
         share = dr.detach(self._share(context, si, rho, amount, active))
@@ -121,7 +119,6 @@ class CoatPlugin(EonPlugin):
         return wo, dr.select(is_reflected, *kinds), dr.select(is_reflected, self.mi.UInt32(0), 1)
 
     def _front(self, context: Mitsuba, view: Mitsuba, light: Mitsuba, active: Mitsuba) -> Mitsuba:
-        """Where a lobe is asked for, and both directions are in front."""
         wanted = any(self._enabled(context))
         return self.mi.Bool(active) & wanted & (view.z > 0.0) & (light.z > 0.0)
 
@@ -146,11 +143,9 @@ class CoatPlugin(EonPlugin):
         return glossy / self.dr.maximum(total, 1e-30)
 
     def _glossy(self, si: Mitsuba, rho: Mitsuba, reflected: Mitsuba, active: Mitsuba) -> Mitsuba:
-        """Albedo of the glossy lobe."""
         return reflected
 
     def _dielectric_share(self, si: Mitsuba, active: Mitsuba) -> Mitsuba:
-        """Part of the surface that is the dielectric."""
         return self.mi.Float(1.0)
 
     def _fresnel(
@@ -195,7 +190,6 @@ class CoatPlugin(EonPlugin):
 
 
 def _table(alpha: float, ior: float) -> Array:
-    """Cubics of both curves, cell by cell."""
     coat = constant_coat(alpha, ior)
     missing = octave_cubics(lambda mu: coat.at(mu)[0])
     reflected = octave_cubics(lambda mu: coat.at(mu)[1])
@@ -238,7 +232,6 @@ class OpenPbrBasePlugin(CoatPlugin):
         return 1.0 - self.dr.clip(self.metalness.eval_1(si, active), 0.0, 1.0)
 
     def _glossy(self, si: Mitsuba, rho: Mitsuba, reflected: Mitsuba, active: Mitsuba) -> Mitsuba:
-        """Albedo of both glossy lobes; of the metal about that of a smooth one."""
         share = self._dielectric_share(si, active)
         return share * reflected + (1.0 - share) * schlick(si.wi.z, rho, *EDGE)
 

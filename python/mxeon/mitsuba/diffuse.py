@@ -6,6 +6,7 @@ In Mitsuba's words `si.wi` is the direction to the viewer and `wo` the one to th
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from importlib import import_module
 from typing import Any, TypeAlias
 
@@ -65,6 +66,7 @@ class RoughDiffusePlugin:
     color = "reflectance"
     parameter = "roughness"
     largest = 1.0
+    brdf: Callable[..., Mitsuba]  # of one channel, in 1/sr: mu_o, mu_i, s, rho, amount
 
     def configure(self, properties: Mitsuba) -> None:
         if self.parameter in properties:
@@ -106,7 +108,6 @@ class RoughDiffusePlugin:
         sample2: Mitsuba,
         active: Mitsuba = True,
     ) -> tuple[Mitsuba, Mitsuba]:
-        """Direction to the light, and `eval` over `pdf`."""
         wo, kind, component = self._pick(context, si, sample1, sample2, active)
         pdf = self.pdf(context, si, wo, active)
         active = self._front(context, si.wi, wo, active) & (pdf > 0.0)
@@ -126,13 +127,11 @@ class RoughDiffusePlugin:
     def _pick(
         self, context: Mitsuba, si: Mitsuba, choice: Mitsuba, u: Mitsuba, active: Mitsuba
     ) -> tuple[Mitsuba, Mitsuba, Mitsuba]:
-        """Direction to the light, type and component of its lobe."""
         rho, amount = map(self.dr.detach, self._gray(si, active))
         kind = self.mi.UInt32(+self.mi.BSDFFlags.DiffuseReflection)
         return self._draw(si.wi, choice, u, rho, amount), kind, 0
 
     def _front(self, context: Mitsuba, view: Mitsuba, light: Mitsuba, active: Mitsuba) -> Mitsuba:
-        """Where the lobe is asked for, and both directions are in front."""
         wanted = context.is_enabled(self.mi.BSDFFlags.DiffuseReflection)
         return self.mi.Bool(active) & wanted & (view.z > 0.0) & (light.z > 0.0)
 
@@ -146,15 +145,9 @@ class RoughDiffusePlugin:
         return self.dr.clip(rho, 0.0, 1.0), self._clipped(self.amount.eval_1(si, active))
 
     def _reflected(self, view: Mitsuba, light: Mitsuba, color: Mitsuba, amount: Mitsuba) -> Mitsuba:
-        """BSDF times the cosine, per channel."""
         s = view.x * light.x + view.y * light.y
-        channels = [self._brdf(view.z, light.z, s, rho, amount) * light.z for rho in color]
+        channels = [self.brdf(view.z, light.z, s, rho, amount) * light.z for rho in color]
         return type(color)(*map(self.mi.Float, channels))
-
-    def _brdf(
-        self, mu_o: Mitsuba, mu_i: Mitsuba, s: Mitsuba, rho: Mitsuba, amount: Mitsuba
-    ) -> Mitsuba:
-        raise NotImplementedError
 
     def _density(self, view: Mitsuba, light: Mitsuba, rho: Mitsuba, amount: Mitsuba) -> Mitsuba:
         """Density of `_draw`: by the cosine."""
@@ -170,10 +163,7 @@ class RoughDiffusePlugin:
 class FonPlugin(RoughDiffusePlugin):
     """FON, sampled by the cosine."""
 
-    def _brdf(
-        self, mu_o: Mitsuba, mu_i: Mitsuba, s: Mitsuba, rho: Mitsuba, amount: Mitsuba
-    ) -> Mitsuba:
-        return formulas.fon_brdf_mu(mu_o, mu_i, s, rho, amount)
+    brdf = staticmethod(formulas.fon_brdf_mu)
 
 
 class QonPlugin(RoughDiffusePlugin):
@@ -181,20 +171,13 @@ class QonPlugin(RoughDiffusePlugin):
 
     parameter = "sigma"
     largest = 0.5 * np.pi
-
-    def _brdf(
-        self, mu_o: Mitsuba, mu_i: Mitsuba, s: Mitsuba, rho: Mitsuba, amount: Mitsuba
-    ) -> Mitsuba:
-        return formulas.qon_brdf_mu(mu_o, mu_i, s, rho, amount)
+    brdf = staticmethod(formulas.qon_brdf_mu)
 
 
 class EonPlugin(RoughDiffusePlugin):
     """EON, sampled exactly; see `mxeon.models.sampling.eon`."""
 
-    def _brdf(
-        self, mu_o: Mitsuba, mu_i: Mitsuba, s: Mitsuba, rho: Mitsuba, amount: Mitsuba
-    ) -> Mitsuba:
-        return formulas.eon_brdf_mu(mu_o, mu_i, s, rho, amount)
+    brdf = staticmethod(formulas.eon_brdf_mu)
 
     def _density(self, view: Mitsuba, light: Mitsuba, rho: Mitsuba, amount: Mitsuba) -> Mitsuba:
         s = view.x * light.x + view.y * light.y

@@ -38,8 +38,6 @@ NODES = {
 
 
 class Host(browser.PackageHost):
-    """Babylon.js in a headless Chromium."""
-
     name, title, package = "babylon", "Babylon.js", PACKAGE
     imports, assets = IMPORTS, ASSETS
 

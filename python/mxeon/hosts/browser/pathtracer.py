@@ -50,8 +50,6 @@ vec3 diffuse_value(vec3 wo, vec3 wi, vec3 rho, float roughness, float scale)
 
 
 class Host(browser.PackageHost):
-    """three-gpu-pathtracer in a headless Chromium."""
-
     name = title = package = PACKAGE
     imports = IMPORTS
     backends = ("",)
@@ -60,14 +58,7 @@ class Host(browser.PackageHost):
         super().__init__()
         self._webgl: webgl.Host | None = None
 
-    def pairs(
-        self,
-        title: str,
-        wo: Array,
-        wi: Array,
-        color: Array,
-        roughness: Array,
-    ) -> Array:
+    def pairs(self, title: str, wo: Array, wi: Array, color: Array, roughness: Array) -> Array:
         if NODES[title]:
             return self._execute(NODES[title], wo, wi, color, roughness)
         scale = np.full(len(wo), SHORTER if title.endswith("shorter wh") else 1.0)
@@ -129,7 +120,6 @@ def _template(path: Path) -> str:
 
 
 def _cut(text: str, begin: str, end: str) -> str:
-    """The part of a text from one word to another."""
     if begin not in text or end not in text:
         raise NotRun(f"{PACKAGE}: no {begin}) in its shader text")
     return begin + text.split(begin)[1].split(end)[0]

@@ -33,8 +33,6 @@ INPUTS = {
 
 
 class Host(browser.PackageHost):
-    """three.js in a headless Chromium."""
-
     name = title = package = PACKAGE
     imports = IMPORTS
 

@@ -222,18 +222,15 @@ class Host(PairHost):
 
     def closures(self) -> dict[str, str]:
         """For each of MaterialX's closures, "" if Cycles renders it, else its reason not to."""
-        return {name: self._reason(name) for name in CLOSURES}
-
-    def _reason(self, closure: str) -> str:
-        frame = process.request(replace(FRONT, size=4), ())
-        call = f"{closure}({CLOSURES[closure]})"
-        text = f"shader asked(output closure color out = 0)\n{{\n    out = {call};\n}}\n"
-        try:
-            with self._folder() as folder:
-                self._render(Path(folder), text, **frame)
-        except (NotRun, ShaderError) as error:
-            return str(error)
-        return ""
+        frame, reasons = process.request(replace(FRONT, size=4), ()), dict.fromkeys(CLOSURES, "")
+        for name, arguments in CLOSURES.items():
+            text = f"shader asked(output closure color out = 0) {{ out = {name}({arguments}); }}\n"
+            try:
+                with self._folder() as folder:
+                    self._render(Path(folder), text, **frame)
+            except (NotRun, ShaderError) as error:
+                reasons[name] = str(error)
+        return reasons
 
     def forget(self) -> None:
         self._picture.cache_clear()
@@ -246,7 +243,6 @@ class Host(PairHost):
         kind: str = "",
         inputs: tuple[tuple[str, Socket], ...] = (),
     ) -> Array:
-        """Picture of the sphere with an OSL shader or a node of Blender's on it; read-only."""
         frame = process.request(scene, lobes)
         with self._folder() as folder:
             if text:
@@ -268,7 +264,6 @@ class Host(PairHost):
         raise InputError(f"function must be defined in {self._sources}; got {function!r}")
 
     def _render(self, folder: Path, text: str, **frame: object) -> Array:
-        """Picture that the worker renders of the OSL shader `text`."""
         shader = folder / "shader.osl"
         shader.write_text(text)
         return self._request(folder, shader=str(shader), **frame)

@@ -23,8 +23,6 @@ NODES: dict[str, tuple[str, str, str, dict[str, float]]] = {
 
 
 class Host(RendererHost):
-    """Blender's Cycles with its own shading nodes."""
-
     name = "cycles-native"
 
     def __init__(self) -> None:

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The half of the hosts `cycles`, `osl` and `eevee` that runs in Blender's Python, started by its path.
+"""The half of the hosts `cycles`, `osl` and `eevee` that runs in Blender's Python; see `mxeon.hosts.process`.
 
-It reads one JSON object per line on standard input and answers each with one on standard output:
-first `{"version": ...}`, then `{}` or `{"error": ...}` per request. Output of Blender and of the OSL
-compiler goes to standard error. The process ends when standard input does.
+A reply is `{}` or `{"error": ...}`. Output of Blender and of the OSL compiler goes to standard error.
 """
 
 from __future__ import annotations
@@ -267,7 +265,6 @@ def draw(
 
 
 def main() -> None:
-    """Serve requests until standard input ends."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     print(json.dumps({"version": bpy.app.version_string}), file=REPLIES)
     for line in sys.stdin:

@@ -209,7 +209,6 @@ def device(renderer: mx_render_glsl.GlslRenderer) -> str:
 
 
 def main() -> None:
-    """Serve requests until standard input ends."""
     library, first = load(sys.argv[2:]), open_renderer()
     picture = lru_cache(maxsize=PICTURES)(partial(ShownElement, library))
     version = f"MaterialX {mx.getVersionString()}"

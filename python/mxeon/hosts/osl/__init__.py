@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """OSL without a renderer: generated OSL is compiled and run by a real OSL, which prints its closures.
 
-    generated text --carriers--> labels in place of closures --Blender's OSL--> a line for each point
+    generated text --carriers--> labels instead of closures --Blender's OSL--> a line for each point
     --trees--> one tree of arrays --`mxeon.conformance.reference.closures`--> values by the models
 
 So what MaterialX's text says is judged, whatever a renderer makes of it.

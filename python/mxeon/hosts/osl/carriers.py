@@ -42,13 +42,9 @@ CLOSURES = {
     "subsurface_bssrdf": Signature(
         {"normal": "normal", "color": "color", "radius": "color", "anisotropy": "float"}
     ),
-    "dielectric_bsdf": Signature(
-        FRAME | TINTS | ALPHAS | {"ior": "float"} | DISTRIBUTION,
-        FILM,
-    ),
+    "dielectric_bsdf": Signature(FRAME | TINTS | ALPHAS | {"ior": "float"} | DISTRIBUTION, FILM),
     "conductor_bsdf": Signature(
-        FRAME | ALPHAS | {"ior": "color", "extinction": "color"} | DISTRIBUTION,
-        FILM,
+        FRAME | ALPHAS | {"ior": "color", "extinction": "color"} | DISTRIBUTION, FILM
     ),
     "generalized_schlick_bsdf": Signature(
         FRAME

@@ -40,8 +40,6 @@ IMAGE = (
 
 @dataclass(frozen=True)
 class Column:
-    """Values of one variable."""
-
     kind: str  # OSL's type
     values: ArrayLike  # one for each point, or one for all
     declared: bool = True  # else assigned, to a variable of OSL that all functions read
@@ -99,7 +97,6 @@ def statements(columns: Mapping[str, Column], image: Path, count: int, place: st
 
 
 def _write(image: Path, rows: NDArray[np.float32]) -> None:
-    """Write an image with one pixel for each row."""
     size, channels = side(len(rows)), rows.shape[1]
     pixels = np.zeros((size * size, channels), np.float32)
     pixels[: len(rows)] = rows

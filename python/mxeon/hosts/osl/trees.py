@@ -88,7 +88,7 @@ def _exact(numbers: Sequence[Sequence[str]]) -> Values:
 
 
 def _tree(shape: str, numbers: Values) -> ClosureTree | None:
-    """Tree of a label whose numbers are signs, of which each point has its own."""
+    """Tree of a label with signs for the numbers, which differ from point to point."""
     columns = iter(range(numbers.shape[1])) if numbers.size else count()
     stack: list[tuple[str, list[Argument]]] = [("", [])]
     expected = "closure"
@@ -203,7 +203,7 @@ class KeptTrees:
 
 
 def keys_of(text: str, columns: Mapping[str, Column], view: Column, count: int) -> list[bytes]:
-    """What the closures of each point depend on: the values of all variables, of which the view may be one."""
+    """What the closures of each point depend on: the values of all variables, the view too if it is read."""
     read = [*columns.values(), *([view] if VIEWED.search(text) else [])]
     values = [np.broadcast_to(each.rows, (count, each.rows.shape[1])) for each in read]
     return [row.tobytes() for row in np.concatenate(values, axis=1)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Renderers with a Python package, whose own nodes are shown on the polyhedron.
+"""Renderers with a Python package, which render their own nodes on the polyhedron.
 
 Each runs in a process of its own: a worker renders, `<name>.py` asks it. The samples of
 these renderers spread over a pixel, so they show `mxeon.shaders.facets` instead of a sphere.

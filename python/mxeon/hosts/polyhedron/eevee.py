@@ -12,8 +12,6 @@ from mxeon.hosts.polyhedron import Material, PolyhedronHost
 
 
 class Host(PolyhedronHost):
-    """Blender's EEVEE with its own shading nodes."""
-
     name = "eevee"
     script = "../cycles/worker.py"
     samples = 1  # it has no noise

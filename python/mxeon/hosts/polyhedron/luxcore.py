@@ -28,8 +28,6 @@ DISNEY = dict.fromkeys(
 
 
 class Host(PolyhedronHost):
-    """LuxCoreRender with its own materials."""
-
     name = "luxcore"
     script = "luxcore_worker.py"
     samples = 64

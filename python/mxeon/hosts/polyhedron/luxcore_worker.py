@@ -1,9 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The half of the `luxcore` host that runs in the process of LuxCoreRender, started by its path.
-
-It reads one JSON object per line on standard input and answers each with one on standard output:
-first `{"version": ...}`, then `{}` per request. The process ends when standard input does.
-"""
+"""The half of the `luxcore` host that runs in the process of LuxCoreRender; see `mxeon.hosts.process`."""
 
 from __future__ import annotations
 
@@ -69,11 +65,7 @@ def define(kind: str, values: Values) -> LuxCore:
 
 
 def build(
-    material: Values,
-    mesh: str,
-    size: int,
-    light: list[float] | None,
-    environment: float | None,
+    material: Values, mesh: str, size: int, light: list[float] | None, environment: float | None
 ) -> LuxCore:
     data, scene = np.load(mesh), pyluxcore.Scene()
     vertices = [tuple(each) for each in data["vertices"].tolist()]
@@ -92,7 +84,6 @@ def build(
 
 
 def render(samples: int, size: int, **parts: Any) -> LuxCore:
-    """Picture, linear float32, row 0 at the top."""
     film = {"film.width": size, "film.height": size, "batch.haltspp": samples}
     session = pyluxcore.RenderSession(
         pyluxcore.RenderConfig(properties(RENDERER | film), build(size=size, **parts))
@@ -108,7 +99,6 @@ def render(samples: int, size: int, **parts: Any) -> LuxCore:
 
 
 def main() -> None:
-    """Serve requests until standard input ends."""
     pyluxcore.Init(lambda message: None)
     print(json.dumps({"version": pyluxcore.Version()}), file=REPLIES)
     for line in sys.stdin:

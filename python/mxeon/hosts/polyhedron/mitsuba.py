@@ -55,14 +55,7 @@ class Host(PolyhedronHost):
         },
     }
 
-    def pairs(
-        self,
-        title: str,
-        wo: Array,
-        wi: Array,
-        color: Array,
-        roughness: Array,
-    ) -> Array:
+    def pairs(self, title: str, wo: Array, wi: Array, color: Array, roughness: Array) -> Array:
         path = self._folder / "pairs.npz"
         np.savez(path, wo=wo, wi=wi, color=color, roughness=roughness)
         material = self._material(title, "{color}", "{roughness}")

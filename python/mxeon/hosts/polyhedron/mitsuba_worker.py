@@ -1,9 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The half of the `mitsuba` host that runs in the process of Mitsuba, started by its path.
-
-It reads one JSON object per line on standard input and answers each with one on standard output:
-first `{"version": ...}`, then `{}` per request. The process ends when standard input does.
-"""
+"""The half of the `mitsuba` host that runs in the process of Mitsuba; see `mxeon.hosts.process`."""
 
 from __future__ import annotations
 
@@ -66,7 +62,7 @@ def evaluate(material: Values, pairs: str) -> Mitsuba:
 
 
 def evaluate_at_once(material: Values, columns: Values) -> Mitsuba:
-    """The same for all pairs together, whose inputs are texels."""
+    """The same for all pairs together, with inputs as texels."""
     inputs = {
         name: {
             "type": "bitmap",
@@ -158,7 +154,6 @@ def polyhedron(path: str, material: Values) -> Mitsuba:
 
 
 def main() -> None:
-    """Serve requests until standard input ends."""
     print(json.dumps({"version": mi.__version__}), file=REPLIES)
     for line in sys.stdin:
         request = json.loads(line)

@@ -29,7 +29,7 @@ class Host(DocumentHost):
     name = "storm"
 
     def unread(self, shader: Shader) -> str:
-        """The enumerated inputs of closures, of which Storm takes the defaults."""
+        """The enumerated inputs of closures: Storm takes their defaults."""
         nodes = (each for each in shader.document.traverseTree() if each.isA(mx.Node))
         names = ", ".join(name for node in nodes for name in _enumerated(node))
         return names and f"Storm takes the default of an enumerated input, here of {names}"

@@ -212,7 +212,6 @@ def import_usd(root: str, libraries: str) -> Foreign:
 
 
 def main() -> None:
-    """Serve requests until standard input ends."""
     stage = Stage(canvas)
     _, minor, patch = usd.Usd.GetVersion()
     version = f"OpenUSD {minor}.{patch}, MaterialX {materialx}"

@@ -12,11 +12,7 @@ from pathlib import Path
 from mxeon.errors import MxeonError, NotRun, ShaderError
 from mxeon.hosts.base import RendererWarning
 
-VARIABLES = {
-    "oslc": "MXEON_OSLC",
-    "testrender": "MXEON_TESTRENDER",
-    "testshade": "MXEON_TESTSHADE",
-}
+VARIABLES = {"oslc": "MXEON_OSLC", "testrender": "MXEON_TESTRENDER", "testshade": "MXEON_TESTSHADE"}
 TIMEOUT = 300.0  # seconds for one of them
 LINES = 4  # last ones of a program's output in a message
 # The first line of the help: oslc has no option for its version.

@@ -60,8 +60,6 @@ SKY_GROUP = """  <ShaderGroup name="sky">
 
 @dataclass(frozen=True)
 class PairScene:
-    """Points that show pairs of directions to a camera."""
-
     size: int  # pixels on a side of the picture
     rays: Vectors  # unit vectors (N, 3) from the camera through the pixels' centers, row 0 first
     points: Vectors  # (N, 3), float32 numbers
