@@ -108,7 +108,7 @@ def fill(template: str, tables: Mapping[str, Table]) -> str:
 
 def table_text(table: Table) -> str:
     """A table as Markdown, its columns aligned."""
-    rows = [COLUMNS]
+    rows: list[Sequence[str]] = [COLUMNS]
     for port in table:
         types = _types_text(port, table)
         cells = (f"`{port.name}`", port.description, types, port.default, port.accepted)

@@ -29,16 +29,16 @@ from mxeon.shaders.scene import Scene, sphere
 
 SPREAD = 1.0 / 64.0  # of the texture coordinates within a quad
 CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
-STEEPEST = (
-    0.05  # cosine with the view of a tangent plane: nearer to the rim it would leave the frame
-)
+STEEPEST = 0.05  # cosine of a tangent plane with the view: nearer to the rim it leaves the frame
 
 
 def quads(size: int, place: tuple[float, float] = (0.0, 0.0)) -> dict[str, NDArray[np.float32]]:
     """The quads of a picture of `size` x `size` pixels, four vertices each, counterclockwise.
 
-    A point lies at `place` in its pixel, in half widths from the middle. "position", "normal" and
-    "texcoord", by the pixels of the sphere, row 0 at the top first.
+    Each has one normal, so that every pixel is an exact point, at `place` in half widths from its middle.
+    A quad lies in the tangent plane and covers the pixel: its derivatives of positions are those of the
+    sphere. Those of "texcoord" have their directions but are smaller, so that textures are read at full
+    size, as from a point. Row 0 at the top comes first.
     """
     points = sphere(size)
     normal = points.normal[points.mask][:, np.newaxis]

@@ -101,11 +101,8 @@ def unit(vectors: Vectors) -> Vectors:
     return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))
 
 
-Vectors = NDArray[np.float64]
 PIXEL = 2.0**-5  # width
-JITTER = (
-    0.5 * 0.01 * 2.0**0.5
-)  # of a sample beside the middle of its pixel, in pixels, by its filter
+JITTER = 0.5 * 0.01 * 2.0**0.5  # of a sample about the middle of its pixel, in pixels
 DISTANCE = 256.0  # of the light from the middle of the picture, at its height
 TRIANGLE = 0.4 * PIXEL  # of its corners from the middle of the pixel
 HEIGHT = 16.0 * DISTANCE  # of the camera: the nearest point is 12.5 times the distance high
@@ -131,7 +128,12 @@ class TiltedTriangles:
 
 
 def tilted_triangles(wo: Array, wi: Array, size: int) -> TiltedTriangles:
-    """Triangles that show pairs (N, 3), N <= size^2, with a sine of at least LEAST_SINE."""
+    """Triangles that show pairs (N, 3), N <= size^2, with a sine of at least LEAST_SINE.
+
+    The camera looks down from far away with parallel rays, and a light of one point lies beside the
+    picture. The depth of a triangle on the ray of its pixel decides about the angle between view and
+    light. It is turned so that its own normal and the shaded one are the same.
+    """
     # Points at which the light appears at the angle.
     wo, wi = (np.asarray(each, np.float64) for each in (wo, wi))
     axis = PIXEL * (np.arange(size) + 0.5 - size / 2.0)

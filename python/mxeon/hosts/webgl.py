@@ -18,7 +18,7 @@ from contextlib import ExitStack
 from functools import lru_cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, TypeAlias
+from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,7 +70,7 @@ class Chromium:
     request that takes `limit` seconds ends the browser.
     """
 
-    flags = FLAGS
+    flags: ClassVar[tuple[str, ...]] = FLAGS
 
     def __init__(self, host: str, limit: float) -> None:
         if sync_api is None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,9 +23,6 @@ from mxeon.kit.noise import CONFIDENCE, Tiles, ratio, tiles
 from mxeon.kit.views import BLACK, FALSE, HALF, LAMBERT, TRUE, WHITE, Material, View
 from mxeon.models import table as reference
 from mxeon.shaders.nodes import FLAG
-
-if TYPE_CHECKING:
-    from mxeon.kit.questions import JudgedPicture
 
 # Models nearer to another one than a renderer's noise: EON's quartic is off by 1e-3 at most.
 TOO_NEAR = ("eon_approx",)

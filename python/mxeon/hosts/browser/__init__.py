@@ -68,7 +68,7 @@ def package_version(folder: Path, package: str) -> str:
 
 
 class Browser(webgl.Chromium):
-    """A page with a renderer.
+    """A page with a renderer, which may take `limit` seconds for a picture.
 
     `page` is an ES module that exports `draw(job)`, whose answer has `pixels` or `failed`. `imports`
     maps names in the page to paths in `modules`, the folder node_modules; `assets` are PNG files that

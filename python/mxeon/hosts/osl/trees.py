@@ -166,7 +166,11 @@ MOST = 1 << 16  # points of a shader
 
 
 class KeptTrees:
-    """Closures that one shader makes, by the values of all variables of a point."""
+    """Closures that one shader makes, by the values of all variables of a point.
+
+    Light does not change which closures a shader makes, and most texts do not read the view either. So a
+    check of other lights, or of some of the points of another check, runs nothing.
+    """
 
     def __init__(self) -> None:
         self._trees: dict[str, ClosureTree | None] = {}  # one of each shape
