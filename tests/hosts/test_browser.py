@@ -145,33 +145,6 @@ def test_a_repair_makes_the_checks_pass_that_show_the_defect(repaired, issue):
         assert result.verdict == PASSED, result.explanation
 
 
-@pytest.mark.parametrize("change", repairs.REPAIRS, ids=lambda each: each.file)
-def test_a_repair_is_of_the_file_that_its_page_names(change):
-    with available("babylon"):
-        modules = browser.modules_folder(change.package, "babylon")
-    assert change.old in (modules / change.package / change.file).read_text("utf-8")
-    page = (repairs.Path(repairs.__file__).parent / f"{change.page}.md").read_text("utf-8")
-    assert change.file in page
-
-
-def test_a_repair_of_another_text_is_refused(tmp_path):
-    file = tmp_path / "three" / "a.js"
-    file.parent.mkdir()
-    file.write_text("other")
-    change = repairs.Repair("", "three", "a.js", "old", "new")
-    with pytest.raises(ValueError, match=r"^a\.js must hold 'old'$"):
-        repairs.repair(tmp_path, change)
-
-
-@pytest.mark.parametrize("name, package", [("three", "three"), ("babylon", "@babylonjs/core")])
-def test_a_missing_package_is_named_with_its_remedy(name, package, tmp_path, monkeypatch):
-    monkeypatch.setenv(browser.MODULES, str(tmp_path))
-    with pytest.raises(NotRun) as error:
-        open_engine(name)
-    remedy = f"npm ci --prefix {browser.packages_folder()}"
-    assert str(error.value) == f"{name}: no package {package} in {tmp_path}; {remedy}"
-
-
 def test_a_page_that_throws_goes_on_and_one_that_hangs_is_ended(tmp_path):
     script = tmp_path / "page.js"
     script.write_text(PAGE)

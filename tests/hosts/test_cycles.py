@@ -19,10 +19,10 @@ from mxeon.hosts.cycles import process as cycles_process
 from mxeon.hosts.pairs import DISTANCE, HEIGHT, tilted_triangles, visible
 from mxeon.models.diffuse.brdf import eon_brdf
 from mxeon.shaders.generation import ApproximationWarning, generate
-from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, material_text, node_text
+from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, material_text
 from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, Paths, sphere
 from tests.support.availability import available
-from tests.support.documents import lobe, material
+from tests.support.documents import material
 from tests.support.tolerances import (
     CYCLES_EON_RELATIVE,
     CYCLES_FURNACE_MEAN,
@@ -93,19 +93,6 @@ def host(sources):
         yield host
 
 
-def test_a_missing_blender_is_not_run_and_names_the_remedy(monkeypatch):
-    monkeypatch.setenv("MXEON_CYCLES_PYTHON", "/nowhere/python")
-    with pytest.raises(NotRun, match="no interpreter /nowhere/python; pip install bpy"):
-        cycles.Host()
-
-
-def test_a_missing_folder_is_not_run(monkeypatch, tmp_path):
-    monkeypatch.delenv("MXEON_CYCLES_PYTHON", raising=False)
-    monkeypatch.setattr(cycles_process, "CHECKOUT", str(tmp_path))
-    with pytest.raises(NotRun, match="no folder .venv-cycles"):
-        cycles.Host()
-
-
 def test_an_interpreter_in_the_working_folder_is_not_started(monkeypatch, tmp_path):
     monkeypatch.delenv("MXEON_CYCLES_PYTHON", raising=False)
     monkeypatch.setattr(cycles_process, "CHECKOUT", str(tmp_path / "elsewhere"))
@@ -115,12 +102,6 @@ def test_an_interpreter_in_the_working_folder_is_not_started(monkeypatch, tmp_pa
     monkeypatch.chdir(tmp_path)
     with pytest.raises(NotRun, match="no folder .venv-cycles"):
         cycles_process.interpreter()
-
-
-def test_an_interpreter_without_blender_is_not_run(monkeypatch):
-    monkeypatch.setenv("MXEON_CYCLES_PYTHON", sys.executable)
-    with cycles.Host() as host, pytest.raises(NotRun, match="No module named 'bpy'"):
-        host.identity()
 
 
 def test_the_host_says_version_and_device(host):
@@ -192,12 +173,6 @@ def test_the_flag_and_the_node_of_its_own_give_the_same(host):
     np.testing.assert_array_equal(host.picture(flag, SMALL), host.picture(node, SMALL))
 
 
-def test_stock_is_not_exact(host):
-    shader = osl(oren_nayar("true"), library="stock")
-    error = np.abs(host.picture(shader, SMALL) - Reference().picture(shader, SMALL))
-    assert error.max() > 100.0 * CYCLES_EON_RELATIVE
-
-
 @pytest.mark.parametrize("scene", LIGHTS, ids=lambda scene: scene.name)
 def test_qon_with_the_profile_is_exact_in_front_and_darker_behind(host, scene):
     with pytest.warns(ApproximationWarning):
@@ -217,15 +192,6 @@ def test_a_white_furnace_returns_all_light(host):
     mask = sphere(scene.size).mask
     assert abs(picture[mask].mean() - 1.0) < CYCLES_FURNACE_MEAN
     assert not picture[~mask].any()
-
-
-def test_both_nodes_live_in_one_material(host):
-    lobes = lobe(EON, "a") + lobe(OREN_NAYAR, "b", energy_compensation=True)
-    ports = (
-        '<input name="in1" type="BSDF" nodename="a"/><input name="in2" type="BSDF" nodename="b"/>'
-    )
-    text = material(lobes + node_text("add", "BSDF", "lobe", ports))
-    assert host.picture(osl(text, profile="cycles"), SMALL).any()
 
 
 def test_a_shader_that_does_not_compile_is_the_shaders_error(host):
@@ -276,17 +242,6 @@ def test_nothing_is_left_behind(sources, host):
     with pytest.raises(ProcessLookupError):
         os.kill(pid, 0)
     assert not log.exists()
-
-
-def test_a_picture_that_was_rendered_is_kept_until_it_is_forgotten(host, monkeypatch):
-    shader, asked, ask = osl(eon((0.5, 0.5, 0.5), 0.5)), [], host.worker.ask
-    monkeypatch.setattr(host.worker, "ask", lambda **request: asked.append(1) or ask(**request))
-    first, second = host.picture(shader, SMALL), host.picture(shader, SMALL)
-    assert len(asked) == 1 and not second.flags.writeable
-    host.forget()
-    third = host.picture(shader, SMALL)
-    assert len(asked) == 2
-    assert np.array_equal(first, second) and np.array_equal(first, third)
 
 
 def test_nothing_of_an_earlier_picture_stays_in_the_scene(host):

@@ -3,7 +3,6 @@
 
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 
 import pytest
 
@@ -15,7 +14,6 @@ from mxeon.conformance.probes.renderer_nodes import NativeProbe
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.conformance.run import check
 from mxeon.hosts import open_engine
-from mxeon.hosts.cycles.process import interpreter
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.scene import sphere
 from tests.support.availability import available
@@ -25,13 +23,6 @@ from tests.support.sharing import shared
 NATIVE = renderer_nodes("cycles-native")
 EXAMPLE = examples_folder() / "plaster.mtlx"
 SIZE = PICTURE_SIZE // 2  # the bound of so few pixels is twice as wide; the defect is off by 0.1
-
-
-# File below the kernel's folder, line, and a word of it.
-CAUSES = (
-    ("closure/bsdf_oren_nayar.h", 79, "sqr(albedo)"),
-    ("osl/closures_setup.h", 138, "weight * closure->albedo"),
-)
 
 
 @pytest.fixture(scope="module")
@@ -68,17 +59,3 @@ def test_blender_has_one_power_of_the_color_too_many(results, subject):
     assert found["value"].distances["EON with rho^3"] < 1e-6
     assert found["environment"].error > 100.0 * found["environment"].tolerance
     assert {found[key].verdict for key in ("furnace", "black", "lambert", "inputs")} == {PASSED}
-
-
-@pytest.mark.parametrize("file, line, word", CAUSES, ids=lambda each: str(each))
-def test_the_cause_is_at_its_line(file, line, word):
-    with available("cycles-native"):
-        folder = interpreter().parents[1]
-    [path] = folder.glob(
-        f"lib/python*/site-packages/bpy/*/scripts/addons_core/cycles/source/kernel/{file}"
-    )
-    assert word in path.read_text("utf-8").splitlines()[line - 1]
-    page = (Path(__file__).parents[2] / "docs" / "upstream" / "cycles_rho_cubed.md").read_text(
-        "utf-8"
-    )
-    assert f"`intern/cycles/kernel/{file}:{line}`" in page

@@ -1,11 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Storm and MaterialX's own renderer: the models from all sides, the defects of stock, and what may go wrong."""
 
-import os
-import signal
-import sys
 from dataclasses import replace
-from threading import Timer
 
 import numpy as np
 import pytest
@@ -77,9 +73,6 @@ def copy_of_eonlib(tmp_path):
     return copy
 
 
-# --- the models --------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("place", [(0.0, 0.0), PLACE])
 def test_every_pixel_is_an_exact_point(place):
     mesh, points = quads(8, place), sphere(8)
@@ -98,13 +91,6 @@ def test_every_pixel_is_an_exact_point(place):
 def test_eonlib_passes(host, key):
     result = judged(host, key)
     assert result.verdict == PASSED and result.control.caught
-
-
-def test_the_pairs_are_many_and_lit_from_behind(host):
-    probe = HOST_PROBES[host_row(host.name).probe](host, EON, "eonlib")
-    assert all(len(batch.wo) > 1 << 10 for batch in probe.batches)
-    assert sum(len(batch.wo) for batch in probe.batches) > 1 << 15
-    assert min((batch.wo * batch.wi).sum(axis=1).min() for batch in probe.batches) < -0.5
 
 
 def test_an_environment_lights_a_node_that_transmits(hosts):
@@ -154,9 +140,6 @@ def test_the_dome_of_storm_is_given_what_its_sum_loses(on_storm):
     assert np.abs(on_storm.picture(shader, darker)[sphere(16).mask] - 1.0).min() > 0.015
 
 
-# --- what cannot be shown ----------------------------------------------------------------------
-
-
 def test_a_later_input_is_refused_in_a_sentence(on_storm):
     [shader] = on_storm.compile(material(lobe("dielectric_bsdf", retroreflective="true")))
     message = "^storm: OpenUSD .*, MaterialX 1.39.3 cannot show the document: .*nodedef for 'lobe'"
@@ -202,9 +185,6 @@ def test_an_image_around_the_sphere_is_refused(host, tmp_path):
         host.picture(shader, replace(FURNACE, environment=tmp_path / "sky.exr"))
 
 
-# --- other libraries ---------------------------------------------------------------------------
-
-
 def test_stock_is_wrong_from_behind(host):
     result = judged_small(host, "stock")
     assert result.verdict == FAILED
@@ -222,71 +202,6 @@ def test_a_shader_that_does_not_compile_is_a_shader_error(host, copy_of_eonlib):
         host.picture(shader, SMALL)
 
 
-# --- processes ---------------------------------------------------------------------------------
-
-
 def test_the_identity_names_versions_and_a_device(host):
     identity = host.identity()
     assert identity.name == host.name and "MaterialX 1.39" in identity.version and identity.device
-
-
-def test_a_crash_is_not_run_and_the_next_picture_is(host):
-    [shader, *_] = host.compile(DOCUMENT)
-    host.picture(shader, SMALL)
-    os.kill(host.worker.pid, signal.SIGSTOP)  # it cannot answer before it ends
-    killer = Timer(0.2, os.kill, (host.worker.pid, signal.SIGKILL))
-    killer.start()
-    with pytest.raises(NotRun, match=f"^{host.name}: ended by SIGKILL; last output: "):
-        host.picture(shader, replace(SMALL, size=8))
-    assert host.picture(shader, replace(SMALL, size=8)).any()
-
-
-@pytest.mark.parametrize("engine", HOSTS.values(), ids=HOSTS)
-def test_nothing_is_left_behind(hosts, engine):
-    hosts(engine.name)  # or the test is skipped
-    with engine() as host:
-        host.identity()
-        pid, log = host.worker.pid, host.worker.log
-    with pytest.raises(ProcessLookupError):
-        os.kill(pid, 0)
-    assert not log.exists()
-
-
-def test_a_missing_blender_is_one_line(monkeypatch):
-    monkeypatch.setenv("MXEON_CYCLES_PYTHON", "/nowhere/python")
-    with pytest.raises(NotRun, match="^storm: no interpreter /nowhere/python; pip install bpy"):
-        storm.Host()
-    monkeypatch.setenv("MXEON_CYCLES_PYTHON", sys.executable)
-    with (
-        storm.Host() as host,
-        pytest.raises(NotRun, match="^storm: no package bpy; pip install bpy==.* in the env"),
-    ):
-        host.identity()
-
-
-def test_a_missing_driver_is_one_line(hosts, monkeypatch):
-    hosts("storm")
-    monkeypatch.setenv("__EGL_VENDOR_LIBRARY_FILENAMES", os.devnull)
-    with (
-        storm.Host() as host,
-        pytest.raises(NotRun, match="^storm: no OpenGL 4.5 through EGL .*; on Debian: apt-get"),
-    ):
-        host.identity()
-
-
-@pytest.mark.parametrize(
-    "display, message",
-    [
-        (
-            "",
-            "no display: DISPLAY is not set, and there is no Xvfb; on Debian: apt-get install xvfb$",
-        ),
-        (":4711", "(ended by|exit status) .*; last output: "),
-    ],
-)
-def test_a_missing_display_is_one_line(monkeypatch, display, message):
-    monkeypatch.setenv("DISPLAY", display)
-    monkeypatch.setenv("PATH", "/nowhere")
-    with materialx.Host() as host, pytest.raises(NotRun, match=f"^materialx: {message}") as caught:
-        host.identity()
-    assert "\n" not in str(caught.value)

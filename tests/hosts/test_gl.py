@@ -13,12 +13,12 @@ from mxeon.conformance.accuracy.bsdf import MICROFACET_VALUE
 from mxeon.conformance.probes.pictures import picture_pairs
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.samples.batch import directions
-from mxeon.errors import NotRun, ShaderError
+from mxeon.errors import NotRun
 from mxeon.hosts import open_host, raster
 from mxeon.hosts.points import visible
 from mxeon.hosts.textures import irradiance, read_latlong
 from mxeon.shaders.document.policy import Policy
-from mxeon.shaders.generation import Shader, generate
+from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import EON, OREN_NAYAR, document_text
 from mxeon.shaders.scene import FRONT, FURNACE, SCENES, SHAPES, Scene, sphere
 from mxeon.shaders.shader_ball import shader_ball
@@ -152,15 +152,6 @@ def test_inputs_outside_their_ranges_give_finite_numbers(gl, flag, branch):
     assert not values[inputs["weight"] < 0.0].any()
 
 
-def test_weight_scales_the_value(gl):
-    wo = wi = np.array([[0.6, 0.0, 0.8]])
-    whole, half = (
-        gl.evaluate(shader(LOBES["eon"]), wo, wi, {"weight": weight}, "direct")
-        for weight in (1.0, 0.5)
-    )
-    assert np.array_equal(half, 0.5 * whole)
-
-
 def test_nodes_are_evaluated_together_with_inputs_by_their_paths(gl):
     nodes = f"""<{EON} name="a" type="BSDF"/><{EON} name="b" type="BSDF"/>
       <add name="lobe" type="BSDF">
@@ -198,22 +189,6 @@ def test_a_material_without_a_bsdf_cannot_be_evaluated(gl):
         gl.evaluate(gl.compile(text)[0], wo, wo, {}, "direct")
 
 
-def test_an_unknown_branch_lists_the_known_ones(gl):
-    wo = np.array([[0.0, 0.0, 1.0]])
-    with pytest.raises(
-        ValueError, match="^branch must be one of graph, direct, .*, emission; got 'up'$"
-    ):
-        gl.evaluate(shader(LOBES["eon"]), wo, wo, {}, "up")
-
-
-def test_a_shader_that_does_not_compile_brings_the_compilers_words(gl):
-    good = shader(LOBES["eon"])
-    stages = {**good.stages, "pixel": good.stages["pixel"].replace("void main()", "void main(")}
-    broken = Shader(good.name, good.element, good.target, stages, good.inputs, good.document)
-    with pytest.raises(ShaderError, match="syntax error"):
-        gl.picture(broken, SCENES[0])
-
-
 def test_a_machine_without_egl_did_not_run(monkeypatch):
     def missing(**options):
         raise Exception("libEGL.so not loaded")
@@ -247,17 +222,3 @@ def test_each_pixel_of_a_shape_is_in_one_band(shape, size):
     mask = visible(size, shape).mask[::-1]
     assert (drawn[mask] == 1).all() and drawn.max() == 1
     assert drawn.sum() <= mask.sum() + 4 * raster.BAND * size
-
-
-def test_a_picture_is_the_same_where_the_frame_is_drawn_beside_the_shape_too(gl, monkeypatch):
-    scene = replace(SCENES[1], shape="ball")
-    image = picture(gl, LOBES["eon"], scene)
-    monkeypatch.setattr(raster, "bands", lambda size, shape: ((0, 0, size, size),))
-    np.testing.assert_array_equal(picture(gl, LOBES["eon"], scene), image)
-
-
-def test_points_of_a_picture_are_captured_once_for_all_its_lights(gl):
-    gl._points.cache_clear()
-    for scene in SCENES:
-        picture(gl, LOBES["eon"], scene)
-    assert gl._points.cache_info().misses == 1

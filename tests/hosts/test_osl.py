@@ -8,15 +8,14 @@ import numpy as np
 import pytest
 
 from mxeon.errors import NotRun, ShaderError
-from mxeon.hosts.osl import LINE, carriers, trees
+from mxeon.hosts.osl import trees
 from mxeon.hosts.osl.points import Column
-from mxeon.hosts.osl.trees import KeptTrees, keys_of
+from mxeon.hosts.osl.trees import keys_of
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import document_text, lobe_text, material_text, node_text
 
 WO = np.tile([0.6, 0.0, 0.8], (5, 1))
 COLORS = np.linspace(0.0, 1.0, 15).reshape(5, 3).astype(np.float32).astype(np.float64)
-SHEEN = "sheen_bsdf<0 0 1|1 1 1|{}>"
 
 
 def shader(node="burley_diffuse_bsdf", **inputs):
@@ -106,18 +105,12 @@ def test_a_shader_may_call_its_output_as_it_likes(host):
 
 def test_a_tree_of_any_size_is_told(host):
     lobes = lobe_text("sheen_bsdf", {}, "lobe0")
+    port = '    <input name="{}" type="{}" {} />\n'.format
     for n in range(40):
-        ports = "".join(
-            f'    <input name="{p}" type="BSDF" nodename="lobe{n}" />\n' for p in ("in1",)
-        )
-        ports += '    <input name="in2" type="float" value="0.9" />\n'
+        ports = port("in1", "BSDF", f'nodename="lobe{n}"') + port("in2", "float", 'value="0.9"')
         lobes += node_text("multiply", "BSDF", f"lobe{n + 1}", ports)
-    surface = node_text(
-        "surface",
-        "surfaceshader",
-        "shading",
-        '    <input name="bsdf" type="BSDF" nodename="lobe40" />\n',
-    )
+    bsdf = port("bsdf", "BSDF", 'nodename="lobe40"')
+    surface = node_text("surface", "surfaceshader", "shading", bsdf)
     [made] = generate(document_text(lobes + surface), "osl")
     [points] = host.trees(made, WO, {})
     assert names(points.tree).count("mul") == 43
@@ -154,37 +147,12 @@ def test_what_the_engine_says_of_a_text_fails(host):
         host.trees(wrong, WO, {})
 
 
-def test_a_line_is_a_row_a_label_and_its_text():
-    assert LINE.match("mxeon 7 @-12 sheen_bsdf<0 0 1>").groups() == (
-        "7",
-        "@-12",
-        "sheen_bsdf<0 0 1>",
-    )
-
-
-def test_labels_that_differ_in_numbers_alone_share_a_tree():
-    [points] = trees.read_trees([SHEEN.format(0.5), SHEEN.format("1e-05")])
-    assert points.rows.tolist() == [0, 1]
-    assert points.tree.arguments["roughness"].tolist() == [0.5, float(np.float32(1e-5))]
-    assert points.tree.arguments["normal"].tolist() == [[0.0, 0.0, 1.0]] * 2
-
-
 def test_a_closure_without_light_and_one_without_arguments_are_told():
     [points] = trees.read_trees(["add<|transparent<>>"])
     assert points.tree.parts[0] is None
     assert points.tree.parts[1] == trees.ClosureTree("transparent")
     [empty] = trees.read_trees([""])
     assert empty.tree is None
-
-
-def test_what_is_not_a_number_is_told():
-    [points] = trees.read_trees([SHEEN.format("-nan"), SHEEN.format("inf")][1:])
-    assert np.isinf(points.tree.arguments["roughness"]).all()
-
-
-def test_keywords_are_told_by_name():
-    [points] = trees.read_trees(["sheen_bsdf<0 0 1|1 1 1|0.5|'mode'|1>"])
-    assert points.tree.arguments["mode"].tolist() == [1.0]
 
 
 def test_closures_that_lie_too_deep_are_not_run():
@@ -195,12 +163,6 @@ def test_closures_that_lie_too_deep_are_not_run():
     }
     with pytest.raises(NotRun, match="must be less than 200 deep"):
         trees.whole_label(texts, "root")
-
-
-def test_a_prelude_has_the_closures_that_a_text_names():
-    text = carriers.prelude("sheen_bsdf(N)", carriers.HOLDOUT)
-    assert "#define sheen_bsdf mxeon_sheen_bsdf" in text
-    assert "conductor" not in text
 
 
 def test_the_root_of_zeltners_roughness_undoes_a_square_to_the_last_bit():
@@ -252,18 +214,3 @@ def test_a_text_that_reads_the_view_is_run_for_each_view():
     view = Column("vector", np.eye(3)[:2])
     assert len(set(keys_of("color c = x;", columns, view, 2))) == 1
     assert len(set(keys_of("color c = dot(I, N);", columns, view, 2))) == 2
-
-
-def test_closures_of_several_shapes_are_kept_by_point():
-    kept = KeptTrees()
-    keys = [b"0", b"1", b"2"]
-    burley, empty = (
-        trees.ClosureTree("burley_diffuse_bsdf", (), {"roughness": np.arange(2.0)}),
-        None,
-    )
-    kept.add(keys, (trees.TreeRows(np.array([0, 2]), burley), trees.TreeRows(np.array([1]), empty)))
-    assert kept.missing([b"2", b"3", b"3", b"1"]).tolist() == [2]
-    second, first = kept.of([b"1", b"2", b"2", b"0"])
-    assert first.rows.tolist() == [1, 2, 3]
-    assert first.tree.arguments["roughness"].tolist() == [1.0, 1.0, 0.0]
-    assert (second.rows.tolist(), second.tree) == ([0], None)

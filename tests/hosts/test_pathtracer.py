@@ -98,22 +98,6 @@ def test_a_repair_makes_the_checks_pass_that_show_the_defect(repaired, issue):
         assert result.verdict == PASSED and result.control.caught
 
 
-@pytest.mark.parametrize("change", repairs.PATHTRACER_REPAIRS, ids=lambda each: each.page)
-def test_a_repair_is_of_the_file_that_its_page_names(change):
-    with available(NAME):
-        modules = browser.modules_folder(repairs.PATHTRACER, NAME)
-    text = (modules / change.package / change.file).read_text("utf-8")
-    assert change.old in text
-    page = (repairs.Path(repairs.__file__).parent / f"{change.page}.md").read_text("utf-8")
-    assert f"`{change.file}:" in page and change.new in page
-
-
-def test_a_missing_package_names_the_remedy(monkeypatch, tmp_path):
-    monkeypatch.setenv(browser.MODULES, str(tmp_path))
-    with pytest.raises(NotRun, match=f"{NAME}: no package {NAME} in .*; npm ci"):
-        pathtracer.Host()
-
-
 def test_a_package_with_other_texts_is_not_run(tmp_path):
     (tmp_path / "a.js").write_text("no template")
     with pytest.raises(NotRun, match="no shader text in"):

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Mitsuba, LuxCoreRender and EEVEE: their own nodes, and what may go wrong."""
 
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -20,7 +19,6 @@ from mxeon.conformance.run import check
 from mxeon.errors import NotRun
 from mxeon.hosts import host_row, open_engine
 from mxeon.hosts.polyhedron import eevee, luxcore, mitsuba
-from mxeon.models import table
 from mxeon.shaders.facets import facet_points
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.scene import BACK, FRONT, SIDE
@@ -136,13 +134,6 @@ def test_a_picture_agrees_with_the_values_of_mitsubas_own_function():
     assert np.abs(picture[mask] - values).max() <= FACETS.value + FACET_PAIRS.value
 
 
-@pytest.mark.parametrize("name", HOSTS)
-def test_a_missing_interpreter_names_the_remedy(monkeypatch, name):
-    monkeypatch.setenv(f"MXEON_{name.upper()}_PYTHON", "/nowhere/python")
-    with pytest.raises(NotRun, match=rf"{name}: not installed: pip install '\.\[{name}\]'"):
-        HOSTS[name]()
-
-
 def test_a_missing_package_names_the_remedy(monkeypatch, tmp_path):
     script = tmp_path / "absent_worker.py"
     script.write_text("import a_package_that_is_absent\n")
@@ -152,47 +143,9 @@ def test_a_missing_package_names_the_remedy(monkeypatch, tmp_path):
             host.identity()
 
 
-def test_a_crash_costs_its_items_alone(tmp_path):
-    """The first request ends the process; the next one has another."""
-    script = tmp_path / "crashing_worker.py"
-    script.write_text(
-        "import json, os, sys, numpy\n"
-        "print(json.dumps({'version': '0'}), flush=True)\n"
-        "for line in sys.stdin:\n"
-        "    request = json.loads(line)\n"
-        "    if request['material']['reflectance'][0] == 0.8:\n"
-        "        os.abort()\n"
-        "    numpy.save(request['output'], numpy.ones((4, 4, 3)))\n"
-        "    print('{}', flush=True)\n"
-    )
-    with mitsuba.Host() as host:
-        host.worker._command[:] = [sys.executable, "-I", script]
-        with pytest.raises(NotRun, match="mitsuba: ended by SIGABRT"):
-            host.node("diffuse", COLOR, 0.0, SMALL)
-        assert host.node("diffuse", (0.5, 0.5, 0.5), 0.0, SMALL).mean() == 1.0
-
-
-def test_a_hang_is_not_run(tmp_path):
-    script = tmp_path / "hanging_worker.py"
-    script.write_text(
-        "import json, time\nprint(json.dumps({'version': '0'}), flush=True)\ntime.sleep(99)\n"
-    )
-    with mitsuba.Host(limit=1.0) as host:
-        host.worker._command[:] = [sys.executable, "-I", script]
-        with pytest.raises(NotRun, match="mitsuba: no answer within 1 s"):
-            host.node("diffuse", COLOR, 0.0, SMALL)
-
-
 def test_checks_of_a_missing_renderer_are_not_run(monkeypatch):
     monkeypatch.setenv("MXEON_LUXCORE_PYTHON", "/nowhere/python")
     run = check([EXAMPLE], ["luxcore"], ["eonlib"], nodes=["common"])
     results = [each for each in run.results if each.host == "luxcore" and each.check != "document"]
     assert {each.verdict for each in results} == {NOT_RUN}
     assert all("pip install '.[luxcore]'" in each.reason for each in results)
-
-
-def test_the_models_that_are_claimed_are_known():
-    subjects = renderer_nodes("mitsuba") + renderer_nodes("luxcore")
-    claims = {table.model(each.model).name for each in subjects}
-    coats = {"eon_coated", "openpbr_half_metal"}
-    assert claims == {"lambert", "qon", "burley", "eon", "fon"} | coats

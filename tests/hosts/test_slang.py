@@ -6,9 +6,6 @@ import sys
 
 import pytest
 
-from mxeon.errors import NotRun
-from mxeon.hosts import slang
-
 OPEN = """
 import sys
 from mxeon.errors import NotRun
@@ -19,12 +16,6 @@ except NotRun as reason:
     print(reason)
 print("torch" in sys.modules)
 """
-
-
-def test_a_missing_slangpy_is_not_run_and_names_the_remedy(monkeypatch):
-    monkeypatch.setattr(slang, "slangpy", None)
-    with pytest.raises(NotRun, match=r"slangpy is not installed; pip install '\.\[slang\]'"):
-        slang.Host()
 
 
 def test_a_missing_compiler_is_not_run_and_names_the_remedy(tmp_path):

@@ -94,11 +94,6 @@ def test_a_verb_that_a_host_lacks_is_unsupported(engine, verb, arguments):
         getattr(host, verb)(*arguments)
 
 
-def test_a_renderer_has_no_verb_of_generated_shaders():
-    for verb in ("compile", *VERBS):
-        assert not hasattr(RendererHost, verb)
-
-
 def test_a_renderer_executes_no_shaders(monkeypatch):
     class Renderer(RendererHost):
         name = "renderer"
@@ -130,27 +125,6 @@ def test_a_row_is_that_of_its_module(row):
     host = import_module(row.module).Host
     kind, target = (base.Host, host.target) if row.target else (RendererHost, "")
     assert issubclass(host, kind) and (host.name, target) == (row.name, row.target)
-
-
-@pytest.mark.parametrize("row", ENGINES, ids=lambda row: row.name)
-def test_a_host_has_the_verb_by_which_checks_ask_it(row):
-    verb = {
-        "pairs": "evaluate",
-        "closures": "trees",
-        "pictures": "picture",
-        "rendered": "evaluate",
-        "drawn pictures": "picture",
-        "half pictures": "picture",
-        "native": "node",
-        "exact": "node",
-        "facets": "node",
-        "coarse facets": "node",
-        "facet pairs": "pairs",
-    }
-    host = import_module(row.module).Host
-    verbs = {verb[row.probe], *(["picture"] if row.scenes else [])}
-    kind = base.Host if row.target else RendererHost
-    assert all(getattr(host, name) is not getattr(kind, name) for name in verbs)
 
 
 def test_a_row_has_a_module_or_says_what_running_it_needs():

@@ -19,19 +19,6 @@ BLOCK = """
 """
 
 
-def test_a_missing_wgpu_is_not_run_and_names_the_remedy(monkeypatch):
-    monkeypatch.setattr(vulkan, "wgpu", None)
-    with pytest.raises(NotRun, match=r"wgpu is not installed; pip install '\.\[vulkan\]'"):
-        vulkan.Host()
-
-
-def test_a_missing_compiler_is_not_run_and_names_the_remedy(monkeypatch, tmp_path):
-    monkeypatch.setattr(vulkan, "wgpu", object())
-    monkeypatch.setenv("PATH", str(tmp_path))
-    with pytest.raises(NotRun, match="no program 'glslangValidator'; .* install glslang-tools"):
-        vulkan.Host()
-
-
 def test_a_missing_driver_is_not_run_and_names_the_remedy(monkeypatch):
     wgpu = pytest.importorskip("wgpu")
     monkeypatch.setattr(vulkan.shutil, "which", lambda program: program)

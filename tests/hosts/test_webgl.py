@@ -23,26 +23,6 @@ def started(**options):
         return webgl.Host(**options)
 
 
-def test_a_missing_playwright_is_not_run_and_names_the_remedy(monkeypatch):
-    monkeypatch.setattr(webgl, "sync_api", None)
-    with pytest.raises(NotRun, match=r"Playwright is not installed; pip install '\.\[webgl\]'"):
-        webgl.Host()
-
-
-def test_a_missing_browser_is_not_run_and_names_the_remedy(monkeypatch):
-    monkeypatch.setenv("MXEON_CHROMIUM", "no-such-browser")
-    with pytest.raises(NotRun, match="no program 'no-such-browser'; .* apt-get install chromium"):
-        webgl.Host()
-
-
-def test_a_program_that_is_no_browser_is_not_run(monkeypatch):
-    if webgl.sync_api is None:
-        pytest.skip("webgl: Playwright is not installed")
-    monkeypatch.setenv("MXEON_CHROMIUM", "true")
-    with pytest.raises(NotRun, match="webgl: the browser fails; "):
-        webgl.Host()
-
-
 def test_a_browser_that_hangs_is_not_run_and_the_next_one_works():
     host = started()
     host._limit = 1000.0  # milliseconds, now that the browser runs

@@ -21,12 +21,6 @@ def host(hosts):
     return hosts("wgsl")
 
 
-def test_a_missing_wgpu_is_not_run_and_names_the_host(monkeypatch):
-    monkeypatch.setattr(vulkan, "wgpu", None)
-    with pytest.raises(NotRun, match=r"^wgsl: wgpu is not installed"):
-        wgsl.Host()
-
-
 def test_no_compiler_of_its_own_is_needed(monkeypatch):
     monkeypatch.setattr(vulkan.shutil, "which", lambda program: None)
     monkeypatch.setattr(vulkan, "wgpu", SimpleNamespace(gpu=SimpleNamespace()))
@@ -50,9 +44,3 @@ def test_an_integer_of_the_text_is_the_boolean_that_it_was(host):
         for flag in (True, False)
     )
     assert (on > off + 0.01).all()
-
-
-def test_the_vertex_stage_has_the_block_that_naga_asks_for(host):
-    shader = generate(SUBJECTS[0].document(), "wgsl")[0]
-    vertex = host._vertex(shader.stages["pixel"])
-    assert "out VertexData" in vertex and "normalWorld" in vertex

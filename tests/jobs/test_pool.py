@@ -1,18 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The pool: whatever becomes of a worker costs its own item and no other."""
 
-import os
 import signal
-import subprocess
-import sys
-from concurrent.futures import Future
-from concurrent.futures.process import BrokenProcessPool
 
 import pytest
-from pebble import CONSTS
 
 from mxeon.jobs import pool
-from mxeon.jobs.pool import ATTEMPTS, LOCK, Attempt, Outcome, Queue, in_order, run
+from mxeon.jobs.pool import ATTEMPTS, Attempt, Outcome, Queue, in_order, run
 from tests.support.faults import Tar, misbehave, need, once, square
 
 NUMBERS = [1, 2, 3, 4]
@@ -30,15 +24,6 @@ def test_items_of_one_group_have_one_worker_as_long_as_there_are_groups_for_all(
     assert queue.take(0).index == 2  # the group that nobody works on
     assert queue.take(1).index == 5  # help with the longest, as there is no other
     assert [attempt.index for attempt in queue] == [8, 11] and len(queue) == 2
-
-
-def test_what_a_pool_loses_when_it_breaks_is_no_attempt():
-    lost, failed = Future(), Future()
-    lost.set_exception(BrokenProcessPool("All workers expired"))
-    failed.set_exception(TimeoutError())
-    attempt = Attempt(0, "item")
-    assert pool._again(lost, attempt, Outcome(None, "broken")) == attempt
-    assert pool._again(failed, attempt, Outcome(None, "timed out")).number == ATTEMPTS
 
 
 @pytest.mark.parametrize(
@@ -87,14 +72,6 @@ def test_workers_never_hear_of_ctrl_c():
     assert outcome.value and not _deaf(0)
 
 
-def test_the_pool_leaves_the_constants_of_pebble_as_they_are():
-    code = "from pebble import CONSTS as c; a = vars(c).copy(); import mxeon.jobs.pool; assert vars(c) == a"
-    subprocess.run([sys.executable, "-c", code], check=True)
-    list(run(square, [0], 1, 60.0))
-    (outcome,) = dict(run(_lock_timeout, [0], 1, 60.0)).values()
-    assert outcome.value == LOCK != CONSTS.channel_lock_timeout
-
-
 def test_outcomes_are_put_in_order():
     assert list(in_order([(1, "b"), (2, "c"), (0, "a"), (3, "d")])) == ["a", "b", "c", "d"]
 
@@ -124,11 +101,6 @@ def test_what_the_work_raises_is_no_time_out_of_ours():
     assert outcome.failure.startswith("TimeoutError: mine; last output:")
 
 
-def test_workers_are_other_processes():
-    ((_, outcome),) = run(_process, [0], 1, 60.0)
-    assert outcome.value != os.getpid()
-
-
 @pytest.mark.parametrize(
     "options, words",
     [
@@ -142,10 +114,6 @@ def test_an_impossible_pool_is_one_line(options, words):
         list(run(square, [1], *options))
 
 
-def _process(_):
-    return os.getpid()
-
-
 def _late(_):
     raise TimeoutError("mine")
 
@@ -153,7 +121,3 @@ def _late(_):
 def _deaf(_):
     """Whether this process has had SIGINT blocked since it was started."""
     return signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, ())
-
-
-def _lock_timeout(_):
-    return CONSTS.channel_lock_timeout

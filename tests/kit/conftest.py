@@ -12,7 +12,6 @@ import pytest
 from mxeon.io.images import write_exr
 from mxeon.kit import check as judging
 from mxeon.kit import questions
-from mxeon.kit.check import check_kit
 from mxeon.kit.expected import expected, judged, pixel_means
 from mxeon.kit.export import export_kit
 from mxeon.kit.views import views
@@ -94,9 +93,3 @@ def names(run):
     """The first name in each of the notes, by subject."""
     pattern = r"(.*): nearest known model: (.*) \(rms .*?\), then (.*) \("
     return {match[1]: match[2] for match in map(re.compile(pattern).match, run.notes) if match}
-
-
-def spoiled(kit, name, change):
-    """The result on the file of a picture that was changed."""
-    write_exr(render(kit, name), change(read(render(kit, name))), {})
-    return result_of(check_kit(kit), "file", name)

@@ -19,7 +19,6 @@ from tests.kit.conftest import (
     read,
     render,
     result_of,
-    spoiled,
     write_kit,
 )
 
@@ -48,91 +47,82 @@ def planted(value):
     return change
 
 
-@pytest.mark.parametrize("value", [np.nan, np.inf])
-def test_numbers_that_are_not_finite_are_refused(kit, value):
-    result = spoiled(kit, "true_side", planted(value))
-    assert result.verdict == "failed"
-    assert "must be finite numbers" in result.diagnosis and "row 32, column 32" in result.diagnosis
+def changed(change):
+    """What writes a picture again with other pixels."""
+    return lambda path: write_exr(path, change(read(path)), {})
 
 
-def test_a_wrong_size_is_refused(kit):
-    result = spoiled(kit, "true_side", lambda image: image[:32])
-    assert result.diagnosis == "true_side.exr: must be 64 x 64 pixels; got 64 x 32"
+def replaced(change):
+    """What writes the bytes of a picture again."""
+    return lambda path: path.write_bytes(change(path.read_bytes()))
 
 
-def test_eight_bits_in_a_float_file_are_refused(kit):
-    result = spoiled(kit, "true_side", lambda image: np.rint(image * 255.0) / 255.0)
-    assert "never rounded to eight bits" in result.diagnosis
+def write_channels(path, image, names, **place):
+    spec = oiio.ImageSpec(SIZE, SIZE, len(names), oiio.FLOAT)
+    spec.channelnames = list(names)
+    for attribute, value in place.items():
+        setattr(spec, attribute, value)
+    file = oiio.ImageOutput.create(str(path))
+    assert file.open(str(path), spec) and file.write_image(image)
+    file.close()
+
+
+def channels(*names, **place):
+    """What writes a picture of ones with these channels."""
+    ones = np.ones((SIZE, SIZE, len(names)), dtype=np.float32)
+    return lambda path: write_channels(path, ones, names, **place)
+
+
+def write_png(path):
+    path.unlink()
+    image = oiio.ImageBuf(oiio.ImageSpec(SIZE, SIZE, 3, oiio.UINT8))
+    assert image.write(str(path.with_suffix(".png")))
+
+
+LAYERS = ("a.R", "a.G", "a.B", "b.R", "b.G", "b.B")
+SPOILED = {  # picture: what makes it unusable, and how that is diagnosed
+    "true_front": (changed(planted(np.nan)), "must be finite numbers; got .* row 32, column 32"),
+    "true_side": (changed(lambda image: image[:32]), "must be 64 x 64 pixels; got 64 x 32"),
+    "true_back": (
+        changed(lambda image: np.rint(image * 255.0) / 255.0),
+        "never rounded to eight bits",
+    ),
+    "true_furnace": (
+        replaced(lambda data: data.replace(b"\0chlist\0", b"\0\xffhlist\0", 1)),
+        r"\\xffhlist",
+    ),
+    "half_side": (write_png, "got uint8"),
+    "false_front": (lambda path: path.with_suffix(".csv").write_text(""), "must be one file"),
+    "false_side": (lambda path: path.write_text("nothing"), "must be an EXR or CSV file"),
+    "false_back": (channels(*"XYZ"), "must hold one R, G and B; got channels X, Y, Z"),
+    "false_furnace": (channels(*LAYERS), f"one R, G and B; got channels {', '.join(LAYERS)}"),
+    "black_side": (channels(*"RGB", x=5, y=9), r"display window's corner; got \(5, 9\)"),
+    "white_furnace": (replaced(lambda data: data[:900]), "must be"),
+}
+
+
+def test_each_unusable_picture_costs_itself_alone_and_is_diagnosed(kit):
+    for name, (spoil, _) in SPOILED.items():
+        spoil(render(kit, name))
+    run = check_kit(kit)
+    for name, (_, words) in SPOILED.items():
+        result = result_of(run, "file", name)
+        assert result.verdict == "failed" and re.search(f"{name}.*{words}", result.diagnosis)
+    assert [each.check for each in run.results].count("file") == len(SPOILED)
+    assert result_of(run, "setup", "lambert").verdict == "passed"
 
 
 def test_one_bright_pixel_does_not_look_like_eight_bits(kit):
-    write_exr(render(kit, "true_side"), planted(3e38)(read(render(kit, "true_side"))), {})
+    changed(planted(3e38))(render(kit, "true_side"))
     assert not [each for each in check_kit(kit).results if each.check == "file"]
-
-
-def test_a_damaged_picture_costs_no_other(kit):
-    path = render(kit, "true_side")
-    path.write_bytes(path.read_bytes().replace(b"\0chlist\0", b"\0\xffhlist\0", 1))
-    run = check_kit(kit)
-    assert r"\xffhlist" in result_of(run, "file", "true_side").diagnosis
-    assert [each.check for each in run.results].count("file") == 1
-
-
-def test_an_eight_bit_file_is_refused(kit):
-    render(kit, "true_side").unlink()
-    path = kit / "renders" / "true_side.png"
-    image = oiio.ImageBuf(oiio.ImageSpec(SIZE, SIZE, 3, oiio.UINT8))
-    assert image.write(str(path))
-    assert "got uint8" in result_of(check_kit(kit), "file", "true_side").diagnosis
-
-
-def test_two_files_of_a_name_are_refused(kit):
-    (kit / "renders" / "true_side.csv").write_text("")
-    assert "must be one file" in result_of(check_kit(kit), "file", "true_side").diagnosis
-
-
-def test_a_file_that_is_no_image_is_refused(kit):
-    render(kit, "true_side").write_text("nothing")
-    assert "must be an EXR or CSV file" in result_of(check_kit(kit), "file", "true_side").diagnosis
-
-
-def write_channels(kit, name, image, names, **place):
-    spec = oiio.ImageSpec(SIZE, SIZE, len(names), oiio.FLOAT)
-    spec.channelnames = names
-    for attribute, value in place.items():
-        setattr(spec, attribute, value)
-    file = oiio.ImageOutput.create(str(render(kit, name)))
-    assert file.open(str(render(kit, name)), spec) and file.write_image(image)
-    file.close()
 
 
 def test_red_green_and_blue_are_found_by_name(kit):
     image = read(render(kit, "true_side"))
     layers = np.concatenate([np.ones_like(image), image[..., ::-1]], axis=-1, dtype=np.float32)
     names = [f"depth.{each}" for each in "XYZ"] + [f"beauty.{each}" for each in "BGR"]
-    write_channels(kit, "true_side", layers, names)
+    write_channels(render(kit, "true_side"), layers, names)
     assert {result.verdict for result in check_kit(kit).results} == {"passed"}
-
-
-@pytest.mark.parametrize("names", ["XYZ", ["a.R", "a.G", "a.B", "b.R", "b.G", "b.B"]])
-def test_channels_that_are_no_one_red_green_and_blue_are_refused(kit, names):
-    image = np.ones((SIZE, SIZE, len(names)), dtype=np.float32)
-    write_channels(kit, "true_side", image, list(names))
-    message = result_of(check_kit(kit), "file", "true_side").diagnosis
-    assert f"must hold one R, G and B; got channels {', '.join(names)}" in message
-
-
-def test_a_picture_beside_its_place_is_refused(kit):
-    image = read(render(kit, "true_side")).astype(np.float32)
-    write_channels(kit, "true_side", image, list("RGB"), x=5, y=9)
-    message = result_of(check_kit(kit), "file", "true_side").diagnosis
-    assert "must begin at the display window's corner; got (5, 9)" in message
-
-
-def test_half_a_file_is_refused(kit):
-    path = render(kit, "true_side")
-    path.write_bytes(path.read_bytes()[:900])
-    assert "true_side.exr: must be" in result_of(check_kit(kit), "file", "true_side").diagnosis
 
 
 @pytest.mark.parametrize("renderer", ["", " ", "two\nlines", "\x1b[31m", "\udcff"])
@@ -150,40 +140,36 @@ def as_csv(kit, name):
     return path
 
 
-def test_values_may_come_as_csv(kit):
-    as_csv(kit, "true_side")
-    assert {result.verdict for result in check_kit(kit).results} == {"passed"}
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "message"),
-    [
-        ("row,column", "x,y", "must begin with row,column,red,green,blue; got x,y"),
-        ("5,5,", "64,5,", "must hold row and column of a pixel, of 64 x 64"),
-        ("5,5,", "-59,5,", "must hold row and column of a pixel, of 64 x 64"),
-        ("5,5,", "5,5,none,", "and three numbers"),
-        ("32,32,", "31,32,", "that no line before it has"),
-        ("32,32,.*\n", "", "must be finite numbers"),
-        ("5,5,", f"5,5,{'9' * 200_000},", "must be CSV in UTF-8; field larger"),
-    ],
-)
-def test_a_wrong_csv_is_refused(kit, old, new, message):
-    path = as_csv(kit, "true_side")
-    path.write_text(re.sub(f"(?m)^{old}", new, path.read_text(), count=1))
-    assert message in result_of(check_kit(kit), "file", "true_side").diagnosis
-
-
-def test_csv_may_have_a_byte_order_mark_and_empty_lines(kit):
+def test_values_may_come_as_csv_with_a_byte_order_mark_and_empty_lines(kit):
+    as_csv(kit, "true_front")
     path = as_csv(kit, "true_side")
     path.write_text("\ufeff" + path.read_text() + "\n\n", encoding="utf-8")
     assert {result.verdict for result in check_kit(kit).results} == {"passed"}
 
 
-@pytest.mark.parametrize("data", [b"", b"row\xff", "row".encode("utf-16")])
-def test_csv_that_is_none_costs_its_picture_alone(kit, data):
-    as_csv(kit, "true_side").write_bytes(data)
+WRONG_CSV = {  # picture: the lines that begin so, what they become, and the diagnosis
+    "true_front": ("row,column", "x,y", "must begin with row,column,red,green,blue; got x,y"),
+    "true_side": ("5,5,", "64,5,", "must hold row and column of a pixel, of 64 x 64"),
+    "true_back": ("5,5,", "-59,5,", "must hold row and column of a pixel, of 64 x 64"),
+    "true_furnace": ("5,5,", "5,5,none,", "and three numbers"),
+    "half_side": ("32,32,", "31,32,", "that no line before it has"),
+    "false_front": ("32,32,.*\n", "", "must be finite numbers"),
+    "false_side": ("5,5,", f"5,5,{'9' * 200_000},", "must be CSV in UTF-8; field larger"),
+}
+NO_CSV = {"false_back": b"", "false_furnace": b"row\xff", "black_side": "row".encode("utf-16")}
+
+
+def test_each_wrong_csv_costs_its_picture_alone_and_is_diagnosed(kit):
+    for name, (old, new, _) in WRONG_CSV.items():
+        path = as_csv(kit, name)
+        path.write_text(re.sub(f"(?m)^{old}", new, path.read_text(), count=1))
+    for name, data in NO_CSV.items():
+        as_csv(kit, name).write_bytes(data)
     run = check_kit(kit)
-    assert "true_side.csv: must be" in result_of(run, "file", "true_side").diagnosis
+    for name, (_, _, words) in WRONG_CSV.items():
+        assert words in result_of(run, "file", name).diagnosis
+    for name in NO_CSV:
+        assert f"{name}.csv: must be" in result_of(run, "file", name).diagnosis
     assert result_of(run, "setup", "lambert").verdict == "passed"
 
 
@@ -237,12 +223,19 @@ def test_an_edited_description_is_refused(tmp_path, capsys, key, value, words):
     assert re.search(f"kit.json: {words}", error) and error.count("\n") == 1
 
 
-@pytest.mark.parametrize("suffix", [".exr", ".csv"])
-@pytest.mark.parametrize("make", [os.mkfifo, os.mkdir], ids=["pipe", "folder"])
-def test_what_is_no_regular_file_is_no_picture(kit, suffix, make):
-    render(kit, "true_side").unlink()
-    make(render(kit, "true_side").with_suffix(suffix))
-    assert "; not a regular file" in result_of(check_kit(kit), "file", "true_side").diagnosis
+def test_what_is_no_regular_file_is_no_picture(kit):
+    cases = {
+        "true_front": (".exr", os.mkfifo),
+        "true_side": (".csv", os.mkfifo),
+        "true_back": (".exr", os.mkdir),
+        "half_side": (".csv", os.mkdir),
+    }
+    for name, (suffix, make) in cases.items():
+        render(kit, name).unlink()
+        make(render(kit, name).with_suffix(suffix))
+    run = check_kit(kit)
+    for name in cases:
+        assert "; not a regular file" in result_of(run, "file", name).diagnosis
 
 
 def test_a_pipe_in_place_of_a_description_blocks_nobody(tmp_path):

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: Apache-2.0
+"""An engine that is not there, or cannot run, is not run: one line names what to install."""
+
+import os
+import sys
+
+import pytest
+
+from mxeon.errors import NotRun
+from mxeon.hosts import browser, open_engine
+
+BLENDER, NOWHERE = "MXEON_CYCLES_PYTHON", "/nowhere/python"
+NPM = f"npm ci --prefix {browser.packages_folder()}$"
+ENVIRONMENTS = [  # host, its environment, and the words
+    ("cycles", {BLENDER: NOWHERE}, f"no interpreter {NOWHERE}; pip install bpy"),
+    ("cycles", {BLENDER: sys.executable}, "No module named 'bpy'"),
+    ("storm", {BLENDER: NOWHERE}, f"no interpreter {NOWHERE}; pip install bpy"),
+    ("storm", {BLENDER: sys.executable}, "no package bpy; pip install bpy==.* in the env"),
+    ("mitsuba", {"MXEON_MITSUBA_PYTHON": NOWHERE}, r"not installed: pip install '\.\[mitsuba\]'"),
+    ("luxcore", {"MXEON_LUXCORE_PYTHON": NOWHERE}, r"not installed: pip install '\.\[luxcore\]'"),
+    ("three", {browser.MODULES: "/nowhere"}, f"no package three in /nowhere; {NPM}"),
+    ("babylon", {browser.MODULES: "/nowhere"}, f"no package @babylonjs/core in /nowhere; {NPM}"),
+    ("three-gpu-pathtracer", {browser.MODULES: "/nowhere"}, f"no package .* in /nowhere; {NPM}"),
+    ("webgl", {"MXEON_CHROMIUM": "none"}, "no program 'none'; .* apt-get install chromium"),
+    ("webgl", {"MXEON_CHROMIUM": "true"}, "the browser fails; "),
+    ("materialx", {"DISPLAY": "", "PATH": ""}, "no display: .* no Xvfb; .* apt-get install xvfb$"),
+    ("materialx", {"DISPLAY": ":4711"}, "(ended by|exit status) .*; last output: "),
+]
+MODULES = [  # host, a module of it and the package that it imports, and the words
+    ("webgl", "webgl.sync_api", r"Playwright is not installed; pip install '\.\[webgl\]'"),
+    ("vulkan", "vulkan.wgpu", r"wgpu is not installed; pip install '\.\[vulkan\]'"),
+    ("wgsl", "vulkan.wgpu", "wgpu is not installed"),
+    ("slang", "slang.slangpy", r"slangpy is not installed; pip install '\.\[slang\]'"),
+]
+
+
+def assert_not_run(name, words):
+    with pytest.raises(NotRun, match=f"^{name}: {words}") as caught, open_engine(name) as host:
+        host.identity()
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("name, environment, words", ENVIRONMENTS)
+def test_what_is_missing_is_named_with_its_remedy(monkeypatch, name, environment, words):
+    if name == "webgl":
+        pytest.importorskip("playwright")
+    for variable, value in environment.items():
+        monkeypatch.setenv(variable, value)
+    assert_not_run(name, words)
+
+
+@pytest.mark.parametrize("name, package, words", MODULES)
+def test_a_missing_package_is_named_with_its_remedy(monkeypatch, name, package, words):
+    monkeypatch.setattr(f"mxeon.hosts.{package}", None)
+    assert_not_run(name, words)
+
+
+def test_a_missing_compiler_is_named_with_its_remedy(monkeypatch):
+    monkeypatch.setattr("mxeon.hosts.vulkan.wgpu", object())
+    monkeypatch.setenv("PATH", "/nowhere")
+    assert_not_run("vulkan", "no program 'glslangValidator'; .* install glslang-tools")
+
+
+def test_a_missing_driver_is_named_with_its_remedy(hosts, monkeypatch):
+    hosts("storm")
+    monkeypatch.setenv("__EGL_VENDOR_LIBRARY_FILENAMES", os.devnull)
+    assert_not_run("storm", "no OpenGL 4.5 through EGL .*; on Debian: apt-get")

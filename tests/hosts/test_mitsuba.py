@@ -1,0 +1,274 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The plugins of Mitsuba: values, sampling, energy and gradients, which are those of the models."""
+
+import re
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from mxeon import mitsuba as plugins
+from mxeon import models
+from mxeon.errors import NotRun, PackageError
+from mxeon.fit import openpbr_base
+from tests.support.bsdfs import (
+    COLOR,
+    PAIRS,
+    PARAMETERS,
+    SEED,
+    chi_square,
+    directions,
+    furnace,
+    material,
+    surface,
+)
+from tests.support.tolerances import (
+    MITSUBA_COAT,
+    MITSUBA_DENSITY,
+    MITSUBA_EVAL,
+    MITSUBA_WEIGHT,
+)
+
+PAGE = Path(__file__).parents[2] / "docs" / "mitsuba.md"
+COAT, BASE = "dielectric_over_eon", "openpbr_base"
+DEVIATE = 4.5  # of a mean: exceeded once in 150,000 times
+STEP = 2.0**-13  # which float32 adds without a rounding
+VIEW, LIGHT = np.array([[0.6, 0.0, 0.8]]), np.array([[-0.48, 0.6, 0.64]])
+MODELS = {
+    "eon": models.eon_brdf,
+    "fon": models.fon_brdf,
+    "qon": models.qon_brdf,
+    COAT: models.dielectric_over_eon_brdf,
+    BASE: openpbr_base,
+}
+# Inputs of each plugin by the model's names, and the plugin's names where they are others.
+INPUTS = {
+    **{name: {parameter: 0.4} for name, parameter in PARAMETERS.items()},
+    COAT: {"roughness": 0.6, "alpha": 0.3, "ior": 1.5},
+    BASE: {"roughness": 0.6, "specular_roughness": 0.5, "specular_ior": 1.5, "metalness": 0.25},
+}
+NAMES = {"roughness": "base_diffuse_roughness", "metalness": "base_metalness"}
+TEXTURES = ("roughness", "sigma", *NAMES.values())
+
+
+def named(name, key):
+    return NAMES.get(key, key) if name == BASE else key
+
+
+def bsdf(name, color=COLOR, **inputs):
+    """Properties of a plugin with these inputs, and the others as in INPUTS."""
+    values = {named(name, key): value for key, value in (INPUTS[name] | inputs).items()}
+    rgb = {"type": "rgb", "value": list(color)}
+    return {"type": name, "base_color" if name == BASE else "reflectance": rgb} | values
+
+
+def expected(name, wo, wi, **inputs):
+    """The model's value times the cosine, with its inputs as float32 has them."""
+    values = {key: float(np.float32(each)) for key, each in (INPUTS[name] | inputs).items()}
+    return MODELS[name](wo, wi, COLOR, **values) * np.asarray(wi, np.float64)[..., 2:]
+
+
+def allowed(name, value):
+    """Largest error of a value: relative where a lobe of facets is larger."""
+    return np.maximum(MITSUBA_EVAL, MITSUBA_COAT * value if name in (COAT, BASE) else 0.0)
+
+
+CASES = (
+    *((name, {key: each}) for name, key in PARAMETERS.items() for each in (0.0, 0.3, 1.0)),
+    *((COAT, {"alpha": a, "ior": n}) for a in (0.015625, 0.3, 1.0) for n in (1.02, 1.5, 4.0)),
+    *((BASE, {"metalness": each}) for each in (0.0, 0.25, 1.0)),
+)
+
+
+@pytest.mark.parametrize("name, inputs", CASES, ids=str)
+def test_values_are_those_of_the_model(mi, name, inputs):
+    rng = np.random.default_rng(SEED)
+    wo, wi = directions(rng), directions(rng)[::-1].copy()
+    wi[100:200] = wo[100:200] * [-1, -1, 1] + 0.03 * rng.normal(size=(100, 3))  # mirrored
+    wi[:, 2] = np.abs(wi[:, 2])
+    wi = (wi / np.linalg.norm(wi, axis=1, keepdims=True)).astype(np.float32)
+    made, context, light = mi.load_dict(bsdf(name, **inputs)), mi.BSDFContext(), mi.Vector3f(wi.T)
+    values, pdf = made.eval_pdf(context, surface(mi, wo), light)
+    right = expected(name, wo, wi, **inputs)
+    assert (np.abs(np.array(values).T - right) <= allowed(name, right)).all()
+    assert not np.array(made.eval(context, surface(mi, wo), -light)).any()
+    if name == COAT:
+        numbers = {key: float(np.float32(each)) for key, each in (INPUTS[COAT] | inputs).items()}
+        density = models.dielectric_over_eon_pdf(wo, wi, COLOR, **numbers)
+        mu = wo[:, 2].astype(np.float64)
+        reflected = models.dielectric_over_eon_albedo_dir(mu, 0.0, **numbers)[:, 0]
+        error = np.abs(np.array(pdf) - density) / np.maximum(1.0, density)
+        assert (error <= MITSUBA_COAT + MITSUBA_DENSITY / reflected).all()
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_a_scalar_variant_has_the_same_values(mi, name):
+    mi.set_variant("scalar_rgb")
+    plugins.register()
+    made, point, context = mi.load_dict(bsdf(name)), mi.SurfaceInteraction3f(), mi.BSDFContext()
+    point.wi = [0.6, 0.0, 0.8]
+    value = np.array(made.eval(context, point, mi.Vector3f(0.0, 0.6, 0.8)))
+    right = expected(name, VIEW, np.array([[0.0, 0.6, 0.8]]))
+    assert (np.abs(value - right) <= allowed(name, right)).all()
+    record, weight = made.sample(context, point, 0.5, mi.Point2f(0.25, 0.75))
+    sampled = np.array(made.eval(context, point, record.wo)) / made.pdf(context, point, record.wo)
+    assert np.array(weight) == pytest.approx(sampled)
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_gradients_are_those_of_the_model(mi, name):
+    import drjit as dr
+
+    made = mi.load_dict(bsdf(name))
+    parameters = mi.traverse(made)
+    names = {key: named(name, key) for key in INPUTS[name]}
+    names = {key: f"{each}.value" if each in TEXTURES else each for key, each in names.items()}
+    color = "base_color.value" if name == BASE else "reflectance.value"
+    for each in (color, *names.values()):
+        dr.enable_grad(parameters[each])
+    parameters.update()
+    dr.backward(dr.sum(made.eval(mi.BSDFContext(), surface(mi, VIEW), mi.Vector3f(LIGHT.T))))
+    for key, each in names.items():
+        middle = float(np.float32(INPUTS[name][key]))
+        ends = [expected(name, VIEW, LIGHT, **{key: middle + x}).sum() for x in (STEP, -STEP)]
+        found = np.array(dr.grad(parameters[each])).item()
+        assert found == pytest.approx((ends[0] - ends[1]) / (2.0 * STEP), rel=1e-4, abs=1e-6)
+    assert np.array(dr.grad(parameters[color])).min() > 0.0
+
+
+def test_a_coat_takes_new_numbers_and_those_beyond_the_range_count_as_its_end(mi):
+    made = mi.load_dict(bsdf(COAT))
+    parameters = mi.traverse(made)
+    parameters["ior"] = mi.Float(5.0)
+    parameters.update()
+    value = made.eval(mi.BSDFContext(), surface(mi, VIEW), mi.Vector3f(LIGHT.T))
+    assert np.array(value).sum() == pytest.approx(
+        expected(COAT, VIEW, LIGHT, ior=4.0).sum(), rel=1e-5
+    )
+
+
+@pytest.mark.parametrize(
+    "name, inputs, message",
+    [
+        ("eon", {"roughness": 1.7}, r"roughness must lie in \[0, .*\]; got 1.7"),
+        ("qon", {"sigma": -0.1}, r"sigma must lie in \[0, .*\]; got -0.1"),
+        (COAT, {"alpha": 0.001}, r"alpha must lie in \[0.01, 1\]; got 0.001"),
+        (COAT, {"ior": 5.0}, r"ior must lie in \[1, 4\]; got 5"),
+        (
+            COAT,
+            {"alpha": {"type": "checkerboard"}},
+            "alpha must be one number for the surface; got",
+        ),
+    ],
+)
+def test_an_input_outside_its_range_is_refused(mi, name, inputs, message):
+    with pytest.raises(Exception, match=message):
+        mi.load_dict(bsdf(name, **inputs))
+
+
+SAMPLED = [  # plugin, inputs, angle of the viewer
+    *(("eon", {"roughness": each}, angle) for each in (0.3, 1.0) for angle in (0.0, 0.8, 1.5)),
+    *((COAT, {}, angle) for angle in (0.0, 1.4)),
+    (BASE, {}, 0.8),
+]
+
+
+@pytest.mark.parametrize("name, inputs, angle", SAMPLED)
+def test_mitsubas_chi_square_test_accepts_the_sampling(mi, name, inputs, angle):
+    color = (0.5,) * 3 if name == "eon" else COLOR
+    test = chi_square(mi, angle, lambda adapter: adapter(name, bsdf(name, color, **inputs)))
+    assert test.run(test_count=len(SAMPLED), quiet=True), test.messages
+
+
+@pytest.mark.parametrize("name, key, other", [("eon", "roughness", 1.0), (COAT, "alpha", 0.6)])
+def test_mitsubas_chi_square_test_refuses_another_density(mi, name, key, other):
+    def mismatched(adapter):
+        pairs = (adapter(name, bsdf(name, (0.5,) * 3, **more)) for more in ({key: other}, {}))
+        return next(pairs)[0], next(pairs)[1]
+
+    assert not chi_square(mi, 0.8, mismatched).run(test_count=len(SAMPLED), quiet=True)
+
+
+@pytest.mark.parametrize("amount", (0.0, 0.5, 1.0))
+def test_every_sample_of_a_white_surface_has_the_weight_1(mi, amount):
+    rng = np.random.default_rng(SEED)
+    made = mi.load_dict(material("eon", amount, (1.0,) * 3))
+    u = mi.Float(rng.random(PAIRS)), mi.Point2f(rng.random((2, PAIRS)))
+    record, weight = made.sample(mi.BSDFContext(), surface(mi, directions(rng)), *u)
+    assert np.abs(np.array(weight) - 1.0).max() <= MITSUBA_WEIGHT
+    assert np.array(record.pdf).min() > 0.0
+
+
+@pytest.mark.parametrize(("name", "lossless"), (("eon", True), ("fon", False)))
+def test_a_white_furnace_keeps_its_energy(mi, name, lossless):
+    off = np.abs(furnace(mi, material(name, 1.0, (1.0,) * 3), 4) - 1.0).max()
+    assert (off <= 2 * MITSUBA_WEIGHT) == lossless
+
+
+@pytest.mark.parametrize(
+    "name, inputs", [(COAT, {"alpha": 0.05}), (COAT, {"alpha": 0.5}), (BASE, {})]
+)
+def test_a_white_furnace_keeps_the_energy_of_facets_in_the_mean(mi, name, inputs):
+    picture = furnace(mi, bsdf(name, (1.0,) * 3, **inputs), 64)[..., 0]
+    assert 1e-3 < picture.std() < 0.1
+    assert abs(picture.mean() - 1.0) < DEVIATE * picture.std() / np.sqrt(picture.size)
+
+
+def test_a_coat_has_two_lobes_that_are_evaluated_alone(mi):
+    made, light = mi.load_dict(bsdf(COAT)), mi.Vector3f(-0.48, 0.0, 0.877)
+    context, point = mi.BSDFContext(), surface(mi, VIEW)
+    whole, parts = np.array(made.eval(context, point, light)), []
+    for component, kind in enumerate(("GlossyReflection", "DiffuseReflection")):
+        context.component = component
+        parts.append(np.array(made.eval(context, point, light)))
+        record, weight = made.sample(context, point, 0.5, mi.Point2f(0.25, 0.75))
+        value = np.array(made.eval(context, point, record.wo))
+        assert np.array(record.sampled_type)[0] == int(getattr(mi.BSDFFlags, kind))
+        assert np.array(weight) * np.array(record.pdf) == pytest.approx(value, rel=1e-5)
+    assert sum(parts) == pytest.approx(whole, rel=1e-6) and min(map(np.min, parts)) > 0.0
+    context.type_mask = int(mi.BSDFFlags.Null)
+    assert not np.array(made.eval(context, point, light)).any()
+
+
+def test_an_llvm_that_ends_the_process_is_refused_before(mi, monkeypatch):
+    monkeypatch.setattr("drjit.detail.llvm_version", lambda: (15, 0, 6))
+    with pytest.raises(NotRun, match="found LLVM 15, .* libllvm19.* DRJIT_LIBLLVM_PATH"):
+        plugins.register()
+
+
+@pytest.mark.parametrize(
+    "module, error, message",
+    [
+        (
+            SimpleNamespace(variant=lambda: None),
+            NotRun,
+            r"mitsuba.set_variant\('llvm_ad_rgb'\) first",
+        ),
+        (None, PackageError, r"pip install '\.\[mitsuba\]'"),
+    ],
+)
+def test_mitsuba_and_a_variant_have_to_be_there(monkeypatch, module, error, message):
+    monkeypatch.setitem(sys.modules, "mitsuba", module)
+    with pytest.raises(error, match=message):
+        plugins.register()
+
+
+def brightest(picture):
+    """Largest mean of 8 x 8 pixels."""
+    return np.array(picture).reshape(16, 8, 16, 8, 3).mean(axis=(1, 3, 4)).max()
+
+
+def test_the_example_of_the_page_runs_and_shows_gloss(mi, tmp_path, monkeypatch):
+    blocks = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
+    monkeypatch.chdir(tmp_path)
+    names, seen = {}, []
+    for block in blocks:
+        exec(block.replace("spp=16", "spp=1"), names)
+        if "coated.png" in block or "ball.png" in block:
+            seen.append(brightest(names["picture"]))
+    assert 0.1 < np.array(names["picture"]).mean() < 1.0
+    assert seen[1] > 1.25 * seen[0]  # 1.5 measured, and 1 without a lamp
+    for name in ("clay", "ball", "coated"):
+        assert (tmp_path / f"{name}.png").stat().st_size > 1000
