@@ -81,7 +81,7 @@ def _plain(file, target):
             mx.readFromXmlFile(document, file, path)
             document.setDataLibrary(load_library("stock"))
             generator = generator_of(document, target, "stock", None)
-            context = context_of(document, target, generator, False, ())
+            context = context_of(document, target, generator, "eonlib", False, ())
             elements = mx_gen.findRenderableElements(document)
             shaders = [
                 generator.generate(f"s{n}", each, context) for n, each in enumerate(elements)

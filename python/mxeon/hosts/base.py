@@ -227,14 +227,7 @@ class RendererHost(Engine):
         """Picture of the sphere or the polyhedron with one of `mxeon.hosts.Row.nodes` on it; see `Host.picture`."""
         raise self._unsupported("nodes of its own", "cycles-native")
 
-    def pairs(
-        self,
-        title: str,
-        wo: Array,
-        wi: Array,
-        color: Array,
-        roughness: Array,
-    ) -> Array:
+    def pairs(self, title: str, wo: Array, wi: Array, color: Array, roughness: Array) -> Array:
         """f cos(theta_i) of a node of the renderer's own, (N, 3) in 1/sr, for unit vectors with normal +z."""
         raise self._unsupported("values of its own nodes", "mitsuba")
 

@@ -203,10 +203,7 @@ class Host(Chromium, FragmentHost):
         )
 
     def _bytes(
-        self,
-        function: str,
-        job: Mapping[str, object],
-        arrays: Mapping[str, Mapping[str, Array]],
+        self, function: str, job: Mapping[str, object], arrays: Mapping[str, Mapping[str, Array]]
     ) -> bytes:
         """Bytes that a function of the page makes of a job and arrays."""
         with TemporaryDirectory(prefix="mxeon-webgl-") as folder:

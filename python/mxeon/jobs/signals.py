@@ -9,12 +9,8 @@ from types import FrameType
 
 TERMINAL = (signal.SIGINT, signal.SIGHUP)  # come to all processes of a terminal
 ENDING = (*TERMINAL, signal.SIGTERM)
-OTHERS = (
-    signal.SIGALRM,
-    signal.SIGUSR1,
-    signal.SIGUSR2,
-    signal.SIGXCPU,
-)  # end what does not listen
+# What ends a process that does not listen.
+OTHERS = (signal.SIGALRM, signal.SIGUSR1, signal.SIGUSR2, signal.SIGXCPU)
 
 _pending: list[int] | None = None  # numbers of the signals that came while they are blocked
 
@@ -23,10 +19,8 @@ class SignalExit(KeyboardInterrupt):
     """A signal that ends the command, with the exit status 128 + number, as a shell has it."""
 
     def __init__(self, number: int) -> None:
-        interrupted = number == signal.SIGINT
-        super().__init__(
-            "interrupted" if interrupted else f"ended by {signal.Signals(number).name}"
-        )
+        ended = f"ended by {signal.Signals(number).name}"
+        super().__init__("interrupted" if number == signal.SIGINT else ended)
         self.status = 128 + number
 
 

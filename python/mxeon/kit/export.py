@@ -92,10 +92,7 @@ def _assert_own(folder: str | PathLike[str]) -> None:
 
 
 def material_document(material: Material, node: KitNode = KitNode()) -> str:
-    inputs: dict[str, Any] = {
-        "color": material.color,
-        "roughness": material.roughness,
-    }
+    inputs: dict[str, Any] = {"color": material.color, "roughness": material.roughness}
     if node.flagged:
         inputs[FLAG] = material.energy_compensation
     return material_text(node.category, inputs, material.name, INPUT_TYPES)
@@ -119,8 +116,22 @@ def description(pictures: Sequence[View], size: int, node: str = OREN_NAYAR) -> 
             "frame": [[-1, -1], [1, 1]],
         },
         "sphere": {"center": [0, 0, 0], "radius": 1, "mesh": "sphere.obj"},
-        "materials": {each.name: _material(each, node) for each in MATERIALS},
-        "scenes": {name: _light(scene) for name, scene in scenes.items()},
+        "materials": {
+            each.name: {
+                "file": f"materials/{each.name}.mtlx",
+                "node": node,
+                "color": each.color,
+                "roughness": each.roughness,
+                "energy_compensation": each.energy_compensation,
+            }
+            for each in MATERIALS
+        },
+        "scenes": {
+            name: {"environment": {"radiance": scene.environment}}
+            if scene.light is None
+            else {"distant": {"direction": scene.light, "irradiance": math.pi}}
+            for name, scene in scenes.items()
+        },
         "pictures": [
             {
                 "material": view.material.name,
@@ -130,22 +141,6 @@ def description(pictures: Sequence[View], size: int, node: str = OREN_NAYAR) -> 
             for view in pictures
         ],
     }
-
-
-def _material(material: Material, node: str) -> dict[str, Any]:
-    return {
-        "file": f"materials/{material.name}.mtlx",
-        "node": node,
-        "color": material.color,
-        "roughness": material.roughness,
-        "energy_compensation": material.energy_compensation,
-    }
-
-
-def _light(scene: Scene) -> dict[str, Any]:
-    if scene.light is None:
-        return {"environment": {"radiance": scene.environment}}
-    return {"distant": {"direction": scene.light, "irradiance": math.pi}}
 
 
 def _page(pictures: Sequence[View], size: int, mesh: Mesh, node: str) -> str:

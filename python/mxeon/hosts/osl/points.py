@@ -18,24 +18,17 @@ from mxeon.io.images import write_image
 from mxeon.shaders.generation import Shader
 
 LEAST_SIZE = 4  # Blender renders no smaller picture.
-TYPES = {
-    "color3": "color",
-    "vector3": "vector",
-    "boolean": "int",
-    "integer": "int",
-}  # by MaterialX's
+# OSL's types by MaterialX's.
+TYPES = {"color3": "color", "vector3": "vector", "boolean": "int", "integer": "int"}
 WIDTHS = {"color": 3, "vector": 3, "normal": 3, "vector2": 2}
 # The row of a point, from its place in the picture.
 ROW = """#define MXEON_AT(x, y) ((int) floor({size} * (y)) * {size} + (int) floor({size} * (x)))
 #define MXEON_ROW MXEON_AT({place})
 """
-READ = (
-    'texture("{image}", {place}, 0.0, 0.0, 0.0, 0.0, "interp", "closest", "firstchannel", {first})'
-)
-NO_WARNING = "#pragma osl nowarn"  # of the next line: oslc warns where a surface shader sets what it has of its point
-IMAGE = (
-    "points.tif"  # of the variables of a shader; EXR orders more than ten channels by their names
-)
+FILTER = '0.0, 0.0, 0.0, 0.0, "interp", "closest"'
+READ = f'texture("{{image}}", {{place}}, {FILTER}, "firstchannel", {{first}})'
+NO_WARNING = "#pragma osl nowarn"  # oslc warns where a surface shader sets what it has of its point
+IMAGE = "points.tif"  # of a shader's variables; EXR sorts more than ten channels by their names
 
 
 @dataclass(frozen=True)

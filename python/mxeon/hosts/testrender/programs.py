@@ -62,7 +62,6 @@ def output(
     if process.returncode:
         last = " | ".join(lines[-LINES:])
         raise failure(f"{host}: {program}: exit status {process.returncode}; last output: {last}")
-    # Raise what it reports and goes on after: it has lost lobes then.
     for line in lines:
         if line.startswith("ERROR") or "Assertion" in line:
             raise ShaderError(f"{host}: {program}: {line}")
