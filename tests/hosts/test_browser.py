@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""three.js and Babylon.js in a browser: their pictures, their models, and their defects repaired."""
+"""Renderers from npm in a browser: their pictures, their models, and their defects repaired."""
 
 import math
 from dataclasses import replace
@@ -11,12 +11,14 @@ from mxeon.conformance.accuracy import diffuse as tolerances
 from mxeon.conformance.checks.application import judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
-from mxeon.conformance.probes.renderer_nodes import ExactProbe
-from mxeon.conformance.results import FAILED, PASSED
+from mxeon.conformance.probes.families import HOST_PROBES
+from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
 from mxeon.conformance.results.known_issues import ISSUES
 from mxeon.conformance.results.known_issues.issue import RENDERER_NODES
 from mxeon.errors import NotRun
-from mxeon.hosts import browser, open_engine
+from mxeon.hosts import browser, host_row, open_engine
+from mxeon.hosts.browser import pathtracer
+from mxeon.models.sampling.cltc import eon_cltc_sample
 from mxeon.shaders.nodes import material_text
 from mxeon.shaders.scene import SIDE, sphere
 from tests.support.availability import available
@@ -38,6 +40,13 @@ export async function draw({ task }) {
 }
 """
 
+PACKAGES = {
+    "three": repairs.THREE,
+    "babylon": repairs.BABYLON,
+    "three-gpu-pathtracer": repairs.PATHTRACER,
+}
+EON, FON, LOBE = "WebGPUPathTracer, eonBrdf", "WebGPUPathTracer, fonBrdf", pathtracer.LOBE
+
 of_each_issue = pytest.mark.parametrize(
     "issue", [each for each in ISSUES if each.host in TITLES], ids=lambda each: each.page
 )
@@ -47,7 +56,8 @@ def judged(host, check, title):
     """Result of a check of a node of a host's own."""
     [subject] = [each for each in renderer_nodes(host.name) if each.title == title]
     [row] = [each for each in CHECKS if each.key == check]
-    return judge_check(row, ExactProbe(host, subject, RENDERER_NODES).nearest_form())
+    probe = HOST_PROBES[host_row(host.name).probe]
+    return judge_check(row, probe(host, subject, RENDERER_NODES).nearest_form())
 
 
 @pytest.mark.parametrize("renderer", ["WebGLRenderer", "WebGPURenderer"])
@@ -59,10 +69,7 @@ def test_three_has_eon_with_the_quartic(hosts, renderer):
 
 @pytest.mark.parametrize(
     "check, title",
-    [
-        ("value", "PBRMaterial BURLEY, WebGL2"),
-        ("lobe", "PBRMaterial LAMBERT, WebGPU"),
-    ],
+    [("value", "PBRMaterial BURLEY, WebGL2"), ("lobe", "PBRMaterial LAMBERT, WebGPU")],
 )
 def test_babylon_has_its_other_models(hosts, check, title):
     result = judged(hosts("babylon"), check, title)
@@ -124,25 +131,26 @@ def test_the_figures_of_each_page_are_those_of_the_suite(shown, issue):
 def repaired(tmp_path_factory):
     """Hosts with all repairs, by their names."""
     folder, opened = tmp_path_factory.mktemp("repaired"), {}
-    with available("three"), available("babylon"), pytest.MonkeyPatch.context() as patch:
-        for name, package in (("three", repairs.THREE), ("babylon", repairs.BABYLON)):
+    for name, package in PACKAGES.items():
+        with available(name), pytest.MonkeyPatch.context() as patch:
             browser.modules_folder(package, name)
             modules = repairs.copied(package, folder)
             patch.setenv(browser.MODULES, str(modules))
             opened[name] = open_engine(name)
-            patch.delenv(browser.MODULES)
-        for change in repairs.REPAIRS:
-            repairs.repair(modules, change)
+    for change in (*repairs.REPAIRS, *repairs.PATHTRACER_REPAIRS):
+        repairs.repair(modules, change)
     yield opened
     for host in opened.values():
         host.close()
 
 
-@of_each_issue
+@pytest.mark.parametrize(
+    "issue", [each for each in ISSUES if each.host in PACKAGES], ids=lambda each: each.page
+)
 def test_a_repair_makes_the_checks_pass_that_show_the_defect(repaired, issue):
     for check, title in issue.rows:
         result = judged(repaired[issue.host], check, title)
-        assert result.verdict == PASSED, result.explanation
+        assert result.verdict == PASSED and result.control.caught, result.explanation
 
 
 def test_a_page_that_throws_goes_on_and_one_that_hangs_is_ended(tmp_path):
@@ -156,3 +164,54 @@ def test_a_page_that_throws_goes_on_and_one_that_hangs_is_ended(tmp_path):
     with pytest.raises(NotRun, match="^three: the browser fails; .*3000ms"):
         page.ask({"task": "hang"})
     assert page._page is None
+
+
+@pytest.fixture
+def tracer(hosts):
+    return hosts("three-gpu-pathtracer")
+
+
+@pytest.mark.parametrize("check", ["value", "black", "reciprocity", "inputs", "density", "samples"])
+def test_the_webgpu_lobe_is_eon_with_the_papers_sampling(tracer, check):
+    result = judged(tracer, check, EON)
+    assert result.verdict == PASSED and result.control.caught
+
+
+def test_the_webgpu_lobe_has_the_quartic_and_beside_it_fon(tracer):
+    assert judged(tracer, "value", EON).model == "EON with the paper's quartic"
+    assert judged(tracer, "value", FON).verdict == PASSED
+
+
+def test_directions_are_those_of_the_papers_listing_for_the_same_numbers(tracer):
+    rng = np.random.default_rng(3)
+    mu = 0.2 + 0.8 * rng.random(500)
+    wo = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=-1)
+    u, roughness = rng.random((500, 2)), rng.random(500)
+    expected, _ = eon_cltc_sample(wo, u, roughness)
+    error = np.abs(tracer.sample(wo, u, roughness) - expected).max(axis=1)
+    assert np.median(error) < 1e-3  # a root at the edge of the disk loses half of the digits
+
+
+def test_the_webgl_lobe_is_no_model_that_is_known_but_its_own(tracer):
+    result = judged(tracer, "value", f"{LOBE}, shorter wh")
+    name = "Burley with Schlick's weight for the cosine of retro-reflection"
+    assert result.verdict == FAILED and f"nearest known model: {name}" in result.diagnosis
+    assert result.distances[name] < 1e-6
+
+
+def test_the_webgl_lobe_is_not_finite_in_retro_reflection(tracer):
+    result = judged(tracer, "value", LOBE)
+    assert "not finite in exact retro-reflection" in result.diagnosis
+
+
+def test_pictures_are_not_run_and_say_why(tracer):
+    result = judged(tracer, "environment", EON)
+    assert result.verdict == NOT_RUN and "wavefront kernels do not compile" in result.reason
+
+
+def test_a_package_with_other_texts_is_not_run(tmp_path):
+    (tmp_path / "a.js").write_text("no template")
+    with pytest.raises(NotRun, match="no shader text in"):
+        pathtracer._template(tmp_path / "a.js")
+    with pytest.raises(NotRun, match="no float diffuseEval"):
+        pathtracer._cut("text", "float diffuseEval(", "vec3 diffuseDirection(")

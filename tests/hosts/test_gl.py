@@ -78,19 +78,6 @@ def test_a_closed_host_takes_no_program_from_the_next():
     assert np.array_equal(before, after)
 
 
-def test_a_host_that_is_never_closed_takes_no_program_from_another():
-    dropped, following = open_host("gl"), open_host("gl")
-    stages = shader(LOBES["qon"]).stages
-    for host in (dropped, following):  # both contexts give their first program the same number
-        with host._context:
-            host._program(stages["vertex"], stages["pixel"])
-    with following._context:
-        host = dropped = None
-        gc.collect()
-    assert picture(following, LOBES["qon"], FURNACE).any()
-    following.close()
-
-
 def test_light_from_the_right_lights_the_right_and_from_above_the_top(gl):
     right = picture(gl, LOBES["eon"], Scene("right", light=(1.0, 0.0, 0.0)))
     above = picture(gl, LOBES["eon"], Scene("above", light=(0.0, 1.0, 0.0)))

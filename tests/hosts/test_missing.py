@@ -2,6 +2,7 @@
 """An engine that is not there, or cannot run, is not run: one line names what to install."""
 
 import os
+import subprocess
 import sys
 
 import pytest
@@ -13,7 +14,7 @@ BLENDER, NOWHERE = "MXEON_CYCLES_PYTHON", "/nowhere/python"
 NPM = f"npm ci --prefix {browser.packages_folder()}$"
 ENVIRONMENTS = [  # host, its environment, and the words
     ("cycles", {BLENDER: NOWHERE}, f"no interpreter {NOWHERE}; pip install bpy"),
-    ("cycles", {BLENDER: sys.executable}, "No module named 'bpy'"),
+    ("cycles", {BLENDER: sys.executable}, ".*No module named 'bpy'"),
     ("storm", {BLENDER: NOWHERE}, f"no interpreter {NOWHERE}; pip install bpy"),
     ("storm", {BLENDER: sys.executable}, "no package bpy; pip install bpy==.* in the env"),
     ("mitsuba", {"MXEON_MITSUBA_PYTHON": NOWHERE}, r"not installed: pip install '\.\[mitsuba\]'"),
@@ -61,7 +62,40 @@ def test_a_missing_compiler_is_named_with_its_remedy(monkeypatch):
     assert_not_run("vulkan", "no program 'glslangValidator'; .* install glslang-tools")
 
 
+@pytest.mark.parametrize("name", ["vulkan", "wgsl"])  # naga needs no compiler
+def test_a_missing_vulkan_driver_is_named_with_its_remedy(monkeypatch, name):
+    wgpu = pytest.importorskip("wgpu")
+    if name == "vulkan":
+        monkeypatch.setattr("shutil.which", lambda program: program)
+    else:
+        monkeypatch.setenv("PATH", "/nowhere")
+    monkeypatch.setattr(wgpu.gpu, "enumerate_adapters_sync", list)
+    assert_not_run(name, "no Vulkan device; .* install mesa-vulkan-drivers")
+
+
 def test_a_missing_driver_is_named_with_its_remedy(hosts, monkeypatch):
     hosts("storm")
     monkeypatch.setenv("__EGL_VENDOR_LIBRARY_FILENAMES", os.devnull)
     assert_not_run("storm", "no OpenGL 4.5 through EGL .*; on Debian: apt-get")
+
+
+OPEN = """
+import sys
+from mxeon.errors import NotRun
+from mxeon.hosts.slang import Host
+try:
+    Host()
+except NotRun as reason:
+    print(reason)
+print("torch" in sys.modules)
+"""
+
+
+def test_a_missing_compiler_of_slangpy_is_named_with_its_remedy(tmp_path):
+    pytest.importorskip("slangpy")
+    done = subprocess.run(
+        [sys.executable, "-c", OPEN], env={"PATH": str(tmp_path)}, capture_output=True, text=True
+    )
+    assert done.stdout.startswith("slang: no kernel for the CPU; ")
+    assert "apt-get install g++" in done.stdout
+    assert done.stdout.endswith("\nFalse\n")  # slangpy would import PyTorch, in two seconds

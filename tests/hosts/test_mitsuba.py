@@ -24,12 +24,7 @@ from tests.support.bsdfs import (
     material,
     surface,
 )
-from tests.support.tolerances import (
-    MITSUBA_COAT,
-    MITSUBA_DENSITY,
-    MITSUBA_EVAL,
-    MITSUBA_WEIGHT,
-)
+from tests.support.tolerances import MITSUBA_COAT, MITSUBA_DENSITY, MITSUBA_EVAL, MITSUBA_WEIGHT
 
 PAGE = Path(__file__).parents[2] / "docs" / "mitsuba.md"
 COAT, BASE = "dielectric_over_eon", "openpbr_base"

@@ -1,14 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The Vulkan host: what is missing is said, and uniform blocks are laid out by std140."""
+"""Vulkan and WGSL: uniform blocks, and a text that reaches naga unchanged, with booleans again."""
 
 import struct
 
 import numpy as np
 import pytest
 
-from mxeon.errors import NotRun
-from mxeon.hosts import vulkan
+from mxeon.conformance.nodes.diffuse import SUBJECTS
+from mxeon.hosts import fragment, vulkan
 from mxeon.hosts.base import TURN
+from mxeon.shaders.generation import generate
+from mxeon.shaders.nodes import FLAG
+
+PAIR = np.array([[0.6, 0.0, 0.8]])
+BEHIND = np.array([[-0.6, 0.0, 0.8]])
 
 BLOCK = """
     mat4 u_envMatrix;
@@ -19,12 +24,26 @@ BLOCK = """
 """
 
 
-def test_a_missing_driver_is_not_run_and_names_the_remedy(monkeypatch):
-    wgpu = pytest.importorskip("wgpu")
-    monkeypatch.setattr(vulkan.shutil, "which", lambda program: program)
-    monkeypatch.setattr(wgpu.gpu, "enumerate_adapters_sync", list)
-    with pytest.raises(NotRun, match="no Vulkan device; .* install mesa-vulkan-drivers"):
-        vulkan.Host()
+@pytest.fixture(scope="module")
+def host(hosts):
+    return hosts("wgsl")
+
+
+def test_the_text_is_evaluated_as_it_was_generated():
+    shader = generate(SUBJECTS[0].document(), "wgsl")[0]
+    text, _ = fragment.bsdf_evaluation(shader, PAIR, PAIR, {}, "direct")
+    head, body = shader.stages["pixel"].split("\n", 1)
+    assert text.startswith(head) and body in text
+
+
+def test_an_integer_of_the_text_is_the_boolean_that_it_was(host):
+    shader = generate(SUBJECTS[0].document(), "wgsl")[0]
+    inputs = {"color": np.ones((1, 3)), "roughness": np.ones(1)}
+    on, off = (
+        host.evaluate(shader, PAIR, BEHIND, {**inputs, FLAG: flag}, "direct")
+        for flag in (True, False)
+    )
+    assert (on > off + 0.01).all()
 
 
 def test_members_of_a_block_lie_where_std140_has_them():

@@ -39,8 +39,14 @@ RENDER = [
 ]
 COMMANDS = {
     "generate": [
-        *("generate", "in/plaster.mtlx", "--target", "osl"),
-        *("--outputPath", "out", "--workers", "1"),
+        "generate",
+        "in/plaster.mtlx",
+        "--target",
+        "osl",
+        "--outputPath",
+        "out",
+        "--workers",
+        "1",
     ],
     "render": [*RENDER, "--output", "out/a.png"],
     "cycles": [*RENDER, "--output", "out/a.exr", "--host", "cycles"],

@@ -41,14 +41,10 @@ from tests.support.tolerances import KIT_DEPTH, KIT_FALSE_ALARMS, KIT_PRINTED
 EXTERNAL_RENDERER = Path(__file__).parents[1] / "support" / "external_renderer.py"
 
 
-def test_the_mesh_lies_on_the_sphere():
+def test_the_mesh_lies_on_the_sphere_closed_and_turned_outwards():
     mesh = unit_sphere()
     assert np.abs(np.linalg.norm(mesh.vertices, axis=1) - 1.0).max() < 1e-15
     assert mesh.depth < KIT_DEPTH
-
-
-def test_the_mesh_is_closed_and_turned_outwards():
-    mesh = unit_sphere()
     a, b, c = np.moveaxis(mesh.vertices[mesh.triangles], 1, 0)
     assert (np.linalg.det(np.stack([a, b, c], axis=1)) > 0.0).all()
     edges = np.sort(mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)

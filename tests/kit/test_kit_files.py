@@ -14,13 +14,7 @@ from mxeon.cli import main
 from mxeon.errors import MISUSE, PASSED
 from mxeon.io.images import write_exr
 from mxeon.kit.check import check_kit
-from tests.kit.conftest import (
-    SIZE,
-    read,
-    render,
-    result_of,
-    write_kit,
-)
+from tests.kit.conftest import SIZE, read, render, result_of, write_kit
 
 
 def test_a_kit_without_pictures_is_one_line(tmp_path, capsys):
