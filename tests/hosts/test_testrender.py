@@ -143,18 +143,6 @@ def test_each_point_of_a_scene_shows_its_pair():
     assert np.linalg.norm(scene.points, axis=1).min() > scenes.NEAREST
 
 
-def test_the_light_sees_a_triangle_from_its_edge_and_the_camera_its_front():
-    scene = scenes.pair_scene(*random_pairs(512), 32)
-    lines = scene.files("shader", True)[scenes.POINTS].splitlines()
-    corners = np.array([line.split()[1:] for line in lines if line.startswith("v ")], float)
-    a, b, c = corners.reshape(-1, 3, 3).swapaxes(0, 1)
-    normal = np.cross(a - b, a - c)
-    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-    light = scene.points / np.linalg.norm(scene.points, axis=1, keepdims=True)
-    assert np.abs((normal * light).sum(axis=1)).max() < 1e-3
-    assert ((normal * scene.rays).sum(axis=1) < -0.9 * pairs.LEAST_SINE).all()
-
-
 def test_a_pair_that_no_scene_shows_is_refused(host):
     with pytest.raises(InputError, match="the sine of each pair must be at least 0.08"):
         host.evaluate(osl.shader(), osl.VIEWS, osl.VIEWS, {}, "direct")

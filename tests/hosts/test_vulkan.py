@@ -12,9 +12,7 @@ from mxeon.hosts.base import TURN
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import FLAG
 
-PAIR = np.array([[0.6, 0.0, 0.8]])
-BEHIND = np.array([[-0.6, 0.0, 0.8]])
-
+PAIR, BEHIND = np.array([[[0.6, 0.0, 0.8]], [[-0.6, 0.0, 0.8]]])
 BLOCK = """
     mat4 u_envMatrix;
     bool flag;

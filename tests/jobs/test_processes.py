@@ -142,18 +142,11 @@ def test_workers_find_mxeon_where_the_parent_does(monkeypatch):
     assert dict(pool.run(square, [3], 1, 60.0)) == {0: Outcome(9)}
 
 
-def test_workers_are_safe_where_the_environment_does_not_count(hostile):
-    script = hostile / "bin" / "command"
-    run(hostile, "library")
-    command = [sys.executable, "-E", str(script), *COMMANDS["generate"], "--workers", "1"]
-    subprocess.run(command, cwd=hostile, check=True, capture_output=True)
-    assert not (hostile / "RAN").exists()
-
-
-def test_a_module_run_by_its_name_leaves_the_working_folder_off_the_path(tmp_path):
+@pytest.mark.parametrize("way", [["-E", "bin/command"], ["-m", "mxeon"]], ids=" ".join)
+def test_the_working_folder_is_off_the_path_whatever_starts_the_command(tmp_path, way):
     plant(tmp_path, ["pebble", "MaterialX", "numpy"], PLANT.format(str(tmp_path / "RAN")))
-    run(tmp_path, "library")
-    command = [sys.executable, "-m", "mxeon", *COMMANDS["generate"], "--workers", "1"]
+    run(tmp_path, "library")  # which leaves bin/command
+    command = [sys.executable, *way, *COMMANDS["generate"]]
     subprocess.run(command, cwd=tmp_path, check=True, capture_output=True)
     assert not (tmp_path / "RAN").exists()
 

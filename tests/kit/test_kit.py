@@ -111,21 +111,22 @@ def test_bias_far_below_the_noise_of_a_pixel_is_found():
     assert ratio([tiles(error, 0.0 * error, mask)]) > 1.0
 
 
-@pytest.mark.parametrize("noise", [0.0, 0.02])
-@pytest.mark.parametrize("name", ["eon", "fon", "eon_rho_cubed", "eon_clamped", "fon_white_lobe"])
-def test_each_model_is_named_whatever_the_noise(tmp_path, name, noise):
-    write_pictures(tmp_path, true=name, noise=noise)
-    title = reference.model(name).title
-    found = names(check_kit(tmp_path))
-    assert found["energy_compensation true, distant light"] == title
-    assert found["energy_compensation true, environment"] == title
+TRUE = ("eon", "fon", "eon_rho_cubed", "eon_clamped", "fon_white_lobe")
+FALSE = ("lambert", "oren_nayar", "qon", "qon_footnote", "qon_fujii")
 
 
-@pytest.mark.parametrize("name", ["lambert", "oren_nayar", "qon", "qon_footnote", "qon_fujii"])
-def test_each_model_of_the_flag_false_is_named(tmp_path, name):
-    write_pictures(tmp_path, false=name, noise=0.02)
-    title = reference.model(name).title
-    assert names(check_kit(tmp_path))["energy_compensation false, distant light"] == title
+@pytest.mark.parametrize(
+    "flag, name, noise",
+    [
+        *(("true", name, noise) for name in TRUE for noise in (0.0, 0.02)),
+        *(("false", name, 0.02) for name in FALSE),
+    ],
+)
+def test_each_model_is_named_whatever_the_noise(tmp_path, flag, name, noise):
+    write_pictures(tmp_path, **{flag: name}, noise=noise)
+    found, title = names(check_kit(tmp_path)), reference.model(name).title
+    assert found[f"energy_compensation {flag}, distant light"] == title
+    assert flag == "false" or found["energy_compensation true, environment"] == title
 
 
 def test_right_pictures_pass(kit):
