@@ -99,8 +99,7 @@ RENDERER = {
     PAINTER: {
         "": """import numpy as np
 
-from mxeon.hosts.base import Identity
-from mxeon.hosts.base import RendererHost
+from mxeon.hosts.base import Identity, RendererHost
 from mxeon.shaders.scene import sphere
 
 
