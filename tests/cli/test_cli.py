@@ -14,7 +14,7 @@ import pytest
 from mxeon.cli import main, parser
 from mxeon.errors import FAILED, NOT_RUN, PASSED
 from mxeon.hosts import host_names
-from mxeon.jobs.processes import TIMEOUT
+from mxeon.jobs import TIMEOUT
 from mxeon.models.diffuse.inversion import eon_rho_from_albedo_avg, eon_rho_from_albedo_normal
 from mxeon.shaders.generation import TARGETS
 from mxeon.shaders.library import eonlib_folder

@@ -30,7 +30,7 @@ ROUGHNESS = (0.25, 1.0)
 class EonByCosinePlugin(RoughDiffusePlugin):
     """EON, sampled by the cosine."""
 
-    _brdf = EonPlugin._brdf
+    brdf = staticmethod(EonPlugin.brdf)
 
 
 def register_both(mi):

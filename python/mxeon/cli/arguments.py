@@ -10,7 +10,7 @@ from importlib import import_module
 from typing import Any, NoReturn
 
 from mxeon.errors import MISUSE, InputError, assert_known, one_line
-from mxeon.jobs.processes import TIMEOUT
+from mxeon.jobs import TIMEOUT
 from mxeon.names import meant
 from mxeon.shaders.document.policy import LIMITS, SEARCH_PATH, Policy, environment_path
 

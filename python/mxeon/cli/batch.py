@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import mxeon
 from mxeon.errors import DocumentError, InputError, MxeonError, NotRun, printable
-from mxeon.jobs.processes import check_timeout
+from mxeon.jobs import check_timeout
 
 if TYPE_CHECKING:
     from mxeon.hosts.base import Host

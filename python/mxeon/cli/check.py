@@ -12,7 +12,7 @@ from mxeon.cli.output import Progress, fail
 from mxeon.cli.verdict import show_run
 from mxeon.errors import MISUSE, InputError
 from mxeon.hosts import host_names
-from mxeon.jobs.processes import WAIT
+from mxeon.jobs import WAIT
 from mxeon.jobs.signals import block_signals
 
 T = TypeVar("T")

@@ -1,2 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Work in other processes and on other machines. Knows nothing of shading."""
+
+from mxeon.errors import InputError
+
+TIMEOUT = 300.0  # for one item
+WAIT = 60.0  # for the workers of a cluster to come, or to come back when all restart at once
+LONGEST = 1e6  # what waits cannot count much further
+
+
+def check_timeout(seconds: float, name: str = "timeout") -> None:
+    """Raise InputError unless 0 < seconds <= LONGEST."""
+    if not 0.0 < seconds <= LONGEST:
+        raise InputError(f"{name} must be positive and at most {LONGEST:g} s; got {seconds:g}")

@@ -24,8 +24,8 @@ from typing import Any
 
 import mxeon
 from mxeon.errors import InputError, NotRun, PackageError, install
+from mxeon.jobs import WAIT, check_timeout
 from mxeon.jobs.pool import Outcome, log_bug
-from mxeon.jobs.processes import WAIT, check_timeout
 
 ANSWER = 10.0  # seconds until a scheduler answers
 GONE = "scheduler must run until the end; it answers no more"

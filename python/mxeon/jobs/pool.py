@@ -20,7 +20,8 @@ from typing import Any
 from pebble import CONSTS, ProcessExpired, ProcessPool
 
 from mxeon.errors import InputError, MxeonError, NotRun
-from mxeon.jobs.processes import Context, check_timeout, safe_path
+from mxeon.jobs import check_timeout
+from mxeon.jobs.processes import Context, safe_path
 from mxeon.jobs.signals import block_signals
 
 

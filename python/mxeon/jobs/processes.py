@@ -15,19 +15,6 @@ from multiprocessing.context import SpawnContext, SpawnProcess
 from pathlib import Path
 from typing import Any
 
-from mxeon.errors import InputError
-
-TIMEOUT = 300.0  # for one item
-WAIT = 60.0  # for the workers of a cluster to come, or to come back when all restart at once
-LONGEST = 1e6  # what waits cannot count much further
-
-
-def check_timeout(seconds: float, name: str = "timeout") -> None:
-    """Raise InputError unless 0 < seconds <= LONGEST."""
-    if not 0.0 < seconds <= LONGEST:
-        raise InputError(f"{name} must be positive and at most {LONGEST:g} s; got {seconds:g}")
-
-
 HOME = str(Path(__file__).resolve().parents[2])  # the folder that mxeon is imported from
 PYTHON = (sys.executable, "-P")  # opens a command line; -P keeps the working folder off the path
 

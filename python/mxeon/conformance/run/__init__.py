@@ -18,9 +18,8 @@ from mxeon.conformance.run.survey import survey_documents
 from mxeon.conformance.run.tasks import Findings, Plan, Task
 from mxeon.errors import InputError, InterfaceError, NotRun
 from mxeon.hosts import HOSTS, host_row
-from mxeon.jobs import dask, pool
+from mxeon.jobs import TIMEOUT, WAIT, check_timeout, dask, pool
 from mxeon.jobs.pool import by_group
-from mxeon.jobs.processes import TIMEOUT, WAIT, check_timeout
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.generation import TARGETS, check_generator
 from mxeon.shaders.library import library_name
