@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The half of the `materialx` host in which MaterialX's renderer runs, started by its path.
+"""The half of the `materialx` host in which MaterialX's renderer runs; see `mxeon.hosts.process`.
 
-Its arguments are the folder whose `libraries` replace MaterialX's own, or "", and those of other libraries.
-It reads one JSON object per line on standard input and answers each with one on standard output: first `{"version": ..., "device": ...}`, then `{}` or
-`{"error": ...}` per request. The process ends when standard input does, and its display with it.
+Its arguments are the folder whose `libraries` replace MaterialX's own, or "", and those of other
+libraries. A reply is `{}` or `{"error": ...}`. Its display ends with the process.
 """
 
 from __future__ import annotations

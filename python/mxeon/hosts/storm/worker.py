@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The half of the `storm` host that runs in the Python that has Blender's package, started by its path.
+"""The half of the `storm` host that runs in Blender's Python; see `mxeon.hosts.process`.
 
 Its arguments are the folder whose `libraries` replace those of Blender's MaterialX, or "", and those of
-other libraries. It reads one JSON object per line on standard input and answers each with one on standard output: first `{"version": ..., "device": ...}`, then `{}` or
-`{"error": ...}` per request. What OpenUSD prints goes to standard error. The process ends when standard
-input does.
+other libraries. A reply is `{}` or `{"error": ...}`. What OpenUSD prints goes to standard error.
 """
 
 from __future__ import annotations
