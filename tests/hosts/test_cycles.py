@@ -53,7 +53,7 @@ def emit(statement):
     document = mx.createDocument()
     document.addNode("surface", "emit", "surfaceshader")
     stages = {"pixel": EMIT.format(statement)}
-    return SimpleNamespace(stages=stages, document=document, element="emit")
+    return SimpleNamespace(stages=stages, document=document, element="emit", root="")
 
 
 def lit(scene):
