@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike
 
 from mxeon.hosts import base, fragment
 from mxeon.hosts.base import Array, Inputs
-from mxeon.hosts.points import visible
 from mxeon.hosts.image_limit import image_files
+from mxeon.hosts.points import visible
 from mxeon.hosts.textures import irradiance, read_latlong, read_texture
 from mxeon.shaders import functions
 from mxeon.shaders.document.values import Plain, members
