@@ -142,7 +142,7 @@ def _judge_material(
         if result.verdict == FAILED and (known := _known(shader)):
             result = replace(result, diagnosis=known)
     return result, tuple(
-        _picture(file, shader, host, library, scene, image, reference)
+        _picture(file, shader, host, library, scene, image, reference, front_lit)
         for scene, image, reference in zip(scenes, images, references, strict=True)
     )
 
@@ -172,6 +172,7 @@ def _picture(
     scene: Scene,
     image: Pixels,
     expected: ExpectedPicture | None,
+    front_lit: bool,
 ) -> Picture:
     """The record of a picture, with its origin."""
     identity = host.identity()
@@ -186,10 +187,15 @@ def _picture(
     }
     if expected and expected.measured:
         metadata["from the host"] = ", ".join(expected.measured)
-    # Shown, no longer judged.
-    reference = np.asarray(expected.image, np.float32) if expected else None
     names = (file.name, shader.element, host.name, library, scene.name)
-    return Picture(*names, image, reference, metadata)
+    if expected is None:
+        return Picture(*names, image, None, metadata)
+    reference, judged = np.asarray(expected.image, np.float32), expected.judged.copy()
+    if front_lit:
+        judged[judged] = _is_front_lit(*_directions(scene, judged))
+    partly = judged.sum() < sphere(scene.size).mask.sum()
+    where = judged[..., None].astype(np.float32) if partly else None
+    return Picture(*names, image, reference, metadata, where)
 
 
 def _assert_judged(shader: Shader, host: Host) -> None:
@@ -254,12 +260,11 @@ def _worst_pixel(
     """Largest error times cos(theta_o), and its pixel."""
     # Errors of the pixels that show the sphere and were computed.
     scene, image, (reference, mask) = case[0], case[1], (case[2].image, case[2].judged)
-    chosen = mask[sphere(scene.size).mask]
-    wo, wi = (each[chosen] for each in picture_pairs(scene)[:2])
+    wo, wi = _directions(scene, mask)
     measured, expected = (each[mask].astype(np.float64) for each in (image, reference))
     error = metric(measured, expected) * wo[:, 2]
     if front_lit:
-        error = np.where((wo[:, :2] * wi[:, :2]).sum(axis=1) >= 0.0, error, 0.0)
+        error = np.where(_is_front_lit(wo, wi), error, 0.0)
     # The largest, and its place.
     worst = int(error.argmax())
     row, column = np.argwhere(mask)[worst]
@@ -269,3 +274,15 @@ def _worst_pixel(
         "measured": image[row, column].astype(float).tolist(),
         "expected": reference[row, column].tolist(),
     }
+
+
+def _directions(scene: Scene, mask: NDArray[np.bool_]) -> tuple[Pixels, Pixels]:
+    """Directions `wo` and `wi` of the sphere's pixels in a mask."""
+    chosen = mask[sphere(scene.size).mask]
+    wo, wi, _ = picture_pairs(scene)
+    return wo[chosen], wi[chosen]
+
+
+def _is_front_lit(wo: Pixels, wi: Pixels) -> NDArray[np.bool_]:
+    lit: NDArray[np.bool_] = (wo[:, :2] * wi[:, :2]).sum(axis=1) >= 0.0
+    return lit

@@ -16,6 +16,7 @@ from mxeon.conformance.results.result import (
     Control,
     Place,
     Result,
+    in_words,
 )
 from mxeon.conformance.results.run import Run
 from mxeon.conformance.results.summary import Summary, counted, summarize
@@ -40,5 +41,6 @@ __all__ = [
     "Summary",
     "counted",
     "image_names",
+    "in_words",
     "summarize",
 ]

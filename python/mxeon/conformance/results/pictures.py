@@ -12,6 +12,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from mxeon.io.images import difference
+
 NOT_PLAIN = re.compile("[^A-Za-z0-9]+")
 
 
@@ -29,6 +31,8 @@ class Picture:
         The same from the NumPy models, or None where the material has other lobes.
     metadata : dict of str to str
         Its origin: version, host, device, library, document, element, scene.
+    judged : ndarray or None, shape (size, size, 1), float32
+        1 in the pixels that were compared with the reference, else 0; None where all were.
     """
 
     document: str
@@ -39,6 +43,27 @@ class Picture:
     image: NDArray[np.floating]
     reference: NDArray[np.floating] | None
     metadata: dict[str, str]
+    judged: NDArray[np.floating] | None = None
+
+    def difference(self) -> NDArray[np.float64]:
+        """Difference from the reference, (size, size): infinite where a value is not finite.
+
+        Pixels between those of a judged lattice take the difference of the nearest one; other
+        pixels that were not judged are NaN.
+        """
+        if self.reference is None:
+            raise ValueError(f"{self.element}: a difference needs a reference; there is none")
+        apart = difference(self.image, self.reference)
+        apart = np.where(np.isfinite(apart), apart, np.inf)
+        if self.judged is None:
+            return apart
+        judged = np.asarray(self.judged)[..., 0] > 0.0
+        nearest = []
+        for axis in (1, 0):
+            lines = np.flatnonzero(judged.any(axis))
+            gaps = np.abs(np.subtract.outer(np.arange(len(judged)), lines))
+            nearest.append(lines[gaps.argmin(axis=1)])
+        return np.where(judged, apart, np.nan)[np.ix_(*nearest)]
 
 
 def image_names(pictures: Sequence[Picture]) -> tuple[str, ...]:

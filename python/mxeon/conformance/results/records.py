@@ -152,6 +152,7 @@ def _image_fields(folder: Path) -> Overrides:
     return {
         "image": override(unstruct_hook=name, struct_hook=stored),
         "reference": override(unstruct_hook=name, struct_hook=stored_or_none),
+        "judged": override(unstruct_hook=name, struct_hook=stored_or_none),
     }
 
 

@@ -103,6 +103,7 @@ class Journal:
                 picture,
                 image=self._store(picture.image),
                 reference=None if picture.reference is None else self._store(picture.reference),
+                judged=None if picture.judged is None else self._store(picture.judged),
             )
             for picture in findings.pictures
         )

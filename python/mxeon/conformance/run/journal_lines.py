@@ -106,7 +106,11 @@ def _task(line: bytes, seed: str, plan: Plan, converter: cattrs.Converter) -> tu
 
 
 def _images(findings: Findings) -> list[StoredImage]:
-    images = (each for picture in findings.pictures for each in (picture.image, picture.reference))
+    images = (
+        each
+        for picture in findings.pictures
+        for each in (picture.image, picture.reference, picture.judged)
+    )
     return [cast(StoredImage, image) for image in images if image is not None]
 
 
