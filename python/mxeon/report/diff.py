@@ -26,21 +26,13 @@ SHOWN = ("host", "library", "document", "element", "scene")
 
 @dataclass(frozen=True)
 class Change:
-    """One difference between two reports.
+    """One difference between two reports, with their values; "none" where one has no such entry.
 
-    Attributes
-    ----------
-    kind : str
-        WORSE, BETTER or OTHER. A worse verdict, a missing check or a new one that fails is WORSE, a
-        figure alone OTHER.
-    place : str
-        Host, library, check and subject, or the name of a version.
-    before, after : str
-        Values in the two reports; "none" where one has no such entry.
+    A worse verdict, a missing check and a new one that fails are WORSE, a figure alone is OTHER.
     """
 
-    kind: str
-    place: str
+    kind: str  # WORSE, BETTER or OTHER
+    place: str  # host, library, check and subject, or the name of a version
     before: str
     after: str
 
@@ -100,34 +92,18 @@ class Report:
 
 
 def read_results(folder: str | PathLike[str]) -> Report:
-    """Content of a report's results.json.
+    """Content of a results.json, or of the one in a report's folder.
 
-    Parameters
-    ----------
-    folder : path-like
-        Folder of the report, or the file itself.
-
-    Returns
-    -------
-    Report
-
-    Raises
-    ------
-    ValueError
-        If the file is missing or not of this format; names the first wrong value.
+    Raises ValueError if it is missing or not of this format, which names the first wrong value.
     """
-    # Read the file.
     path = Path(folder) / "results.json" if Path(folder).is_dir() else Path(folder)
     rule = f"{path}: must be the results.json of a report"
     try:
         with open(path, encoding="utf-8", opener=regular) as file:
             content = json.load(file)
-        # Check its format.
         if (written := content["format"]) == JSON_FORMAT:
-            later: dict[str, object] = {
-                "elsewhere": [],
-                "refused": [],
-            }  # which earlier reports lack
+            # Keys that earlier reports lack.
+            later: dict[str, object] = {"elsewhere": [], "refused": [], "libraries": {}}
             return read_record(later | content, Report)
     except OSError as error:
         raise InputError(f"{rule}; {error.strerror}") from None
@@ -140,16 +116,7 @@ def read_results(folder: str | PathLike[str]) -> Report:
 
 
 def compare(before: Report, after: Report) -> tuple[Change, ...]:
-    """Changes from one report to another, those for the worse first.
-
-    Parameters
-    ----------
-    before, after : Report
-
-    Returns
-    -------
-    tuple of Change
-    """
+    """Changes from one report to another, those for the worse first."""
     changes = [
         *_results(_by(PLACE, before.results), _by(PLACE, after.results)),
         *_pictures(_by(SHOWN, before.pictures), _by(SHOWN, after.pictures)),
@@ -174,14 +141,12 @@ def _results(
 ) -> Iterator[Change]:
     for key in dict.fromkeys((*before, *after)):
         place, old, new = ", ".join(key), before.get(key), after.get(key)
-        # Name results that one of both lacks.
         if new is None:
             yield Change(WORSE, place, before[key].verdict, "none")
         elif old is None:
             kind = WORSE if new.verdict == FAILED else OTHER
             yield Change(kind, place, "none", _with_error(new))
         elif old.verdict != new.verdict:
-            # Compare the verdicts, then the errors.
             worse = ORDER.index(new.verdict) > ORDER.index(old.verdict)
             yield Change(WORSE if worse else BETTER, place, _with_error(old), _with_error(new))
         elif _apart(old.error, new.error):
