@@ -2,7 +2,7 @@
 """The field: what the reports of any number of runs say of each renderer's node, side by side."""
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -44,32 +44,18 @@ class Portrait:
 
 @dataclass(frozen=True)
 class Entry:
-    """A node of a renderer, as one run has judged it.
-
-    Attributes
-    ----------
-    host, library, node, version, device : str
-        Version and device are "" where the host did not run.
-    claimed, form : str
-        Titles of the model that the node claims, and of its published form that was judged.
-    cells : dict of str to Result
-        By the columns of CHECKS that were asked.
-    pages : tuple of str
-        Names of the pages of `docs/upstream` about its defects.
-    portraits : dict of str to Portrait
-        By scene.
-    """
+    """A node of a renderer, as one run has judged it."""
 
     host: str
     library: str
     node: str
-    version: str
+    version: str  # "" where the host did not run, as is device
     device: str
-    claimed: str
-    form: str
-    cells: Mapping[str, Result]
-    pages: tuple[str, ...]
-    portraits: Mapping[str, Portrait]
+    claimed: str  # title of the model that the node claims
+    form: str  # title of its published form that was judged
+    cells: Mapping[str, Result]  # by column of CHECKS
+    pages: tuple[str, ...]  # of docs/upstream, on its defects
+    portraits: Mapping[str, Portrait]  # by scene
 
     @property
     def verdict(self) -> str:
@@ -92,14 +78,7 @@ class Entry:
 
 
 def model_of(result: Result, expected: str) -> str:
-    """The model that a result shows, in words.
-
-    Examples
-    --------
-    >>> cell = Result("value", "", "a", "gl", "stock", "failed", diagnosis="s is wrong; see b.md")
-    >>> model_of(cell, "EON")
-    's is wrong'
-    """
+    """The model that a result shows, or what its diagnosis says first."""
     if result.verdict == PASSED:
         return expected
     if result.verdict == NOT_RUN:
@@ -109,23 +88,10 @@ def model_of(result: Result, expected: str) -> str:
 
 
 def read_field(folders: Sequence[str | PathLike[str]]) -> tuple[Entry, ...]:
-    """The entries of the reports in some folders.
+    """The nodes that claim a rough diffuse model, by the reports in some folders.
 
-    Parameters
-    ----------
-    folders : sequence of path-like
-        Each is that of a report, or holds those of reports.
-
-    Returns
-    -------
-    tuple of Entry
-        One for each host, version, library and node that claims a rough diffuse model; of two
-        reports on one, the later.
-
-    Raises
-    ------
-    ValueError
-        If a folder is and holds no report, or none has such a node.
+    A folder is a report, or holds reports; of two reports on one host, version, library and node the
+    later counts. Raises ValueError if a folder has no report, or no report has such a node.
     """
     entries = {}
     for folder in folders:
@@ -149,7 +115,6 @@ def _reports(folder: Path) -> list[Path]:
 
 def _entries(report: Report, folder: Path) -> Iterator[Entry]:
     """Entries of a report, in its order."""
-    # Group the results by host, library and node.
     nodes: tuple[DiffuseSubject | DiffuseLobe, ...] = (
         *SUBJECTS,
         *SURFACES,
@@ -161,14 +126,12 @@ def _entries(report: Report, folder: Path) -> Iterator[Entry]:
         place = result.host, result.library, result.subject
         places.setdefault(place, {})[result.check] = result
     for place, results in places.items():
-        # Take the nodes that claim a model and are judged in direct light.
         direct = next((results[key] for key in DIRECT if key in results), None)
         claimed = direct and (direct.claimed or claims.get(direct.subject))
         if direct and claimed:
-            # Collect cells, pages and pictures.
             portraits = {each.scene: each for each in _portraits(report, place, folder)}
             cells = _cells(results, direct, portraits.get(BACK))
-            pages = _pages(results.values())
+            pages = tuple(dict.fromkeys(page for each in results.values() for page in each.pages))
             names = (*place, *_identity(report, direct.host), claimed, direct.model)
             yield Entry(*names, cells, pages, portraits)
 
@@ -226,7 +189,3 @@ def _back_lit(direct: Result, error: float) -> Result:
         direct.unit,
         allowed,
     )
-
-
-def _pages(results: Iterable[Result]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(page for result in results for page in result.pages))

@@ -14,29 +14,18 @@ NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 def to_junit(run: Run) -> str:
     """A run as JUnit XML text: a suite for each host and library, a case for each result.
 
-    A failed check is a failure, one that did not run is skipped, a document that was refused is an
-    error in a suite of its own, each with its message.
-
-    Parameters
-    ----------
-    run : mxeon.conformance.results.Run
-
-    Returns
-    -------
-    str
+    A failed check is a failure, one that did not run is skipped, and a refused document is an error
+    in a separate suite, each with its message.
     """
     root = ElementTree.Element("testsuites", name="mxeon")
     for name in dict.fromkeys(result.location for result in run.results):
-        # Begin a suite with its properties.
         results = [result for result in run.results if result.location == name]
         suite = ElementTree.SubElement(root, "testsuite", {"name": _xml(name)} | _totals(results))
         properties = ElementTree.SubElement(suite, "properties")
         for key, value in _properties(run, results[0].host).items():
             ElementTree.SubElement(properties, "property", name=_xml(key), value=_xml(value))
-        # Add its cases.
         for result in results:
             _add_case(suite, result)
-    # Add the documents that were refused.
     if run.refused:
         _add_errors(root, run.refused)
     ElementTree.indent(root)

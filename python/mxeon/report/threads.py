@@ -18,8 +18,8 @@ R = TypeVar("R")
 def in_threads(work: Callable[[T], R], items: Iterable[T]) -> Iterator[Iterator[R]]:
     """Results of `work` on every item, in their order; a few items ahead of the caller are begun.
 
-    The first error ends the work, and is raised. The threads end with the block: garbage collection, which
-    may begin in any thread, could end them in one that they wait for, a deadlock.
+    The first error ends the work, and is raised. The threads end with the block: if garbage collection
+    ended them, it might run in one of them, which would then wait for itself.
     """
     begun = deque[Future[R]]()
     with ThreadPoolExecutor(THREADS) as pool:
@@ -31,7 +31,7 @@ def in_threads(work: Callable[[T], R], items: Iterable[T]) -> Iterator[Iterator[
 
 
 def _results(futures: Iterator[Future[R]], begun: deque[Future[R]]) -> Iterator[R]:
-    """Results of futures, each of which is begun when it is taken, some ahead of the caller."""
+    """Results of futures, which begin when they are taken, some ahead of the caller."""
     begun.extend(islice(futures, 2 * THREADS))
     while begun:
         yield begun.popleft().result()
