@@ -19,7 +19,7 @@ from mxeon.conformance.results.known_issues import issues_of, page_file
 from mxeon.conformance.results.records import make_converter
 from mxeon.errors import PackageError, install
 from mxeon.io.files import below, replacing, write_text
-from mxeon.io.images import difference, without_threads, write_exr, write_png
+from mxeon.io.images import without_threads, write_exr, write_png
 from mxeon.report.junit import to_junit
 from mxeon.report.threads import in_threads
 
@@ -98,13 +98,11 @@ def to_json(run: Run) -> str:
 def _picture_fields(run: Run) -> list[dict[str, Any]]:
     keys = ("document", "element", "host", "library", "scene")
     fields: list[dict[str, Any]] = []
-    # Find the file of each reference picture, and the largest difference from it.
     pictures = _with_references(run.pictures)
     stems = dict(zip(map(_place, pictures), image_names(pictures), strict=True))
     with in_threads(_largest_difference, run.pictures) as each:
         differences = list(each)
     for picture, stem, largest in zip(run.pictures, run.image_names, differences, strict=True):
-        # Name the files.
         files = {"exr": f"pictures/{stem}.exr", "png": f"pictures/{stem}.png"}
         named = {key: getattr(picture, key) for key in keys}
         reference = stems.get((REFERENCE, *_subject(picture)))
@@ -117,19 +115,18 @@ def _picture_fields(run: Run) -> list[dict[str, Any]]:
 
 
 def _largest_difference(picture: Picture) -> float | None:
-    """Largest difference of a picture from its reference, if it has one."""
+    """Largest difference of a picture from its reference where it was judged, if it has one."""
     if picture.reference is None:
         return None
-    return float(difference(picture.image, picture.reference).max())
+    return float(np.nanmax(picture.difference()))
 
 
 def write(run: Run, folder: str | PathLike[str]) -> Path:
     """Write report.html, results.json, junit.xml and pictures/ into `folder`.
 
-    The pictures are those of the run and their references, each as EXR and PNG. The pages on defects that
-    explain failures lie in upstream/.
-    Each file is written as a whole or not at all, and replaces one of the same name. The page is
-    written last, so that all other files exist if it cannot be made.
+    The pictures are those of the run and their references, each as EXR and PNG; upstream/ has the pages
+    on defects that explain failures. Each file is written whole or not at all, the page last: if it
+    cannot be made, all other files exist.
 
     Parameters
     ----------
@@ -150,10 +147,8 @@ def write(run: Run, folder: str | PathLike[str]) -> Path:
         If jinja2 or matplotlib, the `report` extra, is not installed.
     """
     folder = Path(folder)
-    # Write the results for machines.
     write_text(below(folder, "results.json"), to_json(run))
     write_text(below(folder, "junit.xml"), to_junit(run))
-    # Write the pictures.
     pictures = _with_references(run.pictures)
     stems = [f"pictures/{stem}" for stem in image_names(pictures)]
     with (
@@ -162,11 +157,10 @@ def write(run: Run, folder: str | PathLike[str]) -> Path:
     ):
         for _ in written:
             pass
-    # Write the pages on the defects beside it, for a site that has no address.
+    # The pages on the defects, for a site that has no address.
     for issue in {each for one in run.results for each in issues_of(one)}:
         text = page_file(issue).read_text(encoding="utf-8")
         write_text(below(folder, f"{PAGES}/{issue.page}.md"), text)
-    # Write the page, piece by piece.
     with (
         closing(html(run)) as pieces,
         replacing(below(folder, "report.html")) as beside,
@@ -185,32 +179,11 @@ def _write_picture(folder: Path, place: tuple[Picture, str]) -> None:
 
 
 def write_field(entries: Sequence[Entry], file: str | PathLike[str], pages: str = "") -> Path:
-    """Write the page of the field; see `mxeon.report.field_page.render`.
-
-    Parameters
-    ----------
-    entries : sequence of mxeon.report.field.Entry
-    file : path-like
-    pages : str
-        Address of a page of the ledger with `{}` for its name; "" for no links.
-
-    Returns
-    -------
-    Path
-        The page.
-
-    Raises
-    ------
-    OSError
-        If a picture cannot be read or the page not be written.
-    ImportError
-        If jinja2 or matplotlib, the `report` extra, is not installed.
-    """
+    """Write the page of the field, and return it; see `mxeon.report.field_page.render`."""
     with needing_extra("the page of the field"):
         from mxeon.report.field_page import render
     with replacing(Path(file)) as beside, open(beside, "w", encoding="utf-8") as page:
-        for text in render(entries, pages):
-            page.write(text)
+        page.writelines(render(entries, pages))
     return Path(file)
 
 
@@ -227,17 +200,9 @@ def needing_extra(name: str) -> Iterator[None]:
 
 
 def html(run: Run) -> Generator[str, None, None]:
-    """A run as one self-contained HTML page; threads draw its pictures until it is closed.
+    """A run as one self-contained HTML page, in pieces: few of its pictures are in memory at a time.
 
-    Yields
-    ------
-    str
-        Pieces of the page's text, so that no more than a few pictures are in memory.
-
-    Raises
-    ------
-    ImportError
-        If jinja2 or matplotlib, the `report` extra, is not installed.
+    Threads draw the pictures until it is closed.
     """
     with needing_extra("report.html"):
         from mxeon.report.page import render

@@ -9,6 +9,7 @@ from hashlib import sha256
 from importlib.resources import files
 from typing import Any
 
+import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
@@ -46,19 +47,10 @@ class Frame:
 
 
 def render(entries: Sequence[Entry], pages: str = "") -> Iterator[str]:
-    """The page of the field.
+    """Pieces of the page of the field; a picture is read when its piece is due.
 
-    Parameters
-    ----------
-    entries : sequence of Entry
-    pages : str
-        Address of a page of the ledger with `{}` for its name; "" for no links.
-
-    Yields
-    ------
-    str
-        Pieces of HTML; a picture is read when its piece is due. The page loads nothing, runs only its
-        own script, and is complete without it. Text of the reports is escaped.
+    `pages` is the address of a page of the ledger with `{}` for its name, "" for no links. The page loads
+    nothing, runs only its own script, and is complete without it. Text of the reports is escaped.
     """
     script = files("mxeon.report").joinpath("templates/field.js").read_text(encoding="utf-8")
     environment = Environment(
@@ -102,13 +94,7 @@ def order(cell: Result | None) -> float:
 
 
 def breakable(name: str) -> Markup:
-    """A name that may go on in the next line after each underscore.
-
-    Examples
-    --------
-    >>> str(breakable("a_b<c"))
-    'a_<wbr>b&lt;c'
-    """
+    """A name that may break after each underscore."""
     return Markup("_<wbr>").join(name.split("_"))
 
 
@@ -125,6 +111,7 @@ def frames(entries: Sequence[Entry], scene: str) -> Iterator[Frame]:
             continue
         image, model = read_image(portrait.image), read_image(portrait.reference)
         apart: Any = difference(image, model)
+        apart[np.isnan(apart)] = np.inf
         scale = max(difference_scale(apart), entry.cells["direct"].tolerance or 0.0)
         shown, apart = srgb_encoded(image), difference_pixels(apart, scale)
         yield Frame(row, picture_uri(shown), picture_uri(apart), scale, portrait.difference)

@@ -15,6 +15,7 @@ from mxeon.conformance.results import (
     NOT_RUN,
     PASSED,
     Result,
+    in_words,
 )
 from mxeon.conformance.results.known_issues import issues_of, link
 from mxeon.conformance.results.known_issues.issue import Issue
@@ -25,6 +26,16 @@ LOOKS = {
     DIFFERS: ("differs", "≠"),
     FAILED: ("failed", "✗"),
     NOT_RUN: ("not-run", "–"),
+}
+# Part of a unit -> what a reader has to know of it.
+UNITS = {
+    "pi f cos": "1 is a white, matte surface that faces the light",
+    "relative above 1": "errors of values above 1 are divided by the value",
+    "times cos(theta_o)": "less weight toward the rim: times the cosine of the viewing angle",
+    "albedo": "an albedo of 1 returns all light",
+    "irradiance": "1 is a white environment",
+    "throughput": "a throughput of 1 passes all light",
+    "light": "1 is all of the light",
 }
 
 
@@ -39,14 +50,20 @@ def share(result: Result) -> float:
 
 
 def number(value: float | None, digits: int = 3) -> str:
-    """A number as text, or a dash for None.
-
-    Examples
-    --------
-    >>> number(2.3456e-07), number(0.25), number(None)
-    ('2.35e-7', '0.25', '–')
-    """
+    """A number as text without zeros in its exponent, or a dash for None."""
     return "–" if value is None else re.sub(r"e([+-])0*", r"e\1", f"{value:.{digits}g}")
+
+
+def of_white(value: float) -> str:
+    """Linear radiance as a share of a white, matte surface in full light; at least 0.001 %."""
+    if not math.isfinite(value):
+        return "not finite"
+    return f"{in_words(max(100.0 * value, 0.001))}\N{NO-BREAK SPACE}% of white"
+
+
+def unit_meaning(unit: str) -> str:
+    """What a unit's parts mean, for the caption of a table; "" for plain counts."""
+    return "; ".join(words for part, words in UNITS.items() if part in unit)
 
 
 def nearest(distances: Mapping[str, float], count: int = 5) -> list[tuple[str, float, float]]:
@@ -70,12 +87,6 @@ def page_address(issue: Issue) -> str:
 
 
 def vector(values: ArrayLike) -> str:
-    """One or more numbers as text.
-
-    Examples
-    --------
-    >>> vector([1.0]), vector((0.5, 0.25))
-    ('1', '(0.5, 0.25)')
-    """
+    """One or more numbers as text: "1" or "(0.5, 0.25)"."""
     words = [number(float(value), 4) for value in np.ravel(values)]
     return words[0] if len(words) == 1 else f"({', '.join(words)})"

@@ -4,9 +4,10 @@
 from base64 import b64encode
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from hashlib import sha256
 from importlib.resources import files
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -15,19 +16,31 @@ from numpy.typing import NDArray
 
 from mxeon.conformance.results import (
     DIFFERS,
+    DIRECT,
     FAILED,
     NOT_RUN,
     PASSED,
+    PORTRAIT,
     SHADER_FUNCTIONS,
     SOURCE,
     AlbedoCurve,
     Picture,
     Result,
     Run,
+    counted,
 )
-from mxeon.io.images import difference, difference_scale
+from mxeon.io.images import difference_scale
 from mxeon.io.srgb import srgb_encoded
-from mxeon.report.formats import LOOKS, linked, nearest, number, share, vector
+from mxeon.report.formats import (
+    LOOKS,
+    linked,
+    nearest,
+    number,
+    of_white,
+    share,
+    unit_meaning,
+    vector,
+)
 from mxeon.report.plots import albedo_plot, difference_gradient, difference_pixels, picture_uri
 from mxeon.report.threads import in_threads
 
@@ -35,77 +48,59 @@ from mxeon.report.threads import in_threads
 MARKERS = (("o", "○"), ("s", "□"), ("^", "△"), ("D", "◇"))
 # Materials whose pictures are inside the page, about a megabyte each; others are linked.
 SHOWN_MATERIALS = 60
+OPEN_MATERIALS = 8  # the others wait for a click
+VISIBLE = 1e-3  # of white: about the smallest step of a display
+OPEN_ROWS = 20  # of failed checks; with more of them, each check waits for a click
+WORST_FIRST = (FAILED, NOT_RUN, DIFFERS, PASSED)
+SCENES = {
+    "side": "light from the side",
+    "front": "light from the front",
+    "back": "light from behind",
+    "furnace": "a white environment",
+}
+
+Place: TypeAlias = tuple[str, str]  # host and library
+Verdicts: TypeAlias = Mapping[tuple[str, str, str], Result]  # by subject, host and library
 
 
 @dataclass(frozen=True)
 class CheckResults:
-    """Results of one check on one host with one library.
-
-    Attributes
-    ----------
-    key : str
-        Name of the check.
-    anchor : str
-        Identifier in the page.
-    results : tuple of Result
-        At least one, of different subjects.
-    """
+    """Results of one check on one host with one library, at least one."""
 
     key: str
-    anchor: str
+    anchor: str  # identifier in the page
     results: tuple[Result, ...]
-
-    @property
-    def claim(self) -> str:
-        """The sentence that the check tests."""
-        return self.results[0].claim
 
     @property
     def verdict(self) -> str:
         """The worst verdict of the results."""
-        verdicts = {result.verdict for result in self.results}
-        return next(
-            verdict for verdict in (FAILED, NOT_RUN, DIFFERS, PASSED) if verdict in verdicts
-        )
+        return worst(self.results)
 
     @property
-    def tightest(self) -> Result | None:
-        """The result with the largest share of its tolerance; None if none ran."""
-        ran = [result for result in self.results if result.error is not None]
-        return max(ran, key=share, default=None)
-
-    @property
-    def diagnoses(self) -> dict[Markup, list[str]]:
-        """Subjects that failed or differ, by what explains that."""
-        subjects: dict[Markup, list[str]] = {}
-        for one in self.results:
-            if one.verdict in (FAILED, DIFFERS):
-                within = one.error is not None and share(one) <= 1.0
-                words = linked(one, one.excess if within else "")
-                subjects.setdefault(words, []).append(one.subject)
-        return subjects
-
-    def distinct(self, attribute: str) -> list[str]:
-        """Different non-empty values of an attribute of the results."""
-        values = dict.fromkeys(getattr(one, attribute) for one in self.results)
-        return [value for value in values if value]
+    def tables(self) -> dict[str, list[Result]]:
+        """Results by unit, the worst first."""
+        tables: dict[str, list[Result]] = {}
+        for each in sorted(self.results, key=lambda each: WORST_FIRST.index(each.verdict)):
+            tables.setdefault(each.unit, []).append(each)
+        return tables
 
 
-def _audit_apart(results: Iterable[Result]) -> tuple[list[Result], list[Result]]:
-    """Results of nodes and documents, and those of the library itself, its functions and its text."""
-    asked: list[Result] = []
-    own: list[Result] = []
-    for result in results:
-        audits = result.host == SOURCE or result.subject == SHADER_FUNCTIONS
-        (own if audits else asked).append(result)
-    return asked, own
+def worst(results: Iterable[Result]) -> str:
+    """The worst verdict."""
+    return min((each.verdict for each in results), key=WORST_FIRST.index)
+
+
+def tally(results: Iterable[Result | CheckResults]) -> str:
+    """Numbers of verdicts in words, the worst first: "2 failed, 5 passed"."""
+    verdicts = [each.verdict for each in results]
+    return ", ".join(f"{verdicts.count(each)} {each}" for each in WORST_FIRST if each in verdicts)
 
 
 def checks_by_place(
     results: Iterable[Result], prefix: str = "check"
-) -> dict[tuple[str, str], list[CheckResults]]:
+) -> dict[Place, list[CheckResults]]:
     """Checks by host and library, in order of appearance; the prefix is that of their anchors."""
-    places: dict[tuple[str, str], dict[str, list[Result]]] = {}
+    places: dict[Place, dict[str, list[Result]]] = {}
     for result in results:
         place = places.setdefault((result.host, result.library), {})
         place.setdefault(result.check, []).append(result)
@@ -119,7 +114,7 @@ def checks_by_place(
 
 
 def matrix(
-    places: Mapping[tuple[str, str], Sequence[CheckResults]],
+    places: Mapping[Place, Sequence[CheckResults]],
 ) -> list[tuple[str, list[CheckResults | None]]]:
     """Rows of the table of checks: the name, and the CheckResults of each host and library, or None."""
     columns = [{check.key: check for check in checks} for checks in places.values()]
@@ -136,46 +131,114 @@ def reasons(results: Iterable[Result]) -> dict[str, list[Result]]:
     return stopped
 
 
-def materials(
-    pictures: Iterable[Picture],
-) -> dict[tuple[str, str], dict[str, list[Picture]]]:
-    """Pictures by document and element, then by scene."""
-    groups: dict[tuple[str, str], dict[str, list[Picture]]] = {}
-    for picture in pictures:
-        scenes = groups.setdefault((picture.document, picture.element), {})
-        scenes.setdefault(picture.scene, []).append(picture)
-    return groups
+def materials(run: Run) -> tuple[list[list[Picture]], Verdicts]:
+    """Pictures of each material, and their verdicts; documents before portraits, failures first."""
+    verdicts: dict[tuple[str, str, str], Result] = {}
+    for each in run.results:
+        if each.check in ("picture", "finite", *DIRECT):
+            document = f"{PORTRAIT}: " * (each.check in DIRECT)
+            verdicts[document + each.subject, each.host, each.library] = each
+    groups: dict[str, list[Picture]] = {}
+    for picture in run.pictures:
+        groups.setdefault(f"{picture.document}: {picture.element}", []).append(picture)
+    failed = {subject for (subject, *_), each in verdicts.items() if each.verdict == FAILED}
+    order = sorted(
+        groups, key=lambda subject: (is_portrait(groups[subject]), subject not in failed)
+    )
+    return [groups[subject] for subject in order], verdicts
 
 
-def panels(pictures: Iterable[Picture]) -> list[dict[str, Any]]:
-    """Panels of one scene: the reference if there is one, then pictures and differences."""
-    row: list[dict[str, Any]] = []
+def is_portrait(pictures: Sequence[Picture]) -> bool:
+    """Whether pictures show one material of a node, and no document of the user's."""
+    return pictures[0].document == PORTRAIT
+
+
+def material(verdicts: Verdicts, pictures: Sequence[Picture]) -> dict[str, Any]:
+    """A material as the page shows it: a sentence for each host and library, and rows of pictures."""
+    subject = f"{pictures[0].document}: {pictures[0].element}"
+    # Stock MaterialX first: what the user has without eonlib.
+    by_row: dict[tuple[str, str], list[Picture]] = {}
+    found: dict[Place, Result | None] = {}
+    for one in sorted(pictures, key=lambda each: each.library != "stock"):
+        by_row.setdefault((one.host, one.scene), []).append(one)
+        found[one.host, one.library] = verdicts.get((subject, one.host, one.library))
+    tolerances = [each.tolerance or 0.0 for each in found.values() if each]
+    rows = [_row(each, max(tolerances, default=0.0)) for each in by_row.values()]
+    if any(each and each.verdict in (FAILED, DIFFERS) for each in found.values()):
+        rows.sort(key=lambda row: -max(row["largest"].values(), default=0.0))
+    answers = []
+    for place, result in found.items():
+        largest = {row["scene"]: row["largest"][place] for row in rows if place in row["largest"]}
+        answers.append((place, result, _sentence(result, largest)))
+    return {
+        "document": pictures[0].document,
+        "element": pictures[0].element,
+        "answers": answers,
+        "rows": rows,
+    }
+
+
+def _sentence(result: Result | None, largest: Mapping[str, float]) -> str:
+    """How a material looks on one host with one library; `largest` by scene, where it has a reference."""
+    if not largest:
+        reason = result and (result.reason or result.diagnosis)
+        checked = result and result.check == "finite" and result.verdict == PASSED
+        words = "no reference" + (f": {reason}" if reason else "")
+        return words + ("; every pixel is finite" if checked else "")
+    scene = max(largest, key=lambda each: largest[each])
+    if result and result.verdict == PASSED:
+        names = ", ".join(result.measured)
+        measured = f", with the host's own values of {names}" if names else ""
+        if largest[scene] < VISIBLE:
+            return f"matches the reference within {of_white(largest[scene])}{measured}"
+        return f"stays within its tolerance, up to {of_white(largest[scene])} from the reference{measured}"
+    if not np.isfinite(largest[scene]):
+        return f"has pixels that are infinite or not a number in {scene}"
+    where = f", most in {scene}" if len(largest) > 1 else ""
+    return f"differs from the reference by up to {of_white(largest[scene])}{where}"
+
+
+def _row(pictures: Sequence[Picture], tolerance: float) -> dict[str, Any]:
+    """Pictures of one scene on one host: each library's, the reference, and the differences from it.
+
+    All differences have one scale, which ends at the tolerance or above it: what is right is dark.
+    """
+    shown: list[dict[str, Any]] = []
+    apart: list[tuple[Picture, NDArray[np.float64]]] = []
+    reference = None
     for one in pictures:
         # Read it once: pixels of a run that is kept are in a file.
-        image = np.asarray(one.image)
-        reference = None if one.reference is None else np.asarray(one.reference)
-        # Begin with the reference.
-        if reference is not None and not any(each["kind"] == "reference" for each in row):
-            pixels = srgb_encoded(reference)
-            row.insert(0, _panel("reference", "reference", "NumPy, float64", pixels))
-        # Add each picture.
-        place = {"host": one.host, "library": one.library}
-        row.append(_panel("image", one.host, one.library, srgb_encoded(image), **place))
-        if reference is not None:
-            # Add its difference from the reference.
-            apart = difference(image, reference)
-            scale = difference_scale(apart)
-            note = f"{one.host}, max {number(apart.max(), 2)}"
-            pixels = difference_pixels(apart, scale)
-            row.append(_panel("difference", "difference", note, pixels, scale=scale, **place))
-    return row
+        note = one.library if one.library == "stock" else ""
+        shown.append(_figure("image", title_of(one.library), note, srgb_encoded(one.image)))
+        if one.reference is not None:
+            reference = one.reference if reference is None else reference
+            apart.append((one, one.difference()))
+    if reference is not None:
+        pixels = srgb_encoded(np.asarray(reference))
+        partly = ", at the pixels to compare" if any(p.judged is not None for p in pictures) else ""
+        shown.append(_figure("reference", "Reference", f"NumPy, float64{partly}", pixels))
+    scale = max([tolerance, *(difference_scale(values) for _, values in apart)])
+    largest = {}
+    for one, values in apart:
+        top = float(np.nanmax(values))
+        largest[one.host, one.library] = top
+        note = f"up to {of_white(top)}"
+        if one.judged is not None:
+            note += f" at the {np.count_nonzero(one.judged):,} pixels that were compared"
+        pixels = difference_pixels(values, scale)
+        shown.append(_figure("difference", f"Difference, {one.library}", note, pixels))
+    scene = SCENES.get(pictures[0].scene, pictures[0].scene)
+    common = {"host": pictures[0].host, "scene": scene}
+    return common | {"figures": shown, "largest": largest, "scale": scale}
 
 
-def _panel(
-    kind: str, title: str, note: str, pixels: NDArray[np.uint8], **more: Any
-) -> dict[str, Any]:
-    common = {"kind": kind, "title": title, "note": note, "image": picture_uri(pixels)}
-    return {"host": "", "library": ""} | common | more
+def title_of(library: str) -> str:
+    """What pictures with a library are called."""
+    return "As shipped" if library == "stock" else f"With {library}"
+
+
+def _figure(kind: str, title: str, note: str, pixels: NDArray[np.uint8]) -> dict[str, Any]:
+    return {"kind": kind, "title": title, "note": note, "image": picture_uri(pixels)}
 
 
 def plots(curves: Sequence[AlbedoCurve]) -> list[dict[str, Any]]:
@@ -186,39 +249,40 @@ def plots(curves: Sequence[AlbedoCurve]) -> list[dict[str, Any]]:
     for curve in curves:
         key = (curve.subject, curve.library, tuple(curve.rho), curve.roughness)
         groups.setdefault(key, []).append(curve)
-    return [_plot(members, marks, f"plot-{row}-") for row, members in enumerate(groups.values())]
-
-
-def _plot(
-    curves: Sequence[AlbedoCurve], marks: Mapping[str, tuple[str, str]], prefix: str
-) -> dict[str, Any]:
-    svg = albedo_plot(curves, [marks[curve.host][0] for curve in curves], prefix)
-    legend = [
-        (marks[curve.host][1], curve.host, np.abs(curve.measured - curve.expected).max())
-        for curve in curves
-    ]
-    return {"curve": curves[0], "svg": Markup(svg), "legend": legend}
+    found = []
+    for row, members in enumerate(groups.values()):
+        svg = albedo_plot(members, [marks[curve.host][0] for curve in members], f"plot-{row}-")
+        legend = [
+            (marks[curve.host][1], curve.host, np.abs(curve.measured - curve.expected).max())
+            for curve in members
+        ]
+        found.append({"curve": members[0], "svg": Markup(svg), "legend": legend})
+    return found
 
 
 def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, None]:
-    """The page of a run.
+    """Pieces of a run's page; `file_of` gives the file of a picture that the page links to.
 
-    Parameters
-    ----------
-    run : mxeon.conformance.results.Run
-    file_of : callable (Picture) -> str
-        Path of the file of a picture, for pictures that the page links to.
-
-    Yields
-    ------
-    str
-        Pieces of HTML; a picture is read when its piece is due. The page loads nothing, runs only its
-        own script, and is complete without it. Text from documents, shaders and hosts is escaped.
+    A picture is read when its piece is due. The page loads nothing, runs only its own script, and is
+    complete without it. Text from documents, shaders and hosts is escaped.
     """
-    asked, own = _audit_apart(run.results)
+    asked: list[Result] = []
+    own: list[Result] = []  # of the library itself: its functions and its text
+    for each in sorted(run.results, key=run.is_elsewhere):  # last, what the documents do not reach
+        audits = each.host == SOURCE or each.subject == SHADER_FUNCTIONS
+        (own if audits else asked).append(each)
     places, audit = checks_by_place(asked), checks_by_place(own, "audit")
-    rows = list(materials(run.pictures).items())
-    shown = rows[:SHOWN_MATERIALS]
+    every = [*places.items(), *audit.items()]
+    failed_rows = sum(
+        len(check.results) for _, checks in every for check in checks if check.verdict == FAILED
+    )
+    pictures, verdicts = materials(run)
+    shown = pictures[:SHOWN_MATERIALS]
+    at_once = [each for each in shown if not is_portrait(each)][:OPEN_MATERIALS] or shown[:1]
+    nodes = sum(map(is_portrait, shown[len(at_once) :]))
+    others = len(shown) - len(at_once) - nodes
+    folded = [counted(others, "more material")] * bool(others)
+    folded += [f"{counted(nodes, 'node')} rendered without a document"] * bool(nodes)
     script = files("mxeon.report").joinpath("templates/report.js").read_text(encoding="utf-8")
     environment = Environment(
         loader=PackageLoader("mxeon.report"),
@@ -227,32 +291,34 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, 
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"number": number, "vector": vector}
-    environment.filters |= {
-        "linked": linked,
-        "share": share,
-        "look": LOOKS.__getitem__,
-        "nearest": nearest,
-    }
-    with in_threads(panels, (each for _, scenes in shown for each in scenes.values())) as drawn:
+    filters: dict[str, Callable[..., Any]] = {"number": number, "vector": vector, "linked": linked}
+    filters |= {"share": share, "look": LOOKS.__getitem__, "nearest": nearest, "tally": tally}
+    filters |= {"of_white": of_white, "meaning": unit_meaning, "title": title_of, "worst": worst}
+    environment.filters |= filters
+    with in_threads(partial(material, verdicts), shown) as drawn:
         yield from environment.get_template("report.html.jinja").generate(
             run=run,
             summary=run.summary,
             script=Markup(script),
             script_hash=b64encode(sha256(script.encode()).digest()).decode(),
+            every=every,
+            located=checks_by_place(run.results),
             places=places,
             audit=audit,
             matrix=matrix(places),
-            identities={identity.name: identity for identity in run.hosts},
             reasons=reasons(run.results),
-            shown=shown,
-            listed=rows[SHOWN_MATERIALS:],
-            next_panels=drawn.__next__,
+            open_checks=failed_rows <= OPEN_ROWS,
+            at_once=len(at_once),
+            folded=len(shown) - len(at_once),
+            folded_words=", ".join(folded),
+            listed=pictures[SHOWN_MATERIALS:],
+            next_material=drawn.__next__,
             file_of=file_of,
+            counted=counted,
             gradient=Markup(difference_gradient()),
             plots=plots(run.curves),
-            verdicts=tuple(LOOKS),
             FAILED=FAILED,
             PASSED=PASSED,
             DIFFERS=DIFFERS,
+            NOT_RUN=NOT_RUN,
         )

@@ -9,7 +9,6 @@ from collections.abc import Sequence
 import matplotlib
 import numpy as np
 from matplotlib import style
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from PIL import Image
@@ -22,6 +21,7 @@ from mxeon.models.lobe_plot import CHANNEL_COLORS
 SHOWN_SIZE = 256
 DIFFERENCE_COLORS = matplotlib.colormaps["inferno"]
 DIFFERENCE_CODES = DIFFERENCE_COLORS(np.arange(DIFFERENCE_COLORS.N), bytes=True)[:, :3]
+NOT_JUDGED = (96, 99, 104)
 # Stands for the page's text color until the plot is part of the page.
 TEXT_COLOR = "#010203"
 # Without these, matplotlib adds a description of itself, with addresses, to each plot.
@@ -46,17 +46,7 @@ STYLE = {
 
 
 def picture_uri(pixels: NDArray[np.uint8]) -> str:
-    """A picture as a data URI.
-
-    Parameters
-    ----------
-    pixels : ndarray of uint8, shape (size, size, 3)
-
-    Returns
-    -------
-    str
-        Holds a PNG of at most SHOWN_SIZE pixels on a side.
-    """
+    """A picture (size, size, 3) as a data URI of a PNG of at most SHOWN_SIZE pixels on a side."""
     step = -(-len(pixels) // SHOWN_SIZE)
     buffer = io.BytesIO()
     shown = np.ascontiguousarray(pixels[::step, ::step])
@@ -65,22 +55,15 @@ def picture_uri(pixels: NDArray[np.uint8]) -> str:
 
 
 def difference_pixels(difference_map: NDArray[np.float64], scale: float) -> NDArray[np.uint8]:
-    """A difference in DIFFERENCE_COLORS, which span 0 to `scale`; magenta if not finite.
+    """A difference (size, size) in DIFFERENCE_COLORS, which span 0 to `scale`.
 
-    Parameters
-    ----------
-    difference_map : ndarray, shape (size, size)
-    scale : float
-        Positive, in the unit of the map.
-
-    Returns
-    -------
-    ndarray of uint8, shape (size, size, 3)
+    Infinity is magenta, and NaN, which stands for pixels that were not judged, gray.
     """
     finite = np.isfinite(difference_map)
     steps = np.where(finite, difference_map, 0.0) * (len(DIFFERENCE_CODES) / scale)
     colors = DIFFERENCE_CODES[np.minimum(steps, len(DIFFERENCE_CODES) - 1).astype(np.intp)]
     colors[~finite] = NOT_FINITE
+    colors[np.isnan(difference_map)] = NOT_JUDGED
     return colors
 
 
@@ -91,52 +74,33 @@ def difference_gradient(stops: int = 9) -> str:
 
 
 def albedo_plot(curves: Sequence[AlbedoCurve], markers: Sequence[str], prefix: str) -> str:
-    """Directional albedo over the cosine, as SVG text: lines expected, markers measured.
+    """Directional albedo over the cosine as an <svg> element: lines expected, markers measured.
 
-    Parameters
-    ----------
-    curves : sequence of mxeon.conformance.results.AlbedoCurve
-        The same quantity on different hosts; the first one's expectation is drawn.
-    markers : sequence of str
-        Matplotlib's name of each curve's marker.
-    prefix : str
-        Opens every identifier in the plot, to keep it apart from others on the page.
-
-    Returns
-    -------
-    str
-        An <svg> element in the text color of the page; its text is numbers and axis labels only.
+    The curves are one quantity on different hosts, with matplotlib's name of each one's marker;
+    the expectation is the first one's. `prefix` opens every identifier, which a page has once.
     """
     gray = len(set(curves[0].rho)) == 1
     buffer = io.StringIO()
     # The defaults, not a matplotlibrc of the working folder, which could start LaTeX.
     with style.context(["default", STYLE]):
-        # Draw the channels.
         figure = Figure(figsize=(3.6, 2.4), layout="constrained")
         axes = figure.subplots()
         for channel, color in enumerate((TEXT_COLOR,) if gray else CHANNEL_COLORS):
-            _draw_channel(axes, curves, markers, channel, color)
+            axes.plot(curves[0].mu, curves[0].expected[:, channel], color=color, linewidth=1.2)
+            for curve, marker in zip(curves, markers, strict=True):
+                axes.plot(
+                    curve.mu,
+                    curve.measured[:, channel],
+                    linestyle="none",
+                    marker=marker,
+                    markersize=4.5,
+                    markeredgecolor=color,
+                    markerfacecolor="none",
+                    markevery=-(-len(curve.mu) // 24),
+                )
         axes.set(xlim=(-0.03, 1.03), xlabel="cosine of the polar angle", ylabel="albedo")
         axes.margins(y=0.15)
         figure.savefig(buffer, format="svg", transparent=True, metadata=NO_METADATA)
-    # Make a part of a page of it: no prolog, its colors, names of its own.
     svg = buffer.getvalue()
     svg = svg[svg.index("<svg") :].replace(TEXT_COLOR, "currentColor")
     return re.sub(r'((?:\bid="|href="#|url\(#))', rf"\g<1>{prefix}", svg)
-
-
-def _draw_channel(
-    axes: Axes, curves: Sequence[AlbedoCurve], markers: Sequence[str], channel: int, color: str
-) -> None:
-    axes.plot(curves[0].mu, curves[0].expected[:, channel], color=color, linewidth=1.2)
-    for curve, marker in zip(curves, markers, strict=True):
-        axes.plot(
-            curve.mu,
-            curve.measured[:, channel],
-            linestyle="none",
-            marker=marker,
-            markersize=4.5,
-            markeredgecolor=color,
-            markerfacecolor="none",
-            markevery=-(-len(curve.mu) // 24),
-        )

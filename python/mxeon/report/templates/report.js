@@ -1,22 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Filters, and sliders that lay the reference over a picture. The page is complete without them.
+// Sliders that lay the reference over a picture, and links into folded parts. The page is complete without them.
 "use strict";
 
 document.documentElement.classList.add("scripted");
-
-const filters = [...document.querySelectorAll(".filters select")];
-
-function filter() {
-  const chosen = filters.filter((select) => select.value).map((select) => [select.name, select.value]);
-  for (const row of document.querySelectorAll("[data-host]")) {
-    row.hidden = chosen.some(([name, value]) => name in row.dataset && row.dataset[name] !== value);
-  }
-  for (const group of document.querySelectorAll(".group")) {
-    group.hidden = ![...group.querySelectorAll("[data-host]")].some((row) => !row.hidden);
-  }
-}
-
-for (const select of filters) select.addEventListener("change", filter);
 
 for (const panels of document.querySelectorAll(".panels.referenced")) {
   const reference = panels.querySelector(".reference img");
