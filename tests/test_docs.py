@@ -25,8 +25,8 @@ from mxeon.hosts import HOSTS
 from mxeon.hosts.webgl import program
 from tests.support.tolerances import PRINTED
 from tools.site import size
+from tools.site.ledger import measured
 from tools.site.siblings import names, sections
-from tools.site.upstream.update import figures, written
 
 ROOT = Path(__file__).resolve().parents[1]
 PROSE = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "tools/fits/README.md")
@@ -265,13 +265,13 @@ def test_the_page_on_the_specification_has_the_figures_of_the_ledger():
         for r in data["gl"]["results"]
         if r["library"] == STOCK
     }
-    rows = {
-        row: figure
+    shown = {
+        (check, subject): float(figure)
         for issue in ISSUES
         if issue.rows and (issue.host, issue.library) == ("gl", STOCK)
-        for row, figure in zip(issue.rows, figures(written(issue.page)), strict=True)
+        for check, subject, figure, *_ in measured()[issue.page]["rows"]
+        if (check, subject) in errors
     }
-    shown = {row: figure for row, figure in rows.items() if row in errors}
     assert len(shown) > 30
     assert {row: float(errors[row]) for row in shown} == pytest.approx(shown, rel=PRINTED)
 

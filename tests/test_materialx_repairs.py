@@ -9,6 +9,7 @@ import sys
 from functools import cache, partial
 from pathlib import Path
 
+import MaterialX as mx
 import pytest
 
 from mxeon.conformance.results import FAILED, PASSED, SOURCE
@@ -19,10 +20,9 @@ from mxeon.conformance.run.selection import ALL
 from tests.support.availability import available
 from tests.support.sharing import shared
 from tests.support.wheels import MAIN, wheel
-from tools.site.upstream import ledger
-from tools.site.upstream import materialx_repairs as repairs
+from tools.site import ledger
+from tools.site.ledger import pages
 
-ROOT = Path(__file__).resolve().parents[1]
 # Slang compiles the repaired node; what is left is its fit.
 OF_SLANG = ("output", "blackbody", "slang")
 # Whatever the release fails, or differs in.
@@ -37,7 +37,6 @@ FAILING = [
     if row in (ON_GL if issue.host == "gl" else issue.rows)
 ]
 OTHERS = {"release": [OF_SLANG, *FAILING], "main": []}
-PAGES = {change.page for change in repairs.REPAIRS}
 # Judges rows of stock MaterialX, and prints what it found.
 JUDGE = """
 import json, sys
@@ -61,32 +60,30 @@ print(json.dumps(results))
 """
 
 
-LEDGER = ledger.rows()
-# The repairs that main needs: those of pages that no pull request there repairs.
-OF_MAIN = [
-    change
-    for change in repairs.REPAIRS
-    for row in LEDGER
-    if row.page == change.page and not row.pull
+ENTRIES = ledger.entries()
+PATCHES = ledger.patches("materialx")
+# The patches that main needs: those of pages that no pull request there repairs.
+OF_MAIN = [path for page, path in PATCHES.items() if not ENTRIES[page].pull]
+# Pages whose patches are of files that main has changed.
+CHANGED = re.findall(r"^--- a/(.*)$", MAIN.read_text(), re.MULTILINE)
+ON_MAIN = [
+    page
+    for page, path in PATCHES.items()
+    if any(f"--- a/{file}\n" in path.read_text() for file in CHANGED)
 ]
 
 
-# Pages of the files that main has changed.
-ON_MAIN = {change.page for change in repairs.REPAIRS if f" a/{change.file}\n" in MAIN.read_text()}
-
-
-def rows_of(pages):
+def rows_of(names):
     """The rows of pages, and with what diagnosis a check may fail."""
     return {
-        (check, subject, row.issue.get("host", "gl")): words
-        for row in LEDGER
-        if row.page in pages
-        for words, pairs in {"": row.repaired, **row.remains}.items()
-        for check, subject in pairs
+        (check, subject, ENTRIES[page].host or "gl"): words
+        for page in names
+        for words, rows in {"": ENTRIES[page].repaired, **ENTRIES[page].remains}.items()
+        for check, subject in ledger.pairs(rows)
     }
 
 
-ROWS = {"release": rows_of(PAGES), "main": rows_of(ON_MAIN)}
+ROWS = {"release": rows_of(PATCHES), "main": rows_of(ON_MAIN)}
 CASES = [(version, row) for version, rows in ROWS.items() for row in rows]
 
 
@@ -100,20 +97,21 @@ def judged(tmp_path_factory):
     @cache
     def results(version):
         folder = tmp_path_factory.mktemp("repaired")
-        package, changes = None, repairs.REPAIRS
+        package, files = Path(mx.__file__).parent, list(PATCHES.values())
         if version == "main":
-            package, changes = wheel("main") / "MaterialX", OF_MAIN
+            package, files = wheel("main") / "MaterialX", OF_MAIN
         with available("gl"), available("slang"):
             rows = sorted({*ROWS[version], *OTHERS[version]}, key=lambda row: row[::-1])
-            make = partial(verdicts, folder, package, changes, rows)
+            make = partial(verdicts, folder, package, files, rows)
             return shared(tmp_path_factory, f"repaired {version}", make)
 
     return results
 
 
-def verdicts(folder, package, changes, rows):
-    """Verdict and diagnosis of each row with a package of MaterialX that has changes."""
-    path = [str(repairs.repaired(folder, package, changes)), str(ROOT / "python")]
+def verdicts(folder, package, files, rows):
+    """Verdict and diagnosis of each row with a package of MaterialX that has patches."""
+    ledger.apply(ledger.linked(package, folder / "MaterialX"), *files)
+    path = [str(folder), str(ledger.ROOT / "python")]
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(path)}
     command = [sys.executable, "-c", JUDGE, json.dumps(rows)]
     run = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=300)
@@ -140,7 +138,7 @@ def test_with_all_patches_no_check_accuses_what_they_repair(judged):
 
 
 def test_the_page_of_patches_lists_what_still_fails_with_them(judged):
-    block = ledger.INDEX.read_text("utf-8").split("<!-- remains -->")[1].split("<!-- end -->")[0]
+    block = pages.INDEX.read_text("utf-8").split("<!-- remains -->")[1].split("<!-- end -->")[0]
     listed = [
         (check, subject)
         for checks, subjects in re.findall(r"(`\w+`(?:, `\w+`)*) of ([^;|]+)", block)
@@ -153,12 +151,3 @@ def test_the_page_of_patches_lists_what_still_fails_with_them(judged):
 
 def test_slang_compiles_the_black_body_that_is_repaired(judged):
     assert judged("release")[OF_SLANG][1].startswith("nearest known model: Kang's cubic")
-
-
-@pytest.mark.parametrize("change", repairs.REPAIRS, ids=lambda each: each.page)
-def test_each_repair_is_of_its_file_and_on_its_page(change):
-    assert change.old in (repairs.installed() / change.file).read_text("utf-8")
-    page = (Path(repairs.__file__).parent / f"{change.page}.md").read_text("utf-8")
-    assert Path(change.file).name in page
-    added = [line.strip() for line in change.new.splitlines() if line not in change.old]
-    assert [line for line in added if line not in page] == []

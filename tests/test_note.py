@@ -9,9 +9,8 @@ import pytest
 from mxeon.models.diffuse.albedo import eon_albedo_dir, fon_albedo_avg, fon_albedo_dir
 from mxeon.models.diffuse.brdf import eon_brdf, fon_brdf
 from mxeon.models.diffuse.formulas import C1, C2, fon_loss
-from tools.site import note
+from tools.site import marks, note
 from tools.site.note_measures import rounding_figures
-from tools.site.upstream import marks
 
 TEXT = note.PAGE.read_text(encoding="utf-8")
 ROUNDING = 1e-14
@@ -23,9 +22,9 @@ def test_the_numbers_are_those_measured_and_another_one_is_seen():
     stated = {name: float(re.search(rf"(\S+)<!--{name}-->", TEXT)[1]) for name in few}
     assert all(0.8 * stated[name] < few[name] < 1.02 * stated[name] for name in few)
     figures = note.figures() | stated
-    assert marks.wrong(TEXT, lambda: figures, []) == []
+    assert marks.wrong(TEXT, lambda: figures) == []
     wrong = TEXT.replace("2.9e-3<!--cosine dense-->", "2.8e-3<!--cosine dense-->")
-    assert len(marks.wrong(wrong, lambda: figures, [])) == 1
+    assert len(marks.wrong(wrong, lambda: figures)) == 1
 
 
 def test_the_table_is_the_one_measured():

@@ -9,11 +9,11 @@ import pytest
 from tests.support.tolerances import PRINTED
 from tests.support.wheels import MAIN
 from tools.site import versions
-from tools.site.upstream import ledger, update
+from tools.site.ledger import entries, measure, measured, pages
 
 KNOWN = json.loads(versions.RECORD.read_text())
 LAST = versions.VERSIONS[-2:]  # the release, and main
-OURS = {row.page: row for row in ledger.rows() if row.page in KNOWN["pages"]}
+OURS = {page: each for page, each in entries().items() if page in KNOWN["pages"]}
 
 
 def test_the_page_is_written_from_the_record():
@@ -21,7 +21,7 @@ def test_the_page_is_written_from_the_record():
 
 
 def test_the_record_has_every_page_and_version():
-    issues = [each for each in update.CHECKED if each.library == "stock"]
+    issues = [each for each in measure.CHECKED if each.library == "stock"]
     assert set(KNOWN["pages"]) == {each.page for each in issues if each.host in ("gl", "source")}
     assert all(tuple(each) == versions.VERSIONS for each in KNOWN["pages"].values())
 
@@ -37,7 +37,7 @@ def test_eonlib_passes_with_the_release_and_with_main():
 
 @pytest.mark.parametrize("page", OURS)
 def test_the_figures_of_the_release_are_those_of_the_pages(page):
-    [first, *_] = update.figures(update.written(page))
+    first = float(measured()[page]["rows"][0][2])
     assert KNOWN["pages"][page][LAST[0]]["figure"] == pytest.approx(first, rel=PRINTED)
 
 
@@ -46,13 +46,8 @@ def test_a_page_whose_checks_pass_in_main_names_what_repaired_it(page):
     assert not KNOWN["pages"][page]["main"]["passed"] or OURS[page].pull
 
 
-def test_each_page_has_its_versions_and_patch():
-    for path, text in versions.states(KNOWN).items():
-        assert path.read_text() == text, path.name
-
-
 def test_a_page_that_is_gone_says_so():
     gone = deepcopy(KNOWN)
     gone["pages"]["genglsl_clamped_dot"]["main"]["passed"] = True
-    text = versions.states(gone)[ledger.FOLDER / "genglsl_clamped_dot.md"]
-    assert "Seen in MaterialX 1.39.3, 1.39.4 and 1.39.5; gone in main. Main is that of " in text
+    text = pages.seen(OURS["genglsl_clamped_dot"], gone)
+    assert text.startswith("Seen in MaterialX 1.39.3, 1.39.4 and 1.39.5; gone in main of ")

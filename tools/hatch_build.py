@@ -8,7 +8,7 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 
 class Pages(BuildHookInterface):
-    """Adds each page, and none of the scripts beside them."""
+    """Adds each page."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Add the pages to a wheel; an editable one finds them in the checkout."""

@@ -15,7 +15,6 @@ from mxeon.shaders.document.notes import DocumentWarning
 from mxeon.shaders.generation import generate
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.nodes import SURFACE, document_text
-from tools.site.upstream.pbr_quantities import MATERIAL
 
 IMAGE = examples_folder() / "textures" / "brick_color.png"
 
@@ -143,6 +142,23 @@ def test_nodes_of_one_name_in_two_nodegraphs_are_named(host, tmp_path):
 def test_nodes_of_two_names_in_two_nodegraphs_pass(host, tmp_path):
     result, notes = judged(host, tmp_path, colors("tint1", "tint2"))
     assert (result.verdict, notes) == ("passed", ())
+
+
+# A material by a definition.
+MATERIAL = """<materialx version="1.39">
+  <nodedef name="ND_clay" node="clay"><output name="out" type="material"/></nodedef>
+  <nodegraph name="NG_clay" nodedef="ND_clay">
+    <oren_nayar_diffuse_bsdf name="lobe" type="BSDF"/>
+    <surface name="shading" type="surfaceshader">
+      <input name="bsdf" type="BSDF" nodename="lobe"/>
+    </surface>
+    <surfacematerial name="look" type="material">
+      <input name="surfaceshader" type="surfaceshader" nodename="shading"/>
+    </surfacematerial>
+    <output name="out" type="material" nodename="look"/>
+  </nodegraph>
+  <clay name="clay1" type="material"/>
+</materialx>"""
 
 
 def test_a_material_that_a_nodegraph_defines_is_named(host, tmp_path):

@@ -22,9 +22,9 @@ from mxeon.models.sampling.cltc import eon_cltc_sample
 from mxeon.shaders.nodes import material_text
 from mxeon.shaders.scene import SIDE, sphere
 from tests.support.availability import available
-from tests.support.tolerances import PRINTED
-from tools.site.upstream import repairs
-from tools.site.upstream import update as ledger
+from tests.test_upstream import same_record
+from tools.site import ledger
+from tools.site.ledger import measure
 
 QUARTIC = "EON with the paper's quartic"
 # The nodes whose pictures are looked at: one for each engine of a host.
@@ -41,9 +41,9 @@ export async function draw({ task }) {
 """
 
 PACKAGES = {
-    "three": repairs.THREE,
-    "babylon": repairs.BABYLON,
-    "three-gpu-pathtracer": repairs.PATHTRACER,
+    "three": "three",
+    "babylon": "@babylonjs/core",
+    "three-gpu-pathtracer": "three-gpu-pathtracer",
 }
 EON, FON, LOBE = "WebGPUPathTracer, eonBrdf", "WebGPUPathTracer, fonBrdf", pathtracer.LOBE
 
@@ -105,40 +105,30 @@ def test_three_refuses_a_material_of_a_bsdf_node(hosts):
         hosts("three")._browser.ask(job)
 
 
-@pytest.fixture(scope="module")
-def shown(hosts):
-    """The block of the page of an issue, as it is measured here."""
-
-    def block(issue):
-        host = hosts(issue.host)
-        results = [judged(host, *row) for row in issue.rows]
-        assert all(each.verdict == FAILED for each in results), f"{issue.page}.md is out of date"
-        identity = host.identity()
-        return ledger.block(results, f"{identity.device}, {identity.version}")
-
-    return block
-
-
 @of_each_issue
-def test_the_figures_of_each_page_are_those_of_the_suite(shown, issue):
-    text, written = shown(issue), ledger.written(issue.page)
-    np.testing.assert_allclose(ledger.figures(text), ledger.figures(written), rtol=PRINTED)
-    assert ledger.without_figures(text)[0] == ledger.without_figures(written)[0]
-    assert text.split("The suite says")[1] == written.split("The suite says")[1]
+def test_each_defect_is_as_its_page_says(hosts, issue):
+    host = hosts(issue.host)
+    results = [judged(host, *row) for row in issue.rows]
+    assert all(each.verdict == FAILED for each in results), f"{issue.page}.md is out of date"
+    same_record(measure.record(issue, results, ""), ledger.measured()[issue.page])
 
 
 @pytest.fixture(scope="module")
 def repaired(tmp_path_factory):
     """Hosts with all repairs, by their names."""
-    folder, opened = tmp_path_factory.mktemp("repaired"), {}
+    entries, opened = ledger.entries(), {}
+    diffs = {
+        "three": ledger.patches("three.js").values(),
+        "babylon": [each.diff for each in entries.values() if each.host == "babylon"],
+        "three-gpu-pathtracer": ledger.patches("three-gpu-pathtracer").values(),
+    }
     for name, package in PACKAGES.items():
         with available(name), pytest.MonkeyPatch.context() as patch:
-            browser.modules_folder(package, name)
-            modules = repairs.copied(package, folder)
+            installed = browser.modules_folder(package, name) / package
+            modules = tmp_path_factory.mktemp(name)
+            ledger.apply(ledger.linked(installed, modules / package), *diffs[name])
             patch.setenv(browser.MODULES, str(modules))
             opened[name] = open_engine(name)
-    for change in (*repairs.REPAIRS, *repairs.PATHTRACER_REPAIRS):
-        repairs.repair(modules, change)
     yield opened
     for host in opened.values():
         host.close()

@@ -7,20 +7,30 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mxeon.errors import NotRun
 from mxeon.models import eon_brdf
 from tests import support
 from tests.support.availability import available
-from tools.site.upstream.patches import changed
-from tools.site.upstream.repairs import CYCLES_REPAIRS, kernel
+from tools.site.ledger import ROOT, apply, patches_of
 
 PROGRAM = Path(support.__file__).with_name("oren_nayar.cpp")
 FLOAT32 = 2e-6  # of values up to 1: the arc cosine in G, and ten roundings
 PAIRS = 500
+KERNEL = ".venv-cycles/lib/*/site-packages/bpy/*/scripts/addons_core/cycles/source/kernel"
+FILE = "closure/bsdf_oren_nayar.h"
+
+
+def kernel():
+    """Folder of the sources of Cycles' kernel in Blender's module."""
+    found = list(ROOT.glob(KERNEL))
+    if not found:
+        raise NotRun(f"no folder {ROOT / KERNEL}")
+    return found[0]
 
 
 @pytest.fixture(scope="module")
 def values(tmp_path_factory):
-    """A function of changes: pi f cos of random pairs by the header with them, and by the model."""
+    """A function of patches: pi f cos of random pairs by the header with them, and by the model."""
     with available("cycles"):
         folder = kernel()
     rng = np.random.default_rng(5)
@@ -31,14 +41,14 @@ def values(tmp_path_factory):
     lines = "\n".join(" ".join(map(str, row)) for row in np.hstack([wo, wi, rho, roughness]))
     right = np.pi * wi[:, 2:] * eon_brdf(wo, wi, rho, roughness[:, 0])
 
-    def run(changes):
+    def run(*patches):
         target = tmp_path_factory.mktemp("kernel")
         for name in ("types.h", "sample/mapping.h"):  # whose types and functions the program has
             (target / "kernel" / name).parent.mkdir(parents=True, exist_ok=True)
             (target / "kernel" / name).touch()
-        file = CYCLES_REPAIRS[0].file
-        (target / file).parent.mkdir()
-        (target / file).write_text(changed((folder / file).read_text(), changes))
+        (target / FILE).parent.mkdir()
+        (target / FILE).write_bytes((folder / FILE).read_bytes())
+        apply(target, *patches, strip=4)  # a/intern/cycles/kernel
         command = ["g++", "-std=c++17", f"-I{target}", PROGRAM, "-o", target / "program"]
         subprocess.run(command, check=True)
         done = subprocess.run(
@@ -50,10 +60,10 @@ def values(tmp_path_factory):
 
 
 def test_the_header_has_one_power_of_the_color_too_many(values):
-    found, right = values([])
+    found, right = values()
     assert np.abs(found - right).max() > 0.01
 
 
 def test_the_repaired_header_is_eon(values):
-    found, right = values(CYCLES_REPAIRS)
+    found, right = values(*patches_of("cycles_rho_cubed"))
     assert np.abs(found - right).max() < FLOAT32

@@ -18,13 +18,13 @@ from mxeon.models.media.subsurface import (
     subsurface_coefficients,
     subsurface_reflectance,
 )
+from tests.models.random_walk import distances, reflectance_of_h
 from tests.support.tolerances import (
     SUBSURFACE_FIT,
     SUBSURFACE_PEAK,
     SUBSURFACE_ROUNDED,
     SUBSURFACE_SIMILARITY,
 )
-from tools.site.upstream.random_walk import distances, reflectance_of_h
 
 COLORS = np.linspace(0.0, 1.0, 1001)
 PATHS = 20_000

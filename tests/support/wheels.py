@@ -18,7 +18,7 @@ import pytest
 
 from tests.reliability.versions import ROOT, install, run
 from tests.support.availability import required
-from tools.site.upstream.materialx_repairs import linked
+from tools.site.ledger import linked
 
 KEPT = ROOT / "out" / "materialx"
 # What the data of MaterialX's main branch has over those of the release.
@@ -55,7 +55,7 @@ def _main_name():
 
 def _main(folder):
     """Link to the installed MaterialX, and change its data to those of main."""
-    package = linked(folder)
+    package = linked(Path(mx.__file__).parent, folder / "MaterialX")
     for file in re.findall(r"^--- a/(.*)$", MAIN.read_text(), re.MULTILINE):
         data = (package / file).read_bytes()
         (package / file).unlink()  # a link

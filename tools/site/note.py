@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 
 from mxeon.io.files import replacing, write_text
 from tools.paper.sheet import METADATA, styled
+from tools.site import marks
 from tools.site.note_measures import (
     albedo_errors,
     albedo_figures,
@@ -24,7 +25,6 @@ from tools.site.note_measures import (
     sampling_figures,
     variances,
 )
-from tools.site.upstream import marks
 
 FOLDER = Path(__file__).resolve().parents[2] / "docs"
 PAGE = FOLDER / "note.md"
@@ -101,7 +101,7 @@ def figures():
 def page(text):
     """The page with its numbers and its table as they are now."""
     text = TABLE.sub(lambda match: match[1] + energy_table() + match[2], text)
-    return marks.filled(text, lambda: figures() | rounding_figures(), [])
+    return marks.filled(text, lambda: figures() | rounding_figures())
 
 
 def main():

@@ -2,12 +2,11 @@
 """Judge eonlib and stock with every version of MaterialX: `python -m tools.site.versions` writes the page.
 
 It runs `mxeon check --host gl --node all` with each version, 13 minutes of processor time in all, and keeps
-what the page shows in `versions.json`; `python -m tools.site.versions page` writes the page from that file alone,
-and the lines of the upstream pages on versions and patches.
+what the page shows in `versions.json`; `python -m tools.site.versions page` writes the page, and the ledger's, from
+that file alone.
 """
 
 import json
-import re
 import sys
 from collections import Counter
 from pathlib import Path
@@ -16,8 +15,7 @@ from mxeon.io.files import write_text
 from mxeon.shaders.versions import TESTED
 from tests.reliability.versions import run
 from tests.support.wheels import MAIN, wheel
-from tools.site.upstream import patches
-from tools.site.upstream.ledger import FOLDER, rows
+from tools.site.ledger import entries, pages, pairs
 
 HERE = Path(__file__).parents[2] / "docs"
 PAGE, RECORD = HERE / "versions.md", HERE / "versions.json"
@@ -25,7 +23,6 @@ VERSIONS = (*TESTED, "main")
 LIBRARIES = ("eonlib", "stock")
 COMMAND = ("check", "--host", "gl", "--node", "all", "--workers", "0", "--json")
 COUNTS = 1e6  # figures below it that are integers are printed whole
-STATE = re.compile(r"<!-- measured state -->\n.*?<!-- end -->\n\n", re.DOTALL)
 TEXT = """\
 # Versions of MaterialX
 
@@ -83,13 +80,11 @@ def record(reports):
 
 
 def _ours():
-    """Rows of the pages that checks of MaterialX on gl, or of its texts, show."""
+    """Entries of the ledger that checks of MaterialX on gl, or of its texts, show."""
     return [
-        row
-        for row in rows()
-        if row.issue.get("library") == "stock"
-        and row.issue["host"] in ("gl", "source")
-        and row.issue["rows"]
+        each
+        for each in entries().values()
+        if each.library == "stock" and each.host in ("gl", "source") and each.rows
     ]
 
 
@@ -121,7 +116,7 @@ def _shown(row, results):
     found = {
         (each["check"], each["subject"]): each for each in results if each["library"] == "stock"
     }
-    shown = [found[pair] for pair in row.issue["rows"]]
+    shown = [found[pair] for pair in pairs(row.rows)]
     passed = all(each["verdict"] == "passed" for each in shown)
     return {"figure": float(shown[0]["figure"]), "passed": passed}
 
@@ -179,56 +174,13 @@ def _figure(shown):
     return f"{shown['figure']:.0f}" if count else f"{shown['figure']:.2g}"
 
 
-def states(known):
-    """The upstream pages with their lines on versions and patches, by path."""
-    files = {
-        page: f"patches/{project.name}/{name}"
-        for project in reversed(patches.PROJECTS)
-        for page, name in zip(patches.topics(project), sorted(_files(project)), strict=True)
-    }
-    texts = {}
-    for row in rows():
-        path = FOLDER / f"{row.page}.md"
-        lines = [
-            *_versions(row, known),
-            *([f"Patch: `{files[row.page]}`."] if row.page in files else []),
-        ]
-        block = "\n".join(["<!-- measured state -->", *lines, "<!-- end -->\n\n"]) if lines else ""
-        text = STATE.sub("", path.read_text(encoding="utf-8"))
-        texts[path] = text.replace("<!-- ledger\n", f"{block}<!-- ledger\n")
-    return texts
-
-
-def _files(project):
-    return [path.name for path in (patches.PATCHES / project.name).iterdir()]
-
-
-def _versions(row, known):
-    """The line on the versions that have a defect; none for pages that no check here shows."""
-    if row.page not in known["pages"]:
-        return []
-    shown = known["pages"][row.page]
-    gone = [name for name in VERSIONS if shown[name]["passed"] or (row.pull and name == "main")]
-    text = f"Seen in MaterialX {_joined(name for name in VERSIONS if name not in gone)}"
-    text += f"; gone in {_joined(gone)}" if gone else ""
-    text += f", repaired by pull request {row.pull}" if row.pull else ""
-    commit, date = known["commit"]
-    return [f"{text}. Main is that of {date}, {commit}."]
-
-
-def _joined(names):
-    *first, last = names
-    return f"{', '.join(first)} and {last}" if first else last
-
-
 def main():
     """Judge every version, or take what is known, and write the pages."""
     if sys.argv[1:] != ["page"]:
         known = record({name: judged(name) for name in VERSIONS})
         write_text(RECORD, json.dumps(known, indent=1) + "\n")
-    known = json.loads(RECORD.read_text(encoding="utf-8"))
-    for path, text in {PAGE: page_text(known), **states(known)}.items():
-        write_text(path, text)
+    write_text(PAGE, page_text(json.loads(RECORD.read_text(encoding="utf-8"))))
+    pages.main()
 
 
 if __name__ == "__main__":

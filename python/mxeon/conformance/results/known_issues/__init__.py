@@ -20,8 +20,12 @@ RENDERERS = {
     "three-gpu-pathtracer": "this three-gpu-pathtracer",
 }
 SPREAD = 1.5  # by which engines, drivers and versions of MaterialX may exceed an issue's size
-# Written by `python -m tools.site.upstream.update` from the rows of the pages.
-ISSUES = read_issues(Path(__file__).with_name("issues.json").read_text(encoding="utf-8"))
+ISSUES = read_issues(
+    *(
+        Path(__file__).with_name(name).read_text("utf-8")
+        for name in ("known_issues.toml", "measured.json")
+    )
+)
 
 
 def issues_of(result: Result) -> tuple[Issue, ...]:

@@ -2,7 +2,8 @@
 """The type of a known issue, and who may have one."""
 
 import json
-from collections.abc import Mapping
+import tomllib
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -57,14 +58,36 @@ class Issue:
     sizes: Mapping[Row, float] = field(default_factory=dict, hash=False)
 
 
-def read_issues(text: str) -> tuple[Issue, ...]:
-    """The issues in a text of JSON, which `tools/site/upstream/ledger.py` writes from the pages."""
-    return tuple(map(_issue, json.loads(text)))
+def read_issues(text: str, measured: str) -> tuple[Issue, ...]:
+    """The issues of `known_issues.toml` that a check shows, with what `measured.json` says of them."""
+    found = json.loads(measured)
+    return tuple(
+        _issue(page, entry, found.get(page, {}))
+        for page, entry in tomllib.loads(text).items()
+        if "host" in entry
+    )
 
 
-def _issue(table: dict[str, Any]) -> Issue:
-    pairs = {key: tuple(map(tuple, table[key])) for key in ("rows", "implied", "repaired")}
-    sizes = zip((*pairs["rows"], *pairs["implied"]), table["sizes"], strict=True)
-    known = {row: size for row, size in sizes if size is not None}
-    lists = {key: tuple(table[key]) for key in ("also", "patch")}
-    return Issue(**table | pairs | lists | {"sizes": known})
+def _issue(page: str, entry: Mapping[str, Any], measured: Mapping[str, Any]) -> Issue:
+    sizes = measured.get("sizes", {})
+    return Issue(
+        page,
+        entry["title"],
+        entry["host"],
+        _pairs(entry.get("rows", {})),
+        tuple(entry.get("also", ())),
+        _pairs(entry.get("implied", {})),
+        entry.get("library", STOCK),
+        entry.get("unavoidable", False),
+        measured.get("says", ""),
+        tuple(measured.get("patch", ())),
+        (
+            *_pairs(entry.get("repaired", {})),
+            *(row for each in entry.get("remains", {}).values() for row in _pairs(each)),
+        ),
+        {(check, subject): size for check in sizes for subject, size in sizes[check].items()},
+    )
+
+
+def _pairs(subjects: Mapping[str, Sequence[str]]) -> tuple[Row, ...]:
+    return tuple((check, subject) for check, each in subjects.items() for subject in each)

@@ -1,35 +1,41 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of defects: `python -m tools.site.upstream.pictures` draws stock, its repair, and their difference.
+"""Draw the pictures of the ledger: `python -m tools.site.ledger.pictures`.
 
-It draws each page's document on gl with MaterialX as installed, and with the patch of the page and those that it
-needs applied, and writes the picture and the page's sentence on it.
+Each has the document of a page on gl with MaterialX as installed, with the page's patch and those that it
+needs, and the difference of both.
 """
 
-import re
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from textwrap import fill
+from typing import Any
 
+import MaterialX as mx
 import numpy as np
 from PIL import Image
 
 from mxeon.hosts import open_host
 from mxeon.hosts.points import visible
-from mxeon.io.files import write_text
 from mxeon.io.srgb import srgb_encoded
 from mxeon.shaders.nodes import SURFACE, document_text, input_text, lobe_text, node_text
 from mxeon.shaders.scene import SCENES
 from tests.reliability.versions import run
-from tools.site.upstream import patches
-from tools.site.upstream.ledger import FOLDER, rows
-from tools.site.upstream.materialx_repairs import REPAIRS, installed, repaired
+from tools.site.ledger import (
+    FOLDER,
+    apply,
+    entries,
+    linked,
+    measured,
+    needed,
+    pages,
+    patches,
+    write_measured,
+)
 
 PICTURES = FOLDER / "pictures"
-SIZE, QUALITY, BACKGROUND, LINE, WIDTH = 192, 90, 30, 4, 110
-BLOCK = re.compile(r"<!-- measured picture -->\n.*?<!-- end -->\n\n", re.DOTALL)
+SIZE, QUALITY, BACKGROUND, LINE = 192, 90, 30, 4
 WHITE = {"color": (1.0, 1.0, 1.0)}
 BASE = lobe_text("oren_nayar_diffuse_bsdf", WHITE, "base")
 
@@ -54,11 +60,11 @@ def _operator(category: str, name: str, **inputs: str) -> str:
     return node_text(category, "BSDF", name, text)
 
 
-def _lobe(category: str, inputs: Mapping[str, object]) -> str:
+def _lobe(category: str, inputs: Mapping[str, Any]) -> str:
     return document_text(lobe_text(category, inputs) + SURFACE)
 
 
-def _surface(category: str, inputs: Mapping[str, tuple[str, object]]) -> str:
+def _surface(category: str, inputs: Mapping[str, tuple[str, Any]]) -> str:
     text = "".join(input_text(name, kind, value) for name, (kind, value) in inputs.items())
     return document_text(node_text(category, "surfaceshader", "shading", text))
 
@@ -82,8 +88,8 @@ THIN = {
     "subsurface_color": ("color3", (0.6, 0.4, 0.3)),
     "geometry_thin_walled": ("boolean", True),
 }
-SHEEN = {"color": (0.8, 0.1, 0.1), "roughness": 0.5, "mode": "zeltner"}
-FUZZ = {"color": (1.0, 1.0, 1.0), "roughness": 1.0, "mode": "zeltner"}
+SHEEN: dict[str, Any] = {"color": (0.8, 0.1, 0.1), "roughness": 0.5, "mode": "zeltner"}
+FUZZ: dict[str, Any] = {"color": (1.0, 1.0, 1.0), "roughness": 1.0, "mode": "zeltner"}
 LEAF = {"color": (0.4, 0.7, 0.2), "normal": (0.0, 0.0, -1.0)}
 LOBES = ("roughness_R", "roughness_TT", "roughness_TRT")
 
@@ -170,54 +176,46 @@ def draw(folder: str, *pages: str) -> None:
             np.save(Path(folder, f"{page}.npy"), image)
 
 
-def measure(page: str) -> str:
-    """Write the picture of a page: stock, repaired, difference; and the sentence on it."""
-    # Draw both.
+def measure(page: str) -> dict[str, str]:
+    """Write the picture of a page, stock, repaired and difference; what is measured of it."""
     with TemporaryDirectory(prefix="mxeon-picture-") as base:
         stock, own = (_drawn(page, Path(base, name), name == "own") for name in ("stock", "own"))
     # Compare them where the sphere is.
     shown, mask = PAGES[page], visible(SIZE, "sphere").mask
     apart = np.where(mask[..., None], np.abs(stock - own), 0.0)
-    most, mean, radiance = apart.max(), apart[mask].mean(), own[mask].mean()
-    # Put them side by side; white surroundings are shown gray, so that more light than comes is seen.
+    # White surroundings are shown gray, so that more light than arrives is visible.
     gain = 0.5 if shown.scene == "furnace" else 1.0
-    codes = [srgb_encoded(each) for each in (gain * stock, gain * own, apart / most)]
+    codes = [srgb_encoded(each) for each in (gain * stock, gain * own, apart / apart.max())]
     codes = [np.where(mask[..., None], each, np.uint8(BACKGROUND)) for each in codes]
     line = np.full((SIZE, LINE, 3), 255, np.uint8)
     picture = np.hstack([codes[0], line, codes[1], line, codes[2]])
-    PICTURES.mkdir(exist_ok=True)
     Image.fromarray(picture).save(PICTURES / f"{page}.webp", quality=QUALITY, method=6)
-    # Say what is seen.
-    text = (
-        f"{shown.words[0].upper()}{shown.words[1:]}, scene `{shown.scene}`{', at half its radiance' if gain < 1.0 else ''}:"
-        f" stock, repaired, and the difference, which is {mean:.2g} in the mean, of a mean radiance of {radiance:.2g}, and"
-        f" {most:.2g} where it is white. `python -m tools.site.upstream.pictures` draws it."
-    )
-    return f"![Stock, repaired, difference](pictures/{page}.webp)\n\n{fill(text, WIDTH, break_on_hyphens=False)}"
+    figures = {"mean": apart[mask].mean(), "of": own[mask].mean(), "most": apart.max()}
+    words = shown.words[0].upper() + shown.words[1:]
+    return {"shows": words, "scene": shown.scene} | {
+        name: f"{value:.2g}" for name, value in figures.items()
+    }
 
 
-def _drawn(page: str, folder: Path, repair: bool) -> np.ndarray:
+def _drawn(page: str, folder: Path, repair: bool) -> np.typing.NDArray[np.float32]:
     """The picture of a page with MaterialX, or with the page's patch and those that it needs."""
-    needed = {page}
-    known = {row.page: row for row in rows()}
-    while more := {each for found in needed for each in known[found].patch.needs} - needed:
-        needed |= more
-    changes = [each for each in REPAIRS if repair and each.page in needed]
-    path = repaired(folder, installed(), changes)
-    done = run(path, "draw", str(folder), page, module="tools.site.upstream.pictures")
+    package = linked(Path(mx.__file__).parent, folder / "MaterialX")
+    if repair:
+        names = needed(page, entries())
+        apply(package, *(path for each, path in patches("materialx").items() if each in names))
+    done = run(folder, "draw", str(folder), page, module="tools.site.ledger.pictures")
     if done.returncode:
         raise RuntimeError(done.stderr)
-    return np.load(folder / f"{page}.npy")
+    return np.asarray(np.load(folder / f"{page}.npy"))
 
 
 def main() -> None:
-    """Draw the pictures, and write their sentences into the pages, before the section Cause."""
+    """Draw the pictures, and write the pages with what is measured of them."""
+    found = measured()
     for page in PAGES:
-        path = FOLDER / f"{page}.md"
-        block = f"<!-- measured picture -->\n{measure(page)}\n<!-- end -->\n\n"
-        text = BLOCK.sub("", path.read_text(encoding="utf-8"))
-        write_text(path, text.replace("## Cause\n", f"{block}## Cause\n"))
-    patches.main()  # whose index has the changes of pictures
+        found[page] = found.get(page, {}) | {"picture": measure(page)}
+    write_measured(found)
+    pages.main()
 
 
 if __name__ == "__main__":

@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Write the pages of the ledger and their index from its entries."""
+
+import json
+from pathlib import Path
+from textwrap import fill
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from mxeon.io.files import write_text
+from tools.site.ledger import (
+    FOLDER,
+    PATCHES,
+    ROOT,
+    Entry,
+    completed,
+    entries,
+    measured,
+    pairs,
+    patches,
+    patches_of,
+    write_measured,
+)
+
+VERSIONS = ROOT / "docs" / "versions.json"
+INDEX = FOLDER / "README.md"
+TEMPLATES = Environment(
+    loader=FileSystemLoader(Path(__file__).parent),
+    trim_blocks=True,
+    lstrip_blocks=True,
+    keep_trailing_newline=True,
+    undefined=StrictUndefined,
+)
+# The parts of the index: what stands above the pages of each.
+GROUPS = {
+    "rough_diffuse": "`oren_nayar_diffuse_bsdf`",
+    "diffuse": "`burley_diffuse_bsdf`, `subsurface_bsdf`, `translucent_bsdf`",
+    "sheen": "`sheen_bsdf`",
+    "combinations": "`multiply`, `add`",
+    "microfacets": "`dielectric_bsdf`, `conductor_bsdf`, `generalized_schlick_bsdf`",
+    "emission": "`conical_edf`, `measured_edf`, `absorption_vdf`, `anisotropic_vdf`, `surface`, `light`",
+    "hair": "`chiang_hair_bsdf`",
+    "utilities": "Utility nodes",
+    "surfaces": "Surface shaders",
+    "documents": "Documents and generation",
+    "blender": "Blender",
+    "storm": "OpenUSD's Hydra Storm",
+    "three": "three.js",
+    "babylon": "Babylon.js",
+    "pathtracer": "three-gpu-pathtracer",
+    "luxcore": "LuxCoreRender",
+    "testrender": "OSL's testrender",
+    "printed": "Printed specifications",
+}
+
+
+def pages(known: dict[str, Entry] | None = None) -> dict[Path, str]:
+    """The text of each page and of the index, by path.
+
+    Raises
+    ------
+    ValueError
+        If the group of an entry is none of the index.
+    """
+    known, found = known or entries(), measured()
+    versions = json.loads(VERSIONS.read_text(encoding="utf-8"))
+    page, index = TEMPLATES.get_template("page.md.jinja"), TEMPLATES.get_template("index.md.jinja")
+    numbers = {name: path.name[:4] for name, path in patches("materialx").items()}
+    texts = {
+        FOLDER / f"{name}.md": page.render(
+            entry=entry,
+            measured=found.get(name, {}),
+            patches=_joined([f"`{path.relative_to(ROOT)}`" for path in patches_of(name)]),
+            outcome=outcome(entry, numbers),
+            diff=short_diff(entry),
+            versions=seen(entry, versions),
+        )
+        for name, entry in known.items()
+    }
+    projects = [path.name for path in PATCHES.iterdir() if path.is_dir()]
+    text = index.render(
+        groups={GROUPS[name]: each for name, each in groups(known).items()},
+        tables={each: table(each, known, found) for each in projects},
+    )
+    return texts | {INDEX: text}
+
+
+def groups(known: dict[str, Entry]) -> dict[str, list[Entry]]:
+    """The entries by the parts of the index, in their order.
+
+    Raises
+    ------
+    ValueError
+        If the group of an entry is none of them.
+    """
+    found: dict[str, list[Entry]] = {name: [] for name in GROUPS}
+    for page, entry in known.items():
+        if entry.group not in found:
+            raise ValueError(
+                f"group of {page} must be one of {', '.join(GROUPS)}; got {entry.group}"
+            )
+        found[entry.group].append(entry)
+    return found
+
+
+def short_diff(entry: Entry) -> str:
+    """The changed lines of a repair: of its first patch, or of the entry's own diff."""
+    files = patches_of(entry.page)
+    text = files[0].read_text(encoding="utf-8").split("\n---\n", 1)[1] if files else entry.diff
+    lines: list[str] = []
+    apart = False
+    for line in text.splitlines():
+        if line.startswith("--- "):
+            lines.append(f"--- {line[4:].split('/', 1)[1]}")
+        elif line[:1] in ("+", "-") and not line.startswith("+++ "):
+            lines += ["@@", line] if apart else [line]
+            apart = False
+        else:
+            apart = True
+    return "\n".join(lines)
+
+
+def outcome(entry: Entry, numbers: dict[str, str]) -> str:
+    """What the checks say with the patch of an entry, and with those that it needs."""
+    subjects: dict[tuple[str, str], list[str]] = {}
+    for words, rows in {"": entry.repaired, **entry.remains}.items():
+        for check, subject in pairs(rows):
+            if words and subject not in entry.rows.get(check, ()):
+                continue  # for another cause, which its own page has
+            subjects.setdefault((subject, words), []).append(f"`{check}`")
+    if not subjects:
+        return ""
+    parts = [
+        f"{_joined(checks)} of {subject} "
+        + (f'keep{s} the diagnosis "{words}"' if words else f"pass{'e' * bool(s)}{s}")
+        for (subject, words), checks in subjects.items()
+        for s in ["" if checks[1:] else "s"]
+    ]
+    needs = _joined(["this patch", *(f"[{numbers[each]}]({each}.md)" for each in entry.needs)])
+    return fill(f"With {needs}: {'; '.join(parts)}.", 110, break_on_hyphens=False)
+
+
+def seen(entry: Entry, versions: dict[str, Any]) -> str:
+    """The line on the versions of MaterialX that have a defect; empty where no check of them shows it."""
+    if entry.page not in versions["pages"]:
+        return ""
+    shown = versions["pages"][entry.page]
+    commit, date = versions["commit"]
+    names = {name: f"main of {date} ({commit})" if name == "main" else name for name in shown}
+    gone = [name for name in shown if shown[name]["passed"] or (entry.pull and name == "main")]
+    text = f"Seen in MaterialX {_joined([names[name] for name in shown if name not in gone])}"
+    text += f"; gone in {_joined([names[name] for name in gone])}" if gone else ""
+    return f"{text}, by pull request {entry.pull}." if entry.pull else f"{text}."
+
+
+def _joined(names: list[str]) -> str:
+    return " and ".join([", ".join(names[:-1]), names[-1]] if names[1:] else names)
+
+
+def table(project: str, known: dict[str, Entry], found: dict[str, Any]) -> list[tuple[str, ...]]:
+    """Rows of the table of a project's patches in the index."""
+    files = patches(project)
+    rows: list[tuple[str, ...]] = []
+    for page, path in files.items():
+        entry = known[page]
+        text = " ".join(path.read_text(encoding="utf-8").split("\n\n", 1)[0].split())
+        picture = found.get(page, {}).get("picture")
+        needs = ", ".join(sorted(files[each].name[:4] for each in entry.needs if each in files))
+        rows.append(
+            (
+                path.name[:4],
+                f"[{text.split('[PATCH] ')[1]}]({page}.md)",
+                f"in main, #{entry.pull}" if entry.pull else entry.kind,
+                _measured(entry, found),
+                f"{picture['mean']} of {picture['of']}; {picture['most']} at most"
+                if picture
+                else "",
+                needs,
+            )
+        )
+    return rows
+
+
+def _measured(entry: Entry, found: dict[str, Any]) -> str:
+    """The figure of the first row that the patch repairs."""
+    rows = found.get(entry.page, {}).get("rows")
+    if not rows:
+        return ""
+    repaired = [entry.repaired, *entry.remains.values()]
+    chosen = (row for row in rows if any(row[1] in each.get(row[0], []) for each in repaired))
+    _, _, figure, tolerance, unit = next(chosen, rows[0])
+    return f"{figure} {unit}, tolerance {tolerance}"
+
+
+def main() -> None:
+    """Complete what was measured, write the pages, and remove those without an entry."""
+    write_measured(completed(measured(), entries()))
+    texts = pages()
+    for path in set(FOLDER.glob("*.md")) - set(texts):
+        path.unlink()
+    for path, text in texts.items():
+        write_text(path, text)
