@@ -177,7 +177,8 @@ class Host(FragmentHost):
     ) -> dict[str, moderngl.Texture | moderngl.TextureArray]:
         """Textures of the samplers that a program has; those of one array share one.
 
-        A map of the environment ends at its poles.
+        A map of the environment ends at its poles. The even one of a check repeats: clamping would
+        turn a coordinate that is not a number into one, and the check would see nothing.
         """
         made: dict[tuple[int, bool], moderngl.Texture] = {}
         own: dict[str, moderngl.Texture | moderngl.TextureArray] = {}
@@ -186,7 +187,7 @@ class Host(FragmentHost):
                 key = id(values), name == "u_envRadiance"
                 own[name] = made[key] = made.get(key) or self._texture(values, key[1])
         for name in own.keys() & {"u_envRadiance", "u_envIrradiance"}:
-            own[name].repeat_y = False
+            own[name].repeat_y = texels[name].shape[0] <= len(raster.WHITE)
         return own
 
     def _argument(self, rows: Array, size: tuple[int, int]) -> moderngl.Texture:

@@ -149,8 +149,8 @@ function render(program, job, data) {
         gl.activeTexture(gl.TEXTURE0 + unit);
         gl.uniform1i(gl.getUniformLocation(program, name), unit);
         const texture = upload(layout, data);
-        if (["u_envRadiance", "u_envIrradiance"].includes(name)) {
-            // A map of the environment ends at its poles.
+        if (["u_envRadiance", "u_envIrradiance"].includes(name) && layout.shape[0] > 2) {
+            // A map of the environment ends at its poles; the even one of a check keeps NaN in sight.
             gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
         }
         return texture;
