@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The judge: works on tasks, one after the other, and keeps the hosts it opens."""
 
+import os
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -38,6 +39,7 @@ from mxeon.hosts import open_engine
 from mxeon.hosts.base import Host, RendererHost
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.library import examples_folder
+from mxeon.shaders.library_tree import root
 
 ROWS = {check.key: check for check in CHECKS}
 CLAIMS = {check.key: check.claim for check in CHECKS} | {
@@ -200,7 +202,13 @@ def _unread(path: Path, error: DocumentError | ImageError) -> Findings:
 
 def _with_pages(findings: Findings) -> Findings:
     """Findings whose failures name the pages of their known issues."""
-    return replace(findings, results=tuple(map(with_pages, findings.results)))
+    results = (with_pages(each, _copy_of_stock(each.library)) for each in findings.results)
+    return replace(findings, results=tuple(results))
+
+
+def _copy_of_stock(library: str) -> str:
+    """The folder whose `libraries` take the place of MaterialX's for a library; "" for none."""
+    return root(library) if os.path.isabs(library) else ""
 
 
 def _probe(host: Host | RendererHost, title: str, library: str) -> Probe:

@@ -10,7 +10,7 @@ from importlib.metadata import PackageNotFoundError, metadata
 from pathlib import Path
 
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED, Result
-from mxeon.conformance.results.known_issues.issue import Issue, read_issues
+from mxeon.conformance.results.known_issues.issue import STOCK, Issue, read_issues
 
 RENDERERS = {
     "cycles": "this Blender",
@@ -59,9 +59,13 @@ def _site() -> str:
     return str(named.get("Documentation", "")).rstrip("/")
 
 
-def with_pages(result: Result) -> Result:
-    """A result with the pages of the issues that explain it, if any do."""
-    return replace(result, pages=tuple(issue.page for issue in _issues(result)))
+def with_pages(result: Result, materialx: str = "") -> Result:
+    """A result with the pages of the issues that explain it, if any do.
+
+    `materialx` is the folder whose `libraries` were judged instead of the installed ones: a copy of
+    MaterialX's has the issues of stock, but for those that it repairs.
+    """
+    return replace(result, pages=tuple(issue.page for issue in _issues(result, materialx)))
 
 
 def repaired(results: Sequence[Result], software: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
@@ -98,26 +102,28 @@ def _software_of(issue: Issue, software: Mapping[str, str]) -> str:
     return materialx if issue.page.startswith("gen") else RENDERERS.get(issue.host, materialx)
 
 
-def _issues(result: Result) -> list[Issue]:
+def _issues(result: Result, materialx: str) -> list[Issue]:
     """Issues that a result shows that failed or differs, if it is of a library that has them."""
     if result.verdict not in (FAILED, DIFFERS):
         return []
+    library = STOCK if materialx else result.library
     return [
         issue
         for issue in ISSUES
-        if (result.library == issue.library or issue.unavoidable)
+        if (library == issue.library or issue.unavoidable)
         and result.host in (issue.host, *issue.also)
         and (result.check, result.subject) in (*issue.rows, *issue.implied)
-        and _explains(issue, result)
+        and _explains(issue, result, materialx)
     ]
 
 
-def _explains(issue: Issue, result: Result) -> bool:
+def _explains(issue: Issue, result: Result, materialx: str) -> bool:
     """Whether an issue explains what was measured, by its size, its diagnosis and its text."""
     row = result.check, result.subject
     if result.error is not None and result.error > SPREAD * issue.sizes.get(row, math.inf):
         return False
-    if result.diagnosis.startswith("fault: ") or (row in issue.repaired and _is_repaired(issue)):
+    gone = row in issue.repaired or set(issue.rows) <= set(issue.repaired)
+    if result.diagnosis.startswith("fault: ") or (gone and _is_repaired(issue, materialx)):
         return False
     first = result.host == issue.host and issue.rows[:1] == (row,)
     stated = issue.says if first and result.diagnosis else ""
@@ -130,13 +136,13 @@ def _model(diagnosis: str) -> str:
 
 
 @cache
-def _is_repaired(issue: Issue) -> bool:
-    """Whether the installed MaterialX has the patch of an issue."""
+def _is_repaired(issue: Issue, materialx: str) -> bool:
+    """Whether MaterialX, the installed one if no folder is named, has the patch of an issue."""
     if not issue.patch:
         return False
     import MaterialX as mx
 
     name, old, new = issue.patch
-    file = Path(mx.__file__).parent / name
+    file = Path(materialx or Path(mx.__file__).parent, name)
     text = file.read_text(encoding="utf-8") if file.is_file() else ""
     return new in text and old not in text.replace(new, "")
