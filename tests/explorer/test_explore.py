@@ -294,8 +294,10 @@ def test_more_materials_than_a_page_may_hold_are_refused(tmp_path, capsys):
     arguments = ["explore", CLAY, "--workers", "0", "--output", str(tmp_path / "out.html")]
     assert main([*arguments, "--maxShaders", "0"]) == MISUSE
     assert "renderable elements; got 2: raise it with --maxShaders" in capsys.readouterr().err
-    assert main(["explore", "--help"]) == PASSED_STATUS
-    assert f"renderable elements; {MATERIALS}" in " ".join(capsys.readouterr().out.split())
+    assert main(["explore", "--help-limits"]) == PASSED_STATUS
+    assert f"renderable elements (default: {MATERIALS})" in " ".join(
+        capsys.readouterr().out.split()
+    )
 
 
 def test_a_texture_of_one_row_is_reduced_along_it(tmp_path):

@@ -78,7 +78,7 @@ def test_the_help_names_every_host(capsys):
     with suppress(SystemExit):
         main(["check", "--help"])
     text = "".join(capsys.readouterr().out.split())  # a line may end in a name
-    assert f"gl(thedefault),{','.join(hosts.host_names()[1:])},orall" in text
+    assert f"gl(default),{','.join(hosts.host_names()[1:])},orall" in text
 
 
 @pytest.mark.parametrize("engine, verb, arguments", CALLS, ids=[verb for _, verb, _ in CALLS])

@@ -30,26 +30,23 @@ from mxeon.errors import NOT_RUN, InputError, MxeonError, NotRun
 from mxeon.jobs.signals import SignalExit, raise_signals
 
 DESCRIPTION = (
-    "MaterialX's specification of physically based shading, executable: a reference, checks of "
-    "generated shaders, and a library that repairs rough diffuse, sheen and layered lobes."
+    "Check renderers against MaterialX's specification of physically based shading, and get "
+    "eonlib, a drop-in replacement for its BSDF shaders."
+)
+EXAMPLES = (
+    "check my.mtlx  # what renders wrong, and why",
+    "explore my.mtlx --output my.html  # the same, to look at in a browser",
+    "library  # how to load eonlib in your renderer",
 )
 LEAST_MEMORY = 2**28  # bytes of address space
 COMMANDS = (check, generate, render, explore, library, invert, figures, report, kit, doc)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command.
+    """Run the command with these arguments; None for those of the process.
 
-    Parameters
-    ----------
-    arguments : sequence of str or None
-        Without the program's name; None for those of the process.
-
-    Returns
-    -------
-    int
-        0 all passed, 1 a check failed, 2 misuse, 3 something did not run; above 128, the number
-        of the signal that ended it and 128.
+    Returns 0 all passed, 1 a check failed, 2 misuse, 3 something did not run; above 128, the number of the
+    signal that ended it and 128.
     """
     open_streams()
     try:
@@ -61,9 +58,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def parser() -> argparse.ArgumentParser:
     """The parser of the command; its result has the function to call as `run`."""
-    root = Parser(prog="mxeon", description=DESCRIPTION)
+    root = Parser(prog="mxeon", description=DESCRIPTION, examples=EXAMPLES)
     root.add_argument("--version", action="version", version=f"mxeon {mxeon.__version__}")
-    commands = root.add_subparsers(required=True, metavar="COMMAND")
+    commands = root.add_subparsers(required=True, title="commands", metavar="COMMAND")
     for command in COMMANDS:
         command.add_parser(commands)
     return root
@@ -72,17 +69,14 @@ def parser() -> argparse.ArgumentParser:
 def _run(arguments: Sequence[str]) -> int:
     """The exit status of the command with these arguments; prints the reason unless it is 0."""
     try:
-        # Read the arguments.
         _check_encoding(arguments)
         options = parser().parse_args(arguments)
         _check_memory()
         use_materialx(getattr(options, "materialx", None))
-        # Run the sub-command, with its warnings on standard error.
         with warnings.catch_warnings():
             warnings.showwarning = show_warning
             return int(options.run(options))
     except SystemExit as end:  # of the parser, which has printed the reason
-        # Turn errors with words for the user into one line and a status.
         return int(end.code or 0)
     except BrokenPipeError:  # the reader of our output has closed it
         discard(sys.stdout)

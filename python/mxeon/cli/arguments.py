@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Command-line arguments that several sub-commands have."""
+"""The parser, and the options that several commands share."""
 
 import argparse
 import itertools
 import os
 import sys
+import textwrap
 from collections.abc import Callable, Iterable, Sequence
 from importlib import import_module
 from typing import Any, NoReturn
@@ -14,10 +15,11 @@ from mxeon.jobs import TIMEOUT
 from mxeon.names import meant
 from mxeon.shaders.document.policy import LIMITS, SEARCH_PATH, Policy, environment_path
 
-STATUS = "Exit status: 0 all passed, 1 a check failed, 2 misuse, 3 something did not run."
+STATUS = "exit status: 0 all passed, 1 a check failed, 2 misuse, 3 something did not run"
+UNTRUSTED = "documents you do not trust"  # heading of the options that --help-limits lists
 LIBRARY = (
-    "eonlib (the default), stock, or a folder: MaterialX's libraries or a part of them, which it replaces, "
-    "or others, which are loaded first"
+    "eonlib (default), stock, or a folder: a copy of MaterialX's libraries, or part of one, "
+    "replaces them; other documents are loaded first"
 )
 
 MATERIALX = "MXEON_MATERIALX"  # names the folder of --materialx to processes of hosts
@@ -26,11 +28,41 @@ Commands = Any  # what `add_subparsers` returns; argparse keeps its type private
 Run = Callable[[argparse.Namespace], int]
 
 
-class Parser(argparse.ArgumentParser):
-    """A parser whose errors are one line, with the command or the option that was meant."""
+class _Format(argparse.RawDescriptionHelpFormatter):
+    """Keeps names with hyphens, such as cycles-native, on one line."""
 
-    def __init__(self, **options: Any) -> None:
-        super().__init__(epilog=STATUS, **options)
+    def _split_lines(self, text: str, width: int) -> list[str]:
+        return textwrap.wrap(text, width, break_on_hyphens=False)
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser whose help is one sentence, usage, options and examples, and whose errors are one line."""
+
+    def __init__(self, *, examples: Sequence[str] = (), **options: Any) -> None:
+        rows = [each.partition("  # ") for each in examples]
+        width = max((len(command) for command, _, why in rows if why), default=0)
+        lines = [
+            f"  mxeon {command:{width if why else 0}}{mark}{why}" for command, mark, why in rows
+        ]
+        epilog = "\n".join(["examples:", *lines, "", STATUS])
+        super().__init__(epilog=epilog, formatter_class=_Format, **options)
+
+    def format_help(self, limits: bool = False) -> str:
+        """The help without the options for documents that are not trusted, or these alone."""
+        help = self._get_formatter()
+        if not limits:
+            help.add_text(textwrap.fill(self.description or "", 79))
+            needed = [each for each in self._actions if each.required or not each.option_strings]
+            optional = argparse.Action([], "options", nargs="?", metavar="options")
+            help.add_usage(None, [optional, *needed], [])
+        for group in self._action_groups:
+            if (group.title == UNTRUSTED) == limits:
+                help.start_section(group.title)
+                help.add_arguments(group._group_actions)
+                help.end_section()
+        if not limits:
+            help.add_text(self.epilog)
+        return help.format_help()
 
     def parse_known_args(  # type: ignore[override]
         self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
@@ -63,52 +95,58 @@ class Parser(argparse.ArgumentParser):
         self.exit(MISUSE, f"{self.prog}: {one_line(message)}\n")
 
 
-def add_command(commands: Commands, name: str, summary: str, run: Run) -> argparse.ArgumentParser:
-    """Add a command, or an action of one, that the function `run` executes."""
-    command: argparse.ArgumentParser = commands.add_parser(name, help=summary, description=summary)
+class _HelpLimits(argparse.Action):
+    """Print the options for documents that are not trusted, and exit."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> NoReturn:
+        assert isinstance(parser, Parser)
+        print(parser.format_help(limits=True), end="")
+        parser.exit()
+
+
+def add_command(
+    commands: Commands, name: str, summary: str, run: Run | None, *examples: str
+) -> argparse.ArgumentParser:
+    """Add a command, or an action of one, that the function `run` executes; None for a group of actions."""
+    sentence = f"{summary[0].upper()}{summary[1:]}."
+    command: argparse.ArgumentParser = commands.add_parser(
+        name, help=summary, description=sentence, examples=examples
+    )
     command.set_defaults(run=run)
     return command
 
 
 def add_json(command: argparse.ArgumentParser) -> None:
-    """Add --json."""
-    command.add_argument("--json", action="store_true", help="print JSON for machines")
+    command.add_argument("--json", action="store_true", help="print JSON")
 
 
 def add_report(command: argparse.ArgumentParser) -> None:
-    """Add --report."""
     command.add_argument(
-        "--report", metavar="DIR", help="write a page, JSON, JUnit and the pictures to DIR"
+        "--report", metavar="DIR", help="write an HTML page, JSON, JUnit XML, and pictures to DIR"
     )
 
 
 def add_full(command: argparse.ArgumentParser) -> None:
-    """Add --full."""
     command.add_argument("--full", action="store_true", help="print every check, not ten lines")
 
 
 def add_library(command: argparse.ArgumentParser) -> None:
-    """Add --library, of which there may be one."""
     command.add_argument("--library", default="eonlib", metavar="NAME", help=LIBRARY)
 
 
 def add_materialx(command: argparse.ArgumentParser) -> None:
-    """Add --materialx."""
     command.add_argument(
         "--materialx",
         type=_folder,
         metavar="FOLDER",
-        help="use the build of MaterialX whose Python package, MaterialX/, is in FOLDER",
+        help="use your own build of MaterialX: FOLDER has its Python package, MaterialX/",
     )
 
 
 def use_materialx(folder: str | None) -> None:
     """Import MaterialX from a folder, here and in worker processes, unless it is None.
 
-    Raises
-    ------
-    InputError
-        If it is not there or cannot be imported, or another one was imported before.
+    Raises InputError if it is not there or cannot be imported, or another one was imported before.
     """
     if folder is None:
         return
@@ -129,20 +167,19 @@ def use_materialx(folder: str | None) -> None:
 
 
 def add_workers(command: argparse.ArgumentParser) -> None:
-    """Add --workers and --timeout."""
     command.add_argument(
         "--workers",
         type=int,
         default=os.cpu_count(),
         metavar="N",
-        help="number of worker processes; 0 runs in-process",
+        help="number of worker processes (default: one per core; 0: none, run in this process)",
     )
     command.add_argument(
         "--timeout",
         type=float,
         default=TIMEOUT,
         metavar="SECONDS",
-        help=f"timeout of one item of work in a worker process; {TIMEOUT:g}",
+        help="stop a worker that takes longer than this for one item (default: %(default)g)",
     )
     command.add_argument(  # its name in version 0.1
         "--limit",
@@ -177,43 +214,45 @@ def add_policy(command: argparse.ArgumentParser, runs_code: bool = False, **defa
         type=_folder,
         default=[],
         metavar="FOLDER",
-        help="search it for the files that documents name, after their own folders and before "
-        f"those of {SEARCH_PATH}; may be repeated",
+        help="also look here for images and includes, after the document's own folder and "
+        f"before those in ${SEARCH_PATH}; repeatable",
     )
     add_definitions(command)
-    group = command.add_argument_group("documents that are not trusted")
+    command.add_argument(
+        "--help-limits",
+        action=_HelpLimits,
+        nargs=0,
+        help="list the options for documents you do not trust: permissions and size limits",
+    )
+    group = command.add_argument_group(UNTRUSTED)
     group.add_argument(
         "--allowOutside",
         action="store_true",
-        help="permit files outside the documents' folders, the search path and the libraries",
+        help="let documents read files outside their folder, the search path, and the libraries",
     )
     if runs_code:
         group.add_argument(
-            "--allowCode",
-            action="store_true",
-            help="permit running shader code that documents contain",
+            "--allowCode", action="store_true", help="run shader code that documents contain"
         )
     for name, meaning in LIMITS.items():
-        limit = defaults.get(name, getattr(Policy, name))
         group.add_argument(
             f"--max{name.capitalize()}",
             type=int,
-            default=limit,
+            default=defaults.get(name, getattr(Policy, name)),
             metavar="N",
-            help=f"{meaning}; {limit}",
+            help=f"at most N {meaning} (default: %(default)s)",
         )
 
 
 def add_definitions(command: argparse.ArgumentParser) -> None:
-    """Add --definitions."""
     command.add_argument(
         "--definitions",
         action="append",
         type=_folder,
         default=[],
         metavar="FOLDER",
-        help="load the MaterialX definitions in it beside the library, which are trusted as that is; "
-        "may be repeated",
+        help="load the MaterialX definitions in FOLDER in addition to the library; they are "
+        "trusted like the library; repeatable",
     )
 
 

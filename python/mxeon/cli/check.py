@@ -19,57 +19,56 @@ T = TypeVar("T")
 
 
 def add_parser(commands: arguments.Commands) -> None:
-    """Add the command and its options."""
     default, *others = host_names()
-    summary = "run the checks on hosts, and compare pictures of documents with the reference"
-    command = arguments.add_command(commands, "check", summary, run)
-    # Choose documents, hosts, libraries and nodes.
+    command = arguments.add_command(
+        commands,
+        "check",
+        "check the shaders of documents, or of a library, against the specification",
+        run,
+        "check my.mtlx  # your materials, node by node and as pictures",
+        "check my.mtlx --library stock --report out  # with MaterialX's own shaders, and a report",
+        "check --library ./libraries --node all  # every node of your copy of MaterialX",
+    )
     command.add_argument(
         "files",
         nargs="*",
         metavar="FILE",
-        help="MaterialX documents, whose nodes are judged, or folders of them; none: the library, "
-        "with the examples",
+        help="MaterialX documents, or folders of them; without any, check the library's common "
+        "nodes and the bundled examples",
     )
     command.add_argument(
         "--host",
         action="append",
         metavar="NAME",
-        help=f"{default} (the default), {', '.join(others)}, or all; may be repeated",
+        help=f"where to run the shaders: {default} (default), {', '.join(others)}, or all; repeatable",
     )
     command.add_argument(
-        "--library",
-        action="append",
-        metavar="NAME",
-        help=f"{arguments.LIBRARY}; may be repeated",
+        "--library", action="append", metavar="NAME", help=f"{arguments.LIBRARY}; repeatable"
     )
     command.add_argument(
         "--node",
         action="append",
         metavar="NAME",
-        help="judge the nodes of this category (sheen_bsdf), or all, or the common ones of a library, "
-        "whichever nodes the documents have; may be repeated",
+        help="check nodes of this category, such as sheen_bsdf, whether the documents use them or "
+        "not; also all, or common; repeatable",
     )
-    # Choose the report, and how the run is done.
     arguments.add_report(command)
     command.add_argument(
-        "--resume", action="store_true", help="continue the interrupted run in the report's DIR"
+        "--resume", action="store_true", help="continue an interrupted run in the --report folder"
     )
-    command.add_argument(
-        "--scheduler", metavar="ADDRESS", help="use the workers of this Dask scheduler"
-    )
+    arguments.add_full(command)
+    arguments.add_json(command)
+    arguments.add_workers(command)
+    command.add_argument("--scheduler", metavar="ADDRESS", help="run on this Dask cluster instead")
     command.add_argument(
         "--waitForWorkers",
         type=float,
         default=WAIT,
         metavar="SECONDS",
-        help=f"how long the cluster may be without a compatible worker; {WAIT:g}",
+        help="how long to wait for a worker of the cluster (default: %(default)g)",
     )
     arguments.add_materialx(command)
-    arguments.add_workers(command)
     arguments.add_policy(command, runs_code=True)
-    arguments.add_full(command)
-    arguments.add_json(command)
 
 
 def run(options: argparse.Namespace) -> int:

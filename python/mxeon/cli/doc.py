@@ -12,23 +12,30 @@ from mxeon.errors import FAILED, PASSED, DocumentError, InputError, one_line
 
 
 def add_parser(commands: arguments.Commands) -> None:
-    """Add the command and its options."""
-    summary = "fill a Markdown template with the tables of nodes, or compare a specification's"
-    command = arguments.add_command(commands, "doc", summary, run)
+    command = arguments.add_command(
+        commands,
+        "doc",
+        "write tables of nodes into Markdown, or compare a specification with the library",
+        run,
+        "doc template.md --output nodes.md",
+        "doc MaterialX.PBRSpec.md --compare",
+    )
     command.add_argument(
-        "file", metavar="FILE", help="Markdown; @MX_TABLE_node@ stands for the table of a node"
+        "file", metavar="FILE", help="Markdown, in which @MX_TABLE_node@ becomes that node's table"
     )
     command.add_argument(
         "--compare",
         action="store_true",
-        help="compare every table of FILE with the node definitions of the library",
+        help="compare the tables of FILE with the node definitions",
     )
-    command.add_argument("--output", metavar="FILE", help="write there, not to standard output")
+    command.add_argument(
+        "--output", metavar="FILE", help="file to write to (default: standard output)"
+    )
     command.add_argument(
         "--library",
         default="stock",
         metavar="NAME",
-        help="stock (the default), eonlib, or a folder of MaterialX documents to load first",
+        help="stock (default), eonlib, or a folder of MaterialX documents to load first",
     )
     command.add_argument("--json", action="store_true", help="print the differences as JSON")
 
@@ -37,14 +44,12 @@ def run(options: argparse.Namespace) -> int:
     """Fill or compare; return FAILED if a specification differs."""
     from mxeon.doc import MARKER, compare, fill, library_tables, read_tables
 
-    # Check the options, and read the text and the library.
     if options.json and not options.compare:
         raise InputError("--json must come with --compare: a template has no differences")
     arguments.assert_other(options.output, [options.file])
     text = _text(options.file)
     tables = library_tables(options.library)
     try:
-        # Fill the template, unless it is to be compared.
         if not options.compare:
             if not MARKER.search(text):
                 warn(f"{options.file}: there is no @MX_TABLE_node@ to fill")
@@ -53,7 +58,6 @@ def run(options: argparse.Namespace) -> int:
         differences = compare(read_tables(text), tables)
     except DocumentError as error:
         raise DocumentError(f"{options.file}: {error}") from None
-    # Write the differences.
     if options.json:
         _write(json.dumps([vars(each) for each in differences], indent=1) + "\n", options.output)
     else:

@@ -13,22 +13,28 @@ MATERIALS = 300  # of a document: a page of 3 MB, in 10 s
 
 
 def add_parser(commands: arguments.Commands) -> None:
-    """Add the command and its options."""
-    summary = "write a page that draws, compares and probes materials in a browser"
-    command = arguments.add_command(commands, "explore", summary, run)
+    command = arguments.add_command(
+        commands,
+        "explore",
+        "write a web page to draw, compare and probe materials",
+        run,
+        "explore --output page.html  # every lobe, eonlib beside stock MaterialX",
+        "explore my.mtlx --output page.html  # your materials too",
+        "explore --report out --output page.html  # with what `mxeon check --report out` found",
+    )
+    command.add_argument("files", nargs="*", metavar="FILE", help="MaterialX documents to add")
     command.add_argument(
-        "files", nargs="*", metavar="FILE", help="MaterialX documents to show beside the models"
+        "--output", metavar="OUT", required=True, help="the page, one self-contained .html file"
     )
     command.add_argument(
-        "--report", metavar="RUN", help="the folder of a run, whose diagnoses can be chosen too"
+        "--report", metavar="RUN", help="report folder of a run whose diagnoses to add"
     )
     command.add_argument(
         "--library",
         default="stock",
         metavar="NAME",
-        help="what the documents are shown with beside eonlib: stock (the default), or a folder",
+        help="what to compare eonlib with: stock (default), or a folder",
     )
-    command.add_argument("--output", metavar="OUT", required=True, help="the .html file to write")
     arguments.add_materialx(command)
     arguments.add_workers(command)
     arguments.add_policy(command, runs_code=True, shaders=MATERIALS)

@@ -13,10 +13,9 @@ from mxeon.errors import PASSED, NotRun
 
 
 def add_parser(commands: arguments.Commands) -> None:
-    """Add the command and its options."""
-    summary = "make the figures of the EON paper and measure its claims; needs a checkout"
-    command = arguments.add_command(commands, "figures", summary, run)
-    command.add_argument("folder", metavar="DIR", help="where to write")
+    summary = "make the figures of the EON paper and measure its claims, in a checkout"
+    command = arguments.add_command(commands, "figures", summary, run, "figures out/figures")
+    command.add_argument("folder", metavar="DIR", help="folder to write to")
 
 
 def run(options: argparse.Namespace) -> int:

@@ -16,29 +16,41 @@ from mxeon.shaders.targets import CLASSES
 
 
 def add_parser(commands: arguments.Commands) -> None:
-    """Add the command and its options."""
-    command = arguments.add_command(commands, "generate", "write shader sources", run)
+    command = arguments.add_command(
+        commands,
+        "generate",
+        "generate shader source from documents",
+        run,
+        "generate my.mtlx --target glsl --outputPath out",
+        "generate *.mtlx --target osl --target mdl --outputPath out",
+        "generate my.mtlx --target osl --profile cycles --outputPath out  # for Blender",
+    )
     command.add_argument("files", nargs="+", metavar="FILE", help="MaterialX documents")
     command.add_argument(
         "--target",
         action="append",
         required=True,
         metavar="NAME",
-        help=f"{', '.join(CLASSES)}; may be repeated",
+        help=f"shading language: {', '.join(CLASSES)}; repeatable",
     )
-    command.add_argument("--element", metavar="NAME", help="one renderable element; none: all")
-    command.add_argument("--profile", metavar="NAME", help="cycles: osl for Blender's Cycles")
-    command.add_argument("--outputPath", metavar="DIR", required=True, help="where to write")
+    command.add_argument(
+        "--outputPath", metavar="DIR", required=True, help="folder to write the shaders to"
+    )
+    command.add_argument(
+        "--element", metavar="NAME", help="generate this renderable element only (default: all)"
+    )
+    command.add_argument(
+        "--profile", metavar="NAME", help="variant of a target: cycles, the OSL of Blender's Cycles"
+    )
     arguments.add_library(command)
     arguments.add_materialx(command)
+    arguments.add_json(command)
     arguments.add_workers(command)
     arguments.add_policy(command)
-    arguments.add_json(command)
 
 
 def run(options: argparse.Namespace) -> int:
     """Write the shaders of all documents for all targets; return the exit status."""
-    # Plan one piece of work for each document and target.
     sources = [Source(file, target) for file in options.files for target in options.target]
     work = partial(
         shader_texts,
@@ -47,7 +59,6 @@ def run(options: argparse.Namespace) -> int:
         profile=options.profile,
         policy=arguments.policy(options),
     )
-    # Write the texts as they come, and keep the errors.
     written: list[str] = []
     errors: list[Exception] = []
     with closing(run_batch(work, sources, options.workers, options.timeout)) as results:
@@ -59,7 +70,6 @@ def run(options: argparse.Namespace) -> int:
                 errors.append(error)
             else:
                 written += _write(result.value, options.outputPath)
-    # Print what was written.
     lines = [line for error in errors for line in status_of(error)[1:]]
     outcome = {"files": written, "errors": lines}
     for line in [as_output(json.dumps(outcome))] if options.json else written:

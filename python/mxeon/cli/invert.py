@@ -10,18 +10,23 @@ from mxeon.errors import PASSED, InputError
 
 
 def add_parser(commands: arguments.Commands) -> None:
-    """Add the command and its options."""
-    summary = "compute rho, the linear color input of EON, from a target albedo"
-    command = arguments.add_command(commands, "invert", summary, run)
+    command = arguments.add_command(
+        commands,
+        "invert",
+        "compute the input color that gives EON the albedo you want",
+        run,
+        "invert 0.8 0.4 0.1 --roughness 0.7",
+        "invert 0.8 0.4 0.1 --roughness 0.7 --average",
+    )
     for channel in "RGB":
         command.add_argument(
-            channel, type=float, help="target albedo, linear (not sRGB), in [0, 1]"
+            channel, type=float, help="albedo to reach, linear (not sRGB), in [0, 1]"
         )
     command.add_argument("--roughness", type=float, required=True, help="in [0, 1]")
     command.add_argument(
         "--average",
         action="store_true",
-        help="the target is the average albedo, not that at normal incidence",
+        help="R G B is the average over all views, not the albedo seen head-on",
     )
 
 

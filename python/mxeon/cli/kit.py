@@ -11,41 +11,45 @@ from mxeon.shaders.nodes import OREN_NAYAR
 
 
 def add_parser(commands: arguments.Commands) -> None:
-    """Add the command and its actions."""
-    # Add the command.
-    summary = "test a renderer by its images of the conformance kit"
-    actions = commands.add_parser("kit", help=summary, description=summary)
-    actions = actions.add_subparsers(required=True, metavar="ACTION")
-    # Add the action that writes the kit.
-    summary = "write scenes, materials and a page of instructions"
-    export = arguments.add_command(actions, "export", summary, run_export)
-    export.add_argument("folder", metavar="DIR", help="where to write")
+    examples = (
+        "kit export kit  # then render its scenes to kit/renders",
+        "kit check kit --renderer MyRenderer --report out",
+        "kit check kit --claims qon  # if it has this one model",
+    )
+    summary = "find out which rough-diffuse model a renderer uses, from its images"
+    group = arguments.add_command(commands, "kit", summary, None, *examples)
+    actions = group.add_subparsers(required=True, title="commands", metavar="ACTION")
+    summary = "write scenes, materials and instructions"
+    export = arguments.add_command(actions, "export", summary, run_export, examples[0])
+    export.add_argument("folder", metavar="DIR", help="folder to write to")
     export.add_argument(
-        "--size", type=int, default=128, help="width and height in pixels, 64 to 2048; %(default)s"
+        "--size",
+        type=int,
+        default=128,
+        metavar="N",
+        help="width and height in pixels, 64 to 2048 (default: %(default)s)",
     )
     export.add_argument(
         "--node",
         default=OREN_NAYAR,
         metavar="NAME",
-        help="BSDF node of the materials, with color and roughness; %(default)s",
+        help="BSDF node of the materials, with inputs color and roughness (default: %(default)s)",
     )
     arguments.add_definitions(export)
     arguments.add_library(export)
     arguments.add_materialx(export)
-    # Add the action that judges pictures.
-    check = arguments.add_command(actions, "check", "check the images in DIR/renders", run_check)
+    summary = "check the images in DIR/renders"
+    check = arguments.add_command(actions, "check", summary, run_check, *examples[1:])
     check.add_argument("folder", metavar="DIR", help="the folder of the kit")
     check.add_argument(
-        "--renderer",
-        default="renderer",
-        metavar="NAME",
-        help="name of the renderer, for the report",
+        "--renderer", default="renderer", metavar="NAME", help="name of the renderer in the report"
     )
     check.add_argument(
         "--claims",
         default="",
         metavar="MODEL",
-        help="eon, qon, fon or lambert: the renderer has this model alone, and no switch between EON and QON",
+        help="the only model that the renderer has: eon, qon, fon or lambert (default: EON and QON, "
+        "chosen by energy_compensation)",
     )
     arguments.add_report(check)
     arguments.add_full(check)

@@ -9,17 +9,22 @@ from mxeon.errors import PASSED
 
 
 def add_parser(commands: arguments.Commands) -> None:
-    """Add the command and its options."""
-    summary = "print the folder of eonlib and how to load it, or copy it"
-    command = arguments.add_command(commands, "library", summary, run)
+    command = arguments.add_command(
+        commands,
+        "library",
+        "print where eonlib is and how to load it, or export a copy",
+        run,
+        "library  # the folder, and a line for each renderer",
+        "library --export eonlib.zip  # a copy for machines without Python",
+        "library --verify  # which implementation each target uses",
+    )
     command.add_argument("--folder", action="store_true", help="print the folder only")
     command.add_argument(
-        "--verify", action="store_true", help="list the implementation that each target gets"
+        "--verify", action="store_true", help="list the implementation that each target uses"
     )
-    help_text = (
-        "write eonlib, its sources and license to the new folder DIR, or to an archive DIR.zip"
+    command.add_argument(
+        "--export", metavar="DIR", help="write a copy to the new folder DIR, or to DIR.zip"
     )
-    command.add_argument("--export", metavar="DIR", help=help_text)
 
 
 def run(options: argparse.Namespace) -> int:

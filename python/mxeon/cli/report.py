@@ -10,30 +10,31 @@ from mxeon.errors import FAILED, PASSED, as_output, one_line
 
 
 def add_parser(commands: arguments.Commands) -> None:
-    """Add the command and its actions."""
-    # Add the command.
+    examples = (
+        "report make out  # the page of a run, finished or not",
+        "report diff before after  # what became better or worse",
+        "report field out/*  # all renderers on one page",
+    )
     summary = "write the report of a run, compare two, or show many renderers on one page"
-    actions = commands.add_parser("report", help=summary, description=summary)
-    actions = actions.add_subparsers(required=True, metavar="ACTION")
-    # Add the action that writes a report.
+    group = arguments.add_command(commands, "report", summary, None, *examples)
+    actions = group.add_subparsers(required=True, title="commands", metavar="ACTION")
     summary = "write the report of a run, finished or not"
-    make = arguments.add_command(actions, "make", summary, run_make)
+    make = arguments.add_command(actions, "make", summary, run_make, examples[0])
     make.add_argument("report", metavar="DIR", help="the folder of the run")
     arguments.add_full(make)
     arguments.add_json(make)
-    # Add the action that compares two.
-    diff = arguments.add_command(actions, "diff", "compare two reports", run_diff)
+    summary = "list what changed between two reports"
+    diff = arguments.add_command(actions, "diff", summary, run_diff, examples[1])
     diff.add_argument("before", metavar="A", help="folder of a report, or its results.json")
-    diff.add_argument("after", metavar="B", help="the same of another run")
+    diff.add_argument("after", metavar="B", help="the same, of a later run")
     arguments.add_json(diff)
-    # Add the action that shows many renderers.
-    summary = "one page with the renderers of any number of reports"
-    field = arguments.add_command(actions, "field", summary, run_field)
+    summary = "show the renderers of many reports on one page"
+    field = arguments.add_command(actions, "field", summary, run_field, examples[2])
     field.add_argument(
-        "reports", metavar="DIR", nargs="+", help="the folder of a report, or of several reports"
+        "reports", metavar="DIR", nargs="+", help="folder of a report, or of several reports"
     )
     field.add_argument(
-        "--output", metavar="FILE", default="field.html", help="the page (default: field.html)"
+        "--output", metavar="FILE", default="field.html", help="the page (default: %(default)s)"
     )
 
 

@@ -10,20 +10,20 @@ SEARCH_PATH = "MATERIALX_SEARCH_PATH"  # environment variable, MaterialX's own
 
 # Limits, each of which is an option of the command, and what they count.
 LIMITS = {
-    "size": "bytes of a document, with all that it includes",
-    "length": "characters of one attribute",
-    "depth": "elements, nodegraphs or definitions within each other",
-    "elements": "elements of a document, with all that it includes",
-    "attributes": "attributes of a document, with all that it includes",
+    "size": "bytes in a document and everything it includes",
+    "length": "characters in one attribute",
+    "depth": "levels of nested elements, nodegraphs, or definitions",
+    "elements": "elements in a document and everything it includes",
+    "attributes": "attributes in a document and everything it includes",
     "inputs": "inputs of one element",
-    "tokens": "tokens of a document",
-    "includes": "documents that include each other in a row",
-    "nodes": "nodes of a document's shaders, nodegraphs counted wherever they are used",
-    "chain": "nodes connected in a row",
+    "tokens": "tokens in a document",
+    "includes": "levels of nested includes",
+    "nodes": "nodes in all shaders of a document, nodegraphs expanded",
+    "chain": "connected nodes in a row",
     "shaders": "renderable elements",
-    "ports": "inputs of the nodes of all shaders, nodegraphs counted as one node",
-    "text": "characters that code of the document's own may have in all its shaders",
-    "texels": "pixels of all images of a document that are read",
+    "ports": "node inputs in all shaders, each nodegraph counted as one node",
+    "text": "characters of the document's own code in all its shaders",
+    "texels": "pixels in all images that a document reads",
 }
 
 
