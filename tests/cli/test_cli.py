@@ -16,6 +16,7 @@ from mxeon.errors import FAILED, NOT_RUN, PASSED
 from mxeon.hosts import host_names
 from mxeon.jobs import TIMEOUT
 from mxeon.models.diffuse.inversion import eon_rho_from_albedo_avg, eon_rho_from_albedo_normal
+from mxeon.shaders.document.policy import LIMITS
 from mxeon.shaders.generation import TARGETS
 from mxeon.shaders.library import eonlib_folder
 from mxeon.shaders.scene import SCENES
@@ -75,6 +76,32 @@ def test_render_on_a_host_that_is_missing_did_not_run(monkeypatch, capsys, tmp_p
     output = tmp_path / "out.exr"
     assert main(["render", PLASTER, "--host", "cycles", "--output", str(output)]) == NOT_RUN
     assert "MXEON_CYCLES_PYTHON" in capsys.readouterr().err and not output.exists()
+
+
+@pytest.mark.parametrize(
+    "options, scene, shape",
+    [
+        ([], "studio", "ball"),
+        (["--shape", "sphere"], "studio", "sphere"),
+        (["--scene", "side"], "side", "sphere"),
+        (["--scene", "studio", "--host", "webgl"], "studio", "ball"),
+        (["--host", "reference"], "side", "sphere"),
+    ],
+    ids=" ".join,
+)
+def test_render_shows_a_shader_ball_in_a_studio_where_the_host_can(
+    options, scene, shape, hosts, tmp_path, capsys
+):
+    hosts("webgl" if "webgl" in options else "gl")  # skips where it cannot run
+    output = str(tmp_path / "a.exr")
+    options = [*options, "--element", "ochre_plaster", "--size", "32", "--output", output]
+    assert main(["render", PLASTER, *options]) == PASSED
+    spec = oiio.ImageBuf(output).spec()
+    made = [spec.get_string_attribute(f"mxeon:{name}") for name in ("scene", "shape")]
+    assert made == [scene, shape]
+    error = capsys.readouterr().err
+    fallback = "warning: reference: cannot draw the studio, an environment image; used --scene side"
+    assert (fallback in one_line(error)) if "reference" in options else not error
 
 
 # --- what the commands do -----------------------------------------------------------------------
@@ -166,6 +193,31 @@ def test_help_names_every_choice(capsys):
             parser().parse_args([command, "--help"])
         words = set(re.findall(r"[\w-]+", capsys.readouterr().out))
         assert set(choices) <= words
+
+
+COMMANDS = ("check", "generate", "render", "explore", "library", "invert", "figures", "doc")
+COMMANDS += ("report make", "report diff", "report field", "kit export", "kit check")
+
+
+@pytest.mark.parametrize("command", ["", "report", "kit", *COMMANDS])
+def test_help_is_a_sentence_then_usage_and_examples_that_parse(command, capsys):
+    assert main([*command.split(), "--help"]) == PASSED
+    text = capsys.readouterr().out
+    first, usage, *_ = text.split("\n\n")
+    assert re.fullmatch(r"[A-Z][^.]*\.", first) and usage.startswith(
+        f"usage: mxeon {command}".rstrip()
+    )
+    assert "--max" not in text and "--allow" not in text
+    examples = re.findall(r"^  mxeon (.*?)(?:  #.*)?$", text, re.MULTILINE)
+    assert examples and all(parser().parse_args(each.split()).run for each in examples)
+
+
+def test_options_for_documents_without_trust_are_listed_apart(capsys):
+    for command in ("check", "generate", "render", "explore"):
+        assert main([command, "--help-limits"]) == PASSED
+        text = capsys.readouterr().out
+        assert {f"--max{name.capitalize()}" for name in LIMITS} <= set(text.split())
+        assert ("--allowCode" in text) == (command != "generate") and "--workers" not in text
 
 
 def test_a_limit_is_a_timeout():

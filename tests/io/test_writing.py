@@ -129,6 +129,8 @@ def test_render_on_a_full_disk_is_one_line(tmp_path, name):
         "16",
         "--element",
         "ochre_plaster",
+        "--scene",
+        "side",
     ]
     ended = run(300, "render", PLASTER, *options, "--output", tmp_path / name)
     assert ended.returncode == 2 and ended.stderr.count("\n") == 1

@@ -20,13 +20,12 @@ from mxeon.hosts import open_host
 from mxeon.hosts.points import visible
 from mxeon.io.images import write_exr
 from mxeon.io.srgb import srgb_encoded
-from mxeon.shaders.scene import BACK, FURNACE
+from mxeon.shaders.scene import FURNACE, STUDIO
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 EXAMPLES = DOCS.parent / "examples"
 PICTURES = DOCS / "images" / "gallery"
 DIFFERENCES = PICTURES / "differences.json"  # in sRGB codes, by material; null without stock
-SKY = DOCS / "images" / "studio.exr"
 SIZE = 512  # pixels
 QUALITY = 85  # of WebP
 ROWS = 64  # of the studio's picture
@@ -78,14 +77,12 @@ def scene(document):
     """The scene that shows a document."""
     if "furnace" in document.stem:
         return replace(FURNACE, size=SIZE)
-    return replace(BACK, environment=SKY, size=SIZE, shape="ball")
+    return replace(STUDIO, size=SIZE)
 
 
 def options(document):
     """The scene as options of `mxeon render`."""
-    if "furnace" in document.stem:
-        return "--scene furnace"
-    return f"--shape ball --scene back --environment {SKY.relative_to(DOCS.parent).as_posix()}"
+    return "--scene furnace " if "furnace" in document.stem else ""
 
 
 def pictures(host, document):
@@ -114,7 +111,7 @@ def difference(stock, own):
 def render():
     """Write the pictures, the difference of each material, and the README's picture of two halves."""
     PICTURES.mkdir(parents=True, exist_ok=True)
-    write_exr(SKY, studio(), {})
+    write_exr(STUDIO.environment, studio(), {})
     differences = {}
     with open_host("gl") as host:
         for document in sorted(EXAMPLES.glob("*.mtlx")):
@@ -149,7 +146,7 @@ def section(document, differences):
     command = f"    mxeon render examples/{document.name} --element {names[0]} "
     return (
         f"## {document.stem}\n\n{description.removeprefix('<!-- ').removesuffix(' -->')}\n\n"
-        f"{shown}\n\n{command}{options(document)} --output {names[0]}.png\n"
+        f"{shown}\n\n{command}{options(document)}--output {names[0]}.png\n"
     )
 
 

@@ -29,16 +29,7 @@ class WorkerCrashed(NotRun):
 
 @dataclass(frozen=True)
 class BatchResult:
-    """Result of one job.
-
-    Attributes
-    ----------
-    value : object
-        Return value of the job, or None.
-    warnings : tuple of str
-    error : Exception or None
-        Reason why there is no value.
-    """
+    """Result of one job; `error` is the reason why there is no value."""
 
     value: Any
     warnings: tuple[str, ...] = ()
@@ -50,36 +41,16 @@ def run_batch(
 ) -> Generator[BatchResult, None, None]:
     """Results of `work` on each document, in their order; processes work until it is closed.
 
-    Parameters
-    ----------
-    work : callable (document) -> object
-        Can be imported by name.
-    documents : sequence
-        Arguments for `work`, whose text names them in messages.
-    workers : int
-        Number of worker processes; 0 runs in-process.
-    timeout : float
-        Seconds for one document in a worker process.
-
-    Yields
-    ------
-    BatchResult
-
-    Raises
-    ------
-    InputError
-        If `workers` is negative or `timeout` is out of range.
+    `work` can be imported by name. Raises InputError if `workers` is negative or `timeout`, seconds for
+    one document in a worker process, is out of range.
     """
-    # Check the options before any work.
     if workers < 0:
         raise InputError(f"workers must be at least 0; got {workers}")
     check_timeout(timeout)
     work = partial(_work, work)
-    # Work in this process if there are no workers.
     if workers == 0:
         yield from map(work, documents)
         return
-    # Work in processes, and answer in the order of the documents.
     from mxeon.jobs import pool
 
     outcomes = pool.in_order(pool.run(work, documents, workers, timeout))
@@ -135,58 +106,41 @@ def picture(
     scene: str | None,
     environment: str | None,
     size: int,
-    shape: str,
+    shape: str | None,
     element: str | None,
     library: str,
     policy: Policy,
     paths: Paths,
 ) -> tuple[Any, dict[str, str]]:
-    """A picture of a document's one material, and its provenance.
+    """A picture of a document's one material, linear (size, size, 3), and what made it, as metadata.
 
-    Parameters
-    ----------
-    file, host, scene, element, library : str
-        Scene is a name that `mxeon.shaders.scene.scene` knows; None is `side`, or the environment alone.
-    environment : str or None
-        A latitude-longitude image in place of the scene's environment.
-    size : int
-        Width and height in pixels.
-    shape : str
-        Of `mxeon.shaders.scene.SHAPES`.
-    policy : Policy
-    paths : Paths
-
-    Returns
-    -------
-    ndarray, shape (size, size, 3), float32
-        Linear radiance.
-    dict of str to str
-        Versions and options that made it, as metadata for the file.
-
-    Warns
-    -----
-    LobeWarning
-        If the material has a lobe that the picture cannot show right.
+    Without a scene and an environment, a latitude-longitude image, it shows a shader ball in the studio;
+    on hosts that draw no images, a sphere lit from the side, with a warning. Of lobes that a picture cannot
+    show right a LobeWarning tells.
     """
     from mxeon.conformance import reference
     from mxeon.hosts import open_host
     from mxeon.hosts.base import LobeWarning
     from mxeon.shaders import scene as scenes
 
-    # Choose the light.
-    setting = scenes.scene(scene or "side")
+    setting = scenes.scene(scene or "studio")
     if environment:
         light = setting.light if scene else None
         setting = scenes.Scene("environment", light, Path(environment))
-    # Generate the shader, and draw it.
     with open_host(host, reference.ROW) as engine:
+        if no_studio := not (scene or environment or engine.draws_images):
+            setting = scenes.SIDE
+        setting = replace(setting, size=size, paths=paths, shape=shape or setting.shape)
         shader = _one_shader(file, engine, element, library, policy)
-        setting = replace(setting, size=size, paths=paths, shape=shape)
         image = engine.picture(shader, setting)
         for reason in engine.approximations(shader, setting):
             warnings.warn(LobeWarning(shader.element, reason), stacklevel=2)
+        if no_studio:
+            reason = (
+                "cannot draw the studio, an environment image; used --scene side --shape sphere"
+            )
+            warnings.warn(f"{host}: {reason}", stacklevel=2)
         identity = engine.identity()
-    # Say what made the picture.
     return image, {
         "version": mxeon.__version__,
         "host": f"{identity.name} {identity.version}",
@@ -195,7 +149,7 @@ def picture(
         "document": file,
         "element": shader.element,
         "scene": setting.name,
-        "shape": shape,
+        "shape": setting.shape,
     } | ({"definitions": os.pathsep.join(policy.definitions)} if policy.definitions else {})
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`mxeon render`: draw a material on a sphere."""
+"""`mxeon render`: render a material to an image."""
 
 import argparse
 import os
@@ -14,42 +14,55 @@ from mxeon.shaders.scene import Paths
 
 
 def add_parser(commands: arguments.Commands) -> None:
-    """Add the command and its options."""
-    # Name the hosts that make pictures.
     rows = (row.name for row in HOSTS if row.scenes and row.name != "gl")
     hosts = ", ".join((*rows, "reference"))
     command = arguments.add_command(
-        commands, "render", "draw a material on a sphere or a shader ball", run
+        commands,
+        "render",
+        "render a material to an image, on a shader ball in a studio",
+        run,
+        "render my.mtlx --output my.png",
+        "render my.mtlx --output my.exr --scene back --shape sphere --library stock",
+        "render my.mtlx --output my.png --environment sky.exr --element gold",
     )
-    # Choose the material, the light and the size.
     command.add_argument("file", metavar="FILE", help="a MaterialX document")
-    command.add_argument("--host", default="gl", metavar="NAME", help=f"gl (the default), {hosts}")
-    command.add_argument("--element", metavar="NAME", help="needed where there are several")
-    command.add_argument("--output", metavar="OUT", required=True, help="linear .exr or sRGB .png")
     command.add_argument(
-        "--scene", metavar="NAME", help="its light: front, side (the default), back, furnace"
+        "--output", metavar="OUT", required=True, help="the image: .png (sRGB) or .exr (linear)"
+    )
+    command.add_argument(
+        "--element", metavar="NAME", help="the material, if the document has several"
+    )
+    command.add_argument(
+        "--host", default="gl", metavar="NAME", help=f"renderer: gl (default), {hosts}"
+    )
+    command.add_argument(
+        "--scene",
+        metavar="NAME",
+        help="light: studio (default; side on hosts that cannot draw it), front, side, back, furnace",
     )
     command.add_argument(
         "--environment",
         metavar="IMAGE",
-        help="light it with a latitude-longitude image, alone unless --scene is given",
+        help="light it with this latitude-longitude image; with --scene, add that scene's light",
     )
     command.add_argument(
         "--shape",
-        default="sphere",
         metavar="NAME",
-        help="sphere (the default), or ball: a shader ball",
+        help="ball, a shader ball (default in the studio), or sphere (default in other light)",
     )
     command.add_argument(
-        "--size", type=int, default=512, help="width and height in pixels; %(default)s"
+        "--size",
+        type=int,
+        default=512,
+        metavar="N",
+        help="width and height in pixels (default: %(default)s)",
     )
     command.add_argument(
-        "--samples", type=int, metavar="N", help="paths of a pixel, on a host that traces paths"
+        "--samples", type=int, metavar="N", help="paths per pixel, for cycles (default: automatic)"
     )
     command.add_argument(
-        "--bounces", type=int, metavar="N", help="times that such a path may be scattered"
+        "--bounces", type=int, metavar="N", help="bounces per path, for cycles (default: automatic)"
     )
-    # Choose the library and the limits.
     arguments.add_library(command)
     arguments.add_materialx(command)
     arguments.add_workers(command)
@@ -64,18 +77,15 @@ def run(options: argparse.Namespace) -> int:
     if not os.path.isdir(folder := os.path.dirname(os.path.abspath(options.output))):
         rule = "output must lie in a folder that exists"
         raise InputError(f"{rule}; got {options.output}: make {folder} first")
-    # Draw the picture in a worker process.
     names = ("host", "scene", "environment", "size", "shape", "element", "library")
     known = {name: getattr(options, name) for name in names}
     paths = Paths(options.samples, options.bounces)
     work = partial(picture, policy=arguments.policy(options), paths=paths, **known)
     [result] = run_batch(work, [options.file], options.workers, options.timeout)
-    # Report what happened there.
     for warning in result.warnings:
         warn(warning)
     if result.error:
         raise result.error
-    # Write the picture, and say where it is.
     write_picture(options.output, *result.value)
     print(options.output)
     return PASSED

@@ -55,6 +55,7 @@ class Engine(ABC):
     """A program that executes shaders or renders; a context manager, which closes it."""
 
     name: str
+    draws_images: ClassVar[bool] = False  # whether the environment of its pictures may be an image
 
     @abstractmethod
     def identity(self) -> Identity:

@@ -48,6 +48,7 @@ def _current(verb: Callable[Concatenate[Host, P], T]) -> Callable[Concatenate[Ho
 class Host(FragmentHost):
     name = "gl"
     target = "glsl"
+    draws_images = True
 
     def __init__(self) -> None:
         try:

@@ -132,6 +132,7 @@ class Host(Chromium, FragmentHost):
 
     name = "webgl"
     target = "essl"
+    draws_images = True
 
     def __init__(self, limit: float = 300.0) -> None:
         super().__init__(self.name, limit)

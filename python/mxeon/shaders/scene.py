@@ -23,14 +23,7 @@ MOST_BOUNCES = 1024  # the most that Cycles takes
 
 @dataclass(frozen=True)
 class Paths:
-    """The paths of light that a host traces for a picture.
-
-    Attributes
-    ----------
-    samples : int or None
-        Paths of a pixel, in [1, MOST_SAMPLES]; None for what the host finds enough.
-    bounces : int or None
-        Times that a path may be scattered, in [1, MOST_BOUNCES]; None likewise.
+    """The paths of light that a host traces for a picture; None for as many as the host finds enough.
 
     Raises
     ------
@@ -43,8 +36,8 @@ class Paths:
     True
     """
 
-    samples: int | None = None
-    bounces: int | None = None
+    samples: int | None = None  # of a pixel, in [1, MOST_SAMPLES]
+    bounces: int | None = None  # times that a path may be scattered, in [1, MOST_BOUNCES]
 
     def __post_init__(self) -> None:
         for name, most in (("samples", MOST_SAMPLES), ("bounces", MOST_BOUNCES)):
@@ -109,10 +102,12 @@ SIDE = Scene("side", light=_towards(azimuth=20, polar=60))
 BACK = Scene("back", light=_towards(azimuth=160, polar=130))
 FURNACE = Scene("furnace", environment=1.0)
 SCENES = (FRONT, SIDE, BACK, FURNACE)
+# A floor, a ceiling and three soft boxes, which tools/site/gallery.py paints, and a light from behind.
+STUDIO = Scene("studio", BACK.light, Path(__file__).with_name("studio.exr"), shape="ball")
 
 
 def scene(name: str) -> Scene:
-    """The scene of SCENES with that name.
+    """The scene with that name: one of SCENES, or STUDIO.
 
     Raises
     ------
@@ -124,7 +119,7 @@ def scene(name: str) -> Scene:
     >>> scene("furnace").environment
     1.0
     """
-    scenes = {each.name: each for each in SCENES}
+    scenes = {each.name: each for each in (*SCENES, STUDIO)}
     assert_known("scene", name, scenes)
     return scenes[name]
 
@@ -158,17 +153,14 @@ def sphere(size: int, margin: int = 0) -> VisiblePoints:
 
     A `margin` adds as many rows and columns of pixel centers around the frame.
     """
-    # Find the points under the centers of the pixels.
     axis = (2.0 * np.arange(-margin, size + margin) + 1.0) / size - 1.0
     x, y = np.meshgrid(axis, -axis)
     radius = np.hypot(x, y)
     mask = radius < 1.0
     scale = 1.0 / np.maximum(radius, 1.0)
     z = np.sqrt(np.maximum(0.0, 1.0 - radius * radius))
-    # Find positions and normals.
     position = np.stack([x, y, z], axis=-1)
     normal = np.stack([x * scale, y * scale, z], axis=-1)
-    # Find texture coordinates.
     u = 0.5 + np.arctan2(normal[..., 0], normal[..., 2]) / (2.0 * np.pi)
     v = 0.5 + np.arcsin(np.clip(normal[..., 1], -1.0, 1.0)) / np.pi
     points = VisiblePoints(mask, position, normal, np.stack([u, v], axis=-1))
