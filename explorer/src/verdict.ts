@@ -8,7 +8,7 @@ import { show } from "./format";
 import { albedo_dir, type Model } from "./models/table";
 import { largest_apart, worst_point } from "./probe";
 import type { Side, State } from "./state";
-import { actual_model, has_table, meant_model, type Sources, source_of } from "./view";
+import { actual_model, has_table, meant_model, type Sources, source_of, values_of } from "./view";
 
 /** "differs": from the reference, as the specification leaves open. */
 export type Kind = "correct" | "wrong" | "differs" | "model" | "unknown" | "measuring";
@@ -41,6 +41,7 @@ export interface Evidence {
 }
 
 const MEASURING = "Its values are being read back.";
+const UNCHECKED = "Not judged by this page: run mxeon check on a document with these inputs.";
 const UNREAD = "Nothing is measured: this browser draws no shader.";
 
 /** The verdict on a side, for the colors, the roughness and the light of a view. */
@@ -54,12 +55,17 @@ export function verdict_on(
   if (evidence.failure) return { kind: "wrong", badge: "not drawn", text: evidence.failure };
   const [actual, meant] = [actual_model(source, side, state), meant_model(source, side, state)];
   if (!actual || !meant) {
+    if (source.kind === "shader" && source.checked) {
+      const { kind, text } = source.checked;
+      const drawn = values_of(source, state, side);
+      const changed = source.inputs.some(
+        ({ name, value }) => value !== null && String(drawn.get(name)) !== String(value),
+      );
+      const own = changed ? "With its own inputs: " : "";
+      return { kind, badge: kind === "unknown" ? "material" : kind, text: own + text };
+    }
     if (has_table(source)) return by_reference(source, evidence);
-    return {
-      kind: "unknown",
-      badge: "material",
-      text: "No reference: compare it with the other side.",
-    };
+    return { kind: "unknown", badge: "material", text: UNCHECKED };
   }
   if (actual !== meant) {
     return { kind: "wrong", badge: `not ${meant.short}`, text: wrong(actual, meant, state) };

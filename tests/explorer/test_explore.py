@@ -10,6 +10,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from mxeon import check
 from mxeon.cli import main
 from mxeon.cli.explore import MATERIALS
 from mxeon.conformance.probes.pairs import PairProbe
@@ -17,7 +18,7 @@ from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Result
 from mxeon.errors import MISUSE, NotRun
 from mxeon.errors import PASSED as PASSED_STATUS
 from mxeon.explorer import PARAGRAPH, TEXTS, documents, page, page_data
-from mxeon.explorer.data import Models, PageData
+from mxeon.explorer.data import Checked, Models, PageData
 from mxeon.explorer.diagnosis import measured_models
 from mxeon.explorer.documents import _texels, document_sources
 from mxeon.explorer.sources import RENDERERS
@@ -29,6 +30,7 @@ from mxeon.shaders.library import examples_folder
 from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, material_text
 from mxeon.shaders.scene import sphere
 from tests.explorer.browser import judged, opened, show, until
+from tests.support.documents import material
 
 LARGEST = 2 * 2**20  # bytes of the page without documents
 ROOT = Path(__file__).parents[2]
@@ -283,6 +285,56 @@ def test_a_document_is_shown_with_its_own_values_and_inputs(browser, tmp_path):
         judged(page, "left", "material")
 
 
+def test_a_textured_document_is_judged_as_check_does(browser, tmp_path):
+    out, brick = tmp_path / "page.html", str(examples_folder() / "brick.mtlx")
+    assert main(["explore", brick, "--workers", "0", "--output", str(out)]) == PASSED_STATUS
+    run = check([brick], ["gl"], ["eonlib", "stock"], workers=0)
+    pictures = [each for each in run.results if each.check == "picture"]
+    errors = {each.library: f"{each.error:.2g}" for each in pictures}
+    own = [each for each in data_of(out.read_text())["sources"] if each["id"][:9] == "document/"]
+    for source, kind in zip(own, ("correct", "wrong"), strict=True):
+        assert source["checked"]["kind"] == kind and source["reference"] is None
+        assert errors[source["library"]] in source["checked"]["text"]
+    with opened(browser, out.as_uri(), drawn=False) as page:
+        judged(page, "left", "correct")
+        judged(page, "right", "wrong")
+
+
+@pytest.mark.parametrize(
+    "lobe, kind, words",
+    [
+        ('<subsurface_bsdf name="lobe" type="BSDF"/>', "correct", "Within "),
+        (
+            '<noise2d name="n" type="float"/><sheen_bsdf name="lobe" type="BSDF">'
+            '<input name="roughness" type="float" nodename="n"/></sheen_bsdf>',
+            "unknown",
+            "No reference: node 'lobe': roughness must lie in [0, 1]",
+        ),
+    ],
+    ids=["integral", "outside"],
+)
+def test_a_document_without_a_table_says_what_check_says(lobe, kind, words, tmp_path):
+    file = tmp_path / "a.mtlx"
+    file.write_text(material(lobe))
+    (source, _) = document_sources(str(file))
+    assert source.reference is None and source.checked.kind == kind
+    assert source.checked.text.startswith(words)
+
+
+@pytest.mark.parametrize(
+    "name, first, last",
+    [
+        ("standard_surface_rough_base", ("base", "base_color"), "emission_color"),
+        ("openpbr_rough_base", ("base_color",), "thin_film_ior"),
+        ("brick", ("energy_compensation",), "default"),
+    ],
+)
+def test_inputs_that_matter_come_first(name, first, last):
+    (source, *_) = document_sources(str(examples_folder() / f"{name}.mtlx"))
+    names = [each.path.rpartition("/")[2] for each in source.inputs if each.shown]
+    assert (*names[: len(first)],) == first and names[-1] == last
+
+
 def test_the_page_holds_what_materials_share_once():
     source = document_sources(CLAY)[0]
     sizes = [len(page(PageData("1", "1", "", (source,) * count))) for count in (1, 2, 1002)]
@@ -355,6 +407,7 @@ def test_the_data_are_the_fields_that_the_page_reads():
     kinds["ShaderSource"] = next(each for each in data["sources"] if each["kind"] == "shader")
     kinds["ModelSource"] = next(each for each in data["sources"] if each["kind"] == "model")
     kinds["Port"] = kinds["ShaderSource"]["inputs"][0]
+    kinds["Checked"] = asdict(Checked("", ""))
     kinds["ReferenceTable"] = kinds["ShaderSource"]["reference"]
     for name, fields in kinds.items():
         body = re.search(rf"export interface {name} {{(.*?)\n}}", text, re.DOTALL)[1]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The data of a page, field for field the types of `explorer/src/data.ts`."""
+"""The data of a page, field for field the types of `explorer/src/data.ts`, which describes the fields."""
 
 from dataclasses import dataclass, field
 from typing import TypeAlias
@@ -11,13 +11,7 @@ Direction: TypeAlias = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Models:
-    """Names of the models that a node has with energy_compensation true and false.
-
-    Attributes
-    ----------
-    on, off : str
-        Names of rows of `mxeon.models.table`; equal where the node has no such input.
-    """
+    """Names of the models that a node has with energy_compensation true and false."""
 
     on: str
     off: str
@@ -25,19 +19,7 @@ class Models:
 
 @dataclass(frozen=True)
 class ModelSource:
-    """A material that is one model.
-
-    Attributes
-    ----------
-    id : str
-        Names it in the address of a view.
-    title, group, note : str
-        Its name, the heading it stands under, and one sentence about it.
-    model, meant : str
-        The model that it is, and the one that it should be.
-    pages : tuple of str
-        Names of the pages of `docs/upstream` on its defects.
-    """
+    """A material that is one model."""
 
     id: str
     title: str
@@ -51,14 +33,7 @@ class ModelSource:
 
 @dataclass(frozen=True)
 class Texels:
-    """An image with 8 bits for each of red, green, blue and alpha.
-
-    Attributes
-    ----------
-    width, height : int
-    rgba : str
-        Bytes in base64, row 0 at the bottom.
-    """
+    """An image with 8 bits for each of red, green, blue and alpha."""
 
     width: int
     height: int
@@ -67,27 +42,7 @@ class Texels:
 
 @dataclass(frozen=True)
 class ShaderInput:
-    """A public input of a shader.
-
-    Attributes
-    ----------
-    name : str
-        Of the uniform.
-    type : str
-        MaterialX's name.
-    value : bool, int, float, tuple or None
-        None for a file.
-    path : str
-        Name path of the input in the document.
-    label : str
-        Name for readers.
-    min, max : float or None
-        Range that its definition recommends.
-    image : Texels or None
-        Of a file that can be read.
-    shown : bool
-        Whether it is a number or a switch that readers may want to move.
-    """
+    """A public input of a shader."""
 
     name: str
     type: str
@@ -119,16 +74,7 @@ class ReferenceBounds:
 
 @dataclass(frozen=True)
 class ShaderForm:
-    """Another function that a shader may have in place of a model.
-
-    Attributes
-    ----------
-    title : str
-    permitted : bool
-        Whether the specification leaves it open.
-    direct, white : tuple of float
-        As those of `ReferenceTable`, or empty.
-    """
+    """Another function that a shader may have in place of a model."""
 
     title: str
     permitted: bool
@@ -138,18 +84,7 @@ class ShaderForm:
 
 @dataclass(frozen=True)
 class ReferenceTable:
-    """What the models make of a material, in float64, rounded to the digits of `references.py`.
-
-    Attributes
-    ----------
-    direct : tuple of float
-        pi f cos(theta_i) for each pair of a page, 3 each.
-    white : tuple of float
-        What it returns of white surroundings to each view of a page, 3 each.
-    bounds : ReferenceBounds
-    forms : tuple of ShaderForm
-        What shaders have in its place; empty for more than one lobe.
-    """
+    """What the models make of a material, in float64, rounded to the digits of `references.py`."""
 
     direct: tuple[float, ...]
     white: tuple[float, ...]
@@ -158,28 +93,16 @@ class ReferenceTable:
 
 
 @dataclass(frozen=True)
-class ShaderSource:
-    """A material as generated ESSL.
+class Checked:
+    """What `mxeon check` finds of a material that has no table: its pictures on gl against the reference's."""
 
-    Attributes
-    ----------
-    id, title, group, note : str
-        As those of `ModelSource`.
-    library : str
-        "eonlib" or "stock".
-    pixel : str
-        The text of its pixel stage.
-    inputs : tuple of ShaderInput
-    controls : Controls
-    document : str
-        The document, as MaterialX text.
-    meant, actual : Models or None
-        What the node should be and what this library makes of it, where it is one diffuse node.
-    pages : tuple of str
-        As those of `ModelSource`.
-    reference : ReferenceTable or None
-        None where no model covers all of its lobes.
-    """
+    kind: str  # "correct", "wrong", or "unknown" where the reference has no model either
+    text: str
+
+
+@dataclass(frozen=True)
+class ShaderSource:
+    """A material as generated ESSL."""
 
     id: str
     title: str
@@ -194,6 +117,7 @@ class ShaderSource:
     actual: Models | None = None
     pages: tuple[str, ...] = ()
     reference: ReferenceTable | None = None
+    checked: Checked | None = None
     kind: str = "shader"
 
 
@@ -207,22 +131,7 @@ class Still:
 
 @dataclass(frozen=True)
 class PageData:
-    """Everything that a page holds beside its program.
-
-    Attributes
-    ----------
-    version, materialx : str
-        Of mxeon and of MaterialX.
-    functions : str
-        eonlib's GLSL functions of the whole family and of its samplers.
-    sources : tuple of ModelSource and ShaderSource
-        What can be compared.
-    stills : tuple of Still
-    pairs, views : tuple
-        Pairs of directions, wo and wi of each, and views, in the local frame, of every reference.
-    pages : str
-        Address of a page on a defect, {} for its name; "" where there is none.
-    """
+    """Everything that a page holds beside its program."""
 
     version: str
     materialx: str

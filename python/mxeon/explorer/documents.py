@@ -2,6 +2,7 @@
 """Documents as sources of a page: generated ESSL, and inputs with the ranges of their definitions."""
 
 import math
+import warnings
 from base64 import b64encode
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
@@ -13,9 +14,21 @@ from xml.etree import ElementTree
 import MaterialX as mx
 import numpy as np
 
+from mxeon.conformance.pictures.document_pictures import judge_document
+from mxeon.conformance.reference import Host as Reference
+from mxeon.conformance.results import PASSED, Result
 from mxeon.errors import MxeonError, printable
-from mxeon.explorer.data import Controls, Models, ReferenceTable, ShaderInput, ShaderSource, Texels
+from mxeon.explorer.data import (
+    Checked,
+    Controls,
+    Models,
+    ReferenceTable,
+    ShaderInput,
+    ShaderSource,
+    Texels,
+)
 from mxeon.explorer.references import reference_of
+from mxeon.hosts import open_host
 from mxeon.hosts.image_limit import check_images, image_files
 from mxeon.hosts.textures import read_texture
 from mxeon.shaders.document.policy import DEFAULT, Policy
@@ -25,11 +38,9 @@ from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG, OREN_NAYAR
 
 LIBRARIES = ("eonlib", "stock")
 LAYOUT = ("comment", "newline")
-REFERENCES = 20  # materials of a document that are compared with models, some 0.1 s each
+REFERENCES = 20  # materials of a document that are judged: some 0.1 s each, by pictures 2 s
 LARGEST_IMAGE = 256  # texels on a side: a quarter of a mebibyte
-ALL_IMAGES = (
-    64 * LARGEST_IMAGE**2
-)  # texels of a document: 22 MB of the page; more images are smaller
+ALL_IMAGES = 64 * LARGEST_IMAGE**2  # texels of a document: 22 MB of a page; more are smaller
 RANGE = (("uimin", "uisoftmin"), ("uimax", "uisoftmax"))
 
 # What the diffuse nodes are meant to be, with the flag and without.
@@ -41,25 +52,8 @@ def document_sources(
 ) -> tuple[ShaderSource, ...]:
     """The materials of a document, each with eonlib and, where it can, with another library.
 
-    Parameters
-    ----------
-    file : str
-        A MaterialX document; its name becomes the heading of its materials.
-    policy : Policy
-        Permissions, limits and search path.
-    library : str
-        The other one; see `mxeon.shaders.library.load_library`.
-
-    Returns
-    -------
-    tuple of ShaderSource
-
-    Raises
-    ------
-    DocumentError
-        If no shader can be generated from the document.
-    ImageError
-        If an image that it names is no image.
+    `library` is the other one; see `mxeon.shaders.library.load_library`. Raises DocumentError if no shader
+    can be generated from the document, ImageError if an image that it names is none.
     """
     name = " ".join(printable(Path(file).name).split())
     sources: list[ShaderSource] = []
@@ -67,7 +61,6 @@ def document_sources(
     references: dict[str, ReferenceTable | None] = {}
     images: dict[str, Texels | None] = {}
     for half, each in zip(LIBRARIES, (LIBRARIES[0], library), strict=True):
-        # Generate with each library; a node may be in eonlib alone.
         try:
             shaders = generate(file, "essl", library=each, lights=True, policy=policy)
         except MxeonError:
@@ -80,29 +73,46 @@ def document_sources(
         side = min(LARGEST_IMAGE, math.isqrt(ALL_IMAGES // max(len(names), 1)))
         images |= {name: _texels(name, side) for name in names if name not in images}
         text = document_text(shaders[0].document) if shaders else ""  # one for all of them
-        # Describe each shader to the page.
+        if half == LIBRARIES[0]:
+            references = {one.element: reference_of(one) for one in shaders[:REFERENCES]}
+        open_ones = len(shaders) <= REFERENCES and None in references.values()
+        checked = _checked(file, each, policy) if open_ones else {}
         for shader in shaders:
             title = f"{shader.element}, {Path(each).name.replace(',', ' ')}"
             own = f"{shader.name}/{half}"
             source = shader_source(shader, text, own, title, name, each, images)
-            if shader.element not in references and len(references) < REFERENCES:
-                references[shader.element] = reference_of(shader)
-            sources.append(replace(source, reference=references.get(shader.element)))
+            reference = references.get(shader.element)
+            found = None if reference else checked.get(shader.element)
+            sources.append(replace(source, reference=reference, checked=found))
     return tuple(sources)
 
 
+def _checked(file: str, library: str, policy: Policy) -> dict[str, Checked]:
+    """What `mxeon check` finds on gl, by element, of materials that vary or that no table covers."""
+    try:
+        with open_host("gl") as host, warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # generating has told of all of them
+            results, _, _ = judge_document(Path(file), host, Reference(), library, policy)
+    except MxeonError:  # no gl; of the document generating has told
+        return {}
+    return {each.subject.removeprefix(f"{Path(file).name}: "): _words(each) for each in results}
+
+
+def _words(result: Result) -> Checked:
+    """The outcome of a check of pictures, for readers."""
+    if result.check != "picture" or result.error is None:
+        reason = (result.diagnosis or result.reason).removeprefix("reference: ")
+        return Checked("unknown", f"No reference: {reason}.")
+    error = f"{result.error:.2g}"
+    judge = f"mxeon check, tolerance {result.tolerance:.2g}"
+    if result.verdict == PASSED:
+        return Checked("correct", f"Within {error} of the reference ({judge}).")
+    place = f", {result.diagnosis}" if result.diagnosis else ""
+    return Checked("wrong", f"Off by up to {error}{place} ({judge}).")
+
+
 def document_text(document: mx.Document) -> str:
-    """A document as XML; MaterialX's own writer leaves a `<` of an attribute as it is.
-
-    Parameters
-    ----------
-    document : MaterialX.Document
-        Whatever it includes is in it.
-
-    Returns
-    -------
-    str
-    """
+    """A document with all that it includes as XML; MaterialX's own writer leaves `<` in attributes as it is."""
     root = _tree(document)
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
@@ -126,24 +136,7 @@ def shader_source(
     library: str,
     images: Mapping[str, Texels | None] = MappingProxyType({}),
 ) -> ShaderSource:
-    """A generated shader as a source of a page.
-
-    Parameters
-    ----------
-    shader : Shader
-        ESSL with MaterialX's directional light.
-    document : str
-        Its MaterialX text.
-    name, title, group, library : str
-        As those of `ShaderSource`.
-    images : mapping of str to Texels or None
-        Those of its inputs, by file.
-
-    Returns
-    -------
-    ShaderSource
-    """
-    # Begin with a source without controls.
+    """A generated shader, ESSL with MaterialX's directional light, as a source of a page; images by file."""
     source = ShaderSource(
         id=name,
         title=title,
@@ -151,11 +144,10 @@ def shader_source(
         note="",
         library=library,
         pixel=shader.stages["pixel"],
-        inputs=tuple(_ports(shader, images)),
+        inputs=_by_effect(tuple(_ports(shader, images)), shader.document),
         controls=Controls(),
         document=document,
     )
-    # Find the inputs for the controls of the one diffuse node.
     node = _only_diffuse_node(shader)
     if node is None:
         return source
@@ -165,7 +157,6 @@ def shader_source(
         names.get(f"{path}/{each}", "") for each in ("color", "roughness", FLAG)
     )
     source = replace(source, controls=Controls(color, roughness, flag))
-    # Name the model that it means, if nothing else changes its inputs.
     connected = any(
         each.getConnectedOutput() or each.getConnectedNode() for each in node.getInputs()
     )
@@ -200,6 +191,23 @@ def _ports(shader: Shader, images: Mapping[str, Texels | None]) -> Iterator[Shad
         else:
             for name, kind, value in _numbers(port.name, port.type, port.value, shader.document):
                 yield replace(_port(shader, port), name=name, type=kind, value=_short(value))
+
+
+def _by_effect(ports: tuple[ShaderInput, ...], document: mx.Document) -> tuple[ShaderInput, ...]:
+    """Inputs that a document sets, then defaults, then those without effect: of lobes of weight 0, of images."""
+    values = {port.path: port.value for port in ports}
+
+    def rank(port: ShaderInput) -> int:
+        node, _, name = port.path.rpartition("/")
+        words = name.split("_")
+        stems = ["_".join(words[:count]) for count in range(1, len(words))]
+        gates = {"weight", *stems, *(f"{stem}_weight" for stem in stems)} - {name}
+        unused = name == "default" and f"{node}/file" in values  # of an image that is there
+        if unused or any(values.get(f"{node}/{gate}") == 0.0 for gate in gates):
+            return 2
+        return 0 if document.getDescendant(port.path) else 1
+
+    return tuple(sorted(ports, key=rank))
 
 
 def _numbers(
@@ -269,14 +277,11 @@ def _texels(path: str, side: int) -> Texels | None:
     """An image of at most `side` texels on a side; None if there is no such file."""
     if not Path(path).is_file():
         return None
-    # Choose blocks of pixels that make the image small enough.
     pixels = read_texture(path)
     high, wide = (-(-size // side) for size in pixels.shape[:2])
     rows, columns = pixels.shape[0] // high, pixels.shape[1] // wide
-    # Average the blocks.
     blocks = pixels[: rows * high, : columns * wide].reshape(rows, high, columns, wide, -1)
     mean = blocks.mean(axis=(1, 3))
-    # Encode them as 8-bit RGBA.
     rgba = np.ones((rows, columns, 4))
     rgba[..., : mean.shape[-1]] = mean
     codes = np.rint(255.0 * np.clip(np.nan_to_num(rgba), 0.0, 1.0)).astype(np.uint8)
