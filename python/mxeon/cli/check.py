@@ -77,7 +77,6 @@ def run(options: argparse.Namespace) -> int:
     progress.show("reads the documents" if options.files else "reads the library")
     from mxeon.conformance.run import check
 
-    # Refuse what cannot be meant.
     if options.resume and not options.report:
         raise InputError("--resume needs the folder of the run to continue; pass --report DIR")
     if options.scheduler and options.materialx:
@@ -92,7 +91,6 @@ def run(options: argparse.Namespace) -> int:
         refused.append(error)
         fail(MISUSE, error)
 
-    # Check, and tell of documents that are refused at once.
     result = check(
         options.files,
         host_names() if "all" in hosts else hosts,

@@ -47,16 +47,13 @@ def run(options: argparse.Namespace) -> int:
     from mxeon.io.files import write_text
 
     arguments.assert_other(options.output, options.files)
-    # Generate the shaders of the documents.
     results = read_run(options.report).results if options.report else ()
     work = partial(document_sources, policy=arguments.policy(options), library=options.library)
     documents = list(run_batch(work, options.files, options.workers, options.timeout))
-    # Repeat each warning once.
     texts = (str(text) for each in documents for text in each.warnings)
     for text in dict.fromkeys(texts):  # both libraries may warn of one input
         warn(text)
     errors = [each.error for each in documents if each.error]
-    # Write the page, unless a document is refused.
     if not errors:
         data = page_data((each.value for each in documents), results)
         if not data.judged:

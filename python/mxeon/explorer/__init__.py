@@ -36,20 +36,9 @@ def page_data(
     results: Iterable[Result] = (),
     pages: str = "",
 ) -> PageData:
-    """The data of a page.
+    """The data of a page: what `document_sources` gives for each document, and results of a run.
 
-    Parameters
-    ----------
-    documents : iterable of tuple of ShaderSource
-        What `document_sources` gives for each document.
-    results : iterable of Result
-        Of a run whose diagnoses can be chosen too.
-    pages : str
-        Address of a page of `docs/upstream`, {} for its name; "" for none.
-
-    Returns
-    -------
-    PageData
+    `pages` is the address of a page of `docs/upstream`, {} for its name; "" for none.
     """
     own = (
         replace(each, id=f"document/{position}/{each.id}")
@@ -78,14 +67,7 @@ def _diagnosed(source: ShaderSource) -> ShaderSource:
 def page(data: PageData) -> str:
     """The page with its data, as one HTML text that loads nothing.
 
-    Parameters
-    ----------
-    data : PageData
-
-    Returns
-    -------
-    str
-        Text of documents stands in it as JSON without any character that HTML knows.
+    Text of documents stands in it as JSON without any character that HTML knows.
 
     Examples
     --------
@@ -109,17 +91,14 @@ def _with_texts(fields: dict[str, Any]) -> dict[str, Any]:
     references: list[object] = []
     images: dict[tuple[int, int, str], int] = {}
     for each in fields["sources"]:
-        # Name the place of its reference.
         if (reference := each.get("reference")) is not None:
             if reference not in references:
                 references.append(reference)
             each["reference"] = references.index(reference)
-        # Name the places of its images.
         for port in each.get("inputs", ()):
             if image := port["image"]:
                 key = image["width"], image["height"], image["rgba"]
                 port["image"] = images.setdefault(key, len(images))
-        # Name the places of its paragraphs.
         for name in filter(each.__contains__, TEXTS):
             parts = each[name].split(PARAGRAPH)
             each[name] = [places.setdefault(part, len(places)) for part in parts]

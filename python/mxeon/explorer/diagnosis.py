@@ -18,16 +18,7 @@ from mxeon.models.table import KNOWN_DEFECTS, MODELS
 def measured_models(library: str, node: str) -> Models | None:
     """The models that a node is with each state of its flag, as the gl host evaluates it.
 
-    Parameters
-    ----------
-    library : str
-    node : str
-        Category of a rough diffuse node.
-
-    Returns
-    -------
-    Models or None
-        None where gl does not run here, or no known model is near.
+    None where gl does not run here, or no known model is near.
     """
     try:
         with open_host("gl") as host:

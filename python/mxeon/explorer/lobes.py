@@ -37,22 +37,12 @@ LACQUER = """    <input name="base_color" type="color3" value="0.55, 0.12, 0.08"
 
 @dataclass(frozen=True)
 class ComparedMaterial:
-    """A material that both libraries have.
+    """A material that both libraries have."""
 
-    Attributes
-    ----------
-    key, title : str
-        Its name in addresses, and for readers.
-    text : str
-        Its document.
-    subjects : tuple of str
-        What checks call the nodes in it, for their pages.
-    """
-
-    key: str
+    key: str  # its name in addresses
     title: str
     text: str
-    subjects: tuple[str, ...] = field(default=())
+    subjects: tuple[str, ...] = field(default=())  # what checks call its nodes
 
     @property
     def pages(self) -> tuple[str, ...]:

@@ -62,27 +62,15 @@ def _directions(rows: Array) -> tuple[Direction, ...]:
 
 
 def reference_of(shader: Shader) -> ReferenceTable | None:
-    """Values of a shader's material with its own inputs.
-
-    Parameters
-    ----------
-    shader : Shader
-
-    Returns
-    -------
-    ReferenceTable or None
-        None where no model covers all of its lobes.
-    """
+    """Values of a shader's material with its own inputs; None where no model covers all of its lobes."""
     lobes = _lobes(shader)
     subject = _subject(lobes)
-    # Evaluate the models.
     try:
         direct, white = _hair(shader) if subject in HAIRS else _values(shader)
     except (NotRun, ValueError):  # a lobe without a model, an input outside of the model's domain
         return None
     if not (np.isfinite(direct).all() and np.isfinite(white).all()):
         return None
-    # Say how near a shader has to be, and what it may be in their place.
     forms = tuple(_forms(subject, shader)) if subject else ()
     return ReferenceTable(_digits(direct), _digits(white), _bounds(lobes), forms)
 

@@ -86,17 +86,7 @@ def model_sources() -> tuple[ModelSource, ...]:
 
 
 def run_sources(results: Iterable[Result]) -> tuple[ModelSource, ...]:
-    """The model nearest to each failure of a run that a diagnosis explains.
-
-    Parameters
-    ----------
-    results : iterable of Result
-
-    Returns
-    -------
-    tuple of ModelSource
-        One for each host, library and subject, in order of appearance.
-    """
+    """The model nearest to each failure of a run that a diagnosis explains."""
     names = {row.title: row.name for row in KNOWN_DEFECTS + MODELS}
     sources: dict[tuple[str, str, str], ModelSource] = {}
     for result in results:

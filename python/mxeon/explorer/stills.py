@@ -26,17 +26,14 @@ def stills() -> tuple[Still, ...]:
 
 def picture(name: str) -> NDArray[np.float64]:
     """Radiance of a sphere of one model, (SIZE, SIZE, 3): pi f cos(theta_i)."""
-    # Find the directions at each point of the sphere.
     points = sphere(SIZE)
     normals = points.normal[points.mask]
     wo, wi = (local_directions(normals, each) for each in (VIEW, LIGHT))
     lit = wi[:, 2] > 0.0
-    # Evaluate the model where light falls.
     row = model(name)
     parameter = [1.0] if row.parameter else []
     values = np.zeros((len(normals), 3))
     values[lit] = np.pi * row.brdf(wo[lit], wi[lit], COLOR, *parameter) * wi[lit, 2:]
-    # Put the values at their pixels.
     image = np.zeros((SIZE, SIZE, 3))
     image[points.mask] = values
     return image
