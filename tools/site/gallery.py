@@ -36,16 +36,14 @@ BOXES = (  # soft boxes of the studio: towards them, half of their width in radi
 )
 BACKGROUND = 30  # sRGB code
 SEEN = 3  # sRGB codes: the least difference that an eye may find side by side
-WIPE = DOCS / "images" / "wipe.webp"
-WIPED = DOCS / "images" / "anodized_titanium.mtlx"
-LINE = 2  # pixels between the halves
+TITANIUM = DOCS / "images" / "titanium.mtlx"  # of the README
 
 HEAD = """<!-- Made by `python tools/site/gallery.py`. -->
 # Gallery
 
-Each material of the folder `examples/` on a shader ball in a studio, drawn by the `gl` host: left with stock
-MaterialX, right with eonlib. Documents that are called a furnace show a sphere in white surroundings, which
-vanishes where no energy is lost or made. Nothing casts a shadow here.
+The materials in `examples/` on a shader ball in a studio, rendered on the `gl` host: stock MaterialX on the left,
+eonlib on the right, the largest difference first. Furnace documents show a sphere in a white environment, where
+it vanishes if no energy is lost or gained. Nothing casts a shadow here.
 
 """
 
@@ -109,7 +107,7 @@ def difference(stock, own):
 
 
 def render():
-    """Write the pictures, the difference of each material, and the README's picture of two halves."""
+    """Write the pictures, the difference of each material, and the README's picture of two balls."""
     PICTURES.mkdir(parents=True, exist_ok=True)
     write_exr(STUDIO.environment, studio(), {})
     differences = {}
@@ -118,11 +116,8 @@ def render():
             for name, codes in pictures(host, document):
                 save(PICTURES / f"{name}.webp", np.hstack(codes))
                 differences[name] = difference(*codes) if len(codes) > 1 else None
-        [(_, (stock, own))] = pictures(host, WIPED)
-    half = SIZE // 2
-    own[:, :half] = stock[:, :half]
-    own[:, half - LINE // 2 : half + LINE // 2] = 255
-    save(WIPE, own)
+        [(_, balls)] = pictures(host, TITANIUM)
+    save(TITANIUM.with_suffix(".webp"), np.hstack(balls))
     DIFFERENCES.write_text(json.dumps(differences, indent=1) + "\n", encoding="utf-8")
 
 
@@ -131,14 +126,14 @@ def words(difference):
     if difference is None:
         return "stock MaterialX cannot generate its nodes"
     if difference < SEEN:
-        return "nothing to see: the two are alike here"
-    return f"one pixel in a hundred differs by {difference:.0f} of 255 sRGB codes or more"
+        return "no visible difference"
+    return f"1 % of the pixels differ by {difference:.0f} of 255 sRGB codes or more"
 
 
 def section(document, differences):
     """Heading, description, pictures and command of one document, as Markdown."""
     description = document.read_text(encoding="utf-8").splitlines()[2]
-    names = materials(document)
+    names = sorted(materials(document), key=lambda name: -(differences[name] or 0.0))
     shown = "\n\n".join(
         f"![{name}](images/gallery/{name}.webp)\n\n*{name}: {words(differences[name])}.*"
         for name in names
@@ -153,7 +148,11 @@ def section(document, differences):
 def page():
     """The gallery as Markdown."""
     differences = json.loads(DIFFERENCES.read_text(encoding="utf-8"))
-    documents = sorted(EXAMPLES.glob("*.mtlx"))
+
+    def largest(document):
+        return max(differences[name] or 0.0 for name in materials(document))
+
+    documents = sorted(sorted(EXAMPLES.glob("*.mtlx")), key=largest, reverse=True)
     return HEAD + "\n".join(section(each, differences) for each in documents)
 
 
