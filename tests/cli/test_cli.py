@@ -6,9 +6,11 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import OpenImageIO as oiio
+
 import pytest
 
 from mxeon.cli import main, parser
@@ -43,7 +45,17 @@ def test_check_passes_and_writes_a_report(tmp_path, capsys, monkeypatch):
         "pictures",
         "journal",
         ".journal.lock",
+        "upstream",
     }
+    # Stock MaterialX fails, for comparison alone, whatever reads the run.
+    found = json.loads((tmp_path / "report" / "results.json").read_text())
+    assert (found["verdict"], found["compared"]) == ("passed", ["stock"])
+    assert {each["library"] for each in found["results"] if each["verdict"] == "failed"} == {
+        "stock"
+    }
+    suites = ElementTree.parse(tmp_path / "report" / "junit.xml").findall("testsuite")
+    assert {each.get("failures") for each in suites} == {"0"}
+    assert main(["report", "make", str(tmp_path / "report")]) == PASSED
 
 
 def test_check_of_stock_fails_and_names_the_defects(capsys, monkeypatch):

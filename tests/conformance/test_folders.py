@@ -66,7 +66,7 @@ def test_causes_count_documents_the_worst_first():
     assert [verdict for verdict, _ in groups] == ["refused", "no reference", PASSED, PASSED]
     assert ("refused", "must contain a renderable element; got ...") in groups
     assert ("no reference", "there is no model for ...") in groups
-    assert "4 documents: 2 have reference pictures" in summary_by_cause(RUN)[0]
+    assert summary_by_cause(RUN)[0].startswith("4 documents, 2 ")
 
 
 def test_the_page_of_a_run_counts_documents_and_says_how_long_it_took():
@@ -86,4 +86,4 @@ def test_a_bad_document_of_a_folder_is_one_line_and_the_run_goes_on(tmp_path, ca
     assert main(["check", str(tmp_path), *options]) == MISUSE
     output, error = capsys.readouterr()
     assert len(error.splitlines()) == MANY
-    assert f"{MANY + 1} documents" in output and f"{MANY} refused" in output
+    assert f"{MANY + 1} documents" in output and f"\n    {MANY} refused" in output

@@ -1,44 +1,56 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The short answer of a run: the verdict, what the documents' nodes are, and what failed."""
+"""The short answer of a run: how each material looks, which nodes are wrong, why, and the remedy."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
-from mxeon.conformance.results import DIRECT, FAILED, NOT_RUN, Result, Run, counted
+from mxeon.conformance.results import DIFFERS, DIRECT, FAILED, NOT_RUN, PASSED, Result, Run, counted
 from mxeon.conformance.results.known_issues import issues_of, link
-from mxeon.conformance.run.documents import REFUSED, causes, document_verdicts, is_refused
+from mxeon.conformance.run.documents import (
+    KEYS,
+    REFUSED,
+    causes,
+    document_verdicts,
+    is_refused,
+)
 from mxeon.conformance.run.survey import model_of
 from mxeon.errors import one_line
+from mxeon.shaders.library import eonlib_folder
+from mxeon.shaders.library_export import CLIENTS
 
-LINES = 10  # of an answer, where nothing has to be said twice
-NODES = 5  # of a document, beside the number of the others that passed
-MANY = 20  # documents, more of which are told by their causes
-FEWEST = 3  # lines that failures have in any case
-NAMED = 3  # nodes in a line of failures, beside the number of the others
+LINES = 10  # of the answer on one document
+MANY = 20  # documents; more are counted by cause
+FEWEST = 3  # nodes, and failures that count, in any case
+NAMED = 3  # names in a list, before the number of the others
 FULL = "--full prints everything"
-PICTURES = ("picture", "finite", "document")  # checks of documents
+AS_SPECIFIED = "looks as specified"
 
 
-def answer(run: Run) -> list[str]:
-    """The lines of a run's short answer."""
-    # The verdict, what did not run, and the documents.
-    lines = [*map(one_line, (run.sentence, *run.origins)), *_not_run(run)]
-    failures, notes = list(_failures(run)), new_notes(run)
-    room = LINES - len(lines) - min(len(failures), FEWEST)
+def answer(run: Run, full: bool = False) -> list[str]:
+    """The lines of a run's answer, cut to about LINES unless it is full."""
     many = len(run.contents) + len(run.refused) > MANY
-    documents = summary_by_cause(run) if many else _documents(run, room)
-    told = documents if many else documents[: max(room, NODES)]
-    lines += told
-    # What failed and why, and notes.
-    kept = max(FEWEST, LINES - len(lines))
-    lines += failures[:kept]
-    left = max(1, LINES - len(lines))
-    lines += [one_line(f"note: {note}") for note in notes[:left]]
-    if len(documents) > len(told) or len(failures) > kept or len(notes) > left:
-        lines.append(f"there is more: {FULL}")
+    looks = summary_by_cause(run) if many else list(map(one_line, _looks(run)))
+    rows = {} if many else _rows(run)
+    remedy, failures, notes = list(_remedy(run)), list(_failures(run)), new_notes(run)
+    first = [*map(one_line, [*run.origins, *_not_run(run)]), *looks]
+    # What has no material to speak of, or was not judged, begins with the verdict.
+    begins = run.refused or run.summary.verdict == NOT_RUN or not run.contents
+    verdict = [one_line(run.sentence)]
+    first, last = ([*verdict, *first], []) if begins else (first, verdict)
+    room = LINES - len(first) - len(remedy) - len(last)
+    least = FEWEST if any(each.startswith("failed") for each in failures) else 1
+    kept = len(rows) if full else max(FEWEST, room - 1 - min(least, len(failures)))
+    table = list(_table(run, rows, kept))
+    told = len(failures) if full else max(least, room - len(table))
+    noted = len(notes) if full else max(1, room - len(table) - len(failures[:told]))
+    notes = [f"note: {note}" for note in notes]
+    after = [*remedy, *failures[:told], *notes[:noted]]
+    lines = [*first, *table, *map(one_line, after), *last]
+    if not full and (len(rows) > kept or len(failures) > told or len(notes) > noted):
+        lines.append(f"There is more: {FULL}.")
     return lines
 
 
@@ -47,129 +59,192 @@ def summary_by_cause(run: Run) -> list[str]:
     verdicts = document_verdicts(run)
     every = {each.document for each in verdicts}
     referenced = len(every - {each.document for each in verdicts if not each.referenced})
-    lines = [
-        f"{counted(len(every), 'document')}: {referenced} have reference pictures in all materials"
-    ]
-    for (verdict, cause), documents in causes(verdicts).items():
-        more = f" and {len(documents) - 1} more" if len(documents) > 1 else ""
-        lines.append(one_line(f"  {len(documents):4} {verdict}: {cause} ({documents[0]}{more})"))
+    lines = [f"{counted(len(every), 'document')}, {referenced} with reference pictures throughout"]
+    libraries = sorted({each.library for each in verdicts}, key=lambda name: name in run.compared)
+    for library in libraries:
+        place = f" with {library}" if library and len(set(libraries) - {""}) > 1 else ""
+        found = causes([each for each in verdicts if each.library == library])
+        for (verdict, cause), documents in found.items():
+            more = f" and {len(documents) - 1} more" if len(documents) > 1 else ""
+            words = f"{verdict}{place}: {cause} ({documents[0]}{more})"
+            lines.append(f"  {len(documents):4} {one_line(words)}")
     return lines
 
 
-def _documents(run: Run, room: int) -> list[str]:
-    """A table for each document on each host, those with failures first; short ones if room is."""
-    blocks = [
-        _block(run, document, host)
-        for document in run.contents
-        if document not in run.refused
-        for host in _hosts(run, document)
-    ]
-    blocks.sort(key=_passed)
-    if sum(map(len, blocks)) > room and len(blocks) > 1:
-        blocks = [[_short(block)] if _passed(block) else block for block in blocks]
-    return [line for block in blocks for line in block]
-
-
-def _short(block: Sequence[str]) -> str:
-    """A document that passed, in one line."""
-    return f"{block[0].split('  ')[0]}: passed"
-
-
 def new_notes(run: Run) -> list[str]:
-    """Notes of a run, those left out that a diagnosis says too."""
+    """Notes of a run, without those that a diagnosis repeats."""
     said = tuple({each.diagnosis for each in run.results if each.diagnosis})
     return [note for note in run.notes if not note.endswith(said)]
 
 
-def _hosts(run: Run, document: str) -> list[str]:
-    """Hosts on which a document was judged."""
-    names = (result.host for result in run.results if _is_of(result, run, document))
-    return list(dict.fromkeys(names))
+# --- materials ------------------------------------------------------------------------------------
 
 
-def _is_of(result: Result, run: Run, document: str) -> bool:
-    """Whether a result that ran is of a document: of its pictures or its nodes."""
+def _looks(run: Run) -> Iterator[str]:
+    """A sentence for each material, those that look wrong first; materials that look alike share it."""
+    hosts = {each.host for each in run.results if each.check in KEYS}
+    alike: dict[str, list[str]] = {}
+    wrong: set[str] = set()
+    for document in run.contents:
+        if document in run.refused:
+            continue
+        found: dict[tuple[str, str], list[Result]] = {}
+        for each in run.results:
+            if _is_picture(each, document):
+                found.setdefault((each.subject, each.host), []).append(each)
+        if not found:
+            alike.setdefault("not drawn on this host", []).append(document)
+        for (subject, host), results in found.items():
+            element = subject.removeprefix(f"{Path(document).name}: ")
+            name = element if len(run.contents) == 1 else subject
+            place = f" on {host}" if len(hosts) > 1 else ""
+            sentence = _look(run, document, results)
+            alike.setdefault(sentence, []).append(f"{name}{place}")
+            if any(each.verdict == FAILED for each in results):
+                wrong.add(sentence)
+    for sentence, names in sorted(alike.items(), key=lambda each: each[0] not in wrong):
+        yield f"{', '.join(names)}: {sentence}."
+
+
+def _look(run: Run, document: str, results: Sequence[Result]) -> str:
+    """How a material looks on one host with each library."""
+    words: dict[str, list[str]] = {}
+    for each in results:
+        words.setdefault(_appearance(run, document, each), []).append(_title(run, each.library))
+    drawn = {each.library for each in results}
+    for library in _unique([*(each.library for each in run.results), *run.compared]):
+        refused = is_refused(run, document, library)
+        if library not in drawn and (refused or library in run.compared):
+            words.setdefault(REFUSED if refused else "not judged", []).append(_title(run, library))
+    right = [
+        f"{AS_SPECIFIED} with {' and '.join(names)}"
+        for names in [words.pop(AS_SPECIFIED, [])]
+        if names
+    ]
+    return "; ".join(
+        [*right, *(f"with {' and '.join(names)}, {each}" for each, names in words.items())]
+    )
+
+
+def _appearance(run: Run, document: str, result: Result) -> str:
+    """What a result says of a material."""
     if result.verdict == NOT_RUN:
-        return False
-    return _is_picture(result, document) or result.subject in run.contents[document]
+        return f"not judged: {result.reason}"
+    if result.verdict == FAILED:
+        return result.diagnosis or result.explanation
+    if result.check == "finite":
+        return f"there is no reference ({result.diagnosis}); every pixel is finite"
+    if result.check != "picture":
+        return "shaders are generated, not run"
+    place = result.host, result.library
+    if any(
+        each.verdict == FAILED and (each.host, each.library) == place
+        for each in run.results
+        if each.subject in run.contents[document]
+    ):
+        return "the picture is within tolerance, but nodes are wrong for other inputs"
+    if result.measured:
+        return f"as specified, where the host computes {_listed(result.measured)}"
+    return AS_SPECIFIED
+
+
+def _title(run: Run, library: str) -> str:
+    return (
+        f"stock MaterialX {run.software.get('MaterialX', '')}".strip()
+        if library == "stock"
+        else library
+    )
 
 
 def _is_picture(result: Result, document: str) -> bool:
     name = Path(document).name
-    return result.check in PICTURES and result.subject.split(": ")[0] in (name, document)
+    return result.check in KEYS and result.subject.split(": ")[0] in (name, document)
 
 
-def _block(run: Run, document: str, host: str) -> list[str]:
-    """A document on a host: a line for each node and its pictures, a column for each library."""
-    # What there is to show.
-    results = [each for each in run.results if each.host == host and _is_of(each, run, document)]
-    libraries = list(dict.fromkeys(each.library for each in results))
-    rows: dict[str, list[Result]] = {}
-    for each in results:
-        title = "pictures" if _is_picture(each, document) else each.subject
-        rows.setdefault(title, []).append(each)
-    # Failures first, then the nodes in their order, the pictures last.
-    elsewhere = {id(each) for each in results if run.is_elsewhere(each, document)}
-    failed = {
-        title: any(each.verdict == FAILED and id(each) not in elsewhere for each in row)
-        for title, row in rows.items()
-    }
-    titles = sorted(rows, key=lambda title: (not failed[title], title == "pictures"))
-    kept = [title for title in titles if failed[title] or title == "pictures"]
-    kept += [title for title in titles if title not in kept][: max(1, NODES - len(kept))]
-    table = [[one_line(f"{document} on {host}"), *map(one_line, libraries)]]
-    refused = {name: REFUSED if is_refused(run, document, name) else "" for name in libraries}
-    for title in filter(kept.__contains__, titles):
-        cells = []
-        for library in libraries:
-            row = [each for each in rows[title] if each.library == library]
-            own = [each for each in row if id(each) not in elsewhere]
-            words = _cell(own or row) + ", other inputs wrong" * (len(own) < len(row))
-            cells.append(refused[library] or words)
-        table.append([f"  {title}", *cells])
-    if others := len(titles) - len(kept):
-        cells = [refused[library] or "passed" for library in libraries]
-        table.append([f"  {counted(others, 'other node')}", *cells])
-    return _aligned(table)
+def _listed(names: Sequence[str]) -> str:
+    more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
+    return ", ".join(names[:NAMED]) + more
 
 
-def _passed(block: Sequence[str]) -> bool:
-    return not any(word in line for line in block[1:] for word in (FAILED, REFUSED))
+# --- nodes ----------------------------------------------------------------------------------------
+
+WRONG, ELSEWHERE, RIGHT = range(3)
+Rows = dict[tuple[str, str], list[Result]]  # by node and host
 
 
-def _cell(results: Sequence[Result]) -> str:
-    """What a node or the pictures are with one library: model, error, bound."""
+def _rows(run: Run) -> Rows:
+    """What ran for the nodes of the documents: what their own inputs reach first, what is right last."""
+    nodes = {title for titles in run.contents.values() for title in titles}
+    rows: Rows = {}
+    for each in run.results:
+        if each.subject in nodes and each.verdict != NOT_RUN:
+            rows.setdefault((each.subject, each.host), []).append(each)
+    ranks = {place: min(_rank(run, each) for each in row) for place, row in rows.items()}
+    return {place: rows[place] for place in sorted(rows, key=lambda place: ranks[place])}
+
+
+def _rank(run: Run, result: Result) -> int:
+    """Whether a node is wrong in a document's picture, for other inputs alone, or right."""
+    if result.verdict != FAILED:
+        return RIGHT
+    if run.is_elsewhere(result):
+        return ELSEWHERE
+    place = result.host, result.library
+    shown = [
+        each.verdict
+        for document, titles in run.contents.items()
+        if result.subject in titles
+        for each in run.results
+        if each.check == "picture"
+        and (each.host, each.library) == place
+        and _is_picture(each, document)
+    ]
+    return ELSEWHERE if shown and set(shown) == {PASSED} else WRONG
+
+
+def _table(run: Run, rows: Rows, kept: int) -> Iterator[str]:
+    """A line for each of the first nodes, with a column for each library."""
+    if not rows:
+        return
+    hosts = _unique(host for _, host in rows)
+    libraries = _unique(each.library for row in rows.values() for each in row)
+    table = [[f"nodes on {', '.join(hosts)}", *libraries]]
+    for (title, host), row in list(rows.items())[:kept]:
+        cells = [_cell(run, [each for each in row if each.library == name]) for name in libraries]
+        table.append([title if len(hosts) == 1 else f"{title} on {host}", *cells])
+    if others := list(rows.values())[kept:]:
+        wrong = sum(any(each.verdict == FAILED for each in row) for row in others)
+        words = f"{wrong} of them wrong" if wrong else "right"
+        table.append([counted(len(others), "other node"), words, *[""] * (len(libraries) - 1)])
+    table = [list(map(one_line, row)) for row in table]
+    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+    for line in table:
+        cells = [cell.ljust(width) for cell, width in zip(line, widths, strict=True)]
+        yield f"  {'  '.join(cells)}".rstrip()
+
+
+def _cell(run: Run, results: Sequence[Result]) -> str:
+    """What a node is with one library: its model or what is wrong, the error, the tolerance."""
     if not results:
         return "not judged"
-    failed = [result for result in results if result.verdict == FAILED]
-    direct = [result for result in results if result.check in DIRECT]
-    shown = max(failed or direct or results, key=_ratio)
-    numbers = f"error {shown.error:.2g}, bound {shown.tolerance:.2g}" if shown.tolerance else ""
-    words = "failed" if failed else _words(shown, len(results))
-    return ", ".join(filter(None, (words, numbers)))
-
-
-def _words(result: Result, count: int) -> str:
-    """What a subject is that passed."""
-    if result.check == "picture":
-        names = ", ".join(result.measured[:NAMED])
-        return f"{count} as the reference's" + (f", {names} from the host" if names else "")
-    if result.check in PICTURES:
-        return "finite" if result.check == "finite" else "shaders generated"
-    return model_of(result.subject)
+    rank = min(_rank(run, each) for each in results)
+    chosen = [each for each in results if _rank(run, each) == rank and rank != RIGHT]
+    direct = [each for each in results if each.check in DIRECT]
+    shown = max(chosen or direct or results, key=_ratio)
+    words = {WRONG: "wrong", ELSEWHERE: "wrong for other inputs"}.get(rank, model_of(shown.subject))
+    if rank == RIGHT and any(each.verdict == DIFFERS for each in results):
+        words += ", differs as permitted"
+    numbers = (
+        f", error {shown.error:.2g}, tolerance {shown.tolerance:.2g}" if shown.tolerance else ""
+    )
+    return words + numbers
 
 
 def _ratio(result: Result) -> float:
     return (result.error or 0.0) / (result.tolerance or 1.0)
 
 
-def _aligned(table: Sequence[Sequence[str]]) -> list[str]:
-    """Lines of a table with columns of equal width."""
-    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
-    return [
-        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
-        for row in table
-    ]
+# --- causes ---------------------------------------------------------------------------------------
 
 
 def _not_run(run: Run) -> Iterator[str]:
@@ -178,45 +253,64 @@ def _not_run(run: Run) -> Iterator[str]:
         (each.location, each.reason) for each in run.results if each.verdict == NOT_RUN
     )
     for (where, reason), count in list(reasons.items())[:FEWEST]:
-        yield one_line(f"not run: {where}, {counted(count, 'check')}: {reason}")
+        yield f"not run: {where}, {counted(count, 'check')}: {reason}"
     if len(reasons) > FEWEST:
         yield f"not run for {counted(len(reasons) - FEWEST, 'other reason')}; {FULL}"
 
 
-def _failures(run: Run) -> Iterator[str]:
-    """A line for each page or diagnosis that explains failures: a sentence, and its link.
+def _remedy(run: Run) -> Iterator[str]:
+    """How to load eonlib, where it repairs what stock MaterialX fails at."""
+    failed = {each.library for each in run.results if each.verdict == FAILED}
+    if (
+        run.contents
+        and "stock" in failed
+        and "eonlib" in {each.library for each in run.results} - failed
+    ):
+        yield (
+            f"To fix it, load {eonlib_folder()} before MaterialX's own libraries; `mxeon library` "
+            f"prints the line for {', '.join(CLIENTS)}"
+        )
 
-    Failures that no page explains come first, those of other inputs than the documents' last.
+
+def _failures(run: Run) -> Iterator[str]:
+    """A line for each page or diagnosis that explains failures.
+
+    Those of a library that counts come first, then those of the documents' own inputs, then those
+    that no page explains.
     """
     groups: dict[tuple[str, str], list[Result]] = {}
     failures = (each for each in run.results if each.verdict == FAILED)
-    for each in sorted(failures, key=lambda each: (run.is_elsewhere(each), bool(each.pages))):
-        reason = " ".join(each.pages) or each.explanation
-        other = "for other inputs than yours: " * run.is_elsewhere(each)
-        groups.setdefault((f"{each.location}: {other}", reason), []).append(each)
-    # Pictures are wrong because nodes are, where some are.
+
+    def order(result: Result) -> tuple[bool, bool, bool]:
+        return result.library in run.compared, run.is_elsewhere(result), bool(result.pages)
+
+    for each in sorted(failures, key=order):
+        kind = "cause" if each.library in run.compared else "failed"
+        other = ", for inputs that no document has" * run.is_elsewhere(each)
+        place = f"{kind}: {each.location}{other}"
+        groups.setdefault((place, " ".join(each.pages) or each.explanation), []).append(each)
+    # Nodes explain pictures.
     places = {place for (place, _), each in groups.items() if any(map(_is_of_node, each))}
     for (place, _), results in groups.items():
         if place not in places or any(map(_is_of_node, results)):
-            yield one_line(f"failed: {place}{_sentence(results)}")
+            yield f"{place}: {_sentence(results)}"
 
 
 def _is_of_node(result: Result) -> bool:
-    return result.check not in PICTURES
+    return result.check not in KEYS
 
 
 def _sentence(results: Sequence[Result]) -> str:
-    """What explains failures of one reason, and which checks they are."""
-    first = results[0]
-    # The checks by their keys, and the nodes; one in one mode by its whole name.
+    """The nodes and checks that fail for one reason, and the reason with the link to its page."""
     subjects = list(dict.fromkeys(each.subject for each in results))
-    keys = ", ".join(dict.fromkeys(each.check for each in results))
-    nodes = list(dict.fromkeys(each.partition(",")[0] for each in subjects))
-    more = f" and {len(nodes) - NAMED} more" if len(nodes) > NAMED else ""
-    where = subjects[0] if len(subjects) == 1 else ", ".join(nodes[:NAMED]) + more
-    about = f"{where} ({keys})"
-    # The sentence of its page, and where that is.
-    if issues := issues_of(first):
+    nodes = _unique(each.partition(",")[0] for each in subjects)
+    keys = ", ".join(_unique(each.check for each in results))
+    about = f"{subjects[0] if len(subjects) == 1 else _listed(nodes)} ({keys})"
+    if issues := issues_of(results[0]):
         links = ", ".join(map(link, issues))
         return f"{about}: {'; '.join(issue.title for issue in issues)}: {links}"
-    return f"{about}: {first.explanation}"
+    return f"{about}: {results[0].explanation}"
+
+
+def _unique(names: Iterable[str]) -> list[str]:
+    return list(dict.fromkeys(names))

@@ -85,6 +85,9 @@ def run(options: argparse.Namespace) -> int:
             "PYTHONPATH"
         )
     hosts, nodes = options.host or ("gl",), options.node or ()
+    # Documents are judged as MaterialX ships them too, unless libraries are named.
+    compared = ("stock",) if options.files and not options.library else ()
+    libraries = options.library or ("eonlib", *compared)
     refused: list[str] = []
 
     def refuse(error: str) -> None:
@@ -94,7 +97,7 @@ def run(options: argparse.Namespace) -> int:
     result = check(
         options.files,
         host_names() if "all" in hosts else hosts,
-        options.library or ("eonlib",),
+        libraries,
         workers=options.workers,
         timeout=options.timeout,
         folder=options.report,
@@ -105,6 +108,7 @@ def run(options: argparse.Namespace) -> int:
         nodes=nodes,
         progress=_importing(progress) if options.report else progress,
         refuse=refuse,
+        compared=compared,
     )
     return show_run(result, options, refused)
 

@@ -54,6 +54,7 @@ def to_json(run: Run) -> str:
         - sentence: the same in words.
         - missing: texts, the items that an interrupted run has not finished.
         - refused: texts, the documents that were refused; errors: texts, their faults.
+        - compared: names of libraries judged for comparison, which verdict, counts and sentence ignore.
         - version: of mxeon; software: name to version; documents: paths; notes: texts.
         - libraries: by folder, its files under "folder", and under "MaterialX" those that complete it.
         - hosts: objects of name, version, device.
@@ -73,6 +74,7 @@ def to_json(run: Run) -> str:
         "counts": summary.counts,
         "sentence": summary.sentence,
         "missing": run.missing,
+        "compared": run.compared,
         "refused": tuple(run.refused),
         "errors": run.errors,
         "version": run.version,

@@ -3,6 +3,7 @@
 
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from xml.etree import ElementTree
 
 from mxeon.conformance.results import FAILED, NOT_RUN, Result, Run, summarize
@@ -15,11 +16,11 @@ def to_junit(run: Run) -> str:
     """A run as JUnit XML text: a suite for each host and library, a case for each result.
 
     A failed check is a failure, one that did not run is skipped, and a refused document is an error
-    in a separate suite, each with its message.
+    in a separate suite, each with its message. Failures of a compared library are skipped.
     """
     root = ElementTree.Element("testsuites", name="mxeon")
     for name in dict.fromkeys(result.location for result in run.results):
-        results = [result for result in run.results if result.location == name]
+        results = [_counted(run, result) for result in run.results if result.location == name]
         suite = ElementTree.SubElement(root, "testsuite", {"name": _xml(name)} | _totals(results))
         properties = ElementTree.SubElement(suite, "properties")
         for key, value in _properties(run, results[0].host).items():
@@ -32,6 +33,13 @@ def to_junit(run: Run) -> str:
     text = ElementTree.tostring(root, encoding="unicode")
     # ElementTree would name the encoding of the system's locale.
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'
+
+
+def _counted(run: Run, result: Result) -> Result:
+    """A result, not run where it fails with a library that does not count."""
+    if result.verdict != FAILED or result.library not in run.compared:
+        return result
+    return replace(result, verdict=NOT_RUN, reason=f"for comparison: {result.explanation}")
 
 
 def _add_errors(root: ElementTree.Element, refused: Mapping[str, Sequence[str]]) -> None:

@@ -25,7 +25,7 @@ from mxeon.conformance.probes.pictures import picture_pairs
 from mxeon.conformance.reference import ExpectedPicture
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.reference.measured import HostValues
-from mxeon.conformance.results import FAILED, PASSED, Control, Picture, Place, Result
+from mxeon.conformance.results import FAILED, PASSED, Control, Picture, Place, Result, of_white
 from mxeon.conformance.samples.measurement import Measurement, Metric, absolute, scaled
 from mxeon.conformance.samples.tolerance import Tolerance
 from mxeon.errors import NotRun, OutsideModel, ShaderError
@@ -39,13 +39,20 @@ from mxeon.shaders.scene import Scene, sphere
 
 Pixels: TypeAlias = NDArray[np.floating]
 Case: TypeAlias = tuple[Scene, Pixels, ExpectedPicture]  # with the host's picture
+Pixel: TypeAlias = tuple[float, dict[str, list[float]], float]
 
 MATCH = "The picture is the reference's in every pixel."
 SAME_NAMES = "nodes {} have the values of one of them; see docs/upstream/same_names.md"
 DEFINED_MATERIAL = (
     "a material that a nodegraph defines is not generated; see docs/upstream/material_graphs.md"
 )
-FINITE = "No pixel is infinite or not a number."
+FINITE = "Every pixel is finite."
+LIGHTS = {
+    "front": "light from the front",
+    "side": "light from the side",
+    "back": "light from behind",
+    "furnace": "a white environment",
+}
 
 
 def judge_document(
@@ -236,13 +243,15 @@ def _judge_match(
 ) -> Result:
     """Result for a material that the models cover: its pixels have to be the reference's."""
     metric = scaled if tolerance.unit == RELATIVE else absolute
-    errors = [(*_worst_pixel(case, front_lit, metric), case[0].name) for case in cases]
-    error, worst, scene = max(errors, key=lambda entry: entry[0])
+    pixels = [_worst_pixel(case, front_lit, metric) for case in cases]
+    error, worst, _ = max(pixels, key=lambda entry: entry[0])
     first, image, expected = cases[0]
     measured = tuple(dict.fromkeys(name for case in cases for name in case[2].measured))
     brighter = image + np.float32(3.0 * tolerance.value) * np.maximum(1.0, image)
-    control_error, _ = _worst_pixel((first, brighter, expected), front_lit, metric)
-    words = "" if error <= tolerance.value else f"most in the picture of the scene {scene}"
+    control_error, _, _ = _worst_pixel((first, brighter, expected), front_lit, metric)
+    words = (
+        "" if error <= tolerance.value else _appearance(pixels, [case[0].name for case in cases])
+    )
     result = judge_measurements(
         place,
         tolerance,
@@ -254,26 +263,43 @@ def _judge_match(
     return replace(result, measured=measured)
 
 
-def _worst_pixel(
-    case: Case, front_lit: bool, metric: Metric
-) -> tuple[float, dict[str, list[float]]]:
-    """Largest error times cos(theta_o), and its pixel."""
+def _appearance(pixels: Sequence[Pixel], scenes: Sequence[str]) -> str:
+    """The largest difference of pictures, in the words of those who look at them."""
+    differences = [difference for _, _, difference in pixels]
+    sizes = [abs(each) if np.isfinite(each) else np.inf for each in differences]
+    worst = int(np.argmax(sizes))
+    light = LIGHTS.get(scenes[worst], scenes[worst])
+    if not np.isfinite(sizes[worst]):
+        return f"has pixels that are infinite or not a number in {light}"
+    sign = "bright" if differences[worst] > 0 else "dark"
+    return f"{of_white(sizes[worst])} too {sign} in {light}"
+
+
+def _worst_pixel(case: Case, front_lit: bool, metric: Metric) -> Pixel:
+    """Largest error times cos(theta_o), its pixel, and the largest difference of all pixels.
+
+    The difference has a sign, and is relative where the reference exceeds 1.
+    """
     # Errors of the pixels that show the sphere and were computed.
     scene, image, (reference, mask) = case[0], case[1], (case[2].image, case[2].judged)
     wo, wi = _directions(scene, mask)
     measured, expected = (each[mask].astype(np.float64) for each in (image, reference))
     error = metric(measured, expected) * wo[:, 2]
+    difference = (measured - expected) / np.maximum(1.0, np.abs(expected))
     if front_lit:
-        error = np.where(_is_front_lit(wo, wi), error, 0.0)
+        front = _is_front_lit(wo, wi)
+        error = np.where(front, error, 0.0)
+        difference = np.where(front[:, np.newaxis], difference, 0.0)
     # The largest, and its place.
     worst = int(error.argmax())
     row, column = np.argwhere(mask)[worst]
-    return float(error[worst]), {
+    point = {
         "row": [float(row)],
         "column": [float(column)],
         "measured": image[row, column].astype(float).tolist(),
         "expected": reference[row, column].tolist(),
     }
+    return float(error[worst]), point, float(difference.flat[np.abs(difference).argmax()])
 
 
 def _directions(scene: Scene, mask: NDArray[np.bool_]) -> tuple[Pixels, Pixels]:

@@ -17,6 +17,7 @@ from mxeon.conformance.results.result import (
     Place,
     Result,
     in_words,
+    of_white,
 )
 from mxeon.conformance.results.run import Run
 from mxeon.conformance.results.summary import Summary, counted, summarize
@@ -42,5 +43,6 @@ __all__ = [
     "counted",
     "image_names",
     "in_words",
+    "of_white",
     "summarize",
 ]

@@ -156,6 +156,18 @@ class Result:
         return "; ".join(f"see docs/upstream/{page}.md" for page in self.pages)
 
 
+def of_white(radiance: float) -> str:
+    """A difference as a share of the radiance of a white, matte surface that faces the light.
+
+    Examples
+    --------
+    >>> of_white(0.2035), of_white(1e-7)
+    ('up to 20 % of white', 'less than 0.1 % of white')
+    """
+    share = 100.0 * radiance
+    return f"up to {in_words(share)} % of white" if share >= 0.1 else "less than 0.1 % of white"
+
+
 def in_words(number: float) -> str:
     """A number of two digits, without a power of ten.
 

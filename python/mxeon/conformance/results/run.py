@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -43,6 +43,8 @@ class Run:
     libraries : dict of str to dict of str to tuple of str
         By folder that was judged as a library: its files, under "folder", and those of MaterialX that
         complete it, under "MaterialX", unless it is loaded before all of them.
+    compared : tuple of str
+        Libraries judged for comparison; the verdict ignores their failures.
     """
 
     version: str
@@ -58,16 +60,20 @@ class Run:
     missing: tuple[str, ...] = ()
     unreached: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
     libraries: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
+    compared: tuple[str, ...] = ()
 
     @cached_property
     def summary(self) -> Summary:
         """The verdict on this run."""
-        return summarize(
-            self.results,
-            self.missing,
-            tuple(self.refused),
-            sum(map(self.is_elsewhere, self.results)),
-        )
+        judged = [each for each in self.results if each.library not in self.compared]
+        elsewhere = sum(map(self.is_elsewhere, judged))
+        summary = summarize(judged, self.missing, tuple(self.refused), elsewhere)
+        for library in self.compared:
+            results = [each for each in self.results if each.library == library]
+            failed = sum(each.verdict == FAILED for each in results)
+            words = f" For comparison, {failed} of {len(results)} failed with {library}."
+            summary = replace(summary, sentence=summary.sentence + words)
+        return summary
 
     @property
     def errors(self) -> tuple[str, ...]:

@@ -5,6 +5,7 @@ import os
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, closing, contextmanager, nullcontext
 from functools import lru_cache, partial
+from itertools import chain, product
 from pathlib import Path
 
 from mxeon.conformance.results import Run
@@ -51,6 +52,7 @@ def check(
         [Iterable[tuple[int, Findings]], int], Iterable[tuple[int, Findings]]
     ] = lambda tasks, total: tasks,
     refuse: Callable[[str], None] = lambda error: None,
+    compared: Sequence[str] = (),
 ) -> Run:
     """Run every check on every host, and compare pictures of documents with the reference's.
 
@@ -86,6 +88,9 @@ def check(
         Wraps the iteration over the tasks, whose number it takes; a progress bar, for example.
     refuse : callable (str)
         Called with each fault of each document that cannot be read, before any other work.
+    compared : sequence of str
+        Those of `libraries` that are judged for comparison: their failures and refusals do not
+        change the verdict.
 
     Returns
     -------
@@ -113,11 +118,10 @@ def check(
                 raise InputError(str(reason)) from None
     _check_work(workers, timeout)
     survey = survey_documents(list(map(str, files)), libraries, policy, workers, timeout)
-    for lines in survey.refused.values():
-        for line in lines:
-            refuse(line)
     resumable = folder is not None
-    planned = make_plan(files, hosts, libraries, policy, resumable, nodes, survey)
+    planned = make_plan(files, hosts, libraries, policy, resumable, nodes, survey, compared)
+    for line in chain.from_iterable(to_run(planned, {}).refused.values()):
+        refuse(line)
     # Work; an executor that cannot work leaves the folder as it is.
     with (
         _executor(policy, workers, timeout, scheduler, wait) as executor,
@@ -171,6 +175,9 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
         if lines := findings[number].errors:
             file = planned.tasks[number].subject
             refused[file] = tuple(dict.fromkeys((*refused.get(file, ()), *lines)))
+    # A document that only a compared library cannot read.
+    for file in product(planned.contents, planned.compared):
+        notes += tuple((line, file[0]) for line in refused.pop(" with ".join(file), ()))
     notes += repaired(results, planned.software) + _untested(planned.software)
     return Run(
         version=planned.version,
@@ -185,6 +192,7 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
         unreached=planned.unreached,
         documents=tuple(map(Path, planned.documents)),
         libraries=planned.libraries,
+        compared=planned.compared,
         missing=tuple(
             str(task) for number, task in enumerate(planned.tasks) if number not in findings
         ),

@@ -26,6 +26,7 @@ STATES = (
     PASSED,
 )  # the first decides about a document
 QUOTED = re.compile(r"'[^']*/[^']*'|\"[^\"]*\"")  # names of one document in a reason
+SHARE = re.compile(r"(up to|less than) [\d.,]+ % of white ")  # which no two documents share
 KEYS = ("picture", "finite", DOCUMENT_KEY)
 
 
@@ -132,7 +133,8 @@ def _cause(result: Result, measured: Sequence[str]) -> str:
     if result.verdict == PASSED and result.check == DOCUMENT_KEY:
         return "shaders are generated"
     reason = (result.reason or result.diagnosis).split("; last output:")[0]
-    return QUOTED.sub("...", reason.removeprefix("reference: ")) or result.excess
+    reason = SHARE.sub("", reason.removeprefix("reference: "))
+    return QUOTED.sub("...", reason) or result.excess
 
 
 def _refused(document: str, lines: Sequence[str]) -> DocumentVerdict:

@@ -75,6 +75,7 @@ def make_plan(
     resumable: bool = False,
     nodes: Sequence[str] = (),
     survey: Survey = EMPTY,
+    compared: Sequence[str] = (),
 ) -> Plan:
     """The tasks of a run, those of one host and library beside each other.
 
@@ -92,6 +93,8 @@ def make_plan(
         common ones if there are none.
     survey : Survey
         What `files` contain.
+    compared : sequence of str
+        Those of `libraries` that do not count.
 
     Returns
     -------
@@ -140,6 +143,7 @@ def make_plan(
         unreached=survey.unreached if files and not nodes else {},
         refused=survey.refused,
         libraries={each: origins(each) for each in libraries if each not in LIBRARIES},
+        compared=tuple(compared),
         options=_options(policy),
         files=_files(documents, policy, libraries) if resumable else {},
     )

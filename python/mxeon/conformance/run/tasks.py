@@ -65,6 +65,8 @@ class Plan:
         Documents that cannot be read; as of `mxeon.conformance.results.Run`.
     libraries : dict of str to dict of str to tuple of str
         As those of `mxeon.conformance.results.Run`.
+    compared : tuple of str
+        As of `mxeon.conformance.results.Run`.
     """
 
     version: str
@@ -77,6 +79,7 @@ class Plan:
     unreached: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
     refused: dict[str, tuple[str, ...]] = field(default_factory=dict)
     libraries: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
+    compared: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
