@@ -10,7 +10,6 @@ from xml.etree import ElementTree
 
 import numpy as np
 import OpenImageIO as oiio
-
 import pytest
 
 from mxeon.cli import main, parser

@@ -167,7 +167,7 @@ def test_an_input_that_a_call_drops_is_named(monkeypatch, old, new):
     monkeypatch.setattr(sources, "source", lambda *_: text.replace(old, new))
     monkeypatch.setattr(sources, "TEXT_ONLY", ("mdl",))
     (result,) = sources.check_calls([SUBJECTS["dielectric"]], "stock")
-    assert result.verdict == FAILED and "tint is never passed on" in result.diagnosis
+    assert result.verdict == FAILED and "tint is never passed" in result.diagnosis
 
 
 def test_cycles_keeps_the_energy_of_facets_of_another_distribution(hosts):

@@ -39,7 +39,7 @@ STOCK = {
         "surroundings": "all of them where the normal faces away from the viewer",
     },
     "conty_kulla": {
-        "value": "not as exact as it has to be",
+        "value": "not accurate enough",
         "environment": "MaterialX's fit of its albedo (rms ",
         "layering": "MaterialX's fit of its albedo without the color (rms ",
         "transmission": "all light passes (rms 0)",
@@ -183,7 +183,7 @@ WRONG = {
     ),
     "normal": (
         "burley", BURLEY, "(N, V);", "(vec3(0.0, 0.0, 1.0), V);", "frame",
-        "branch direct: the node's normal is ignored: the surface's takes its place",
+        "branch direct: the node's normal is ignored; the surface's is used instead",
     ),
     "occlusion": (
         "burley", BURLEY, "color * closureData.occlusion", "color", "value",
@@ -199,7 +199,7 @@ WRONG = {
     ),
     "color": (
         "translucent", TRANSLUCENT, "Li * color", "Li * color.bgr", "environment",
-        "fault: the color channels are exchanged: they come as blue, green, red (rms ",
+        "fault: the color channels are exchanged: they arrive as blue, green, red (rms ",
     ),
 }  # fmt: skip
 

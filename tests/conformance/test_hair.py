@@ -30,7 +30,7 @@ STOCK = {
     "black": "values that are not finite",
     "finite": "values that are not finite",
     "integral": "",
-    "each_lobe": "nearest known model: N of TRRT+ pi/2 in place of 1/(2 pi) (rms ",
+    "each_lobe": "nearest known model: N of TRRT+ pi/2 instead of 1/(2 pi) (rms ",
     "narrow_lobes": "nearest known model: I_0 by ten terms, and half a term of its logarithm (rms ",
     "tilted_lobes": "values that are not finite with a tilted cuticle",
     "wide_lobes": "nearest known model: every roughness in [0.001, 1] (rms ",
@@ -52,7 +52,7 @@ WRONG = {
     "no tilt": (TURNED, "inclined_i", "each_lobe", ""),
     "uniform lobe": (
         "M * 0.5 * M_PI_INV", "M * 0.5 * M_PI", "each_lobe",
-        "nearest known model: N of TRRT+ pi/2 in place of 1/(2 pi) (rms ",
+        "nearest known model: N of TRRT+ pi/2 instead of 1/(2 pi) (rms ",
     ),
     "narrow lobes": ("1e-8, 1e-4)", "0.01, 0.001)", "narrow_lobes", ""),
     "wide lobes": (
@@ -84,7 +84,7 @@ WRONG = {
     ),
     "horizon": ("max(1.0 - F * T, 1e-7)", "(1.0 - F * T)", "finite", "values that are not finite"),
     "environment": (
-        "back * mx_environment_irradiance(-N)", "vec3(0.0)", "environment", "no known model is near",
+        "back * mx_environment_irradiance(-N)", "vec3(0.0)", "environment", "no known model matches",
     ),
     "sides exchanged": (
         "front * mx_environment_irradiance(N) + back * mx_environment_irradiance(-N)",

@@ -67,7 +67,7 @@ EON, SHEEN = "oren_nayar_diffuse_bsdf, energy_compensation true", "sheen_bsdf, m
             "environment",
             SHEEN,
             0.05,
-            "no known model is near: Conty-Kulla sheen has the distance",
+            "no known model matches: Conty-Kulla sheen comes nearest",
             (),
         ),
     ],

@@ -29,7 +29,7 @@ ROWS = {check.key: check for check in CHECKS}
 CHOICES = "MaterialX's matrix, orders and mixed channels"
 HALF = "half of the substrate's reflectance, and MaterialX's choices"
 FITTED = "the bare lobe's fit, and the film in the compensation"
-AVERAGE = "the compensation has F at the half vector in place of its average"
+AVERAGE = "the compensation uses F at the half vector instead of its average"
 FEWER = replace(
     FilmProbe.usual, pairs=1 << 6, albedos=12, materials=8
 )  # wrong ones are wrong for most

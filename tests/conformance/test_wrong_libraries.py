@@ -140,7 +140,7 @@ def test_a_range_that_pbrlib_does_not_state_may_be_missing_in_its_node_alone(cop
          'keyword "energy_compensaton" is not known to OSL'),
         (OSL, "{{normal}}, {{color}}", "{{color}}, {{normal}}", "osl", "the normal is not the node's"),
         (OSL, "{{color}}, {{roughness}}", "{{roughness}}, {{color}}", "osl",
-         "roughness is a float, and gets a color or vector"),
+         "roughness is a float but receives a color or vector"),
         (OSL, "{{roughness}},", "{{weight}} * {{roughness}},", "osl", "roughness is not the node's"),
         (OSL, FLAG, "0", "osl", "energy_compensation is not the node's energy_compensation, but 0"),
         (OSL, "{{weight}} * ", "", "osl", "weight is not the node's weight, but 1: off"),
@@ -254,7 +254,7 @@ def test_shader_functions_that_do_not_compile_fail_with_the_words_of_the_compile
 )
 def test_functions_that_differ_in_osl_are_named(copy, file, old, new, words):
     (result,) = check_languages(copy(f"eonlib/genosl/{file}.osl", old, new))
-    assert result.verdict == FAILED and result.diagnosis == f"another text in OSL: {words}"
+    assert result.verdict == FAILED and result.diagnosis == f"different in OSL: {words}"
 
 
 def test_a_comment_may_differ_between_the_languages(copy):

@@ -47,7 +47,7 @@ WRONG = {
         ENVIRONMENT,
         f"{ENVIRONMENT} * closureData.occlusion",
         "environment",
-        "fault: the occlusion is applied, as the caller does once more (rms ",
+        "fault: the occlusion is applied here and again by the caller (rms ",
     ),
     "small weight": (
         NODE,
@@ -75,7 +75,7 @@ WRONG = {
         "irradiance(N)",
         "irradiance(-N)",
         "surroundings",
-        "the environment is looked up at the opposite of the normal",
+        "the environment is looked up opposite to the normal",
     ),
     "normal not turned": (
         EON,
@@ -89,7 +89,7 @@ WRONG = {
         "mx_forward_facing_normal(N, wo)",
         "mx_forward_facing_normal(closureData.N, wo)",
         "frame",
-        "the node's normal is ignored: the surface's takes its place",
+        "the node's normal is ignored; the surface's is used instead",
     ),
     "normal incidence": (
         EON,
@@ -152,7 +152,7 @@ WRONG = {
         FACING,
         f"color = color.bgr;\n    {FACING}",
         "value",
-        "fault: the color channels are exchanged: they come as blue, green, red (rms ",
+        "fault: the color channels are exchanged: they arrive as blue, green, red (rms ",
     ),
     "factor": (
         QON,
@@ -173,7 +173,7 @@ WRONG = {
         "brdf * mu_i",
         "(brdf + 0.05 * color * mu_o * mu_o) * mu_i",
         "value",
-        "no known model is near: ",
+        "no known model matches: ",
     ),
 }
 
@@ -235,7 +235,7 @@ BESIDE = {
         "(1.0 + t * t)",
         "(2.0 * t + t * t)",
         "sphere",
-        "nearest known model: a far exponential of 1.5 mean free paths in place of 3",
+        "nearest known model: a far exponential of 1.5 mean free paths instead of 3",
     ),
 }
 

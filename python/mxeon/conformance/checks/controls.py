@@ -104,7 +104,7 @@ def with_inputs(words: str, **inputs: ArrayLike) -> Mistake:
     return Mistake(words, lambda probe: Altered(probe, lambda batch: batch.altered(**inputs)))
 
 
-@mistake("the mode has the values of the other one")
+@mistake("the mode returns the values of the other mode")
 def take_other_mode(probe: Probe) -> Altered:
     """Values of the other mode: not by its flag, which a host may ignore."""
     own, other = ("eon", "qon") if probe.subject.model == "eon" else ("qon", "eon")
@@ -130,7 +130,7 @@ def gray(probe: Probe) -> Altered:
     return Altered(probe, batch=mean_color)
 
 
-@mistake("the response is taken for the throughput")
+@mistake("the response is returned as the throughput")
 def take_response(probe: Probe) -> Altered:
     return Altered(probe, throughputs=lambda batch, values: probe.direct(batch))
 
@@ -145,7 +145,7 @@ def scale(words: str, factor: float) -> Mistake:
     return Mistake(words, lambda probe: Altered(probe, values=lambda _, values: factor * values))
 
 
-@mistake("a thousandth is added to every value")
+@mistake("0.001 is added to every value")
 def offset(probe: Probe) -> Altered:
     return Altered(probe, values=lambda batch, values: values + 1e-3)
 
@@ -158,7 +158,7 @@ def no_number(probe: Probe) -> Altered:
     )
 
 
-@mistake("the roughness is a tenth larger")
+@mistake("the roughness is 10 % larger")
 def rougher(probe: Probe) -> Altered:
     return Altered(
         probe,
@@ -178,7 +178,7 @@ def isotropic(probe: Probe) -> Altered:
     )
 
 
-@mistake("each row has the inputs of another")
+@mistake("each row uses the inputs of another row")
 def shifted(probe: Probe) -> Altered:
     def batch(batch: Batch) -> Batch:
         inputs = {name: np.roll(values, 1, axis=0) for name, values in batch.inputs.items()}

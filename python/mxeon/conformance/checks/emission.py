@@ -22,7 +22,7 @@ from mxeon.conformance.probes.cases import (
 from mxeon.conformance.probes.probe import Probe
 
 
-@mistake("a node is asked for that nothing implements")
+@mistake("the node is one that nothing implements")
 def unimplemented(probe: Probe) -> Probe:
     return probe.of(UNIMPLEMENTED)
 
@@ -46,7 +46,7 @@ def diagnose_opacity(probe: Probe) -> Diagnosis:
 CHECKS = (
     Check(
         "implemented",
-        "The target has an implementation of the node.",
+        "The target implements the node.",
         (*EMITTER, *MEDIUM_NAMES, kinds.ABSENT),
         measures.implemented,
         unimplemented,
@@ -55,7 +55,7 @@ CHECKS = (
     ),
     Check(
         "radiance",
-        "The radiance is that of the node's equation for every view from the front.",
+        "The radiance matches the node's equation for every view from the front.",
         EMITTER,
         conditioned(value_cases),
         gray,
@@ -65,7 +65,7 @@ CHECKS = (
     ),
     Check(
         "back",
-        "The back of the surface emits what the equation has for it.",
+        "The back of the surface emits what the equation gives.",
         EMITTER,
         conditioned(back_cases),
         offset,
@@ -77,17 +77,17 @@ CHECKS = (
     ),
     Check(
         "exitance",
-        "The radiance integrates to the power that the equation has.",
+        "The radiance integrates to the power that the equation gives.",
         EMITTER,
         measures.exitance,
-        scale("the radiance is 0.99 times as large", 0.99),
+        scale("the radiance is 1 % too low", 0.99),
         "integral",
         diagnose=RADIANCE.diagnose,
         adapt=widen_for_engine,
     ),
     Check(
         "transmittance",
-        "A medium passes what its coefficients leave over one meter.",
+        "Over one meter, a medium transmits what its coefficients give.",
         MEDIUM_NAMES,
         TRANSMITTANCE,
         shifted,

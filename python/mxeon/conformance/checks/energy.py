@@ -19,7 +19,7 @@ from mxeon.models.nodes.combinations import FACTOR
 LAYERS = tuple(row.name for row in NODES if row.layerable)
 
 
-@mistake("values are multiplied once more")
+@mistake("values are multiplied twice")
 def again(probe: Probe) -> Altered:
     def scaled(batch: Batch, values: Array) -> Array:
         return values * np.reshape(batch.inputs[FACTOR], (len(values), -1))
@@ -37,14 +37,14 @@ CHECKS = (
     ),
     Check(
         "transmission",
-        "The throughput of a layer is 1 - E for light through the base as well.",
+        "The throughput of a layer is 1 - E for light through the base, too.",
         LAYERS,
         TRANSMISSION,
         pass_all,
     ),
     Check(
         "dip",
-        "A dip at 82 degrees lets through what it does not reflect.",
+        "Where color82 lowers the reflectance, the layer passes on what it does not reflect.",
         tuple(row.name for row in NODES if row.layerable and "color82" in row.inputs),
         measures.dip,
         pass_all,
@@ -55,7 +55,7 @@ CHECKS = (
     ),
     Check(
         "denser",
-        "The throughput towards a thinner side, of which no fit is made, is as near as stated.",
+        "Toward a thinner medium, where there is no fit, the throughput is within its stated error.",
         tuple(row.name for row in NODES if row.layerable and "tint" in row.inputs),
         measures.denser,
         pass_all,
@@ -75,7 +75,7 @@ CHECKS = (
     ),
     Check(
         "integral",
-        "Values integrate to the directional albedo of the equations.",
+        "Values integrate to the directional albedo that the equations give.",
         OTHERS,
         measures.integral,
         scale("values are 2 % too large", 1.02),
@@ -84,7 +84,7 @@ CHECKS = (
     ),
     Check(
         "energy",
-        "No albedo exceeds 1, nor what the equations have.",
+        "No albedo exceeds 1 or what the equations give.",
         OTHERS,
         measures.energy,
         scale("values are 100 times as large", 100.0),
@@ -95,7 +95,7 @@ CHECKS = (
 COMBINED_CHECKS = (
     Check(
         "combination",
-        "The value of two lobes together is that of the node's equation.",
+        "Two combined lobes have the value that the node's equation gives.",
         COMBINATION,
         VALUE,
         shifted,
@@ -103,7 +103,7 @@ COMBINED_CHECKS = (
     ),
     Check(
         "combined_albedo",
-        "The environment branch of two lobes together gives their albedo.",
+        "The environment branch of two combined lobes returns their albedo.",
         COMBINATION,
         ALBEDO,
         shifted,
@@ -111,7 +111,7 @@ COMBINED_CHECKS = (
     ),
     Check(
         "combined_throughput",
-        "Two lobes together pass what they do not scatter, as the layer equation asks.",
+        "Two combined lobes pass on what they do not scatter, as the layer equation requires.",
         COMBINATION,
         measures.passing,
         pass_all,
@@ -121,13 +121,13 @@ COMBINED_CHECKS = (
     ),
     Check(
         "factor",
-        "A factor above 1 counts as 1, and one below 0 as 0.",
+        "Factors are clamped to [0, 1].",
         SINGLE,
         measures.factors,
         again,
         tolerances.FACTOR,
         pairs=True,
-        diagnose=lambda probe: Diagnosis("the factor counts as it is", permitted=True),
+        diagnose=lambda probe: Diagnosis("the factor is not clamped", permitted=True),
         open=True,
     ),
 )

@@ -22,7 +22,7 @@ Values = Callable[[Batch], Array]
 MIRRORED = (-1.0, -1.0, 1.0)
 ROUGHNESSES = (1.0, 0.3)  # with much and with little compensation
 SMOOTH = (0.04, 0.005)  # with next to none, for whose average a shader may take fewer cosines
-RIGHT = "every value is right by itself"  # of an explanation that found nothing
+RIGHT = "each value by itself is within tolerance"  # of an explanation that found nothing
 FILM_INPUTS = ("thinfilm_thickness", "thinfilm_ior")
 LEAST_F = 0.01  # of a curve by which its averages are divided
 THIN_LIMIT = 1e-3  # thickness in nm of a film that changes nothing
@@ -151,8 +151,8 @@ def diagnose_average(probe: Probe) -> Diagnosis:
     errors = {words: np.sqrt(np.mean((measured - each) ** 2)) for words, each in others.items()}
     words = min(errors, key=errors.__getitem__)
     if not errors[words] < NEAR * np.sqrt(np.mean((measured - expected) ** 2)):
-        return Diagnosis("the compensation has another average of the film's curve")
-    text = f"the compensation has F {words} in place of its average"
+        return Diagnosis("the compensation uses a different average of the film's reflectance")
+    text = f"the compensation uses F {words} instead of its average"
     return Diagnosis(text, permitted=words == "at the half vector")
 
 

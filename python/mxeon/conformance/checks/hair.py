@@ -17,12 +17,12 @@ from mxeon.models.hair.defects import FORMS, TILTED
 from mxeon.models.nodes.hair import HAIR_NODE
 
 CLAIMS = {
-    "each_lobe": "R, TT, and TRT with all beyond, each apart, are those of the equations.",
-    "narrow_lobes": "R and TT are right where they are narrow.",
-    "tilted_lobes": "R and TT are right for every tilt of the cuticle.",
-    "wide_lobes": "R and TT are right where they are wider than a roughness of 1.",
-    "straight_views": "R and TT are right for a view along the normal.",
-    "low_index": "R and TT are right for an index below 1, total reflection included.",
+    "each_lobe": "Each lobe matches the equations: R, TT, and TRT with all higher orders.",
+    "narrow_lobes": "R and TT match the equations where they are narrow.",
+    "tilted_lobes": "R and TT match the equations for every tilt of the cuticle.",
+    "wide_lobes": "R and TT match the equations beyond a roughness of 1.",
+    "straight_views": "R and TT match the equations for a view along the normal.",
+    "low_index": "R and TT match the equations for an index below 1, including total reflection.",
 }
 
 

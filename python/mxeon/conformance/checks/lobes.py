@@ -102,7 +102,7 @@ def has_environment(subject: Subject, host: str) -> bool:
 CHECKS = (
     Check(
         "value",
-        "The value is the model's for every pair of directions, back-lit and grazing ones included.",
+        "The value matches the model for every pair of directions, including back-lit and grazing ones.",
         (*ROUGH, *OTHERS, *COATED),
         VALUE,
         gray,
@@ -112,7 +112,7 @@ CHECKS = (
     ),
     Check(
         "lobe",
-        "The diffuse lobe of the surface shader is the model's.",
+        "The diffuse lobe of the surface shader matches the model.",
         (*ANY, *SMOOTH),
         VALUE,
         gray,
@@ -120,7 +120,7 @@ CHECKS = (
     ),
     Check(
         "environment",
-        "The environment branch gives the directional albedo.",
+        "The environment branch returns the directional albedo.",
         (*ROUGH, *OTHERS, *SMOOTH, *COATED),
         ALBEDO,
         gray,
@@ -137,7 +137,7 @@ CHECKS = (
     ),
     Check(
         "furnace",
-        "A white surface in a white environment cannot be seen.",
+        "A white surface disappears in a white environment.",
         (*EON, *COATED),
         measures.furnace,
         with_inputs("reflectance is 0.99", color=(0.99, 0.99, 0.99)),
@@ -156,27 +156,27 @@ CHECKS = (
     ),
     Check(
         "density",
-        "The density of drawn directions is that of the paper's sampling.",
+        "The sampling density is the paper's.",
         EON,
         sampling_measures.density,
         with_inputs("roughness is dropped", roughness=0.0),
         tolerances.OWN_DENSITY,
         applies=is_sampled,
-        diagnose=lambda probe: Diagnosis("the density is not that of the paper's listings"),
+        diagnose=lambda probe: Diagnosis("the density differs from the paper's listings"),
     ),
     Check(
         "samples",
-        "Directions are drawn with the density that is returned for them.",
+        "Samples follow the density that is returned with them.",
         EON,
         sampling_measures.samples,
         with_inputs("the density is that of roughness 0", roughness=0.0),
         tolerances.CHI_SQUARE,
         applies=is_sampled,
-        diagnose=lambda probe: Diagnosis("the drawn directions do not have the density"),
+        diagnose=lambda probe: Diagnosis("the samples do not follow the density"),
     ),
     Check(
         "frame",
-        "The value depends on the directions in the surface's frame, turned to the viewer.",
+        "The value follows the surface's frame, with the normal turned toward the viewer.",
         (*ANY, *FRAMED),
         frame_cases,
         with_inputs("the node's normal is dropped", normal=(0.0, 0.0, 1.0)),
@@ -185,7 +185,7 @@ CHECKS = (
     ),
     Check(
         "surroundings",
-        "An uneven environment is looked up at the normal, which is turned to the viewer, or behind it.",
+        "An uneven environment is looked up along the normal turned toward the viewer, or behind the surface.",
         (*ANY, *LOOKED_UP),
         surroundings_case,
         with_inputs("the node's normal is dropped", normal=(0.0, 0.0, 1.0)),
@@ -196,7 +196,7 @@ CHECKS = (
     ),
     Check(
         "sphere",
-        "On a sphere the diffusion profile spreads light, by the radius and the anisotropy.",
+        "On a sphere, light spreads as the diffusion profile predicts from radius and anisotropy.",
         (SUBSURFACE_NODE.name,),
         sphere_cases,
         with_inputs("the mean free path is 0.3 in every channel", radius=(0.3, 0.3, 0.3)),
@@ -206,7 +206,7 @@ CHECKS = (
     ),
     Check(
         "sphere_mean",
-        "A sphere reflects in the mean what the profile leaves it of the light.",
+        "On average, a sphere reflects the share of light that the profile predicts.",
         (SUBSURFACE_NODE.name,),
         sphere_cases,
         with_inputs("the mean free path is 0.3 in every channel", radius=(0.3, 0.3, 0.3)),
@@ -216,7 +216,7 @@ CHECKS = (
     ),
     Check(
         "throughput",
-        "No light from below passes: the throughput is 0 in every branch and for every weight.",
+        "No light from below passes: the throughput is 0 in every branch, for every weight.",
         (*ANY, *LAYERLESS),
         measures.throughput,
         take_response,
@@ -230,12 +230,12 @@ CHECKS = (
         "Exchanging the two directions does not change the BRDF.",
         (*ROUGH, *RECIPROCAL, *SMOOTH),
         measures.reciprocity,
-        scale_cosine("the value carries cos(theta_o) once more", 1),
+        scale_cosine("the value has an extra factor cos(theta_o)", 1),
         "reciprocity",
     ),
     Check(
         "lambert",
-        "Roughness 0 is Lambert.",
+        "At roughness 0 the node is Lambert.",
         ANY,
         measures.lambert,
         with_inputs("roughness is 0.1", roughness=0.1),
@@ -243,7 +243,7 @@ CHECKS = (
     ),
     Check(
         "flag",
-        "energy_compensation changes the value by as much as the models differ.",
+        "energy_compensation changes the value by the difference between the two models.",
         ANY,
         measures.flag,
         take_other_mode,
@@ -262,7 +262,7 @@ CHECKS = (
     ),
     Check(
         "finite",
-        "No value at the edges of the domain is infinite or not a number.",
+        "Every value at the edges of the domain is finite.",
         (*ANY, *OTHERS),
         measures.finite(),
         scale_cosine("the value is divided by cos(theta_o)", -1),

@@ -15,7 +15,7 @@ MICROFACETS = tuple(row.name for row in MICROFACET_NODES)
 CHECKS = (
     Check(
         "lossless",
-        "A lobe that reflects all light returns all of it, at every roughness.",
+        "A lossless lobe returns all light at every roughness.",
         MICROFACETS,
         measures.lossless,
         scale("values are 2 % too large", 1.02),
@@ -23,7 +23,7 @@ CHECKS = (
     ),
     Check(
         "shape",
-        "Two lights of one view give values in the ratio of D F G2.",
+        "For one view, the values for two lights have the ratio of D F G2.",
         MICROFACETS,
         measures.shape,
         rougher,
@@ -34,7 +34,7 @@ CHECKS = (
     ),
     Check(
         "retroreflection",
-        "The retroreflective lobe is the mirror lobe of the mirrored view.",
+        "The retroreflective lobe equals the mirror lobe for the mirrored view.",
         MICROFACETS,
         measures.retroreflection,
         with_inputs("the flag is dropped", retroreflective=False),
@@ -56,7 +56,7 @@ CHECKS = (
     ),
     Check(
         "anisotropic_albedo",
-        "The environment branch of an anisotropic lobe gives the integral of its values.",
+        "The environment branch of an anisotropic lobe returns the integral of its values.",
         MICROFACETS,
         stretched_case,
         isotropic,

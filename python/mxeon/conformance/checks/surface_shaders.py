@@ -79,7 +79,7 @@ def diagnose_lobes(probe: Probe) -> Diagnosis:
     if errors[lobe] <= tolerances.VALUE.value:
         return Diagnosis(f"the layer equation holds without the {lobe}")
     least = " and ".join(sorted(errors, key=errors.__getitem__)[:2])
-    return Diagnosis(f"no lobe alone explains it; the error is least without {least}")
+    return Diagnosis(f"no single lobe explains it; the error is smallest without {least}")
 
 
 def _error(probe: Probe, pairs: Batch, names: tuple[str, ...]) -> float:
@@ -90,7 +90,7 @@ def _error(probe: Probe, pairs: Batch, names: tuple[str, ...]) -> float:
 
 def diagnose_sum(probe: Probe) -> Diagnosis:
     """Where the lobes are judged."""
-    return Diagnosis("the checks of each lobe and of `layer` say why")
+    return Diagnosis("see the checks of each lobe and of `layer`")
 
 
 def diagnose_reach(probe: Probe) -> Diagnosis:
@@ -114,7 +114,7 @@ class IgnoreChanges(Altered):
 CHECKS = (
     Check(
         "lobes",
-        "Direct light is that of all lobes by the layer equation.",
+        "In direct light, the material is the sum of its lobes by the layer equation.",
         MODELS,
         VALUE,
         shifted,
@@ -122,7 +122,7 @@ CHECKS = (
     ),
     Check(
         "lobes_albedo",
-        "The environment branch gives the albedo of all lobes by the layer equation.",
+        "The environment branch returns the albedo of all lobes by the layer equation.",
         MODELS,
         ALBEDO,
         shifted,
@@ -130,37 +130,37 @@ CHECKS = (
     ),
     Check(
         "lobes_mean",
-        "Over many materials and views no light is gained or lost in the mean.",
+        "Averaged over many materials and views, no light is gained or lost.",
         MODELS,
         mean,
-        scale("every value is a hundredth lower", 0.99),
+        scale("every value is 1 % too low", 0.99),
         tolerances.MEAN,
         lit=True,
         diagnose=diagnose_sum,
     ),
     Check(
         "lobes_furnace",
-        "A white material of many lobes in a white environment cannot be seen.",
+        "A white material with many lobes disappears in a white environment.",
         MODELS,
         furnace,
-        scale("every value is a tenth lower", 0.9),
+        scale("every value is 10 % too low", 0.9),
         "albedo",
         lit=True,
         diagnose=diagnose_sum,
     ),
     Check(
         "lobes_energy",
-        "No material of these lobes reflects and transmits more light than it gets.",
+        "No material with these lobes reflects and transmits more light than it receives.",
         MODELS,
         energy,
-        scale("every value is half as high again", 1.5),
+        scale("every value is 50 % too high", 1.5),
         "albedo",
         lit=True,
         diagnose=diagnose_sum,
     ),
     Check(
         "reach",
-        "An input changes a value, unless its page says that it does not.",
+        "Every input changes a value unless its page says otherwise.",
         MODELS,
         counted(misplaced),
         Mistake("every change is dropped", IgnoreChanges),

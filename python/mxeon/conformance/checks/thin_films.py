@@ -29,7 +29,7 @@ from mxeon.conformance.nodes.thin_films import FILM_MODELS, LAYERED
 CHECKS = (
     Check(
         "film",
-        "The value under a thin film has the film's Airy reflectance.",
+        "Under a thin film, the value contains the film's Airy reflectance.",
         FILM_MODELS,
         VALUE,
         thicker,
@@ -37,7 +37,7 @@ CHECKS = (
     ),
     Check(
         "film_curve",
-        "A smooth lobe under a film reflects the Airy reflectance at the cosine of the view.",
+        "Under a film, a smooth lobe reflects the Airy reflectance at the cosine of the view.",
         FILM_MODELS,
         film_curve,
         thicker,
@@ -48,7 +48,7 @@ CHECKS = (
     ),
     Check(
         "film_orders",
-        "At grazing a thin film has the sum of all orders.",
+        "At grazing angles, a thin film reflects the sum of all orders.",
         FILM_MODELS,
         film_orders,
         thicker,
@@ -57,7 +57,7 @@ CHECKS = (
     ),
     Check(
         "film_limit",
-        "A film of index 1, or below, and one next to nothing, leave the lobe as it is.",
+        "A film with an index of 1 or less, or with almost no thickness, leaves the lobe unchanged.",
         FILM_MODELS,
         film_limit,
         with_inputs("every film has an index of 1.5", thinfilm_ior=1.5),
@@ -76,7 +76,7 @@ CHECKS = (
     ),
     Check(
         "film_environment",
-        "The environment branch has the film's directional albedo.",
+        "The environment branch returns the film's directional albedo.",
         FILM_MODELS,
         ALBEDO,
         thicker,
@@ -85,7 +85,7 @@ CHECKS = (
     ),
     Check(
         "film_average",
-        "The compensation has the average of the film's curve over the hemisphere.",
+        "The compensation uses the film's reflectance averaged over the hemisphere.",
         FILM_MODELS,
         film_average,
         thicker,
@@ -96,7 +96,7 @@ CHECKS = (
     ),
     Check(
         "film_smooth",
-        "The compensation of a lobe that loses little has that average too.",
+        "On smooth lobes, too, the compensation uses the film's average.",
         FILM_MODELS,
         film_smooth,
         thicker,
@@ -107,7 +107,7 @@ CHECKS = (
     ),
     Check(
         "film_visible",
-        "The albedo has the mean of the film's curve over the facets that are seen and lit.",
+        "The albedo averages the film's reflectance over the visible, lit facets.",
         FILM_MODELS,
         film_visible,
         thicker,
@@ -118,7 +118,7 @@ CHECKS = (
     ),
     Check(
         "film_glossy",
-        "So has that of a lobe whose facets are much alike.",
+        "On glossy lobes, too, the albedo averages the film's reflectance over the visible facets.",
         FILM_MODELS,
         film_glossy,
         thicker,
@@ -129,7 +129,7 @@ CHECKS = (
     ),
     Check(
         "film_sum",
-        "A lobe under a film has its own averages beside another lobe.",
+        "A lobe under a film keeps its own averages next to another lobe.",
         FILM_MODELS,
         film_sum,
         thicker,
@@ -145,7 +145,7 @@ CHECKS = (
     ),
     Check(
         "film_finite",
-        "No value of a film at the edges of the domain is infinite or not a number.",
+        "Every value under a film is finite at the edges of the domain.",
         FILM_MODELS,
         measures.finite(),
         scale_cosine("the value is divided by cos(theta_o)", -1),

@@ -30,7 +30,7 @@ from mxeon.conformance.samples.measurement import Case
 
 MODELS = tuple(subject.model for subject in TRANSMITTING)
 BOTH = tuple(subject.model for subject in TRANSMITTING if subject.reflects)
-SEEN = "the mean of 1 - F over the normals seen"
+SEEN = "the mean of 1 - F over the visible normals"
 SUMMED = 1e-3  # rms by which a sum over the normals of an engine differs from it
 
 
@@ -70,9 +70,7 @@ def _squares(case: Case, expected: Array) -> Array:
 
 def diagnose_inputs(probe: Probe) -> Diagnosis:
     """The inputs that change nothing, or that change what they must not."""
-    return Diagnosis(
-        f"without effect, or with a wrong one: {', '.join(measures.wrong_inputs(probe))}"
-    )
+    return Diagnosis(f"no effect, or a wrong one: {', '.join(measures.wrong_inputs(probe))}")
 
 
 def diagnose_finite(probe: Probe) -> Diagnosis:
@@ -88,7 +86,7 @@ def unknown(probe: Probe) -> Diagnosis:
 CHECKS = (
     Check(
         "transmitted",
-        "A uniform environment shines through with what the BTDF passes, up to all that is not reflected.",
+        "In a uniform environment, at least what the BTDF passes and at most what is not reflected comes through.",
         MODELS,
         measures.transmitted,
         scale("values are twice as large", 2.0),
@@ -106,7 +104,7 @@ CHECKS = (
     ),
     Check(
         "kept",
-        "Mode RT reflects and passes to its base what mode R does; mode T reflects nothing, and mode R transmits nothing.",
+        "Mode RT reflects, and passes to its base, the same light as mode R; mode T reflects nothing; mode R transmits nothing.",
         MODELS,
         measures.kept,
         offset,
@@ -115,26 +113,26 @@ CHECKS = (
     ),
     Check(
         "critical",
-        "A smooth surface passes 1 - F of its angle, and nothing beyond the critical one.",
+        "A smooth surface transmits 1 - F, and nothing beyond the critical angle.",
         MODELS,
         measures.critical,
-        with_inputs("the index is another", ior=2.5, color0=(0.5, 0.5, 0.5)),
+        with_inputs("the index is different", ior=2.5, color0=(0.5, 0.5, 0.5)),
         tolerances.SMOOTH_PASSED,
         diagnose=diagnose_transmitted,
     ),
     Check(
         "refraction",
-        "An uneven environment is looked up where a solid sphere refracts the view.",
+        "An uneven environment is looked up along the ray that a solid sphere refracts.",
         MODELS,
         measures.refraction_case,
-        with_inputs("the index is another", ior=2.5, color0=(0.5, 0.5, 0.5)),
+        with_inputs("the index is different", ior=2.5, color0=(0.5, 0.5, 0.5)),
         SURROUNDINGS,
         lit=True,
         diagnose=unknown,
     ),
     Check(
         "transmitted_finite",
-        "No light through the surface is infinite or not a number, at the edges of the domain.",
+        "All light through the surface is finite at the edges of the domain.",
         MODELS,
         finite(measures.finite_case),
         infinite,
@@ -143,7 +141,7 @@ CHECKS = (
     ),
     Check(
         "transmitted_inputs",
-        "Every input of the node but retroreflective changes the light through the surface.",
+        "Every input except retroreflective changes the light through the surface.",
         MODELS,
         counted(measures.wrong_inputs),
         drop_changes,

@@ -123,7 +123,7 @@ UNITS: Mapping[str, Callable[[Array, Batch], Array]] = {
 CHECKS = (
     Check(
         "output",
-        "The output of the utility node is that of its equations.",
+        "The output of the utility node matches its equations.",
         NAMES,
         output,
         shifted,
@@ -134,7 +134,7 @@ CHECKS = (
     ),
     Check(
         "round_trip",
-        "The artistic index has the reflectivity that was asked for.",
+        "The artistic index reproduces the requested reflectivity.",
         ("artistic_ior",),
         round_trip,
         shifted,
@@ -144,7 +144,7 @@ CHECKS = (
     ),
     Check(
         "output_inputs",
-        "Every input of the utility node changes the output that depends on it.",
+        "Every input of the utility node changes the outputs that depend on it.",
         NAMES,
         measures.counted(dead_inputs),
         drop_changes,
@@ -153,7 +153,7 @@ CHECKS = (
     ),
     Check(
         "output_finite",
-        "No output is infinite or not a number, at the ends of the ranges and beyond.",
+        "Every output is finite, at the ends of the ranges and beyond.",
         NAMES,
         finite_outputs,
         no_number,

@@ -193,18 +193,18 @@ def _model(
     # The own one is right but for a region, or but for its exactness.
     place = region([case.batch for case in cases], wrong)
     if place or not any(map(np.any, wrong)):
-        return place or "every value is right by itself"
+        return place or "each value by itself is within tolerance"
     if first == own and max(error.max() for error in errors) <= INEXACT * tolerance.value:
-        return f"the model is right, {own} (rms {least:.2g}), but not as exact as it has to be"
+        return f"the model is right, {own} (rms {least:.2g}), but not accurate enough"
     # Another one is near, or none.
     if first != own and least <= NEAR * rival:
         return sentence(ranking)
     share = 100.0 * np.concatenate(wrong).mean()
     if first == own and share < 50.0:
-        return f"right but for {share:.3g} % of the pairs; most {_worst_place(cases, tolerance)}"
+        return f"right but for {share:.3g} % of the pairs; worst {_worst_place(cases, tolerance)}"
     return (
-        f"no known model is near: {first} has the distance rms {least:.2g}; "
-        f"{share:.3g} % of the pairs are wrong, most {_worst_place(cases, tolerance)}"
+        f"no known model matches: {first} comes nearest, off by rms {least:.2g}; "
+        f"{share:.3g} % of the pairs are wrong, worst {_worst_place(cases, tolerance)}"
     )
 
 
@@ -213,8 +213,8 @@ def _worst_place(cases: Sequence[Case], tolerance: Tolerance) -> str:
     errors = [tolerance.metric(case.measured, case.expected) for case in cases]
     index = int(np.argmax([error.max() for error in errors]))
     row, batch = int(errors[index].argmax()), cases[index].batch
-    light = "" if "albedo" in tolerance.unit else f" and L {batch.wi[row, 2]:.2g}"
-    return f"where V has the cosine {batch.wo[row, 2]:.2g}{light}"
+    light = f" and a light cosine of {batch.wi[row, 2]:.2g}" * ("albedo" not in tolerance.unit)
+    return f"at a view cosine of {batch.wo[row, 2]:.2g}{light}"
 
 
 def region(batches: Sequence[Batch], wrong: Sequence[Mask]) -> str:

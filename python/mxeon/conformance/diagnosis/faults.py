@@ -65,7 +65,7 @@ def _column(name: str) -> Callable[[Batch], Array]:
 def _of_colors() -> Iterator[Fault]:
     for order in permutations(range(3)):
         words = ", ".join(CHANNELS[channel] for channel in order)
-        yield Fault(f"the color channels are exchanged: they come as {words}", _channels(order))
+        yield Fault(f"the color channels are exchanged: they arrive as {words}", _channels(order))
     for channel, name in enumerate(CHANNELS):
         yield Fault(f"every channel takes the {name} of the color", _channels([channel] * 3))
     yield Fault(
@@ -73,7 +73,7 @@ def _of_colors() -> Iterator[Fault]:
         _input("color", lambda color: color.mean(axis=-1, keepdims=True) * np.ones(3)),
     )
     yield Fault(
-        "the color is ignored: 0.18 takes its place",
+        "the color is ignored; 0.18 is used instead",
         _input("color", lambda color: np.full_like(color, 0.18)),
     )
     yield Fault("the color is squared", _input("color", np.square))
@@ -87,7 +87,7 @@ def _of_roughness() -> Iterator[Fault]:
     for constant in CONSTANTS:
         change = partial(np.full_like, fill_value=constant)
         yield Fault(
-            f"the roughness is ignored: {constant:g} takes its place", _input("roughness", change)
+            f"the roughness is ignored; {constant:g} is used instead", _input("roughness", change)
         )
 
 
@@ -118,13 +118,13 @@ DIRECT_FAULTS = (
     Fault("the occlusion is ignored", _input("occlusion", np.ones_like)),
     Fault("the occlusion is applied twice", values=_scaled(_column("occlusion"))),
     Fault("the cosine of the light is missing", values=_scaled(lambda batch: 1.0 / batch.wi[:, 2])),
-    Fault("the cosine of the light is there twice", values=_scaled(lambda batch: batch.wi[:, 2])),
+    Fault("the cosine of the light is applied twice", values=_scaled(lambda batch: batch.wi[:, 2])),
     Fault(
-        "the cosine is the viewer's in place of the light's: the directions are exchanged",
+        "the cosine is the viewer's instead of the light's: the directions are swapped",
         values=_scaled(lambda batch: batch.wo[:, 2] / batch.wi[:, 2]),
     ),
     Fault(
-        "the light is mirrored at the normal: s has the other sign",
+        "the light is mirrored about the normal: s has the wrong sign",
         lambda batch: replace(batch, wi=batch.wi * [-1.0, -1.0, 1.0]),
     ),
     Fault(
@@ -136,11 +136,11 @@ DIRECT_FAULTS = (
 ENVIRONMENT_FAULTS = (
     *INPUT_FAULTS,
     Fault(
-        "the occlusion is applied, as the caller does once more",
+        "the occlusion is applied here and again by the caller",
         values=_scaled(_column("occlusion")),
     ),
     Fault(
-        "the albedo is that at normal incidence",
+        "the albedo is the one at normal incidence",
         lambda batch: replace(batch, wo=np.broadcast_to([0.0, 0.0, 1.0], batch.wo.shape)),
     ),
 )
@@ -152,7 +152,7 @@ def scaled_by(factor: float) -> Fault:
     if np.isclose(factor, np.pi, rtol=1e-5):
         text = "the factor 1/pi is missing"
     if np.isclose(factor, 1.0 / np.pi, rtol=1e-5):
-        text = "the factor 1/pi is there twice"
+        text = "the factor 1/pi is applied twice"
     return Fault(text, values=lambda batch, values: factor * values)
 
 

@@ -31,20 +31,22 @@ from mxeon.conformance.samples.measurement import absolute
 from mxeon.conformance.samples.uneven_environment import sky, sky_behind
 from mxeon.models.nodes.frames import UP
 
-UNKNOWN = "no known fault explains it"
+UNKNOWN = "the cause is unknown"
 
 # The irradiance that a wrong look-up finds, by what it does.
 LOOKUPS: dict[str, Callable[[Batch], Array]] = {
-    "at the opposite of the normal": lambda batch: sky(-batch.normal),
-    "at the direction to the viewer": lambda batch: sky(batch.world(batch.wo)),
-    "at the opposite of the direction to the viewer": lambda batch: sky(-batch.world(batch.wo)),
-    "at the direction to the light": lambda batch: sky(batch.world(batch.wi)),
-    "at the mirror direction": lambda batch: sky(batch.world(batch.wo * [-1.0, -1.0, 1.0])),
-    "at the surface's normal, not the node's": lambda batch: sky(_constant(batch, UP)),
-    "at the surface's normal, turned to the viewer, not at the node's": lambda batch: sky(
+    "opposite to the normal": lambda batch: sky(-batch.normal),
+    "toward the viewer": lambda batch: sky(batch.world(batch.wo)),
+    "away from the viewer": lambda batch: sky(-batch.world(batch.wo)),
+    "toward the light": lambda batch: sky(batch.world(batch.wi)),
+    "along the mirror direction": lambda batch: sky(batch.world(batch.wo * [-1.0, -1.0, 1.0])),
+    "along the surface's normal instead of the node's": lambda batch: sky(_constant(batch, UP)),
+    "along the surface's normal turned toward the viewer, instead of the node's": lambda batch: sky(
         np.where(batch.world(batch.wo)[:, 2:] < 0.0, -1.0, 1.0) * _constant(batch, UP)
     ),
-    "at a normal that is not turned to the viewer": lambda batch: sky(batch.inputs["normal"]),
+    "along a normal that is not turned toward the viewer": lambda batch: sky(
+        batch.inputs["normal"]
+    ),
     "in the map of radiances": lambda batch: np.ones_like(batch.wo),
     "nowhere: it is black": lambda batch: np.zeros_like(batch.wo),
 }
@@ -92,7 +94,7 @@ def diagnose_frame(probe: Probe) -> Diagnosis:
         expected = probe.expected if branch == "direct" else probe.expected_albedo
         dropped = expected(normal_ignored(case.batch))
         if tolerance.metric(case.measured, dropped).max() <= tolerance.value:
-            text = "the node's normal is ignored: the surface's takes its place"
+            text = "the node's normal is ignored; the surface's is used instead"
         else:
             # Or else where it is wrong, and which axis has no effect.
             text = not_finite([case]) or region([case.batch], [wrong])

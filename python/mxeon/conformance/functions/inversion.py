@@ -105,13 +105,13 @@ def judge_inversion(probe: InversionProbe) -> tuple[Result, ...]:
     rows: tuple[tuple[str, str, Tolerance, Errors], ...] = (
         (
             "inversion",
-            "The node gives the reflectance of the NumPy function of its name.",
+            "The node returns the reflectance of the NumPy function of the same name.",
             tolerances.INVERSION,
             _value,
         ),
         (
             "round_trip",
-            "EON with the reflectance that the node gives has the color as its albedo.",
+            "EON with the node's reflectance has the input color as its albedo.",
             tolerances.ROUND_TRIP,
             _round_trip,
         ),
@@ -187,7 +187,7 @@ def _nearest(probe: InversionProbe, values: Array) -> Diagnosis:
     (first, least), (_, rival) = ranking[:2]
     if first != probe.node and least <= SAME * rival:
         return Diagnosis(sentence(ranking), distances)
-    text = f"off by rms {distances[probe.node]:.2g}; no other known function is near"
+    text = f"off by rms {distances[probe.node]:.2g}; no known function matches"
     return Diagnosis(text, distances)
 
 

@@ -143,7 +143,7 @@ def part_error(function: str, values: Array) -> float:
 FUNCTION_CHECKS = (
     FunctionCheck(
         "twins",
-        "The shader functions of models and albedos are the NumPy models.",
+        "The shader functions of models and albedos match the NumPy models.",
         lambda name: "_brdf" in name or "_albedo_" in name,
         value_error,
         lambda probe: tolerances.VALUE,
@@ -157,21 +157,21 @@ FUNCTION_CHECKS = (
     ),
     FunctionCheck(
         "samples",
-        "The shader functions that sample directions give NumPy's.",
+        "The sampling functions return the same directions as NumPy's.",
         lambda name: bool(SAMPLES.fullmatch(name)),
         part_error,
         lambda probe: tolerances.direction_of(probe.sine_error),
     ),
     FunctionCheck(
         "densities",
-        "The densities of samples, and the matrix of linearly transformed cosines, are NumPy's.",
+        "The sampling densities and the matrix of linearly transformed cosines match NumPy's.",
         lambda name: bool(DENSITIES.fullmatch(name)),
         part_error,
         lambda probe: tolerances.DENSITY,
     ),
     FunctionCheck(
         "parts",
-        "The functions that models and samples are made of are those of NumPy.",
+        "The functions that models and sampling are built from match NumPy's.",
         lambda name: True,
         part_error,
         lambda probe: tolerances.PART,

@@ -41,7 +41,7 @@ Pixels: TypeAlias = NDArray[np.floating]
 Case: TypeAlias = tuple[Scene, Pixels, ExpectedPicture]  # with the host's picture
 Pixel: TypeAlias = tuple[float, dict[str, list[float]], float]
 
-MATCH = "The picture is the reference's in every pixel."
+MATCH = "Every pixel matches the reference."
 SAME_NAMES = "nodes {} have the values of one of them; see docs/upstream/same_names.md"
 DEFINED_MATERIAL = (
     "a material that a nodegraph defines is not generated; see docs/upstream/material_graphs.md"

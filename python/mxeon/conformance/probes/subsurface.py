@@ -115,7 +115,7 @@ ON_SPHERES = (
     ),
     *(
         Candidate(
-            f"a far exponential of {each:g} mean free paths in place of {FAR:g}",
+            f"a far exponential of {each:g} mean free paths instead of {FAR:g}",
             partial(_spread, far=each),
         )
         for each in FARTHER

@@ -43,12 +43,12 @@ from mxeon.shaders.library_tree import root
 
 ROWS = {check.key: check for check in CHECKS}
 CLAIMS = {check.key: check.claim for check in CHECKS} | {
-    HOST: "The host executes shaders here.",
-    DEFINITION: "The nodes are defined as their specification has them.",
+    HOST: "The host runs on this machine.",
+    DEFINITION: "The nodes are defined as specified.",
     SOURCE: "The generated text was checked.",
     DOCUMENT: DOCUMENT_CLAIM,
-    INVERSION: "The node is the NumPy function of its name.",
-    FUNCTIONS: "The shader functions are those of NumPy.",
+    INVERSION: "The node matches the NumPy function of the same name.",
+    FUNCTIONS: "The shader functions match NumPy's.",
     CURVE: "The albedo was measured over the cosine.",
     PICTURE: MATCH,
 }

@@ -27,7 +27,7 @@ ROUNDED = 1e-12  # 4500 roundings of float64: no text has as many
 CYCLES = 1e-7  # its profile leaves out the square of an albedo of 1e-4, twice, of numbers up to 3
 CLAIM = Claim(
     "closure",
-    "The closure that the generated source calls is the node's, in its arguments and its value.",
+    "The generated source calls the node's closure, with the right arguments and value.",
     "faults",
     "the weight of the lobe is dropped",
 )
@@ -83,7 +83,7 @@ def _faults(subject: DiffuseSubject, renderer: Renderer, text: str) -> list[str]
     closures = _closures(renderer, text, inputs)
     faults = [*dict.fromkeys(renderer.faults)]
     if FLOAT_FLAG.search(text):
-        faults.append(f"keyword {FLAG} is an int, and gets a float")
+        faults.append(f"keyword {FLAG} is an int but receives a float")
     # Of one closure compare the arguments, of several the value.
     single = renderer.profile is None and len(closures) == 1
     if single:
@@ -125,7 +125,7 @@ def _closures(renderer: Renderer, text: str, inputs: Inputs) -> tuple[Closure, .
     elif definition := ASSIGNED.search(text):
         closures = interpreter.value(definition[1], variables)
     else:
-        raise NotRun("the lobe is computed in a way that is not read")
+        raise NotRun("the expression of the lobe is not supported")
     if not isinstance(closures, tuple):
         raise ShaderError("the lobe is no closure")
     return closures

@@ -28,7 +28,7 @@ WORDS = {
 RANGE = ("uimin", "uimax")
 CLAIM = Claim(
     "definition",
-    "The inputs and the output of the node are those of its specification.",
+    "The node's inputs and output match its specification.",
     "differences",
     "the default of roughness is 0.3",
 )

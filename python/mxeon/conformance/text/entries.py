@@ -25,7 +25,7 @@ from mxeon.shaders.library import has_profile, kind_of, load_library, source_fol
 COUNT = 256  # of random inputs
 CLAIM = Claim(
     "entry",
-    "The entry point in OSL gives the closure of its node, with its weight and its arguments.",
+    "The OSL entry point returns the node's closure, with its weight and arguments.",
     "faults",
     "the first color is halved",
 )

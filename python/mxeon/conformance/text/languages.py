@@ -15,9 +15,9 @@ WORDS = {"color": "vec3", "vector": "vec3", "output": "out", "atan2": "atan"}  #
 NUMBER = re.compile(r"\b\d+\.\d+\b")
 CLAIM = Claim(
     "languages",
-    "The shader functions have the same text in OSL as in GLSL, but for words of type.",
+    "The shader functions are identical in OSL and GLSL, apart from type names.",
     "functions",
-    "the first number of the OSL text is another",
+    "the first number of the OSL text is different",
 )
 
 
@@ -28,7 +28,7 @@ def check_languages(library: str) -> tuple[Result, ...]:
     glsl, osl = (twins(language, library) for language in LANGUAGES)
     different = differences(glsl, osl)
     control = differences(glsl, NUMBER.sub("777.0", without_comments(osl), count=1))
-    meaning = f"another text in OSL: {', '.join(different)}"
+    meaning = f"different in OSL: {', '.join(different)}"
     return (counted(CLAIM, "shader twins, osl", library, len(different), len(control), meaning),)
 
 

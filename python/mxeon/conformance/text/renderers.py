@@ -143,7 +143,7 @@ class Renderer:
             self.faults.append(f"{name} is not passed")
             return np.zeros((1, width))
         if value.shape[1] > width:
-            self.faults.append(f"{name} is a float, and gets a color or vector")
+            self.faults.append(f"{name} is a float but receives a color or vector")
             mean: Array = value.mean(axis=1, keepdims=True)
             return mean
         return value

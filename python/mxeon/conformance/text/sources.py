@@ -27,7 +27,7 @@ ASSIGNED = re.compile(r"\b(?:BSDF|material) lobe_out = ([^;]*);")
 CALLEE = re.compile(r"(?:\w+::)*\w+(?=\()")
 PASSED_ON = Claim(
     "source",
-    "The generated source passes every input of the node on to the function that it calls.",
+    "The generated source passes every input of the node to the function it calls.",
     "inputs",
     "each input in turn is 0",
 )
@@ -74,7 +74,7 @@ def _passes_inputs(subject: DiffuseSubject | BsdfSubject, target: str, library: 
         text = source(subject, target, library)
         without = [_dropped(text, inputs, {**inputs, name: np.zeros((1, 1))}) for name in names]
         noticed = sum(name in each for name, each in zip(names, without, strict=True))
-        dropped = [f"{name} is never passed on" for name in _dropped(text, inputs, inputs)]
+        dropped = [f"{name} is never passed" for name in _dropped(text, inputs, inputs)]
         return dropped, noticed if noticed == len(names) else 0
 
     return judged(PASSED_ON, f"{subject.title}, {target}", library, faults)
@@ -87,7 +87,7 @@ def _dropped(text: str, inputs: Mapping[str, Array], given: Mapping[str, Array])
     elif assigned := ASSIGNED.search(text):
         expression = assigned[1]
     else:
-        raise NotRun("the lobe is computed in a way that is not read")
+        raise NotRun("the expression of the lobe is not supported")
     seen: list[float] = []
 
     def called(arguments: Mapping[str, object]) -> tuple[Closure, ...]:
