@@ -176,7 +176,8 @@ def test_a_name_of_a_file_is_one_line_and_steers_no_terminal():
 
 def test_what_did_not_run_is_said_with_its_number():
     lines = answer(made_run(made(NOT_RUN, reason="gl: nowhere")))
-    assert lines[:2] == ["No check ran.", "not run: gl with eonlib, 1 check: gl: nowhere"]
+    assert lines[0].startswith("No check ran.")
+    assert lines[1] == "not run: gl with eonlib, 1 check: gl: nowhere"
 
 
 def test_a_note_that_a_diagnosis_repeats_is_left_out():

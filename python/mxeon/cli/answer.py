@@ -9,13 +9,7 @@ from pathlib import Path
 
 from mxeon.conformance.results import DIFFERS, DIRECT, FAILED, NOT_RUN, PASSED, Result, Run, counted
 from mxeon.conformance.results.known_issues import issues_of, link
-from mxeon.conformance.run.documents import (
-    KEYS,
-    REFUSED,
-    causes,
-    document_verdicts,
-    is_refused,
-)
+from mxeon.conformance.run.documents import KEYS, REFUSED, causes, document_verdicts, is_refused
 from mxeon.conformance.run.survey import model_of
 from mxeon.errors import one_line
 from mxeon.shaders.library import eonlib_folder
@@ -36,9 +30,9 @@ def answer(run: Run, full: bool = False) -> list[str]:
     rows = {} if many else _rows(run)
     remedy, failures, notes = list(_remedy(run)), list(_failures(run)), new_notes(run)
     first = [*map(one_line, [*run.origins, *_not_run(run)]), *looks]
-    # What has no material to speak of, or was not judged, begins with the verdict.
-    begins = run.refused or run.summary.verdict == NOT_RUN or not run.contents
     verdict = [one_line(run.sentence)]
+    # The verdict comes first where there are no documents, or something was not judged.
+    begins = run.refused or run.summary.verdict == NOT_RUN or not run.contents
     first, last = ([*verdict, *first], []) if begins else (first, verdict)
     room = LINES - len(first) - len(remedy) - len(last)
     least = FEWEST if any(each.startswith("failed") for each in failures) else 1
@@ -77,9 +71,6 @@ def new_notes(run: Run) -> list[str]:
     return [note for note in run.notes if not note.endswith(said)]
 
 
-# --- materials ------------------------------------------------------------------------------------
-
-
 def _looks(run: Run) -> Iterator[str]:
     """A sentence for each material, those that look wrong first; materials that look alike share it."""
     hosts = {each.host for each in run.results if each.check in KEYS}
@@ -116,14 +107,10 @@ def _look(run: Run, document: str, results: Sequence[Result]) -> str:
         refused = is_refused(run, document, library)
         if library not in drawn and (refused or library in run.compared):
             words.setdefault(REFUSED if refused else "not judged", []).append(_title(run, library))
-    right = [
-        f"{AS_SPECIFIED} with {' and '.join(names)}"
-        for names in [words.pop(AS_SPECIFIED, [])]
-        if names
-    ]
-    return "; ".join(
-        [*right, *(f"with {' and '.join(names)}, {each}" for each, names in words.items())]
-    )
+    right = words.pop(AS_SPECIFIED, [])
+    parts = [f"{AS_SPECIFIED} with {' and '.join(right)}"] * bool(right)
+    parts += [f"with {' and '.join(names)}, {each}" for each, names in words.items()]
+    return "; ".join(parts)
 
 
 def _appearance(run: Run, document: str, result: Result) -> str:
@@ -149,11 +136,10 @@ def _appearance(run: Run, document: str, result: Result) -> str:
 
 
 def _title(run: Run, library: str) -> str:
-    return (
-        f"stock MaterialX {run.software.get('MaterialX', '')}".strip()
-        if library == "stock"
-        else library
+    name = (
+        f"stock MaterialX {run.software['MaterialX']}" if "MaterialX" in run.software else "stock"
     )
+    return name if library == "stock" else library
 
 
 def _is_picture(result: Result, document: str) -> bool:
@@ -165,8 +151,6 @@ def _listed(names: Sequence[str]) -> str:
     more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
     return ", ".join(names[:NAMED]) + more
 
-
-# --- nodes ----------------------------------------------------------------------------------------
 
 WRONG, ELSEWHERE, RIGHT = range(3)
 Rows = dict[tuple[str, str], list[Result]]  # by node and host
@@ -230,7 +214,9 @@ def _cell(run: Run, results: Sequence[Result]) -> str:
     rank = min(_rank(run, each) for each in results)
     chosen = [each for each in results if _rank(run, each) == rank and rank != RIGHT]
     direct = [each for each in results if each.check in DIRECT]
-    shown = max(chosen or direct or results, key=_ratio)
+    shown = max(
+        chosen or direct or results, key=lambda each: (each.error or 0.0) / (each.tolerance or 1.0)
+    )
     words = {WRONG: "wrong", ELSEWHERE: "wrong for other inputs"}.get(rank, model_of(shown.subject))
     if rank == RIGHT and any(each.verdict == DIFFERS for each in results):
         words += ", differs as permitted"
@@ -238,13 +224,6 @@ def _cell(run: Run, results: Sequence[Result]) -> str:
         f", error {shown.error:.2g}, tolerance {shown.tolerance:.2g}" if shown.tolerance else ""
     )
     return words + numbers
-
-
-def _ratio(result: Result) -> float:
-    return (result.error or 0.0) / (result.tolerance or 1.0)
-
-
-# --- causes ---------------------------------------------------------------------------------------
 
 
 def _not_run(run: Run) -> Iterator[str]:
@@ -290,14 +269,11 @@ def _failures(run: Run) -> Iterator[str]:
         place = f"{kind}: {each.location}{other}"
         groups.setdefault((place, " ".join(each.pages) or each.explanation), []).append(each)
     # Nodes explain pictures.
-    places = {place for (place, _), each in groups.items() if any(map(_is_of_node, each))}
-    for (place, _), results in groups.items():
-        if place not in places or any(map(_is_of_node, results)):
-            yield f"{place}: {_sentence(results)}"
-
-
-def _is_of_node(result: Result) -> bool:
-    return result.check not in KEYS
+    of_nodes = {key for key, row in groups.items() if any(each.check not in KEYS for each in row)}
+    places = {place for place, _ in of_nodes}
+    for key, results in groups.items():
+        if key in of_nodes or key[0] not in places:
+            yield f"{key[0]}: {_sentence(results)}"
 
 
 def _sentence(results: Sequence[Result]) -> str:

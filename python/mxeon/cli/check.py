@@ -43,7 +43,11 @@ def add_parser(commands: arguments.Commands) -> None:
         help=f"where to run the shaders: {default} (default), {', '.join(others)}, or all; repeatable",
     )
     command.add_argument(
-        "--library", action="append", metavar="NAME", help=f"{arguments.LIBRARY}; repeatable"
+        "--library",
+        action="append",
+        metavar="NAME",
+        help=f"{arguments.LIBRARY}; repeatable; without it, FILEs are compared with stock too, "
+        "and only eonlib decides the exit status",
     )
     command.add_argument(
         "--node",

@@ -29,7 +29,6 @@ def open_streams() -> None:
 
 def flush(status: int) -> int:
     """The exit status once all output is written; misuse if that fails."""
-    # Write what standard output still holds; its failure is the status.
     try:
         if sys.stdout:
             sys.stdout.flush()
@@ -37,7 +36,6 @@ def flush(status: int) -> int:
         discard(sys.stdout)
         error.filename = "standard output"
         status = 141 if isinstance(error, BrokenPipeError) else status or fail(*status_of(error))
-    # Write what standard error still holds; nobody can be told of a failure.
     try:
         if sys.stderr:
             sys.stderr.flush()
@@ -88,15 +86,7 @@ def _print_line(line: str) -> None:
 
 
 class Progress:
-    """One line on standard error that says what runs and how much is left, on a terminal alone.
-
-    Parameters
-    ----------
-    title : str
-        Of the command.
-    label : callable (step) -> str
-        What a step is about, in words.
-    """
+    """One line on a terminal that says what runs and how much is left; `label` names a step."""
 
     visible = ""  # the line that stands there
 
@@ -121,11 +111,9 @@ class Progress:
 
     def __call__(self, steps: Iterable[Any], total: int | None = None) -> Iterator[Any]:
         """The steps, each of which is shown when it is handed on."""
-        # Say how many there are.
         total = len(steps) if total is None and isinstance(steps, Sized) else total
         begin = 0.0
         self.show(f"0 of {total}")
-        # Say after each what is left, by the mean time of those after the first.
         for done, step in enumerate(steps, 1):
             begin = begin or time.monotonic()  # the first step takes what all need
             spent = (time.monotonic() - begin) / max(done - 1, 1)
