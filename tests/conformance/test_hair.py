@@ -26,7 +26,7 @@ FEWER = replace(
 # What fails with stock MaterialX, and words of each diagnosis; every other check passes.
 STOCK = {
     "value": "values that are not finite",
-    "environment": "a GGX lobe of the mean roughness and tint, without absorption has the distance",
+    "environment": "a GGX lobe of the mean roughness and tint, without absorption comes nearest",
     "black": "values that are not finite",
     "finite": "values that are not finite",
     "integral": "",
