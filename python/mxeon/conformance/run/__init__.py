@@ -176,8 +176,9 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
             file = planned.tasks[number].subject
             refused[file] = tuple(dict.fromkeys((*refused.get(file, ()), *lines)))
     # A document that only a compared library cannot read.
-    for file in product(planned.contents, planned.compared):
-        notes += tuple((line, file[0]) for line in refused.pop(" with ".join(file), ()))
+    for document, library in product(planned.contents, planned.compared):
+        lines = refused.pop(f"{document} with {library}", ())
+        notes += tuple((line, document) for line in lines)
     notes += repaired(results, planned.software) + _untested(planned.software)
     return Run(
         version=planned.version,
