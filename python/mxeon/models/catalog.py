@@ -111,32 +111,21 @@ def model(name: str) -> ShadingModel: ...
 def model(name: str) -> NodeModel:
     """The model with this name: of rough diffuse nodes, a known variant of them, or a node of pbrlib.
 
-    Parameters
-    ----------
-    name : str
-        One of `model_names()`, such as "eon", "qon", "dielectric" or "zeltner", or the category of a
-        node, such as "conductor_bsdf" or "uniform_edf", which is the model of its default mode.
+    - `name`: One of `model_names()`, such as "eon", "qon", "dielectric" or "zeltner", or the
+      category of a node, such as "conductor_bsdf" or "uniform_edf", which is the model of its
+      default mode.
 
-    Returns
-    -------
-    ShadingModel, EmissionModel or MediumModel
-        What reflects or transmits; an EDF; a VDF.
+    Result: What reflects or transmits; an EDF; a VDF. Raises `ValueError` if there is none; lists
+    the names, or those that may be meant.
 
-    Raises
-    ------
-    ValueError
-        If there is none; lists the names, or those that may be meant.
-
-    Examples
-    --------
-    >>> gold = model("conductor")
-    >>> gold
-    conductor: conductor microfacets; brdf, bsdf, albedo_dir, sample, pdf, plot
-      ior = (0.183, 0.421, 1.373), in [0, 1e50]
-      extinction = (3.424, 2.346, 1.77), in [0, 1e50]
-      roughness = (0.05, 0.05), in [0, 1]
-    >>> gold.brdf([0.6, 0.0, 0.8], [-0.6, 0.0, 0.8], roughness=0.3).round(4)
-    array([1.4723, 1.1829, 0.5437])
+        >>> gold = model("conductor")
+        >>> gold
+        conductor: conductor microfacets; brdf, bsdf, albedo_dir, sample, pdf, plot
+          ior = (0.183, 0.421, 1.373), in [0, 1e50]
+          extinction = (3.424, 2.346, 1.77), in [0, 1e50]
+          roughness = (0.05, 0.05), in [0, 1]
+        >>> gold.brdf([0.6, 0.0, 0.8], [-0.6, 0.0, 0.8], roughness=0.3).round(4)
+        array([1.4723, 1.1829, 0.5437])
     """
     titles = {each.name: each.title for each in MODELS.values()}
     checked_choice("model", name, (*MODELS, *NODES_BY_CATEGORY), titles)
@@ -184,7 +173,6 @@ def _of_transmission(row: PbrNode) -> ShadingModel:
         passed: Array = passing.passed(wo, inputs, True) / ior**2
         return passed if mode == "T" else passed + reflected(wo, inputs)
 
-    # Give both the inputs of the node.
     inputs = tuple(parameter(row.category, name) for name in row.inputs)
     lights = "back" if mode == "T" else "all sides"
     title, frame = f"{row.title}, scatter mode {mode}", FRAME[:-1]
@@ -207,14 +195,12 @@ def _of_medium(row: Medium) -> MediumModel:
 
 def _of_table(row: table.Model) -> ShadingModel:
     """The model of a row of the table of rough diffuse models."""
-    # Name its inputs.
     node = "burley_diffuse_bsdf" if row.name.startswith("burley") else "oren_nayar_diffuse_bsdf"
     inputs = [parameter(node, "color", "rho")]
     if row.parameter:
         inputs.append(parameter(node, "roughness", row.parameter))
     names = [each.name for each in inputs]
 
-    # Give its functions the inputs in their own order.
     def value(wo: Array, wi: Array, values: Inputs) -> Array:
         return row.brdf(wo, wi, *(values[name] for name in names))
 
@@ -295,7 +281,6 @@ def _per_coat(
     numbers = [each[0] if len(each) == 1 else each for each in (alpha, ior)]
     if len(alpha) == len(ior) == 1 or library(alpha) or library(ior):
         return _pair(function(*others, *numbers))
-    # Else call it for the rows of each.
     pairs = np.stack(np.broadcast_arrays(alpha, ior), axis=-1)
     coats, which = np.unique(pairs, axis=0, return_inverse=True)
     results: list[Array] = []

@@ -46,13 +46,7 @@ class Drawable(Protocol):
 
 
 def draw(model: Drawable, inputs: Mapping[str, ArrayLike], path: str | None = None) -> Figure:
-    """The figure of a model with these inputs, one material; written to `path` if there is one.
-
-    Raises
-    ------
-    ImportError
-        If matplotlib is missing; says how to install it.
-    """
+    """The figure of a model with these inputs, one material; written to `path` if there is one."""
     # Load matplotlib, which the models do without.
     try:
         from matplotlib import style
@@ -61,7 +55,6 @@ def draw(model: Drawable, inputs: Mapping[str, ArrayLike], path: str | None = No
         raise ImportError(
             "plot needs matplotlib: pip install '.[report]' in a checkout of mxeon"
         ) from None
-    # Draw side by side what the model has.
     with style.context(["default", STYLE]):
         columns = 3 if "pdf" in model.functions else 2
         figure = Figure(figsize=(3.7 * columns, 3.6), layout="constrained")
@@ -112,7 +105,6 @@ def _lobes(model: Drawable, inputs: Mapping[str, ArrayLike]) -> tuple[Array, lis
 
 def _draw_lobe(axes: PolarAxes, model: Drawable, inputs: Mapping[str, ArrayLike]) -> None:
     """Value times cosine over the angle of the light, for some views, which are marked."""
-    # Draw a lobe for each view, and mark the viewer on the rim.
     angles, lobes = _lobes(model, inputs)
     for view, color, lobe in zip(VIEWS, VIEW_COLORS, lobes, strict=True):
         axes.plot(angles, lobe, color=color, linewidth=1.2, label=f"viewer at {view:g}°")
@@ -120,7 +112,6 @@ def _draw_lobe(axes: PolarAxes, model: Drawable, inputs: Mapping[str, ArrayLike]
     for view, color in zip(VIEWS, VIEW_COLORS, strict=True):
         mark = [largest, 1.1 * largest]
         axes.plot([np.radians(view)] * 2, mark, color=color, linewidth=2.5)
-    # Put the normal on top, and two rings.
     axes.set_theta_zero_location("N")
     axes.set_theta_direction(-1)
     if model.lights == "front":
@@ -136,11 +127,9 @@ def _draw_lobe(axes: PolarAxes, model: Drawable, inputs: Mapping[str, ArrayLike]
 
 def _draw_albedo(axes: Axes, model: Drawable, inputs: Mapping[str, ArrayLike]) -> None:
     """Directional albedo over the angle of the viewer."""
-    # Find the albedo of each channel.
     degrees = np.linspace(0.0, 89.5, 60)
     albedo = model.albedo_dir(np.cos(np.radians(degrees)), **inputs)
     channels = albedo[:, np.newaxis] if albedo.ndim == 1 else albedo
-    # Draw one line for gray, and one for each channel otherwise.
     gray = bool((channels == channels[:, :1]).all())
     colored = channels.shape[1] == 3 and not gray
     colors = CHANNEL_COLORS if colored else ("#444444",) * channels.shape[1]
@@ -156,7 +145,6 @@ def _draw_albedo(axes: Axes, model: Drawable, inputs: Mapping[str, ArrayLike]) -
 
 def _draw_density(axes: Axes, model: Drawable, inputs: Mapping[str, ArrayLike]) -> None:
     """Density of samples over the angle of the light, and what it would be without any noise."""
-    # Draw both for each view.
     axes.set(title="density of samples, 1/sr", xlabel="light's angle, degrees")
     angles, lobes = _lobes(model, inputs)
     for view, color, lobe in zip(VIEWS, VIEW_COLORS, lobes, strict=True):
@@ -165,7 +153,6 @@ def _draw_density(axes: Axes, model: Drawable, inputs: Mapping[str, ArrayLike]) 
         axes.plot(np.degrees(angles), pdf, color=color, linewidth=1.2)
         if albedo > 0.0:
             axes.plot(np.degrees(angles), lobe / albedo, color=color, linewidth=2.5, alpha=0.3)
-    # Say which is which.
     exact = f"value{'' if model.node == FIBER else ' times cosine'}, over the albedo"
     axes.plot([], [], color="#444444", linewidth=1.2, label="density")
     axes.plot([], [], color="#444444", linewidth=2.5, alpha=0.3, label=exact)

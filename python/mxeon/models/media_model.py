@@ -20,8 +20,6 @@ COSINE = Parameter("cos_theta", 1.0, "cos_theta")
 class EmissionModel(NodeModel):
     """An EDF node by its name. Inputs and their shapes as those of `ShadingModel`.
 
-    Examples
-    --------
     >>> import mxeon
     >>> mxeon.model("conical_edf").edf([0.6, 0.0, 0.8], color=2.0, outer_angle=90.0).round(6)
     np.float64(1.251183)
@@ -50,8 +48,6 @@ class EmissionModel(NodeModel):
 class MediumModel(NodeModel):
     """A VDF node by its name. Inputs and their shapes as those of `ShadingModel`.
 
-    Examples
-    --------
     >>> import mxeon
     >>> mxeon.model("absorption_vdf").transmittance(2.0, [0.5, 1.0, 0.0]).round(6)
     array([0.367879, 0.135335, 1.      ])

@@ -143,23 +143,11 @@ class ShadingModel(NodeModel):
     def brdf(self, wo: ArrayLike, wi: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
         """Value of a model that reflects, in 1/sr and without the cosine.
 
-        Parameters
-        ----------
-        wo, wi : array_like, shape (..., 3)
-            Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x. That to the
-            viewer has z >= 0; the value is 0 where that to the light has z < 0.
-        *inputs, **named : array_like
-            Those of `parameters`.
+        - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z,
+          tangent +x. That to the viewer has z >= 0; the value is 0 where that to the light has z < 0.
+        - `*inputs`, `**named`: Those of `parameters`.
 
-        Returns
-        -------
-        ndarray, shape (..., C) or (...)
-
-        Examples
-        --------
-        >>> import mxeon
-        >>> mxeon.model("eon").brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], 0.8, 0.5).round(6)
-        np.float64(0.310981)
+        Result (..., C) or (...).
         """
         self._need("brdf")
         return self.bsdf(wo, wi, *inputs, **named)
@@ -174,18 +162,9 @@ class ShadingModel(NodeModel):
     ) -> Array:
         """Directional albedo: the integral of value times cosine.
 
-        Parameters
-        ----------
-        mu : array_like, shape (...)
-            Cosine of the viewer's polar angle, in [0, 1].
-        azimuth : array_like, shape (...)
-            The viewer's angle from the tangent, in radian; it counts where the model is anisotropic.
-
-        Examples
-        --------
-        >>> import mxeon
-        >>> mxeon.model("eon").albedo_dir(0.5, color=[0.2, 1.0], roughness=1.0).round(6)
-        array([0.177706, 1.      ])
+        - `mu` (...): Cosine of the viewer's polar angle, in [0, 1].
+        - `azimuth` (...): The viewer's angle from the tangent, in radian; it counts where the model is
+          anisotropic.
         """
         call = self._rows({"view": views(mu, azimuth)}, inputs, named)
         return call.colors(self.albedo(call.vectors[0], call.inputs))
@@ -234,10 +213,8 @@ class ShadingModel(NodeModel):
         named: dict[str, ArrayLike],
     ) -> Rows:
         """Vectors and inputs of a call, in the frame of the node."""
-        # Take what goes by name alone.
         own = {name: named[name] for name in self.by_name if name in named}
         rest = {name: value for name, value in named.items() if name not in own or name == "weight"}
-        # Turn directions into the frame, and mirror the viewer.
         if frame := _frame(own):
             if not {"wo", "wi"} & set(vectors):
                 raise TypeError("normal and tangent turn directions; an albedo has none to turn")

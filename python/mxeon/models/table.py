@@ -24,18 +24,11 @@ from mxeon.models.diffuse.burley import burley_albedo_dir, burley_brdf
 class Model:
     """A reflection model and its closed forms.
 
-    Attributes
-    ----------
-    name, title : str
-        Prefix of its functions, and name in print.
-    brdf : callable
-        `brdf(wo, wi, rho, *parameter)` in 1/sr, shape (..., C); Lambert has no parameter.
-    parameter : str or None
-        "sigma", in radian in [0, pi/2]; "roughness", in [0, 1]; or None.
-    albedo_dir : callable or None
-        `albedo_dir(mu, rho, *parameter)`, shape (..., C), where a closed form is known.
-    albedo_avg : callable or None
-        `albedo_avg(rho, *parameter)`, shape (..., C), where a closed form is known.
+    - `name`, `title`: Prefix of its functions, and name in print.
+    - `brdf`: `brdf(wo, wi, rho, *parameter)` in 1/sr, shape (..., C); Lambert has no parameter.
+    - `parameter`: "sigma", in radian in [0, pi/2]; "roughness", in [0, 1]; or None.
+    - `albedo_dir`: `albedo_dir(mu, rho, *parameter)`, shape (..., C), where a closed form is known.
+    - `albedo_avg`: `albedo_avg(rho, *parameter)`, shape (..., C), where a closed form is known.
     """
 
     name: str
@@ -60,13 +53,7 @@ class Model:
 
     @property
     def closed_albedo_dir(self) -> Callable[..., Array]:
-        """`albedo_dir`, where it must be known.
-
-        Raises
-        ------
-        ValueError
-            If no closed form is known.
-        """
+        """`albedo_dir`, where it must be known."""
         if self.albedo_dir is None:
             raise ValueError(f"model must have a closed form of its albedo; got {self.name!r}")
         return self.albedo_dir
@@ -75,13 +62,6 @@ class Model:
 def model(name: str) -> Model:
     """The row of `MODELS`, `KNOWN_DEFECTS`, `OTHERS` or `PARAMETRIZATIONS` with this name.
 
-    Raises
-    ------
-    ValueError
-        If there is none; lists the names.
-
-    Examples
-    --------
     >>> model("eon").parameter
     'roughness'
     """
@@ -279,7 +259,7 @@ def _square(roughness: ArrayLike) -> Numbers:
     return checked("roughness", roughness) ** 2
 
 
-# The models with other meanings of a roughness in [0, 1], which renderers have in place of sigma.
+# The models with other meanings of a roughness in [0, 1], which renderers have instead of sigma.
 PARAMETRIZATIONS = (
     *(
         _reparametrized(f"{base}_{word}", f"{short} with {meaning}", base, parameter)

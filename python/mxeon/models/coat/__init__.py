@@ -9,6 +9,16 @@ E_r, with the energy compensation, is at most the albedo of facets that reflect 
 most 1. This is no varnish: what EON returns passes freely, while below an interface light is reflected
 and refracted on its way out. At index 1.5 the albedo is 1.17 to 1.80 times that of a random walk below
 the same interface for rho 0.2, 1.28 to 1.66 for 0.5, 1.17 to 1.30 for 0.8: tools/fits/varnish_walk.py.
+
+- `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
+- `mu` (...): Cosine of the viewer's polar angle, in [0, 1].
+- `rho` (..., C): Reflectance of EON per channel, in [0, 1]; a number is one channel.
+- `roughness` (...): That of EON, in [0, 1].
+- `alpha`: GGX roughness of the dielectric, in [0.01, 1]: one number for all pairs.
+- `ior`: Its index of refraction, in [1, 4]: one number for all pairs.
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
 """
 
 from __future__ import annotations
@@ -38,45 +48,15 @@ def dielectric_over_eon_brdf(
 
         f = f_r + (1 - E_r(mu_o)) f_EON
 
-    Parameters
-    ----------
-    wo, wi : array_like, shape (..., 3)
-        Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
-    rho : array_like, shape (..., C)
-        Reflectance of EON per channel, dimensionless, in [0, 1]; a number is one channel.
-    roughness : array_like, shape (...)
-        That of EON, dimensionless, in [0, 1].
-    alpha : float
-        GGX roughness of the dielectric, in [0.01, 1]: one number for all pairs.
-    ior : float
-        Its index of refraction, in [1, 4]: one number for all pairs.
+    Result (..., C): 1/sr. Accuracy: E_r and the energy compensation, which the first call for a
+    dielectric tabulates, have an error below 2e-7. The value is not reciprocal, as neither of both
+    is. A layer is no varnish: EON's light is not reflected on its way out, and at index 1.5 the
+    albedo is up to 1.8 times that of EON below the interface (docs/research.md). [MaterialX2026],
+    sections `layer` and Energy Compensation; [Portsmouth2025], Eq. (19).
 
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        1/sr.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
-
-    Notes
-    -----
-    Accuracy: E_r and the energy compensation, which the first call for a dielectric tabulates, have an
-    error below 2e-7. The value is not reciprocal, as neither of both is. A layer is no varnish: EON's light
-    is not reflected on its way out, and at index 1.5 the albedo is up to 1.8 times that of EON below the
-    interface (docs/research.md).
-
-    References
-    ----------
-    [MaterialX2026], sections `layer` and Energy Compensation; [Portsmouth2025], Eq. (19).
-
-    Examples
-    --------
-    >>> wo, wi = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
-    >>> dielectric_over_eon_brdf(wo, wi, [0.7, 0.1], 0.5, 0.3, 1.5).round(5)
-    array([0.23317, 0.08236])
+        >>> wo, wi = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
+        >>> dielectric_over_eon_brdf(wo, wi, [0.7, 0.1], 0.5, 0.3, 1.5).round(5)
+        array([0.23317, 0.08236])
     """
     coat = coat_of(alpha, ior)
     bare = dielectric_brdf(wo, wi, 1.0, alpha, ior, compensate=False)
@@ -93,29 +73,11 @@ def dielectric_over_eon_albedo_dir(
 
         E = E_r + (1 - E_r) E_EON
 
-    Errors as those of `dielectric_over_eon_brdf`.
+    Result (..., C): 1 where rho is 1. Accuracy: error below 2e-7.
 
-    Parameters
-    ----------
-    mu : array_like, shape (...)
-        Cosine of the viewer's polar angle, dimensionless, in [0, 1].
-    rho, roughness, alpha, ior
-        As those of `dielectric_over_eon_brdf`.
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        Dimensionless; 1 where rho is 1.
-
-    Notes
-    -----
-    Accuracy: error below 2e-7.
-
-    Examples
-    --------
-    >>> dielectric_over_eon_albedo_dir([0.1, 1.0], [0.7, 1.0], 0.5, 0.3, 1.5).round(5)
-    array([[0.7426 , 1.     ],
-           [0.68356, 1.     ]])
+        >>> dielectric_over_eon_albedo_dir([0.1, 1.0], [0.7, 1.0], 0.5, 0.3, 1.5).round(5)
+        array([[0.7426 , 1.     ],
+               [0.68356, 1.     ]])
     """
     base = eon_albedo_dir(mu, rho, roughness)
     height = cast(Array, mu) if library(mu) else np.asarray(mu, np.float64)
@@ -129,30 +91,13 @@ def dielectric_over_eon_albedo_avg(
 ) -> Array:
     """Average of `dielectric_over_eon_albedo_dir` over the viewer's directions, weighted by the cosine.
 
-    Errors as those of `dielectric_over_eon_brdf`.
+    Result (..., C). Accuracy: error below 2e-7. EON's albedo falls from its value at grazing by
+    what FON loses: of the light that the dielectric passes, the mean loss counts.
 
-    Parameters
-    ----------
-    rho, roughness, alpha, ior
-        As those of `dielectric_over_eon_brdf`.
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        Dimensionless.
-
-    Notes
-    -----
-    Accuracy: error below 2e-7. EON's albedo falls from its value at grazing by what FON loses: of the
-    light that the dielectric passes, the mean loss counts.
-
-    Examples
-    --------
-    >>> dielectric_over_eon_albedo_avg([0.7, 1.0], 0.5, 0.3, 1.5).round(5)
-    array([0.69645, 1.     ])
+        >>> dielectric_over_eon_albedo_avg([0.7, 1.0], 0.5, 0.3, 1.5).round(5)
+        array([0.69645, 1.     ])
     """
     coat = coat_of(alpha, ior)
-    # Place nodes of the average on the scale of the curves.
     number = coat.alpha
     xp, (x, weight) = array_namespace(number), unit_rule(AVERAGED)
     if library(number):
@@ -160,7 +105,6 @@ def dielectric_over_eon_albedo_avg(
     extent = xp.asinh(1.0 / number)
     mu = at_most(number * xp.sinh(extent * x**3), 1.0)
     weight = weight * 2.0 * mu * number * xp.cosh(extent * x**3) * extent * 3.0 * x * x
-    # Average what is reflected, and the loss of what is passed on.
     reflected = coat.at(mu)[1]
     passed = xp.sum(weight * (1.0 - reflected))
     share = xp.sum(weight * (1.0 - reflected) * fon_loss(mu)) / (passed * C1)

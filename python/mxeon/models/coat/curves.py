@@ -33,13 +33,9 @@ KEPT = 64  # dielectrics whose curves are kept
 class Coat:
     """A dielectric's curves over the viewer's cosine.
 
-    Attributes
-    ----------
-    alpha, average : float or array
-        GGX roughness, which sets the scale of the cosine, and F_ss.
-    missing, reflected, edge : list of float, or array (NODES,)
-        Coefficients of (1 - E_ss) / E_ss, of E_r, and of the facets' mean of (1 - c)^5, which is E of a metal
-        with Schlick's curve that is black along the normal.
+    - `alpha`, `average`: GGX roughness, which sets the scale of the cosine, and F_ss.
+    - `missing`, `reflected`, `edge`: Coefficients of (1 - E_ss) / E_ss, of E_r, and of the facets'
+      mean of (1 - c)^5, which is E of a metal with Schlick's curve that is black along the normal.
     """
 
     alpha: float | Array
@@ -73,23 +69,18 @@ def place(mu: Array, alpha: float | Array) -> Array:
 def curves(alpha: Array, ior: Array) -> Array:
     """Coefficients of the curves of a `Coat`, shape (NODES, 3).
 
-    Notes
-    -----
     Accuracy: error of the curves below 2e-7 for alpha >= 0.01 and ior in [1, 4], 5e-8 of it that of
     the slopes at grazing.
     """
-    # Place the nodes.
     xp, x = array_namespace(alpha), like(chebyshev_nodes(NODES), alpha)
     mu = at_most(alpha * xp.sinh(xp.asinh(1.0 / alpha) * x**3), 1.0)
     zero = 0.0 * mu
     wo = xp.stack([root((1.0 - mu) * (1.0 + mu)), zero, mu])
-    # Integrate over the slopes.
     c, weight = slope_nodes(wo, xp.stack([zero + alpha, zero + alpha]), isotropic=True)
     missing = 1.0 / xp.sum(weight, axis=(0, 1)) - 1.0
     single = xp.sum(dielectric(c, zero + ior) * weight, axis=(0, 1))
     edge = xp.sum((1.0 - c) ** 5 * weight, axis=(0, 1))
     values = xp.stack([missing, single * (1.0 + dielectric_avg(ior) * missing), edge], axis=-1)
-    # Find the coefficients, which are linear in the values.
     matrix = like(chebyshev_coefficients(np.eye(NODES)), mu)
     return xp.tensordot(matrix, values, axes=1)
 

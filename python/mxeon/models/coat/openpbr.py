@@ -1,5 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""OpenPBR's base: a metal and a dielectric over EON, mixed, whose facets have one roughness."""
+"""OpenPBR's base: a metal and a dielectric over EON, mixed, whose facets have one roughness.
+
+- `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
+- `mu` (...): Cosine of the viewer's polar angle, in [0, 1].
+- `rho` (..., C): `base_color` per channel, of the metal too, in [0, 1]; a number is one channel.
+- `roughness` (...): `base_diffuse_roughness`, that of EON, in [0, 1].
+- `specular_roughness`: Root of alpha of all facets, in [0.1, 1]: one number for all pairs.
+- `specular_ior`: That of the dielectric, in [1, 4]: one number for all pairs.
+- `metalness` (...): `base_metalness`, m above, in [0, 1].
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
+"""
 
 from __future__ import annotations
 
@@ -44,50 +56,17 @@ def openpbr_base_brdf(
 
         f = (1 - m) f_dielectric_over_eon + m f_metal
 
-    Parameters
-    ----------
-    wo, wi : array_like, shape (..., 3)
-        Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
-    rho : array_like, shape (..., C)
-        `base_color` per channel, of the metal too, dimensionless, in [0, 1]; a number is one channel.
-    roughness : array_like, shape (...)
-        `base_diffuse_roughness`, that of EON, dimensionless, in [0, 1].
-    specular_roughness : float
-        Root of alpha of all facets, in [0.1, 1]: one number for all pairs.
-    specular_ior : float
-        That of the dielectric, in [1, 4]: one number for all pairs.
-    metalness : array_like, shape (...)
-        `base_metalness`, m above, dimensionless, in [0, 1].
+    Result (..., C): 1/sr. The weights and `specular_color` are 1, and nothing is anisotropic,
+    transmits or scatters below the surface. The metal's curve is Schlick's. Accuracy: that of
+    `dielectric_over_eon_brdf`. [MaterialX2026], sections `layer`, `mix` and Energy Compensation;
+    [Portsmouth2025], Eq. (19).
 
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        1/sr.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
-
-    Notes
-    -----
-    The weights and `specular_color` are 1, and nothing is anisotropic, transmits or scatters below the
-    surface. The metal's curve is Schlick's. Accuracy: that of `dielectric_over_eon_brdf`.
-
-    References
-    ----------
-    [MaterialX2026], sections `layer`, `mix` and Energy Compensation; [Portsmouth2025], Eq. (19).
-
-    Examples
-    --------
-    >>> wo, wi = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
-    >>> openpbr_base_brdf(wo, wi, [0.7, 0.1], 0.5, 0.5, 1.5, 0.25).round(5)
-    array([0.56487, 0.13156])
+        >>> wo, wi = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
+        >>> openpbr_base_brdf(wo, wi, [0.7, 0.1], 0.5, 0.5, 1.5, 0.25).round(5)
+        array([0.56487, 0.13156])
     """
-    # Check the arguments.
     share = _share(wo, wi, rho, roughness, metalness)
     alpha = _alpha(specular_roughness, specular_ior)
-    # Evaluate both parts, and mix them.
     missing = coat_of(alpha, specular_ior).at(unpack_cosine(wo))[0][..., np.newaxis]
     metal = generalized_schlick_brdf(wo, wi, rho, *EDGE[:2], alpha, EDGE[2], compensate=False)
     metal = metal * (1.0 + fresnel_schlick_avg(rho, *EDGE) * missing)
@@ -108,34 +87,16 @@ def openpbr_base_albedo_dir(
 
         E = (1 - m) E_dielectric_over_eon + m (rho E_ss + (1 - rho) W) (1 + F_ss (1 - E_ss) / E_ss)
 
-    W is the facets' mean of (1 - c)^5. Errors as those of `openpbr_base_brdf`.
+    W is the facets' mean of (1 - c)^5.
 
-    Parameters
-    ----------
-    mu : array_like, shape (...)
-        Cosine of the viewer's polar angle, dimensionless, in [0, 1].
-    rho, roughness, specular_roughness, specular_ior, metalness
-        As those of `openpbr_base_brdf`.
+    Result (..., C): 1 where rho is 1. Accuracy: error below 2e-7.
 
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        Dimensionless; 1 where rho is 1.
-
-    Notes
-    -----
-    Accuracy: error below 2e-7.
-
-    Examples
-    --------
-    >>> openpbr_base_albedo_dir([0.1, 1.0], [0.7, 1.0], 0.5, 0.5, 1.5, 0.25).round(5)
-    array([[0.74305, 1.     ],
-           [0.68378, 1.     ]])
+        >>> openpbr_base_albedo_dir([0.1, 1.0], [0.7, 1.0], 0.5, 0.5, 1.5, 0.25).round(5)
+        array([[0.74305, 1.     ],
+               [0.68378, 1.     ]])
     """
-    # Check the arguments.
     cosine, color, share = _albedo_inputs(mu, rho, roughness, metalness)
     alpha = _alpha(specular_roughness, specular_ior)
-    # Integrate both parts, and mix them.
     glossy = dielectric_over_eon_albedo_dir(mu, rho, roughness, alpha, specular_ior)
     coat = coat_of(alpha, specular_ior)
     missing, edge = coat.at(cosine)[0], coat.edge_at(cosine)

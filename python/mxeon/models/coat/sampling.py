@@ -1,5 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Samples of a dielectric over EON: one of both lobes, by their albedos."""
+"""Samples of a dielectric over EON: one of both lobes, by their albedos.
+
+- `wo`, `wi` (..., 3): Unit vectors, wo on or above the horizon.
+- `u` (..., 2): Independent uniform random numbers, in [0, 1). The first one chooses the lobe as well.
+- `rho` (..., C): Reflectance of EON per channel, in [0, 1]; a number is one channel.
+- `roughness` (...): That of EON, in [0, 1].
+- `alpha`: GGX roughness of the dielectric, in [0.01, 1]: one number for all pairs.
+- `ior`: Its index of refraction, in [1, 4]: one number for all pairs.
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
+"""
 
 from __future__ import annotations
 
@@ -34,45 +45,20 @@ def dielectric_over_eon_sample(
 ) -> tuple[Array, Array]:
     """Direction reflected by a visible facet or drawn for EON, by their albedos; and its density.
 
-    Errors as those of `mxeon.models.coat.dielectric_over_eon_brdf`.
+    `wi` (..., 3): Unit vectors; those with z < 0 are wasted, their weight is 0. `pdf` (...): 1/sr:
+    the density of both lobes together, each times the probability of its choice. The dielectric is
+    chosen with probability E_r / E at the mean of the channels. The weight of a sample is the mean
+    of those of both lobes alone, of which EON's is E for gray. [Dupuy2023]; docs/sampling.md.
 
-    Parameters
-    ----------
-    wo : array_like, shape (..., 3)
-        Unit vectors on or above the horizon.
-    u : array_like, shape (..., 2)
-        Independent uniform random numbers, in [0, 1). The first one chooses the lobe as well.
-    rho, roughness, alpha, ior
-        As those of `mxeon.models.coat.dielectric_over_eon_brdf`.
-
-    Returns
-    -------
-    wi : ndarray, shape (..., 3), float64
-        Unit vectors; those with z < 0 are wasted, their weight is 0.
-    pdf : float64 or ndarray, shape (...)
-        1/sr: the density of both lobes together, each times the probability of its choice.
-
-    Notes
-    -----
-    The dielectric is chosen with probability E_r / E at the mean of the channels. The weight of a sample
-    is the mean of those of both lobes alone, of which EON's is E for gray.
-
-    References
-    ----------
-    [Dupuy2023]; docs/sampling.md.
-
-    Examples
-    --------
-    >>> wi, pdf = dielectric_over_eon_sample([0.6, 0.0, 0.8], [0.5, 0.25], 0.7, 0.5, 0.3, 1.5)
-    >>> wi.round(5), round(float(pdf), 5)
-    (array([0.08667, 0.64394, 0.76015]), 0.23917)
+        >>> wi, pdf = dielectric_over_eon_sample([0.6, 0.0, 0.8], [0.5, 0.25], 0.7, 0.5, 0.3, 1.5)
+        >>> wi.round(5), round(float(pdf), 5)
+        (array([0.08667, 0.64394, 0.76015]), 0.23917)
     """
     # Choose a lobe by u1, and stretch what is left of u1 over [0, 1).
     _check(wo, rho, roughness, u=u)
     share = _share(wo, rho, roughness, coat_of(alpha, ior))
     xp = array_namespace(share)
     u1, first, second = _split(u, share)
-    # Draw from both, and keep the one chosen.
     wi = xp.where(
         (u1 < share)[..., np.newaxis],
         ggx_sample(wo, first, alpha)[0],
@@ -89,25 +75,12 @@ def dielectric_over_eon_pdf(
 
         pdf = p pdf_GGX + (1 - p) pdf_EON,  p = E_r / (E_r + (1 - E_r) E_EON)
 
-    Errors as those of `mxeon.models.coat.dielectric_over_eon_brdf`.
+    Result (...): 1/sr; its integral over the upper hemisphere is the probability that no sample is
+    wasted.
 
-    Parameters
-    ----------
-    wo, wi : array_like, shape (..., 3)
-        Unit vectors, wo on or above the horizon.
-    rho, roughness, alpha, ior
-        As those of `dielectric_over_eon_sample`.
-
-    Returns
-    -------
-    float64 or ndarray, shape (...)
-        1/sr; its integral over the upper hemisphere is the probability that no sample is wasted.
-
-    Examples
-    --------
-    >>> wo, wi = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
-    >>> round(float(dielectric_over_eon_pdf(wo, wi, 0.7, 0.5, 0.3, 1.5)), 5)
-    0.26516
+        >>> wo, wi = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
+        >>> round(float(dielectric_over_eon_pdf(wo, wi, 0.7, 0.5, 0.3, 1.5)), 5)
+        0.26516
     """
     _check(wo, rho, roughness, wi=wi)
     share = _share(wo, rho, roughness, coat_of(alpha, ior))

@@ -34,40 +34,15 @@ ROUNDING = 2.0**-23
 def checked(name: str, value: ArrayLike, quantity: str = "") -> Numbers:
     """Argument as an array of real numbers inside the range that its name has in `RANGES`.
 
-    Parameters
-    ----------
-    name : str
-        Name of the argument; a key of `RANGES` if no quantity is named.
-    value : array_like
-        The caller's argument.
-    quantity : str
-        Key of `RANGES`, where the name has another range elsewhere.
+    - `name`: Name of the argument; a key of `RANGES` if no quantity is named.
+    - `value`: The caller's argument.
+    - `quantity`: Key of `RANGES`, where the name has another range elsewhere.
 
-    Returns
-    -------
-    ndarray
-        `value`, in float64.
-
-    Raises
-    ------
-    ValueError
-        If an element is no real number or leaves the range; names it, and NaN leaves every range.
-        A masked array is refused, for the result could not keep its mask.
-
-    Notes
-    -----
-    A value that is beyond an end of a range of `CLOSED` by less than `ROUNDING` counts as that end.
-
-    Examples
-    --------
-    >>> checked("roughness", [0.5, 1.2])
-    Traceback (most recent call last):
-    ...
-    ValueError: roughness must lie in [0, 1]; got 1.2 at index (1,)
+    Result: `value`, in float64. A value that is beyond an end of a range of `CLOSED` by less than
+    `ROUNDING` counts as that end.
     """
 
     def in_range(array: Numbers) -> Numbers:
-        # Pass what lies within.
         low, high, interval = RANGES[quantity or name]
         # In float64: half floats would round the ends of the range to infinity.
         if not array.size or (float(array.min()) >= low and float(array.max()) <= high):
@@ -84,15 +59,7 @@ def checked(name: str, value: ArrayLike, quantity: str = "") -> Numbers:
 
 
 def checked_numbers(**values: ArrayLike) -> list[Array]:
-    """Numbers inside the ranges of their names, in float64, whose shapes broadcast.
-
-    Examples
-    --------
-    >>> checked_numbers(mu=[0.5, 1.0], roughness=[0.1, 0.2, 0.3])
-    Traceback (most recent call last):
-    ...
-    ValueError: mu, roughness must broadcast; got shapes (2,), (3,)
-    """
+    """Numbers inside the ranges of their names, in float64, whose shapes broadcast."""
     return broadcastable({}, {name: checked(name, value) for name, value in values.items()})
 
 
@@ -153,30 +120,10 @@ def checked_choice(
 def checked_directions(name: str, value: ArrayLike) -> Numbers:
     """Argument as an array of unit vectors on or above the horizon.
 
-    Parameters
-    ----------
-    name : str
-        Name of the argument in the error message.
-    value : array_like, shape (..., 3)
-        The caller's argument.
+    - `name`: Name of the argument in the error message.
+    - `value` (..., 3): The caller's argument.
 
-    Returns
-    -------
-    ndarray, shape (..., 3)
-        `value`, in float64.
-
-    Raises
-    ------
-    ValueError
-        If the last axis is not 3, a squared length differs from 1 by more than `UNIT_TOLERANCE`,
-        or a direction points below the horizon; names the first such element.
-
-    Examples
-    --------
-    >>> checked_directions("wo", [0.0, 0.6, -0.8])
-    Traceback (most recent call last):
-    ...
-    ValueError: wo must not point below the horizon (z >= 0); got z = -0.8
+    Result (..., 3): `value`, in float64.
     """
 
     def above(array: Numbers) -> Numbers:

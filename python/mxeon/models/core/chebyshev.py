@@ -12,24 +12,12 @@ from mxeon.models.core.namespaces import array_namespace
 
 
 def chebyshev_nodes(count: int) -> Array:
-    """Nodes of the interpolant of degree `count` - 1, in (0, 1).
-
-    Examples
-    --------
-    >>> chebyshev_nodes(2).round(6)
-    array([0.853553, 0.146447])
-    """
+    """Nodes of the interpolant of degree `count` - 1, in (0, 1)."""
     return 0.5 + 0.5 * np.cos(_angles(count))
 
 
 def chebyshev_coefficients(values: Array) -> Array:
-    """Coefficients of the interpolant of values at the nodes of the first axis, shape as theirs.
-
-    Examples
-    --------
-    >>> chebyshev_coefficients(1.0 + chebyshev_nodes(3)).round(6) + 0.0
-    array([1.5, 0.5, 0. ])
-    """
+    """Coefficients of the interpolant of values at the nodes of the first axis, shape as theirs."""
     count = len(values)
     cosines = np.cos(np.outer(np.arange(count), _angles(count)))
     cosines[0] *= 0.5
@@ -37,26 +25,12 @@ def chebyshev_coefficients(values: Array) -> Array:
 
 
 def chebyshev_polynomials(x: Array, count: int) -> Array:
-    """The polynomials T_0 to T_(count - 1) of 2 x - 1, shape (count, ...).
-
-    Examples
-    --------
-    >>> chebyshev_polynomials(np.array([0.0, 0.75]), 3)
-    array([[ 1. ,  1. ],
-           [-1. ,  0.5],
-           [ 1. , -0.5]])
-    """
+    """The polynomials T_0 to T_(count - 1) of 2 x - 1, shape (count, ...)."""
     return array_namespace(x).stack(list(_recurrence(x, count)))
 
 
 def chebyshev_sum(coefficients: Array, x: Array) -> Array:
-    """Sum of the polynomials of 2 x - 1, by Clenshaw's rule; coefficients have shape (count, ...).
-
-    Examples
-    --------
-    >>> chebyshev_sum(np.array([1.5, 0.5]), np.array([0.0, 0.25]))
-    array([1.  , 1.25])
-    """
+    """Sum of the polynomials of 2 x - 1, by Clenshaw's rule; coefficients have shape (count, ...)."""
     y = 2.0 * x - 1.0
     twice = 2.0 * y
     last = later = 0.0 * y
@@ -67,16 +41,7 @@ def chebyshev_sum(coefficients: Array, x: Array) -> Array:
 
 
 def cell_cubics(coefficients: Array, cells: int) -> Array:
-    """Coefficients of the cubics through four points of the sum in each cell of [0, 1], shape (4, cells).
-
-    Examples
-    --------
-    >>> cell_cubics(np.array([0.5, 0.5]), 2).round(6) + 0.0
-    array([[0. , 0.5],
-           [0.5, 0.5],
-           [0. , 0. ],
-           [0. , 0. ]])
-    """
+    """Coefficients of the cubics through four points of the sum in each cell of [0, 1], shape (4, cells)."""
     x = np.sort(chebyshev_nodes(4))
     values = chebyshev_sum(coefficients, (np.arange(cells)[:, np.newaxis] + x) / cells)
     return np.asarray(np.linalg.inv(np.vander(x, increasing=True)) @ values.T)

@@ -130,25 +130,9 @@ XYZ_TO_REC709_E = np.array(
 def matching_functions(wavelength: ArrayLike) -> Array:
     """Color-matching functions of the CIE 1931 standard observer.
 
-    Parameters
-    ----------
-    wavelength : array_like, shape (N,)
-        In nm, in [1, 1e9].
+    - `wavelength` (N,): In nm, in [1, 1e9].
 
-    Returns
-    -------
-    ndarray, shape (N, 3)
-        x, y and z, interpolated linearly in a table of 5 nm; 0 outside [360, 830].
-
-    Raises
-    ------
-    ValueError
-        If `wavelength` leaves its range; names the first bad element.
-
-    Examples
-    --------
-    >>> matching_functions([555.0])
-    array([[0.5120501, 1.       , 0.00575  ]])
+    Result (N, 3): x, y and z, interpolated linearly in a table of 5 nm; 0 outside [360, 830].
     """
     (at,) = checked_numbers(wavelength=wavelength)
     columns = [np.interp(at, WAVELENGTHS, column, 0.0, 0.0) for column in CIE_1931.T]

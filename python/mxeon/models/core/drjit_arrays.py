@@ -26,12 +26,7 @@ Number: TypeAlias = Array  # one of Dr.Jit, whose type is that of the variant
 
 @dataclass(frozen=True)
 class Columns:
-    """A direction or color whose components are numbers of Dr.Jit, indexed as arrays (..., C) are.
-
-    Attributes
-    ----------
-    parts : tuple
-    """
+    """A direction or color whose components are numbers of Dr.Jit, indexed as arrays (..., C) are."""
 
     parts: tuple[Number, ...]
     ndim = 1
@@ -56,13 +51,7 @@ def is_drjit(value: object) -> bool:
 
 
 def lift(number: Callable[[float], Number], value: object) -> object:
-    """Number or `Columns` of Dr.Jit for an argument: its own, or a number, direction or color of NumPy.
-
-    Raises
-    ------
-    ValueError
-        If it holds several directions of NumPy.
-    """
+    """Number or `Columns` of Dr.Jit for an argument: its own, or a number, direction or color of NumPy."""
     if is_drjit(value):
         dynamic = isinstance(value, Columns) or import_module("drjit").size_v(value) < 0
         return value if dynamic else Columns(tuple(cast("Sequence[Number]", value)))
@@ -87,13 +76,7 @@ def constant(value: float | Number) -> float | None:
 
 
 def number_type(values: Sequence[object]) -> Callable[[float], Number]:
-    """Type of the numbers of these arrays of Dr.Jit.
-
-    Raises
-    ------
-    ValueError
-        If they are those of a scalar variant, which hold one number.
-    """
+    """Type of the numbers of these arrays of Dr.Jit."""
     first = cast(Number, values[0])
     kind = type(first[0] if import_module("drjit").size_v(first) >= 0 else first)
     if kind is float or ".scalar" in kind.__module__:

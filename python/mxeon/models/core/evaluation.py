@@ -32,27 +32,17 @@ _threads: ContextVar[int] = ContextVar("threads", default=1)
 def threads(count: int) -> Iterator[None]:
     """Context in which the functions of `mxeon.models` evaluate on `count` threads.
 
-    Parameters
-    ----------
-    count : int
-        Number of threads, at least 1. Outside such a context a call uses the caller's thread alone.
+    - `count`: Number of threads, at least 1. Outside such a context a call uses the caller's thread
+      alone.
 
-    Raises
-    ------
-    ValueError
-        If `count` is not a positive integer.
-
-    Notes
-    -----
     A thread takes a block of 32768 pairs at a time, so that calls with fewer pairs use one. Values
     do not depend on the number. The setting belongs to the thread or task that enters the context.
+    Raises `ValueError` if `count` is not a positive integer.
 
-    Examples
-    --------
-    >>> from mxeon.models import lambert_brdf
-    >>> with threads(2):
-    ...     lambert_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], 0.5).round(6)
-    array([0.159155])
+        >>> from mxeon.models import lambert_brdf
+        >>> with threads(2):
+        ...     lambert_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], 0.5).round(6)
+        array([0.159155])
     """
     if not isinstance(count, int) or count < 1:
         raise ValueError(f"threads must be a positive integer; got {count!r}")
@@ -72,49 +62,28 @@ def evaluate(
 ) -> Array:
     """Values of a reflection formula over broadcast arguments, block by block.
 
-    Parameters
-    ----------
-    formula : callable
-        `formula(wo, wi, rho, *parameter)` for one block: directions (..., 3) with contiguous
-        components, `rho` (C, ...), the parameter (...), all float64; returns (C, ...). Axes of
-        length 1 stay so, and with them everything that depends on the material alone stays small.
-    wo, wi : array_like, shape (..., 3)
-        Directions, unit vectors on or above the horizon.
-    rho : array_like, shape (..., C)
-        Reflectance per channel, dimensionless, in [0, 1]; a number is one channel. A list of N numbers
-        beside N directions is refused, unless it is red, green and blue.
-    **parameter : array_like, shape (...)
-        At most one, under a name of `RANGES`.
+    - `formula`: `formula(wo, wi, rho, *parameter)` for one block: directions (..., 3) with
+      contiguous components, `rho` (C, ...), the parameter (...), all float64; returns (C, ...).
+      Axes of length 1 stay so, and with them everything that depends on the material alone stays
+      small.
+    - `wo`, `wi` (..., 3): Directions, unit vectors on or above the horizon.
+    - `rho` (..., C): Reflectance per channel, in [0, 1]; a number is one channel. A list of N
+      numbers beside N directions is refused, unless it is red, green and blue.
+    - `**parameter` (...): At most one, under a name of `RANGES`.
 
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        Beyond it and the arguments, memory does not grow with the number of pairs.
-
-    Raises
-    ------
-    ValueError
-        If an argument is out of range, or the shapes do not broadcast.
-
-    Examples
-    --------
-    >>> evaluate(lambda wo, wi, rho: rho * wi[..., 2], [0, 0, 1], [0.6, 0, 0.8], [0.5, 1.0])
-    array([0.4, 0.8])
+    Result (..., C): Beyond it and the arguments, memory does not grow with the number of pairs.
     """
-    # Check the arguments.
     arguments = {"wo": checked_triples("wo", wo), "wi": checked_triples("wi", wi)}
     arguments["rho"] = checked_vector("rho", rho)
     numbers = {name: checked(name, value) for name, value in parameter.items()}
     refuse_ambiguous("rho", arguments["rho"], lead_shape(arguments, numbers))
     if array_namespace(*arguments.values(), *numbers.values()) is not NUMPY:
         return _evaluate_whole(formula, arguments, numbers)
-    # Broadcast them.
     shape = lead_shape(arguments, numbers)
     arguments |= {name: array[..., np.newaxis] for name, array in numbers.items()}
     arrays = {name: with_axes(array, len(shape) + 1) for name, array in arguments.items()}
     out = np.empty(shape + arrays["rho"].shape[-1:])
 
-    # Evaluate a block.
     def fill(block: tuple[slice, ...]) -> None:
         parts = {name: tile(array, block) for name, array in arrays.items()}
         for name in ("wo", "wi"):
@@ -126,7 +95,6 @@ def evaluate(
         for channel, value in enumerate(values):
             out[block][..., channel] = value
 
-    # Fill all blocks, on as many threads as are set.
     _for_each(fill, list(blocks(shape)))
     return out
 
@@ -166,32 +134,13 @@ def evaluate_material(
 ) -> Array:
     """Values of a formula over broadcast arguments that were checked, block by block.
 
-    Parameters
-    ----------
-    formula : callable
-        `formula(**arguments)` for one block: of `vectors` each with its last axis first, (C, ...),
-        of `numbers` (...), all float64; returns (channels, ...). Axes of length 1 stay so.
-    vectors, numbers : dict of str to ndarray
-        Directions, colors and pairs, shapes (..., C); the others, shapes (...).
-    channels : int
-        Channels of the result.
-    size : int
-        Elements per block; fewer where the formula keeps many numbers for each.
+    - `formula`: `formula(**arguments)` for one block: of `vectors` each with its last axis first,
+      (C, ...), of `numbers` (...), all float64; returns (channels, ...). Axes of length 1 stay so.
+    - `vectors`, `numbers`: Directions, colors and pairs, shapes (..., C); the others, shapes (...).
+    - `channels`: Channels of the result.
+    - `size`: Elements per block; fewer where the formula keeps many numbers for each.
 
-    Returns
-    -------
-    ndarray, shape (..., channels), float64
-
-    Raises
-    ------
-    ValueError
-        If the shapes do not broadcast.
-
-    Examples
-    --------
-    >>> color, mu = np.array([0.5, 1.0]), np.array(0.4)
-    >>> evaluate_material(lambda color, mu: color * mu, {"color": color}, {"mu": mu}, 2)
-    array([0.2, 0.4])
+    Result (..., channels).
     """
     shape = lead_shape(vectors, numbers)
     # Evaluate another library's arrays at once.
@@ -200,7 +149,6 @@ def evaluate_material(
     if array_namespace(*vectors.values(), *numbers.values()) is not NUMPY:
         parts = {name: _leading_channels(array, len(shape)) for name, array in vectors.items()}
         return _trailing_channels(formula(**parts, **numbers), channels, shape)
-    # Evaluate NumPy's block by block.
     arguments = {**vectors, **{name: array[..., np.newaxis] for name, array in numbers.items()}}
     arrays = {name: with_axes(array, len(shape) + 1) for name, array in arguments.items()}
     out = np.empty((*shape, channels))

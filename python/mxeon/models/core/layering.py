@@ -4,7 +4,7 @@
 The throughput of a lobe is 1 - E, with its directional albedo E. It is negative where E exceeds 1, so
 that sums which are scaled or mixed afterwards keep their E. What lies below gets no less than
 nothing: the text is silent on E above 1, and `layer` alone ends there. A value may carry its cosine
-or not: all four operations are linear in it.
+or not: all four operations are linear in it. Lobes broadcast against each other.
 """
 
 from __future__ import annotations
@@ -21,13 +21,9 @@ from mxeon.models.core.arrays import Array, ArrayLike
 class Bsdf:
     """A lobe, or a combination of lobes, for one or many pairs of directions.
 
-    Attributes
-    ----------
-    value : ndarray, shape (..., C)
-        BSDF in 1/sr, with or without the cosine.
-    throughput : ndarray, shape (..., C)
-        1 - E, per channel, dimensionless: the part of the light that reaches what lies below,
-        none where it is negative. A lobe that hides its base has 0, whatever it reflects.
+    - `value`: BSDF in 1/sr, with or without the cosine.
+    - `throughput`: 1 - E, per channel, dimensionless: the part of the light that reaches what lies
+      below, none where it is negative. A lobe that hides its base has 0, whatever it reflects.
     """
 
     value: Array
@@ -39,35 +35,16 @@ def throughput(albedo: ArrayLike) -> Array:
 
         T = 1 - E
 
-    Parameters
-    ----------
-    albedo : array_like, shape (..., C)
-        Directional albedo of the lobe with its tint and weight, dimensionless.
+    - `albedo` (..., C): Directional albedo of the lobe with its tint and weight.
 
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        Dimensionless; negative where the albedo exceeds 1. It exceeds 1 where the albedo is
-        negative, as Zeltner's fit is, by 2.2e-5.
+    Result (..., C): negative where the albedo exceeds 1. It exceeds 1 where the albedo is negative,
+    as Zeltner's fit is, by 2.2e-5. The text defines E of the whole lobe, color included, so a
+    tinted sheen lets through more than a white one. Shaders of MaterialX leave the color of
+    `sheen_bsdf` out of E. Raises `ValueError` if an albedo is infinite or NaN. [MaterialX2026],
+    section `layer`.
 
-    Raises
-    ------
-    ValueError
-        If an albedo is infinite or NaN.
-
-    Notes
-    -----
-    The text defines E of the whole lobe, color included, so a tinted sheen lets through more than a
-    white one. Shaders of MaterialX leave the color of `sheen_bsdf` out of E.
-
-    References
-    ----------
-    [MaterialX2026], section `layer`.
-
-    Examples
-    --------
-    >>> throughput([0.25, 1.5])
-    array([ 0.75, -0.5 ])
+        >>> throughput([0.25, 1.5])
+        array([ 0.75, -0.5 ])
     """
     return 1.0 - checked("albedo", albedo)
 
@@ -77,25 +54,12 @@ def layer(top: Bsdf, base: Bsdf) -> Bsdf:
 
         f = f_top + max(T_top, 0) f_base,  T = min(T_top, 0) + max(T_top, 0) T_base
 
-    Parameters
-    ----------
-    top, base : Bsdf
-        Broadcast against each other.
-
-    Returns
-    -------
-    Bsdf
-        1 - T is E_top + (1 - E_top) E_base, the albedo of f; and E_top where that exceeds 1.
-
-    References
-    ----------
+    Result: 1 - T is E_top + (1 - E_top) E_base, the albedo of f; and E_top where that exceeds 1.
     [MaterialX2026], section `layer`.
 
-    Examples
-    --------
-    >>> both = layer(Bsdf(np.array(0.1), np.array(0.75)), Bsdf(np.array(0.2), np.array(0.0)))
-    >>> float(both.value), float(both.throughput)
-    (0.25, 0.0)
+        >>> both = layer(Bsdf(np.array(0.1), np.array(0.75)), Bsdf(np.array(0.2), np.array(0.0)))
+        >>> float(both.value), float(both.throughput)
+        (0.25, 0.0)
     """
     passed = np.maximum(top.throughput, 0.0)
     left = np.minimum(top.throughput, 0.0) + passed * base.throughput
@@ -107,32 +71,13 @@ def mix(fg: Bsdf, bg: Bsdf, amount: ArrayLike) -> Bsdf:
 
         f = (1 - w) f_bg + w f_fg,  T = (1 - w) T_bg + w T_fg
 
-    Parameters
-    ----------
-    fg, bg : Bsdf
-        Broadcast against each other.
-    amount : array_like
-        Share w of `fg`, dimensionless, in [0, 1]; broadcasts against values and throughputs.
+    - `amount`: Share w of `fg`, in [0, 1]; broadcasts against values and throughputs.
 
-    Returns
-    -------
-    Bsdf
-        At 0 `bg` and at 1 `fg`, to the last bit.
+    Result: at 0 `bg` and at 1 `fg`, to the last bit. [MaterialX2026], section `mix`.
 
-    Raises
-    ------
-    ValueError
-        If `amount` leaves its range.
-
-    References
-    ----------
-    [MaterialX2026], section `mix`.
-
-    Examples
-    --------
-    >>> both = mix(Bsdf(np.array(1.0), np.array(0.0)), Bsdf(np.array(0.0), np.array(1.0)), 0.25)
-    >>> float(both.value), float(both.throughput)
-    (0.25, 0.75)
+        >>> both = mix(Bsdf(np.array(1.0), np.array(0.0)), Bsdf(np.array(0.0), np.array(1.0)), 0.25)
+        >>> float(both.value), float(both.throughput)
+        (0.25, 0.75)
     """
     w = checked("amount", amount)
     return Bsdf((1.0 - w) * bg.value + w * fg.value, (1.0 - w) * bg.throughput + w * fg.throughput)
@@ -143,24 +88,11 @@ def add(in1: Bsdf, in2: Bsdf) -> Bsdf:
 
         f = f_1 + f_2,  T = 1 - (E_1 + E_2) = T_1 + T_2 - 1
 
-    Parameters
-    ----------
-    in1, in2 : Bsdf
-        Broadcast against each other.
-
-    Returns
-    -------
-    Bsdf
-
-    References
-    ----------
     [MaterialX2026], section `add`.
 
-    Examples
-    --------
-    >>> both = add(Bsdf(np.array(0.5), np.array(0.75)), Bsdf(np.array(0.25), np.array(0.5)))
-    >>> float(both.value), float(both.throughput)
-    (0.75, 0.25)
+        >>> both = add(Bsdf(np.array(0.5), np.array(0.75)), Bsdf(np.array(0.25), np.array(0.5)))
+        >>> float(both.value), float(both.throughput)
+        (0.75, 0.25)
     """
     return Bsdf(in1.value + in2.value, in1.throughput + in2.throughput - 1.0)
 
@@ -170,34 +102,15 @@ def multiply(in1: Bsdf, weight: ArrayLike) -> Bsdf:
 
         f = s f_1,  T = 1 - s E_1 = 1 - s (1 - T_1)
 
-    Result as that of `add`.
+    - `weight`: Factor s, one or per channel, at least 0.
 
-    Parameters
-    ----------
-    in1 : Bsdf
-        The lobe.
-    weight : array_like
-        Factor s, one or per channel, dimensionless, at least 0.
-
-    Raises
-    ------
-    ValueError
-        If `weight` is negative or NaN.
-
-    Notes
-    -----
     The shaders of MaterialX keep T_1, so a lobe that is scaled to nothing still darkens what lies
-    below; and they clamp s to [0, 1]. The text has neither: s f_1 has the albedo s E_1.
+    below; and they clamp s to [0, 1]. The text has neither: s f_1 has the albedo s E_1. Raises
+    `ValueError` if `weight` is negative or NaN. [MaterialX2026], section `multiply`.
 
-    References
-    ----------
-    [MaterialX2026], section `multiply`.
-
-    Examples
-    --------
-    >>> scaled = multiply(Bsdf(np.array(1.0), np.array(0.5)), 0.5)
-    >>> float(scaled.value), float(scaled.throughput)
-    (0.5, 0.75)
+        >>> scaled = multiply(Bsdf(np.array(1.0), np.array(0.5)), 0.5)
+        >>> float(scaled.value), float(scaled.throughput)
+        (0.5, 0.75)
     """
     s = checked("weight", weight)
     return Bsdf(s * in1.value, 1.0 - s * (1.0 - in1.throughput))

@@ -85,19 +85,15 @@ NUMPY = cast(Namespace, np if hasattr(np, "atan") else SimpleNamespace(**{**vars
 def unchecked() -> Iterator[None]:
     """Context in which the functions of `mxeon.models` do not look at the values of arrays.
 
-    Notes
-    -----
-    Kinds and shapes are still checked, but a value outside its range gives whatever the formula gives,
-    which may be NaN. So does a value that `jax.jit`, `jax.grad` or `torch.vmap` traces, within this
-    context or without: it has no numbers yet. The setting belongs to the thread or task that enters
-    the context.
+    Kinds and shapes are still checked, but a value outside its range gives whatever the formula
+    gives, which may be NaN. So does a value that `jax.jit`, `jax.grad` or `torch.vmap` traces,
+    within this context or without: it has no numbers yet. The setting belongs to the thread or task
+    that enters the context.
 
-    Examples
-    --------
-    >>> from mxeon.models import lambert_brdf
-    >>> with unchecked():
-    ...     lambert_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], 1.5).round(6)
-    array([0.477465])
+        >>> from mxeon.models import lambert_brdf
+        >>> with unchecked():
+        ...     lambert_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], 1.5).round(6)
+        array([0.477465])
     """
     token = _checking.set(False)
     try:
@@ -112,13 +108,7 @@ def checking() -> bool:
 
 
 def library(value: object) -> str:
-    """Name of the library other than NumPy whose array this is; "" for everything else.
-
-    Examples
-    --------
-    >>> library(np.zeros(2)), library(0.5)
-    ('', '')
-    """
+    """Name of the library other than NumPy whose array this is; "" for everything else."""
     if isinstance(value, np.ndarray | np.generic | float | int | list | tuple):
         return ""
     if is_drjit(value):
@@ -130,26 +120,16 @@ def library(value: object) -> str:
 
 
 def array_namespace(*arrays: object) -> Namespace:
-    """Functions for these arrays: NumPy itself, unless one of them is another library's.
-
-    Raises
-    ------
-    ValueError
-        If arrays of several libraries come together.
-    ImportError
-        If an array of PyTorch comes and the package array-api-compat is missing.
-    """
+    """Functions for these arrays: NumPy itself, unless one of them is another library's."""
     others = [each for each in arrays if library(each)]
     return _others_namespace(others) if others else NUMPY
 
 
 def _others_namespace(others: Sequence[object]) -> Namespace:
     """Functions of the one library whose arrays these are."""
-    # Refuse a mixture.
     names = sorted({library(each) for each in others})
     if len(names) > 1:
         raise ValueError(f"arrays must be of one library; got {' and '.join(names)}")
-    # Ask those that do not say it themselves.
     if names == ["drjit"]:
         return cast(Namespace, drjit_namespace())
     if names == ["torch"]:
@@ -195,7 +175,6 @@ def _portable(function: Callable[P, R], drjit: bool) -> Callable[P, R]:
         others = [each for each in _values((*args, *kwargs.values())) if library(each)]
         if not others:
             return function(*args, **kwargs)
-        # Bring all arguments to that library, and numbers that are defaults.
         convert = _converter(others, drjit)
         values = (convert(each) for each in args)
         left = _numbers(function, len(args)) | kwargs
@@ -225,7 +204,6 @@ def _values(arguments: Iterable[object]) -> Iterator[object]:
 
 def _converter(others: Sequence[object], drjit: bool) -> Callable[[object], object]:
     """What brings an argument to the library, the precision and the device of these arrays."""
-    # Find the library's precision and device.
     if library(others[0]) == "drjit":
         return _drjit_converter(others, drjit)
     xp = _others_namespace(others)
@@ -234,7 +212,6 @@ def _converter(others: Sequence[object], drjit: bool) -> Callable[[object], obje
     dtype = floating[0] if floating else xp.asarray(0.5).dtype
     place = {"device": arrays[0].device} if library(others[0]) == "torch" else {}
 
-    # Leave switches and words alone.
     def convert(value: object) -> object:
         if isinstance(value, Mapping):
             return {name: convert(each) for name, each in value.items()}

@@ -26,7 +26,6 @@ def octave_cells(x: Number) -> tuple[Number, Number]:
     """Part of a number, counted from the smallest, and its distance from the octave's middle, over the octave."""
     drjit = import_module("drjit")
     integer, single = drjit.uint32_array_t(type(x)), drjit.float32_array_t(type(x))
-    # Read octave and part from the bits of a float32.
     x = drjit.maximum(x, 2.0**-OCTAVES)
     inside = drjit.minimum(drjit.detach(x), 1.0 - 2.0**-24)
     bits = drjit.reinterpret_array(integer, single(inside))

@@ -24,51 +24,30 @@ def albedo_dir_quadrature(
 
         E(mu) = integral of brdf(wo, wi, rho) cos(theta_i) over the hemisphere of wi
 
-    Parameters
-    ----------
-    brdf : callable
-        `brdf(wo, wi, rho, *parameter)` in 1/sr; any function of `mxeon.models`.
-    mu : array_like, shape (...)
-        Cosine of the polar angle of wo, dimensionless, in [0, 1].
-    rho : array_like, shape (..., C)
-        Reflectance per channel, dimensionless, in [0, 1]; a number is one channel.
-    *parameter : array_like, shape (...)
-        Argument of `brdf` after rho, if it has one: sigma or roughness.
-    nodes : int
-        Gauss-Legendre nodes for each of two intervals of both angles; the time grows as its square.
+    - `brdf`: `brdf(wo, wi, rho, *parameter)` in 1/sr; any function of `mxeon.models`.
+    - `mu` (...): Cosine of the polar angle of wo, in [0, 1].
+    - `rho` (..., C): Reflectance per channel, in [0, 1]; a number is one channel.
+    - `*parameter` (...): Argument of `brdf` after rho, if it has one: sigma or roughness.
+    - `nodes`: Gauss-Legendre nodes for each of two intervals of both angles; the time grows as its
+      square.
 
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        Dimensionless.
+    Result (..., C). Accuracy: absolute error below 1e-12 for the models of this package. Their
+    kinks, at theta_i = theta_o and cos(phi) = 0, bound the intervals, and the nodes crowd below
+    theta_o, where the full Oren-Nayar model has a layer as thin as mu. A kink elsewhere converges
+    slowly: 2e-10 for `eon_brdf_approx`, whose quartic is clamped at mu = 0.0014. Raises
+    `ValueError` if an argument leaves its range.
 
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
-
-    Notes
-    -----
-    Accuracy: absolute error below 1e-12 for the models of this package. Their kinks, at
-    theta_i = theta_o and cos(phi) = 0, bound the intervals, and the nodes crowd below theta_o,
-    where the full Oren-Nayar model has a layer as thin as mu. A kink elsewhere converges slowly:
-    2e-10 for `eon_brdf_approx`, whose quartic is clamped at mu = 0.0014.
-
-    Examples
-    --------
-    >>> from mxeon.models import eon_brdf
-    >>> albedo_dir_quadrature(eon_brdf, 0.3, [0.5, 1.0], 1.0).round(12)
-    array([0.47804055, 1.        ])
+        >>> from mxeon.models import eon_brdf
+        >>> albedo_dir_quadrature(eon_brdf, 0.3, [0.5, 1.0], 1.0).round(12)
+        array([0.47804055, 1.        ])
     """
     checked_count("nodes", nodes)
-    # Check and broadcast the arguments.
     mu, rho = checked("mu", mu), np.atleast_1d(checked("rho", rho))
     parameters = [np.asarray(value) for value in parameter]
     numbers = {"mu": mu} | {f"parameter {k}": value for k, value in enumerate(parameters)}
     lead = lead_shape({"rho": rho}, numbers)
     mu, rho = np.broadcast_to(mu, lead), np.broadcast_to(rho, lead + rho.shape[-1:])
     parameters = [np.broadcast_to(value, lead) for value in parameters]
-    # Sum the model over the nodes of each cosine.
     albedo = np.empty(rho.shape)
     for index in np.ndindex(lead):
         wo, wi, weights = hemisphere_nodes(float(mu[index]), nodes)
@@ -78,16 +57,13 @@ def albedo_dir_quadrature(
 
 def hemisphere_nodes(mu: float, nodes: int) -> tuple[Array, Array, Array]:
     """wo at azimuth 0, wi in half the hemisphere, and their weights, which sum to pi."""
-    # Split the polar angle at wo, graded towards it.
     x, weight = unit_rule(nodes)
     theta_o = np.arccos(mu)
     rest = np.pi / 2.0 - theta_o
     theta = np.concatenate([theta_o * (1.0 - x**5), theta_o + rest * x])
     d_theta = np.concatenate([theta_o * 5.0 * x**4 * weight, rest * weight])
-    # Split the azimuth at a right angle.
     phi = np.pi / 2.0 * np.concatenate([x, 1.0 + x])
     d_phi = np.pi / 2.0 * np.concatenate([weight, weight])
-    # Form the directions, and their weights with both halves.
     sine, cosine = np.sin(theta)[:, np.newaxis], np.cos(theta)[:, np.newaxis]
     parts = np.broadcast_arrays(sine * np.cos(phi), sine * np.sin(phi), cosine)
     wo = np.array([np.sqrt((1.0 - mu) * (1.0 + mu)), 0.0, mu])

@@ -14,13 +14,7 @@ from mxeon.models.core.namespaces import array_namespace
 
 
 def spread_pair(name: str, array: Numbers) -> Numbers:
-    """Array of pairs, shape (..., 2), of which a number, or a last axis of 1, counts for both.
-
-    Examples
-    --------
-    >>> spread_pair("roughness", np.array(0.3))
-    array([0.3, 0.3])
-    """
+    """Array of pairs, shape (..., 2), of which a number, or a last axis of 1, counts for both."""
     array = with_axis(array)
     if isinstance(array, Columns) and len(array.parts) == 1:
         return cast(Numbers, Columns(2 * array.parts))
@@ -42,15 +36,7 @@ def with_axis(array: Numbers) -> Numbers:
 
 
 def refuse_ambiguous(name: str, color: Numbers, lead: tuple[int, ...]) -> None:
-    """Raise ValueError for a list of N numbers beside N directions, unless it is red, green and blue.
-
-    Examples
-    --------
-    >>> refuse_ambiguous("rho", np.ones(5), (5,))
-    Traceback (most recent call last):
-    ...
-    ValueError: rho of shape (5,) beside 5 directions has two meanings: write rho[:, np.newaxis] for a number for each direction, rho[np.newaxis] for a color of 5 channels
-    """
+    """Raise ValueError for a list of N numbers beside N directions, unless it is red, green and blue."""
     if color.shape == lead and color.ndim == 1 and color.shape[0] not in (1, 3):
         count = color.shape[0]
         raise ValueError(
@@ -63,28 +49,8 @@ def refuse_ambiguous(name: str, color: Numbers, lead: tuple[int, ...]) -> None:
 def lead_shape(vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]) -> tuple[int, ...]:
     """Shape to which arguments broadcast, the last axis of `vectors` apart.
 
-    Parameters
-    ----------
-    vectors : dict of str to ndarray
-        Directions, random numbers or colors by name: shapes (..., C).
-    numbers : dict of str to ndarray
-        The others: shapes (...).
-
-    Returns
-    -------
-    tuple of int
-
-    Raises
-    ------
-    ValueError
-        If they do not broadcast; names them and their shapes.
-
-    Examples
-    --------
-    >>> lead_shape({"wo": np.zeros((4, 3))}, {"roughness": np.zeros(5)})
-    Traceback (most recent call last):
-    ...
-    ValueError: wo, roughness must broadcast (last axis of wo apart); got shapes (4, 3), (5,)
+    - `vectors`: Directions, random numbers or colors by name: shapes (..., C).
+    - `numbers`: The others: shapes (...).
     """
     arrays = [*vectors.values(), *numbers.values()]
     leads = [tuple(array.shape[:-1]) for array in vectors.values()]
@@ -105,13 +71,7 @@ def broadcastable(vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]
 
 
 def channel_count(colors: Mapping[str, Numbers]) -> int:
-    """Number of channels to which colors of shape (..., C) broadcast.
-
-    Raises
-    ------
-    ValueError
-        If they do not; names them and their numbers of channels.
-    """
+    """Number of channels to which colors of shape (..., C) broadcast."""
     counts = [int(color.shape[-1]) for color in colors.values()]
     largest = max(counts)
     if any(count not in (1, largest) for count in counts):

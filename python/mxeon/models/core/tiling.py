@@ -16,34 +16,18 @@ BLOCK = 2**15
 def blocks(shape: tuple[int, ...], size: int = BLOCK) -> Iterator[tuple[slice, ...]]:
     """Indices that tile an array, each selecting at most about `size` elements.
 
-    Parameters
-    ----------
-    shape : tuple of int
-        Shape of the array.
-    size : int
-        Elements per block.
-
-    Yields
-    ------
-    tuple of slice
-        One slice per axis, so that no axis is lost.
-
-    Examples
-    --------
-    >>> list(blocks((2, BLOCK)))
-    [(slice(0, 1, None), slice(None, None, None)), (slice(1, 2, None), slice(None, None, None))]
+    - `shape`: Shape of the array.
+    - `size`: Elements per block.
     """
     # Take as many inner axes as fit into a block.
     axis, inner = len(shape), 1
     while axis > 0 and inner * shape[axis - 1] <= size:
         axis -= 1
         inner *= shape[axis]
-    # Yield the whole array if it fits.
     whole = (slice(None),) * (len(shape) - axis)
     if axis == 0:
         yield whole
         return
-    # Split the next axis, for each index of the outer ones.
     step = max(1, size // inner)
     for outer in np.ndindex(shape[: axis - 1]):
         for start in range(0, shape[axis - 1], step):
@@ -53,24 +37,10 @@ def blocks(shape: tuple[int, ...], size: int = BLOCK) -> Iterator[tuple[slice, .
 def tile(array: Numbers, block: tuple[slice, ...]) -> Array:
     """Part of `array` that a block of its leading axes selects, with the last axis first.
 
-    Parameters
-    ----------
-    array : ndarray, shape (..., C)
-        An axis of length 1, which broadcasts, stays whole.
-    block : tuple of slice
-        One slice per axis but the last.
+    - `array` (..., C): An axis of length 1, which broadcasts, stays whole.
+    - `block`: One slice per axis but the last.
 
-    Returns
-    -------
-    ndarray, shape (C, ...), float64
-        Contiguous.
-
-    Examples
-    --------
-    >>> tile(np.array([[[1, 2]], [[3, 4]]]), (slice(1, 2), slice(5, 6)))
-    array([[[3.]],
-    <BLANKLINE>
-           [[4.]]])
+    Result (C, ...): Contiguous.
     """
     axes = zip(block, array.shape[:-1], strict=True)
     part = array[tuple(index if length > 1 else slice(None) for index, length in axes)]

@@ -5,6 +5,16 @@ All functions broadcast, are reciprocal, work on the closed domain, and evaluate
 memory beyond arguments and result does not grow. They use the caller's thread alone; `threads` lets
 several share a large call. Where both directions graze the surface and s > 0,
 s / max(mu_o, mu_i) has no limit and counts as 0; value times cosine is 0 there for any choice.
+
+- `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
+- `rho` (..., C): Reflectance per channel, in [0, 1]; a number is one channel.
+- `sigma` (...): Deviation of the facets' slope angle, in radian, in [0, pi/2].
+- `roughness` (...): In [0, 1].
+
+Result (..., C): BRDF in 1/sr, at least 0, unbounded at grazing. Accuracy: error below 1e-14 / pi,
+or below 1e-14 of the largest value that |s / t| takes at these cosines where that is larger. Raises
+`ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
+not broadcast.
 """
 
 from __future__ import annotations
@@ -21,26 +31,11 @@ def lambert_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike) -> Array:
 
         f = rho / pi
 
-    Errors as those of `eon_brdf`.
+    Result (..., C): BRDF in 1/sr, in [0, 1/pi]. [Portsmouth2025], section 2.1, the limit
+    sigma -> 0.
 
-    Parameters
-    ----------
-    wo, wi, rho
-        As those of `eon_brdf`.
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        BRDF in 1/sr, in [0, 1/pi].
-
-    References
-    ----------
-    [Portsmouth2025], section 2.1, the limit sigma -> 0.
-
-    Examples
-    --------
-    >>> lambert_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8]).round(6)
-    array([0.063662, 0.254648])
+        >>> lambert_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8]).round(6)
+        array([0.063662, 0.254648])
     """
     return evaluate(formulas.lambert_brdf, wo, wi, rho)
 
@@ -55,31 +50,15 @@ def oren_nayar_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLi
         C2 = 0.45 k (sin(alpha) - (2 beta / pi)^3 where cos(phi) < 0),
         C3 = 0.125 k (4 alpha beta / pi^2)^2
 
-    Parameters as those of `qon_brdf`. Errors as those of `eon_brdf`.
+    Result (..., C): BRDF in 1/sr, unbounded at grazing. alpha and beta are the larger and the
+    smaller polar angle, phi is the azimuth between both. The authors' fit falls below 0, to -0.27
+    rho / pi, for rough dark surfaces where both directions graze from opposite sides. It stays as
+    they printed it. At grazing, (sin(alpha) - (2 beta / pi)^3) tan(beta) has its limit 6 / pi; the
+    tangent after C3 has none and counts as 0. [OrenNayar1994], functional approximation for
+    Gaussian slopes, and interreflection.
 
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        BRDF in 1/sr, unbounded at grazing.
-
-    Notes
-    -----
-    alpha and beta are the larger and the smaller polar angle, phi is the azimuth between both.
-    The authors' fit falls below 0, to -0.27 rho / pi, for rough dark surfaces where both directions
-    graze from opposite sides. It stays as they printed it.
-    At grazing, (sin(alpha) - (2 beta / pi)^3) tan(beta) has its limit 6 / pi; the tangent after C3
-    has none and counts as 0.
-    Accuracy: error below 1e-14 / pi, or below 1e-14 of the largest value that |s / t| takes at
-    these cosines where that is larger.
-
-    References
-    ----------
-    [OrenNayar1994], functional approximation for Gaussian slopes, and interreflection.
-
-    Examples
-    --------
-    >>> oren_nayar_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
-    array([0.063766, 0.269282])
+        >>> oren_nayar_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
+        array([0.063766, 0.269282])
     """
     return evaluate(formulas.oren_nayar_brdf, wo, wi, rho, sigma=sigma)
 
@@ -90,53 +69,24 @@ def qon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> 
 
         f = rho / pi (A + B s / t),  1/t = 0 where s <= 0, else 1 / max(mu_o, mu_i)
 
-    Result and errors as those of `eon_brdf`.
-
-    Parameters
-    ----------
-    wo, wi, rho
-        As those of `eon_brdf`.
-    sigma : array_like, shape (...)
-        Deviation of the facets' slope angle, in radian, in [0, pi/2].
-
-    Notes
-    -----
-    Accuracy: error below 1e-14 / pi, or below 1e-14 of the largest value that |s / t| takes at
-    these cosines where that is larger.
-
-    References
-    ----------
     [Portsmouth2025], Eqs. (1)-(4).
 
-    Examples
-    --------
-    >>> qon_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
-    array([0.06258 , 0.250322])
+        >>> qon_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
+        array([0.06258 , 0.250322])
     """
     return evaluate(formulas.qon_brdf, wo, wi, rho, sigma=sigma)
 
 
 @any_array_or_drjit
 def qon_footnote_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
-    """BRDF of QON with 0.57 in place of 0.33 in A, which approximates interreflection.
+    """BRDF of QON with 0.57 instead of 0.33 in A, which approximates interreflection.
 
         f = rho / pi (A + B s / t),  A = 1 - 0.5 sigma^2 / (sigma^2 + 0.57)
 
-    Parameters as those of `qon_brdf`. Result and errors as those of `eon_brdf`.
-
-    Notes
-    -----
-    Accuracy: error below 1e-14 / pi, or below 1e-14 of the largest value that |s / t| takes at
-    these cosines where that is larger.
-
-    References
-    ----------
     [Portsmouth2025], footnote 1; [OrenNayar1994], qualitative model.
 
-    Examples
-    --------
-    >>> qon_footnote_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
-    array([0.066596, 0.266385])
+        >>> qon_footnote_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
+        array([0.066596, 0.266385])
     """
     return evaluate(formulas.qon_footnote_brdf, wo, wi, rho, sigma=sigma)
 
@@ -148,21 +98,10 @@ def qon_fujii_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLik
         f = rho / pi (A + 0.17 rho sigma^2 / (sigma^2 + 0.13) + B s / t),
         1/t = 1 where s <= 0, else 1 / max(mu_o, mu_i)
 
-    Parameters as those of `qon_brdf`. Result and errors as those of `eon_brdf`.
-
-    Notes
-    -----
-    Accuracy: error below 1e-14 / pi, or below 1e-14 of the largest value that |s / t| takes at
-    these cosines where that is larger.
-
-    References
-    ----------
     [Fujii2013], first proposed formula.
 
-    Examples
-    --------
-    >>> qon_fujii_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
-    array([0.064005, 0.273106])
+        >>> qon_fujii_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
+        array([0.064005, 0.273106])
     """
     return evaluate(formulas.qon_fujii_brdf, wo, wi, rho, sigma=sigma)
 
@@ -173,21 +112,10 @@ def fon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike)
 
         f = rho / pi A (1 + roughness s / t),  1/t = 1 where s <= 0, else 1 / max(mu_o, mu_i)
 
-    Parameters, result and errors as those of `eon_brdf`.
-
-    Notes
-    -----
-    Accuracy: error below 1e-14 / pi, or below 1e-14 of the largest value that |s / t| takes at
-    these cosines where that is larger.
-
-    References
-    ----------
     [Portsmouth2025], Eqs. (10), (11).
 
-    Examples
-    --------
-    >>> fon_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
-    array([0.07235 , 0.289399])
+        >>> fon_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
+        array([0.07235 , 0.289399])
     """
     return evaluate(formulas.fon_brdf, wo, wi, rho, roughness=roughness)
 
@@ -199,40 +127,11 @@ def eon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike)
         f = rho / pi A (1 + r s / t + rho r (1 + c2 r) / ((c1 - c2) D) H(mu_o) H(mu_i)),
         D = 1 + c1 r - rho r (c1 - c2),  H = c1 - G_F / pi
 
-    Parameters
-    ----------
-    wo, wi : array_like, shape (..., 3)
-        Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
-    rho : array_like, shape (..., C)
-        Reflectance per channel, dimensionless, in [0, 1]; a number is one channel.
-    roughness : array_like, shape (...)
-        Dimensionless, in [0, 1].
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        BRDF in 1/sr, at least 0, unbounded at grazing.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
-
-    Notes
-    -----
-    Accuracy: error below 1e-14 / pi, or below 1e-14 of the largest value that |s / t| takes at
-    these cosines where that is larger.
     Form: Eq. (19) with 1 - E_FON = r A H; the powers of r that vanish with roughness are cancelled,
-    so that roughness 0 is Lambert exactly.
+    so that roughness 0 is Lambert exactly. [Portsmouth2025], Eqs. (16)-(19).
 
-    References
-    ----------
-    [Portsmouth2025], Eqs. (16)-(19).
-
-    Examples
-    --------
-    >>> eon_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
-    array([0.073621, 0.310981])
+        >>> eon_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
+        array([0.073621, 0.310981])
     """
     return evaluate(formulas.eon_brdf, wo, wi, rho, roughness=roughness)
 
@@ -243,22 +142,12 @@ def eon_brdf_approx(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: Arr
 
         f as in `eon_brdf`,  G_F / pi = g1 m + g2 m^2 + g3 m^3 + g4 m^4,  m = 1 - mu
 
-    Parameters, result and errors as those of `eon_brdf`.
-
-    Notes
-    -----
-    Accuracy: within 1.25e-3 / pi of `eon_brdf`.
-    Below mu = 0.0014 the quartic loses less than nothing, and H counts as 0. Listing 1 of the paper
-    keeps 1 - E_FON above 1e-7 instead. That differs by less than 1.4e-7 / pi for roughness > 1e-5,
-    and is not Lambert at roughness 0.
-
-    References
-    ----------
+    Accuracy: within 1.25e-3 / pi of `eon_brdf`. Below mu = 0.0014 the quartic loses less than
+    nothing, and H counts as 0. Listing 1 of the paper keeps 1 - E_FON above 1e-7 instead. That
+    differs by less than 1.4e-7 / pi for roughness > 1e-5, and is not Lambert at roughness 0.
     [Portsmouth2025], Eqs. (14), (16)-(19).
 
-    Examples
-    --------
-    >>> eon_brdf_approx([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
-    array([0.073622, 0.311002])
+        >>> eon_brdf_approx([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
+        array([0.073622, 0.311002])
     """
     return evaluate(formulas.eon_brdf_approx, wo, wi, rho, roughness=roughness)

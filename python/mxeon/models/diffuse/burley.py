@@ -1,5 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Burley's diffuse model, as in [MaterialX2026], section `burley_diffuse_bsdf`."""
+"""Burley's diffuse model, as in [MaterialX2026], section `burley_diffuse_bsdf`.
+
+- `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
+- `mu` (...): Cosine of the polar angle of wo, in [0, 1].
+- `rho` (..., C): Reflectance per channel, in [0, 1]; a number is one channel.
+- `roughness` (...): In [0, 1]: sigma of the text.
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
+"""
 
 from __future__ import annotations
 
@@ -19,39 +28,13 @@ def burley_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLi
         f = rho / pi (1 + k (1 - mu_o)^5) (1 + k (1 - mu_i)^5),
         k = F_D90 - 1 = 2 roughness (wi . wh)^2 - 1 / 2
 
-    Parameters
-    ----------
-    wo, wi : array_like, shape (..., 3)
-        Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
-    rho : array_like, shape (..., C)
-        Reflectance per channel, dimensionless, in [0, 1]; a number is one channel.
-    roughness : array_like, shape (...)
-        Dimensionless, in [0, 1]: sigma of the text.
+    Result (..., C): BRDF in 1/sr, in [0, 25/4 / pi]. With (wi . wh)^2 = (1 + wo . wi) / 2 there is
+    no half vector to normalize, and opposite directions at grazing need no case of their own.
+    Accuracy: error below 66 / roughness times 2^-53 of f + 1 / pi. [MaterialX2026], section
+    `burley_diffuse_bsdf`; [Burley2012], section 5.3.
 
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        BRDF in 1/sr, in [0, 25/4 / pi].
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
-
-    Notes
-    -----
-    With (wi . wh)^2 = (1 + wo . wi) / 2 there is no half vector to normalize, and opposite
-    directions at grazing need no case of their own.
-    Accuracy: error below 66 / roughness times 2^-53 of f + 1 / pi.
-
-    References
-    ----------
-    [MaterialX2026], section `burley_diffuse_bsdf`; [Burley2012], section 5.3.
-
-    Examples
-    --------
-    >>> burley_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
-    array([0.063985, 0.255939])
+        >>> burley_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
+        array([0.063985, 0.255939])
     """
     return evaluate(_formula, wo, wi, rho, roughness=roughness)
 
@@ -64,39 +47,13 @@ def burley_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Ar
         n = (1 - mu)^5,  h = r - 1/2,
         Q = (h^2 + r^2 (1 - mu^2) / 2) / 21 + h r mu / 42 + r^2 (3 mu^2 - 1) / 504
 
-    Parameters
-    ----------
-    mu : array_like, shape (...)
-        Cosine of the polar angle of wo, dimensionless, in [0, 1].
-    rho : array_like, shape (..., C)
-        Reflectance per channel, dimensionless, in [0, 1]; a number is one channel.
-    roughness : array_like, shape (...)
-        Dimensionless, in [0, 1].
+    Result (..., C): It exceeds rho where the surface is rough: up to 1.558 rho at grazing. Form: f
+    is a polynomial in mu_i and cos(phi). The integrals are 2 n! 5! / (n + 6)! for mu_i^n
+    (1 - mu_i)^5: 1/21, 1/84, 1/252. Accuracy: absolute error below 1e-12. [MaterialX2026], sections
+    `burley_diffuse_bsdf` and Directional Albedo.
 
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        Dimensionless. It exceeds rho where the surface is rough: up to 1.558 rho at grazing.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
-
-    Notes
-    -----
-    Form: f is a polynomial in mu_i and cos(phi). The integrals are 2 n! 5! / (n + 6)! for
-    mu_i^n (1 - mu_i)^5: 1/21, 1/84, 1/252.
-    Accuracy: absolute error below 1e-12.
-
-    References
-    ----------
-    [MaterialX2026], sections `burley_diffuse_bsdf` and Directional Albedo.
-
-    Examples
-    --------
-    >>> burley_albedo_dir(0.0, 1.0, 1.0).round(6)
-    array([1.55754])
+        >>> burley_albedo_dir(0.0, 1.0, 1.0).round(6)
+        array([1.55754])
     """
     (rho,), (m, r) = checked_colors({"rho": rho}, mu=mu, roughness=roughness)
     h, n = r - 0.5, (1.0 - m) ** 5

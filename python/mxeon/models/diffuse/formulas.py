@@ -28,27 +28,10 @@ def cosines(wo: Array, wi: Array) -> tuple[Array, Array, Array]:
 
         s = dot(wo, wi) - mu_o mu_i = wo.x wi.x + wo.y wi.y
 
-    Parameters
-    ----------
-    wo, wi : ndarray, shape (..., 3)
-        Unit vectors on or above the horizon.
+    - `wo`, `wi` (..., 3): Unit vectors on or above the horizon.
 
-    Returns
-    -------
-    mu_o, mu_i : ndarray, shape (...)
-        Cosines, dimensionless, in [0, 1]: z, but 1 where a rounded direction has z > 1.
-    s : ndarray, shape (...)
-        Dimensionless, in [-1, 1] up to rounding; signed, never clamped.
-
-    References
-    ----------
-    [Portsmouth2025], below Eq. (3).
-
-    Examples
-    --------
-    >>> mu_o, mu_i, s = cosines(np.array([0.6, 0.0, 0.8]), np.array([-0.8, 0.0, 0.6]))
-    >>> [round(float(x), 12) for x in (mu_o, mu_i, s)]
-    [0.8, 0.6, -0.48]
+    `mu_o`, `mu_i` (...): Cosines, in [0, 1]: z, but 1 where a rounded direction has z > 1. `s`
+    (...): In [-1, 1] up to rounding; signed, never clamped. [Portsmouth2025], below Eq. (3).
     """
     s = wo[..., 0] * wi[..., 0] + wo[..., 1] * wi[..., 1]
     return cosine(wo[..., 2]), cosine(wi[..., 2]), s

@@ -2,6 +2,12 @@
 """Reflectance `rho` with which EON has a wanted albedo: the inverse of the albedos in closed form.
 
 Every color in [0, 1] is reached, by one rho in [0, 1], at every roughness; no other color is.
+
+- `roughness` (...): In [0, 1].
+- `color` (..., C): Wanted albedo, directional at normal incidence or average, in [0, 1].
+
+Result (..., C): in [0, 1]. Raises `ValueError`, which names the first bad element, if an argument
+leaves its range or the shapes do not broadcast.
 """
 
 from __future__ import annotations
@@ -28,37 +34,12 @@ def eon_rho_from_albedo_normal(color: ArrayLike, roughness: ArrayLike) -> Array:
 
         rho = 2 C d / (b + sqrt(b^2 + 4 c2 r d C)),  b = 1 + (c1 - c2) r C,  d = 1 + c1 r
 
-    Parameters
-    ----------
-    color : array_like, shape (..., C)
-        Wanted directional albedo at normal incidence, dimensionless, in [0, 1].
-    roughness : array_like, shape (...)
-        Dimensionless, in [0, 1].
+    Accuracy: relative error below 1e-15. Form: the root of [Portsmouth2025], Eq. (30), with the
+    difference in its numerator multiplied out, times 1 + c1 r. Nothing cancels or vanishes at low
+    roughness, so that no series is needed. [Portsmouth2025], Eqs. (28) to (31).
 
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        Dimensionless, in [0, 1].
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
-
-    Notes
-    -----
-    Accuracy: relative error below 1e-15.
-    Form: the root of [Portsmouth2025], Eq. (30), with the difference in its numerator multiplied
-    out, times 1 + c1 r. Nothing cancels or vanishes at low roughness, so that no series is needed.
-
-    References
-    ----------
-    [Portsmouth2025], Eqs. (28) to (31).
-
-    Examples
-    --------
-    >>> eon_rho_from_albedo_normal([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
-    array([0.      , 0.219784, 0.835673, 1.      ])
+        >>> eon_rho_from_albedo_normal([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
+        array([0.      , 0.219784, 0.835673, 1.      ])
     """
     color, r = _checked(color, roughness)
     b, d = 1.0 + (C1 - C2) * r * color, 1.0 + C1 * r
@@ -74,27 +55,10 @@ def eon_rho_from_albedo_avg(color: ArrayLike, roughness: ArrayLike) -> Array:
 
         rho = C d / (C d + (1 + c2 r)(1 - C)),  d = 1 + c1 r
 
-    Result and errors as those of `eon_rho_from_albedo_normal`.
+    Accuracy: relative error below 1e-15. [Portsmouth2025], Eqs. (29) and (33).
 
-    Parameters
-    ----------
-    color : array_like, shape (..., C)
-        Wanted average albedo, dimensionless, in [0, 1].
-    roughness : array_like, shape (...)
-        Dimensionless, in [0, 1].
-
-    Notes
-    -----
-    Accuracy: relative error below 1e-15.
-
-    References
-    ----------
-    [Portsmouth2025], Eqs. (29) and (33).
-
-    Examples
-    --------
-    >>> eon_rho_from_albedo_avg([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
-    array([0.      , 0.208598, 0.827676, 1.      ])
+        >>> eon_rho_from_albedo_avg([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
+        array([0.      , 0.208598, 0.827676, 1.      ])
     """
     color, r = _checked(color, roughness)
     scaled = color * (1.0 + C1 * r)
@@ -105,22 +69,12 @@ def eon_rho_from_albedo_avg(color: ArrayLike, roughness: ArrayLike) -> Array:
 def eon_rho_from_albedo_normal_approx(color: ArrayLike, roughness: ArrayLike) -> Array:
     """`eon_rho_from_albedo_normal` by the paper's polynomial.
 
-    Parameters and errors as those of `eon_rho_from_albedo_normal`.
-    Result as that of `eon_rho_from_albedo_normal`.
-
-    Notes
-    -----
     Accuracy: error at most 4.41e-3, at roughness 1 and color 0.69. The paper states less than
-    0.3 %, which holds up to roughness 0.89. A color of 1 gives 1 - 0.0026 r.
+    0.3 %, which holds up to roughness 0.89. A color of 1 gives 1 - 0.0026 r. [Portsmouth2025],
+    Eq. (32).
 
-    References
-    ----------
-    [Portsmouth2025], Eq. (32).
-
-    Examples
-    --------
-    >>> eon_rho_from_albedo_normal_approx([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
-    array([0.      , 0.217735, 0.839332, 0.997399])
+        >>> eon_rho_from_albedo_normal_approx([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
+        array([0.      , 0.217735, 0.839332, 0.997399])
     """
     return _polynomial(color, roughness, *NORMAL)
 
@@ -129,22 +83,11 @@ def eon_rho_from_albedo_normal_approx(color: ArrayLike, roughness: ArrayLike) ->
 def eon_rho_from_albedo_normal_refit_approx(color: ArrayLike, roughness: ArrayLike) -> Array:
     """`eon_rho_from_albedo_normal` by a polynomial of the paper's form with new coefficients.
 
-    Parameters and errors as those of `eon_rho_from_albedo_normal`.
-    Result as that of `eon_rho_from_albedo_normal`.
-
-    Notes
-    -----
     Accuracy: error at most 2.96e-3, the least that this form can have. A color of 1 gives
-    1 - 0.00296 r.
+    1 - 0.00296 r. tools/fits/eon_inversion.py; the form is [Portsmouth2025], Eq. (32).
 
-    References
-    ----------
-    tools/fits/eon_inversion.py; the form is [Portsmouth2025], Eq. (32).
-
-    Examples
-    --------
-    >>> eon_rho_from_albedo_normal_refit_approx([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
-    array([0.      , 0.216827, 0.838132, 0.997043])
+        >>> eon_rho_from_albedo_normal_refit_approx([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
+        array([0.      , 0.216827, 0.838132, 0.997043])
     """
     return _polynomial(color, roughness, *NORMAL_REFIT)
 
@@ -153,21 +96,10 @@ def eon_rho_from_albedo_normal_refit_approx(color: ArrayLike, roughness: ArrayLi
 def eon_rho_from_albedo_avg_approx(color: ArrayLike, roughness: ArrayLike) -> Array:
     """`eon_rho_from_albedo_avg` by the paper's polynomial.
 
-    Parameters as those of `eon_rho_from_albedo_avg`. Errors as those of `eon_rho_from_albedo_normal`.
-    Result as that of `eon_rho_from_albedo_normal`.
+    Accuracy: error at most 2.84e-3; 0 at colors 0 and 1. [Portsmouth2025], Eq. (34).
 
-    Notes
-    -----
-    Accuracy: error at most 2.84e-3; 0 at colors 0 and 1.
-
-    References
-    ----------
-    [Portsmouth2025], Eq. (34).
-
-    Examples
-    --------
-    >>> eon_rho_from_albedo_avg_approx([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
-    array([0.      , 0.207965, 0.830315, 1.      ])
+        >>> eon_rho_from_albedo_avg_approx([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
+        array([0.      , 0.207965, 0.830315, 1.      ])
     """
     return _polynomial(color, roughness, AVERAGE, 1.0)
 
@@ -176,21 +108,11 @@ def eon_rho_from_albedo_avg_approx(color: ArrayLike, roughness: ArrayLike) -> Ar
 def eon_rho_from_albedo_avg_refit_approx(color: ArrayLike, roughness: ArrayLike) -> Array:
     """`eon_rho_from_albedo_avg` by a polynomial of the paper's form with a new coefficient.
 
-    Parameters as those of `eon_rho_from_albedo_avg`. Errors as those of `eon_rho_from_albedo_normal`.
-    Result as that of `eon_rho_from_albedo_normal`.
-
-    Notes
-    -----
     Accuracy: error at most 1.86e-3, the least that this form can have; 0 at colors 0 and 1.
-
-    References
-    ----------
     tools/fits/eon_inversion.py; the form is [Portsmouth2025], Eq. (34).
 
-    Examples
-    --------
-    >>> eon_rho_from_albedo_avg_refit_approx([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
-    array([0.      , 0.207207, 0.829492, 1.      ])
+        >>> eon_rho_from_albedo_avg_refit_approx([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
+        array([0.      , 0.207207, 0.829492, 1.      ])
     """
     return _polynomial(color, roughness, AVERAGE_REFIT, 1.0)
 

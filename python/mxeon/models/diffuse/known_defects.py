@@ -22,29 +22,8 @@ def eon_clamped_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: Ar
 
         s = max(dot(wo, wi), 1e-8) - mu_o mu_i
 
-    Parameters
-    ----------
-    wo, wi, rho, roughness
-        As those of `mxeon.models.eon_brdf`.
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        In 1/sr; too bright where dot(wo, wi) < 0, and correct elsewhere.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
-
-    Notes
-    -----
-    MaterialX's GLSL node clamps the product, for the needs of other nodes, and passes it on.
-
-    Examples
-    --------
-    >>> eon_clamped_brdf([0.8, 0.0, 0.6], [-0.8, 0.0, 0.6], [0.2, 0.8], 1.0).round(6)
-    array([0.033311, 0.156407])
+    Result (..., C): in 1/sr; too bright where dot(wo, wi) < 0, and correct elsewhere. MaterialX's
+    GLSL node clamps the product, for the needs of other nodes, and passes it on.
     """
     return evaluate(_eon_clamped, wo, wi, rho, roughness=roughness)
 
@@ -53,27 +32,9 @@ def eon_clamped_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: Ar
 def burley_cosine_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """Reflection of Burley's diffuse model at roughness^2, multiplied by mu_i.
 
-    Errors as those of `eon_clamped_brdf`.
-
-    Parameters
-    ----------
-    wo, wi, rho, roughness
-        As those of `mxeon.models.diffuse.burley.burley_brdf`.
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        In 1/sr; not reciprocal, and a white surface reflects two thirds of the light.
-
-    Notes
-    -----
+    Result (..., C): in 1/sr; not reciprocal, and a white surface reflects two thirds of the light.
     LuxCoreRender's disney: `DisneyDiffuse` squares the roughness, and both `Evaluate` and
     `DisneyEvaluate` multiply by the cosine of the light.
-
-    Examples
-    --------
-    >>> burley_cosine_brdf([0.0, 0.0, 1.0], [0.8, 0.0, 0.6], [0.5, 1.0], 0.5).round(6)
-    array([0.095395, 0.19079 ])
     """
     value = burley_brdf(wo, wi, rho, checked("roughness", roughness) ** 2)
     return value * checked_triples("wi", wi)[..., 2:]
@@ -87,26 +48,8 @@ def burley_schlick_brdf(
         f = rho / pi ((1 - F_o / 2) (1 - F_i / 2) + R (F_o + F_i + F_o F_i (R - 1))),
         R = 1/2 + 2 roughness F_i^2,  F = (1 - mu)^5
 
-    Errors as those of `eon_clamped_brdf`.
-
-    Parameters
-    ----------
-    wo, wi, rho, roughness
-        As those of `mxeon.models.diffuse.burley.burley_brdf`.
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        In 1/sr; not reciprocal. It is Lambert at roughness 0, and Burley where mu_o and mu_i are 1.
-
-    Notes
-    -----
-    The GLSL of three-gpu-pathtracer. Burley's R is 2 roughness (wi . wh)^2.
-
-    Examples
-    --------
-    >>> burley_schlick_brdf([0.8, 0.0, 0.6], [-0.8, 0.0, 0.6], [0.5, 1.0], 1.0).round(6)
-    array([0.159156, 0.318311])
+    Result (..., C): in 1/sr; not reciprocal. It is Lambert at roughness 0, and Burley where mu_o
+    and mu_i are 1. The GLSL of three-gpu-pathtracer. Burley's R is 2 roughness (wi . wh)^2.
     """
     return evaluate(_burley_schlick, wo, wi, rho, roughness=roughness)
 
@@ -114,26 +57,8 @@ def burley_schlick_brdf(
 def eon_rho_cubed_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """Reflection of EON whose multiple-scattering lobe carries rho^3 for rho^2.
 
-    Errors as those of `eon_clamped_brdf`.
-
-    Parameters
-    ----------
-    wo, wi, rho, roughness
-        As those of `mxeon.models.eon_brdf`.
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        In 1/sr; too dark, and correct where rho is 0 or 1.
-
-    Notes
-    -----
-    The OSL closure of Blender's Cycles applies its albedo weight to the lobe once too often.
-
-    Examples
-    --------
-    >>> eon_rho_cubed_brdf([0.8, 0.0, 0.6], [-0.8, 0.0, 0.6], [0.2, 0.8], 1.0).round(6)
-    array([0.018131, 0.095069])
+    Result (..., C): in 1/sr; too dark, and correct where rho is 0 or 1. The OSL closure of
+    Blender's Cycles applies its albedo weight to the lobe once too often.
     """
     return evaluate(_eon_rho_cubed, wo, wi, rho, roughness=roughness)
 
@@ -143,26 +68,8 @@ def fon_white_lobe_brdf(
 ) -> Array:
     """Reflection of FON plus the multiple-scattering lobe of a white surface.
 
-    Errors as those of `eon_clamped_brdf`.
-
-    Parameters
-    ----------
-    wo, wi, rho, roughness
-        As those of `mxeon.models.eon_brdf`.
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        In 1/sr; too bright, and correct where rho is 1.
-
-    Notes
-    -----
-    The MDL target forgets to tint the lobe: a black surface reflects 0.22 at roughness 1.
-
-    Examples
-    --------
-    >>> fon_white_lobe_brdf([0.8, 0.0, 0.6], [-0.8, 0.0, 0.6], [0.0, 0.8], 1.0).round(6)
-    array([0.048519, 0.119705])
+    Result (..., C): in 1/sr; too bright, and correct where rho is 1. The MDL target forgets to tint
+    the lobe: a black surface reflects 0.22 at roughness 1.
     """
     return evaluate(_fon_white_lobe, wo, wi, rho, roughness=roughness)
 
@@ -172,27 +79,9 @@ def eon_floor_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: Arra
 
         f = rho f_EON(max(rho, 0.1)) / max(rho, 0.1)
 
-    Errors as those of `eon_clamped_brdf`.
-
-    Parameters
-    ----------
-    wo, wi, rho, roughness
-        As those of `mxeon.models.eon_brdf`.
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        In 1/sr; too bright where rho lies between 0 and 0.1, and correct elsewhere.
-
-    Notes
-    -----
+    Result (..., C): in 1/sr; too bright where rho lies between 0 and 0.1, and correct elsewhere.
     Babylon.js 9.34.0 divides EON by the reflectance, which it keeps above 0.1; its albedo is the
     paper's quartic.
-
-    Examples
-    --------
-    >>> eon_floor_brdf([0.8, 0.0, 0.6], [-0.8, 0.0, 0.6], [0.01, 0.8], 1.0).round(6)
-    array([0.000931, 0.101069])
     """
     return evaluate(_eon_floor, wo, wi, rho, roughness=roughness)
 
@@ -201,21 +90,7 @@ def eon_floor_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: Arra
 def qon_tinted_twice_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
     """Reflection of QON that is multiplied by its own color once more.
 
-    Errors as those of `eon_clamped_brdf`. Result as that of `eon_rho_cubed_brdf`.
-
-    Parameters
-    ----------
-    wo, wi, rho, sigma
-        As those of `mxeon.models.qon_brdf`.
-
-    Notes
-    -----
     OpenPBR's thin-walled lobe in MaterialX 1.39.5, issue 3027 of MaterialX.
-
-    Examples
-    --------
-    >>> qon_tinted_twice_brdf([0.8, 0.0, 0.6], [0.8, 0.0, 0.6], [0.5, 1.0], 0.0).round(6)
-    array([0.079577, 0.31831 ])
     """
     value: Array = checked("rho", rho) * qon_brdf(wo, wi, rho, sigma)
     return value
@@ -224,26 +99,8 @@ def qon_tinted_twice_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: A
 def qon_degrees_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
     """Reflection of QON that takes the number of degrees for radians.
 
-    Errors as those of `eon_clamped_brdf`.
-
-    Parameters
-    ----------
-    wo, wi, rho, sigma
-        As those of `mxeon.models.qon_brdf`: sigma is in radian, and 180 sigma / pi enters.
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        In 1/sr; from a few degrees on it is the limit of large sigma, and correct at 0.
-
-    Notes
-    -----
-    LuxCoreRender's roughmatte: its manual has degrees, its code radians.
-
-    Examples
-    --------
-    >>> qon_degrees_brdf([0.8, 0.0, 0.6], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
-    array([0.062398, 0.249593])
+    `sigma` is in radian, and 180 sigma / pi enters. From a few degrees on it is the limit of large sigma, and correct at
+    0. LuxCoreRender's roughmatte: its manual has degrees, its code radians.
     """
     return evaluate(_qon_degrees, wo, wi, rho, sigma=sigma)
 

@@ -16,33 +16,16 @@ def translucent_btdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike) -> Array:
 
         f = rho / pi
 
-    Parameters
-    ----------
-    wo : array_like, shape (..., 3)
-        Direction to the viewer, unit vector to 1e-6, normal +z, z >= 0.
-    wi : array_like, shape (..., 3)
-        Direction to the light, unit vector to 1e-6, z <= 0.
-    rho : array_like, shape (..., C)
-        Diffuse transmittance per channel, dimensionless, in [0, 1]; a number is one channel.
+    - `wo` (..., 3): Direction to the viewer, unit vector to 1e-6, normal +z, z >= 0.
+    - `wi` (..., 3): Direction to the light, unit vector to 1e-6, z <= 0.
+    - `rho` (..., C): Diffuse transmittance per channel, in [0, 1]; a number is one channel.
 
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        BTDF in 1/sr. Its integral over the lower hemisphere times |mu_i| is rho.
+    Result (..., C): BTDF in 1/sr. Its integral over the lower hemisphere times |mu_i| is rho.
+    Raises `ValueError` if an argument leaves its range. [MaterialX2026], section
+    `translucent_bsdf`, Lambertian transmittance equation.
 
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
-
-    References
-    ----------
-    [MaterialX2026], section `translucent_bsdf`, Lambertian transmittance equation.
-
-    Examples
-    --------
-    >>> translucent_btdf([0.6, 0.0, 0.8], [0.8, 0.0, -0.6], [0.2, 0.8]).round(6)
-    array([0.063662, 0.254648])
+        >>> translucent_btdf([0.6, 0.0, 0.8], [0.8, 0.0, -0.6], [0.2, 0.8]).round(6)
+        array([0.063662, 0.254648])
     """
     light = checked_transmitted("wi", checked_triples("wi", wi))
     xp = array_namespace(light)

@@ -2,6 +2,12 @@
 """The hair model of [MaterialX2026], section `chiang_hair_bsdf`, after [Chiang2016] and [dEon2011].
 
 The fiber is +x, and the normal +z is turned to the viewer. Light comes from the whole sphere.
+
+- `wo` (..., 3): Direction to the viewer, unit vector to 1e-6, fiber +x, normal +z, z >= 0.
+- `wi` (..., 3): Direction to the light, unit vector to 1e-6, on either side.
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
 """
 
 from __future__ import annotations
@@ -46,48 +52,23 @@ def chiang_hair_bcsdf(wo: ArrayLike, wi: ArrayLike, **inputs: Any) -> Array:
 
         f = 1/pi (t_R A_R M_R N_R + t_TT A_TT M_TT N_TT + t_TRT (A_TRT M_TRT N_TRT + A_TRRT+ M_TRT / 2pi))
 
-    Parameters
-    ----------
-    wo : array_like, shape (..., 3)
-        Direction to the viewer, unit vector to 1e-6, fiber +x, normal +z, z >= 0.
-    wi : array_like, shape (..., 3)
-        Direction to the light, unit vector to 1e-6, on either side.
-    **inputs : array_like
-        Values of the node's ports, which have its defaults; form is a `mxeon.models.hair.formulas.HairForm`:
-        `tint_R`, `tint_TT`, `tint_TRT`, shape (..., C), in [0, 1]; `ior`, shape (...), in [0, 1e50];
-        `roughness_R`, `roughness_TT`, `roughness_TRT`, shape (..., 2), longitudinal variance in
-        square radian and azimuthal scale in radian, in [1e-12, 1e12]; `cuticle_angle`, shape (...),
-        in [0, 1]; `absorption_coefficient`, shape (..., C), per radius of the fiber, in [0, 1e50].
+    - `**inputs`: Values of the node's ports, which have its defaults; form is a
+      `mxeon.models.hair.formulas.HairForm`: `tint_R`, `tint_TT`, `tint_TRT`, shape (..., C),
+      in [0, 1]; `ior`, shape (...), in [0, 1e50]; `roughness_R`, `roughness_TT`, `roughness_TRT`,
+      shape (..., 2), longitudinal variance in square radian and azimuthal scale in radian,
+      in [1e-12, 1e12]; `cuticle_angle`, shape (...), in [0, 1]; `absorption_coefficient`, shape
+      (..., C), per radius of the fiber, in [0, 1e50].
 
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        In 1/sr, at least 0. As the text has it, it takes no cosine of the light: its integral over
-        all lights is 1/pi where nothing is absorbed and the cuticle has no tilt.
+    Result (..., C): in 1/sr, at least 0. As the text has it, it takes no cosine of the light: its
+    integral over all lights is 1/pi where nothing is absorbed and the cuticle has no tilt. The text
+    has roughness (0, 0), a pure mirror: no function has its value, and it is refused. F has the
+    index `ior`, as in [Chiang2016]; that the text means the effective index is another reading.
+    Accuracy: relative error below 1e-13 / min(sqrt(v), s) of the value, or 1e-300. [MaterialX2026],
+    Chiang Hair Scattering Equations and Chiang Hair Model; [Chiang2016].
 
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
-    TypeError
-        If an input is not one of the node's.
-
-    Notes
-    -----
-    The text has roughness (0, 0), a pure mirror: no function has its value, and it is refused. F has
-    the index `ior`, as in [Chiang2016]; that the text means the effective index is another reading.
-    Accuracy: relative error below 1e-13 / min(sqrt(v), s) of the value, or 1e-300.
-
-    References
-    ----------
-    [MaterialX2026], Chiang Hair Scattering Equations and Chiang Hair Model; [Chiang2016].
-
-    Examples
-    --------
-    >>> chiang_hair_bcsdf([0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]).round(6)
-    array([0.137704, 0.137704, 0.137704])
+        >>> chiang_hair_bcsdf([0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]).round(6)
+        array([0.137704, 0.137704, 0.137704])
     """
-    # Check the inputs.
     form: HairForm = inputs.pop("form", TEXT)
     vectors = {"wo": checked_directions("wo", wo), "wi": checked_sphere("wi", wi)}
     values = _checked(inputs, vectors["wo"])
@@ -101,7 +82,6 @@ def chiang_hair_bcsdf(wo: ArrayLike, wi: ArrayLike, **inputs: Any) -> Array:
         first, *others = (tint * lobe for tint, lobe in zip(tints, lobes, strict=True))
         return form.factor * sum(others, first)
 
-    # Evaluate all pairs.
     return evaluate_material(formula, vectors | values, numbers, channel_count(colors), BLOCK)
 
 
@@ -111,33 +91,14 @@ def chiang_hair_attenuation(
 ) -> Array:
     """Attenuation factors A_R, A_TT, A_TRT and A_TRRT+ of a view.
 
-    Parameters
-    ----------
-    wo : array_like, shape (..., 3)
-        As in `chiang_hair_bcsdf`.
-    ior : array_like, shape (...)
-        Index of the fiber, dimensionless, in [0, 1e50].
-    absorption_coefficient : array_like, shape (..., C)
-        Per radius of the fiber, in [0, 1e50].
+    - `ior` (...): Index of the fiber, in [0, 1e50].
+    - `absorption_coefficient` (..., C): Per radius of the fiber, in [0, 1e50].
 
-    Returns
-    -------
-    ndarray, shape (..., C, 4), float64
-        Dimensionless, in [0, 1]. Their sum is 1 where nothing is absorbed, and less elsewhere.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
-
-    References
-    ----------
+    Result (..., C, 4): in [0, 1]. Their sum is 1 where nothing is absorbed, and less elsewhere.
     [MaterialX2026], Chiang Hair Model, Attenuation Factors.
 
-    Examples
-    --------
-    >>> chiang_hair_attenuation([0.0, 0.0, 1.0], 1.55, 0.0).round(6)
-    array([[0.046521, 0.909123, 0.042293, 0.002063]])
+        >>> chiang_hair_attenuation([0.0, 0.0, 1.0], 1.55, 0.0).round(6)
+        array([[0.046521, 0.909123, 0.042293, 0.002063]])
     """
     absorption = checked_color("absorption_coefficient", absorption_coefficient)
     vectors = {"wo": checked_directions("wo", wo), "absorption_coefficient": absorption}
@@ -159,31 +120,15 @@ def hair_longitudinal(theta_i: ArrayLike, theta_o: ArrayLike, variance: ArrayLik
 
         M = exp(-sin(theta_i) sin(theta_o) / v) I_0(cos(theta_i) cos(theta_o) / v) / (2 v sinh(1 / v))
 
-    Parameters
-    ----------
-    theta_i, theta_o : array_like
-        Inclinations from the plane across the fiber, in radian, in [-pi/2, pi/2].
-    variance : array_like
-        v, in square radian, in [1e-12, 1e12].
+    - `theta_i`, `theta_o`: Inclinations from the plane across the fiber, in radian,
+      in [-pi/2, pi/2].
+    - `variance`: v, in square radian, in [1e-12, 1e12].
 
-    Returns
-    -------
-    ndarray, float64
-        Dimensionless, above 0 up to underflow. Its integral over theta_i times cos(theta_i) is 1.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
-
-    References
-    ----------
+    Result: above 0 up to underflow. Its integral over theta_i times cos(theta_i) is 1.
     [MaterialX2026], Chiang Hair Model, Longitudinal Scattering; [dEon2011], Eq. (7).
 
-    Examples
-    --------
-    >>> round(float(hair_longitudinal(0.3, -0.3, 0.01)), 6)
-    4.18169
+        >>> round(float(hair_longitudinal(0.3, -0.3, 0.01)), 6)
+        4.18169
     """
     i, o, v = checked_numbers(theta_i=theta_i, theta_o=theta_o, variance=variance)
     xp = array_namespace(i, o, v)
@@ -195,28 +140,14 @@ def hair_longitudinal(theta_i: ArrayLike, theta_o: ArrayLike, variance: ArrayLik
 def hair_azimuthal(phi: ArrayLike, scale: ArrayLike) -> Array:
     """Azimuthal scattering function N, the logistic density trimmed to [-pi, pi].
 
-    Errors as those of `hair_longitudinal`.
+    - `phi`: Angle from that of the exit, in radian; wrapped into [-pi, pi].
+    - `scale`: s, in radian, in [1e-12, 1e12].
 
-    Parameters
-    ----------
-    phi : array_like
-        Angle from that of the exit, in radian; wrapped into [-pi, pi].
-    scale : array_like
-        s, in radian, in [1e-12, 1e12].
+    Result: per radian, at least 0. Its integral over [-pi, pi] is 1. [MaterialX2026], Chiang Hair
+    Model, Azimuthal Scattering; [Chiang2016], Appendix A, Eq. (12).
 
-    Returns
-    -------
-    ndarray, float64
-        Per radian, at least 0. Its integral over [-pi, pi] is 1.
-
-    References
-    ----------
-    [MaterialX2026], Chiang Hair Model, Azimuthal Scattering; [Chiang2016], Appendix A, Eq. (12).
-
-    Examples
-    --------
-    >>> round(float(hair_azimuthal(0.5, 0.3)), 6)
-    0.325121
+        >>> round(float(hair_azimuthal(0.5, 0.3)), 6)
+        0.325121
     """
     return formulas.azimuthal(*checked_numbers(phi=phi, scale=scale))
 
@@ -234,18 +165,15 @@ DEFAULTS: dict[str, float | tuple[float, ...]] = {
 
 def _checked(inputs: dict[str, ArrayLike], wo: Numbers) -> dict[str, Array]:
     """Values of all ports of the node, as arrays of wo's library; those of colors (..., C)."""
-    # Refuse unknown names.
     unknown = set(inputs) - set(DEFAULTS)
     if unknown:
         known = ", ".join(DEFAULTS)
         raise TypeError(f"inputs must be among {known}; got {', '.join(sorted(unknown))}")
-    # Check the values.
     values = {}
     for name, value in {**DEFAULTS, **inputs}.items():
         check = checked_pairs if name in ROUGHNESSES else checked
         array = check(name, value)
         values[name] = array if library(array) else like(array, wo)
-    # Give colors their channels.
     for name in (*TINTS, "absorption_coefficient"):
         values[name] = checked_vector(name, values[name])
     return values

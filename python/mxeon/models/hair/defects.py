@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Forms of the hair model that shaders have in place of the text's."""
+"""Forms of the hair model that shaders have instead of the text's."""
 
 from __future__ import annotations
 

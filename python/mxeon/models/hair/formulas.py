@@ -98,20 +98,12 @@ def attenuation(F: Array, T: Array) -> Array:
 class HairForm:
     """The model in the text's form, or in one that a shader may have in its place.
 
-    Attributes
-    ----------
-    longitudinal : callable (sin_i, cos_i, sin_o, cos_o, v) -> ndarray
-        M_p.
-    uniform : float
-        N of the lobe TRRT+.
-    limits : (float, float)
-        Least and largest value of every roughness.
-    tilts_light : bool
-        Whether the cuticle's tilt turns the light's inclination, and not the viewer's.
-    effective : bool
-        Whether F has the effective index, and the angle gamma_o of the cross-section.
-    factor : float
-        Factor of the sum over the lobes.
+    - `longitudinal`: M_p.
+    - `uniform`: N of the lobe TRRT+.
+    - `limits`: Least and largest value of every roughness.
+    - `tilts_light`: Whether the cuticle's tilt turns the light's inclination, and not the viewer's.
+    - `effective`: Whether F has the effective index, and the angle gamma_o of the cross-section.
+    - `factor`: Factor of the sum over the lobes.
     """
 
     longitudinal: Callable[[Array, Array, Array, Array, Array], Array] = longitudinal
@@ -129,12 +121,8 @@ TEXT = HairForm()
 class Section:
     """A view of the cross-section of a fiber.
 
-    Attributes
-    ----------
-    sin_o, cos_o : ndarray
-        Of the viewer's inclination.
-    gamma_o, gamma_t : ndarray
-        Azimuth of the view from the normal, and that of the refracted ray.
+    - `sin_o`, `cos_o`: Of the viewer's inclination.
+    - `gamma_o`, `gamma_t`: Azimuth of the view from the normal, and that of the refracted ray.
     """
 
     sin_o: Array
@@ -186,10 +174,8 @@ def distribution(
     form: HairForm,
 ) -> Array:
     """M_p N_p of a lobe: Cuticle Tilt, Longitudinal Scattering, Azimuthal Scattering."""
-    # Limit the roughness.
     xp, (low, high) = array_namespace(wo, wi, alpha), form.limits
     v, s = (xp.minimum(xp.maximum(each, low), high) for each in roughness)
-    # Tilt the light, or the view, by the angle of the cuticle.
     inclined = [(wi[0], hypot(wi[1], wi[2])), (view.sin_o, view.cos_o)]
     if lobe < 3:
         tilt = (2.0 - 3.0 * lobe) * alpha
@@ -199,10 +185,8 @@ def distribution(
             cosine * xp.cos(tilt) - sine * xp.sin(tilt),
         )
         inclined[not form.tilts_light] = turned
-    # Scatter longitudinally.
     (sin_i, cos_i), (sin_o, cos_o) = inclined
     M = form.longitudinal(sin_i, cos_i, sin_o, xp.abs(cos_o), v)
-    # Scatter in azimuth about the exit angle of the lobe.
     if lobe == 3:
         return M * form.uniform
     exit_angle = 2.0 * lobe * view.gamma_t - 2.0 * view.gamma_o + lobe * np.pi

@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Roughnesses and absorption of hair from what an artist sets."""
+"""Roughnesses and absorption of hair from what an artist sets.
+
+Result (..., 3): per radius of the fiber, in [0, inf). Raises `ValueError`, which names the first
+bad element, if an argument leaves its range or the shapes do not broadcast.
+"""
 
 from __future__ import annotations
 
@@ -25,33 +29,16 @@ def chiang_hair_roughness(
         v = (0.726 l + 0.812 l^2 + 3.7 l^20)^2,  s = 0.265 a + 1.194 a^2 + 5.372 a^22;
         R (v, s), TT (scale_tt^2 v, s), TRT (scale_trt^2 v, s)
 
-    Parameters
-    ----------
-    longitudinal, azimuthal : array_like, shape (...)
-        Roughnesses l and a, dimensionless, in [0, 1].
-    scale_tt, scale_trt : array_like, shape (...)
-        Dimensionless, in [0, 1e50].
+    - `longitudinal`, `azimuthal` (...): Roughnesses l and a, in [0, 1].
+    - `scale_tt`, `scale_trt` (...): In [0, 1e50].
 
-    Returns
-    -------
-    r, tt, trt : ndarray, shape (..., 2), float64
-        Variance v and logistic scale s of each lobe, before the factor sqrt(pi / 8) of the model.
+    `r`, `tt`, `trt` (..., 2): Variance v and logistic scale s of each lobe, before the factor
+    sqrt(pi / 8) of the model. [MaterialX2026], Hair Roughness Conversion Equations; [Chiang2016],
+    the fits of both roughnesses.
 
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range, or they do not broadcast; names the first bad element.
-
-    References
-    ----------
-    [MaterialX2026], Hair Roughness Conversion Equations; [Chiang2016], the fits of both
-    roughnesses.
-
-    Examples
-    --------
-    >>> r, tt, trt = chiang_hair_roughness(0.1, 0.2)
-    >>> r.round(6), tt.round(6), trt.round(6)
-    (array([0.006516, 0.10076 ]), array([0.001629, 0.10076 ]), array([0.026063, 0.10076 ]))
+        >>> r, tt, trt = chiang_hair_roughness(0.1, 0.2)
+        >>> r.round(6), tt.round(6), trt.round(6)
+        (array([0.006516, 0.10076 ]), array([0.001629, 0.10076 ]), array([0.026063, 0.10076 ]))
     """
     values = {
         "longitudinal": longitudinal,
@@ -81,35 +68,18 @@ def deon_hair_absorption_from_melanin(
         sigma_a = m ((1 - redness) (-log eumelanin) + redness (-log pheomelanin)),
         m = -log(1 - concentration)
 
-    Errors as those of `chiang_hair_roughness`.
+    - `melanin_concentration`, `melanin_redness` (...): In [0, 1) and in [0, 1].
+    - `eumelanin_color`, `pheomelanin_color` (..., 3): Share of light that a fiber's radius of the
+      pigment leaves, in (0, 1].
 
-    Parameters
-    ----------
-    melanin_concentration, melanin_redness : array_like, shape (...)
-        Dimensionless, in [0, 1) and in [0, 1].
-    eumelanin_color, pheomelanin_color : array_like, shape (..., 3)
-        Share of light that a fiber's radius of the pigment leaves, in (0, 1].
+    The paper has the sum of both pigments, each with its own amount. How a concentration in [0, 1]
+    and a redness make these amounts, the specification does not say: the equation is that of its
+    implementations. [dEon2011], the absorption of the pigments; [MaterialX2026],
+    deon_hair_absorption_from_melanin.
 
-    Returns
-    -------
-    ndarray, shape (..., 3), float64
-        Per radius of the fiber, in [0, inf).
-
-    Notes
-    -----
-    The paper has the sum of both pigments, each with its own amount. How a concentration in [0, 1] and
-    a redness make these amounts, the specification does not say: the equation is that of its
-    implementations.
-
-    References
-    ----------
-    [dEon2011], the absorption of the pigments; [MaterialX2026], deon_hair_absorption_from_melanin.
-
-    Examples
-    --------
-    >>> colors = np.exp(-np.array(EUMELANIN)), np.exp(-np.array(PHEOMELANIN))
-    >>> deon_hair_absorption_from_melanin(0.25, 0.5, *colors).round(6)
-    array([0.087168, 0.157794, 0.348095])
+        >>> colors = np.exp(-np.array(EUMELANIN)), np.exp(-np.array(PHEOMELANIN))
+        >>> deon_hair_absorption_from_melanin(0.25, 0.5, *colors).round(6)
+        array([0.087168, 0.157794, 0.348095])
     """
     values = {
         "melanin_concentration": melanin_concentration,
@@ -134,24 +104,13 @@ def chiang_hair_absorption_from_color(
 
         sigma_a = (log(color) / (5.969 - 0.215 b + 2.532 b^2 - 10.73 b^3 + 5.574 b^4 + 0.245 b^5))^2
 
-    Errors as those of `chiang_hair_roughness`.
-    Result as that of `deon_hair_absorption_from_melanin`.
+    - `hair_color` (..., 3): Scattering color, in (0, 1].
+    - `azimuthal_roughness` (...): b, in [0, 1].
 
-    Parameters
-    ----------
-    hair_color : array_like, shape (..., 3)
-        Scattering color, in (0, 1].
-    azimuthal_roughness : array_like, shape (...)
-        b, dimensionless, in [0, 1].
-
-    References
-    ----------
     [Chiang2016], the fit of the absorption; [MaterialX2026], chiang_hair_absorption_from_color.
 
-    Examples
-    --------
-    >>> chiang_hair_absorption_from_color([0.5, 0.2, 0.1], 0.2).round(6)
-    array([0.013569, 0.073156, 0.149739])
+        >>> chiang_hair_absorption_from_color([0.5, 0.2, 0.1], 0.2).round(6)
+        array([0.013569, 0.073156, 0.149739])
     """
     color = _color("hair_color", hair_color)
     roughness = checked("azimuthal_roughness", azimuthal_roughness)

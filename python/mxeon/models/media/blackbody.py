@@ -1,5 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Color of a black body: Planck's law seen by the CIE 1931 observer, in linear Rec. 709."""
+"""Color of a black body: Planck's law seen by the CIE 1931 observer, in linear Rec. 709.
+
+- `temperature` (...): In kelvin, in [1, 1e9].
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
+"""
 
 from __future__ import annotations
 
@@ -34,31 +40,12 @@ def planck_radiance(wavelength: ArrayLike, temperature: ArrayLike) -> Array:
 
         L = c1 / (lambda^5 (exp(c2 / (lambda T)) - 1))
 
-    Parameters
-    ----------
-    wavelength : array_like, shape W
-        In nm, in [1, 1e9].
-    temperature : array_like, shape T
-        In kelvin, in [1, 1e9].
+    - `wavelength`: In nm, in [1, 1e9]; broadcasts with the temperature.
 
-    Returns
-    -------
-    ndarray, shape broadcast(W, T), float64
-        In W / (m^2 sr nm); 0 where it is less than float64 holds.
+    Result: in W / (m^2 sr nm); 0 where it is less than float64 holds. [Planck1901].
 
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
-
-    References
-    ----------
-    [Planck1901].
-
-    Examples
-    --------
-    >>> round(float(planck_radiance(500.0, 6504.0)), 2)
-    46224.39
+        >>> round(float(planck_radiance(500.0, 6504.0)), 2)
+        46224.39
     """
     length, kelvin = checked_numbers(wavelength=wavelength, temperature=temperature)
     length = NANOMETER * length
@@ -69,34 +56,12 @@ def planck_radiance(wavelength: ArrayLike, temperature: ArrayLike) -> Array:
 def blackbody_xyz(temperature: ArrayLike) -> Array:
     """CIE 1931 XYZ of a black body, with Y = 1.
 
-    Parameters
-    ----------
-    temperature : array_like, shape (...)
-        In kelvin, in [1, 1e9].
+    Result (..., 3). Sums over the observer's table, of 5 nm, which are within 5e-5 of those over 1
+    nm. Spectra are scaled by their largest exponential, so that cold bodies, of which no light is
+    left in float64, keep their color. [Planck1901]; ISO/CIE 11664-1.
 
-    Returns
-    -------
-    ndarray, shape (..., 3), float64
-
-    Raises
-    ------
-    ValueError
-        If `temperature` leaves its range; names the first bad element.
-
-    Notes
-    -----
-    Sums over the observer's table, of 5 nm, which are within 5e-5 of those over 1 nm. Spectra are scaled
-    by their largest exponential, so that cold bodies, of which no light is left in float64, keep their
-    color.
-
-    References
-    ----------
-    [Planck1901]; ISO/CIE 11664-1.
-
-    Examples
-    --------
-    >>> blackbody_xyz(6504.0).round(4)
-    array([0.9688, 1.    , 1.1218])
+        >>> blackbody_xyz(6504.0).round(4)
+        array([0.9688, 1.    , 1.1218])
     """
     kelvin = checked_numbers(temperature=temperature)[0][..., np.newaxis]
     exponent = SECOND / (NANOMETER * WAVELENGTHS * kelvin)
@@ -110,27 +75,14 @@ def blackbody_xyz(temperature: ArrayLike) -> Array:
 def blackbody(temperature: ArrayLike) -> Array:
     """Color of a black body in linear Rec. 709, with luminance 1.
 
-    Parameters and errors as those of `blackbody_xyz`.
-
-    Returns
-    -------
-    ndarray, shape (..., 3), float64
-        Channels are negative outside Rec. 709's gamut: blue below 1900 K, green below 964 K.
-
-    Notes
-    -----
-    The specification says "radiant emittance", in words alone. The true one grows with the fourth
-    power of the temperature; implementations give the color with luminance 1, as here.
-
-    References
-    ----------
+    Result (..., 3): Channels are negative outside Rec. 709's gamut: blue below 1900 K, green below
+    964 K. The specification says "radiant emittance", in words alone. The true one grows with the
+    fourth power of the temperature; implementations give the color with luminance 1, as here.
     [MaterialX2026], blackbody; [Planck1901]; ISO/CIE 11664-1.
 
-    Examples
-    --------
-    >>> blackbody([2000.0, 6504.0]).round(3)
-    array([[2.52 , 0.647, 0.02 ],
-           [1.043, 0.984, 1.036]])
+        >>> blackbody([2000.0, 6504.0]).round(3)
+        array([[2.52 , 0.647, 0.02 ],
+               [1.043, 0.984, 1.036]])
     """
     return np.asarray(blackbody_xyz(temperature) @ XYZ_TO_REC709.T)
 
@@ -138,22 +90,8 @@ def blackbody(temperature: ArrayLike) -> Array:
 def kang_xyz(temperature: ArrayLike) -> Array:
     """CIE 1931 XYZ of a black body by cubic fits, with Y = 1.
 
-    Parameters, result and errors as those of `blackbody_xyz`.
-
-    Notes
-    -----
-    The fits are of 1667 K to 25000 K, where x and y are within 6e-4. Below, as GLSL takes them, they
-    turn back: at 800 K the color is paler than at 1667 K.
-
-    References
-    ----------
-    [Kang2002].
-
-    Examples
-    --------
-    >>> kang_xyz([1000.0, 6504.0]).round(4)
-    array([[1.3733, 1.    , 0.0917],
-           [0.9686, 1.    , 1.1216]])
+    The fits are of 1667 K to 25000 K, where x and y are within 6e-4. Below, as GLSL takes them,
+    they turn back: at 800 K the color is paler than at 1667 K. [Kang2002].
     """
     (kelvin,) = checked_numbers(temperature=temperature)
     warm, hot = (np.polyval(fit, 1000.0 / kelvin) for fit in KANG_X)

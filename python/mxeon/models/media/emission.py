@@ -4,6 +4,16 @@
 A radiance is per channel, in any unit; the exitance is its integral over the hemisphere times the
 cosine, pi times that unit. Directions leave the surface, normal +z; one below the horizon sees the
 back of the surface. `measured_edf` has no function here: its values are those of a file.
+
+- `wo` (..., 3): Direction to the viewer, unit vector to 1e-6, normal +z; z may be negative.
+- `radiance` (..., C): c per channel, that inside the cone for a conical emitter, in [0, 1e50].
+- `inner_angle`, `outer_angle` (...): Full angles of the cones where the falloff starts and where it
+  ends, degrees, in [0, 360].
+- `color0`, `color90` (..., C): Factors along the normal and at grazing, in [0, 1].
+- `exponent` (...): q, in [0, 1e50]; with 0 the factor is `color90` everywhere.
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
 """
 
 from __future__ import annotations
@@ -27,31 +37,11 @@ def uniform_edf(wo: ArrayLike, radiance: ArrayLike) -> Array:
 
         L_e = c
 
-    Parameters
-    ----------
-    wo : array_like, shape (..., 3)
-        Direction to the viewer, unit vector to 1e-6, normal +z; z may be negative.
-    radiance : array_like, shape (..., C)
-        c per channel, in [0, 1e50].
+    Result (..., C): in the unit of `radiance`. The equation has no side, so that the back emits as
+    much. [MaterialX2026], section `uniform_edf`, Uniform Emission Equation.
 
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        In the unit of `radiance`. The equation has no side, so that the back emits as much.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
-
-    References
-    ----------
-    [MaterialX2026], section `uniform_edf`, Uniform Emission Equation.
-
-    Examples
-    --------
-    >>> uniform_edf([0.6, 0.0, 0.8], [0.5, 2.0])
-    array([0.5, 2. ])
+        >>> uniform_edf([0.6, 0.0, 0.8], [0.5, 2.0])
+        array([0.5, 2. ])
     """
     mu, (c,), _ = _checked(wo, {"radiance": radiance})
     return c + 0.0 * mu[..., np.newaxis]
@@ -61,29 +51,10 @@ def uniform_edf(wo: ArrayLike, radiance: ArrayLike) -> Array:
 def uniform_exitance(radiance: ArrayLike) -> Array:
     """Radiant exitance of a uniform emitter, pi c.
 
-    Parameters
-    ----------
-    radiance : array_like
-        c, in [0, 1e50].
+    Result: pi times the unit of `radiance`. [MaterialX2026], section `uniform_edf`.
 
-    Returns
-    -------
-    float64 or ndarray, float64
-        pi times the unit of `radiance`.
-
-    Raises
-    ------
-    ValueError
-        If `radiance` leaves its range; names the first bad element.
-
-    References
-    ----------
-    [MaterialX2026], section `uniform_edf`.
-
-    Examples
-    --------
-    >>> round(float(uniform_exitance(2.0)), 6)
-    6.283185
+        >>> round(float(uniform_exitance(2.0)), 6)
+        6.283185
     """
     (c,) = checked_numbers(radiance=radiance)
     return (np.pi * c)[()]
@@ -98,31 +69,12 @@ def conical_edf(
         L_e = c smoothstep(c_out, c_in, cos)    if outer_angle > inner_angle
         L_e = c if cos >= c_in, else 0          otherwise
 
-    Errors as those of `uniform_edf`.
+    Result (..., C): in the unit of `radiance`. Below the horizon the cosine counts as 0, as the
+    text has it. [MaterialX2026], section `conical_edf`, Conical Falloff Equations.
 
-    Parameters
-    ----------
-    wo : array_like, shape (..., 3)
-        As in `uniform_edf`.
-    radiance : array_like, shape (..., C)
-        c, the radiance inside the cone, per channel, in [0, 1e50].
-    inner_angle, outer_angle : array_like, shape (...)
-        Full angles of the cones where the falloff starts and where it ends, degrees, in [0, 360].
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        In the unit of `radiance`. Below the horizon the cosine counts as 0, as the text has it.
-
-    References
-    ----------
-    [MaterialX2026], section `conical_edf`, Conical Falloff Equations.
-
-    Examples
-    --------
-    >>> conical_edf([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8]], [2.0], 60.0, 90.0).round(6)
-    array([[2.      ],
-           [1.251183]])
+        >>> conical_edf([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8]], [2.0], 60.0, 90.0).round(6)
+        array([[2.      ],
+               [1.251183]])
     """
     angles = {"inner_angle": inner_angle, "outer_angle": outer_angle}
     mu, (c,), (inner, outer) = _checked(wo, {"radiance": radiance}, **angles)
@@ -150,47 +102,24 @@ def conical_exitance(radiance: ArrayLike, inner_angle: ArrayLike, outer_angle: A
     between mu = max(a, 0) and b, where mu = a + h t; inside the cone it is (1 - b^2) / 2. The
     exitance is 2 pi c times both, and pi c where the inner cone holds the hemisphere.
 
-    Errors as those of `uniform_edf`.
+    Result (..., C): pi times the unit of `radiance`. h is a product of two sines, so that a narrow
+    falloff does not cancel. The integral is our own. [MaterialX2026], section `conical_edf`.
 
-    Parameters
-    ----------
-    radiance, inner_angle, outer_angle
-        As in `conical_edf`; `radiance` has the shape (..., C).
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        pi times the unit of `radiance`.
-
-    Notes
-    -----
-    h is a product of two sines, so that a narrow falloff does not cancel. The integral is our own.
-
-    References
-    ----------
-    [MaterialX2026], section `conical_edf`.
-
-    Examples
-    --------
-    >>> conical_exitance([1.0], 90.0, 0.0).round(6)  # pi sin^2 of 45 degrees
-    array([1.570796])
+        >>> conical_exitance([1.0], 90.0, 0.0).round(6)  # pi sin^2 of 45 degrees
+        array([1.570796])
     """
-    # Check the arguments.
     angles = {"inner_angle": inner_angle, "outer_angle": outer_angle}
     (c,), (inner, outer) = checked_colors({"radiance": radiance}, **angles)
     a, b = cone_cosine(outer), cone_cosine(inner)
-    # Find where the ramp between both cones begins above the horizon.
     xp = array_namespace(inner, outer)
     h = xp.where(outer > inner, cone_width(inner, outer), 0.0)
     start = xp.where(h > 0.0, -a / xp.where(h > 0.0, h, 1.0), 1.0)
     start = at_most(at_least_0(start), 1.0)
 
-    # Integrate the smoothstep times the cosine over the ramp.
     def antiderivative(t: Array | float) -> Array:
         return h * (a * t**3 * (1.0 - 0.5 * t) + h * t**4 * (0.75 - 0.4 * t))
 
     ramp = antiderivative(1.0) - antiderivative(start)
-    # Add the inner cone.
     cone = 0.5 * xp.sin(HALF_TURN * inner) ** 2
     share = xp.where(b <= 0.0, 0.5, cone + ramp)
     return 2.0 * np.pi * c * share
@@ -204,33 +133,14 @@ def generalized_schlick_edf(
 
         L_e = (r_0 + (r_90 - r_0) (1 - cos)^q) L_base
 
-    Errors as those of `uniform_edf`.
+    - `base` (..., C): Radiance of the scaled emission towards `wo`, per channel, in [0, 1e50].
 
-    Parameters
-    ----------
-    wo : array_like, shape (..., 3)
-        As in `uniform_edf`.
-    base : array_like, shape (..., C)
-        Radiance of the scaled emission towards `wo`, per channel, in [0, 1e50].
-    color0, color90 : array_like, shape (..., C)
-        Factors along the normal and at grazing, in [0, 1].
-    exponent : array_like, shape (...)
-        q, in [0, 1e50]; with 0 the factor is `color90` everywhere.
+    Result (..., C): in the unit of `base`. The back is seen at |cos|: with a negative cosine the
+    curve of the text would leave the range between both factors. [MaterialX2026], section
+    `generalized_schlick_edf`, Generalized Schlick Emission Equations.
 
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        In the unit of `base`. The back is seen at |cos|: with a negative cosine the curve of the text
-        would leave the range between both factors.
-
-    References
-    ----------
-    [MaterialX2026], section `generalized_schlick_edf`, Generalized Schlick Emission Equations.
-
-    Examples
-    --------
-    >>> generalized_schlick_edf([0.6, 0.0, 0.8], [2.0], [1.0], [0.0], 1.0).round(6)
-    array([1.6])
+        >>> generalized_schlick_edf([0.6, 0.0, 0.8], [2.0], [1.0], [0.0], 1.0).round(6)
+        array([1.6])
     """
     colors = {"base": base, "color0": color0, "color90": color90}
     mu, (c, r0, r90), (q,) = _checked(wo, colors, exponent=exponent)
@@ -247,22 +157,11 @@ def generalized_schlick_exitance(
 
         M = pi c (r_0 + (r_90 - r_0) 2 / ((q + 1) (q + 2)))
 
-    Errors as those of `uniform_edf`. Result as that of `conical_exitance`.
+    Result (..., C): pi times the unit of `radiance`. [MaterialX2026], section
+    `generalized_schlick_edf`; the integral is our own.
 
-    Parameters
-    ----------
-    radiance, color0, color90 : array_like, shape (..., C)
-    exponent : array_like, shape (...)
-        As in `generalized_schlick_edf`.
-
-    References
-    ----------
-    [MaterialX2026], section `generalized_schlick_edf`; the integral is our own.
-
-    Examples
-    --------
-    >>> generalized_schlick_exitance([1.0], [0.0], [1.0], 0.0).round(6)
-    array([3.141593])
+        >>> generalized_schlick_exitance([1.0], [0.0], [1.0], 0.0).round(6)
+        array([3.141593])
     """
     colors = {"radiance": radiance, "color0": color0, "color90": color90}
     (c, r0, r90), (q,) = checked_colors(colors, exponent=exponent)

@@ -14,33 +14,15 @@ def light_radiance(emission: ArrayLike, intensity: ArrayLike, exposure: ArrayLik
 
         L_e = I 2^E L_edf
 
-    Parameters
-    ----------
-    emission : array_like, shape (..., C)
-        Radiance of the EDF per channel, in [0, 1e50].
-    intensity : array_like, shape (...)
-        I, in [0, 1e50].
-    exposure : array_like, shape (...)
-        E, in stops, in [-1000, 1000].
+    - `emission` (..., C): Radiance of the EDF per channel, in [0, 1e50].
+    - `intensity` (...): I, in [0, 1e50].
+    - `exposure` (...): E, in stops, in [-1000, 1000].
 
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        In the unit of `emission`.
+    Result (..., C): in the unit of `emission`. [MaterialX2026], section `light`, Light Emission
+    Equation.
 
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
-
-    References
-    ----------
-    [MaterialX2026], section `light`, Light Emission Equation.
-
-    Examples
-    --------
-    >>> light_radiance([0.5, 1.0], 3.0, 2.0)
-    array([ 6., 12.])
+        >>> light_radiance([0.5, 1.0], 3.0, 2.0)
+        array([ 6., 12.])
     """
     numbers = {"intensity": intensity, "exposure": exposure}
     (c,), (scale, stops) = checked_colors({"emission": emission}, **numbers)
@@ -52,29 +34,16 @@ def surface_radiance(emission: ArrayLike, scattered: ArrayLike, opacity: ArrayLi
 
         L_o = O (L_e + L_s)
 
-    Errors as those of `light_radiance`.
+    - `emission`, `scattered` (..., C): L_e of its EDF, and L_s, the integral of its BSDF over the
+      light, per channel, in [0, 1e50].
+    - `opacity` (...): O, the share of the footprint that the material covers, in [0, 1].
 
-    Parameters
-    ----------
-    emission, scattered : array_like, shape (..., C)
-        L_e of its EDF, and L_s, the integral of its BSDF over the light, per channel, in [0, 1e50].
-    opacity : array_like, shape (...)
-        O, the share of the footprint that the material covers, in [0, 1].
+    Result (..., C): Without the light from behind, of which 1 - O passes. [MaterialX2026], section
+    `surface`, Surface Shading Equation; its integral is that of section The Light Transport
+    Equation.
 
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        Without the light from behind, of which 1 - O passes.
-
-    References
-    ----------
-    [MaterialX2026], section `surface`, Surface Shading Equation; its integral is that of section
-    The Light Transport Equation.
-
-    Examples
-    --------
-    >>> surface_radiance([1.0], [0.5], 0.5)
-    array([0.75])
+        >>> surface_radiance([1.0], [0.5], 0.5)
+        array([0.75])
     """
     colors = {"emission": emission, "scattered": scattered}
     (emitted, light), (covered,) = checked_colors(colors, opacity=opacity)
@@ -92,33 +61,18 @@ def volume_radiance(
 
         L = L_0 T + L_e t (1 - T) / (sigma_t t)
 
-    Errors as those of `light_radiance`.
+    - `behind` (..., C): L_0, the radiance that enters the medium, per channel, in [0, 1e50].
+    - `emission` (..., C): L_e, radiance per meter that the medium emits, the same in all
+      directions, in [0, 1e50].
+    - `absorption`, `scattering` (..., C): Coefficients in 1/m, in [0, 1e50].
+    - `distance` (...): t in m, in [0, 1e50].
 
-    Parameters
-    ----------
-    behind : array_like, shape (..., C)
-        L_0, the radiance that enters the medium, per channel, in [0, 1e50].
-    emission : array_like, shape (..., C)
-        L_e, radiance per meter that the medium emits, the same in all directions, in [0, 1e50].
-    absorption, scattering : array_like, shape (..., C)
-        Coefficients in 1/m, in [0, 1e50].
-    distance : array_like, shape (...)
-        t in m, in [0, 1e50].
+    Result (..., C): The solution of the equation of transfer whose integral over directions is left
+    out: that needs a renderer. [MaterialX2026], section `volume`, and section The Equation of
+    Transfer.
 
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        The solution of the equation of transfer whose integral over directions is left out: that
-        needs a renderer.
-
-    References
-    ----------
-    [MaterialX2026], section `volume`, and section The Equation of Transfer.
-
-    Examples
-    --------
-    >>> volume_radiance([1.0], [3.0], [0.0], [0.0], 2.0)
-    array([7.])
+        >>> volume_radiance([1.0], [3.0], [0.0], [0.0], 2.0)
+        array([7.])
     """
     media = {"absorption": absorption, "scattering": scattering}
     (light, emitted, sigma_a, sigma_s), (t,) = checked_colors(

@@ -2,6 +2,14 @@
 """Subsurface scattering, as in [MaterialX2026], section `subsurface_bsdf` and its appendix.
 
 The albedo inversion is that of van de Hulst's fit for a half space: `subsurface_reflectance`.
+
+- `rho`: Diffuse reflectance, in [0, 1]: the node's color.
+- `scatter_anisotropy`: Mean cosine g of a scattering, in [-1, 1].
+- `separation`: Distance r, a length, in [1e-150, 1e150].
+- `radius`: Mean free path l, a length, in [1e-150, 1e150].
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
 """
 
 from __future__ import annotations
@@ -29,37 +37,13 @@ def subsurface_albedo(rho: ArrayLike, scatter_anisotropy: ArrayLike = 0.0) -> Ar
         d = 4.09712 + 4.20863 rho - sqrt(9.59217 + 41.6808 rho + 17.7126 rho^2)
         w0 = 1 - d^2,  w = w0 / (1 - g (1 - w0))
 
-    Parameters
-    ----------
-    rho : array_like
-        Diffuse reflectance, dimensionless, in [0, 1]: the node's color.
-    scatter_anisotropy : array_like, broadcasts with rho
-        Mean cosine g of a scattering, dimensionless, in [-1, 1].
+    Result: in (0, 1]. It rises with rho but for the last 1.2e-5 of its range. The printed digits
+    leave d = -5e-6 at rho = 1, and 0 at rho = 1 - 1.2e-5; w is 1 - 3e-11 at 1. At rho = 0 they
+    leave w0 = 6e-6 instead of 0. Accuracy: a half space of this albedo reflects rho within 0.0021
+    for g = 0, by its H function. [MaterialX2026], Subsurface Scattering Model, Albedo Inversion.
 
-    Returns
-    -------
-    ndarray, float64
-        Dimensionless, in (0, 1]. It rises with rho but for the last 1.2e-5 of its range.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
-
-    Notes
-    -----
-    The printed digits leave d = -5e-6 at rho = 1, and 0 at rho = 1 - 1.2e-5; w is 1 - 3e-11 at 1. At
-    rho = 0 they leave w0 = 6e-6 in place of 0.
-    Accuracy: a half space of this albedo reflects rho within 0.0021 for g = 0, by its H function.
-
-    References
-    ----------
-    [MaterialX2026], Subsurface Scattering Model, Albedo Inversion.
-
-    Examples
-    --------
-    >>> subsurface_albedo([0.2, 0.5, 0.8]).round(6)
-    array([0.613357, 0.911709, 0.990589])
+        >>> subsurface_albedo([0.2, 0.5, 0.8]).round(6)
+        array([0.613357, 0.911709, 0.990589])
     """
     return _single_scatter(*checked_numbers(rho=rho, scatter_anisotropy=scatter_anisotropy))
 
@@ -77,33 +61,15 @@ def subsurface_reflectance(single_scatter: ArrayLike, scatter_anisotropy: ArrayL
 
         s^2 = (1 - w) / (1 - g w),  rho = (1 - s) (1 - 0.139 s) / (1 + 1.17 s)
 
-    Errors as those of `subsurface_albedo`.
+    - `single_scatter`: Single-scattering albedo w, in [0, 1].
+    - `scatter_anisotropy`: Mean cosine g of a scattering, in [-1, 1).
 
-    Parameters
-    ----------
-    single_scatter : array_like
-        Single-scattering albedo w, dimensionless, in [0, 1].
-    scatter_anisotropy : array_like, broadcasts with it
-        Mean cosine g of a scattering, dimensionless, in [-1, 1).
-
-    Returns
-    -------
-    ndarray, float64
-        Dimensionless, in [0, 1]. The half space has no surface, and is lit by a uniform sky.
-
-    Notes
-    -----
-    Accuracy: within 0.0021 of the exact reflectance for g = 0. The inverse of `subsurface_albedo`
-    within 1.3e-5.
-
-    References
-    ----------
+    Result: in [0, 1]. The half space has no surface, and is lit by a uniform sky. Accuracy: within
+    0.0021 of the exact reflectance for g = 0. The inverse of `subsurface_albedo` within 1.3e-5.
     [vandeHulst1974].
 
-    Examples
-    --------
-    >>> subsurface_reflectance(0.911709).round(4).item()
-    0.5
+        >>> subsurface_reflectance(0.911709).round(4).item()
+        0.5
     """
     w, g = checked_numbers(single_scatter=single_scatter, scatter_anisotropy=scatter_anisotropy)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -118,28 +84,13 @@ def subsurface_coefficients(
 
         sigma_s = w / l,  sigma_a = (1 - w) / l
 
-    Errors as those of `subsurface_albedo`.
+    - `radius`: Mean free path l, a length, in [1e-150, 1e150].
 
-    Parameters
-    ----------
-    rho, scatter_anisotropy
-        As those of `subsurface_albedo`.
-    radius : array_like, broadcasts with rho
-        Mean free path l, a length, in [1e-150, 1e150].
+    Result: per unit of length. Their sum is 1 / l. [MaterialX2026], Subsurface Scattering Model,
+    Albedo Inversion.
 
-    Returns
-    -------
-    ndarray, ndarray, float64
-        Per unit of length. Their sum is 1 / l.
-
-    References
-    ----------
-    [MaterialX2026], Subsurface Scattering Model, Albedo Inversion.
-
-    Examples
-    --------
-    >>> [round(float(each), 4) for each in subsurface_coefficients(0.5, 0.1)]
-    [9.1171, 0.8829]
+        >>> [round(float(each), 4) for each in subsurface_coefficients(0.5, 0.1)]
+        [9.1171, 0.8829]
     """
     values = {"rho": rho, "radius": radius, "scatter_anisotropy": scatter_anisotropy}
     color, length, g = checked_numbers(**values)
@@ -152,28 +103,11 @@ def diffusion_profile(separation: ArrayLike, radius: ArrayLike) -> Array:
 
         R(r) = (exp(-r / l) + exp(-r / (3 l))) / (8 pi l r)
 
-    Errors as those of `subsurface_albedo`.
-
-    Parameters
-    ----------
-    separation : array_like
-        Distance r, a length, in [1e-150, 1e150].
-    radius : array_like, broadcasts with separation
-        Mean free path l, a length, in [1e-150, 1e150].
-
-    Returns
-    -------
-    ndarray, float64
-        Per unit of area. Its integral over a plane is 1; the mean distance is 5 l / 2.
-
-    References
-    ----------
+    Result: per unit of area. Its integral over a plane is 1; the mean distance is 5 l / 2.
     [MaterialX2026], Normalized Diffusion Profile; [Christensen2015], where l is divided by s(rho).
 
-    Examples
-    --------
-    >>> diffusion_profile(1.0, 1.0).round(6).item()
-    0.043147
+        >>> diffusion_profile(1.0, 1.0).round(6).item()
+        0.043147
     """
     r, length = checked_numbers(separation=separation, radius=radius)
     shares = np.exp(-r / length) + np.exp(-r / (3.0 * length))
@@ -185,17 +119,10 @@ def diffusion_cdf(separation: ArrayLike, radius: ArrayLike) -> Array:
 
         C(r) = 1 - exp(-r / l) / 4 - 3 exp(-r / (3 l)) / 4
 
-    Parameters and errors as those of `diffusion_profile`.
+    Result: in (0, 1].
 
-    Returns
-    -------
-    ndarray, float64
-        Dimensionless, in (0, 1].
-
-    Examples
-    --------
-    >>> diffusion_cdf(2.5, 1.0).round(6).item()
-    0.65353
+        >>> diffusion_cdf(2.5, 1.0).round(6).item()
+        0.65353
     """
     r, length = checked_numbers(separation=separation, radius=radius)
     x = r / length
@@ -205,28 +132,14 @@ def diffusion_cdf(separation: ArrayLike, radius: ArrayLike) -> Array:
 def diffusion_sample(u: ArrayLike, radius: ArrayLike) -> Array:
     """Distance within which the share u of the light leaves: the inverse of `diffusion_cdf`.
 
-    Errors as those of `subsurface_albedo`.
+    - `u`: In [0, 1).
+    - `radius`: Mean free path l, a length, in [1e-150, 1e150].
 
-    Parameters
-    ----------
-    u : array_like
-        Dimensionless, in [0, 1).
-    radius : array_like, broadcasts with u
-        Mean free path l, a length, in [1e-150, 1e150].
+    Result: A length. Form: t = exp(-r / (3 l)) solves t^3 + 3 t = 4 (1 - u), so t = 2 sinh(asinh(2
+    (1 - u)) / 3).
 
-    Returns
-    -------
-    ndarray, float64
-        A length.
-
-    Notes
-    -----
-    Form: t = exp(-r / (3 l)) solves t^3 + 3 t = 4 (1 - u), so t = 2 sinh(asinh(2 (1 - u)) / 3).
-
-    Examples
-    --------
-    >>> diffusion_sample(0.65353, 1.0).round(4).item()
-    2.5
+        >>> diffusion_sample(0.65353, 1.0).round(4).item()
+        2.5
     """
     share, length = checked_numbers(u=u, radius=radius)
     logarithm = np.log(2.0 * np.sinh(np.arcsinh(2.0 * (1.0 - share)) / 3.0))
@@ -238,30 +151,16 @@ def diffusion_blur(mu: ArrayLike, reach: ArrayLike) -> Array:
 
         W(mu) = int C'(r) c(mu, r) dr / C(2),  c = mean of max(cos(theta), 0) at the distance r
 
-    Errors as those of `subsurface_albedo`.
+    - `mu`: Cosine of the light with the normal, in [-1, 1].
+    - `reach`: Mean free path over the radius of the sphere, in [1e-150, 1e150]; its limit 0 is
+      max(mu, 0).
 
-    Parameters
-    ----------
-    mu : array_like
-        Cosine of the light with the normal, dimensionless, in [-1, 1].
-    reach : array_like, broadcasts with mu
-        Mean free path over the radius of the sphere, in [1e-150, 1e150]; its limit 0 is max(mu, 0).
+    Result: in [0, 1]. Its mean over the sphere is 1/4, that of max(mu, 0). Distances are those of
+    the text, through the body; light whose distance has no point on the sphere leaves as the rest
+    does, since a body of no absorption keeps none. Accuracy: absolute error below 1e-6.
 
-    Returns
-    -------
-    ndarray, float64
-        Dimensionless, in [0, 1]. Its mean over the sphere is 1/4, that of max(mu, 0).
-
-    Notes
-    -----
-    Distances are those of the text, through the body; light whose distance has no point on the sphere
-    leaves as the rest does, since a body of no absorption keeps none.
-    Accuracy: absolute error below 1e-6.
-
-    Examples
-    --------
-    >>> diffusion_blur([-0.5, 0.0, 1.0], 0.1).round(4)
-    array([0.0097, 0.074 , 0.9344])
+        >>> diffusion_blur([-0.5, 0.0, 1.0], 0.1).round(4)
+        array([0.0097, 0.074 , 0.9344])
     """
     numbers = {"mu": checked("mu", mu, "cos_theta"), "reach": checked("reach", reach)}
     cosine, length = broadcastable({}, numbers)

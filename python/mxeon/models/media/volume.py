@@ -3,6 +3,13 @@
 
 Coefficients are per channel, in 1/m. Directions point away from the position where light is
 scattered, so that light that goes straight on has wi = -wo.
+
+- `absorption`, `scattering`: Coefficients in 1/m, in [0, 1e50].
+- `g`: Mean cosine of the deflection, in (-1, 1); at either end all light goes one way, and the
+  function has no value.
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
 """
 
 from __future__ import annotations
@@ -22,29 +29,10 @@ from mxeon.models.core.shapes import broadcastable, lead_shape
 def extinction(absorption: ArrayLike, scattering: ArrayLike) -> Array:
     """Extinction coefficient, sigma_t = sigma_a + sigma_s.
 
-    Parameters
-    ----------
-    absorption, scattering : array_like
-        Coefficients in 1/m, in [0, 1e50].
+    Result: in 1/m. [MaterialX2026], section `anisotropic_vdf`, Extinction.
 
-    Returns
-    -------
-    float64 or ndarray, float64
-        In 1/m.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
-
-    References
-    ----------
-    [MaterialX2026], section `anisotropic_vdf`, Extinction.
-
-    Examples
-    --------
-    >>> float(extinction(0.5, 1.5))
-    2.0
+        >>> float(extinction(0.5, 1.5))
+        2.0
     """
     sigma_a, sigma_s = checked_numbers(absorption=absorption, scattering=scattering)
     return (sigma_a + sigma_s)[()]
@@ -54,29 +42,15 @@ def extinction(absorption: ArrayLike, scattering: ArrayLike) -> Array:
 def transmittance(absorption: ArrayLike, scattering: ArrayLike, distance: ArrayLike) -> Array:
     """Share of the radiance that passes a homogeneous medium, T = exp(-sigma_t t).
 
-    Errors as those of `extinction`.
+    - `absorption`, `scattering`: Coefficients in 1/m, in [0, 1e50]. `absorption_vdf` has a
+      scattering of 0.
+    - `distance`: t in m, in [0, 1e50].
 
-    Parameters
-    ----------
-    absorption, scattering : array_like
-        Coefficients in 1/m, in [0, 1e50]. `absorption_vdf` has a scattering of 0.
-    distance : array_like
-        t in m, in [0, 1e50].
+    Result: in [0, 1]. Light that is scattered into the ray is left out. [MaterialX2026], sections
+    `absorption_vdf`, Beer-Lambert Absorption, and `anisotropic_vdf`, Extinction.
 
-    Returns
-    -------
-    float64 or ndarray, float64
-        Dimensionless, in [0, 1]. Light that is scattered into the ray is left out.
-
-    References
-    ----------
-    [MaterialX2026], sections `absorption_vdf`, Beer-Lambert Absorption, and `anisotropic_vdf`,
-    Extinction.
-
-    Examples
-    --------
-    >>> round(float(transmittance(0.5, 0.5, 2.0)), 6)
-    0.135335
+        >>> round(float(transmittance(0.5, 0.5, 2.0)), 6)
+        0.135335
     """
     values = {"absorption": absorption, "scattering": scattering, "distance": distance}
     sigma_a, sigma_s, t = checked_numbers(**values)
@@ -88,21 +62,11 @@ def transmittance(absorption: ArrayLike, scattering: ArrayLike, distance: ArrayL
 def single_scattering_albedo(absorption: ArrayLike, scattering: ArrayLike) -> Array:
     """Share of the light that leaves a ray by being scattered, sigma_s / sigma_t.
 
-    Parameters and errors as those of `extinction`.
+    Result: in [0, 1]; 0 where no light leaves the ray. [MaterialX2026], section `anisotropic_vdf`,
+    Extinction.
 
-    Returns
-    -------
-    float64 or ndarray, float64
-        Dimensionless, in [0, 1]; 0 where no light leaves the ray.
-
-    References
-    ----------
-    [MaterialX2026], section `anisotropic_vdf`, Extinction.
-
-    Examples
-    --------
-    >>> float(single_scattering_albedo(0.5, 1.5))
-    0.75
+        >>> float(single_scattering_albedo(0.5, 1.5))
+        0.75
     """
     sigma_a, sigma_s = checked_numbers(absorption=absorption, scattering=scattering)
     sigma_t = sigma_a + sigma_s
@@ -116,34 +80,15 @@ def hg_phase(cos_theta: ArrayLike, g: ArrayLike) -> Array:
 
         f_p = (1 - g^2) / (4 pi (1 + g^2 - 2 g cos)^(3/2))
 
-    Errors as those of `extinction`.
+    - `cos_theta`: Cosine of the angle of deflection, in [-1, 1]: 1 is straight on.
 
-    Parameters
-    ----------
-    cos_theta : array_like
-        Cosine of the angle of deflection, in [-1, 1]: 1 is straight on.
-    g : array_like
-        Mean cosine of the deflection, in (-1, 1); at either end all light goes one way, and the
-        function has no value.
+    Result: density in solid angle, 1/sr. Its integral over all directions is 1. The denominator is
+    (1 - |g|)^2 + 2 |g| (1 - cos), with the sign of g on the cosine, and 1 - g^2 a product: neither
+    cancels near g = 1 or -1. [MaterialX2026], section `anisotropic_vdf`, Henyey-Greenstein Phase
+    Function.
 
-    Returns
-    -------
-    float64 or ndarray, float64
-        Density in solid angle, 1/sr. Its integral over all directions is 1.
-
-    Notes
-    -----
-    The denominator is (1 - |g|)^2 + 2 |g| (1 - cos), with the sign of g on the cosine, and 1 - g^2 a
-    product: neither cancels near g = 1 or -1.
-
-    References
-    ----------
-    [MaterialX2026], section `anisotropic_vdf`, Henyey-Greenstein Phase Function.
-
-    Examples
-    --------
-    >>> hg_phase([1.0, -1.0], 0.5).round(6)
-    array([0.477465, 0.017684])
+        >>> hg_phase([1.0, -1.0], 0.5).round(6)
+        array([0.477465, 0.017684])
     """
     cosine, mean = checked_numbers(cos_theta=cos_theta, g=g)
     xp = array_namespace(cosine, mean)
@@ -160,35 +105,16 @@ def hg_sample(wo: ArrayLike, u: ArrayLike, g: ArrayLike) -> tuple[Array, Array]:
 
     which is 1 - x at g = 0 and does not cancel for any g.
 
-    Errors as those of `extinction`.
+    - `wo` (..., 3): Direction from which the light leaves, any unit vector to 1e-6.
+    - `u` (..., 2): Independent uniform random numbers, in [0, 1).
 
-    Parameters
-    ----------
-    wo : array_like, shape (..., 3)
-        Direction from which the light leaves, any unit vector to 1e-6.
-    u : array_like, shape (..., 2)
-        Independent uniform random numbers, in [0, 1).
-    g : array_like, shape (...)
-        As in `hg_phase`.
-
-    Returns
-    -------
-    wi : ndarray, shape (..., 3), float64
-        Unit vectors towards the light.
-    pdf : float64 or ndarray, shape (...)
-        Density at `wi`, `hg_pdf`, in 1/sr.
-
-    References
-    ----------
+    `wi` (..., 3): Unit vectors towards the light. `pdf` (...): Density at `wi`, `hg_pdf`, in 1/sr.
     [MaterialX2026], section `anisotropic_vdf`; the form of the inverse is our own.
 
-    Examples
-    --------
-    >>> wi, pdf = hg_sample([0.0, 0.0, 1.0], [0.5, 0.0], 0.0)
-    >>> wi.round(12) + 0.0, round(float(pdf), 6)
-    (array([0., 1., 0.]), 0.079577)
+        >>> wi, pdf = hg_sample([0.0, 0.0, 1.0], [0.5, 0.0], 0.0)
+        >>> wi.round(12) + 0.0, round(float(pdf), 6)
+        (array([0., 1., 0.]), 0.079577)
     """
-    # Check the arguments.
     views, pairs, (mean,) = checked_sphere("wo", wo), checked_pairs("u", u), checked_numbers(g=g)
     shape = lead_shape({"wo": views, "u": pairs}, {"g": mean})
     views, pairs, mean = broadcastable({"wo": views, "u": pairs}, {"g": mean})
@@ -198,12 +124,10 @@ def hg_sample(wo: ArrayLike, u: ArrayLike, g: ArrayLike) -> tuple[Array, Array]:
     square = 2.0 * (1.0 + mean * x) ** 2
     less = (1.0 - mean) ** 2 * (1.0 - x) * (2.0 + mean * (1.0 + x)) / square  # 1 - cos
     more = (1.0 + mean) ** 2 * (1.0 + x) * (2.0 - mean * (1.0 - x)) / square  # 1 + cos
-    # Turn the deflection about the direction of the light.
     sine = root(at_least_0(less * more))
     local = sine * xp.cos(azimuth), sine * xp.sin(azimuth), 0.5 * (more - less)
     parts = _around([-views[..., k] for k in range(3)], local)
     wi = xp.stack([xp.broadcast_to(each, shape) for each in parts], axis=-1)
-    # Evaluate its density.
     density = _phase(xp.where(mean < 0.0, more, less), mean)
     return wi, (0.0 * wi[..., 0] + density)[()]
 
@@ -212,28 +136,14 @@ def hg_sample(wo: ArrayLike, u: ArrayLike, g: ArrayLike) -> tuple[Array, Array]:
 def hg_pdf(wo: ArrayLike, wi: ArrayLike, g: ArrayLike) -> Array:
     """Density of `hg_sample` at `wi`, in solid angle: the phase function itself.
 
-    Errors as those of `extinction`.
+    - `wo`, `wi` (..., 3): Directions away from the position, unit vectors to 1e-6; cos =
+      -dot(wo, wi).
 
-    Parameters
-    ----------
-    wo, wi : array_like, shape (..., 3)
-        Directions away from the position, unit vectors to 1e-6; cos = -dot(wo, wi).
-    g : array_like, shape (...)
-        As in `hg_phase`.
+    Result (...): in 1/sr. [MaterialX2026], section `anisotropic_vdf`, Henyey-Greenstein Phase
+    Function.
 
-    Returns
-    -------
-    float64 or ndarray, shape (...)
-        In 1/sr.
-
-    References
-    ----------
-    [MaterialX2026], section `anisotropic_vdf`, Henyey-Greenstein Phase Function.
-
-    Examples
-    --------
-    >>> round(float(hg_pdf([0.0, 0.0, 1.0], [0.0, 0.0, -1.0], 0.5)), 6)
-    0.477465
+        >>> round(float(hg_pdf([0.0, 0.0, 1.0], [0.0, 0.0, -1.0], 0.5)), 6)
+        0.477465
     """
     views, lights, (mean,) = (
         checked_sphere("wo", wo),

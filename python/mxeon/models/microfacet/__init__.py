@@ -8,6 +8,16 @@ The compensation takes (1 - E_ss) / E_ss from a table that the first call comput
 quadrature is `mxeon.albedo.ggx_albedo_dir`.
 
 In retroreflective mode wo is replaced by its mirror image about the normal.
+
+- `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent
+  +x, z >= 0.
+- `roughness` (..., 2) or (): alpha along tangent and bitangent, in [0, 1]; a number is isotropic.
+- `retroreflective`: Whether light returns towards where it comes from.
+- `compensate`: Whether the energy compensation enters; without it the value is reciprocal.
+
+Result (..., C): BRDF in 1/sr, at least 0, unbounded at grazing and as alpha vanishes. Raises
+`ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
+not broadcast.
 """
 
 from __future__ import annotations
@@ -39,46 +49,17 @@ def dielectric_brdf(
 
         f = tint D F G2 / (4 mu_o mu_i) (1 + F_ss (1 - E_ss) / E_ss)
 
-    Parameters
-    ----------
-    wo, wi : array_like, shape (..., 3)
-        Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x, z >= 0.
-    tint : array_like, shape (..., C)
-        Color per channel, dimensionless, in [0, 1]; a number is one channel.
-    roughness : array_like, shape (..., 2) or ()
-        alpha along tangent and bitangent, dimensionless, in [0, 1]; a number is isotropic.
-    ior : array_like, shape (...)
-        Index of refraction relative to the exterior medium, in [0, 1e50].
-    retroreflective : bool
-        Whether light returns towards where it comes from.
-    compensate : bool
-        Whether the energy compensation enters; without it the value is reciprocal.
+    - `tint` (..., C): Color per channel, in [0, 1]; a number is one channel.
+    - `ior` (...): Index of refraction relative to the exterior medium, in [0, 1e50].
 
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        BRDF in 1/sr, at least 0, unbounded at grazing and as alpha vanishes.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
-
-    Notes
-    -----
-    `ior` 0 disables the Fresnel curve, F = 1, which is what the equations give in its limit. Below 1
-    light comes from the denser side and F is 1 beyond the critical angle. Of negative numbers the
-    specification says nothing, stock MaterialX squares them; here they are refused.
-    Accuracy: relative error of the compensation's factor below 1e-10, of the rest 2e-14 at alpha >= 0.05.
-
-    References
-    ----------
+    `ior` 0 disables the Fresnel curve, F = 1, which is what the equations give in its limit. Below
+    1 light comes from the denser side and F is 1 beyond the critical angle. Of negative numbers the
+    specification says nothing, stock MaterialX squares them; here they are refused. Accuracy:
+    relative error of the compensation's factor below 1e-10, of the rest 2e-14 at alpha >= 0.05.
     [MaterialX2026], Microfacet BRDF; Energy Compensation; dielectric_bsdf.
 
-    Examples
-    --------
-    >>> dielectric_brdf([0.6, 0.0, 0.8], [-0.6, 0.0, 0.8], 1.0, [0.3, 0.3], 1.5).round(6)
-    array([0.060074])
+        >>> dielectric_brdf([0.6, 0.0, 0.8], [-0.6, 0.0, 0.8], 1.0, [0.3, 0.3], 1.5).round(6)
+        array([0.060074])
     """
     vectors = {"tint": checked_vector("tint", tint)}
     numbers = {"ior": checked("ior", ior)}
@@ -102,30 +83,14 @@ def conductor_brdf(
 
         f = D F G2 / (4 mu_o mu_i) (1 + F_ss (1 - E_ss) / E_ss)
 
-    Result and errors as those of `dielectric_brdf`.
+    - `ior`, `extinction` (..., C): Complex index of refraction per channel, in [0, 1e50]; a number
+      is one channel.
 
-    Parameters
-    ----------
-    wo, wi : array_like, shape (..., 3)
-        Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x, z >= 0.
-    roughness : array_like, shape (..., 2) or ()
-        alpha along tangent and bitangent, dimensionless, in [0, 1]; a number is isotropic.
-    ior, extinction : array_like, shape (..., C)
-        Complex index of refraction per channel, in [0, 1e50]; a number is one channel.
-    retroreflective : bool
-        Whether light returns towards where it comes from.
-    compensate : bool
-        Whether the energy compensation enters; without it the value is reciprocal.
-
-    References
-    ----------
     [MaterialX2026], Microfacet BRDF; Energy Compensation; conductor_bsdf.
 
-    Examples
-    --------
-    >>> wo, wi, gold = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8], ([0.183, 1.373], [3.424, 1.770])
-    >>> conductor_brdf(wo, wi, [0.3, 0.3], *gold).round(6)
-    array([1.472308, 0.543655])
+        >>> wo, wi, gold = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8], ([0.183, 1.373], [3.424, 1.770])
+        >>> conductor_brdf(wo, wi, [0.3, 0.3], *gold).round(6)
+        array([1.472308, 0.543655])
     """
     vectors = {
         "ior": checked_vector("ior", ior),
@@ -153,43 +118,18 @@ def generalized_schlick_brdf(
 
         f = D F G2 / (4 mu_o mu_i) (1 + F_ss (1 - E_ss) / E_ss)
 
-    Errors as those of `dielectric_brdf`.
+    - `color0`, `color82`, `color90` (..., C): Reflectance along the normal, multiplier at
+      acos(1/7), and reflectance at grazing, per channel, in [0, 1]; a number is one channel.
+    - `exponent` (...): Exponent of the Schlick curve, in [0, 1e50].
 
-    Parameters
-    ----------
-    wo, wi : array_like, shape (..., 3)
-        Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x, z >= 0.
-    color0, color82, color90 : array_like, shape (..., C)
-        Reflectance along the normal, multiplier at acos(1/7), and reflectance at grazing, per
-        channel, dimensionless, in [0, 1]; a number is one channel.
-    roughness : array_like, shape (..., 2) or ()
-        alpha along tangent and bitangent, dimensionless, in [0, 1]; a number is isotropic.
-    exponent : array_like, shape (...)
-        Exponent of the Schlick curve, in [0, 1e50].
-    retroreflective : bool
-        Whether light returns towards where it comes from.
-    compensate : bool
-        Whether the energy compensation enters; without it the value is reciprocal.
+    Result (..., C): BRDF in 1/sr, unbounded at grazing and as alpha vanishes; below 0 where the
+    curve is. The specification does not clamp the Fresnel curve, and neither does this function:
+    see `mxeon.models.fresnel_schlick`. [MaterialX2026], Microfacet BRDF; Energy Compensation;
+    generalized_schlick_bsdf.
 
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        BRDF in 1/sr, unbounded at grazing and as alpha vanishes; below 0 where the curve is.
-
-    Notes
-    -----
-    The specification does not clamp the Fresnel curve, and neither does this function: see
-    `mxeon.models.fresnel_schlick`.
-
-    References
-    ----------
-    [MaterialX2026], Microfacet BRDF; Energy Compensation; generalized_schlick_bsdf.
-
-    Examples
-    --------
-    >>> wo, wi = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
-    >>> generalized_schlick_brdf(wo, wi, [0.9, 0.2], 0.5, 1.0, [0.3, 0.3], 5.0).round(6)
-    array([1.382929, 0.278522])
+        >>> wo, wi = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
+        >>> generalized_schlick_brdf(wo, wi, [0.9, 0.2], 0.5, 1.0, [0.3, 0.3], 5.0).round(6)
+        array([1.382929, 0.278522])
     """
     colors = {"color0": color0, "color82": color82, "color90": color90}
     vectors = {name: checked_vector(name, value) for name, value in colors.items()}

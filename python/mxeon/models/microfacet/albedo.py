@@ -2,6 +2,15 @@
 """Directional albedos of the BRDFs of `mxeon.models.microfacet`, by quadrature over slopes.
 
 An albedo in retroreflective mode is the same: a surface turned by half a turn is the same surface.
+
+- `wo` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x,
+  z >= 0.
+- `roughness` (..., 2) or (): alpha along tangent and bitangent, in [0, 1]; a number is isotropic.
+- `compensate`: Whether the energy compensation enters.
+
+Result (..., C). Accuracy: see `ggx_albedo_dir_anisotropic`. At alpha 0 it is that of the mirror,
+F(mu_o). Raises `ValueError`, which names the first bad element, if an argument leaves its range or
+the shapes do not broadcast.
 """
 
 from __future__ import annotations
@@ -36,35 +45,16 @@ def dielectric_albedo_dir(
 ) -> Array:
     """Directional albedo of `dielectric_brdf`, by quadrature.
 
-    Parameters
-    ----------
-    wo, tint, roughness, ior, compensate
-        As those of `mxeon.models.dielectric_brdf`.
+    - `tint` (..., C): Color per channel, in [0, 1]; a number is one channel.
+    - `ior` (...): Index of refraction relative to the exterior medium, in [0, 1e50].
 
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        Dimensionless.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
-
-    Notes
-    -----
-    Accuracy: see `ggx_albedo_dir_anisotropic`. For `ior` below 1, where F has an infinite slope at
+    For `ior` below 1, where F has an infinite slope at
     the critical angle, the quadrature is split there, and the error of isotropic lobes is below
-    1e-10. At alpha 0 it is that of the mirror, tint F(mu_o).
+    1e-10. At alpha 0 it is that of the mirror, tint F(mu_o). [MaterialX2026], Directional Albedo
+    and Energy Conservation.
 
-    References
-    ----------
-    [MaterialX2026], Directional Albedo and Energy Conservation.
-
-    Examples
-    --------
-    >>> dielectric_albedo_dir([0.6, 0.0, 0.8], 1.0, [0.3, 0.3], 1.5).round(6)
-    array([0.040169])
+        >>> dielectric_albedo_dir([0.6, 0.0, 0.8], 1.0, [0.3, 0.3], 1.5).round(6)
+        array([0.040169])
     """
     vectors = {"tint": checked_vector("tint", tint)}
 
@@ -82,26 +72,14 @@ def conductor_albedo_dir(
 ) -> Array:
     """Directional albedo of `conductor_brdf`, by quadrature.
 
-    Result and errors as those of `dielectric_albedo_dir`.
+    - `ior`, `extinction` (..., C): Complex index of refraction per channel, in [0, 1e50]; a number
+      is one channel.
 
-    Parameters
-    ----------
-    wo, roughness, ior, extinction, compensate
-        As those of `mxeon.models.conductor_brdf`.
-
-    Notes
-    -----
-    Accuracy: see `ggx_albedo_dir_anisotropic`. At alpha 0 it is that of the mirror, F(mu_o).
-
-    References
-    ----------
     [MaterialX2026], Directional Albedo and Energy Conservation.
 
-    Examples
-    --------
-    >>> gold = [0.183, 1.373], [3.424, 1.770]
-    >>> conductor_albedo_dir([0.6, 0.0, 0.8], [0.3, 0.3], *gold).round(6)
-    array([0.935317, 0.347053])
+        >>> gold = [0.183, 1.373], [3.424, 1.770]
+        >>> conductor_albedo_dir([0.6, 0.0, 0.8], [0.3, 0.3], *gold).round(6)
+        array([0.935317, 0.347053])
     """
     vectors = {
         "ior": checked_vector("ior", ior),
@@ -122,26 +100,15 @@ def generalized_schlick_albedo_dir(
 ) -> Array:
     """Directional albedo of `generalized_schlick_brdf`, by quadrature.
 
-    Result and errors as those of `dielectric_albedo_dir`.
+    - `color0`, `color82`, `color90` (..., C): Reflectance along the normal, multiplier at
+      acos(1/7), and reflectance at grazing, per channel, in [0, 1]; a number is one channel.
+    - `exponent` (...): Exponent of the Schlick curve, in [0, 1e50].
 
-    Parameters
-    ----------
-    wo, color0, color82, color90, roughness, exponent, compensate
-        As those of `mxeon.models.generalized_schlick_brdf`.
-
-    Notes
-    -----
-    Accuracy: see `ggx_albedo_dir_anisotropic`. At alpha 0 it is that of the mirror, F(mu_o).
-
-    References
-    ----------
     [MaterialX2026], Directional Albedo and Energy Conservation.
 
-    Examples
-    --------
-    >>> wo, roughness = [0.6, 0.0, 0.8], [0.3, 0.3]
-    >>> generalized_schlick_albedo_dir(wo, [1.0, 0.2], 1.0, 1.0, roughness, 5.0).round(6)
-    array([1.      , 0.179402])
+        >>> wo, roughness = [0.6, 0.0, 0.8], [0.3, 0.3]
+        >>> generalized_schlick_albedo_dir(wo, [1.0, 0.2], 1.0, 1.0, roughness, 5.0).round(6)
+        array([1.      , 0.179402])
     """
     colors = {"color0": color0, "color82": color82, "color90": color90}
     vectors = {name: checked_vector(name, value) for name, value in colors.items()}
@@ -153,37 +120,16 @@ def generalized_schlick_albedo_dir(
 def ggx_albedo_dir_anisotropic(wo: ArrayLike, roughness: ArrayLike) -> Array:
     """Directional albedo of anisotropic GGX at unit Fresnel reflectance, by quadrature.
 
-    Errors as those of `dielectric_albedo_dir`.
+    Result (...): above 0; exceeds 1 where alpha_x and alpha_y differ. The masking of the
+    specification takes sqrt(alpha_x alpha_y), which does not belong to the anisotropic
+    distribution: the albedo at grazing falls far below 1 along the smoother direction and exceeds 1
+    along the rougher one, 30 at mu_o = 0.001 for roughness (0.001, 1). The energy compensation of
+    the BRDFs takes `ggx_albedo_dir` at sqrt(alpha_x alpha_y). Accuracy: error below 5e-6 of the
+    larger of 1 and the albedo for mu_o >= 1e-4 and roughness >= 1e-4. Cosines below 1e-12 count as
+    1e-12. [MaterialX2026], Energy Compensation; Height-Correlated Smith Masking-Shadowing.
 
-    Parameters
-    ----------
-    wo : array_like, shape (..., 3)
-        Direction that leaves the surface, unit vector to 1e-6, normal +z, tangent +x, z >= 0.
-    roughness : array_like, shape (..., 2) or ()
-        alpha along tangent and bitangent, dimensionless, in [0, 1]; a number is isotropic.
-
-    Returns
-    -------
-    ndarray, shape (...), float64
-        Dimensionless, above 0; exceeds 1 where alpha_x and alpha_y differ.
-
-    Notes
-    -----
-    The masking of the specification takes sqrt(alpha_x alpha_y), which does not belong to the
-    anisotropic distribution: the albedo at grazing falls far below 1 along the smoother direction
-    and exceeds 1 along the rougher one, 30 at mu_o = 0.001 for roughness (0.001, 1).
-    The energy compensation of the BRDFs takes `ggx_albedo_dir` at sqrt(alpha_x alpha_y).
-    Accuracy: error below 5e-6 of the larger of 1 and the albedo for mu_o >= 1e-4 and roughness
-    >= 1e-4. Cosines below 1e-12 count as 1e-12.
-
-    References
-    ----------
-    [MaterialX2026], Energy Compensation; Height-Correlated Smith Masking-Shadowing.
-
-    Examples
-    --------
-    >>> ggx_albedo_dir_anisotropic([[0.6, 0.0, 0.8], [0.0, 0.6, 0.8]], [0.1, 0.5]).round(6)
-    array([0.837774, 0.874089])
+        >>> ggx_albedo_dir_anisotropic([[0.6, 0.0, 0.8], [0.0, 0.6, 0.8]], [0.1, 0.5]).round(6)
+        array([0.837774, 0.874089])
     """
     wo, roughness = checked_directions("wo", wo), checked_roughness(roughness)
     lead_shape({"wo": wo, "roughness": roughness}, {})
@@ -205,14 +151,12 @@ def lobe_albedo(
     def value(
         wo: Array, roughness: Array, unseen: Array, average: Array, **material: Array
     ) -> Array:
-        # Integrate the curve over the slopes.
         c, weight = slope_nodes(wo, roughness)
         spread = {
             k: v[:, np.newaxis, np.newaxis] if k in vectors else v for k, v in material.items()
         }
         xp = array_namespace(c)
         E = xp.sum(curve.at(c, **spread) * weight, axis=(1, 2))
-        # Split the integral at a critical angle.
         squared = curve.critical(**material)
         if library(squared) or np.any(squared > 0.0):
             # All light, but what passes above the critical angle.
@@ -221,7 +165,6 @@ def lobe_albedo(
             c, weight = transmitting_nodes(wo, roughness, at_least_0(squared))
             lost = xp.sum((1.0 - curve.at(c, **spread)) * weight, axis=(1, 2))
             E = xp.where(squared > 0.0, lossless - lost, E)
-        # Add what more scattering returns, and tint.
         if compensate:
             E = E * (1.0 + average * unseen)
         total: Array = E * material["tint"] if "tint" in material else E

@@ -17,38 +17,19 @@ def artistic_ior(reflectivity: ArrayLike, edge_color: ArrayLike) -> tuple[Array,
         n_min = (1 - r) / (1 + r),  n_max = (1 + sqrt(r)) / (1 - sqrt(r)),
         k^2 = (n_max - n) (n - 1 / n_max)
 
-    Parameters
-    ----------
-    reflectivity : array_like, shape (...)
-        Reflectance at normal incidence r, per channel, in [0, 1).
-    edge_color : array_like, shape (...)
-        Per channel, in [0, 1]: 0 has the largest n, and no extinction; 1 the least n.
+    - `reflectivity` (...): Reflectance at normal incidence r, per channel, in [0, 1).
+    - `edge_color` (...): Per channel, in [0, 1]: 0 has the largest n, and no extinction; 1 the
+      least n.
 
-    Returns
-    -------
-    ior, extinction : ndarray, shape (...), float64
-        n in (0, inf) and k in [0, inf).
+    `ior`, `extinction` (...): n in (0, inf) and k in [0, inf). Form: the paper's k^2 is (r
+    (n + 1)^2 - (n - 1)^2) / (1 - r), a difference of large numbers. Its roots in n are n_max and
+    1 / n_max, and k^2 is their product here. The reflectance of n and k is r to within a few
+    roundings: `artistic_parameters` takes both back. [Gulbrandsen2014]; [MaterialX2026],
+    artistic_ior.
 
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range, or they do not broadcast; names the first bad element.
-
-    Notes
-    -----
-    Form: the paper's k^2 is (r (n + 1)^2 - (n - 1)^2) / (1 - r), a difference of large numbers. Its
-    roots in n are n_max and 1 / n_max, and k^2 is their product here. The reflectance of n and k is r
-    to within a few roundings: `artistic_parameters` takes both back.
-
-    References
-    ----------
-    [Gulbrandsen2014]; [MaterialX2026], artistic_ior.
-
-    Examples
-    --------
-    >>> ior, extinction = artistic_ior(0.944, 0.998)
-    >>> round(float(ior), 4), round(float(extinction), 4)
-    (0.1676, 3.2568)
+        >>> ior, extinction = artistic_ior(0.944, 0.998)
+        >>> round(float(ior), 4), round(float(extinction), 4)
+        (0.1676, 3.2568)
     """
     r, g = checked_numbers(reflectivity=reflectivity, edge_color=edge_color)
     n_min, n_max = _extremes(r)
@@ -63,32 +44,15 @@ def artistic_parameters(ior: ArrayLike, extinction: ArrayLike) -> tuple[Array, A
 
         r = ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2),  g = (n_max - n) / (n_max - n_min)
 
-    Parameters
-    ----------
-    ior, extinction : array_like, shape (...)
-        n and k per channel, in [0, 1e50].
+    - `ior`, `extinction` (...): n and k per channel, in [0, 1e50].
 
-    Returns
-    -------
-    reflectivity, edge_color : ndarray, shape (...), float64
-        r in [0, 1]. The edge color lies in [0, 1] for metals that the parameterization reaches, those
-        with n >= (1 - r) / (1 + r); it is above 1 for others, and 0 at r = 0, where n is 1 for every
-        edge color.
+    `reflectivity`, `edge_color` (...): r in [0, 1]. The edge color lies in [0, 1] for metals that
+    the parameterization reaches, those with n >= (1 - r) / (1 + r); it is above 1 for others, and 0
+    at r = 0, where n is 1 for every edge color. [Gulbrandsen2014].
 
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
-
-    References
-    ----------
-    [Gulbrandsen2014].
-
-    Examples
-    --------
-    >>> r, g = artistic_parameters(*artistic_ior(0.9, 0.25))
-    >>> round(float(r), 9), round(float(g), 9)
-    (0.9, 0.25)
+        >>> r, g = artistic_parameters(*artistic_ior(0.9, 0.25))
+        >>> round(float(r), 9), round(float(g), 9)
+        (0.9, 0.25)
     """
     n, k = checked_numbers(ior=ior, extinction=extinction)
     r = normal_reflectance(n, k)
@@ -103,18 +67,7 @@ def artistic_parameters(ior: ArrayLike, extinction: ArrayLike) -> tuple[Array, A
 def normal_reflectance(ior: Array, extinction: Array) -> Array:
     """Fresnel reflectance at normal incidence, without a check of the arguments.
 
-    Parameters
-    ----------
-    ior, extinction : ndarray, shape (...)
-
-    Returns
-    -------
-    ndarray, shape (...), float64
-
-    Examples
-    --------
-    >>> float(normal_reflectance(1.5, 0.0))
-    0.04
+    Result (...).
     """
     square = extinction**2
     return ((ior - 1.0) ** 2 + square) / ((ior + 1.0) ** 2 + square)

@@ -55,12 +55,8 @@ ALBEDO_FIT = np.array(
 class MicrofacetDefect:
     """A known wrong variant of the three microfacet nodes.
 
-    Attributes
-    ----------
-    name, title : str
-        One word, and the name in print.
-    lobe : Lobe
-        Its terms.
+    - `name`, `title`: One word, and the name in print.
+    - `lobe`: Its terms.
     """
 
     name: str
@@ -77,34 +73,13 @@ class MicrofacetDefect:
     ) -> Array:
         """Values of the variant of a node.
 
-        Parameters
-        ----------
-        node : str
-            A key of NODES.
-        wo, wi : array_like, shape (..., 3)
-            Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x, z >= 0.
-        inputs : mapping of str to array_like
-            Inputs of the node by the names of its ports; others than the BRDF's are ignored.
-        retroreflective : bool
-            Whether light returns towards where it comes from.
+        - `node`: A key of NODES.
+        - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z,
+          tangent +x, z >= 0.
+        - `inputs`: Inputs of the node by the names of its ports; others than the BRDF's are ignored.
+        - `retroreflective`: Whether light returns towards where it comes from.
 
-        Returns
-        -------
-        ndarray, shape (..., C), float64
-            1/sr.
-
-        Raises
-        ------
-        ValueError
-            If an argument leaves its range or the shapes do not broadcast.
-
-        Examples
-        --------
-        >>> inputs = {"tint": 1.0, "ior": 1.5, "roughness": [0.3, 0.3]}
-        >>> no_compensation = MICROFACET_DEFECTS[0]
-        >>> w = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
-        >>> no_compensation.value("dielectric_bsdf", *w, inputs).round(6)
-        array([0.059164])
+        Result (..., C): 1/sr.
         """
         curve, colors, numbers = NODES[node]
         return evaluate_lobe(
@@ -126,7 +101,7 @@ def averaged_channels(albedo: Array) -> Array:
 
 
 def _compensated_by(cosine: Callable[[Pair], Array]) -> Callable[[Pair], Array]:
-    """Compensation with F at a cosine in place of its average F_ss."""
+    """Compensation with F at a cosine instead of its average F_ss."""
 
     def factor(pair: Pair) -> Array:
         F = pair.curve.at(cosine(pair), **pair.material)
@@ -143,13 +118,7 @@ def _compensated_bsdl(pair: Pair) -> Array:
 
 
 def fitted_albedo(mu: Array, alpha: Array, F0: Array | float, F90: Array | float) -> Array:
-    """Directional albedo of GGX with a Schlick curve, by the fit of MaterialX 1.39.5.
-
-    Examples
-    --------
-    >>> fitted_albedo(np.array([0.1]), np.array([0.01]), 1.0, 1.0).round(3)
-    array([0.93])
-    """
+    """Directional albedo of GGX with a Schlick curve, by the fit of MaterialX 1.39.5."""
     x, y = np.broadcast_arrays(mu, alpha)
     powers = np.stack(
         [x**0, x, y, x * y, x * x, y * y, x * x * y, x * y * y, x * x * y * y], axis=-1
@@ -169,11 +138,6 @@ def schlick_average(normal: Array, grazing: Array | float) -> Array:
     """Average of F over the hemisphere, as Schlick's curve of exponent 5 has it between two ends.
 
     MaterialX takes it for every curve since its pull request 2958, of June 2026.
-
-    Examples
-    --------
-    >>> schlick_average(np.array([0.04]), 1.0).round(6)
-    array([0.085714])
     """
     average: Array = normal + (grazing - normal) / 21.0
     return average

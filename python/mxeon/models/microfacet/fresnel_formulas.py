@@ -38,11 +38,9 @@ def dielectric(mu: Array, ior: Array) -> Array:
     (ior 1) F is 0 at grazing too, where 0 / 0 stands.
     """
     xp = array_namespace(mu, ior)
-    # Find g.
     gap = (ior - 1.0) * (ior + 1.0)
     g2 = gap + mu * mu
     g = root(xp.maximum(g2, 0.0))
-    # Compose both polarizations.
     total = xp.where(g2 > 0.0, g + mu, 1.0)
     amplitude = gap / total / total
     plus = mu * g + (1.0 - mu) * (1.0 + mu)
@@ -80,7 +78,6 @@ def _conductor(mu: Array, ior: Array, extinction: Array, gap: Array) -> Array:
 def _polarized(mu: Array, ior: Array, extinction: Array, gap: Array) -> tuple[Array, Array]:
     """`polarized` from |n^2 - 1|."""
     xp = array_namespace(mu, ior, extinction)
-    # Find the complex root a + ib.
     S2 = (1.0 - mu) * (1.0 + mu)
     real = (ior - 1.0) * (ior + 1.0) + mu * mu - extinction * extinction
     size = modulus(real, 2.0 * ior * extinction)
@@ -88,7 +85,6 @@ def _polarized(mu: Array, ior: Array, extinction: Array, gap: Array) -> tuple[Ar
     larger = root(0.5 * (size + magnitude(real)))
     smaller = ior * extinction / xp.where(larger > 0.0, larger, 1.0)
     a, b = xp.where(real >= 0.0, larger, smaller), xp.where(real >= 0.0, smaller, larger)
-    # Compose the amplitudes of both polarizations.
     total = (a + mu) ** 2 + b * b
     Rs = trimmed((gap / xp.where(total > 0.0, total, 1.0)) ** 2, 1.0)
     minus, plus = ((mu * a + sign * S2) ** 2 + (mu * b) ** 2 for sign in (-1.0, 1.0))
@@ -134,7 +130,6 @@ def conductor_avg(ior: Array, extinction: Array) -> Array:
     # Take the split rule for all arrays that cannot be written into.
     if array_namespace(ior, extinction) is not NUMPY:
         return _split_avg_of_arrays(ior, extinction)
-    # Average smooth curves by one rule, and the others by one that is split.
     ior, extinction = np.broadcast_arrays(ior, extinction)
     n2 = (ior + 1j * extinction) ** 2
     smooth = _is_smooth(n2)
@@ -210,7 +205,6 @@ def _split_avg_of_arrays(ior: Array, extinction: Array) -> Array:
     real = extinction * extinction - (ior - 1.0) * (ior + 1.0)
     size = hypot(real, 2.0 * ior * extinction)
     split = at_most(root(xp.maximum(0.5 * (size + real), 0.0)), 1.0)
-    # Sum over the nodes of both sides.
     t = STEP * np.arange(-STEPS, STEPS + 1)
     X = np.exp(np.pi * np.sinh(t))
     shape = (-1, *(1,) * split.ndim)
@@ -227,12 +221,10 @@ def _split_avg_of_arrays(ior: Array, extinction: Array) -> Array:
 def _part(low: Array, length: Array, ior: Array, extinction: Array, gap: Array) -> Array:
     """Integral of c F over [low, low + length] of the cosine c, of materials (N,)."""
     total = np.zeros(len(low))
-    # Form the nodes of the double exponential rule.
     t = STEP * np.arange(-STEPS, STEPS + 1)
     X = np.exp(np.pi * np.sinh(t))
     rule = X / (1.0 + X), STEP * np.pi * np.cosh(t) * X / (1.0 + X) ** 2
     count = max(1, GROUP // max(len(low), 1))  # nodes at once
-    # Sum over groups of them.
     for start in range(0, len(t), count):
         x, weight = (values[start : start + count, np.newaxis] for values in rule)
         mu = low + length * x

@@ -1,5 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Terms of the microfacet nodes of pbrlib: distribution, masking and shadowing."""
+"""Terms of the microfacet nodes of pbrlib: distribution, masking and shadowing.
+
+- `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x,
+  z >= 0; `wh` is the normal of a microfacet.
+- `roughness` (..., 2) or (): alpha along tangent and bitangent, in [0, 1]; a number is isotropic.
+
+Accuracy: relative error below 2e-14. Raises `ValueError`, which names the first bad element, if an
+argument leaves its range or the shapes do not broadcast.
+"""
 
 from __future__ import annotations
 
@@ -18,36 +26,12 @@ def ggx_ndf(wh: ArrayLike, roughness: ArrayLike) -> Array:
 
         D = 1 / (pi alpha_x alpha_y ((h_x / alpha_x)^2 + (h_y / alpha_y)^2 + h_z^2)^2)
 
-    Parameters
-    ----------
-    wh : array_like, shape (..., 3)
-        Microfacet normal, unit vector to 1e-6, normal +z, tangent +x, z >= 0.
-    roughness : array_like, shape (..., 2) or ()
-        alpha along tangent and bitangent, dimensionless, in [0, 1]; a number is isotropic.
+    Result (...): 1/sr; its integral times h_z over the hemisphere is 1. Where an alpha is 0, D is a
+    delta function, which has no value; it counts as 0. [MaterialX2026], GGX Normal Distribution
+    Function.
 
-    Returns
-    -------
-    ndarray, shape (...), float64
-        1/sr; its integral times h_z over the hemisphere is 1.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
-
-    Notes
-    -----
-    Where an alpha is 0, D is a delta function, which has no value; it counts as 0.
-    Accuracy: relative error below 2e-14.
-
-    References
-    ----------
-    [MaterialX2026], GGX Normal Distribution Function.
-
-    Examples
-    --------
-    >>> ggx_ndf([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8]], [0.5, 0.25]).round(6)
-    array([2.546479, 0.588591])
+        >>> ggx_ndf([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8]], [0.5, 0.25]).round(6)
+        array([2.546479, 0.588591])
     """
     vectors = {
         "wh": checked_directions("wh", wh),
@@ -65,28 +49,10 @@ def smith_g1(wo: ArrayLike, roughness: ArrayLike) -> Array:
 
         G1 = 2 mu_o / (mu_o + |(alpha_x x, alpha_y y, z)|)
 
-    Errors as those of `ggx_ndf`.
+    Result (...): in [0, 1]; 0 at grazing, but 1 at alpha 0. [Heitz2014], Eqs. (43), (86).
 
-    Parameters
-    ----------
-    wo : array_like, shape (..., 3)
-        Direction that leaves the surface, unit vector to 1e-6, normal +z, tangent +x, z >= 0.
-    roughness : array_like, shape (..., 2) or ()
-        alpha along tangent and bitangent, dimensionless, in [0, 1]; a number is isotropic.
-
-    Returns
-    -------
-    ndarray, shape (...), float64
-        Dimensionless, in [0, 1]; 0 at grazing, but 1 at alpha 0.
-
-    References
-    ----------
-    [Heitz2014], Eqs. (43), (86).
-
-    Examples
-    --------
-    >>> smith_g1([0.6, 0.0, 0.8], [[0.5, 0.25], [0.0, 0.0]]).round(6)
-    array([0.967118, 1.      ])
+        >>> smith_g1([0.6, 0.0, 0.8], [[0.5, 0.25], [0.0, 0.0]]).round(6)
+        array([0.967118, 1.      ])
     """
     vectors = {
         "wo": checked_directions("wo", wo),
@@ -108,32 +74,14 @@ def smith_g2(mu_o: ArrayLike, mu_i: ArrayLike, alpha: ArrayLike) -> Array:
         G2 = 2 mu_o mu_i / (lambda_o mu_i + lambda_i mu_o),
         lambda = sqrt(alpha^2 + (1 - alpha^2) mu^2)
 
-    Errors as those of `ggx_ndf`.
+    - `mu_o`, `mu_i`: Cosines of the polar angles, in [0, 1].
+    - `alpha`: In [0, 1]; of anisotropic roughness sqrt(alpha_x alpha_y).
 
-    Parameters
-    ----------
-    mu_o, mu_i : array_like, shapes that broadcast
-        Cosines of the polar angles, dimensionless, in [0, 1].
-    alpha : array_like
-        Dimensionless, in [0, 1]; of anisotropic roughness sqrt(alpha_x alpha_y).
+    Result: in [0, 1]; 0 where a direction grazes. [MaterialX2026], Height-Correlated Smith
+    Masking-Shadowing.
 
-    Returns
-    -------
-    ndarray, float64
-        Dimensionless, in [0, 1]; 0 where a direction grazes.
-
-    Notes
-    -----
-    Accuracy: relative error below 2e-14.
-
-    References
-    ----------
-    [MaterialX2026], Height-Correlated Smith Masking-Shadowing.
-
-    Examples
-    --------
-    >>> smith_g2(0.8, [0.6, 0.0], 0.5).round(6)
-    array([0.881115, 0.      ])
+        >>> smith_g2(0.8, [0.6, 0.0], 0.5).round(6)
+        array([0.881115, 0.      ])
     """
     numbers = {
         "mu_o": checked("mu_o", mu_o),
@@ -153,33 +101,12 @@ def smith_g2_anisotropic(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> 
 
         G2 = 2 mu_o mu_i / (l_o mu_i + l_i mu_o),  l = |(alpha_x x, alpha_y y, z)|
 
-    Errors as those of `ggx_ndf`.
+    Result (...): in [0, 1]; 0 where a direction grazes. The specification takes `smith_g2` at
+    sqrt(alpha_x alpha_y) instead. Both agree where alpha_x and alpha_y do. [Heitz2014], Eqs. (86),
+    (99).
 
-    Parameters
-    ----------
-    wo, wi : array_like, shape (..., 3)
-        Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x, z >= 0.
-    roughness : array_like, shape (..., 2) or ()
-        alpha along tangent and bitangent, dimensionless, in [0, 1]; a number is isotropic.
-
-    Returns
-    -------
-    ndarray, shape (...), float64
-        Dimensionless, in [0, 1]; 0 where a direction grazes.
-
-    Notes
-    -----
-    The specification takes `smith_g2` at sqrt(alpha_x alpha_y) instead. Both agree where alpha_x and
-    alpha_y do. Accuracy: relative error below 2e-14.
-
-    References
-    ----------
-    [Heitz2014], Eqs. (86), (99).
-
-    Examples
-    --------
-    >>> smith_g2_anisotropic([0.6, 0.0, 0.8], [[0.0, 0.8, 0.6], [1.0, 0.0, 0.0]], [0.5, 0.25]).round(6)
-    array([0.942466, 0.      ])
+        >>> smith_g2_anisotropic([0.6, 0.0, 0.8], [[0.0, 0.8, 0.6], [1.0, 0.0, 0.0]], [0.5, 0.25]).round(6)
+        array([0.942466, 0.      ])
     """
     vectors = {
         "wo": checked_directions("wo", wo),

@@ -23,14 +23,10 @@ from mxeon.models.microfacet.missing import missing_light
 class Curve:
     """Fresnel curve of a node.
 
-    Attributes
-    ----------
-    at : callable
-        `at(cosine, **material)`, shape (C, ...): F, without a tint.
-    average : callable
-        `average(**material)`, shape (C, ...): F_ss.
-    critical : callable
-        `critical(**material)`, shape (...): square of the cosine below which F is 1, if above 0.
+    - `at`: `at(cosine, **material)`, shape (C, ...): F, without a tint.
+    - `average`: `average(**material)`, shape (C, ...): F_ss.
+    - `critical`: `critical(**material)`, shape (...): square of the cosine below which F is 1, if
+      above 0.
     """
 
     at: Callable[..., Array]
@@ -90,16 +86,10 @@ def missing(mu_o: Array, roughness: Array) -> Array:
 class Lobe:
     """Terms of a microfacet BRDF, those of [MaterialX2026] unless replaced.
 
-    Attributes
-    ----------
-    factor : callable
-        Compensation of a Pair.
-    visibility : callable
-        G2 / (4 mu_o mu_i) of a Pair.
-    alpha : callable
-        alpha as the lobe takes it, of the input `roughness`.
-    scale : float
-        Constant factor.
+    - `factor`: Compensation of a Pair.
+    - `visibility`: G2 / (4 mu_o mu_i) of a Pair.
+    - `alpha`: alpha as the lobe takes it, of the input `roughness`.
+    - `scale`: Constant factor.
     """
 
     factor: Callable[[Pair], Array | float] = compensation
@@ -126,7 +116,6 @@ def evaluate_lobe(
     retroreflective: bool = False,
 ) -> Array:
     """Values of a lobe, shape (..., C); `vectors` and `numbers` are checked inputs of the curve."""
-    # Check the arguments.
     directions = {"wo": checked_directions("wo", wo), "wi": checked_directions("wi", wi)}
     pairs = {"roughness": checked_roughness(roughness)}
     checked_switch("retroreflective", retroreflective)
@@ -134,7 +123,6 @@ def evaluate_lobe(
     for name, color in vectors.items():
         refuse_ambiguous(name, color, lead)
 
-    # Evaluate all blocks.
     def value(wo: Array, wi: Array, roughness: Array, **material: Array) -> Array:
         if retroreflective:
             wo = array_namespace(wo).stack([-wo[0], -wo[1], wo[2]])

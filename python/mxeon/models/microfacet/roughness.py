@@ -1,5 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Roughness of microfacets, alpha along tangent and bitangent, from what an artist sets."""
+"""Roughness of microfacets, alpha along tangent and bitangent, from what an artist sets.
+
+- `roughness`, `anisotropy`, `glossiness` (...): In [0, 1].
+
+Result (..., 2): in [0, 1]. Raises `ValueError`, which names the first bad element, if an argument
+leaves its range or the shapes do not broadcast.
+"""
 
 from __future__ import annotations
 
@@ -19,35 +25,14 @@ def roughness_anisotropy(roughness: ArrayLike, anisotropy: ArrayLike) -> Array:
         alpha_x = min(roughness^2 / aspect, 1),  alpha_y = roughness^2 aspect,
         aspect = sqrt(1 - min(anisotropy, 0.98))
 
-    Parameters
-    ----------
-    roughness, anisotropy : array_like, shape (...)
-        Dimensionless, in [0, 1].
-
-    Returns
-    -------
-    ndarray, shape (..., 2), float64
-        alpha along the tangent and along the bitangent, in [0, 1].
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
-
-    Notes
-    -----
-    The specification has the square, the direction, and that anisotropy 0 is isotropic; it has no
-    equation. The aspect is that of its implementations: Burley's with the factor 1 in place of 0.9.
-
-    References
-    ----------
+    Result (..., 2): alpha along the tangent and along the bitangent, in [0, 1]. The specification
+    has the square, the direction, and that anisotropy 0 is isotropic; it has no equation. The
+    aspect is that of its implementations: Burley's with the factor 1 instead of 0.9.
     [MaterialX2026], roughness_anisotropy; [Burley2012], Section 5.4.
 
-    Examples
-    --------
-    >>> roughness_anisotropy(0.5, [0.0, 0.75])
-    array([[0.25 , 0.25 ],
-           [0.5  , 0.125]])
+        >>> roughness_anisotropy(0.5, [0.0, 0.75])
+        array([[0.25 , 0.25 ],
+               [0.5  , 0.125]])
     """
     return _stretched(*checked_numbers(roughness=roughness, anisotropy=anisotropy))
 
@@ -63,29 +48,12 @@ def _stretched(r: Array, a: Array) -> Array:
 def roughness_dual(roughness: ArrayLike) -> Array:
     """Pair of alphas of two roughnesses, their squares.
 
-    Parameters
-    ----------
-    roughness : array_like, shape (..., 2)
-        Roughness along the tangent and along the bitangent, dimensionless, in [0, 1].
+    - `roughness` (..., 2): Roughness along the tangent and along the bitangent, in [0, 1].
 
-    Returns
-    -------
-    ndarray, shape (..., 2), float64
-        In [0, 1].
-
-    Raises
-    ------
-    ValueError
-        If `roughness` leaves its range or is no pair; names the first bad element.
-
-    References
-    ----------
     [MaterialX2026], roughness_dual.
 
-    Examples
-    --------
-    >>> roughness_dual([0.5, 1.0])
-    array([0.25, 1.  ])
+        >>> roughness_dual([0.5, 1.0])
+        array([0.25, 1.  ])
     """
     (pairs,) = broadcastable({"roughness": checked_pairs("roughness", roughness)}, {})
     return pairs * pairs
@@ -95,21 +63,10 @@ def roughness_dual(roughness: ArrayLike) -> Array:
 def glossiness_anisotropy(glossiness: ArrayLike, anisotropy: ArrayLike) -> Array:
     """Pair of alphas of the roughness 1 - glossiness; see `roughness_anisotropy`.
 
-    Errors as those of `roughness_anisotropy`. Result as that of `roughness_dual`.
-
-    Parameters
-    ----------
-    glossiness, anisotropy : array_like, shape (...)
-        Dimensionless, in [0, 1].
-
-    References
-    ----------
     [MaterialX2026], glossiness_anisotropy.
 
-    Examples
-    --------
-    >>> glossiness_anisotropy(0.5, 0.75)
-    array([0.5  , 0.125])
+        >>> glossiness_anisotropy(0.5, 0.75)
+        array([0.5  , 0.125])
     """
     g, a = checked_numbers(glossiness=glossiness, anisotropy=anisotropy)
     return _stretched(1.0 - g, a)

@@ -39,15 +39,9 @@ FARTHEST_R = 1e12
 class Slopes:
     """Slopes that a direction sees, in polar coordinates r and omega, of which 0 is its own azimuth.
 
-    Attributes
-    ----------
-    mu_o, alpha : ndarray
-        Cosine of the direction, and the mean of its two roughnesses.
-    steepness : ndarray
-        A: wo . h / h_z = mu_o + r A cos(omega).
-    axis : tuple of ndarray
-        Cosine and sine of phi at omega 0.
-    roughness : ndarray, shape (2, ...)
+    - `mu_o`, `alpha`: Cosine of the direction, and the mean of its two roughnesses.
+    - `steepness`: A: wo . h / h_z = mu_o + r A cos(omega).
+    - `axis`: Cosine and sine of phi at omega 0.
     """
 
     mu_o: Array
@@ -133,11 +127,7 @@ def transmitting_nodes(wo: Array, roughness: Array, squared: Array) -> tuple[Arr
 
     There 1 - F begins as a square root: nodes crowd at both ends of r, and where the ends of r end.
 
-    Parameters
-    ----------
-    wo, roughness : ndarray, shapes (3, ...) and (2, ...)
-    squared : ndarray, shape (...)
-        Square of the cosine of the critical angle, at least 0.
+    - `squared` (...): Square of the cosine of the critical angle, at least 0.
     """
     slopes = Slopes.seen(wo, roughness)
     meeting = _horizon_azimuth(slopes.mu_o, squared)
@@ -154,8 +144,8 @@ def transmitting_nodes(wo: Array, roughness: Array, squared: Array) -> tuple[Arr
 def refracting_nodes(wo: Array, roughness: Array, squared: Array) -> tuple[Array, Array, Array]:
     """Cosines wo . h, cosines of the refracted wi, and weights of the facets that wo sees.
 
-    Parameters as those of `transmitting_nodes`. wi has the cosine (mu_o - h_z L) / n, n^2 = 1 - squared and
-    L = |wo + n wi|. It is above the horizon below the r of mu_o^2 g r^2 - 2 mu_o B r + squared = mu_o^2.
+    wi has the cosine (mu_o - h_z L) / n, n^2 = 1 - squared and L = |wo + n wi|. It is above the
+    horizon below the r of mu_o^2 g r^2 - 2 mu_o B r + squared = mu_o^2.
     """
     # Split the azimuths where h on the critical cone lies at the horizon itself.
     slopes = Slopes.seen(wo, roughness)
@@ -170,7 +160,6 @@ def refracting_nodes(wo: Array, roughness: Array, squared: Array) -> tuple[Array
     horizon = beyond / np.where(ahead > 0.0, ahead, 1.0)
     low = np.where((beyond > 0.0) & (B > 0.0), np.maximum(low, horizon), low)
     r, weight = _between(slopes.scale, np.minimum(low, high), high)
-    # Weigh the facets that are seen, and refract.
     lean, stretch = np.maximum(B * r + mu_o, 0.0), 1.0 + g * r * r
     cosine = np.minimum(lean / np.sqrt(stretch), 1.0)
     length = squared / (cosine + np.sqrt(np.maximum(cosine * cosine - squared, 0.0)))
@@ -196,7 +185,6 @@ def _split_azimuths(
     slopes: Slopes, wo: Array, squared: Array, meeting: Array
 ) -> tuple[Array, Array]:
     """Nodes and weights of omega, split at an azimuth from that of wo, and where the critical cone ends."""
-    # Find where the critical cone ends.
     xp = array_namespace(slopes.mu_o, wo, squared, meeting)
     last = _cone_azimuth(slopes.mu_o, squared - slopes.mu_o**2)
     inside, right = slopes.mu_o * slopes.mu_o >= squared, 0.5 * np.pi
@@ -210,14 +198,12 @@ def _split_azimuths(
             )
             for sign in (-1.0, 1.0)
         )
-        # Split the azimuths there.
         splits = [_omega(slopes, wo, sign * meeting) - sign * center for sign in (-1.0, 1.0)]
         shape = np.broadcast_shapes(*(tuple(each.shape) for each in (low, *splits, high)))
         ends = low, *splits, 0.0 * low, high
         points = xp.stack([xp.broadcast_to(each, shape) for each in ends])
         points = xp.maximum(points, xp.maximum(low, -right + 0.0 * low))
         points = xp.sort(xp.minimum(points, xp.minimum(high, right + 0.0 * high)), axis=0)
-        # Place the nodes of each piece.
         half = points[2:] if slopes.isotropic else points
         for first, end in pairwise(half):
             omega, weight = _piece(slopes.scale, first, end)

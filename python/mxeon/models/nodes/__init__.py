@@ -12,17 +12,6 @@ NODES = (*LOBE_NODES, *MICROFACET_NODES)
 
 
 def node(name: str) -> PbrNode:
-    """The row of NODES with this name.
-
-    Raises
-    ------
-    ValueError
-        If there is none; lists the names.
-
-    Examples
-    --------
-    >>> node("zeltner").category
-    'sheen_bsdf'
-    """
+    """The row of NODES with this name."""
     rows = {row.name: row for row in NODES}
     return rows[checked_choice("node", name, rows)]

@@ -34,12 +34,8 @@ Value = Callable[[Array, Inputs], Array]
 class Emission(Node[Value]):
     """An EDF node, or one that combines EDFs.
 
-    Attributes
-    ----------
-    value : callable (wo, inputs) -> ndarray, shape (N, 3)
-        Radiance towards `wo`, normal +z; below the horizon that of the back.
-    exitance : callable (inputs) -> ndarray, shape (N, 3)
-        Its integral over the hemisphere times the cosine.
+    - `value`: Radiance towards `wo`, normal +z; below the horizon that of the back.
+    - `exitance`: Its integral over the hemisphere times the cosine.
     """
 
     exitance: Callable[[Inputs], Array]

@@ -17,27 +17,11 @@ PARALLEL = 1e-6  # length that is left of a tangent without the part along the n
 def into_frame(w: ArrayLike, normal: ArrayLike, tangent: ArrayLike) -> Array:
     """Components of vectors along the tangent, the bitangent and the normal.
 
-    Parameters
-    ----------
-    w : array_like, shape (..., 3)
-    normal : array_like, shape (..., 3)
-        Unit vector to 1e-6.
-    tangent : array_like, shape (..., 3)
-        Any vector that is not parallel to the normal; its part along the normal is taken away.
+    - `normal` (..., 3): Unit vector to 1e-6.
+    - `tangent` (..., 3): Any vector that is not parallel to the normal; its part along the normal
+      is taken away.
 
-    Returns
-    -------
-    ndarray, shape (..., 3)
-
-    Raises
-    ------
-    ValueError
-        If the normal is no unit vector, or the tangent is parallel to it.
-
-    Examples
-    --------
-    >>> into_frame([0.0, 0.6, 0.8], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0])
-    array([ 0. , -0.8,  0.6])
+    Result (..., 3).
     """
     vectors, axes = _vectors(w), _axes(normal, tangent)
     xp = array_namespace(vectors)
@@ -46,15 +30,7 @@ def into_frame(w: ArrayLike, normal: ArrayLike, tangent: ArrayLike) -> Array:
 
 @any_array
 def out_of_frame(w: ArrayLike, normal: ArrayLike, tangent: ArrayLike) -> Array:
-    """Vectors with these components along the tangent, the bitangent and the normal.
-
-    Parameters and errors as those of `into_frame`.
-
-    Examples
-    --------
-    >>> out_of_frame([0.0, -0.8, 0.6], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0])
-    array([0. , 0.6, 0.8])
-    """
+    """Vectors with these components along the tangent, the bitangent and the normal."""
     vectors, (x, y, z) = _vectors(w), _axes(normal, tangent)
     turned: Array = vectors[..., :1] * x + vectors[..., 1:2] * y + vectors[..., 2:] * z
     return turned + 0.0
@@ -67,12 +43,10 @@ def _vectors(w: ArrayLike) -> Array:
 
 def _axes(normal: ArrayLike, tangent: ArrayLike) -> tuple[Array, Array, Array]:
     """Tangent, bitangent and normal, of length 1 and perpendicular to each other."""
-    # Take away the tangent's part along the normal.
     z, along = checked_sphere("normal", normal), checked_triples("tangent", tangent)
     xp = array_namespace(z, along)
     x = along - xp.sum(along * z, axis=-1)[..., np.newaxis] * z
     length = xp.sqrt(xp.sum(x * x, axis=-1))[..., np.newaxis]
-    # Refuse one of which nothing is left.
     shortest = host_values(length) if library(length) else length
     if checking() and shortest is not None and not np.all(shortest > PARALLEL):
         raise ValueError("tangent must not be parallel to the normal; name another one")

@@ -21,18 +21,11 @@ from mxeon.models.nodes.parameters import WEIGHT, Parameter
 class Rows:
     """Vectors and inputs of a call in rows.
 
-    Attributes
-    ----------
-    lead : tuple of int
-        Shape of the pairs.
-    vectors : list of ndarray, shape (N, K)
-        Directions or random numbers.
-    inputs : dict of str to ndarray
-        (N,), (N, 2) or (N, C) by parameter; 1 in place of N where all pairs have the same.
-    colored : bool
-        Whether a color has an axis of channels.
-    weight : ndarray, shape (N,) or (1,), or None
-        Of the lobe, where the call has one.
+    - `lead`: Shape of the pairs.
+    - `vectors`: Directions or random numbers.
+    - `inputs`: (N,), (N, 2) or (N, C) by parameter; 1 instead of N where all pairs have the same.
+    - `colored`: Whether a color has an axis of channels.
+    - `weight`: Of the lobe, where the call has one.
     """
 
     lead: tuple[int, ...]
@@ -57,21 +50,13 @@ class Rows:
 def bound_inputs(
     parameters: Sequence[Parameter], inputs: Sequence[ArrayLike], named: Mapping[str, ArrayLike]
 ) -> dict[str, ArrayLike]:
-    """A value for each parameter, by name: one of the call's, or its default.
-
-    Raises
-    ------
-    TypeError
-        If an input is unknown or has two values; lists the names.
-    """
-    # Take inputs by their place.
+    """A value for each parameter, by name: one of the call's, or its default."""
     names = [each.name for each in parameters]
     others = {each.quantity: each.name for each in parameters}
     known = f"inputs are {', '.join(names)}"
     if len(inputs) > len(names):
         raise TypeError(f"{known}; got {len(inputs)} of them")
     values = dict(zip(names, inputs, strict=False))
-    # Take inputs by their names.
     for word, value in named.items():
         name = others.get(word, word)
         if name not in names or name in values:
@@ -84,14 +69,7 @@ def bound_inputs(
 def rows(
     parameters: Sequence[Parameter], vectors: Collection[str], /, **arguments: ArrayLike
 ) -> Rows:
-    """Vectors (..., K) and a value for each parameter in rows, all by their names.
-
-    Raises
-    ------
-    ValueError
-        If a value leaves its range, or its shape fits nothing or two things; says what to do.
-    """
-    # Check ranges and last axes.
+    """Vectors (..., K) and a value for each parameter in rows, all by their names."""
     directions = {name: _floats(arguments[name]) for name in vectors}
     lead = _lead(directions, {})
     arrays, colored = {}, False

@@ -27,13 +27,9 @@ Value = Callable[[Inputs], Array]
 class Medium(Node[Value]):
     """A VDF node, by its transmittance.
 
-    Attributes
-    ----------
-    inputs : tuple of str
-        Names of the inputs that the transmittance depends on. The anisotropy enters the light that is
-        scattered into a ray alone.
-    value : callable (inputs) -> ndarray, shape (N, 3)
-        Transmittance of METER.
+    - `inputs`: Names of the inputs that the transmittance depends on. The anisotropy enters the
+      light that is scattered into a ray alone.
+    - `value`: Transmittance of METER.
     """
 
 

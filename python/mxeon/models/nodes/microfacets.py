@@ -47,16 +47,9 @@ WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
 class BareLobe:
     """Functions of a microfacet node by its inputs.
 
-    Attributes
-    ----------
-    category : str
-        Category of the node.
-    value : callable (wo, wi, inputs) -> ndarray, shape (N, 3)
-    albedo : callable (wo, inputs, compensate) -> ndarray, shape (N, 3)
-    fresnel : callable (mu, inputs) -> ndarray, shape (N, C)
-        Its curve F.
-    edge : str
-        Name of the input that is F at grazing; "" where F is 1 there.
+    - `category`: Category of the node.
+    - `fresnel`: Its curve F.
+    - `edge`: Name of the input that is F at grazing; "" where F is 1 there.
     """
 
     category: str
@@ -183,7 +176,7 @@ SCHLICK = BareLobe(
 
 
 def _variants(lobe: BareLobe) -> tuple[Variant[Scattering], ...]:
-    """Functions that a shader may have in place of a microfacet node's own."""
+    """Functions that a shader may have instead of a microfacet node's own."""
     values = (
         Variant(
             each.title,

@@ -22,16 +22,10 @@ Function = TypeVar("Function", covariant=True)  # of a node: what its value is c
 
 @dataclass(frozen=True)
 class Variant(Generic[Function]):
-    """Another function that a shader may have in place of a node's own.
+    """Another function that a shader may have instead of a node's own.
 
-    Attributes
-    ----------
-    title : str
-    value : callable or None
-        As the node's; None where its values are the node's.
-    albedo : callable (wo, inputs) -> ndarray, shape (N, 3), or None
-    permitted : bool
-        Whether the specification leaves it open.
+    - `value`: As the node's; None where its values are the node's.
+    - `permitted`: Whether the specification leaves it open.
     """
 
     title: str
@@ -44,17 +38,10 @@ class Variant(Generic[Function]):
 class Node(Generic[Function]):
     """A node, or a mode of one, by [MaterialX2026].
 
-    Attributes
-    ----------
-    name, title : str
-        One word, and the name in print.
-    category : str
-        Category of the node.
-    inputs : tuple of str
-        Names or paths of the inputs that the functions read.
-    value : callable
-        Its values from these inputs.
-    variants : tuple of Variant
+    - `name`, `title`: One word, and the name in print.
+    - `category`: Category of the node.
+    - `inputs`: Names or paths of the inputs that the functions read.
+    - `value`: Its values from these inputs.
     """
 
     name: str
@@ -69,27 +56,17 @@ class Node(Generic[Function]):
 class PbrNode(Node[Scattering]):
     """A mode of a BSDF node.
 
-    Attributes
-    ----------
-    value : callable (wo, wi, inputs) -> ndarray, shape (N, 3)
-        BSDF in 1/sr without the cosine, for weight 1.
-    albedo : callable (wo, inputs) -> ndarray, shape (N, 3)
-        Directional albedo E for weight 1, with all tints; 1 where its integral exceeds 1. Of
-        anisotropic microfacets it is that at the geometric mean of both alphas, as G2 is.
-    integral : callable (wo, inputs) -> ndarray, shape (N, 3), or None
-        The integral of its values, where that is another number for some inputs.
-    fixed : mapping of str to str
-        Inputs that select the mode.
-    layerable : bool
-        Whether it lets 1 - E through to what lies below; another node lets nothing through.
-    transmits : bool
-        Whether it scatters light from below the horizon in place of light from above.
-    fitted : bool
-        Whether a shader needs a fit for its albedo.
-    reciprocal : bool
-        Whether exchanging the directions does not change the value.
-    mirror : mapping of str to value
-        Inputs with which it reflects all light; none if there are none.
+    - `value`: BSDF in 1/sr without the cosine, for weight 1.
+    - `albedo`: Directional albedo E for weight 1, with all tints; 1 where its integral exceeds 1.
+      Of anisotropic microfacets it is that at the geometric mean of both alphas, as G2 is.
+    - `integral`: The integral of its values, where that is another number for some inputs.
+    - `fixed`: Inputs that select the mode.
+    - `layerable`: Whether it lets 1 - E through to what lies below; another node lets nothing
+      through.
+    - `transmits`: Whether it scatters light from below the horizon instead of light from above.
+    - `fitted`: Whether a shader needs a fit for its albedo.
+    - `reciprocal`: Whether exchanging the directions does not change the value.
+    - `mirror`: Inputs with which it reflects all light; none if there are none.
     """
 
     albedo: Callable[[Array, Inputs], Array]

@@ -69,14 +69,10 @@ UNITS = {
 class Parameter:
     """An input of a model.
 
-    Attributes
-    ----------
-    name : str
-        MaterialX's name of it.
-    default : float or tuple of float
-        MaterialX's; a tuple of three for a color, of two for a pair.
-    quantity : str
-        What it is: the name that it has in functions of `mxeon.models`, which counts as well.
+    - `name`: MaterialX's name of it.
+    - `default`: MaterialX's; a tuple of three for a color, of two for a pair.
+    - `quantity`: What it is: the name that it has in functions of `mxeon.models`, which counts as
+      well.
     """
 
     name: str

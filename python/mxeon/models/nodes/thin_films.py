@@ -94,7 +94,6 @@ def _fitted(lobe: BareLobe, form: Form, wo: Array, inputs: Inputs) -> Array:
 
 def _variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
     """Other films that a shader may have, each with either compensation."""
-    # Begin with the variants that every node has.
     variants = [
         Variant("no film", partial(_no_film, row)),
         Variant(
@@ -106,7 +105,6 @@ def _variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
             permitted=True,
         ),
     ]
-    # Add other forms in light from all sides.
     lobe = {each.category: each for each in (DIELECTRIC, CONDUCTOR, SCHLICK)}[row.category]
     schlick = lobe is SCHLICK
     for title, form, permitted in FORMS[: 2 if schlick else 1]:
@@ -115,7 +113,6 @@ def _variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
         fitted = partial(_fitted, lobe, form)
         words = "the bare lobe's fit, and the film in the compensation"
         variants.append(Variant(f"{title}: {words}", albedo=fitted))
-    # Add other forms in direct light.
     for title, form, permitted in FORMS:
         one = form == MIXED and row.category == "dielectric_bsdf"  # index of all channels
         if one or (form.share != 1.0 and not schlick):

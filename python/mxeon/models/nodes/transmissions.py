@@ -30,19 +30,12 @@ MODES = ("T", "RT")
 class Transmission:
     """Functions of a node that transmits, by its inputs.
 
-    Attributes
-    ----------
-    value : callable (wo, wi, inputs) -> ndarray, shape (N, 3)
-        BTDF of radiance, with its tint.
-    passed : callable (wo, inputs, shadow) -> ndarray, shape (N, 3)
-        Share of the light from wo that the BTDF transmits, with its tint; without `shadow`, the mean
-        of 1 - F over the facets that wo sees.
-    reflected : callable (wo, inputs) -> ndarray, shape (N, 3)
-        Directional albedo of the reflection with its energy compensation, without a tint.
-    tint : callable (inputs) -> ndarray, shape (N, 3)
-    fresnel : callable (mu, inputs) -> ndarray, shape (N, C)
-    ior : callable (inputs) -> ndarray, shape (N,)
-        Index of refraction that refracts the view.
+    - `value`: BTDF of radiance, with its tint.
+    - `passed`: Share of the light from wo that the BTDF transmits, with its tint; without `shadow`,
+      the mean of 1 - F over the facets that wo sees.
+    - `reflected`: Directional albedo of the reflection with its energy compensation, without a
+      tint.
+    - `ior`: Index of refraction that refracts the view.
     """
 
     value: Callable[[Array, Array, Inputs], Array]

@@ -44,16 +44,9 @@ Values = Callable[[Inputs], dict[str, Array]]
 class UtilityNode:
     """A utility node, by [MaterialX2026].
 
-    Attributes
-    ----------
-    category : str
-    inputs : mapping of str to value
-        The default of each input, a number or a tuple, by name.
-    outputs : mapping of str to str
-        The type of each output, by name.
-    value : callable (inputs) -> dict of str to ndarray, shape (N, components)
-        Every output by name; needs all inputs.
-    variants : tuple of Variant
+    - `inputs`: The default of each input, a number or a tuple, by name.
+    - `outputs`: The type of each output, by name.
+    - `value`: Every output by name; needs all inputs.
     """
 
     category: str
@@ -167,7 +160,7 @@ def _unsquared_scales(inputs: Inputs) -> dict[str, Array]:
 
 
 def _unsquared_variance(inputs: Inputs) -> dict[str, Array]:
-    """Roughnesses with a standard deviation in place of the variance."""
+    """Roughnesses with a standard deviation instead of the variance."""
     pairs = _hair_roughness(inputs)
     return {
         name: np.stack([np.sqrt(pair[..., 0]), pair[..., 1]], -1) for name, pair in pairs.items()
@@ -282,18 +275,7 @@ UTILITIES = (
 
 
 def node(category: str) -> UtilityNode:
-    """The row of UTILITIES of a category.
-
-    Raises
-    ------
-    ValueError
-        If there is none; lists the categories.
-
-    Examples
-    --------
-    >>> node("roughness_dual").value({"roughness": np.array([[0.5, 1.0]])})["out"]
-    array([[0.25, 1.  ]])
-    """
+    """The row of UTILITIES of a category."""
     rows = {row.category: row for row in UTILITIES}
     if category not in rows:
         raise ValueError(f"category must be one of {', '.join(rows)}; got {category!r}")

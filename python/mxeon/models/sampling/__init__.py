@@ -47,16 +47,10 @@ __all__ = [
 class Sampler:
     """A sampler and its density, under one signature.
 
-    Attributes
-    ----------
-    name : str
-        The x of x_sample and x_pdf.
-    sample : callable
-        sample(wo, u, roughness) -> wi, pdf.
-    pdf : callable
-        pdf(wo, wi, roughness).
-    title : str
-        For plots and tables.
+    - `name`: The x of x_sample and x_pdf.
+    - `sample`: sample(wo, u, roughness) -> wi, pdf.
+    - `pdf`: pdf(wo, wi, roughness).
+    - `title`: For plots and tables.
     """
 
     name: str

@@ -3,6 +3,13 @@
 
 Of the clamped cosine, CLTC keeps only what its matrix maps above the horizon, d x + z >= 0. The
 rest has the shape of a lune. See `mxeon.models.sampling.ltc` for the matrix and its density.
+
+- `wo`, `wi` (..., 3): Unit vectors on or above the horizon.
+- `u` (..., 2): Independent uniform random numbers, in [0, 1).
+- `roughness` (...): In [0, 1].
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
 """
 
 from __future__ import annotations
@@ -27,45 +34,16 @@ from mxeon.models.sampling.ltc import ltc_d, ltc_density, ltc_transformed
 def cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled by the clipped transformed cosine, and its density.
 
-    Parameters
-    ----------
-    wo : array_like, shape (..., 3)
-        Unit vectors on or above the horizon.
-    u : array_like, shape (..., 2)
-        Independent uniform random numbers, in [0, 1).
-    roughness : array_like, shape (...)
-        Dimensionless, in [0, 1].
+    `wi` (..., 3): Unit vectors on or above the horizon. `pdf` (...): 1/sr. As a sampler of EON it
+    is biased: `wh` is cut at its own horizon, so directions remain that it never draws and that EON
+    reflects into. Side of the cut: the lune d x + z < 0 lies at x > 0 where d < 0, as in Listing 3,
+    and at x < 0 where d > 0. The fitted d is positive for mu_o > 0.99991, and there the listing
+    keeps the wrong side; this function keeps the right one. [Portsmouth2025], Eqs. (26) and (27),
+    Listing 3.
 
-    Returns
-    -------
-    wi : ndarray, shape (..., 3), float64
-        Unit vectors on or above the horizon.
-    pdf : float64 or ndarray, shape (...)
-        1/sr.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
-
-    Notes
-    -----
-    As a sampler of EON it is biased: `wh` is cut at its own horizon, so directions remain that it
-    never draws and that EON reflects into.
-
-    Side of the cut: the lune d x + z < 0 lies at x > 0 where d < 0, as in Listing 3, and at x < 0
-    where d > 0. The fitted d is positive for mu_o > 0.99991, and there the listing keeps the
-    wrong side; this function keeps the right one.
-
-    References
-    ----------
-    [Portsmouth2025], Eqs. (26) and (27), Listing 3.
-
-    Examples
-    --------
-    >>> wi, pdf = cltc_sample([0.6, 0.0, 0.8], [0.25, 0.5], 1.0)
-    >>> bool(np.isclose(pdf, cltc_pdf([0.6, 0.0, 0.8], wi, 1.0), rtol=1e-14))
-    True
+        >>> wi, pdf = cltc_sample([0.6, 0.0, 0.8], [0.25, 0.5], 1.0)
+        >>> bool(np.isclose(pdf, cltc_pdf([0.6, 0.0, 0.8], wi, 1.0), rtol=1e-14))
+        True
     """
     wo, u, roughness = checked_draw(wo, u, roughness=roughness)
     u1, u2 = unpack_uniforms(u)
@@ -76,28 +54,11 @@ def cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Arra
 def cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     """Density of `cltc_sample` at `wi`, in solid angle.
 
-    Errors as those of `cltc_sample`.
+    Result (...): 1/sr; 0 for the directions that it never draws. [Portsmouth2025], Eqs. (23), (24)
+    and (27), Listing 3.
 
-    Parameters
-    ----------
-    wo, wi : array_like, shape (..., 3)
-        Unit vectors on or above the horizon.
-    roughness : array_like, shape (...)
-        Dimensionless, in [0, 1].
-
-    Returns
-    -------
-    float64 or ndarray, shape (...)
-        1/sr; 0 for the directions that it never draws.
-
-    References
-    ----------
-    [Portsmouth2025], Eqs. (23), (24) and (27), Listing 3.
-
-    Examples
-    --------
-    >>> round(float(cltc_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 0.0)), 6)
-    0.31831
+        >>> round(float(cltc_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 0.0)), 6)
+        0.31831
     """
     wo, wi, roughness = checked_pdf(wo, wi, roughness=roughness)
     d = ltc_d(wo[..., 2], roughness)
@@ -108,32 +69,16 @@ def cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
 def eon_cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled by the paper's mixture of `cltc` and `uniform`, and its density.
 
-    Parameters and errors as those of `cltc_sample`.
-
-    Returns
-    -------
-    wi : ndarray, shape (..., 3), float64
-        Unit vectors on or above the horizon.
-    pdf : float64 or ndarray, shape (...)
-        Of the mixture, in 1/sr.
-
-    Notes
-    -----
+    `wi` (..., 3): Unit vectors on or above the horizon. `pdf` (...): Of the mixture, in 1/sr.
     Listing 4 takes the uniform lobe for u1 <= P_u and divides u1 by P_u: 0/0 at roughness 0 and
-    u1 = 0. Here the uniform lobe has u1 < P_u, which a zero P_u never meets.
+    u1 = 0. Here the uniform lobe has u1 < P_u, which a zero P_u never meets. [Portsmouth2025],
+    Section 4, Listing 4.
 
-    References
-    ----------
-    [Portsmouth2025], Section 4, Listing 4.
-
-    Examples
-    --------
-    >>> wi, pdf = eon_cltc_sample([0.0, 0.0, 1.0], [0.0, 0.0], 0.0)
-    >>> wi, round(float(pdf), 6)
-    (array([0., 0., 1.]), 0.31831)
+        >>> wi, pdf = eon_cltc_sample([0.0, 0.0, 1.0], [0.0, 0.0], 0.0)
+        >>> wi, round(float(pdf), 6)
+        (array([0., 0., 1.]), 0.31831)
     """
     wo, u, roughness = checked_draw(wo, u, roughness=roughness)
-    # Choose a lobe.
     u1, u2 = unpack_uniforms(u)
     P_u = eon_cltc_probability(wo[..., 2], roughness)
     is_uniform = u1 < P_u
@@ -143,7 +88,6 @@ def eon_cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[
     v = xp.where(is_uniform, u1, u1 - P_u) / length
     rest = xp.where(is_uniform, P_u - u1, 1.0 - u1) / length
     v = xp.minimum(v, below_1(v))
-    # Draw from both.
     clipped, _ = _draw(wo, v, rest, u2, roughness)
     wi = xp.where(is_uniform[..., np.newaxis], uniform_direction(v, rest, u2), clipped)
     return wi, eon_cltc_pdf(wo, wi, roughness)
@@ -153,21 +97,10 @@ def eon_cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[
 def eon_cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     """Density of `eon_cltc_sample` at `wi`, in solid angle.
 
-    Parameters as those of `cltc_pdf`. Errors as those of `cltc_sample`.
+    Result (...): 1/sr. [Portsmouth2025], Section 4, Listing 4.
 
-    Returns
-    -------
-    float64 or ndarray, shape (...)
-        1/sr.
-
-    References
-    ----------
-    [Portsmouth2025], Section 4, Listing 4.
-
-    Examples
-    --------
-    >>> round(float(eon_cltc_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 0.0)), 6)
-    0.31831
+        >>> round(float(eon_cltc_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 0.0)), 6)
+        0.31831
     """
     wo, wi, roughness = checked_pdf(wo, wi, roughness=roughness)
     P_u = eon_cltc_probability(wo[..., 2], roughness)
@@ -218,13 +151,11 @@ def _clipped(u1: Array, rest: Array, u2: Array, d: Array) -> Array:
     wh = around(root(rest), root(u1), u2)
     x, y = wh[..., 0], wh[..., 1]
     xp, kept, cut = array_namespace(x, d), cltc_kept_fraction(d), _cut_fraction(d)
-    # Find the ends of the disk's chord at y.
     half = root(rest + x * x)
     behind = x < 0.0
     far = half + xp.where(behind, -x, x)
     near = rest / far
     ahead, back = xp.where(behind, far, near), xp.where(behind, near, far)
-    # Squeeze it onto the part of it that is kept.
     z = root(kept * ahead * (2.0 * half * cut + kept * back))
     x = half * cut + x * kept
     return stack_xyz(xp.where(d > 0.0, x, -x), y, z)

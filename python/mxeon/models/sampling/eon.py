@@ -19,6 +19,15 @@ Each part is drawn by its inverse distribution. Those of `flat` and `lower` are 
 of `multiple` and `upper` depend on no parameter, and are fitted. The density returned is that of
 the four parts. Directions follow it with a relative error of at most 1.3e-5 of the part: a mean of
 the parts' errors under non-negative weights, so that the sum has no larger error anywhere.
+
+- `wo`, `wi` (..., 3): Unit vectors on or above the horizon.
+- `u` (..., 2): Independent uniform random numbers, in [0, 1).
+- `roughness` (...): In [0, 1].
+- `rho` (...): Gray reflectance for which the sampling is exact, in [0, 1]: one number for each
+  direction. Three of them for three samples of one `wo` might be a color, and are refused.
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
 """
 
 from __future__ import annotations
@@ -74,45 +83,14 @@ def eon_sample(
 ) -> tuple[Array, Array]:
     """Direction sampled proportionally to EON times its cosine, and its density.
 
-    Parameters
-    ----------
-    wo : array_like, shape (..., 3)
-        Unit vectors on or above the horizon.
-    u : array_like, shape (..., 2)
-        Independent uniform random numbers, in [0, 1).
-    roughness : array_like, shape (...)
-        Dimensionless, in [0, 1].
-    rho : array_like, shape (...)
-        Gray reflectance for which the sampling is exact, dimensionless, in [0, 1]: one number for each
-        direction. Three of them for three samples of one `wo` might be a color, and are refused.
+    `wi` (..., 3): Unit vectors, z >= 2^-53. `pdf` (...): `eon_pdf` of `wi`, in 1/sr. Accuracy: `wi`
+    follows `pdf` with a relative error below 1.3e-5 everywhere. The weight over the density that
+    `wi` really has is thus within 1.3e-5 of the albedo, relatively, and its relative variance is
+    below 1.7e-10. docs/sampling.md; the model is [Portsmouth2025], Eqs. (16) and (19).
 
-    Returns
-    -------
-    wi : ndarray, shape (..., 3), float64
-        Unit vectors, z >= 2^-53.
-    pdf : float64 or ndarray, shape (...)
-        `eon_pdf` of `wi`, in 1/sr.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
-
-    Notes
-    -----
-    Accuracy: `wi` follows `pdf` with a relative error below 1.3e-5 everywhere. The weight over
-    the density that `wi` really has is thus within 1.3e-5 of the albedo, relatively, and its
-    relative variance is below 1.7e-10.
-
-    References
-    ----------
-    docs/sampling.md; the model is [Portsmouth2025], Eqs. (16) and (19).
-
-    Examples
-    --------
-    >>> wi, pdf = eon_sample([0.6, 0.0, 0.8], [0.5, 0.25], 0.0)
-    >>> wi.round(6), round(float(pdf), 6)
-    (array([0.      , 0.707107, 0.707107]), 0.225079)
+        >>> wi, pdf = eon_sample([0.6, 0.0, 0.8], [0.5, 0.25], 0.0)
+        >>> wi.round(6), round(float(pdf), 6)
+        (array([0.      , 0.707107, 0.707107]), 0.225079)
     """
     wo, u, roughness, rho = checked_draw(wo, u, roughness=roughness, rho=rho)
     if wo.ndim == 1 and tuple(u.shape) == (3, 2) and tuple(rho.shape) == (3,):
@@ -133,33 +111,13 @@ def eon_sample(
 def eon_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike, *, rho: ArrayLike = 1.0) -> Array:
     """Density of `eon_sample` at `wi`: EON times the cosine, divided by its integral.
 
-    Errors as those of `eon_sample`.
+    Result (...): 1/sr. At rho = 1 it is `eon_brdf` at reflectance 1, times the cosine of `wi`.
+    Accuracy: relative error below 1e-14 of the quotient f cos(theta_i) / E(theta_o). It has a limit
+    at rho = 0, where both f and E vanish; that limit is FON's. [Portsmouth2025], Eqs. (16), (19)
+    and (28).
 
-    Parameters
-    ----------
-    wo, wi : array_like, shape (..., 3)
-        Unit vectors on or above the horizon.
-    roughness, rho
-        As those of `eon_sample`.
-
-    Returns
-    -------
-    float64 or ndarray, shape (...)
-        1/sr. At rho = 1 it is `eon_brdf` at reflectance 1, times the cosine of `wi`.
-
-    Notes
-    -----
-    Accuracy: relative error below 1e-14 of the quotient f cos(theta_i) / E(theta_o). It has a
-    limit at rho = 0, where both f and E vanish; that limit is FON's.
-
-    References
-    ----------
-    [Portsmouth2025], Eqs. (16), (19) and (28).
-
-    Examples
-    --------
-    >>> round(float(eon_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 1.0)), 6)
-    0.332784
+        >>> round(float(eon_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 1.0)), 6)
+        0.332784
     """
     wo, wi, roughness, rho = checked_pdf(wo, wi, roughness=roughness, rho=rho)
     return _density(wo, wi, rho, roughness)

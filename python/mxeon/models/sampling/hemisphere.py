@@ -2,6 +2,12 @@
 """Sampling of the hemisphere independent of the material, and the frame of wo.
 
 Directions leave the surface, local frame with the normal +z. Random numbers `u` lie in [0, 1).
+
+- `u` (..., 2): Independent uniform random numbers, in [0, 1).
+- `wi` (..., 3): Unit vectors on or above the horizon.
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
 """
 
 from __future__ import annotations
@@ -19,32 +25,12 @@ from mxeon.models.core.shapes import broadcastable
 def uniform_sample(u: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled uniformly on the hemisphere, and its density.
 
-    Parameters
-    ----------
-    u : array_like, shape (..., 2)
-        Independent uniform random numbers, in [0, 1).
+    `wi` (..., 3): Unit vectors, z = u[..., 0]. `pdf` (...): 1/(2 pi), in 1/sr. [Portsmouth2025],
+    Listing 4.
 
-    Returns
-    -------
-    wi : ndarray, shape (..., 3), float64
-        Unit vectors, z = u[..., 0].
-    pdf : float64 or ndarray, shape (...)
-        1/(2 pi), in 1/sr.
-
-    Raises
-    ------
-    ValueError
-        If `u` leaves its range or its last axis is not 2; names the first bad element.
-
-    References
-    ----------
-    [Portsmouth2025], Listing 4.
-
-    Examples
-    --------
-    >>> wi, pdf = uniform_sample([0.8, 0.0])
-    >>> wi.round(12), round(float(pdf), 6)
-    (array([0.6, 0. , 0.8]), 0.159155)
+        >>> wi, pdf = uniform_sample([0.8, 0.0])
+        >>> wi.round(12), round(float(pdf), 6)
+        (array([0.6, 0. , 0.8]), 0.159155)
     """
     u1, u2 = unpack_uniforms(u)
     wi = uniform_direction(u1, 1.0 - u1, u2)
@@ -55,25 +41,10 @@ def uniform_sample(u: ArrayLike) -> tuple[Array, Array]:
 def uniform_pdf(wi: ArrayLike) -> Array:
     """Density of `uniform_sample` at `wi`, in solid angle.
 
-    Parameters
-    ----------
-    wi : array_like, shape (..., 3)
-        Unit vectors on or above the horizon.
+    Result (...): 1/(2 pi), in 1/sr.
 
-    Returns
-    -------
-    float64 or ndarray, shape (...)
-        1/(2 pi), in 1/sr.
-
-    Raises
-    ------
-    ValueError
-        If a direction is not unit or points below the horizon; names the first such element.
-
-    Examples
-    --------
-    >>> round(float(uniform_pdf([0.0, 0.6, 0.8])), 6)
-    0.159155
+        >>> round(float(uniform_pdf([0.0, 0.6, 0.8])), 6)
+        0.159155
     """
     return _uniform_density(checked_directions("wi", wi))
 
@@ -82,24 +53,11 @@ def uniform_pdf(wi: ArrayLike) -> Array:
 def cosine_sample(u: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled proportionally to its cosine with the normal, and its density.
 
-    Parameters and errors as those of `uniform_sample`.
+    `wi` (..., 3): Unit vectors, z > 0. `pdf` (...): z / pi, in 1/sr. [Portsmouth2025], Eq. (21).
 
-    Returns
-    -------
-    wi : ndarray, shape (..., 3), float64
-        Unit vectors, z > 0.
-    pdf : float64 or ndarray, shape (...)
-        z / pi, in 1/sr.
-
-    References
-    ----------
-    [Portsmouth2025], Eq. (21).
-
-    Examples
-    --------
-    >>> wi, pdf = cosine_sample([0.36, 0.0])
-    >>> wi.round(12), round(float(pdf), 6)
-    (array([0.6, 0. , 0.8]), 0.254648)
+        >>> wi, pdf = cosine_sample([0.36, 0.0])
+        >>> wi.round(12), round(float(pdf), 6)
+        (array([0.6, 0. , 0.8]), 0.254648)
     """
     u1, u2 = unpack_uniforms(u)
     wi = around(root(1.0 - u1), root(u1), u2)
@@ -110,17 +68,10 @@ def cosine_sample(u: ArrayLike) -> tuple[Array, Array]:
 def cosine_pdf(wi: ArrayLike) -> Array:
     """Density of `cosine_sample` at `wi`, in solid angle.
 
-    Parameters and errors as those of `uniform_pdf`.
+    Result (...): z / pi, in 1/sr.
 
-    Returns
-    -------
-    float64 or ndarray, shape (...)
-        z / pi, in 1/sr.
-
-    Examples
-    --------
-    >>> round(float(cosine_pdf([0.6, 0.0, 0.8])), 6)
-    0.254648
+        >>> round(float(cosine_pdf([0.6, 0.0, 0.8])), 6)
+        0.254648
     """
     (w,) = broadcastable({"wi": checked_directions("wi", wi)}, {})
     return w[..., 2] / np.pi

@@ -5,6 +5,13 @@ The surface is rotated about the normal until `wo` has azimuth 0. A direction `w
 under a clamped cosine is mapped by M = [[a, 0, b], [0, c, 0], [d, 0, 1]]:
 
     wi = M wh / |M wh|,      p(wi) = p(wh) |M wh|^3 / det M.
+
+- `wo`, `wi` (..., 3): Unit vectors on or above the horizon.
+- `u` (..., 2): Independent uniform random numbers, in [0, 1).
+- `roughness` (...): In [0, 1].
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
 """
 
 from __future__ import annotations
@@ -28,41 +35,13 @@ from mxeon.models.sampling.hemisphere import (
 def ltc0_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled by the transformed cosine without the coefficient d, and its density.
 
-    Parameters
-    ----------
-    wo : array_like, shape (..., 3)
-        Unit vectors on or above the horizon.
-    u : array_like, shape (..., 2)
-        Independent uniform random numbers, in [0, 1).
-    roughness : array_like, shape (...)
-        Dimensionless, in [0, 1].
+    `wi` (..., 3): Unit vectors above the horizon. `pdf` (...): 1/sr. The paper fits a, b and c
+    again for d = 0 and prints no result. Here they are those of the general fit. [Portsmouth2025],
+    Section 4, Eqs. (22) to (25), Listing 2.
 
-    Returns
-    -------
-    wi : ndarray, shape (..., 3), float64
-        Unit vectors above the horizon.
-    pdf : float64 or ndarray, shape (...)
-        1/sr.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
-
-    Notes
-    -----
-    The paper fits a, b and c again for d = 0 and prints no result. Here they are those of the
-    general fit.
-
-    References
-    ----------
-    [Portsmouth2025], Section 4, Eqs. (22) to (25), Listing 2.
-
-    Examples
-    --------
-    >>> wi, pdf = ltc0_sample([0.6, 0.0, 0.8], [0.25, 0.5], 1.0)
-    >>> wi.round(6), round(float(pdf), 6)
-    (array([-0.310077,  0.      ,  0.950711]), 0.227343)
+        >>> wi, pdf = ltc0_sample([0.6, 0.0, 0.8], [0.25, 0.5], 1.0)
+        >>> wi.round(6), round(float(pdf), 6)
+        (array([-0.310077,  0.      ,  0.950711]), 0.227343)
     """
     wo, u, roughness = checked_draw(wo, u, roughness=roughness)
     return ltc_transformed(wo, cosine_sample(u)[0], roughness, 0.0)
@@ -72,28 +51,10 @@ def ltc0_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Arra
 def ltc0_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     """Density of `ltc0_sample` at `wi`, in solid angle.
 
-    Errors as those of `ltc0_sample`.
+    Result (...): 1/sr. [Portsmouth2025], Eqs. (23) and (24).
 
-    Parameters
-    ----------
-    wo, wi : array_like, shape (..., 3)
-        Unit vectors on or above the horizon.
-    roughness : array_like, shape (...)
-        Dimensionless, in [0, 1].
-
-    Returns
-    -------
-    float64 or ndarray, shape (...)
-        1/sr.
-
-    References
-    ----------
-    [Portsmouth2025], Eqs. (23) and (24).
-
-    Examples
-    --------
-    >>> round(float(ltc0_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 0.0)), 6)
-    0.31831
+        >>> round(float(ltc0_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 0.0)), 6)
+        0.31831
     """
     wo, wi, roughness = checked_pdf(wo, wi, roughness=roughness)
     return ltc_density(wo, wi, roughness, 0.0)
@@ -103,29 +64,13 @@ def ltc0_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
 def ltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled by the transformed cosine, may be below the horizon; and its density.
 
-    Parameters and errors as those of `ltc0_sample`.
-
-    Returns
-    -------
-    wi : ndarray, shape (..., 3), float64
-        Unit vectors; those with z < 0 are wasted, their weight is 0.
-    pdf : float64 or ndarray, shape (...)
-        1/sr.
-
-    Notes
-    -----
+    `wi` (..., 3): Unit vectors; those with z < 0 are wasted, their weight is 0. `pdf` (...): 1/sr.
     A sample is wasted with probability (1 - 1/sqrt(1 + d^2))/2: at roughness 1 that is 0.0534 at
-    grazing, and less everywhere else.
+    grazing, and less everywhere else. [Portsmouth2025], Section 4, Eqs. (22) to (25), Listing 2.
 
-    References
-    ----------
-    [Portsmouth2025], Section 4, Eqs. (22) to (25), Listing 2.
-
-    Examples
-    --------
-    >>> wi, pdf = ltc_sample([1.0, 0.0, 0.0], [0.95, 0.0], 1.0)
-    >>> float(wi[2]) < 0.0
-    True
+        >>> wi, pdf = ltc_sample([1.0, 0.0, 0.0], [0.95, 0.0], 1.0)
+        >>> float(wi[2]) < 0.0
+        True
     """
     wo, u, roughness = checked_draw(wo, u, roughness=roughness)
     return ltc_transformed(wo, cosine_sample(u)[0], roughness, ltc_d(wo[..., 2], roughness))
@@ -135,21 +80,11 @@ def ltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array
 def ltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     """Density of `ltc_sample` at `wi`, above the horizon, in solid angle.
 
-    Parameters as those of `ltc0_pdf`. Errors as those of `ltc0_sample`.
+    Result (...): 1/sr; its integral over the hemisphere is the probability that no sample is
+    wasted. [Portsmouth2025], Eqs. (23) and (24).
 
-    Returns
-    -------
-    float64 or ndarray, shape (...)
-        1/sr; its integral over the hemisphere is the probability that no sample is wasted.
-
-    References
-    ----------
-    [Portsmouth2025], Eqs. (23) and (24).
-
-    Examples
-    --------
-    >>> round(float(ltc_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 0.0)), 6)
-    0.31831
+        >>> round(float(ltc_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 0.0)), 6)
+        0.31831
     """
     wo, wi, roughness = checked_pdf(wo, wi, roughness=roughness)
     return ltc_density(wo, wi, roughness, ltc_d(wo[..., 2], roughness))

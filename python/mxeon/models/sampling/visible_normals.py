@@ -3,6 +3,13 @@
 
 The surface is stretched until its microfacets are a hemisphere; their visible normals are then
 half vectors of the stretched `wo` and a direction drawn uniformly on a spherical cap.
+
+- `wo`, `wi` (..., 3): Unit vectors, wo on or above the horizon.
+- `u` (..., 2): Independent uniform random numbers, in [0, 1).
+- `roughness` (..., 2) or (): alpha along tangent and bitangent, in [0, 1]; a number is isotropic.
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
 """
 
 from __future__ import annotations
@@ -24,40 +31,13 @@ UP = 0.0, 0.0, 1.0
 def ggx_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Direction reflected by a visible GGX normal, may be below the horizon; and its density.
 
-    Parameters
-    ----------
-    wo : array_like, shape (..., 3)
-        Unit vectors on or above the horizon.
-    u : array_like, shape (..., 2)
-        Independent uniform random numbers, in [0, 1).
-    roughness : array_like, shape (..., 2) or ()
-        alpha along tangent and bitangent, dimensionless, in [0, 1]; a number is isotropic.
+    `wi` (..., 3): Unit vectors; those with z < 0 are wasted, their weight is 0. `pdf` (...): 1/sr.
+    Where an alpha is 0 there is no density, and it counts as 0. Value times cosine over density is
+    F G2 / G1(wo). [Dupuy2023], Section 3; [Heitz2014], Eq. (16).
 
-    Returns
-    -------
-    wi : ndarray, shape (..., 3), float64
-        Unit vectors; those with z < 0 are wasted, their weight is 0.
-    pdf : float64 or ndarray, shape (...)
-        1/sr. Where an alpha is 0 there is no density, and it counts as 0.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
-
-    Notes
-    -----
-    Value times cosine over density is F G2 / G1(wo).
-
-    References
-    ----------
-    [Dupuy2023], Section 3; [Heitz2014], Eq. (16).
-
-    Examples
-    --------
-    >>> wi, pdf = ggx_sample([0.6, 0.0, 0.8], [0.25, 0.5], [0.5, 0.25])
-    >>> wi.round(6), round(float(pdf), 6)
-    (array([-0.835004,  0.      ,  0.550244]), 0.649904)
+        >>> wi, pdf = ggx_sample([0.6, 0.0, 0.8], [0.25, 0.5], [0.5, 0.25])
+        >>> wi.round(6), round(float(pdf), 6)
+        (array([-0.835004,  0.      ,  0.550244]), 0.649904)
     """
     u1, u2 = unpack_uniforms(u)
     stacked = array_namespace(u1).stack([u1, u2], axis=-1)
@@ -74,28 +54,11 @@ def ggx_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
 
         pdf = G1(wo) D(wh) / (4 mu_o), and 0 where wh is below the horizon
 
-    Errors as those of `ggx_sample`.
+    Result (...): 1/sr; its integral over the upper hemisphere is the probability that no sample is
+    wasted. [Heitz2014], Eqs. (16), (43).
 
-    Parameters
-    ----------
-    wo, wi : array_like, shape (..., 3)
-        Unit vectors, wo on or above the horizon.
-    roughness : array_like, shape (..., 2) or ()
-        alpha along tangent and bitangent, dimensionless, in [0, 1]; a number is isotropic.
-
-    Returns
-    -------
-    float64 or ndarray, shape (...)
-        1/sr; its integral over the upper hemisphere is the probability that no sample is wasted.
-
-    References
-    ----------
-    [Heitz2014], Eqs. (16), (43).
-
-    Examples
-    --------
-    >>> round(float(ggx_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], [0.5, 0.25])), 6)
-    0.455389
+        >>> round(float(ggx_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], [0.5, 0.25])), 6)
+        0.455389
     """
     vectors = {"wo": checked_directions("wo", wo), "wi": checked_sphere("wi", wi)}
     vectors["roughness"] = checked_roughness(roughness)

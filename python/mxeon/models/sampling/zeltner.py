@@ -4,6 +4,13 @@
 A direction `wh` drawn under a clamped cosine, in the frame where wo has azimuth 0, is mapped by
 M = [[1/a, 0, -b/a], [0, 1/a, 0], [0, 0, 1]]: wi = M wh / |M wh|. M keeps z, so no sample is wasted,
 and the value times the cosine over the density is color E(mu_o) for every sample.
+
+- `wo`, `wi` (..., 3): Unit vectors on or above the horizon.
+- `u` (..., 2): Independent uniform random numbers, in [0, 1).
+- `roughness` (...): In [0, 1]; below 0.01 it counts as 0.01.
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
 """
 
 from __future__ import annotations
@@ -28,36 +35,12 @@ from mxeon.models.sheen import zeltner_matrix
 def zeltner_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled proportionally to the Zeltner lobe times the cosine, and its density.
 
-    Parameters
-    ----------
-    wo : array_like, shape (..., 3)
-        Unit vectors on or above the horizon.
-    u : array_like, shape (..., 2)
-        Independent uniform random numbers, in [0, 1).
-    roughness : array_like, shape (...)
-        Dimensionless, in [0, 1]; below 0.01 it counts as 0.01.
+    `wi` (..., 3): Unit vectors above the horizon. `pdf` (...): 1/sr. [MaterialX2026], Zeltner Sheen
+    Model, LTC Inverse Matrix.
 
-    Returns
-    -------
-    wi : ndarray, shape (..., 3), float64
-        Unit vectors above the horizon.
-    pdf : float64 or ndarray, shape (...)
-        1/sr.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
-
-    References
-    ----------
-    [MaterialX2026], Zeltner Sheen Model, LTC Inverse Matrix.
-
-    Examples
-    --------
-    >>> wi, pdf = zeltner_sample([0.6, 0.0, 0.8], [0.25, 0.5], 1.0)
-    >>> wi.round(6), round(float(pdf), 6)
-    (array([-0.550347,  0.      ,  0.834936]), 0.236007)
+        >>> wi, pdf = zeltner_sample([0.6, 0.0, 0.8], [0.25, 0.5], 1.0)
+        >>> wi.round(6), round(float(pdf), 6)
+        (array([-0.550347,  0.      ,  0.834936]), 0.236007)
     """
     wo, u, roughness = checked_draw(wo, u, roughness=roughness)
     wh = cosine_sample(u)[0]
@@ -74,28 +57,10 @@ def zeltner_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[A
 def zeltner_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     """Density of `zeltner_sample` at `wi`, in solid angle.
 
-    Errors as those of `zeltner_sample`.
+    Result (...): 1/sr. [MaterialX2026], Zeltner Sheen Model, Cosine-Weighted BRDF.
 
-    Parameters
-    ----------
-    wo, wi : array_like, shape (..., 3)
-        Unit vectors on or above the horizon.
-    roughness : array_like, shape (...)
-        Dimensionless, in [0, 1]; below 0.01 it counts as 0.01.
-
-    Returns
-    -------
-    float64 or ndarray, shape (...)
-        1/sr.
-
-    References
-    ----------
-    [MaterialX2026], Zeltner Sheen Model, Cosine-Weighted BRDF.
-
-    Examples
-    --------
-    >>> round(float(zeltner_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 1.0)), 6)
-    0.24421
+        >>> round(float(zeltner_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 1.0)), 6)
+        0.24421
     """
     wo, wi, roughness = checked_pdf(wo, wi, roughness=roughness)
     a, b = zeltner_matrix(at_most(wo[..., 2], 1.0), roughness)

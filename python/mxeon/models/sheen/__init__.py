@@ -2,6 +2,13 @@
 """Sheen of [MaterialX2026], section `sheen_bsdf`: values in 1/sr and without the cosine.
 
 The node's input `color` is a tint that scales the lobe; its albedos are those at unit color.
+
+- `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
+- `color` (..., C): Tint per channel, in [0, 1]; a number is one channel.
+- `roughness` (...): In [0, 1]; that of Zeltner's sheen counts as 0.01 below 0.01.
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
 """
 
 from __future__ import annotations
@@ -41,42 +48,16 @@ def conty_kulla_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: 
         f = color D / (4 (mu_o + mu_i - mu_o mu_i)),
         D = (2 + 1 / roughness) sin(theta_h)^(1 / roughness) / (2 pi)
 
-    Parameters
-    ----------
-    wo, wi : array_like, shape (..., 3)
-        Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
-    color : array_like, shape (..., C)
-        Tint per channel, dimensionless, in [0, 1]; a number is one channel.
-    roughness : array_like, shape (...)
-        Dimensionless, in [0, 1].
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        BRDF in 1/sr, at least 0, finite, unbounded at grazing.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
-
-    Notes
-    -----
-    Roughness 0 has the limit of every pair that does not graze on both sides: 0. So has the half
-    vector along the normal, at every roughness.
-    Where both directions graze (mu_o + mu_i below 1e-300) there is no limit, and f counts as 0.
-    Values beyond float64, which need roughness below 1e-8 or so and such a pair, stop at its largest.
-    The text clamps nothing. MaterialX keeps roughness above 0.005 and cosines above 1e-6.
-    Accuracy: error below 66 / roughness times 2^-53 of f + 1 / pi.
-
-    References
-    ----------
+    Result (..., C): BRDF in 1/sr, at least 0, finite, unbounded at grazing. Roughness 0 has the
+    limit of every pair that does not graze on both sides: 0. So has the half vector along the
+    normal, at every roughness. Where both directions graze (mu_o + mu_i below 1e-300) there is no
+    limit, and f counts as 0. Values beyond float64, which need roughness below 1e-8 or so and such
+    a pair, stop at its largest. The text clamps nothing. MaterialX keeps roughness above 0.005 and
+    cosines above 1e-6. Accuracy: error below 66 / roughness times 2^-53 of f + 1 / pi.
     [MaterialX2026], section `sheen_bsdf`, Conty-Kulla sheen equations; [ContyKulla2017], Eq. (2).
 
-    Examples
-    --------
-    >>> conty_kulla_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
-    array([0.017299, 0.069198])
+        >>> conty_kulla_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
+        array([0.017299, 0.069198])
     """
     return _tinted(_conty_kulla_formula, wo, wi, color, roughness)
 
@@ -87,34 +68,14 @@ def zeltner_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: Arra
 
         f = color E(mu_o) a^2 / (pi |M^-1 wi|^4),  M^-1 = (a 0 b; 0 a 0; 0 0 1)
 
-    Errors as those of `conty_kulla_brdf`.
+    Result (..., C): BRDF in 1/sr. It has the sign of E, see `zeltner_albedo_dir`. The text states f
+    times the cosine; the cosine is that of D_o times |M^-1 wi|, and cancels. The frame of M is
+    turned so that wo has azimuth 0. Along the normal b is 0 and any frame serves. Accuracy: as that
+    of `conty_kulla_brdf`. [MaterialX2026], Zeltner Sheen Model; [Zeltner2022], whose omega_i is wo
+    here.
 
-    Parameters
-    ----------
-    wo, wi, color
-        As those of `conty_kulla_brdf`.
-    roughness : array_like, shape (...)
-        Dimensionless, in [0, 1]; below 0.01 it counts as 0.01.
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        BRDF in 1/sr. It has the sign of E, see `zeltner_albedo_dir`.
-
-    Notes
-    -----
-    The text states f times the cosine; the cosine is that of D_o times |M^-1 wi|, and cancels.
-    The frame of M is turned so that wo has azimuth 0. Along the normal b is 0 and any frame serves.
-    Accuracy: as that of `conty_kulla_brdf`.
-
-    References
-    ----------
-    [MaterialX2026], Zeltner Sheen Model; [Zeltner2022], whose omega_i is wo here.
-
-    Examples
-    --------
-    >>> zeltner_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
-    array([0.002916, 0.011662])
+        >>> zeltner_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
+        array([0.002916, 0.011662])
     """
     return _tinted(_zeltner_formula, wo, wi, color, roughness)
 
@@ -125,37 +86,15 @@ def zeltner_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
 
         E = exp(-((mu - m) / s)^2 / 2) / (s sqrt(2 pi)) + o
 
-    Parameters
-    ----------
-    mu : array_like, shape M
-        Cosine of the polar angle of wo, dimensionless, in [0, 1].
-    roughness : array_like, shape R
-        Dimensionless, in [0, 1]; below 0.01 it counts as 0.01.
+    - `mu`: Cosine of the polar angle of wo, in [0, 1].
 
-    Returns
-    -------
-    ndarray, shape broadcast(M, R), float64
-        Dimensionless, in [-2.2e-5, 0.745]. The fit falls below 0 for roughness in [0.03, 0.132] away
-        from grazing; text and shaders leave it so.
+    Result: in [-2.2e-5, 0.745]. The fit falls below 0 for roughness in [0.03, 0.132] away from
+    grazing; text and shaders leave it so. This is the integral of `zeltner_brdf` times the cosine,
+    not a fit of it: M keeps the sign of z, so the transformed cosine has its whole mass above the
+    horizon. [MaterialX2026], Zeltner Sheen Model, Directional Albedo.
 
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
-
-    Notes
-    -----
-    This is the integral of `zeltner_brdf` times the cosine, not a fit of it: M keeps the sign of z,
-    so the transformed cosine has its whole mass above the horizon.
-
-    References
-    ----------
-    [MaterialX2026], Zeltner Sheen Model, Directional Albedo.
-
-    Examples
-    --------
-    >>> round(float(zeltner_albedo_dir(0.3, 0.5)), 6)
-    0.315212
+        >>> round(float(zeltner_albedo_dir(0.3, 0.5)), 6)
+        0.315212
     """
     return _zeltner_albedo(*checked_numbers(mu=mu, roughness=roughness))
 
@@ -184,7 +123,6 @@ def _tinted(
 
 def _conty_kulla_formula(wo: Array, wi: Array, tint: Array, roughness: Array) -> Array:
     """Conty and Kulla's lobe, (C, ...), on valid arrays."""
-    # Find the squared sine and cosine of the half vector.
     xp = array_namespace(wo, wi, roughness)
     least = max(LEAST, least_normal(wo))  # that of float32 is larger
     mu_o, mu_i, _ = cosines(wo, wi)
@@ -198,7 +136,6 @@ def _conty_kulla_formula(wo: Array, wi: Array, tint: Array, roughness: Array) ->
     roughness, flat = guarded(roughness, smooth, 1.0), guarded(flat, smooth, 1.0)
     upright, total = guarded(upright, smooth, 1.0), guarded(total, smooth, 2.0)
     divisor = guarded(divisor, smooth, 1.0)
-    # Evaluate the lobe in logarithms.
     shape = 0.5 / xp.maximum(roughness, least)
     with np.errstate(divide="ignore", over="ignore"):
         ratio = flat / xp.maximum(total, least)
@@ -207,7 +144,6 @@ def _conty_kulla_formula(wo: Array, wi: Array, tint: Array, roughness: Array) ->
         above = guarded(upright / xp.maximum(total, least), ~small, 0.5)
         log_sine = xp.where(small, xp.log(ratio), xp.log1p(-above))
         lobe = (1.0 + shape) * xp.exp(shape * log_sine) / (4.0 * np.pi * xp.maximum(divisor, least))
-    # Set the limits to 0.
     counted = smooth if xp is not NUMPY else counted
     return tint * xp.where(counted, at_most(lobe, largest(wo)), 0.0)
 
@@ -222,7 +158,6 @@ def _zeltner_formula(wo: Array, wi: Array, tint: Array, roughness: Array) -> Arr
     x = xp.where(turned, s, wi[..., 0]) / xp.where(turned, sine, 1.0)
     cross = wo[..., 0] * wi[..., 1] - wo[..., 1] * wi[..., 0]
     y = xp.where(turned, cross, wi[..., 1]) / xp.where(turned, sine, 1.0)
-    # Transform it, and the cosine with it.
     a, b = zeltner_matrix(mu_o, roughness)
     length = xp.square(a * x + b * mu_i) + xp.square(a * y) + xp.square(mu_i)
     return tint * (_zeltner_albedo(mu_o, roughness) * xp.square(a / length) / np.pi)

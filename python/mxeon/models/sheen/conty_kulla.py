@@ -33,45 +33,24 @@ def conty_kulla_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
 
         E(mu) = integral of D / (4 (mu + mu_i - mu mu_i)) mu_i over the hemisphere of wi
 
-    Parameters
-    ----------
-    mu : array_like, shape M
-        Cosine of the polar angle of wo, dimensionless, in [0, 1].
-    roughness : array_like, shape R
-        Dimensionless, in [0, 1].
+    - `mu`: Cosine of the polar angle of wo, in [0, 1].
+    - `roughness`: In [0, 1].
 
-    Returns
-    -------
-    ndarray, shape broadcast(M, R), float64
-        Dimensionless, at least 0. It exceeds 1 at grazing below a roughness of 0.2099 and
-        has no bound: about sqrt(1 / (2 pi roughness)) at mu = 0. Shaders clamp it to 1; the text is silent.
+    Result: at least 0. It exceeds 1 at grazing below a roughness of 0.2099 and has no bound: about
+    sqrt(1 / (2 pi roughness)) at mu = 0. Shaders clamp it to 1; the text is silent. Roughness 0 has
+    the albedo of its BRDF, 0, also at mu = 0, where the limit is infinite. Accuracy: relative error
+    below 1e-11 at mu = 0, absolute below 1e-11 elsewhere, for roughness >= 1e-4. Form: see the
+    module. At mu = 1 it is 2^-p / (2 (p + 2)), p = 1 / (2 roughness). Raises `ValueError` if an
+    argument leaves its range. [MaterialX2026], sections `sheen_bsdf` and Directional Albedo and
+    Energy Conservation.
 
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
-
-    Notes
-    -----
-    Roughness 0 has the albedo of its BRDF, 0, also at mu = 0, where the limit is infinite.
-    Accuracy: relative error below 1e-11 at mu = 0, absolute below 1e-11 elsewhere, for roughness >= 1e-4.
-    Form: see the module. At mu = 1 it is 2^-p / (2 (p + 2)), p = 1 / (2 roughness).
-
-    References
-    ----------
-    [MaterialX2026], sections `sheen_bsdf` and Directional Albedo and Energy Conservation.
-
-    Examples
-    --------
-    >>> round(float(conty_kulla_albedo_dir(1.0, 0.5)), 12)
-    0.083333333333
+        >>> round(float(conty_kulla_albedo_dir(1.0, 0.5)), 12)
+        0.083333333333
     """
-    # Check and broadcast the arguments.
     mu, roughness = np.broadcast_arrays(*checked_numbers(mu=mu, roughness=roughness))
     cosines, shapes = mu.ravel(), np.where(roughness > 0.0, np.maximum(roughness, LEAST), 0.0)
     shapes = shapes.ravel()
     albedo = np.zeros(cosines.shape)
-    # Integrate blocks on each side of STEEP.
     step = max(1, BLOCK // len(_rule()[0]))
     for steep in (False, True):
         chosen = np.flatnonzero(((cosines > STEEP) == steep) & (shapes > 0.0))
@@ -84,7 +63,6 @@ def conty_kulla_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
 def _albedo(mu: Array, roughness: Array, steep: bool) -> Array:
     """Albedo for cosines on one side of `STEEP`, roughness above 0."""
     delta = 0.5 * np.arcsin(mu)
-    # Integrate over the latitude of the half vector, on both sides of a kink.
     x, weight = _rule()
     p = 0.5 / roughness
     albedo = np.zeros(mu.shape)
@@ -96,10 +74,8 @@ def _albedo(mu: Array, roughness: Array, steep: bool) -> Array:
         width = np.minimum(span, 10.0 * np.sqrt(roughness))
         above = width[:, None] * x  # latitude above the lower end, and below the upper one
         below = width[:, None] * x[::-1] + (span - width)[:, None]
-        # Integrate over its azimuth.
         latitude = low[:, None] + above
         inner = _azimuths(mu[:, None], latitude, above, below, partial, steep)
-        # Weight it by the distribution.
         with np.errstate(divide="ignore"):
             density = np.exp(p[:, None] * np.log1p(-np.square(np.sin(latitude))))
         integrand = (density * np.cos(latitude) * inner) @ weight

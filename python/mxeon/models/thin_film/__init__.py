@@ -2,6 +2,16 @@
 """Airy reflectances of the microfacet nodes of pbrlib under a thin film, in linear RGB.
 
 A film of thickness 0 is the node's own Fresnel curve. `Form` says what the specification leaves open.
+
+- `mu` (...): Cosine between direction and microfacet normal, in [0, 1].
+- `thickness` (...): Of the film, in nm, in [0, 1e9].
+- `film_ior` (...): Index of the film, in [1, 1e50].
+- `ior` (...): Index of the dielectric, in [0, 1e50]; of a conductor see its function.
+- `form`: Choices that the specification leaves open.
+
+Result (..., 3): linear RGB, in [0, 1]. Raises `ValueError`, which names the first bad element, if
+an argument leaves its range or the shapes do not broadcast. [MaterialX2026], Thin-Film Iridescence
+Model; [Belcour2017].
 """
 
 from __future__ import annotations
@@ -39,43 +49,14 @@ def film_dielectric(
 ) -> Array:
     """Reflectance of a dielectric under a thin film for unpolarized light.
 
-    Parameters
-    ----------
-    mu : array_like, shape (...)
-        Cosine between direction and microfacet normal, dimensionless, in [0, 1].
-    thickness : array_like, shape (...)
-        Of the film, in nm, in [0, 1e9].
-    film_ior, ior : array_like, shape (...)
-        Indices of the film, at least 1, and of the dielectric, in [0, 1e50].
-    form : Form
-        Choices that the specification leaves open.
+    Below index 1 the specification's phases of the first interface do not hold: the s polarization has
+    its phase of pi from a film that is denser than the vacuum. Accuracy: the infinite sum is within
+    1e-6, for cosines above 0.01.
 
-    Returns
-    -------
-    ndarray, shape (..., 3), float64
-        Linear RGB, in [0, 1].
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
-
-    Notes
-    -----
-    Below 1 the specification's phases of the first interface do not hold: the s polarization has its
-    phase of pi from a film that is denser than the vacuum. Accuracy: the infinite sum is within 1e-6,
-    for cosines above 0.01.
-
-    References
-    ----------
-    [MaterialX2026], Thin-Film Iridescence Model; [Belcour2017].
-
-    Examples
-    --------
-    >>> film_dielectric(1.0, [0.0, 100.0, 300.0], 1.38, 1.5).round(4)
-    array([[0.04  , 0.04  , 0.04  ],
-           [0.015 , 0.014 , 0.0178],
-           [0.0209, 0.0142, 0.0348]])
+        >>> film_dielectric(1.0, [0.0, 100.0, 300.0], 1.38, 1.5).round(4)
+        array([[0.04  , 0.04  , 0.04  ],
+               [0.015 , 0.014 , 0.0178],
+               [0.0209, 0.0142, 0.0348]])
     """
     return _reflectance(
         "dielectric_bsdf",
@@ -96,29 +77,14 @@ def film_conductor(
 ) -> Array:
     """Reflectance of a conductor under a thin film for unpolarized light.
 
-    Result and errors as those of `film_dielectric`.
+    - `ior`, `extinction` (..., 3): Complex index of refraction per channel, in [0, 1e50].
 
-    Parameters
-    ----------
-    mu, thickness, film_ior, form
-        As those of `film_dielectric`.
-    ior, extinction : array_like, shape (..., 3)
-        Complex index of refraction per channel, in [0, 1e50].
-
-    Notes
-    -----
     Accuracy: as that of `film_dielectric`; at grazing angles, where all orders count, within 1e-4.
 
-    References
-    ----------
-    [MaterialX2026], Thin-Film Iridescence Model; [Belcour2017].
-
-    Examples
-    --------
-    >>> gold = [0.183, 0.421, 1.373], [3.424, 2.346, 1.770]
-    >>> film_conductor(1.0, [0.0, 200.0], 1.5, *gold).round(4)
-    array([[0.9442, 0.7762, 0.3733],
-           [0.9554, 0.7184, 0.1298]])
+        >>> gold = [0.183, 0.421, 1.373], [3.424, 2.346, 1.770]
+        >>> film_conductor(1.0, [0.0, 200.0], 1.5, *gold).round(4)
+        array([[0.9442, 0.7762, 0.3733],
+               [0.9554, 0.7184, 0.1298]])
     """
     colors = {"ior": ior, "extinction": extinction}
     numbers = {"mu": mu, "thickness": thickness, "film_ior": film_ior}
@@ -138,36 +104,17 @@ def film_schlick(
 ) -> Array:
     """Reflectance of a generalized Schlick curve under a thin film.
 
-    Errors as those of `film_dielectric`.
+    - `color0`, `color82`, `color90` (..., C): Reflectance r0 along the normal, multiplier at
+      acos(1/7), and reflectance r90 at grazing, per channel, in [0, 1]; a number is one channel.
+    - `exponent` (...): q, in [0, 1e50].
 
-    Parameters
-    ----------
-    mu, thickness, film_ior, form
-        As those of `film_dielectric`.
-    color0, color82, color90 : array_like, shape (..., 3)
-        As those of `mxeon.models.fresnel_schlick`.
-    exponent : array_like, shape (...)
-        q, in [0, 1e50].
+    Result (..., 3): linear RGB, in [0, 1] where the thickness is above 0. The curve stands for the
+    film's lower interface at the refracted angle, so that the value jumps where the thickness
+    leaves 0. A curve below 0 counts as 0, for it has no amplitude.
 
-    Returns
-    -------
-    ndarray, shape (..., 3), float64
-        Linear RGB, in [0, 1] where the thickness is above 0.
-
-    Notes
-    -----
-    The curve stands for the film's lower interface at the refracted angle, so that the value jumps
-    where the thickness leaves 0. A curve below 0 counts as 0, for it has no amplitude.
-
-    References
-    ----------
-    [MaterialX2026], Thin-Film Iridescence Model; [Belcour2017].
-
-    Examples
-    --------
-    >>> film_schlick(0.5, [0.0, 300.0], 1.5, [1.0, 0.8, 0.1], np.ones(3), np.ones(3), 5.0).round(4)
-    array([[1.    , 0.8062, 0.1281],
-           [1.    , 0.7633, 0.1166]])
+        >>> film_schlick(0.5, [0.0, 300.0], 1.5, [1.0, 0.8, 0.1], np.ones(3), np.ones(3), 5.0).round(4)
+        array([[1.    , 0.8062, 0.1281],
+               [1.    , 0.7633, 0.1166]])
     """
     colors = {"color0": color0, "color82": color82, "color90": color90}
     numbers = {"mu": mu, "exponent": exponent, "thickness": thickness, "film_ior": film_ior}
@@ -178,7 +125,6 @@ def _reflectance(
     category: str, form: Form, colors: dict[str, ArrayLike], numbers: dict[str, ArrayLike]
 ) -> Array:
     """Curve of a node under a film over arguments that broadcast."""
-    # Find the curve.
     if not isinstance(form, Form):
         raise ValueError(f"form must be a Form; got {form!r}")
     curve = film_curve(category, form)
@@ -188,7 +134,6 @@ def _reflectance(
             material["tint"] = like(np.ones(1), mu)  # which the curve leaves alone
         return curve.at(mu, **material)
 
-    # Check the arguments and evaluate.
     vectors = {name: checked_rgb(name, value) for name, value in colors.items()}
     values = {name: checked(name, value) for name, value in numbers.items()}
     lead_shape(vectors, values)

@@ -47,16 +47,14 @@ class Amplitudes(NamedTuple):
     reflectance: Array
 
     def tristimulus(self, opd: Array, orders: int | None = None) -> Array:
-        """As that of `formulas.Interface`, shape (3, ...)."""
+        """`formulas.tristimulus` of this interface, shape (3, ...)."""
         xp = array_namespace(self.first)
         values = self.first, *self.second, self.reflectance, 2.0 * np.pi * opd
         shape = np.broadcast_shapes(*(tuple(each.shape) for each in values))
         first, real, imaginary, R23, phi = (xp.broadcast_to(each, shape) for each in values)
-        # Find what is reflected and passed without interference.
         R12 = first * first
         passed, lost = 1.0 - R12, 1.0 - R12 * R23  # nothing is lost only where nothing passes
         dc = R12 + passed**2 * R23 / xp.where(lost > 0.0, lost, 1.0)
-        # Sum the orders.
         z = first * real, first * imaginary
         sums = _orders(z, phi, orders or DAMPED_ORDERS)
         if orders is None:
@@ -80,7 +78,6 @@ def over_index(
     larger = root(0.5 * (hypot(A, 2.0 * Q) + magnitude(A)))
     smaller = Q / xp.where(larger > 0.0, larger, 1.0)
     U, V = xp.where(A >= 0.0, larger, smaller), xp.where(A >= 0.0, smaller, larger)
-    # Compose both polarizations.
     gap = (ior - film_ior) * (ior + film_ior) - extinction * extinction, 2.0 * Q
     s = _quotient(gap, ((U + c) ** 2 - V * V, 2.0 * (U + c) * V), 0.0)
     p = _product(s, _quotient((c * U - S2, c * V), (c * U + S2, c * V), 1.0))
@@ -115,13 +112,11 @@ def _orders(z: Complex, phi: Array, orders: int) -> Array:
     S(phi) is exp(i mu phi - sigma^2 phi^2), of which the real part counts.
     """
     xp = array_namespace(phi)
-    # Double the powers of z until there are enough.
     powers: Complex = xp.stack([z[0]]), xp.stack([z[1]])
     while len(powers[0]) < orders:
         later = _product(powers, (powers[0][-1:, ...], powers[1][-1:, ...]))
         powers = xp.concat([powers[0], later[0]]), xp.concat([powers[1], later[1]])
     real, imaginary = (each[:orders, ...] for each in powers)
-    # Turn and damp them.
     phases, sums = _column(np.arange(1.0, orders + 1.0), phi) * phi, []
     for center, spread in zip(CENTERS, SPREADS, strict=True):
         angle, damping = center * phases, xp.exp(-((spread * phases) ** 2))
@@ -134,11 +129,9 @@ def _integrated(z: Complex, phi: Array) -> Array:
 
     The sum of all z^m e^(i m x) is ((1 - |z|^2) / |1 - z e^(ix)|^2 - 1) / 2 in its real part.
     """
-    # Place the nodes.
     xp, (real, imaginary) = array_namespace(phi), z
     steps, heights, sums = _column(NODES, phi), _column(NODE_HEIGHTS, phi), []
     kept = 1.0 - _squared(z)
-    # Sum over the nodes of each Gaussian.
     for center, spread in zip(CENTERS, SPREADS, strict=True):
         x = (center + np.sqrt(2.0) * spread * steps) * phi
         cosine, sine = xp.cos(x), xp.sin(x)

@@ -37,21 +37,13 @@ Polarizations: TypeAlias = (
 class Form:
     """Choices that the specification leaves to implementations, and a defect.
 
-    Attributes
-    ----------
-    matrix : tuple of tuple of float
-        From CIE XYZ to linear RGB, by rows.
-    orders : int or None
-        M; None sums all orders.
-    mixed : bool
-        Whether the index of RGB channel k enters XYZ value k. If not, each RGB channel has its index
-        in all of XYZ, so that a film that vanishes leaves the channels alone.
-    share : float
-        Factor of the Schlick substrate's reflectance in each polarization; by the text 1.
-    least : float
-        Reflectance from which on color0 is turned into the index of a Schlick substrate.
-    clamped : bool
-        Whether values outside [0, 1] are clamped, as the text does.
+    - `matrix`: From CIE XYZ to linear RGB, by rows.
+    - `orders`: M; None sums all orders.
+    - `mixed`: Whether the index of RGB channel k enters XYZ value k. If not, each RGB channel has
+      its index in all of XYZ, so that a film that vanishes leaves the channels alone.
+    - `share`: Factor of the Schlick substrate's reflectance in each polarization; by the text 1.
+    - `least`: Reflectance from which on color0 is turned into the index of a Schlick substrate.
+    - `clamped`: Whether values outside [0, 1] are clamped, as the text does.
     """
 
     matrix: tuple[tuple[float, ...], ...] = tuple(map(tuple, XYZ_TO_REC709_E.tolist()))
@@ -80,7 +72,6 @@ def film_curve(category: str, form: Form = TEXT) -> Curve:
     """
     bare = CURVES[category]
 
-    # Coat the curve where there is a film.
     def at(
         mu: Array, *, thinfilm_thickness: Array, thinfilm_ior: Array, **material: Array
     ) -> Array:
@@ -94,7 +85,6 @@ def film_curve(category: str, form: Form = TEXT) -> Curve:
         def coated() -> Array:
             free, film = without_clamp(form), (thinfilm_thickness, thinfilm_ior)
             cosines, between, shares = _rule()
-            # Find the curve at many cosines from those of few nodes.
             xp = array_namespace(*film, *material.values())
             if xp is NUMPY:
                 nodes = [_airy(category, free, np.asarray(mu), *film, material) for mu in cosines]
@@ -122,7 +112,6 @@ def _fine(
     category: str, form: Form, mu: Array, film: tuple[Array, Array], material: dict[str, Array]
 ) -> Array:
     """The curve at the cosines of a fine rule from those of nodes, shape (FINE, 3, ...), all at once."""
-    # Place the nodes between the channels and the other axes.
     channels = {k for k, v in material.items() if k in COLORS[category]}
     axes = max((v.ndim - 1 for k, v in material.items() if k in channels), default=film[0].ndim)
     spread = {k: v[:, np.newaxis] if k in channels else v for k, v in material.items()}
@@ -170,14 +159,12 @@ def _to_rgb(xyz: Array, form: Form) -> Array:
     """RGB, shape (3, ...), of XYZ of the substrate of each channel, shape (3, channels, ...)."""
     xp, matrix = array_namespace(xyz), np.array(form.matrix)
     xyz = xp.broadcast_to(xyz, (3, 3, *xyz.shape[2:]))
-    # Take sums that every library has.
     if xp is not NUMPY:
         if form.mixed:
             diagonal = xp.stack([xyz[k, k, ...] for k in range(3)])
             return xp.tensordot(like(matrix, xyz), diagonal, axes=1)
         weights = like(matrix.T.reshape(3, 3, *(1,) * (xyz.ndim - 2)), xyz)
         return xp.sum(weights * xyz, axis=0)
-    # Take NumPy's.
     if form.mixed:
         mixed: Array = np.einsum("jk,k...->j...", matrix, np.einsum("kk...->k...", xyz))
         return mixed

@@ -174,15 +174,12 @@ def damped_orders(r: Array, phase: Array, opd: Array, orders: int) -> Array:
     phi = 2.0 * np.pi * opd
     total = np.zeros((3, len(r)))
     for k, v, mu, var in GAUSSIANS:
-        # Begin r^m exp(-var (m phi)^2), and by what it grows.
         damping = np.exp(-var * phi * phi)
         height, twice = r * damping, damping * damping
         growth = height * twice
-        # Begin cos(m (mu phi + phase)).
         cosine = np.cos(mu * phi + phase)
         double, before = 2.0 * cosine, np.ones_like(cosine)
         summed = height * cosine
-        # Go from order to order.
         for _ in range(1, orders):
             before, cosine = cosine, double * cosine - before
             height = height * growth

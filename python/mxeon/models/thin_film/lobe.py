@@ -1,5 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values and albedos of the microfacet nodes of pbrlib under a thin film, by the names of their ports."""
+"""Values and albedos of the microfacet nodes of pbrlib under a thin film, by the names of their ports.
+
+- `category`: Category of the node.
+- `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent
+  +x, z >= 0.
+- `inputs`: The node's inputs by the names of its ports, colors with three channels;
+  `thinfilm_thickness` in nm, 0 for no film, and `thinfilm_ior`, at least 1.
+- `form`: Choices that the specification leaves open.
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
+"""
 
 from __future__ import annotations
 
@@ -37,41 +48,15 @@ def film_brdf(
 ) -> Array:
     """BRDF of a microfacet node under a thin film, scatter mode R.
 
-    Parameters
-    ----------
-    category : str
-        Category of the node.
-    wo, wi : array_like, shape (..., 3)
-        Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x, z >= 0.
-    inputs : mapping of str to array_like
-        The node's inputs by the names of its ports, colors with three channels;
-        `thinfilm_thickness` in nm, 0 for no film, and `thinfilm_ior`, at least 1.
-    form : Form
-        Choices that the specification leaves open.
-    lobe : Lobe, optional
-        Other terms than the specification's.
+    - `lobe`: Other terms than the specification's.
 
-    Returns
-    -------
-    ndarray, shape (..., 3), float64
-        BRDF in 1/sr.
+    Result (..., 3): BRDF in 1/sr. [MaterialX2026], Thin-Film Iridescence; Energy Compensation.
 
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
-
-    References
-    ----------
-    [MaterialX2026], Thin-Film Iridescence; Energy Compensation.
-
-    Examples
-    --------
-    >>> inputs = {"tint": np.ones(3), "ior": 1.5, "roughness": [0.3, 0.3]}
-    >>> soap = {"thinfilm_thickness": 400.0, "thinfilm_ior": 1.33}
-    >>> w = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
-    >>> film_brdf("dielectric_bsdf", *w, inputs | soap).round(4)
-    array([0.    , 0.0394, 0.0542])
+        >>> inputs = {"tint": np.ones(3), "ior": 1.5, "roughness": [0.3, 0.3]}
+        >>> soap = {"thinfilm_thickness": 400.0, "thinfilm_ior": 1.33}
+        >>> w = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
+        >>> film_brdf("dielectric_bsdf", *w, inputs | soap).round(4)
+        array([0.    , 0.0394, 0.0542])
     """
     vectors, numbers = _material(category, inputs, wo)
     curve = film_curve(category, form)
@@ -88,35 +73,16 @@ def film_albedo_dir(
 ) -> Array:
     """Directional albedo of `film_brdf`, by quadrature.
 
-    Errors as those of `film_brdf`.
+    - `compensate`: Whether the energy compensation enters.
 
-    Parameters
-    ----------
-    category, wo, inputs, form
-        As those of `film_brdf`.
-    compensate : bool
-        Whether the energy compensation enters.
+    Result (..., 3). The film's curve is a polynomial of degree 48 in the cosine, within 1e-4 of the
+    curve for films up to 2000 nm of index up to 2. [MaterialX2026], Directional Albedo and Energy
+    Conservation.
 
-    Returns
-    -------
-    ndarray, shape (..., 3), float64
-        Dimensionless.
-
-    Notes
-    -----
-    The film's curve is a polynomial of degree 48 in the cosine, within 1e-4 of the curve for films up to
-    2000 nm of index up to 2.
-
-    References
-    ----------
-    [MaterialX2026], Directional Albedo and Energy Conservation.
-
-    Examples
-    --------
-    >>> inputs = {"tint": np.ones(3), "ior": 1.5, "roughness": [0.3, 0.3]}
-    >>> soap = {"thinfilm_thickness": 400.0, "thinfilm_ior": 1.33}
-    >>> film_albedo_dir("dielectric_bsdf", [0.6, 0.0, 0.8], inputs | soap).round(4)
-    array([0.0046, 0.0263, 0.0328])
+        >>> inputs = {"tint": np.ones(3), "ior": 1.5, "roughness": [0.3, 0.3]}
+        >>> soap = {"thinfilm_thickness": 400.0, "thinfilm_ior": 1.33}
+        >>> film_albedo_dir("dielectric_bsdf", [0.6, 0.0, 0.8], inputs | soap).round(4)
+        array([0.0046, 0.0263, 0.0328])
     """
     vectors, numbers = _material(category, inputs, wo)
     curve = Curve(PolynomialCurve(category, form), film_curve(category, form).average)
@@ -159,12 +125,10 @@ class PolynomialCurve:
 
     def __call__(self, mu: Array, **material: Array) -> Array:
         """F at cosines of shape (nodes, nodes, ...), shape (3, nodes, nodes, ...)."""
-        # Leave out the films if there are none.
         bare = {k: v for k, v in material.items() if k not in FILM}
         film, xp = material["thinfilm_thickness"] > 0.0, array_namespace(mu)
         if xp is NUMPY and not film.any():
             return self._bare(mu, **bare)
-        # Evaluate the polynomials through them.
         x = np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
         cosines = (0.5 * (1.0 + x)).reshape(-1, 1, *(1,) * (mu.ndim - 2))
         sampled = self._curve(like(cosines, mu), **material)

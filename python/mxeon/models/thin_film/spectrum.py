@@ -3,6 +3,14 @@
 
 It is what the specification approximates by Gaussians and a few orders: the amplitudes of both
 interfaces and the phase of one passage give the sum of all reflections in closed form.
+
+- `mu` (...): Cosine between direction and normal, in [0, 1].
+- `thickness` (...): Of the film, in nm, in [0, 1e9].
+- `film_ior` (...): Index of the film, in [1, 1e50].
+- `ior`, `extinction` (...): Complex index of the substrate, in [0, 1e50], without channels.
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
 """
 
 from __future__ import annotations
@@ -27,31 +35,12 @@ def film_spectrum(
 ) -> Array:
     """Reflectance of a thin film on a substrate for unpolarized light of one wavelength.
 
-    Parameters
-    ----------
-    wavelength : array_like, shape (...)
-        In nm, in [1, 1e9].
-    mu, thickness, film_ior, ior, extinction : array_like, shape (...)
-        As those of `mxeon.models.thin_film.film_dielectric` and `film_conductor`, without channels.
+    - `wavelength` (...): In nm, in [1, 1e9].
 
-    Returns
-    -------
-    ndarray, shape (...), float64
-        Dimensionless, in [0, 1].
+    Result (...): in [0, 1]. [Belcour2017], Section 3.
 
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
-
-    References
-    ----------
-    [Belcour2017], Section 3.
-
-    Examples
-    --------
-    >>> film_spectrum([450.0, 550.0, 650.0], 1.0, 100.0, 1.38, 1.5, 0.0).round(4)
-    array([0.0173, 0.0141, 0.0156])
+        >>> film_spectrum([450.0, 550.0, 650.0], 1.0, 100.0, 1.38, 1.5, 0.0).round(4)
+        array([0.0173, 0.0141, 0.0156])
     """
     film = {"mu": mu, "thickness": thickness, "film_ior": film_ior}
     substrate = {"ior": ior, "extinction": extinction}
@@ -84,24 +73,12 @@ def film_spectrum_xyz(
 ) -> Array:
     """Color of a thin film in CIE XYZ, by a sum over wavelengths in steps of 1 nm.
 
-    Errors as those of `film_spectrum`.
+    - `light` (471,) or (): Spectral power at 360 nm to 830 nm; the default is of equal energy.
 
-    Parameters
-    ----------
-    mu, thickness, film_ior, ior, extinction : array_like, shape (...)
-        As those of `film_spectrum`.
-    light : array_like, shape (471,) or ()
-        Spectral power at 360 nm to 830 nm; the default is of equal energy.
+    Result (..., 3): relative to the white of the light.
 
-    Returns
-    -------
-    ndarray, shape (..., 3), float64
-        Relative to the white of the light.
-
-    Examples
-    --------
-    >>> film_spectrum_xyz(1.0, 400.0, 1.33, 1.5, 0.0).round(4)
-    array([0.0246, 0.0326, 0.0161])
+        >>> film_spectrum_xyz(1.0, 400.0, 1.33, 1.5, 0.0).round(4)
+        array([0.0246, 0.0326, 0.0161])
     """
     film = {"mu": mu, "thickness": thickness, "film_ior": film_ior}
     material = checked_numbers(**film, ior=ior, extinction=extinction)

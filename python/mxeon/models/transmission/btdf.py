@@ -44,48 +44,27 @@ def dielectric_btdf(
 
         f = tint |wo . wh| |wi . wh| (1 - F) D G2 / (mu_o |mu_i| (wo . wh + ior wi . wh)^2)
 
-    Parameters
-    ----------
-    wo, wi : array_like, shape (..., 3)
-        Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x; wo has z >= 0,
-        wi has z <= 0.
-    tint : array_like, shape (..., C)
-        Color per channel, dimensionless, in [0, 1]; a number is one channel.
-    roughness : array_like, shape (..., 2) or ()
-        alpha along tangent and bitangent, dimensionless, in [0, 1]; a number is isotropic.
-    ior : array_like, shape (...)
-        Index of refraction of the side of wi relative to that of wo, in [0, 1e50].
-    radiance : bool
-        Whether the value is of radiance from wi to wo, as the specification has it; else it is times
-        ior^2, the form that is integrated over wi to the transmitted share of the light from wo.
+    - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z,
+      tangent +x; wo has z >= 0, wi has z <= 0.
+    - `tint` (..., C): Color per channel, in [0, 1]; a number is one channel.
+    - `roughness` (..., 2) or (): alpha along tangent and bitangent, in [0, 1]; a number is
+      isotropic.
+    - `ior` (...): Index of refraction of the side of wi relative to that of wo, in [0, 1e50].
+    - `radiance`: Whether the value is of radiance from wi to wo, as the specification has it; else
+      it is times ior^2, the form that is integrated over wi to the transmitted share of the light
+      from wo.
 
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        BTDF in 1/sr, at least 0, unbounded at grazing and as alpha vanishes.
+    Result (..., C): BTDF in 1/sr, at least 0, unbounded at grazing and as alpha vanishes. `ior` 0
+    disables the Fresnel curve: F is 1, and nothing passes. The specification does not say that the
+    two directions lie on either side of the microfacet, [Walter2007] does; without that condition
+    light passes between directions that no facet joins. Raises `ValueError` if an argument leaves
+    its range. [MaterialX2026], Microfacet BTDF; dielectric_bsdf; [Walter2007], Eq. (21).
 
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
-
-    Notes
-    -----
-    `ior` 0 disables the Fresnel curve: F is 1, and nothing passes. The specification does not say that
-    the two directions lie on either side of the microfacet, [Walter2007] does; without that condition
-    light passes between directions that no facet joins.
-
-    References
-    ----------
-    [MaterialX2026], Microfacet BTDF; dielectric_bsdf; [Walter2007], Eq. (21).
-
-    Examples
-    --------
-    >>> from mxeon.models.transmission.refraction import refraction_direction
-    >>> wo = [0.6, 0.0, 0.8]
-    >>> wi = refraction_direction(wo, [0.0, 0.0, 1.0], 1.5)
-    >>> dielectric_btdf(wo, wi, 1.0, [0.3, 0.3], 1.5).round(6)
-    array([10.066984])
+        >>> from mxeon.models.transmission.refraction import refraction_direction
+        >>> wo = [0.6, 0.0, 0.8]
+        >>> wi = refraction_direction(wo, [0.0, 0.0, 1.0], 1.5)
+        >>> dielectric_btdf(wo, wi, 1.0, [0.3, 0.3], 1.5).round(6)
+        array([10.066984])
     """
     vectors = {"tint": checked_vector("tint", tint)}
     return evaluate_btdf(DIELECTRIC.at, wo, wi, roughness, ior, vectors, {}, radiance=radiance)
@@ -105,20 +84,14 @@ def evaluate_btdf(
 ) -> Array:
     """Values of a BTDF, shape (..., C); `vectors` and `numbers` are checked inputs of the curve.
 
-    Parameters
-    ----------
-    at : callable
-        `at(cosine, ior=ior, **material)`, shape (C, ...): F at the cosine on the side of wo.
-    anywhere : bool
-        Whether directions count that lie on one side of the microfacet.
+    - `at`: `at(cosine, ior=ior, **material)`, shape (C, ...): F at the cosine on the side of wo.
+    - `anywhere`: Whether directions count that lie on one side of the microfacet.
     """
-    # Check the arguments.
     directions = {"wo": checked_directions("wo", wo), "wi": checked_transmitted("wi", wi)}
     pairs = {"roughness": checked_roughness(roughness)}
     checked_switch("radiance", radiance)
     checked_switch("anywhere", anywhere)
 
-    # Evaluate the lobe at the facet that refracts one direction into the other.
     def value(wo: Array, wi: Array, roughness: Array, ior: Array, **material: Array) -> Array:
         facet = Facet.of(wo, wi, ior, anywhere)
         F = at(facet.cosine_o, ior=ior, **material)
@@ -130,7 +103,6 @@ def evaluate_btdf(
         f = (1.0 - F) * (4.0 * lobe * facet.cosine_o * facet.jacobian)
         return f * material["tint"] if "tint" in material else f
 
-    # Evaluate all pairs.
     return evaluate_material(
         value,
         directions | pairs | vectors,

@@ -21,34 +21,16 @@ def refraction_direction(wo: ArrayLike, normal: ArrayLike, ior: ArrayLike) -> Ar
 
         cos_t = sqrt(1 - (1 - cos_o^2) / ior^2),  wi = -wo / ior + (cos_o / ior - cos_t) normal
 
-    Parameters
-    ----------
-    wo : array_like, shape (..., 3)
-        Direction that leaves the surface, unit vector to 1e-6, normal +z, z >= 0.
-    normal : array_like, shape (..., 3)
-        Normal of the surface or microfacet, unit vector to 1e-6, z >= 0.
-    ior : array_like, shape (...)
-        Index of the far side relative to that of wo, in [0, 1e50].
+    - `wo` (..., 3): Direction that leaves the surface, unit vector to 1e-6, normal +z, z >= 0.
+    - `normal` (..., 3): Normal of the surface or microfacet, unit vector to 1e-6, z >= 0.
+    - `ior` (...): Index of the far side relative to that of wo, in [0, 1e50].
 
-    Returns
-    -------
-    ndarray, shape (..., 3), float64
-        Unit vectors; (0, 0, 0) at total internal reflection, and where wo lies behind the normal.
+    Result (..., 3): Unit vectors; (0, 0, 0) at total internal reflection, and where wo lies behind
+    the normal. [MaterialX2026], Reflection and Transmission; [Walter2007], Eq. (40).
 
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
-
-    References
-    ----------
-    [MaterialX2026], Reflection and Transmission; [Walter2007], Eq. (40).
-
-    Examples
-    --------
-    >>> refraction_direction([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], [1.5, 0.5]).round(6)
-    array([[-0.4     , -0.      , -0.916515],
-           [ 0.      ,  0.      ,  0.      ]])
+        >>> refraction_direction([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], [1.5, 0.5]).round(6)
+        array([[-0.4     , -0.      , -0.916515],
+               [ 0.      ,  0.      ,  0.      ]])
     """
     vectors = {"wo": checked_directions("wo", wo), "normal": checked_directions("normal", normal)}
     return evaluate_material(refracted, vectors, {"ior": checked("ior", ior)}, 3)
@@ -60,34 +42,18 @@ def transmission_half_vector(wo: ArrayLike, wi: ArrayLike, ior: ArrayLike) -> Ar
 
         wh = +-(wo + ior wi) / |wo + ior wi|, on the side of wo
 
-    Errors as those of `refraction_direction`.
+    - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z; wo
+      has z >= 0, wi z <= 0.
+    - `ior` (...): Index of the side of wi relative to that of wo, in [0, 1e50].
 
-    Parameters
-    ----------
-    wo, wi : array_like, shape (..., 3)
-        Directions that leave the surface, unit vectors to 1e-6, normal +z; wo has z >= 0, wi z <= 0.
-    ior : array_like, shape (...)
-        Index of the side of wi relative to that of wo, in [0, 1e50].
-
-    Returns
-    -------
-    ndarray, shape (..., 3), float64
-        Unit vectors; (0, 0, 0) where no microfacet refracts one into the other.
-
-    Notes
-    -----
-    The sign of the specification's vector points into the side of the smaller index, which no term of
+    Result (..., 3): Unit vectors; (0, 0, 0) where no microfacet refracts one into the other. The
+    sign of the specification's vector points into the side of the smaller index, which no term of
     its BTDF tells apart. Where both directions lie on one side of the vector no facet joins them.
-
-    References
-    ----------
     [MaterialX2026], Microfacet BTDF; [Walter2007], Eq. (16).
 
-    Examples
-    --------
-    >>> wi = refraction_direction([0.6, 0.0, 0.8], [0.0, 0.6, 0.8], 1.5)
-    >>> transmission_half_vector([0.6, 0.0, 0.8], wi, 1.5).round(6)
-    array([-0. ,  0.6,  0.8])
+        >>> wi = refraction_direction([0.6, 0.0, 0.8], [0.0, 0.6, 0.8], 1.5)
+        >>> transmission_half_vector([0.6, 0.0, 0.8], wi, 1.5).round(6)
+        array([-0. ,  0.6,  0.8])
     """
     vectors = {"wo": checked_directions("wo", wo), "wi": checked_transmitted("wi", wi)}
     numbers = {"ior": checked("ior", ior)}
@@ -110,14 +76,9 @@ def refracted(wo: Array, normal: Array, ior: Array) -> Array:
 class Facet:
     """The microfacet between directions on either side of it, on float64 arrays, components first.
 
-    Attributes
-    ----------
-    normal : ndarray, shape (3, ...)
-        Unit vector on the side of wo; 0 where there is no such facet.
-    cosine_o, cosine_i : ndarray
-        |wo . wh| and |wi . wh|; 0 where there is none.
-    jacobian : ndarray
-        |d wh / d wi|, the solid angle of normals for that of wi.
+    - `normal`: Unit vector on the side of wo; 0 where there is no such facet.
+    - `cosine_o`, `cosine_i`: |wo . wh| and |wi . wh|; 0 where there is none.
+    - `jacobian`: |d wh / d wi|, the solid angle of normals for that of wi.
     """
 
     def __init__(self, normal: Array, cosine_o: Array, cosine_i: Array, jacobian: Array) -> None:

@@ -3,6 +3,18 @@
 
 Its BTDF needs an index of refraction, which the node does not have, and 1 - F of a curve that may leave
 [0, 1]. A Reading says what takes their place.
+
+- `reading`: A key of READINGS.
+- `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent
+  +x; wo has z >= 0, wi has z <= 0.
+- `roughness` (..., 2) or (): alpha along tangent and bitangent, in [0, 1]; a number is isotropic.
+- `color0`, `color82`, `color90` (..., C): Reflectance along the normal, multiplier at acos(1/7),
+  and reflectance at grazing, per channel, in [0, 1]; a number is one channel.
+- `exponent` (...): Exponent of the Schlick curve, in [0, 1e50].
+- `inside`: Whether wo lies inside of the solid, where light is totally reflected beyond an angle.
+
+Raises `ValueError`, which names the first bad element or lists the readings, if an argument leaves
+its range, the shapes do not broadcast or the reading is unknown.
 """
 
 from __future__ import annotations
@@ -36,15 +48,10 @@ LEAST, MOST = 0.01, 0.99  # reflectances along the normal that MaterialX's inver
 class Reading:
     """What transmission takes of the node's inputs.
 
-    Attributes
-    ----------
-    title : str
-    curve : callable (cosine, color0, color82, color90, exponent) -> ndarray, shape (C, ...)
-        F of transmission, at the angle outside of the solid.
-    index : str
-        "average": one index, of the mean of color0 over the channels; "channel": one of each.
-    least : float
-        Least reflectance of which an index is taken.
+    - `curve`: F of transmission, at the angle outside of the solid.
+    - `index`: "average": one index, of the mean of color0 over the channels; "channel": one of
+      each.
+    - `least`: Least reflectance of which an index is taken.
     """
 
     title: str
@@ -97,36 +104,14 @@ def schlick_ior(color0: ArrayLike, reading: str = "text") -> Array:
 
         ior = (1 + sqrt(r)) / (1 - sqrt(r)),  r in [0.01, 0.99]
 
-    Parameters
-    ----------
-    color0 : array_like, shape (..., C)
-        Reflectance along the normal, dimensionless, in [0, 1]; a number is one channel.
-    reading : str
-        A key of READINGS.
+    - `color0` (..., C): Reflectance along the normal, in [0, 1]; a number is one channel.
 
-    Returns
-    -------
-    ndarray, shape (..., C) or (..., 1), float64
-        One index for each channel, or one for all.
-
-    Raises
-    ------
-    ValueError
-        If the reading is unknown, which lists the known ones; or if `color0` leaves its range; names the first bad element.
-
-    Notes
-    -----
-    The bounds are those of stock MaterialX: the index lies in [1.22, 399], so that a reflectance of 0
-    still refracts.
-
-    References
-    ----------
+    Result (..., C) or (..., 1): One index for each channel, or one for all. The bounds are those of
+    stock MaterialX: the index lies in [1.22, 399], so that a reflectance of 0 still refracts.
     [MaterialX2026], Generalized Schlick Equations, Thin-Film Iridescence.
 
-    Examples
-    --------
-    >>> schlick_ior([0.04, 0.25]).round(4), schlick_ior([0.04, 0.25], "channel").round(4)
-    (array([2.2299]), array([1.5, 3. ]))
+        >>> schlick_ior([0.04, 0.25]).round(4), schlick_ior([0.04, 0.25], "channel").round(4)
+        (array([2.2299]), array([1.5, 3. ]))
     """
     how = _reading(reading)
     r = checked_color("color0", color0)
@@ -160,43 +145,19 @@ def generalized_schlick_btdf(
 ) -> Array:
     """Transmission of `generalized_schlick_bsdf`, scatter modes T and RT.
 
-    Parameters
-    ----------
-    wo, wi, roughness, radiance
-        As those of `mxeon.models.transmission.btdf.dielectric_btdf`.
-    color0, color82, color90, exponent
-        As those of `mxeon.models.generalized_schlick_brdf`.
-    reading : str
-        A key of READINGS.
-    inside : bool
-        Whether wo lies inside of the solid, where light is totally reflected beyond an angle.
+    - `radiance`: Whether the value is of radiance from wi to wo, as the specification has it; else
+      it is times ior^2, the form that is integrated over wi to the transmitted share of the light
+      from wo.
 
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        BTDF in 1/sr, unbounded at grazing and as alpha vanishes.
+    Result (..., C): BTDF in 1/sr, unbounded at grazing and as alpha vanishes. F is taken at the
+    angle on the outside, whichever side the light comes from, as renderers take it. Then the value
+    over the squared index is reciprocal. The letter of the specification, the angle of the incident
+    light, would have another F for each direction of one path. [MaterialX2026],
+    Microfacet BTDF; generalized_schlick_bsdf.
 
-    Raises
-    ------
-    ValueError
-        If the reading is unknown, an argument leaves its range or the shapes do not broadcast; lists
-        the readings, or names the first bad element.
-
-    Notes
-    -----
-    F is taken at the angle on the outside, whichever side the light comes from, as renderers take it.
-    Then the value over the squared index is reciprocal. The letter of the specification, the angle of
-    the incident light, would have another F for each direction of one path.
-
-    References
-    ----------
-    [MaterialX2026], Microfacet BTDF; generalized_schlick_bsdf.
-
-    Examples
-    --------
-    >>> pair = [0.6, 0.0, 0.8], [-0.4, 0.0, -0.916515]
-    >>> generalized_schlick_btdf(*pair, 0.04, 1.0, 1.0, [0.3, 0.3], 5.0).round(4)
-    array([10.1048])
+        >>> pair = [0.6, 0.0, 0.8], [-0.4, 0.0, -0.916515]
+        >>> generalized_schlick_btdf(*pair, 0.04, 1.0, 1.0, [0.3, 0.3], 5.0).round(4)
+        array([10.1048])
     """
     how = _reading(reading)
     checked_switch("inside", inside)
@@ -234,33 +195,15 @@ def generalized_schlick_transmittance_dir(
 ) -> Array:
     """Transmitted share of the light from `wo`, by quadrature.
 
-    Errors as those of `generalized_schlick_btdf`.
+    - `shadow`: Whether light is lost to other facets on the far side, as in the BTDF; without, it
+      is the mean of 1 - F over the normals that wo sees.
 
-    Parameters
-    ----------
-    wo, color0, color82, color90, roughness, exponent, reading, inside
-        As those of `generalized_schlick_btdf`.
-    shadow : bool
-        As that of `mxeon.models.transmission.transmittance.dielectric_transmittance_dir`.
+    Result (..., C). Accuracy: absolute error below 2e-4 from outside for exponents >= 1, and below
+    1e-8 from inside. [MaterialX2026], Directional Albedo and Energy Conservation.
 
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        Dimensionless.
-
-    Notes
-    -----
-    Accuracy: absolute error below 2e-4 from outside for exponents >= 1, and below 1e-8 from inside.
-
-    References
-    ----------
-    [MaterialX2026], Directional Albedo and Energy Conservation.
-
-    Examples
-    --------
-    >>> wo, alpha = [0.6, 0.0, 0.8], [0.3, 0.3]
-    >>> generalized_schlick_transmittance_dir(wo, [0.04, 0.25], 1.0, 1.0, alpha, 5.0).round(3)
-    array([0.945, 0.738])
+        >>> wo, alpha = [0.6, 0.0, 0.8], [0.3, 0.3]
+        >>> generalized_schlick_transmittance_dir(wo, [0.04, 0.25], 1.0, 1.0, alpha, 5.0).round(3)
+        array([0.945, 0.738])
     """
     how = _reading(reading)
     checked_switch("inside", inside)

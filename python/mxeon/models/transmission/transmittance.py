@@ -45,39 +45,25 @@ def dielectric_transmittance_dir(
 
         T(wo) = ior^2 integral of dielectric_btdf |mu_i| over the hemisphere of wi
 
-    Parameters
-    ----------
-    wo, tint, roughness, ior
-        As those of `mxeon.models.transmission.btdf.dielectric_btdf`.
-    shadow : bool
-        Whether light is lost to other facets on the far side, as in the BTDF; without, it is the mean
-        of 1 - F over the normals that wo sees.
+    - `wo` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x;
+      wo has z >= 0, wi has z <= 0.
+    - `tint` (..., C): Color per channel, in [0, 1]; a number is one channel.
+    - `roughness` (..., 2) or (): alpha along tangent and bitangent, in [0, 1]; a number is
+      isotropic.
+    - `ior` (...): Index of refraction of the side of wi relative to that of wo, in [0, 1e50].
+    - `shadow`: Whether light is lost to other facets on the far side, as in the BTDF; without, it
+      is the mean of 1 - F over the normals that wo sees.
 
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        Dimensionless, in [0, 1] where alpha_x and alpha_y are the same.
+    Result (..., C): in [0, 1] where alpha_x and alpha_y are the same. Accuracy: absolute error
+    below 2e-4 for `ior` >= 1; for less below 1e-8, since the quadrature is split at the critical
+    angle, where F has an infinite slope. At alpha 0 it is that of a plane, tint (1 - F(mu_o)). The
+    albedo over all lights of one view, of the radiance, is this divided by ior^2. Raises
+    `ValueError` if an argument leaves its range. [MaterialX2026], Directional Albedo and Energy
+    Conservation; [Walter2007], Eq. (21).
 
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
-
-    Notes
-    -----
-    Accuracy: absolute error below 2e-4 for `ior` >= 1; for less below 1e-8, since the quadrature is split
-    at the critical angle, where F has an infinite slope. At alpha 0 it is that of a plane, tint (1 - F(mu_o)).
-    The albedo over all lights of one view, of the radiance, is this divided by ior^2.
-
-    References
-    ----------
-    [MaterialX2026], Directional Albedo and Energy Conservation; [Walter2007], Eq. (21).
-
-    Examples
-    --------
-    >>> dielectric_transmittance_dir([0.6, 0.0, 0.8], 1.0, [0.3, 0.3], [1.5, 0.75]).round(3)
-    array([[0.939],
-           [0.732]])
+        >>> dielectric_transmittance_dir([0.6, 0.0, 0.8], 1.0, [0.3, 0.3], [1.5, 0.75]).round(3)
+        array([[0.939],
+               [0.732]])
     """
     vectors = {"tint": np.atleast_1d(checked("tint", tint))}
     numbers = {"ior": checked("ior", ior)}
@@ -94,12 +80,10 @@ def evaluate_transmittance(
     shadow: bool,
 ) -> Array:
     """Transmittance, shape (..., C), of checked inputs; `numbers` has the index."""
-    # Check the arguments.
     directions = {"wo": checked_directions("wo", wo)}
     pairs = {"roughness": checked_roughness(roughness)}
     checked_switch("shadow", shadow)
 
-    # Sum what passes the facets that the view sees, and is not shadowed.
     def total(
         wo: Array, roughness: Array, material: dict[str, Array], nodes: Nodes, axes: int
     ) -> Array:
@@ -112,7 +96,6 @@ def evaluate_transmittance(
         T: Array = np.sum(passed, axis=tuple(range(1, 1 + axes)))
         return T
 
-    # Split the integral at the critical angle of an index below 1.
     def value(wo: Array, roughness: Array, **material: Array) -> Array:
         wo, roughness = wo + 0.0 * roughness[:1], roughness + 0.0 * wo[:1]
         ior = material["ior"]
@@ -123,7 +106,6 @@ def evaluate_transmittance(
             T = np.where(ior < 1.0, total(wo, roughness, material, split, 2), T)
         return T * material["tint"] if "tint" in material else T
 
-    # Evaluate all views.
     arguments = {**directions, **pairs, **vectors}
     return evaluate_material(value, arguments, numbers, channel_count(vectors), BLOCK)
 
