@@ -8,7 +8,6 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 import pytest
-from mxeon.models.layering import Bsdf, layer, throughput
 
 from mxeon.albedo import dielectric_albedo_dir
 from mxeon.errors import InputError, PackageError
@@ -23,6 +22,7 @@ from mxeon.fit import (
 )
 from mxeon.fit.measured import MERL_CELLS, MERL_SCALES
 from mxeon.models import dielectric_brdf, eon_brdf, generalized_schlick_brdf
+from mxeon.models.core.layering import Bsdf, layer, throughput
 from tests.support.availability import available
 from tools.site import research
 

@@ -18,6 +18,15 @@ from mxeon.models.core.edges import trimmed
 from mxeon.models.core.namespaces import any_array, array_namespace
 from mxeon.models.diffuse.formulas import C1, C2
 
+__all__ = [
+    "eon_rho_from_albedo_avg",
+    "eon_rho_from_albedo_avg_approx",
+    "eon_rho_from_albedo_avg_refit_approx",
+    "eon_rho_from_albedo_normal",
+    "eon_rho_from_albedo_normal_approx",
+    "eon_rho_from_albedo_normal_refit_approx",
+]
+
 # [Portsmouth2025], Eqs. (32) and (34); color and roughness in [0, 1]; largest error of rho 4.41e-3,
 # where the paper states less than 0.3 %, and 2.84e-3.
 NORMAL = (0.258831, 0.98995)
