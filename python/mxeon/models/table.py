@@ -26,7 +26,6 @@ class Model:
 
     - `name`, `title`: Prefix of its functions, and name in print.
     - `brdf`: `brdf(wo, wi, rho, *parameter)` in 1/sr, shape (..., C); Lambert has no parameter.
-    - `parameter`: "sigma", in radian in [0, pi/2]; "roughness", in [0, 1]; or None.
     - `albedo_dir`: `albedo_dir(mu, rho, *parameter)`, shape (..., C), where a closed form is known.
     - `albedo_avg`: `albedo_avg(rho, *parameter)`, shape (..., C), where a closed form is known.
     """
@@ -34,7 +33,7 @@ class Model:
     name: str
     title: str
     brdf: Callable[..., Array]
-    parameter: str | None
+    parameter: str | None  # "sigma", in radian in [0, pi/2]; "roughness", in [0, 1]; or None
     albedo_dir: Callable[..., Array] | None = None
     albedo_avg: Callable[..., Array] | None = None
 

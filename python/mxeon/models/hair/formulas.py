@@ -98,20 +98,16 @@ def attenuation(F: Array, T: Array) -> Array:
 class HairForm:
     """The model in the text's form, or in one that a shader may have in its place.
 
-    - `longitudinal`: M_p.
-    - `uniform`: N of the lobe TRRT+.
-    - `limits`: Least and largest value of every roughness.
     - `tilts_light`: Whether the cuticle's tilt turns the light's inclination, and not the viewer's.
     - `effective`: Whether F has the effective index, and the angle gamma_o of the cross-section.
-    - `factor`: Factor of the sum over the lobes.
     """
 
-    longitudinal: Callable[[Array, Array, Array, Array, Array], Array] = longitudinal
-    uniform: float = 0.5 / np.pi
-    limits: tuple[float, float] = (0.0, np.inf)
+    longitudinal: Callable[[Array, Array, Array, Array, Array], Array] = longitudinal  # M_p
+    uniform: float = 0.5 / np.pi  # N of the lobe TRRT+
+    limits: tuple[float, float] = (0.0, np.inf)  # least and largest value of every roughness
     tilts_light: bool = True
     effective: bool = False
-    factor: float = 1.0 / np.pi
+    factor: float = 1.0 / np.pi  # factor of the sum over the lobes
 
 
 TEXT = HairForm()

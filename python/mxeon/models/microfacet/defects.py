@@ -53,11 +53,7 @@ ALBEDO_FIT = np.array(
 
 @dataclass(frozen=True)
 class MicrofacetDefect:
-    """A known wrong variant of the three microfacet nodes.
-
-    - `name`, `title`: One word, and the name in print.
-    - `lobe`: Its terms.
-    """
+    """A known wrong variant of the three microfacet nodes."""
 
     name: str
     title: str

@@ -23,14 +23,12 @@ from mxeon.models.microfacet.missing import missing_light
 class Curve:
     """Fresnel curve of a node.
 
-    - `at`: `at(cosine, **material)`, shape (C, ...): F, without a tint.
-    - `average`: `average(**material)`, shape (C, ...): F_ss.
     - `critical`: `critical(**material)`, shape (...): square of the cosine below which F is 1, if
       above 0.
     """
 
-    at: Callable[..., Array]
-    average: Callable[..., Array]
+    at: Callable[..., Array]  # `at(cosine, **material)`, shape (C, ...): F, without a tint
+    average: Callable[..., Array]  # `average(**material)`, shape (C, ...): F_ss
     critical: Callable[..., Array] = lambda **material: np.zeros(1)
 
 
@@ -86,14 +84,11 @@ def missing(mu_o: Array, roughness: Array) -> Array:
 class Lobe:
     """Terms of a microfacet BRDF, those of [MaterialX2026] unless replaced.
 
-    - `factor`: Compensation of a Pair.
-    - `visibility`: G2 / (4 mu_o mu_i) of a Pair.
     - `alpha`: alpha as the lobe takes it, of the input `roughness`.
-    - `scale`: Constant factor.
     """
 
-    factor: Callable[[Pair], Array | float] = compensation
-    visibility: Callable[[Pair], Array] = visibility
+    factor: Callable[[Pair], Array | float] = compensation  # compensation of a Pair
+    visibility: Callable[[Pair], Array] = visibility  # G2 / (4 mu_o mu_i) of a Pair
     alpha: Callable[[Array], Array] = lambda roughness: roughness
     scale: float = 1.0
 

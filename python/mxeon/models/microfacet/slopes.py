@@ -40,14 +40,12 @@ class Slopes:
     """Slopes that a direction sees, in polar coordinates r and omega, of which 0 is its own azimuth.
 
     - `mu_o`, `alpha`: Cosine of the direction, and the mean of its two roughnesses.
-    - `steepness`: A: wo . h / h_z = mu_o + r A cos(omega).
-    - `axis`: Cosine and sine of phi at omega 0.
     """
 
     mu_o: Array
     alpha: Array
-    steepness: Array
-    axis: tuple[Array, Array]
+    steepness: Array  # A: wo . h / h_z = mu_o + r A cos(omega)
+    axis: tuple[Array, Array]  # cosine and sine of phi at omega 0
     roughness: Array
 
     @classmethod

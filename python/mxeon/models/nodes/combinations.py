@@ -106,10 +106,6 @@ def _scaled(top: Bsdf, base: Bsdf, inputs: Inputs) -> Bsdf:
     return layering.multiply(top, _column(inputs, FACTOR))
 
 
-def _sum_scaled(top: Bsdf, base: Bsdf, inputs: Inputs) -> Bsdf:
-    return layering.multiply(layering.add(top, base), _column(inputs, FACTOR))
-
-
 def _sum_mixed(top: Bsdf, base: Bsdf, inputs: Inputs, finish: Finish = lambda lobe: lobe) -> Bsdf:
     return layering.mix(finish(layering.add(top, base)), top, _column(inputs, AMOUNT))
 
@@ -161,7 +157,7 @@ COMBINATIONS = (
         "multiply_sum",
         "a colored multiple of a sum",
         "multiply",
-        _sum_scaled,
+        lambda top, base, i: _scaled(layering.add(top, base), base, i),
         (FACTOR,),
         _unscaled(lambda top, base, i: layering.add(top, base)),
     ),

@@ -35,10 +35,9 @@ class Emission(Node[Value]):
     """An EDF node, or one that combines EDFs.
 
     - `value`: Radiance towards `wo`, normal +z; below the horizon that of the back.
-    - `exitance`: Its integral over the hemisphere times the cosine.
     """
 
-    exitance: Callable[[Inputs], Array]
+    exitance: Callable[[Inputs], Array]  # its integral over the hemisphere times the cosine
 
 
 def front_only(value: Value) -> Value:
@@ -66,11 +65,8 @@ def _cone(wo: Array, inputs: Inputs) -> Array:
 
 def _halves(wo: Array, inputs: Inputs) -> Array:
     """A cone whose angles count from the axis."""
-    return _of_angles(wo, inputs, lambda angle: np.minimum(2.0 * angle, 360.0))
-
-
-def _of_angles(wo: Array, inputs: Inputs, change: Callable[[Array], Array]) -> Array:
-    angles = (change(np.asarray(inputs[name])) for name in ("inner_angle", "outer_angle"))
+    names = "inner_angle", "outer_angle"
+    angles = (np.minimum(2.0 * np.asarray(inputs[name]), 360.0) for name in names)
     return conical_edf(wo, inputs["color"], *angles)
 
 

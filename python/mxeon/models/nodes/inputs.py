@@ -21,18 +21,14 @@ from mxeon.models.nodes.parameters import WEIGHT, Parameter
 class Rows:
     """Vectors and inputs of a call in rows.
 
-    - `lead`: Shape of the pairs.
-    - `vectors`: Directions or random numbers.
     - `inputs`: (N,), (N, 2) or (N, C) by parameter; 1 instead of N where all pairs have the same.
-    - `colored`: Whether a color has an axis of channels.
-    - `weight`: Of the lobe, where the call has one.
     """
 
-    lead: tuple[int, ...]
-    vectors: list[Array]
+    lead: tuple[int, ...]  # shape of the pairs
+    vectors: list[Array]  # directions or random numbers
     inputs: dict[str, Array]
-    colored: bool
-    weight: Array | None = None
+    colored: bool  # whether a color has an axis of channels
+    weight: Array | None = None  # of the lobe, where the call has one
 
     def shaped(self, values: Array, last: tuple[int, ...] = ()) -> Array:
         """Values of the rows, (N, *last) or fewer, in the shape of the pairs."""

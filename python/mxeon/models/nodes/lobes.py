@@ -59,16 +59,6 @@ def _sheen(
     return lambda wo, wi, inputs: brdf(wo, wi, inputs["color"], inputs["roughness"])
 
 
-def _smooth_burley(wo: Array, wi: Array, inputs: Inputs) -> Array:
-    """Values of the Burley diffuse lobe at roughness 0."""
-    return burley_brdf(wo, wi, inputs["color"], np.zeros(len(wo)))
-
-
-def _colored(albedo: Callable[[Array, Inputs], Array]) -> Callable[[Array, Inputs], Array]:
-    """An albedo times the color."""
-    return lambda wo, inputs: np.asarray(albedo(wo, inputs) * inputs["color"])
-
-
 COLOR_ROUGHNESS = ("color", "roughness")
 LOBE_NODES = (
     PbrNode(
@@ -82,7 +72,10 @@ LOBE_NODES = (
         ),
         variants=(
             Variant("MaterialX's fit of its albedo", albedo=materialx_fits.burley_albedo),
-            Variant("Burley diffuse of roughness 0, without retro-reflection", _smooth_burley),
+            Variant(
+                "Burley diffuse of roughness 0, without retro-reflection",
+                lambda wo, wi, inputs: burley_brdf(wo, wi, inputs["color"], np.zeros(len(wo))),
+            ),
             Variant("Lambert", lambda wo, wi, inputs: inputs["color"] / np.pi),
         ),
     ),
@@ -112,7 +105,10 @@ LOBE_NODES = (
                 "its albedo without the color", albedo=untinted(_bounded(conty_kulla_albedo_dir))
             ),
             Variant(
-                "MaterialX's fit of its albedo", albedo=_colored(materialx_fits.conty_kulla_albedo)
+                "MaterialX's fit of its albedo",
+                albedo=lambda wo, inputs: np.asarray(
+                    materialx_fits.conty_kulla_albedo(wo, inputs) * inputs["color"]
+                ),
             ),
             Variant(
                 "MaterialX's fit of its albedo without the color",

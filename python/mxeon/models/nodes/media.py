@@ -37,10 +37,6 @@ def _absorbed(inputs: Inputs) -> Array:
     return transmittance(inputs["absorption"], 0.0, METER)
 
 
-def _extinguished(inputs: Inputs) -> Array:
-    return transmittance(inputs["absorption"], inputs["scattering"], METER)
-
-
 CLEAR = Variant[Value]("no medium at all", lambda inputs: np.ones_like(inputs["absorption"]))
 MEDIA = (
     Medium(
@@ -51,7 +47,7 @@ MEDIA = (
         "extinction",
         "anisotropic_vdf",
         ("absorption", "scattering"),
-        _extinguished,
+        lambda inputs: transmittance(inputs["absorption"], inputs["scattering"], METER),
         variants=(
             Variant("absorption alone", _absorbed),
             Variant(

@@ -45,18 +45,13 @@ WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
 
 @dataclass(frozen=True)
 class BareLobe:
-    """Functions of a microfacet node by its inputs.
-
-    - `category`: Category of the node.
-    - `fresnel`: Its curve F.
-    - `edge`: Name of the input that is F at grazing; "" where F is 1 there.
-    """
+    """Functions of a microfacet node by its inputs."""
 
     category: str
     value: Callable[[Array, Array, Inputs], Array]
     albedo: Callable[..., Array]
-    fresnel: Callable[[Array, Inputs], Array]
-    edge: str = ""
+    fresnel: Callable[[Array, Inputs], Array]  # its curve F
+    edge: str = ""  # name of the input that is F at grazing; "" where F is 1 there
 
     def fitted(self, wo: Array, inputs: Inputs) -> Array:
         """Albedo as MaterialX's throughput takes it, per channel and without a tint."""
@@ -180,7 +175,7 @@ def _variants(lobe: BareLobe) -> tuple[Variant[Scattering], ...]:
     values = (
         Variant(
             each.title,
-            partial(_defect, each.value, lobe.category),
+            partial(each.value, lobe.category),
             permitted=each.name in OPEN,
         )
         for each in (*MICROFACET_DEFECTS, *FITTED_DEFECTS)
@@ -199,12 +194,6 @@ def _variants(lobe: BareLobe) -> tuple[Variant[Scattering], ...]:
         ),
         Variant("MaterialX's fit of its albedo without a tint", albedo=lobe.fitted),
     )
-
-
-def _defect(
-    value: Callable[..., Array], category: str, wo: Array, wi: Array, inputs: Inputs
-) -> Array:
-    return value(category, wo, wi, inputs)
 
 
 MICROFACET_NODES = (

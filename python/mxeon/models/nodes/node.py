@@ -22,33 +22,23 @@ Function = TypeVar("Function", covariant=True)  # of a node: what its value is c
 
 @dataclass(frozen=True)
 class Variant(Generic[Function]):
-    """Another function that a shader may have instead of a node's own.
-
-    - `value`: As the node's; None where its values are the node's.
-    - `permitted`: Whether the specification leaves it open.
-    """
+    """Another function that a shader may have instead of a node's own."""
 
     title: str
-    value: Function | None = None
+    value: Function | None = None  # as the node's; None where its values are the node's
     albedo: Callable[[Array, Inputs], Array] | None = None
-    permitted: bool = False
+    permitted: bool = False  # whether the specification leaves it open
 
 
 @dataclass(frozen=True)
 class Node(Generic[Function]):
-    """A node, or a mode of one, by [MaterialX2026].
-
-    - `name`, `title`: One word, and the name in print.
-    - `category`: Category of the node.
-    - `inputs`: Names or paths of the inputs that the functions read.
-    - `value`: Its values from these inputs.
-    """
+    """A node, or a mode of one, by [MaterialX2026]."""
 
     name: str
     title: str
     category: str
-    inputs: tuple[str, ...]
-    value: Function
+    inputs: tuple[str, ...]  # names or paths of the inputs that the functions read
+    value: Function  # its values from these inputs
     variants: tuple[Variant[Function], ...] = field(default=(), kw_only=True)
 
 
@@ -64,8 +54,6 @@ class PbrNode(Node[Scattering]):
     - `layerable`: Whether it lets 1 - E through to what lies below; another node lets nothing
       through.
     - `transmits`: Whether it scatters light from below the horizon instead of light from above.
-    - `fitted`: Whether a shader needs a fit for its albedo.
-    - `reciprocal`: Whether exchanging the directions does not change the value.
     - `mirror`: Inputs with which it reflects all light; none if there are none.
     """
 
@@ -74,6 +62,6 @@ class PbrNode(Node[Scattering]):
     fixed: Mapping[str, str] = field(default_factory=dict, hash=False)
     layerable: bool = False
     transmits: bool = False
-    fitted: bool = False
-    reciprocal: bool = True
+    fitted: bool = False  # whether a shader needs a fit for its albedo
+    reciprocal: bool = True  # whether exchanging the directions does not change the value
     mirror: Mapping[str, ArrayLike] = field(default_factory=dict, hash=False)

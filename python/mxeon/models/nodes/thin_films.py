@@ -61,10 +61,6 @@ def _bare(inputs: Inputs) -> dict[str, Array]:
     return {**inputs, FILM[0]: np.zeros_like(inputs[FILM[0]])}
 
 
-def _no_film(row: PbrNode, wo: Array, wi: Array, inputs: Inputs) -> Array:
-    return row.value(wo, wi, _bare(inputs))
-
-
 def _reflectance(category: str, form: Form, wo: Array, inputs: Inputs) -> Array:
     """F of a film at the view direction, (N, 3)."""
     mu = np.minimum(wo[:, 2], 1.0)
@@ -95,7 +91,7 @@ def _fitted(lobe: BareLobe, form: Form, wo: Array, inputs: Inputs) -> Array:
 def _variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
     """Other films that a shader may have, each with either compensation."""
     variants = [
-        Variant("no film", partial(_no_film, row)),
+        Variant("no film", lambda wo, wi, inputs: row.value(wo, wi, _bare(inputs))),
         Variant(
             "its albedo without the film", albedo=lambda wo, inputs: row.albedo(wo, _bare(inputs))
         ),

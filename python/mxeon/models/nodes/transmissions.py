@@ -30,20 +30,18 @@ MODES = ("T", "RT")
 class Transmission:
     """Functions of a node that transmits, by its inputs.
 
-    - `value`: BTDF of radiance, with its tint.
     - `passed`: Share of the light from wo that the BTDF transmits, with its tint; without `shadow`,
       the mean of 1 - F over the facets that wo sees.
     - `reflected`: Directional albedo of the reflection with its energy compensation, without a
       tint.
-    - `ior`: Index of refraction that refracts the view.
     """
 
-    value: Callable[[Array, Array, Inputs], Array]
+    value: Callable[[Array, Array, Inputs], Array]  # BTDF of radiance, with its tint
     passed: Callable[[Array, Inputs, bool], Array]
     reflected: Callable[[Array, Inputs], Array]
     tint: Callable[[Inputs], Array]
     fresnel: Callable[[Array, Inputs], Array]
-    ior: Callable[[Inputs], Array]
+    ior: Callable[[Inputs], Array]  # index of refraction that refracts the view
 
 
 def _white(inputs: Inputs) -> dict[str, Array]:

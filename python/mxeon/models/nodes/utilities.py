@@ -45,14 +45,12 @@ class UtilityNode:
     """A utility node, by [MaterialX2026].
 
     - `inputs`: The default of each input, a number or a tuple, by name.
-    - `outputs`: The type of each output, by name.
-    - `value`: Every output by name; needs all inputs.
     """
 
     category: str
     inputs: Mapping[str, float | tuple[float, ...]] = field(hash=False)
-    outputs: Mapping[str, str] = field(hash=False)
-    value: Values
+    outputs: Mapping[str, str] = field(hash=False)  # the type of each output, by name
+    value: Values  # every output by name; needs all inputs
     variants: tuple[Variant[Values], ...] = ()
 
     @property
@@ -124,11 +122,6 @@ def _artistic(inputs: Inputs) -> dict[str, Array]:
     return {"ior": ior, "extinction": extinction}
 
 
-def _exchanged_edge(inputs: Inputs) -> dict[str, Array]:
-    """n and k with the ends of n exchanged."""
-    return _artistic({**inputs, "edge_color": 1.0 - _share(inputs, "edge_color")})
-
-
 def _clipped(inputs: Inputs) -> dict[str, Array]:
     """The color of luminance 1 whose negative channels are then 0."""
     return {"out": np.maximum(blackbody(_share(inputs, "temperature", *TEMPERATURES)), 0.0)}
@@ -165,11 +158,6 @@ def _unsquared_variance(inputs: Inputs) -> dict[str, Array]:
     return {
         name: np.stack([np.sqrt(pair[..., 0]), pair[..., 1]], -1) for name, pair in pairs.items()
     }
-
-
-def _exchanged_melanins(inputs: Inputs) -> dict[str, Array]:
-    """Absorption with the shares of both melanins exchanged."""
-    return _melanin({**inputs, "melanin_redness": 1.0 - _share(inputs, "melanin_redness")})
 
 
 def _melanin(inputs: Inputs) -> dict[str, Array]:
@@ -226,7 +214,12 @@ UTILITIES = (
         {"reflectivity": (0.944, 0.776, 0.373), "edge_color": (0.998, 0.981, 0.751)},
         {"ior": "color3", "extinction": "color3"},
         _artistic,
-        (Variant("the ends of n exchanged", _exchanged_edge),),
+        (
+            Variant(
+                "the ends of n exchanged",
+                lambda i: _artistic({**i, "edge_color": 1.0 - _share(i, "edge_color")}),
+            ),
+        ),
     ),
     UtilityNode(
         "blackbody",
@@ -261,7 +254,10 @@ UTILITIES = (
         _melanin,
         (
             constant("deon_hair_absorption_from_melanin", 1.0),
-            Variant("the shares of both melanins exchanged", _exchanged_melanins),
+            Variant(
+                "the shares of both melanins exchanged",
+                lambda i: _melanin({**i, "melanin_redness": 1.0 - _share(i, "melanin_redness")}),
+            ),
         ),
     ),
     UtilityNode(

@@ -48,16 +48,14 @@ LEAST, MOST = 0.01, 0.99  # reflectances along the normal that MaterialX's inver
 class Reading:
     """What transmission takes of the node's inputs.
 
-    - `curve`: F of transmission, at the angle outside of the solid.
     - `index`: "average": one index, of the mean of color0 over the channels; "channel": one of
       each.
-    - `least`: Least reflectance of which an index is taken.
     """
 
     title: str
-    curve: Callable[..., Array]
+    curve: Callable[..., Array]  # F of transmission, at the angle outside of the solid
     index: str = "average"
-    least: float = LEAST
+    least: float = LEAST  # least reflectance of which an index is taken
 
     def at(self, cosine: Array, ior: Array, **inputs: Array) -> Array:
         """F for light at this cosine, from inside if the index is below 1: 1 at total reflection."""
