@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from mxeon.models import threads
-from mxeon.models.core import arguments as validation
 from mxeon.models.core import evaluation, tiling
 from mxeon.models.diffuse.albedo import fon_albedo_avg, fon_albedo_dir_approx
 from mxeon.models.diffuse.brdf import eon_brdf, fon_brdf, lambert_brdf, oren_nayar_brdf
@@ -270,12 +269,6 @@ def test_a_number_of_threads_below_one_is_refused(count):
         pass
 
 
-def test_checked_arguments_come_back_as_they_were():
-    wo, _, rho, _ = pairs(3, seed=16)
-    assert validation.checked_directions("wo", wo) is wo
-    assert validation.checked("rho", rho) is rho
-
-
 def test_arguments_are_left_as_they_were():
     wo, wi, rho, r = pairs(10, seed=12)
     copies = [argument.copy() for argument in (wo, wi, rho, r)]
@@ -288,11 +281,6 @@ def test_a_number_is_one_channel():
 
 
 # --- the table -------------------------------------------------------------------------------
-
-
-@named(ALL)
-def test_row_is_found_by_its_name(row):
-    assert model(row.name) is row
 
 
 @named([row for row in MODELS if row.parameter])

@@ -34,12 +34,8 @@ ROUNDING = 2.0**-23
 def checked(name: str, value: ArrayLike, quantity: str = "") -> Numbers:
     """Argument as an array of real numbers inside the range that its name has in `RANGES`.
 
-    - `name`: Name of the argument; a key of `RANGES` if no quantity is named.
-    - `value`: The caller's argument.
-    - `quantity`: Key of `RANGES`, where the name has another range elsewhere.
-
-    Result: `value`, in float64. A value that is beyond an end of a range of `CLOSED` by less than
-    `ROUNDING` counts as that end.
+    `quantity` is the key of `RANGES` where it is not the name. A value beyond an end of a range of
+    `CLOSED` by less than `ROUNDING` counts as that end.
     """
 
     def in_range(array: Numbers) -> Numbers:
@@ -118,13 +114,7 @@ def checked_choice(
 
 
 def checked_directions(name: str, value: ArrayLike) -> Numbers:
-    """Argument as an array of unit vectors on or above the horizon.
-
-    - `name`: Name of the argument in the error message.
-    - `value` (..., 3): The caller's argument.
-
-    Result (..., 3): `value`, in float64.
-    """
+    """Argument as an array of unit vectors on or above the horizon, (..., 3) in float64."""
 
     def above(array: Numbers) -> Numbers:
         valid = all(

@@ -37,10 +37,7 @@ def blocks(shape: tuple[int, ...], size: int = BLOCK) -> Iterator[tuple[slice, .
 def tile(array: Numbers, block: tuple[slice, ...]) -> Array:
     """Part of `array` that a block of its leading axes selects, with the last axis first.
 
-    - `array` (..., C): An axis of length 1, which broadcasts, stays whole.
-    - `block`: One slice per axis but the last.
-
-    Result (C, ...): Contiguous.
+    `block` has one slice per axis but the last. An axis of length 1, which broadcasts, stays whole.
     """
     axes = zip(block, array.shape[:-1], strict=True)
     part = array[tuple(index if length > 1 else slice(None) for index, length in axes)]

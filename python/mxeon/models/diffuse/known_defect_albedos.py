@@ -13,14 +13,7 @@ from mxeon.models.diffuse.qon_albedo import qon_albedo_dir
 
 
 def qon_tinted_twice_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
-    """Directional albedo of `qon_tinted_twice_brdf`.
-
-    - `mu` (...): Cosine of the polar angle, in [0, 1].
-    - `rho` (..., C): Reflectance per channel, in [0, 1].
-    - `sigma` (...): Slope deviation of the facets, radian, in [0, pi/2].
-
-    Result (..., C): in [0, 1].
-    """
+    """Directional albedo of `qon_tinted_twice_brdf`."""
     (color,), (m, s) = checked_colors({"rho": rho}, mu=mu, sigma=sigma)
     albedo: Array = np.square(color) * qon_albedo_dir(m, s)
     return albedo
@@ -58,11 +51,7 @@ def fon_white_lobe_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLik
 def qon_fitted_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
     """Directional albedo of QON as MaterialX fits it: a quotient of polynomials.
 
-    - `mu` (...): Cosine of the polar angle, in [0, 1].
-    - `rho` (..., C): Reflectance per channel, in [0, 1].
-    - `sigma` (...): In radian, in [0, pi/2].
-
-    Result (..., C): in [0, 1]; off by up to 0.068 at rho 1. Coefficients of MaterialX 1.39.5,
+    It is off by up to 0.068 at rho 1. Coefficients of MaterialX 1.39.5,
     `mx_microfacet_diffuse.glsl`, which clamps the quotient to 1.
     """
     (color,), (m, s) = checked_colors({"rho": rho}, mu=mu, sigma=sigma)

@@ -67,16 +67,7 @@ class MicrofacetDefect:
         inputs: Mapping[str, ArrayLike],
         retroreflective: bool = False,
     ) -> Array:
-        """Values of the variant of a node.
-
-        - `node`: A key of NODES.
-        - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z,
-          tangent +x, z >= 0.
-        - `inputs`: Inputs of the node by the names of its ports; others than the BRDF's are ignored.
-        - `retroreflective`: Whether light returns towards where it comes from.
-
-        Result (..., C): 1/sr.
-        """
+        """Values of the variant, (..., C) in 1/sr; `node` is a key of NODES, other inputs are ignored."""
         curve, colors, numbers = NODES[node]
         return evaluate_lobe(
             self.lobe,

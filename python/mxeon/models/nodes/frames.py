@@ -17,11 +17,7 @@ PARALLEL = 1e-6  # length that is left of a tangent without the part along the n
 def into_frame(w: ArrayLike, normal: ArrayLike, tangent: ArrayLike) -> Array:
     """Components of vectors along the tangent, the bitangent and the normal.
 
-    - `normal` (..., 3): Unit vector to 1e-6.
-    - `tangent` (..., 3): Any vector that is not parallel to the normal; its part along the normal
-      is taken away.
-
-    Result (..., 3).
+    The tangent is any vector not parallel to the normal; its part along the normal is taken away.
     """
     vectors, axes = _vectors(w), _axes(normal, tangent)
     xp = array_namespace(vectors)

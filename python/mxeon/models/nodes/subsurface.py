@@ -22,11 +22,8 @@ LEAST_RADIUS = 0.1  # of the profile
 def circle_blur(mu: Array, radius: Array, body: float = FLATTEST) -> Array:
     """Cosine of a light as MaterialX blurs it, along a circle through the light.
 
-    - `mu` (N,): Cosine of the light, in [-1, 1].
-    - `radius` (N, 3): Mean free path.
-    - `body`: Radius of the circle, which MaterialX takes from the curvature, and at most 100.
-
-    Result (N, 3).
+    `mu` (N,), `radius` (N, 3): mean free path. MaterialX takes `body`, the circle's radius, from the
+    curvature, and at most 100.
     """
     theta = np.arccos(np.clip(mu, -1.0, 1.0))[:, np.newaxis]
     shape = 1.0 / np.maximum(radius, LEAST_RADIUS)
