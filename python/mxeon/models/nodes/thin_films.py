@@ -90,7 +90,7 @@ def _fitted(lobe: BareLobe, form: Form, wo: Array, inputs: Inputs) -> Array:
 
 def _variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
     """Other films that a shader may have, each with either compensation."""
-    variants = [
+    variants: list[Variant[Scattering]] = [
         Variant("no film", lambda wo, wi, inputs: row.value(wo, wi, _bare(inputs))),
         Variant(
             "its albedo without the film", albedo=lambda wo, inputs: row.albedo(wo, _bare(inputs))
