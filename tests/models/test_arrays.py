@@ -492,12 +492,10 @@ def test_models_by_name_have_the_values_of_numpy_and_gradients_of_differences(ma
     wo, wi = directions(rng, False), directions(rng, row.lights == "back")
     inputs = {each.name: np.array(each.default) * 0.9 + 0.05 for each in row.parameters}
     inputs |= {"weight": np.array(0.7)} if "weight" in row.by_name else {}
-    # Compare the values.
     expected = row.bsdf(wo, wi, **inputs)
     value, found = library.gradients(partial(row.bsdf, wo, wi), inputs)
     np.testing.assert_allclose(value, expected, VALUE, VALUE)
 
-    # Compare the gradients by each component of each input.
     def total(moved):
         return row.bsdf(wo, wi, **inputs | moved)[..., 0].sum()
 

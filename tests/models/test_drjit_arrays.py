@@ -85,7 +85,6 @@ def test_a_broken_exponent_gives_the_values_of_numpy(llvm, exponent):
 def test_the_light_that_facets_miss_is_that_of_numpy(llvm, kind, alpha):
     import drjit as dr
 
-    # Compare it at all scales of the cosine.
     number = getattr(llvm, kind)
     mu = np.concatenate([[0.0, 1.0], np.geomspace(1e-37, 1.0, 5000), np.linspace(0.0, 1.0, 5000)])
     mu = mu.astype(np.float32)
