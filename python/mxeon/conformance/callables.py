@@ -187,9 +187,7 @@ def _of_rest(check: Check) -> Check:
         return replace(check, measure=VALUE_OF_REST)
     measure = cast(Callable[[Probe], Iterable[Case]], check.measure)
     return replace(
-        check,
-        measure=lambda probe: _finite_rows(measure(probe)),
-        diagnose=VALUE_OF_REST.diagnose,
+        check, measure=lambda probe: _finite_rows(measure(probe)), diagnose=VALUE_OF_REST.diagnose
     )
 
 

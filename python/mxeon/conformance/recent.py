@@ -18,10 +18,8 @@ class Recent(Generic[T]):
         self._values: OrderedDict[Hashable, T] = OrderedDict()
 
     def value(self, key: Hashable, compute: Callable[[], T]) -> T:
-        """The value of a key, which is computed unless it is known."""
         if key not in self._values:
             self._values[key] = compute()
-        # Forget what was not asked for longest.
         self._values.move_to_end(key)
         if len(self._values) > self._most:
             self._values.popitem(last=False)

@@ -34,47 +34,27 @@ Quantity: TypeAlias = Literal[
 
 @dataclass(frozen=True)
 class Accuracy:
-    """Tolerances of a kind of probe by quantity; None where no check asks it for one.
+    """Tolerances of a kind of probe by quantity; None where no check asks it for one."""
 
-    Attributes
-    ----------
-    value : Tolerance or None
-        Of values in direct light, radiances, transmittances and outputs.
-    albedo, throughput : Tolerance or None
-    frame : Tolerance or None
-        Of values and albedos in turned frames.
-    integral : Tolerance or None
-        Of values summed over directions.
-    light : Tolerance or None
-        Of all light that a lobe and what lies below it return.
-    reciprocity : Tolerance or None
-        Of values times both cosines.
-    lambert : Tolerance or None
-        Of values that have no roughness.
-    pairs : bool
-        Whether its host evaluates any pairs of directions, those at the edges of the domain too.
-    lit : bool
-        Whether the host itself finds light and lets it pass, or tells closures alone.
-    """
-
+    # Of values in direct light, radiances, transmittances and outputs.
     value: Tolerance | None = None
     albedo: Tolerance | None = None
     throughput: Tolerance | None = None
-    frame: Tolerance | None = None
-    integral: Tolerance | None = None
-    light: Tolerance | None = None
-    reciprocity: Tolerance | None = None
-    lambert: Tolerance | None = None
+    frame: Tolerance | None = None  # of values and albedos in turned frames
+    integral: Tolerance | None = None  # of values summed over directions
+    light: Tolerance | None = None  # of all light that a lobe and what lies below it return
+    reciprocity: Tolerance | None = None  # of values times both cosines
+    lambert: Tolerance | None = None  # of values that have no roughness
+    # Whether its host evaluates any pairs of directions, those at the edges of the domain too.
     pairs: bool = True
+    # Whether the host itself finds light and lets it pass, or tells closures alone.
     lit: bool = True
 
     @property
     def difference(self) -> Tolerance | None:
-        """Tolerance of the difference of two values."""
         return self.value and diffuse.difference_of(self.value)
 
     def of(self, quantity: Quantity) -> Tolerance | None:
-        """Tolerance of a quantity."""
         tolerance: Tolerance | None = getattr(self, quantity)
         return tolerance
 
@@ -149,10 +129,7 @@ LIT: dict[str, Accuracy] = {
     kinds.FACET: _seen(diffuse.FACETS, diffuse.FACET_NOISE, diffuse.FACETS),
     kinds.COARSE_FACET: _seen(diffuse.COARSE_FACETS, diffuse.COARSE_FACETS),
     kinds.FACET_PAIR: Accuracy(
-        diffuse.FACET_PAIRS,
-        diffuse.FACET_NOISE,
-        reciprocity=diffuse.FACET_PAIRS,
-        pairs=False,
+        diffuse.FACET_PAIRS, diffuse.FACET_NOISE, reciprocity=diffuse.FACET_PAIRS, pairs=False
     ),
     kinds.CLOSED: _lobe(kinds.CLOSED, bsdf.DIFFUSE_VALUE, bsdf.CLOSED_ALBEDO, bsdf.FLAT_FRAME),
     kinds.SUBSURFACE: _lobe(kinds.CLOSED, bsdf.DIFFUSE_VALUE, bsdf.CLOSED_ALBEDO, bsdf.FLAT_FRAME),

@@ -132,10 +132,7 @@ ROUND_TRIP = Tolerance(
     "an albedo grows at most twice as fast as the reflectance",
 )
 LAMBERT = Tolerance(
-    rounded_up(8 * ROUNDING),
-    "pi f cos",
-    absolute,
-    "8 roundings of float32, 2^-24 each; rounded up",
+    rounded_up(8 * ROUNDING), "pi f cos", absolute, "8 roundings of float32, 2^-24 each; rounded up"
 )
 ZERO = Tolerance(0.0, "pi f cos", absolute, "a product with 0 is 0 in any precision")
 OPAQUE = Tolerance(0.0, "throughput", absolute, "a constant has no roundings")

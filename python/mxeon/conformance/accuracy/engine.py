@@ -26,19 +26,11 @@ LEAST_LOGARITHM = 1e-4  # number whose logarithm is measured
 
 @dataclass(frozen=True)
 class EngineFunction:
-    """A function that engines have themselves.
+    """A function that engines have themselves."""
 
-    Attributes
-    ----------
-    name, expression : str
-        In GLSL, of x or of x and y.
-    exact : callable
-        The same in NumPy.
-    """
-
-    name: str
+    name: str  # in GLSL, of x or of x and y
     expression: str
-    exact: Callable[..., Array]
+    exact: Callable[..., Array]  # the same in NumPy
 
     def errors(self, host: Host, *arguments: Array) -> Array:
         """Errors of a host's values of arguments that are float32 numbers, (N,)."""
@@ -62,13 +54,11 @@ TURN = EngineFunction(
 
 def widen_for_engine(tolerance: Tolerance, subject: Subject, kind: str, host: Host) -> Tolerance:
     """Tolerance of values on a host, with the errors of the engine's own functions that make them."""
-    # Take another tolerance.
     if kind in (kinds.UTILITY, kinds.UTILITY_OSL):
         return _utility_tolerance(subject, kind, host)
     if kind == kinds.FITTED:
         measured = power_of(sheen_error(host), 1.0 / LEAST_SHEEN)
         return max(tolerance, measured, key=lambda each: each.value)
-    # Or add the errors.
     error = 0.0
     if kind == kinds.POWER_EMISSION:
         error = power_error(host)
@@ -86,7 +76,6 @@ def widen_for_waves(tolerance: Tolerance, subject: Subject, kind: str, host: Hos
 
 
 def _utility_tolerance(subject: Subject, kind: str, host: Host) -> Tolerance:
-    """The tolerance of an output of a utility node on a host."""
     if subject.node == "blackbody":
         return utilities.BLACKBODY if kind == kinds.UTILITY else utilities.OSL_BLACKBODY
     if subject.node == "chiang_hair_roughness":

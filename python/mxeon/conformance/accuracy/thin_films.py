@@ -1,11 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tolerances of the checks of microfacets under a thin film."""
 
-from mxeon.conformance.accuracy.bsdf import (
-    ESS_FIT,
-    MICROFACET_VALUE,
-    SEEN_ESS,
-)
+from mxeon.conformance.accuracy.bsdf import ESS_FIT, MICROFACET_VALUE, SEEN_ESS
 from mxeon.conformance.samples.measurement import absolute, root_mean_square, scaled
 from mxeon.conformance.samples.tolerance import ROUNDING, SCALED, Tolerance, rounded_up
 

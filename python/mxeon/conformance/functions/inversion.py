@@ -53,13 +53,7 @@ vec3 {NAME}(vec3 {NAME}_color, float {NAME}_roughness)
 
 @dataclass(frozen=True)
 class InversionProbe:
-    """An inversion node of a library on a host.
-
-    Attributes
-    ----------
-    host : Host
-    node, library : str
-    """
+    """An inversion node of a library on a host."""
 
     host: Host
     node: str
@@ -120,11 +114,7 @@ def judge_inversion(probe: InversionProbe) -> tuple[Result, ...]:
 
 
 def _judge(
-    probe: InversionProbe,
-    key: str,
-    claim: str,
-    tolerance: Tolerance,
-    measure: Errors,
+    probe: InversionProbe, key: str, claim: str, tolerance: Tolerance, measure: Errors
 ) -> Result:
     place: Place = {
         "check": key,
@@ -170,7 +160,6 @@ def _worst(probe: InversionProbe, values: Array, errors: Array) -> Measurement:
 
 def _nearest(probe: InversionProbe, values: Array) -> Diagnosis:
     """The other inversion that the values are, if any; the color itself is one."""
-    # The functions that it can be.
     color, roughness = probe.inputs
     known = {"the color itself": color} | {
         name: function(color, roughness)
@@ -179,7 +168,6 @@ def _nearest(probe: InversionProbe, values: Array) -> Diagnosis:
     }
     if not np.isfinite(values).all():
         return Diagnosis("values that are not finite")
-    # Rank them by their distance.
     distances = {
         name: float(np.sqrt(np.mean((values - each) ** 2))) for name, each in known.items()
     }

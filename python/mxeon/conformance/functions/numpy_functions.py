@@ -60,7 +60,6 @@ NAMED: Mapping[str, Callable[..., Array]] = {
 
 def expected(function: str, columns: Columns) -> Array:
     """Values of a shader function in NumPy, (N, 1) or (N, 3)."""
-    # Take the columns that the function has parameters for.
     version, channels_first = _version(function)
     names = [name for name in inspect.signature(version).parameters if name in columns]
     arguments = {name: columns[name] for name in names}
@@ -69,7 +68,6 @@ def expected(function: str, columns: Columns) -> Array:
         arguments["rho"] = arguments["rho"].T
     if "rho" in arguments and _takes_gray(function):
         arguments["rho"] = columns["gray"]
-    # Give the values a row for each point.
     values = version(**arguments)
     values = np.asarray(values[0] if isinstance(values, tuple) else values)
     if channels_first and values.ndim == 2 and "rho" in arguments:
@@ -112,13 +110,11 @@ def _takes_gray(function: str) -> bool:
 @cache
 def _version(function: str) -> tuple[Callable[..., Array], bool]:
     """NumPy's version of a shader function, and whether colors have their channels first."""
-    # Functions of the package, under their public names.
     if function in NAMED:
         return NAMED[function], False
     for module in (sampling, albedo, qon_albedo):
         if hasattr(module, function):
             return getattr(module, function), False
-    # Functions of parts of a model.
     if hasattr(formulas, function):
         return getattr(formulas, function), True
     for module in (eon, ltc, cltc):

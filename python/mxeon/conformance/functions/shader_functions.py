@@ -33,17 +33,10 @@ STEP = 2.0**-22  # of the arguments by which a function's condition is measured
 
 @dataclass(frozen=True)
 class FunctionProbe:
-    """The shader functions of a library on a host.
-
-    Attributes
-    ----------
-    host : Host
-    library : str
-        One that brings such functions.
-    """
+    """The shader functions of a library on a host."""
 
     host: Host
-    library: str
+    library: str  # one that brings such functions
 
     @cached_property
     def text(self) -> str:
@@ -74,12 +67,10 @@ class FunctionProbe:
 
     def _values(self, scale: float) -> Mapping[str, Array]:
         """Values of the functions, in one call; each of them has POINTS rows."""
-        # A function that calls the one of a number.
         language = self.host.language
         names = [name for name in functions.names(language) if name not in self.missing_functions]
         text = functions.dispatched(self.text, names, language)
         slots = functions.parameters(text, functions.EACH)
-        # A block of rows for each function.
         count = numpy_functions.POINTS
         rows = {
             name: np.zeros((count * len(names), 1 if kind == "float" else 3))
@@ -94,7 +85,6 @@ class FunctionProbe:
                 functions.slot_names(kinds), [*others, scale * last], strict=True
             ):
                 rows[slot][block] = values.reshape(count, -1)
-        # Evaluate all at once.
         columns = [rows[name] if kind != "float" else rows[name][:, 0] for kind, name in slots]
         values = self.host.execute(text, functions.EACH, *columns).astype(np.float64)
         return dict(zip(names, np.split(values, len(names)), strict=True))
@@ -102,23 +92,13 @@ class FunctionProbe:
 
 @dataclass(frozen=True)
 class FunctionCheck:
-    """A row of the table: what is asked of some of the shader functions.
+    """A row of the table: what is asked of some of the shader functions."""
 
-    Attributes
-    ----------
-    key, claim : str
-        One word, and a sentence.
-    holds : callable (str) -> bool
-        Whether a function of a name is asked; the first row that asks it takes it.
-    error : callable (str, values) -> float
-        Largest error of a function's values.
-    tolerance : callable (FunctionProbe) -> Tolerance
-    """
-
-    key: str
+    key: str  # one word, and a sentence
     claim: str
+    # Whether a function of a name is asked; the first row that asks it takes it.
     holds: Callable[[str], bool]
-    error: Callable[[str, Array], float]
+    error: Callable[[str, Array], float]  # largest error of a function's values
     tolerance: Callable[[FunctionProbe], Tolerance]
 
 
@@ -181,14 +161,12 @@ VARIANT = "the last argument is 5 % off"
 
 
 def row_of(function: str) -> FunctionCheck:
-    """The row that judges a shader function."""
     return next(row for row in FUNCTION_CHECKS if row.holds(function))
 
 
 def judge_functions(
     probe: FunctionProbe, checks: Sequence[FunctionCheck] = FUNCTION_CHECKS
 ) -> tuple[Result, ...]:
-    """Results of the checks of the shader functions of a library on a host."""
     return tuple(_judge_check(check, probe) for check in checks)
 
 
@@ -226,12 +204,10 @@ def _measure(
 
 def _diagnosis(check: FunctionCheck, probe: FunctionProbe) -> str:
     """The functions that are wrong by themselves, and those of the row that use them."""
-    # Tell functions that are wrong by themselves from those that use a wrong one.
     errors = {name: row_of(name).error(name, values) for name, values in probe.values.items()}
     wrong = {name: error for name, error in errors.items() if error > _allowed(name, probe)}
     uses = functions.uses(probe.text)
     causes = [name for name in wrong if not any(other in wrong for other in uses[name])]
-    # Keep those that this check judges, and their causes.
     affected = [name for name in wrong if row_of(name) is check]
     own = [
         name for name in causes if name in affected or any(name in uses[each] for each in affected)

@@ -95,12 +95,7 @@ PORTS: dict[str, tuple[Port, ...]] = {
 
 @dataclass(frozen=True)
 class BsdfSubject(RowSubject[Scattering]):
-    """A mode of a node of `mxeon.models.nodes`.
-
-    Attributes
-    ----------
-    row : PbrNode
-    """
+    """A mode of a node of `mxeon.models.nodes`."""
 
     row: PbrNode
 
@@ -124,7 +119,6 @@ class BsdfSubject(RowSubject[Scattering]):
 
     @property
     def kind(self) -> str:
-        """Kind of its probe."""
         if self.anisotropic:
             return kinds.SCHLICK if "color82" in self.row.inputs else kinds.MICROFACET
         if self.row.fitted:

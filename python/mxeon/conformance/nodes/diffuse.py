@@ -35,14 +35,12 @@ class ModelSubject:
 
     @property
     def value_candidates(self) -> tuple[Candidate, ...]:
-        """Its model, known defects, and the other models, by their values."""
         rows = {row.brdf: row for row in self._others + reference.KNOWN_DEFECTS + reference.MODELS}
         rows[reference.model(self.model).brdf] = reference.model(self.model)
         return self._candidates(rows.values(), Batch.expected)
 
     @property
     def albedo_candidates(self) -> tuple[Candidate, ...]:
-        """Its model, the other models, and known defects, by their albedos."""
         rows = reference.MODELS + reference.KNOWN_DEFECTS + self._others
         rows = tuple(row for row in rows if row.albedo_dir)
         return self._candidates(rows, Batch.albedo)
@@ -69,7 +67,6 @@ class ModelSubject:
     def _candidates(
         self, rows: Iterable[Model], output: Callable[[Batch, str], Array]
     ) -> tuple[Candidate, ...]:
-        """Candidates of rows, its own model first."""
         ordered = sorted(rows, key=lambda row: row.name != self.model)
         return tuple(Candidate(row.title, partial(_limited, row, output)) for row in ordered)
 
@@ -90,23 +87,12 @@ CHANGES: Values = {
 
 @dataclass(frozen=True)
 class DiffuseSubject(ModelSubject):
-    """A node with its flag and the model it has to be.
+    """A node with its flag and the model it has to be."""
 
-    Attributes
-    ----------
-    node : str
-        Node category.
-    flag : bool or None
-        energy_compensation, or None where the node has no such input.
-    model : str
-        Name of a row of `mxeon.models.table.MODELS`.
-    names : tuple of str
-        Inputs that it may have; the flag counts only where it is not None.
-    """
-
-    node: str
-    flag: bool | None
-    model: str
+    node: str  # node category
+    flag: bool | None  # energy_compensation, or None where the node has no such input
+    model: str  # name of a row of `mxeon.models.table.MODELS`
+    # Inputs that it may have; the flag counts only where it is not None.
     names: tuple[str, ...] = tuple(INPUT_TYPES)
 
     kind: ClassVar[str] = kinds.DIFFUSE
@@ -154,26 +140,15 @@ class DiffuseLobe(ModelSubject):
 
     What lies over the lobe depends on the directions alone, so that pictures of other colors
     tell the lobe apart; see `mxeon.conformance.probes.diffuse_lobes.DiffuseLobeProbe`.
-
-    Attributes
-    ----------
-    title, node, model : str
-        Name in reports, node category, and the model that its specification asks for.
-    color, roughness : str
-        Names of the inputs of the lobe; "" for no roughness.
-    fixed : tuple of (str, str, str)
-        Name, type and value of further inputs.
-    libraries : tuple of str
-        The libraries with which it is judged; () for all.
     """
 
-    title: str
+    title: str  # name in reports, node category, and the model that its specification asks for
     node: str
     model: str
-    color: str
+    color: str  # names of the inputs of the lobe; "" for no roughness
     roughness: str
-    fixed: tuple[tuple[str, str, str], ...] = ()
-    libraries: tuple[str, ...] = ()
+    fixed: tuple[tuple[str, str, str], ...] = ()  # name, type and value of further inputs
+    libraries: tuple[str, ...] = ()  # the libraries with which it is judged; () for all
 
     kind: ClassVar[str] = kinds.LOBE
     inputs: ClassVar[tuple[str, ...]] = ()
@@ -192,10 +167,7 @@ class DiffuseLobe(ModelSubject):
 
 # OpenPBR asks for EON, Standard Surface for Oren-Nayar, USD Preview Surface and glTF for Lambert.
 # The thin-walled lobe is MaterialX's own whatever the library, so it is judged once.
-THIN_WALLED = (
-    ("geometry_thin_walled", "boolean", "true"),
-    ("subsurface_weight", "float", "1.0"),
-)
+THIN_WALLED = (("geometry_thin_walled", "boolean", "true"), ("subsurface_weight", "float", "1.0"))
 SURFACES = (
     DiffuseLobe(
         "open_pbr_surface", "open_pbr_surface", "eon", "base_color", "base_diffuse_roughness"

@@ -55,20 +55,11 @@ FACTORS = {  # of an emission, by the last word of the row's name
 
 @dataclass(frozen=True)
 class EmissionSubject(RowSubject[Value]):
-    """A row of `mxeon.models.nodes.emissions`.
-
-    Attributes
-    ----------
-    row : Emission
-    connections : str
-        XML of the ports of the node that are connected.
-    sources : tuple of str
-        Names of the uniform emissions that it takes.
-    """
+    """A row of `mxeon.models.nodes.emissions`."""
 
     row: Emission
-    connections: str = ""
-    sources: tuple[str, ...] = ()
+    connections: str = ""  # XML of the ports of the node that are connected
+    sources: tuple[str, ...] = ()  # names of the uniform emissions that it takes
 
     @property
     def closure(self) -> bool:
@@ -107,7 +98,6 @@ class EmissionSubject(RowSubject[Value]):
 
     def emission_text(self, inputs: Values | None = None) -> str:
         """XML of the node and of those that it takes, with a value of each input."""
-        # The inputs of each node, the normal by a node of its own.
         types = {port.name: port.kind for port in self.ports}
         values = {port.name: _default(port) for port in self.drawn} | dict(inputs or {})
         ports = {name: "" for name in ("emission", *self.sources)}
@@ -119,7 +109,6 @@ class EmissionSubject(RowSubject[Value]):
                 ports["emission"] += connection_text("normal", "vector3", "axis")
             else:
                 ports[node or "emission"] += input_text(name, types[path], value)
-        # The emissions that are combined, then the node.
         nodes = (node_text("uniform_edf", "EDF", name, ports[name]) for name in self.sources)
         return (
             axis
@@ -149,19 +138,11 @@ def _default(port: Port) -> ArrayLike:
 
 @dataclass(frozen=True)
 class AbsentSubject:
-    """A node of which it is only asked whether the target has an implementation.
+    """A node of which it is only asked whether the target has an implementation."""
 
-    Attributes
-    ----------
-    title, node : str
-        Name in reports, and category.
-    text : str
-        XML of a document's nodes that use it.
-    """
-
-    title: str
+    title: str  # name in reports, and category
     node: str
-    text: str
+    text: str  # XML of a document's nodes that use it
 
     kind: ClassVar[str] = kinds.ABSENT
     model: ClassVar[str] = kinds.ABSENT
@@ -188,18 +169,10 @@ UNIMPLEMENTED = AbsentSubject(
 
 @dataclass(frozen=True)
 class SurfaceSubject:
-    """The node `surface` with an emission, in the dark.
+    """The node `surface` with an emission, in the dark."""
 
-    Attributes
-    ----------
-    title : str
-        Name in reports.
-    lit : bool
-        Whether it has a BSDF beside.
-    """
-
-    title: str
-    lit: bool
+    title: str  # name in reports
+    lit: bool  # whether it has a BSDF beside
 
     node: ClassVar[str] = "surface"
     kind: ClassVar[str] = kinds.EMITTING_SURFACE
@@ -229,7 +202,6 @@ def random_cones(rng: np.random.Generator, count: int) -> dict[str, Array]:
 
 
 def _connected(**sources: str) -> str:
-    """XML of inputs that are connected to emissions."""
     return "".join(connection_text(port, "EDF", node) for port, node in sources.items())
 
 

@@ -17,29 +17,15 @@ SLANTED = (0.3, 1.2)  # azimuths of other views
 
 @dataclass(frozen=True)
 class Region:
-    """Views and roughnesses of which a check asks.
+    """Views and roughnesses of which a check asks."""
 
-    Attributes
-    ----------
-    azimuths : (float, float)
-        Of the views from the normal, in radian.
-    variances, scales : (float, float)
-    tints : mapping of str to tuple
-        Which lobe is in which channel.
-    tilt : float
-        Largest distance of `cuticle_angle` from 1/2.
-    ior : (float, float) or None
-        Ends of the index; None for those of any pair.
-    form : str
-        Title of the form of the model that shaders have in its place there; "" if there is none.
-    """
-
-    azimuths: tuple[float, float]
+    azimuths: tuple[float, float]  # of the views from the normal, in radian
     variances: tuple[float, float]
     scales: tuple[float, float]
-    tints: Values
-    tilt: float = 0.05
-    ior: tuple[float, float] | None = None
+    tints: Values  # which lobe is in which channel
+    tilt: float = 0.05  # largest distance of `cuticle_angle` from 1/2
+    ior: tuple[float, float] | None = None  # ends of the index; None for those of any pair
+    # Title of the form of the model that shaders have in its place there; "" if there is none.
     form: str = ""
 
 

@@ -41,17 +41,7 @@ UTILITY_OSL = "utility values in OSL"
 EXACT, FACET, COARSE_FACET, FACET_PAIR = "exact", "facets", "coarse facets", "facet pairs"
 
 # Kinds of what a closure tells. It has its arguments to the last bit, and no fit of a shader's.
-TOLD = (
-    DIFFUSE,
-    *BSDFS,
-    HAIR,
-    SUBSURFACE,
-    COMBINED,
-    NESTED,
-    FILM,
-    *TRANSMISSIONS,
-    SURFACE_SHADER,
-)
+TOLD = (DIFFUSE, *BSDFS, HAIR, SUBSURFACE, COMBINED, NESTED, FILM, *TRANSMISSIONS, SURFACE_SHADER)
 # Kinds of which a renderer evaluates the closures.
 RENDERED = (DIFFUSE, *BSDFS, SUBSURFACE, COMBINED, NESTED, LOBE)
 TRACED = "traced"  # in place of "rendered": pairs that a path tracer shows

@@ -33,12 +33,7 @@ PORTS = connection_text("top", "BSDF", "top") + connection_text("base", "VDF", "
 
 @dataclass(frozen=True)
 class MediumSubject(RowSubject[Value]):
-    """A row of `mxeon.models.nodes.media`.
-
-    Attributes
-    ----------
-    row : Medium
-    """
+    """A row of `mxeon.models.nodes.media`."""
 
     row: Medium
 
@@ -69,7 +64,6 @@ class MediumSubject(RowSubject[Value]):
 
     def document(self, inputs: Values | None = None) -> str:
         """MaterialX text of a surface that lets light into the medium."""
-        # The inputs of each node.
         sources = SOURCES.get(self.node, {})
         ports = {name: "" for name in ("medium", *sources.values())}
         for port in self.ports:
@@ -79,7 +73,6 @@ class MediumSubject(RowSubject[Value]):
         ports["medium"] += "".join(
             connection_text(port, "VDF", name) for port, name in sources.items()
         )
-        # The media that are combined, the node, and a surface over it.
         media = [
             node_text("anisotropic_vdf", "VDF", name, ports[name]) for name in sources.values()
         ]

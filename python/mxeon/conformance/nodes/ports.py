@@ -16,53 +16,30 @@ CHANGED_COLOR = (0.9, 0.1, 0.6)
 
 @dataclass(frozen=True)
 class Port:
-    """An input of a node.
+    """An input of a node."""
 
-    Attributes
-    ----------
-    name : str
-        Name or path of the input.
-    kind : str
-        Type in MaterialX.
-    low, high : array_like
-        Ends of the range of random values, of all components or of each.
-    edges : tuple of float
-        What half of the special values are; () for none.
-    change : array_like or None
-        Another value than the default, which must show; None where it shows nothing by itself.
-    needs : mapping of str to array_like
-        Other inputs with which the change shows.
-    logarithmic : bool
-        Whether random values are uniform in their logarithm; others have a tenth on either end.
-    often : float or None
-        What every other random value is: the usual one of an input that is rarely set.
-    equal : bool
-        Whether both components are the same in every other random value.
-    materials : tuple
-        Values in the two materials that stand for a node in pictures; () for the default.
-    variable : str
-        The variable that a host sets in its place, of an input whose default is one.
-    default : array_like
-        Value in a document that has to set it.
-    """
-
-    name: str
-    kind: str = "float"
-    low: ArrayLike = 0.0
+    name: str  # name or path of the input
+    kind: str = "float"  # type in MaterialX
+    low: ArrayLike = 0.0  # ends of the range of random values, of all components or of each
     high: ArrayLike = 1.0
-    edges: tuple[float, ...] = ()
+    edges: tuple[float, ...] = ()  # what half of the special values are; () for none
+    # Another value than the default, which must show; None where it shows nothing by itself.
     change: ArrayLike | None = None
+    # Other inputs with which the change shows.
     needs: Values = field(default_factory=dict, hash=False)
+    # Whether random values are uniform in their logarithm; others have a tenth on either end.
     logarithmic: bool = False
+    # What every other random value is: the usual one of an input that is rarely set.
     often: float | None = None
-    equal: bool = False
+    equal: bool = False  # whether both components are the same in every other random value
+    # Values in the two materials that stand for a node in pictures; () for the default.
     materials: tuple[ArrayLike, ...] = ()
+    # The variable that a host sets in its place, of an input whose default is one.
     variable: str = ""
-    default: ArrayLike = 1.0
+    default: ArrayLike = 1.0  # value in a document that has to set it
 
 
 def color(name: str, *materials: ArrayLike, edges: tuple[float, ...] = (0.0, 1e-3, 1.0)) -> Port:
-    """A port that takes a color."""
     return Port(name, "color3", 0.0, 1.0, edges, CHANGED_COLOR, materials=materials)
 
 
@@ -72,7 +49,6 @@ def draw(rng: np.random.Generator, count: int, ports: Iterable[Port]) -> dict[st
 
 
 def _drawn(rng: np.random.Generator, count: int, port: Port) -> Array:
-    """Random values of one port."""
     low, high = np.asarray(port.low, np.float64), np.asarray(port.high, np.float64)
     share = rng.random((count, *COMPONENTS[port.kind]))
     if port.logarithmic:

@@ -10,15 +10,9 @@ from mxeon.models.table import OTHERS, Model
 
 @dataclass(frozen=True)
 class RendererNode(DiffuseSubject):
-    """A node of a renderer's own, and the model that its documentation claims.
+    """A node of a renderer's own, and the model that its documentation claims."""
 
-    Attributes
-    ----------
-    forms, others, sampled
-        As those of `mxeon.hosts.OwnNode`.
-    """
-
-    forms: tuple[str, ...] = ()
+    forms: tuple[str, ...] = ()  # as those of `mxeon.hosts.OwnNode`
     others: bool = False
     sampled: bool = False
 
@@ -42,5 +36,4 @@ def renderer_nodes(host: str) -> tuple[RendererNode, ...]:
 
 
 def all_renderer_nodes() -> tuple[RendererNode, ...]:
-    """The nodes of every renderer's own."""
     return tuple(node for row in hosts.HOSTS for node in renderer_nodes(row.name))

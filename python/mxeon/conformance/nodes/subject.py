@@ -10,36 +10,21 @@ from mxeon.conformance.samples.batch import Array, Batch, Candidate, Changes, Va
 
 
 class Subject(Protocol):
-    """A node in one of its modes.
-
-    Attributes
-    ----------
-    title : str
-        Name in reports, which no other subject has.
-    node : str
-        Category of the node.
-    model : str
-        Name of the model that it has to be: checks list the models that they hold for.
-    kind : str
-        Kind of its probe on a host that evaluates pairs of directions.
-    libraries : tuple of str
-        The libraries with which it is judged; () for all.
-    closure : bool
-        Whether eonlib leaves it to a renderer's own closures, in OSL.
-    """
+    """A node in one of its modes."""
 
     @property
-    def title(self) -> str: ...
+    def title(self) -> str: ...  # name in reports, which no other subject has
     @property
-    def node(self) -> str: ...
+    def node(self) -> str: ...  # category of the node
+    # Name of the model that it has to be: checks list the models that they hold for.
     @property
     def model(self) -> str: ...
     @property
-    def kind(self) -> str: ...
+    def kind(self) -> str: ...  # kind of its probe on a host that evaluates pairs of directions
     @property
-    def libraries(self) -> tuple[str, ...]: ...
+    def libraries(self) -> tuple[str, ...]: ...  # the libraries with which it is judged; () for all
     @property
-    def closure(self) -> bool: ...
+    def closure(self) -> bool: ...  # whether eonlib leaves it to a renderer's own closures, in OSL
 
     def document(self, inputs: Values | None = None) -> str:
         """MaterialX text of a material that shows this node alone, with these inputs."""
@@ -52,22 +37,14 @@ class Subject(Protocol):
 
 @runtime_checkable
 class ValuedSubject(Subject, Protocol):
-    """A node that gives values: light that it scatters or emits, or an output.
-
-    Attributes
-    ----------
-    inputs : tuple of str
-        Names of its inputs.
-    changes : mapping of str to Changes
-        For each input: inputs without and with a change of it alone, which must be seen.
-    value_candidates : tuple of Candidate
-        Functions that may explain its values, its own model first.
-    """
+    """A node that gives values: light that it scatters or emits, or an output."""
 
     @property
-    def inputs(self) -> tuple[str, ...]: ...
+    def inputs(self) -> tuple[str, ...]: ...  # names of its inputs
+    # For each input: inputs without and with a change of it alone, which must be seen.
     @property
     def changes(self) -> Mapping[str, Changes]: ...
+    # Functions that may explain its values, its own model first.
     @property
     def value_candidates(self) -> tuple[Candidate, ...]: ...
 
@@ -78,18 +55,12 @@ class ValuedSubject(Subject, Protocol):
 
 @runtime_checkable
 class LobeSubject(ValuedSubject, Protocol):
-    """A node that scatters light.
+    """A node that scatters light."""
 
-    Attributes
-    ----------
-    black : mapping of str to array_like
-        Inputs with which it scatters nothing; none where it always scatters some light.
-    albedo_candidates : tuple of Candidate
-        Functions that may explain its directional albedo, its own model first.
-    """
-
+    # Inputs with which it scatters nothing; none where it always scatters some light.
     @property
     def black(self) -> Values: ...
+    # Functions that may explain its directional albedo, its own model first.
     @property
     def albedo_candidates(self) -> tuple[Candidate, ...]: ...
 

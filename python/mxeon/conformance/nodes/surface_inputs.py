@@ -33,36 +33,19 @@ def _ports(**names: str) -> tuple[Port, ...]:
 
 @dataclass(frozen=True, eq=False)
 class Inputs:
-    """Inputs of a surface shader that its lobes may depend on.
+    """Inputs of a surface shader that its lobes may depend on."""
 
-    Attributes
-    ----------
-    judged : tuple of Port
-        Those whose values have a reference.
-    others : tuple of Port
-        Those of other lobes and of thin films, which are asked for energy.
-    seen : mapping of str to value
-        A material in which every lobe takes part.
-    more : mapping of str to value
-        Further inputs, with values that this material does not have.
-    without_effect : tuple of str
-        Inputs of `changed` that change no value of rasterized targets; docs/upstream/
-        surface_inputs.md says why.
-    white : mapping of str to value
-        A material that loses no light, by the layer equation.
-    needs : mapping of str to mapping
-        What else the material has where an input is changed.
-    curved : tuple of str
-        Inputs of `changed` that a curved surface alone has to show; that of pairs is a plane.
-    """
-
-    judged: tuple[Port, ...]
-    others: tuple[Port, ...]
-    seen: Values
-    more: Values
+    judged: tuple[Port, ...]  # those whose values have a reference
+    others: tuple[Port, ...]  # those of other lobes and of thin films, which are asked for energy
+    seen: Values  # a material in which every lobe takes part
+    more: Values  # further inputs, with values that this material does not have
+    # Inputs of `changed` that change no value of rasterized targets; docs/upstream/
+    # surface_inputs.md says why.
     without_effect: tuple[str, ...]
-    white: Values
+    white: Values  # a material that loses no light, by the layer equation
+    # What else the material has where an input is changed.
     needs: Mapping[str, Values] = field(default_factory=dict)
+    # Inputs of `changed` that a curved surface alone has to show; that of pairs is a plane.
     curved: tuple[str, ...] = ()
 
     @cached_property
@@ -139,10 +122,7 @@ OPEN_PBR = Inputs(
             share="transmission_weight subsurface_weight subsurface_radius",
             color="transmission_color subsurface_color subsurface_radius_scale",
         ),
-        *_ports(
-            share="thin_film_weight thin_film_thickness",
-            index="thin_film_ior",
-        ),
+        *_ports(share="thin_film_weight thin_film_thickness", index="thin_film_ior"),
     ),
     seen={
         "base_metalness": 0.4,
@@ -198,11 +178,7 @@ GLTF = Inputs(
         index="ior",
         fuzz_rough="sheen_roughness",
     ),
-    _ports(
-        share="transmission iridescence",
-        index="iridescence_ior",
-        film="iridescence_thickness",
-    ),
+    _ports(share="transmission iridescence", index="iridescence_ior", film="iridescence_thickness"),
     seen={
         "metallic": 0.4,
         "roughness": 0.5,
@@ -241,9 +217,7 @@ PREVIEW = Inputs(
         rough="roughness clearcoatRoughness",
         index="ior",
     ),
-    _ports(
-        share="opacity",
-    ),
+    _ports(share="opacity"),
     seen={"metallic": 0.4, "clearcoat": 0.5, "opacity": 0.6},
     more=dict(
         useSpecularWorkflow=1,

@@ -15,18 +15,10 @@ from mxeon.shaders.nodes import document_text, node_text
 
 @dataclass(frozen=True)
 class SurfaceShader:
-    """A surface shader with every lobe on.
+    """A surface shader with every lobe on."""
 
-    Attributes
-    ----------
-    node : str
-        Category.
-    table : Inputs
-        Its inputs.
-    """
-
-    node: str
-    table: Inputs
+    node: str  # category
+    table: Inputs  # its inputs
 
     libraries: ClassVar[tuple[str, ...]] = ()
     closure: ClassVar[bool] = True

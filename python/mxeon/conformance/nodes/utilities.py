@@ -46,13 +46,7 @@ PORTS = {
 
 @dataclass(frozen=True)
 class UtilitySubject(RowSubject[Outputs]):
-    """An output of a node of `mxeon.models.nodes.utilities`.
-
-    Attributes
-    ----------
-    row : UtilityNode
-    output : str
-    """
+    """An output of a node of `mxeon.models.nodes.utilities`."""
 
     row: UtilityNode
     output: str
@@ -93,14 +87,12 @@ class UtilitySubject(RowSubject[Outputs]):
 
     def document(self, inputs: Values | None = None) -> str:
         """MaterialX text of a material that emits this output, with these inputs."""
-        # The node.
         values = {**self.row.inputs, **(inputs or {})}
         ports = "".join(
             input_text(name, self._kind(name), values[name]) for name in self.row.inputs
         )
         kind, single = self.row.outputs[self.output], len(self.row.outputs) == 1
         text = node_text(self.node, kind if single else "multioutput", NAME, ports)
-        # Its output as a color, which a surface emits.
         source, port = NAME, "" if single else self.output
         if kind != "color3":
             text += node_text("convert", "color3", COLOR, connection_text("in", kind, NAME, port))

@@ -60,28 +60,8 @@ def judge_document(
 ) -> tuple[tuple[Result, ...], tuple[Picture, ...], tuple[tuple[str, str], ...]]:
     """Pictures of every material of a document on a host, judged against the reference's.
 
-    Parameters
-    ----------
-    file : Path
-    host : Host
-        The host to judge.
-    judge : Reference
-    library : str
-        Name of the data library.
-    policy : Policy
-        Limits of the document: the files it may name, and its size.
-
-    Returns
-    -------
-    tuple of Result, tuple of Picture, tuple of (str, str)
-        The last are notes and their locations, such as what the host approximates.
-
-    Raises
-    ------
-    DocumentError
-        If no shader can be made from the document.
+    Raise DocumentError if no shader can be made from the document.
     """
-    # Compile the document, and keep what the generator says.
     with warnings.catch_warnings(record=True) as records:
         warnings.simplefilter("always")
         warnings.simplefilter("error", MissingFileWarning)
@@ -92,7 +72,6 @@ def judge_document(
         for message in messages
         if isinstance(message, ApproximationWarning)
     }
-    # Judge each of its materials.
     results: list[Result] = []
     pictures: list[Picture] = []
     for shader in shaders:
@@ -101,7 +80,6 @@ def judge_document(
         result, images = _judge_material(file, shader, host, judge, values, front_lit)
         results.append(result)
         pictures += images
-    # Name the element of each approximation and limit, and the file of the rest.
     notes = [(text, f"{file.name}: {element}") for element, text in approximations.items()]
     notes += [
         (text, f"{file.name}: {shader.element}")
@@ -126,7 +104,6 @@ def _judge_material(
         "host": host.name,
         "library": library,
     }
-    # The host's pictures.
     try:
         images = [host.picture(shader, scene) for scene in scenes]
     except (NotRun, ShaderError) as error:
@@ -280,7 +257,6 @@ def _worst_pixel(case: Case, front_lit: bool, metric: Metric) -> Pixel:
 
     The difference has a sign, and is relative where the reference exceeds 1.
     """
-    # Errors of the pixels that show the sphere and were computed.
     scene, image, (reference, mask) = case[0], case[1], (case[2].image, case[2].judged)
     wo, wi = _directions(scene, mask)
     measured, expected = (each[mask].astype(np.float64) for each in (image, reference))
@@ -290,7 +266,6 @@ def _worst_pixel(case: Case, front_lit: bool, metric: Metric) -> Pixel:
         front = _is_front_lit(wo, wi)
         error = np.where(front, error, 0.0)
         difference = np.where(front[:, np.newaxis], difference, 0.0)
-    # The largest, and its place.
     worst = int(error.argmax())
     row, column = np.argwhere(mask)[worst]
     point = {

@@ -20,14 +20,9 @@ def generate_document(
 ) -> tuple[tuple[Result, ...], tuple[tuple[str, str], ...]]:
     """Result of generating a document's shaders for a host's target, and notes with their location.
 
-    Raises
-    ------
-    DocumentError
-        If no shader can be made from the document.
-    NotRun
-        If the host reads no documents, or this MaterialX has no generator for its target.
+    Raise DocumentError if no shader can be made from the document; NotRun if the host reads no
+    documents, or this MaterialX has no generator for its target.
     """
-    # Refuse a host without a generator.
     target = host_row(host).target
     if not target:
         raise NotRun(
@@ -35,7 +30,6 @@ def generate_document(
         )
     if target not in TARGETS:
         raise NotRun(f"{host}: this MaterialX has no generator for {target}")
-    # Generate, and keep what the generator says.
     with warnings.catch_warnings(record=True) as records:
         warnings.simplefilter("always")
         warnings.simplefilter("error", MissingFileWarning)
@@ -46,7 +40,6 @@ def generate_document(
         for message in messages
         if isinstance(message, (CodeWarning, DocumentWarning))
     ]
-    # Cut the document in half as a control.
     error = float(not shaders)
     caught = _refused(file.read_bytes(), target, library)
     result = Result(

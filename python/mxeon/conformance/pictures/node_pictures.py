@@ -25,15 +25,8 @@ SCENES = tuple(replace(scene, size=SIZE) for scene in (SIDE, BACK))
 def comparison_pictures(probe: Probe) -> tuple[Picture, ...]:
     """Pictures of a rough node in light from the side and from behind, each beside its model's.
 
-    Parameters
-    ----------
-    probe : PairProbe or PictureProbe
-        Of a surface shader's lobe there are none, nor on a renderer that shows no exact mirror pair.
-
-    Returns
-    -------
-    tuple of Picture
-        Away from rim and terminator; elsewhere both are black.
+    None for a surface shader's lobe, and on a renderer without exact mirror pairs. Rim and
+    terminator are black in both.
     """
     if not isinstance(probe.subject, DiffuseSubject) or isinstance(probe, RenderedSamples):
         return ()

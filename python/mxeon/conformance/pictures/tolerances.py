@@ -70,14 +70,7 @@ SHADED = Tolerance(
 
 
 def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe]) -> Tolerance:
-    """Tolerance of a material's pictures: that of its lobes, with what else may add to it.
-
-    Parameters
-    ----------
-    shader : Shader
-    lobes : iterable of ShownLobe
-        The lobes of its pictures.
-    """
+    """Tolerance of a material's pictures: that of its lobes, with what else may add to it."""
     tolerance = _lobes_tolerance(shader)
     others = [RINGS] * (SUBSURFACE in inner_lobes(shader))
     others += [BLACKBODY] * ("blackbody" in categories(inner_nodes(shader)))
@@ -89,7 +82,6 @@ def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe]) -> Tolerance:
 
 
 def rounded_by(host: Host, tolerance: Tolerance) -> Tolerance:
-    """Tolerance of the pictures of a host that rounds them."""
     rounding = host_row(host.name).rounding
     if not rounding:
         return tolerance
@@ -98,7 +90,6 @@ def rounded_by(host: Host, tolerance: Tolerance) -> Tolerance:
 
 
 def categories(elements: Iterable[mx.Element]) -> set[str]:
-    """Categories of nodes."""
     return {each.getCategory() for each in elements}
 
 

@@ -13,11 +13,7 @@ from mxeon.conformance.nodes.bsdf import BsdfSubject
 from mxeon.conformance.nodes.transmission import TransmissionSubject
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.samples.batch import SEED, Array, Batch, Counts, directions, rounded
-from mxeon.conformance.samples.edge_cases import (
-    LEAST_COLOR82,
-    LEAST_TURNED,
-    special_directions,
-)
+from mxeon.conformance.samples.edge_cases import LEAST_COLOR82, LEAST_TURNED, special_directions
 from mxeon.models.sampling.visible_normals import ggx_pdf, ggx_sample
 
 FIT_COSINE = 1e-4  # least cosine of the domain of the fits
@@ -104,7 +100,6 @@ class BsdfProbe(PairProbe):
         azimuth = np.arctan2(wo[:, 1], wo[:, 0])[:, np.newaxis, np.newaxis]
         phi = azimuth + 2.0 * np.pi * (np.arange(count) + 0.5) / count
         radius = np.sqrt(1.0 - mu * mu)[:, np.newaxis]
-        # Directions and their weights.
         columns = (
             radius * np.cos(phi),
             radius * np.sin(phi),
@@ -193,7 +188,6 @@ class MicrofacetProbe(BsdfProbe):
         count = height.size
         views, alpha = (np.repeat(each, count, axis=0) for each in (wo, inputs["roughness"]))
         u = np.tile(height.ravel(), len(wo)), np.tile(around.ravel(), len(wo))
-        # Lights that they reflect, weighted by the inverse density.
         wi = reflected(views, alpha, *u)
         lit = wi[:, 2] > 0.0
         wi[~lit] = (0.0, 0.0, 1.0)

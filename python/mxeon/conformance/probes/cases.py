@@ -49,7 +49,6 @@ def frame_cases(probe: Probe) -> Iterator[Case]:
 
 
 def surroundings_case(probe: Probe) -> Case:
-    """The case of `surroundings`."""
     batch = probe.turned
     if "color" in batch.inputs:
         batch = batch.altered(color=WHITE)
@@ -63,7 +62,6 @@ def surroundings_case(probe: Probe) -> Case:
 
 
 def throughput_cases(probe: Probe, branch: str) -> Iterator[Case]:
-    """The cases of `throughput` in one of BRANCHES."""
     for batch in probe.few:
         yield Case(batch, probe.throughput(batch, branch), np.zeros((len(batch.wo), 3)))
 
@@ -108,7 +106,6 @@ def _throughput_cases(probe: Probe, branch: str) -> Iterator[Case]:
 
 
 def stretched_case(probe: Probe) -> Case:
-    """The case of `stretched`."""
     batch, expected = probe.stretched
     return Case(batch, probe.albedo(batch), expected)
 

@@ -8,12 +8,7 @@ import numpy as np
 
 from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.diffuse import DiffuseLobe
-from mxeon.conformance.probes.pictures import (
-    PICTURE_INPUTS,
-    PICTURE_SIZE,
-    Mask,
-    PictureProbe,
-)
+from mxeon.conformance.probes.pictures import PICTURE_INPUTS, PICTURE_SIZE, Mask, PictureProbe
 from mxeon.conformance.samples.batch import LOBE_RIM, Array, Batch, Values
 from mxeon.shaders.document.values import Plain
 from mxeon.shaders.generation import Shader

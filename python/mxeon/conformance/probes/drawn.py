@@ -19,14 +19,9 @@ LATER_INPUTS = ("retroreflective",)  # than MaterialX 1.39.3, which Storm has
 
 
 class DrawnProbe(PictureProbe):
-    """A node on a sphere whose points and light have no error but rounding.
+    """A node on a sphere whose points and light have no error but rounding."""
 
-    Attributes
-    ----------
-    precision : str
-        Word for that of the host's pixels, with which its kinds of probes begin.
-    """
-
+    # Word for that of the host's pixels, with which its kinds of probes begin.
     precision: ClassVar[str] = "drawn"
 
     @classmethod

@@ -53,10 +53,7 @@ class NodeProbe(Probe):
     def shader_of(self, inputs: Values) -> Shader:
         """Shader of the subject's document with some inputs.
 
-        Raises
-        ------
-        NotRun
-            If the target has no implementation of the node.
+        Raise NotRun if the target has no implementation of the node.
         """
         shader = implementation(self.host, self.subject.document(inputs), self.library)
         if shader is None:
@@ -78,10 +75,7 @@ class EmissionProbe(NodeProbe, ValueProbe):
         mu = np.repeat(GRID, 64)
         radius = np.sqrt(1.0 - mu * mu)
         special = rounded([radius, 0.0 * mu, mu])
-        return (
-            self._views(rng, directions(rng, self.counts.pairs)),
-            self._views(rng, special),
-        )
+        return (self._views(rng, directions(rng, self.counts.pairs)), self._views(rng, special))
 
     @property
     def few(self) -> tuple[Batch, ...]:

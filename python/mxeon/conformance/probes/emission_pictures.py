@@ -7,11 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from mxeon.conformance.nodes import kinds
-from mxeon.conformance.nodes.emission import (
-    SURFACE_COLOR,
-    EmissionSubject,
-    SurfaceSubject,
-)
+from mxeon.conformance.nodes.emission import SURFACE_COLOR, EmissionSubject, SurfaceSubject
 from mxeon.conformance.probes.emission import NodeProbe
 from mxeon.conformance.probes.pictures import Mask
 from mxeon.conformance.probes.probe import ValueProbe

@@ -73,13 +73,11 @@ class HairProbe(BsdfProbe):
     def region(self, key: str) -> Batch:
         """Pairs in the lobes of a row of REGIONS, with each lobe in a channel of its own."""
         rng, row, count = np.random.default_rng(SEED), REGIONS[key], self.counts.few
-        # Views of the region.
         sine = 0.9 * (2.0 * rng.random(count) - 1.0)
         low, high = row.azimuths
         azimuth = (low + (high - low) * rng.random(count)) * rng.choice([-1.0, 1.0], count)
         cosine = np.sqrt(1.0 - sine * sine)
         wo = rounded([sine, cosine * np.sin(azimuth), cosine * np.cos(azimuth)])
-        # Its roughnesses, tilts and tints.
         inputs = self.subject.random_inputs(rng, count)
         inputs["cuticle_angle"] = 0.5 + 2.0 * row.tilt * (inputs["cuticle_angle"] - 0.5)
         if row.ior:
@@ -138,7 +136,6 @@ def _sides(rng: np.random.Generator, count: int) -> Array:
 
 def aimed(rng: np.random.Generator, wo: Array, inputs: dict[str, Array]) -> Array:
     """Directions of light in one of the lobes R, TT and TRT of each view, float32 numbers, (N, 3)."""
-    # Choose a lobe for each view.
     count = len(wo)
     lobe, chosen = rng.integers(0, 3, count), np.arange(count)
     v, s = (np.stack([inputs[name] for name in ROUGHNESSES])[lobe, chosen]).T

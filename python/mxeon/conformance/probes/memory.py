@@ -18,19 +18,13 @@ KEPT_SUBJECTS = 2  # whose expected values are kept: that of a probe, and anothe
 
 
 class Remembered:
-    """A function of batches whose values of a few of them are kept, and cannot be written.
-
-    Parameters
-    ----------
-    function : callable (batch) -> ndarray, shape (N, 3)
-    """
+    """A function of batches whose values of a few of them are kept, and cannot be written."""
 
     def __init__(self, function: Callable[[Batch], Array]) -> None:
         self._function = function
         self._known = Recent[Array](KEPT)
 
     def __call__(self, batch: Batch) -> Array:
-        """Its values of a batch."""
         if len(batch.wo) > LARGEST:
             return self._function(batch)
         key = batch.scene, *_parts(batch)
@@ -46,15 +40,7 @@ class Evaluations:
     def values(
         self, batch: Batch, rest: tuple[object, ...], evaluate: Callable[[], Array]
     ) -> Array:
-        """Values of a batch, which are computed unless they are known.
-
-        Parameters
-        ----------
-        batch : Batch
-        rest : tuple
-            What else the values depend on: arrays, numbers, strings, or None.
-        evaluate : callable () -> ndarray, shape (N, 3)
-        """
+        """Values of a batch, which are computed unless they are known."""
         key = *_parts(batch), *map(contents, rest)
         return self._known.value(key, lambda: _read_only(evaluate()))
 

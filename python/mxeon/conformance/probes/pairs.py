@@ -78,12 +78,10 @@ class PairProbe(LobeProbe):
         Half of the normals face away from the viewer. Tangents lean out of the surface by up to LEAN,
         as those of a geometry do where a picture turns the normal.
         """
-        # Frames, and directions in them.
         rng = np.random.default_rng(SEED)
         frames = turned_frames(rng, FRAMES)
         count = len(frames)
         wo, wi = turned_directions(rng, count), turned_directions(rng, count)
-        # Normals on both sides, and tangents that lean.
         facing = np.where(np.arange(count) % 2, 1.0, -1.0)[:, np.newaxis]
         normal = facing * rounded(frames[:, :, 2].T)
         lean = LEAN * np.linspace(-1.0, 1.0, count)[:, np.newaxis]

@@ -92,7 +92,6 @@ class PictureProbe(LobeProbe):
         return wo[:, 0] * wi[:, 0] + wo[:, 1] * wi[:, 1] >= 0.0
 
     def _picture(self, batch: Batch) -> Array:
-        """Values at the points of a batch."""
         scene = scene_of(batch)
         values = self._radiance(self._shader(batch.inputs), scene)
         return values[self.points(scene)[2]].astype(np.float64)
@@ -115,22 +114,13 @@ def _compile(host: Host, text: str, library: str) -> Shader:
 
 
 def scene_of(batch: Batch) -> Scene:
-    """The picture of a batch of a probe that makes pictures."""
     assert batch.scene is not None
     return batch.scene
 
 
 @lru_cache(maxsize=8)
 def picture_pairs(scene: Scene) -> Pairs:
-    """Directions at the points of the sphere, and the mask of the points to judge.
-
-    Returns
-    -------
-    wo, wi : ndarray, shape (N, 3)
-        One row per pixel on the sphere; wi is wo where there is no distant light.
-    mask : ndarray of bool, shape (N,)
-        True where both cosines are at least RIM.
-    """
+    """Directions at the points of the sphere, and the mask of the points to judge."""
     points = sphere(scene.size)
     return lit_pairs(points.normal[points.mask], scene)
 

@@ -9,13 +9,7 @@ import numpy as np
 
 from mxeon.conformance.nodes import kinds
 from mxeon.conformance.probes.cases import BLACK
-from mxeon.conformance.probes.pictures import (
-    PICTURE_INPUTS,
-    PICTURE_SIZE,
-    Mask,
-    Pairs,
-    lit_pairs,
-)
+from mxeon.conformance.probes.pictures import PICTURE_INPUTS, PICTURE_SIZE, Mask, Pairs, lit_pairs
 from mxeon.conformance.probes.renderer_nodes import ExactProbe
 from mxeon.conformance.samples.batch import SEED, Array, Batch, Counts, directions
 from mxeon.conformance.samples.edge_cases import outside_directions, special_directions

@@ -29,22 +29,11 @@ class Probe:
     A check asks for samples, for the values of a batch of them, and for the expected ones. What a
     kind of probe lacks raises one error, here; the tolerances of a check name the kinds that have
     all that it asks for.
-
-    Attributes
-    ----------
-    shown : str
-        Kind of all probes of a class whose host does not show all that a subject's kind stands for.
-    usual : Counts
-        Samples of a probe that is not told how many to draw.
-    host : Host
-    subject : Subject
-    library : str
-        The library that the host loads.
-    counts : Counts
     """
 
+    # Kind of all probes of a class whose host does not show all that a subject's kind stands for.
     shown: ClassVar[str] = ""
-    usual: ClassVar[Counts] = Counts()
+    usual: ClassVar[Counts] = Counts()  # samples of a probe that is not told how many to draw
 
     subject: Subject
 
@@ -61,11 +50,9 @@ class Probe:
 
     @property
     def kind(self) -> str:
-        """Its own kind."""
         return self.kind_of(self.subject)
 
     def of(self, subject: Subject) -> Self:
-        """The same probe of another subject."""
         return type(self)(self.host, subject, self.library, self.counts)
 
     @property
@@ -74,7 +61,6 @@ class Probe:
         self._lacks("reflection")
 
     def other(self, output: str) -> "Probe":
-        """The probe of another output of the node."""
         self._lacks("other")
 
     # Samples.
@@ -121,7 +107,6 @@ class Probe:
 
     @property
     def films(self) -> FilmViews:
-        """Views of films for the checks of one term each."""
         self._lacks("films")
 
     def summed(self, first: Batch, second: Batch, output: str) -> Array:
@@ -135,7 +120,6 @@ class Probe:
 
     @property
     def backs(self) -> Batch:
-        """Views from the back."""
         self._lacks("backs")
 
     @property

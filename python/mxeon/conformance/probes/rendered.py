@@ -50,16 +50,10 @@ class RenderedSamples(Probe):
 
     Both cosines are at least RIM, and no lobe is so sharp that the place of a pixel counts. A roughness is at
     most 1, as OSL's stdosl.h has it, a weight is not negative, and there is no occlusion.
-
-    Attributes
-    ----------
-    word : str
-        Of its kinds.
-    variants : mapping of str to tuple of Variant
-        Functions of the renderer, by the name of a node's row.
     """
 
-    word: ClassVar[str] = "rendered"
+    word: ClassVar[str] = "rendered"  # of its kinds
+    # Functions of the renderer, by the name of a node's row.
     variants: ClassVar[Mapping[str, tuple[Variant[Scattering], ...]]] = BSDL_VARIANTS
 
     def __init__(
@@ -185,7 +179,6 @@ def apart(wo: Array, wi: Array) -> Array:
     across = wi - cosine * wo
     sine = np.linalg.norm(across, axis=1, keepdims=True)
     across = np.where(sine > NO_SINE, across, perpendicular(wo))
-    # The nearest one that is shown.
     along = np.sign(cosine) * np.sqrt(1.0 - FARTHER**2)
     moved = along * wo + FARTHER * across / np.linalg.norm(across, axis=1, keepdims=True)
     moved = moved / np.linalg.norm(moved, axis=1, keepdims=True)  # wo is one up to its roundings

@@ -72,13 +72,11 @@ class SurfaceShaderProbe(PairProbe):
     @cached_property
     def changed(self) -> Batch:
         """A few views for each input: of the material with every lobe, then with a change of it."""
-        # Materials without and with each change.
         table = self.subject.table
         rows = []
         for name in self.subject.inputs:
             before = {**table.seen, **table.needs.get(name, {})}
             rows += [before, {**before, name: table.changed[name]}]
-        # A few views of each.
         [batch] = self.batches
         few = batch.first(CHANGED)
         defaults = self._defaults
@@ -124,12 +122,10 @@ class SurfaceShaderProbe(PairProbe):
 
     @cached_property
     def _document(self) -> Shader:
-        """The document, as a shader of any target."""
         [shader] = generate(self.subject.document(), "glsl", library=self.library)
         return shader
 
     def _reference(self, batch: Batch, branch: str) -> Array:
-        """Values of the reference for the same document, (N, 3)."""
         return Reference().evaluate(self._document, batch.wo, batch.wi, batch.inputs, branch)
 
 

@@ -59,7 +59,6 @@ class FilmProbe(MicrofacetProbe):
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
-        """Few of each."""
         return tuple(batch.first(self.counts.few) for batch in self.batches)
 
     @property
@@ -116,12 +115,10 @@ def film_views(
     subject: BsdfSubject, count: int, ranges: Mapping[str, tuple[float, float]], seed: int = SEED
 ) -> Batch:
     """Views of films with a roughness, a cosine and a thickness in ranges, and mirrored lights."""
-    # Views in the ranges.
     rng = np.random.default_rng(seed)
     alpha, mu, thickness = (low + (high - low) * rng.random(count) for low, high in ranges.values())
     azimuth, radius = 2.0 * np.pi * rng.random(count), np.sqrt(1.0 - mu * mu)
     wo = rounded([radius * np.cos(azimuth), radius * np.sin(azimuth), mu])
-    # Films of the ranges on random substrates.
     inputs = simple(subject.random_inputs(rng, count))
     inputs["thinfilm_ior"] = np.maximum(inputs["thinfilm_ior"], LEAST_OIL)
     inputs["roughness"] = rounded([alpha, alpha])

@@ -38,7 +38,6 @@ class UtilityProbe(ValueProbe):
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
-        """Few of both."""
         return tuple(batch.first(self.counts.few) for batch in self.batches)
 
     @property

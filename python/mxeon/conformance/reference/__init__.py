@@ -35,23 +35,13 @@ ROW = hosts.Row("reference", target="glsl", module=__name__)
 
 @dataclass(frozen=True, eq=False)
 class ExpectedPicture:
-    """What a host's picture has to show.
-
-    Attributes
-    ----------
-    image : ndarray, shape (size, size, 3)
-    judged : ndarray of bool, shape (size, size)
-        Pixels that were computed; each other one has the value of one nearby.
-    measured : tuple of str
-        Inputs of nodes whose values were taken from the host.
-    lobes : tuple of ShownLobe
-        The lobes that it shows.
-    """
+    """What a host's picture has to show."""
 
     image: NDArray[np.float64]
+    # Pixels that were computed; each other one has the value of one nearby.
     judged: NDArray[np.bool_]
-    measured: tuple[str, ...]
-    lobes: tuple[ShownLobe, ...] = ()
+    measured: tuple[str, ...]  # inputs of nodes whose values were taken from the host
+    lobes: tuple[ShownLobe, ...] = ()  # the lobes that it shows
 
 
 class Host(base.Host):
@@ -67,12 +57,8 @@ class Host(base.Host):
     def picture(self, shader: Shader, scene: Scene) -> NDArray[np.float64]:
         """Picture of the sphere with the shader's document on it; see `mxeon.hosts.base.Host`.
 
-        Raises
-        ------
-        NotRun
-            If the material has lobes that the models do not cover, or the light is an image.
-        ValueError
-            If the scene asks for paths.
+        Raise NotRun if the material has lobes that the models do not cover, or the light is an
+        image; ValueError if the scene asks for paths.
         """
         self.refuse_paths(scene)
         self.refuse_shape(scene)
@@ -84,17 +70,7 @@ class Host(base.Host):
     def expected(self, shader: Shader, scene: Scene, values: HostValues) -> ExpectedPicture:
         """What a host's picture has to show, some inputs of lobes being as that host has them.
 
-        Parameters
-        ----------
-        shader : Shader
-        scene : Scene
-        values : HostValues
-            Of the same host and shader.
-
-        Raises
-        ------
-        NotRun
-            As `picture` does.
+        Raise NotRun as `picture` does.
         """
         try:
             return self._expected(shader, scene, values, 1)
@@ -105,7 +81,6 @@ class Host(base.Host):
         self, shader: Shader, scene: Scene, values: HostValues, stride: int
     ) -> ExpectedPicture:
         """The same at the pixels of every so many rows and columns."""
-        # Choose the pixels.
         mask = sphere(scene.size).mask
         chosen = mask & _lattice(scene.size, stride)
         points = _shown(scene, stride)
@@ -113,7 +88,6 @@ class Host(base.Host):
         def measure(elements: Elements, kind: str, output: str) -> NDArray[np.float64]:
             return values(scene.size, elements, kind, output)[chosen]
 
-        # Light them, and show each in place of those around it.
         image = np.zeros((*mask.shape, 3))
         try:
             image[chosen], measured, lobes = _lighted(shader, points, measure)
@@ -139,10 +113,7 @@ class Host(base.Host):
     ) -> NDArray[np.float64]:
         """Values of the document's lobes; see `mxeon.hosts.base.Host`.
 
-        Raises
-        ------
-        NotRun
-            Unless the response to a light or to a uniform environment is asked for.
+        Raise NotRun unless the response to a light or to a uniform environment is asked for.
         """
         if (
             output != "response"
@@ -189,22 +160,11 @@ def _lattice(size: int, stride: int) -> NDArray[np.bool_]:
 def _shown(scene: Scene, stride: int = 0) -> ShadingPoints:
     """The points that a picture shows, and the light at them.
 
-    Parameters
-    ----------
-    scene : Scene
-    stride : int
-        Of the rows and columns; 0 for all pixels, whatever their number.
-
-    Raises
-    ------
-    NotRun
-        If the light is an image.
+    Raise NotRun if the light is an image.
     """
-    # Choose the points.
     points = sphere(scene.size)
     mask = points.mask & _lattice(scene.size, max(stride, 1))
     normal, texcoord = points.normal[mask], points.texcoord[mask]
-    # Choose the light at them.
     if scene.light is not None:
         wi, strength = np.broadcast_to(scene.light, normal.shape), np.pi
     elif isinstance(scene.environment, float):

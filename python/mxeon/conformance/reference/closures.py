@@ -62,30 +62,19 @@ FLAGGED = {
 
 @dataclass(frozen=True)
 class Views:
-    """Directions at some points, and the light whose way is followed.
-
-    Attributes
-    ----------
-    wo, wi : ndarray, shape (N, 3)
-    occlusion : ndarray, shape (N or 1, 1)
-        Share of a light that reaches the surface from above.
-    branch : str
-        As in `mxeon.hosts.base.Host.evaluate`.
-    """
+    """Directions at some points, and the light whose way is followed."""
 
     wo: Values
     wi: Values
-    occlusion: Values
-    branch: str
+    occlusion: Values  # share of a light that reaches the surface from above
+    branch: str  # as in `mxeon.hosts.base.Host.evaluate`
 
     def bsdf(self, tree: ClosureTree | None, layered: bool) -> Bsdf:
         """Value of closures, and their throughput if something may lie below them."""
-        # Closures that scatter no light, and single ones.
         if tree is None or tree.name in LIGHTLESS:
             return NOTHING
         if tree.name not in OPERATIONS:
             return self._flagged(tree, layered)
-        # Combinations of two.
         first, second = (*tree.parts, None)[:2]
         factor = column(tree.arguments["factor"]) if "factor" in tree.arguments else ONE
         if tree.name == LAYER:
@@ -96,7 +85,6 @@ class Views:
             )
         if tree.name == SUM:
             return layering.add(self.bsdf(first, layered), self.bsdf(second, layered))
-        # A multiple; what has no weight is not evaluated.
         if not np.any(factor):
             return NOTHING
         scaled = self.bsdf(first, layered)
@@ -142,12 +130,10 @@ class Views:
         self, closure: ClosureTree, row: PbrNode, wo: Values, wi: Values, inputs: Arguments
     ) -> Values:
         """Light that a lobe sends to the viewer, times the cosine, (N, 3)."""
-        # Light of an environment.
         if self.branch == THROUGH:
             return _transmitted(closure, wo, inputs)
         if self.branch != "direct":
             return _albedo(row, row.integral or row.albedo, _ended(wo), inputs)
-        # A distant light, on the side from which the lobe scatters it.
         if row is HAIR_NODE:  # which light meets from all sides
             return self.occlusion * row.value(wo, wi, inputs)
         side = np.where((wi[:, 2:] < 0.0) == row.transmits, 1.0, -1.0)
@@ -180,7 +166,6 @@ def radiance(tree: ClosureTree | None) -> Values:
 
 def _coefficient(tree: ClosureTree | None, argument: str, name: str) -> Values | None:
     """An argument of the closures of a name, by which light depends linearly on them; None without any."""
-    # A closure, or none.
     if tree is None:
         return None
     if tree.name == name:
@@ -188,7 +173,6 @@ def _coefficient(tree: ClosureTree | None, argument: str, name: str) -> Values |
     parts = [_coefficient(part, argument, name) for part in tree.parts]
     if all(part is None for part in parts):
         return None
-    # What is combined.
     known = [np.zeros((1, 3)) if part is None else part for part in parts]
     factor = column(tree.arguments["factor"]) if "factor" in tree.arguments else ONE
     if tree.name == MIX:
@@ -235,12 +219,9 @@ def _transmitted(closure: ClosureTree, wo: Values, inputs: Arguments) -> Values:
 
 
 def _inputs(closure: ClosureTree, row: PbrNode) -> Arguments:
-    """Arguments of a closure by the names of the models' inputs."""
-    # Values by their own names.
     given = {key: value for key, value in closure.arguments.items() if not isinstance(value, str)}
     if closure.name == "oren_nayar_diffuse_bsdf":
         given["roughness"] = np.minimum(given["roughness"], table.model(row.name).largest)
-    # Those that the models have together.
     if closure.name == HAIR:
         for lobe in HAIR_LOBES:
             rough = np.stack([given[f"variance_{lobe}"], given[f"scale_{lobe}"]], axis=-1)

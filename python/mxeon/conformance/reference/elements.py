@@ -29,14 +29,6 @@ DISTANCE = "distance"  # type of units
 class Elements:
     """Elements of a document, each found under a path before it is asked for.
 
-    Parameters
-    ----------
-    document : MaterialX.Document
-    points : ShadingPoints
-        Whose vectors are the values of inputs that a definition connects to the surface.
-
-    Notes
-    -----
     A path names a node within the nodes and nodegraphs around it: a tuple of name paths, the
     outermost first.
     """
@@ -79,13 +71,11 @@ class Elements:
 
     def value(self, path: Path, name: str, port: mx.Input) -> Value:
         """Value of an input without a connection, in the document's color space."""
-        # A vector of the surface, if the definition says so.
         element = self._elements[path]
         nodedef = element.getNodeDef() if element.isA(mx.Node) else None
         declared = nodedef.getActiveInput(name) if nodedef else port
         if declared and declared.hasDefaultGeomPropString():  # nothing else sets it
             return self._points.geometry(declared.getDefaultGeomPropString())
-        # The value that is written, or else the default.
         value = port.getValue()
         if value is None and declared:  # a connection that MaterialX ignores
             value = declared.getValue()
@@ -109,10 +99,7 @@ class Elements:
     def linear(self, element: mx.Element, value: Values) -> Values:
         """Color in the document's space, as the generators' color management has it; alpha stays.
 
-        Raises
-        ------
-        NotRun
-            If that takes a transform other than the decoding of sRGB.
+        Raise NotRun if that takes a transform other than the decoding of sRGB.
         """
         spaces = color_spaces(element)
         if spaces is None:

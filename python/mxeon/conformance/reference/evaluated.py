@@ -24,12 +24,7 @@ if TYPE_CHECKING:
 
 
 class Evaluated(Host):
-    """A host that tells closures, with their values by the models.
-
-    Parameters
-    ----------
-    host : Host
-    """
+    """A host that tells closures, with their values by the models."""
 
     def __init__(self, host: Host) -> None:
         self.name, self._host = host.name, host
@@ -67,17 +62,12 @@ class Evaluated(Host):
     ) -> Array:
         """Values of the closures of a shader; see `mxeon.hosts.base.Host`.
 
-        Raises
-        ------
-        Unsupported
-            If the environment is not uniform: closures look none up.
+        Raise Unsupported if the environment is not uniform: closures look none up.
         """
-        # Ask for the closures.
         if irradiance is not None:
             raise self._unsupported("uneven environment", "gl")
         values = np.zeros((len(wo), 3))
         occlusion = np.broadcast_to(column(inputs.get("occlusion", 1.0)), (len(wo), 1))
-        # Evaluate those of each shape.
         for points in self._host.trees(shader, wo, inputs):
             rows = points.rows
             if output == "radiance" or branch == GRAPH:
@@ -92,5 +82,4 @@ class Evaluated(Host):
 
 @lru_cache(maxsize=4)
 def evaluated(host: Host) -> Evaluated:
-    """The one host that evaluates the closures of another."""
     return host if isinstance(host, Evaluated) else Evaluated(host)

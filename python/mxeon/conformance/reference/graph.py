@@ -55,43 +55,21 @@ HOSTS_OWN = ("round", "floor", "ceil", "modulo", "asin", "acos")
 
 
 class Graph:
-    """A document's graph at the points of a picture.
-
-    Parameters
-    ----------
-    document : MaterialX.Document
-    points : ShadingPoints
-    inputs : mapping of str to array
-        Inputs of the surface shader, or of lobes where the document has none, that take the place
-        of the document's.
-    emits : bool
-        Whether emission and opacity count.
-    measure : callable or None
-        Values of nodes, where one comes from a node without a function; see
-        `mxeon.conformance.reference.measured`. None where such a node is NotRun.
-
-    Attributes
-    ----------
-    measured : dict of str to None
-        Names of the inputs whose values were measured, each behind the name of its node.
-    lobes : list of ShownLobe
-        Those that were evaluated.
-    """
+    """A document's graph at the points of a picture."""
 
     def __init__(
         self,
         document: mx.Document,
         points: ShadingPoints,
-        inputs: Mapping[str, ArrayLike] | None = None,
-        emits: bool = True,
-        measure: Measure | None = None,
+        inputs: Mapping[str, ArrayLike] | None = None,  # instead of the document's
+        emits: bool = True,  # whether emission and opacity count
+        measure: Measure
+        | None = None,  # values of nodes without a function; None: they are not run
     ) -> None:
-        # Keep what is asked for.
         self._document, self._points, self._inputs = document, points, inputs or {}
         self._emits, self._measure = emits, measure
-        self.measured: dict[str, None] = {}
+        self.measured: dict[str, None] = {}  # inputs, each behind the name of its node
         self.lobes: list[ShownLobe] = []
-        # Prepare what is found on the way.
         self._shader: Path | None = None  # the surface shader that is a nodegraph
         self._tops: list[Path] = []  # of layers: their throughputs are needed
         self._hiding: set[Path] = set()  # and those of what they are made of
@@ -101,10 +79,7 @@ class Graph:
     def element(self, name_path: str) -> Values:
         """Values of the renderable element at a name path, (N, 3).
 
-        Raises
-        ------
-        NotRun
-            If the graph holds a node that is none of the above.
+        Raise NotRun if the graph holds a node that is none of the above.
         """
         element = self._document.getDescendant(name_path)
         graph = element.getParent()
@@ -132,18 +107,15 @@ class Graph:
     def _node_step(self, path: Path) -> Step:
         node = self._elements[path]
         category, kind = node.getCategory(), node.getType()
-        # Lobes, and what combines them.
         if category in LOBES:
             return self._lobe(path, node)
         if kind == "BSDF" and category in COMBINATIONS:
             return self._combination(path, node)
-        # Numbers, colors and surfaces.
         if category == "image":
             return lookup(node, self._points.texcoord, self._elements.linear), ()
         if category in self._operations and not (self._measure and category in HOSTS_OWN):
             ports, operation = self._operations[category]
             return partial(computed, kind, operation), self._sources(path, ports)
-        # A nodegraph that defines the node, or nothing of what has no weight.
         if kind == "surfaceshader" and self._shader is None:
             self._shader = path
         if inner := self._inside(path, node):
@@ -184,7 +156,6 @@ class Graph:
         """Step of a node that combines lobes; a mix leaves out what has no share."""
         category = node.getCategory()
         ports, operation = COMBINATIONS[category]
-        # A mix leaves out what has no share.
         if category == "mix":
             share = self._evaluate(self._source(path, "mix"))
             for port, none in (("bg", 0.0), ("fg", 1.0)):
@@ -216,7 +187,6 @@ class Graph:
 
     def _source(self, path: Path, name: str) -> Path:
         """Path of an input's value: of the node connected to it, or of a constant."""
-        # Follow the interfaces around the node outwards.
         owner = path
         while (given := self._given(path, name)) is None:
             port = self._elements.port(path, name)
@@ -225,7 +195,6 @@ class Graph:
             path, name = path[:-1], port.getInterfaceName()
         else:
             return self._constant(path, name, given)
-        # Take what is connected, or else the value.
         if port.getConnectedNode():
             shown = (
                 f"{port.getParent().getName()}.{name}"
@@ -251,7 +220,6 @@ class Graph:
         Where a value comes from a node without a function, and is an input that has a name as
         `shown`, all of it is measured.
         """
-        # Find the node, inside this path or in a graph of the document.
         node, source = port.getConnectedNode(), port
         graph, scope = node.getParent(), port.getParent()
         if not port.getNodeName():
@@ -261,7 +229,6 @@ class Graph:
         if graph.getNamePath() != scope.getNamePath():
             around = self._elements.inner((), graph)
         path, output = self._elements.inner(around, node), source.getOutputString()
-        # Measure what cannot be computed.
         kind = port.getType()
         if not (shown and self._measure and kind in DRAWN):
             return self._output(path, output)

@@ -23,20 +23,8 @@ def lookup(
 ) -> Callable[[], Values]:
     """Function that reads an image node: texel centers at half-integers, v = 0 at the bottom.
 
-    Parameters
-    ----------
-    node : MaterialX.Node
-        An `image`.
-    texcoord : ndarray, shape (N, 2), or None
-    linear : callable (element, values) -> values
-        Colors in the document's linear space.
-
-    Raises
-    ------
-    NotRun
-        If the image is read in another way.
+    Raise NotRun if the image is read in another way.
     """
-    # Refuse what is read in another way.
     if texcoord is None or node.getInput("texcoord") is not None:
         raise NotRun("reference: images are read at the sphere's own coordinates only")
     file = node.getInput("file")
@@ -44,7 +32,6 @@ def lookup(
         raise NotRun("reference: an image must name its file itself")
     if file.hasUnit():
         raise NotRun("reference: an image must hold no lengths")
-    # Read as many channels as the type has, in a color space that has a transform.
     channels = CHANNELS.get(node.getType(), 0)
     values = _texels(file.getValueString(), texcoord.tobytes())
     if not 0 < channels <= values.shape[-1]:
@@ -64,7 +51,6 @@ def _texels(path: str, texcoord: bytes) -> Values:
 
 
 def _bilinear(texels: NDArray[np.float32], texcoord: Values) -> Values:
-    # The texel's corner, and the place between it and the next one.
     height, width = texels.shape[:2]
     texel = texcoord * [width, height] - 0.5
     corner = np.floor(texel).astype(int)
@@ -74,7 +60,6 @@ def _bilinear(texels: NDArray[np.float32], texcoord: Values) -> Values:
     def at(dx: int, dy: int) -> Values:
         return np.asarray(texels[(y + dy) % height, (x + dx) % width], np.float64)
 
-    # Two interpolations along u, one along v.
     lower = at(0, 0) * (1.0 - u) + at(1, 0) * u
     upper = at(0, 1) * (1.0 - u) + at(1, 1) * u
     return np.asarray(lower * (1.0 - v) + upper * v)

@@ -53,7 +53,6 @@ def _spread(wo: Values, wi: Values, inputs: Inputs) -> Values:
     forward = np.broadcast_to(inputs["anisotropy"], (count,))[:, np.newaxis]
     radius = np.broadcast_to(inputs["radius"], (count, 3))
     reach = np.clip(radius / np.maximum(1.0 - forward, 1e-3), *REACHES)
-    # The blurred cosine, by a table where all points have one.
     mu = np.clip(wi[:, 2], -1.0, 1.0)
     if np.ptp(reach, axis=0).any():
         light = np.stack([diffusion_blur(mu, each) for each in reach.T], axis=-1)

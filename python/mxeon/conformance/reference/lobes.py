@@ -63,7 +63,6 @@ def lit(wo: Values, wi: Values, irradiance: float, most: float = np.inf) -> Lobe
     above = wo[:, 2] > 0.0
 
     def lobe(node: PbrNode, inputs: Inputs, layered: bool) -> Bsdf:
-        # The value, on the side to which the node scatters.
         value = np.zeros(wo.shape)
         if around := AROUND.get(node.category):
             value[above] = irradiance * around(wo[above], wi[above], _at(inputs, above))
@@ -71,7 +70,6 @@ def lit(wo: Values, wi: Values, irradiance: float, most: float = np.inf) -> Lobe
             shown = above & ((wi[:, 2] < 0.0) if node.transmits else (wi[:, 2] > 0.0))
             f = node.value(wo[shown], wi[shown], _at(inputs, shown))
             value[shown] = irradiance * f * np.abs(wi[shown, 2:])
-        # The light that it leaves to what lies below.
         left = np.zeros(wo.shape)
         if layered and node.layerable:
             left[above] = throughput(_albedo(node.albedo, node, wo[above], inputs, above, most))
@@ -196,22 +194,17 @@ def _albedos(albedo: Albedo, material: Material, cosines: bytes) -> Values:
 
 @lru_cache(maxsize=32)
 def _series(
-    albedo: Albedo,
-    material: Material,
-    low: float,
-    degrees: tuple[tuple[int, int], ...],
+    albedo: Albedo, material: Material, low: float, degrees: tuple[tuple[int, int], ...]
 ) -> Values | None:
     """Chebyshev coefficients of an albedo, (., ., 3), or None where they fall too slowly."""
     inputs = _inputs(material)
     for degree, turns in degrees:
-        # The albedo at Chebyshev's points.
         x, y = chebyshev.chebpts1(degree + 1), chebyshev.chebpts1(turns + 1)
         mu, phi = np.meshgrid(
             np.square(low + (1.0 - low) * 0.5 * (1.0 + x)), 0.5 * np.arccos(y), indexing="ij"
         )
         wo = _directions(mu.ravel(), phi.ravel())
         values = albedo(wo, _at(inputs, np.ones(len(wo), bool))).reshape(*mu.shape, 3)
-        # Its coefficients, until the last ones are small.
         series = np.einsum("xi,yj,xyc->ijc", _transform(x), _transform(y), values)
         tails = [series[-degree // 8 :], series[:, -2:] if turns else np.zeros(1)]
         if max(float(np.abs(tail).max()) for tail in tails) < TAIL:
@@ -220,7 +213,6 @@ def _series(
 
 
 def _inputs(material: Material) -> dict[str, Values]:
-    """Inputs of a material, each one value."""
     return {
         name: np.array(values) if len(values) == 1 else np.array([values])
         for name, values in material

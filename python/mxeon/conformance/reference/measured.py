@@ -36,21 +36,7 @@ Measure: TypeAlias = Callable[[Elements, str, str], Values]
 
 
 class HostValues:
-    """Values of a shader's nodes at the pixels of a picture, as a host draws them.
-
-    Parameters
-    ----------
-    host : Host
-    shader : Shader
-        Whose document has the nodes.
-    library : str
-        Name of the data library.
-    policy : Policy
-
-    Attributes
-    ----------
-    library : str
-    """
+    """Values of a shader's nodes at the pixels of a picture, as a host draws them."""
 
     def __init__(self, host: Host, shader: Shader, library: str, policy: Policy) -> None:
         self._host, self._shader = host, shader
@@ -60,21 +46,7 @@ class HostValues:
     def __call__(self, size: int, elements: Elements, kind: str, output: str = "") -> Values:
         """Values of a node in a picture, (size, size, components).
 
-        Parameters
-        ----------
-        size : int
-            Width and height of the picture.
-        elements : sequence of MaterialX.Element
-            The node, after the nodes and nodegraphs around it.
-        kind : str
-            Type of the value, one of DRAWN.
-        output : str
-            Name of the node's output, where it has several.
-
-        Raises
-        ------
-        NotRun
-            If the host cannot draw it.
+        Raise NotRun if the host cannot draw it.
         """
         key = (*(each.getNamePath() for each in elements), output, str(size))
         if key not in self._pictures:
@@ -85,10 +57,7 @@ class HostValues:
     def emitted(self, size: int, output: mx.Output) -> Values:
         """Picture of a surface that emits the color of an output, (size, size, 3).
 
-        Raises
-        ------
-        NotRun
-            If the host cannot draw it.
+        Raise NotRun if the host cannot draw it.
         """
         key = (output.getNamePath(), str(size))
         if key not in self._pictures:
@@ -133,7 +102,6 @@ def value_document(
         graph.setNodeDefString(definition.getName())
         _show(graph, "out", name, kind, output)
         element, added, output = owner, partial(_instance, owner, definition, kind), ""
-    # Show it where the outermost node is.
     scope = copy.getDescendant(element.getParent().getNamePath()) or copy
     if scope.isA(mx.NodeGraph) and scope.getNodeDef():
         scope = _opened(copy, scope)
@@ -147,7 +115,6 @@ def value_document(
 def emission_document(document: mx.Document, output: mx.Output) -> tuple[mx.Document, str]:
     """A document with a surface that emits the color of an output, and the name path of its material."""
     copy = _without_closures(document)
-    # Connect the output, as a color, to an emission.
     value = copy.addNode("convert", copy.createValidChildName(NAME), "color3")
     graph = output.getParent()
     if graph.isA(mx.NodeGraph) and graph.getNodeDef():
@@ -161,7 +128,6 @@ def emission_document(document: mx.Document, output: mx.Output) -> tuple[mx.Docu
         port.setOutputString(output.getName())
     if output.getType() == "color3":
         value.setCategory("dot")
-    # Show that as a material.
     light = copy.addNode("uniform_edf", copy.createValidChildName(NAME), "EDF")
     light.addInput("color", "color3").setConnectedNode(value)
     surface = copy.addNode("surface", copy.createValidChildName(NAME), "surfaceshader")

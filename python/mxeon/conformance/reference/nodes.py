@@ -43,40 +43,16 @@ COMBINATIONS: dict[str, tuple[tuple[str, ...], Callable[..., Bsdf]]] = {
 
 @dataclass(frozen=True, eq=False)
 class ShownLobe:
-    """A lobe of a picture that has a weight.
+    """A lobe of a picture that has a weight."""
 
-    Attributes
-    ----------
-    category : str
-        Of its node.
-    inputs : mapping of str to value
-        As `node_lobe` gets them.
-    """
-
-    category: str
-    inputs: Mapping[str, Values]
+    category: str  # of its node
+    inputs: Mapping[str, Values]  # as `node_lobe` gets them
 
 
 def node_lobe(
     node: mx.Node, inputs: Mapping[str, Values], points: ShadingPoints, layered: bool
 ) -> Bsdf:
-    """Lobe of a node.
-
-    Parameters
-    ----------
-    node : MaterialX.Node
-        Of a category in LOBES.
-    inputs : mapping of str to value
-        Of all its inputs, each one value or one for each point.
-    points : ShadingPoints
-    layered : bool
-        Whether the throughput is needed.
-
-    Raises
-    ------
-    NotRun
-        If an input has a value that the models do not cover.
-    """
+    """Lobe of a node; raises NotRun if an input has a value that the models do not cover."""
     # A lobe without a weight scatters nothing.
     name = f"reference: node {node.getNamePath()!r}"
     weight = np.reshape(inputs.get("weight", np.ones(1)), (-1, 1))  # hair has none
@@ -85,7 +61,6 @@ def node_lobe(
     if not weight.any():
         layerable = any(row.layerable for row in LOBES[node.getCategory()])
         return Bsdf(np.zeros(3), np.full(3, 1.0 if layerable else 0.0))
-    # The model, its arguments, and its value.
     row = _row(node, inputs)
     if row in INNER_NODES and not points.round:
         raise NotRun(f"reference: there is no model for this mode of node {node.getCategory()!r}")
@@ -109,13 +84,7 @@ def node_lobe(
 
 
 def definition(node: mx.Node) -> mx.NodeDef:
-    """Nodedef of a node.
-
-    Raises
-    ------
-    NotRun
-        If no nodedef matches its inputs.
-    """
+    """Nodedef of a node; raises NotRun if no nodedef matches its inputs."""
     if definition := node.getNodeDef():
         return definition
     raise NotRun(f"reference: node {node.getNamePath()!r} has no definition")

@@ -27,12 +27,10 @@ WIDTHS = {"vector2": 2, "color3": 3, "vector3": 3, "color4": 4, "vector4": 4}
 
 def fitted(kind: str, value: Value) -> Value:
     """Value with the components of a type: a number once for each, what is missing 0 or opaque."""
-    # What has one component, or is no number, stays.
     width = WIDTHS.get(kind, 1)
     if width == 1 or value is None or isinstance(value, str):
         return value
     array = np.atleast_1d(np.asarray(value, np.float64))
-    # Repeat a number, fill up what is short, cut what is long.
     have = array.shape[-1]
     if have == 1:
         return np.repeat(array, width, axis=-1)

@@ -61,15 +61,7 @@ UTILITIES: dict[str, Operation] = {
 
 
 def surfaces(emits: bool, behind: bool) -> dict[str, Operation]:
-    """Category -> its inputs, and the radiance of a surface by them.
-
-    Parameters
-    ----------
-    emits : bool
-        Whether opacity and emission count, or the lobes alone.
-    behind : bool
-        Whether light is seen that is transmitted, to which no emission adds.
-    """
+    """Category -> its inputs, and the radiance of a surface by them."""
     shown: dict[str, Operation] = {
         "surface": (("bsdf",), lambda bsdf: bsdf.value),
         "surface_unlit": (

@@ -16,56 +16,29 @@ UNIT = 1e-3  # by how much the length of a normal may differ from 1
 
 @dataclass(frozen=True, eq=False)
 class ShadingPoints:
-    """Where a graph is evaluated, and by which light.
+    """Where a graph is evaluated, and by which light."""
 
-    Attributes
-    ----------
-    wo : ndarray, shape (N, 3)
-        Unit vectors to the viewer, in world space.
-    wi : ndarray, shape (N, 3), or None
-        Unit vectors to a distant light; None in a uniform environment.
-    strength : float
-        Irradiance of the light, or radiance of the environment.
-    normal, tangent : ndarray, shape (N, 3)
-        Of the surface, orthogonal unit vectors in world space.
-    texcoord : ndarray, shape (N, 2), or None
-    most : float
-        Points with materials of their own whose albedos are integrated; see `lobes.lit`.
-    round : bool
-        Whether these are points of the unit sphere.
-    behind : bool
-        Whether light that is transmitted is asked for, and no other.
-    """
-
-    wo: Values
-    wi: Values | None
-    strength: float
-    normal: Values
+    wo: Values  # unit vectors to the viewer, in world space
+    wi: Values | None  # unit vectors to a distant light; None in a uniform environment
+    strength: float  # irradiance of the light, or radiance of the environment
+    normal: Values  # of the surface, orthogonal unit vectors in world space
     tangent: Values
     texcoord: Values | None = None
+    # Points with materials of their own whose albedos are integrated; see `lobes.lit`.
     most: float = np.inf
-    round: bool = False
-    behind: bool = False
+    round: bool = False  # whether these are points of the unit sphere
+    behind: bool = False  # whether light that is transmitted is asked for, and no other
 
     def lobe(self, normal: Values, tangent: Values) -> Lobe:
         """Lobe whose frame has a normal, turned to the viewer, and a tangent.
 
-        Raises
-        ------
-        OutsideModel
-            If a normal is no unit vector.
+        Raise OutsideModel if a normal is no unit vector.
         """
         own = np.array_equal(normal, self.normal) and np.array_equal(tangent, self.tangent)
         return self._own if own else self._turned(normal, tangent)
 
     def geometry(self, name: str) -> Values:
-        """A property of the surface by its name in MaterialX.
-
-        Raises
-        ------
-        NotRun
-            If it is not known.
-        """
+        """A property of the surface by its name in MaterialX; raises NotRun if it is not known."""
         known = {
             "Nworld": self.normal,
             "Tworld": self.tangent,
@@ -95,10 +68,7 @@ class ShadingPoints:
     def directions(self, normal: Values, tangent: Values) -> tuple[Values, Values | None]:
         """Directions to the viewer and to the light in a frame, whose normal is turned to the viewer.
 
-        Raises
-        ------
-        OutsideModel
-            If a normal is no unit vector.
+        Raise OutsideModel if a normal is no unit vector.
         """
         length = np.linalg.norm(normal, axis=-1)
         if (wrong := np.ravel(length)[np.ravel(~(np.abs(length - 1.0) <= UNIT))]).size:

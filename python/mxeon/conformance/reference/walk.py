@@ -14,28 +14,18 @@ Value = TypeVar("Value")
 def evaluated(
     root: Key, parts: Mapping[Key, tuple[Key, ...]], function: Callable[[Key], Callable[..., Value]]
 ) -> Value:
-    """Value of a key: neither a long chain nor a key with many uses does harm.
-
-    Parameters
-    ----------
-    root : hashable
-    parts : mapping of key to tuple of key
-        The keys whose values a key's function takes; see `mxeon.shaders.document.graphs.reachable`.
-    function : callable (key) -> callable
-    """
+    """Value of a key: neither a long chain nor a key with many uses does harm."""
     uses = Counter(part for inner in parts.values() for part in inner)
     values: dict[Key, Value] = {}
     waiting = [root]
     while waiting:
         key = waiting[-1]
-        # Values of the parts come first.
         if key in values:
             waiting.pop()
         elif missing := [part for part in parts[key] if part not in values]:
             waiting.append(missing[0])
         else:
             values[key] = function(key)(*(values[part] for part in parts[key]))
-            # Forget a part after its last use.
             for part in parts[key]:
                 uses[part] -= 1
                 if not uses[part]:

@@ -106,7 +106,6 @@ def check(
     NotRun
         If no process can start, or the cluster has no workers for too long.
     """
-    # Read the documents before any other work.
     assert_known_names(hosts, nodes)
     files = documents_in(files)
     libraries = tuple(dict.fromkeys(map(library_name, libraries)))
@@ -152,10 +151,7 @@ def read_run(folder: str | os.PathLike[str]) -> Run:
 def work(policy: Policy, task: Task) -> Findings:
     """Findings of a task, by this process's judge; runs in workers.
 
-    Raises
-    ------
-    NotRun
-        If the host cannot be opened here.
+    Raise NotRun if the host cannot be opened here.
     """
     return _judge(policy).work(task)
 
@@ -277,7 +273,6 @@ def _subject(task: Task) -> tuple[str, str, str]:
 
 
 def _run_inline(policy: Policy, tasks: Sequence[Task]) -> Iterator[tuple[int, pool.Outcome]]:
-    """Outcomes of tasks in this process."""
     with closing(Judge(policy)) as judge:
         for position in by_group(list(map(_subject, tasks))):
             yield position, pool.Outcome(_work_or_not_run(judge, tasks[position]))

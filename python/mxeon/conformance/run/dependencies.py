@@ -20,12 +20,7 @@ from mxeon.io.files import regular
 from mxeon.shaders.document.encoding import decode, strict
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.references import inside
-from mxeon.shaders.library import (
-    SOURCE_FOLDERS,
-    documents_folder,
-    library_folders,
-    source_folder,
-)
+from mxeon.shaders.library import SOURCE_FOLDERS, documents_folder, library_folders, source_folder
 from mxeon.shaders.library_tree import LIBRARIES, standard_folders
 
 INCLUDE, NAMING = "href", ("value", "file", "href")  # attributes
@@ -55,13 +50,11 @@ def digests(
 
 def _named(document: Path, policy: Policy) -> list[str]:
     """The files that a document includes and names, and those that the included ones do."""
-    # Begin with the document.
     home, seen = Path(os.path.realpath(document)).parent, set[str]()
     waiting: list[str | Path] = [document]
     while waiting:
         text_file = waiting.pop()
         for key, name in _names(_text(text_file, policy), policy.elements):
-            # Every file of each name, once; included documents are read in their turn.
             folders = {home, Path(os.path.realpath(text_file)).parent, Path.cwd()}
             for path in _paths(name, folders | set(map(Path, policy.path))):
                 allowed = policy.outside or inside(path, home, policy.path)
@@ -83,7 +76,6 @@ def _text(path: Path | str, policy: Policy) -> str:
 
 def _names(text: str, elements: int) -> list[tuple[str, str]]:
     """Attributes of a document that may name files, with their prefix: as far as it may be read."""
-    # Prefixes of the elements that are open.
     names: list[tuple[str, str]] = []
     prefixes = [""]
 
@@ -98,7 +90,6 @@ def _names(text: str, elements: int) -> list[tuple[str, str]]:
     def refuse(*_: object) -> None:
         raise InputError("no document that is refused has findings of its files")
 
-    # Read what is well formed.
     parser = expat.ParserCreate()
     parser.StartElementHandler, parser.EndElementHandler = start, lambda _: prefixes.pop()
     parser.StartDoctypeDeclHandler = refuse

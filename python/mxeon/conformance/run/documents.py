@@ -32,40 +32,21 @@ KEYS = ("picture", "finite", DOCUMENT_KEY)
 
 @dataclass(frozen=True)
 class DocumentVerdict:
-    """What a run says of one document.
+    """What a run says of one document."""
 
-    Attributes
-    ----------
-    document : str
-        Its path.
-    host, library : str
-        "" where the document was refused.
-    verdict : str
-        One of STATES.
-    cause : str
-        Why, in words that documents share.
-    referenced : bool
-        Whether all of its pictures have a reference.
-    measured : tuple of str
-        Inputs whose values these take from the host.
-    """
-
-    document: str
-    host: str
+    document: str  # its path
+    host: str  # "" where the document was refused
     library: str
-    verdict: str
-    cause: str
-    referenced: bool = False
-    measured: tuple[str, ...] = ()
+    verdict: str  # one of STATES
+    cause: str  # why, in words that documents share
+    referenced: bool = False  # whether all of its pictures have a reference
+    measured: tuple[str, ...] = ()  # inputs whose values these take from the host
 
 
 def documents_in(files: Iterable[str | os.PathLike[str]]) -> tuple[str, ...]:
     """Files, and in the place of a folder the documents in it and below it, in order.
 
-    Raises
-    ------
-    ValueError
-        If a folder holds no document.
+    Raise ValueError if a folder holds no document.
     """
     documents: list[str] = []
     for file in files:
@@ -80,13 +61,11 @@ def documents_in(files: Iterable[str | os.PathLike[str]]) -> tuple[str, ...]:
 
 def document_verdicts(run: Run) -> tuple[DocumentVerdict, ...]:
     """The verdict on each of a run's documents, on each host with each library."""
-    # Sort the results by document, host and library.
     results: dict[tuple[str, str, str], list[Result]] = {}
     for each in run.results:
         if each.check in KEYS:
             name = each.subject.split(": ")[0]
             results.setdefault((name, each.host, each.library), []).append(each)
-    # Judge each document.
     verdicts = []
     for document in map(str, run.contents):
         keys = [key for key in results if key[0] in (Path(document).name, document)]
@@ -112,7 +91,6 @@ def causes(verdicts: Sequence[DocumentVerdict]) -> dict[tuple[str, str], tuple[s
 def _verdict(
     document: str, key: tuple[str, str, str], results: Sequence[Result]
 ) -> DocumentVerdict:
-    """The verdict on a document with results, by the worst of them."""
     worst = min(results, key=lambda each: (STATES.index(each.verdict), each.check != "finite"))
     finite = worst.check == "finite" and worst.verdict == PASSED
     measured = tuple(dict.fromkeys(name for each in results for name in each.measured))

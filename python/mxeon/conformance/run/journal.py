@@ -25,13 +25,7 @@ from numpy.lib.format import header_data_from_array_1_0, write_array_header_1_0
 from numpy.typing import ArrayLike, NDArray
 
 from mxeon.conformance.results.records import StoredImage, make_converter
-from mxeon.conformance.run.journal_lines import (
-    FORMAT,
-    JOURNAL,
-    PLAN,
-    read_lines,
-    to_line,
-)
+from mxeon.conformance.run.journal_lines import FORMAT, JOURNAL, PLAN, read_lines, to_line
 from mxeon.conformance.run.tasks import Findings, Plan
 from mxeon.errors import InputError
 from mxeon.io.files import below, replacing
@@ -45,27 +39,8 @@ class Journal:
 
     Nothing is touched before it is entered.
 
-    Parameters
-    ----------
-    folder : path-like
-        Created if it does not exist.
-    plan : Plan
-    resume : bool
-        Whether to continue the run that the folder holds, if one was begun. If not, an earlier
-        journal is kept beside with its pictures, as PREVIOUS.
-
-    Attributes
-    ----------
-    findings : dict of int to Findings
-        Those finished so far, by the number of the task in the plan.
-
-    Raises
-    ------
-    ValueError
-        On entry, if another process writes here, or the run to resume is not this one; says what
-        differs.
-    OSError
-        On entry, if the folder cannot be written.
+    Raise ValueError on entry, if another process writes here, or the run to resume is not this
+    one; says what differs; OSError on entry, if the folder cannot be written.
     """
 
     def __init__(self, folder: str | os.PathLike[str], plan: Plan, resume: bool = False) -> None:
@@ -93,10 +68,7 @@ class Journal:
     def add(self, number: int, findings: Findings) -> None:
         """Keep the findings of a task: on disk when this returns, the pictures first.
 
-        Raises
-        ------
-        OSError
-            If there is no room; the journal is then as it was before.
+        Raise OSError if there is no room; the journal is then as it was before.
         """
         pictures = tuple(
             replace(
@@ -154,7 +126,6 @@ class Journal:
 
     def _store(self, image: ArrayLike) -> NDArray[np.float32]:
         """An image in a file of the folder."""
-        # Hash and write the parts of a NumPy file, whose pixels need no copy.
         pixels, header = np.ascontiguousarray(image, np.float32), BytesIO()
         write_array_header_1_0(header, header_data_from_array_1_0(pixels))
         parts = header.getvalue(), pixels.data
@@ -171,18 +142,7 @@ def read_journal(folder: str | os.PathLike[str]) -> tuple[Plan, dict[int, Findin
 
     Warns of damaged lines and pictures, whose tasks count as not done.
 
-    Parameters
-    ----------
-    folder : path-like
-
-    Returns
-    -------
-    Plan, dict of int to Findings
-
-    Raises
-    ------
-    ValueError
-        If the folder holds no journal that this version reads.
+    Raise ValueError if the folder holds no journal that this version reads.
     """
     contents = read_lines(Path(folder))
     _warn(folder, contents.damaged)

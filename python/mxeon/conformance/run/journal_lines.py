@@ -26,33 +26,19 @@ PLAN = -1  # number of the plan among the lines
 
 @dataclass(frozen=True)
 class Contents:
-    """The contents of a journal file.
-
-    Attributes
-    ----------
-    plan : Plan
-    lines : dict of int to bytes
-        The valid lines, by the number of the task; that of the plan by PLAN.
-    findings : dict of int to Findings
-    damaged : tuple of str
-        What is not valid: the pictures of a task, or the number of a line.
-    """
+    """The contents of a journal file."""
 
     plan: Plan
-    lines: dict[int, bytes]
+    lines: dict[int, bytes]  # the valid lines, by the number of the task; that of the plan by PLAN
     findings: dict[int, Findings]
-    damaged: tuple[str, ...]
+    damaged: tuple[str, ...]  # what is not valid: the pictures of a task, or the number of a line
 
 
 def read_lines(folder: Path) -> Contents:
     """The Contents of the journal in a folder.
 
-    Raises
-    ------
-    ValueError
-        If there is none, or none that this version reads.
+    Raise ValueError if there is none, or none that this version reads.
     """
-    # The plan, on the first line.
     path = folder / JOURNAL
     converter = make_converter(path.parent)
     try:
@@ -61,7 +47,6 @@ def read_lines(folder: Path) -> Contents:
     except FileNotFoundError:
         raise InputError(f"{folder}: must hold the {JOURNAL} of a run; there is none") from None
     plan, seed = _header(header, path, converter)
-    # Findings, of which a torn or damaged line has none.
     valid = {PLAN: header}
     findings: dict[int, Findings] = {}
     damaged = []
@@ -73,7 +58,6 @@ def read_lines(folder: Path) -> Contents:
         except ERRORS:
             damaged.append(f"line {number}")
             continue
-        # A picture's file has to be as it was written.
         if all(image.whole for image in _images(part)):
             valid[task], findings[task] = line, part
         else:

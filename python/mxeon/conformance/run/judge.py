@@ -55,7 +55,6 @@ CLAIMS = {check.key: check.claim for check in CHECKS} | {
 
 
 def not_run(task: Task, reason: str) -> Findings:
-    """Findings of a task that could not be worked on."""
     claim = CLAIMS[task.check]
     result = Result(
         task.check, claim, task.subject, task.host, task.library, NOT_RUN, reason=reason
@@ -79,13 +78,7 @@ def refused(task: Task, reason: str) -> Findings:
 
 
 class Judge:
-    """Works on tasks, one after the other, and keeps the hosts it opens.
-
-    Parameters
-    ----------
-    policy : Policy
-        Permissions and limits of documents.
-    """
+    """Works on tasks, one after the other, and keeps the hosts it opens."""
 
     def __init__(self, policy: Policy) -> None:
         self._policy = policy
@@ -94,21 +87,9 @@ class Judge:
         self._probe = lru_cache(maxsize=1)(_probe)  # its pairs take some memory
 
     def work(self, task: Task) -> Findings:
-        """Findings of a task.
+        """Findings of a task; a document that cannot be read is among its errors.
 
-        Parameters
-        ----------
-        task : Task
-
-        Returns
-        -------
-        Findings
-            A document that cannot be read is among its errors.
-
-        Raises
-        ------
-        NotRun
-            If the host cannot be opened here.
+        Raise NotRun if the host cannot be opened here.
         """
         try:
             return _with_pages(self._findings(task))
@@ -118,7 +99,6 @@ class Judge:
             return refused(task, str(reason))
 
     def close(self) -> None:
-        """Close the hosts."""
         for host in self._hosts.values():
             if not isinstance(host, NotRun):
                 host.close()
@@ -148,7 +128,6 @@ class Judge:
         return replace(self._on_host(task, host), hosts=(host.identity(),))
 
     def _on_host(self, task: Task, host: Host | RendererHost) -> Findings:
-        # What is no check of the table.
         if isinstance(host, Host):
             if task.check == PICTURE:
                 return self._document(task, host)
@@ -157,7 +136,6 @@ class Judge:
                 return Findings(judge_inversion(inversion))
             if task.check == FUNCTIONS:
                 return Findings(judge_functions(FunctionProbe(host, task.library)))
-        # A node: its curve, or a check with its pictures.
         probe = self._probe(host, task.subject, task.library)
         if task.check == CURVE:
             return Findings(curves=judge_curve(probe))
@@ -212,7 +190,6 @@ def _copy_of_stock(library: str) -> str:
 
 
 def _probe(host: Host | RendererHost, title: str, library: str) -> Probe:
-    """The probe of a subject on a host."""
     subjects = renderer_nodes(host.name) or ALL_SUBJECTS
     subject = next(each for each in subjects if each.title == title)
     own = probe_type(host.name)

@@ -20,25 +20,14 @@ from mxeon.conformance.functions import shader_functions as functions
 from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES, DiffuseSubject
 from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
 from mxeon.conformance.nodes.subject import Subject
-from mxeon.conformance.probes.families import (
-    ALL_SUBJECTS,
-    PBR_SUBJECTS,
-    probe_type,
-    probe_type_of,
-)
+from mxeon.conformance.probes.families import ALL_SUBJECTS, PBR_SUBJECTS, probe_type, probe_type_of
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.probes.renderer_nodes import NativeProbe
 from mxeon.conformance.results import SHADER_FUNCTIONS, SOURCE
 from mxeon.conformance.results.known_issues.issue import RENDERER_NODES
 from mxeon.conformance.run.dependencies import digests
-from mxeon.conformance.run.selection import (
-    ALL,
-    COMMON,
-    assert_known_names,
-    selected,
-    unmeasured,
-)
+from mxeon.conformance.run.selection import ALL, COMMON, assert_known_names, selected, unmeasured
 from mxeon.conformance.run.survey import Survey
 from mxeon.conformance.run.tasks import (
     CURVE,
@@ -55,12 +44,7 @@ from mxeon.conformance.run.tasks import (
 from mxeon.hosts import HOSTS, host_row
 from mxeon.shaders.document.policy import DEFAULT, LIMITS, Policy
 from mxeon.shaders.functions import has_functions
-from mxeon.shaders.library import (
-    examples_folder,
-    kind_of,
-    library_name,
-    load_library,
-)
+from mxeon.shaders.library import examples_folder, kind_of, library_name, load_library
 from mxeon.shaders.library_tree import LIBRARIES, origins
 from mxeon.shaders.nodes import INVERSIONS
 
@@ -79,40 +63,14 @@ def make_plan(
 ) -> Plan:
     """The tasks of a run, those of one host and library beside each other.
 
-    Parameters
-    ----------
-    files : sequence of path-like
-        Documents; none for the bundled examples.
-    hosts, libraries : sequence of str
-    policy : Policy
-    resumable : bool
-        Whether to list the files that the run depends on.
-    nodes : sequence of str
-        Categories of the nodes to judge, and nothing else is judged but `files`; ALL for every
-        check, COMMON for those of the common families. Without any, the nodes of `files`, or the
-        common ones if there are none.
-    survey : Survey
-        What `files` contain.
-    compared : sequence of str
-        Those of `libraries` that do not count.
-
-    Returns
-    -------
-    Plan
-
-    Raises
-    ------
-    ValueError
-        If a host, a library or a node is unknown; lists the known ones. If none of the nodes is
-        judged on a host.
-    ImportError
-        If this MaterialX is too old.
+    `resumable` lists the files that the run depends on. `nodes` are categories, ALL or COMMON; without
+    any, those of `files` are judged, or the common ones. Those of `libraries` in `compared` do not
+    count. Raises InputError for an unknown name, or if no host judges the nodes; ImportError if this
+    MaterialX is too old.
     """
-    # Refuse what is unknown, and drop repeats.
     assert_known_names(hosts, nodes)
     libraries = tuple(dict.fromkeys(map(library_name, libraries)))
     hosts = tuple(dict.fromkeys(hosts))
-    # Tasks of every library on every host, then of renderers' own nodes.
     tasks: list[Task] = []
     documents: list[str] = []
     # What a document shows, and what libraries are compared in, is judged with each library.
@@ -129,7 +87,6 @@ def make_plan(
             tasks += _on_host(host, library, paths, PBR_SUBJECTS, everywhere)
     for host in hosts:
         tasks += _native(host)
-    # Keep those that are asked for, and say where nothing would be measured.
     tasks = selected(tasks, list(map(str, files)), nodes, survey, partial(_elsewhere, nodes))
     tasks += [Task(HOST, EVERY_NODE, host, libraries[0]) for host in unmeasured(tasks, hosts)]
     if not files and nodes and {ALL, COMMON}.isdisjoint(nodes):
@@ -165,18 +122,15 @@ def _elsewhere(nodes: Sequence[str]) -> str:
 
 
 def _files(documents: Iterable[str], policy: Policy, libraries: Iterable[str]) -> dict[str, str]:
-    """Digests of the files that a run depends on."""
     return digests(dict.fromkeys(documents), policy, (*libraries, *policy.definitions))
 
 
 def subjects(library: str) -> list[DiffuseSubject]:
-    """The nodes that a library has."""
     data = load_library(library)
     return [subject for subject in SUBJECTS if data.getMatchingNodeDefs(subject.node)]
 
 
 def inversions(library: str) -> list[str]:
-    """The inversion nodes that a library has."""
     data = load_library(library)
     return [node for node in INVERSIONS if data.getMatchingNodeDefs(node)]
 
@@ -189,19 +143,16 @@ def _on_host(
     everywhere: bool = False,
 ) -> Iterator[Task]:
     """Tasks of one host with one library, for files and nodes of pbrlib, or those it repairs."""
-    # Hosts that read text alone, or show nodes of their own.
     probe, row = probe_type(host), host_row(host)
     if probe is None:
         yield Task(HOST, EVERY_NODE, host, library)
     if probe is None or issubclass(probe, NativeProbe):
         return
-    # Functions and inversions.
     language = "osl" if row.target == "osl" else "glsl"
     if row.probe in functions.KINDS and has_functions(library, language):
         yield Task(FUNCTIONS, SHADER_FUNCTIONS, host, library)
     if probe is PairProbe:
         yield from (Task(INVERSION, node, host, library) for node in inversions(library))
-    # Diffuse nodes, the other nodes, and lobes of surface shaders.
     for subject in subjects(library):
         yield from _checks_of(subject, probe, host, library)
         if probe is PairProbe:
@@ -242,7 +193,6 @@ def _native(host: str) -> Iterator[Task]:
 
 
 def _checks_of(subject: Subject, own: type[Probe], host: str, library: str) -> Iterator[Task]:
-    """Tasks of one subject on a host with probes of its own: the checks that apply to it."""
     probe = probe_type_of(subject, own)
     for check in CHECKS:
         if probe and applies(check, subject, probe.kind_of(subject), host):
@@ -275,7 +225,6 @@ def _examples(library: str) -> list[Path]:
 
 
 def _options(policy: Policy) -> dict[str, str]:
-    """Policy by the options of the command that change them."""
     prefixes = dict.fromkeys(LIMITS, "max") | {"outside": "allow", "code": "allow"}
     folders = {"path": policy.path, "definitions": policy.definitions}
     values = vars(policy) | {

@@ -36,21 +36,8 @@ def selected(
 ) -> list[Task]:
     """The tasks that are asked for, those of the user's documents first.
 
-    Parameters
-    ----------
-    tasks : sequence of Task
-    files, nodes : sequence of str
-        As those of `mxeon.conformance.run.plan.make_plan`.
-    survey : Survey
-    elsewhere : callable () -> str
-        Words on where the nodes are judged, if not on these hosts.
-
-    Raises
-    ------
-    InputError
-        If none of the nodes is judged.
+    Raise InputError if none of the nodes is judged.
     """
-    # Named nodes, the common ones of an audit, or those of the documents.
     titles = {row.title for row in ALL_SUBJECTS if row.node in nodes}
     rare = {each.title for each in PBR_SUBJECTS} - {each.title for each in COMMON_SUBJECTS}
     audit = COMMON in nodes or not (nodes or files)

@@ -25,23 +25,15 @@ Source = tuple[str, str]  # a file, and the library that it is read with
 
 @dataclass(frozen=True)
 class Survey:
-    """What the documents of a run contain.
+    """What the documents of a run contain."""
 
-    Attributes
-    ----------
-    nodes : dict of str to tuple of str
-        Titles of the nodes of each document, by its path.
-    unreached : dict of str to dict of str to tuple of str
-        For each document, by title of a node, the regions that its inputs are not in.
-    unread : frozenset of Source
-        Documents that cannot be read, each with the library that it is read with.
-    refused : dict of str to tuple of str
-        As of `mxeon.conformance.results.Run`.
-    """
-
+    # Titles of the nodes of each document, by its path.
     nodes: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    # For each document, by title of a node, the regions that its inputs are not in.
     unreached: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
+    # Documents that cannot be read, each with the library that it is read with.
     unread: frozenset[Source] = frozenset()
+    # As of `mxeon.conformance.results.Run`.
     refused: dict[str, tuple[str, ...]] = field(default_factory=dict)
 
 
@@ -52,12 +44,8 @@ def survey_documents(
 
     A document that ends its worker has no nodes; the task that draws it says why.
 
-    Raises
-    ------
-    MxeonError
-        If a library cannot be used.
+    Raise MxeonError if a library cannot be used.
     """
-    # Read each document with each library.
     sources = [(file, library) for file in dict.fromkeys(files) for library in libraries]
     titles: dict[str, dict[str, set[str]]] = {file: {} for file in files}
     faults: dict[Source, tuple[str, ...]] = {}

@@ -18,20 +18,12 @@ EVERY_NODE = "every node"
 
 @dataclass(frozen=True)
 class Task:
-    """One independent piece of a run: a check of one subject on one host with one library.
+    """One independent piece of a run: a check of one subject on one host with one library."""
 
-    Attributes
-    ----------
-    check : str
-        Key of a row of `mxeon.conformance.checks.table`, or HOST, DEFINITION, SOURCE, CURVE,
-        PICTURE, FUNCTIONS, INVERSION or DOCUMENT.
-    subject : str
-        Title of a node, path of a document, or SHADER_FUNCTIONS.
-    host, library : str
-    """
-
+    # Key of a row of `mxeon.conformance.checks.table`, or HOST, DEFINITION, SOURCE, CURVE, PICTURE,
+    # FUNCTIONS, INVERSION or DOCUMENT.
     check: str
-    subject: str
+    subject: str  # title of a node, path of a document, or SHADER_FUNCTIONS
     host: str
     library: str
 
@@ -41,45 +33,27 @@ class Task:
 
 @dataclass(frozen=True)
 class Plan:
-    """The tasks of a run and all that they depend on; equal plans are equal runs.
+    """The tasks of a run and all that they depend on; equal plans are equal runs."""
 
-    Attributes
-    ----------
-    version : str
-        Of mxeon.
-    software : dict of str to str
-        Versions of the packages that take part (Python, NumPy, MaterialX, ...).
-    tasks : tuple of Task
-    documents : tuple of str
-        Their paths.
-    options : dict of str to str
-        The policy for documents, by the option of the command.
-    files : dict of str to str
-        SHA-256 of each file that the findings depend on, by path; "" where it cannot be read.
-        Empty where the run is not kept.
-    contents : dict of str to tuple of str
-        Titles of the nodes of each document, by its path.
-    unreached : dict of str to dict of str to tuple of str
-        For each document, by title of a node, the regions that its inputs are not in.
-    refused : dict of str to tuple of str
-        Documents that cannot be read; as of `mxeon.conformance.results.Run`.
-    libraries : dict of str to dict of str to tuple of str
-        As those of `mxeon.conformance.results.Run`.
-    compared : tuple of str
-        As of `mxeon.conformance.results.Run`.
-    """
-
-    version: str
+    version: str  # of mxeon
+    # Versions of the packages that take part (Python, NumPy, MaterialX, ...).
     software: dict[str, str]
     tasks: tuple[Task, ...]
-    documents: tuple[str, ...]
+    documents: tuple[str, ...]  # their paths
+    # The policy for documents, by the option of the command.
     options: dict[str, str] = field(default_factory=dict)
+    # SHA-256 of each file that the findings depend on, by path; "" where it cannot be read. Empty
+    # where the run is not kept.
     files: dict[str, str] = field(default_factory=dict)
+    # Titles of the nodes of each document, by its path.
     contents: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    # For each document, by title of a node, the regions that its inputs are not in.
     unreached: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
+    # Documents that cannot be read; as of `mxeon.conformance.results.Run`.
     refused: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    # As those of `mxeon.conformance.results.Run`.
     libraries: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
-    compared: tuple[str, ...] = ()
+    compared: tuple[str, ...] = ()  # as of `mxeon.conformance.results.Run`
 
 
 @dataclass(frozen=True)

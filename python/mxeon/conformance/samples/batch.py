@@ -26,52 +26,30 @@ Changes: TypeAlias = tuple[Values, Values]  # inputs before and after a change o
 
 @dataclass(frozen=True)
 class Counts:
-    """How many samples a probe draws.
+    """How many samples a probe draws."""
 
-    Attributes
-    ----------
-    pairs, few : int
-        Random pairs, and those of them for what takes long.
-    diagnosed : int
-        Pairs of each batch that a diagnosis looks at.
-    albedos : int
-        Views whose albedo is asked.
-    materials, nodes : int
-        Materials whose values are integrated or averaged, and nodes of a quadrature on each axis.
-    mirrored : int
-        Views with lights near the mirror direction.
-    """
-
-    pairs: int = PAIRS
+    pairs: int = PAIRS  # random pairs, and those of them for what takes long
     few: int = FEW
-    diagnosed: int = FEW
-    albedos: int = 1 << 7
+    diagnosed: int = FEW  # pairs of each batch that a diagnosis looks at
+    albedos: int = 1 << 7  # views whose albedo is asked
+    # Materials whose values are integrated or averaged, and nodes of a quadrature on each axis.
     materials: int = 64
     nodes: int = 48
-    mirrored: int = 1 << 11
+    mirrored: int = 1 << 11  # views with lights near the mirror direction
 
 
 @dataclass(frozen=True)
 class Batch:
-    """Pairs of directions and the node's inputs for them.
+    """Pairs of directions and the node's inputs for them."""
 
-    Attributes
-    ----------
-    wo, wi : ndarray, shape (N, 3)
-        Local frame; float32 numbers, so that a float32 host sees the same pairs. `wo` is on or above
-        the horizon.
-    inputs : mapping of str to array
-        Node inputs and "occlusion", (N, ...) or constant. The normal is in world space.
-    scene : Scene or None
-        The picture whose points these are.
-    frame : ndarray, shape (N, 3, 3), or None
-        World axes of the local frames, as columns; None where they are the same.
-    """
-
+    # Local frame; float32 numbers, so that a float32 host sees the same pairs. `wo` is on or above
+    # the horizon.
     wo: Array
     wi: Array
+    # Node inputs and "occlusion", (N, ...) or constant. The normal is in world space.
     inputs: Mapping[str, Any]  # array_like, which NumPy types so that nobody can compute with it
-    scene: Scene | None = None
+    scene: Scene | None = None  # the picture whose points these are
+    # World axes of the local frames, as columns; None where they are the same.
     frame: Array | None = None
 
     def altered(self, **inputs: ArrayLike) -> "Batch":
@@ -79,7 +57,6 @@ class Batch:
         return replace(self, inputs={**self.inputs, **inputs})
 
     def first(self, count: int) -> "Batch":
-        """The first pairs of the batch."""
         return self.where(slice(count))
 
     def where(self, rows: slice | NDArray[np.bool_] | NDArray[np.integer]) -> "Batch":
@@ -138,19 +115,11 @@ class Batch:
 
 @dataclass(frozen=True)
 class Candidate:
-    """A function that may explain some values.
-
-    Attributes
-    ----------
-    title : str
-    values : callable (batch) -> ndarray, shape (N, 3)
-    permitted : bool
-        Whether the specification leaves it open.
-    """
+    """A function that may explain some values."""
 
     title: str
     values: Callable[[Batch], Array]
-    permitted: bool = False
+    permitted: bool = False  # whether the specification leaves it open
 
 
 def directions(rng: np.random.Generator, count: int) -> Array:
@@ -194,24 +163,16 @@ def rounded(columns: Iterable[Array]) -> Array:
 
 
 class FilmViews(NamedTuple):
-    """Views of lobes under thin films, in mirrored lights, each for one term.
+    """Views of lobes under thin films, in mirrored lights, each for one term."""
 
-    Attributes
-    ----------
-    steep : Batch
-        Rough lobes under films of few fringes, of which masking takes the facets whose curve is another.
-    fringed : Batch
-        The same under films of up to many fringes.
-    glossy : Batch
-        Lobes whose visible facets are much alike, so that few cosines stand for them, under films of few fringes.
-    ordered : Batch
-        Smooth lobes at grazing under films so thin that all orders count.
-    sharp : Batch
-        Smooth lobes, in which a film's curve is seen at one cosine, under films whose first orders count.
-    """
-
+    # Rough lobes under films of few fringes, of which masking takes the facets whose curve is
+    # another.
     steep: Batch
-    fringed: Batch
+    fringed: Batch  # the same under films of up to many fringes
+    # Lobes whose visible facets are much alike, so that few cosines stand for them, under films of
+    # few fringes.
     glossy: Batch
-    ordered: Batch
+    ordered: Batch  # smooth lobes at grazing under films so thin that all orders count
+    # Smooth lobes, in which a film's curve is seen at one cosine, under films whose first orders
+    # count.
     sharp: Batch

@@ -24,17 +24,10 @@ class Case(NamedTuple):
 
 @dataclass(frozen=True)
 class Measurement:
-    """The worst error of a check, and its point.
-
-    Attributes
-    ----------
-    error : float
-    worst : dict of str to list of float
-        Inputs and values at the worst point, by name.
-    """
+    """The worst error of a check, and its point."""
 
     error: float
-    worst: dict[str, list[float]]
+    worst: dict[str, list[float]]  # inputs and values at the worst point, by name
 
 
 def _largest(values: Array) -> Array:
@@ -104,7 +97,6 @@ def count_named(names: Sequence[str]) -> Measurement:
 
 
 def point_of(batch: Batch, row: int) -> dict[str, list[float]]:
-    """Directions and inputs of one row of a batch."""
     columns: Values = {"wo": batch.wo, "wi": batch.wi, **batch.inputs}
     return {
         name: np.ravel(_row(values, row, len(batch.wo))).astype(float).tolist()

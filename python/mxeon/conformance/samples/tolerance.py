@@ -15,21 +15,11 @@ ROUNDING = 2.0**-24  # unit roundoff of float32
 
 @dataclass(frozen=True)
 class Tolerance:
-    """The largest error that passes.
-
-    Attributes
-    ----------
-    value : float
-    unit : str
-        Unit of the error.
-    metric : callable (measured, expected) -> ndarray
-        Error of each row, for checks that compare values.
-    derivation : str
-    """
+    """The largest error that passes."""
 
     value: float
-    unit: str
-    metric: Metric
+    unit: str  # unit of the error
+    metric: Metric  # error of each row, for checks that compare values
     derivation: str
 
     def scale(self, expected: Array) -> Array:
@@ -43,8 +33,6 @@ class Tolerance:
 def rounded_up(value: float) -> float:
     """The next number with one digit.
 
-    Examples
-    --------
     >>> rounded_up(1.94e-6)
     2e-06
     """

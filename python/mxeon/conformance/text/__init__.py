@@ -16,18 +16,7 @@ __all__ = ["check_definitions", "check_texts"]
 
 
 def check_texts(subjects: Iterable[DiffuseSubject], library: str) -> tuple[Result, ...]:
-    """Results of all checks of generated text and of functions for the nodes of a library.
-
-    Parameters
-    ----------
-    subjects : iterable of Subject
-        The nodes that it has.
-    library : str
-
-    Returns
-    -------
-    tuple of Result
-    """
+    """Results of all checks of generated text and of functions for the nodes of a library."""
     subjects = tuple(subjects)
     return (
         *check_closures(subjects, library),

@@ -69,7 +69,6 @@ def _judge(subject: DiffuseSubject, target: str, profile: str | None, library: s
 
 
 def _without_weight(text: str) -> str:
-    """The text whose lobe has a weight of 1."""
     word = re.compile(rf"\b{variable('weight')}\b")
     for pattern in (FILLED, ASSIGNED):
         text = pattern.sub(lambda match: word.sub("1.0", match[0]), text)
@@ -77,14 +76,11 @@ def _without_weight(text: str) -> str:
 
 
 def _faults(subject: DiffuseSubject, renderer: Renderer, text: str) -> list[str]:
-    """Faults of the lobe of a text, in words."""
-    # Read the closures for some materials.
     inputs = _materials(subject)
     closures = _closures(renderer, text, inputs)
     faults = [*dict.fromkeys(renderer.faults)]
     if FLOAT_FLAG.search(text):
         faults.append(f"keyword {FLAG} is an int but receives a float")
-    # Of one closure compare the arguments, of several the value.
     single = renderer.profile is None and len(closures) == 1
     if single:
         faults += _argument_faults(subject, renderer, closures[0], inputs)
@@ -114,12 +110,9 @@ def _materials(subject: DiffuseSubject) -> Inputs:
 
 
 def _closures(renderer: Renderer, text: str, inputs: Inputs) -> tuple[Closure, ...]:
-    """The sum of closures that the lobe of a text is."""
-    # What the text finds around the lobe.
     variables = {variable(name): value for name, value in inputs.items()}
     variables["N"] = np.array([[0.0, 0.0, 1.0]])  # a global of OSL, the normal of the surface
     interpreter = Interpreter(text, renderer.closures())
-    # Its call, or its definition.
     if call := FILLED.search(text):
         closures = interpreter.value(f"{call[1]}({call[2]})", variables)
     elif definition := ASSIGNED.search(text):
@@ -135,14 +128,12 @@ def _argument_faults(
     subject: DiffuseSubject, renderer: Renderer, closure: Closure, inputs: Inputs
 ) -> Iterator[str]:
     """Arguments of the one closure that are not the node's inputs."""
-    # What each argument has to be.
     expected = {name: inputs[name] for name in ("color", "roughness")}
     if renderer.target == "mdl":
         expected["multiscatter_tint"] = _tint(subject, inputs)
     else:
         expected[FLAG] = inputs[FLAG]
     expected["weight"] = inputs["weight"]
-    # What it is.
     arguments = {**closure.arguments, "weight": closure.weight}
     for name, value in expected.items():
         wanted = TINTS[subject.model] if name == "multiscatter_tint" else f"the node's {name}"
@@ -192,12 +183,10 @@ def _value_faults(
     subject: DiffuseSubject, renderer: Renderer, closures: tuple[Closure, ...], inputs: Inputs
 ) -> Iterator[str]:
     """A value that is not the model's: Cycles has QON for s >= 0 alone, and MDL has FON for it."""
-    # Random pairs, on the side that Cycles' closure has.
     rng = np.random.default_rng(SEED)
     wo, wi = directions(rng, MATERIALS), directions(rng, MATERIALS)
     if renderer.profile == "cycles" and subject.model == "qon":
         wi = wi * np.where((wo[:, :2] * wi[:, :2]).sum(axis=1, keepdims=True) < 0.0, [-1, -1, 1], 1)
-    # The node's value, and the sum of closures.
     model = "fon" if renderer.target == "mdl" and subject.model == "qon" else subject.model
     brdf = getattr(formulas, f"{model}_brdf")
     expected = brdf(wo, wi, inputs["color"].T, inputs["roughness"][:, 0]).T * inputs["weight"]

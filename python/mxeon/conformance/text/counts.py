@@ -10,38 +10,18 @@ from mxeon.errors import NotRun, ShaderError
 
 @dataclass(frozen=True)
 class Claim:
-    """A check of text.
+    """A check of text."""
 
-    Attributes
-    ----------
-    key, sentence : str
-        One word, and what has to be true.
-    unit : str
-        What is counted.
-    variant : str
-        The error that the control makes.
-    """
-
-    key: str
+    key: str  # one word, and what has to be true
     sentence: str
-    unit: str
-    variant: str
+    unit: str  # what is counted
+    variant: str  # the error that the control makes
 
 
 def counted(
     claim: Claim, subject: str, library: str, count: float, control: float, meaning: str
 ) -> Result:
-    """Result of a count, which must be 0, and of its control, which must not be 0.
-
-    Parameters
-    ----------
-    claim : Claim
-    subject, library : str
-    count, control : float
-        Of the text, and of the text made wrong.
-    meaning : str
-        Diagnosis of a count that is not 0.
-    """
+    """Result of a count, which must be 0, and of its control, which must not be 0."""
     caught = control > 0 and control >= count
     return Result(
         check=claim.key,

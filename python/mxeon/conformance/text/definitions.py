@@ -54,28 +54,14 @@ FLAGGED: Ports = {**LOBE, FLAG: _port("boolean", "false", uniform="true")}
 
 @dataclass(frozen=True)
 class Specification:
-    """The interface that a node has to have.
+    """The interface that a node has to have."""
 
-    Attributes
-    ----------
-    node, author : str
-        Its category, and who specifies it.
-    inputs : mapping of str to mapping of str to str
-        Attributes of each input, in order.
-    output : str
-        Type of its output.
-    bsdf : str
-        Whether a lobe reflects ("R"), transmits ("T"), or both; "" for other nodes.
-    ranges : bool
-        Whether the ranges have to be stated.
-    """
-
-    node: str
+    node: str  # its category, and who specifies it
     author: str
-    inputs: Ports
-    output: str
-    bsdf: str = ""
-    ranges: bool = True
+    inputs: Ports  # attributes of each input, in order
+    output: str  # type of its output
+    bsdf: str = ""  # whether a lobe reflects ("R"), transmits ("T"), or both; "" for other nodes
+    ranges: bool = True  # whether the ranges have to be stated
 
 
 # [pbrlib], table of <oren_nayar_diffuse_bsdf>; a reflectance lies in [0, 1].
@@ -90,7 +76,6 @@ SPECIFICATIONS = (
 
 
 def check_definitions(library: str) -> tuple[Result, ...]:
-    """Results for the nodes of a library that are specified."""
     document = load_library(library)
     return tuple(
         _judge(specification, definition, library)
@@ -135,14 +120,12 @@ def _kind(specification: Specification, definition: mx.NodeDef) -> list[str]:
 
 def differences(specification: Specification, inputs: Ports, outputs: list[str]) -> list[str]:
     """Differences between a definition and its specification, in words."""
-    # Which inputs there are, and in which order.
     author, expected = specification.author, specification.inputs
     faults = [f"there is no input {name}" for name in expected if name not in inputs]
     faults += [f"{author} has no input {name}" for name in inputs if name not in expected]
     order = [name for name in inputs if name in expected]
     if order != [name for name in expected if name in inputs]:
         faults.append(f"the inputs are in the order {', '.join(order)}")
-    # What each is, and the output.
     for name in order:
         faults += _differences(specification, name, inputs[name])
     if outputs != [specification.output]:
@@ -168,7 +151,6 @@ def _differences(
 
 
 def _attributes(port: mx.Input) -> dict[str, str]:
-    """Attributes of an input that specifications name."""
     return {name: port.getAttribute(name) for name in WORDS if port.getAttribute(name)}
 
 

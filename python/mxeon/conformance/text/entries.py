@@ -34,31 +34,17 @@ Inputs = Mapping[str, Array]
 
 @dataclass(frozen=True)
 class EntryPoint:
-    """An entry point, and the closure that it has to give.
+    """An entry point, and the closure that it has to give."""
 
-    Attributes
-    ----------
-    node, file, case : str
-        Category of the node, name of the file beside a library, and words on the inputs.
-    profile : str or None
-    closure : str
-        Name of the renderer's function.
-    inputs : callable (rng) -> dict of str to ndarray
-        Random inputs in the order of the parameters, and globals of OSL.
-    weight : callable (inputs) -> ndarray
-        Weight of the closure, with what it takes for its color.
-    arguments : tuple of str
-        Inputs that the closure takes as they are.
-    """
-
-    node: str
+    node: str  # category of the node, name of the file beside a library, and words on the inputs
     file: str
     case: str
     profile: str | None
-    closure: str
+    closure: str  # name of the renderer's function
+    # Random inputs in the order of the parameters, and globals of OSL.
     inputs: Callable[[np.random.Generator], dict[str, Array]]
-    weight: Callable[[Inputs], Array]
-    arguments: tuple[str, ...] = ()
+    weight: Callable[[Inputs], Array]  # weight of the closure, with what it takes for its color
+    arguments: tuple[str, ...] = ()  # inputs that the closure takes as they are
 
 
 def _directions(rng: np.random.Generator) -> Array:
@@ -127,7 +113,6 @@ ENTRIES = tuple(
 
 
 def check_entries(library: str) -> tuple[Result, ...]:
-    """Results for the entry points that a library brings."""
     folder = source_folder(library) / "genosl"
     return tuple(
         _judge(entry, library)
@@ -150,7 +135,6 @@ def _judge(entry: EntryPoint, library: str) -> Result:
 
 
 def _faults(entry: EntryPoint, library: str, inputs: Inputs, expected: Inputs) -> list[str]:
-    """Faults of the closure for inputs, which has to be that of the expected ones."""
     try:
         closures = _closures(entry, _element(entry, library), inputs)
     except (NotRun, ShaderError) as error:
@@ -178,7 +162,6 @@ def _element(entry: EntryPoint, library: str) -> mx.Implementation:
 
 
 def _closures(entry: EntryPoint, element: mx.Implementation, inputs: Inputs) -> tuple[Closure, ...]:
-    """The closures that an entry point gives for inputs."""
     path = Path(element.getActiveSourceUri()).parent / element.getAttribute("file")
     view = inputs.get("wo", np.ones((1, 3)))
     interpreter = Interpreter(

@@ -54,33 +54,16 @@ CONSTANTS = {"math::PI": np.pi, "M_PI": np.pi, "true": 1.0, "false": 0.0}
 
 @dataclass(frozen=True)
 class Closure:
-    """A closure of a renderer, times a weight.
-
-    Attributes
-    ----------
-    name : str
-    weight : ndarray, shape (N, 1) or (N, 3)
-    arguments : dict of str to value
-        By name, positions as "0", "1", ...; keywords of OSL as `"keyword"` with its quotes.
-    """
+    """A closure of a renderer, times a weight."""
 
     name: str
     weight: Array
+    # By name, positions as "0", "1", ...; keywords of OSL as `"keyword"` with its quotes.
     arguments: Mapping[str, Value]
 
 
 class Interpreter:
-    """Evaluates expressions of a text.
-
-    Parameters
-    ----------
-    text : str
-        Text whose functions and `#define`s may be used.
-    closures : mapping of str to callable (dict of str to value) -> tuple of Closure
-        Functions of the renderer that give closures, by name.
-    variables : mapping of str to value
-        Globals of the renderer, and its functions without arguments.
-    """
+    """Evaluates expressions of a text."""
 
     def __init__(
         self,
@@ -105,13 +88,11 @@ class Interpreter:
         return self._run(function, arguments)
 
     def _run(self, function: tree.Function, arguments: list[Value]) -> Value:
-        # Give the parameters their arguments.
         names = [name for _, name in function.parameters]
         outputs = [name for kind, name in function.parameters if kind.startswith("output ")]
         if len(arguments) != len(names) - len(outputs):
             raise Unreadable(f"{function.name} gets {len(arguments)} arguments")
         variables = dict(zip(names, arguments, strict=False))
-        # Take what the body returns, or its first output.
         result = self._execute(statements(function.body), variables)
         if result is None and outputs:
             result = variables.get(outputs[0])
@@ -124,12 +105,10 @@ class Interpreter:
     ) -> Value | None:
         """Value that the body returns; assignments change `variables`."""
         for statement in body:
-            # A value ends the body.
             if isinstance(statement, tree.Return):
                 return self._evaluate(statement.value, variables)
             if isinstance(statement, tree.Assignment):
                 variables[statement.name] = self._evaluate(statement.value, variables)
-            # A branch may end it.
             if isinstance(statement, tree.If):
                 taken = statement.yes if self._holds(statement, variables) else statement.no
                 result = self._execute(taken, variables)
@@ -175,7 +154,6 @@ class Interpreter:
         raise Unreadable(f"{name} is not defined")
 
     def _called(self, call: tree.Call, variables: Mapping[str, Value]) -> Value:
-        # Closures, functions of the text, and built-in ones.
         arguments = [(name, self._evaluate(each, variables)) for name, each in call.arguments]
         positional = [value for _, value in arguments]
         if call.name in self._closures:
@@ -189,7 +167,6 @@ class Interpreter:
         word = call.name.removeprefix("math::")
         if word in MATHEMATICS:
             return MATHEMATICS[word](*map(_number, positional))
-        # Whatever else is unknown, or not read.
         namespace = call.name.rpartition("::")[0]
         defined = re.search(rf"^[\w ]* {re.escape(call.name)}\s*\(", self._text, re.MULTILINE)
         if not defined and namespace in ("", "df", "math", "base", "state"):
@@ -211,7 +188,6 @@ def _labelled(arguments: list[tuple[str, Value]]) -> dict[str, Value]:
 
 
 def weighted(closures: tuple[Closure, ...], weight: Array) -> tuple[Closure, ...]:
-    """The closures times a weight."""
     return tuple(replace(each, weight=each.weight * weight) for each in closures)
 
 

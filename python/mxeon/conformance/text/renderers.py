@@ -22,20 +22,12 @@ PBRLIB = "materialx::pbrlib_1_10::mx_oren_nayar_diffuse_bsdf"
 
 @dataclass
 class Renderer:
-    """A renderer whose closures a text calls, and the faults of those calls.
-
-    Attributes
-    ----------
-    name : str
-    target, profile : str, str or None
-        Of the text.
-    faults : list of str
-        Calls that the renderer would refuse or take for others, in words.
-    """
+    """A renderer whose closures a text calls, and the faults of those calls."""
 
     name: str
-    target: str
+    target: str  # of the text
     profile: str | None = None
+    # Calls that the renderer would refuse or take for others, in words.
     faults: list[str] = field(default_factory=list)
 
     def closures(self) -> Mapping[str, Builder]:
@@ -55,13 +47,11 @@ class Renderer:
 
     def value(self, closure: Closure, wo: Array, wi: Array) -> Array:
         """Value of a closure times its weight, (N, 3)."""
-        # The models that the closure is made of.
         arguments = closure.arguments
         color, roughness = _channels(arguments["color"]), arguments["roughness"][:, 0]
         fon, eon = (
             each(wo, wi, color, roughness) for each in (formulas.fon_brdf, formulas.eon_brdf)
         )
-        # Their sum, as the renderer takes it.
         if self.target == "mdl":
             white = np.ones((3, 1))
             loss = formulas.eon_brdf(wo, wi, white, roughness)
@@ -77,7 +67,6 @@ class Renderer:
 
     def _oren_nayar(self, arguments: Mapping[str, Value]) -> Closures:
         """OSL's closure: (normal N, color albedo, float roughness, "energy_compensation", int)."""
-        # Refuse arguments that the closure does not have.
         known = {"0": "normal", "1": "color", "2": "roughness"}
         keyword = f'"{FLAG}"'
         for name in arguments:
@@ -129,7 +118,6 @@ class Renderer:
         return tuple(self._named(arguments, (name,)).get(name, ()))
 
     def _named(self, arguments: Mapping[str, Value], names: object) -> dict[str, Value]:
-        """Arguments of names that the function has; others are faults."""
         known = {name: value for name, value in arguments.items() if name in names}  # type: ignore[operator]
         self.faults += [
             f"argument {name} is not known to MDL" for name in arguments if name not in known

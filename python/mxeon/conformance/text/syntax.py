@@ -35,8 +35,6 @@ def without_comments(text: str) -> str:
 def tokens(text: str) -> list[str]:
     """Words, numbers and signs of a text.
 
-    Examples
-    --------
     >>> tokens("df::f(tint: 2.0 * x)")
     ['df::f', '(', 'tint', ':', '2.0', '*', 'x', ')']
     """
@@ -57,7 +55,6 @@ def macros(text: str) -> Mapping[str, str]:
 
 
 def function_table(text: str) -> Mapping[str, tree.Function]:
-    """Functions that a text defines, by name."""
     text = without_comments(text)
     functions = {}
     for match in FUNCTION.finditer(text):
@@ -67,7 +64,6 @@ def function_table(text: str) -> Mapping[str, tree.Function]:
 
 
 def expression(text: str) -> tree.Expression:
-    """The expression that a text is, to its end."""
     parser = _Parser(tokens(text))
     result = parser.expression()
     parser.end()
@@ -116,13 +112,11 @@ class _Parser:
 
     def statement(self) -> list[tree.Statement]:
         """One statement, a block as several; an empty one or a mere declaration as none."""
-        # A block.
         if self._take("{"):
             block: list[tree.Statement] = []
             while not self._take("}"):
                 block += self.statement()
             return block
-        # A statement by its first word, or else an assignment.
         if self._take("return"):
             value = self.expression()
             self._expect(";")
@@ -145,7 +139,6 @@ class _Parser:
         return tree.Choice(condition, yes, self.expression())
 
     def _assignment(self) -> list[tree.Statement]:
-        # The words before the sign, of which the last is the name.
         words = []
         while self.more and self._peek() not in ("=", ";"):
             words.append(self._peek())
@@ -182,12 +175,10 @@ class _Parser:
         return value
 
     def _primary(self) -> tree.Expression:
-        # An expression in parentheses.
         if self._take("("):
             value = self.expression()
             self._expect(")")
             return value
-        # A number, a text, a call or a name.
         word = self._peek()
         self._next += 1
         if word[0].isdigit() or (word[0] == "." and len(word) > 1):

@@ -6,8 +6,6 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Number:
-    """A number."""
-
     value: float
 
 
@@ -53,8 +51,6 @@ class Choice:
 
 @dataclass(frozen=True)
 class Component:
-    """A component of a vector."""
-
     vector: "Expression"
     name: str
 
@@ -91,17 +87,8 @@ Statement = Assignment | Return | If
 
 @dataclass(frozen=True)
 class Function:
-    """A function: names of its parameters, and its body.
-
-    Attributes
-    ----------
-    name : str
-    parameters : tuple of (str, str)
-        Type and name; an output's type begins with "output".
-    body : str
-        Text between its braces.
-    """
+    """A function: names of its parameters, and its body."""
 
     name: str
-    parameters: tuple[tuple[str, str], ...]
-    body: str
+    parameters: tuple[tuple[str, str], ...]  # type and name; an output's type begins with "output"
+    body: str  # text between its braces
