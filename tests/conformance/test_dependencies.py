@@ -10,7 +10,7 @@ from mxeon.cli import main
 from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.run import check, plan, read_run
 from mxeon.conformance.run.dependencies import digests
-from mxeon.conformance.run.journal_lines import JOURNAL
+from mxeon.conformance.run.journal import JOURNAL
 from mxeon.hosts.base import Identity
 from mxeon.hosts.gl import Host
 from mxeon.shaders.document.policy import Policy
@@ -68,26 +68,25 @@ def test_what_an_included_document_names_is_a_dependency(tmp_path):
     assert seen(file) == {"b.mtlx", "c.mtlx", "grid.png"}
 
 
-def test_files_on_the_search_path_are_dependencies(tmp_path):
-    file = document(tmp_path / "home" / "a.mtlx", FILE.format("images/grid.png"))
-    texture(tmp_path / "shared" / "images" / "grid.png")
+def test_the_policy_says_which_files_count(tmp_path):
+    file = document(
+        tmp_path / "home" / "a.mtlx", FILE.format("images/a.png"), FILE.format("../b.png")
+    )
+    texture(tmp_path / "shared" / "images" / "a.png")
+    texture(tmp_path / "b.png")
     assert seen(file) == set()
-    assert seen(file, path=(str(tmp_path / "shared"),)) == {"grid.png"}
+    assert seen(file, path=(str(tmp_path / "shared"),)) == {"a.png"}
+    assert seen(file, outside=True) == {"b.png"}
 
 
-def test_a_document_in_another_encoding_has_dependencies(tmp_path):
-    text = f'<materialx version="1.39">{FILE.format("grid.png")}</materialx>'
+def test_every_attribute_is_read_as_xml_has_it(tmp_path):
+    hidden = """<a doc="value='" file="grid&amp;co.png"/>"""
+    text = f'<materialx version="1.39">{hidden}{FILE.format("grid.png")}</materialx>'
     file = tmp_path / "a.mtlx"
     file.write_bytes(text.encode("utf-16"))
     texture(tmp_path / "grid.png")
-    assert seen(file) == {"grid.png"}
-
-
-def test_files_that_a_document_may_not_name_are_not_looked_at(tmp_path):
-    file = document(tmp_path / "home" / "a.mtlx", FILE.format("../grid.png"))
-    texture(tmp_path / "grid.png")
-    assert seen(file) == set()
-    assert seen(file, outside=True) == {"grid.png"}
+    texture(tmp_path / "grid&co.png")
+    assert seen(file) == {"grid.png", "grid&co.png"}
 
 
 @pytest.mark.parametrize(
@@ -151,17 +150,12 @@ def test_an_option_that_changed_is_named(run):
 
 def test_a_driver_that_changed_is_named_once_its_tasks_go_on(run, monkeypatch):
     folder, file = run
-    interrupt(folder)
+    path = folder / JOURNAL
+    path.write_bytes(b"".join(path.read_bytes().splitlines(keepends=True)[:-1]))
     monkeypatch.setattr(Host, "identity", lambda self: Identity("gl", "5.0", "another"))
     with pytest.raises(ValueError, match=r"these differ: host gl \(.*, now 5.0, another\)$"):
         check([file], folder=folder, resume=True)
     assert read_run(folder).missing
-
-
-def interrupt(folder):
-    """Take the last item from a journal."""
-    path = folder / JOURNAL
-    path.write_bytes(b"".join(path.read_bytes().splitlines(keepends=True)[:-1]))
 
 
 def test_a_folder_that_is_a_library_is_a_dependency(tmp_path):

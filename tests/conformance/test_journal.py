@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The journal of a run: nothing finished is lost or done twice, whatever ended the run."""
+"""The journal of a run: nothing finished is lost or done twice, and nothing else counts as done."""
 
 import errno
+import json
 import os
 import resource
 import signal
@@ -9,6 +10,7 @@ import subprocess
 import sys
 import time
 from dataclasses import replace
+from io import BytesIO
 from multiprocessing import active_children
 from pathlib import Path
 
@@ -16,18 +18,25 @@ import numpy as np
 import pytest
 
 from mxeon.conformance.run import check, read_run, to_run
-from mxeon.conformance.run.journal import LOCK, PREVIOUS, Journal, read_journal
-from mxeon.conformance.run.journal_lines import JOURNAL
+from mxeon.conformance.run.journal import JOURNAL, LOCK, PREVIOUS, Journal, _line, read_journal
 from mxeon.shaders.library import examples_folder
 from tests.support.journals import FILES, FINDINGS, PIXELS, PLAN, TASKS, journal
 from tests.support.plans import keep_checks
 
 EXAMPLE = examples_folder() / "plaster.mtlx"
+PLAIN = replace(FINDINGS, pictures=())
+
+
+def kept(folder, *numbers, findings=FINDINGS, plan=PLAN):
+    """The journal of a run with findings of some tasks."""
+    with journal(folder, plan) as written:
+        for number in numbers:
+            written.add(number, findings)
+    return folder / JOURNAL
 
 
 def test_findings_come_back_as_they_were(tmp_path):
-    with journal(tmp_path) as kept:
-        kept.add(1, FINDINGS)
+    kept(tmp_path, 1)
     plan, found = read_journal(tmp_path)
     assert plan == PLAN and list(found) == [1]
     (picture,), (curve,) = found[1].pictures, found[1].curves
@@ -35,36 +44,130 @@ def test_findings_come_back_as_they_were(tmp_path):
     assert np.array_equal(curve.measured, PIXELS[0]) and curve.rho == (1.0, 0.5, 0.0)
     plain = {"pictures": (), "curves": ()}
     assert replace(found[1], **plain) == replace(FINDINGS, **plain)
+    assert to_run(plan, found).missing == (str(TASKS[0]), str(TASKS[2]))
 
 
 def test_a_torn_last_line_is_dropped_and_its_task_done_again(tmp_path):
-    with journal(tmp_path) as kept:
-        kept.add(0, FINDINGS)
-        kept.add(1, FINDINGS)
-    path = tmp_path / JOURNAL
+    path = kept(tmp_path, 0, 1)
     whole = path.read_bytes()
     path.write_bytes(whole[:-7])
-    with journal(tmp_path, resume=True) as kept:
-        assert list(kept.findings) == [0]
-        kept.add(1, FINDINGS)
+    with journal(tmp_path, resume=True) as resumed:
+        assert list(resumed.findings) == [0]
+        resumed.add(1, FINDINGS)
     assert path.read_bytes() == whole
 
 
-def test_processes_end_with_a_run_that_cannot_be_kept(tmp_path, monkeypatch):
-    keep_checks(monkeypatch, "value")
-    monkeypatch.setattr(Journal, "add", lambda *_: Path("/dev/full").write_text("."))
-    before = set(active_children())
-    with pytest.raises(OSError) as error:
-        check([EXAMPLE], ["gl"], workers=1, folder=tmp_path, nodes=["common"])
-    assert set(active_children()) <= before  # while the error still holds what was under way
-    assert error.value.errno == errno.ENOSPC
+def pixels(array):
+    stream = BytesIO()
+    np.save(stream, array)
+    return stream.getvalue()
 
 
-def test_a_run_says_what_is_missing(tmp_path):
-    with journal(tmp_path) as kept:
-        kept.add(1, FINDINGS)
-    run = to_run(*read_journal(tmp_path))
-    assert run.missing == (str(TASKS[0]), str(TASKS[2]))
+HUGE = pixels(PIXELS).replace(b"(2, 2, 3), }           ", b"(100000, 1000000, 3), }")
+
+
+@pytest.mark.parametrize("content", [None, b"", pixels(PIXELS)[:-1], pixels(1.0 - PIXELS), HUGE])
+def test_a_task_whose_picture_is_damaged_is_done_again(tmp_path, content):
+    kept(tmp_path, 0)
+    (picture,) = tmp_path.glob("journal/*.npy")
+    picture.unlink()
+    if content is not None:
+        picture.write_bytes(content)
+    assert read_journal(tmp_path)[1] == {} and str(TASKS[0]) in read_run(tmp_path).missing
+    with journal(tmp_path, resume=True) as resumed:
+        resumed.add(0, FINDINGS)
+    assert np.array_equal(read_journal(tmp_path)[1][0].pictures[0].image, PIXELS)
+
+
+def refused(folder):
+    """The one line that refuses a journal."""
+    with pytest.raises(ValueError, match=f"{JOURNAL}: must be a journal of format 5") as error:
+        read_run(folder)
+    with pytest.raises(ValueError, match="as mxeon wrote it; .*; run again without --resume$"):
+        journal(folder, resume=True).__enter__()
+    assert "\n" not in str(error.value)
+    return str(error.value)
+
+
+@pytest.mark.parametrize(
+    "before, after", [(b"failed", b"passed"), (b'"task": 1', b'"task": 0'), (b"0.5", b"0.25")]
+)
+def test_an_edited_line_is_refused(tmp_path, before, after):
+    path = kept(tmp_path, 1, 2)
+    header, line, last = path.read_bytes().splitlines(keepends=True)
+    assert before in line
+    path.write_bytes(header + line.replace(before, after) + last)
+    assert "line 2 was edited" in refused(tmp_path)
+
+
+@pytest.mark.parametrize(
+    "line", [b"", b"\0" * 9, b"[" * 100_000, b"1" * 5000, b"\xff", b'{"task": 0}']
+)
+def test_a_line_that_is_no_record_is_refused(tmp_path, line):
+    with kept(tmp_path, 1).open("ab") as file:
+        file.write(line + b"\n")
+    assert "line 3 was edited" in refused(tmp_path)
+
+
+@pytest.mark.parametrize("text", ["", "{}\n", "[]\n", '{"format": 0}\n', "\0\n", '{"format": 5}\n'])
+def test_what_is_no_journal_is_refused(tmp_path, text):
+    (tmp_path / JOURNAL).parent.mkdir()
+    (tmp_path / JOURNAL).write_text(text)
+    assert "its first line was edited" in refused(tmp_path)
+
+
+def test_an_edited_plan_is_refused(tmp_path):
+    path = kept(tmp_path, 1)
+    path.write_bytes(path.read_bytes().replace(b'"version": "1.0"', b'"version": "2.0"', 1))
+    assert "its first line was edited" in refused(tmp_path)
+
+
+def test_findings_of_another_run_are_refused(tmp_path):
+    first = kept(tmp_path / "a", 1)
+    second = kept(tmp_path / "b", 1, plan=replace(PLAN, version="2.0"))
+    lines = [path.read_bytes().splitlines(keepends=True) for path in (first, second)]
+    first.write_bytes(lines[0][0] + lines[1][1])
+    assert "line 2" in refused(tmp_path / "a")
+
+
+def changed_result(**values):
+    return lambda record: record["findings"]["results"][0].update(values)
+
+
+FORGED = [
+    *(lambda record, task=task: record.update(task=task) for task in ("x", None, -1, 9, True, [])),
+    *(lambda record, part=part: record.update(findings=part) for part in ({}, None, {"more": 1})),
+    *(changed_result(verdict=verdict) for verdict in ("maybe", None, [])),
+    *(changed_result(worst=worst) for worst in ({"a": None}, {"a": "b"}, 5)),
+    *(changed_result(figure=figure) for figure in (-1.0, "x", 10**400, True)),
+    *(changed_result(**{name: "x"}) for name in ("host", "library", "control", "distances")),
+    lambda record: record["findings"].update(notes=[["half \ud83d", "place"]]),
+]
+
+
+@pytest.mark.parametrize("change", FORGED)
+def test_a_line_that_mxeon_does_not_write_is_refused(tmp_path, change):
+    path = kept(tmp_path, 1, findings=PLAIN)
+    header, line = path.read_bytes().splitlines(keepends=True)
+    record = json.loads(line)
+    del record["digest"]
+    change(record)
+    path.write_bytes(header + _line(record, json.loads(header)["digest"]))
+    assert "line 2" in refused(tmp_path)
+
+
+@pytest.mark.parametrize("name", ["../a.npy", "\0", ""])
+def test_a_picture_elsewhere_does_not_count(tmp_path, name):
+    path = kept(tmp_path, 1)
+    header, line = path.read_bytes().splitlines(keepends=True)
+    record = json.loads(line)
+    del record["digest"]
+    record["findings"]["pictures"][0]["image"] = name
+    path.write_bytes(header + _line(record, json.loads(header)["digest"]))
+    try:
+        assert read_journal(tmp_path)[1] == {}
+    except ValueError as error:
+        assert "line 2 was edited" in str(error)
 
 
 @pytest.mark.parametrize(
@@ -78,46 +181,36 @@ def test_a_run_says_what_is_missing(tmp_path):
         ({"files": {"clay.mtlx": "00"}, "version": "2.0"}, "mxeon (1.0, now 2.0), clay.png"),
         ({"tasks": (replace(TASKS[0], host="webgl"),)}, "hosts (gl, now webgl)"),
         ({"tasks": TASKS[:1]}, "the checks"),
+        (
+            {"files": {f"{number}.png": "00" for number in range(20)} | FILES},
+            "0.png, 1.png, 10.png, 11.png, 12.png, 13.png, 14.png, 15.png and 12 more",
+        ),
     ],
 )
 def test_another_run_is_not_resumed(tmp_path, change, words):
-    with journal(tmp_path):
-        pass
+    kept(tmp_path)
     with pytest.raises(ValueError, match="--resume must go on with the same run; ") as error:
         journal(tmp_path, replace(PLAN, **change), resume=True).__enter__()
     assert str(error.value).endswith(f"; these differ: {words}")
 
 
-def test_a_long_list_of_differences_is_cut(tmp_path):
-    with journal(tmp_path):
-        pass
-    files = {f"{number}.png": "00" for number in range(20)} | FILES
-    with pytest.raises(ValueError, match=r"0.png, 1.png, .* and 12 more$"):
-        journal(tmp_path, replace(PLAN, files=files), resume=True).__enter__()
-
-
 def test_a_run_that_was_never_begun_is_begun(tmp_path):
-    with journal(tmp_path, resume=True) as kept:
-        assert kept.findings == {}
+    with pytest.raises(ValueError, match=f"must hold the {JOURNAL} of a run; there is none"):
+        read_run(tmp_path)
+    with journal(tmp_path, resume=True) as begun:
+        assert begun.findings == {}
     assert read_journal(tmp_path) == (PLAN, {})
 
 
-def test_nothing_is_touched_before_a_journal_is_entered(tmp_path):
-    with journal(tmp_path) as kept:
-        kept.add(0, FINDINGS)
-    (tmp_path / LOCK).unlink(missing_ok=True)
-    before = sorted(tmp_path.rglob("*"))
-    journal(tmp_path)
-    assert sorted(tmp_path.rglob("*")) == before
-
-
 def test_a_new_run_keeps_the_old_journal_beside(tmp_path):
-    with journal(tmp_path) as kept:
-        kept.add(0, FINDINGS)
-    before = (tmp_path / JOURNAL).read_bytes()
-    with journal(tmp_path) as kept:
-        assert kept.findings == {}
-    assert (tmp_path / PREVIOUS / Path(JOURNAL).name).read_bytes() == before
+    path = kept(tmp_path, 0)
+    (tmp_path / LOCK).unlink(missing_ok=True)
+    before, files = path.read_bytes(), sorted(tmp_path.rglob("*"))
+    journal(tmp_path)
+    assert sorted(tmp_path.rglob("*")) == files  # untouched before it is entered
+    with journal(tmp_path) as new:
+        assert new.findings == {}
+    assert (tmp_path / PREVIOUS / path.name).read_bytes() == before
 
 
 def test_one_folder_has_one_writer(tmp_path):
@@ -125,24 +218,9 @@ def test_one_folder_has_one_writer(tmp_path):
         journal(tmp_path).__enter__()
 
 
-@pytest.mark.parametrize("text", ["", "{}\n", "[]\n", '{"format": 0}\n', "\0\n", '{"format": 4}\n'])
-def test_what_is_no_journal_is_one_line(tmp_path, text):
-    (tmp_path / JOURNAL).parent.mkdir()
-    (tmp_path / JOURNAL).write_text(text)
-    with pytest.raises(ValueError, match=f"{JOURNAL}: must be a journal of format 4; ") as error:
-        read_journal(tmp_path)
-    assert "\n" not in str(error.value)
-
-
-def test_a_folder_without_a_journal_is_one_line(tmp_path):
-    with pytest.raises(ValueError, match=f"must hold the {JOURNAL} of a run; there is none"):
-        read_run(tmp_path)
-
-
 @pytest.mark.parametrize("name", [JOURNAL, "journal/*.npy"])
 def test_a_pipe_in_place_of_a_file_of_the_journal_blocks_nobody(tmp_path, name):
-    with journal(tmp_path) as kept:
-        kept.add(0, FINDINGS)
+    kept(tmp_path, 0)
     (path,) = tmp_path.glob(name)
     path.unlink()
     os.mkfifo(path)
@@ -150,8 +228,7 @@ def test_a_pipe_in_place_of_a_file_of_the_journal_blocks_nobody(tmp_path, name):
         with pytest.raises(OSError, match="not a regular file"):
             read_journal(tmp_path)
     else:
-        with pytest.warns(UserWarning, match="pictures of"):
-            assert read_journal(tmp_path)[1] == {}
+        assert read_journal(tmp_path)[1] == {}
 
 
 def test_pictures_are_on_disk_before_the_line_that_names_them(tmp_path, monkeypatch):
@@ -159,45 +236,40 @@ def test_pictures_are_on_disk_before_the_line_that_names_them(tmp_path, monkeypa
     monkeypatch.setattr(
         os, "fsync", lambda file: synced.append(os.readlink(f"/proc/self/fd/{file}")) or fsync(file)
     )
-    with journal(tmp_path) as kept:
+    with journal(tmp_path) as written:
         synced.clear()
-        kept.add(0, FINDINGS)
+        written.add(0, FINDINGS)
     suffixes = [Path(path).suffix for path in synced]
     assert suffixes == [".npy", "", ".jsonl"]  # the picture, its name, the line
 
 
 def test_a_full_disk_loses_nothing_that_was_finished(tmp_path):
-    with journal(tmp_path) as kept:
-        kept.add(0, FINDINGS)
-        before = (tmp_path / JOURNAL).read_bytes()
-        with room_for(len(before) + 100), pytest.raises(OSError, match="File too large"):
-            kept.add(1, replace(FINDINGS, pictures=()))
-        assert (tmp_path / JOURNAL).read_bytes() == before
-        kept.add(1, FINDINGS)
+    with journal(tmp_path) as written:
+        written.add(0, FINDINGS)
+        size = (tmp_path / JOURNAL).stat().st_size
+        # No file may grow beyond so many bytes: what a full disk does, without one.
+        limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+        handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size + 100, limits[1]))
+        try:
+            with pytest.raises(OSError, match="File too large"):
+                written.add(1, PLAIN)
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+            signal.signal(signal.SIGXFSZ, handler)
+        assert (tmp_path / JOURNAL).stat().st_size == size
+        written.add(1, FINDINGS)
     assert list(read_journal(tmp_path)[1]) == [0, 1]
 
 
-class room_for:
-    """No file may grow beyond so many bytes: what a full disk does, without one."""
-
-    def __init__(self, size):
-        self._size = size
-
-    def __enter__(self):
-        self._limits = resource.getrlimit(resource.RLIMIT_FSIZE)
-        self._handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-        resource.setrlimit(resource.RLIMIT_FSIZE, (self._size, self._limits[1]))
-
-    def __exit__(self, *error):
-        resource.setrlimit(resource.RLIMIT_FSIZE, self._limits)
-        signal.signal(signal.SIGXFSZ, self._handler)
-
-
-def wait_for_lines(path, count, process):
-    end = time.monotonic() + 300.0
-    while not path.exists() or path.read_bytes().count(b"\n") < count:
-        assert process.poll() is None and time.monotonic() < end
-        time.sleep(0.01)
+def test_processes_end_with_a_run_that_cannot_be_kept(tmp_path, monkeypatch):
+    keep_checks(monkeypatch, "value")
+    monkeypatch.setattr(Journal, "add", lambda *_: Path("/dev/full").write_text("."))
+    before = set(active_children())
+    with pytest.raises(OSError) as error:
+        check([EXAMPLE], ["gl"], workers=1, folder=tmp_path, nodes=["common"])
+    assert set(active_children()) <= before  # while the error still holds what was under way
+    assert error.value.errno == errno.ENOSPC
 
 
 KEPT = ("value", "reciprocity", "curve", "picture")
@@ -206,9 +278,8 @@ from mxeon.__main__ import main
 from tests.support.plans import keep_checks
 keep_checks(builtins, *{KEPT})
 """
-RUN = f"{SHORT}sys.exit(main())"
-# The same, which waits to be killed when the findings of three tasks are kept.
-WAITING = f"""{SHORT}import time
+# A run that waits to be killed when the findings of three tasks are kept.
+WAITING = """import time
 from mxeon.conformance.run.journal import Journal
 add = Journal.add
 def add_three(journal, number, findings):
@@ -216,22 +287,26 @@ def add_three(journal, number, findings):
     if len(journal.findings) == 3:
         time.sleep(300.0)
 Journal.add = add_three
-sys.exit(main())"""
+"""
 
 
 def test_a_killed_run_is_resumed_to_the_same_end(tmp_path, monkeypatch):
     keep_checks(monkeypatch, *KEPT)
     monkeypatch.chdir(Path(__file__).parents[2])
     options = ["check", str(EXAMPLE), "--report", str(tmp_path)]
-    process = subprocess.Popen([sys.executable, "-c", WAITING, *options], stdout=subprocess.DEVNULL)
-    wait_for_lines(tmp_path / JOURNAL, 4, process)
+    code = f"{SHORT}{WAITING}sys.exit(main())"
+    process = subprocess.Popen([sys.executable, "-c", code, *options], stdout=subprocess.DEVNULL)
+    path, end = tmp_path / JOURNAL, time.monotonic() + 300.0
+    while not path.exists() or path.read_bytes().count(b"\n") < 4:
+        assert process.poll() is None and time.monotonic() < end
+        time.sleep(0.01)
     os.kill(process.pid, signal.SIGKILL)
     process.wait()
     done = read_journal(tmp_path)[1].keys()
     assert read_run(tmp_path).missing
-    command = [sys.executable, "-c", RUN, *options, "--resume"]
+    command = [sys.executable, "-c", f"{SHORT}sys.exit(main())", *options, "--resume"]
     finished = subprocess.run(command, capture_output=True, text=True)
     assert finished.returncode == 0, finished.stderr
-    lines = (tmp_path / JOURNAL).read_text().splitlines()[1:]
+    lines = path.read_text().splitlines()[1:]
     assert len(lines) == len(set(lines)) and len(done) > 0
     assert read_run(tmp_path).results == check([EXAMPLE], libraries=["eonlib", "stock"]).results

@@ -8,8 +8,7 @@ from pathlib import Path
 import psutil
 
 from mxeon.conformance.run import read_run
-from mxeon.conformance.run.journal import read_journal
-from mxeon.conformance.run.journal_lines import JOURNAL
+from mxeon.conformance.run.journal import JOURNAL, read_journal
 from mxeon.jobs.processes import PYTHON
 from mxeon.shaders.library import examples_folder
 

@@ -1,29 +1,36 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Digests of the files that the findings of a run depend on, so that it is resumed with the same.
+"""SHA-256 of the files that a run depends on, so that --resume goes on with the same ones.
 
-Documents are not parsed as MaterialX does, since that may end the process: each attribute that can
-name a file is taken as if it did, so a file too many may be listed, but none too few.
+MaterialX may end the process on a document, so none is parsed: each attribute that can name a file
+counts as if it did. A file too many may be listed, but none too few.
 """
 
 import glob
 import hashlib
+import html
 import os
 import re
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
+from itertools import islice
 from pathlib import Path
-from xml.parsers import expat
 
 import mxeon
-from mxeon.errors import DocumentError, InputError
+from mxeon.errors import DocumentError
 from mxeon.io.files import regular
 from mxeon.shaders.document.encoding import decode, strict
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.references import inside
-from mxeon.shaders.library import SOURCE_FOLDERS, documents_folder, library_folders, source_folder
+from mxeon.shaders.library import (
+    SOURCE_FOLDERS,
+    documents_folder,
+    library_folders,
+    source_folder,
+)
 from mxeon.shaders.library_tree import LIBRARIES, standard_folders
 
-INCLUDE, NAMING = "href", ("value", "file", "href")  # attributes
+ATTRIBUTE = re.compile(r"""([\w:.-]+)\s*=\s*("[^"]*"|'[^']*')""")
+NAMING = ("value", "file", "href", "fileprefix")
 # A part of a file's name that is filled in later: <UDIM>, [token], {frame}.
 OPEN_PART = re.compile(r"<[^<>]*>|\[[^][]*\]|\{[^{}]*\}")
 
@@ -31,71 +38,59 @@ OPEN_PART = re.compile(r"<[^<>]*>|\[[^][]*\]|\{[^{}]*\}")
 def digests(
     documents: Iterable[str | os.PathLike[str]], policy: Policy, libraries: Iterable[str] = ()
 ) -> dict[str, str]:
-    """SHA-256 of every file that findings on documents depend on.
+    """SHA-256 of every file that a run depends on; "" for what is no regular file or cannot be read.
 
-    By path: the documents, what they include and name as far as the policy permits, and what lies in folders of
-    libraries; by names that begin with "mxeon", "eonlib" or "MaterialX": the code and the data libraries. ""
-    for what is no regular file or cannot be read.
+    By path: the documents, what they include and name as far as the policy permits, and what lies in
+    folders of libraries. By names that begin with "mxeon", "eonlib" or "MaterialX": code and data here.
     """
-    found = {}
-    for document in documents:
-        for path in (str(document), *_named(Path(document), policy)):
-            if path not in found:
-                found[path] = _digest(path)
-    for library in set(libraries) - set(LIBRARIES):
-        for folder in library_folders(library):
-            found |= {str(path): _digest(path) for path in folder.rglob("*") if path.is_file()}
-    return found | _installed()
+    paths = {path: path for document in documents for path in _named(str(document), policy)}
+    folders = [
+        (str(folder), folder)
+        for library in set(libraries) - set(LIBRARIES)
+        for folder in library_folders(library)
+    ]
+    folders += [("mxeon", Path(mxeon.__file__).parent), ("eonlib", documents_folder())]
+    folders += [(f"eonlib/{name}", source_folder("eonlib") / name) for name in SOURCE_FOLDERS]
+    folders += [("MaterialX/libraries", folder) for folder in standard_folders()]
+    for name, folder in folders:
+        for path in sorted(folder.rglob("*")):
+            if path.is_file() and path.parent.name != "__pycache__":
+                paths[f"{name}/{path.relative_to(folder)}"] = str(path)
+    return {name: _digest(path) for name, path in paths.items()}
 
 
-def _named(document: Path, policy: Policy) -> list[str]:
-    """The files that a document includes and names, and those that the included ones do."""
-    home, seen = Path(os.path.realpath(document)).parent, set[str]()
-    waiting: list[str | Path] = [document]
-    while waiting:
-        text_file = waiting.pop()
-        for key, name in _names(_text(text_file, policy), policy.elements):
-            folders = {home, Path(os.path.realpath(text_file)).parent, Path.cwd()}
-            for path in _paths(name, folders | set(map(Path, policy.path))):
-                allowed = policy.outside or inside(path, home, policy.path)
-                if path in seen or not allowed:
-                    continue
-                seen.add(path)
-                if key == INCLUDE:
-                    waiting.append(path)
-    return sorted(seen)
+def _named(document: str, policy: Policy) -> list[str]:
+    """A document, and the files that it and what it includes name."""
+    home, seen, texts = Path(os.path.realpath(document)).parent, {document: None}, [document]
+    for text in texts:  # which grows by what is included
+        folders = {home, Path(os.path.realpath(text)).parent, Path.cwd(), *map(Path, policy.path)}
+        # A document with more elements than it may have is refused, and its files do not count.
+        for key, name in islice(_names(_text(text, policy)), 6 * policy.elements):
+            for path in _paths(name, folders):
+                if path not in seen and (policy.outside or inside(path, home, policy.path)):
+                    seen[path] = None
+                    if key == "href":
+                        texts.append(path)
+    return list(seen)
 
 
-def _text(path: Path | str, policy: Policy) -> str:
+def _text(path: str, policy: Policy) -> str:
     """Text of a document, or "" of one that is too large or cannot be read."""
     with suppress(OSError, DocumentError), open(path, "rb", opener=regular) as file:
         data = file.read(policy.size + 1)
-        return strict(decode(data, str(path))) if len(data) <= policy.size else ""
+        return strict(decode(data, path)) if len(data) <= policy.size else ""
     return ""
 
 
-def _names(text: str, elements: int) -> list[tuple[str, str]]:
-    """Attributes of a document that may name files, with their prefix: as far as it may be read."""
-    names: list[tuple[str, str]] = []
-    prefixes = [""]
-
-    def start(_: str, attributes: dict[str, str]) -> None:
-        if len(names) > 2 * len(NAMING) * elements:
-            refuse()
-        prefixes.append(attributes.get("fileprefix", prefixes[-1]))
-        for key in NAMING:
-            if value := attributes.get(key):
-                names.extend((key, name) for name in {value, prefixes[-1] + value})
-
-    def refuse(*_: object) -> None:
-        raise InputError("no document that is refused has findings of its files")
-
-    parser = expat.ParserCreate()
-    parser.StartElementHandler, parser.EndElementHandler = start, lambda _: prefixes.pop()
-    parser.StartDoctypeDeclHandler = refuse
-    with suppress(expat.ExpatError, LookupError, ValueError):
-        parser.Parse(text, True)
-    return names
+def _names(text: str) -> Iterator[tuple[str, str]]:
+    """Attributes of a document that may name files, each with every prefix that the document has."""
+    found = dict.fromkeys(
+        (key, html.unescape(value[1:-1]))
+        for key, value in ATTRIBUTE.findall(text)
+        if key in NAMING
+    )
+    prefixes = ["", *(value for key, value in found if key == "fileprefix")]
+    return ((key, prefix + value) for key, value in found if value for prefix in prefixes)
 
 
 def _paths(name: str, folders: Iterable[Path]) -> Iterator[str]:
@@ -107,20 +102,7 @@ def _paths(name: str, folders: Iterable[Path]) -> Iterator[str]:
         yield from map(os.path.realpath, filter(os.path.isfile, paths))
 
 
-def _installed() -> dict[str, str]:
-    """Digests of mxeon's code and of the data libraries, by names that hold on any machine."""
-    folders = [("mxeon", Path(mxeon.__file__).parent), ("eonlib", documents_folder())]
-    folders += [(f"eonlib/{name}", source_folder("eonlib") / name) for name in SOURCE_FOLDERS]
-    folders += [("MaterialX/libraries", folder) for folder in standard_folders()]
-    return {
-        f"{name}/{path.relative_to(folder)}": _digest(path)
-        for name, folder in folders
-        for path in sorted(folder.rglob("*"))
-        if path.is_file() and path.parent.name != "__pycache__"
-    }
-
-
-def _digest(path: str | os.PathLike[str]) -> str:
+def _digest(path: str) -> str:
     with suppress(OSError), open(path, "rb", opener=regular) as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
     return ""

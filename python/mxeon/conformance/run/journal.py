@@ -1,46 +1,45 @@
 # SPDX-License-Identifier: Apache-2.0
 """The journal of a run: the findings of each task, on disk as soon as it ends.
 
-The folder of a run holds a folder `journal`: its file `items.jsonl`, whose first line is the plan of
-the run and each further one the findings of a task, and the pictures as NumPy files, named by
-their SHA-256. A line that is not as it was written, or whose pictures are not, does not count: its
-task is done again. So damage costs the tasks that it hits, and no more.
+`journal/items.jsonl` in the folder of a run is JSON Lines. The first line is the plan of the run, with
+one hash of its version, options, files and tasks; each further line is the findings of a task, with a
+digest seeded by that hash. So a line that was edited, or comes from another run, is refused; a last
+line that the end of a run tore is dropped. Pictures are NumPy files, named by their SHA-256.
 """
 
 import hashlib
 import json
 import os
 import shutil
-import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
-from typing import Self, cast
+from typing import Any, Self, cast
 
 import numpy as np
 from filelock import FileLock, Timeout
 from numpy.lib.format import header_data_from_array_1_0, write_array_header_1_0
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.conformance.results.records import StoredImage, make_converter
-from mxeon.conformance.run.journal_lines import FORMAT, JOURNAL, PLAN, read_lines, to_line
+from mxeon.conformance.results.records import ERRORS, StoredImage, make_converter
 from mxeon.conformance.run.tasks import Findings, Plan
 from mxeon.errors import InputError
-from mxeon.io.files import below, replacing
+from mxeon.io.files import below, regular, replacing
 
+FORMAT = 5
+JOURNAL = "journal/items.jsonl"
 PREVIOUS, LOCK = "journal.previous", ".journal.lock"  # beside the folder `journal`
+HALF = b"\\ud"  # begins the escape of half of a character
 LISTED = 8  # names in a message
 
 
 class Journal:
-    """The journal of one run in a folder; a context manager, since it is locked while open.
+    """The journal of one run in a folder, locked while it is entered; untouched before.
 
-    Nothing is touched before it is entered.
-
-    Raise ValueError on entry, if another process writes here, or the run to resume is not this
-    one; says what differs; OSError on entry, if the folder cannot be written.
+    Without `resume`, an earlier journal is kept beside, as PREVIOUS. Entering raises InputError if
+    another process writes here, or the run to resume is another one; OSError if nothing can be written.
     """
 
     def __init__(self, folder: str | os.PathLike[str], plan: Plan, resume: bool = False) -> None:
@@ -48,17 +47,17 @@ class Journal:
         self._path = self._folder / JOURNAL
         self._exit = ExitStack()
         self._converter = make_converter(self._path.parent)
-        self.findings: dict[int, Findings] = {}
+        self.findings: dict[int, Findings] = {}  # by the number of the task in the plan
 
     def __enter__(self) -> Self:
         with ExitStack() as stack:
             for name in (JOURNAL, PREVIOUS, LOCK):
                 below(self._folder, name)
             stack.enter_context(_locked(self._folder))
-            lines = self._continue() if self._resume and self._path.exists() else self._begin()
+            resumed = self._resume and self._path.exists()
+            self._seed = self._continue() if resumed else self._begin()
             self._file = os.open(self._path, os.O_WRONLY | os.O_APPEND)
             stack.callback(os.close, self._file)
-            self._seed = json.loads(lines[PLAN])["digest"]
             self._exit = stack.pop_all()
         return self
 
@@ -68,7 +67,7 @@ class Journal:
     def add(self, number: int, findings: Findings) -> None:
         """Keep the findings of a task: on disk when this returns, the pictures first.
 
-        Raise OSError if there is no room; the journal is then as it was before.
+        Raises OSError if there is no room; the journal is then as it was before.
         """
         pictures = tuple(
             replace(
@@ -82,37 +81,29 @@ class Journal:
         if pictures:
             _sync(self._path.parent)
         findings = replace(findings, pictures=pictures)
-        record = {"task": number, "findings": self._to_json(findings)}
-        self._append(to_line(record, self._seed))
+        record = {"task": number, "findings": self._converter.unstructure(findings)}
+        self._append(_line(record, self._seed))
         self.findings[number] = findings
 
-    def _begin(self) -> dict[int, bytes]:
-        """Lines of a new journal; an earlier one makes room."""
+    def _begin(self) -> str:
+        """Write the first line, and return the hash of the run; an earlier journal makes room."""
         if self._path.exists():
             shutil.rmtree(self._folder / PREVIOUS, ignore_errors=True)
             os.replace(self._path.parent, self._folder / PREVIOUS)
-        header = {"format": FORMAT} | self._to_json(self._plan)
-        return self._write({PLAN: to_line(header)})
-
-    def _continue(self) -> dict[int, bytes]:
-        """Valid lines of the journal that is there."""
-        contents = read_lines(self._folder)
-        if contents.plan != self._plan:
-            raise InputError(refusal(self._folder, _differences(contents.plan, self._plan)))
-        _warn(self._folder, contents.damaged)
-        self.findings = contents.findings
-        return self._write(contents.lines)
-
-    def _to_json(self, record: Plan | Findings) -> dict[str, object]:
-        values: dict[str, object] = self._converter.unstructure(record)
-        return values
-
-    def _write(self, lines: dict[int, bytes]) -> dict[int, bytes]:
+        header = _line({"format": FORMAT} | self._converter.unstructure(self._plan))
         with replacing(self._path) as beside:
-            beside.write_bytes(b"".join(lines.values()))
+            beside.write_bytes(header)
         _sync(self._path.parent)
         _sync(self._folder)
-        return lines
+        return str(json.loads(header)["digest"])
+
+    def _continue(self) -> str:
+        """Take the findings of the journal that is there, and return the hash of the run."""
+        plan, self.findings, seed, size = _read(self._folder)
+        if plan != self._plan:
+            raise InputError(refusal(self._folder, _differences(plan, self._plan)))
+        os.truncate(self._path, size)
+        return seed
 
     def _append(self, line: bytes) -> None:
         size, rest = os.fstat(self._file).st_size, memoryview(line)
@@ -125,7 +116,7 @@ class Journal:
             raise OSError(error.errno, error.strerror, str(self._path)) from None
 
     def _store(self, image: ArrayLike) -> NDArray[np.float32]:
-        """An image in a file of the folder."""
+        """An image in a file of the folder, hashed and written without a copy of its pixels."""
         pixels, header = np.ascontiguousarray(image, np.float32), BytesIO()
         write_array_header_1_0(header, header_data_from_array_1_0(pixels))
         parts = header.getvalue(), pixels.data
@@ -140,19 +131,79 @@ class Journal:
 def read_journal(folder: str | os.PathLike[str]) -> tuple[Plan, dict[int, Findings]]:
     """The plan of the run in a folder, and the findings of the tasks that are done.
 
-    Warns of damaged lines and pictures, whose tasks count as not done.
-
-    Raise ValueError if the folder holds no journal that this version reads.
+    A task whose pictures are not as they were written is not done. Raises InputError if there is no
+    journal, or one that was edited or is of another version.
     """
-    contents = read_lines(Path(folder))
-    _warn(folder, contents.damaged)
-    return contents.plan, contents.findings
+    return _read(Path(folder))[:2]
 
 
 def refusal(folder: str | os.PathLike[str] | None, differences: Sequence[str]) -> str:
     """The reason for not resuming the run in a folder: one line that lists what differs."""
     listed = _listed(differences)
     return f"{folder}: --resume must go on with the same run; these differ: {listed}"
+
+
+def _read(folder: Path) -> tuple[Plan, dict[int, Findings], str, int]:
+    """Plan and findings of a journal, the hash of its run, and the bytes of its whole lines."""
+    path, converter = folder / JOURNAL, make_converter((folder / JOURNAL).parent)
+    try:
+        with open(path, "rb", opener=regular) as file:
+            lines = list(file)
+    except FileNotFoundError:
+        raise InputError(f"{folder}: must hold the {JOURNAL} of a run; there is none") from None
+    whole = [line for line in lines if line.endswith(b"\n")]  # the last one may be torn
+    findings: dict[int, Findings] = {}
+    place = "its first line"
+    try:
+        if (version := json.loads((whole or [b""])[0])["format"]) != FORMAT:
+            raise InputError(f"it has format {version!r}")
+        header, seed = _record(whole[0])
+        del header["format"]
+        plan = converter.structure(header, Plan)
+        for number, line in enumerate(whole[1:], 2):
+            place = f"line {number}"
+            record, _ = _record(line, seed)
+            task, part = record["task"], converter.structure(record["findings"], Findings)
+            if type(task) is not int or not 0 <= task < len(plan.tasks):
+                raise InputError(f"task must be one of {len(plan.tasks)}; got {task!r}")
+            if not part.answer(plan.tasks[task]):
+                raise InputError(f"findings must be those of {plan.tasks[task]}")
+            if all(image.whole for image in _images(part)):
+                findings[task] = part
+    except ERRORS as error:
+        rule = f"{path}: must be a journal of format {FORMAT} as mxeon wrote it"
+        reason = f"{place} was edited or is of another run or program; {error}"
+        raise InputError(f"{rule}; {reason}; run again without --resume") from None
+    return plan, findings, seed, sum(map(len, whole))
+
+
+def _images(findings: Findings) -> list[StoredImage]:
+    images = (
+        each
+        for picture in findings.pictures
+        for each in (picture.image, picture.reference, picture.judged)
+    )
+    return [cast(StoredImage, image) for image in images if image is not None]
+
+
+def _line(record: dict[str, Any], seed: str = "") -> bytes:
+    """A record as a line, with a digest of it and of the run whose hash is `seed`."""
+    return (json.dumps(record | {"digest": _digest(record, seed)}) + "\n").encode()
+
+
+def _record(line: bytes, seed: str = "") -> tuple[dict[str, Any], str]:
+    """The record of a line, and its digest."""
+    record = json.loads(line)
+    if HALF in line.lower():
+        json.dumps(record, ensure_ascii=False).encode()  # which no half of a character survives
+    digest = record.pop("digest")
+    if digest != _digest(record, seed):
+        raise InputError("its digest is that of another text")
+    return record, digest
+
+
+def _digest(record: dict[str, Any], seed: str) -> str:
+    return hashlib.sha256((seed + json.dumps(record)).encode()).hexdigest()
 
 
 @contextmanager
@@ -163,14 +214,6 @@ def _locked(folder: Path) -> Iterator[None]:
             yield
     except Timeout:
         raise InputError(f"{folder}: must have one writer; another run writes there") from None
-
-
-def _warn(folder: str | os.PathLike[str], damaged: Sequence[str]) -> None:
-    if damaged:
-        warnings.warn(
-            f"{folder}: damaged in the journal, so that --resume does it again: {_listed(damaged)}",
-            stacklevel=2,
-        )
 
 
 def _differences(before: Plan, after: Plan) -> tuple[str, ...]:
