@@ -15,8 +15,7 @@ import pytest
 from mxeon.conformance.results import FAILED, PASSED, SOURCE
 from mxeon.conformance.results.known_issues import ISSUES
 from mxeon.conformance.results.known_issues.issue import STOCK
-from mxeon.conformance.run.plan import make_plan
-from mxeon.conformance.run.selection import ALL
+from mxeon.conformance.run.plan import ALL, make_plan
 from tests.support.availability import available
 from tests.support.sharing import shared
 from tests.support.wheels import MAIN, wheel

@@ -7,8 +7,7 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from mxeon.conformance.accuracy.accuracy import ACCURACY
-from mxeon.conformance.accuracy.closures import GRAPH
+from mxeon.conformance.accuracy.accuracy import ACCURACY, GRAPH
 from mxeon.conformance.accuracy.engine import widen_for_engine
 from mxeon.conformance.checks import transmission_measures
 from mxeon.conformance.nodes import kinds
@@ -16,7 +15,7 @@ from mxeon.conformance.probes.cases import frame_cases, value_cases
 from mxeon.conformance.probes.families import ALL_SUBJECTS, ClosureProbe, probe_type_of
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.reference import Host as Reference
-from mxeon.conformance.reference.evaluated import evaluated
+from mxeon.conformance.reference.closures import evaluated
 from mxeon.conformance.results import PASSED
 from mxeon.conformance.run import check
 from mxeon.conformance.samples.batch import Counts, directions

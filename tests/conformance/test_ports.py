@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from mxeon.conformance.nodes.ports import draw, draw_edges
+from mxeon.conformance.nodes.rows import draw, draw_edges
 from mxeon.conformance.nodes.surface_shaders import SHADERS
 from mxeon.conformance.probes.families import PBR_SUBJECTS
 

@@ -10,14 +10,12 @@ from mxeon.conformance.accuracy import surface_shaders as tolerances
 from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.nodes import kinds
-from mxeon.conformance.nodes.surface_inputs import FREE_PATHS
-from mxeon.conformance.nodes.surface_shaders import SHADERS
+from mxeon.conformance.nodes.surface_shaders import FREE_PATHS, SHADERS
 from mxeon.conformance.probes.families import COMMON_SUBJECTS
 from mxeon.conformance.probes.surface_shaders import SurfaceShaderProbe
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.conformance.results.known_issues import with_pages
-from mxeon.conformance.run.plan import make_plan
-from mxeon.conformance.run.selection import node_names
+from mxeon.conformance.run.plan import make_plan, node_names
 from mxeon.errors import NotRun
 from mxeon.shaders.library import load_library
 from tests.support.wrong_libraries import wrong_copy

@@ -23,7 +23,7 @@ from mxeon.conformance.run.tasks import Task
 from mxeon.conformance.text.closures import check_closures
 from mxeon.conformance.text.definitions import check_definitions
 from mxeon.conformance.text.entries import check_entries
-from mxeon.conformance.text.languages import check_languages
+from mxeon.conformance.text.sources import check_languages
 from mxeon.errors import InputError
 from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.functions import names

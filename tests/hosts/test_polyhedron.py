@@ -11,7 +11,7 @@ from mxeon.conformance.checks.application import judge_check, judge_subject
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
 from mxeon.conformance.probes.families import HOST_PROBES
-from mxeon.conformance.probes.polyhedron import FacetPairProbe, facet_pairs
+from mxeon.conformance.probes.renderer_nodes import FacetPairProbe, facet_pairs
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
 from mxeon.conformance.results.known_issues import with_pages
 from mxeon.conformance.results.known_issues.issue import RENDERER_NODES

@@ -75,7 +75,6 @@ class ClaimedModel(ModelSubject):
 
     @property
     def _others(self) -> tuple[reference.Model, ...]:
-        """Models whose parameter follows from another roughness."""
         return reference.PARAMETRIZATIONS
 
     def document(self, inputs: Values | None = None) -> str:
@@ -84,7 +83,6 @@ class ClaimedModel(ModelSubject):
 
     @property
     def changes(self) -> dict[str, Changes]:
-        """For each input: inputs without and with a change of it alone, which must be seen."""
         return {name: ({}, {name: CHANGES[name]}) for name in self.inputs}
 
 
@@ -98,7 +96,6 @@ class CallableProbe(LobeProbe):
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        """PAIRS random pairs, and special ones."""
         rng, row = np.random.default_rng(SEED), reference.model(self.subject.model)
         wo, wi = directions(rng, PAIRS), directions(rng, PAIRS)
         exact = special_directions(rng)
@@ -137,7 +134,6 @@ class CallableProbe(LobeProbe):
 
     @cached_property
     def _evaluations(self) -> Evaluations:
-        """Values that several checks ask for."""
         return Evaluations()
 
     def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:

@@ -7,7 +7,6 @@ from typing import Literal, TypeAlias
 
 from mxeon.conformance.accuracy import (
     bsdf,
-    closures,
     diffuse,
     emission,
     hair,
@@ -17,7 +16,8 @@ from mxeon.conformance.accuracy import (
     utilities,
 )
 from mxeon.conformance.nodes import kinds
-from mxeon.conformance.samples.tolerance import Tolerance
+from mxeon.conformance.samples.measurement import scaled
+from mxeon.conformance.samples.tolerance import ROUNDING, SCALED, Tolerance, rounded_up
 
 Quantity: TypeAlias = Literal[
     "value",
@@ -181,6 +181,24 @@ LIT: dict[str, Accuracy] = {
 }
 
 
+# Of closures, whose arguments OSL prints and the models evaluate in float64.
+ARGUMENTS = Tolerance(
+    ROUNDING,
+    SCALED,
+    scaled,
+    "nine digits tell a float32 to its last bit, so that arguments and weights are those of the document; "
+    "the models round in float64, 2^-53, and the sharpest lobe, of alpha 1e-4, takes that 1e8 times: "
+    "less than one rounding of float32, 2^-24",
+)
+GRAPH = Tolerance(
+    rounded_up(4 * 16 * ROUNDING),
+    SCALED,
+    scaled,
+    "16 roundings of float32, 2^-24 each, on the way from an input to an argument, times 4, as the logarithm "
+    "of a distribution changes with that of alpha; rounded up",
+)
+
+
 def _of_closures(shown: Accuracy, value: Tolerance) -> Accuracy:
     """Accuracy of closures, by that of a host that evaluates: frames are turned in float32."""
     light = value if shown.throughput else None
@@ -209,7 +227,7 @@ ACCURACY: Mapping[str, Accuracy] = (
     LIT
     | {
         kinds.closure_kind(kind): _of_closures(
-            LIT[kind], closures.GRAPH if kind == kinds.SURFACE_SHADER else closures.ARGUMENTS
+            LIT[kind], GRAPH if kind == kinds.SURFACE_SHADER else ARGUMENTS
         )
         for kind in kinds.TOLD
     }

@@ -95,7 +95,6 @@ Errors: TypeAlias = Callable[[InversionProbe, Array], Array]
 
 
 def judge_inversion(probe: InversionProbe) -> tuple[Result, ...]:
-    """Results of the checks of an inversion node on a host."""
     rows: tuple[tuple[str, str, Tolerance, Errors], ...] = (
         (
             "inversion",
@@ -134,7 +133,6 @@ def _judge(
 
 
 def _value(probe: InversionProbe, values: Array) -> Array:
-    """Errors of the reflectance."""
     return absolute(values, getattr(inversion, probe.node)(*probe.inputs))
 
 

@@ -40,7 +40,6 @@ class FunctionProbe:
 
     @cached_property
     def text(self) -> str:
-        """The functions' text, in the host's language."""
         return functions.source(self.host.language, library=self.library)
 
     @cached_property
@@ -205,7 +204,9 @@ def _measure(
 def _diagnosis(check: FunctionCheck, probe: FunctionProbe) -> str:
     """The functions that are wrong by themselves, and those of the row that use them."""
     errors = {name: row_of(name).error(name, values) for name, values in probe.values.items()}
-    wrong = {name: error for name, error in errors.items() if error > _allowed(name, probe)}
+    wrong = {
+        name: error for name, error in errors.items() if error > row_of(name).tolerance(probe).value
+    }
     uses = functions.uses(probe.text)
     causes = [name for name in wrong if not any(other in wrong for other in uses[name])]
     affected = [name for name in wrong if row_of(name) is check]
@@ -217,10 +218,6 @@ def _diagnosis(check: FunctionCheck, probe: FunctionProbe) -> str:
     parts += [f"{name} is off by {errors[name]:.2g}" for name in own]
     parts += [f"with it {', '.join(users)}"] if users else []
     return "; ".join(parts)
-
-
-def _allowed(function: str, probe: FunctionProbe) -> float:
-    return row_of(function).tolerance(probe).value
 
 
 @cache

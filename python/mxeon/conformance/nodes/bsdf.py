@@ -11,8 +11,7 @@ from functools import partial
 import numpy as np
 
 from mxeon.conformance.nodes import kinds
-from mxeon.conformance.nodes.ports import Port, color, materials
-from mxeon.conformance.nodes.rows import ZERO, RowSubject, broadcast_inputs
+from mxeon.conformance.nodes.rows import ZERO, Port, RowSubject, broadcast_inputs, color, materials
 from mxeon.conformance.samples.batch import Array, Batch, Candidate, Values
 from mxeon.conformance.samples.edge_cases import LEAST_SHEEN
 from mxeon.conformance.samples.uneven_environment import sky
@@ -136,7 +135,6 @@ class BsdfSubject(RowSubject[Scattering]):
 
     @property
     def types(self) -> dict[str, str]:
-        """Type of each input by name, those that select a mode among them."""
         return {**input_types(self.node), **{port.name: port.kind for port in self.ports}}
 
     def document(self, inputs: Values | None = None) -> str:

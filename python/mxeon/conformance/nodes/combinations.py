@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.bsdf import BsdfSubject
-from mxeon.conformance.nodes.ports import Port, color
+from mxeon.conformance.nodes.rows import Port, color
 from mxeon.conformance.samples.batch import Values
 from mxeon.conformance.samples.edge_cases import LEAST_SHEEN
 from mxeon.models.nodes import combinations
@@ -87,7 +87,6 @@ class CombinedSubject(BsdfSubject):
 
     @property
     def ports(self) -> tuple[Port, ...]:
-        """Those of its document."""
         absent = ROUGHNESS[1:] if self.model in SINGLE else ()
         return tuple(port for port in self.drawn if port.name not in absent)
 
@@ -96,7 +95,6 @@ class CombinedSubject(BsdfSubject):
         return kinds.NESTED if self.model in combinations.NESTED else kinds.COMBINED
 
     def document(self, inputs: Values | None = None) -> str:
-        """MaterialX text of a material that is this node over sheens."""
         text = NODES[self.model]
         types = {port.name: port.kind for port in self.drawn}
         for path in types.keys() & (inputs or {}).keys():

@@ -139,7 +139,7 @@ class DiffuseLobe(ModelSubject):
     """The diffuse lobe of a surface shader, whose other lobes cannot be switched off.
 
     What lies over the lobe depends on the directions alone, so that pictures of other colors
-    tell the lobe apart; see `mxeon.conformance.probes.diffuse_lobes.DiffuseLobeProbe`.
+    tell the lobe apart; see `mxeon.conformance.probes.pictures.DiffuseLobeProbe`.
     """
 
     title: str  # name in reports, node category, and the model that its specification asks for
@@ -155,7 +155,6 @@ class DiffuseLobe(ModelSubject):
     changes: ClassVar[Mapping[str, Changes]] = {}
 
     def document(self, inputs: Values | None = None) -> str:
-        """MaterialX text of a material that is this shader alone."""
         inputs = inputs or {}
         lobe = {"color": (self.color, "color3"), "roughness": (self.roughness, "float")}
         values = [

@@ -5,11 +5,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from mxeon.conformance.nodes import kinds
-from mxeon.conformance.nodes.ports import COMPONENTS, Port, color, draw
-from mxeon.conformance.nodes.rows import RowSubject, broadcast_inputs
+from mxeon.conformance.nodes.rows import COMPONENTS, Port, RowSubject, broadcast_inputs, color, draw
 from mxeon.conformance.samples.batch import Array, Batch, Values, rounded
 from mxeon.models.nodes.emissions import (
     AMOUNT,
@@ -84,7 +82,6 @@ class EmissionSubject(RowSubject[Value]):
 
     @property
     def ports(self) -> tuple[Port, ...]:
-        """The inputs that its radiance depends on."""
         return (*self.drawn, *((PORTS["normal"],) if self.row.name == "conical" else ()))
 
     @property
@@ -93,13 +90,14 @@ class EmissionSubject(RowSubject[Value]):
         return powered.get(self.row.name, kinds.EMISSION)
 
     def document(self, inputs: Values | None = None) -> str:
-        """MaterialX text of a surface that emits by this node alone, with these inputs."""
         return document_text(self.emission_text(inputs) + EMITTING_TEXT, "look")
 
     def emission_text(self, inputs: Values | None = None) -> str:
         """XML of the node and of those that it takes, with a value of each input."""
         types = {port.name: port.kind for port in self.ports}
-        values = {port.name: _default(port) for port in self.drawn} | dict(inputs or {})
+        values = {
+            port.name: np.broadcast_to(port.default, COMPONENTS[port.kind]) for port in self.drawn
+        } | dict(inputs or {})
         ports = {name: "" for name in ("emission", *self.sources)}
         axis = ""
         for path, value in values.items():
@@ -127,13 +125,7 @@ class EmissionSubject(RowSubject[Value]):
         return function(np.clip(batch.wo, -1.0, 1.0), broadcast_inputs(batch))
 
     def exitance(self, batch: Batch) -> Array:
-        """Radiant exitance with the inputs of each view, (N, 3)."""
         return self.row.exitance(broadcast_inputs(batch))
-
-
-def _default(port: Port) -> ArrayLike:
-    """Value of a port that a document has to set."""
-    return np.broadcast_to(port.default, COMPONENTS[port.kind])
 
 
 @dataclass(frozen=True)
@@ -150,7 +142,6 @@ class AbsentSubject:
     libraries: ClassVar[tuple[str, ...]] = ("stock",)  # no library of ours has one
 
     def document(self, inputs: Values | None = None) -> str:
-        """MaterialX text that uses the node."""
         return document_text(self.text)
 
 
@@ -181,7 +172,6 @@ class SurfaceSubject:
     libraries: ClassVar[tuple[str, ...]] = ("stock",)  # no library of ours has one
 
     def document(self, inputs: Values | None = None) -> str:
-        """MaterialX text of the surface, with this opacity."""
         emission = node_text(
             "uniform_edf", "EDF", "emission", input_text("color", "color3", SURFACE_COLOR)
         )

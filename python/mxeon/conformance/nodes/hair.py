@@ -7,8 +7,7 @@ import numpy as np
 
 from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.bsdf import BsdfSubject
-from mxeon.conformance.nodes.ports import Port, color
-from mxeon.conformance.nodes.rows import broadcast_inputs
+from mxeon.conformance.nodes.rows import Port, broadcast_inputs, color
 from mxeon.conformance.samples.batch import Array, Batch, Values
 from mxeon.conformance.samples.uneven_environment import sky
 from mxeon.models.hair import ROUGHNESSES, TINTS, chiang_hair_attenuation

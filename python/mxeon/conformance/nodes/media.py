@@ -7,8 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from mxeon.conformance.nodes import kinds
-from mxeon.conformance.nodes.ports import COMPONENTS, Port, color, draw
-from mxeon.conformance.nodes.rows import RowSubject, broadcast_inputs
+from mxeon.conformance.nodes.rows import COMPONENTS, Port, RowSubject, broadcast_inputs, color, draw
 from mxeon.conformance.samples.batch import Array, Batch, Candidate, Values
 from mxeon.models.nodes.media import AMOUNT, COMBINED_MEDIA, FACTOR, MEDIA, Medium, Value
 from mxeon.shaders.nodes import (
@@ -63,7 +62,6 @@ class MediumSubject(RowSubject[Value]):
         return tuple(others.get(name, _coefficient(name)) for name in self.row.inputs)
 
     def document(self, inputs: Values | None = None) -> str:
-        """MaterialX text of a surface that lets light into the medium."""
         sources = SOURCES.get(self.node, {})
         ports = {name: "" for name in ("medium", *sources.values())}
         for port in self.ports:
@@ -94,12 +92,10 @@ class MediumSubject(RowSubject[Value]):
         return inputs
 
     def values(self, function: Value, batch: Batch) -> Array:
-        """Transmittance, (N, 3)."""
         return np.asarray(function(broadcast_inputs(batch)))
 
     @property
     def others(self) -> tuple[Candidate, ...]:
-        """None beside the row's variants."""
         return ()
 
 

@@ -54,7 +54,6 @@ class FilmSum(FilmSubject):
     """Two lobes of a node in one pixel, `first` and `second`, each under a film."""
 
     def document(self, inputs: Values | None = None) -> str:
-        """MaterialX text of a material that is their sum."""
         lobes = (lobe_text(self.node, self.row.fixed, name, self.types) for name in SUMMED)
         both = node_over("add", in1=SUMMED[0], in2=SUMMED[1])
         return document_text("".join(lobes) + both + SURFACE)

@@ -29,7 +29,6 @@ class TransmissionSubject(BsdfSubject):
 
     @property
     def reflection(self) -> BsdfSubject:
-        """The node where it only reflects."""
         return BsdfSubject(replace(self.row, fixed={"scatter_mode": "R"}))
 
 

@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mxeon.conformance.nodes import kinds
-from mxeon.conformance.nodes.ports import COMPONENTS, Port
-from mxeon.conformance.nodes.rows import RowSubject
+from mxeon.conformance.nodes.rows import COMPONENTS, Port, RowSubject
 from mxeon.conformance.samples.batch import Array, Batch, Candidate, Changes, Values
 from mxeon.models.nodes.utilities import UTILITIES, UtilityNode
 from mxeon.models.nodes.utilities import Values as Outputs
@@ -73,7 +72,6 @@ class UtilitySubject(RowSubject[Outputs]):
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        """Names of the inputs that the output depends on."""
         return tuple(name for name in self.row.inputs if self._depends(name))
 
     @property
@@ -86,7 +84,6 @@ class UtilitySubject(RowSubject[Outputs]):
         }
 
     def document(self, inputs: Values | None = None) -> str:
-        """MaterialX text of a material that emits this output, with these inputs."""
         values = {**self.row.inputs, **(inputs or {})}
         ports = "".join(
             input_text(name, self._kind(name), values[name]) for name in self.row.inputs
@@ -119,7 +116,6 @@ class UtilitySubject(RowSubject[Outputs]):
 
     @property
     def others(self) -> tuple[Candidate, ...]:
-        """None beside the row's variants."""
         return ()
 
     def _whole(self, batch: Batch) -> dict[str, Array]:

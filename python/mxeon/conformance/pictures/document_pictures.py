@@ -158,7 +158,6 @@ def _picture(
     expected: ExpectedPicture | None,
     front_lit: bool,
 ) -> Picture:
-    """The record of a picture, with its origin."""
     identity = host.identity()
     metadata = {
         "version": mxeon.__version__,
@@ -211,7 +210,6 @@ def _judge_finite(place: Place, images: Sequence[Pixels], reason: str) -> Result
 
 
 def _not_finite(images: Sequence[Pixels]) -> float:
-    """Number of pixels that are infinite or not a number."""
     return float(sum((~np.isfinite(image)).any(axis=-1).sum() for image in images))
 
 

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 import mxeon
 from mxeon.conformance.nodes.diffuse import DiffuseSubject
 from mxeon.conformance.probes.pictures import Mask, PictureProbe, picture_pairs
-from mxeon.conformance.probes.polyhedron import FacetPairProbe, FacetProbe
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.probes.rendered import RenderedSamples
+from mxeon.conformance.probes.renderer_nodes import FacetPairProbe, FacetProbe
 from mxeon.conformance.results import PORTRAIT, Picture
 from mxeon.conformance.samples.batch import Array, Batch, Values, rounded
 from mxeon.shaders.facets import facet_points

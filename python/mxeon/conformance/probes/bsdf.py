@@ -86,7 +86,6 @@ class BsdfProbe(PairProbe):
         return -1.0 if self.subject.row.transmits else 1.0
 
     def _integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
-        """Inputs whose values are integrated."""
         return inputs
 
     def _nodes(self, wo: Array, inputs: dict[str, Array]) -> tuple[Array, Array]:
@@ -137,7 +136,6 @@ class MicrofacetProbe(BsdfProbe):
 
     @property
     def cosines(self) -> tuple[Batch, ...]:
-        """Directions of view for albedos, with simple inputs."""
         return tuple(replace(batch, inputs=simple(batch.inputs)) for batch in super().cosines)
 
     @cached_property

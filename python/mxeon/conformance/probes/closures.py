@@ -11,7 +11,7 @@ from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.nodes.surface_shaders import SurfaceShader
 from mxeon.conformance.probes.probe import Probe
-from mxeon.conformance.reference.evaluated import evaluated
+from mxeon.conformance.reference.closures import evaluated
 from mxeon.conformance.samples.batch import SEED, Array, Batch, Counts
 from mxeon.hosts.base import Host
 
@@ -59,12 +59,10 @@ class ClosureSamples(Probe):
 
     @cached_property
     def turned(self) -> Batch:
-        """Some of the pairs."""
         return super().turned.first(SOME)
 
     @cached_property
     def edges(self) -> Batch:
-        """Some of the edges, of every kind."""
         edges = super().edges
         return edges.where(np.random.default_rng(SEED).permutation(len(edges.wo))[:SOME])
 

@@ -6,9 +6,13 @@ from typing import ClassVar
 
 import numpy as np
 
-from mxeon.conformance.nodes.emission import EmissionSubject
+from mxeon.conformance.nodes import kinds
+from mxeon.conformance.nodes.emission import SURFACE_COLOR, EmissionSubject, SurfaceSubject
+from mxeon.conformance.nodes.media import MediumSubject
+from mxeon.conformance.probes.pictures import Mask
 from mxeon.conformance.probes.probe import Probe, ValueProbe
 from mxeon.conformance.samples.batch import (
+    RIM,
     SEED,
     Array,
     Batch,
@@ -22,7 +26,9 @@ from mxeon.conformance.samples.edge_cases import GRID, turned_directions, turned
 from mxeon.errors import DocumentError, NotRun
 from mxeon.hosts.base import Host
 from mxeon.models.media.emission import cone_cosine, cone_width
+from mxeon.models.media.shading import surface_radiance
 from mxeon.shaders.generation import Shader
+from mxeon.shaders.scene import VIEW, Scene, local_directions, sphere
 
 EDGE = 1e-3  # cosine from a hard edge: within it the engine's own cosine decides
 CONES = ("inner", "outer")
@@ -47,7 +53,6 @@ class NodeProbe(Probe):
 
     @cached_property
     def shader(self) -> Shader:
-        """Shader of the subject's document."""
         return self.shader_of({})
 
     def shader_of(self, inputs: Values) -> Shader:
@@ -79,12 +84,10 @@ class EmissionProbe(NodeProbe, ValueProbe):
 
     @property
     def few(self) -> tuple[Batch, ...]:
-        """Few of the random views."""
         return (self.batches[0].first(self.counts.few),)
 
     @cached_property
     def backs(self) -> Batch:
-        """Few views from the back."""
         rng = np.random.default_rng(SEED)
         return self._views(rng, directions(rng, self.counts.few) * [1.0, 1.0, -1.0])
 
@@ -176,3 +179,89 @@ def _nodes(stops: Array, count: int) -> tuple[Array, Array]:
     mu = float32(mu)
     weights = 2.0 * mu * (high - low) * w * t
     return mu.reshape(len(stops), -1), weights.reshape(len(stops), -1)
+
+
+DARK = Scene("dark", size=32)
+SMALL = Scene("dark", size=8)
+OPACITIES = (0.0, 0.25, 1.0)
+
+
+class EmissionPictureProbe(NodeProbe, ValueProbe):
+    """An EDF node on a sphere in the dark."""
+
+    shown: ClassVar[str] = kinds.EMISSION_PICTURE
+
+    subject: EmissionSubject
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        """The points away from the rim, for each material."""
+        wo, mask = _views()
+        return tuple(Batch(wo[mask], wo[mask], each, DARK) for each in self.subject.materials)
+
+    def direct(self, batch: Batch) -> Array:
+        image = self.host.picture(self.shader_of(batch.inputs), DARK)
+        return np.asarray(image[sphere(DARK.size).mask][_views()[1]], np.float64)
+
+
+def _views() -> tuple[Array, Mask]:
+    """Directions to the viewer at the points of the sphere, and which are away from its rim."""
+    points = sphere(DARK.size)
+    wo = local_directions(points.normal[points.mask], VIEW)
+    return wo, wo[:, 2] >= RIM
+
+
+class SurfaceEmissionProbe(NodeProbe):
+    """A surface on a host that draws it in the dark, one picture for each opacity."""
+
+    subject: SurfaceSubject
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        """The points of the sphere, for each of OPACITIES."""
+        points = sphere(SMALL.size)
+        wo = local_directions(points.normal[points.mask], VIEW)
+        return tuple(Batch(wo, wo, {"opacity": each}, SMALL) for each in OPACITIES)
+
+    def expected(self, batch: Batch) -> Array:
+        radiance = surface_radiance(SURFACE_COLOR, (0.0, 0.0, 0.0), batch.inputs["opacity"])
+        return np.broadcast_to(radiance, batch.wo.shape)
+
+    def direct(self, batch: Batch) -> Array:
+        shader = self.host.compile(self.subject.document(batch.inputs), library=self.library)[0]
+        image = self.host.picture(shader, SMALL)
+        return np.asarray(image[sphere(SMALL.size).mask], np.float64)
+
+
+class MediumProbe(NodeProbe, ValueProbe):
+    """A VDF node on a host that evaluates what a surface over it lets through."""
+
+    usual: ClassVar[Counts] = Counts(1 << 8)
+
+    subject: MediumSubject
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        """Random views, and random inputs of the node."""
+        rng, count = np.random.default_rng(SEED), self.counts.pairs
+        wo = directions(rng, count)
+        inputs = self.subject.random_inputs(rng, count)
+        return (Batch(wo, wo * [1.0, 1.0, -1.0], inputs),)
+
+    def direct(self, batch: Batch) -> Array:
+        return self._evaluate(batch.altered(**{"top/weight": 0.0}), "throughput")
+
+    @cached_property
+    def through(self) -> Array:
+        (batch,) = self.batches
+        coefficients = (each for each in self.subject.inputs if np.shape(batch.inputs[each])[1:])
+        clear = batch.altered(**dict.fromkeys(coefficients, (0.0, 0.0, 0.0)))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return self._evaluate(batch, "response") / self._evaluate(clear, "response")
+
+    def _evaluate(self, batch: Batch, output: str) -> Array:
+        evaluate = self.host.evaluate
+        values = evaluate(
+            self.shader, batch.wo, batch.wi, batch.inputs, "transmission", output=output
+        )
+        return np.asarray(values, np.float64)

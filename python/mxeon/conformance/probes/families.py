@@ -20,25 +20,35 @@ from mxeon.conformance.probes.bsdf import (
     TransmissionProbe,
 )
 from mxeon.conformance.probes.closures import closures_of
-from mxeon.conformance.probes.diffuse_lobes import DiffuseLobeProbe
-from mxeon.conformance.probes.drawn import (
+from mxeon.conformance.probes.emission import (
+    ConeProbe,
+    EmissionPictureProbe,
+    EmissionProbe,
+    MediumProbe,
+    NodeProbe,
+    SurfaceEmissionProbe,
+)
+from mxeon.conformance.probes.hair import HairProbe
+from mxeon.conformance.probes.pairs import PairProbe
+from mxeon.conformance.probes.pictures import (
+    DiffuseLobeProbe,
     DrawnBsdfProbe,
     DrawnLobeProbe,
     DrawnProbe,
     HalfBsdfProbe,
     HalfLobeProbe,
     HalfProbe,
+    PictureProbe,
 )
-from mxeon.conformance.probes.emission import ConeProbe, EmissionProbe, NodeProbe
-from mxeon.conformance.probes.emission_pictures import EmissionPictureProbe, SurfaceEmissionProbe
-from mxeon.conformance.probes.hair import HairProbe
-from mxeon.conformance.probes.media import MediumProbe
-from mxeon.conformance.probes.pairs import PairProbe
-from mxeon.conformance.probes.pictures import PictureProbe
-from mxeon.conformance.probes.polyhedron import CoarseFacetProbe, FacetPairProbe, FacetProbe
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.probes.rendered import RenderedLobeProbe, TracedSamples, rendered_of
-from mxeon.conformance.probes.renderer_nodes import ExactProbe, NativeProbe
+from mxeon.conformance.probes.renderer_nodes import (
+    CoarseFacetProbe,
+    ExactProbe,
+    FacetPairProbe,
+    FacetProbe,
+    NativeProbe,
+)
 from mxeon.conformance.probes.subsurface import SubsurfaceProbe
 from mxeon.conformance.probes.surface_shaders import SurfaceShaderProbe
 from mxeon.conformance.probes.thin_films import FilmProbe

@@ -41,7 +41,6 @@ class HairProbe(BsdfProbe):
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
-        """Few of the random pairs, and of those in the lobes."""
         return tuple(batch.first(self.counts.few) for batch in self.batches[:2])
 
     @property

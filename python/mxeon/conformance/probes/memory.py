@@ -40,7 +40,6 @@ class Evaluations:
     def values(
         self, batch: Batch, rest: tuple[object, ...], evaluate: Callable[[], Array]
     ) -> Array:
-        """Values of a batch, which are computed unless they are known."""
         key = *_parts(batch), *map(contents, rest)
         return self._known.value(key, lambda: _read_only(evaluate()))
 

@@ -127,5 +127,4 @@ class PairProbe(LobeProbe):
 
     @cached_property
     def _evaluations(self) -> Evaluations:
-        """The host's values: a check, its control and its diagnosis ask for many again."""
         return Evaluations()

@@ -78,13 +78,11 @@ class RenderedSamples(Probe):
 
     @cached_property
     def edges(self) -> Batch:
-        """Edges that a renderer shows."""
         edges = super().edges
         return self._plain(edges.where(_is_shown(edges)))
 
     @cached_property
     def mirrored(self) -> tuple[Batch, Batch]:
-        """Pairs of lights that are both shown."""
         first, second = super().mirrored
         shown = _is_shown(first) & _is_shown(second)
         return self._plain(first.where(shown)), self._plain(second.where(shown))
@@ -110,7 +108,6 @@ class RenderedSamples(Probe):
         return replace(batch, inputs=self._taken(batch.inputs))
 
     def _taken(self, inputs: Mapping[str, Array]) -> dict[str, Array]:
-        """Inputs that a renderer takes."""
         taken = {**inputs}
         taken.pop("occlusion", None)
         if "weight" in taken:
@@ -136,7 +133,7 @@ def rendered_of(probe: type[P], samples: type[RenderedSamples] = RenderedSamples
 class RenderedLobeProbe(RenderedSamples, PairProbe):
     """The diffuse lobe of a surface shader, told apart from what lies over it.
 
-    See `mxeon.conformance.probes.diffuse_lobes.DiffuseLobeProbe`.
+    See `mxeon.conformance.probes.pictures.DiffuseLobeProbe`.
     """
 
     usual = USUAL
@@ -165,7 +162,6 @@ class RenderedLobeProbe(RenderedSamples, PairProbe):
         return values
 
     def _lit(self, batch: Batch) -> Array:  # type: ignore[override]
-        """Values of the whole shader."""
         ports = {"color": self.subject.color, "roughness": self.subject.roughness}
         inputs: Values = {port: batch.inputs[name] for name, port in ports.items() if port}
         shader = self._shader

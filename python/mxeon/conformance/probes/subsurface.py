@@ -43,7 +43,6 @@ class SubsurfaceProbe(BsdfProbe):
 
     @cached_property
     def spheres(self) -> tuple[Batch, ...]:
-        """Points of a sphere under each light, for each of MATERIALS."""
         return tuple(_points(scene, inputs) for scene in SCENES for inputs in MATERIALS)
 
     def direct(self, batch: Batch) -> Array:

@@ -48,18 +48,15 @@ class SurfaceShaderProbe(PairProbe):
 
     @cached_property
     def cosines(self) -> tuple[Batch, ...]:
-        """Views of isotropic materials."""
         [batch] = self.batches
         return (_isotropic(batch.first(self.counts.albedos)),)
 
     @cached_property
     def albedos(self) -> tuple[Array, ...]:
-        """Albedos by the layer equation."""
         return tuple(self._reference(batch, "environment") for batch in self.cosines)
 
     @cached_property
     def materials(self) -> Batch:
-        """Views of isotropic materials in which every lobe takes part."""
         rng, count = np.random.default_rng(SEED), self.counts.materials
         wo = self._views(rng, count)
         return _isotropic(Batch(wo, wo, self.subject.every_input(rng, count)))

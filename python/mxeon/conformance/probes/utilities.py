@@ -29,7 +29,6 @@ class UtilityProbe(ValueProbe):
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        """Random inputs, and as many of which half lie on edges."""
         rng, count = np.random.default_rng(SEED), self.counts.pairs
         return (
             _batch(self.subject.random_inputs(rng, count)),
@@ -42,12 +41,10 @@ class UtilityProbe(ValueProbe):
 
     @property
     def edges(self) -> Batch:
-        """Inputs at the ends of their ranges and beyond."""
         rng = np.random.default_rng(SEED)
         return _batch(self.subject.outside_inputs(rng, self.counts.pairs))
 
     def direct(self, batch: Batch) -> Array:
-        """The output as a color, (N, 3)."""
         values = self.host.evaluate(self._shader, batch.wo, batch.wi, batch.inputs, GRAPH)
         return values.astype(np.float64)
 
@@ -62,7 +59,6 @@ class UtilityOslProbe(UtilityProbe):
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        """All inputs together: a shader is compiled for each batch."""
         batches = super().batches
         names = batches[0].inputs
         together = {name: np.concatenate([each.inputs[name] for each in batches]) for name in names}

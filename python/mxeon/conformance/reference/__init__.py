@@ -51,7 +51,6 @@ class Host(base.Host):
     target = ROW.target
 
     def identity(self) -> Identity:
-        """Version of NumPy."""
         return Identity(self.name, f"NumPy {np.__version__}", "CPU, float64")
 
     def picture(self, shader: Shader, scene: Scene) -> NDArray[np.float64]:

@@ -9,6 +9,7 @@ everywhere, or that a mix leaves out.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property, partial
 from operator import itemgetter
@@ -18,9 +19,8 @@ import MaterialX as mx
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.conformance.reference.elements import Elements, Path, graph_output
-from mxeon.conformance.reference.images import lookup
-from mxeon.conformance.reference.inner import VOLUMES, over_volume
+from mxeon.conformance.reference.elements import Elements, Path, graph_output, lookup
+from mxeon.conformance.reference.lobes import VOLUMES, over_volume
 from mxeon.conformance.reference.measured import DRAWN, Measure
 from mxeon.conformance.reference.nodes import (
     COMBINATIONS,
@@ -42,7 +42,6 @@ from mxeon.conformance.reference.operations import (
 )
 from mxeon.conformance.reference.pbr_operations import UTILITIES, emissions, surfaces
 from mxeon.conformance.reference.points import ShadingPoints
-from mxeon.conformance.reference.walk import evaluated
 from mxeon.errors import NotRun
 from mxeon.models.core.layering import Bsdf
 from mxeon.shaders.document.graphs import reachable
@@ -265,3 +264,27 @@ class Graph:
         constant = (*path, f":{name}")
         self._steps[constant] = (lambda: value), ()
         return constant
+
+
+def evaluated(
+    root: Path,
+    parts: Mapping[Path, tuple[Path, ...]],
+    function: Callable[[Path], Callable[..., Value]],
+) -> Value:
+    """Value at a path: neither a long chain nor a part with many uses does harm."""
+    uses = Counter(part for inner in parts.values() for part in inner)
+    values: dict[Path, Value] = {}
+    waiting = [root]
+    while waiting:
+        key = waiting[-1]
+        if key in values:
+            waiting.pop()
+        elif missing := [part for part in parts[key] if part not in values]:
+            waiting.append(missing[0])
+        else:
+            values[key] = function(key)(*(values[part] for part in parts[key]))
+            for part in parts[key]:
+                uses[part] -= 1
+                if not uses[part]:
+                    del values[part]
+    return values[root]

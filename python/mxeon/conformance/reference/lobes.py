@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Values and throughputs of one lobe at all the points of a picture, under each kind of light."""
 
-from collections.abc import Callable, Mapping
-from functools import lru_cache
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import lru_cache, partial
 from typing import TypeAlias
 
 import numpy as np
@@ -10,14 +13,19 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from mxeon.conformance.recent import Recent, contents
-from mxeon.conformance.reference.inner import AROUND, LET_THROUGH
+from mxeon.conformance.reference.operations import Operation, Values
 from mxeon.errors import NotRun
 from mxeon.models import table
 from mxeon.models.core.layering import Bsdf, throughput
-from mxeon.models.nodes.node import PbrNode
+from mxeon.models.media.subsurface import diffusion_blur
+from mxeon.models.media.volume import transmittance
+from mxeon.models.nodes.hair import HAIR_NODE
+from mxeon.models.nodes.media import METER
+from mxeon.models.nodes.microfacets import isotropic
+from mxeon.models.nodes.node import Inputs, PbrNode
+from mxeon.models.nodes.subsurface import SUBSURFACE_NODE
+from mxeon.models.nodes.transmissions import TRANSMISSION_NODES, TRANSMISSIONS
 
-Values: TypeAlias = NDArray[np.float64]
-Inputs: TypeAlias = Mapping[str, Values]
 Albedo: TypeAlias = Callable[[Values, Inputs], Values]
 Material: TypeAlias = tuple[
     tuple[str, tuple[float, ...]], ...
@@ -224,3 +232,73 @@ def _transform(points: Values) -> Values:
     degree = len(points) - 1
     scale = np.where(np.arange(degree + 1) == 0, 1.0, 2.0) / (degree + 1)
     return np.asarray(chebyshev.chebvander(points, degree) * scale, np.float64)
+
+
+COSINES = np.linspace(-1.0, 1.0, 1025)  # of the light, between which its blur is straight
+REACHES = (1e-6, 1e3)  # of mean free paths, over the radius of the sphere
+
+
+def _dark(wo: Values, *_: object) -> Values:
+    return np.zeros(wo.shape)
+
+
+def _not_reflected(category: str, wo: Values, inputs: Inputs) -> Values:
+    """Share of a uniform environment that passes microfacets."""
+    functions = TRANSMISSIONS[category]
+    rest = 1.0 - functions.reflected(wo, isotropic(inputs))
+    return np.asarray(functions.tint(inputs) * np.maximum(rest, 0.0))
+
+
+def _transmitting(row: PbrNode) -> PbrNode:
+    """Row of a node in a scatter mode, of which T reflects nothing."""
+    if row.fixed["scatter_mode"] == "RT":
+        return row
+    return replace(row, value=_dark, albedo=_dark, integral=_dark)
+
+
+def _spread(wo: Values, wi: Values, inputs: Inputs) -> Values:
+    """Radiance of subsurface scattering over the irradiance of a distant light."""
+    # The mean free path of isotropic scattering.
+    count = len(wi)
+    forward = np.broadcast_to(inputs["anisotropy"], (count,))[:, np.newaxis]
+    radius = np.broadcast_to(inputs["radius"], (count, 3))
+    reach = np.clip(radius / np.maximum(1.0 - forward, 1e-3), *REACHES)
+    mu = np.clip(wi[:, 2], -1.0, 1.0)
+    if np.ptp(reach, axis=0).any():
+        light = np.stack([diffusion_blur(mu, each) for each in reach.T], axis=-1)
+    else:
+        light = np.stack([np.interp(mu, COSINES, _blur(each)) for each in reach[0]], axis=-1)
+    return np.asarray(inputs["color"] / np.pi * light)
+
+
+@lru_cache(maxsize=64)
+def _blur(reach: float) -> Values:
+    """The blurred cosine at COSINES."""
+    return diffusion_blur(COSINES, reach)
+
+
+# Share of a uniform environment that is transmitted, by the name of a row.
+LET_THROUGH: dict[str, Callable[[Values, Inputs], Values]] = {
+    row.name: partial(_not_reflected, row.category) for row in TRANSMISSION_NODES
+}
+# Radiance over irradiance of what takes light from all sides, without a cosine.
+AROUND: dict[str, Callable[[Values, Values, Inputs], Values]] = {
+    SUBSURFACE_NODE.category: _spread,
+    HAIR_NODE.category: HAIR_NODE.value,
+}
+INNER_NODES = (
+    *map(_transmitting, TRANSMISSION_NODES),
+    replace(SUBSURFACE_NODE, inputs=("color", "radius", "anisotropy")),
+    HAIR_NODE,
+)
+# Nodes of a volume below a layer, by the light that passes them.
+VOLUMES: dict[str, Operation] = {
+    "absorption_vdf": (("absorption",), lambda a: transmittance(a, 0.0, METER)),
+    "anisotropic_vdf": (("absorption", "scattering"), lambda a, s: transmittance(a, s, METER)),
+}
+
+
+def over_volume(top: Bsdf, medium: Values | None) -> Bsdf:
+    """A layer over a volume, for light that is transmitted."""
+    passed = 1.0 if medium is None else medium
+    return Bsdf(top.value * passed, top.throughput * passed)

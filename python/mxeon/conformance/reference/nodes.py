@@ -9,8 +9,7 @@ from dataclasses import dataclass
 import MaterialX as mx
 import numpy as np
 
-from mxeon.conformance.reference.inner import INNER_NODES
-from mxeon.conformance.reference.lobes import diffuse, weighted
+from mxeon.conformance.reference.lobes import INNER_NODES, diffuse, weighted
 from mxeon.conformance.reference.operations import WIDTHS, Values
 from mxeon.conformance.reference.points import ShadingPoints
 from mxeon.errors import NotRun, OutsideModel

@@ -8,7 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
-from mxeon.conformance.reference.lobes import Lobe, Values, furnace, kept, lit
+from mxeon.conformance.reference.lobes import Lobe, furnace, kept, lit
+from mxeon.conformance.reference.operations import Values
 from mxeon.errors import NotRun, OutsideModel
 
 UNIT = 1e-3  # by how much the length of a normal may differ from 1

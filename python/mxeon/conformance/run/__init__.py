@@ -3,7 +3,7 @@
 
 import os
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, closing, contextmanager, nullcontext
+from contextlib import closing, contextmanager, nullcontext
 from functools import lru_cache, partial
 from itertools import chain, product
 from pathlib import Path
@@ -13,8 +13,7 @@ from mxeon.conformance.results.known_issues import repaired
 from mxeon.conformance.run.documents import documents_in
 from mxeon.conformance.run.journal import Journal, read_journal, refusal
 from mxeon.conformance.run.judge import Judge, not_run
-from mxeon.conformance.run.plan import make_plan
-from mxeon.conformance.run.selection import assert_known_names
+from mxeon.conformance.run.plan import assert_known_names, make_plan
 from mxeon.conformance.run.survey import survey_documents
 from mxeon.conformance.run.tasks import Findings, Plan, Task
 from mxeon.errors import InputError, InterfaceError, NotRun
@@ -115,16 +114,20 @@ def check(
                 check_generator(library, target)
             except InterfaceError as reason:  # nothing would run
                 raise InputError(str(reason)) from None
-    _check_work(workers, timeout)
+    if workers < 0:
+        raise InputError(f"workers must be at least 0; got {workers}")
+    check_timeout(timeout)
     survey = survey_documents(list(map(str, files)), libraries, policy, workers, timeout)
-    resumable = folder is not None
-    planned = make_plan(files, hosts, libraries, policy, resumable, nodes, survey, compared)
+    keep = folder is not None
+    planned = make_plan(files, hosts, libraries, policy, keep, nodes, survey, compared)
     for line in chain.from_iterable(to_run(planned, {}).refused.values()):
         refuse(line)
     # Work; an executor that cannot work leaves the folder as it is.
     with (
         _executor(policy, workers, timeout, scheduler, wait) as executor,
-        _open_journal(folder, planned, resume) as journal,
+        nullcontext(InMemoryJournal())
+        if folder is None
+        else Journal(folder, planned, resume) as journal,
     ):
         numbers = [n for n in range(len(planned.tasks)) if n not in journal.findings]
         waiting = [planned.tasks[number] for number in numbers]
@@ -221,21 +224,7 @@ class InMemoryJournal:
         self.findings: dict[int, Findings] = {}
 
     def add(self, number: int, findings: Findings) -> None:
-        """Keep the findings of a task."""
         self.findings[number] = findings
-
-
-def _open_journal(
-    folder: str | os.PathLike[str] | None, planned: Plan, resume: bool
-) -> AbstractContextManager[Journal | InMemoryJournal]:
-    return nullcontext(InMemoryJournal()) if folder is None else Journal(folder, planned, resume)
-
-
-def _check_work(workers: int, timeout: float) -> None:
-    """Raise InputError if the number of workers or the timeout is out of range."""
-    if workers < 0:
-        raise InputError(f"workers must be at least 0; got {workers}")
-    check_timeout(timeout)
 
 
 @contextmanager

@@ -85,9 +85,7 @@ def _text(path: str, policy: Policy) -> str:
 def _names(text: str) -> Iterator[tuple[str, str]]:
     """Attributes of a document that may name files, each with every prefix that the document has."""
     found = dict.fromkeys(
-        (key, html.unescape(value[1:-1]))
-        for key, value in ATTRIBUTE.findall(text)
-        if key in NAMING
+        (key, html.unescape(value[1:-1])) for key, value in ATTRIBUTE.findall(text) if key in NAMING
     )
     prefixes = ["", *(value for key, value in found if key == "fileprefix")]
     return ((key, prefix + value) for key, value in found if value for prefix in prefixes)

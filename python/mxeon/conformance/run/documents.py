@@ -60,7 +60,6 @@ def documents_in(files: Iterable[str | os.PathLike[str]]) -> tuple[str, ...]:
 
 
 def document_verdicts(run: Run) -> tuple[DocumentVerdict, ...]:
-    """The verdict on each of a run's documents, on each host with each library."""
     results: dict[tuple[str, str, str], list[Result]] = {}
     for each in run.results:
         if each.check in KEYS:

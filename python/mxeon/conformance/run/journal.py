@@ -168,22 +168,16 @@ def _read(folder: Path) -> tuple[Plan, dict[int, Findings], str, int]:
                 raise InputError(f"task must be one of {len(plan.tasks)}; got {task!r}")
             if not part.answer(plan.tasks[task]):
                 raise InputError(f"findings must be those of {plan.tasks[task]}")
-            if all(image.whole for image in _images(part)):
+            images = (
+                each for one in part.pictures for each in (one.image, one.reference, one.judged)
+            )
+            if all(cast(StoredImage, each).whole for each in images if each is not None):
                 findings[task] = part
     except ERRORS as error:
         rule = f"{path}: must be a journal of format {FORMAT} as mxeon wrote it"
         reason = f"{place} was edited or is of another run or program; {error}"
         raise InputError(f"{rule}; {reason}; run again without --resume") from None
     return plan, findings, seed, sum(map(len, whole))
-
-
-def _images(findings: Findings) -> list[StoredImage]:
-    images = (
-        each
-        for picture in findings.pictures
-        for each in (picture.image, picture.reference, picture.judged)
-    )
-    return [cast(StoredImage, image) for image in images if image is not None]
 
 
 def _line(record: dict[str, Any], seed: str = "") -> bytes:

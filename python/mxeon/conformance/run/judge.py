@@ -92,7 +92,11 @@ class Judge:
         Raise NotRun if the host cannot be opened here.
         """
         try:
-            return _with_pages(self._findings(task))
+            findings = self._findings(task)
+            # The folder whose `libraries` take the place of MaterialX's, if the library has one.
+            copy = root(task.library) if os.path.isabs(task.library) else ""
+            results = (with_pages(each, copy) for each in findings.results)
+            return replace(findings, results=tuple(results))
         except InterfaceError as reason:
             return not_run(task, str(reason))
         except DocumentError as reason:
@@ -162,7 +166,6 @@ class Judge:
 
 
 def _comparison_pictures(task: Task, probe: Probe) -> tuple[Picture, ...]:
-    """Pictures of a node for comparison, with the check that asks for its value in direct light."""
     if task.check not in DIRECT:
         return ()
     try:
@@ -176,17 +179,6 @@ def _unread(path: Path, error: DocumentError | ImageError) -> Findings:
     if path.resolve().is_relative_to(examples_folder()) and isinstance(error, DocumentError):
         raise error
     return Findings(errors=error.args)
-
-
-def _with_pages(findings: Findings) -> Findings:
-    """Findings whose failures name the pages of their known issues."""
-    results = (with_pages(each, _copy_of_stock(each.library)) for each in findings.results)
-    return replace(findings, results=tuple(results))
-
-
-def _copy_of_stock(library: str) -> str:
-    """The folder whose `libraries` take the place of MaterialX's for a library; "" for none."""
-    return root(library) if os.path.isabs(library) else ""
 
 
 def _probe(host: Host | RendererHost, title: str, library: str) -> Probe:

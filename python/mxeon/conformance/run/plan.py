@@ -4,7 +4,7 @@
 import os
 import platform
 import sysconfig
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
 
@@ -20,14 +20,19 @@ from mxeon.conformance.functions import shader_functions as functions
 from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES, DiffuseSubject
 from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
 from mxeon.conformance.nodes.subject import Subject
-from mxeon.conformance.probes.families import ALL_SUBJECTS, PBR_SUBJECTS, probe_type, probe_type_of
+from mxeon.conformance.probes.families import (
+    ALL_SUBJECTS,
+    COMMON_SUBJECTS,
+    PBR_SUBJECTS,
+    probe_type,
+    probe_type_of,
+)
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.probes.renderer_nodes import NativeProbe
 from mxeon.conformance.results import SHADER_FUNCTIONS, SOURCE
 from mxeon.conformance.results.known_issues.issue import RENDERER_NODES
 from mxeon.conformance.run.dependencies import digests
-from mxeon.conformance.run.selection import ALL, COMMON, assert_known_names, selected, unmeasured
 from mxeon.conformance.run.survey import Survey
 from mxeon.conformance.run.tasks import (
     CURVE,
@@ -41,12 +46,74 @@ from mxeon.conformance.run.tasks import (
     Plan,
     Task,
 )
-from mxeon.hosts import HOSTS, host_row
+from mxeon.errors import InputError, assert_known
+from mxeon.hosts import HOSTS, host_names, host_row
 from mxeon.shaders.document.policy import DEFAULT, LIMITS, Policy
 from mxeon.shaders.functions import has_functions
 from mxeon.shaders.library import examples_folder, kind_of, library_name, load_library
 from mxeon.shaders.library_tree import LIBRARIES, origins
 from mxeon.shaders.nodes import INVERSIONS
+from mxeon.shaders.versions import check_version
+
+ALL, COMMON = "all", "common"  # in place of the nodes' names
+
+
+def assert_known_names(hosts: Iterable[str], nodes: Iterable[str]) -> None:
+    """Raise InputError for an unknown host or node, and ImportError if MaterialX is too old."""
+    check_version()
+    for name in hosts:
+        assert_known("host", name, host_names())
+    for name in nodes:
+        assert_known("node", name, (*node_names(), COMMON, ALL))
+
+
+def node_names() -> tuple[str, ...]:
+    """Categories of the nodes that are judged."""
+    return tuple(dict.fromkeys(row.node for row in ALL_SUBJECTS))
+
+
+def selected(
+    tasks: Sequence[Task],
+    files: Sequence[str],
+    nodes: Sequence[str],
+    survey: Survey,
+    elsewhere: Callable[[], str] = str,
+) -> list[Task]:
+    """The tasks that are asked for, those of the user's documents first.
+
+    Raise InputError if none of the nodes is judged.
+    """
+    titles = {row.title for row in ALL_SUBJECTS if row.node in nodes}
+    rare = {each.title for each in PBR_SUBJECTS} - {each.title for each in COMMON_SUBJECTS}
+    audit = COMMON in nodes or not (nodes or files)
+    if not nodes:
+        titles = {title for file in files for title in survey.nodes.get(file, ())}
+    chosen = [
+        task
+        for task in tasks
+        if ALL in nodes
+        or task.subject in files
+        or task.subject in titles
+        or (audit and task.subject not in rare)
+    ]
+    if nodes and not chosen:
+        hosts = ", ".join(dict.fromkeys(task.host for task in tasks if task.host != "source"))
+        raise InputError(
+            f"node must be judged on one of the hosts {hosts}; got {', '.join(nodes)}{elsewhere()}"
+        )
+    return sorted(chosen, key=lambda task: task.subject not in files)
+
+
+def unmeasured(tasks: Sequence[Task], hosts: Iterable[str]) -> list[str]:
+    """Hosts on which tasks would measure nothing, and none says so.
+
+    The task of a document says so on a host that reads none.
+    """
+    telling = {
+        task.host for task in tasks if task.check != DOCUMENT or not host_row(task.host).target
+    }
+    return [host for host in hosts if tasks and host not in telling]
+
 
 EMPTY = Survey()
 
@@ -102,7 +169,9 @@ def make_plan(
         libraries={each: origins(each) for each in libraries if each not in LIBRARIES},
         compared=tuple(compared),
         options=_options(policy),
-        files=_files(documents, policy, libraries) if resumable else {},
+        files=digests(dict.fromkeys(documents), policy, (*libraries, *policy.definitions))
+        if resumable
+        else {},
     )
 
 
@@ -119,10 +188,6 @@ def _elsewhere(nodes: Sequence[str]) -> str:
         if names:
             words.append(f"with --library {library} on {', '.join(names)}")
     return f", judged {'; '.join(words)}" if words else ""
-
-
-def _files(documents: Iterable[str], policy: Policy, libraries: Iterable[str]) -> dict[str, str]:
-    return digests(dict.fromkeys(documents), policy, (*libraries, *policy.definitions))
 
 
 def subjects(library: str) -> list[DiffuseSubject]:

@@ -53,7 +53,6 @@ class Batch:
     frame: Array | None = None
 
     def altered(self, **inputs: ArrayLike) -> "Batch":
-        """The same pairs with other inputs."""
         return replace(self, inputs={**self.inputs, **inputs})
 
     def first(self, count: int) -> "Batch":

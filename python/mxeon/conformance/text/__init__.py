@@ -9,8 +9,7 @@ from mxeon.conformance.results import Result
 from mxeon.conformance.text.closures import check_closures
 from mxeon.conformance.text.definitions import check_definitions
 from mxeon.conformance.text.entries import check_entries
-from mxeon.conformance.text.languages import check_languages
-from mxeon.conformance.text.sources import check_calls
+from mxeon.conformance.text.sources import check_calls, check_languages
 
 __all__ = ["check_definitions", "check_texts"]
 

@@ -42,7 +42,6 @@ Inputs = dict[str, Array]
 
 
 def check_closures(subjects: Iterable[DiffuseSubject], library: str) -> tuple[Result, ...]:
-    """Results for every subject whose text calls a closure: OSL, MDL, and OSL for Cycles."""
     renderers: list[tuple[str, str | None]] = [("osl", None), ("mdl", None)]
     if has_profile(library, "cycles"):
         renderers.append(("osl", "cycles"))
@@ -54,8 +53,6 @@ def check_closures(subjects: Iterable[DiffuseSubject], library: str) -> tuple[Re
 
 
 def _judge(subject: DiffuseSubject, target: str, profile: str | None, library: str) -> Result:
-    """Read the text, and a text without its weight as a control."""
-
     def faults() -> tuple[list[str], int]:
         text = source(subject, target, library, profile)
         found, control = (
@@ -171,7 +168,6 @@ def _equal(left: Array, right: Array) -> bool:
 
 
 def _normal_faults(closures: tuple[Closure, ...], inputs: Inputs) -> Iterator[str]:
-    """Normals that are missing or others than the node's."""
     normals = [closure.arguments.get("normal") for closure in closures]
     if any(normal is None for normal in normals):
         yield "the normal is not passed"

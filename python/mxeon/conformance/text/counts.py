@@ -21,7 +21,6 @@ class Claim:
 def counted(
     claim: Claim, subject: str, library: str, count: float, control: float, meaning: str
 ) -> Result:
-    """Result of a count, which must be 0, and of its control, which must not be 0."""
     caught = control > 0 and control >= count
     return Result(
         check=claim.key,

@@ -15,7 +15,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.conformance.text import tree
+from mxeon.conformance.text import syntax
 from mxeon.conformance.text.syntax import Unreadable, expression, function_table, macros, statements
 from mxeon.errors import NotRun
 
@@ -87,7 +87,7 @@ class Interpreter:
             raise Unreadable(f"{name} takes {len(function.parameters)} arguments")
         return self._run(function, arguments)
 
-    def _run(self, function: tree.Function, arguments: list[Value]) -> Value:
+    def _run(self, function: syntax.Function, arguments: list[Value]) -> Value:
         names = [name for _, name in function.parameters]
         outputs = [name for kind, name in function.parameters if kind.startswith("output ")]
         if len(arguments) != len(names) - len(outputs):
@@ -101,45 +101,45 @@ class Interpreter:
         return result
 
     def _execute(
-        self, body: tuple[tree.Statement, ...], variables: dict[str, Value]
+        self, body: tuple[syntax.Statement, ...], variables: dict[str, Value]
     ) -> Value | None:
         """Value that the body returns; assignments change `variables`."""
         for statement in body:
-            if isinstance(statement, tree.Return):
+            if isinstance(statement, syntax.Return):
                 return self._evaluate(statement.value, variables)
-            if isinstance(statement, tree.Assignment):
+            if isinstance(statement, syntax.Assignment):
                 variables[statement.name] = self._evaluate(statement.value, variables)
-            if isinstance(statement, tree.If):
+            if isinstance(statement, syntax.If):
                 taken = statement.yes if self._holds(statement, variables) else statement.no
                 result = self._execute(taken, variables)
                 if result is not None:
                     return result
         return None
 
-    def _holds(self, statement: tree.If, variables: Mapping[str, Value]) -> bool:
+    def _holds(self, statement: syntax.If, variables: Mapping[str, Value]) -> bool:
         """Whether the condition holds, which must be the same for all rows."""
         truth = np.unique(_number(self._evaluate(statement.condition, variables)) != 0.0)
         if len(truth) != 1:
             raise NotRun("a condition differs among the materials")
         return bool(truth[0])
 
-    def _evaluate(self, node: tree.Expression, variables: Mapping[str, Value]) -> Value:
+    def _evaluate(self, node: syntax.Expression, variables: Mapping[str, Value]) -> Value:
         match node:
-            case tree.Number(value):
+            case syntax.Number(value):
                 return np.array([[value]])
-            case tree.Text(value):
+            case syntax.Text(value):
                 return value
-            case tree.Name(name):
+            case syntax.Name(name):
                 return self._named(name, variables)
-            case tree.Component(vector, name):
+            case syntax.Component(vector, name):
                 return _number(self._evaluate(vector, variables))[:, ["xyz".index(name)]]
-            case tree.Operation(sign, left, right):
+            case syntax.Operation(sign, left, right):
                 return _operate(
                     sign, self._evaluate(left, variables), self._evaluate(right, variables)
                 )
-            case tree.Choice(condition, yes, no):
+            case syntax.Choice(condition, yes, no):
                 return _choose(*(self._evaluate(each, variables) for each in (condition, yes, no)))
-            case tree.Call():
+            case syntax.Call():
                 return self._called(node, variables)
 
     def _named(self, name: str, variables: Mapping[str, Value]) -> Value:
@@ -153,7 +153,7 @@ class Interpreter:
             return self.value(self._macros[name], {})
         raise Unreadable(f"{name} is not defined")
 
-    def _called(self, call: tree.Call, variables: Mapping[str, Value]) -> Value:
+    def _called(self, call: syntax.Call, variables: Mapping[str, Value]) -> Value:
         arguments = [(name, self._evaluate(each, variables)) for name, each in call.arguments]
         positional = [value for _, value in arguments]
         if call.name in self._closures:

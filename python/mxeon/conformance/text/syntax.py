@@ -8,10 +8,101 @@ loops and arrays are not read.
 
 import re
 from collections.abc import Mapping
+from dataclasses import dataclass
 
-from mxeon.conformance.text import tree
 from mxeon.errors import NotRun, ShaderError
 from mxeon.shaders.closure_calls import COMMENT
+
+
+@dataclass(frozen=True)
+class Number:
+    value: float
+
+
+@dataclass(frozen=True)
+class Text:
+    """A string."""
+
+    value: str
+
+
+@dataclass(frozen=True)
+class Name:
+    """A variable or constant."""
+
+    name: str
+
+
+@dataclass(frozen=True)
+class Call:
+    """A call of a function or constructor; the names of arguments are "" where they have none."""
+
+    name: str
+    arguments: tuple[tuple[str, "Expression"], ...]
+
+
+@dataclass(frozen=True)
+class Operation:
+    """An operation of two operands."""
+
+    sign: str
+    left: "Expression"
+    right: "Expression"
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One of two values."""
+
+    condition: "Expression"
+    yes: "Expression"
+    no: "Expression"
+
+
+@dataclass(frozen=True)
+class Component:
+    vector: "Expression"
+    name: str
+
+
+Expression = Number | Text | Name | Call | Operation | Choice | Component
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """A variable and its new value."""
+
+    name: str
+    value: Expression
+
+
+@dataclass(frozen=True)
+class Return:
+    """The value of a function."""
+
+    value: Expression
+
+
+@dataclass(frozen=True)
+class If:
+    """Statements of two branches."""
+
+    condition: Expression
+    yes: tuple["Statement", ...]
+    no: tuple["Statement", ...]
+
+
+Statement = Assignment | Return | If
+
+
+@dataclass(frozen=True)
+class Function:
+    """A function: names of its parameters, and its body."""
+
+    name: str
+    parameters: tuple[tuple[str, str], ...]  # type and name; an output's type begins with "output"
+    body: str  # text between its braces
+
 
 TOKEN = re.compile(
     r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?f?)|(?P<text>\"[^\"]*\")"
@@ -54,26 +145,26 @@ def macros(text: str) -> Mapping[str, str]:
     return dict(MACRO.findall(without_comments(text)))
 
 
-def function_table(text: str) -> Mapping[str, tree.Function]:
+def function_table(text: str) -> Mapping[str, Function]:
     text = without_comments(text)
     functions = {}
     for match in FUNCTION.finditer(text):
         parameters = tuple(_parameter(each) for each in match[2].split(",") if each.strip())
-        functions[match[1]] = tree.Function(match[1], parameters, braces(text, match.end()))
+        functions[match[1]] = Function(match[1], parameters, braces(text, match.end()))
     return functions
 
 
-def expression(text: str) -> tree.Expression:
+def expression(text: str) -> Expression:
     parser = _Parser(tokens(text))
     result = parser.expression()
     parser.end()
     return result
 
 
-def statements(text: str) -> tuple[tree.Statement, ...]:
+def statements(text: str) -> tuple[Statement, ...]:
     """The statements of a function's body."""
     parser = _Parser(tokens(text))
-    result: list[tree.Statement] = []
+    result: list[Statement] = []
     while parser.more:
         result += parser.statement()
     return tuple(result)
@@ -110,35 +201,35 @@ class _Parser:
         if self.more:
             raise Unreadable(f"{self._peek()!r} is out of place")
 
-    def statement(self) -> list[tree.Statement]:
+    def statement(self) -> list[Statement]:
         """One statement, a block as several; an empty one or a mere declaration as none."""
         if self._take("{"):
-            block: list[tree.Statement] = []
+            block: list[Statement] = []
             while not self._take("}"):
                 block += self.statement()
             return block
         if self._take("return"):
             value = self.expression()
             self._expect(";")
-            return [tree.Return(value)]
+            return [Return(value)]
         if self._take("if"):
             self._expect("(")
             condition = self.expression()
             self._expect(")")
             yes = tuple(self.statement())
-            return [tree.If(condition, yes, tuple(self.statement()) if self._take("else") else ())]
+            return [If(condition, yes, tuple(self.statement()) if self._take("else") else ())]
         return self._assignment()
 
-    def expression(self) -> tree.Expression:
+    def expression(self) -> Expression:
         """An expression, up to a token that cannot belong to it."""
         condition = self._binary(0)
         if not self._take("?"):
             return condition
         yes = self.expression()
         self._expect(":")
-        return tree.Choice(condition, yes, self.expression())
+        return Choice(condition, yes, self.expression())
 
-    def _assignment(self) -> list[tree.Statement]:
+    def _assignment(self) -> list[Statement]:
         words = []
         while self.more and self._peek() not in ("=", ";"):
             words.append(self._peek())
@@ -151,30 +242,30 @@ class _Parser:
         self._expect("=")
         value = self.expression()
         self._expect(";")
-        return [tree.Assignment(words[-1], value)]
+        return [Assignment(words[-1], value)]
 
-    def _binary(self, level: int) -> tree.Expression:
+    def _binary(self, level: int) -> Expression:
         if level == len(PRECEDENCE):
             return self._unary()
         left = self._binary(level + 1)
         while self.more and self._peek() in PRECEDENCE[level]:
             sign = self._peek()
             self._next += 1
-            left = tree.Operation(sign, left, self._binary(level + 1))
+            left = Operation(sign, left, self._binary(level + 1))
         return left
 
-    def _unary(self) -> tree.Expression:
+    def _unary(self) -> Expression:
         if self._take("-"):
-            return tree.Operation("-", tree.Number(0.0), self._unary())
+            return Operation("-", Number(0.0), self._unary())
         if self._take("!"):
-            return tree.Operation("==", self._unary(), tree.Number(0.0))
+            return Operation("==", self._unary(), Number(0.0))
         value = self._primary()
         while self._take("."):
-            value = tree.Component(value, self._peek())
+            value = Component(value, self._peek())
             self._next += 1
         return value
 
-    def _primary(self) -> tree.Expression:
+    def _primary(self) -> Expression:
         if self._take("("):
             value = self.expression()
             self._expect(")")
@@ -182,15 +273,15 @@ class _Parser:
         word = self._peek()
         self._next += 1
         if word[0].isdigit() or (word[0] == "." and len(word) > 1):
-            return tree.Number(float(word.rstrip("f")))
+            return Number(float(word.rstrip("f")))
         if word[0] == '"':
-            return tree.Text(word[1:-1])
+            return Text(word[1:-1])
         if not (word[0].isalpha() or word[0] in "_:"):
             raise Unreadable(f"{word!r} is out of place")
-        return tree.Call(word, tuple(self._arguments())) if self._take("(") else tree.Name(word)
+        return Call(word, tuple(self._arguments())) if self._take("(") else Name(word)
 
-    def _arguments(self) -> list[tuple[str, tree.Expression]]:
-        arguments: list[tuple[str, tree.Expression]] = []
+    def _arguments(self) -> list[tuple[str, Expression]]:
+        arguments: list[tuple[str, Expression]] = []
         while not self._take(")"):
             if arguments:
                 self._expect(",")
