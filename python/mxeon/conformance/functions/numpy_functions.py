@@ -33,10 +33,6 @@ AXES = (
 Columns = Mapping[str, Array]
 
 
-def _frame(wo: Array) -> Array:
-    return hemisphere.stack_xyz(*hemisphere.azimuth_frame(wo))
-
-
 def _s(wo: Array, wi: Array) -> Array:
     return formulas.cosines(wo, wi)[2]
 
@@ -49,7 +45,7 @@ def _upper_root(m: Array) -> Array:
 # Functions that have another name in NumPy, or other parameters.
 NAMED: Mapping[str, Callable[..., Array]] = {
     "eon_around": lambda mu, S, u2: hemisphere.around(mu, S, u2),
-    "eon_azimuth_frame": _frame,
+    "eon_azimuth_frame": lambda wo: hemisphere.stack_xyz(*hemisphere.azimuth_frame(wo)),
     "eon_gray_weight": lambda gray, roughness: formulas.eon_multiple_weight(gray, roughness),
     "eon_rotate_z": lambda wi, cosine, sine: hemisphere.rotate_z(wi, cosine, sine),
     "eon_upper_root": _upper_root,

@@ -59,7 +59,9 @@ class MediumSubject(RowSubject[Value]):
             else Port(FACTOR, high=LARGEST_FACTOR, change=0.3)
         )
         others = {AMOUNT: Port(AMOUNT, change=0.3), FACTOR: factor}
-        return tuple(others.get(name, _coefficient(name)) for name in self.row.inputs)
+        # A coefficient: from one that hardly shows to one that hides nearly all.
+        usual = Port("", "vector3", LEAST, LARGEST, change=(0.9, 0.1, 0.6), logarithmic=True)
+        return tuple(others.get(name, replace(usual, name=name)) for name in self.row.inputs)
 
     def document(self, inputs: Values | None = None) -> str:
         sources = SOURCES.get(self.node, {})
@@ -97,11 +99,6 @@ class MediumSubject(RowSubject[Value]):
     @property
     def others(self) -> tuple[Candidate, ...]:
         return ()
-
-
-def _coefficient(name: str) -> Port:
-    """A coefficient of a medium, from one that hardly shows to one that hides nearly all."""
-    return Port(name, "vector3", LEAST, LARGEST, change=(0.9, 0.1, 0.6), logarithmic=True)
 
 
 MEDIUM_NODES = tuple(MediumSubject(row) for row in (*MEDIA, *COMBINED_MEDIA))

@@ -72,7 +72,11 @@ class UtilitySubject(RowSubject[Outputs]):
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        return tuple(name for name in self.row.inputs if self._depends(name))
+        return tuple(  # one scale belongs to one lobe
+            name
+            for name in self.row.inputs
+            if not name.startswith("scale_") or name.endswith(self.output.removeprefix("roughness"))
+        )
 
     @property
     def changes(self) -> dict[str, Changes]:
@@ -131,10 +135,6 @@ class UtilitySubject(RowSubject[Outputs]):
 
     def _shape(self, name: str) -> tuple[int, ...]:
         return np.shape(self.row.inputs[name])
-
-    def _depends(self, name: str) -> bool:
-        """Whether the output depends on an input: one scale belongs to one lobe."""
-        return not name.startswith("scale_") or name.endswith(self.output.removeprefix("roughness"))
 
 
 def _filled(port: Port, value: ArrayLike | None) -> ArrayLike:

@@ -70,11 +70,6 @@ def _even(batch: Batch, reach: float) -> Array:
     return _light(batch, [reach / (1.0 - batch.inputs["anisotropy"])] * 3)
 
 
-def _isotropic(batch: Batch) -> Array:
-    """Light on a unit sphere by the profile of l, (N, 3)."""
-    return _light(batch, list(batch.inputs["radius"]))
-
-
 def _light(batch: Batch, reaches: Sequence[float], far: float = FAR) -> Array:
     """Light on a unit sphere by the profiles of a mean free path for each channel, (N, 3)."""
     mu = batch.wi[:, 2]
@@ -95,15 +90,16 @@ def _around(batch: Batch) -> Array:
     return np.asarray(batch.inputs["color"] * circle_blur(mu, radius, body=1.0))
 
 
-def _lambert(batch: Batch) -> Array:
-    """Light on a sphere of which none spreads."""
-    return np.asarray(batch.inputs["color"] * np.maximum(batch.wi[:, 2:], 0.0))
-
-
 ON_SPHERES = (
     Candidate("the diffusion profile over the sphere", _spread),
-    Candidate("Lambert, whatever the radius", _lambert),
-    Candidate("the profile, whatever the anisotropy", _isotropic),
+    Candidate(
+        "Lambert, whatever the radius",
+        lambda batch: np.asarray(batch.inputs["color"] * np.maximum(batch.wi[:, 2:], 0.0)),
+    ),
+    Candidate(
+        "the profile, whatever the anisotropy",
+        lambda batch: _light(batch, list(batch.inputs["radius"])),
+    ),
     Candidate("MaterialX's blur along a circle of radius 1", _around),
     *(
         Candidate(

@@ -57,10 +57,6 @@ def _combine(*values: Values) -> Values:
     return np.concatenate(parts, axis=-1)
 
 
-def _extract(value: Values, index: Values) -> Values:
-    return np.take(value, [int(np.ravel(index)[0])], axis=-1)
-
-
 def _rotate2d(value: Values, amount: Values) -> Values:
     """Vector turned clockwise by an angle in degrees, as MaterialX's row vectors are."""
     angle = np.radians(amount)
@@ -139,7 +135,10 @@ OPERATIONS: dict[str, Operation] = {
     "combine2": (TWO, _combine),
     "combine3": (("in1", "in2", "in3"), _combine),
     "combine4": (("in1", "in2", "in3", "in4"), _combine),
-    "extract": (("in", "index"), _extract),
+    "extract": (
+        ("in", "index"),
+        lambda value, index: np.take(value, [int(np.ravel(index)[0])], axis=-1),
+    ),
     "luminance": (("in", "lumacoeffs"), lambda value, weights: _dot(value[..., :3], weights)),
     "mix": (("fg", "bg", "mix"), lambda fg, bg, mix: fg * mix + bg * (1.0 - mix)),
     "ifgreater": (COMPARED, _when(np.greater)),

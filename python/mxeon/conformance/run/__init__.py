@@ -58,31 +58,26 @@ def check(
     Parameters
     ----------
     files : sequence of path-like
-        MaterialX documents, and folders, which stand for all documents in them and below them; none
-        for the bundled examples.
+        MaterialX documents, and folders for all documents below them; none for the bundled examples.
     hosts : sequence of str
         Hosts to judge; `mxeon.hosts.host_names` lists them.
     libraries : sequence of str
-        "eonlib", "stock" for MaterialX as it comes, and folders of MaterialX documents, which are
-        loaded before the standard libraries.
+        "eonlib", "stock" for MaterialX as it comes, and folders of MaterialX documents.
     workers : int
         Processes that share the work, each of which may crash or hang; 0 to work in this one.
     timeout : float
         Seconds that one task may take in a worker.
     folder : path-like or None
-        Folder of the journal, pictures included, from which an interrupted run can be resumed;
-        None to keep it in memory.
+        Folder of the journal, from which an interrupted run can be resumed; None to keep none.
     resume : bool
         Continue the run in `folder`.
-    scheduler : str or None
-        Address of a Dask scheduler whose workers do the work instead.
-    wait : float
-        Seconds that its cluster may be without a worker that fits.
+    scheduler, wait : str or None, float
+        Address of a Dask scheduler whose workers do the work, and seconds to wait for one that fits.
     policy : Policy
         Permissions and limits of documents.
     nodes : sequence of str
-        Categories of the nodes to judge; "all" for all, "common" for those that an audit of a library
-        has. None for the nodes of `files`, or the common ones if there are no files.
+        Categories of nodes to judge; "all", or "common" for those of an audit. None for the nodes of
+        `files`, or the common ones without files.
     progress : callable (iterable, int) -> iterable
         Wraps the iteration over the tasks, whose number it takes; a progress bar, for example.
     refuse : callable (str)
@@ -99,9 +94,8 @@ def check(
     Raises
     ------
     ValueError
-        If a host or a library is unknown, `folder` holds another run than the one to resume or
-        one of other drivers, `workers`, `timeout` or `wait` leave their ranges, or no scheduler
-        answers or has workers that fit.
+        If a name is unknown, a number out of its range, the run to resume another one or one of other
+        drivers, or no scheduler answers or has workers that fit.
     NotRun
         If no process can start, or the cluster has no workers for too long.
     """

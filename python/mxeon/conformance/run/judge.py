@@ -2,6 +2,7 @@
 """The judge: works on tasks, one after the other, and keeps the hosts it opens."""
 
 import os
+from contextlib import suppress
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -144,7 +145,11 @@ class Judge:
         if task.check == CURVE:
             return Findings(curves=judge_curve(probe))
         results = judge_subject(probe, (ROWS[task.check],))
-        return Findings(results, _comparison_pictures(task, probe))
+        pictures: tuple[Picture, ...] = ()
+        if task.check in DIRECT:
+            with suppress(NotRun, ShaderError):  # the check's result says so
+                pictures = comparison_pictures(probe)
+        return Findings(results, pictures)
 
     def _generate(self, task: Task) -> Findings:
         path = Path(task.subject)
@@ -163,15 +168,6 @@ class Judge:
         except (DocumentError, ImageError) as error:
             return _unread(path, error)
         return Findings(results, pictures, notes=notes)
-
-
-def _comparison_pictures(task: Task, probe: Probe) -> tuple[Picture, ...]:
-    if task.check not in DIRECT:
-        return ()
-    try:
-        return comparison_pictures(probe)
-    except (NotRun, ShaderError):  # the check's result says so
-        return ()
 
 
 def _unread(path: Path, error: DocumentError | ImageError) -> Findings:

@@ -152,8 +152,11 @@ def make_plan(
             if not host_row(host).scenes:
                 tasks += [Task(DOCUMENT, file, host, library) for file in readable]
             tasks += _on_host(host, library, paths, PBR_SUBJECTS, everywhere)
-    for host in hosts:
-        tasks += _native(host)
+    for host in hosts:  # nodes of a renderer's own, which use no library of ours
+        probe = probe_type(host)
+        if probe is not None and issubclass(probe, NativeProbe):
+            for subject in renderer_nodes(host):
+                tasks += _checks_of(subject, probe, host, RENDERER_NODES)
     tasks = selected(tasks, list(map(str, files)), nodes, survey, partial(_elsewhere, nodes))
     tasks += [Task(HOST, EVERY_NODE, host, libraries[0]) for host in unmeasured(tasks, hosts)]
     if not files and nodes and {ALL, COMMON}.isdisjoint(nodes):
@@ -223,7 +226,9 @@ def _on_host(
         if probe is PairProbe:
             yield Task(CURVE, subject.title, host, library)
     for each in nodes:
-        left = each.closure and row.probe == "pictures" and _is_renderers(row.target, library)
+        # Where pictures show a renderer's own closures, they are judged with the stock library alone.
+        own = row.target == "osl" and kind_of(library) in ("eonlib", "diffuse")
+        left = each.closure and row.probe == "pictures" and own
         if not left and (everywhere or _is_judged(each, library)):
             yield from _checks_of(each, probe, host, library)
     if row.surfaces:
@@ -235,26 +240,10 @@ def _on_host(
         yield from (Task(PICTURE, str(file), host, library) for file in files)
 
 
-def _is_renderers(target: str, library: str) -> bool:
-    """Whether a library leaves the other BSDF nodes to the renderer, as the stock library does.
-
-    Where pictures show it, the renderer's closures are judged with the stock library alone.
-    """
-    return target == "osl" and kind_of(library) in ("eonlib", "diffuse")
-
-
 def _is_judged(subject: Subject, library: str) -> bool:
     """Whether a node is judged with a library: one that no library of ours repairs, with stock."""
     kind = kind_of(library)
     return kind not in LIBRARIES or kind in (subject.libraries or LIBRARIES)
-
-
-def _native(host: str) -> Iterator[Task]:
-    """Tasks of a renderer's own nodes, which use no library of ours."""
-    probe = probe_type(host)
-    if probe is not None and issubclass(probe, NativeProbe):
-        for subject in renderer_nodes(host):
-            yield from _checks_of(subject, probe, host, RENDERER_NODES)
 
 
 def _checks_of(subject: Subject, own: type[Probe], host: str, library: str) -> Iterator[Task]:

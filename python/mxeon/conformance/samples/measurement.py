@@ -99,11 +99,10 @@ def count_named(names: Sequence[str]) -> Measurement:
 def point_of(batch: Batch, row: int) -> dict[str, list[float]]:
     columns: Values = {"wo": batch.wo, "wi": batch.wi, **batch.inputs}
     return {
-        name: np.ravel(_row(values, row, len(batch.wo))).astype(float).tolist()
+        name: np.ravel(
+            np.asarray(values)[row] if np.shape(values)[:1] == (len(batch.wo),) else values
+        )
+        .astype(float)
+        .tolist()
         for name, values in columns.items()
     }
-
-
-def _row(values: ArrayLike, row: int, count: int) -> ArrayLike:
-    """One row of values, or the values that hold for all rows."""
-    return np.asarray(values)[row] if np.shape(values)[:1] == (count,) else values

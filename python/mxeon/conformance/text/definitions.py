@@ -92,7 +92,10 @@ def _definitions(document: mx.Document, node: str) -> list[mx.NodeDef]:
 
 
 def _judge(specification: Specification, definition: mx.NodeDef, library: str) -> Result:
-    inputs = {each.getName(): _attributes(each) for each in definition.getActiveInputs()}
+    inputs = {
+        each.getName(): {name: each.getAttribute(name) for name in WORDS if each.getAttribute(name)}
+        for each in definition.getActiveInputs()
+    }
     outputs = [each.getType() for each in definition.getActiveOutputs()]
     wrong = {**inputs, "roughness": {**inputs.get("roughness", {}), "value": "0.3"}}
     faults = _kind(specification, definition) + differences(specification, inputs, outputs)
@@ -148,10 +151,6 @@ def _differences(
                 f"{specification.author} says {right or 'none'}"
             )
     return faults
-
-
-def _attributes(port: mx.Input) -> dict[str, str]:
-    return {name: port.getAttribute(name) for name in WORDS if port.getAttribute(name)}
 
 
 def _plain(text: str) -> tuple[object, ...]:

@@ -149,7 +149,10 @@ def function_table(text: str) -> Mapping[str, Function]:
     text = without_comments(text)
     functions = {}
     for match in FUNCTION.finditer(text):
-        parameters = tuple(_parameter(each) for each in match[2].split(",") if each.strip())
+        words = (" ".join(each.split()) for each in match[2].split(",") if each.strip())
+        parameters = tuple(
+            (kind, name) for kind, _, name in (each.rpartition(" ") for each in words)
+        )
         functions[match[1]] = Function(match[1], parameters, braces(text, match.end()))
     return functions
 
@@ -168,11 +171,6 @@ def statements(text: str) -> tuple[Statement, ...]:
     while parser.more:
         result += parser.statement()
     return tuple(result)
-
-
-def _parameter(text: str) -> tuple[str, str]:
-    kind, _, name = " ".join(text.split()).rpartition(" ")
-    return kind, name
 
 
 def braces(text: str, start: int) -> str:
