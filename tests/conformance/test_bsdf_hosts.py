@@ -13,12 +13,9 @@ from mxeon.conformance.accuracy.rendered import TRACED_FLAT, TRACED_SHARP
 from mxeon.conformance.checks.application import judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.nodes.bsdf import BSDFS
-from mxeon.conformance.probes.bsdf import BsdfProbe
 from mxeon.conformance.probes.families import HOST_PROBES, RenderedProbe, probe_type_of
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.pictures import PictureProbe
-from mxeon.conformance.probes.rendered import RenderedSamples, TracedSamples
-from mxeon.conformance.probes.renderer_nodes import NativeProbe
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
 from mxeon.conformance.text import sources
 from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
@@ -80,20 +77,6 @@ def test_the_repaired_nodes_are_the_specifications_in_other_languages(hosts, nam
     tolerance = ACCURACY[probe.kind].value
     errors = tolerance.metric(probe.direct(batch), subject.expected(batch))
     assert errors.max() <= tolerance.value
-
-
-def test_a_host_has_probes_by_what_it_shows():
-    for subject in BSDFS:
-        assert issubclass(probe_type_of(subject, PairProbe), BsdfProbe)
-        assert issubclass(probe_type_of(subject, PictureProbe), TracedSamples)
-        assert issubclass(probe_type_of(subject, RenderedProbe), RenderedSamples)
-        assert probe_type_of(subject, NativeProbe) is None
-
-
-def test_the_materials_of_pictures_have_every_input_of_the_model():
-    for subject in BSDFS:
-        for inputs in subject.materials:
-            assert set(subject.row.inputs) <= set(inputs)
 
 
 def test_light_comes_from_below_where_a_node_transmits():

@@ -1,11 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The nodes that combine lobes in GLSL: eonlib's carry what the text carries, stock ones do not."""
 
-import re
-from dataclasses import replace
-from pathlib import Path
-
-import numpy as np
 import pytest
 
 from mxeon.conformance.checks.application import applies, judge_check
@@ -13,12 +8,9 @@ from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.nodes.combinations import COMBINED_NODES, SINGLE
 from mxeon.conformance.probes.bsdf import CombinedProbe
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED
-from mxeon.models.core.layering import Bsdf, add, layer, multiply, throughput
 from mxeon.shaders.generation import generate
 from tests.support.checks import undiagnosed
 from tests.support.wrong_libraries import copy_of_eonlib, replace_text
-
-PAGES = Path(__file__).resolve().parents[2] / "docs" / "upstream"
 
 UNSCALED = "the throughput of the lobe before it is scaled"
 ENDED = "a sum whose throughput ends at 0"
@@ -96,27 +88,6 @@ def test_a_wrong_line_of_a_combination_is_seen(gl, tmp_path, wrong):
     assert judge_check(row, CombinedProbe(gl, subject, library)).verdict == PASSED
     replace_text(tmp_path, old, new, f"eonlib/genglsl/{name}.glsl")
     assert judge_check(row, CombinedProbe(gl, subject, library)).verdict == FAILED
-
-
-def printed(page):
-    """Text of a page on a defect, without the marks of its numbers."""
-    return re.sub("<!--.*?-->", "", (PAGES / page).read_text("utf-8"))
-
-
-def test_the_pages_print_what_each_reading_reflects_in_a_white_furnace():
-    albedo, white = 0.7, Bsdf(np.ones(()), np.zeros(()))
-    lobe = Bsdf(np.array(albedo), throughput(albedo))
-    page = printed("genglsl_multiply_throughput.md")
-    for s in (0.5, 0.0):
-        assert layer(multiply(lobe, s), white).value == 1.0
-        unchanged = layer(Bsdf(s * lobe.value, lobe.throughput), white).value
-        assert f" {unchanged:.2g} |" in page.split("MaterialX's GLSL |")[1].splitlines()[0]
-    half, lobe = 0.5, Bsdf(np.array(0.9), throughput(0.9))
-    ended = replace(add(lobe, lobe), throughput=np.zeros(()))
-    made = layer(multiply(ended, half), white).value
-    for name in ("multiply", "add"):
-        words = " ".join(printed(f"genglsl_{name}_throughput.md").split())
-        assert f"reflects {made:.2g}" in words.replace("reflect ", "reflects ")
 
 
 @pytest.mark.parametrize("subject", COMBINED_NODES, ids=lambda subject: subject.title)

@@ -2,7 +2,6 @@
 """The conformance suite judged: what passes, what it must catch, and what it calls by name."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,7 +17,7 @@ from mxeon.conformance.functions.shader_functions import (
     judge_functions,
 )
 from mxeon.conformance.nodes.bsdf import BSDFS
-from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES, DiffuseSubject
+from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES
 from mxeon.conformance.pictures import tolerances as image
 from mxeon.conformance.probes.families import (
     ALL_SUBJECTS,
@@ -390,16 +389,6 @@ def test_the_shader_functions_are_checked_once_and_belong_to_eonlib():
             task for task in plan.make_plan([], ["gl"], libraries).tasks if task.check == "twins"
         ]
         assert [task.library for task in tasks] == ["eonlib"] * count
-
-
-def test_the_bundled_examples_leave_out_what_stock_lacks():
-    assert not any("eon_node" in Path(file).name for file in plan._examples("stock"))
-
-
-def test_a_subject_writes_a_document_with_its_flag():
-    text = DiffuseSubject("oren_nayar_diffuse_bsdf", True, "eon").document({"roughness": 0.5})
-    assert 'name="energy_compensation" type="boolean" value="true"' in text
-    assert 'name="roughness" type="float" value="0.5"' in text
 
 
 def test_a_black_material_passes(tmp_path, monkeypatch):

@@ -6,11 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mxeon.conformance.accuracy.emission import (
-    POWER_RADIANCE,
-    QUADRATURE,
-    TRANSMITTANCE,
-)
+from mxeon.conformance.accuracy.emission import POWER_RADIANCE, QUADRATURE, TRANSMITTANCE
 from mxeon.conformance.accuracy.engine import widen_for_engine
 from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS

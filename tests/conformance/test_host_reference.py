@@ -185,11 +185,7 @@ def test_it_evaluates_pairs_like_any_host(flag, brdf):
         ),
         (A.replace('"a"', '"lobe"'), Scene("sky", environment="sky.exr"), "must be uniform"),
     ],
-    ids=[
-        "noise",
-        "color space",
-        "image of an environment",
-    ],
+    ids=["noise", "color space", "image of an environment"],
 )
 def test_what_the_models_do_not_cover_did_not_run(nodes, scene, words):
     managed = material(nodes).replace("<materialx ", '<materialx colorspace="lin_rec709" ')

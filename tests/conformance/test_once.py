@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is done once: counts of what takes time, not times."""
 
-import gc
-import weakref
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import groupby
@@ -13,24 +11,16 @@ import numpy as np
 import pytest
 
 from mxeon.conformance import run
-from mxeon.conformance.diagnosis import comparisons
-from mxeon.conformance.diagnosis.candidates import Diagnosis
-from mxeon.conformance.nodes.bsdf import BSDFS
 from mxeon.conformance.nodes.diffuse import SUBJECTS
-from mxeon.conformance.probes.memory import KEPT, LARGEST, Remembered
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.probe import LobeProbe
 from mxeon.conformance.reference import closures
-from mxeon.conformance.reference.lobes import KEPT as LOBES_KEPT
-from mxeon.conformance.reference.lobes import kept
-from mxeon.conformance.run import journal
 from mxeon.conformance.run.plan import make_plan
 from mxeon.conformance.run.tasks import Findings
 from mxeon.conformance.samples.batch import Array, Batch, Counts
 from mxeon.conformance.samples.uneven_environment import sky_map
 from mxeon.hosts import fragment
 from mxeon.hosts.gl import Host
-from mxeon.models.core.layering import Bsdf
 from mxeon.models.microfacet import conductor_brdf
 from mxeon.models.nodes import node
 from mxeon.models.thin_film import curve
@@ -80,49 +70,6 @@ def test_a_document_is_walked_once_and_its_library_for_no_count(monkeypatch):
     assert walked == [document.content] and asked and not any(asked)
 
 
-def test_values_of_a_batch_are_computed_once():
-    calls, one = [], batch()
-    function = Remembered(counted(calls))
-    first = function(one)
-    assert function(one.altered()) is function(batch()) is first and len(calls) == 1
-    assert function(one.altered(roughness=0.5)) is function(one.altered(roughness=0.5))
-    assert len(calls) == 2
-    with pytest.raises(ValueError, match="read-only"):
-        first += 1.0
-
-
-@pytest.mark.parametrize(
-    "change",
-    [
-        {"wo": -batch().wo},
-        {"wi": -batch().wi},
-        {"inputs": {"roughness": np.linspace(0.0, 0.5, 32)}},
-        {"inputs": {"roughness": np.linspace(0.0, 1.0, 64)}},
-        {"inputs": {}},
-        {"frame": np.zeros((8, 3, 3))},
-    ],
-    ids=lambda change: next(iter(change)),
-)
-def test_values_of_another_batch_are_computed(change):
-    calls, one = [], batch()
-    function = Remembered(counted(calls))
-    function(one)
-    function(Batch(**(vars(one) | change)))
-    assert len(calls) == 2
-
-
-def test_large_batches_and_old_ones_are_not_kept():
-    calls = []
-    function, large, small = (
-        Remembered(counted(calls)),
-        batch(LARGEST + 1),
-        [batch(count) for count in range(1, KEPT + 2)],
-    )
-    for each in (large, large, *small, small[-1], small[0]):
-        function(each)
-    assert len(calls) == 2 + len(small) + 1
-
-
 @dataclass(frozen=True)
 class CountedSubject:
     """A subject that counts what it is asked."""
@@ -158,25 +105,6 @@ def test_tasks_of_a_subject_are_done_one_after_the_other_with_both_libraries(mon
     assert [key for key, _ in groupby(task.library for task in done if task.host == "osl")] == [
         *libraries
     ]
-
-
-def test_a_lobe_keeps_its_values_of_the_last_inputs():
-    calls = []
-    lobe = kept(lambda node, inputs, layered: calls.append(layered) or Bsdf(None, None))
-    inputs = {"color": np.array([[0.2, 0.5, 0.8]]), "roughness": np.array([0.5])}
-    first = lobe(BSDFS[0].row, inputs, False)
-    assert lobe(BSDFS[0].row, {name: each.copy() for name, each in inputs.items()}, False) is first
-    others = [{"roughness": np.array([number])} for number in np.linspace(0.0, 1.0, LOBES_KEPT)]
-    for row, values, layered in (
-        (BSDFS[1].row, inputs, False),
-        (BSDFS[0].row, inputs, True),
-        (BSDFS[0].row, {"color": inputs["color"][0], "roughness": inputs["roughness"]}, False),
-    ):
-        lobe(row, values, layered)
-    assert len(calls) == 4
-    for each in others:
-        lobe(BSDFS[0].row, each, False)
-    assert lobe(BSDFS[0].row, inputs, False) is not first
 
 
 def test_an_albedo_that_takes_long_is_computed_once_for_points_that_are_the_same():
@@ -260,35 +188,8 @@ def test_a_long_evaluation_is_that_of_its_parts(gl, drawn):
     np.testing.assert_array_equal(values[-7:], last)
 
 
-def test_failures_of_one_reason_are_explained_once_and_keep_no_probe(monkeypatch):
-    calls = []
-    monkeypatch.setattr(
-        comparisons, "explain", lambda probe, *_: (calls.append(1), Diagnosis("because"))[1]
-    )
-    row = comparisons.Comparison("value", lambda probe: [], lambda probe: [])
-    monkeypatch.setattr(comparisons.Comparison, "tolerance", lambda self, probe: None)
-    probe = LobeProbe(None, None, "eonlib")
-    assert row.diagnose(probe) is row.diagnose(probe) and len(calls) == 1
-    gone = weakref.ref(probe)
-    del probe
-    gc.collect()
-    assert gone() is None
-
-
 def test_a_lobe_without_a_film_computes_none(monkeypatch):
     monkeypatch.setattr(curve, "_airy", None)
     bare = conductor_brdf(*PAIR, METAL["roughness"], METAL["ior"], METAL["extinction"])
     np.testing.assert_array_equal(film_brdf("conductor_bsdf", *PAIR, METAL | NO_FILM), bare)
     assert film_albedo_dir("conductor_bsdf", PAIR[0], METAL | NO_FILM).shape == (3,)
-
-
-def test_a_journal_makes_its_converter_once(tmp_path, monkeypatch):
-    made, make = [], journal.make_converter
-    monkeypatch.setattr(
-        journal, "make_converter", lambda *folder: (made.append(folder), make(*folder))[1]
-    )
-    plan = make_plan((), ("gl",), ("eonlib",), nodes=("sheen_bsdf",), resumable=True)
-    with journal.Journal(tmp_path, plan) as kept:
-        for number in range(3):
-            kept.add(number, Findings(errors=("none",)))
-    assert len(made) == 1

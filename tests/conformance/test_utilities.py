@@ -9,11 +9,9 @@ import pytest
 from mxeon.conformance.accuracy.utilities import BLACKBODY, BLACKBODY_FIT
 from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
-from mxeon.conformance.checks.utilities import UNITS
 from mxeon.conformance.nodes.utilities import UTILITY_SUBJECTS
 from mxeon.conformance.probes.utilities import UtilityOslProbe, UtilityProbe
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED
-from mxeon.conformance.samples.batch import Batch
 from mxeon.hosts import open_host
 from mxeon.models.nodes.utilities import UTILITIES
 from mxeon.shaders.library_tree import standard_folders
@@ -113,14 +111,7 @@ WRONG = {
         FAILED,
         "scales that are not squared",
     ),
-    "deviation": (
-        TRT,
-        "v = v * v;",
-        "",
-        "output",
-        FAILED,
-        "a deviation in place of the variance",
-    ),
+    "deviation": (TRT, "v = v * v;", "", "output", FAILED, "a deviation in place of the variance"),
     "exchanged melanins": (
         ALBEDO,
         "eumelanin * -log(eumelanin_color) + pheomelanin * -log(pheomelanin_color)",
@@ -231,15 +222,6 @@ def test_changes_are_of_one_input_and_of_those_that_the_output_depends_on():
     assert SUBJECTS[TRT].inputs == ("longitudinal", "azimuthal", "scale_TRT")
     before, after = SUBJECTS[TRT].changes["scale_TRT"]
     assert {name for name in before if before[name] != after[name]} == {"scale_TRT"}
-
-
-def test_units_of_an_artistic_index_are_0_to_1():
-    subject = SUBJECTS["artistic_ior, ior"]
-    inputs = subject.random_inputs(np.random.default_rng(1), 1000)
-    batch = Batch(np.zeros((1000, 3)), np.zeros((1000, 3)), inputs)
-    for title, unit in UNITS.items():
-        values = unit(SUBJECTS[title].expected(batch), batch)
-        assert (values.min() >= 0.0 and 0.5 < values.max() <= 1.0) or title.endswith("extinction")
 
 
 def test_a_shader_without_a_uniform_edf_has_no_graph(gl):

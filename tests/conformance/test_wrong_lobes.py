@@ -133,13 +133,7 @@ WRONG = {
         "value",
         "all of them with light from below the horizon",
     ),
-    "roughness constant": (
-        NODE,
-        FACING,
-        ROUGHNESS,
-        "inputs",
-        "without effect: roughness",
-    ),
+    "roughness constant": (NODE, FACING, ROUGHNESS, "inputs", "without effect: roughness"),
     "roughness squared": (
         NODE,
         FACING,
