@@ -16,7 +16,7 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
-from typing import Any, Self, cast
+from typing import Self, cast
 
 import numpy as np
 from filelock import FileLock, Timeout
@@ -180,12 +180,12 @@ def _read(folder: Path) -> tuple[Plan, dict[int, Findings], str, int]:
     return plan, findings, seed, sum(map(len, whole))
 
 
-def _line(record: dict[str, Any], seed: str = "") -> bytes:
+def _line(record: dict[str, object], seed: str = "") -> bytes:
     """A record as a line, with a digest of it and of the run whose hash is `seed`."""
     return (json.dumps(record | {"digest": _digest(record, seed)}) + "\n").encode()
 
 
-def _record(line: bytes, seed: str = "") -> tuple[dict[str, Any], str]:
+def _record(line: bytes, seed: str = "") -> tuple[dict[str, object], str]:
     """The record of a line, and its digest."""
     record = json.loads(line)
     if HALF in line.lower():
@@ -196,7 +196,7 @@ def _record(line: bytes, seed: str = "") -> tuple[dict[str, Any], str]:
     return record, digest
 
 
-def _digest(record: dict[str, Any], seed: str) -> str:
+def _digest(record: dict[str, object], seed: str) -> str:
     return hashlib.sha256((seed + json.dumps(record)).encode()).hexdigest()
 
 
