@@ -136,7 +136,8 @@ def run(tmp_path, monkeypatch):
 def test_a_texture_that_changed_is_named_and_the_run_not_resumed(run, capsys):
     folder, file = run
     (file.parent / "grid.png").write_bytes(b"other")
-    assert main(["check", str(file), "--report", str(folder), "--resume"]) == 2
+    command = ["check", str(file), "--library", "eonlib", "--report", str(folder), "--resume"]
+    assert main(command) == 2
     error = capsys.readouterr().err
     assert error.endswith(f"these differ: {file.parent / 'grid.png'}\n") and error.count("\n") == 1
 

@@ -13,8 +13,7 @@ from mxeon.conformance.results import SOURCE, Result
 from mxeon.conformance.results.known_issues import ISSUES, RENDERERS
 from mxeon.conformance.results.known_issues.issue import STOCK, Issue
 from mxeon.conformance.run.judge import Judge
-from mxeon.conformance.run.plan import make_plan
-from mxeon.conformance.run.plan import ALL
+from mxeon.conformance.run.plan import ALL, make_plan
 from mxeon.errors import NotRun
 from mxeon.shaders.document.policy import DEFAULT
 from tools.site.ledger import measured, pages, write_measured
