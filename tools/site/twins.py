@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Writes the OSL files that equal GLSL but for a few words: `python -m tools.site.twins`."""
+
+import re
+from pathlib import Path
+
+TOP = Path(__file__).resolve().parents[2]
+STEMS = (
+    "lib/eon",
+    "lib/ggx_albedo",
+    "lib/conty_kulla_albedo",
+    "lib/hair_parameters",
+    "sampling/oren_nayar_family",
+    "sampling/ltc_sampling",
+    "sampling/eon_sampling",
+)
+HEADER = "// Generated from genglsl/{stem}.glsl by `python -m tools.site.twins`; edit that file.\n"
+
+
+def osl_text(stem: str) -> str:
+    """OSL of a GLSL file.
+
+    GLSL's vec3 is a vector in the samplers and where it declares wo, wi or wh, and a color elsewhere.
+    """
+    text = (TOP / "genglsl" / f"{stem}.glsl").read_text(encoding="utf-8")
+    text = re.sub(r"\bvec3(?= w[oih]\b)", "vector", text)
+    triple = "vector" if stem.endswith("_sampling") else "color"
+    words = {"vec3": triple, "out": "output", "glsl": "osl"}
+    text = re.sub(r"\b(vec3|out|glsl)\b", lambda word: words[word[0]], text)
+    license_line, rest = text.split("\n", 1)
+    return f"{license_line}\n{HEADER.format(stem=stem)}{rest}"
+
+
+if __name__ == "__main__":
+    for each in STEMS:
+        (TOP / "genosl" / f"{each}.osl").write_text(osl_text(each), encoding="utf-8")
