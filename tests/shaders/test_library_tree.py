@@ -55,7 +55,7 @@ def test_a_part_is_completed_by_the_installed_libraries(gl, tmp_path, name):
     assert files.kind == PART and len(files.own) + len(files.package) == len(tree(str(STOCK)).own)
 
 
-@pytest.mark.parametrize("part, name", [("", "eonlib"), ("diffuse", "diffuse")])
+@pytest.mark.parametrize("part, name", [("", "eonlib"), ("documents/diffuse", "diffuse")])
 def test_an_export_of_eonlib_has_its_verdicts(gl, tmp_path, part, name):
     copy = export_library(tmp_path / "export") / part
     eonlib, export = findings([name, str(copy)], ["surface", "measured_edf", "eon_diffuse_bsdf"])

@@ -258,7 +258,7 @@ class Host(PairHost):
         return TemporaryDirectory(dir=self._temporary.name)
 
     def _file(self, function: str) -> Path:
-        for path in sorted(self._sources.glob("*.osl")):
+        for path in sorted(self._sources.rglob("*.osl")):
             if function in functions.signatures(path.read_text(encoding="utf-8")):
                 return path
         raise InputError(f"function must be defined in {self._sources}; got {function!r}")
