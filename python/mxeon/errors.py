@@ -34,15 +34,9 @@ def install(extra: str) -> str:
 
 
 class MxeonError(Exception):
-    """An error whose message is one line for the user.
+    """An error whose message is one line for the user."""
 
-    Attributes
-    ----------
-    status : int
-        Exit status of the command that ends with it.
-    """
-
-    status = MISUSE
+    status = MISUSE  # exit status of the command that ends with it
 
 
 class InputError(MxeonError, ValueError):

@@ -14,15 +14,6 @@ def meant(
 ) -> str:
     """The end of a message on an unknown name: the known ones that it may stand for, or "".
 
-    Parameters
-    ----------
-    name : object
-    known : iterable of str
-    alike : float
-        How much a name has to be like a known one; 1 for all letters.
-    titles : mapping of str to str
-        Of known names, where a word of a title may stand for its name.
-
     Examples
     --------
     >>> meant("cycels", ("gl", "cycles")), meant("EON", ("eon", "fon"))

@@ -5,8 +5,8 @@ import os
 
 import pytest
 
-from mxeon.io.words import ERROR, lines_left_out
 from mxeon.shaders.generation import generate
+from mxeon.shaders.generators import ERROR, lines_left_out
 from mxeon.shaders.nodes import SURFACE, document_text
 
 

@@ -11,10 +11,10 @@ import MaterialX as mx
 import pytest
 
 from mxeon.errors import LONGEST, MOST, DocumentError
-from mxeon.shaders.color_spaces import INTEROP, LEGACY
 from mxeon.shaders.document.notes import MissingFileWarning
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.reading import DocumentWarning, read_document
+from mxeon.shaders.document.values import INTEROP, LEGACY
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import EON
 from tests.support.documents import COMPENSATED, connected, lobe, material

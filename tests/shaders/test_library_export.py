@@ -12,9 +12,8 @@ import pytest
 import mxeon
 from mxeon.cli import main
 from mxeon.conformance.results import FAILED, PASSED
-from mxeon.shaders.library import SOURCE_FOLDERS, data_folder
+from mxeon.shaders.library import SOURCE_FOLDERS, TESTED, data_folder
 from mxeon.shaders.library_export import export_library, recipes
-from mxeon.shaders.versions import TESTED
 from tests.support.wheels import run_with, verdicts_with
 from tests.support.wrong_libraries import wrong_copy
 

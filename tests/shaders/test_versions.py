@@ -12,12 +12,11 @@ from mxeon.conformance.results import NOT_RUN, PASSED
 from mxeon.conformance.run import check
 from mxeon.errors import InterfaceError, NotRun
 from mxeon.hosts import open_host
-from mxeon.shaders import closure_calls, generation, generators, library, versions
+from mxeon.shaders import closure_calls, generation, generators, library
 from mxeon.shaders.closure_calls import check_closure_calls
 from mxeon.shaders.functions import source_file
-from mxeon.shaders.library import load_library
+from mxeon.shaders.library import UntestedVersionWarning, load_library
 from mxeon.shaders.nodes import EON, OREN_NAYAR
-from mxeon.shaders.versions import UntestedVersionWarning
 from tests.support.documents import lobe, material
 from tests.support.plans import keep_checks
 
@@ -73,13 +72,13 @@ def test_the_report_of_an_untested_version_says_so(monkeypatch):
 
 
 def test_the_installed_version_needs_no_warning(fresh):
-    assert versions.untested(mx.getVersionString()) == ""
+    assert library.untested(mx.getVersionString()) == ""
     with warnings.catch_warnings(action="error"):
         load_library("stock")
 
 
 def test_a_version_that_lacks_a_method_is_refused_in_one_line(fresh, monkeypatch, capsys):
-    monkeypatch.setattr(versions, "REQUIRED", ((mx.Document, "setOtherLibrary"),))
+    monkeypatch.setattr(library, "REQUIRED", ((mx.Document, "setOtherLibrary"),))
     assert main(["check", EXAMPLE]) == 2
     assert capsys.readouterr().err.startswith(
         f"mxeon: MaterialX {mx.getVersionString()} lacks Document.setOtherLibrary; install 1.39.3"

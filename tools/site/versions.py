@@ -12,7 +12,7 @@ from collections import Counter
 from pathlib import Path
 
 from mxeon.io.files import write_text
-from mxeon.shaders.versions import TESTED
+from mxeon.shaders.library import TESTED
 from tests.reliability.versions import run
 from tests.support.wheels import MAIN, wheel
 from tools.site.ledger import entries, pages, pairs

@@ -195,7 +195,7 @@ def open_engine(name: str, *others: Row) -> Host | RendererHost:
     if row.target and row.target not in TARGETS:
         import MaterialX as mx
 
-        from mxeon.shaders.versions import TESTED
+        from mxeon.shaders.library import TESTED
 
         raise NotRun(
             f"{name}: MaterialX must have a generator for {row.target}; {mx.__version__} has none: "

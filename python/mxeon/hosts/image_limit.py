@@ -5,9 +5,9 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from mxeon.hosts.textures import texels_of
-from mxeon.shaders.document.labels import label
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.references import files
+from mxeon.shaders.document.values import label
 from mxeon.shaders.generation import Shader
 
 

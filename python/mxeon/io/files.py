@@ -18,10 +18,7 @@ TEMPORARY = ".mxeon-"  # begins the names of files and folders that are not whol
 def below(folder: AnyPath, name: AnyPath) -> Path:
     """Path of the file `name` in a folder that the user named, unless a link would lead out of it.
 
-    Raises
-    ------
-    InputError
-        If a part of `name` is a symbolic link. The folder itself may be one.
+    The folder itself may be a link.
     """
     path = Path(folder)
     for part in Path(name).parts:
@@ -35,38 +32,22 @@ def below(folder: AnyPath, name: AnyPath) -> Path:
 def replacing(path: AnyPath) -> Iterator[Path]:
     """New empty file beside `path` to write to, moved onto it when the block ends without an error.
 
-    Parameters
-    ----------
-    path : path-like
-        Its folder is created if need be. A file already there is replaced whole; of a link, the file
-        that it leads to: see `below` for names that the user did not write.
-
-    Yields
-    ------
-    Path
-        In the same folder, with a random name and the same suffix, from which image writers take the
-        format.
-
-    Raises
-    ------
-    OSError
-        If the folder or the file cannot be written, or something else than a file has the name;
-        nothing half-written stays behind.
+    Its folder is created if need be. A link is followed: see `below` for names that the user did not
+    write. The new file has the same suffix, from which image writers take the format. After an error,
+    nothing half-written stays behind.
     """
-    # Refuse what is not the name of a regular file.
     path = Path(os.path.realpath(path)) if os.path.islink(path) else Path(path)
     if not path.name:
         raise OSError(errno.EINVAL, "not the name of a file", str(path))
     if path.exists() and not path.is_file():  # a device that is replaced is gone
         raise OSError(errno.EINVAL, "not a regular file", str(path))
-    # A name that nobody can guess, and that no link or other writer has.
     path.parent.mkdir(parents=True, exist_ok=True)
+    # Nobody can guess the name, and no link or other writer has it.
     beside = path.with_name(f"{TEMPORARY}{token_hex(8)}{path.suffix}")
     with naming(path):
         os.close(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
         try:
             yield beside
-            # Move the whole file onto the path.
             with beside.open("rb") as file:
                 os.fsync(file.fileno())  # some file systems report a full disk only here
             os.replace(beside, path)
@@ -99,21 +80,6 @@ def regular(path: AnyPath, flags: int) -> int:
     """Descriptor of a regular file: `open(path, opener=regular)`.
 
     A pipe or a device may have no end, and opening a pipe without a writer blocks.
-
-    Parameters
-    ----------
-    path : path-like
-    flags : int
-        As for `os.open`.
-
-    Returns
-    -------
-    int
-
-    Raises
-    ------
-    OSError
-        If the file is of another kind, or cannot be opened.
     """
     file = os.open(path, flags | os.O_NONBLOCK)
     if not stat.S_ISREG(os.fstat(file).st_mode):

@@ -45,15 +45,6 @@ class ImageWarning(UserWarning):
 def difference(image: ArrayLike, reference: ArrayLike) -> Floats:
     """Largest absolute difference over the channels of each pixel.
 
-    Parameters
-    ----------
-    image, reference : array_like, shape (..., 3)
-
-    Returns
-    -------
-    ndarray, shape (...), float64
-        In the unit of the images; not finite where one of them is not.
-
     Examples
     --------
     >>> difference([[1.0, 0.5, 0.0]], [[1.0, 0.25, 0.125]]).tolist()
@@ -69,16 +60,8 @@ def difference(image: ArrayLike, reference: ArrayLike) -> Floats:
 def difference_scale(difference_map: ArrayLike) -> float:
     """Full scale of a plot of a difference: the next of 1, 2, 5, 10, ... above nearly all of it.
 
-    Parameters
-    ----------
-    difference_map : array_like
-        Non-negative; zeros and values that are not finite are left out.
-
-    Returns
-    -------
-    float
-        At least the 99th percentile, so that a few pixels at a rim or a terminator do not
-        darken the rest; at least 1e-9, so that equal images have a scale too.
+    That is its 99th percentile, as a few pixels at a rim or a terminator must not darken the rest; at
+    least 1e-9, so that equal images have a scale too. Values that are not finite are left out.
 
     Examples
     --------
@@ -89,7 +72,7 @@ def difference_scale(difference_map: ArrayLike) -> float:
     positive = difference_map[np.isfinite(difference_map) & (difference_map > 0.0)]
     nearly_all = max(np.quantile(positive, 0.99) if positive.size else 0.0, 1e-9)
     decade = int(np.floor(np.log10(nearly_all)))
-    # Read as decimals, so that the bounds are the printed numbers and not products of them.
+    # Read as decimals, so that the steps are the printed numbers and not products of them.
     steps = [float(f"{digit}e{decade}") for digit in (1, 2, 5, 10)]
     return next((step for step in steps if nearly_all <= step), steps[-1])
 
@@ -97,33 +80,15 @@ def difference_scale(difference_map: ArrayLike) -> float:
 def read_image(path: AnyPath) -> Pixels:
     """Pixels of an image file, row 0 at the top, as stored: no color is transformed.
 
-    Parameters
-    ----------
-    path : path-like
-
-    Returns
-    -------
-    ndarray of float32, shape (height, width, channels)
-
-    Raises
-    ------
-    ImageError
-        If it is no regular file, if OpenImageIO cannot read it, in OpenImageIO's words, or if it
-        has more than LARGEST values, which a small file can.
-
-    Warns
-    -----
-    ImageWarning
-        If OpenImageIO reads it and has an error to report, as of a JPEG file that is cut.
+    ImageError if it has more than LARGEST values, which a small file can; ImageWarning for an image that
+    OpenImageIO reads with an error, such as a JPEG file that is cut.
     """
     import OpenImageIO as oiio
 
-    # Ask for its size.
     file = open_image(path)
     values = file.spec().image_pixels() * file.spec().nchannels
     if values > LARGEST:
         raise ImageError(f"{path}: must be an image of at most {LARGEST} values; got {values}")
-    # Read the pixels.
     pixels: Pixels | None = file.read_image(oiio.FLOAT)
     reason = words(file.geterror)
     if pixels is None:
@@ -134,13 +99,7 @@ def read_image(path: AnyPath) -> Pixels:
 
 
 def open_image(path: AnyPath) -> oiio.ImageInput:
-    """An image file that OpenImageIO opens.
-
-    Raises
-    ------
-    ImageError
-        If it is no regular file, or OpenImageIO cannot read it, in OpenImageIO's words.
-    """
+    """An image file that OpenImageIO opens."""
     import OpenImageIO as oiio
 
     try:
@@ -172,20 +131,6 @@ def words(message: Callable[[], str]) -> str:
 def write_image(path: AnyPath, pixels: Pixels | Codes, attributes: Mapping[str, str | int]) -> None:
     """Write pixels to an image file in the format that the ending of `path` names.
 
-    Parameters
-    ----------
-    path : path-like
-        Replaced whole; see `mxeon.io.files.replacing`.
-    pixels : ndarray of float32 or uint8, shape (height, width, channels)
-        Contiguous, of a type that the format keeps as it is.
-    attributes : mapping of str to str or int
-        Metadata and options of the file, by OpenImageIO's names.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be written; says why.
-
     Notes
     -----
     The last row is read again: OpenImageIO's PNG writer, and any whose last bytes wait in a buffer of
@@ -193,18 +138,15 @@ def write_image(path: AnyPath, pixels: Pixels | Codes, attributes: Mapping[str, 
     """
     import OpenImageIO as oiio
 
-    # Refuse a name that OpenImageIO cannot take.
     try:
         str(path).encode()
     except UnicodeEncodeError:
         raise OSError(errno.EILSEQ, "the name must be UTF-8", str(path)) from None
-    # Attach the metadata.
     kind = oiio.UINT8 if pixels.dtype == np.uint8 else oiio.FLOAT
     height, width, channels = pixels.shape
     spec = oiio.ImageSpec(width, height, channels, kind)
     for name, value in attributes.items():
         spec.attribute(name, value)
-    # Write the file, and read it again.
     with replacing(path) as beside:
         file = oiio.ImageOutput.create(str(beside))
         if not (
@@ -250,15 +192,7 @@ def without_threads() -> Iterator[None]:
 
 
 def write_picture(path: AnyPath, image: ArrayLike, metadata: Mapping[str, object]) -> None:
-    """Write a linear image as EXR or PNG by the ending of `path`; see `write_exr`, `write_png`.
-
-    Raises
-    ------
-    ValueError
-        If the ending is neither .exr nor .png.
-    OSError
-        If the file cannot be written.
-    """
+    """Write a linear image as EXR or PNG by the ending of `path`; see `write_exr`, `write_png`."""
     writers = {".exr": write_exr, ".png": write_png}
     ending = Path(path).suffix.lower()
     if ending not in writers:
@@ -267,21 +201,7 @@ def write_picture(path: AnyPath, image: ArrayLike, metadata: Mapping[str, object
 
 
 def write_exr(path: AnyPath, image: ArrayLike, metadata: Mapping[str, object]) -> None:
-    """Write a linear image as a 32-bit float EXR with the Rec. 709 primaries.
-
-    Parameters
-    ----------
-    path : path-like
-        Ends in .exr; replaced whole.
-    image : array_like, shape (height, width, 3)
-    metadata : mapping of str to object
-        As text in the file, under "mxeon:" and the key; see `mxeon.errors.printable`.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be written; says why.
-    """
+    """Write a linear image as a 32-bit float EXR with the Rec. 709 primaries; metadata as text."""
     pixels = np.ascontiguousarray(image, dtype=np.float32)
     write_image(path, pixels, FAST_EXR | _texts(metadata))
 

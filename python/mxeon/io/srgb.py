@@ -33,17 +33,7 @@ def srgb_decoded(image: ArrayLike) -> Floats:
 
 
 def srgb_encoded(image: ArrayLike) -> Codes:
-    """Eight-bit sRGB code values of a linear image.
-
-    Parameters
-    ----------
-    image : array_like, shape (..., 3)
-        Linear, with the Rec. 709 primaries.
-
-    Returns
-    -------
-    ndarray of uint8, shape (..., 3)
-        Clipped to [0, 1] before encoding; magenta where a channel is not finite.
+    """Eight-bit sRGB code values of a linear image (..., 3), clipped; magenta if not finite.
 
     References
     ----------
@@ -58,7 +48,7 @@ def srgb_encoded(image: ArrayLike) -> Codes:
     finite = reduce(np.logical_and, np.moveaxis(np.isfinite(image), -1, 0))
     linear = np.clip(image, np.float32(0.0), np.float32(1.0))
     linear[~finite] = 0.0
-    # Take the least code of each step, or the next one above its threshold; no index is out of range.
+    # The least code of each step, or the next one above its threshold; no index is out of range.
     thresholds, least = _codes()
     codes: Codes = least.take((linear * np.float32(STEPS)).astype(np.intp), mode="clip")
     codes += linear >= thresholds.take(codes, mode="clip")

@@ -84,18 +84,15 @@ def _call(target: str, library: str, profile: str | None, nodedef: str, function
 
 def _surface(document: mx.Document, nodedef: str) -> mx.Node:
     """A node of a nodedef, or the surface that calls it if it is a closure."""
-    # Add the node.
     definition = document.getNodeDef(nodedef)
     kind = definition.getType()
     node = document.addNode(definition.getNodeString(), NODE, kind)
     node.setNodeDefString(nodedef)
-    # Put a medium below a layer.
     if kind == "VDF":
         base, node, kind = node, document.addNode("layer", "layer", "BSDF"), "BSDF"
         node.addInput("base", "VDF").setConnectedNode(base)
     if kind not in CLOSURES:
         return node
-    # Put the closure on a surface.
     surface = document.addNode("surface", "surface", "surfaceshader")
     surface.addInput(CLOSURES[kind], kind).setConnectedNode(node)
     return surface

@@ -20,27 +20,17 @@ FILM = "thinfilm_thickness"
 
 @dataclass(frozen=True, order=True)
 class ShownNode:
-    """A node in the mode that a material shows.
-
-    Attributes
-    ----------
-    category, type : str
-    inputs : tuple of (str, str)
-        Name and type of each input of its definition; for one that takes a lobe, if it has one, also
-        the category of the node that combines the lobe of others.
-    modes : tuple of (str, str)
-        Name and value of the inputs that select a mode, where the value is constant.
-    film : bool
-        Whether it may have a thin film.
-    values : tuple of (str, tuple of float)
-        Name and numbers of the inputs that are constant.
-    """
+    """A node in the mode that a material shows."""
 
     category: str
     type: str
+    # name and type of each input of its definition; for one that takes a lobe, if it has one,
+    # also the category of the node that combines the lobe of others
     inputs: tuple[tuple[str, str], ...] = ()
+    # name and value of the inputs that select a mode, where the value is constant
     modes: tuple[tuple[str, str], ...] = ()
-    film: bool = False
+    film: bool = False  # whether it may have a thin film
+    # name and numbers of the inputs that are constant
     values: tuple[tuple[str, tuple[float, ...]], ...] = ()
 
     def has(self, other: "ShownNode") -> bool:
@@ -55,13 +45,8 @@ class ShownNode:
 def document_nodes(policy: Policy, source: tuple[str, str]) -> tuple[ShownNode, ...] | MxeonError:
     """The nodes that the materials of a document show, or the error that it cannot be read.
 
-    Parameters
-    ----------
-    policy : Policy
-    source : tuple of (str, str)
-        A file and the name of a library.
+    The source is a file and the name of a library.
     """
-    # Read the document.
     file, library = source
     try:
         with warnings.catch_warnings(action="ignore"):  # its checks tell them
@@ -72,7 +57,6 @@ def document_nodes(policy: Policy, source: tuple[str, str]) -> tuple[ShownNode, 
         )
     if document.missing:
         return DocumentError(*document.missing)
-    # Walk from its materials to what they show.
     walk = Walk(document.renderables, values=True)
     return tuple(sorted({_shown(walk, path) for path in walk.shown}))
 
@@ -97,7 +81,6 @@ def _kind(source: mx.InterfaceElement | None) -> str:
 
 def _shown(walk: Walk, path: Path) -> ShownNode:
     """A node of a walk."""
-    # The inputs of its definition.
     node = walk.node(path)
     inputs = definition.getActiveInputs() if (definition := node.getNodeDef()) else ()
     ports = [(port.getName(), port.getType()) for port in inputs]
@@ -106,7 +89,6 @@ def _shown(walk: Walk, path: Path) -> ShownNode:
     lit = {name: each for name, each in sources.items() if each and walk.emits(each)}
     ports = [port for port in ports if port[0] in lit or port[0] not in sources]
     ports += [(name, _kind(walk.node(each))) for name, each in lit.items()]
-    # The values that choose a mode, and whether there is a film.
     values = ((name, walk.value(path, name)) for name, kind in ports if kind in MODES)
     known = tuple((name, value) for name, value in values if value is not None)
     thickness = walk.value(path, FILM) if (FILM, "float") in ports else "0"

@@ -19,38 +19,19 @@ MARGIN = 1.05  # half width of the square that must lie in one facet, in half wi
 
 
 class Polyhedron(NamedTuple):
-    """A closed mesh of flat facets.
+    """A closed mesh of flat facets."""
 
-    Attributes
-    ----------
-    vertices : ndarray, shape (V, 3)
-        On the unit sphere.
-    triangles : ndarray of int, shape (T, 3)
-        Indices, counterclockwise from outside.
-    normals : ndarray, shape (F, 3)
-        Outward unit normals of the facets, in float64.
-    offsets : ndarray, shape (F,)
-        Distances of their planes from the origin.
-    """
-
-    vertices: NDArray[np.float64]
-    triangles: NDArray[np.int64]
-    normals: NDArray[np.float64]
-    offsets: NDArray[np.float64]
+    vertices: NDArray[np.float64]  # on the unit sphere
+    triangles: NDArray[np.int64]  # indices, counterclockwise from outside
+    normals: NDArray[np.float64]  # outward unit normals of the facets, in float64
+    offsets: NDArray[np.float64]  # distances of their planes from the origin
 
 
 class Points(NamedTuple):
-    """Normals at the pixels of a picture of the polyhedron.
-
-    Attributes
-    ----------
-    normal : ndarray, shape (size, size, 3)
-    mask : ndarray of bool, shape (size, size)
-        Where a pixel lies within one facet.
-    """
+    """Normals at the pixels of a picture of the polyhedron."""
 
     normal: NDArray[np.float64]
-    mask: NDArray[np.bool_]
+    mask: NDArray[np.bool_]  # where a pixel lies within one facet
 
 
 @lru_cache(maxsize=1)
@@ -60,19 +41,16 @@ def polyhedron() -> Polyhedron:
     Its facets are trapezoids, which are flat, and triangles at the poles. The vertices are float32
     numbers, as renderers read them.
     """
-    # Place the vertices around AXIS, in float32.
     polar, azimuth = np.linspace(0.0, np.pi, RINGS + 1), np.arange(SECTORS) * 2.0 * np.pi / SECTORS
     theta, phi = np.meshgrid(polar[1:-1], azimuth, indexing="ij")
     ring = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], -1)
     local = np.concatenate([[[0.0, 0.0, 1.0]], ring.reshape(-1, 3), [[0.0, 0.0, -1.0]]])
     vertices = (local @ _frame()).astype(np.float32).astype(np.float64)
-    # Split quadrilaterals into triangles, without the empty ones at the poles.
     quads = np.array([_quad(row, column) for row in range(RINGS) for column in range(SECTORS)])
     triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
     corners = vertices[triangles]
     areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     triangles = triangles[np.linalg.norm(areas, axis=1) > 0.0]
-    # Find the plane of each facet.
     one, two, three, four = (vertices[quads[:, index]] for index in range(4))
     normals = np.cross(three - one, four - two)  # of the diagonals: that of a triangle as well
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
@@ -83,16 +61,13 @@ def polyhedron() -> Polyhedron:
 @lru_cache(maxsize=4)
 def facet_points(size: int) -> Points:
     """Normals at the pixels of a `size` x `size` picture."""
-    # Find the facets at the corners of each pixel.
     axis = (2.0 * np.arange(size) + 1.0) / size - 1.0
     x, y = np.meshgrid(axis, -axis)
     reach = MARGIN / size
     facets = [_facets(x + dx * reach, y + dy * reach) for dx in (-1.0, 1.0) for dy in (-1.0, 1.0)]
-    # Keep the pixels that lie within one facet.
     mask = facets[0] >= 0
     for other in facets[1:]:
         mask &= other == facets[0]
-    # Look up its normal.
     normal = polyhedron().normals[facets[0]]
     for array in (normal, mask):
         array.flags.writeable = False  # shared by all callers
@@ -102,13 +77,11 @@ def facet_points(size: int) -> Points:
 def _facets(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.int64]:
     """Index of the facet that each line along z meets first; -1 for none."""
     _, _, normals, offsets = polyhedron()
-    # Sort the facets into those that face the view and those that do not.
     above, below = normals[:, 2] > 0.0, normals[:, 2] < 0.0
     first, top = np.full(x.shape, -1), np.full(x.shape, np.inf)
     bottom = np.full(x.shape, -np.inf)
     for index in range(len(normals)):
         if above[index] or below[index]:
-            # Find the height of the plane over each point.
             nx, ny, nz = normals[index]
             height = (offsets[index] - nx * x - ny * y) / nz
             if above[index]:
@@ -116,7 +89,6 @@ def _facets(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.int64]
                 top = np.minimum(top, height)
             else:
                 bottom = np.maximum(bottom, height)
-    # Keep the points over the polyhedron.
     return np.where(top > bottom, first, -1)
 
 

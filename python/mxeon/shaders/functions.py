@@ -25,21 +25,7 @@ TYPES = {"glsl": ("float", "vec3"), "osl": ("float", "color", "vector")}
 
 
 def source(language: str, stem: str = ALL, library: str = "eonlib") -> str:
-    """Text of a file of shader functions, its includes expanded.
-
-    Parameters
-    ----------
-    language : str
-        "glsl" or "osl".
-    stem : str
-        File name without its ending.
-    library : str
-        "eonlib", or the folder of a library that brings such files; see `has_functions`.
-
-    Returns
-    -------
-    str
-    """
+    """Text of a file of shader functions, its includes expanded; see `has_functions`."""
     return expanded(source_file(language, stem, library))
 
 
@@ -78,24 +64,7 @@ def signature(language: str, function: str) -> tuple[tuple[str, str], ...]:
 
 
 def parameters(text: str, function: str) -> tuple[tuple[str, str], ...]:
-    """Parameter types and names of a function that a text defines, in order.
-
-    Parameters
-    ----------
-    text : str
-        Shader functions.
-    function : str
-
-    Returns
-    -------
-    tuple of (str, str)
-        Type word and name of each parameter.
-
-    Raises
-    ------
-    ValueError
-        If there is no such function; lists the known ones.
-    """
+    """Parameter types and names of a function that a text defines, in order."""
     known = signatures(text)
     if function not in known:
         raise InputError(f"function must be one of {', '.join(known)}; got {function!r}")

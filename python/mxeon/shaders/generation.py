@@ -15,12 +15,11 @@ import MaterialX.PyMaterialXGenShader as mx_gen
 from mxeon.errors import DocumentError, InterfaceError, assert_known
 from mxeon.io.files import AnyPath
 from mxeon.shaders.closure_calls import check_closure_calls
-from mxeon.shaders.document.labels import label
 from mxeon.shaders.document.notes import CodeWarning, warn_of_files, warn_of_names
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.document.reading import read_document
 from mxeon.shaders.document.sources import Sources, copied_sources
-from mxeon.shaders.document.values import Plain, plain
+from mxeon.shaders.document.values import Plain, label, plain
 from mxeon.shaders.generators import (
     GENERATORS,
     TARGETS,
@@ -31,7 +30,6 @@ from mxeon.shaders.generators import (
 )
 from mxeon.shaders.library import load_library, own_folders
 from mxeon.shaders.library_tree import in_words, root
-from mxeon.shaders.names import shader_names
 
 __all__ = [
     "GENERATORS",
@@ -190,13 +188,11 @@ def generate(
     >>> [shader.name for shader in generate(text, "osl")]
     ['look']
     """
-    # Read and check the document.
     assert_known("target", target, TARGETS)
     if os.path.isdir(library) and root(library):
         check_generator(library, target)
     checked = read_document(document, library, profile, policy)
     content, names = checked.content, shader_names(checked.renderables)
-    # Generate each shader.
     generator = generator_of(content, target, library, profile, policy.definitions)
     context = context_of(content, target, generator, library, lights, policy.path)
     elements = _select(checked.renderables, element)
@@ -211,7 +207,6 @@ def generate(
             check_closure_calls(source.getStage("pixel"), target, library, profile)
             text = _shader(source, each.getNamePath(), target, content)
             shaders.append(replace(text, folders=folders, root=root(library)))
-    # Warn of what the shaders lack.
     warn_of_files(_files(shaders), content)
     warn_of_names(elements, content)
     if profile == "cycles" and target == "osl":
@@ -310,3 +305,34 @@ def _warn_of_approximation(shaders: Iterable[Shader]) -> None:
         flags = CYCLES_CALL.findall(shader.stages["pixel"])
         if not all(values.get(flag, flag == "1") for flag in flags):
             warnings.warn(ApproximationWarning(shader.element, CYCLES_APPROXIMATION), stacklevel=3)
+
+
+# Words that OSL or MDL does not take as the name of a shader.
+RESERVED = frozenset(
+    """
+    and auto bool break bsdf bsdf_measurement case cast char class closure color const continue
+    default delete displacement do double edf else emit enum export extern false float float2
+    float3 float4 for friend goto hair_bsdf if illuminance illuminate import in inline int int2
+    int3 int4 intensity_mode let light_profile long material matrix mdl module mutable new normal
+    not operator or output package point private protected public return shader short signed
+    sizeof static string struct surface switch template texture_2d this throw true try typedef
+    typename uniform union unsigned using varying vdf vector virtual void volatile volume while
+    """.split()  # noqa: SIM905
+)
+
+
+def shader_names(elements: Iterable[mx.TypedElement]) -> dict[str, str]:
+    """Names of the shaders of renderable elements, by name path; no two are alike."""
+    names: dict[str, str] = {}
+    last: dict[str, str] = {}  # name by stem, before which all are in use
+    used: set[str] = set()
+    for element in elements:
+        stem = re.sub(r"\W", "_", element.getNamePath(), flags=re.ASCII)
+        if stem[0].isdigit() or stem in RESERVED:
+            stem = f"shader_{stem}"
+        name = last.get(stem, stem)
+        while name in used:
+            name = mx.incrementName(name)
+        names[element.getNamePath()] = last[stem] = name
+        used.add(name)
+    return names

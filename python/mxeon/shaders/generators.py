@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """MaterialX's shader generators, set up for a target, a data library and a document."""
 
-from collections.abc import Iterable, Mapping
-from contextlib import nullcontext, suppress
+import os
+import sys
+import tempfile
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager, nullcontext, suppress
 from functools import cache, lru_cache
 from importlib import import_module
 
 import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
 
-from mxeon.io.words import lines_left_out
 from mxeon.shaders.library import LOADED, load_library
 from mxeon.shaders.library_tree import search_path
 from mxeon.shaders.targets import CLASSES
@@ -42,14 +44,11 @@ def _new_generator(
     target: str, library: str, profile: str | None, definitions: tuple[str, ...]
 ) -> mx_gen.ShaderGenerator:
     """A generator with the types, the color system and the unit system of a data library."""
-    # Register the types.
     data, generator = load_library(library, profile, definitions), GENERATORS[target].create()
     generator.registerTypeDefs(data)
-    # Add the color system.
     colors = mx_gen.DefaultColorManagementSystem.create(generator.getTarget())
     colors.loadLibrary(data)
     generator.setColorManagementSystem(colors)
-    # Add the unit system, with its converters.
     units = mx_gen.UnitSystem.create(generator.getTarget())
     converters = mx.UnitConverterRegistry.create()
     for name in ("distance", "angle"):
@@ -109,3 +108,29 @@ def tokens_of(target: str, library: str, profile: str | None) -> Mapping[str, st
     context = context_of(document, target, generator, library, False, ())
     generated(generator, "surface", surface, context)
     return dict(generator.getTokenSubstitutions())
+
+
+ERROR = 2  # file descriptor
+
+
+@contextmanager
+def lines_left_out(words: str) -> Iterator[None]:
+    """Context in which lines with these words are kept off the process's error output.
+
+    The other lines appear when it ends. A process without an error output has none to keep.
+    """
+    if sys.stderr is None:
+        yield
+        return
+    sys.stderr.flush()
+    output = os.dup(ERROR)
+    with tempfile.TemporaryFile() as file:
+        os.dup2(file.fileno(), ERROR)
+        try:
+            yield
+        finally:
+            os.dup2(output, ERROR)
+            os.close(output)
+            file.seek(0)
+            rest = [line for line in file if words.encode() not in line]
+            os.write(ERROR, b"".join(rest))

@@ -36,11 +36,6 @@ CLOSURES = ("BSDF", "VDF", "surfaceshader", "volumeshader", "material")
 def inner_lobes(shader: Shader) -> tuple[str, ...]:
     """Kinds of a shader's lobes below the surface.
 
-    Returns
-    -------
-    tuple of str
-        Of "subsurface", "transmission" and "volume", in this order.
-
     Examples
     --------
     >>> from mxeon.shaders.generation import generate
@@ -56,18 +51,7 @@ def inner_lobes(shader: Shader) -> tuple[str, ...]:
 class Walk:
     """The nodes whose light a material shows, by their paths, and the kinds of lobes among them.
 
-    Parameters
-    ----------
-    elements : iterable of MaterialX.TypedElement
-        Renderable elements.
-    values : bool
-        Whether to walk the nodes that compute inputs too.
-
-    Attributes
-    ----------
-    kinds : set of str
-    shown : tuple of Path
-        Paths of the nodes, those of constant weight 0 left out, each after the nodes that use it.
+    Nodes of constant weight 0 are left out; with `values`, nodes that compute inputs are walked too.
     """
 
     def __init__(self, elements: Iterable[mx.TypedElement], values: bool = False) -> None:
@@ -92,7 +76,6 @@ class Walk:
     def parts(self, path: Path) -> tuple[Path, ...]:
         """Paths of the nodes from which a node's light comes."""
         node = self._nodes[path]
-        # Note the kind of lobe, unless it has no weight.
         if self._constant(path, "weight") == 0.0 or not self.emits(path):
             self._dark.add(path)
             return ()
@@ -101,12 +84,10 @@ class Walk:
             kind = TRANSMISSION
         if kind:
             self.kinds.add(kind)
-        # Go on inside of a node that is a graph.
         inside = node.getImplementation()
         if inside and inside.isA(mx.NodeGraph):
             outputs = (output.getConnectedNode() for output in inside.getOutputs())
             return tuple(self.path(path, output) for output in outputs if output)
-        # Go on to the nodes before it.
         sources = (self.source(path, name) for name in self._effective(path, node))
         return tuple(source for source in sources if source)
 

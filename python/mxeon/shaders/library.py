@@ -3,6 +3,9 @@
 
 MaterialX silently ignores later definitions of a name, so eonlib is loaded before the standard
 libraries. Which implementations MaterialX chooses is then checked: see `implementations`.
+
+No version of MaterialX is refused by its number: the methods that mxeon needs are looked up in it, and
+generated code is checked against the closure interface of eonlib's sources.
 """
 
 import os
@@ -12,23 +15,27 @@ from functools import cache, lru_cache
 from pathlib import Path
 
 import MaterialX as mx
+import MaterialX.PyMaterialXGenShader as mx_gen
 
-from mxeon.errors import InputError, LibraryError, assert_known
+import mxeon
+from mxeon.errors import InputError, LibraryError, PackageError, assert_known
 from mxeon.io.files import AnyPath
 from mxeon.names import meant
-from mxeon.shaders.library_files import check_definitions, check_files, check_sources, read_options
 from mxeon.shaders.library_tree import (
     DOCUMENT,
     FILES,
     LIBRARIES,
     OVERLAY,
     PART,
+    check_definitions,
+    check_files,
+    check_sources,
     in_words,
+    read_options,
     root,
     search_path,
     tree,
 )
-from mxeon.shaders.versions import UntestedVersionWarning, check_version, untested
 
 SOURCE_FOLDERS = ("genglsl", "genosl")
 
@@ -137,13 +144,8 @@ def own_folders(library: str) -> list[str]:
 def library_name(library: str | os.PathLike[str]) -> str:
     """Name of a data library, or absolute path of the folder that is loaded as one.
 
-    Raises
-    ------
-    InputError
-        If it is neither a name nor a folder that holds MaterialX documents or replaces some of
-        MaterialX's files, if it cannot be combined with these, or a file of it is no text in UTF-8.
-    OSError
-        If one cannot be read.
+    InputError for a folder that cannot be combined with MaterialX's files, or holds one that is no text
+    in UTF-8.
     """
     if library in LIBRARIES:
         return str(library)
@@ -221,7 +223,6 @@ def read_library(library: str, profile: str | None, definitions: tuple[str, ...]
         assert_known("profile", profile, PROFILES)
     if note := untested(mx.getVersionString()):
         warnings.warn(UntestedVersionWarning(note), stacklevel=3)
-    # Load the folders.
     library = library_name(library)
     document = mx.createDocument()
     for folder in definitions:
@@ -237,7 +238,6 @@ def read_library(library: str, profile: str | None, definitions: tuple[str, ...]
     except (mx.Exception, mx.ExceptionParseError, LookupError) as error:
         reason = in_words(library, str(error))
         raise InputError(f"{' '.join(('library', library, *definitions))}: {reason}") from None
-    # Check what is not MaterialX's own.
     if library not in LIBRARIES:
         check_sources(document, root(library) or library, path)
     if definitions:
@@ -321,3 +321,28 @@ def assert_ours(document: mx.Document, library: str = "eonlib", profile: str | N
                 f"implementation of {each.node} for {each.target} must be eonlib's; got {where}: "
                 f"load {eonlib_folder()} before the standard libraries"
             )
+
+
+TESTED = ("1.39.3", "1.39.4", "1.39.5")  # versions of MaterialX; others run with a warning
+REQUIRED = ((mx.Document, "setDataLibrary"), (mx_gen.ShaderGenerator, "registerTypeDefs"))
+
+
+class UntestedVersionWarning(UserWarning):
+    """A version of MaterialX that mxeon has not been tested with."""
+
+
+def check_version() -> None:
+    """Raise ImportError unless this MaterialX has every method of REQUIRED."""
+    for owner, method in REQUIRED:
+        if not hasattr(owner, method):
+            raise PackageError(
+                f"MaterialX {mx.getVersionString()} lacks {owner.__name__}.{method}; "
+                f"install {TESTED[0]} or later: pip install materialx=={TESTED[-1]}"
+            )
+
+
+def untested(version: str) -> str:
+    """Note that mxeon has not been tested with a version of MaterialX; "" if it has."""
+    if version in TESTED:
+        return ""
+    return f"MaterialX {version} has not been tested with mxeon {mxeon.__version__}"

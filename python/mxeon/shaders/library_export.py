@@ -40,25 +40,10 @@ def recipes(folder: AnyPath) -> str:
 
 
 def export_library(path: AnyPath) -> Path:
-    """Write eonlib, with its sources and license, to a new folder or a zip archive.
+    """Write eonlib, with its sources and license, to a new or empty folder, or to a zip archive.
 
-    Parameters
-    ----------
-    path : path-like
-        A folder that does not exist or is empty. What ends in ".zip" becomes an archive of a folder of
-        that name; a file already there is replaced.
-
-    Returns
-    -------
-    Path
-        What was written, whole.
-
-    Raises
-    ------
-    InputError
-        If there is something else than an empty folder.
-    OSError
-        If it cannot be written; nothing half-written stays behind.
+    What ends in ".zip" becomes an archive of a folder of that name; a file already there is replaced.
+    Nothing half-written stays behind.
     """
     target = Path(os.path.realpath(path))
     if target.suffix == ".zip":

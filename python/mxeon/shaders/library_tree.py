@@ -14,11 +14,14 @@ overlay
 MaterialX finds a node's source beside its document, what the source includes beside that, and what the
 generator includes on a search path. So a whole or a part is laid out as one tree of links, `libraries`, and
 both documents and sources come from there: no installed file can take the place of one in the folder.
+
+A library is trusted, so it may name any file. A pipe, a device or an encoding is still refused in one
+line: MaterialX would wait, fill the memory, or give text that no one can decode.
 """
 
 import os
 from collections import Counter, defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path, PurePosixPath
@@ -27,6 +30,7 @@ from tempfile import TemporaryDirectory
 import MaterialX as mx
 
 from mxeon.errors import InputError
+from mxeon.io.files import AnyPath, regular
 
 # eonlib as a whole, its diffuse nodes alone, and MaterialX as it comes.
 LIBRARIES = ("eonlib", "diffuse", "stock")
@@ -39,40 +43,20 @@ FILES = (DOCUMENT, *CODE)  # endings of what a library is made of
 
 @dataclass(frozen=True)
 class Tree:
-    """The files of a library, and where MaterialX finds them.
+    """The files of a library, and where MaterialX finds them."""
 
-    Attributes
-    ----------
-    folder : str
-        As given, as an absolute path.
-    kind : str
-        WHOLE, PART or OVERLAY.
-    place : str
-        Folder of MaterialX's libraries that a part stands for, such as "pbrlib/genglsl"; "" for all.
-    own : tuple of str
-        Documents and sources of the folder, relative to it.
-    package : tuple of str
-        Files of the installed libraries that complete it, relative to these.
-    links : mapping of str to str
-        The file behind each path below `libraries`; empty for an overlay.
-    """
-
-    folder: str
-    kind: str
+    folder: str  # as given, as an absolute path
+    kind: str  # WHOLE, PART or OVERLAY
+    # folder of MaterialX's libraries that a part stands for, such as "pbrlib/genglsl"; "" for all
     place: str
-    own: tuple[str, ...]
-    package: tuple[str, ...]
+    own: tuple[str, ...]  # documents and sources of the folder, relative to it
+    package: tuple[str, ...]  # files of the installed libraries that complete it, relative to these
+    # the file behind each path below `libraries`; empty for an overlay
     links: Mapping[str, str] = field(repr=False)
 
 
 def tree(library: str) -> Tree:
-    """The files of a folder that is a library.
-
-    Raises
-    ------
-    InputError
-        If it cannot be combined with the installed libraries.
-    """
+    """The files of a folder that is a library."""
     return _tree(os.path.abspath(library))
 
 
@@ -85,7 +69,7 @@ def _tree(folder: str) -> Tree:
             f"library {folder}: must be the folder with {', '.join(NEEDED)}; pass {folder}/libraries"
         )
     installed = {path: file for root in standard_folders() for path, file in _files(str(root))}
-    # A whole; a library that it has not at all, such as lights/, is the package's.
+    # In a whole, a library that it has not at all, such as lights/, is the package's.
     if all(os.path.isdir(os.path.join(folder, each)) for each in NEEDED):
         tops = {each.partition("/")[0] for each in own}
         missing = {
@@ -94,8 +78,8 @@ def _tree(folder: str) -> Tree:
             if path.endswith(FILES) and path.partition("/")[0] not in tops
         }
         return Tree(folder, WHOLE, "", named, tuple(missing), missing | own)
-    # A part, or an overlay; no source may look like another's replacement and be none.
     place = _place(folder, named, installed)
+    # No source may look like another's replacement and be none.
     known = {PurePosixPath(each).name: each for each in installed if each.endswith(CODE)}
     for each in named:
         other = known.get(PurePosixPath(each).name)
@@ -203,3 +187,122 @@ def in_words(library: str, text: str) -> str:
         for path, file in tree(library).links.items():
             text = text.replace(f"{laid}/libraries/{path}", file)
     return text
+
+
+INCLUDE = "#include"  # as MaterialX seeks it, for every target
+
+
+def read_source(path: AnyPath, limit: int) -> bytes:
+    """Content of a regular file; of one that is longer than the limit, one byte more."""
+    try:
+        with open(path, "rb", opener=regular) as file:
+            return file.read(limit + 1)
+    except OSError as error:
+        raise InputError(f"{path}: must be readable; {error.strerror}") from None
+
+
+def decode_source(data: bytes, path: AnyPath) -> str:
+    """Text of a file, with the ends of its lines as they are."""
+    try:
+        return data.decode()
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: must be text in UTF-8; byte {error.start} is not") from None
+
+
+def included(line: str) -> str:
+    """File that a line of source includes for MaterialX, or "": what its outer quotes hold.
+
+    Examples
+    --------
+    >>> included('#include "lib/mx_math.glsl"')
+    'lib/mx_math.glsl'
+    """
+    return line[line.index('"') + 1 : line.rindex('"')] if INCLUDE in line and '"' in line else ""
+
+
+LARGEST = 16 * 2**20  # bytes of a file
+
+
+def check_files(paths: Iterable[AnyPath]) -> None:
+    """Raise InputError unless each is a regular file of text in UTF-8, and no larger than LARGEST."""
+    for path in paths:
+        _text(path)
+
+
+def check_sources(document: mx.Document, library: str, search: mx.FileSearchPath) -> None:
+    """Check every source that a library's implementations in a document name, and all that it includes.
+
+    The library is given by its folder; MaterialX's own sources are looked for on the search path.
+    """
+    folder = Path(library)
+    parents = cache(lambda uri: Path(uri).parents)  # of few documents, for many implementations
+    waiting = [
+        (each.getFile(), parents(uri)[0])
+        for each in document.getImplementations()
+        if each.hasFile() and folder in parents(uri := each.getActiveSourceUri())
+    ]
+    known = set()
+    while waiting:
+        name, local = waiting.pop()
+        path = _find(search, name, local)
+        if path not in known and os.path.lexists(path):  # what is missing is told when it is used
+            known.add(path)
+            names = filter(None, map(included, _text(path).split("\n")))
+            waiting += [(each, Path(path).parent) for each in names]
+
+
+def read_options() -> mx.XmlReadOptions:
+    """Options by which MaterialX reads the documents of a library, and checks what they include."""
+    options = mx.XmlReadOptions()
+    options.readXIncludeFunction = _include
+    return options
+
+
+def _include(
+    document: mx.Document,
+    name: mx.FilePath,
+    path: mx.FileSearchPath,
+    options: mx.XmlReadOptions,  # knows the documents that include this one
+) -> None:
+    file = path.find(name)
+    _text(file.asString())
+    mx.readFromXmlFile(document, file, path, options)
+
+
+def _text(path: AnyPath) -> str:
+    """Text of a file of a library."""
+    data = read_source(path, LARGEST)
+    if len(data) > LARGEST:
+        raise InputError(f"{path}: must have at most {LARGEST} bytes")
+    return decode_source(data, path)
+
+
+def _find(search: mx.FileSearchPath, name: str, local: Path) -> str:
+    """Path that MaterialX finds for a source, or the name."""
+    path = mx.FileSearchPath(str(local))
+    path.append(search)
+    return str(path.find(name).getNormalized().asString())
+
+
+def check_definitions(
+    document: mx.Document, base: mx.Document, folders: Iterable[str], search: mx.FileSearchPath
+) -> None:
+    """Raise InputError if folders of definitions replace names or implementations of a library."""
+    for folder in folders:
+        check_sources(document, folder, search)
+        for each in document.getChildren():
+            file = each.getActiveSourceUri()
+            if Path(folder) in Path(file).parents and _replaces(each, base):
+                raise InputError(
+                    f"{file}: {each.getName()} must replace nothing of the library, which has it: "
+                    "give it another name, or load the folder by --library"
+                )
+
+
+def _replaces(element: mx.Element, base: mx.Document) -> bool:
+    """Whether a library has an element of that name, or an implementation of that node and target."""
+    if base.getChild(element.getName()):
+        return True
+    implements = element.isA(mx.Implementation) or element.isA(mx.NodeGraph)
+    definition = base.getNodeDef(element.getNodeDefString()) if implements else None
+    return bool(definition and definition.getImplementation(element.getTarget()))

@@ -175,24 +175,9 @@ def lobe_text(
     name: str = "lobe",
     types: Mapping[str, str] | None = None,
 ) -> str:
-    """XML of a BSDF node.
+    """XML of a BSDF node; `types` of its inputs for one that is not in BSDF_INPUTS.
 
-    Parameters
-    ----------
-    category : str
-        A category of BSDF_INPUTS, or one of DIFFUSE_NODES, unless `types` are given.
-    inputs : mapping of str to bool, float, str or a sequence of floats
-        Values by name. MaterialX ignores a normal that is not connected, so its value comes from a
-        node of its own; and a tangent likewise.
-    name : str
-        Name of the node.
-    types : mapping of str to str, or None
-        Type of each input by name; None for those of the category.
-
-    Raises
-    ------
-    KeyError
-        If there is no input of that name.
+    MaterialX ignores a normal or a tangent that is not connected: it comes from a node of its own.
     """
     kinds = input_types(category) if types is None else types
     text = constants = ""
@@ -207,15 +192,7 @@ def lobe_text(
 
 
 def document_text(nodes: str, name: str = "look") -> str:
-    """XML of a document with one material.
-
-    Parameters
-    ----------
-    nodes : str
-        XML of its nodes, of which `shading` is the material's surface shader.
-    name : str
-        Name of the material.
-    """
+    """XML of a document with one material, whose surface shader is the node `shading`."""
     return DOCUMENT.format(nodes=nodes, name=name)
 
 

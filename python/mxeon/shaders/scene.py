@@ -25,11 +25,6 @@ MOST_BOUNCES = 1024  # the most that Cycles takes
 class Paths:
     """The paths of light that a host traces for a picture; None for as many as the host finds enough.
 
-    Raises
-    ------
-    ValueError
-        If a number leaves its range.
-
     Examples
     --------
     >>> Paths(samples=64).bounces is None
@@ -48,35 +43,17 @@ class Paths:
 
 @dataclass(frozen=True)
 class Scene:
-    """A shape and a light on it.
+    """A shape and a light on it."""
 
-    Attributes
-    ----------
-    name : str
-        One lower-case word, used in file names.
-    light : tuple of 3 floats or None
-        Unit vector towards a distant light whose irradiance is pi, so that a pixel holds
-        pi f cos(theta_i), and a white Lambertian facing the light holds 1.
-    environment : float, Path or None
-        Radiance of a uniform environment, or a latitude-longitude image.
-    size : int
-        Width and height in pixels, in [1, LARGEST].
-    paths : Paths
-        For cycles and cycles-native; other hosts refuse any but the default.
-    shape : str
-        One of SHAPES: the unit sphere, or the shader ball, which gl and webgl draw.
-
-    Raises
-    ------
-    ValueError
-        If the size leaves its range, or the shape is unknown.
-    """
-
-    name: str
+    name: str  # one lower-case word, used in file names
+    # unit vector towards a distant light whose irradiance is pi, so that a pixel holds pi f
+    # cos(theta_i), and a white Lambertian facing the light holds 1
     light: tuple[float, float, float] | None = None
+    # radiance of a uniform environment, or a latitude-longitude image
     environment: float | Path | None = None
-    size: int = 256
-    paths: Paths = Paths()
+    size: int = 256  # width and height in pixels, in [1, LARGEST]
+    paths: Paths = Paths()  # for cycles and cycles-native; other hosts refuse any but the default
+    # one of SHAPES: the unit sphere, or the shader ball, which gl and webgl draw
     shape: str = "sphere"
 
     def __post_init__(self) -> None:
@@ -109,11 +86,6 @@ STUDIO = Scene("studio", BACK.light, Path(__file__).with_name("studio.exr"), sha
 def scene(name: str) -> Scene:
     """The scene with that name: one of SCENES, or STUDIO.
 
-    Raises
-    ------
-    ValueError
-        If there is none; lists the known ones.
-
     Examples
     --------
     >>> scene("furnace").environment
@@ -126,24 +98,14 @@ def scene(name: str) -> Scene:
 
 @dataclass(frozen=True)
 class VisiblePoints:
-    """The visible points of a shape, one per pixel center.
+    """The visible points of a shape, one per pixel center."""
 
-    Attributes
-    ----------
-    mask : ndarray of bool, shape (size, size)
-        Where the pixel center lies on the sphere.
-    position : ndarray, shape (size, size, 3)
-        Under the pixel center; outside the mask in the plane of the rim.
-    normal : ndarray, shape (size, size, 3)
-        Outward unit normal, the same as the position; that of the nearest point of the rim outside
-        the mask.
-    texcoord : ndarray, shape (size, size, 2)
-        Latitude-longitude coordinates in [0, 1], (0.5, 0.5) facing the viewer, v upwards.
-    """
-
-    mask: NDArray[np.bool_]
-    position: Floats
+    mask: NDArray[np.bool_]  # where the pixel center lies on the sphere
+    position: Floats  # under the pixel center; outside the mask in the plane of the rim
+    # outward unit normal, the same as the position; that of the nearest point of the rim outside
+    # the mask
     normal: Floats
+    # latitude-longitude coordinates in [0, 1], (0.5, 0.5) facing the viewer, v upwards
     texcoord: Floats
 
 

@@ -49,14 +49,12 @@ def _cylinder(points: Floats, radius: float, height: float) -> Floats:
 def distance(points: Floats) -> Floats:
     """Signed distance of points (..., 3) of the picture's frame from the shader ball; at most that."""
     upright = points @ OBJECT.T
-    # Cut the grooves into the ball.
     inside = (upright - CENTER) @ BELT.T
     radius = np.linalg.norm(inside, axis=-1)
     across = np.hypot(inside[..., 0], inside[..., 2])
     ring = np.sqrt(RADIUS**2 - BELT_HEIGHT**2)
     groove = np.hypot(across - ring, np.abs(inside[..., 1]) - BELT_HEIGHT) - GROOVE
     ball = np.maximum(radius - RADIUS, -groove)
-    # Put it on a foot.
     foot = _cylinder(upright - [0.0, -0.6, 0.0], FOOT_RADIUS, FOOT_HEIGHT)
     nearest: Floats = np.minimum(ball, foot)
     return nearest
@@ -65,7 +63,6 @@ def distance(points: Floats) -> Floats:
 @lru_cache(maxsize=2)
 def shader_ball(size: int, margin: int = 0) -> VisiblePoints:
     """Visible points of the shader ball, one per pixel center; arguments as those of `sphere`."""
-    # Let a ray of each pixel run until it meets the surface.
     axis = (2.0 * np.arange(-margin, size + margin) + 1.0) / size - 1.0
     x, y = np.meshgrid(axis, -axis)
     points = np.stack([x, y, np.full_like(x, NEAR)], axis=-1)
@@ -77,12 +74,10 @@ def shader_ball(size: int, margin: int = 0) -> VisiblePoints:
         mask[running] = step < CLOSE
         running = running[(step >= CLOSE) & (rays[running, 2] > FAR)]
     mask = mask.reshape(x.shape)
-    # Differentiate the distance for the normals.
     gradient = [distance(points + each) - distance(points - each) for each in STEP * np.eye(3)]
     normal = np.stack(gradient, axis=-1)
     normal /= np.maximum(np.linalg.norm(normal, axis=-1, keepdims=True), STEP**2)
     normal[~mask] = 0.0, 0.0, 1.0
-    # Find texture coordinates by the direction from the middle of the ball.
     outward = points @ OBJECT.T - CENTER
     u = 0.5 + np.arctan2(outward[..., 0], outward[..., 2]) / (2.0 * np.pi)
     v = 0.5 + np.arctan2(outward[..., 1], np.hypot(outward[..., 0], outward[..., 2])) / np.pi

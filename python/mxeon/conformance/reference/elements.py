@@ -18,7 +18,7 @@ from mxeon.conformance.reference.points import ShadingPoints
 from mxeon.errors import NotRun
 from mxeon.hosts.textures import read_texture
 from mxeon.io.srgb import srgb_decoded
-from mxeon.shaders.color_spaces import color_spaces
+from mxeon.shaders.document.values import color_spaces
 
 Path: TypeAlias = tuple[str, ...]  # of a node: names of the nodegraphs around it, and its own
 

@@ -22,9 +22,8 @@ from mxeon.jobs import TIMEOUT, WAIT, check_timeout, dask, pool
 from mxeon.jobs.pool import by_group
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.generation import TARGETS, check_generator
-from mxeon.shaders.library import library_name
+from mxeon.shaders.library import library_name, untested
 from mxeon.shaders.library_tree import root
-from mxeon.shaders.versions import untested
 
 __all__ = ["check", "read_run", "to_run", "work"]
 

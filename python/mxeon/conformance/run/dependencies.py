@@ -18,9 +18,9 @@ from pathlib import Path
 import mxeon
 from mxeon.errors import DocumentError
 from mxeon.io.files import regular
-from mxeon.shaders.document.encoding import decode, strict
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.references import inside
+from mxeon.shaders.document.xml import decode, strict
 from mxeon.shaders.library import (
     SOURCE_FOLDERS,
     documents_folder,

@@ -1,9 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Directed graphs as mappings from each key to its parts, walked without recursion."""
+"""Limits on the number of nodes in a document's shaders, and on their depth, before generation.
 
-from collections.abc import Callable, Hashable, Iterable, Mapping
-from graphlib import TopologicalSorter
+MaterialX writes a nodegraph once, however often it is used; a compiler copies it to each place. So
+nodes are counted as often as they are used, by weights, without visiting them as often. A graph is a
+mapping from each key to its parts. Nothing here recurses, as depth is not known before.
+"""
+
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+from graphlib import CycleError, TopologicalSorter
 from typing import TypeVar
+
+import MaterialX as mx
+
+from mxeon.errors import DocumentError
+from mxeon.shaders.document.policy import Policy
+from mxeon.shaders.document.values import label, location
 
 Key = TypeVar("Key", bound=Hashable)
 Graph = Mapping[Key, Iterable[Key]]
@@ -12,13 +23,7 @@ Graph = Mapping[Key, Iterable[Key]]
 def reachable(
     roots: Iterable[Key], parts: Callable[[Key], Iterable[Key] | None]
 ) -> dict[Key, tuple[Key, ...]]:
-    """Graph of all keys that the roots lead to.
-
-    Parameters
-    ----------
-    roots : iterable of hashable
-    parts : callable
-        Parts of a key; None where it has none.
+    """Graph of all keys that the roots lead to; the parts of a key may be None.
 
     Examples
     --------
@@ -36,26 +41,138 @@ def reachable(
 
 
 def parts_first(graph: Graph[Key]) -> tuple[Key, ...]:
-    """Keys of a graph, each after its parts.
-
-    Raises
-    ------
-    graphlib.CycleError
-        If a key leads back to itself; its second argument holds the cycle.
-    """
+    """Keys of a graph, each after its parts; CycleError holds a cycle as its second argument."""
     return tuple(TopologicalSorter(graph).static_order())
 
 
 def heights(graph: Graph[Key], order: Iterable[Key]) -> dict[Key, int]:
-    """Number of keys on the longest path from each key to one without parts, both included.
-
-    Parameters
-    ----------
-    graph : mapping of key to keys
-    order : iterable of key
-        As `parts_first` returns it.
-    """
+    """Number of keys on the longest path from each key to one without parts, both included."""
     height: dict[Key, int] = {}
     for key in order:
         height[key] = 1 + max((height[part] for part in graph[key]), default=0)
     return height
+
+
+def check_shaders(
+    document: mx.Document, elements: Sequence[mx.TypedElement], policy: Policy
+) -> int:
+    """Number of nodes in the shaders of renderable elements; DocumentError if they exceed a limit.
+
+    Refused are nodes and nodegraphs that lead back to themselves, and too many of them, or of
+    their inputs: in all, in a row or within each other.
+    """
+    title, rule = label(document), f"{label(document)}: must have"
+    weights, total, ports = _Weights(document, policy), 0, 0
+    policy.check_limit("shaders", len(elements), rule, "renderable elements")
+    for element in elements:
+        graph = reachable([element.getNamePath()], lambda path: _upstream(document, path))
+        order = _ordered(graph, f"{title}: node", "be upstream of itself")
+        longest = max(heights(graph, order).values())
+        policy.check_limit("chain", longest, rule, "nodes in a row")
+        for path in order:
+            definition = _definition(document.getDescendant(path))
+            total += weights[definition]
+            ports += _inputs(document.getNodeDef(definition))
+        ports += _inputs(element.getParent())
+        policy.check_limit("ports", ports, rule, "inputs of nodes in all its shaders")
+        policy.check_limit("nodes", total, rule, "nodes in all its shaders")
+    return total
+
+
+def upstream(
+    document: mx.Document, elements: Iterable[mx.Element], roots: Iterable[mx.Element]
+) -> list[mx.Node]:
+    """Nodes among a document's elements that lead to some of them, these included."""
+    start = [each.getNamePath() for each in roots]
+    paths = reachable(start, lambda path: _upstream(document, path))
+    nodes = (each for each in elements if each.isA(mx.Node))
+    return [each for each in nodes if each.getNamePath() in paths]
+
+
+def check_inheritance(document: mx.Document, policy: Policy) -> None:
+    """Raise DocumentError for inheritance cycles and for chains longer than the limit."""
+    parents = {
+        each.getName(): (each.getAttribute("inherit"),)
+        for each in document.getChildren()
+        if each.hasAttribute("inherit")
+    }
+    graph = reachable(parents, parents.get)
+    order = _ordered(graph, f"{label(document)}: definition", "inherit itself")
+    deepest = max(heights(graph, order).values(), default=0)
+    rule = f"{label(document)}: must have"
+    policy.check_limit("depth", deepest, rule, "definitions that inherit each other")
+
+
+def check_interfaces(document: mx.Document, elements: Sequence[mx.Element], policy: Policy) -> None:
+    """Raise DocumentError if an element has too many inputs, or there are too many tokens."""
+    widest = max(elements, key=_inputs)
+    policy.check_limit("inputs", _inputs(widest), f"{location(widest)} must have", "inputs")
+    tokens = sum(element.isA(mx.Token) for element in elements)
+    policy.check_limit("tokens", tokens, f"{label(document)}: must have", "tokens")
+
+
+class _Weights(dict[str, int]):
+    """Number of nodes that a node stands for, by the name of its nodedef."""
+
+    def __init__(self, document: mx.Document, policy: Policy) -> None:
+        self._document, self._policy = document, policy
+
+    def __missing__(self, name: str) -> int:
+        title = label(self._document)
+        graph = reachable([name], self._parts)
+        order = _ordered(graph, f"{title}: nodedef", "contain itself")
+        deepest = max(heights(graph, order).values())
+        rule = f"{title}: must have"
+        self._policy.check_limit("depth", deepest, rule, "nodegraphs within each other")
+        for part in order:
+            self[part] = 1 + sum(self[each] for each in graph[part])
+        return self[name]
+
+    def _parts(self, name: str) -> list[str]:
+        """Nodedefs of all nodes in the graphs that implement a nodedef."""
+        nodedef = self._document.getNodeDef(name)
+        if not nodedef:
+            return []
+        names = dict.fromkeys((name, nodedef.getQualifiedName(name)))
+        matching = [
+            each for key in names for each in self._document.getMatchingImplementations(key)
+        ]
+        graphs = (self._graph(each) for each in matching)
+        return [_definition(node) for graph in graphs if graph for node in graph.getNodes()]
+
+    def _graph(self, implementation: mx.InterfaceElement) -> mx.NodeGraph | None:
+        if implementation.isA(mx.NodeGraph):
+            return implementation
+        return self._document.getNodeGraph(implementation.getAttribute("nodegraph"))
+
+
+def _ordered(graph: Mapping[str, tuple[str, ...]], kind: str, rule: str) -> tuple[str, ...]:
+    """Keys of a graph, each after its parts; a cycle is a DocumentError."""
+    try:
+        return parts_first(graph)
+    except CycleError as error:
+        raise DocumentError(f'{kind} "{min(error.args[1])}" must not {rule}') from None
+
+
+def _upstream(document: mx.Document, path: str) -> list[str]:
+    """Name paths of the nodes that an element is connected to."""
+    element = document.getDescendant(path)
+    ports = [element] if element.isA(mx.Output) else element.getInputs()
+    nodes = map(_connected, ports)
+    return [node.getNamePath() for node in nodes if node]
+
+
+def _connected(port: mx.PortElement) -> mx.Node | None:
+    if port.isA(mx.Input) and port.hasInterfaceName():
+        port = port.getInterfaceInput()
+    return port.getConnectedNode() if port else None
+
+
+def _definition(element: mx.Element) -> str:
+    definition = element.getNodeDef() if element.isA(mx.Node) else None
+    return definition.getName() if definition else ""
+
+
+def _inputs(element: mx.Element | None) -> int:
+    """Number of an element's inputs; 0 for one that cannot have any."""
+    return element.getInputCount() if element and element.isA(mx.InterfaceElement) else 0

@@ -10,10 +10,8 @@ from typing import cast
 import MaterialX as mx
 
 from mxeon.errors import DocumentError, one_line
-from mxeon.shaders.color_spaces import color_spaces
-from mxeon.shaders.document.labels import label, location
 from mxeon.shaders.document.references import foreign_code, missing_fault
-from mxeon.shaders.document.values import NUMERIC, is_exact, plain
+from mxeon.shaders.document.values import NUMERIC, color_spaces, is_exact, label, location, plain
 from mxeon.shaders.nodes import DIFFUSE_NODES, FLAG, OREN_NAYAR
 
 COLORED = ("color3", "color4", "filename")
@@ -44,21 +42,7 @@ def numbers(element: mx.ValueElement) -> tuple[float, ...]:
 
 
 def warn_of_elements(document: mx.Document, elements: Iterable[mx.Element]) -> None:
-    """Warn of values that MaterialX reads otherwise than written or that leave a model's range.
-
-    Parameters
-    ----------
-    document : MaterialX.Document
-    elements : iterable of MaterialX.Element
-        All of the document.
-
-    Warns
-    -----
-    DocumentWarning
-        Once for each kind.
-    CodeWarning
-        If the document brings shader code of its own.
-    """
+    """Warn of values that MaterialX reads otherwise than written or that leave a model's range; and of code."""
     values = [each for each in elements if each.isA(mx.ValueElement) and each.getValueString()]
     for note in (_misread, _out_of_range, _unknown_space):
         _warn(DocumentWarning, [text for text in map(note, values) if text])
@@ -68,19 +52,7 @@ def warn_of_elements(document: mx.Document, elements: Iterable[mx.Element]) -> N
 
 
 def warn_of_files(inputs: Iterable[tuple[str, str]], document: mx.Document) -> None:
-    """Warn of files that do not exist.
-
-    Parameters
-    ----------
-    inputs : iterable of (str, str)
-        Name path of an input and the file that it names.
-    document : MaterialX.Document
-
-    Warns
-    -----
-    MissingFileWarning
-        Once.
-    """
+    """Warn of files that do not exist."""
     texts = [missing_fault(document, path, name) for path, name in dict(inputs).items()]
     if missing := tuple(filter(None, texts)):
         warnings.warn(MissingFileWarning(*missing), stacklevel=3)
@@ -112,13 +84,7 @@ def _inputs(node: mx.Node) -> set[tuple[str, str]]:
 
 
 def warn_of_names(elements: Iterable[mx.Element], document: mx.Document) -> None:
-    """Warn of nodes whose inputs are taken for those of another.
-
-    Warns
-    -----
-    DocumentWarning
-        Once.
-    """
+    """Warn of nodes whose inputs are taken for those of another."""
     if not any(each.isA(mx.NodeGraph) for each in document.getChildren()):
         return  # within one graph no two nodes have one name
     pairs = dict.fromkeys(pair for element in elements for pair in same_names(element))

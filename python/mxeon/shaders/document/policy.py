@@ -130,16 +130,7 @@ class Policy:
                 raise InputError(f"{name} must be at least 0; got {getattr(self, name)}")
 
     def check_limit(self, name: str, value: int, rule: str, unit: str) -> None:
-        """Raise DocumentError if a value exceeds a limit.
-
-        Parameters
-        ----------
-        name : str
-            One of LIMITS.
-        value : int
-        rule, unit : str
-            The message begins with the rule and says "at most", the limit and its unit.
-        """
+        """Raise DocumentError if a value exceeds a limit."""
         limit = getattr(self, name)
         if value > limit:
             raise DocumentError(

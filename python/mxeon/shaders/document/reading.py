@@ -19,14 +19,12 @@ import MaterialX.PyMaterialXGenShader as mx_gen
 from mxeon.errors import DocumentError
 from mxeon.io.files import AnyPath
 from mxeon.names import meant
-from mxeon.shaders.document.encoding import decode, strict
-from mxeon.shaders.document.graph_size import (
+from mxeon.shaders.document.graphs import (
     check_inheritance,
     check_interfaces,
     check_shaders,
     upstream,
 )
-from mxeon.shaders.document.labels import TEXT, label, location
 from mxeon.shaders.document.notes import DocumentWarning, numbers, warn_of_elements
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.document.references import (
@@ -37,9 +35,9 @@ from mxeon.shaders.document.references import (
     folder,
     missing_fault,
 )
-from mxeon.shaders.document.values import NUMERIC
+from mxeon.shaders.document.values import NUMERIC, TEXT, label, location
 from mxeon.shaders.document.words import word_faults
-from mxeon.shaders.document.xml import XmlChecker
+from mxeon.shaders.document.xml import XmlChecker, decode, strict
 from mxeon.shaders.library import load_library
 
 __all__ = ["Document", "DocumentError", "DocumentWarning", "read_document"]
@@ -50,24 +48,12 @@ ALIKE = 0.85  # of names of nodes, which end alike
 
 @dataclass(frozen=True)
 class Document:
-    """A checked document.
+    """A checked document."""
 
-    Attributes
-    ----------
-    content : MaterialX.Document
-        With its data library attached.
-    renderables : tuple of MaterialX.TypedElement
-        Its renderable elements; at least one.
-    nodes : int
-        Number of nodes in their shaders, nodegraphs counted wherever they are used.
-    missing : tuple of str
-        A line for each file that they name and that does not exist.
-    """
-
-    content: mx.Document
-    renderables: tuple[mx.TypedElement, ...]
-    nodes: int
-    missing: tuple[str, ...] = ()
+    content: mx.Document  # with its data library attached
+    renderables: tuple[mx.TypedElement, ...]  # at least one
+    nodes: int  # in their shaders, nodegraphs counted wherever they are used
+    missing: tuple[str, ...] = ()  # a line for each file that they name and that does not exist
 
 
 def read_document(
@@ -78,37 +64,10 @@ def read_document(
 ) -> Document:
     """A checked MaterialX document with its data library attached.
 
-    Parameters
-    ----------
-    source : path-like, str or MaterialX.Document
-        A file; or XML text, a str that begins with `<` and names no file; or a document, which is
-        copied. XIncludes and relative file names are looked for in the folder of the file, or the
-        working folder, and then on the policy's search path.
-    library, profile : str
-        See `mxeon.shaders.library.load_library`.
-    policy : Policy
-        Permissions, limits and search path.
-
-    Returns
-    -------
-    Document
-
-    Raises
-    ------
-    DocumentError
-        If it cannot be read, is not MaterialX, comes from a later version, includes itself or exceeds
-        a limit. With all of its faults, if it breaks MaterialX's rules, contains a number that is not
-        finite, needs a permission that the policy does not give, or has no renderable element.
-
-    Warns
-    -----
-    DocumentWarning
-        If MaterialX reads a number otherwise than written, a value leaves the range of its model, or
-        a color space has no transform: once each, for the first place.
-    CodeWarning
-        If it brings shader code of its own.
+    The source is a file; XML text, a str that begins with `<` and names no file; or a document, which is
+    copied. XIncludes and relative file names are looked for in the folder of the file, or the working
+    folder, and then on the policy's search path. DocumentError lists all faults of the elements.
     """
-    # Read the source, with all that it includes.
     data = load_library(library, profile, policy.definitions)
     content = mx.createDocument()
     if isinstance(source, mx.Document):
@@ -121,7 +80,6 @@ def read_document(
         _Reader(policy, Path(source).resolve().parent).read_file(content, str(source))
     else:
         raise DocumentError(f"document must be a readable file; got {str(source)!r}")
-    # Check what the content says.
     elements = tuple(content.traverseTree())
     _check_tokens(elements)
     _resolve_files(content, elements, [folder(content), *map(Path, policy.path)])
@@ -141,7 +99,6 @@ def read_document(
             f"{label(content)}: must contain a renderable element (a surfacematerial, a surface "
             "shader or an output of one); there is none"
         )
-    # Limit what shaders would grow from it.
     nodes = check_shaders(content, renderables, policy)
     warn_of_elements(content, elements)
     return Document(content, renderables, nodes, missing)
@@ -187,14 +144,7 @@ def _check_path(source: AnyPath) -> None:
 
 
 class _Reader:
-    """Reader of a document and its includes, whose text is checked before MaterialX reads it.
-
-    Parameters
-    ----------
-    policy : Policy
-    home : Path
-        The folder of the document.
-    """
+    """Reader of a document and its includes, whose text is checked before MaterialX reads it."""
 
     def __init__(self, policy: Policy, home: Path) -> None:
         self._policy, self._home = policy, home
@@ -217,17 +167,14 @@ class _Reader:
         self._parse(document, data.decode().removeprefix("\ufeff"), TEXT)
 
     def _parse(self, document: mx.Document, text: str, title: str) -> None:
-        # Check the text before MaterialX sees it.
         text = strict(text)
         self._checker.check(text, title)
 
-        # Let MaterialX ask for each file that it includes.
         def include(part: mx.Document, name: mx.FilePath, *_: object) -> None:
             self._include(part, name.asString(), title)
 
         options = mx.XmlReadOptions()
         options.readXIncludeFunction = include
-        # Parse it.
         try:
             mx.readFromXmlString(document, text, mx.FileSearchPath(), options)
         except (*ERRORS, mx.ExceptionParseError) as error:
@@ -237,19 +184,16 @@ class _Reader:
 
     def _include(self, document: mx.Document, name: str, title: str) -> None:
         """Read a file that the document `title` includes, by its real path."""
-        # Find the file.
         base = self._home if title == TEXT else Path(title).parent
         folders = [base, self._home, *map(Path, self._policy.path)]
         paths = [os.path.realpath(each / name) for each in folders]
         path, rule = next(filter(os.path.isfile, paths), paths[0]), f"{title}: include must"
-        # Refuse what lies outside, repeats itself, or is missing.
         check_inside(path, self._home, self._policy, f"{title}: include")
         if path in self._open:
             raise DocumentError(f"{rule} not lead back to the same document; got {name}")
         self._policy.check_limit("includes", len(self._open), f"{rule} be", "in a row")
         if not os.path.isfile(path):
             raise DocumentError(f"{rule} name a file that exists; got {name}")
-        # Read it.
         self.read_file(document, path)
 
 
@@ -278,14 +222,13 @@ def _types(document: mx.Document) -> Iterator[str]:
 
 def _faults(document: mx.Document, elements: Iterable[mx.Element], policy: Policy) -> Iterator[str]:
     """Wrong values, and rules of MaterialX's own that are broken: it would take defaults silently."""
-    # Values, whose elements MaterialX need not name again.
     told = set()
     for each in elements:
         written = each.isA(mx.ValueElement) and each.getValueString()
         if written and (fault := _value_fault(each, policy)):
             told.add(each.asString())
             yield fault
-    # Its own rules. It names one wrong input of a node, without the one that was meant.
+    # MaterialX names one wrong input of a node, without the one that was meant.
     try:
         valid, message = document.validate()
     except ERRORS as error:

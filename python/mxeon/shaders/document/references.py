@@ -12,8 +12,8 @@ import MaterialX as mx
 
 from mxeon.errors import DocumentError
 from mxeon.io.files import AnyPath
-from mxeon.shaders.document.labels import label, location
 from mxeon.shaders.document.policy import Policy
+from mxeon.shaders.document.values import label, location
 from mxeon.shaders.document.words import ENDS_A_STRING
 from mxeon.shaders.library import SOURCE_FOLDERS, eonlib_folder, source_folder
 from mxeon.shaders.library_tree import roots
@@ -35,16 +35,7 @@ def inside(path: AnyPath, home: Path, others: Iterable[str] = ()) -> bool:
 
 
 def check_inside(path: AnyPath, home: Path, policy: Policy, prefix: str) -> None:
-    """Raise DocumentError unless a document in the folder `home` may name that file.
-
-    Parameters
-    ----------
-    path : path-like
-    home : Path
-    policy : Policy
-    prefix : str
-        Beginning of the message: which part of the document names the file.
-    """
+    """Raise DocumentError unless a document in the folder `home` may name that file."""
     if not policy.outside and not inside(path, home, policy.path):
         raise DocumentError(
             f"{prefix} must name a file in {home}, on the search path or in the libraries; got "

@@ -18,13 +18,13 @@ import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
 
 from mxeon.errors import DocumentError, InputError
-from mxeon.shaders.document.labels import label, location
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.references import check_inside, folder, foreign_code, library_path
-from mxeon.shaders.source_text import decode_source, included, read_source
+from mxeon.shaders.document.values import label, location
+from mxeon.shaders.library_tree import decode_source, included, read_source
 
 UNREAD = "genmdl"  # whose generator makes the name of a module from `file`, and opens nothing
-TOKEN = re.compile(r"\$[a-zA-Z0-9]+")  # word of an include in whose place a generator has a name
+TOKEN = re.compile(r"\$[a-zA-Z0-9]+")  # word of an include that a generator replaces by a name
 
 
 @contextmanager
@@ -36,27 +36,14 @@ def copied_sources(
 ) -> Iterator["Sources"]:
     """Let the implementations of a document take copies of their sources while the block runs.
 
-    Parameters
-    ----------
-    document : MaterialX.Document
-    context : MaterialX.PyMaterialXGenShader.GenContext
-        Of the target; it finds files as the generator will.
-    policy : Policy
-    tokens : callable () -> mapping of str to str
-        What the generator puts in place of words of an include.
-
-    Raises
-    ------
-    DocumentError
-        If a source of that target lies where the document may name no files, is no regular file of
-        text in UTF-8, or exceeds a limit, or one that it includes.
+    `tokens` returns the names that the generator writes for words of an include. DocumentError if a source
+    of that target, or one that it includes, lies where the document may name no files, is no regular file
+    of text in UTF-8, or exceeds a limit.
     """
-    # Find the sources that the document brings.
     target = context.getShaderGenerator().getTarget()
     code = [] if target == UNREAD else foreign_code(document)
     files = [(each, each.getFile()) for each in code if each.hasFile()]
     with TemporaryDirectory(prefix="mxeon-sources-") if files else nullcontext("") as copies:
-        # Name copies in their place, and the files again afterwards.
         sources = Sources(document, context, policy, copies, tokens)
         try:
             for element, _ in files:
@@ -75,19 +62,7 @@ def _is_for(element: mx.Implementation, target: str) -> bool:
 
 
 class Sources:
-    """Copies of the sources of one document, for one target.
-
-    Parameters
-    ----------
-    document : MaterialX.Document
-    context : MaterialX.PyMaterialXGenShader.GenContext
-        Finds the files as MaterialX will.
-    policy : Policy
-    copies : path-like
-        Folder of the copies.
-    tokens : callable () -> mapping of str to str
-        What the generator puts in place of words of includes.
-    """
+    """Copies of the sources of one document, for one target."""
 
     def __init__(
         self,
@@ -140,13 +115,11 @@ class Sources:
 
     def _new_copy(self, name: str, local: str, title: str, depth: int | None) -> str:
         """Path of the copy of a file that has another name than those before."""
-        # Leave what belongs to MaterialX.
         path = os.path.abspath(self._resolved(name, local))
         if "\0" in path:  # where the system ends the name, and MaterialX does not
             return self.missing()
         if library := library_path(path):
             return library
-        # Copy what is new.
         if path not in self._copies:
             copy = str(self._folder / f"{len(self._copies)}.txt")
             self._copies[path], self._names[copy] = copy, name
@@ -158,7 +131,6 @@ class Sources:
     def _write(self, copy: str, path: str, depth: int | None) -> None:
         """Check a file, and all that it includes, and write its copy."""
         rule, title = f"{path}: must", label(self._document)
-        # Read it within the limits.
         self._policy.check_limit("includes", depth or 0, f"{rule} be included by", "files in a row")
         try:
             data = read_source(path, self._policy.size - self._size)
@@ -168,7 +140,6 @@ class Sources:
             text = decode_source(data, path)
         except InputError as error:
             raise DocumentError(f"{title}: source {error}") from None
-        # Write it, with its includes.
         if depth is None:
             self._expressions = max(self._expressions, len(text))
         else:

@@ -1,11 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values of MaterialX as plain Python values, and whether their text is what MaterialX reads."""
+"""Elements of a document: their names in messages, their values in Python, and their color spaces."""
 
 import re
 from collections.abc import Iterable
 from typing import TypeAlias, cast
 
 import MaterialX as mx
+
+TEXT = "document text"
+
+
+def label(document: mx.Document) -> str:
+    """File that a document was read from, or TEXT."""
+    return document.getSourceUri() or TEXT
+
+
+def location(element: mx.Element) -> str:
+    """Document, category and name path of an element."""
+    return f'{label(element.getDocument())}: {element.getCategory()} "{element.getNamePath()}"'
+
 
 # How numbers are written. MaterialX reads as much of a word as is one and ignores the rest.
 FLOAT = re.compile(r"\s*[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?\s*", re.ASCII | re.IGNORECASE)
@@ -20,19 +33,10 @@ Plain: TypeAlias = "bool | int | float | str | tuple[Plain, ...] | None"
 
 
 def plain(value: object, document: mx.Document) -> Plain:
-    """A value of any type of MaterialX as a plain Python value.
+    """A value of any type of MaterialX, or its data, as a plain Python value.
 
-    Parameters
-    ----------
-    value : MaterialX.Value, its data, or None
-    document : MaterialX.Document
-        Defines the types of structures, itself or by its data library.
-
-    Returns
-    -------
-    bool, int, float, str, tuple or None
-        A color, a vector or an array is the tuple of its parts; a matrix that of its numbers, row
-        after row, as documents write it; a structure that of its members' plain values, in order.
+    A color, a vector or an array is the tuple of its parts; a matrix that of its numbers, row after row,
+    as documents write it; a structure that of its members' plain values, in order.
     """
     if isinstance(value, mx.Value):
         if not hasattr(value, "getData"):  # of structures Python sees the text alone
@@ -82,3 +86,36 @@ def _parts(text: str) -> list[str]:
         else:
             parts[-1] += sign
     return parts
+
+
+# Names that MaterialX's own color management takes for others; source: DefaultColorManagementSystem.cpp.
+LEGACY = {
+    "gamma18": "g18_rec709",
+    "gamma22": "g22_rec709",
+    "gamma24": "rec709_display",
+    "lin_ap1": "acescg",
+}
+# Those of the Color Interop Forum, from the version on that knows them.
+INTEROP_VERSION = (1, 39, 4)
+INTEROP = {
+    "lin_ap1_scene": "acescg",
+    "lin_rec709_scene": "lin_rec709",
+    "lin_p3d65_scene": "lin_displayp3",
+    "lin_adobergb_scene": "lin_adobergb",
+    "srgb_rec709_scene": "srgb_texture",
+    "g22_rec709_scene": "g22_rec709",
+    "g18_rec709_scene": "g18_rec709",
+    "g22_ap1_scene": "g22_ap1",
+    "srgb_p3d65_scene": "srgb_displayp3",
+    "g22_adobergb_scene": "adobergb",
+}
+
+
+def color_spaces(element: mx.Element) -> tuple[str, str] | None:
+    """Color space of an element and of its document; None if MaterialX leaves its values alone."""
+    known = LEGACY | (INTEROP if mx.getVersionIntegers() >= INTEROP_VERSION else {})
+    space, target = (
+        known.get(name, name)
+        for name in (element.getActiveColorSpace(), element.getDocument().getColorSpace())
+    )
+    return None if {"", "none"} & {space, target} or space == target else (space, target)

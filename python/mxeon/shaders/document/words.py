@@ -14,31 +14,14 @@ from functools import cache
 import MaterialX as mx
 
 from mxeon.shaders.document.graphs import reachable
-from mxeon.shaders.document.labels import location
+from mxeon.shaders.document.values import location
 
 # Attributes that are names, or become part of one: identifiers, with `:` between namespaces.
 NAMES = frozenset(
-    [
-        "defaultgeomprop",
-        "function",
-        "geomprop",
-        "implname",
-        "impltype",
-        "index",
-        "inherit",
-        "interfacename",
-        "namespace",
-        "node",
-        "nodedef",
-        "nodegraph",
-        "nodename",
-        "output",
-        "semantic",
-        "space",
-        "type",
-        "unit",
-        "unittype",
-    ]
+    """
+    defaultgeomprop function geomprop implname impltype index inherit interfacename namespace node
+    nodedef nodegraph nodename output semantic space type unit unittype
+    """.split()  # noqa: SIM905
 )
 # Attributes of MaterialX that are text, and stand between quotes where they reach source at all.
 TEXTS = frozenset(
@@ -46,18 +29,9 @@ TEXTS = frozenset(
 )
 STRINGS = ("string", "stringarray", "geomname", "geomnamearray")
 NUMBERS = frozenset(
-    [
-        "float",
-        "integer",
-        "boolean",
-        "color3",
-        "color4",
-        "vector2",
-        "vector3",
-        "vector4",
-        "matrix33",
-        "matrix44",
-    ]
+    """
+    float integer boolean color3 color4 vector2 vector3 vector4 matrix33 matrix44
+    """.split()  # noqa: SIM905
 )
 
 NAME = re.compile(r"[\w:]*", re.ASCII)

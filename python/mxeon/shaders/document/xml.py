@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of a document's text before MaterialX reads it.
+"""Text of a document: decoded as MaterialX reads it, made XML, and checked before MaterialX reads it.
 
+MaterialX takes more than XML allows: `<` and `&` in attributes, `--` in comments, a declaration
+after blank lines. Here that becomes XML, once, so that the checked text is the text that is read.
 MaterialX keeps what it reads in memory and follows every include at once, so size, depth and
 number are counted here, by a parser that keeps nothing.
 """
 
+import codecs
 import os
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import NoReturn
@@ -15,16 +19,93 @@ from mxeon.errors import STEERING, DocumentError
 from mxeon.io.files import AnyPath
 from mxeon.shaders.document.policy import Policy
 
+# First bytes of a document and their encoding, in the order in which MaterialX compares.
+STARTS = (
+    (codecs.BOM_UTF32_BE, "utf-32-be"),
+    (codecs.BOM_UTF32_LE, "utf-32-le"),
+    (codecs.BOM_UTF16_BE, "utf-16-be"),
+    (codecs.BOM_UTF16_LE, "utf-16-le"),
+    (b"\0\0\0<", "utf-32-be"),
+    (b"<\0\0\0", "utf-32-le"),
+    (b"\0<", "utf-16-be"),
+    (b"<\0", "utf-16-le"),
+)
+LONGEST_DECLARATION = 65_536  # bytes
+DECLARED = re.compile(r"\s*<\?xml\s[^>]*?\sencoding\s*=\s*[\"']([^\"']*)[\"']")
+DECODED = re.compile(r"utf-?(8|16|32)([bl]e|-[bl]e)?", re.IGNORECASE)
+LATIN = ("iso-8859-1", "latin1")
+ASCII = rb'<x a="+AGE-\x41~{.xn--a">'  # characters that some encodings read otherwise
+
+PIECE = re.compile(
+    r"<!--.*?(?:-->|\Z)"
+    r"|<!\[CDATA\[.*?(?:\]\]>|\Z)"
+    r"|<\?.*?(?:\?>|\Z)"
+    r"|<[^!?<>\"'](?:[^\"'<>]|\"[^\"]*\"|'[^']*')*+>",
+    re.DOTALL,
+)
+QUOTED = re.compile(r"\"[^\"]*\"|'[^']*'")
+AMPERSAND = re.compile(r"&(?!(?:lt|gt|amp|quot|apos|#[0-9]+|#x[0-9a-fA-F]+);)")
+
+
+def decode(data: bytes, location: str) -> str:
+    """Text of a document from its bytes, as MaterialX decodes it.
+
+    DocumentError unless it is in UTF-8, UTF-16, UTF-32 or ISO-8859-1, or in ASCII under any name of an
+    encoding that has it.
+    """
+    encoding = next((name for start, name in STARTS if data.startswith(start)), "utf-8")
+    if data.startswith(b"<?xml"):
+        declared = DECLARED.match(data[:LONGEST_DECLARATION].decode("latin-1"))
+        if declared and declared[1].lower() in LATIN:
+            encoding = "iso-8859-1"
+    try:
+        text = data.decode(encoding).removeprefix("\ufeff")
+    except UnicodeDecodeError as error:
+        raise DocumentError(
+            f"{location}: must be a MaterialX document in {encoding.upper()}; {error.reason} at byte "
+            f"{error.start}"
+        ) from None
+    if declared := DECLARED.match(text[:LONGEST_DECLARATION]):
+        _check_declared(declared[1], text, location)
+    return text
+
+
+def strict(text: str) -> str:
+    """A document's text as XML without comments and declaration; its lines keep their numbers."""
+    return PIECE.sub(_strict_piece, text)
+
+
+def _check_declared(name: str, text: str, location: str) -> None:
+    """Raise DocumentError if a text would differ in the encoding that it declares."""
+    if DECODED.fullmatch(name) or name.lower() in LATIN:
+        return
+    try:
+        same = text.isascii() and ASCII.decode(name) == ASCII.decode()
+    except (LookupError, ValueError):  # unknown, no encoding of text, or not of this one
+        same = False
+    if not same:
+        raise DocumentError(
+            f"{location}: must be in an encoding that MaterialX reads, UTF-8, UTF-16, UTF-32 or "
+            f"ISO-8859-1; got {name!r}"
+        )
+
+
+def _strict_piece(piece: re.Match[str]) -> str:
+    text = piece[0]
+    if (text.startswith("<!--") and text.endswith("-->")) or re.match(r"<\?xml\s", text):
+        return "\n" * text.count("\n")
+    if text.startswith(("<!", "<?")):
+        return text
+    if "&" not in text and "<" not in text[1:]:
+        return text
+    return QUOTED.sub(lambda value: AMPERSAND.sub("&amp;", value[0]).replace("<", "&lt;"), text)
+
+
 LONGEST_NAME = 128  # characters; a file's name may have 255 and has three names in it
 
 
 class XmlChecker:
-    """Checks of the text of a document and of all that it includes, which counts as one.
-
-    Parameters
-    ----------
-    policy : Policy
-    """
+    """Checks of the text of a document and of all that it includes, which counts as one."""
 
     def __init__(self, policy: Policy) -> None:
         self._policy = policy
@@ -32,13 +113,7 @@ class XmlChecker:
         self._location = ""
 
     def read(self, file: AnyPath) -> bytes:
-        """Content of a file; of one that is too long, one byte more than the limit.
-
-        Raises
-        ------
-        DocumentError
-            If it cannot be read.
-        """
+        """Content of a file; of one that is too long, one byte more than the limit."""
         try:
             with Path(file).open("rb") as stream:
                 size = min(self._policy.size - self._size, os.fstat(stream.fileno()).st_size)
@@ -53,13 +128,7 @@ class XmlChecker:
         self._limit("size", self._size, "bytes, with all that it includes")
 
     def check(self, text: str, location: str) -> None:
-        """Check the text of a document.
-
-        Raises
-        ------
-        DocumentError
-            If it is not XML, has a document type or control characters, or exceeds a limit.
-        """
+        """Check the text of a document."""
         self._location, self._depth = location, 0
         parser = expat.ParserCreate()
         parser.StartDoctypeDeclHandler = self._refuse_type
@@ -71,21 +140,18 @@ class XmlChecker:
             self._refuse(f"must be a MaterialX document; XML parse error: {error}")
 
     def _start(self, category: str, attributes: Mapping[str, str]) -> None:
-        # Limit depth and numbers.
         self._depth += 1
         self._elements += 1
         self._limit("depth", self._depth, "elements within each other")
         self._attributes += len(attributes)
         self._limit("elements", self._elements, "elements, with all that it includes")
         self._limit("attributes", self._attributes, "attributes, with all that it includes")
-        # Limit the attributes, and refuse control characters.
         for key, value in attributes.items():
             if len(value) > self._policy.length:
                 self._limit("length", len(value), f"characters in {key!r} of {category!r}")
             if STEERING.search(value):
                 rule = f"must have no control characters in {key!r}"
                 self._refuse(f"{category} {rule}; got {value!r}")
-        # Limit the name.
         if len(name := attributes.get("name", "")) > LONGEST_NAME:
             rule = f"must have a name of at most {LONGEST_NAME} characters"
             self._refuse(f"{category} {rule}; got {name}")
