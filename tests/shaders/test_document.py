@@ -31,8 +31,6 @@ CYCLE = (
 )
 IMAGE = '<image name="image" type="color3"><input name="file" type="filename" value="{}"/></image>'
 A = '<a name="lobe" type="BSDF"/>'
-BROUGHT = '<implementation name="IM_a" nodedef="ND_a" target="genglsl" sourcecode="BSDF()"/>'
-BROUGHT = DEFINED.format("a") + BROUGHT
 
 # What a file holds, and what is said of it.
 FILES = {
@@ -404,30 +402,6 @@ def test_a_path_that_is_no_text_is_refused(tmp_path, name):
     path.write_text(material(lobe()))
     with pytest.raises(DocumentError, match="document must lie at a path in UTF-8; got"):
         read_document(path)
-
-
-def test_a_document_is_read_with_its_renderable_elements():
-    document = read_document(material(lobe()))
-    assert [each.getName() for each in document.renderables] == ["look"]
-    assert document.content.hasDataLibrary()
-
-
-@pytest.mark.parametrize(
-    "policy, text, rule",
-    [
-        (Policy(chain=1), material(lobe()), "at most 1 nodes in a row"),
-        (Policy(), material(lobe()).replace("look", "a b"), "must be a name of letters"),
-        (Policy(), material(BROUGHT + lobe()), "must not bring code of its own"),
-        (
-            Policy(),
-            f'<materialx version="1.39">{lobe()}</materialx>',
-            "contain a renderable element",
-        ),
-    ],
-)
-def test_all_checks_are_made_where_a_document_is_read(policy, text, rule):
-    with pytest.raises(DocumentError, match=rule):
-        read_document(text, policy=policy)
 
 
 def test_the_limits_hold_for_a_whole_document_also_where_one_element_is_named():

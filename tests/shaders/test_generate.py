@@ -15,7 +15,7 @@ from mxeon.errors import DocumentError
 from mxeon.hosts.cycles.process import interpreter
 from mxeon.shaders.document.reading import read_document
 from mxeon.shaders.generation import TARGETS, ApproximationWarning, Input, generate
-from mxeon.shaders.library import examples_folder, load_library, source_folder
+from mxeon.shaders.library import examples_folder, load_library
 from mxeon.shaders.nodes import EON, OREN_NAYAR
 from tests.support.availability import available
 from tests.support.documents import COMPENSATED, lobe, material
@@ -147,35 +147,6 @@ def test_every_input_is_used_with_the_profile(node, inputs):
 def test_stock_osl_does_not_use_the_flag():
     used = statements(pixel(material(lobe(**FIRST)), "osl", library="stock"))
     assert [name for name in FIRST if f"lobe_{name}" not in used] == ["energy_compensation"]
-
-
-SOURCES = source_folder("eonlib")
-COMBINING = ("add_bsdf", "layer_bsdf")  # entry points that take what other nodes return
-
-
-@pytest.mark.parametrize(
-    "path",
-    sorted([*SOURCES.glob("genglsl/*_bsdf.glsl"), *SOURCES.glob("genosl/cycles/*_bsdf_*.osl")]),
-    ids=lambda path: path.name,
-)
-def test_every_parameter_of_an_entry_point_is_used_in_its_body(path):
-    code = re.sub(r"//.*", "", path.read_text())
-    [(parameters, body)] = re.findall(rf"(?ms)^void {path.stem}\((.*?)\)\s*{{(.*)^}}", code)
-    names = [each.split()[-1] for each in parameters.split(",")]
-    assert len(names) >= 4
-    if path.stem in COMBINING:  # whose lobes have seen the light already
-        names.remove("closureData")
-    assert [name for name in names if not re.search(rf"\b{name}\b", body)] == []
-
-
-@of_each_node
-@on_each_target
-def test_a_change_of_an_input_changes_the_shader(node, inputs, target):
-    before = generate(material(lobe(node, **inputs)), target)
-    assert generate(material(lobe(node, **inputs)), target) == before
-    for name in inputs:
-        changed = inputs | {name: VALUES[name][1]}
-        assert generate(material(lobe(node, **changed)), target) != before
 
 
 @of_each_node

@@ -168,11 +168,6 @@ def parents(element):
     return Path(element.getSourceUri()).resolve().parents
 
 
-def test_a_library_is_loaded_once():
-    assert library.load_library() is library.load_library()
-    assert library.load_library() is not library.load_library("stock")
-
-
 @pytest.mark.parametrize(
     "arguments, message",
     [
@@ -204,11 +199,6 @@ def test_the_microfacet_nodes_are_eonlibs_unless_the_diffuse_part_alone_is_loade
             definition = library.load_library(name).getNodeDef(f"ND_{node}_bsdf")
             found = Path(definition.getImplementation("genglsl").getActiveSourceUri())
             assert (library.documents_folder() / "pbrlib" in found.parents) == ours
-
-
-def test_a_missing_library_raises_too():
-    with pytest.raises(library.LibraryError, match="must be eonlib's; got nothing: load "):
-        library.assert_ours(mx.createDocument())
 
 
 @in_each_order

@@ -5,16 +5,11 @@ The seeds are fixed. FALSE_ALARM is the probability that a chi-square test of th
 although all is right: each of them runs at its part of it.
 """
 
-import inspect
-import re
-
 import numpy as np
 import pytest
 from scipy import special  # scipy.stats is slow to import
 
-from mxeon.models import sampling
 from mxeon.models.sampling import SAMPLERS
-from mxeon.models.sampling import eon as eon_sampling
 from mxeon.shaders import functions as twins
 from tests.support.cases import directions_32
 from tests.support.hemispheres import BY_NAME, binned, every_sampler, expected, view
@@ -59,22 +54,6 @@ def random_arguments(count, seed):
 def unit(w):
     """Directions of float32 to the length that float64 asks for."""
     return w / np.linalg.norm(np.float64(w), axis=-1, keepdims=True)
-
-
-@pytest.mark.parametrize("suffix", ["sample", "pdf"])
-@every_sampler
-def test_sampling_twins_take_the_arguments_of_the_python_package(sampler, suffix):
-    function = f"{sampler.name}_{suffix}"
-    order = ["wo", "wi", "u1", "u2", "rho", "roughness"]
-    parameters = inspect.signature(getattr(sampling, function)).parameters
-    names = [name for name in order if name in parameters or name[0] in parameters]
-    assert [name for _, name in twins.signature("glsl", function)] == names
-
-
-@pytest.mark.parametrize("name", ["MULTIPLE", "UPPER"])
-def test_sampling_twins_have_the_coefficients_of_the_python_package(name):
-    coefficients = re.findall(rf"#define EON_{name}\d (\S+)", twins.source("glsl"))
-    assert tuple(map(float, coefficients)) == getattr(eon_sampling, name)
 
 
 @every_sampler

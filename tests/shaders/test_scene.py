@@ -4,16 +4,8 @@
 import numpy as np
 import pytest
 
-from mxeon.shaders.scene import LARGEST, SCENES, Scene, scene, sphere
+from mxeon.shaders.scene import LARGEST, Scene, scene, sphere
 from mxeon.shaders.shader_ball import CENTER, CLOSE, OBJECT, RADIUS, STEP, distance, shader_ball
-
-
-@pytest.mark.parametrize("known", SCENES, ids=lambda each: each.name)
-def test_a_scene_has_one_light_of_unit_direction_or_one_surrounding(known):
-    assert scene(known.name) is known
-    assert (known.light is None) == (known.environment is not None)
-    if known.light:
-        assert np.linalg.norm(known.light) == pytest.approx(1.0, abs=1e-15)
 
 
 def test_an_unknown_scene_lists_the_known_ones():
@@ -67,13 +59,3 @@ def test_texture_coordinates_face_the_viewer_in_the_middle():
     assert points.texcoord[32, 40, 0] > 0.5 and points.texcoord[20, 32, 1] > 0.5
     inside = points.texcoord[points.mask]
     assert inside.min() >= 0.0 and inside.max() <= 1.0
-
-
-def test_a_margin_adds_rows_and_columns_around_the_same_points():
-    wide, narrow = sphere(8, margin=1), sphere(8)
-    np.testing.assert_array_equal(wide.position[1:-1, 1:-1], narrow.position)
-
-
-def test_shared_points_cannot_be_changed():
-    with pytest.raises(ValueError, match="read-only"):
-        sphere(8).normal[0, 0, 0] = 2.0

@@ -11,9 +11,7 @@ from mxeon.conformance.accuracy.bsdf import CONTY_KULLA_FIT, ESS_FIT
 from mxeon.models.diffuse import albedo, formulas, qon_albedo
 from mxeon.models.diffuse import brdf as models
 from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
-from mxeon.models.sampling import cltc, eon, ltc
 from mxeon.models.sheen import conty_kulla_albedo_dir
-from mxeon.shaders import functions as twins
 from mxeon.shaders.functions import source_file
 from tests.support.cases import directions_32
 from tests.support.tolerances import TWIN_ALBEDO, TWIN_LOSS, TWIN_VALUE
@@ -69,45 +67,6 @@ def name_of(function):
 @pytest.mark.parametrize("stem", STEMS)
 def test_osl_twin_is_written_from_the_glsl_twin(stem):
     assert (TOP / "genosl" / f"{stem}.osl").read_text(encoding="utf-8") == osl_text(stem)
-
-
-@pytest.mark.parametrize("function", VALUES + ALBEDOS, ids=name_of)
-def test_twins_have_the_functions_and_arguments_of_the_python_package(function):
-    names = [name for _, name in twins.signature("glsl", function.__name__)]
-    assert names == list(inspect.signature(function).parameters)
-
-
-def formulas_in_both():
-    """Python's formulas that the shaders have too, by name."""
-    shaders = re.findall(r"^(?:float|vec3) (\w+)\(", twins.source("glsl"), re.MULTILINE)
-    functions = {}
-    for module in (formulas, ltc, cltc, eon):
-        functions |= {name: getattr(module, name) for name in shaders if hasattr(module, name)}
-    samplers = re.compile(r"\w+_(sample|pdf)")
-    return {name: each for name, each in functions.items() if not samplers.fullmatch(name)}
-
-
-@pytest.mark.parametrize("name", formulas_in_both())
-def test_a_formula_takes_the_same_arguments_in_python_and_in_the_shaders(name):
-    parameters = inspect.signature(formulas_in_both()[name]).parameters.values()
-    names = [each.name for each in parameters if each.default is each.empty]
-    assert [argument for _, argument in twins.signature("glsl", name)] == names
-
-
-def test_the_formulas_of_python_have_the_names_of_the_shaders():
-    # No functions of their own in a shader.
-    own = {"cosines", "oren_nayar_interreflection", "_fon_loss", "fon_brdf_mu"}
-    defined = {
-        name
-        for name, each in vars(formulas).items()
-        if inspect.isfunction(each) and each.__module__ == formulas.__name__
-    }
-    assert defined - own <= set(formulas_in_both())
-
-
-def test_paper_quartic_has_the_same_coefficients_in_shader_and_package():
-    coefficients = re.findall(r"#define EON_G\d (\S+)", text("glsl", twins.FAMILY))
-    assert tuple(map(float, coefficients)) == formulas.FON_G
 
 
 @pytest.mark.parametrize("function", VALUES, ids=name_of)

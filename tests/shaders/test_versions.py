@@ -13,8 +13,6 @@ from mxeon.conformance.run import check
 from mxeon.errors import InterfaceError, NotRun
 from mxeon.hosts import open_host
 from mxeon.shaders import closure_calls, generation, generators, library
-from mxeon.shaders.closure_calls import check_closure_calls
-from mxeon.shaders.functions import source_file
 from mxeon.shaders.library import UntestedVersionWarning, load_library
 from mxeon.shaders.nodes import EON, OREN_NAYAR
 from tests.support.documents import lobe, material
@@ -128,67 +126,6 @@ def functions(target, profile):
 
 def parameters(row):
     return next(iter(closure_calls._signatures(row[0], row[2])), [])
-
-
-def test_comments_between_parameters_are_none(tmp_path):
-    file = tmp_path / "node.glsl"
-    file.write_text(
-        "void node(float x, // of 1, 2 or 3\n vec3 y /* a color, (3,) */, out vec3 z)\n{}\n"
-    )
-    assert closure_calls._signatures(file, "node") == [["float x", "vec3 y", "out vec3 z"]]
-
-
-def test_each_function_of_eonlib_is_refused_where_it_takes_other_arguments(monkeypatch):
-    def signatures(file, function, old=closure_calls._signatures):
-        return [[*each, "float gain", "float bias"] for each in old(file, function)]
-
-    monkeypatch.setattr(closure_calls, "_signatures", signatures)
-    for file, _, function in functions("glsl", None):
-        with pytest.raises(InterfaceError, match=f"does not call eonlib's function {function}[(]"):
-            check_closure_calls(Stage([file]), "glsl", "eonlib", None)
-
-
-class Stage:
-    """A stage that is made of some sources."""
-
-    def __init__(self, files):
-        self._files = files
-
-    def getSourceDependencies(self):
-        return set(self._files)
-
-
-class Generator:
-    """A generator that writes a text, whatever it is asked for."""
-
-    def __init__(self, text):
-        self._text = text
-
-    def generate(self, *_):
-        return self
-
-    def getSourceCode(self, _):
-        return self._text
-
-
-@pytest.mark.parametrize(
-    "call",
-    [
-        "eon_diffuse_bsdf_reflection(L, V, P, w, c, r, N)",
-        "eon_diffuse_bsdf(L, V)",
-        "eon_diffuse_bsdf(c, f(a, b), r, N, result)",
-        "mx_eon_diffuse_bsdf(c, w, a, r, N, result)",
-    ],
-)
-def test_a_generator_with_calls_of_another_form_is_refused(fresh, monkeypatch, call):
-    text = f"void eon_diffuse_bsdf(ClosureData closureData) {{}}\nvoid main() {{ {call}; }}"
-    monkeypatch.setattr(closure_calls, "generator_of", lambda *_: Generator(text))
-    monkeypatch.setattr(closure_calls, "context_of", lambda *_: None)
-    file = str(source_file("glsl", "eon_diffuse_bsdf"))
-    with pytest.raises(
-        InterfaceError, match="eon_diffuse_bsdf.ClosureData closureData, float weight"
-    ):
-        check_closure_calls(Stage([file]), "glsl", "eonlib", None)
 
 
 @pytest.mark.parametrize("target", generation.TARGETS)

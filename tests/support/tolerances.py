@@ -225,10 +225,6 @@ KIT_PRINTED = 1.5e-9
 
 # --- microfacet and sheen nodes ------------------------------------------------------------------
 
-# Errors that stand beside the fits, in a white furnace over white at most: Schlick's curve from 0.5
-# to 1, Hoffman's dip of at most 0.75 by half, and the quadrature of the response with float32.
-FURNACE_OVER_WHITE = 0.5 * 1.9e-3 + 0.5 * 0.75 * 5.9e-3 + 5e-4
-
 # The fits of E_ss and of the Conty-Kulla albedo: the errors that stand beside them, and quadrature.
 FIT_GGX = 4.92e-4 + 1e-6
 FIT_CONTY_KULLA = 1.51e-3 + 1e-5

@@ -26,68 +26,25 @@ INPUT_TYPES = {
 }
 
 # Inputs of the other BSDF nodes of pbrlib, by category, as their definitions have them.
-_MICROFACET = {
-    "roughness": "vector2",
-    "retroreflective": "boolean",
-    "thinfilm_thickness": "float",
-    "thinfilm_ior": "float",
-    "normal": "vector3",
-    "tangent": "vector3",
-    "distribution": "string",
+_MICROFACET = """roughness vector2, retroreflective boolean, thinfilm_thickness float, thinfilm_ior float,
+    normal vector3, tangent vector3, distribution string"""
+_DEFINED = {
+    "burley_diffuse_bsdf": "weight float, color color3, roughness float, normal vector3",
+    "dielectric_bsdf": f"weight float, tint color3, ior float, {_MICROFACET}, scatter_mode string",
+    "conductor_bsdf": f"weight float, ior color3, extinction color3, {_MICROFACET}",
+    "generalized_schlick_bsdf": f"""weight float, color0 color3, color82 color3, color90 color3,
+        exponent float, {_MICROFACET}, scatter_mode string""",
+    "subsurface_bsdf": """weight float, color color3, radius color3, anisotropy float,
+        normal vector3""",
+    "translucent_bsdf": "weight float, color color3, normal vector3",
+    "sheen_bsdf": "weight float, color color3, roughness float, normal vector3, mode string",
+    "chiang_hair_bsdf": """tint_R color3, tint_TT color3, tint_TRT color3, ior float,
+        roughness_R vector2, roughness_TT vector2, roughness_TRT vector2, cuticle_angle float,
+        absorption_coefficient vector3, normal vector3, curve_direction vector3""",
 }
-BSDF_INPUTS: dict[str, dict[str, str]] = {
-    "burley_diffuse_bsdf": {
-        "weight": "float",
-        "color": "color3",
-        "roughness": "float",
-        "normal": "vector3",
-    },
-    "dielectric_bsdf": {
-        "weight": "float",
-        "tint": "color3",
-        "ior": "float",
-        **_MICROFACET,
-        "scatter_mode": "string",
-    },
-    "conductor_bsdf": {
-        "weight": "float",
-        "ior": "color3",
-        "extinction": "color3",
-        **_MICROFACET,
-    },
-    "generalized_schlick_bsdf": {
-        "weight": "float",
-        "color0": "color3",
-        "color82": "color3",
-        "color90": "color3",
-        "exponent": "float",
-        **_MICROFACET,
-        "scatter_mode": "string",
-    },
-    "subsurface_bsdf": {
-        "weight": "float",
-        "color": "color3",
-        "radius": "color3",
-        "anisotropy": "float",
-        "normal": "vector3",
-    },
-    "translucent_bsdf": {"weight": "float", "color": "color3", "normal": "vector3"},
-    "sheen_bsdf": {
-        "weight": "float",
-        "color": "color3",
-        "roughness": "float",
-        "normal": "vector3",
-        "mode": "string",
-    },
-    "chiang_hair_bsdf": {
-        **dict.fromkeys(("tint_R", "tint_TT", "tint_TRT"), "color3"),
-        "ior": "float",
-        **dict.fromkeys(("roughness_R", "roughness_TT", "roughness_TRT"), "vector2"),
-        "cuticle_angle": "float",
-        "absorption_coefficient": "vector3",
-        "normal": "vector3",
-        "curve_direction": "vector3",
-    },
+BSDF_INPUTS = {
+    category: dict(each.split() for each in inputs.split(","))
+    for category, inputs in _DEFINED.items()
 }
 
 DOCUMENT = """<?xml version="1.0"?>

@@ -49,35 +49,11 @@ class Policy:
     path : tuple of str
         Folders, searched after its own, in which it may name files too; by default those of the
         environment variable MATERIALX_SEARCH_PATH.
-    size : int
-        Bytes of the document and all that it includes, and of all sources of its own.
-    length : int
-        Characters of one attribute.
-    depth : int
-        Elements, nodegraphs or inherited definitions within each other.
-    elements : int
-        Elements of the document and all that it includes.
-    attributes : int
-        Attributes of the document and all that it includes.
-    inputs : int
-        Inputs of one element.
-    tokens : int
-        Tokens, each of which MaterialX looks for in each name of a file.
-    includes : int
-        Documents, or sources, that include each other in a row.
-    nodes : int
-        Nodes of all its shaders together, those of a nodegraph counted wherever it is used.
-    chain : int
-        Nodes connected in a row.
-    shaders : int
-        Renderable elements.
-    ports : int
-        Inputs of the nodes of all its shaders together, and of the nodegraphs they lie in.
-    text : int
-        Characters that its own code may have in all its shaders: its functions once for each shader,
-        its longest expression once for each node.
-    texels : int
-        Pixels of all images that its shaders name, each file counted once.
+    size, length, depth, elements, attributes, inputs, tokens, includes, nodes, chain, shaders, ports, \
+    text, texels : int
+        Limits of what LIMITS says. `size` and `includes` hold for the document's sources of code too, and
+        `elements` for their number; `text` counts functions once for each shader and the longest
+        expression once for each node; `texels` counts each file once.
 
     Raises
     ------
