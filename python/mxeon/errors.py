@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Errors that have words for the user: the command shows one line and ends with their status.
+"""Errors with a message for the user: the command prints one line and exits with their status.
 
-Every other exception is a bug of mxeon and shows its traceback.
+Every other exception is a bug of mxeon and prints its traceback.
 """
 
 import re
@@ -12,7 +12,7 @@ from mxeon.names import unknown
 PASSED, FAILED, MISUSE, NOT_RUN = 0, 1, 2, 3  # exit statuses of the command
 
 LONGEST = 1000  # characters of a message, which may quote a document
-MOST = 20  # faults of a document that are told
+MOST = 20  # faults that a message lists
 CUT = " [...]"  # ends one that is cut there
 # Controls, changes of the direction of writing, and halves of characters.
 STEERING = re.compile(

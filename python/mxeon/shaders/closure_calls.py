@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Whether the generators of this MaterialX call a library's functions as its sources define them.
 
-Versions of MaterialX pass closures other arguments. So a generator is asked to write a call of each
-function that a shader uses, in a document of mxeon's own, where no name can be taken for another: the
-document of the shader, and its text, are not searched.
+Versions of MaterialX pass closures other arguments. So a generator writes a call of each function that a
+shader uses, in a document of mxeon's own, where no name can be taken for another: the document of the
+shader, and its text, are not searched.
 """
 
 import os
@@ -22,7 +22,7 @@ from mxeon.shaders.library import load_library
 from mxeon.shaders.library_tree import root, standard_folders
 
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
-NODE = "asked"  # name of the node whose call is asked for
+NODE = "asked"  # name of the node in that document
 CLOSURES = {"BSDF": "bsdf", "EDF": "edf"}  # inputs of a surface, which calls what it is given
 
 

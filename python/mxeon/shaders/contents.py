@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The nodes that a document's materials show, in nodegraphs and inside surface shaders too."""
+"""The nodes that a document's materials use, in nodegraphs and inside surface shaders too."""
 
 import warnings
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ FILM = "thinfilm_thickness"
 
 @dataclass(frozen=True, order=True)
 class ShownNode:
-    """A node in the mode that a material shows."""
+    """A node in the mode that a material uses."""
 
     category: str
     type: str
@@ -43,13 +43,13 @@ class ShownNode:
 
 
 def document_nodes(policy: Policy, source: tuple[str, str]) -> tuple[ShownNode, ...] | MxeonError:
-    """The nodes that the materials of a document show, or the error that it cannot be read.
+    """The nodes that the materials of a document use, or the error that it cannot be read.
 
     The source is a file and the name of a library.
     """
     file, library = source
     try:
-        with warnings.catch_warnings(action="ignore"):  # its checks tell them
+        with warnings.catch_warnings(action="ignore"):  # the document's own checks report them
             document = read_document(file, library, policy=policy)
     except (MxeonError, OSError) as error:
         return (

@@ -13,11 +13,7 @@ LANGUAGES = ("glsl", "osl")
 FAMILY = "oren_nayar_family"
 ALL = "eon_sampling"  # includes all the others
 STEMS = ("eon", FAMILY, "ltc_sampling", ALL)
-TWINS = (
-    ALL,
-    "ggx_albedo",
-    "conty_kulla_albedo",
-)  # that have, with their includes, one text in two languages
+TWINS = (ALL, "ggx_albedo", "conty_kulla_albedo")  # include all that has one text in two languages
 INCLUDE = re.compile(r'^#include "((?:\.\./)?(?:lib/|sampling/)?\w+\.\w+)"$', re.MULTILINE)
 SIGNATURE = re.compile(r"^(?:float|vec3|color|vector)\s+(\w+)\s*\(([^)]*)\)\s*(?={)", re.MULTILINE)
 EACH = "mxeon_each"  # the function that `dispatched` adds
@@ -74,7 +70,11 @@ def parameters(text: str, function: str) -> tuple[tuple[str, str], ...]:
 @lru_cache(maxsize=4)
 def signatures(text: str) -> Mapping[str, tuple[tuple[str, str], ...]]:
     """Parameter types and names of each function that a text defines, in order."""
-    return {match[1]: _parameters(match[2]) for match in SIGNATURE.finditer(text)}
+    known = {}
+    for match in SIGNATURE.finditer(text):
+        pairs = (" ".join(each.split()).rpartition(" ") for each in match[2].split(","))
+        known[match[1]] = tuple((kind, name) for kind, _, name in pairs)
+    return known
 
 
 def uses(text: str) -> Mapping[str, frozenset[str]]:
@@ -132,8 +132,3 @@ def source_file(language: str, stem: str, library: str = "eonlib") -> Path:
     """File of a library that holds shader functions, in whichever folder it lies."""
     folder, name = source_folder(library) / f"gen{language}", f"{stem}.{language}"
     return next(folder.rglob(name), folder / name)
-
-
-def _parameters(text: str) -> tuple[tuple[str, str], ...]:
-    pairs = (" ".join(each.split()).rpartition(" ") for each in text.split(","))
-    return tuple((kind, name) for kind, _, name in pairs)

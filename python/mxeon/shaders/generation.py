@@ -5,7 +5,7 @@ import os
 import re
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cache, partial
 from types import MappingProxyType
 
@@ -18,7 +18,7 @@ from mxeon.shaders.closure_calls import check_closure_calls
 from mxeon.shaders.document.notes import CodeWarning, warn_of_files, warn_of_names
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.document.reading import read_document
-from mxeon.shaders.document.sources import Sources, copied_sources
+from mxeon.shaders.document.sources import copied_sources
 from mxeon.shaders.document.values import Plain, label, plain
 from mxeon.shaders.generators import (
     GENERATORS,
@@ -195,22 +195,50 @@ def generate(
     content, names = checked.content, shader_names(checked.renderables)
     generator = generator_of(content, target, library, profile, policy.definitions)
     context = context_of(content, target, generator, library, lights, policy.path)
-    elements = _select(checked.renderables, element)
+    elements: Sequence[mx.TypedElement] = checked.renderables
+    if element is not None:
+        paths = [each.getNamePath() for each in elements]
+        elements = [each for each in elements if element in (each.getName(), each.getNamePath())]
+        if not elements:
+            assert_known("element", element, paths)
     tokens = partial(tokens_of, target, library, profile)
     folders = (*policy.definitions, *own_folders(library))
+    shaders = []
     with copied_sources(content, context, policy, tokens) as sources:
         sources.check_limit(len(elements), checked.nodes)
-        shaders = []
         for each in elements:
-            name = names[each.getNamePath()]
-            source = _generate(content, each, name, target, context, sources, library)
+            path = each.getNamePath()
+            try:
+                source = generated(generator, names[path], each, context)
+            except (mx.Exception, LookupError) as error:
+                reason = in_words(library, sources.in_words(str(error).strip().splitlines()[0]))
+                if "nodedef" in reason:
+                    reason += ": load further definitions by --definitions FOLDER"
+                raise DocumentError(
+                    f'{label(content)}: element "{path}" must give {target}; {reason}'
+                ) from None
             check_closure_calls(source.getStage("pixel"), target, library, profile)
-            text = _shader(source, each.getNamePath(), target, content)
-            shaders.append(replace(text, folders=folders, root=root(library)))
-    warn_of_files(_files(shaders), content)
+            stages = MappingProxyType(
+                {stage: source.getSourceCode(stage) for stage in STAGES if source.hasStage(stage)}
+            )
+            inputs, name = _inputs(source, content), source.getName()
+            shader = Shader(name, path, target, stages, inputs, content, folders, root(library))
+            shaders.append(shader)
+    inputs_of_all = [port for shader in shaders for port in shader.inputs]
+    files = [
+        (port.path, str(port.value))
+        for port in inputs_of_all
+        if port.type == "filename" and port.value
+    ]
+    warn_of_files(files, content)
     warn_of_names(elements, content)
     if profile == "cycles" and target == "osl":
-        _warn_of_approximation(shaders)
+        for shader in shaders:
+            values = {port.name: port.value for port in shader.inputs}
+            flags = CYCLES_CALL.findall(shader.stages["pixel"])
+            if not all(values.get(flag, flag == "1") for flag in flags):
+                note = ApproximationWarning(shader.element, CYCLES_APPROXIMATION)
+                warnings.warn(note, stacklevel=2)
     return tuple(shaders)
 
 
@@ -239,44 +267,6 @@ def check_generator(library: str, target: str) -> None:
         )
 
 
-def _select(elements: Sequence[mx.TypedElement], name: str | None) -> Sequence[mx.TypedElement]:
-    """Elements of a name or name path; all for None."""
-    if name is None:
-        return elements
-    selection = [each for each in elements if name in (each.getName(), each.getNamePath())]
-    if not selection:
-        assert_known("element", name, [each.getNamePath() for each in elements])
-    return selection
-
-
-def _generate(
-    document: mx.Document,
-    element: mx.TypedElement,
-    name: str,
-    target: str,
-    context: mx_gen.GenContext,
-    sources: Sources,
-    library: str,
-) -> mx_gen.Shader:
-    path, generator = element.getNamePath(), context.getShaderGenerator()
-    try:
-        return generated(generator, name, element, context)
-    except (mx.Exception, LookupError) as error:
-        reason = in_words(library, sources.in_words(str(error).strip().splitlines()[0]))
-        if "nodedef" in reason:
-            reason += ": load further definitions by --definitions FOLDER"
-        raise DocumentError(
-            f'{label(document)}: element "{path}" must give {target}; {reason}'
-        ) from None
-
-
-def _shader(source: mx_gen.Shader, path: str, target: str, document: mx.Document) -> Shader:
-    stages = {stage: source.getSourceCode(stage) for stage in STAGES if source.hasStage(stage)}
-    inputs = _inputs(source, document)
-    text = MappingProxyType(stages)
-    return Shader(source.getName(), path, target, text, inputs, document)
-
-
 def _inputs(shader: mx_gen.Shader, document: mx.Document) -> tuple[Input, ...]:
     stage = shader.getStage("pixel")
     blocks = stage.getUniformBlocks() | stage.getInputBlocks()  # MDL has them as inputs
@@ -287,24 +277,6 @@ def _inputs(shader: mx_gen.Shader, document: mx.Document) -> tuple[Input, ...]:
         for port in block
         if (path := port.getPath()) and not (kind := port.getType()).isClosure()
     )
-
-
-def _files(shaders: Iterable[Shader]) -> list[tuple[str, str]]:
-    """Name paths of the inputs that are files, and the files' names."""
-    return [
-        (each.path, str(each.value))
-        for shader in shaders
-        for each in shader.inputs
-        if each.type == "filename" and each.value
-    ]
-
-
-def _warn_of_approximation(shaders: Iterable[Shader]) -> None:
-    for shader in shaders:
-        values = {each.name: each.value for each in shader.inputs}
-        flags = CYCLES_CALL.findall(shader.stages["pixel"])
-        if not all(values.get(flag, flag == "1") for flag in flags):
-            warnings.warn(ApproximationWarning(shader.element, CYCLES_APPROXIMATION), stacklevel=3)
 
 
 # Words that OSL or MDL does not take as the name of a shader.

@@ -80,7 +80,8 @@ class Walk:
             self._dark.add(path)
             return ()
         kind = KINDS.get(node.getCategory())
-        if _text(node, "scatter_mode") in ("T", "RT"):
+        mode = _port(node, "scatter_mode")
+        if mode and mode.getValueString() in ("T", "RT"):
             kind = TRANSMISSION
         if kind:
             self.kinds.add(kind)
@@ -161,9 +162,3 @@ def _port(node: mx.InterfaceElement, name: str) -> mx.Input | None:
     """Input of a node, or else of its nodedef, or None."""
     definition = node.getNodeDef()
     return node.getInput(name) or (definition and definition.getActiveInput(name)) or None
-
-
-def _text(node: mx.InterfaceElement, name: str) -> str:
-    """Text of an input, or of its default."""
-    port = _port(node, name)
-    return str(port.getValueString()) if port else ""

@@ -274,10 +274,14 @@ def implementations(
     they implement it for.
     """
     data = document.getDataLibrary() or document
+    definitions = {each.getName(): each for each in data.getTargetDefs()}
+    known = [each for each in TARGETS if each in definitions or not definitions]
+    parents = {each: definitions[each].getMatchingTargets() for each in definitions}
     return tuple(
-        _implementation(document, node, each)
+        _implementation(document, node, heir)
         for node, target in _shipped(library, profile)
-        for each in _heirs(data, target)
+        for heir in known
+        if target in ("", heir, *parents.get(heir, ()))
     )
 
 
@@ -291,14 +295,6 @@ def _shipped(library: str, profile: str | None) -> tuple[tuple[str, str], ...]:
     elements = (*document.getImplementations(), *document.getNodeGraphs())
     pairs = ((each.getNodeDefString(), each.getTarget()) for each in elements)
     return tuple(dict.fromkeys(pair for pair in pairs if pair[0]))
-
-
-def _heirs(data: mx.Document, target: str) -> list[str]:
-    """Those of TARGETS that take an implementation for a target."""
-    definitions = {each.getName(): each for each in data.getTargetDefs()}
-    known = [each for each in TARGETS if each in definitions or not definitions]
-    parents = {each: definitions[each].getMatchingTargets() for each in definitions}
-    return [each for each in known if target in ("", each, *parents.get(each, ()))]
 
 
 def _implementation(document: mx.Document, node: str, target: str) -> Implementation:

@@ -155,7 +155,8 @@ def root(library: str) -> str:
 
 @cache
 def _root(library: str) -> str:
-    temporary = _temporary(library)
+    _KEPT[library] = TemporaryDirectory(prefix="mxeon-library-")
+    temporary = os.path.realpath(_KEPT[library].name)
     for path, file in tree(library).links.items():
         link = Path(temporary, "libraries", path)
         link.parent.mkdir(parents=True, exist_ok=True)
@@ -164,11 +165,6 @@ def _root(library: str) -> str:
 
 
 _KEPT: dict[str, TemporaryDirectory[str]] = {}  # until the process ends
-
-
-def _temporary(library: str) -> str:
-    _KEPT[library] = TemporaryDirectory(prefix="mxeon-library-")
-    return os.path.realpath(_KEPT[library].name)
 
 
 def search_path(library: str) -> mx.FileSearchPath:
@@ -182,7 +178,7 @@ def roots() -> list[str]:
 
 
 def in_words(library: str, text: str) -> str:
-    """A message of MaterialX with the user's files in place of the links to them."""
+    """A message of MaterialX that names the user's files instead of the links to them."""
     if laid := root(library):
         for path, file in tree(library).links.items():
             text = text.replace(f"{laid}/libraries/{path}", file)
@@ -244,8 +240,10 @@ def check_sources(document: mx.Document, library: str, search: mx.FileSearchPath
     known = set()
     while waiting:
         name, local = waiting.pop()
-        path = _find(search, name, local)
-        if path not in known and os.path.lexists(path):  # what is missing is told when it is used
+        folders = mx.FileSearchPath(str(local))
+        folders.append(search)
+        path = str(folders.find(name).getNormalized().asString())
+        if path not in known and os.path.lexists(path):  # MaterialX reports a missing one if used
             known.add(path)
             names = filter(None, map(included, _text(path).split("\n")))
             waiting += [(each, Path(path).parent) for each in names]
@@ -275,13 +273,6 @@ def _text(path: AnyPath) -> str:
     if len(data) > LARGEST:
         raise InputError(f"{path}: must have at most {LARGEST} bytes")
     return decode_source(data, path)
-
-
-def _find(search: mx.FileSearchPath, name: str, local: Path) -> str:
-    """Path that MaterialX finds for a source, or the name."""
-    path = mx.FileSearchPath(str(local))
-    path.append(search)
-    return str(path.find(name).getNormalized().asString())
 
 
 def check_definitions(

@@ -40,11 +40,6 @@ def reachable(
     return graph
 
 
-def parts_first(graph: Graph[Key]) -> tuple[Key, ...]:
-    """Keys of a graph, each after its parts; CycleError holds a cycle as its second argument."""
-    return tuple(TopologicalSorter(graph).static_order())
-
-
 def heights(graph: Graph[Key], order: Iterable[Key]) -> dict[Key, int]:
     """Number of keys on the longest path from each key to one without parts, both included."""
     height: dict[Key, int] = {}
@@ -137,19 +132,19 @@ class _Weights(dict[str, int]):
         matching = [
             each for key in names for each in self._document.getMatchingImplementations(key)
         ]
-        graphs = (self._graph(each) for each in matching)
+        graphs = (
+            each
+            if each.isA(mx.NodeGraph)
+            else self._document.getNodeGraph(each.getAttribute("nodegraph"))
+            for each in matching
+        )
         return [_definition(node) for graph in graphs if graph for node in graph.getNodes()]
-
-    def _graph(self, implementation: mx.InterfaceElement) -> mx.NodeGraph | None:
-        if implementation.isA(mx.NodeGraph):
-            return implementation
-        return self._document.getNodeGraph(implementation.getAttribute("nodegraph"))
 
 
 def _ordered(graph: Mapping[str, tuple[str, ...]], kind: str, rule: str) -> tuple[str, ...]:
     """Keys of a graph, each after its parts; a cycle is a DocumentError."""
     try:
-        return parts_first(graph)
+        return tuple(TopologicalSorter(graph).static_order())
     except CycleError as error:
         raise DocumentError(f'{kind} "{min(error.args[1])}" must not {rule}') from None
 
@@ -158,14 +153,12 @@ def _upstream(document: mx.Document, path: str) -> list[str]:
     """Name paths of the nodes that an element is connected to."""
     element = document.getDescendant(path)
     ports = [element] if element.isA(mx.Output) else element.getInputs()
-    nodes = map(_connected, ports)
+    linked = (
+        port.getInterfaceInput() if port.isA(mx.Input) and port.hasInterfaceName() else port
+        for port in ports
+    )
+    nodes = (port.getConnectedNode() for port in linked if port)
     return [node.getNamePath() for node in nodes if node]
-
-
-def _connected(port: mx.PortElement) -> mx.Node | None:
-    if port.isA(mx.Input) and port.hasInterfaceName():
-        port = port.getInterfaceInput()
-    return port.getConnectedNode() if port else None
 
 
 def _definition(element: mx.Element) -> str:

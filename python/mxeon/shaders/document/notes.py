@@ -42,7 +42,7 @@ def numbers(element: mx.ValueElement) -> tuple[float, ...]:
 
 
 def warn_of_elements(document: mx.Document, elements: Iterable[mx.Element]) -> None:
-    """Warn of values that MaterialX reads otherwise than written or that leave a model's range; and of code."""
+    """Warn of values that MaterialX misreads or that leave a model's range, and of code."""
     values = [each for each in elements if each.isA(mx.ValueElement) and each.getValueString()]
     for note in (_misread, _out_of_range, _unknown_space):
         _warn(DocumentWarning, [text for text in map(note, values) if text])
@@ -103,7 +103,7 @@ def _warn(kind: type[Warning], texts: Sequence[str]) -> None:
 
 
 def _misread(element: mx.ValueElement) -> str | None:
-    """Warning of a number of which MaterialX reads a part."""
+    """Warning of a number that MaterialX reads in part."""
     kind, text = element.getType(), element.getValueString()
     if kind not in NUMERIC or is_exact(text, kind):
         return None

@@ -76,8 +76,12 @@ def read_document(
     elif _is_text(source):
         _Reader(policy, Path.cwd()).read_text(content, source)
     elif os.path.isfile(source):  # a pipe or a device may have no end
-        _check_path(source)
-        _Reader(policy, Path(source).resolve().parent).read_file(content, str(source))
+        path = Path(source).resolve()
+        try:
+            str(path).encode()
+        except UnicodeEncodeError:
+            raise DocumentError(f"document must lie at a path in UTF-8; got {source!r}") from None
+        _Reader(policy, path.parent).read_file(content, str(source))
     else:
         raise DocumentError(f"document must be a readable file; got {str(source)!r}")
     elements = tuple(content.traverseTree())
@@ -133,14 +137,6 @@ def _resolve_files(
         if "<" in name and element.getType() == "filename":
             sets = (each / name for each in folders if files(each / name))
             element.setValueString(str(next(sets, name)))
-
-
-def _check_path(source: AnyPath) -> None:
-    """Raise DocumentError unless MaterialX can hold the path of a file."""
-    try:
-        str(Path(source).resolve()).encode()
-    except UnicodeEncodeError:
-        raise DocumentError(f"document must lie at a path in UTF-8; got {source!r}") from None
 
 
 class _Reader:

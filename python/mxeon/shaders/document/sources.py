@@ -10,7 +10,6 @@ import os
 import re
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, nullcontext
-from functools import cached_property
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -46,19 +45,14 @@ def copied_sources(
     with TemporaryDirectory(prefix="mxeon-sources-") if files else nullcontext("") as copies:
         sources = Sources(document, context, policy, copies, tokens)
         try:
+            targets = document.getTargetDef(target).getMatchingTargets() if files else ()
             for element, _ in files:
-                used = _is_for(element, target)
+                used = any(mx.targetStringsMatch(element.getTarget(), each) for each in targets)
                 element.setFile(sources.copy(element) if used else sources.missing())
             yield sources
         finally:
             for element, name in files:
                 element.setFile(name)
-
-
-def _is_for(element: mx.Implementation, target: str) -> bool:
-    """Whether a generator of a target may take an implementation."""
-    targets = element.getDocument().getTargetDef(target).getMatchingTargets()
-    return any(mx.targetStringsMatch(element.getTarget(), each) for each in targets)
 
 
 class Sources:
@@ -73,7 +67,7 @@ class Sources:
         tokens: Callable[[], Mapping[str, str]],
     ) -> None:
         self._document, self._context, self._policy = document, context, policy
-        self._home, self._folder, self._find_tokens = folder(document), Path(copies), tokens
+        self._home, self._folder, self._tokens = folder(document), Path(copies), tokens
         self._found: dict[tuple[str, str], str] = {}  # copies by name and the folder it starts from
         self._copies: dict[str, str] = {}  # by the path that MaterialX would open
         self._names: dict[str, str] = {}  # of copies, as the document has them
@@ -92,7 +86,7 @@ class Sources:
         return str(self._folder / "none.txt")
 
     def in_words(self, reason: str) -> str:
-        """A message of MaterialX with the names that the document has in place of copies."""
+        """A message of MaterialX with the document's names instead of the copies'."""
         for copy, name in self._names.items():
             reason = reason.replace(copy, name)
         return reason
@@ -115,7 +109,9 @@ class Sources:
 
     def _new_copy(self, name: str, local: str, title: str, depth: int | None) -> str:
         """Path of the copy of a file that has another name than those before."""
-        path = os.path.abspath(self._resolved(name, local))
+        tokens = self._tokens()
+        opened = TOKEN.sub(lambda token: tokens.get(token[0], token[0]), name)
+        path = os.path.abspath(self._context.resolveSourceFile(opened, local).asString())
         if "\0" in path:  # where the system ends the name, and MaterialX does not
             return self.missing()
         if library := library_path(path):
@@ -123,7 +119,7 @@ class Sources:
         if path not in self._copies:
             copy = str(self._folder / f"{len(self._copies)}.txt")
             self._copies[path], self._names[copy] = copy, name
-            if os.path.lexists(path):  # MaterialX tells what does not exist, if it is used
+            if os.path.lexists(path):  # MaterialX reports a missing one if used
                 check_inside(path, self._home, self._policy, title)
                 self._write(copy, path, depth)
         return self._copies[path]
@@ -156,12 +152,3 @@ class Sources:
                 copy = self._copy(name, os.path.dirname(path), f"{path}: include", depth + 1)
                 lines[number] = f"{line[:start]}{copy}{line[end:]}"
         return "\n".join(lines)
-
-    def _resolved(self, name: str, local: str) -> str:
-        """The path that MaterialX would open."""
-        name = TOKEN.sub(lambda token: self._tokens.get(token[0], token[0]), name)
-        return str(self._context.resolveSourceFile(name, local).asString())
-
-    @cached_property
-    def _tokens(self) -> Mapping[str, str]:
-        return self._find_tokens()
