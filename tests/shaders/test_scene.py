@@ -10,7 +10,7 @@ from mxeon.shaders.shader_ball import CENTER, CLOSE, OBJECT, RADIUS, STEP, dista
 
 def test_an_unknown_scene_lists_the_known_ones():
     with pytest.raises(
-        ValueError, match="scene must be one of front, side, back, furnace; got 'top'"
+        ValueError, match="scene must be one of front, side, back, furnace, studio; got 'top'"
     ):
         scene("top")
 

@@ -2,8 +2,8 @@
 """Checks of the words of a document that may reach generated source.
 
 Generators write the names, the values of text and some of the attributes of a document into
-shaders as they are, so a word that is more than a word is code. `tests.fuzz.reach` asks every target
-which do; whatever else an attribute says (`doc`, `uiname`, an application's own) stays free.
+shaders as they are, so a word that is more than a word is code. `tests.fuzz.reach` finds out for every
+target which do; whatever else an attribute says (`doc`, `uiname`, an application's own) stays free.
 """
 
 import re
