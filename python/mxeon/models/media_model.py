@@ -18,11 +18,13 @@ COSINE = Parameter("cos_theta", 1.0, "cos_theta")
 
 @dataclass(frozen=True, repr=False)
 class EmissionModel(NodeModel):
-    """An EDF node by its name. Inputs and their shapes as those of `ShadingModel`.
+    """An EDF node by its name.
 
-    >>> import mxeon
-    >>> mxeon.model("conical_edf").edf([0.6, 0.0, 0.8], color=2.0, outer_angle=90.0).round(6)
-    np.float64(1.251183)
+    Inputs and their shapes are those of `ShadingModel`.
+
+        >>> import mxeon
+        >>> mxeon.model("conical_edf").edf([0.6, 0.0, 0.8], color=2.0, outer_angle=90.0).round(6)
+        np.float64(1.251183)
     """
 
     value: Callable[[Array, Inputs], Array]  # of wo, (N, C)
@@ -46,11 +48,13 @@ class EmissionModel(NodeModel):
 
 @dataclass(frozen=True, repr=False)
 class MediumModel(NodeModel):
-    """A VDF node by its name. Inputs and their shapes as those of `ShadingModel`.
+    """A VDF node by its name.
 
-    >>> import mxeon
-    >>> mxeon.model("absorption_vdf").transmittance(2.0, [0.5, 1.0, 0.0]).round(6)
-    array([0.367879, 0.135335, 1.      ])
+    Inputs and their shapes are those of `ShadingModel`.
+
+        >>> import mxeon
+        >>> mxeon.model("absorption_vdf").transmittance(2.0, [0.5, 1.0, 0.0]).round(6)
+        array([0.367879, 0.135335, 1.      ])
     """
 
     @property
