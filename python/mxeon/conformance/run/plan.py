@@ -50,10 +50,15 @@ from mxeon.errors import InputError, assert_known
 from mxeon.hosts import HOSTS, host_names, host_row
 from mxeon.shaders.document.policy import DEFAULT, LIMITS, Policy
 from mxeon.shaders.functions import has_functions
-from mxeon.shaders.library import examples_folder, kind_of, library_name, load_library
+from mxeon.shaders.library import (
+    check_version,
+    examples_folder,
+    kind_of,
+    library_name,
+    load_library,
+)
 from mxeon.shaders.library_tree import LIBRARIES, origins
 from mxeon.shaders.nodes import INVERSIONS
-from mxeon.shaders.versions import check_version
 
 ALL, COMMON = "all", "common"  # in place of the nodes' names
 
