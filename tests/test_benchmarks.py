@@ -20,7 +20,6 @@ from tools.benchmarks import (
     machine_code,
     models,
     noise,
-    page,
     record,
     registers,
     shaders,
@@ -75,7 +74,7 @@ SMALLEST = {
 
 
 @pytest.mark.parametrize("name", [*SMALLEST, "check"])
-def test_each_group_is_measured_and_written_to_its_page(gl, tmp_path, monkeypatch, name):
+def test_each_group_is_measured_and_written(gl, tmp_path, monkeypatch, name):
     small = SMALLEST | {"check": {"rounds": 1, "files": TEXTS, "whole": False}}
     memory = cache(models.extra_memory)  # one process, not one for each way
     monkeypatch.setattr(models, "extra_memory", lambda way, count: memory("naive", count))
@@ -92,7 +91,7 @@ def test_each_group_is_measured_and_written_to_its_page(gl, tmp_path, monkeypatc
     ((group, _),) = record.read(tmp_path / "performance.json")
     assert group.name == name and group.figures
     assert_right(group)
-    assert page.table(group) in (tmp_path / "performance.md").read_text(encoding="utf-8")
+    assert record.table(group) in (tmp_path / "performance.md").read_text(encoding="utf-8")
 
 
 def test_materials_that_were_measured_stay_when_the_next_one_fails(gl, tmp_path, monkeypatch):
@@ -182,47 +181,28 @@ def test_compiled_values_and_errors_are_those_of_the_models():
             compiled.eon_brdf([0.0, 0.0, 1.0], bad, 0.5, 0.5)
 
 
-def test_record_returns_what_was_written_and_keeps_other_groups(tmp_path):
-    group = Group("models", "Title", (figure("a", "ns", [1.0]),), (Check("a", 0.0, 1.0),), {})
-    record.write(tmp_path / "performance.json", [group])
-    record.write(tmp_path / "performance.json", [Group("tool", "Other", series={})])
-    found = record.read(tmp_path / "performance.json")
-    assert [each.name for each, _ in found] == ["models", "tool"]
-    assert found[0][0] == group
+def test_results_of_other_groups_and_of_other_machines_are_kept(tmp_path):
+    group = Group("models", "Title", (figure("a", "ns", [1.0]),), (Check("a", 0.0, 1.0),))
+    for each, kind in ((group, ""), (Group("tool", "Tool"), ""), (Group("tool", "Tool"), "narrow")):
+        record.write(tmp_path / "performance.json", each, kind)
+    found = [each for each, _ in record.read(tmp_path / "performance.json")]
+    assert found[0] == group
+    assert [each.title for each in found] == ["Title", "Tool", "Tool; narrow"]
 
 
-def test_page_shows_a_missed_goal_and_a_wrong_value():
+def test_a_missed_goal_and_a_wrong_value_are_shown():
     group = Group("tool", "T", (Figure("f", "x", 2.0, 2.0, 2.0, 1.0),), (Check("c", 2.0, 1.0),))
-    text = page.table(group)
+    text = record.table(group)
     assert "**missed**" in text
     assert "0 of 1 within tolerance" in text
-    assert "| T | 0 of 1 | f (2 x, goal 1) |" in page.goals([group])
+    assert "| T | 0 of 1 | f (2 x, goal 1) |" in record.goals([group])
 
 
-def test_command_fails_where_a_value_is_wrong(tmp_path):
+def test_command_fails_where_a_value_is_wrong(tmp_path, monkeypatch):
     wrong = Group("tool", "T", checks=(Check("c", 2.0, 1.0),))
-    record.write(tmp_path / "performance.json", [wrong])
-    assert command.main(["--page", "--output", str(tmp_path)]) == 1
+    monkeypatch.setattr(tool, "measure", lambda: wrong)
+    assert command.main(["tool", "--output", str(tmp_path)]) == 1
     assert "T" in (tmp_path / "performance.md").read_text()
-
-
-def test_committed_page_is_made_from_the_committed_json():
-    text = (command.DOCS / "performance.md").read_text(encoding="utf-8")
-    groups = [group for group, _ in record.read(command.DOCS / "performance.json")]
-    assert {group.name for group in groups} == set(command.GROUPS)
-    assert page.goals(groups) in text and all(page.table(group) in text for group in groups)
-
-
-def test_table_1_has_the_paper_beside_what_was_measured():
-    found = page.table_1(Group("shaders", "T", (figure("cosine + quartic", "ns", [3.0]),)))
-    assert "| EON (approx) | 20.8 | 106 | 217 |  | 3 |" in found
-
-
-def test_names_of_table_1_are_names_of_rivals():
-    named = {row[-2] for row in page.TABLE_1}
-    named |= {f"cosine + {row[-1]}" for row in page.TABLE_1[1:]}
-    named |= {f"{sampler} + quartic" for sampler in page.SAMPLERS[:-1]} | {"exact + eonlib"}
-    assert named <= {rival.name for rival in shaders.RIVALS}
 
 
 def test_compiled_values_of_no_pair_and_of_any_number_of_channels_have_their_shape():
@@ -290,11 +270,3 @@ def test_equal_noise_times_are_relative_to_the_best_sampler_alone(gl):
     found = {each.name: each.median for each in group.figures}
     for light in (*(each.title for each in lights.LIGHTS), noise.SCENE):
         assert min(found[f"{noise.PATHS}: {light}: {name}"] for name in noise.SAMPLERS) == 1.0
-    assert "| uniform | > 100 |" in page.table(group)
-
-
-def test_results_of_two_kinds_of_machine_stand_beside_each_other(tmp_path):
-    for kind in ("", "narrow"):
-        record.write(tmp_path / "performance.json", [Group("tool", "The tool", series={})], kind)
-    titles = [group.title for group, _ in record.read(tmp_path / "performance.json")]
-    assert titles == ["The tool", "The tool; narrow"]

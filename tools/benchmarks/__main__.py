@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the benchmarks: prints the tables, and writes docs/performance.json and the page from it.
+"""Runs the benchmarks, prints their tables, and writes them as JSON and Markdown.
 
     python -m tools.benchmarks [GROUP ...] [--quick] [--kind TEXT] [--output DIR]
-    python -m tools.benchmarks --page           the page alone, from the JSON that is there
 
 Exit status: 0, or 1 if a value that was timed is wrong. A missed goal is shown and no error.
 """
@@ -17,7 +16,7 @@ from pathlib import Path
 from unittest.mock import patch
 
 from mxeon.errors import NotRun
-from tools.benchmarks import page, record
+from tools.benchmarks import record
 from tools.benchmarks.check import CACHE
 
 GROUPS = (
@@ -39,50 +38,43 @@ QUICK = {
     "check": {"rounds": 1, "whole": False},
     "parts": {"rounds": 1},
 }
-DOCS = Path(__file__).resolve().parents[2] / "docs"
-
-
-def keep(file, kind, start, group):
-    """Write a group's figures as far as they are, so that no later failure loses them."""
-    record.write(file, [group], kind, time.monotonic() - start)
+OUTPUT = Path(__file__).resolve().parents[2] / "out" / "benchmarks"
 
 
 def measure(options, file):
-    """Measure the groups that are asked for, each printed and kept as it is done."""
-    record.write(file, [])
+    """Measure the groups that are asked for; each is printed and kept as soon as it is done."""
     for name in options.groups or GROUPS:
-        sizes = dict(QUICK[name]) if options.quick else {}
-        kept = partial(keep, file, options.kind, time.monotonic())
-        if name in ("materials", "check"):  # which take longest: each part is kept as it is done
+        sizes, start = dict(QUICK[name]) if options.quick else {}, time.monotonic()
+        kept = partial(record.write, file, kind=options.kind, start=start)
+        if name in ("materials", "check"):  # the longest ones keep each part
             sizes["keep"] = kept
         try:
-            group = import_module(f"benchmarks.{name}").measure(**sizes)
+            group = import_module(f"tools.benchmarks.{name}").measure(**sizes)
         except NotRun as reason:
             print(f"benchmarks: {name} not run: {reason}", file=sys.stderr)
             continue
-        print(page.table(group), flush=True)
+        print(record.table(group), flush=True)
         kept(group)
+        yield group
 
 
 def main(arguments=None):
-    """Run what is asked for; the exit status."""
     parser = argparse.ArgumentParser(prog="benchmarks", description=__doc__.splitlines()[0])
     parser.add_argument("groups", nargs="*", metavar="GROUP", help=", ".join(GROUPS))
     parser.add_argument("--quick", action="store_true", help="small sizes, few rounds")
     parser.add_argument(
         "--kind", default="", help="kind of machine; its results stand beside others"
     )
-    parser.add_argument("--output", type=Path, default=DOCS, help="folder of JSON and page")
-    parser.add_argument("--page", action="store_true", help="make the page alone")
+    parser.add_argument("--output", type=Path, default=OUTPUT, help="folder of the results")
     options = parser.parse_args(arguments)
     unknown = set(options.groups) - set(GROUPS)
     if unknown:
         parser.error(f"group must be one of {', '.join(GROUPS)}; got {', '.join(unknown)}")
     file = options.output / "performance.json"
-    if not options.page:
-        with patch.dict(os.environ, {CACHE: "true"}):  # or a compilation is read from a file
-            measure(options, file)
-    groups = page.write(options.output, file)
+    with patch.dict(os.environ, {CACHE: "true"}):  # or a compilation is read from a file
+        groups = list(measure(options, file))
+    if file.is_file():
+        file.with_suffix(".md").write_text(record.page(file), encoding="utf-8")
     wrong = [each.name for group in groups for each in group.checks if not each.passed]
     if wrong:
         print(f"benchmarks: wrong values: {', '.join(wrong)}", file=sys.stderr)

@@ -219,7 +219,7 @@ def measure(rounds=3, files=(), whole=True, keep: Callable[[Group], None] | None
             found, more = part()
             figures, checks = [*figures, *found], [*checks, *more]
             title = "`mxeon check`, bundled examples"
-            group = Group("check", title, tuple(figures), tuple(checks), {})
+            group = Group("check", title, tuple(figures), tuple(checks))
             if keep:
                 keep(group)
     return group

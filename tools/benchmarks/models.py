@@ -92,7 +92,7 @@ def compiled(pairs):
 
 
 def compare(count, material, rounds):
-    """Figures, checks and medians of one number of pairs."""
+    """Figures and checks of one number of pairs."""
     ways = rivals(arguments(count, material))
     exact = ways["naive"]()
     checks, label = [], f"{count:.0e} pairs, {material} material"
@@ -109,8 +109,7 @@ def compare(count, material, rounds):
         for n, s in seconds.items()
         if n != "naive"
     ]
-    medians = {name: time.median for name, time in times.items()}
-    return [*times.values(), *ratios], checks, medians
+    return [*times.values(), *ratios], checks
 
 
 def extra_memory(way, count):
@@ -145,16 +144,13 @@ def peak_memory():
 
 def measure(rounds=7, pairs=PAIRS):
     """The `Group` of both kinds of material over the numbers of pairs."""
-    figures, checks, series = [], [], {}
+    figures, checks = [], []
     for material in ("one", "own"):
         for count in pairs:
-            *group, medians = compare(count, material, rounds if count < 1e7 else 3)
-            figures, checks = figures + group[0], checks + group[1]
-            for name, value in medians.items():
-                series.setdefault(f"ns: {name}, {material} material", []).append((count, value))
+            found, right = compare(count, material, rounds if count < 1e7 else 3)
+            figures, checks = figures + found, checks + right
     for way in rivals(arguments(8, "one")):
         for count in pairs:
             memory = extra_memory(way, count)
             figures.append(figure(f"extra memory, {way}, {count:.0e} pairs", "MiB", [memory]))
-            series.setdefault(f"MiB: {way}", []).append((count, memory))
-    return Group("models", "NumPy reference, per pair", tuple(figures), tuple(checks), series)
+    return Group("models", "NumPy reference, per pair", tuple(figures), tuple(checks))

@@ -172,4 +172,4 @@ def measure(rounds=15, invocations=2**14, calls=256, size=128, pictures=48, spok
         figures += [figure(f"variance: {light}: {n}", "", [v]) for n, v in variance.items()]
         figures += relative(FUNCTIONS, light, variance, functions)
         figures += relative(PATHS, light, variance, bounces if light == SCENE else paths)
-    return Group("noise", f"Equal-noise time of sampling on {renderer}", tuple(figures), series={})
+    return Group("noise", f"Equal-noise time of sampling on {renderer}", tuple(figures))

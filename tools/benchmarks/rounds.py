@@ -13,25 +13,15 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Figure:
-    """A median over rounds and its quartiles.
-
-    Attributes
-    ----------
-    name, unit : str
-        Name of the quantity; the unit is "x" for a ratio.
-    median, low, high : float
-    goal : float or None
-        Bound of the median, or None: at most, or at least where `at_least`.
-    at_least : bool
-    """
+    """A median over rounds and its quartiles."""
 
     name: str
-    unit: str
+    unit: str  # "x" for a ratio
     median: float
     low: float
     high: float
-    goal: float | None = None
-    at_least: bool = False
+    goal: float | None = None  # the median is at most this,
+    at_least: bool = False  # or at least
 
     @property
     def reached(self):
@@ -57,28 +47,18 @@ class Check:
 
 @dataclass(frozen=True)
 class Group:
-    """One benchmark's findings; `series` maps a curve's name to pairs of x and y."""
+    """One benchmark's findings."""
 
     name: str
     title: str
     figures: tuple = ()
     checks: tuple = ()
-    series: dict | None = None
 
 
 def interleave(rivals, rounds, clock=time.perf_counter):
     """Seconds of each call of each rival, one call per round, in turn; a first round is dropped.
 
-    Parameters
-    ----------
-    rivals : mapping of str to callable
-    rounds : int
-    clock : callable
-        `time.process_time` leaves out what else the machine does, and adds up the cores.
-
-    Returns
-    -------
-    dict of str to list of float
+    `time.process_time` as the clock leaves out what else the machine does, and adds up the cores.
     """
     found = {name: [] for name in rivals}
     for _ in range(rounds + 1):

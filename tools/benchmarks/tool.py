@@ -109,10 +109,10 @@ def generating(rounds, documents=100):
 
 
 def growing(counts):
-    """Figures and series of time and memory over the number of documents, in glsl."""
+    """Figures of time and memory over the number of documents, in glsl."""
     files = sorted(examples_folder().glob("*.mtlx"))
     generate(files[0], "glsl")
-    figures, series = [], {"s": [], "MiB": []}
+    figures = []
     for count in counts:
         before, start = reset_memory(), time.perf_counter()
         for k in range(count):
@@ -121,9 +121,7 @@ def growing(counts):
         figures.append(figure(f"{count} documents", "s", [seconds]))
         name = f"{count} documents, peak memory beyond the start"
         figures.append(figure(name, "MiB", [memory], goal=1.0))
-        series["s"].append((count, seconds))
-        series["MiB"].append((count, memory))
-    return figures, series
+    return figures
 
 
 def loading(rounds):
@@ -141,6 +139,5 @@ def measure(rounds=5, counts=DOCUMENTS, documents=100):
     """The `Group` of all that."""
     with unwarned():
         figures, checks = generating(rounds, documents)
-    grown, series = growing(counts)
-    figures = starting(4 * rounds) + loading(rounds) + figures + grown
-    return Group("tool", "The tool", tuple(figures), tuple(checks), series)
+    figures = starting(4 * rounds) + loading(rounds) + figures + growing(counts)
+    return Group("tool", "The tool", tuple(figures), tuple(checks))

@@ -106,7 +106,7 @@ def program(model: str, sampler: str) -> str:
         "PDF(wo, wi, r)": density,
     }
     defines = [f"#define TRACER_{head} {body}" for head, body in macros.items()]
-    tracer = files("paper").joinpath("tracer.glsl").read_text(encoding="utf-8")
+    tracer = files("tools.paper").joinpath("tracer.glsl").read_text(encoding="utf-8")
     return "\n".join(["#version 430", twins.source("glsl"), *defines, tracer])
 
 
