@@ -11,7 +11,8 @@ from mxeon.conformance.results import SOURCE
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.tasks import Task
 from mxeon.shaders.document.policy import DEFAULT
-from tools.benchmarks.mutants import trial
+from tools.benchmarks.mutants import __main__ as command
+from tools.benchmarks.mutants import operators, trial
 from tools.benchmarks.mutants.mutant import FOLDERS, read_table
 from tools.benchmarks.mutants.quick import Quick
 
@@ -70,20 +71,20 @@ def test_every_file_has_a_negative_control():
     assert sorted(controls) == sorted({mutant.file for mutant in TABLE})
 
 
-@pytest.fixture(scope="module")
-def verdicts():
-    trials = json.loads((trial.ROOT / "docs" / "mutants.json").read_text())
-    return {name: found["verdict"] == trial.KILLED for name, found in trials.items()}
+def test_operators_change_every_shader_once_and_repeatably():
+    made = operators.made(1, 1.0)
+    texts = {(each.file, each.texts()[each.file]) for each in made}
+    assert len(texts) == len({each.name for each in made}) == len(made) > 4000
+    assert operators.made(1, 0.01) == operators.made(1, 0.01) != operators.made(2, 0.01)
+    assert {each.name.split(",")[0] for each in made} == operators.OPERATORS.keys()
 
 
-def test_every_mutant_was_tried_and_none_survived_but_those_with_a_reason(verdicts):
-    controls = {mutant.name for mutant in TABLE if mutant.control}
-    expected = {mutant.name: not mutant.survives for mutant in TABLE}
-    assert verdicts == {name: expected[name] for name in verdicts}
-    assert expected.keys() - verdicts.keys() <= controls
-    assert [each.name for each in TABLE if each.survives and not each.equivalent] == [
-        "dielectric in OSL: index 0 as any other"
-    ]
+def test_a_mutant_of_an_operator_is_killed(gl, tmp_path, monkeypatch):
+    only = next(m for m in operators.mutants_of("genglsl/blackbody.glsl") if "sign" in m.name)
+    monkeypatch.setattr(operators, "made", lambda seed, share: (only,))
+    assert command.main(["--seed", "1", "--output", str(tmp_path)]) == 0
+    [found] = json.loads((tmp_path / "mutants.json").read_text()).values()
+    assert found["verdict"] == trial.KILLED
 
 
 @pytest.mark.parametrize(("name", "check"), SLICE.items())

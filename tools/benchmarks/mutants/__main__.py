@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs `mxeon check` on wrong libraries: writes docs/mutants.json, and the page from it.
+"""Runs `mxeon check` on wrong libraries, and keeps which check notices each in out/mutants.
 
-    python -m tools.benchmarks.mutants [--only PATTERN] [--resume] [--output DIR]
-    python -m tools.benchmarks.mutants --page           the page alone, from the JSON that is there
+    python -m tools.benchmarks.mutants [--only PATTERN] [--resume]    the rows of the table
+    python -m tools.benchmarks.mutants --seed N [--share 0.1]         a share of what the operators make
 
 Exit status: 0, or 1 if a mutant survives that is not listed so, or one that is does not.
 """
@@ -12,6 +12,7 @@ import json
 import re
 import sys
 import tempfile
+from collections import Counter
 from collections.abc import Sequence
 from contextlib import closing
 from pathlib import Path
@@ -22,47 +23,52 @@ from tqdm import tqdm
 from mxeon.conformance.run.judge import Judge
 from mxeon.io.files import write_text
 from mxeon.shaders.document.policy import DEFAULT
-from tools.benchmarks.mutants import page
-from tools.benchmarks.mutants.mutant import Mutant, read_table
+from tools.benchmarks.mutants import operators
+from tools.benchmarks.mutants.mutant import ROOT, Mutant, read_table
 from tools.benchmarks.mutants.quick import Quick
 from tools.benchmarks.mutants.trial import KILLED, trial
 
-DOCS = Path(__file__).resolve().parents[3] / "docs"
+OUTPUT = ROOT / "out" / "mutants"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Try the mutants that are asked for; the exit status."""
     parser = argparse.ArgumentParser(
         prog="tools.benchmarks.mutants", description=__doc__.splitlines()[0]
     )
     parser.add_argument("--only", default="", metavar="PATTERN", help="in 'GROUP: NAME'")
     parser.add_argument("--resume", action="store_true", help="leave out what has been tried")
     parser.add_argument("--all", action="store_true", help="go on after the first failure")
-    parser.add_argument("--output", type=Path, default=DOCS, help="folder of JSON and page")
-    parser.add_argument("--page", action="store_true", help="make the page alone")
+    parser.add_argument("--seed", type=int, help="try mutants of the operators, not of the table")
+    parser.add_argument("--share", type=float, default=0.1, help="of the operators' mutants")
+    parser.add_argument("--output", type=Path, default=OUTPUT, help="folder of the results")
     options = parser.parse_args(arguments)
-    table, file = read_table(), options.output / "mutants.json"
-    trials = _read(file)
-    if not options.page:
-        chosen = [each for each in table if re.search(options.only, f"{each.group}: {each.name}")]
-        if options.resume:
-            chosen = [each for each in chosen if not _tried(each, trials)]
-        _try_all(chosen, trials, file, options.all)
-    page.write(options.output / "mutants.md", table, trials)
-    wrong = [each for each in table if each.name in trials and _is_wrong(each, trials[each.name])]
-    for each in wrong:
-        verdict = trials[each.name]["verdict"]
-        print(f"tools.benchmarks.mutants: {each.group}: {each.name}: {verdict}", file=sys.stderr)
-    return 1 if wrong else 0
-
-
-def _try_all(mutants: Sequence[Mutant], trials: dict[str, Any], file: Path, every: bool) -> None:
-    """Try mutants, and keep each result as soon as it is there."""
+    if not 0.0 < options.share <= 1.0:
+        parser.error(f"--share must be above 0 and at most 1; got {options.share:g}")
+    seed, share = options.seed, options.share
+    table = read_table() if seed is None else operators.made(seed, share)
+    chosen = [each for each in table if re.search(options.only, f"{each.group}: {each.name}")]
+    file = options.output / "mutants.json"
+    trials: dict[str, Any] = json.loads(file.read_text()) if file.exists() else {}
+    if options.resume:
+        chosen = [each for each in chosen if trials.get(each.name, {}).get("digest") != each.digest]
     with closing(Judge(DEFAULT)) as judge, closing(Quick()) as quick:
-        for mutant in tqdm(mutants):
-            found = trial(mutant, judge, quick, every)
+        for mutant in tqdm(chosen, disable=None):
+            found = trial(mutant, judge, quick, options.all)
             trials[mutant.name] = {"digest": mutant.digest} | summary(found)
             write_text(file, json.dumps(trials, indent=1, sort_keys=True) + "\n")
+    print(*lines(chosen, trials), sep="\n")
+    return int(any((trials[m.name]["verdict"] == KILLED) == m.survives for m in chosen))
+
+
+def lines(mutants: Sequence[Mutant], trials: dict[str, Any]) -> list[str]:
+    """Counts by group and verdict, and each mutant whose verdict is not the one expected."""
+    counts = Counter((each.group, trials[each.name]["verdict"]) for each in mutants)
+    wrong = [
+        f"{each.name}: {trials[each.name]['verdict']} ({each.reason})"
+        for each in mutants
+        if (trials[each.name]["verdict"] == KILLED) == each.survives
+    ]
+    return [*(f"{group}: {count} {verdict}" for (group, verdict), count in counts.items()), *wrong]
 
 
 def summary(found: dict[str, Any]) -> dict[str, Any]:
@@ -71,32 +77,13 @@ def summary(found: dict[str, Any]) -> dict[str, Any]:
         return found
     failures = found.get("failures", [])
     clearest = failures[0] if failures else {"diagnosis": found["refusal"]}
-    words = (clearest.get("excess"), clearest["diagnosis"])
+    words = "; ".join(filter(None, (clearest.get("excess"), clearest["diagnosis"])))
     return {
         "verdict": KILLED,
         "host": found["host"],
         "checks": list(dict.fromkeys(each["check"] for each in failures)) or ["refused"],
-        "explanation": _placeless("; ".join(filter(None, words))),
+        "explanation": re.sub(rf"{re.escape(tempfile.gettempdir())}/\S*/", "", words),
     }
-
-
-def _placeless(words: str) -> str:
-    """`words` with files by their names alone: the folder of a trial is gone with it."""
-    return re.sub(rf"{re.escape(tempfile.gettempdir())}/\S*/", "", words)
-
-
-def _read(file: Path) -> dict[str, Any]:
-    trials: dict[str, Any] = json.loads(file.read_text()) if file.exists() else {}
-    return trials
-
-
-def _tried(mutant: Mutant, trials: dict[str, Any]) -> bool:
-    return trials.get(mutant.name, {}).get("digest") == mutant.digest
-
-
-def _is_wrong(mutant: Mutant, found: dict[str, Any]) -> bool:
-    """Whether a mutant survived, or one that is listed as a survivor did not."""
-    return (found["verdict"] == KILLED) == mutant.survives
 
 
 if __name__ == "__main__":

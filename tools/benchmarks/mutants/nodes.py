@@ -23,7 +23,7 @@ DOCUMENTS = (
     "libraries/pbrlib/eonlib_pbrlib_genosl_impl.mtlx",
     "genosl/cycles/eonlib_cycles_impl.xml",
 )
-INCLUDE = re.compile(r'^#include "(\w+\.\w+)"$', re.MULTILINE)
+INCLUDE = re.compile(r'^#include "([\w./]+)"$', re.MULTILINE)
 # Targets, and hosts that run their text, cheap hosts first.
 HOSTS = (("genglsl", "gl"), ("genosl", "osl"), ("genosl", "cycles"))
 # Checks that take longest.
@@ -99,7 +99,9 @@ def _sources(file: str) -> frozenset[str]:
         return frozenset()
     included = INCLUDE.findall(path.read_text(encoding="utf-8"))
     folder = Path(file).parent
-    return frozenset({file}.union(*(_sources((folder / name).as_posix()) for name in included)))
+    return frozenset(
+        {file}.union(*(_sources(os.path.normpath(folder / each)) for each in included))
+    )
 
 
 def _entries(document: str, text: str) -> set[tuple[str, ...]]:
