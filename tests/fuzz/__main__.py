@@ -1,24 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tries cases in processes of their own, keeps those that fail, and writes the figures.
 
-The figures go to docs/reliability.json under "fuzz".
+With --keep the figures go to out/reliability.json under "fuzz".
 """
 
 import argparse
 import json
 import sys
 import time
-from pathlib import Path
 
 from tqdm import tqdm
 
-from mxeon.io.files import write_text
 from mxeon.jobs import pool
 from tests.fuzz.cases import case
 from tests.fuzz.found import FOUND
 from tests.fuzz.trial import guarded, numbered, trial
-
-FIGURES = Path(__file__).resolve().parents[2] / "docs" / "reliability.json"
+from tests.reliability.__main__ import keep
 
 
 def main(arguments=None):
@@ -44,9 +41,10 @@ def main(arguments=None):
         "faults_found": len(FOUND),
         "faults_fixed": fixed,
     }
-    print(json.dumps(figures, indent=1))
     if options.keep:
         keep("fuzz", figures)
+    else:
+        print(json.dumps(figures, indent=1))
     return 1 if failed or fixed < len(FOUND) else 0
 
 
@@ -58,7 +56,7 @@ def _options(arguments):
     parser.add_argument("--case", type=int, metavar="NUMBER", help="try this one alone, here")
     parser.add_argument("--workers", type=int, default=1)
     parser.add_argument("--limit", type=float, default=20.0, help="seconds for one case")
-    parser.add_argument("--keep", action="store_true", help="write the figures to docs")
+    parser.add_argument("--keep", action="store_true", help="keep the figures in out/")
     return parser.parse_args(arguments)
 
 
@@ -69,12 +67,6 @@ def _failed(keys, options):
         if reason := outcome.failure or outcome.value:
             print(f"case {keys[place][1]}: {reason}", file=sys.stderr, flush=True)
             yield keys[place]
-
-
-def keep(group, figures):
-    """Put the figures of a group in place of its former ones."""
-    kept = json.loads(FIGURES.read_text()) if FIGURES.exists() else {}
-    write_text(FIGURES, json.dumps(kept | {group: figures}, indent=1, sort_keys=True) + "\n")
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ Where `python -m tests.fuzz` mutates at random, a family covers its tables evenl
 every type, every attribute with every odd value, every spelling of a number, every encoding, every
 option, every value of a journal, of results and of a kit's description, every argument of the models'
 functions, the explorer's page in Chromium, signals at any time, every include. The figures go to
-docs/reliability.json under "attack".
+out/reliability.json under "attack".
 """
 
 import argparse
@@ -38,12 +38,12 @@ from tests.fuzz import (
     signals,
     templates,
 )
-from tests.fuzz.__main__ import FIGURES, keep
 from tests.fuzz.cases import COMMANDS, OUT, TARGETS, Case
 from tests.fuzz.documents import originals
 from tests.fuzz.found import LOBE
 from tests.fuzz.trial import judged, unlimited
 from tests.fuzz.words import ATTRIBUTES, CATEGORIES, PATHS, SNIPPETS, TYPES, VALUES
+from tests.reliability.__main__ import FIGURES, keep
 from tests.support.documents import material
 
 SEED = 1
@@ -254,12 +254,12 @@ def main(arguments=None):
     parser.add_argument("families", nargs="*", metavar="FAMILY", help=", ".join(FAMILIES))
     parser.add_argument("--cases", type=int, help="of each family")
     parser.add_argument("--workers", type=int, default=1)
-    parser.add_argument("--keep", action="store_true", help="write the figures to docs")
+    parser.add_argument("--keep", action="store_true", help="keep the figures in out/")
     options = parser.parse_args(arguments)
     figures = measure(options.families or FAMILIES, options.cases, options.workers)
     print(json.dumps(figures, indent=1))
     if options.keep:
-        kept = json.loads(FIGURES.read_text(encoding="utf-8")).get("attack", {})
+        kept = json.loads(FIGURES.read_text()).get("attack", {}) if FIGURES.exists() else {}
         keep("attack", kept | figures)
     return 1 if any(each.get("faults") for each in figures.values()) else 0
 

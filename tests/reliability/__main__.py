@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measures how runs survive faults, and writes docs/reliability.json and the page from it.
+"""Measures how runs survive faults, prints the figures, and keeps them in out/reliability.json.
 
-python -m tests.reliability [GROUP ...] [--page] [--folder FOLDER]
+python -m tests.reliability [GROUP ...] [--folder FOLDER]
 """
 
 import argparse
@@ -9,21 +9,18 @@ import json
 from importlib import import_module
 from pathlib import Path
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from tqdm import tqdm
 
 from mxeon.io.files import write_text
 
 GROUPS = ("kills", "hangs", "disk", "memory", "farm", "versions", "processors")
 FOLDERS = ("documents",)  # groups that are measured on a folder
-DOCS = Path(__file__).resolve().parents[2] / "docs"
+FIGURES = Path(__file__).resolve().parents[2] / "out" / "reliability.json"
 
 
 def main(arguments=None):
-    """Measure what is asked for, and write the page."""
     parser = argparse.ArgumentParser(prog="tests.reliability", description=__doc__.splitlines()[0])
     parser.add_argument("groups", nargs="*", metavar="GROUP", help=", ".join(GROUPS + FOLDERS))
-    parser.add_argument("--page", action="store_true", help="make the page alone")
     parser.add_argument("--folder", help="of documents, for the group of that name")
     options = parser.parse_args(arguments)
     if unknown := set(options.groups) - {*GROUPS, *FOLDERS}:
@@ -31,34 +28,18 @@ def main(arguments=None):
         parser.error(f"group must be one of {known}; got {', '.join(unknown)}")
     if set(options.groups) & set(FOLDERS) and not options.folder:
         parser.error("--folder must name the folder of the documents")
-    for name in () if options.page else options.groups or GROUPS:
+    for name in options.groups or GROUPS:
         measure = import_module(f"tests.reliability.{name}").measure
         given = [options.folder] if name in FOLDERS else []
         keep(name, measure(*given, progress=tqdm))
-    write_text(DOCS / "reliability.md", page(read()))
-
-
-def read():
-    """The figures measured so far, by group."""
-    file = DOCS / "reliability.json"
-    return json.loads(file.read_text()) if file.exists() else {}
 
 
 def keep(group, figures):
-    """Put the figures of a group in place of its former ones."""
-    text = json.dumps(read() | {group: figures}, indent=1, sort_keys=True)
-    write_text(DOCS / "reliability.json", text + "\n")
-
-
-def page(figures):
-    """The page in Markdown."""
-    environment = Environment(
-        loader=PackageLoader("tests.reliability", "."),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    return environment.get_template("reliability.md.jinja").render(figures)
+    """Print the figures of a group, and put them in place of its former ones."""
+    print(json.dumps({group: figures}, indent=1))
+    kept = json.loads(FIGURES.read_text()) if FIGURES.exists() else {}
+    FIGURES.parent.mkdir(exist_ok=True)
+    write_text(FIGURES, json.dumps(kept | {group: figures}, indent=1, sort_keys=True) + "\n")
 
 
 if __name__ == "__main__":

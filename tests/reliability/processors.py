@@ -57,6 +57,7 @@ COARSE = (
     "browser",
     "cycles",
     "docs",
+    "fits",
     "drjit_arrays",
     "document_hosts",
     "gl",
