@@ -2,7 +2,6 @@
 """The benchmarks on tiny sizes: every value right, every result kept; no time asserted."""
 
 import os
-import shutil
 from functools import cache
 
 import numpy as np
@@ -17,7 +16,6 @@ from tools.benchmarks import (
     check,
     cycles,
     lights,
-    machine_code,
     models,
     noise,
     record,
@@ -62,7 +60,6 @@ SMALLEST = {
         "rounds": 1, "invocations": 256, "calls": 4, "size": 16, "pictures": 2, "spokes": 2,
     },
     "materials": {"processes": 1, "size": 32, "nodes": ("oren_nayar", "dielectric_bsdf")},
-    "texts": {"nodes": ("oren_nayar", "dielectric_bsdf")},
     "instructions": {"nodes": ("oren_nayar",)},
     "registers": {"nodes": ("oren_nayar",)},
     "shares": {"nodes": ("conductor_bsdf",), "parts": ("nothing", "the film")},
@@ -127,15 +124,6 @@ def test_check_whose_results_fail_is_wrong():
     assert 0.0 < check.job(*TEXTS, "--node", "common", "--library", "stock").wrong < np.inf
 
 
-@pytest.mark.skipif(shutil.which("objdump") is None, reason="needs objdump of binutils")
-def test_a_square_root_more_is_seen_in_the_machine_code(gl):
-    statements = machine_code.BASES["value"], machine_code.BASES["value"] + " sum += sqrt(mu_o);"
-    device = shaders.Device(64)
-    loops = [machine_code.loop(machine_code.machine_code(device, each)) for each in statements]
-    before, after = (machine_code.kinds(each)["square roots"] for each in loops)
-    assert after == before + 1
-
-
 def test_the_rows_of_check_have_their_goals_and_a_cache_of_their_own(monkeypatch):
     asked = []
 
@@ -165,22 +153,6 @@ def test_a_run_that_takes_too_long_is_stopped():
     assert found.stopped and found.seconds >= 0.1
 
 
-def test_compiled_values_and_errors_are_those_of_the_models():
-    pytest.importorskip("numba")
-    from tools.benchmarks import numba_eon as compiled
-
-    rng = np.random.default_rng(3)
-    wo, wi = models.directions(3000, rng), models.directions(3000, rng)
-    wo[0] = wi[0] = 1.0, 0.0, 0.0
-    for rho, r in ((0.5, 1.0), (rng.random((3000, 3)), rng.random(3000)), ([0.2, 1.0], 0.0)):
-        exact = models.eon_brdf(wo, wi, rho, r)
-        error = np.pi * np.abs(compiled.eon_brdf(wo, wi, rho, r) - exact)
-        assert error.max() <= models.TOLERANCE
-    for bad in ([0.0, 0.0, 2.0], [0.0, 0.6, -0.8], [0.0, 0.0, np.nan], [0.0, 1.0]):
-        with pytest.raises(ValueError, match="wi must"):
-            compiled.eon_brdf([0.0, 0.0, 1.0], bad, 0.5, 0.5)
-
-
 def test_results_of_other_groups_and_of_other_machines_are_kept(tmp_path):
     group = Group("models", "Title", (figure("a", "ns", [1.0]),), (Check("a", 0.0, 1.0),))
     for each, kind in ((group, ""), (Group("tool", "Tool"), ""), (Group("tool", "Tool"), "narrow")):
@@ -203,16 +175,6 @@ def test_command_fails_where_a_value_is_wrong(tmp_path, monkeypatch):
     monkeypatch.setattr(tool, "measure", lambda: wrong)
     assert command.main(["tool", "--output", str(tmp_path)]) == 1
     assert "T" in (tmp_path / "performance.md").read_text()
-
-
-def test_compiled_values_of_no_pair_and_of_any_number_of_channels_have_their_shape():
-    pytest.importorskip("numba")
-    from tools.benchmarks import numba_eon as compiled
-
-    up = np.array([[0.0, 0.0, 1.0]] * 5)
-    for pairs, channels in ((0, 3), (1, 3), (5, 2), (5, 3)):
-        rho, r = np.full((pairs, channels), 0.5), np.full(pairs, 0.5)
-        assert compiled.eon_brdf(up[:pairs], up[:pairs], rho, r).shape == (pairs, channels)
 
 
 NORMAL = np.array([-0.3, 0.4, np.sqrt(0.75)])  # of a pixel that all these lights reach

@@ -99,15 +99,6 @@ def test_the_script_gives_the_series_of_the_angle(language):
     assert error <= tolerances.FIT_ANGLE
 
 
-def test_the_script_gives_the_arc_tangent_of_the_compiled_models():
-    pytest.importorskip("numba")
-    from tools.benchmarks import numba_eon as compiled
-
-    series = arc_tangent.coefficients(**arc_tangent.COMPILED)
-    assert np.ravel(compiled.ATAN).tolist() == series
-    assert arc_tangent.largest_error(series, mp.one, 101) <= tolerances.ROUNDING
-
-
 def shipped_in(stem, prefix):
     """Coefficients of a rational fit in a GLSL file, numerator first."""
     pattern = rf"#define {prefix}_([ND])\d+ (\S+)"

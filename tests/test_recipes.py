@@ -232,7 +232,7 @@ def test_the_third_place_of_a_node_is_its_section_with_a_mark(results):
         for (library, subject, check), row in results.items()
         if library in columns
     ]
-    data = {"results": [{**row, "error": "", "allowed": ""} for row in rows]}
+    data = {"gl": {"results": [{**row, "error": "", "allowed": ""} for row in rows]}}
     text = "## shaded_bsdf\n\n<!-- measured shaded_bsdf -->\n<!-- end -->\n"
     page = script["page"](text, data)
     assert page.startswith(text[:-13]) and page.endswith("<!-- end -->\n")

@@ -20,14 +20,13 @@ from tools.benchmarks import record
 from tools.benchmarks.check import CACHE
 
 GROUPS = (
-    "shaders", "noise", "materials", "texts", "instructions", "registers", "shares", "cycles", "models", "values",
-    "tool", "check", "parts",
+    "shaders", "noise", "materials", "instructions", "registers", "shares", "cycles", "models", "values",
+    "tool", "check",
 )  # fmt: skip
 QUICK = {
     "shaders": {"rounds": 5},
     "noise": {"rounds": 3, "invocations": 2**12, "size": 64, "pictures": 8, "spokes": 6},
     "materials": {"processes": 3, "size": 256},
-    "texts": {"nodes": ("oren_nayar", "dielectric_bsdf")},
     "instructions": {"nodes": ("oren_nayar", "dielectric_bsdf")},
     "registers": {"nodes": ("oren_nayar", "dielectric_bsdf")},
     "shares": {"nodes": ("dielectric_bsdf",)},
@@ -36,7 +35,6 @@ QUICK = {
     "values": {"rounds": 2, "pairs": 100_000, "calls": 200},
     "tool": {"rounds": 2, "counts": (1, 10), "documents": 10},
     "check": {"rounds": 1, "whole": False},
-    "parts": {"rounds": 1},
 }
 OUTPUT = Path(__file__).resolve().parents[2] / "out" / "benchmarks"
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""EON in NumPy over many pairs: mxeon's blocks, and Numba, against the printed formula as it is.
+"""EON in NumPy over many pairs: mxeon's blocks against the printed formula as it is.
 
 Memory beyond arguments and result is the growth of the resident peak in a process of its own.
 """
@@ -71,24 +71,7 @@ def rivals(pairs):
     ways = {"naive": partial(naive_eon_brdf, *pairs)}
     for count in (1, 2):
         ways[f"blocks, {count} thread{'s'[: count - 1]}"] = partial(on_threads, count, *pairs)
-    return ways | compiled(pairs)
-
-
-def compiled(pairs):
-    """Numba's rivals, where it is installed."""
-    try:
-        import numba
-
-        from tools.benchmarks import numba_eon as module
-    except ImportError:
-        return {}
-
-    def run(count):
-        numba.set_num_threads(count)
-        return module.eon_brdf(*pairs)
-
-    most = min(2, numba.config.NUMBA_NUM_THREADS)
-    return {f"Numba, {n} thread{'s'[: n - 1]}": partial(run, n) for n in range(1, most + 1)}
+    return ways
 
 
 def compare(count, material, rounds):
@@ -102,8 +85,6 @@ def compare(count, material, rounds):
     seconds = interleave(ways, rounds)
     times = {n: scaled(f"{n}, {label}", "ns", s, 1e9 / count) for n, s in seconds.items()}
     goals = {"blocks, 2 threads": GOALS.get(count)}
-    if count == 1_000_000:
-        goals |= {"Numba, 1 thread": 8.0, "Numba, 2 threads": 15.0}
     ratios = [
         ratio(f"naive / {n}, {label}", seconds["naive"], s, goals.get(n), at_least=True)
         for n, s in seconds.items()

@@ -14,7 +14,7 @@ import numpy as np
 
 from tools.benchmarks.rounds import Check, Figure, Group
 
-PACKAGES = ("mxeon", "MaterialX", "numpy", "moderngl", "numba", "mitsuba")
+PACKAGES = ("mxeon", "MaterialX", "numpy", "moderngl", "mitsuba")
 
 
 def machine():

@@ -3,17 +3,14 @@
 
     python -m tools.fits.arc_tangent
 
-For `tools.benchmarks.numba_eon` on [0, 1] in float64, and for `oren_nayar_angle` of the shader twins on
-[0, tan(pi / 8)] in float32.
+For `oren_nayar_angle` of the shaders on [0, tan(pi / 8)] in float32.
 
 The polynomial that meets atan(t) / t at the roots of a Chebyshev polynomial in t^2, solved with 40
-digits. Nearer than the branch points t^2 = -1 there is no singularity, so that each term gains a
-factor of 5.8 on [0, 1], and one of 25 below tan(pi / 8).
+digits. Nearer than the branch points t^2 = -1 there is no singularity, so each term gains a factor of 25.
 """
 
 from tools.fits.minimax import mp
 
-COMPILED = {"terms": 20, "top": mp.one}
 TWINS = {"terms": 5, "top": mp.sqrt(2) - 1}
 DIGITS = 17  # that tell any two float64 numbers apart
 
@@ -40,12 +37,10 @@ def _odd_powers(t, count):
 
 
 def main():
-    """Print the coefficients in rows of four, and their error."""
-    for row in (COMPILED, TWINS):
-        series = coefficients(**row)
-        for first in range(0, len(series), 4):
-            print("    (" + ", ".join(f"{c:.{DIGITS}g}" for c in series[first : first + 4]) + "),")
-        print(f"largest relative error {largest_error(series, row['top']):.2g}")
+    """Print the coefficients and their error."""
+    series = coefficients(**TWINS)
+    print(", ".join(f"{c:.{DIGITS}g}" for c in series))
+    print(f"largest relative error {largest_error(series, TWINS['top']):.2g}")
 
 
 if __name__ == "__main__":

@@ -2,8 +2,8 @@
 """Measure what the page on the specification shows, and its summaries.
 
 python tools/site/specification.py [HOST ...]  judge stock and eonlib on these hosts, on all of HOSTS if none is
-                                         named; write specification.json and the pages
-python tools/site/specification.py --page      the pages alone, from specification.json
+                                         named; write out/specification.json and the pages
+python tools/site/specification.py --page      the pages alone, from out/specification.json
 """
 
 import json
@@ -24,7 +24,7 @@ from mxeon.io.files import write_text
 from mxeon.shaders.document.policy import DEFAULT
 
 FOLDER = Path(__file__).resolve().parents[2] / "docs"
-DATA, PAGE = FOLDER / "specification.json", FOLDER / "specification.md"
+DATA, PAGE = FOLDER.parent / "out" / "specification.json", FOLDER / "specification.md"
 # By host: the shader that it runs.
 HOSTS = {
     "gl": "GLSL",
@@ -210,20 +210,10 @@ def main():
     data = json.loads(DATA.read_text(encoding="utf-8")) if DATA.exists() else {}
     for host in [] if words == ["--page"] else words or HOSTS:
         data[host] = measured(host)
-        write_text(DATA, _text(data))
+        DATA.parent.mkdir(exist_ok=True)
+        write_text(DATA, json.dumps(data))
     for file in (PAGE, RESULTS):
         write_text(file, page(file.read_text(encoding="utf-8"), data))
-
-
-def _text(data):
-    """The data as JSON, a result in each line."""
-    hosts = []
-    for host, found in data.items():
-        rows = ",\n".join(json.dumps(row) for row in found["results"])
-        hosts.append(
-            f'{json.dumps(host)}: {{"place": {json.dumps(found["place"])}, "results": [\n{rows}\n]}}'
-        )
-    return "{" + ",\n".join(hosts) + "}\n"
 
 
 if __name__ == "__main__":

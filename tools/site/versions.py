@@ -2,7 +2,7 @@
 """Judge eonlib and stock with every version of MaterialX: `python -m tools.site.versions` writes the page.
 
 It runs `mxeon check --host gl --node all` with each version, 13 minutes of processor time in all, and keeps
-what the page shows in `versions.json`; `python -m tools.site.versions page` writes the page, and the ledger's, from
+what the page shows in `ledger/versions.json`; `python -m tools.site.versions page` writes the page, and the ledger's, from
 that file alone.
 """
 
@@ -18,7 +18,7 @@ from tests.support.wheels import MAIN, wheel
 from tools.site.ledger import entries, pages, pairs
 
 HERE = Path(__file__).parents[2] / "docs"
-PAGE, RECORD = HERE / "versions.md", HERE / "versions.json"
+PAGE, RECORD = HERE / "versions.md", pages.VERSIONS
 VERSIONS = (*TESTED, "main")
 LIBRARIES = ("eonlib", "stock")
 COMMAND = ("check", "--host", "gl", "--node", "all", "--workers", "0", "--json")

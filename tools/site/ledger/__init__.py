@@ -25,7 +25,7 @@ ROOT = Path(__file__).parents[3]
 FOLDER, PATCHES = ROOT / "docs" / "upstream", ROOT / "patches"
 ENTRIES = Path(known_issues.__file__).with_name("known_issues.toml")
 MEASURED = ENTRIES.with_name("measured.json")
-SPECIFICATION = ROOT / "docs" / "specification.json"  # errors that were measured, by host
+SPECIFICATION = ROOT / "out" / "specification.json"  # errors as measured here last, by host
 
 Subjects = dict[str, list[str]]  # by check
 
@@ -90,12 +90,19 @@ def write_measured(found: dict[str, Any]) -> None:
 def completed(found: dict[str, Any], known: dict[str, Entry]) -> dict[str, Any]:
     """What was measured, with what the package wants of it to know what an entry explains.
 
-    That is the largest error of each result, `sizes`, and the shortest change of MaterialX by its patch.
+    That is the largest error of each result, `sizes`, and the shortest change of MaterialX by its patch. Where
+    tools/site/specification.py has not measured errors here, those known before stay.
     """
-    files, hosts = patches("materialx"), json.loads(SPECIFICATION.read_text(encoding="utf-8"))
+    files = patches("materialx")
+    hosts = json.loads(SPECIFICATION.read_text(encoding="utf-8")) if SPECIFICATION.exists() else {}
     done = {page: dict(each) for page, each in found.items()}
     for page, entry in known.items():
-        sizes: dict[str, dict[str, float]] = {}
+        explained = {*pairs(entry.rows), *pairs(entry.implied)}
+        old: dict[str, dict[str, float]] = {} if hosts else found.get(page, {}).get("sizes", {})
+        sizes = {
+            check: {each: size for each, size in known.items() if (check, each) in explained}
+            for check, known in old.items()
+        }
         errors = [(row[0], row[1], row[2]) for row in found.get(page, {}).get("rows", ())]
         for host in (entry.host, *entry.also):
             errors += [
@@ -103,7 +110,6 @@ def completed(found: dict[str, Any], known: dict[str, Entry]) -> dict[str, Any]:
                 for each in hosts.get(host, {"results": ()})["results"]
                 if each["library"] == "stock" and each["error"]
             ]
-        explained = {*pairs(entry.rows), *pairs(entry.implied)}
         for check, subject, error in errors:
             if (check, subject) in explained:
                 shown = sizes.setdefault(check, {})

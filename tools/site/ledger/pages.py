@@ -23,7 +23,7 @@ from tools.site.ledger import (
     write_measured,
 )
 
-VERSIONS = ROOT / "docs" / "versions.json"
+VERSIONS = Path(__file__).with_name("versions.json")
 INDEX = FOLDER / "README.md"
 TEMPLATES = Environment(
     loader=FileSystemLoader(Path(__file__).parent),
