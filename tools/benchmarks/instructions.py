@@ -29,13 +29,7 @@ def sources(node):
 
 
 def compiled(source, optimize=False):
-    """Number of SPIR-V instructions of a fragment shader, as written or as `spirv-opt -O` leaves it.
-
-    Raises
-    ------
-    NotRun
-        If there is no glslangValidator or no spirv-opt.
-    """
+    """Number of SPIR-V instructions of a fragment shader, as written or as `spirv-opt -O` leaves it; NotRun without it."""
     for program in (COMPILER[0], OPTIMIZER[0]):
         if not shutil.which(program):
             raise NotRun(

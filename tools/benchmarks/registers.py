@@ -41,13 +41,7 @@ ATTRIBUTE = re.compile(r"^layout \(location = \d+\) in", re.MULTILINE)
 
 
 def driver():
-    """File that names RADV to Vulkan's loader.
-
-    Raises
-    ------
-    NotRun
-        If the driver, a compiler or Vulkan's headers are not installed.
-    """
+    """File that names RADV to Vulkan's loader; NotRun if that, a compiler or a header is missing."""
     file = next(DRIVERS.glob("radeon_icd*.json"), None)
     tools = all(map(shutil.which, ("gcc", COMPILER[0])))
     if file is None or not tools or not Path("/usr/include/vulkan/vulkan.h").exists():

@@ -30,31 +30,15 @@ LARGEST, LARGEST_LTC = 20.0, 4.0
 
 @dataclass(frozen=True)
 class Rival:
-    """A function to time.
-
-    Attributes
-    ----------
-    name : str
-    statement : str
-        GLSL that adds to `sum`.
-    base : str
-        The loop to subtract, by its statement's key in BASES.
-    exact : callable
-        Columns of arguments -> what the statement should add, (N, 3).
-    tolerance : float
-    share : float
-        Of the elements, those that may miss the tolerance.
-    before : str
-        GLSL before the loop: what depends on the material alone, which then does not change.
-    """
+    """A function to time."""
 
     name: str
-    statement: str
-    base: str
-    exact: object
+    statement: str  # GLSL that adds to `sum`
+    base: str  # key in BASES of the loop to subtract
+    exact: object  # columns of arguments -> what the statement should add, (N, 3)
     tolerance: float
-    share: float = 0.0
-    before: str = ""
+    share: float = 0.0  # of the elements, those that may miss the tolerance
+    before: str = ""  # GLSL before the loop: what depends on the material alone
 
 
 # Rivals with these bases add BRDFs, which are compared times pi and the cosine.

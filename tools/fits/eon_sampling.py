@@ -53,14 +53,7 @@ def upper_basis(y):
 
 
 def density_error(p, basis, density, root, coefficients):
-    """Relative error of the density of x, at x(p), where the random number is p^root.
-
-    Returns
-    -------
-    error : mpf
-    gradient : list of mpf
-        Its derivatives by the coefficients.
-    """
+    """Relative error of the density of x, at x(p), where the random number is p^root."""
     values, slopes = basis(p)
     x, slope = p + mp.fdot(values, coefficients), 1 + mp.fdot(slopes, coefficients)
     step = mp.sqrt(mp.eps)

@@ -42,18 +42,7 @@ def fitted(mu, p, q):
 
 
 def fit(degree_p=DEGREE_P, degree_q=DEGREE_Q):
-    """Coefficients with the least largest relative error on `COUNT` points.
-
-    Parameters
-    ----------
-    degree_p, degree_q : int
-        Degrees of P and Q.
-
-    Returns
-    -------
-    p, q : ndarray, shapes (degree_p + 1,) and (degree_q + 1,)
-        Rounded to `DIGITS` digits, lowest power first.
-    """
+    """Coefficients with the least largest relative error on `COUNT` points."""
     rows = [_row(mu, degree_p, degree_q) for mu in _points()]
     x, _ = least_largest(rows, [mp.one] * len(rows))
     rounded = np.array([float(mp.nstr(each, DIGITS)) for each in x])
@@ -69,12 +58,7 @@ def largest_errors(p, q):
 
 
 def defines():
-    """The coefficients as the lines that stand in the shaders.
-
-    Returns
-    -------
-    list of str
-    """
+    """The coefficients as the lines that stand in the shaders."""
     rows = zip("PQ", fit(), strict=True)
     return [
         f"#define EON_{name}{k} {x:.{DIGITS}g}" for name, row in rows for k, x in enumerate(row)

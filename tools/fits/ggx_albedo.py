@@ -65,10 +65,6 @@ def incident(mu, alpha):
 
     With t = tan((theta_o - theta_i) / 2), the azimuth integral of D G2 / (4 mu_o) is that of
     pre (u / (u - k))^2, u - k between `low` at the mirror's azimuth and `high` opposite.
-
-    Returns
-    -------
-    k, low, high, pre : ndarray, shape (nodes, ...)
     """
     node, weight = (each.reshape(-1, *(1,) * np.ndim(mu)) for each in graded())
     s = np.sqrt((1.0 - mu) * (1.0 + mu))

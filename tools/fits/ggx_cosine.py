@@ -139,13 +139,7 @@ def points(across=43, along=25):
 
 
 def averages(mu, alpha, functions):
-    """E_ss, and averages of functions of the cosine, weighted as E_ss is.
-
-    Returns
-    -------
-    albedo : ndarray, shape (M,)
-    means : ndarray, shape (functions, M)
-    """
+    """E_ss, and averages of functions of the cosine, weighted as E_ss is."""
     blocks = [
         _averages(mu[i : i + BLOCK], alpha[i : i + BLOCK], functions)
         for i in range(0, len(mu), BLOCK)

@@ -15,24 +15,9 @@ STEPS = 500  # ten times what a fit of this project takes
 
 
 def least_largest(rows, right):
-    """Solution x of rows @ x = right with the least largest residual.
+    """Solution x of rows @ x = right, (M, N) with M > N, with the least largest residual; and that residual.
 
-    Parameters
-    ----------
-    rows : list of list of mpf, shape (M, N)
-        M > N; of the rows that the exchange starts from, any N are independent.
-    right : list of mpf, shape (M,)
-
-    Returns
-    -------
-    x : list of mpf, shape (N,)
-    residual : mpf
-        Largest of |rows @ x - right|.
-
-    Raises
-    ------
-    ArithmeticError
-        If the exchange does not end.
+    Of the rows that the exchange starts from, any N are independent. ArithmeticError if it does not end.
     """
     count = len(rows[0])
     indices = [(len(rows) - 1) * k // count for k in range(count + 1)]

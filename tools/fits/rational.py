@@ -39,20 +39,7 @@ class Form:
 
 
 def refined(form, variables, values, weights, start, steps=STEPS):
-    """Coefficients with the least largest weighted error, by Newton steps from a start.
-
-    Parameters
-    ----------
-    form : Form
-    variables : sequence of ndarray of float64, shape (M,)
-    values, weights : ndarray of float64, shape (M,)
-    start : sequence of float
-
-    Returns
-    -------
-    tuple of float
-        Rounded to `DIGITS` digits.
-    """
+    """Coefficients with the least largest weighted error, by Newton steps from a start."""
     points = [[mp.mpf(float(x)) for x in row] for row in zip(*variables, strict=True)]
     above = [[_monomial(point, m) for m in form.above] for point in points]
     below = [[_monomial(point, m) for m in form.below] for point in points]
@@ -72,13 +59,7 @@ def refined(form, variables, values, weights, start, steps=STEPS):
 
 
 def numerator(form, variables, values, weights, below):
-    """Numerator's coefficients with the least largest weighted error for a denominator's.
-
-    Returns
-    -------
-    tuple of float
-        Those, rounded to `DIGITS` digits, and the denominator's.
-    """
+    """Numerator's coefficients with the least largest weighted error, and the denominator's given ones."""
     points = [[mp.mpf(float(x)) for x in row] for row in zip(*variables, strict=True)]
     rows, right = [], []
     for point, value, weight in zip(points, values, weights, strict=True):

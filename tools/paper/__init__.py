@@ -45,28 +45,7 @@ def figures(
     progress: Callable[[Sequence[Any]], Iterable[Any]] = iter,
     **work: Any,
 ) -> Path:
-    """Write every figure to `folder`/figures, and `folder`/paper_checked.md.
-
-    Parameters
-    ----------
-    folder : path-like
-        Created if it does not exist; files of the same names are replaced.
-    progress : callable
-        Wraps the sequence of steps, such as `tqdm.tqdm`.
-    **work : int
-        `size`, `samples` and `draws` of `tools.paper.sheet.Sheet`, to replace the
-        defaults.
-
-    Returns
-    -------
-    Path
-        The page.
-
-    Raises
-    ------
-    NotRun
-        If OpenGL is not available; the pictures are traced on it.
-    """
+    """Write every figure to `folder`/figures, and `folder`/paper_checked.md."""
     folder = Path(folder)
     sheet = replace(Sheet(folder / "figures", Host()), **work)
     page = folder / "paper_checked.md"

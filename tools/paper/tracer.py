@@ -43,59 +43,33 @@ UNIFORMS = ("rho", "parameter", "light", "environment", "bounces", "opened", "fl
 
 @dataclass(frozen=True)
 class Trace:
-    """A picture to trace. World frame: x to the right, y up, z towards the viewer.
+    """A picture to trace. World frame: x to the right, y up, z towards the viewer."""
 
-    Attributes
-    ----------
-    model, sampler : str
-        Keys of `MODELS` and `SAMPLERS`.
-    rho : tuple of 3 floats
-        Reflectance of the ball.
-    parameter : float
-        The ball's sigma or roughness. Samplers take 2 sigma / pi as the roughness of a sigma.
-    light : tuple of 3 floats
-        Unit vector towards a distant light of irradiance pi; zeros for none.
-    environment : float
-        Radiance of a uniform environment.
-    bounces : int
-        Reflections that a path may have, at least 1.
-    opened : bool
-        Whether the ball is a shell, cut open around a core, on a foot.
-    floor : float
-        Reflectance of a Lambertian floor; negative for none.
-    eye : tuple of 3 floats
-        Unit vector towards the viewer; the projection is orthographic.
-    height, half_width : float
-        Height of the center of the frame, and half of its width.
-    size, samples, seed : int
-        Pixels on a side, paths per pixel, and the seed of the random numbers.
-    """
-
-    model: str
-    sampler: str = "cosine"
-    rho: tuple[float, float, float] = (1.0, 1.0, 1.0)
-    parameter: float = 1.0
-    light: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    environment: float = 0.0
-    bounces: int = 1
-    opened: bool = True
-    floor: float = -1.0
-    eye: tuple[float, float, float] = (0.0, 0.0, 1.0)
-    height: float = 0.0
+    model: str  # key of `MODELS`
+    sampler: str = "cosine"  # key of `SAMPLERS`
+    rho: tuple[float, float, float] = (1.0, 1.0, 1.0)  # reflectance of the ball
+    parameter: float = (
+        1.0  # sigma or roughness; samplers take 2 sigma / pi as the roughness of a sigma
+    )
+    light: tuple[float, float, float] = (
+        0.0,
+        0.0,
+        0.0,
+    )  # towards a distant light of irradiance pi; zeros for none
+    environment: float = 0.0  # radiance of a uniform one
+    bounces: int = 1  # reflections that a path may have
+    opened: bool = True  # the ball is a shell, cut open around a core, on a foot
+    floor: float = -1.0  # reflectance of a Lambertian floor; negative for none
+    eye: tuple[float, float, float] = (0.0, 0.0, 1.0)  # towards the viewer, orthographic
+    height: float = 0.0  # of the center of the frame
     half_width: float = 1.0
-    size: int = 256
-    samples: int = 64
+    size: int = 256  # pixels on a side
+    samples: int = 64  # paths per pixel
     seed: int = 0
 
 
 def program(model: str, sampler: str) -> str:
-    """Fragment shader of the path tracer for a model and a sampler.
-
-    Raises
-    ------
-    ValueError
-        If one of them is unknown; lists the known ones.
-    """
+    """Fragment shader of the path tracer for a model and a sampler."""
     for name, value, known in (("model", model, MODELS), ("sampler", sampler, SAMPLERS)):
         if value not in known:
             raise InputError(f"{name} must be one of {', '.join(known)}; got {value!r}")
@@ -113,25 +87,7 @@ def program(model: str, sampler: str) -> str:
 def trace(
     host: Host, picture: Trace, progress: Callable[[range], Iterable[int]] = iter
 ) -> NDArray[np.float32]:
-    """Linear radiance that arrives at the viewer.
-
-    Parameters
-    ----------
-    host : mxeon.hosts.gl.Host
-    picture : Trace
-    progress : callable
-        Wraps the sequence of passes, one path per pixel each.
-
-    Returns
-    -------
-    ndarray, shape (size, size, 3), float32
-        Row 0 at the top.
-
-    Raises
-    ------
-    ValueError
-        If the model or the sampler is unknown; lists the known ones.
-    """
+    """Linear radiance that arrives at the viewer."""
     uniforms = {f"tracer_{name}": getattr(picture, name) for name in UNIFORMS}
     sigma = picture.model in SIGMA_MODELS
     uniforms["tracer_roughness"] = picture.parameter * (2.0 / np.pi if sigma else 1.0)

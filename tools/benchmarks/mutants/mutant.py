@@ -22,49 +22,21 @@ COMMENT = "SPDX-License-Identifier"  # in the first comment of every file
 
 @dataclass(frozen=True)
 class Mutant:
-    """One wrong library.
+    """One wrong library."""
 
-    Attributes
-    ----------
-    name : str
-        Unique in the table.
-    group : str
-        Title of the implementation that it belongs to.
-    file : str
-        Path from the root of the repository.
-    old, new : str
-        The text that occurs once in the file, and what takes its place.
-    reason : str
-        Why it is wrong, or the proof that it is equivalent.
-    host : str
-        The cheapest host that can see it; "text" where no host is needed.
-    equivalent : bool
-        Whether it computes the same function on the whole valid domain.
-    survives : bool
-        Whether no check notices it, for that reason.
-    tests : tuple of str
-        Files of tests that are asked first about a wrong reference.
-    """
-
-    name: str
-    group: str
-    file: str
-    old: str
+    name: str  # unique in the table
+    group: str  # title of the implementation that it belongs to
+    file: str  # path from the root
+    old: str  # occurs once in the file
     new: str
-    reason: str
-    host: str
-    equivalent: bool
-    survives: bool
-    tests: tuple[str, ...] = ()
+    reason: str  # why it is wrong, or the proof that it is equivalent
+    host: str  # the cheapest that can see it; "text" where none is needed
+    equivalent: bool  # the same function on the whole valid domain
+    survives: bool  # no check notices it, for that reason
+    tests: tuple[str, ...] = ()  # files of tests that are asked first about a wrong reference
 
     def texts(self) -> dict[str, str]:
-        """Text of each mutated file, by its path: of the functions in GLSL, that in OSL as well.
-
-        Raises
-        ------
-        ValueError
-            If the old text does not occur once.
-        """
+        """Text of each mutated file, by its path: of the functions in GLSL, that in OSL as well."""
         texts = {self.file: self._replaced(self.file, re.escape(self.old), self.new)}
         twin = self.file.replace("glsl", "osl")
         if self.file.startswith("genglsl/") and Path(self.file).stem in TWINS:

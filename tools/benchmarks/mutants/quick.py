@@ -137,6 +137,7 @@ SHARED = (
 def exceeds(check: Check, probe: Any) -> str:
     """The first error of a check above its tolerance, in words; "" if there is none."""
     allowed = check.tolerance(probe.kind)
+    assert allowed is not None  # or there were no task
     tolerance = check.adapt(allowed, probe.subject, probe.kind, probe.host)
 
     def metric(measured: Array, expected: Array) -> Array:

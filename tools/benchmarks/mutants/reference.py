@@ -23,18 +23,7 @@ PASSED, NO_TEST = 0, 5  # exit statuses of pytest
 
 
 def trial_of_reference(mutant: Mutant) -> dict[str, Any] | None:
-    """The first test that fails, or None: those named for the file are asked first, then all.
-
-    Parameters
-    ----------
-    mutant : Mutant
-        One of a file of `python/mxeon/models`.
-
-    Returns
-    -------
-    dict or None
-        check, excess, host and diagnosis of the failure.
-    """
+    """The first test that fails, or None: those named for the file are asked first, then all."""
     with TemporaryDirectory(prefix="mxeon-mutant-") as base:
         copy = Path(base, "python")
         shutil.copytree(ROOT / "python", copy)

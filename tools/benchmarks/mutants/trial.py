@@ -47,24 +47,7 @@ CHANGED = {
 
 
 def trial(mutant: Mutant, judge: Judge, quick: Quick, every: bool = False) -> dict[str, Any]:
-    """Verdict on a mutant, and the failures that it caused on the first host that saw any.
-
-    Parameters
-    ----------
-    mutant : Mutant
-        An equivalent one is judged by its text and the nodes alone, a control by all.
-    judge : Judge
-    quick : Quick
-        Judges the nodes of pbrlib.
-    every : bool
-        Whether to go on after the first failure, to the end of the stage.
-
-    Returns
-    -------
-    dict
-        verdict, KILLED, SURVIVED or CRASHED; host; failures: check, subject, excess and diagnosis
-        of each, the largest excess first; or refusal: the message that ended the command.
-    """
+    """Verdict on a mutant, and the failures that it caused on the first host that saw any."""
     if mutant.tests:
         failure = trial_of_reference(mutant)
         found = {"host": TESTS, "failures": [failure]} if failure else {}
@@ -169,8 +152,8 @@ def stages(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
 
 def _on_cycles(path: str) -> Iterator[tuple[str, list[Task]]]:
     """Tasks on Cycles, one by one."""
-    tasks = make_plan((), ["cycles"], [path]).tasks
-    tasks = [task for task in tasks if task.host == "cycles" and task.check != PICTURE]
+    planned = make_plan((), ["cycles"], [path]).tasks
+    tasks = [task for task in planned if task.host == "cycles" and task.check != PICTURE]
     for task in sorted(tasks, key=lambda task: task.check in NOISY):
         yield "cycles", [task]
 

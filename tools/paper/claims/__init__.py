@@ -25,25 +25,15 @@ TALLY = "{count} claims: {holds} hold, {part} hold in part, {fails} fail."
 
 @dataclass(frozen=True)
 class Claim:
-    """A sentence or formula in print, its measurement, and the bound that it has to meet.
+    """A sentence or formula in print, its measurement, and the bound that it has to meet."""
 
-    Attributes
-    ----------
-    where, text : str
-        Place in the paper, and the claim in our words.
-    measure : callable
-        measure() -> (a sentence with the numbers, the values that the bound is for).
-    required : str
-        The bounded quantity in words, such as "difference".
-    least, most : float
-        The bound: every value has to lie in [least, most].
-    """
-
-    where: str
-    text: str
-    measure: Callable[[], tuple[str, ArrayLike]]
-    required: str
-    least: float = -np.inf
+    where: str  # place in the paper
+    text: str  # the claim in our words
+    measure: Callable[
+        [], tuple[str, ArrayLike]
+    ]  # a sentence with the numbers, and the values that are bounded
+    required: str  # the bounded quantity, such as "difference"
+    least: float = -np.inf  # every value lies in [least, most]
     most: float = np.inf
 
     def row(self) -> tuple[str, ...]:
@@ -62,19 +52,11 @@ class Claim:
 
 @dataclass(frozen=True)
 class Section:
-    """Claims under one heading.
-
-    Attributes
-    ----------
-    heading : str
-    claims : sequence of Claim
-    remark : str
-        A paragraph below the table, for what cannot be measured.
-    """
+    """Claims under one heading."""
 
     heading: str
     claims: Sequence[Claim]
-    remark: str = ""
+    remark: str = ""  # below the table, for what cannot be measured
 
 
 def verdict(values: ArrayLike, least: float, most: float) -> str:
