@@ -21,13 +21,17 @@ SWAPPED = {
     ".x": ".y", ".y": ".x", ".z": ".x", ".r": ".g", ".g": ".b", ".b": ".r",
     "min(": "max(", "max(": "min(",
 }  # fmt: skip
+CONSTANT = re.compile(r"(?<![\w.])\d+\.\d*(?:[eE][-+]?\d+)?(?![\w.])")
+OPERAND = r"(?<![\w.])[\w.]+(?:\([^()]*\))?(?![\w.(\[])"  # a name, a number, or a simple call
 OPERATORS = {
-    "constant": re.compile(r"(?<![\w.])\d+\.\d*(?:[eE][-+]?\d+)?(?![\w.])"),
+    "constant": CONSTANT,
     "sign": re.compile(r" (?:[-+]=?) (?=\S)"),
     "product": re.compile(r" [*/] "),
     "comparison": re.compile(r" (?:[<>]=?|[=!]=) "),
     "channel": re.compile(r"(?<=[\w)])\.[xyzrgb]\b"),
     "bound": re.compile(r"\b(?:min|max)\("),
+    "factor": re.compile(rf"{OPERAND} \* | [*/] {OPERAND}"),
+    "term": re.compile(rf" [-+] {OPERAND}(?! [*/])"),
     "statement": re.compile(r"^[ \t]+[\w.]+(?:\[\w+\])? [-+*/]?= [^;]*;[ \t]*\n", re.M),
 }
 
@@ -47,7 +51,8 @@ def files() -> tuple[str, ...]:
 
 
 def mutants_of(file: str) -> Iterator[Mutant]:
-    """Mutants of a file; those whose twin in OSL differs at the place are left out."""
+    """Mutants of a file, each text once; those whose twin in OSL differs at the place are left out."""
+    texts = set()
     text = (ROOT / file).read_text(encoding="utf-8")
     code = COMMENT.sub(lambda match: re.sub(r"\S", " ", match[0]), text)
     for operator, pattern in OPERATORS.items():
@@ -60,17 +65,19 @@ def mutants_of(file: str) -> Iterator[Mutant]:
             reason = f"{match[0].strip()!r} becomes {changed(match[0]).strip()!r}"
             mutant = Mutant(name, GROUP, file, old, new, reason, "gl", False, False)
             try:
-                mutant.texts()
+                made = mutant.texts()[file]
             except ValueError:
                 continue
-            yield mutant
+            if made not in texts:
+                texts.add(made)
+                yield mutant
 
 
 def changed(code: str) -> str:
-    """What an operator puts in place of the code that it found; nothing for a statement."""
+    """What an operator puts instead of the code that it found; nothing for a dropped part."""
     if code in SWAPPED:
         return SWAPPED[code]
-    return f"{RAISED * float(code) or 0.1:.9g}" if code[0].isdigit() else ""
+    return f"{RAISED * float(code) or 0.1:.9g}" if CONSTANT.fullmatch(code) else ""
 
 
 def unique(text: str, start: int, end: int, new: str) -> tuple[str, str]:
