@@ -22,7 +22,6 @@ PAGE, RECORD = HERE / "versions.md", pages.VERSIONS
 VERSIONS = (*TESTED, "main")
 LIBRARIES = ("eonlib", "stock")
 COMMAND = ("check", "--host", "gl", "--node", "all", "--workers", "0", "--json")
-COUNTS = 1e6  # figures below it that are integers are printed whole
 TEXT = """\
 # Versions of MaterialX
 
@@ -46,12 +45,8 @@ MaterialX 1.39.3 and 1.39.4 have no input `retroreflective`, and their GLSL adds
 layer above it passes. Their `gltf_pbr` has no input `dispersion`, so that `reach` cannot vary it, and
 `opacityMode` of their `UsdPreviewSurface` changes nothing that `reach` sees.
 
-## Upstream pages
-
-The largest error of a page's first row in each version, and the pull request that repairs it after the release.
-What that row shows in main then belongs to other pages: with the repairs of those alone it passes.
-
-{pages}"""
+[Every page on a defect](upstream/README.md) ends with the versions that have it.
+"""
 
 
 def judged(version):
@@ -112,13 +107,11 @@ def _open(results):
 
 
 def _shown(row, results):
-    """Verdict and figure of the first row of a page, and whether all of its rows pass."""
+    """Whether all rows of a page pass."""
     found = {
         (each["check"], each["subject"]): each for each in results if each["library"] == "stock"
     }
-    shown = [found[pair] for pair in pairs(row.rows)]
-    passed = all(each["verdict"] == "passed" for each in shown)
-    return {"figure": float(shown[0]["figure"]), "passed": passed}
+    return {"passed": all(found[pair]["verdict"] == "passed" for pair in pairs(row.rows))}
 
 
 def page_text(known):
@@ -130,7 +123,6 @@ def page_text(known):
         release=TESTED[-1],
         nodes=_nodes_table(known["nodes"]),
         open="".join(f"- {name}: {_listed(each)}.\n" for name, each in known["open"].items()),
-        pages=_pages_table(known["pages"]),
     )
 
 
@@ -155,23 +147,6 @@ def _share(counts):
         return "none"
     differs = f" + {counts['differs']}" if counts["differs"] else ""
     return f"{counts['passed']}{differs} of {counts.total()}"
-
-
-def _pages_table(pages):
-    text = f"| page | {' | '.join(VERSIONS)} | pull request |\n|---|{len(VERSIONS) * '---|'}---|\n"
-    for row in _ours():
-        cells = [_figure(pages[row.page][name]) for name in VERSIONS]
-        text += (
-            f"| [{row.title}](upstream/{row.page}.md) | {' | '.join(cells)} | {row.pull or ''} |\n"
-        )
-    return text
-
-
-def _figure(shown):
-    if shown["passed"]:
-        return "passes"
-    count = shown["figure"].is_integer() and shown["figure"] < COUNTS
-    return f"{shown['figure']:.0f}" if count else f"{shown['figure']:.2g}"
 
 
 def main():
