@@ -18,7 +18,7 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from mxeon.conformance.results import Run
+from mxeon.conformance.results import PASSED, Run
 from mxeon.conformance.run import read_run
 from mxeon.conformance.run.documents import (
     DocumentVerdict,
@@ -28,7 +28,6 @@ from mxeon.conformance.run.documents import (
 from mxeon.io.files import write_text
 from tools.benchmarks.record import machine
 
-SHOWN = 3  # inputs of a document that are named
 TIMES = "times.json"  # beside a report
 COMMAND = ("check", "resources", "--path", ".", "--path", "resources", "--allowCode")
 TEXT = """\
@@ -41,7 +40,7 @@ The documents below `resources` of MaterialX's repository, its TestSuite and its
 eonlib. {referenced} of {count} have a reference picture of each material: every pixel is compared with what the NumPy
 models give in float64, in two distant lights and in white surroundings. Patterns are not what mxeon judges. Where an
 input of a lobe comes from a node that the reference has no function for, its values are taken from the same
-host, pixel by pixel, and the table names the input. Where each pixel has a material of its own, every eighth row
+host, pixel by pixel. Where each pixel has a material of its own, every eighth row
 and column is compared. Files that a copy of the repository lacks, such as its largest images, may be others of
 their name: what an image shows is not judged.
 
@@ -69,7 +68,6 @@ def lines(
     verdicts: Sequence[DocumentVerdict], times: Mapping[str, object], tasks: int, again: int = 0
 ) -> Iterator[str]:
     """Lines of the page."""
-    # How many documents have each cause.
     documents = {each.document for each in verdicts}
     lacking = {each.document for each in verdicts if not each.referenced}
     yield TEXT.format(referenced=len(documents) - len(lacking), count=len(documents))
@@ -77,7 +75,6 @@ def lines(
     yield "| documents | verdict | cause |\n|---|---|---|"
     for (verdict, cause), names in causes(verdicts).items():
         yield f"| {len(names)} | {verdict} | {_cell(cause)} |"
-    # How long it took.
     if times:
         numbers = dict(times)
         wall, used = (float(str(numbers.pop(f"{key}minutes"))) for key in ("", "processor "))
@@ -86,14 +83,12 @@ def lines(
             "processor time." + (f" {again} documents were judged again since." if again else "")
         )
         yield "\nMeasured on: " + ", ".join(f"{k} {v}" for k, v in numbers.items()) + "."
-    # Each document.
-    yield "\n## Documents\n"
-    yield "| document | verdict | cause | inputs from the host |\n|---|---|---|---|"
+    yield "\n## Documents that do not pass\n"
+    yield "| document | verdict | cause |\n|---|---|---|"
     for each in sorted(verdicts, key=lambda each: each.document):
-        more = f" and {len(each.measured) - SHOWN} more" if len(each.measured) > SHOWN else ""
-        inputs = ", ".join(each.measured[:SHOWN]) + more
-        name = each.document.removeprefix("resources/")
-        yield f"| {' | '.join(map(_cell, (name, each.verdict, each.cause, inputs)))} |"
+        if each.verdict != PASSED:
+            name = each.document.removeprefix("resources/")
+            yield f"| {' | '.join(map(_cell, (name, each.verdict, each.cause)))} |"
 
 
 def _cell(text: str) -> str:
