@@ -75,11 +75,3 @@ def test_the_tests_complete_the_environment_of_the_demo_which_keeps_it(run):
     assert re.fullmatch(r"run test: set up in \d+:\d\d minutes", before)
     assert re.fullmatch(r"run test: \d+:\d\d minutes", whole)
     assert "pip" not in "".join(run("demo"))
-
-
-def test_every_quick_test_is_there():
-    [names] = re.findall(r'^quick="([^"]*)"', (ROOT / "run").read_text(), re.MULTILINE)
-    for name in names.split():
-        file, _, function = name.partition("::")
-        assert (ROOT / file).exists(), file
-        assert not function or f"def {function}(" in (ROOT / file).read_text(), name
