@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The fuzz run: a slice of it, the faults it found, and that a trial notices what is wrong."""
 
-import os
-import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -13,7 +11,7 @@ from mxeon import cli, explorer
 from mxeon.jobs import pool
 from tests.fuzz import opens, pages
 from tests.fuzz.attack import FAMILIES, cases
-from tests.fuzz.cases import OUT, Case, case
+from tests.fuzz.cases import OUT, Case
 from tests.fuzz.found import FOUND
 from tests.fuzz.trial import guarded, numbered, trial
 from tests.fuzz.words import CANARY, POISON
@@ -80,10 +78,6 @@ def test_a_slice_of_each_family_of_the_attack_ends_without_fault(outcomes, famil
     assert [said for _, each in outcomes[family] if (said := each.failure or each.value[1])] == []
 
 
-def test_a_family_gives_the_same_cases_again():
-    assert cases("attributes", 5) == cases("attributes", 5)
-
-
 needs_strace = pytest.mark.skipif(
     subprocess.run("strace -o /dev/null true", shell=True, capture_output=True).returncode != 0,
     reason="needs strace, and leave to trace a process",
@@ -129,20 +123,6 @@ WRONG = {
 def test_a_trial_notices(monkeypatch, does, fault):
     monkeypatch.setattr(cli, "main", does)
     assert fault in trial(Case("control", (("base.mtlx", b""),), ("generate", OUT)))
-
-
-def test_a_trial_notices_that_the_process_died():
-    [(_, outcome)] = pool.run(killed, ["control"], 1, LIMIT)
-    assert "SIGKILL" in outcome.failure
-
-
-def killed(_):
-    """Work that ends its process."""
-    os.kill(os.getpid(), signal.SIGKILL)
-
-
-def test_a_case_is_the_same_again():
-    assert case(1, 7) == case(1, 7) != case(1, 8)
 
 
 def test_a_script_that_a_page_lets_in_is_a_fault(outcomes):

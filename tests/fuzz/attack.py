@@ -172,19 +172,7 @@ def _arguments(rng):
 
 @dataclass(frozen=True)
 class Family:
-    """Cases of one kind.
-
-    Attributes
-    ----------
-    rows : callable () -> iterable
-        What the cases are made of.
-    to_case : callable (random.Random, row) -> case
-    count : int
-        How many are tried.
-    trial : callable (case) -> (int, str)
-        Exit status and fault of a case, and what it took of seconds and mebibytes where that is
-        measured; can be imported by name.
-    """
+    """Cases of one kind."""
 
     rows: Callable
     to_case: Callable
@@ -224,14 +212,7 @@ def cases(family, count=None):
 
 
 def measure(families=FAMILIES, count=None, workers=1, progress=tqdm):
-    """Figures of an attack.
-
-    Returns
-    -------
-    dict
-        Of each family: tried, accepted, refused, failed, not_run, and faults, which are told; and the
-        most seconds of a processor and mebibytes that a case took, where they are measured.
-    """
+    """Figures of an attack."""
     figures = {}
     for family in families:
         tried = cases(family, count)

@@ -40,19 +40,7 @@ COMMANDS = (
 
 @dataclass(frozen=True)
 class Case:
-    """One trial.
-
-    Attributes
-    ----------
-    name : str
-    files : tuple of (str, bytes)
-        Beside `base.mtlx`, in the working folder.
-    arguments : tuple of str
-    links : tuple of (str, str)
-        Symbolic links and where they lead; pipes, where that is "".
-    encoding : str
-        Of the standard output.
-    """
+    """One trial."""
 
     name: str
     files: tuple[tuple[str, bytes], ...]

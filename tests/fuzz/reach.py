@@ -102,19 +102,7 @@ def absent(root):
 
 
 def reached(root, groups, targets=TARGETS):
-    """The places of a document whose words come out, and how: bare, quoted or in a comment.
-
-    Parameters
-    ----------
-    root : Element
-    groups : iterable of list of Place
-        Each is marked at once, and in parts where a target refuses that.
-    targets : sequence of str
-
-    Returns
-    -------
-    dict of Place to set of str
-    """
+    """The places of a document whose words come out, and how: bare, quoted or in a comment."""
     found = defaultdict(set)
     for places in groups:
         _search(root, places, targets, found)
@@ -122,20 +110,7 @@ def reached(root, groups, targets=TARGETS):
 
 
 def unjudged(root, found, targets=TARGETS):
-    """What gets hostile text into a shader, or is refused without its place.
-
-    Parameters
-    ----------
-    root : Element
-    found : dict of Place to set of str
-        What `reached` returns.
-    targets : sequence of str
-
-    Returns
-    -------
-    list of (str, str, str)
-        Category of element, attribute and hostile text; of places that are alike, of one.
-    """
+    """What gets hostile text into a shader, or is refused without its place."""
     elements = list(root.iter())
     ways, alike = defaultdict(set), {}
     for place, each in found.items():
@@ -264,13 +239,7 @@ def _word(old, number, place):
 
 
 def search(targets=TARGETS):
-    """What reaches source, by document; and what of it is not judged.
-
-    Returns
-    -------
-    tuple of (set of (str, str), list of (str, str, str))
-        Categories of elements and attributes; what `unjudged` returns.
-    """
+    """What reaches source, by document; and what of it is not judged."""
     names, wrong = set(), []
     for root in documents().values():
         elements = list(root.iter())

@@ -13,7 +13,7 @@ from tqdm import tqdm
 
 from mxeon.io.files import write_text
 
-GROUPS = ("kills", "hangs", "disk", "memory", "farm", "versions", "processors")
+GROUPS = ("kills", "hangs", "disk", "memory", "versions")
 FOLDERS = ("documents",)  # groups that are measured on a folder
 FIGURES = Path(__file__).resolve().parents[2] / "out" / "reliability.json"
 

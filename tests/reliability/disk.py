@@ -15,15 +15,7 @@ LIMIT = 600
 
 
 def measure(sizes=SIZES, progress=iter):
-    """Figures of runs that met a full disk and were resumed once there was room.
-
-    Returns
-    -------
-    dict
-        runs; full: runs that met a full disk, one_line: those that said so in one line with
-        exit status 2; survived: with the right verdicts after `--resume`; lost, twice: items.
-        Without root only "not_run", the reason.
-    """
+    """Figures of runs that met a full disk and were resumed once there was room."""
     if os.geteuid() != 0:
         return {"not_run": "a tmpfs can be made by root only"}
     tally = dict.fromkeys(("runs", "full", "one_line", "survived", "lost", "twice"), 0)

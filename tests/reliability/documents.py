@@ -30,14 +30,7 @@ POLICY = Policy(outside=True, code=True)
 
 
 def measure(folder, progress=iter):
-    """Figures of all documents in a folder.
-
-    Returns
-    -------
-    dict
-        documents; version; rows: of each target how many MaterialX generates and mxeon does, with
-        its own library and with eonlib; refused: those that MaterialX alone generates, with the reason.
-    """
+    """Figures of all documents in a folder."""
     files = sorted(Path(folder).rglob("*.mtlx"))
     jobs = [(str(file), target) for target in TARGETS for file in files]
     rows, refused = {target: Counter() for target in TARGETS}, []

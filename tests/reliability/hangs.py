@@ -20,16 +20,7 @@ START = 1.5  # seconds after which a worker is at work
 
 
 def measure(count=10, progress=iter):
-    """Figures of runs in which workers were stopped with SIGSTOP, once or for good.
-
-    Returns
-    -------
-    dict
-        runs; survived: a worker stopped once, with the verdicts of an undisturbed run;
-        persistent: runs whose every worker was stopped as soon as it was seen, for a while;
-        named: of their items that did not run, those whose reason names the time-out, of
-        reasons.
-    """
+    """Figures of runs in which workers were stopped with SIGSTOP, once or for good."""
     rng = random.Random(SEED)
     tally = dict.fromkeys(("runs", "survived", "persistent", "reasons", "named"), 0)
     with TemporaryDirectory(prefix="mxeon-hangs-") as base:

@@ -22,15 +22,7 @@ VICTIMS = ("worker", "worker", "parent", "parent", "interrupt")
 
 
 def measure(count=200, progress=iter):
-    """Figures of `count` runs, each struck once or more at random moments.
-
-    Returns
-    -------
-    dict
-        runs; struck, by whom; survived: runs with the verdicts of an undisturbed one; lost and
-        twice: items; resumed: how often, and interrupted, after SIGINT; tracebacks: runs that
-        showed one.
-    """
+    """Figures of `count` runs, each struck once or more at random moments."""
     signal.signal(signal.SIGINT, signal.default_int_handler)  # jobs in the background ignore it
     rng = random.Random(SEED)
     tally = Counter()

@@ -16,13 +16,7 @@ MIB = 1 << 20
 
 
 def measure(counts=COUNTS, progress=iter):
-    """Peak memory in MiB of the parent and of its largest worker, for each number of documents.
-
-    Returns
-    -------
-    dict
-        documents, parent, worker, seconds: lists of equal length; ended: exit statuses.
-    """
+    """Peak memory in MiB of the parent and of its largest worker, for each number of documents."""
     found = {"documents": list(counts), "parent": [], "worker": [], "seconds": [], "ended": []}
     for count in progress(counts):
         with TemporaryDirectory(prefix="mxeon-memory-") as base:

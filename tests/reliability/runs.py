@@ -59,13 +59,7 @@ def workers(process):
 
 
 def wait_for_end(process, seconds):
-    """Exit status and standard error of a run.
-
-    Raises
-    ------
-    TimeoutError
-        If it does not end in time; it is killed then.
-    """
+    """Exit status and standard error of a run."""
     try:
         _, errors = process.communicate(timeout=seconds)
     except subprocess.TimeoutExpired:

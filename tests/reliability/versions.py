@@ -24,15 +24,7 @@ NODE = "libraries/pbrlib/genglsl/mx_oren_nayar_diffuse_bsdf.glsl"
 
 
 def measure(progress=iter):
-    """Figures of every wheel.
-
-    Returns
-    -------
-    dict
-        hosts; rows: of each version whether its node takes the closure data that eonlib's sources
-        need, and the line with which it is refused or the verdicts by host and what text of a
-        document reaches source unjudged.
-    """
+    """Figures of every wheel."""
     with TemporaryDirectory(prefix="mxeon-versions-") as base:
         rows = [_row(version, Path(base, version)) for version in progress(WHEELS)]
     return {"hosts": HOSTS, "rows": rows}

@@ -16,13 +16,7 @@ VARIABLE = "MXEON_REQUIRE"
 
 
 def required():
-    """Hosts that have to run.
-
-    Raises
-    ------
-    ValueError
-        If one is unknown; lists the known ones.
-    """
+    """Hosts that have to run."""
     names = {name for name in os.environ.get(VARIABLE, "").split(",") if name}
     if unknown := names - set(host_names()):
         raise ValueError(

@@ -8,17 +8,7 @@ from filelock import FileLock
 
 
 def shared(factory, name, make):
-    """The value of `make`; where several processes test, that of the first of them to ask.
-
-    Parameters
-    ----------
-    factory : TempPathFactory
-        Of the session.
-    name : str
-        Of the value, in this session.
-    make : callable () -> object
-        Its value can be pickled.
-    """
+    """The value of `make`; where several processes test, that of the first of them to ask."""
     if "PYTEST_XDIST_WORKER" not in os.environ:
         return make()
     path = factory.getbasetemp().parent / f"{name}.pickle"  # a folder of this session alone
