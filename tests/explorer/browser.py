@@ -14,25 +14,6 @@ HAS = """fields => Object.entries(fields).every(([name, value]) =>
     JSON.stringify(mxeon.state()[name]) === JSON.stringify(value))"""
 DRAWN = "mxeon?.stage?.isSettled(mxeon.state())"
 
-# Counts calls of WebGL until the end of the first frame, which a fence marks.
-COUNT = """
-globalThis.counts = {linkProgram: 0, drawArrays: 0, drawElements: 0, readPixels: 0};
-const proto = WebGL2RenderingContext.prototype;
-let first = true;
-for (const name of Object.keys(counts)) {
-  const call = proto[name];
-  proto[name] = function (...words) {
-    if (first) counts[name] += 1;
-    return call.apply(this, words);
-  };
-}
-const fence = proto.fenceSync;
-proto.fenceSync = function (...words) {
-  first = false;
-  return fence.apply(this, words);
-};
-"""
-
 
 @contextmanager
 def launched(flags=FLAGS):
@@ -50,15 +31,14 @@ def started(kind, flags):
 
 
 @contextmanager
-def opened(browser, address, allowed=(), drawn=True, script="", **options):
+def opened(browser, address, allowed=(), drawn=True, **options):
     """The page at an address; messages that are not allowed, and requests, fail the test.
 
-    A script runs before those of the page. Unless it is to be drawn it has no WebGL, which costs a software driver most of its time.
+    Unless it is to be drawn it has no WebGL, which costs a software driver most of its time.
     """
     asked, said = [], []
     context = browser.new_context(**(SMALL | options))
     page = context.new_page()
-    page.add_init_script(script)
     if not drawn:
         page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
     page.on("request", lambda request: asked.append(request.url))

@@ -5,7 +5,7 @@ import pytest
 
 from mxeon import explorer
 from mxeon.io.files import write_text
-from tests.explorer.browser import COUNT, launched, opened
+from tests.explorer.browser import launched, opened
 from tests.support.availability import available
 
 
@@ -28,7 +28,7 @@ def address(tmp_path_factory):
 def shared_page(browser, address):
     """The page without documents, which may use the clipboard."""
     permissions = ["clipboard-read", "clipboard-write"]
-    with opened(browser, address, script=COUNT, permissions=permissions) as page:
+    with opened(browser, address, permissions=permissions) as page:
         yield page
 
 

@@ -3,8 +3,7 @@
 
 import json
 import re
-from dataclasses import asdict, replace
-from pathlib import Path
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -18,22 +17,19 @@ from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Result
 from mxeon.errors import MISUSE, NotRun
 from mxeon.errors import PASSED as PASSED_STATUS
 from mxeon.explorer import PARAGRAPH, TEXTS, documents, page, page_data
-from mxeon.explorer.data import Checked, Models, PageData
+from mxeon.explorer.data import Models
 from mxeon.explorer.diagnosis import measured_models
-from mxeon.explorer.documents import _texels, document_sources
+from mxeon.explorer.documents import document_sources
 from mxeon.explorer.sources import RENDERERS
-from mxeon.explorer.stills import COLOR, LIGHT, picture
 from mxeon.hosts.textures import read_texture
 from mxeon.io.images import write_image
 from mxeon.models.table import KNOWN_DEFECTS, MODELS, model
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, material_text
-from mxeon.shaders.scene import sphere
 from tests.explorer.browser import judged, opened, show, until
 from tests.support.documents import material
 
 LARGEST = 2 * 2**20  # bytes of the page without documents
-ROOT = Path(__file__).parents[2]
 CLAY = str(examples_folder() / "clay.mtlx")
 NASTY = "</script><script>globalThis.hit = 1</script><!--"
 
@@ -59,34 +55,6 @@ def test_the_page_is_one_small_file_that_names_no_other():
     assert "default-src 'none'" in text and "%" not in text.split("<style>")[0]
 
 
-def numbers(value):
-    """All numbers in JSON, in order."""
-    if isinstance(value, dict):
-        return [number for each in value.values() for number in numbers(each)]
-    if isinstance(value, list):
-        return [number for each in value for number in numbers(each)]
-    return [] if isinstance(value, str) else [float(value)]
-
-
-def test_the_page_of_the_documentation_is_that_of_the_command():
-    kept = (ROOT / "docs" / "explore.html").read_text()
-    new = page(page_data(pages="upstream/{}.html"))
-    data = [data_of(text) | {"stills": None} for text in (kept, new)]  # whose last bits may differ
-    tables = [each.pop("references") for each in data]
-    for each in data:
-        for source in each["sources"]:
-            source.pop("reference", None)
-    assert data[0] == data[1], "make it again: python tools/site/explorer.py"
-    # The last digit of seven is that of the machine.
-    assert np.allclose(*map(numbers, tables), rtol=1e-5, atol=1e-12)
-    mark = 'type="application/json">'
-    for kept_part, new_part in zip(kept.split(mark), new.split(mark), strict=True):
-        assert (
-            kept_part.rpartition("</script>\n    <script>")[2]
-            == (new_part.rpartition("</script>\n    <script>")[2])
-        )
-
-
 def test_the_page_offers_every_model_and_every_defect():
     sources = page_data().sources
     models = {source.model for source in sources if source.kind == "model"}
@@ -94,20 +62,6 @@ def test_the_page_offers_every_model_and_every_defect():
     assert models == {row.name for row in MODELS} | defects
     assert {name for _, name, _, _ in RENDERERS} >= defects
     assert len({source.id for source in sources}) == len(sources)
-
-
-def test_stills_are_pictures_of_the_models():
-    lambert, eon, clamped = map(picture, ("lambert", "eon", "eon_clamped"))
-    points = sphere(len(lambert))
-    cosine = np.where(points.mask, np.maximum(points.normal @ LIGHT, 0.0), 0.0)
-    # The frames of the directions are turned, which takes some roundings of float64.
-    assert np.abs(lambert - cosine[..., None] * COLOR).max() < 16 * 2**-53
-    assert (clamped - eon).max() > 0.1 and (clamped - eon).min() > -16 * 2**-53
-
-
-def test_each_variant_has_its_page():
-    for _, _, _, name in RENDERERS:
-        assert (ROOT / "docs" / "upstream" / f"{name}.md").is_file()
 
 
 def test_the_command_writes_documents_of_both_libraries(tmp_path, capsys):
@@ -131,26 +85,6 @@ def test_inputs_have_the_ranges_of_their_definitions():
     assert (ports["specular_IOR"].min, ports["specular_IOR"].max) == (0.0, 3.0)  # uimin, uisoftmax
     assert ports["base_color"].value == (0.5, 0.24, 0.13)
     assert source.meant is None and source.controls.color == ""
-
-
-def test_images_travel_with_the_page():
-    (source, *_) = document_sources(str(examples_folder() / "brick.mtlx"))
-    images = [port for port in source.inputs if port.type == "filename"]
-    assert images and all(port.image is not None and not port.shown for port in images)
-    assert all(len(port.image.rgba) * 3 // 4 >= 4 * port.image.width for port in images)
-
-
-def test_a_node_of_eonlib_alone_has_no_stock_twin():
-    [source] = document_sources(str(examples_folder() / "eon_node.mtlx"))
-    assert source.library == "eonlib" and source.meant.off == "eon"
-
-
-@pytest.mark.parametrize("path", sorted(examples_folder().glob("*.mtlx")), ids=lambda p: p.stem)
-def test_the_text_of_a_document_is_the_document(path):
-    source = document_sources(str(path))[0]
-    again = document_sources_of(source.document)
-    inputs = [(each.name, each.value) for each in source.inputs]
-    assert inputs in [[(each.name, each.value) for each in one.inputs] for one in again]
 
 
 @pytest.mark.parametrize("inputs", [{"normal": (0.0, 0.0, 1.0)}, {"weight": 0.5}], ids=str)
@@ -335,13 +269,6 @@ def test_inputs_that_matter_come_first(name, first, last):
     assert (*names[: len(first)],) == first and names[-1] == last
 
 
-def test_the_page_holds_what_materials_share_once():
-    source = document_sources(CLAY)[0]
-    sizes = [len(page(PageData("1", "1", "", (source,) * count))) for count in (1, 2, 1002)]
-    assert sizes[1] - sizes[0] < 0.1 * len(source.pixel)
-    assert sizes[2] - sizes[1] <= 1001 * (sizes[1] - sizes[0])
-
-
 def test_more_materials_than_a_page_may_hold_are_refused(tmp_path, capsys):
     arguments = ["explore", CLAY, "--workers", "0", "--output", str(tmp_path / "out.html")]
     assert main([*arguments, "--maxShaders", "0"]) == MISUSE
@@ -350,12 +277,6 @@ def test_more_materials_than_a_page_may_hold_are_refused(tmp_path, capsys):
     assert f"renderable elements (default: {MATERIALS})" in " ".join(
         capsys.readouterr().out.split()
     )
-
-
-def test_a_texture_of_one_row_is_reduced_along_it(tmp_path):
-    write_image(tmp_path / "row.png", np.full((1, 5000, 3), 255, np.uint8), {})
-    texels = _texels(str(tmp_path / "row.png"), 256)
-    assert (texels.width, texels.height) == (250, 1)
 
 
 def textured(folder, sizes, uses=1):
@@ -381,13 +302,6 @@ def textured(folder, sizes, uses=1):
     return str(path)
 
 
-def test_a_page_holds_each_image_once_however_often_it_is_used(tmp_path):
-    page_of = [document_sources(textured(tmp_path, (64,), uses)) for uses in (1, 20)]
-    texts = [page(page_data([sources])) for sources in page_of]
-    rgba = {port.image.rgba for source in page_of[1] for port in source.inputs if port.image}
-    assert len(rgba) == 1 and [text.count(min(rgba)) for text in texts] == [1, 1]
-
-
 def test_images_are_read_once_and_smaller_the_more_a_page_has_of_them(tmp_path, monkeypatch):
     reads = []
     monkeypatch.setattr(documents, "ALL_IMAGES", 4 * 32**2)
@@ -397,21 +311,6 @@ def test_images_are_read_once_and_smaller_the_more_a_page_has_of_them(tmp_path, 
     sources = document_sources(textured(tmp_path, (64, 8, 64, 64), 3))
     sides = sorted({(port.image.width) for each in sources for port in each.inputs if port.image})
     assert sides == [8, 32] and len(reads) == 4
-
-
-def test_the_data_are_the_fields_that_the_page_reads():
-    """Each dataclass has the fields of the type of its name in data.ts."""
-    text = (ROOT / "explorer" / "src" / "data.ts").read_text()
-    data = asdict(page_data([document_sources(CLAY)]))
-    kinds = {"PageData": data, "Still": data["stills"][0]}
-    kinds["ShaderSource"] = next(each for each in data["sources"] if each["kind"] == "shader")
-    kinds["ModelSource"] = next(each for each in data["sources"] if each["kind"] == "model")
-    kinds["Port"] = kinds["ShaderSource"]["inputs"][0]
-    kinds["Checked"] = asdict(Checked("", ""))
-    kinds["ReferenceTable"] = kinds["ShaderSource"]["reference"]
-    for name, fields in kinds.items():
-        body = re.search(rf"export interface {name} {{(.*?)\n}}", text, re.DOTALL)[1]
-        assert set(re.findall(r"^  readonly (\w+):", body, re.MULTILINE)) == set(fields), name
 
 
 def test_what_a_node_is_comes_from_its_values(monkeypatch):

@@ -3,7 +3,6 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from mxeon.explorer import page, page_data
@@ -27,10 +26,6 @@ STOCK = {
     "lobe/hair": "wrong",
 }
 JUDGED = "![...document.querySelectorAll('.verdict')].some(e => e.classList.contains('measuring'))"
-PLACES = """['.stage', '.side.left', '.side.right', '.verdict', '.probe', '.values'].map(name => {
-    const {left, top, width, height} = document.querySelector(name).getBoundingClientRect();
-    return [name, left, top + scrollY, width, height].join();
-})"""
 PLAIN = {"shape": "sphere", "surroundings": "none"}
 
 
@@ -95,15 +90,6 @@ def test_values_that_are_not_those_of_the_reference_are_found_out(browser, mista
         assert kinds(sheet) == ["differs", "differs"]
 
 
-def test_pages_on_defects_are_links_where_there_is_an_address(browser, mistaken, page):
-    with opened(browser, f"{mistaken}#{SHEEN}", drawn=False) as sheet:
-        links = [each.get_attribute("href") for each in sheet.locator(".pages a").all()]
-        assert links[0] == "upstream/genglsl_conty_kulla_fit.html"
-    choose(page, "lobe/sheen")
-    assert page.locator(".pages").inner_text().startswith("Known defects: conty kulla fit")
-    assert page.locator(".pages a").count() == 0
-
-
 def test_nothing_is_called_correct_before_a_value_is_read_back(browser, address):
     with opened(browser, address, drawn=False) as sheet:
         assert sheet.locator(".verdict.correct").count() == 0
@@ -115,40 +101,6 @@ def test_nothing_is_called_correct_before_a_value_is_read_back(browser, address)
         assert kinds(sheet)[0] == "measuring"
         assert "measuring…" in sheet.locator(".values").inner_text()
         assert sheet.locator(".verdict.correct").count() == 0
-
-
-def test_no_verdict_moves_the_page(page):
-    places = set()
-    for key in ("shader", "lobe/sheen", "lobe/conductor"):
-        choose(page, key)
-        places.add(tuple(page.evaluate(PLACES)[:4]))
-        until(page, JUDGED)
-        places.add(tuple(page.evaluate(PLACES)[:4]))
-    assert len(places) == 1
-
-
-# What the page shows at once, before anything is measured.
-TURNED = f"""async () => {{
-    mxeon.show({{...mxeon.state(), azimuth: 20}});
-    await null;
-    return [document.querySelector('.values').innerText, {PLACES}];
-}}"""
-
-
-def test_a_measured_value_is_as_high_as_one_that_is_not(page):
-    until(page, "document.querySelector('.values').innerText.includes('float32')")
-    before = page.evaluate(PLACES)
-    text, now = page.evaluate(TURNED)
-    assert "measuring…" in text
-    # Borders of a table are rounded to pixels; a line has eighteen.
-    sizes = [[float(part) for part in each.split(",")[1:]] for each in (*now, *before)]
-    assert np.abs(np.subtract(*np.split(np.array(sizes), 2))).max() < 1.0
-
-
-def test_a_page_of_another_lobe_has_no_heading_of_diffuse_ones(page):
-    choose(page, "lobe/sheen")
-    headings = page.locator("h2").all_inner_texts()
-    assert headings == ["Inputs of Sheen, Conty-Kulla", "Light and shape", "Probe"]
 
 
 DROP = """name => {

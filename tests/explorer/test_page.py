@@ -7,7 +7,7 @@ from contextlib import contextmanager
 import numpy as np
 import pytest
 
-from tests.explorer.browser import judged, show, shows, state, until
+from tests.explorer.browser import judged, shows, state, until
 
 # A number that depends on every pixel.
 PIXELS = "mxeon.stage.read().reduce((sum, value, k) => (31 * sum + value * (1 + k)) % 65521, 0)"
@@ -34,13 +34,6 @@ def recolored(page):
     else:
         raise AssertionError("the picture stays as it was")
     assert page.evaluate(PIXELS) == radiance
-
-
-def test_the_first_picture_waits_for_no_program_or_pixel_that_it_does_not_need(page):
-    counts = page.evaluate("counts")
-    # The shape, its shadow, its surroundings, two materials, and the screen.
-    assert 0 < counts["linkProgram"] <= 6 and 0 < counts["drawArrays"] <= 6
-    assert counts["drawElements"] == counts["readPixels"] == 0
 
 
 def fill(page, label, value):
@@ -104,12 +97,6 @@ def test_the_color_changes_the_picture_and_the_albedo(page):
     assert rows.nth(0).inner_text().count("1.000, 1.000, 1.000") == 2
 
 
-def test_another_material_is_drawn_and_judged(page):
-    with redrawn(page):
-        page.get_by_label("Material B").select_option("model/fon")
-    judged(page, "right", "FON")
-
-
 def test_the_flag_is_drawn_and_judged(page):
     judged(page, "right", "not EON")
     page.locator(".side.right").get_by_label("energy_compensation").uncheck()
@@ -141,25 +128,6 @@ def test_a_reader_learns_which_color_to_enter(page):
     fill(page, "To look like, red", 0.5)
     shows(page, wanted=[0.5, 0.4, 0.1])
     assert answer.inner_text() == "(0.546, 0.445, 0.118)"
-
-
-def test_a_color_that_is_kept_is_seen_at_every_roughness(page):
-    page.get_by_label("Enter it, and keep the color seen").check()
-    entered = []
-    for roughness in (1.0, 0.3):
-        fill(page, "Roughness, number", roughness)
-        assert "0.800, 0.400, 0.100" in page.locator(".albedos tbody tr").first.inner_text()
-        shows(page, roughness=roughness)
-        entered.append(state(page)["color"][0])
-    assert entered[0] > entered[1] > 0.8
-    fill(page, "Color entered, red", 0.5)
-    shows(page, keep=False)
-
-
-def test_a_color_out_of_reach_is_said_to_be(page):
-    page.get_by_label("Material A").select_option("model/qon")
-    fill(page, "To look like, red", 0.9)
-    assert "Out of reach" in page.locator(".wanted").inner_text()
 
 
 def test_paths_have_samplers_and_count_their_samples(page):
@@ -195,28 +163,11 @@ def test_keys_choose_the_comparison_and_show_the_other_material(page):
     shows(page, comparison="wipe")
 
 
-def test_keys_do_nothing_while_a_number_is_typed(page):
-    page.get_by_label("Roughness, number").focus()
-    page.keyboard.press("d")
-    shows(page, comparison="wipe")
-
-
 def in_sight(page):
     """Frame of the picture, scrolled into sight."""
     canvas = page.locator("canvas")
     canvas.scroll_into_view_if_needed()
     return canvas.bounding_box()
-
-
-def test_a_number_that_is_typed_stays_whatever_else_changes(page):
-    field = page.get_by_label("Roughness, number")
-    field.fill("")
-    for sign in "0.25":
-        field.press(sign)
-        show(page, exposure=float(ord(sign)) / 100)
-    assert field.input_value() == "0.25"
-    field.press("Enter")
-    shows(page, roughness=0.25)
 
 
 def drag(page, start, end):

@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 
 from mxeon.models.table import model
-from mxeon.shaders.scene import sphere
 from tests.explorer.stage import (
     CLOCK,
     RHO,
@@ -13,7 +12,6 @@ from tests.explorer.stage import (
     frame,
     model_sources,
     opened_stage,
-    picture,
     side,
     view,
     written,
@@ -91,17 +89,6 @@ def test_exact_sampling_has_less_noise_than_cltc_and_cosine(stage, sources):
         noise[sampler] = status["noise"]["left"]
         assert status["noise"]["right"] == noise[sampler]  # of the same paths
     assert 5.0 * noise["exact"] < noise["cltc"] < noise["cosine"]
-
-
-def test_without_surroundings_a_convex_shape_is_drawn_like_without_paths(stage, sources):
-    view(stage, side(sources["eon"]))
-    direct = picture(stage)
-    traced(stage, side(sources["eon"]), samples=1)
-    measured, mu = whole(stage, "left")
-    inside = sphere(len(direct)).mask
-    lit = direct[inside].mean(axis=0)
-    assert np.abs(measured.mean(axis=0) / lit - 1.0).max() < 0.02
-    assert mu.min() < 0.2
 
 
 def test_what_has_no_model_says_that_it_cannot_be_traced(stage):

@@ -80,18 +80,6 @@ def test_the_copied_document_is_the_material_in_sight(page):
     assert values["lobe_energy_compensation"] is False
 
 
-def test_the_copied_shader_is_the_one_that_is_drawn(page):
-    assert "oren_nayar_diffuse_bsdf" in copied(page, "B", "GLSL")
-    page.get_by_label("Material B").select_option("model/eon")
-    assert "vec3 eon_brdf(" in copied(page, "B", "GLSL")
-
-
-def test_what_cannot_be_copied_has_no_button_that_works(page):
-    page.get_by_label("Material B").select_option("variant/cycles_rho_cubed/4")
-    assert page.get_by_role("button", name="Copy B as MaterialX").is_disabled()
-    assert page.get_by_role("button", name="Copy B as GLSL").is_disabled()
-
-
 def test_the_link_is_the_address_of_the_view(page):
     show(page, exposure=2)
     until(page, "location.hash.includes('exposure=2')")

@@ -7,7 +7,6 @@ import pytest
 from mxeon.explorer.documents import document_sources
 from mxeon.explorer.lobes import MATERIALS
 from mxeon.explorer.references import SEEN, WI, WO, pairs, reference_of, views
-from mxeon.explorer.sources import node_sources
 from mxeon.models import eon_brdf
 from mxeon.models.diffuse.albedo import eon_albedo_dir
 from mxeon.shaders.document.notes import DocumentWarning
@@ -55,12 +54,6 @@ def test_the_values_are_those_of_the_model():
     white = eon_albedo_dir(SEEN[:, 2], COLOR, 0.7)
     assert np.allclose(np.reshape(reference.white, (-1, 3)), white, rtol=5e-7)
     assert len(pairs()) == len(WO) and len(views()) == len(SEEN)
-
-
-def test_every_material_of_a_page_has_a_reference_and_pages_of_stock():
-    for source in node_sources():
-        assert source.reference is not None
-        assert bool(source.pages) == (source.library == "stock")
 
 
 @pytest.mark.parametrize(

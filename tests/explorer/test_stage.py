@@ -129,11 +129,6 @@ def test_pixels_of_the_nodes_are_those_of_the_gl_host(stage, gl, flag, light):
         assert error(measured, 1.001 * expected) > tolerance
 
 
-def test_the_stock_node_differs_from_eonlib_in_back_light(stage):
-    view(stage, side("shader/eonlib"), side("shader/stock"), light="back")
-    assert np.abs(picture(stage, "left") - picture(stage, "right")).max() > 0.05
-
-
 def test_the_flag_and_the_inputs_of_a_document_reach_its_shader(stage):
     view(stage, side("shader/eonlib", True), side("shader/eonlib", False))
     assert error(picture(stage, "left"), picture(stage, "right")) > 0.05

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the stage puts on the screen, and when: exposure, comparisons, idleness, loss of the context."""
+"""What the stage puts on the screen: exposure, comparisons, and recovery of a lost context."""
 
 import numpy as np
 import OpenImageIO as oiio
@@ -10,7 +10,6 @@ from mxeon.io.files import write_text
 from mxeon.io.srgb import srgb_encoded
 from tests.explorer.browser import until
 from tests.explorer.stage import (
-    CLOCK,
     frame,
     model_sources,
     opened_stage,
@@ -23,27 +22,6 @@ from tests.explorer.stage import (
 
 # Noise of half a step against bands, half a step of rounding, and one for the average of frames.
 STEPS = 2
-# Of explorer/src/stage/colors.ts.
-STOPS = [
-    (0.02, 0.19, 0.38),
-    (0.13, 0.4, 0.67),
-    (0.4, 0.66, 0.84),
-    (0.74, 0.86, 0.93),
-    (0.95, 0.95, 0.94),
-    (0.99, 0.84, 0.7),
-    (0.95, 0.6, 0.36),
-    (0.8, 0.3, 0.14),
-    (0.45, 0.11, 0.04),
-]
-COUNT = """() => {
-    const gl = WebGL2RenderingContext.prototype, draw = gl.drawArrays;
-    globalThis.draws = 0;
-    gl.drawArrays = function (...all) { globalThis.draws += 1; return draw.apply(this, all); };
-}"""
-FRAMES = """count => new Promise(done => {
-    const next = () => count-- > 0 ? requestAnimationFrame(next) : done(globalThis.draws);
-    next();
-})"""
 # The canvas without the handles above it, on whole pixels.
 ALONE = """.picture > :not(canvas) { display: none !important }
 canvas { position: fixed !important; inset: 0 auto auto 0; z-index: 9;
@@ -65,7 +43,6 @@ def address(tmp_path_factory):
 def stage(browser, address):
     with opened_stage(browser, address, bypass_csp=True) as shown:
         shown.add_style_tag(content=ALONE)
-        shown.evaluate(COUNT)
         shown.evaluate(LISTEN)
         yield shown
 
@@ -112,66 +89,6 @@ def test_flicker_shows_one_side_and_the_wipe_splits_them(stage, sources):
     assert (whole[:, : edge - 1] == left[:, : edge - 1]).all()
     assert (whole[:, edge + 1 :] == right[:, edge + 1 :]).all()
     assert (left != right).any()
-
-
-def test_the_difference_map_has_the_colors_of_its_scale(stage, sources, tmp_path):
-    even = {"light": None, "surroundings": "uniform", "comparison": "difference", "color": [1] * 3}
-    # White FON loses energy and white Lambert none: the right one is brighter by up to 0.23.
-    view(stage, side(sources["fon"]), side(sources["lambert"]), scale=0.3, **even)
-    shown = screen(stage, tmp_path)
-    difference = frame(stage)[..., 0]
-    stops = np.array(STOPS)
-    at = 4.0 + 4.0 * np.clip(difference / 0.3, -1.0, 1.0)
-    linear = np.where(stops <= 0.04045, stops / 12.92, ((stops + 0.055) / 1.055) ** 2.4)
-    mixed = [np.interp(at, np.arange(9), linear[:, k]) for k in range(3)]
-    expected = srgb_encoded(np.stack(mixed, axis=-1)).astype(int)
-    kept = inner(stage, shown.shape)
-    assert np.abs(shown - expected)[kept].max() <= STEPS
-    assert np.ptp(at[kept]) > 0.5
-
-
-def test_nothing_is_drawn_when_nothing_changes(stage):
-    view(stage, side("shader/eonlib"), side("shader/stock"))
-    stage.wait_for_timeout(500)  # The probe measures soon after a picture.
-    before = stage.evaluate("globalThis.draws")
-    assert stage.evaluate(FRAMES, 10) == before
-    view(stage, side("shader/eonlib"), side("shader/stock"), light="back")
-    assert stage.evaluate("globalThis.draws") > before
-
-
-def test_a_wipe_that_moves_draws_no_material_again(stage):
-    view(stage, side("shader/eonlib"), side("shader/stock"), wipe=0.5)
-    stage.evaluate(CLOCK, 0)  # as on a device that draws in no time, on which sizes stay
-    draw = "wipe => mxeon.stage.draw({...mxeon.state(), wipe}, true)"
-    stage.evaluate(draw, 0.4)
-    stage.evaluate(FRAMES, 12)
-    stage.evaluate("globalThis.draws = 0")
-    stage.evaluate(draw, 0.6)
-    assert stage.evaluate(FRAMES, 12) == 2  # the picture and the screen
-    stage.evaluate("mxeon.stage.draw({...mxeon.state(), azimuth: 5}, true)")
-    assert stage.evaluate(FRAMES, 12) == 2 + 4  # both materials too
-    stage.evaluate(CLOCK, 1)
-    stage.evaluate("mxeon.stage.draw(mxeon.state())")
-    settle(stage)
-
-
-def test_while_dragging_a_slow_picture_is_coarse_and_at_rest_full(stage):
-    view(stage, side("shader/eonlib"))
-    full = stage.evaluate("Object.values(mxeon.stage.size())")
-    stage.evaluate(CLOCK, 1000)
-    stage.evaluate("mxeon.stage.draw({...mxeon.state(), azimuth: 1})")
-    stage.evaluate(FRAMES, 25)
-    stage.evaluate("globalThis.said.length = 0")
-    for azimuth in (10, 20, 30):
-        stage.evaluate("a => mxeon.stage.draw({...mxeon.state(), azimuth: a}, true)", azimuth)
-        stage.evaluate(FRAMES, 10)
-    sizes = stage.evaluate("said.filter(each => each.kind === 'drawn').map(each => each.width)")
-    assert 0 < max(sizes) < 0.5 * full[0]
-    stage.evaluate(CLOCK, 1)
-    stage.evaluate("mxeon.stage.draw(mxeon.state())")
-    settle(stage)
-    last = stage.evaluate("said.findLast(each => each.kind === 'drawn')")
-    assert [last["width"], last["height"]] == full
 
 
 def test_a_lost_context_is_restored_with_the_same_picture(browser, address):
