@@ -287,15 +287,6 @@ def test_the_quadrature_of_the_equations_is_as_exact_as_its_probe_says(model):
     assert np.abs(albedo - probe.integrals).max() <= QUADRATURES[probe.kind]
 
 
-@pytest.mark.parametrize("model", SUBJECTS)
-def test_a_node_scatters_nothing_to_the_other_side(model):
-    probe = probe_of(SUBJECTS[model])
-    batch, *_ = probe.batches
-    values = probe.subject.expected(batch.first(1 << 6))
-    other = probe.subject.expected(replace(batch, wi=batch.wi * [1.0, 1.0, -1.0]).first(1 << 6))
-    assert values.max() > 0.0 and not other.any()
-
-
 def test_the_least_albedo_of_microfacets_is_that_of_the_roughest_along_the_normal():
     assert np.isclose(ggx_albedo_dir(1.0, 1.0), LEAST_ESS, rtol=1e-10)
     mu, alpha = np.meshgrid(np.linspace(1e-4, 1.0, 12), np.linspace(1e-3, 1.0, 12))

@@ -8,7 +8,6 @@ from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.nodes.combinations import COMBINED_NODES, SINGLE
 from mxeon.conformance.probes.bsdf import CombinedProbe
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED
-from mxeon.shaders.generation import generate
 from tests.support.checks import undiagnosed
 from tests.support.wrong_libraries import copy_of_eonlib, replace_text
 
@@ -37,21 +36,15 @@ WRONG = (
     ("layer_bsdf", "passed * base.throughput", "passed", "layer", PASSES),
     ("layer_bsdf", "min(top.throughput, 0.0) + ", "", "mix_layer", PASSES),
     (
-        "multiply_bsdf_color3",
-        "= 1.0 - weight * (1.0 - in1.throughput)",
-        "= in1.throughput",
-        "multiply_sum",
-        PASSES,
+        "multiply_bsdf_color3", "= 1.0 - weight * (1.0 - in1.throughput)", "= in1.throughput",
+        "multiply_sum", PASSES,
     ),
     (
-        "multiply_bsdf_color3",
-        "- in1.throughput)",
-        "- max(in1.throughput, 0.0))",
-        "multiply_sum",
+        "multiply_bsdf_color3", "- in1.throughput)", "- max(in1.throughput, 0.0))", "multiply_sum",
         PASSES,
     ),
     ("multiply_bsdf_float", "response * weight", "response", "multiply_float", "combination"),
-)
+)  # fmt: skip
 
 
 def combined_results(gl, subject, library):
@@ -88,13 +81,3 @@ def test_a_wrong_line_of_a_combination_is_seen(gl, tmp_path, wrong):
     assert judge_check(row, CombinedProbe(gl, subject, library)).verdict == PASSED
     replace_text(tmp_path, old, new, f"eonlib/genglsl/{name}.glsl")
     assert judge_check(row, CombinedProbe(gl, subject, library)).verdict == FAILED
-
-
-@pytest.mark.parametrize("subject", COMBINED_NODES, ids=lambda subject: subject.title)
-def test_the_document_of_a_combination_has_the_inputs_asked_for(subject):
-    inputs = {
-        port.name: 0.25 if port.kind == "float" else (0.25, 0.5, 0.75) for port in subject.ports
-    }
-    [shader] = generate(subject.document(inputs), "osl")
-    values = {port.path: port.value for port in shader.inputs}
-    assert {name: values[name] for name in inputs} == inputs

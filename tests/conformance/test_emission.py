@@ -1,23 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Nodes that emit light, and media: verdicts on MaterialX, on eonlib, and on wrong shaders."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-from mxeon.conformance.accuracy.emission import POWER_RADIANCE, QUADRATURE, TRANSMITTANCE
+from mxeon.conformance.accuracy.emission import POWER_RADIANCE, TRANSMITTANCE
 from mxeon.conformance.accuracy.engine import widen_for_engine
 from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
-from mxeon.conformance.nodes import kinds
-from mxeon.conformance.nodes.emission import EDFS, LEAST_FALLOFF
 from mxeon.conformance.probes.families import EMISSION_SUBJECTS, PROBES, probe_type_of
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.pictures import PictureProbe
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED
 from mxeon.conformance.run.plan import make_plan
-from mxeon.conformance.samples.batch import RIM, Batch
 from tests.support.wrong_libraries import wrong_eonlib_node, wrong_stock_node
 
 SUBJECTS = {subject.title: subject for subject in EMISSION_SUBJECTS}
@@ -159,34 +154,6 @@ def test_every_check_of_emission_has_a_shader_that_it_fails():
     assert failing == {row.key for row in CHECKS if models & {*row.models}}
 
 
-@pytest.mark.parametrize("subject", EDFS, ids=lambda each: each.title)
-def test_the_quadrature_of_the_equations_is_as_exact_as_its_tolerance_says(subject):
-    probe = PROBES[PairProbe][subject.kind](None, subject, "stock")
-    batch, weights = probe.integrated
-    values = subject.expected(batch).reshape(*weights.shape, 3)
-    exitance = subject.exitance(batch.where(np.arange(len(weights)) * weights.shape[1])) / np.pi
-    total = (weights[..., np.newaxis] * values).sum(axis=1)
-    assert np.abs(total - exitance).max() <= QUADRATURE
-
-
-def test_soft_and_hard_cones_are_asked_and_their_condition_is_the_slope():
-    probe = PROBES[PairProbe][kinds.CONE_EMISSION](None, SUBJECTS["conical_edf"], "stock")
-    for batch in (*probe.batches, probe.backs):
-        inner, outer = (batch.inputs[f"{name}_angle"] for name in ("inner", "outer"))
-        soft = outer > inner
-        assert (outer - inner)[soft].min() >= LEAST_FALLOFF - 1e-4 and not soft.all()
-        white = batch.altered(color=np.ones((len(batch.wo), 3)))
-        up, down = (
-            probe.expected(replace(white, wo=batch.wo + [0.0, 0.0, step])) for step in (1e-7, -1e-7)
-        )
-        slope = (np.abs(up - down) / 2e-7).max(axis=1)
-        condition = probe.condition(batch)[:, 0]
-        kept = soft & (batch.wo[:, 2] > 1e-6)
-        error = np.where(kept, np.abs(1.0 + slope - condition), 0.0)
-        assert error.max() < 0.01 * condition.max()
-        assert min(inner.min(), outer.min()) >= 0.0 and max(inner.max(), outer.max()) <= 360.0
-
-
 def test_nodes_that_no_library_repairs_are_judged_with_stock_alone():
     for library, expected in (("stock", True), ("eonlib", False)):
         tasks = make_plan((), ("gl",), (library,), nodes=("all",)).tasks
@@ -244,14 +211,3 @@ def test_the_engines_own_functions_enter_the_tolerances():
             for share in (0.0, 1e-4)
         )
         assert exact == tolerance.value and 1e-4 <= off <= 4e-4
-
-
-def test_the_slopes_of_the_pictures_are_those_of_their_tolerance():
-    mu = np.linspace(RIM, 1.0, 1000)
-    wo = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=-1)
-    for subject in EDFS:
-        for inputs in subject.materials:
-            assert set(inputs) == set(subject.row.inputs)
-            values = subject.expected(Batch(wo, wo, inputs))
-            values /= np.maximum(1.0, values.max(axis=-1, keepdims=True))
-            assert (np.abs(np.diff(values, axis=0)) / np.diff(mu)[:, np.newaxis]).max() <= 5.0

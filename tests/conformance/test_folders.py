@@ -12,7 +12,6 @@ from mxeon.conformance.run.documents import causes, document_verdicts, documents
 from mxeon.errors import MISUSE, InputError
 from mxeon.hosts.base import Identity
 from tests.support.command import CLAY
-from tools.site.documents import lines
 
 NAMES = ("a/clay.mtlx", "a/glass.mtlx", "b/noise.mtlx", "light.mtlx")
 
@@ -67,15 +66,6 @@ def test_causes_count_documents_the_worst_first():
     assert ("refused", "must contain a renderable element; got ...") in groups
     assert ("no reference", "there is no model for ...") in groups
     assert summary_by_cause(RUN)[0].startswith("4 documents, 2 ")
-
-
-def test_the_page_of_a_run_counts_documents_and_says_how_long_it_took():
-    times = {"minutes": 4.2, "processor minutes": 7.25, "cores": 2}
-    text = "\n".join(lines(document_verdicts(RUN), times, len(RUN.results)))
-    assert "2 of 4 have a reference picture of each material" in text
-    assert "with 5 checks and pictures, took 4 minutes and 7.2 minutes of processor time" in text
-    assert "Measured on: cores 2." in text
-    assert "b/noise.mtlx" not in text and len(text.partition("do not pass")[2].splitlines()) > 4
 
 
 def test_a_bad_document_of_a_folder_is_one_line_and_the_run_goes_on(tmp_path, capsys):

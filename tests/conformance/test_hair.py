@@ -7,14 +7,13 @@ import numpy as np
 import pytest
 
 from mxeon.conformance.accuracy.bsdf import QUADRATURES
-from mxeon.conformance.accuracy.hair import LARGEST
 from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.hair import HAIRS
-from mxeon.conformance.probes.hair import HairProbe, aimed
+from mxeon.conformance.probes.hair import HairProbe
 from mxeon.conformance.results import FAILED, PASSED
-from mxeon.models.hair import ROUGHNESSES, TINTS
+from mxeon.models.hair import TINTS
 from tests.support.wrong_libraries import wrong_eonlib_node
 
 (SUBJECT,) = HAIRS
@@ -125,25 +124,6 @@ def test_a_wrong_line_fails_a_check_and_is_named(gl, tmp_path, name):
 
 def test_every_check_has_a_shader_that_it_fails():
     assert {key for _, _, key, _ in WRONG.values()} == set(ROWS)
-
-
-def test_pairs_are_aimed_into_the_lobes_of_both_sides():
-    random, aimed, special = HairProbe(None, SUBJECT, "stock", FEWER).batches
-    for batch in (random, aimed, special):
-        assert (batch.wi[:, 2] < 0.0).any() and (batch.wi[:, 2] > 0.0).any()
-        assert np.abs(np.linalg.norm(batch.wi, axis=1) - 1.0).max() < 1e-6
-    values = [SUBJECT.expected(batch).max(axis=1) for batch in (random, aimed)]
-    assert np.median(values[1]) > 10.0 * np.median(values[0])
-    assert max(each.max() for each in values) < LARGEST
-
-
-def test_a_light_aimed_without_spread_is_where_a_lobe_is_largest():
-    wo = np.array([[0.28, 0.0, 0.96]])
-    inputs = {name: np.array([[1e-12, 1e-9]]) for name in ROUGHNESSES}
-    inputs |= {"ior": np.array([1.5]), "cuticle_angle": np.array([0.5])}
-    lights = [aimed(np.random.default_rng(seed), wo, inputs)[0] for seed in range(8)]
-    exits = {tuple(np.round(light, 5) + 0.0) for light in lights}
-    assert exits == {(-0.28, 0.0, 0.96), (-0.28, 0.0, -0.96)}
 
 
 def test_the_quadrature_of_the_equations_is_as_exact_as_its_probe_says():

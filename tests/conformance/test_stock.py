@@ -2,7 +2,6 @@
 """Stock MaterialX judged: its known defects by name, and what it has right."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
@@ -11,7 +10,7 @@ from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.probes.pictures import PictureProbe
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED, Result, known_issues
 
-EON, QON, NODE = SUBJECTS
+EON, QON, _ = SUBJECTS
 
 
 @pytest.mark.parametrize(
@@ -81,11 +80,6 @@ def test_a_check_that_differs_refers_to_its_page_as_one_that_fails_does(verdict,
     result = Result("value", "claim.", "conductor_bsdf", "wgsl", "stock", verdict)
     pages = known_issues.with_pages(result).pages
     assert ("genglsl_microfacet_compensation" in pages) == named
-
-
-def test_every_page_that_a_check_refers_to_is_there():
-    folder = Path(__file__).parents[2] / "docs" / "upstream"
-    assert all((folder / f"{defect.page}.md").is_file() for defect in known_issues.ISSUES)
 
 
 @pytest.mark.parametrize("subject", [EON, QON], ids=lambda subject: subject.title)

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Surface shaders as a whole: what eonlib keeps, what stock MaterialX does not, and dead inputs."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -11,12 +9,9 @@ from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.surface_shaders import FREE_PATHS, SHADERS
-from mxeon.conformance.probes.families import COMMON_SUBJECTS
 from mxeon.conformance.probes.surface_shaders import SurfaceShaderProbe
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.conformance.results.known_issues import with_pages
-from mxeon.conformance.run.plan import make_plan, node_names
-from mxeon.errors import NotRun
 from mxeon.shaders.library import load_library
 from tests.support.wrong_libraries import wrong_copy
 from tools.fits import surface_shaders as fit
@@ -93,16 +88,3 @@ def test_every_input_of_a_shader_is_asked_for_or_of_no_lobe(shader):
     words = ("emiss", "opacity", "alpha", "occlusion")
     rest = names - set(shader.inputs) - set(FREE_PATHS)
     assert all(any(word in name for word in words) for name in rest)
-
-
-def test_an_input_that_a_shader_lacks_is_named(gl):
-    table = replace(SHORT.table, more={**SHORT.table.more, "glow": 0.5})
-    with pytest.raises(NotRun, match="has no input glow, which is to change"):
-        _ = SurfaceShaderProbe(gl, replace(SHORT, table=table), "eonlib").changed
-
-
-def test_they_are_judged_where_they_are_named():
-    assert not set(SHADERS) & set(COMMON_SUBJECTS)
-    assert {shader.node for shader in SHADERS} <= set(node_names())
-    plan = make_plan([], ["gl"], ["stock"], nodes=["gltf_pbr"])
-    assert {"lobes", "reach"} <= {task.check for task in plan.tasks}

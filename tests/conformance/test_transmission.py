@@ -3,20 +3,14 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
-from mxeon.conformance.checks.transmission_measures import through_sphere
 from mxeon.conformance.nodes.transmission import TRANSMITTING
 from mxeon.conformance.probes.bsdf import TransmissionProbe
-from mxeon.conformance.probes.families import probe_type_of
-from mxeon.conformance.probes.pictures import PictureProbe
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.hosts import raster
-from mxeon.models.transmission import refraction
-from tests.support.hemispheres import view
 from tests.support.wrong_libraries import wrong_stock_node
 
 SUBJECTS = {subject.model: subject for subject in TRANSMITTING}
@@ -98,15 +92,3 @@ def test_a_wrong_line_of_transmission_fails_a_check(gl, tmp_path, name):
 def test_every_check_of_transmission_has_a_shader_that_it_fails():
     failing = {key for rows in STOCK.values() for key in rows}
     assert failing | {key for *_, key in WRONG.values()} == {row.key for row in ROWS}
-
-
-def test_a_sphere_turns_a_view_twice_by_the_same_angle():
-    wo = np.stack([view(mu, 0.3) for mu in (0.1, 0.5, 0.9)])
-    inner = refraction.refraction_direction(wo, [0.0, 0.0, 1.0], 1.5)
-    out = through_sphere(wo, np.full(3, 1.5))
-    np.testing.assert_allclose((out**2).sum(axis=1), 1.0, rtol=1e-12)
-    np.testing.assert_allclose((inner * -wo).sum(axis=1), (inner * out).sum(axis=1), rtol=1e-12)
-
-
-def test_pictures_are_not_asked_of_transmission():
-    assert probe_type_of(TRANSMITTING[0], PictureProbe) is None
