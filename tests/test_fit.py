@@ -252,11 +252,6 @@ def test_the_example_finds_what_it_put_in(tmp_path, monkeypatch, capsys):
 # --- the page --------------------------------------------------------------------------------
 
 
-def test_the_page_shows_what_its_first_example_prints():
-    text = research.PAGE.read_text(encoding="utf-8")
-    assert research.page(text) == text
-
-
 def test_the_blocks_of_the_page_run_one_after_another(tmp_path, monkeypatch, capsys):
     for package in ("torch", "array_api_compat", "mitsuba"):
         pytest.importorskip(package)

@@ -7,8 +7,6 @@ Those for a model, a host and a page are followed in `tests/conformance/test_new
 
 import json
 import os
-import re
-import runpy
 import shutil
 import subprocess
 import sys
@@ -222,22 +220,6 @@ def test_a_node_takes_its_model_and_its_ports(results):
     verdict, diagnosis = results["wrong", "shaded_bsdf", "value"]
     assert verdict == "failed" and diagnosis.startswith("nearest known model: Lambert (rms ")
     assert results["wrong", "shaded_bsdf", "inputs"] == ("failed", "without effect: shade")
-
-
-def test_the_third_place_of_a_node_is_its_section_with_a_mark(results):
-    script = runpy.run_path(str(ROOT / "tools" / "site" / "specification.py"))
-    columns = {"right": "eonlib", "wrong": "stock"}
-    rows = [
-        {"check": check, "subject": subject, "library": columns[library], "verdict": row[0]}
-        for (library, subject, check), row in results.items()
-        if library in columns
-    ]
-    data = {"gl": {"results": [{**row, "error": "", "allowed": ""} for row in rows]}}
-    text = "## shaded_bsdf\n\n<!-- measured shaded_bsdf -->\n<!-- end -->\n"
-    page = script["page"](text, data)
-    assert page.startswith(text[:-13]) and page.endswith("<!-- end -->\n")
-    assert "| inputs | all |  | failed | passed |" in page
-    assert re.search("^Passed with both: .*`surroundings`.*$", page, re.MULTILINE)
 
 
 def test_a_renderer_takes_its_module_and_its_row(results):

@@ -154,17 +154,6 @@ def test_a_kit_on_a_full_disk_is_one_line(tmp_path):
     assert not list(tmp_path.rglob(".mxeon*"))
 
 
-@pytest.mark.parametrize("suffix", ["svg", "png"])
-def test_a_figure_that_finds_no_room_is_an_error(tmp_path, suffix):
-    from tools.paper.sheet import Sheet
-
-    sheet = Sheet(tmp_path, host=None)
-    figure, _ = sheet.axes(1, 1, 2.0, 2.0)
-    with room_for(1000), pytest.raises(OSError, match=f"a.{suffix}"):
-        sheet.plot("a", figure, suffix)
-    assert not files(tmp_path)
-
-
 def test_a_pipe_is_not_replaced(tmp_path):
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
