@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,9 @@ from numpy.typing import NDArray
 from mxeon.errors import InputError
 from mxeon.hosts import base
 from mxeon.hosts.base import Array, Inputs
-from mxeon.shaders.generation import Shader
+
+if TYPE_CHECKING:
+    from mxeon.shaders.generation import Shader
 
 PATHS = 1 << 12  # pixels of a picture with a sky, each of the host's own number of paths
 DIRECT, TRANSMITTED, EMITTED = "direct", "transmission", "emission"  # branches of `evaluate`
