@@ -9,7 +9,7 @@ from mxeon.conformance.nodes.combinations import COMBINED_NODES, SINGLE
 from mxeon.conformance.probes.bsdf import CombinedProbe
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED
 from tests.support.checks import undiagnosed
-from tests.support.wrong_libraries import copy_of_eonlib, replace_text
+from tests.support.wrong_libraries import copy_of_eonlib, place_of, replace_text
 
 UNSCALED = "the throughput of the lobe before it is scaled"
 ENDED = "a sum whose throughput ends at 0"
@@ -79,5 +79,5 @@ def test_a_wrong_line_of_a_combination_is_seen(gl, tmp_path, wrong):
     library = str(copy_of_eonlib(tmp_path))
     [row] = [undiagnosed(each) for each in CHECKS if each.key == check]
     assert judge_check(row, CombinedProbe(gl, subject, library)).verdict == PASSED
-    replace_text(tmp_path, old, new, f"eonlib/genglsl/{name}.glsl")
+    replace_text(tmp_path, old, new, place_of(name))
     assert judge_check(row, CombinedProbe(gl, subject, library)).verdict == FAILED

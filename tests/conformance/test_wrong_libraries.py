@@ -30,7 +30,7 @@ from mxeon.shaders.functions import names
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.nodes import EON, INVERSIONS
 from tests.support.plans import keep_checks
-from tests.support.wrong_libraries import copy_of_eonlib, replace_text
+from tests.support.wrong_libraries import copy_of_eonlib, place_of, replace_text
 
 ON, OFF, NODE = SUBJECTS
 MDL, OSL = "libraries/diffuse/eonlib_genmdl_impl.mtlx", "libraries/diffuse/eonlib_genosl_impl.mtlx"
@@ -232,7 +232,7 @@ def test_no_shader_function_is_left_unjudged():
     ],
 )  # fmt: skip
 def test_a_wrong_shader_function_is_named_by_its_cause(gl, copy, file, old, new, words):
-    library = copy(f"eonlib/genglsl/{file}.glsl", old, new)
+    library = copy(place_of(file), old, new)
     found = failed(judge_functions(FunctionProbe(gl, library)))
     assert set(found) == set(words)
     assert all(words[key] in found[key] for key in words)
@@ -253,7 +253,7 @@ def test_shader_functions_that_do_not_compile_fail_with_the_words_of_the_compile
     ],
 )
 def test_functions_that_differ_in_osl_are_named(copy, file, old, new, words):
-    (result,) = check_languages(copy(f"eonlib/genosl/{file}.osl", old, new))
+    (result,) = check_languages(copy(place_of(file, "osl"), old, new))
     assert result.verdict == FAILED and result.diagnosis == f"different in OSL: {words}"
 
 

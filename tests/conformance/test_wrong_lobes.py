@@ -9,7 +9,7 @@ from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.probes.families import PBR_SUBJECTS, probe_type_of
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.results import FAILED, PASSED
-from tests.support.wrong_libraries import wrong_copy
+from tests.support.wrong_libraries import wrong_copy, wrong_eonlib_node
 
 EON, QON, NODE = SUBJECTS
 LOBE = "genglsl/lib/oren_nayar_lobe.glsl"
@@ -134,20 +134,20 @@ def test_the_other_hosts_see_what_is_around_the_model(hosts, tmp_path, host, nam
 BLUR = "curvature * max(radius, vec3(0.0))"
 BESIDE = {
     "light from the viewer's side": (
-        "translucent_bsdf", "translucent_bsdf.glsl", "mx_environment_irradiance(N)",
+        "translucent_bsdf", "translucent_bsdf", "mx_environment_irradiance(N)",
         "mx_environment_irradiance(-N)", "surroundings", "on the other side of the surface",
     ),
     "radius ignored": (
-        "subsurface_bsdf", "subsurface_bsdf.glsl", BLUR,
+        "subsurface_bsdf", "subsurface_bsdf", BLUR,
         "curvature * vec3(0.5) * step(0.0, radius.x + 1.0)", "sphere",
         "nearest known model: the profile of a mean free path of 0.5, whatever the radius",
     ),
     "sine of a cone to the seventh power": (
-        "conical_edf", "conical_edf.glsl", "w / 42.0 * tail", "w / 42.0", "exitance",
+        "conical_edf", "conical_edf", "w / 42.0 * tail", "w / 42.0", "exitance",
         "right but for",
     ),
     "far profile at half of its reach": (
-        "subsurface_bsdf", "subsurface_blur.glsl", "(1.0 + t * t)", "(2.0 * t + t * t)", "sphere",
+        "subsurface_bsdf", "subsurface_blur", "(1.0 + t * t)", "(2.0 * t + t * t)", "sphere",
         "nearest known model: a far exponential of 1.5 mean free paths instead of 3",
     ),
 }  # fmt: skip
@@ -160,7 +160,7 @@ def test_a_wrong_line_of_another_node_fails_the_check_meant_for_it(gl, tmp_path,
     probe = probe_type_of(subject, PairProbe)
     for library, verdict in (
         ("eonlib", PASSED),
-        (wrong_copy(tmp_path, text, other, f"eonlib/genglsl/{file}"), FAILED),
+        (wrong_eonlib_node(tmp_path, file, text, other), FAILED),
     ):
         [result] = judge_subject(
             probe(gl, subject, library), [row for row in CHECKS if row.key == key]
