@@ -314,7 +314,7 @@ def test_shaders_are_generated_where_no_picture_is_made():
 
 def test_a_source_that_is_no_text_is_refused_in_one_line(copy):
     library = Path(copy())
-    (library / "genglsl" / "eon.glsl").write_bytes(b"\xff\xfe")
+    (library.parent / "genglsl" / "lib" / "eon.glsl").write_bytes(b"\xff\xfe")
     with pytest.raises(InputError, match="eon.glsl: must be text in UTF-8"):
         make_plan([], ["gl"], [library])
 
@@ -373,3 +373,9 @@ def test_an_entry_point_in_osl_that_gives_another_closure_is_named(
     library = copy(file, old, new)
     diagnoses = {each.subject: each.diagnosis for each in check_entries(library)}
     assert diagnoses[title] == words
+
+
+@pytest.mark.parametrize(("library", "count"), [("eonlib", 5), ("diffuse", 0), ("stock", 0)])
+def test_entry_points_in_osl_are_those_of_eonlib(library, count):
+    results = check_entries(library)
+    assert [each.verdict for each in results] == [PASSED] * count

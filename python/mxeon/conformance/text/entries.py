@@ -118,7 +118,7 @@ def check_entries(library: str) -> tuple[Result, ...]:
         _judge(entry, library)
         for entry in ENTRIES
         if kind_of(library) not in ("stock", "diffuse")
-        and (folder / f"{entry.file}.osl").is_file()
+        and any(folder.rglob(f"{entry.file}.osl"))
         and (entry.profile is None or has_profile(library, entry.profile))
     )
 
