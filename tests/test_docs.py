@@ -169,4 +169,4 @@ def test_the_python_example_of_the_readme_runs(tmp_path):
     command = [sys.executable, str(tmp_path / "example.py")]
     run = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, timeout=300)
     assert run.returncode == 0, run.stderr
-    assert "void main" in run.stdout
+    assert re.findall(r"^\[0\.\d+ +0\.\d+ +0\.\d+\]$", run.stdout, re.MULTILINE)
