@@ -23,6 +23,7 @@ from pathlib import Path
 
 from mxeon.shaders import generation
 from mxeon.shaders.document.references import library_path
+from mxeon.shaders.document.sources import Sources
 from mxeon.shaders.library import examples_folder
 from tests.fuzz.attack import cases
 from tests.fuzz.cases import case
@@ -108,7 +109,7 @@ def _run(count, audit, bare):
 @contextlib.contextmanager
 def _uncopied(document, context, policy, tokens):
     """No copies, in place of `copied_sources`."""
-    yield generation.Sources(document, context, policy, "", tokens)
+    yield Sources(document, context, policy, "", tokens)
 
 
 def main():

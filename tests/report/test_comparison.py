@@ -157,7 +157,7 @@ def test_a_key_of_another_type_is_one_line(tmp_path, capsys, key, value):
 def test_a_report_without_a_key_is_one_line(tmp_path, capsys, key):
     """But for those that earlier reports lack."""
     edit(tmp_path, lambda content: content.pop(key))
-    if key not in ("elsewhere", "refused", "libraries"):
+    if key not in ("elsewhere", "refused", "libraries", "compared"):
         refusal_of(tmp_path, capsys)
     else:
         assert not getattr(read_results(tmp_path), key)

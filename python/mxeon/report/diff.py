@@ -82,11 +82,13 @@ class Report:
     refused: tuple[str, ...] = ()
     elsewhere: tuple[dict[str, str], ...] = ()
     libraries: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
+    compared: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if self.verdict not in VERDICTS:
             raise InputError(f"verdict must be one of {', '.join(VERDICTS)}; got {self.verdict!r}")
-        tally = Counter(result.verdict for result in self.results)
+        judged = (each for each in self.results if each.library not in self.compared)
+        tally = Counter(each.verdict for each in judged)
         if self.counts != {verdict: tally[verdict] for verdict in VERDICTS}:
             raise InputError(f"counts must be those of the results; got {self.counts}")
 
@@ -103,7 +105,10 @@ def read_results(folder: str | PathLike[str]) -> Report:
             content = json.load(file)
         if (written := content["format"]) == JSON_FORMAT:
             # Keys that earlier reports lack.
-            later: dict[str, object] = {"elsewhere": [], "refused": [], "libraries": {}}
+            later: dict[str, object] = {
+                **{"elsewhere": [], "refused": [], "compared": []},
+                "libraries": {},
+            }
             return read_record(later | content, Report)
     except OSError as error:
         raise InputError(f"{rule}; {error.strerror}") from None
