@@ -35,7 +35,7 @@ def answer(run: Run, full: bool = False) -> list[str]:
     begins = run.refused or run.summary.verdict == NOT_RUN or not run.contents
     first, last = ([*verdict, *first], []) if begins else (first, verdict)
     room = LINES - len(first) - len(remedy) - len(last)
-    least = FEWEST if any(each.startswith("failed") for each in failures) else 1
+    least = FEWEST if any(each.startswith("failed") for each in failures) else 2
     kept = len(rows) if full else max(FEWEST, room - 1 - min(least, len(failures)))
     table = list(_table(run, rows, kept))
     told = len(failures) if full else max(least, room - len(table))
@@ -43,7 +43,9 @@ def answer(run: Run, full: bool = False) -> list[str]:
     notes = [f"note: {note}" for note in notes]
     after = [*remedy, *failures[:told], *notes[:noted]]
     lines = [*first, *table, *map(one_line, after), *last]
-    if not full and (len(rows) > kept or len(failures) > told or len(notes) > noted):
+    if not full and len(failures) > told:
+        lines.append(f"{counted(len(failures) - told, 'more cause')}: {FULL}.")
+    elif not full and (len(rows) > kept or len(notes) > noted):
         lines.append(f"There is more: {FULL}.")
     return lines
 

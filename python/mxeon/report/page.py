@@ -298,6 +298,10 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, 
     with in_threads(partial(material, verdicts), shown) as drawn:
         yield from environment.get_template("report.html.jinja").generate(
             run=run,
+            failed_rows=failed_rows,
+            judged=list(
+                dict.fromkeys(each.library for each in asked if each.library not in run.compared)
+            ),
             summary=run.summary,
             script=Markup(script),
             script_hash=b64encode(sha256(script.encode()).digest()).decode(),

@@ -120,7 +120,9 @@ def _issues(result: Result, materialx: str) -> list[Issue]:
 def _explains(issue: Issue, result: Result, materialx: str) -> bool:
     """Whether an issue explains what was measured, by its size, its diagnosis and its text."""
     row = result.check, result.subject
-    if result.error is not None and result.error > SPREAD * issue.sizes.get(row, math.inf):
+    # Hosts that show pictures alone measure relative errors, which have no size in another unit.
+    sized = result.host == issue.host or result.unit != "relative"
+    if sized and (result.error or 0.0) > SPREAD * issue.sizes.get(row, math.inf):
         return False
     gone = row in issue.repaired or set(issue.rows) <= set(issue.repaired)
     if result.diagnosis.startswith("fault: ") or (gone and _is_repaired(issue, materialx)):
