@@ -83,6 +83,10 @@ def _of_colors() -> Iterator[Fault]:
 def _of_roughness() -> Iterator[Fault]:
     yield Fault("the roughness is squared", _input("roughness", np.square))
     yield Fault("the roughness is replaced by its square root", _input("roughness", np.sqrt))
+    yield Fault(
+        "tangent and bitangent are exchanged",
+        _input("roughness", lambda roughness: roughness[..., ::-1]),
+    )
     yield Fault("the roughness is halved", _input("roughness", lambda roughness: 0.5 * roughness))
     for constant in CONSTANTS:
         change = partial(np.full_like, fill_value=constant)

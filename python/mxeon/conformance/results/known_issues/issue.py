@@ -52,6 +52,7 @@ class Issue:
     implied: tuple[Row, ...] = ()
     library: str = STOCK
     unavoidable: bool = False
+    differs: bool = False  # the text leaves the choice
     says: str = ""
     patch: tuple[str, ...] = ()
     repaired: tuple[Row, ...] = ()
@@ -79,6 +80,7 @@ def _issue(page: str, entry: Mapping[str, Any], measured: Mapping[str, Any]) -> 
         _pairs(entry.get("implied", {})),
         entry.get("library", STOCK),
         entry.get("unavoidable", False),
+        entry.get("differs", False),
         measured.get("says", ""),
         tuple(measured.get("patch", ())),
         (
