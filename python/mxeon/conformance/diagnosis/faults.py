@@ -85,7 +85,9 @@ def _of_roughness() -> Iterator[Fault]:
     yield Fault("the roughness is replaced by its square root", _input("roughness", np.sqrt))
     yield Fault(
         "tangent and bitangent are exchanged",
-        _input("roughness", lambda roughness: roughness[..., ::-1]),
+        _input(
+            "roughness", lambda roughness: roughness[:, ::-1] if roughness.ndim > 1 else roughness
+        ),
     )
     yield Fault("the roughness is halved", _input("roughness", lambda roughness: 0.5 * roughness))
     for constant in CONSTANTS:
