@@ -250,6 +250,7 @@ def test_nothing_says_of_a_refused_document_that_it_passed(tmp_path, monkeypatch
     names = [str(tmp_path / "bad.mtlx"), str(tmp_path / "late.mtlx")]
     first, *rest = printed.out.splitlines()
     assert first.startswith(f"Refused and not judged: {', '.join(names)}. ")
+    assert "0 of 0" not in first
     assert not [line for line in rest if any(name in line for name in names)]
     assert [line.split(": ")[1] for line in printed.err.splitlines()] == names
     report = tmp_path / "out"

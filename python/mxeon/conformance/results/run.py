@@ -72,7 +72,8 @@ class Run:
             results = [each for each in self.results if each.library == library]
             failed = sum(each.verdict == FAILED for each in results)
             words = f" For comparison, {failed} of {len(results)} failed with {library}."
-            summary = replace(summary, sentence=summary.sentence + words)
+            if results:
+                summary = replace(summary, sentence=summary.sentence + words)
         return summary
 
     @property
