@@ -65,6 +65,24 @@ def test_a_signal_before_the_workers_work_ends_them_too(tmp_path, number):
     assert not list((tmp_path / "tmp").iterdir())
 
 
+@pytest.mark.parametrize("at", range(2))
+def test_a_signal_while_a_temporary_folder_is_made_leaves_none(tmp_path, at):
+    code = f"""
+import os, signal, tempfile
+usual, made = tempfile.mkdtemp, []
+def mkdtemp(*arguments, **options):
+    made.append(usual(*arguments, **options))
+    if len(made) > {at}: os.kill(os.getpid(), signal.SIGUSR2)
+    return made[-1]
+tempfile.mkdtemp = mkdtemp
+from mxeon.__main__ import main
+sys.exit(main())"""
+    process = start(tmp_path, *CHECK, code=code)
+    _, errors = process.communicate(timeout=DEADLINE)
+    assert (process.returncode, errors) == (128 + signal.SIGUSR2, "mxeon: ended by SIGUSR2\n")
+    assert not list((tmp_path / "tmp").iterdir())
+
+
 def test_a_signal_that_is_ignored_stays_ignored(tmp_path):
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as nohup does
     try:

@@ -3,13 +3,13 @@
 
 from base64 import b64encode
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.explorer.data import Still
 from mxeon.io.images import write_png
+from mxeon.jobs.signals import temporary_folder
 from mxeon.models.table import model
 from mxeon.shaders.scene import VIEW, local_directions, sphere
 
@@ -41,7 +41,7 @@ def picture(name: str) -> NDArray[np.float64]:
 
 def _address(image: NDArray[np.float64]) -> str:
     """An image as a PNG in a data: address."""
-    with TemporaryDirectory(prefix="mxeon-still-") as folder:
+    with temporary_folder("mxeon-still-") as folder:
         path = Path(folder, "still.png")
         write_png(path, image.astype(np.float32), {})
         return f"data:image/png;base64,{b64encode(path.read_bytes()).decode()}"

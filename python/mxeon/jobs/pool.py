@@ -22,7 +22,7 @@ from pebble import CONSTS, ProcessExpired, ProcessPool
 from mxeon.errors import InputError, MxeonError, NotRun
 from mxeon.jobs import check_timeout
 from mxeon.jobs.processes import Context, safe_path
-from mxeon.jobs.signals import block_signals
+from mxeon.jobs.signals import block_signals, temporary_folder
 
 
 @dataclass(frozen=True)
@@ -137,7 +137,7 @@ def run(
     _check_working_folder()
     workers = min(workers, len(items))
     waiting = Queue([Attempt(index, item, group(item)) for index, item in enumerate(items)])
-    with tempfile.TemporaryDirectory(prefix="mxeon-pool-") as logs:
+    with temporary_folder("mxeon-pool-") as logs:
         breaks = 0
         while waiting and breaks < BREAKS:
             breaks += 1

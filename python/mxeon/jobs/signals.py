@@ -4,7 +4,8 @@
 import signal
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
+from tempfile import TemporaryDirectory
 from types import FrameType
 
 TERMINAL = (signal.SIGINT, signal.SIGHUP)  # come to all processes of a terminal
@@ -64,3 +65,12 @@ def block_signals() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
         if pending:
             raise SignalExit(pending[0])
+
+
+@contextmanager
+def temporary_folder(prefix: str) -> Iterator[str]:
+    """A temporary folder that is deleted even if a signal comes between its creation and its first use."""
+    with ExitStack() as stack:
+        with block_signals():
+            folder = stack.enter_context(TemporaryDirectory(prefix=prefix))
+        yield folder

@@ -31,6 +31,7 @@ import MaterialX as mx
 
 from mxeon.errors import InputError
 from mxeon.io.files import AnyPath, regular
+from mxeon.jobs.signals import block_signals
 
 # eonlib as a whole, its diffuse nodes alone, and MaterialX as it comes.
 LIBRARIES = ("eonlib", "diffuse", "stock")
@@ -155,7 +156,8 @@ def root(library: str) -> str:
 
 @cache
 def _root(library: str) -> str:
-    _KEPT[library] = TemporaryDirectory(prefix="mxeon-library-")
+    with block_signals():
+        _KEPT[library] = TemporaryDirectory(prefix="mxeon-library-")
     temporary = os.path.realpath(_KEPT[library].name)
     for path, file in tree(library).links.items():
         link = Path(temporary, "libraries", path)

@@ -11,12 +11,12 @@ import re
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
 
 from mxeon.errors import DocumentError, InputError
+from mxeon.jobs.signals import temporary_folder
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.references import check_inside, folder, foreign_code, library_path
 from mxeon.shaders.document.values import label, location
@@ -42,7 +42,7 @@ def copied_sources(
     target = context.getShaderGenerator().getTarget()
     code = [] if target == UNREAD else foreign_code(document)
     files = [(each, each.getFile()) for each in code if each.hasFile()]
-    with TemporaryDirectory(prefix="mxeon-sources-") if files else nullcontext("") as copies:
+    with temporary_folder("mxeon-sources-") if files else nullcontext("") as copies:
         sources = Sources(document, context, policy, copies, tokens)
         try:
             targets = document.getTargetDef(target).getMatchingTargets() if files else ()
