@@ -149,4 +149,4 @@ def test_the_page_of_patches_lists_what_still_fails_with_them(judged):
 
 
 def test_slang_compiles_the_black_body_that_is_repaired(judged):
-    assert judged("release")[OF_SLANG][1].startswith("nearest known model: Kang's cubic")
+    assert judged("release")[OF_SLANG][1].startswith("best match: Kang's cubic")

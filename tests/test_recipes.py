@@ -218,7 +218,7 @@ def test_a_node_takes_its_model_and_its_ports(results):
     assert set(judged.values()) == {"passed"}
     assert {"value", "environment", "inputs", "surroundings", "frame", "integral"} < set(judged)
     verdict, diagnosis = results["wrong", "shaded_bsdf", "value"]
-    assert verdict == "failed" and diagnosis.startswith("nearest known model: Lambert (rms ")
+    assert verdict == "failed" and diagnosis.startswith("best match: Lambert (rms ")
     assert results["wrong", "shaded_bsdf", "inputs"] == ("failed", "without effect: shade")
 
 

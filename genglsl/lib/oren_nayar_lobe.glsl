@@ -24,7 +24,7 @@ void oren_nayar_lobe(ClosureData closureData, float weight, vec3 color, float ro
     vec3 wi = closureData.L;
     N = mx_forward_facing_normal(N, wo);
 
-    // Unit vectors give cosines above 1 by a rounding, of which the albedo takes a square root.
+    // Unit vectors give cosines rounded above 1, of which the albedo takes a square root.
     float mu_o = min(dot(N, wo), 1.0);
 
     if (closureData.closureType == CLOSURE_TYPE_REFLECTION)

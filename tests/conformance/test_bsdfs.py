@@ -35,8 +35,8 @@ AVERAGED = "MaterialX's fit of its albedo, averaged over the channels (rms "
 STOCK = {
     "burley": {"environment": "MaterialX's fit of its albedo (rms "},
     "translucent": {
-        "frame": "all of them where the normal faces away from the viewer",
-        "surroundings": "all of them where the normal faces away from the viewer",
+        "frame": "all where the normal faces away from the viewer",
+        "surroundings": "all where the normal faces away from the viewer",
     },
     "conty_kulla": {
         "value": "not accurate enough",
@@ -46,7 +46,7 @@ STOCK = {
         "layer": "MaterialX's fit of its albedo without the color (rms ",
     },
     "zeltner": {
-        "value": "all of them with dot(N, V) above 1 by a rounding",
+        "value": "all with dot(N, V) rounded above 1",
         "layering": "its albedo without the color (rms ",
         "transmission": "all light passes (rms 0)",
         "layer": "its albedo without the color (rms ",
@@ -141,19 +141,19 @@ WRONG = {
     ),
     "unclamped cosine": (
         "schlick", SCHLICK, "clamp(dot(N, V), M_FLOAT_EPS, 1.0)", "dot(N, V)", "finite",
-        "values that are not finite with the viewer on the horizon",
+        "NaN or infinity with the viewer on the horizon",
     ),
     "sheen of the other mode": (
         "conty_kulla", SHEEN, "mode == 0", "mode != 0", "environment",
-        "nearest known model: Zeltner sheen (rms ",
+        "best match: Zeltner sheen (rms ",
     ),
     "Conty-Kulla in its place": (
         "zeltner", SHEEN, "mode == 0", "mode != 0", "environment",
-        "nearest known model: Conty-Kulla sheen (rms ",
+        "best match: Conty-Kulla sheen (rms ",
     ),
     "sheen without a least roughness": (
         "zeltner", SHEEN, "roughness = clamp(roughness, 0.01, 1.0);", "", "finite",
-        "values that are not finite with roughness 0",
+        "NaN or infinity with roughness 0",
     ),
     "sheen that takes all": (
         "zeltner", SHEEN, "1.0 - dirAlbedo * weight", "0.0", "layer", "",
@@ -164,11 +164,11 @@ WRONG = {
     ),
     "Lambert": (
         "burley", BURLEY, "bsdf.response *= mx", "bsdf.response *= 1.0 + 0.0 * mx", "value",
-        "nearest known model: Lambert (rms ",
+        "best match: Lambert (rms ",
     ),
     "one cosine twice": (
         "burley", BURLEY, "mx_burley_diffuse(NdotV, NdotL", "mx_burley_diffuse(NdotV, NdotV",
-        "reciprocity", "right but for ",
+        "reciprocity", "correct except for ",
     ),
     "light of its own": (
         "burley", BURLEY, "* M_PI_INV;", "* M_PI_INV + 0.001;", "black", "",
@@ -195,7 +195,7 @@ WRONG = {
     ),
     "a transmission that reflects": (
         "translucent", TRANSLUCENT, "N = -N;", "", "value",
-        "nearest known model: a reflection in its place (rms ",
+        "best match: a reflection in its place (rms ",
     ),
     "color": (
         "translucent", TRANSLUCENT, "Li * color", "Li * color.bgr", "environment",

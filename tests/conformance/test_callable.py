@@ -32,7 +32,7 @@ def test_a_known_defect_is_named(name):
     run = mxeon.check_brdf(row.brdf, "eon", "theirs")
     assert failed(run) == SEES_ONLY[name]
     diagnoses = {result.diagnosis for result in run.results if result.check == "value"}
-    assert f"nearest known model: {row.title}" in diagnoses.pop()
+    assert f"best match: {row.title}" in diagnoses.pop()
     assert {result.host for result in run.results} == {"theirs"}
 
 
@@ -83,7 +83,7 @@ def test_the_model_is_named_by_the_finite_values():
     run = mxeon.check_brdf(brdf)
     assert failed(run) == {"value", "albedo", "finite"}
     found = {result.check: result.diagnosis for result in run.results}
-    assert found["value"].startswith("nearest known model: Fujii Oren-Nayar (FON)")
+    assert found["value"].startswith("best match: Fujii Oren-Nayar (FON)")
     assert found["albedo"] == found["value"]
     assert "with the viewer's cosine in [0, 0.001]" in found["finite"]
 
@@ -131,13 +131,13 @@ def test_another_parametrization_is_recognized_by_name(row):
     run = mxeon.check_brdf(row.brdf, "eon")
     for result in run.results:
         if result.check in ("value", "albedo"):
-            assert result.diagnosis.startswith(f"nearest known model: {row.title} (rms ")
+            assert result.diagnosis.startswith(f"best match: {row.title} (rms ")
 
 
 def test_a_failing_test_says_figure_and_nearest_model():
     test = mxeon.brdf_test(reference.model("eon_rho_cubed").brdf)
     (value,) = [each for each in test.pytestmark[0].args[1] if each.key == "value"]
-    with pytest.raises(AssertionError, match="0.0409 > 2e-06 pi f cos; nearest known model: EON"):
+    with pytest.raises(AssertionError, match="0.0409 > 2e-06 pi f cos; best match: EON"):
         test(value)
 
 

@@ -158,7 +158,7 @@ def test_a_host_with_another_model_fails_and_is_named(name):
     results = judged(ModelHost(row), *VALUE_CHECKS)
     for key in VALUE_CHECKS:
         assert results[key].verdict == FAILED
-        assert results[key].diagnosis.startswith(f"nearest known model: {row.title} (rms ")
+        assert results[key].diagnosis.startswith(f"best match: {row.title} (rms ")
         assert results[key].worst
 
 
@@ -222,7 +222,7 @@ def test_what_does_not_run_is_never_passed(error, verdict):
 
 def test_the_nearest_model_comes_with_the_next_one():
     words = VALUE.diagnose(PairProbe(ModelHost(reference.model("fon")), EON, "eonlib")).text
-    assert words.startswith("nearest known model: Fujii Oren-Nayar (FON) (rms ")
+    assert words.startswith("best match: Fujii Oren-Nayar (FON) (rms ")
     assert ", then EON with rho^3 (0.0" in words
 
 

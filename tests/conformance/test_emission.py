@@ -30,7 +30,7 @@ STOCK = {
     **{title: {"implemented": f"glsl has no implementation of {title}"} for title in ABSENT},
     "anisotropic_vdf": {
         "inputs": "without effect: scattering",
-        "transmittance": "nearest known model: absorption alone (rms ",
+        "transmittance": "best match: absorption alone (rms ",
     },
     "surface, an EDF alone": {"opacity": "the opacity is ignored"},
 }
@@ -43,11 +43,11 @@ CURVE = "result = base * f;"
 WRONG = {
     "exitance": (
         "uniform_edf", UNIFORM, COLOR, f"result = {HALF};", "radiance",
-        "nearest known model: the color as an exitance, over pi (rms ",
+        "best match: the color as an exitance, over pi (rms ",
     ),
     "power": (
         "uniform_edf", UNIFORM, COLOR, f"result = {HALF};", "exitance",
-        "nearest known model: the color as an exitance, over pi (rms ",
+        "best match: the color as an exitance, over pi (rms ",
     ),
     "exponent": (
         "generalized_schlick_edf", SCHLICK, ", exponent)", ", 5.0)", "inputs",
@@ -55,7 +55,7 @@ WRONG = {
     ),
     "curve": (
         "generalized_schlick_edf", SCHLICK, CURVE, "result = base;", "radiance",
-        "nearest known model: the base without its curve (rms ",
+        "best match: the base without its curve (rms ",
     ),
     "back of a curve": (
         "generalized_schlick_edf", SCHLICK, "closureData.V), M_FLOAT_EPS",
@@ -64,7 +64,7 @@ WRONG = {
     "share": ("mix, EDF", MIX, "mix(bg, fg, ", "mix(fg, bg, ", "radiance", ""),
     "medium": (
         "anisotropic_vdf", MEDIUM, "exp(-absorption)", "vec3(1.0)", "transmittance",
-        "nearest known model: no medium at all (rms ",
+        "best match: no medium at all (rms ",
     ),
 }  # fmt: skip
 

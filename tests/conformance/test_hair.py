@@ -24,17 +24,17 @@ FEWER = replace(
 
 # What fails with stock MaterialX, and words of each diagnosis; every other check passes.
 STOCK = {
-    "value": "values that are not finite",
-    "environment": "a GGX lobe of the mean roughness and tint, without absorption comes nearest",
-    "black": "values that are not finite",
-    "finite": "values that are not finite",
+    "value": "NaN or infinity",
+    "environment": "the closest is a GGX lobe of the mean roughness and tint, without absorption",
+    "black": "NaN or infinity",
+    "finite": "NaN or infinity",
     "integral": "",
-    "each_lobe": "nearest known model: N of TRRT+ pi/2 instead of 1/(2 pi) (rms ",
-    "narrow_lobes": "nearest known model: I_0 by ten terms, and half a term of its logarithm (rms ",
-    "tilted_lobes": "values that are not finite with a tilted cuticle",
-    "wide_lobes": "nearest known model: every roughness in [0.001, 1] (rms ",
+    "each_lobe": "best match: N of TRRT+ pi/2 instead of 1/(2 pi) (rms ",
+    "narrow_lobes": "best match: I_0 by ten terms, and half a term of its logarithm (rms ",
+    "tilted_lobes": "NaN or infinity with a tilted cuticle",
+    "wide_lobes": "best match: every roughness in [0.001, 1] (rms ",
     "straight_views": "",
-    "low_index": "values that are not finite",
+    "low_index": "NaN or infinity",
     "surroundings": "",
 }
 
@@ -46,17 +46,17 @@ WRONG = {
         "M = chiang_hair_longitudinal(complex_multiply(inclined_o, complex_multiply(tilted,"
         " inclined_i * vec2(1.0, -1.0)) / dot(inclined_i, inclined_i)), inclined_i, r.x)",
         "tilted_lobes",
-        "nearest known model: the viewer's inclination tilted in place of the light's (rms ",
+        "best match: the viewer's inclination tilted in place of the light's (rms ",
     ),
     "no tilt": (TURNED, "inclined_i", "each_lobe", ""),
     "uniform lobe": (
         "M * 0.5 * M_PI_INV", "M * 0.5 * M_PI", "each_lobe",
-        "nearest known model: N of TRRT+ pi/2 instead of 1/(2 pi) (rms ",
+        "best match: N of TRRT+ pi/2 instead of 1/(2 pi) (rms ",
     ),
     "narrow lobes": ("1e-8, 1e-4)", "0.01, 0.001)", "narrow_lobes", ""),
     "wide lobes": (
         "max(roughness[p], vec2(1e-8, 1e-4))", "clamp(roughness[p], 0.001, 1.0)", "wide_lobes",
-        "nearest known model: every roughness in [0.001, 1] (rms ",
+        "best match: every roughness in [0.001, 1] (rms ",
     ),
     "sine by a cosine": (
         "vec2(wo.z, -wo.y) / c", "vec2(wo.z / c, -sign(wo.y) * sqrt(1.0 - wo.z * wo.z / (c * c)))",
@@ -81,7 +81,7 @@ WRONG = {
         "X = normalize(X - dot(X, N) * N);", "X = normalize(cross(vec3(0.0, 1.0, 0.0), N));", "frame",
         "branch direct: curve_direction is ignored",
     ),
-    "horizon": ("max(1.0 - F * T, 1e-7)", "(1.0 - F * T)", "finite", "values that are not finite"),
+    "horizon": ("max(1.0 - F * T, 1e-7)", "(1.0 - F * T)", "finite", "NaN or infinity"),
     "environment": (
         "back * mx_environment_irradiance(-N)", "vec3(0.0)", "environment", "no known model matches",
     ),

@@ -47,10 +47,8 @@ def test_a_failure_that_no_text_can_avoid_has_its_page_with_each_library():
     assert with_pages(replace(mode, library="eonlib")).pages == ()
 
 
-CLAMPED = "nearest known model: EON with clamped dot(wo, wi) (rms 0.001), then Lambert (0.2)"
-FIT = (
-    "nearest known model: MaterialX's fit of its albedo (rms 9e-09), then Conty-Kulla sheen (0.01)"
-)
+CLAMPED = "best match: EON with clamped dot(wo, wi) (rms 0.001), then Lambert (0.2)"
+FIT = "best match: MaterialX's fit of its albedo (rms 9e-09), then Conty-Kulla sheen (0.01)"
 EON, SHEEN = "oren_nayar_diffuse_bsdf, energy_compensation true", "sheen_bsdf, mode conty_kulla"
 
 
@@ -59,7 +57,7 @@ EON, SHEEN = "oren_nayar_diffuse_bsdf, energy_compensation true", "sheen_bsdf, m
     [
         ("value", EON, 0.369, CLAMPED, ("genglsl_clamped_dot",)),
         ("value", EON, 3.69, CLAMPED, ()),
-        ("value", EON, 0.3, "nearest known model: Lambert (rms 0.001), then EON (0.2)", ()),
+        ("value", EON, 0.3, "best match: Lambert (rms 0.001), then EON (0.2)", ()),
         ("value", EON, 0.3, "fault: the cosine of the light is missing (rms 1e-08)", ()),
         ("environment", SHEEN, 0.0889, FIT, ("genglsl_conty_kulla_fit",)),
         ("environment", SHEEN, 1e7, FIT, ()),
@@ -67,7 +65,7 @@ EON, SHEEN = "oren_nayar_diffuse_bsdf, energy_compensation true", "sheen_bsdf, m
             "environment",
             SHEEN,
             0.05,
-            "no known model matches: Conty-Kulla sheen comes nearest",
+            "no known model matches, the closest is Conty-Kulla sheen (rms",
             (),
         ),
     ],

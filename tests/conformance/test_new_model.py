@@ -33,7 +33,7 @@ def test_a_diagnosis_names_it():
     (value,) = [
         result for result in mxeon.check_brdf(toy_brdf, "eon").results if result.check == "value"
     ]
-    assert value.diagnosis.startswith("nearest known model: a toy model (rms ")
+    assert value.diagnosis.startswith("best match: a toy model (rms ")
 
 
 def test_the_checks_of_shader_functions_leave_it_out(hosts):

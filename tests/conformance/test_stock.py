@@ -85,7 +85,7 @@ def test_the_page_of_what_the_text_leaves_open_explains_no_failure_alone(verdict
 @pytest.mark.parametrize("subject", [EON, QON], ids=lambda subject: subject.title)
 def test_stock_materialx_in_cycles_is_called_by_its_name(hosts, subject):
     probe = PictureProbe(hosts("cycles"), subject, "stock")
-    assert "nearest known model: EON with rho^3 (rms " in VALUE.diagnose(probe).text
+    assert "best match: EON with rho^3 (rms " in VALUE.diagnose(probe).text
 
 
 def test_what_stock_materialx_has_right_passes(stock):

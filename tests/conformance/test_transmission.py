@@ -16,7 +16,7 @@ from tests.support.wrong_libraries import wrong_stock_node
 SUBJECTS = {subject.model: subject for subject in TRANSMITTING}
 ROWS = [check for check in CHECKS if check.models and set(check.models) <= set(SUBJECTS)]
 UNSHADOWED = "the mean of 1 - F over the visible normals, divided by G_1 of the view"
-NAN = "values that are not finite"
+NAN = "NaN or infinity"
 STOCK = {
     "dielectric_t": {"transmitted": UNSHADOWED, "transmitted_finite": NAN},
     "schlick_rt": {"transmitted": UNSHADOWED, "clear": UNSHADOWED, "transmitted_finite": NAN},

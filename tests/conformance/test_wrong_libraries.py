@@ -290,7 +290,7 @@ def test_a_wrong_inversion_node_fails_there_and_back(gl, copy, node, old, new):
         library = copy(GRAPHS, "</invert>", "</absval>")
     found = failed(judge_inversion(InversionProbe(gl, node, library)))
     assert set(found) == {"inversion", "round_trip"}
-    expected = "values that are not finite" if "invert" in old else "off by rms "
+    expected = "NaN or infinity" if "invert" in old else "off by rms "
     assert all(words.startswith(expected) for words in found.values())
 
 
@@ -300,7 +300,7 @@ def test_an_inversion_node_that_is_the_other_is_called_so(gl, copy):
         GRAPHS, 'nodedef="ND_eon_rho_from_albedo_normal"', 'nodedef="ND_eon_rho_from_albedo_avg"'
     )
     found = failed(judge_inversion(InversionProbe(gl, INVERSIONS[1], library)))
-    assert "nearest known model: eon_rho_from_albedo_normal (rms " in found["inversion"]
+    assert "best match: eon_rho_from_albedo_normal (rms " in found["inversion"]
 
 
 # --- documents on hosts without pictures --------------------------------------------------------

@@ -37,7 +37,7 @@ WRONG = {
         "fault: the occlusion is applied here and again by the caller (rms ",
     ),
     "small weight": (
-        NODE, "weight <= 0.0", "weight <= 0.01", "value", "all of them with a weight in (0, 0.01]",
+        NODE, "weight <= 0.0", "weight <= 0.01", "value", "all with a weight in (0, 0.01]",
     ),
     "throughput": (
         EON, "bsdf.throughput = vec3(0.0);", "", "throughput",
@@ -52,7 +52,7 @@ WRONG = {
         "the environment is looked up opposite to the normal",
     ),
     "normal not turned": (
-        EON, FACING, "", "frame", "all of them where the normal faces away from the viewer",
+        EON, FACING, "", "frame", "all where the normal faces away from the viewer",
     ),
     "normal ignored": (
         QON, "mx_forward_facing_normal(N, wo)", "mx_forward_facing_normal(closureData.N, wo)",
@@ -60,27 +60,27 @@ WRONG = {
     ),
     "normal incidence": (
         EON, RESPONSE, f"if (mu_o == 1.0) brdf *= 2.0;\n        {RESPONSE}", "value",
-        "all of them with the viewer along the normal",
+        "all with the viewer along the normal",
     ),
     "retro-reflection": (
         QON, RESPONSE, f"if (wo == wi) brdf *= 1.5;\n        {RESPONSE}", "value",
-        "all of them in exact retro-reflection (L = V)",
+        "all in exact retro-reflection (L = V)",
     ),
     "on the horizon": (
         NODE, RESPONSE, f"if (mu_o == 0.0) brdf *= 0.0;\n        {RESPONSE}", "value",
-        "all of them with the viewer on the horizon",
+        "all with the viewer on the horizon",
     ),
     "grazing": (
         EON, RESPONSE, f"if (mu_o < 1.0e-6) brdf *= 0.0;\n        {RESPONSE}", "value",
-        "all of them with the viewer's cosine in [0, 1e-06]",
+        "all with the viewer's cosine in [0, 1e-06]",
     ),
     "cosine above 1": (
         EON, "min(dot(N, wo), 1.0)", "dot(N, wo)", "environment",
-        "values that are not finite with dot(N, V) above 1 by a rounding",
+        "NaN or infinity with dot(N, V) rounded above 1",
     ),
     "light from below": (
         QON, "clamp(dot(N, wi), 0.0, 1.0)", "min(abs(dot(N, wi)), 1.0)", "value",
-        "all of them with light from below the horizon",
+        "all with light from below the horizon",
     ),
     "roughness constant": (NODE, FACING, ROUGHNESS, "inputs", "without effect: roughness"),
     "roughness squared": (
@@ -101,7 +101,7 @@ WRONG = {
     ),
     "another model": (
         NODE, "brdf * mu_i", "(brdf + 0.05 * color * mu_o * mu_o) * mu_i", "value",
-        "no known model matches: ",
+        "no known model matches",
     ),
 }  # fmt: skip
 
@@ -140,15 +140,15 @@ BESIDE = {
     "radius ignored": (
         "subsurface_bsdf", "subsurface_bsdf", BLUR,
         "curvature * vec3(0.5) * step(0.0, radius.x + 1.0)", "sphere",
-        "nearest known model: the profile of a mean free path of 0.5, whatever the radius",
+        "best match: the profile of a mean free path of 0.5, whatever the radius",
     ),
     "sine of a cone to the seventh power": (
         "conical_edf", "conical_edf", "w / 42.0 * tail", "w / 42.0", "exitance",
-        "right but for",
+        "correct except for",
     ),
     "far profile at half of its reach": (
         "subsurface_bsdf", "subsurface_blur", "(1.0 + t * t)", "(2.0 * t + t * t)", "sphere",
-        "nearest known model: a far exponential of 1.5 mean free paths instead of 3",
+        "best match: a far exponential of 1.5 mean free paths instead of 3",
     ),
 }  # fmt: skip
 

@@ -185,7 +185,7 @@ def test_directions_are_those_of_the_papers_listing_for_the_same_numbers(tracer)
 def test_the_webgl_lobe_is_no_model_that_is_known_but_its_own(tracer):
     result = judged(tracer, "value", f"{LOBE}, shorter wh")
     name = "Burley with Schlick's weight for the cosine of retro-reflection"
-    assert result.verdict == FAILED and f"nearest known model: {name}" in result.diagnosis
+    assert result.verdict == FAILED and f"best match: {name}" in result.diagnosis
     assert result.distances[name] < 1e-6
 
 

@@ -45,7 +45,7 @@ def test_blender_has_one_power_of_the_color_too_many(results, subject):
     failed = {key for key, each in found.items() if each.verdict == FAILED}
     assert failed == {"value", "environment"}
     assert all(each.control.caught for each in found.values())
-    assert "nearest known model: EON with rho^3" in found["value"].diagnosis
+    assert "best match: EON with rho^3" in found["value"].diagnosis
     assert found["value"].distances["EON with rho^3"] < 1e-6
     assert found["environment"].error > 100.0 * found["environment"].tolerance
     assert {found[key].verdict for key in ("furnace", "black", "lambert", "inputs")} == {PASSED}

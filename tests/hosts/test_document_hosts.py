@@ -188,7 +188,7 @@ def test_an_image_around_the_sphere_is_refused(host, tmp_path):
 def test_stock_is_wrong_from_behind(host):
     result = judged_small(host, "stock")
     assert result.verdict == FAILED
-    assert "nearest known model: EON with clamped dot(wo, wi)" in result.diagnosis
+    assert "best match: EON with clamped dot(wo, wi)" in result.diagnosis
     assert result.pages == ("genglsl_clamped_dot",)
 
 

@@ -81,7 +81,7 @@ def test_luxcore_has_qon_with_sigma_in_radian(of_luxcore):
     failed = {key for key, each in of_luxcore.items() if each.verdict == FAILED}
     assert ("value", "roughmatte") not in failed and ("environment", "roughmatte") not in failed
     result = of_luxcore["value", "roughmatte, sigma in degrees"]
-    assert "nearest known model: QON that takes degrees for radians" in result.diagnosis
+    assert "best match: QON that takes degrees for radians" in result.diagnosis
     assert result.distances["QON that takes degrees for radians"] < 1e-6
     assert all(each.control.caught for each in of_luxcore.values())
 
@@ -89,7 +89,7 @@ def test_luxcore_has_qon_with_sigma_in_radian(of_luxcore):
 def test_luxcores_disney_squares_the_roughness_and_applies_the_cosine_twice(of_luxcore):
     result = of_luxcore["value", "disney"]
     name = "Burley with squared roughness, times the cosine once more"
-    assert f"nearest known model: {name}" in result.diagnosis and result.distances[name] < 1e-6
+    assert f"best match: {name}" in result.diagnosis and result.distances[name] < 1e-6
     assert "luxcore_disney_cosine" in result.pages
     assert ("black", "disney") not in of_luxcore  # what is left of another lobe is taken off
 

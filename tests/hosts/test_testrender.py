@@ -175,7 +175,7 @@ class Named(base.Host):
 
 
 QON = "qualitative Oren-Nayar (QON)"
-NEAREST = "nearest known model: "
+NEAREST = "best match: "
 
 
 @real

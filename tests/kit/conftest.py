@@ -91,5 +91,5 @@ def result_of(run, check, subject):
 
 def names(run):
     """The first name in each of the notes, by subject."""
-    pattern = r"(.*): nearest known model: (.*) \(rms .*?\), then (.*) \("
+    pattern = r"(.*): best match: (.*) \(rms .*?\), then (.*) \("
     return {match[1]: match[2] for match in map(re.compile(pattern).match, run.notes) if match}

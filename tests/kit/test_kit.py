@@ -199,8 +199,8 @@ def test_an_error_is_told_in_words_and_each_diagnosis_once(tmp_path, capsys):
     assert main(["kit", "check", str(tmp_path), "--claims", "eon"]) == 1
     printed = capsys.readouterr().out
     assert re.search("the error is [0-9,]+ times what noise, pixels and the mesh allow", printed)
-    assert printed.count(f"EON, distant light: nearest known model: {CUBED}") == 0
-    assert printed.count(f"nearest known model: {CUBED}") == 2  # distant light, environment
+    assert printed.count(f"EON, distant light: best match: {CUBED}") == 0
+    assert printed.count(f"best match: {CUBED}") == 2  # distant light, environment
 
 
 def srgb(image):
@@ -257,7 +257,7 @@ def test_the_command_exports_and_judges(tmp_path, capsys):
     assert (tmp_path / "report" / "report.html").is_file()
     write_pictures(tmp_path, true="eon_rho_cubed")
     assert main(["kit", "check", str(tmp_path), "--json"]) == 1
-    assert f"nearest known model: {CUBED}" in capsys.readouterr().out
+    assert f"best match: {CUBED}" in capsys.readouterr().out
 
 
 def write_osl(kit, library, profile):

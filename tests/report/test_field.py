@@ -54,7 +54,7 @@ def portrait(scene, offset, host="gl"):
 
 
 WRONG = (
-    made("value", 0.4, diagnosis="nearest known model: QON (rms 1e-9), then FON", pages=("a",)),
+    made("value", 0.4, diagnosis="best match: QON (rms 1e-9), then FON", pages=("a",)),
     made("environment", 1e-7),
     made("furnace", 1e-7),
     made("albedo", 0.3, pages=("a", "b")),

@@ -168,7 +168,7 @@ def _explain_not_finite(probe: Probe) -> Diagnosis:
     point = point_of(case.batch, int(wrong.argmax()))
     wo, wi, rho, roughness = (", ".join(f"{x:.6g}" for x in each) for each in point.values())
     return Diagnosis(
-        f"{wrong.sum()} of {len(wrong)} values are not finite{place and f', all of them {place}'}; the "
+        f"{wrong.sum()} of {len(wrong)} values are not finite{place and f', all {place}'}; the "
         f"first for wo = ({wo}), wi = ({wi}), rho = ({rho}), roughness = {roughness}"
     )
 

@@ -29,7 +29,7 @@ CHECKS = {
     "back": (),
     "flag": ("flag",),
 }
-NEAREST = re.compile(r"nearest known model: (.+?) \(rms")
+NEAREST = re.compile(r"best match: (.+?) \(rms")
 
 
 @dataclass(frozen=True)

@@ -70,9 +70,9 @@ def explained_finite(probe: Probe) -> Diagnosis:
         rows = np.reshape(values, (len(bad), -1))
         low, high = rows.min(axis=1), rows.max(axis=1)
         if low[bad].max() <= 0.0:
-            return Diagnosis(f"{share}, all of them with {name} {low[bad].max():g} or below")
+            return Diagnosis(f"{share}, all with {name} {low[bad].max():g} or below")
         if high[bad].min() >= 1.0:
-            return Diagnosis(f"{share}, all of them with {name} {high[bad].min():g} or above")
+            return Diagnosis(f"{share}, all with {name} {high[bad].min():g} or above")
     return Diagnosis(share)
 
 

@@ -19,6 +19,7 @@ from mxeon.shaders.nodes import FLAG
 # Share of the distance to any other explanation up to which one explains all, and up to which it is
 # called the nearest.
 SAME, NEAR = 0.03, 0.3
+NAMED = 0.5  # share of the values' own size up to which the closest model is named
 INEXACT = 30.0  # tolerances up to which the right model is called inexact, and not another one
 LEAST_LIGHT = 1e-3  # cosine of the light up to which factors of it cannot be told apart
 
@@ -53,11 +54,11 @@ def sentence(distances: Sequence[tuple[str, float]]) -> str:
     Examples
     --------
     >>> sentence([("Lambert", 0.001), ("EON", 0.25)])
-    'nearest known model: Lambert (rms 0.001), then EON (0.25)'
+    'best match: Lambert (rms 0.001), then EON (0.25)'
     """
     (first, least), *others = distances[:2]
     then = "".join(f", then {second} ({next_least:.2g})" for second, next_least in others)
-    return f"nearest known model: {first} (rms {least:.2g}){then}"
+    return f"best match: {first} (rms {least:.2g}){then}"
 
 
 def explain(
@@ -183,29 +184,31 @@ def _model(
     own: str,
     tolerance: Tolerance,
 ) -> str:
-    """The nearest model, the region that is wrong, or that no model is near."""
+    """The closest model, the region that is wrong, or that no model is close."""
     errors = [tolerance.metric(case.measured, case.expected) for case in cases]
     wrong: list[Mask] = [error > tolerance.value for error in errors]
     (first, least), (_, rival) = ranking[:2]
     # Another model explains all.
     if first != own and least <= max(tolerance.value, SAME * rival):
         return sentence(ranking) + _flag(probe, first)
-    # The own one is right but for a region, or but for its exactness.
+    # Its own model is correct except in a region, or not accurate enough.
     place = region([case.batch for case in cases], wrong)
     if place or not any(map(np.any, wrong)):
-        return place or "each value by itself is within tolerance"
+        return place or "each value on its own is within tolerance"
     if first == own and max(error.max() for error in errors) <= INEXACT * tolerance.value:
-        return f"the model is right, {own} (rms {least:.2g}), but not accurate enough"
+        return f"right model, {own} (rms {least:.2g}), but not accurate enough"
     # Another one is near, or none.
     if first != own and least <= NEAR * rival:
         return sentence(ranking)
-    share = 100.0 * np.concatenate(wrong).mean()
-    if first == own and share < 50.0:
-        return f"right but for {share:.3g} % of the pairs; worst {_worst_place(cases, tolerance)}"
-    return (
-        f"no known model matches: {first} comes nearest, off by rms {least:.2g}; "
-        f"{share:.3g} % of the pairs are wrong, worst {_worst_place(cases, tolerance)}"
-    )
+    share = f"{100.0 * np.concatenate(wrong).mean():.3g} % of the pairs"
+    place = _worst_place(cases, tolerance)
+    if first == own and np.concatenate(wrong).mean() < 0.5:
+        return f"correct except for {share}; worst {place}"
+    # What is off by as much as black would be resembles nothing.
+    black = Candidate("", lambda batch: np.zeros((len(batch.wo), 1)))
+    near = least < NAMED * _distance(cases, black, Fault(""), tolerance)
+    closest = f", the closest is {first} (rms {least:.2g})" if near else ""
+    return f"no known model matches{closest}; wrong for {share}, worst {place}"
 
 
 def _worst_place(cases: Sequence[Case], tolerance: Tolerance) -> str:
@@ -221,7 +224,7 @@ def region(batches: Sequence[Batch], wrong: Sequence[Mask]) -> str:
     """The share of the pairs that are wrong and the region of all of them; "" without a region."""
     name = smallest(batches, wrong) if any(map(np.any, wrong)) else ""
     count, total = sum(map(np.count_nonzero, wrong)), sum(map(len, wrong))
-    return f"right but for {count} of {total} pairs, all of them {name}" if name else ""
+    return f"correct except for {count} of {total} pairs, all {name}" if name else ""
 
 
 def not_finite(cases: Sequence[Case]) -> str:
@@ -230,4 +233,4 @@ def not_finite(cases: Sequence[Case]) -> str:
     if not any(map(np.any, wrong)):
         return ""
     name = smallest([case.batch for case in cases], wrong)
-    return f"values that are not finite {name}" if name else "values that are not finite"
+    return f"NaN or infinity {name}" if name else "NaN or infinity"

@@ -75,8 +75,8 @@ def _directions(batch: Batch) -> Iterator[tuple[str, Mask]]:
     dot = (wo * wi).sum(axis=1)
     s = dot - mu_o * mu_i
     # Where formulas divide or cancel.
-    yield "with dot(N, V) above 1 by a rounding", mu_o > 1.0
-    yield "with dot(N, L) above 1 by a rounding", mu_i > 1.0
+    yield "with dot(N, V) rounded above 1", mu_o > 1.0
+    yield "with dot(N, L) rounded above 1", mu_i > 1.0
     yield "with both directions on the horizon", (mu_o == 0.0) & (mu_i == 0.0)
     yield "in exact retro-reflection (L = V)", _equal(wo, wi)
     yield "in the mirror direction", _equal(wo * [-1.0, -1.0, 1.0], wi)

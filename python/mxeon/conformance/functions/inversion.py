@@ -165,7 +165,7 @@ def _nearest(probe: InversionProbe, values: Array) -> Diagnosis:
         if name.startswith("eon_rho_from")
     }
     if not np.isfinite(values).all():
-        return Diagnosis("values that are not finite")
+        return Diagnosis("NaN or infinity")
     distances = {
         name: float(np.sqrt(np.mean((values - each) ** 2))) for name, each in known.items()
     }
