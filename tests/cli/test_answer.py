@@ -55,8 +55,7 @@ SEEN = "up to 5 % of white too dark in light from behind"
 
 def test_an_answer_has_each_material_then_nodes_then_the_remedy_then_the_cause():
     wrong = [
-        stock(key=key, diagnosis="nearest known model: X", pages=(NAME,))
-        for key in ("value", "albedo")
+        stock(key=key, diagnosis="best match: X", pages=(NAME,)) for key in ("value", "albedo")
     ]
     dark = replace(PICTURE, library="stock", verdict=FAILED, error=0.1, diagnosis=SEEN)
     run = made_run(made(), PICTURE, *wrong, dark, compared=("stock",))
@@ -78,6 +77,32 @@ def test_a_picture_within_tolerance_comes_before_nodes_that_are_wrong_for_other_
     look, _, node, *_ = answer(made_run(made(), PICTURE, stock(), seen, compared=("stock",)))
     assert look.index("picture is within tolerance") < look.index("wrong for other inputs")
     assert "wrong for other inputs, error 0.37" in node
+
+
+def test_ten_lines_on_one_document_count_what_they_leave_out():
+    names = ("burley_diffuse", "translucent", "subsurface", "conductor", "chiang_hair")
+    titles = (EON, *(f"{name}_bsdf" for name in names))
+    wrong = [stock(subject=each, diagnosis=f"fault: {each}") for each in titles]
+    seen = [
+        stock(key="picture", subject=f"clay.mtlx: {each}", diagnosis=each + SEEN) for each in titles
+    ]
+    run = replace(made_run(made(), *wrong, *seen, compared=("stock",)), contents={CLAY: titles})
+    lines = answer(run)
+    assert len(lines) == LINES
+    assert lines[-1] == "2 more materials, 5 more nodes, 5 more causes: --full"
+    assert len(answer(run, full=True)) == 6 + 1 + 6 + 1 + 6 + 1
+
+
+@pytest.mark.parametrize(
+    ("diagnosis", "place"),
+    [
+        ("correct except for 1 of 9 pairs, all with roughness 0", "with roughness 0"),
+        ("no known model matches", "at a view cosine of 0.25"),
+    ],
+)
+def test_an_error_without_bound_is_words_and_a_place(diagnosis, place):
+    huge = replace(made(FAILED), error=4.9e15, worst={"wo": [0, 0, 0.25]}, diagnosis=diagnosis)
+    assert any(line.endswith(f"wrong, unbounded {place}") for line in answer(made_run(huge)))
 
 
 @pytest.mark.parametrize(
@@ -102,8 +127,8 @@ GLASS = "dielectric_bsdf, scatter_mode R"
 
 
 def test_what_fails_for_other_inputs_than_the_documents_comes_last():
-    wrong = made(FAILED, "finite", GLASS, diagnosis=f"values that are not finite {ZERO}")
-    known = made(FAILED, "layer", GLASS, "stock", diagnosis="nearest known model: X", pages=(NAME,))
+    wrong = made(FAILED, "finite", GLASS, diagnosis=f"NaN or infinity {ZERO}")
+    known = made(FAILED, "layer", GLASS, "stock", diagnosis="best match: X", pages=(NAME,))
     new = made(FAILED, "value", GLASS, "stock", diagnosis="fault: the weight is ignored")
     run = Run(
         "1",
@@ -154,8 +179,8 @@ class Metadata:
 
 
 def test_a_failure_without_a_page_is_explained_by_its_diagnosis():
-    lines = answer(made_run(made(FAILED, diagnosis="nearest known model: Lambert")))
-    assert any("0.37 > 2e-06; nearest known model: Lambert" in line for line in lines)
+    lines = answer(made_run(made(FAILED, diagnosis="best match: Lambert")))
+    assert any("0.37 > 2e-06; best match: Lambert" in line for line in lines)
 
 
 def test_every_document_appears_those_that_look_wrong_first():
@@ -181,8 +206,8 @@ def test_what_did_not_run_is_said_with_its_number():
 
 
 def test_a_note_that_a_diagnosis_repeats_is_left_out():
-    wrong = made(FAILED, diagnosis="nearest known model: Lambert")
-    notes = (f"{EON}: nearest known model: Lambert", "another")
+    wrong = made(FAILED, diagnosis="best match: Lambert")
+    notes = (f"{EON}: best match: Lambert", "another")
     assert [each for each in answer(made_run(wrong, notes=notes)) if "note" in each] == [
         "note: another"
     ]

@@ -17,36 +17,45 @@ from mxeon.shaders.library_export import CLIENTS
 
 LINES = 10  # of the answer on one document
 MANY = 20  # documents; more are counted by cause
-FEWEST = 3  # nodes, and failures that count, in any case
+LOOKS = 4  # lines on the materials of one document
+FEWEST = 3  # nodes and causes on several documents, and reasons why checks did not run
+UNBOUNDED = 1e3  # errors above this are put into words
 NAMED = 3  # names in a list, before the number of the others
-FULL = "--full prints everything"
 AS_SPECIFIED = "looks as specified"
 
 
 def answer(run: Run, full: bool = False) -> list[str]:
-    """The lines of a run's answer, cut to about LINES unless it is full."""
+    """The lines of a run's answer; unless it is full, at most LINES on one document."""
     many = len(run.contents) + len(run.refused) > MANY
     looks = summary_by_cause(run) if many else list(map(one_line, _looks(run)))
     rows = {} if many else _rows(run)
-    remedy, failures, notes = list(_remedy(run)), list(_failures(run)), new_notes(run)
-    first = [*map(one_line, [*run.origins, *_not_run(run)]), *looks]
-    verdict = [one_line(run.sentence)]
+    remedy, failures = list(_remedy(run)), list(_failures(run))
+    notes = [f"note: {note}" for note in new_notes(run)]
+    first = list(map(one_line, [*run.origins, *_not_run(run)]))
     # The verdict comes first where there are no documents, or something was not judged.
     begins = run.refused or run.summary.verdict == NOT_RUN or not run.contents
-    first, last = ([*verdict, *first], []) if begins else (first, verdict)
-    room = LINES - len(first) - len(remedy) - len(last)
-    least = FEWEST if any(each.startswith("failed") for each in failures) else 2
-    kept = len(rows) if full else max(FEWEST, room - 1 - min(least, len(failures)))
+    alone = len(run.contents) == 1
+    seen = max(1, LOOKS - len(first)) if alone and not full else len(looks)
+    room = (
+        LINES - len(first) - min(seen, len(looks)) - len(remedy) - 2
+    )  # the verdict, and what is cut
+    least = 1 if alone else FEWEST
+    kept = max(least, room - 1 - min(2, len(failures) + len(notes)))
+    kept = kept if rows and not full else len(rows)
     table = list(_table(run, rows, kept))
-    told = len(failures) if full else max(least, room - len(table))
+    told = len(failures) if full else max(least, room - len(table) - bool(notes))
     noted = len(notes) if full else max(1, room - len(table) - len(failures[:told]))
-    notes = [f"note: {note}" for note in notes]
     after = [*remedy, *failures[:told], *notes[:noted]]
-    lines = [*first, *table, *map(one_line, after), *last]
-    if not full and len(failures) > told:
-        lines.append(f"{counted(len(failures) - told, 'more cause')}: {FULL}.")
-    elif not full and (len(rows) > kept or len(notes) > noted):
-        lines.append(f"There is more: {FULL}.")
+    lines = [*first, *looks[:seen], *table, *map(one_line, after)]
+    lines.insert(0 if begins else len(lines), one_line(run.sentence))
+    cut = {
+        "material": looks[seen:],
+        "node": list(rows)[kept:],
+        "cause": failures[told:],
+        "note": notes[noted:],
+    }
+    if more := [counted(len(each), f"more {name}") for name, each in cut.items() if each]:
+        lines.append(f"{', '.join(more)}: --full")
     return lines
 
 
@@ -198,10 +207,6 @@ def _table(run: Run, rows: Rows, kept: int) -> Iterator[str]:
     for (title, host), row in list(rows.items())[:kept]:
         cells = [_cell(run, [each for each in row if each.library == name]) for name in libraries]
         table.append([title if len(hosts) == 1 else f"{title} on {host}", *cells])
-    if others := list(rows.values())[kept:]:
-        wrong = sum(any(each.verdict == FAILED for each in row) for row in others)
-        words = f"{wrong} of them wrong" if wrong else "right"
-        table.append([counted(len(others), "other node"), words, *[""] * (len(libraries) - 1)])
     table = [list(map(one_line, row)) for row in table]
     widths = [max(map(len, column)) for column in zip(*table, strict=True)]
     for line in table:
@@ -222,10 +227,12 @@ def _cell(run: Run, results: Sequence[Result]) -> str:
     words = {WRONG: "wrong", ELSEWHERE: "wrong for other inputs"}.get(rank, model_of(shown.subject))
     if rank == RIGHT and any(each.verdict == DIFFERS for each in results):
         words += ", differs as permitted"
-    numbers = (
-        f", error {shown.error:.2g}, tolerance {shown.tolerance:.2g}" if shown.tolerance else ""
-    )
-    return words + numbers
+    if not shown.tolerance or shown.error is None:
+        return words
+    if shown.error > UNBOUNDED and not shown.unit.startswith("times "):
+        view = f"at a view cosine of {shown.worst['wo'][2]:.2g}" if "wo" in shown.worst else ""
+        return f"{words}, unbounded {shown.diagnosis.partition(', all ')[2] or view}".rstrip()
+    return f"{words}, error {shown.error:.2g}, tolerance {shown.tolerance:.2g}"
 
 
 def _not_run(run: Run) -> Iterator[str]:
@@ -236,7 +243,7 @@ def _not_run(run: Run) -> Iterator[str]:
     for (where, reason), count in list(reasons.items())[:FEWEST]:
         yield f"not run: {where}, {counted(count, 'check')}: {reason}"
     if len(reasons) > FEWEST:
-        yield f"not run for {counted(len(reasons) - FEWEST, 'other reason')}; {FULL}"
+        yield f"not run for {counted(len(reasons) - FEWEST, 'other reason')}; --full"
 
 
 def _remedy(run: Run) -> Iterator[str]:
