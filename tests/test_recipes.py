@@ -219,7 +219,7 @@ def test_a_node_takes_its_model_and_its_ports(results):
     assert {"value", "environment", "inputs", "surroundings", "frame", "integral"} < set(judged)
     verdict, diagnosis = results["wrong", "shaded_bsdf", "value"]
     assert verdict == "failed" and diagnosis.startswith("best match: Lambert (rms ")
-    assert results["wrong", "shaded_bsdf", "inputs"] == ("failed", "without effect: shade")
+    assert results["wrong", "shaded_bsdf", "inputs"] == ("failed", "inputs without effect: shade")
 
 
 def test_a_renderer_takes_its_module_and_its_row(results):

@@ -125,7 +125,7 @@ WRONG = {
     ),
     "thin film": (
         "dielectric", DIELECTRIC, "(ior, thinfilm_thickness, ", "(ior, 0.0, ", "inputs",
-        "without effect: thinfilm_thickness, thinfilm_ior",
+        "inputs without effect: thinfilm_thickness, thinfilm_ior",
     ),
     "albedo of 1 in place of its fit": (
         "schlick", SCHLICK, "dirAlbedo = mx_ggx_dir_albedo", "dirAlbedo = 1.0 + 0.0 * mx_ggx_dir_albedo",
@@ -195,7 +195,7 @@ WRONG = {
     ),
     "a transmission that reflects": (
         "translucent", TRANSLUCENT, "N = -N;", "", "value",
-        "best match: a reflection in its place (rms ",
+        "best match: a reflection instead (rms ",
     ),
     "color": (
         "translucent", TRANSLUCENT, "Li * color", "Li * color.bgr", "environment",

@@ -12,7 +12,7 @@ from tests.support.checks import undiagnosed
 from tests.support.wrong_libraries import copy_of_eonlib, place_of, replace_text
 
 UNSCALED = "the throughput of the lobe before it is scaled"
-ENDED = "a sum whose throughput ends at 0"
+ENDED = "a sum whose throughput is clamped at 0"
 COMBINED_WRONG = {  # of stock MaterialX: verdict of its combinations that are off, and diagnosis
     "multiply_float": (DIFFERS, UNSCALED, {"combined_throughput"}),
     "multiply_color3": (DIFFERS, UNSCALED, {"combined_throughput"}),

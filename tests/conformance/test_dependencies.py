@@ -139,12 +139,12 @@ def test_a_texture_that_changed_is_named_and_the_run_not_resumed(run, capsys):
     command = ["check", str(file), "--library", "eonlib", "--report", str(folder), "--resume"]
     assert main(command) == 2
     error = capsys.readouterr().err
-    assert error.endswith(f"these differ: {file.parent / 'grid.png'}\n") and error.count("\n") == 1
+    assert error.endswith(f"changed: {file.parent / 'grid.png'}\n") and error.count("\n") == 1
 
 
 def test_an_option_that_changed_is_named(run):
     folder, file = run
-    with pytest.raises(ValueError, match=r"differ: --allowCode \(False, now True\), --maxSize \("):
+    with pytest.raises(ValueError, match=r"changed: --allowCode \(False, now True\), --maxSize \("):
         options = {"policy": Policy(code=True, size=10**6)}
         check([file], folder=folder, resume=True, **options)
 
@@ -154,7 +154,7 @@ def test_a_driver_that_changed_is_named_once_its_tasks_go_on(run, monkeypatch):
     path = folder / JOURNAL
     path.write_bytes(b"".join(path.read_bytes().splitlines(keepends=True)[:-1]))
     monkeypatch.setattr(Host, "identity", lambda self: Identity("gl", "5.0", "another"))
-    with pytest.raises(ValueError, match=r"these differ: host gl \(.*, now 5.0, another\)$"):
+    with pytest.raises(ValueError, match=r"changed: host gl \(.*, now 5.0, another\)$"):
         check([file], folder=folder, resume=True)
     assert read_run(folder).missing
 

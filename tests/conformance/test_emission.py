@@ -29,7 +29,7 @@ ABSENT = (
 STOCK = {
     **{title: {"implemented": f"glsl has no implementation of {title}"} for title in ABSENT},
     "anisotropic_vdf": {
-        "inputs": "without effect: scattering",
+        "inputs": "inputs without effect: scattering",
         "transmittance": "best match: absorption alone (rms ",
     },
     "surface, an EDF alone": {"opacity": "the opacity is ignored"},
@@ -51,7 +51,7 @@ WRONG = {
     ),
     "exponent": (
         "generalized_schlick_edf", SCHLICK, ", exponent)", ", 5.0)", "inputs",
-        "without effect: exponent",
+        "inputs without effect: exponent",
     ),
     "curve": (
         "generalized_schlick_edf", SCHLICK, CURVE, "result = base;", "radiance",
@@ -112,7 +112,7 @@ def test_a_cone_of_the_wrong_angles_is_named(gl, tmp_path):
 
 def test_a_cone_that_ignores_its_normal_fails_the_inputs(gl, tmp_path):
     result = cone(gl, tmp_path, "dot(N, ", "dot(closureData.N, ", "inputs")
-    assert result.verdict == FAILED and result.diagnosis == "without effect: normal"
+    assert result.verdict == FAILED and result.diagnosis == "inputs without effect: normal"
 
 
 def cone(gl, folder, text, other, key):

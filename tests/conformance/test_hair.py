@@ -30,9 +30,9 @@ STOCK = {
     "finite": "NaN or infinity",
     "integral": "",
     "each_lobe": "best match: N of TRRT+ pi/2 instead of 1/(2 pi) (rms ",
-    "narrow_lobes": "best match: I_0 by ten terms, and half a term of its logarithm (rms ",
+    "narrow_lobes": "best match: I_0 from ten terms, and half a term of its logarithm (rms ",
     "tilted_lobes": "NaN or infinity with a tilted cuticle",
-    "wide_lobes": "best match: every roughness in [0.001, 1] (rms ",
+    "wide_lobes": "best match: roughness clamped to [0.001, 1] (rms ",
     "straight_views": "",
     "low_index": "NaN or infinity",
     "surroundings": "",
@@ -56,7 +56,7 @@ WRONG = {
     "narrow lobes": ("1e-8, 1e-4)", "0.01, 0.001)", "narrow_lobes", ""),
     "wide lobes": (
         "max(roughness[p], vec2(1e-8, 1e-4))", "clamp(roughness[p], 0.001, 1.0)", "wide_lobes",
-        "best match: every roughness in [0.001, 1] (rms ",
+        "best match: roughness clamped to [0.001, 1] (rms ",
     ),
     "sine by a cosine": (
         "vec2(wo.z, -wo.y) / c", "vec2(wo.z / c, -sign(wo.y) * sqrt(1.0 - wo.z * wo.z / (c * c)))",
@@ -71,7 +71,7 @@ WRONG = {
         "total * closureData", "4.0 * total * closureData", "energy",
         "fault: every value is 4 times the right one (rms ",
     ),
-    "no absorption": ("exp(-absorption", "exp(-0.0 * absorption", "inputs", "without effect: absorption"),
+    "no absorption": ("exp(-absorption", "exp(-0.0 * absorption", "inputs", "inputs without effect: absorption"),
     "occlusion": (
         "closureData.occlusion", "1.0", "value", "fault: the occlusion is ignored",
     ),

@@ -39,7 +39,7 @@ CHOSEN = {
     **dict.fromkeys(("film", "film_curve", "film_orders"), f"{CHOICES}, and its compensation"),
     "film_limit": CHOICES,
     **dict.fromkeys(
-        ("film_environment", "film_visible", "film_glossy"), f"{CHOICES}, in light from all sides"
+        ("film_environment", "film_visible", "film_glossy"), f"{CHOICES}, under an environment"
     ),
 }
 AVERAGED = dict.fromkeys(("film_average", "film_smooth"), (DIFFERS, AVERAGE))

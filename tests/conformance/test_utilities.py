@@ -24,7 +24,7 @@ COLOR = "chiang_hair_absorption_from_color"
 
 # What fails with stock MaterialX, and words of the diagnosis; all else passes.
 STOCK_GLSL = {
-    ("output", "blackbody"): "Kang's cubic, drawn on below 1667 K",
+    ("output", "blackbody"): "Kang's cubic, extrapolated below 1667 K",
     ("output_finite", ALBEDO): "outputs are not finite",
 }
 IN_OSL = ("artistic_ior, extinction", "blackbody", f"{ROUGHNESS}, roughness_TRT", ALBEDO, COLOR)
@@ -66,7 +66,7 @@ WRONG = {
     ),
     "roughness of no lobe": (
         TRT, "v * scale_TRT * scale_TRT", "v * 4.0", "output_inputs", FAILED,
-        "without effect: scale_TRT",
+        "inputs without effect: scale_TRT",
     ),
     "scales without squares": (
         TRT, "v * scale_TRT * scale_TRT", "v * scale_TRT", "output", FAILED,

@@ -82,7 +82,7 @@ WRONG = {
         QON, "clamp(dot(N, wi), 0.0, 1.0)", "min(abs(dot(N, wi)), 1.0)", "value",
         "all with light from below the horizon",
     ),
-    "roughness constant": (NODE, FACING, ROUGHNESS, "inputs", "without effect: roughness"),
+    "roughness constant": (NODE, FACING, ROUGHNESS, "inputs", "inputs without effect: roughness"),
     "roughness squared": (
         NODE, FACING, ROUGHNESS.replace("= 0.3", "*= roughness"), "environment",
         "fault: the roughness is squared (rms ",

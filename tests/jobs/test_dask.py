@@ -138,7 +138,7 @@ def test_workers_that_all_restart_are_waited_for(monkeypatch):
     assert workers.compatible() == {"tcp://a"}
 
 
-WAITED = "no compatible Dask worker came within 0.01 s; raise it with --waitForWorkers"
+WAITED = "no compatible Dask worker was available within 0.01 s; raise it with --waitForWorkers"
 ONE = f"must have a worker with mxeon {mxeon.__version__} and --nthreads 1; got 1 others"
 
 

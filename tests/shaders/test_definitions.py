@@ -95,7 +95,7 @@ def test_code_in_a_document_still_needs_its_permission(studio, tmp_path, capsys)
 def test_definitions_replace_nothing_of_the_library(text, tmp_path):
     (tmp_path / "mine.glsl").write_text("")
     (tmp_path / "mine.mtlx").write_text(f'<materialx version="1.39">{text}</materialx>')
-    with pytest.raises(InputError, match=r"mine.mtlx: \w+ must replace nothing of the library"):
+    with pytest.raises(InputError, match=r"mine.mtlx: \w+ must not redefine a name of the library"):
         load_library("eonlib", None, (str(tmp_path),))
 
 

@@ -267,7 +267,8 @@ def test_a_token_that_would_end_the_process_is_refused(kind, outer):
     token = outer.format(f'<token name="odd" type="{kind}" value="a"/>')
     message = refusal(SMALL.replace("</materialx>", f"{token}</materialx>"))
     assert (
-        f"must not have the type {kind}, which ends MaterialX: give it the type string" in message
+        f"must not have the type {kind}, which crashes MaterialX: give it the type string"
+        in message
     )
 
 

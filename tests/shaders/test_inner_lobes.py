@@ -129,5 +129,5 @@ def test_paths_out_of_range_are_refused(paths):
 
 
 def test_a_host_without_paths_refuses_them():
-    with pytest.raises(InputError, match="^reference: this host takes no number of samples"):
+    with pytest.raises(InputError, match="^reference: samples and bounces can be"):
         Reference().refuse_paths(replace(SIDE, paths=Paths(bounces=2)))

@@ -95,7 +95,7 @@ def _looks(run: Run) -> Iterator[str]:
             if _is_picture(each, document):
                 found.setdefault((each.subject, each.host), []).append(each)
         if not found:
-            alike.setdefault("not drawn on this host", []).append(document)
+            alike.setdefault("not rendered on this host", []).append(document)
         for (subject, host), results in found.items():
             element = subject.removeprefix(f"{Path(document).name}: ")
             name = element if len(run.contents) == 1 else subject
@@ -142,7 +142,7 @@ def _appearance(run: Run, document: str, result: Result) -> str:
     ):
         return "the picture is within tolerance, but nodes are wrong for other inputs"
     if result.measured:
-        return f"as specified, where the host computes {_listed(result.measured)}"
+        return f"as specified, with {_listed(result.measured)} as the host computes it"
     return AS_SPECIFIED
 
 
@@ -274,7 +274,7 @@ def _failures(run: Run) -> Iterator[str]:
 
     for each in sorted(failures, key=order):
         kind = "cause" if each.library in run.compared else "failed"
-        other = ", for inputs that no document has" * run.is_elsewhere(each)
+        other = ", for inputs that no document uses" * run.is_elsewhere(each)
         place = f"{kind}: {each.location}{other}"
         groups.setdefault((place, " ".join(each.pages) or each.explanation), []).append(each)
     # Nodes explain pictures.

@@ -18,8 +18,8 @@ from mxeon.shaders.document.policy import LIMITS, SEARCH_PATH, Policy, environme
 STATUS = "exit status: 0 all passed, 1 a check failed, 2 misuse, 3 something did not run"
 UNTRUSTED = "documents you do not trust"  # heading of the options that --help-limits lists
 LIBRARY = (
-    "eonlib (default), stock, or a folder: a copy of MaterialX's libraries, or part of one, "
-    "replaces them; other documents are loaded first"
+    "eonlib (default), stock, or a folder; a copy of MaterialX's libraries, or of a part of "
+    "them, replaces the installed ones, and any other folder is loaded before them"
 )
 
 MATERIALX = "MXEON_MATERIALX"  # names the folder of --materialx to processes of hosts
@@ -127,7 +127,7 @@ def add_report(command: argparse.ArgumentParser) -> None:
 
 
 def add_full(command: argparse.ArgumentParser) -> None:
-    command.add_argument("--full", action="store_true", help="print every check, not ten lines")
+    command.add_argument("--full", action="store_true", help="print every check, not a summary")
 
 
 def add_library(command: argparse.ArgumentParser) -> None:
@@ -200,7 +200,7 @@ def assert_other(output: str | None, files: Iterable[str | None]) -> None:
 def assert_no_link(output: str) -> None:
     """Raise InputError if an output is a link, through which another file would be replaced."""
     if os.path.islink(output):
-        raise InputError(f"output must be no link, through which a file is replaced; got {output}")
+        raise InputError(f"output must not be a link; got {output}")
 
 
 def add_policy(command: argparse.ArgumentParser, runs_code: bool = False, **defaults: int) -> None:

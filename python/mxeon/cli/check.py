@@ -46,8 +46,8 @@ def add_parser(commands: arguments.Commands) -> None:
         "--library",
         action="append",
         metavar="NAME",
-        help=f"{arguments.LIBRARY}; repeatable; without it, FILEs are compared with stock too, "
-        "and only eonlib decides the exit status",
+        help=f"{arguments.LIBRARY}; repeatable; if omitted, FILEs are also checked with "
+        "stock, but only eonlib decides the exit status",
     )
     command.add_argument(
         "--node",
@@ -85,8 +85,8 @@ def run(options: argparse.Namespace) -> int:
         raise InputError("--resume needs the folder of the run to continue; pass --report DIR")
     if options.scheduler and options.materialx:
         raise InputError(
-            "--materialx reaches no machine of a --scheduler; start its workers with that package on "
-            "PYTHONPATH"
+            "--materialx does not reach the workers of a --scheduler; start them with that package "
+            "on PYTHONPATH"
         )
     hosts, nodes = options.host or ("gl",), options.node or ()
     # Documents are judged as MaterialX ships them too, unless libraries are named.

@@ -20,14 +20,14 @@ def add_parser(commands: arguments.Commands) -> None:
         run,
         "explore --output page.html  # every lobe, eonlib beside stock MaterialX",
         "explore my.mtlx --output page.html  # your materials too",
-        "explore --report out --output page.html  # with what `mxeon check --report out` found",
+        "explore --report out --output page.html  # adds what `mxeon check --report out` found",
     )
     command.add_argument("files", nargs="*", metavar="FILE", help="MaterialX documents to add")
     command.add_argument(
         "--output", metavar="OUT", required=True, help="the page, one self-contained .html file"
     )
     command.add_argument(
-        "--report", metavar="RUN", help="report folder of a run whose diagnoses to add"
+        "--report", metavar="RUN", help="add the diagnoses of a run: its report folder"
     )
     command.add_argument(
         "--library",

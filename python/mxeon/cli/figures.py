@@ -13,7 +13,7 @@ from mxeon.errors import PASSED, NotRun
 
 
 def add_parser(commands: arguments.Commands) -> None:
-    summary = "make the figures of the EON paper and measure its claims, in a checkout"
+    summary = "make the EON paper's figures and measure its claims (needs a checkout)"
     command = arguments.add_command(commands, "figures", summary, run, "figures out/figures")
     command.add_argument("folder", metavar="DIR", help="folder to write to")
 

@@ -14,7 +14,7 @@ def add_parser(commands: arguments.Commands) -> None:
     examples = (
         "kit export kit  # then render its scenes to kit/renders",
         "kit check kit --renderer MyRenderer --report out",
-        "kit check kit --claims qon  # if it has this one model",
+        "kit check kit --claims qon  # if QON is its only model",
     )
     summary = "find out which rough-diffuse model a renderer uses, from its images"
     group = arguments.add_command(commands, "kit", summary, None, *examples)

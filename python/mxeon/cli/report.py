@@ -26,7 +26,7 @@ def add_parser(commands: arguments.Commands) -> None:
     summary = "list what changed between two reports"
     diff = arguments.add_command(actions, "diff", summary, run_diff, examples[1])
     diff.add_argument("before", metavar="A", help="folder of a report, or its results.json")
-    diff.add_argument("after", metavar="B", help="the same, of a later run")
+    diff.add_argument("after", metavar="B", help="the same for a later run")
     arguments.add_json(diff)
     summary = "show the renderers of many reports on one page"
     field = arguments.add_command(actions, "field", summary, run_field, examples[2])

@@ -182,7 +182,7 @@ def open_host(name: str, *others: Row) -> Host:
     if isinstance(engine, Host):
         return engine
     engine.close()
-    raise Unsupported(f"{name}: this renderer shows materials of its own alone; gl has others")
+    raise Unsupported(f"{name}: this renderer only has its own materials; gl renders MaterialX's")
 
 
 def open_engine(name: str, *others: Row) -> Host | RendererHost:

@@ -73,9 +73,7 @@ class Engine(ABC):
     def refuse_paths(self, scene: Scene) -> None:
         """Raise InputError if a scene sets samples or bounces, which this host cannot change."""
         if scene.paths != Paths():
-            raise InputError(
-                f"{self.name}: this host takes no number of samples or bounces; cycles does"
-            )
+            raise InputError(f"{self.name}: samples and bounces can be set for cycles only")
 
     def refuse_shape(self, scene: Scene) -> None:
         """Raise InputError if a scene shows anything but a sphere."""
@@ -85,7 +83,7 @@ class Engine(ABC):
             )
 
     def _unsupported(self, verb: str, other: str) -> Unsupported:
-        return Unsupported(f"{self.name}: this host has no {verb}; {other} has")
+        return Unsupported(f"{self.name}: this host has no {verb}; use {other}")
 
 
 class Host(Engine):

@@ -136,8 +136,7 @@ class Host(base.Host):
     ) -> Array:
         if "subsurface_bsdf(closureData" in shader.stages["pixel"]:
             raise NotRun(
-                "slang: subsurface scattering reads the change from pixel to pixel, and a kernel has "
-                "no pixels"
+                "slang: subsurface scattering needs derivatives between pixels, which a kernel lacks"
             )
         call = calls.bsdf_call(shader, wo, wi, inputs, branch, output)
         body = ["float3 P = float3(0.0);", call.statements]

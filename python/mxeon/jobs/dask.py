@@ -107,7 +107,7 @@ class Workers:
         while not self.compatible():
             if time.monotonic() > end:
                 raise NotRun(
-                    f"no compatible Dask worker came within {self._wait:g} s; "
+                    f"no compatible Dask worker was available within {self._wait:g} s; "
                     "raise it with --waitForWorkers"
                 )
             time.sleep(min(POLL, self._wait))

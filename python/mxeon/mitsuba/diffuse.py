@@ -41,7 +41,7 @@ def mitsuba() -> Mitsuba:
     version = import_module("drjit").detail.llvm_version() if "llvm" in variant else OLDEST_LLVM
     if version < OLDEST_LLVM:
         raise NotRun(
-            f"mitsuba: Dr.Jit found LLVM {version[0]}, with which it ends the process; install LLVM 16 "
+            f"mitsuba: Dr.Jit found LLVM {version[0]}, which crashes it; install LLVM 16 "
             "or later (Debian: libllvm19), or name its library in DRJIT_LIBLLVM_PATH"
         )
     return mi

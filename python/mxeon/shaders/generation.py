@@ -263,7 +263,7 @@ def check_generator(library: str, target: str) -> None:
     if reason:
         raise InterfaceError(
             f"library {library}: cannot be combined with the generator of MaterialX "
-            f"{mx.getVersionString()}; {reason}: name the build that it belongs to by --materialx"
+            f"{mx.getVersionString()}; {reason}: name its build with --materialx"
         )
 
 

@@ -110,8 +110,8 @@ def _place(folder: str, own: tuple[str, ...], installed: Mapping[str, str]) -> s
     best = [each for each, count in places.items() if count == max(places.values())]
     if len(best) > 1:
         raise InputError(
-            f"library {folder}: must be one part of MaterialX's libraries; its files may be those of "
-            f"{' or '.join(sorted(best))}: put them into folders as MaterialX has them"
+            f"library {folder}: its files match several parts of MaterialX's libraries: "
+            f"{' or '.join(sorted(best))}: arrange them in folders as MaterialX does"
         )
     return best[0] if best else None
 
@@ -287,8 +287,8 @@ def check_definitions(
             file = each.getActiveSourceUri()
             if Path(folder) in Path(file).parents and _replaces(each, base):
                 raise InputError(
-                    f"{file}: {each.getName()} must replace nothing of the library, which has it: "
-                    "give it another name, or load the folder by --library"
+                    f"{file}: {each.getName()} must not redefine a name of the library: "
+                    "rename it, or load the folder with --library"
                 )
 
 

@@ -55,7 +55,7 @@ CHECKS = (
     ),
     Check(
         "denser",
-        "Toward a thinner medium, where there is no fit, the throughput is within its stated error.",
+        "For indices below 1, which the fit does not cover, the throughput is within its stated error.",
         tuple(row.name for row in NODES if row.layerable and "tint" in row.inputs),
         measures.denser,
         pass_all,

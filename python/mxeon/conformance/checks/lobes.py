@@ -185,7 +185,7 @@ CHECKS = (
     ),
     Check(
         "surroundings",
-        "An uneven environment is looked up along the normal turned toward the viewer, or behind the surface.",
+        "An uneven environment is looked up along the viewer-facing normal, or along its opposite for translucent nodes.",
         (*ANY, *LOOKED_UP),
         surroundings_case,
         with_inputs("the node's normal is dropped", normal=(0.0, 0.0, 1.0)),

@@ -86,7 +86,7 @@ def unknown(probe: Probe) -> Diagnosis:
 CHECKS = (
     Check(
         "transmitted",
-        "In a uniform environment, at least what the BTDF passes and at most what is not reflected comes through.",
+        "In a uniform environment, the light that passes lies between the BTDF's share and all that is not reflected.",
         MODELS,
         measures.transmitted,
         scale("values are twice as large", 2.0),
@@ -104,7 +104,7 @@ CHECKS = (
     ),
     Check(
         "kept",
-        "Mode RT reflects, and passes to its base, the same light as mode R; mode T reflects nothing; mode R transmits nothing.",
+        "Modes R and RT reflect, and pass to their base, the same light; mode T reflects nothing; mode R transmits nothing.",
         MODELS,
         measures.kept,
         offset,

@@ -54,7 +54,7 @@ LOOKUPS: dict[str, Callable[[Batch], Array]] = {
 
 def diagnose_inputs(probe: Probe) -> Diagnosis:
     """The inputs that change nothing."""
-    return Diagnosis(f"without effect: {', '.join(dead_inputs(probe))}")
+    return Diagnosis(f"inputs without effect: {', '.join(dead_inputs(probe))}")
 
 
 def diagnose_finite(probe: Probe) -> Diagnosis:

@@ -174,7 +174,7 @@ class BsdfSubject(RowSubject[Scattering]):
         def reflection(batch: Batch) -> Array:
             return opaque.values(mirrored, batch.altered(occlusion=1.0))  # light through the base
 
-        return Candidate("a reflection in its place", reflection), ZERO
+        return Candidate("a reflection instead", reflection), ZERO
 
     @property
     def albedo_candidates(self) -> tuple[Candidate, ...]:

@@ -25,9 +25,7 @@ def generate_document(
     """
     target = host_row(host).target
     if not target:
-        raise NotRun(
-            f"{host}: this renderer shows materials of its own alone; it reads no document"
-        )
+        raise NotRun(f"{host}: this renderer only has its own materials; it reads no documents")
     if target not in TARGETS:
         raise NotRun(f"{host}: this MaterialX has no generator for {target}")
     with warnings.catch_warnings(record=True) as records:

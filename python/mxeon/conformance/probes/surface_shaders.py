@@ -80,7 +80,7 @@ class SurfaceShaderProbe(PairProbe):
         names = sorted({name for row in rows for name in row})
         if missing := [name for name in names if name not in defaults]:
             raise NotRun(
-                f"{self.subject.node} of this MaterialX has no input {', '.join(missing)}, which is to change"
+                f"{self.subject.node} of this MaterialX lacks an input that is varied: {', '.join(missing)}"
             )
         inputs = {
             name: np.repeat(

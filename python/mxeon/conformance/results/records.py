@@ -120,7 +120,7 @@ def read_record(value: object, kind: type[T]) -> T:
     except ERRORS as error:
         raise InputError(_first(error)) from None
     if converter.unstructure(record) != value:  # a text was taken for a list, for example
-        raise InputError("it must hold the lists and names that mxeon writes")
+        raise InputError("it must have the structure that mxeon writes")
     return record
 
 

@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 
 from mxeon.conformance.results.pictures import AlbedoCurve, Picture, image_names
-from mxeon.conformance.results.result import FAILED, Result
+from mxeon.conformance.results.result import FAILED, NOT_RUN, Result
 from mxeon.conformance.results.summary import Summary, counted, summarize
 from mxeon.hosts.base import Identity
 
@@ -69,7 +69,9 @@ class Run:
         elsewhere = sum(map(self.is_elsewhere, judged))
         summary = summarize(judged, self.missing, tuple(self.refused), elsewhere)
         for library in self.compared:
-            results = [each for each in self.results if each.library == library]
+            results = [
+                each for each in self.results if each.library == library and each.verdict != NOT_RUN
+            ]
             failed = sum(each.verdict == FAILED for each in results)
             words = f" For comparison, {failed} of {len(results)} failed with {library}."
             if results:
@@ -99,16 +101,16 @@ class Run:
     def sentence(self) -> str:
         """The verdict, and the MaterialX that was judged, with its folder if it is not the installed one."""
         version, folder = (self.software.get(name) for name in ("MaterialX", "MaterialX folder"))
-        judged = f" MaterialX {version}{f', of {folder}' if folder else ''}." if version else ""
+        judged = f" MaterialX {version}{f', from {folder}' if folder else ''}." if version else ""
         return self.summary.sentence + judged
 
     @property
     def origins(self) -> tuple[str, ...]:
         """For each folder judged as a library, how many files are its own and how many MaterialX's."""
         return tuple(
-            f"library {folder}: {counted(len(files['folder']), 'file')} of the folder, "
+            f"library {folder}: {counted(len(files['folder']), 'file')} from the folder, "
             + (
-                f"{len(files['MaterialX']) or 'none'} of"
+                f"{len(files['MaterialX']) or 'none'} from"
                 if "MaterialX" in files
                 else "loaded before"
             )

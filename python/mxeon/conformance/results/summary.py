@@ -48,7 +48,7 @@ def summarize(
     refused : sequence of str
         Documents that were refused.
     elsewhere : int
-        Number of failures for inputs that no document has.
+        Number of failures for inputs that no document uses.
 
     Examples
     --------
@@ -58,7 +58,7 @@ def summarize(
     # Judge what there is.
     summary = _summarize_results(results)
     if elsewhere:
-        words = f" {elsewhere} of them for inputs that no document has."
+        words = f" {elsewhere} of them for inputs that no document uses."
         summary = replace(summary, sentence=summary.sentence + words)
     if not missing and not refused:
         return summary

@@ -32,7 +32,7 @@ FORMAT = 5
 JOURNAL = "journal/items.jsonl"
 PREVIOUS, LOCK = "journal.previous", ".journal.lock"  # beside the folder `journal`
 HALF = b"\\ud"  # begins the escape of half of a character
-LISTED = 8  # names in a message
+LISTED = 3  # names in a message
 
 
 class Journal:
@@ -140,7 +140,7 @@ def read_journal(folder: str | os.PathLike[str]) -> tuple[Plan, dict[int, Findin
 def refusal(folder: str | os.PathLike[str] | None, differences: Sequence[str]) -> str:
     """The reason for not resuming the run in a folder: one line that lists what differs."""
     listed = _listed(differences)
-    return f"{folder}: --resume must go on with the same run; these differ: {listed}"
+    return f"{folder}: --resume needs the same run, or another --report folder; changed: {listed}"
 
 
 def _read(folder: Path) -> tuple[Plan, dict[int, Findings], str, int]:

@@ -129,7 +129,7 @@ class Judge:
             return self._generate(task)
         host = self._host(task.host)
         if task.check == HOST:
-            raise NotRun(f"{task.host}: nothing that was asked for is judged on this host")
+            raise NotRun(f"{task.host}: this host judges nothing that was requested")
         return replace(self._on_host(task, host), hosts=(host.identity(),))
 
     def _on_host(self, task: Task, host: Host | RendererHost) -> Findings:

@@ -68,7 +68,7 @@ class Host(browser.PackageHost):
     def node(self, title: str, color: Sequence[float], roughness: float, scene: Scene) -> Array:
         raise NotRun(
             f"{self.name}: its path tracers do not draw here: with three 0.187.0 the wavefront "
-            "kernels do not compile, and the megakernel ends the software device"
+            "kernels do not compile, and the megakernel crashes the software device"
         )
 
     def density(self, wo: Array, wi: Array, roughness: Array) -> Array:

@@ -45,8 +45,8 @@ def _series(x: Array) -> Array:
 
 UNIFORM, BESSEL, CLAMPED, TILTED = (
     "N of TRRT+ pi/2 instead of 1/(2 pi)",
-    "I_0 by ten terms, and half a term of its logarithm",
-    "every roughness in [0.001, 1]",
+    "I_0 from ten terms, and half a term of its logarithm",
+    "roughness clamped to [0.001, 1]",
     "the viewer's inclination tilted in place of the light's",
 )
 FORMS: dict[str, HairForm] = {

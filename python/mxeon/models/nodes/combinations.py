@@ -129,7 +129,7 @@ def _unscaled(combine: Combine) -> tuple[Variant[Scattering], ...]:
 def _clamped(combine: Callable[..., Bsdf], layered: bool) -> tuple[Variant[Scattering], ...]:
     """A combination of a sum that has lost the excess of its albedo over 1, over a base or not."""
     value, albedo = _values(partial(combine, finish=_ended))
-    return (Variant("a sum whose throughput ends at 0", value if layered else None, albedo),)
+    return (Variant("a sum whose throughput is clamped at 0", value if layered else None, albedo),)
 
 
 COMBINATIONS = (
@@ -151,11 +151,11 @@ COMBINATIONS = (
             (FACTOR,),
             _unscaled(lambda top, base, i: top),
         )
-        for kind, title in (("float", "a multiple"), ("color3", "a colored multiple"))
+        for kind, title in (("float", "a scaled lobe"), ("color3", "a lobe scaled by a color"))
     ),
     _combined(
         "multiply_sum",
-        "a colored multiple of a sum",
+        "a sum scaled by a color",
         "multiply",
         lambda top, base, i: _scaled(layering.add(top, base), base, i),
         (FACTOR,),

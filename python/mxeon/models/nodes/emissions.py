@@ -159,12 +159,10 @@ COMBINED_EMISSIONS = (
         (FIRST, SECOND),
         lambda inputs: np.asarray(inputs[FIRST] + inputs[SECOND]),
     ),
-    _combined(
-        "emission_multiply_float", "a multiple of an emission", "multiply", (FIRST, FACTOR), _scaled
-    ),
+    _combined("emission_multiply_float", "a scaled emission", "multiply", (FIRST, FACTOR), _scaled),
     _combined(
         "emission_multiply_color3",
-        "a colored multiple of an emission",
+        "an emission scaled by a color",
         "multiply",
         (FIRST, FACTOR),
         _scaled,

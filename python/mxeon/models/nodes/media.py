@@ -114,12 +114,10 @@ COMBINED_MEDIA = (
         (FIRST, SECOND),
         lambda i: np.asarray(i[FIRST] + i[SECOND]),
     ),
-    _combined(
-        "medium_multiply_float", "a multiple of a medium", "multiply", (FIRST, FACTOR), _multiple
-    ),
+    _combined("medium_multiply_float", "a scaled medium", "multiply", (FIRST, FACTOR), _multiple),
     _combined(
         "medium_multiply_color3",
-        "a colored multiple of a medium",
+        "a medium scaled by a color",
         "multiply",
         (FIRST, FACTOR),
         _multiple,

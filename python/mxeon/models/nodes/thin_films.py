@@ -105,7 +105,7 @@ def _variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
     schlick = lobe is SCHLICK
     for title, form, permitted in FORMS[: 2 if schlick else 1]:
         albedo = partial(_environment, row.category, form)
-        variants.append(Variant(f"{title}, in light from all sides", None, albedo, permitted))
+        variants.append(Variant(f"{title}, under an environment", None, albedo, permitted))
         fitted = partial(_fitted, lobe, form)
         words = "the bare lobe's fit, and the film in the compensation"
         variants.append(Variant(f"{title}: {words}", albedo=fitted))
@@ -113,7 +113,7 @@ def _variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
         one = form == MIXED and row.category == "dielectric_bsdf"  # index of all channels
         if one or (form.share != 1.0 and not schlick):
             continue
-        later = ((", and the average of F by its ends", AVERAGED),) if form == STOCK else ()
+        later = ((", and F averaged from F0 and F90", AVERAGED),) if form == STOCK else ()
         for words, terms in (("", None), (", and its compensation", FITTED), *later):
             value = partial(_value, row.category, form, terms)
             variants.append(Variant(f"{title}{words}", value, permitted=permitted))

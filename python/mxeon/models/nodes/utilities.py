@@ -228,7 +228,7 @@ UTILITIES = (
         _blackbody,
         (
             Variant("luminance 1 before negative channels are clipped", _clipped, permitted=True),
-            Variant("Kang's cubic, drawn on below 1667 K", _kang),
+            Variant("Kang's cubic, extrapolated below 1667 K", _kang),
         ),
     ),
     UtilityNode(
