@@ -18,18 +18,6 @@ MEASURED = measured()
 OF_A_DRIVER = "genglsl_albedo_acos"  # its figure is the error of the driver that its page names
 # Those of three.js and Babylon.js are measured in tests/hosts/test_browser.py.
 ISSUES = [each for each in measure.CHECKED if each.host not in ("three", "babylon")]
-NEW = """
-[a_new_page]
-title = "A new defect"
-group = "sheen"
-host = "gl"
-differs = true
-rows.value = ["sheen_bsdf, mode zeltner"]
-defect = "It is wrong."
-cause = "A slip."
-repair = "Less."
-why_missed = "Nobody looks."
-"""
 
 
 def test_the_pages_are_those_of_the_entries():
@@ -49,28 +37,6 @@ def test_files_that_the_pages_name_exist():
     )
     assert len(names) > 10
     assert [name for name in names if not (ROOT / name).exists()] == []
-
-
-def test_a_new_defect_takes_one_entry():
-    index, page = (
-        pages.pages(entries() | entries(NEW))[FOLDER / f"{name}.md"]
-        for name in ("README", "a_new_page")
-    )
-    assert "- [A new defect](a_new_page.md) (*differs*)\n" in index
-    assert page.startswith("# A new defect\n\nIt is wrong.\n\n## Cause\n\nA slip.\n")
-
-
-@pytest.mark.parametrize(
-    "old, new, message",
-    [
-        ("differs", "verdict", "entry a_new_page of known_issues.toml: .* 'verdict'"),
-        ('cause = "A slip."', "", "entry a_new_page of known_issues.toml: .* 'cause'"),
-        ("sheen", "cloth", "group of a_new_page must be one of rough_diffuse, .*; got cloth"),
-    ],
-)
-def test_a_wrong_entry_is_refused(old, new, message):
-    with pytest.raises(ValueError, match=message):
-        pages.pages(entries() | entries(NEW.replace(old, new, 1)))
 
 
 @pytest.fixture(scope="module")

@@ -101,7 +101,11 @@ WRONG = {
     ),
     "another model": (
         NODE, "brdf * mu_i", "(brdf + 0.05 * color * mu_o * mu_o) * mu_i", "value",
-        "no known model matches",
+        "no known model matches, the closest is ",
+    ),
+    "nothing like it": (
+        NODE, "brdf * mu_i", "1e6 * color.zxy * mu_o * mu_o", "value",
+        "no known model matches; wrong for ",
     ),
 }  # fmt: skip
 

@@ -36,9 +36,8 @@ def answer(run: Run, full: bool = False) -> list[str]:
     begins = run.refused or run.summary.verdict == NOT_RUN or not run.contents
     alone = len(run.contents) == 1
     seen = max(1, LOOKS - len(first)) if alone and not full else len(looks)
-    room = (
-        LINES - len(first) - min(seen, len(looks)) - len(remedy) - 2
-    )  # the verdict, and what is cut
+    # The verdict and what is left out take a line each.
+    room = LINES - len(first) - min(seen, len(looks)) - len(remedy) - 2
     least = 1 if alone else FEWEST
     kept = max(least, room - 1 - min(2, len(failures) + len(notes)))
     kept = kept if rows and not full else len(rows)
@@ -48,13 +47,9 @@ def answer(run: Run, full: bool = False) -> list[str]:
     after = [*remedy, *failures[:told], *notes[:noted]]
     lines = [*first, *looks[:seen], *table, *map(one_line, after)]
     lines.insert(0 if begins else len(lines), one_line(run.sentence))
-    cut = {
-        "material": looks[seen:],
-        "node": list(rows)[kept:],
-        "cause": failures[told:],
-        "note": notes[noted:],
-    }
-    if more := [counted(len(each), f"more {name}") for name, each in cut.items() if each]:
+    counts = len(looks) - seen, len(rows) - kept, len(failures) - told, len(notes) - noted
+    cut = zip(("material", "node", "cause", "note"), counts, strict=True)
+    if more := [counted(count, f"more {name}") for name, count in cut if count > 0]:
         lines.append(f"{', '.join(more)}: --full")
     return lines
 

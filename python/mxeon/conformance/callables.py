@@ -241,7 +241,7 @@ def brdf_test(brdf: Brdf, model: str = "eon", name: str | None = None) -> Callab
 
         test_my_brdf_is_eon = brdf_test(my_brdf, "eon")
 
-    On failure it shows the error, the tolerance and the nearest known model.
+    On failure it shows the error, the tolerance and the best-matching model.
     """
     import pytest
 

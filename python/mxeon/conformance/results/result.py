@@ -74,7 +74,7 @@ class Result:
     worst : dict of str to list of float
         The inputs and values at the worst point, by name.
     diagnosis : str
-        The nearest known model with its distance, or another explanation of a failure.
+        The best-matching model with its distance, or another explanation of a failure.
     distances : dict of str to float
         Root-mean-square distance to each known model and defect, by title, where diagnosed.
     control : Control or None
