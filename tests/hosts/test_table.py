@@ -107,7 +107,7 @@ def test_a_renderer_executes_no_shaders(monkeypatch):
 
 
 def test_a_document_is_not_run_on_a_renderer():
-    with pytest.raises(NotRun, match="^mitsuba: this renderer .*; it reads no document$"):
+    with pytest.raises(NotRun, match="^mitsuba: this renderer .*; it reads no documents$"):
         generate_document(examples_folder() / "clay.mtlx", "mitsuba", "eonlib")
 
 
