@@ -102,7 +102,7 @@ NODES = {
     "absorption: at most 5": "transmittance",
     "translucent: environment of the visible side": "surroundings",
     "cone: linear falloff": "radiance",
-    "cone in OSL: soft always": "entry",
+    "cone in OSL: soft always": "radiance",
 }
 
 

@@ -16,7 +16,7 @@ from mxeon.conformance.probes.families import HOST_PROBES, probe_type_of
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.pictures import PictureProbe
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
-from mxeon.conformance.text import sources
+from mxeon.conformance.text import checks as text_checks
 from mxeon.models.nodes.cycles import CYCLES_VARIANTS
 
 ROWS = {check.key: check for check in CHECKS}
@@ -129,7 +129,7 @@ def test_a_closure_that_cycles_lacks_is_not_run_and_is_named(hosts):
 
 
 def test_every_input_reaches_the_call_in_text_that_nothing_runs():
-    results = sources.check_calls(BSDFS, "stock")
+    results = text_checks.check_calls(BSDFS, "stock")
     assert {result.subject.rsplit(", ", 1)[1] for result in results} == {"msl", "mdl"}
     assert all(result.verdict == PASSED and result.control.caught for result in results)
 
@@ -138,8 +138,8 @@ def test_every_input_reaches_the_call_in_text_that_nothing_runs():
     "old, new", [("mxp_tint:lobe_tint", "mxp_tint:color(1.0)"), ("mxp_tint:lobe_tint, ", "")]
 )
 def test_an_input_that_a_call_drops_is_named(monkeypatch, old, new):
-    text = sources.source(SUBJECTS["dielectric"], "mdl", "stock")
-    monkeypatch.setattr(sources, "source", lambda *_: text.replace(old, new))
-    monkeypatch.setattr(sources, "TEXT_ONLY", ("mdl",))
-    (result,) = sources.check_calls([SUBJECTS["dielectric"]], "stock")
+    text = text_checks.source(SUBJECTS["dielectric"], "mdl", "stock")
+    monkeypatch.setattr(text_checks, "source", lambda *_: text.replace(old, new))
+    monkeypatch.setattr(text_checks, "TEXT_ONLY", ("mdl",))
+    (result,) = text_checks.check_calls([SUBJECTS["dielectric"]], "stock")
     assert result.verdict == FAILED and "tint is never passed" in result.diagnosis

@@ -28,7 +28,7 @@ from mxeon.conformance.run.survey import survey_documents
 from mxeon.conformance.samples.batch import Batch
 from mxeon.conformance.samples.uneven_environment import sky
 from mxeon.conformance.text import check_texts
-from mxeon.conformance.text.sources import TEXT_ONLY
+from mxeon.conformance.text.checks import TEXT_ONLY
 from mxeon.errors import InputError, NotRun, ShaderError
 from mxeon.hosts import HOSTS
 from mxeon.hosts.base import Host, Identity
@@ -267,7 +267,7 @@ def test_texts_are_judged_by_values_and_where_a_host_runs_them_by_the_host():
     calls = [each.subject for each in results if each.check == "source"]
     assert {each.rsplit(", ", 1)[1] for each in calls} == set(TEXT_ONLY)
     assert len(calls) == len(SUBJECTS) + len(BSDFS) * len(TEXT_ONLY)
-    assert {each.check for each in results} == {"source", "closure", "entry", "languages"}
+    assert {each.check for each in results} == {"source", "closure", "languages"}
     assert {each.verdict for each in results} == {PASSED}
     assert all(each.control.caught for each in results)
 

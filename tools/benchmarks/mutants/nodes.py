@@ -11,9 +11,8 @@ from xml.etree import ElementTree
 
 from mxeon.conformance.nodes.combinations import COMBINED_NODES
 from mxeon.conformance.probes.families import PBR_SUBJECTS
-from mxeon.conformance.results import SOURCE
 from mxeon.conformance.run.plan import make_plan
-from mxeon.conformance.run.tasks import EVERY_NODE, Task
+from mxeon.conformance.run.tasks import Task
 from mxeon.shaders.library import load_library
 from tools.benchmarks.mutants.mutant import ROOT, Mutant
 
@@ -48,8 +47,6 @@ def changed_nodes(mutant: Mutant) -> set[tuple[str, str]]:
 def node_tasks(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
     """Hosts and tasks that judge the subjects that a mutant changes, cheap hosts first."""
     changed = changed_nodes(mutant)
-    if any(target == "genosl" for target, _ in changed):
-        yield SOURCE, [Task(SOURCE, EVERY_NODE, SOURCE, path)]
     for target, host in HOSTS:
         titles = {title for each, title in changed if each == target}
         yield (

@@ -17,11 +17,9 @@ from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.diagnosis.verdicts import renderer_warnings
 from mxeon.conformance.probes.families import PBR_SUBJECTS, probe_type, probe_type_of
-from mxeon.conformance.results import PASSED, SOURCE
 from mxeon.conformance.run.tasks import Task
 from mxeon.conformance.samples.batch import Array, Batch
 from mxeon.conformance.samples.measurement import Metric
-from mxeon.conformance.text.entries import check_entries
 from mxeon.errors import MxeonError
 from mxeon.hosts import open_host
 from mxeon.hosts.base import Host
@@ -85,12 +83,6 @@ class Quick:
 
     def _failures(self, task: Task) -> dict[tuple[str, str], str]:
         """Diagnoses of what fails, by check and subject."""
-        if task.check == SOURCE:
-            return {
-                (each.check, each.subject): each.diagnosis
-                for each in check_entries(task.library)
-                if each.verdict != PASSED
-            }
         row, probe = ROWS[task.check], self._probe(task)
         try:
             with renderer_warnings():

@@ -80,8 +80,7 @@ def trial_of_nodes(mutant: Mutant, path: str, quick: Quick) -> dict[str, Any]:
     for host, tasks in node_tasks(mutant, path):
         for task in tasks:
             if failure := quick.failure(task):
-                seen = TEXT if host == SOURCE else host
-                return {"verdict": KILLED, "host": seen, "failures": [failure]}
+                return {"verdict": KILLED, "host": host, "failures": [failure]}
     return {"verdict": SURVIVED}
 
 

@@ -21,7 +21,6 @@ from mxeon.conformance.results import Place, Result
 from mxeon.conformance.samples.batch import SEED, Array, float32
 from mxeon.conformance.samples.measurement import Measurement, absolute
 from mxeon.conformance.samples.tolerance import Tolerance
-from mxeon.conformance.text.syntax import braces
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts.base import Host
 from mxeon.models.diffuse import albedo, inversion
@@ -179,10 +178,7 @@ def _nearest(probe: InversionProbe, values: Array) -> Diagnosis:
 
 def _functions(text: str, use: str) -> str:
     """Functions of a text that a piece of it calls, directly or through others, in their order."""
-    bodies = {
-        match[1]: f"{match[0]}{{{braces(text, match.end())}}}\n"
-        for match in FUNCTION.finditer(text)
-    }
+    bodies = {match[1]: _whole(text, match) for match in FUNCTION.finditer(text)}
     needed: set[str] = set()
     waiting = [use]
     while waiting:
@@ -190,3 +186,13 @@ def _functions(text: str, use: str) -> str:
         needed |= words
         waiting += [bodies[word] for word in words]
     return "\n".join(body for name, body in bodies.items() if name in needed)
+
+
+def _whole(text: str, match: re.Match[str]) -> str:
+    """A function's text from the start of its signature to the brace that closes it."""
+    depth = 0
+    for position in range(match.end(), len(text)):
+        depth += {"{": 1, "}": -1}.get(text[position], 0)
+        if depth == 0:
+            return f"{text[match.start() : position + 1]}\n"
+    raise ShaderError("a brace is not closed")

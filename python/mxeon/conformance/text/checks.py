@@ -1,0 +1,414 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks of text that nothing here runs: definitions of nodes, twins of functions, generated sources.
+
+Each counts faults, of which there must be none, and counts those of a text with one more as its control.
+What a renderer's closure does with its arguments is taken from its documentation.
+"""
+
+import re
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import Any
+
+import MaterialX as mx
+import numpy as np
+
+from mxeon.conformance.nodes.bsdf import BSDFS, BsdfSubject
+from mxeon.conformance.nodes.diffuse import DiffuseSubject
+from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, SOURCE, Control, Result
+from mxeon.conformance.samples.batch import SEED
+from mxeon.conformance.text.expressions import Array, evaluate
+from mxeon.errors import NotRun, ShaderError
+from mxeon.hosts import HOSTS
+from mxeon.models.diffuse import formulas
+from mxeon.shaders.closure_calls import COMMENT
+from mxeon.shaders.functions import LANGUAGES, SIGNATURE, has_functions, twins
+from mxeon.shaders.generation import TARGETS, ApproximationWarning, generate
+from mxeon.shaders.library import load_library
+from mxeon.shaders.nodes import EON, FLAG, INVERSIONS, OREN_NAYAR
+
+Faults = Callable[..., tuple[list[str], int]]  # in words, and the number that the control has
+Inputs = Mapping[str, Array]
+Parts = dict[str, list[str]]  # tokens of functions and constants by name
+# By check: its claim, what it counts, and the error that its control makes.
+CLAIMS = {
+    "definition": (
+        "The node's inputs and output match its specification.",
+        "differences",
+        "the default of roughness is 0.3",
+    ),
+    "languages": (
+        "The shader functions are identical in OSL and GLSL, apart from type names.",
+        "functions",
+        "the first number of the OSL text is different",
+    ),
+    "source": (
+        "The generated source passes every input of the node to the function it calls.",
+        "inputs",
+        "each input in turn is 0",
+    ),
+    "closure": (
+        "The generated source calls the node's closure, with the right arguments and value.",
+        "faults",
+        "the weight of the lobe is dropped",
+    ),
+}
+
+
+def check_texts(subjects: Iterable[DiffuseSubject], library: str) -> tuple[Result, ...]:
+    """Results of all checks of generated text and of functions for the nodes of a library."""
+    subjects = tuple(subjects)
+    return (
+        *check_closures(subjects, library),
+        *check_languages(library),
+        *check_calls((*subjects, *BSDFS), library),
+    )
+
+
+def _judged(check: str, subject: str, library: str, faults: Faults, *of: Any) -> Result:
+    """Result of the faults of something."""
+    claim, unit, variant = CLAIMS[check]
+    place = (check, claim, subject, SOURCE, library)
+    try:
+        found, control = faults(*of)
+    except NotRun as error:
+        return Result(*place, verdict=NOT_RUN, reason=str(error))
+    except ShaderError as error:
+        return Result(*place, verdict=FAILED, diagnosis=f"{subject.rpartition(', ')[2]}: {error}")
+    caught = control > 0 and control >= len(found)
+    return Result(
+        *place,
+        verdict=FAILED if found or not caught else PASSED,
+        error=len(found),
+        unit=unit,
+        tolerance=0,
+        derivation="a count",
+        diagnosis="; ".join(found),
+        control=Control(variant, control, caught),
+    )
+
+
+# --- definitions ----------------------------------------------------------------------------------
+
+# A range only guides an editor, and pbrlib leaves some out, which is no fault.
+RANGE = ("lower end of the range", "upper end of the range")
+WORDS = {"type": "type", "value": "default", "uimin": RANGE[0], "uimax": RANGE[1]}
+WORDS |= {name: name for name in ("uniform", "defaultgeomprop")}
+UNIT = 'type="float" value="{}" uimin="0.0" uimax="1.0"'
+COLORED = f"""
+  <input name="color" type="color3" value="0.18, 0.18, 0.18"
+         uimin="0.0, 0.0, 0.0" uimax="1.0, 1.0, 1.0" />
+  <input name="roughness" {UNIT.format("0.0")} />"""
+LOBE = f"""<input name="weight" {UNIT.format("1.0")} />{COLORED}
+  <input name="normal" type="vector3" defaultgeomprop="Nworld" />"""
+OUTPUT = '<output name="out" type="{}" /></nodedef>'
+# [pbrlib], table of <oren_nayar_diffuse_bsdf>; a reflectance lies in [0, 1].
+SPECIFICATIONS = f"""<materialx version="1.39">
+  <nodedef name="pbrlib" node="{OREN_NAYAR}" bsdf="R">{LOBE}
+  <input name="{FLAG}" type="boolean" value="false" uniform="true" />{OUTPUT.format("BSDF")}
+  <nodedef name="mxeon" node="{EON}" bsdf="R">{LOBE}{OUTPUT.format("BSDF")}
+  <nodedef name="mxeon1" node="{INVERSIONS[0]}">{COLORED}{OUTPUT.format("color3")}
+  <nodedef name="mxeon2" node="{INVERSIONS[1]}">{COLORED}{OUTPUT.format("color3")}
+</materialx>"""
+
+
+def check_definitions(library: str) -> tuple[Result, ...]:
+    """Results of the nodes' definitions, and of one that has its name but another category."""
+    document, specifications = load_library(library), mx.createDocument()
+    mx.readFromXmlString(specifications, SPECIFICATIONS)
+    results = []
+    for specification in specifications.getNodeDefs():
+        node = specification.getNodeString()
+        named = document.getNodeDef(f"ND_{node}")
+        others = [named] if named and named.getNodeString() != node else []
+        for each in [*document.getMatchingNodeDefs(node), *others]:
+            title = f"{node}, definition"
+            results.append(
+                _judged("definition", title, library, _definition_faults, each, specification)
+            )
+    return tuple(results)
+
+
+def _definition_faults(definition: mx.NodeDef, specification: mx.NodeDef) -> tuple[list[str], int]:
+    author = specification.getName().rstrip("12")
+    found, expected = _facts(definition), _facts(specification)
+
+    def differences(facts: Mapping[str, str]) -> list[str]:
+        return [
+            f"{name} is {facts[name] or 'missing'}; {author} says {right or 'none'}"
+            for name, right in expected.items()
+            if name in facts
+            and _plain(facts[name]) != _plain(right)
+            and (facts[name] or author != "pbrlib" or not name.startswith(RANGE))
+        ]
+
+    return differences(found), len(differences(found | {"default of roughness": "0.3"}))
+
+
+def _facts(definition: mx.NodeDef) -> dict[str, str]:
+    """What a definition says, by words for it."""
+    inputs, outputs = definition.getActiveInputs(), definition.getActiveOutputs()
+    facts = {
+        "the category": definition.getNodeString(),
+        "bsdf": definition.getAttribute("bsdf"),
+        "the list of inputs": ", ".join(each.getName() for each in inputs),
+        "the output": " and ".join(each.getType() for each in outputs),
+    }
+    for each in inputs:
+        facts |= {
+            f"{word} of {each.getName()}": each.getAttribute(key) for key, word in WORDS.items()
+        }
+    return facts
+
+
+def _plain(text: str) -> tuple[object, ...]:
+    """A value for comparison: numbers as numbers, and "false" as what is not said."""
+    parts = text.replace("false", "").replace(",", " ").split()
+    try:
+        return tuple(map(float, parts))
+    except ValueError:
+        return tuple(parts)
+
+
+# --- languages ------------------------------------------------------------------------------------
+
+GLSL_WORDS = {"color": "vec3", "vector": "vec3", "output": "out", "atan2": "atan"}
+
+
+def check_languages(library: str) -> tuple[Result, ...]:
+    """The result for a library that brings shader functions in both languages."""
+    if not all(has_functions(library, language) for language in LANGUAGES):
+        return ()
+
+    glsl, osl = (COMMENT.sub(" ", twins(language, library)) for language in LANGUAGES)
+    texts = glsl, osl, re.sub(r"\b\d+\.\d+\b", "777.0", osl, count=1)
+    return (
+        _judged("languages", "shader twins, osl", library, _language_faults, *map(_parts, texts)),
+    )
+
+
+def _language_faults(glsl: Parts, *osl: Parts) -> tuple[list[str], int]:
+    found, control = (
+        [name for name in glsl | each if glsl.get(name) != each.get(name)] for each in osl
+    )
+    return [f"{name} is different in OSL" for name in found], len(control)
+
+
+def _parts(text: str) -> Parts:
+    """Functions and constants of a text, in GLSL's words."""
+    parts = dict(re.findall(r"^#define (\w+) (.+)$", text, re.MULTILINE))
+    matches = list(SIGNATURE.finditer(text))
+    ends = [match.start() for match in matches[1:]] + [len(text)]
+    for match, end in zip(matches, ends, strict=True):
+        parts[match[1]] = re.sub(r"^#.*\n?", "", text[match.start() : end], flags=re.MULTILINE)
+    return {
+        name: [GLSL_WORDS.get(word, word) for word in re.findall(r"[\w.]+|\S", part)]
+        for name, part in parts.items()
+    }
+
+
+# --- generated sources ----------------------------------------------------------------------------
+
+TEXT_ONLY = tuple(row.target for row in HOSTS if not row.module)  # targets that no host runs
+# The call of a function that fills a node's lobe, or the expression that the lobe is.
+FILLED = re.compile(r"\b(\w+\([^;]*), lobe_out\);")
+ASSIGNED = re.compile(r"\b(?:BSDF|material) lobe_out = ([^;]*);")
+CALLEE = re.compile(r"(?:\w+::)*\w+(?=\()")
+
+
+def source(subject: DiffuseSubject | BsdfSubject, target: str, library: str) -> str:
+    """Pixel stage of a subject; the variable of an input is `lobe_` and its name."""
+    frame = {"normal": (0.0, 0.6, 0.8), "tangent": (1.0, 0.0, 0.0)}
+    document = subject.document({name: frame[name] for name in frame if name in subject.inputs})
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ApproximationWarning)
+        return generate(document, target, library=library)[0].stages["pixel"]
+
+
+def _expression(text: str) -> str:
+    if filled := FILLED.search(text):
+        return f"{filled[1]})"
+    if assigned := ASSIGNED.search(text):
+        return assigned[1]
+    raise NotRun("the expression of the lobe is not supported")
+
+
+def _evaluated(expression: str, inputs: Inputs, functions: Mapping[str, Any]) -> Any:
+    variables = {f"lobe_{name}": value for name, value in inputs.items()}
+    return evaluate(expression, {"closureData": (), **variables, **functions})
+
+
+def check_calls(
+    subjects: Iterable[DiffuseSubject | BsdfSubject], library: str
+) -> tuple[Result, ...]:
+    """Results for every subject and target that no host runs."""
+    return tuple(
+        _judged("source", f"{each.title}, {target}", library, _dropped, each, target, library)
+        for each in subjects
+        for target in TARGETS
+        # Of MDL's rough diffuse nodes the check of closures compares every argument.
+        if target in TEXT_ONLY and (target != "mdl" or isinstance(each, BsdfSubject))
+    )
+
+
+def _dropped(
+    subject: DiffuseSubject | BsdfSubject, target: str, library: str
+) -> tuple[list[str], int]:
+    """Inputs whose values, which no text holds by itself, are no arguments of a call."""
+    expression = _expression(source(subject, target, library))
+    names = tuple(subject.types) if isinstance(subject, BsdfSubject) else subject.inputs
+    inputs = {name: np.array([[0.371 + index]]) for index, name in enumerate(names)}
+
+    def missing(given: Inputs) -> list[str]:
+        seen: list[Any] = []
+
+        def called(*values: Any, **named: Any) -> tuple[()]:
+            seen.extend(np.ravel(each) for each in (*values, *named.values()))
+            return ()
+
+        _evaluated(expression, given, dict.fromkeys(CALLEE.findall(expression), called))
+        passed = np.concatenate(seen)
+        return [name for name, value in inputs.items() if value.item() not in passed]
+
+    noticed = [name in missing({**inputs, name: np.zeros((1, 1))}) for name in names]
+    return [f"{name} is never passed" for name in missing(inputs)], len(names) * all(noticed)
+
+
+# --- closures: the node's arguments for random materials -------------------------------------------
+
+MATERIALS = 256
+ROUNDED = 1e-12  # 4500 roundings of float64: no text has as many
+TINT = "multiscatter_tint"
+TINTS = {
+    "eon": "that of EON, rho^2 <E> / (1 - rho (1 - <E>))",
+    "qon": "black, as without energy_compensation",
+}
+PBRLIB = "materialx::pbrlib_1_10::mx_oren_nayar_diffuse_bsdf"
+WHITE_LOBE = "FON + white lobe, as MDL's module pbrlib_1_10 defines this node; read, not run"
+
+
+class Closure(dict[str, Array]):
+    """Arguments of a closure by the names of the node's inputs, its weight among them."""
+
+    __array_ufunc__ = None  # an array times this is `__rmul__`
+
+    def __init__(self, **arguments: Any) -> None:
+        given = {"weight": 1.0, **{k: v for k, v in arguments.items() if v is not None}}
+        super().__init__({k: np.array(v, np.float64, ndmin=2) for k, v in given.items()})
+
+    def __mul__(self, weight: Any) -> "Closure":
+        return Closure(**{**self, "weight": self["weight"] * weight})
+
+    __rmul__ = __mul__
+
+    def __add__(self, other: Any) -> None:
+        raise NotRun("a sum of closures is not supported")
+
+
+# The functions below take what MDL's and OSL's documentation says.
+def diffuse_reflection_bsdf(
+    tint: Any = 1.0, roughness: Any = 0.0, multiscatter_tint: Any = 0.0
+) -> Closure:
+    return Closure(color=tint, roughness=roughness, multiscatter_tint=multiscatter_tint)
+
+
+def weighted_layer(weight: Any, layer: Closure, base: Any = (), normal: Any = None) -> Closure:
+    if base:
+        raise NotRun("a base below the layer is not supported")
+    return Closure(**{**layer, "normal": normal, "weight": layer["weight"] * weight})
+
+
+def mx_oren_nayar_diffuse_bsdf(
+    mxp_weight: Any = 1.0,
+    mxp_color: Any = 0.18,
+    mxp_roughness: Any = 0.0,
+    mxp_normal: Any = None,
+    mxp_energy_compensation: Any = 0,
+) -> Closure:
+    """FON, and with the flag a white lobe beside it."""
+    layer = diffuse_reflection_bsdf(mxp_color, mxp_roughness, mxp_energy_compensation)
+    return weighted_layer(mxp_weight, layer, normal=mxp_normal)
+
+
+def oren_nayar_diffuse_bsdf(normal: Any, color: Any, roughness: Any, *keywords: Any) -> Closure:
+    given = dict(zip(keywords[::2], keywords[1::2], strict=True))
+    flag = given.pop(FLAG, np.array([[0]]))
+    if given:
+        raise ShaderError(f'keyword "{next(iter(given))}" is not known to OSL')
+    if flag.dtype.kind != "i":
+        raise ShaderError(f"keyword {FLAG} is an int but receives a float")
+    return Closure(normal=normal, color=color, roughness=roughness, energy_compensation=flag)
+
+
+FUNCTIONS: Mapping[str, Mapping[str, Any]] = {
+    "osl": {"oren_nayar_diffuse_bsdf": oren_nayar_diffuse_bsdf},
+    "mdl": {
+        "material": lambda *, surface: surface,
+        "material_surface": lambda *, scattering: scattering,
+        "df::weighted_layer": weighted_layer,
+        "df::diffuse_reflection_bsdf": diffuse_reflection_bsdf,
+        PBRLIB: mx_oren_nayar_diffuse_bsdf,
+    },
+}
+
+
+def check_closures(subjects: Iterable[DiffuseSubject], library: str) -> tuple[Result, ...]:
+    return tuple(
+        _judged(
+            "closure", f"{each.title}, {target}", library, _closure_faults, each, target, library
+        )
+        for each in subjects
+        for target in FUNCTIONS
+    )
+
+
+def _closure_faults(subject: DiffuseSubject, target: str, library: str) -> tuple[list[str], int]:
+    text = source(subject, target, library)
+    if filled := FILLED.search(text):
+        raise NotRun(f"{filled[1].partition('(')[0]} is a function, which the host {target} runs")
+    rng = np.random.default_rng(SEED)
+    rows = {
+        name: each.reshape(MATERIALS, -1)
+        for name, each in subject.random_inputs(rng, MATERIALS).items()
+    }
+    rows["weight"], normal = rng.random((MATERIALS, 1)), rng.standard_normal((MATERIALS, 3))
+    rows["normal"] = normal / np.linalg.norm(normal, axis=1, keepdims=True)
+    rows[FLAG] = np.full((MATERIALS, 1), int(subject.flag or subject.flag is None))
+    found = [*_argument_faults(subject, target, text, rows, rows)]
+    if PBRLIB in text and subject.flag:
+        found = [WHITE_LOBE if TINT in each else each for each in found]
+    light = {**rows, "weight": np.ones((1, 1))}
+    return found, len([*_argument_faults(subject, target, text, light, rows)])
+
+
+def _argument_faults(
+    subject: DiffuseSubject, target: str, text: str, given: Inputs, inputs: Inputs
+) -> Iterator[str]:
+    """Arguments of the closure of given inputs that are not the node's inputs."""
+    closure = _evaluated(_expression(text), given, FUNCTIONS[target])
+    if not isinstance(closure, Closure):
+        raise ShaderError("the lobe is no closure")
+    expected = dict(inputs)
+    if target == "mdl":
+        del expected[FLAG]
+        expected[TINT] = _tint(subject, inputs)
+    for name, value in expected.items():
+        measured = closure.get(name)
+        wanted = TINTS[subject.model] if name == TINT else f"the node's {name}"
+        if measured is None:
+            yield f"{name} is not passed"
+        elif measured.shape[1] > value.shape[1]:
+            yield f"{name} is a float but receives a color or vector"
+        elif not (error := float(np.abs(measured - value).max())) <= ROUNDED:
+            constant = np.ptp(measured, axis=0).max() <= ROUNDED
+            instead = f", but {measured.flat[0]:.3g}" if constant else ""
+            yield f"{name} is not {wanted}{instead}: off by up to {error:.2g}"
+
+
+def _tint(subject: DiffuseSubject, inputs: Inputs) -> Array:
+    """rho^2 <E> / (1 - rho (1 - <E>)): [Portsmouth2025], Eq. (19); MDL without the flag is FON."""
+    if subject.model != "eon":
+        return np.zeros((MATERIALS, 3))
+    rho, r = inputs["color"], inputs["roughness"]
+    average = (1.0 + formulas.C2 * r) / (1.0 + formulas.C1 * r)
+    return np.asarray(rho**2 * average / (1.0 - rho * (1.0 - average)))
