@@ -117,6 +117,16 @@ def test_the_tests_of_the_models_kill_a_wrong_reference():
     assert found["failures"][0]["check"].startswith("test_anisotropy_stretches")
 
 
+@pytest.mark.parametrize("name", ["diffuse", "control"])
+def test_tests_in_blenders_osl_judge_what_cycles_cannot_show(hosts, quick, name):
+    hosts("osl")
+    file = "genosl/cycles/subsurface_bsdf_cycles.osl"
+    mutant = NAMED.get(f"subsurface in Cycles: {name}") or NAMED[f"{name}: {file}"]
+    found = trial.trial(mutant, None, quick)
+    assert found["verdict"] == (trial.SURVIVED if mutant.control else trial.KILLED)
+    assert mutant.control or found["host"] == "tests"
+
+
 def test_a_check_that_fails_without_a_mutant_kills_none(gl, quick):
     task = Task("output", "blackbody", "gl", "stock")
     with closing(Quick("stock")) as same:

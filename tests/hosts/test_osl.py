@@ -11,8 +11,10 @@ from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts.osl import trees
 from mxeon.hosts.osl.points import Column
 from mxeon.hosts.osl.trees import keys_of
+from mxeon.models.diffuse import formulas
+from mxeon.models.media.emission import conical_edf
 from mxeon.shaders.generation import generate
-from mxeon.shaders.nodes import document_text, lobe_text, material_text, node_text
+from mxeon.shaders.nodes import connection_text, document_text, lobe_text, material_text, node_text
 
 WO = np.tile([0.6, 0.0, 0.8], (5, 1))
 COLORS = np.linspace(0.0, 1.0, 15).reshape(5, 3).astype(np.float32).astype(np.float64)
@@ -201,3 +203,100 @@ def test_a_text_that_reads_the_view_is_run_for_each_view():
     view = Column("vector", np.eye(3)[:2])
     assert len(set(keys_of("color c = x;", columns, view, 2))) == 1
     assert len(set(keys_of("color c = dot(I, N);", columns, view, 2))) == 2
+
+
+# --- what the profile for Cycles calls, in Cycles' meaning -----------------------------------------
+
+COUNT = 256
+
+
+def sampled(rng, above=True):
+    w = rng.standard_normal((COUNT, 3))
+    w[:, 2] = np.abs(w[:, 2]) if above else w[:, 2]
+    return w / np.linalg.norm(w, axis=1, keepdims=True)
+
+
+def weighed(tree, factor=1.0):
+    """The closures that scatter or emit, each with the product of its factors."""
+    if tree is None or tree.name == "transparent":
+        return []
+    if not tree.parts:
+        return [(factor, tree)]
+    own = np.asarray(tree.arguments.get("factor", 1.0))
+    factor = factor * (own.reshape(-1, 1) if own.ndim == 1 else own)
+    return [each for part in tree.parts for each in weighed(part, factor)]
+
+
+def for_cycles(host, node, wo, inputs, old="", new=""):
+    kind = "EDF" if node.endswith("edf") else "BSDF"
+    bound = connection_text(kind.lower(), kind, "lobe")
+    surface = node_text("surface", "surfaceshader", "shading", bound)
+    text = document_text(node_text(node, kind, "lobe") + surface)
+    [made] = generate(text, "osl", profile="cycles")
+    found = host.trees(altered(made, old, new) if old else made, wo, inputs)
+    return [(each.rows, *leaf) for each in found for leaf in weighed(each.tree)]
+
+
+@pytest.mark.filterwarnings("ignore::mxeon.shaders.generation.ApproximationWarning")
+@pytest.mark.parametrize(
+    ("node", "flag", "model", "largest"),
+    [
+        ("eon_diffuse_bsdf", None, formulas.eon_brdf, 1.0),
+        ("oren_nayar_diffuse_bsdf", 1, formulas.eon_brdf, 1.0),
+        ("oren_nayar_diffuse_bsdf", 0, formulas.qon_brdf, 0.5 * np.pi),
+    ],
+)
+def test_the_closures_for_cycles_are_the_model_to_the_roundings(host, node, flag, model, largest):
+    """Cycles' closure is FON and a lobe with a factor of albedo too many; QON is one where s >= 0."""
+    rng = np.random.default_rng(1)
+    wo, wi = sampled(rng), sampled(rng)
+    wi[:, :2] *= np.where((wo[:, :2] * wi[:, :2]).sum(axis=1, keepdims=True) < 0.0, -1.0, 1.0)
+    inputs = {"weight": rng.random(COUNT), "color": rng.random((COUNT, 3))}
+    inputs["roughness"] = largest * rng.random(COUNT) ** 2
+    inputs = {name: np.float64(np.float32(each)) for name, each in inputs.items()}
+    if flag is not None:
+        inputs["energy_compensation"] = np.full(COUNT, flag)
+    total = np.zeros((COUNT, 3))
+    for rows, factor, closure in for_cycles(host, node, wo, inputs):
+        color, rough = closure.arguments["color"].T, closure.arguments["roughness"]
+        fon, eon = (
+            each(wo[rows], wi[rows], color, rough)
+            for each in (formulas.fon_brdf, formulas.eon_brdf)
+        )
+        total[rows] += factor * (fon + color * (eon - fon)).T
+    expected = inputs["weight"] * model(wo, wi, inputs["color"].T, inputs["roughness"])
+    error = np.pi * wi[:, 2] * np.abs(total.T - expected)
+    assert error.max() <= 4 * 2.0**-24
+
+
+@pytest.mark.parametrize("soft", [True, False])
+def test_the_cone_for_cycles_is_the_model_on_both_sides(host, soft):
+    """In Cycles I points to the viewer, to whom the normal is turned: the other way round than in OSL."""
+    rng = np.random.default_rng(1)
+    wo, inner = sampled(rng, above=False), 170.0 * rng.random(COUNT)
+    outer = inner + 60.0 * rng.random(COUNT) + 1.0 if soft else inner * rng.random(COUNT)
+    inputs = {"color": rng.random((COUNT, 3)), "inner_angle": inner, "outer_angle": outer}
+    inputs = {name: np.float64(np.float32(each)) for name, each in inputs.items()}
+    turned = {**inputs, "normal": np.sign(wo[:, 2:]) * [[0.0, 0.0, 1.0]]}
+    total = np.zeros((COUNT, 3))
+    for rows, factor, closure in for_cycles(
+        host, "conical_edf", -wo, turned, "backfacing()", "(dot(vector(0.0, 0.0, 1.0), I) < 0.0)"
+    ):
+        total[rows] += factor * closure.arguments["color"]
+    angles = (inputs["inner_angle"], inputs["outer_angle"])
+    assert np.abs(total - conical_edf(wo, inputs["color"], *angles)).max() <= 1e-5
+
+
+def test_the_walk_for_cycles_has_the_albedo_in_its_weight(host):
+    """Cycles divides the light of a random walk by the albedo."""
+    rng = np.random.default_rng(1)
+    inputs = {"weight": rng.random(COUNT), "color": rng.random((COUNT, 3))}
+    inputs |= {"radius": rng.random((COUNT, 3)), "anisotropy": 2.0 * rng.random(COUNT) - 1.0}
+    inputs = {name: np.float64(np.float32(each)) for name, each in inputs.items()}
+    inputs["normal"] = np.float64(np.float32(sampled(rng)))
+    [(rows, factor, closure)] = for_cycles(host, "subsurface_bsdf", sampled(rng), inputs)
+    assert closure.name == "subsurface_bssrdf" and len(rows) == COUNT
+    for name in ("color", "radius", "anisotropy", "normal"):
+        assert np.array_equal(closure.arguments[name], inputs[name][rows]), name
+    expected = (inputs["weight"][:, np.newaxis] * inputs["color"])[rows]
+    assert np.abs(factor - expected).max() <= 2.0**-24

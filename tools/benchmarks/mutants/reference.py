@@ -12,27 +12,33 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from tools.benchmarks.mutants.mutant import ROOT, Mutant
+from tools.benchmarks.mutants.mutant import FOLDERS, ROOT, Mutant
 
 TESTS = "tests"  # in the place of a host
 FOLDER = "tests/models"
 OPTIONS = ("-x", "-q", "--tb=line", "-rfE", "-p", "no:cacheprovider", "--no-header")
 FAILED = re.compile(r"^(?:FAILED|ERROR) \S*?(\w+\.py)(?:::(\w+))?.*?(?: - (.*))?$", re.MULTILINE)
 WIDTH = {"COLUMNS": "200"}  # of pytest's lines, lest it cut the messages
+BLENDER = {"MXEON_CYCLES_PYTHON": f"{ROOT}/.venv-cycles/bin/python"}  # which a copy does not have
 PASSED, NO_TEST = 0, 5  # exit statuses of pytest
 
 
 def trial_of_reference(mutant: Mutant) -> dict[str, Any] | None:
     """The first test that fails, or None: those named for the file are asked first, then all."""
+    named = tuple(f"{FOLDER}/{name}" for name in mutant.tests)
+    return trial_of_tests(mutant, (named,) if mutant.equivalent else (named, (FOLDER,)))
+
+
+def trial_of_tests(mutant: Mutant, stages: Sequence[tuple[str, ...]]) -> dict[str, Any] | None:
+    """The first of some tests that fails on a copy of mxeon and of eonlib, or None."""
     with TemporaryDirectory(prefix="mxeon-mutant-") as base:
-        copy = Path(base, "python")
-        shutil.copytree(ROOT / "python", copy)
+        for folder in ("python", *FOLDERS):
+            shutil.copytree(ROOT / folder, Path(base, folder))
         for file, text in mutant.texts().items():
             Path(base, file).write_text(text, encoding="utf-8")
-        named = tuple(f"{FOLDER}/{name}" for name in mutant.tests)
-        for tests in (named,) if mutant.equivalent else (named, (FOLDER,)):
+        for tests in stages:
             assert_pass(tests)
-            if failure := first_failure(copy, tests):
+            if failure := first_failure(Path(base, "python"), tests):
                 return failure
     return None
 
@@ -49,7 +55,7 @@ def first_failure(package: Path, tests: Sequence[str]) -> dict[str, str] | None:
     ended = subprocess.run(
         [sys.executable, "-m", "pytest", *OPTIONS, *tests],
         cwd=ROOT,
-        env=os.environ | WIDTH | {"PYTHONPATH": str(package)},
+        env=BLENDER | os.environ | WIDTH | {"PYTHONPATH": str(package)},
         capture_output=True,
         text=True,
         check=False,

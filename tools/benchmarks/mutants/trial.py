@@ -23,12 +23,14 @@ from mxeon.shaders.generation import generate
 from tools.benchmarks.mutants.mutant import FOLDERS, ROOT, Mutant
 from tools.benchmarks.mutants.nodes import changed_nodes, node_tasks
 from tools.benchmarks.mutants.quick import Quick
-from tools.benchmarks.mutants.reference import TESTS, trial_of_reference
+from tools.benchmarks.mutants.reference import TESTS, trial_of_reference, trial_of_tests
 
 KILLED, SURVIVED = "killed", "survived"
 CRASHED = "crashed"  # a traceback in place of a verdict
 TEXT = "text"
 
+# What Cycles cannot show exactly or at all, tests run in Blender's OSL.
+PROFILE, PROFILE_TESTS = "genosl/cycles/", ("tests/hosts/test_osl.py",)
 NOISY = ("environment", "furnace")  # checks that take Cycles longest
 # Files that no shader for gl holds: there the gl host has nothing to see.
 ON_CYCLES = ("genosl/",)
@@ -49,9 +51,19 @@ CHANGED = {
 def trial(mutant: Mutant, judge: Judge, quick: Quick, every: bool = False) -> dict[str, Any]:
     """Verdict on a mutant, and the failures that it caused on the first host that saw any."""
     if mutant.tests:
-        failure = trial_of_reference(mutant)
-        found = {"host": TESTS, "failures": [failure]} if failure else {}
-        return {"verdict": KILLED if failure else SURVIVED} | found
+        return _by_tests(trial_of_reference(mutant))
+    found = _on_hosts(mutant, judge, quick, every)
+    if found["verdict"] == SURVIVED and mutant.file.startswith(PROFILE):
+        return _by_tests(trial_of_tests(mutant, (PROFILE_TESTS,)))
+    return found
+
+
+def _by_tests(failure: dict[str, Any] | None) -> dict[str, Any]:
+    found = {"host": TESTS, "failures": [failure]} if failure else {}
+    return {"verdict": KILLED if failure else SURVIVED} | found
+
+
+def _on_hosts(mutant: Mutant, judge: Judge, quick: Quick, every: bool) -> dict[str, Any]:
     nodes = bool(changed_nodes(mutant))
     sources = nodes and not any(file.endswith(".mtlx") for file in mutant.texts())
     with (wrong_sources if sources else wrong_library)(mutant) as path:

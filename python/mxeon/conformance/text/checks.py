@@ -318,18 +318,6 @@ def weighted_layer(weight: Any, layer: Closure, base: Any = (), normal: Any = No
     return Closure(**{**layer, "normal": normal, "weight": layer["weight"] * weight})
 
 
-def mx_oren_nayar_diffuse_bsdf(
-    mxp_weight: Any = 1.0,
-    mxp_color: Any = 0.18,
-    mxp_roughness: Any = 0.0,
-    mxp_normal: Any = None,
-    mxp_energy_compensation: Any = 0,
-) -> Closure:
-    """FON, and with the flag a white lobe beside it."""
-    layer = diffuse_reflection_bsdf(mxp_color, mxp_roughness, mxp_energy_compensation)
-    return weighted_layer(mxp_weight, layer, normal=mxp_normal)
-
-
 def oren_nayar_diffuse_bsdf(normal: Any, color: Any, roughness: Any, *keywords: Any) -> Closure:
     given = dict(zip(keywords[::2], keywords[1::2], strict=True))
     flag = given.pop(FLAG, np.array([[0]]))
@@ -340,14 +328,23 @@ def oren_nayar_diffuse_bsdf(normal: Any, color: Any, roughness: Any, *keywords: 
     return Closure(normal=normal, color=color, roughness=roughness, energy_compensation=flag)
 
 
+UP = np.array([[0.0, 0.0, 1.0]])  # the normal of the surface, which is not the node's
 FUNCTIONS: Mapping[str, Mapping[str, Any]] = {
-    "osl": {"oren_nayar_diffuse_bsdf": oren_nayar_diffuse_bsdf},
+    "osl": {"oren_nayar_diffuse_bsdf": oren_nayar_diffuse_bsdf, "N": UP},
     "mdl": {
+        "state::normal": lambda: UP,
         "material": lambda *, surface: surface,
         "material_surface": lambda *, scattering: scattering,
         "df::weighted_layer": weighted_layer,
         "df::diffuse_reflection_bsdf": diffuse_reflection_bsdf,
-        PBRLIB: mx_oren_nayar_diffuse_bsdf,
+        # FON, and with the flag a white lobe beside it.
+        PBRLIB: lambda mxp_weight, mxp_color, mxp_roughness, mxp_normal, mxp_energy_compensation: (
+            weighted_layer(
+                mxp_weight,
+                diffuse_reflection_bsdf(mxp_color, mxp_roughness, mxp_energy_compensation),
+                normal=mxp_normal,
+            )
+        ),
     },
 }
 
