@@ -19,18 +19,12 @@ from mxeon.errors import NotRun
 from tools.benchmarks import record
 from tools.benchmarks.check import CACHE
 
-GROUPS = (
-    "shaders", "noise", "materials", "instructions", "registers", "shares", "cycles", "models", "values",
-    "tool", "check",
-)  # fmt: skip
-QUICK = {
+QUICK = {  # sizes of each group with --quick
     "shaders": {"rounds": 5},
-    "noise": {"rounds": 3, "invocations": 2**12, "size": 64, "pictures": 8, "spokes": 6},
+    "noise": {"rounds": 3, "size": 64, "pictures": 8, "spokes": 6},
     "materials": {"processes": 3, "size": 256},
     "instructions": {"nodes": ("oren_nayar", "dielectric_bsdf")},
     "registers": {"nodes": ("oren_nayar", "dielectric_bsdf")},
-    "shares": {"nodes": ("dielectric_bsdf",)},
-    "cycles": {"rounds": 2, "size": 32, "samples": (16,)},
     "models": {"rounds": 3, "pairs": (10_000, 100_000)},
     "values": {"rounds": 2, "pairs": 100_000, "calls": 200},
     "tool": {"rounds": 2, "counts": (1, 10), "documents": 10},
@@ -41,7 +35,7 @@ OUTPUT = Path(__file__).resolve().parents[2] / "out" / "benchmarks"
 
 def measure(options, file):
     """Measure the groups that are asked for; each is printed and kept as soon as it is done."""
-    for name in options.groups or GROUPS:
+    for name in options.groups or QUICK:
         sizes, start = dict(QUICK[name]) if options.quick else {}, time.monotonic()
         kept = partial(record.write, file, kind=options.kind, start=start)
         if name in ("materials", "check"):  # the longest ones keep each part
@@ -58,16 +52,16 @@ def measure(options, file):
 
 def main(arguments=None):
     parser = argparse.ArgumentParser(prog="benchmarks", description=__doc__.splitlines()[0])
-    parser.add_argument("groups", nargs="*", metavar="GROUP", help=", ".join(GROUPS))
+    parser.add_argument("groups", nargs="*", metavar="GROUP", help=", ".join(QUICK))
     parser.add_argument("--quick", action="store_true", help="small sizes, few rounds")
     parser.add_argument(
         "--kind", default="", help="kind of machine; its results stand beside others"
     )
     parser.add_argument("--output", type=Path, default=OUTPUT, help="folder of the results")
     options = parser.parse_args(arguments)
-    unknown = set(options.groups) - set(GROUPS)
+    unknown = set(options.groups) - QUICK.keys()
     if unknown:
-        parser.error(f"group must be one of {', '.join(GROUPS)}; got {', '.join(unknown)}")
+        parser.error(f"group must be one of {', '.join(QUICK)}; got {', '.join(unknown)}")
     file = options.output / "performance.json"
     with patch.dict(os.environ, {CACHE: "true"}):  # or a compilation is read from a file
         groups = list(measure(options, file))

@@ -14,9 +14,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from subprocess import Popen
-from tempfile import NamedTemporaryFile, TemporaryDirectory, TemporaryFile
-from threading import Timer
+from subprocess import PIPE, Popen, TimeoutExpired
+from tempfile import NamedTemporaryFile, TemporaryDirectory
 
 import numpy as np
 
@@ -71,24 +70,23 @@ def job(*options, cache=None, longest=None):
     environment = {name: value for name, value in os.environ.items() if name != CACHE}
     environment |= {} if cache is None else {FOLDER: str(cache)}
     command = [sys.executable, "-P", "-m", "mxeon", "check", "--json", *options]
-    with TemporaryFile() as output, TemporaryFile() as errors, NamedTemporaryFile() as size:
+    with NamedTemporaryFile() as size:
         start = time.perf_counter()
         launch = [sys.executable, "-ISc", LAUNCHER, size.name, *command]
-        process = Popen(launch, stdout=output, stderr=errors, env=environment)
-        stop = Timer(longest or 0.0, process.terminate)
-        if longest:
-            stop.start()
-        process.wait()
+        process = Popen(launch, stdout=PIPE, stderr=PIPE, text=True, env=environment)
+        try:
+            text, errors = process.communicate(timeout=longest)
+        except TimeoutExpired:
+            process.terminate()
+            process.communicate()
+            text, errors = "", ""
         seconds = time.perf_counter() - start
-        stop.cancel()
-        output.seek(0)
-        errors.seek(0)
-        text, memory = output.read(), float(size.read() or 0.0) / 1024.0
-        if longest and seconds >= longest:
-            return Job(seconds, memory, np.inf, True)
-        if not text:
-            raise RuntimeError(f"{' '.join(command)}: {errors.read().decode().strip()}")
-        counts = json.loads(text)["counts"]
+        memory = float(size.read() or 0.0) / 1024.0
+    if not text and not errors:
+        return Job(seconds, memory, np.inf, True)
+    if not text:
+        raise RuntimeError(f"{' '.join(command)}: {errors.strip()}")
+    counts = json.loads(text)["counts"]
     wrong = np.inf if not counts["passed"] else float(counts["failed"])
     return Job(seconds, memory, wrong)
 

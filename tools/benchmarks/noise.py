@@ -1,12 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Equal-noise time of the samplers of EON: variance of a sample times the time that it takes.
+"""Equal-noise time of the samplers of EON: the variance of a sample times the time of a path.
 
-The picture is a ball at REFLECTANCE under one of eight lights, one sample per pixel. For seven lights
-the variance of each pixel is an integral over the light, by `tools.benchmarks.lights`: nothing is random.
-For the scene of figure 1 it is that of independent pictures of the path tracer at 50 bounces.
-
-A combined sampler draws from the light or from the BRDF with probability 1/2 each and divides by the
-mean of both densities: the balance heuristic of one sample [Veach1995].
+The picture is a ball at REFLECTANCE under one light, one sample per pixel. The variance of each pixel is an
+integral over the light, so nothing is random. For the scene of figure 1 it is that of independent pictures
+of the path tracer at 50 bounces.
 """
 
 from dataclasses import replace
@@ -17,73 +14,93 @@ import numpy as np
 from mxeon.hosts import gl
 from mxeon.models.diffuse.brdf import eon_brdf
 from mxeon.models.sampling import cosine_pdf, eon_cltc_pdf, eon_pdf
-from tools.benchmarks import rivals, shaders
-from tools.benchmarks.lights import LIGHTS, local, points
-from tools.benchmarks.rounds import Group, clock_of, figure, interleave, less, scaled
+from tools.benchmarks.rounds import Group, clock_of, figure, interleave, scaled
 from tools.paper.renders import CLAY, FRONT, STAGE
 from tools.paper.tracer import Trace, trace
 
 REFLECTANCE = 0.8
-ROUGHNESS = (0.25, 0.5, 1.0)  # of three balls whose variances are added
-SAMPLERS = ("cosine", "CLTC", "exact")
-TRACED = {"cosine": "cosine", "CLTC": "eon_cltc", "exact": "eon"}
+ROUGHNESS = (0.25, 0.5, 1.0)  # of three balls whose variances are averaged
+SAMPLERS = {"cosine": "cosine", "CLTC": "eon_cltc", "exact": "eon"}  # the tracer's names
 SCENE = "figure 1, 50 bounces"
-FUNCTIONS, PATHS = "functions", "paths"  # what is timed
+STEPS = 64
+UP, VIEWER, RIGHT = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
+WINDOW = np.array([-0.8, 0.0, 0.6])
 
-# The light of the combined samplers that are timed: a cone of 26 degrees about (0.6, 0, 0.8).
-LIGHT = """
-vec3 light_sample(float u1, float u2)
-{
-    float z = 1.0 - 0.1 * u1, S = sqrt(1.0 - z * z), phi = 2.0 * EON_PI * u2;
-    float x = S * cos(phi);
-    return vec3(0.8 * x + 0.6 * z, S * sin(phi), 0.8 * z - 0.6 * x);
+
+def frame(axis):
+    """Three axes in columns, the last one `axis`."""
+    x = np.cross(UP if abs(axis[1]) < 0.9 else VIEWER, axis)
+    x /= np.linalg.norm(x)
+    return np.stack([x, np.cross(axis, x), axis], axis=1)
+
+
+def zone(axis, low, high):
+    """Directions whose cosine with an axis lies between two, with their solid angles and radiance 1."""
+    cosine = low + (high - low) * (np.arange(STEPS) + 0.5) / STEPS
+    azimuth = 2.0 * np.pi * (np.arange(2 * STEPS) + 0.5) / (2 * STEPS)
+    cosine, azimuth = (grid.ravel() for grid in np.meshgrid(cosine, azimuth, indexing="ij"))
+    sine, one = np.sqrt(1.0 - cosine**2), np.ones_like(cosine)
+    local = np.stack([sine * np.cos(azimuth), sine * np.sin(azimuth), cosine], axis=-1)
+    return local @ frame(axis).T, one * 2.0 * np.pi * (high - low) / len(local), one
+
+
+def overcast():
+    """The overcast sky of the CIE, (1 + 2 y) / 3."""
+    wi, solid_angle, _ = zone(UP, 0.0, 1.0)
+    return wi, solid_angle, (1.0 + 2.0 * wi[:, 1]) / 3.0
+
+
+def window():
+    """A square of 30 degrees on the left."""
+    half = np.tan(np.radians(15.0))
+    side = half * (2.0 * (np.arange(STEPS) + 0.5) / STEPS - 1.0)
+    x, y = (grid.ravel() for grid in np.meshgrid(side, side))
+    distance, one = np.sqrt(1.0 + x * x + y * y), np.ones_like(x)
+    wi = np.stack([x, y, one], axis=-1) / distance[:, np.newaxis]
+    return wi @ frame(WINDOW).T, (2.0 * half) ** 2 / (distance**3 * len(wi)), one
+
+
+# Directions, solid angles and radiances, which serve as the quadrature.
+LIGHTS = {
+    "uniform": zone(UP, -1.0, 1.0),
+    "overcast sky": overcast(),
+    "half space": zone(RIGHT, 0.0, 1.0),
+    "window": window(),
+    "horizon band": zone(UP, 0.0, np.sin(np.radians(10.0))),
+    "lamp at the viewer": zone(VIEWER, np.cos(np.radians(10.0)), 1.0),
 }
-float light_pdf(vec3 wi)
-{
-    return 0.6 * wi.x + 0.8 * wi.z > 0.9 ? 1.0 / (0.2 * EON_PI) : 0.0;
-}
-"""
 
 
-def densities(wo, wi, roughness):
-    """Density of each sampler, by its name."""
-    return {
+def normals(rings=10, spokes=20):
+    """Normals of the ball at points that lie evenly in its picture."""
+    radius = np.sqrt((np.arange(rings) + 0.5) / rings)
+    azimuth = 2.0 * np.pi * (np.arange(spokes) + 0.5) / spokes
+    radius, azimuth = (grid.ravel() for grid in np.meshgrid(radius, azimuth, indexing="ij"))
+    z = np.sqrt(1.0 - radius**2)
+    return np.stack([radius * np.cos(azimuth), radius * np.sin(azimuth), z], axis=-1)
+
+
+def pixel_variances(light, normal, roughness):
+    """Variance of one sample of a pixel, by the sampler's name."""
+    directions, solid_angle, radiance = light
+    wi = directions @ frame(normal)
+    above = wi[:, 2] > 0.0
+    wi, weight, radiance = wi[above], solid_angle[above], radiance[above]
+    wo = VIEWER @ frame(normal)
+    value = eon_brdf(wo, wi, REFLECTANCE, roughness)[:, 0] * wi[:, 2] * radiance
+    densities = {
         "cosine": cosine_pdf(wi),
         "CLTC": eon_cltc_pdf(wo, wi, roughness),
         "exact": eon_pdf(wo, wi, roughness, rho=REFLECTANCE),
     }
-
-
-def pixel_variances(light, normal, roughness):
-    """Variance of one sample of a pixel, by the sampler's name, alone and combined."""
-    wi = local(normal, light.wi)
-    above = wi[:, 2] > 0.0
-    wi, weight = wi[above], light.solid_angle[above]
-    wo = local(normal, np.array([[0.0, 0.0, 1.0]]))
-    value = eon_brdf(wo, wi, REFLECTANCE, roughness)[:, 0] * wi[:, 2] * light.radiance[above]
     mean = value @ weight
-    found = {}
-    for name, pdf in densities(wo, wi, roughness).items():
-        found[name] = value**2 / pdf @ weight - mean**2
-        both = 0.5 * (pdf + light.pdf[above])
-        found[f"{name} + light"] = value**2 / both @ weight - mean**2
-    return {name: max(variance, 0.0) for name, variance in found.items()}
+    return {name: max(value**2 / p @ weight - mean**2, 0.0) for name, p in densities.items()}
 
 
-def variances(light, normals):
+def variances(light, spokes):
     """Mean over pixels and balls of the variance of one sample, by the sampler's name."""
-    pixels = [pixel_variances(light, normal, r) for normal in normals for r in ROUGHNESS]
-    return {name: float(np.mean([each[name] for each in pixels])) for name in pixels[0]}
-
-
-def traced_variances(host, pictures, size):
-    """Mean variance of one path in the scene of figure 1, by the sampler's name."""
-    found = {}
-    for name, sampler in TRACED.items():
-        still = replace(scene(sampler), size=size)
-        images = [trace(host, replace(still, seed=seed)) for seed in range(pictures)]
-        found[name] = float(np.var(images, axis=0, ddof=1, dtype=np.float64).mean())
-    return found
+    pixels = [pixel_variances(light, n, r) for n in normals(spokes=spokes) for r in ROUGHNESS]
+    return {name: float(np.mean([each[name] for each in pixels])) for name in SAMPLERS}
 
 
 def scene(sampler):
@@ -98,78 +115,39 @@ def reflection(sampler):
     return Trace("eon", sampler, parameter=1.0, samples=16, **lit)
 
 
-def statements():
-    """GLSL that draws and weighs one sample, by the sampler's name."""
-    value = rivals.TWIN.format("eon_brdf")
-    mixture = "wi = eon_cltc_sample(wo, u1, u2, roughness);", "eon_cltc_pdf(wo, wi, roughness)"
+def traced_variances(host, pictures, size):
+    """Mean variance of one path in the scene of figure 1, by the sampler's name."""
     found = {}
-    for name, (draw, pdf) in zip(SAMPLERS, (rivals.COSINE, mixture, rivals.EON), strict=True):
-        add = f"if (wi.z > 0.0) sum += {value} * (wi.z / "
-        found[name] = f"{{ {draw} {add}{pdf}); }}"
-        choice = f"if (turn < 0.5) wi = light_sample(u1, u2); else {{ {draw} }}"
-        both = f"(0.5 * (light_pdf(wi) + {pdf}))"
-        found[f"{name} + light"] = f"{{ {choice} {add}{both}); }}"
+    for name, sampler in SAMPLERS.items():
+        still = replace(scene(sampler), size=size)
+        images = [trace(host, replace(still, seed=seed)) for seed in range(pictures)]
+        found[name] = float(np.var(images, axis=0, ddof=1, dtype=np.float64).mean())
     return found
 
 
-def function_times(rounds, invocations, calls):
-    """Renderer, and seconds of sample, density and value in each round, by the sampler's name."""
-    device = shaders.Device(invocations)
-    device.source += LIGHT
-    kernels = {name: device.kernel(text) for name, text in statements().items()}
-    base = device.kernel(rivals.BASES["draw"])
-    runs = {n: partial(device.run, k, calls) for n, k in (kernels | {"base": base}).items()}
-    renderer = device.context.info["GL_RENDERER"]
-    seconds = interleave(runs, rounds, clock_of(renderer))
-    share = 1.0 / (invocations * calls)
-    net = {name: less(seconds[name], seconds["base"]) for name in kernels}
-    return renderer, {name: [share * each for each in values] for name, values in net.items()}
-
-
 def path_times(host, rounds, size, made):
-    """Seconds of a path of the tracer in each round, by the sampler's name."""
-    still = {name: replace(made(sampler), size=size) for name, sampler in TRACED.items()}
+    """Nanoseconds of a path of the tracer in each round, by the sampler's name."""
+    still = {name: replace(made(sampler), size=size) for name, sampler in SAMPLERS.items()}
     runs = {name: partial(trace, host, each) for name, each in still.items()}
     seconds = interleave(runs, rounds, clock_of(host.identity().device))
-    return {
-        name: [value / (size * size * still[name].samples) for value in values]
-        for name, values in seconds.items()
-    }
+    return {n: np.array(v) * 1e9 / (size**2 * still[n].samples) for n, v in seconds.items()}
 
 
-def with_light(paths, functions):
-    """Times of paths, and of those of combined samplers: longer by what their functions add."""
-    longer = {
-        f"{name} + light": np.add(values, less(functions[f"{name} + light"], functions[name]))
-        for name, values in paths.items()
-    }
-    return paths | longer
-
-
-def relative(kind, light, variance, times):
-    """Figures of variance times time, over the least of those alone, round by round."""
-    products = {n: variance[n] * np.asarray(times[n]) for n in variance}
-    least = np.min([products[name] for name in SAMPLERS], axis=0)
-    return [
-        figure(f"{kind}: {light}: {name}", "x", list(np.divide(values, least)))
-        for name, values in products.items()
-    ]
-
-
-def measure(rounds=15, invocations=2**14, calls=256, size=128, pictures=48, spokes=20):
+def measure(rounds=15, size=128, pictures=48, spokes=20):
     """The `Group` of all lights."""
-    renderer, functions = function_times(rounds, invocations, calls)
     host = gl.Host()
-    paths = with_light(path_times(host, rounds, size, reflection), functions)
+    device = host.identity().device
+    paths = path_times(host, rounds, size, reflection)
     bounces = path_times(host, rounds, size, scene)
-    table = {light.title: variances(light, points(spokes=spokes)) for light in LIGHTS}
+    table = {title: variances(light, spokes) for title, light in LIGHTS.items()}
     table[SCENE] = traced_variances(host, pictures, size)
     host.close()
-    figures = [scaled(f"{FUNCTIONS}: {n}", "ns", values, 1e9) for n, values in functions.items()]
-    figures += [scaled(f"{PATHS}: {n}", "ns", values, 1e9) for n, values in paths.items()]
-    figures += [scaled(f"{PATHS}, {SCENE}: {n}", "ns", v, 1e9) for n, v in bounces.items()]
-    for light, variance in table.items():
-        figures += [figure(f"variance: {light}: {n}", "", [v]) for n, v in variance.items()]
-        figures += relative(FUNCTIONS, light, variance, functions)
-        figures += relative(PATHS, light, variance, bounces if light == SCENE else paths)
-    return Group("noise", f"Equal-noise time of sampling on {renderer}", tuple(figures))
+    figures = [scaled(f"a path: {n}", "ns", values, 1.0) for n, values in paths.items()]
+    figures += [scaled(f"a path, {SCENE}: {n}", "ns", v, 1.0) for n, v in bounces.items()]
+    for title, variance in table.items():
+        figures += [figure(f"variance: {title}: {n}", "", [v]) for n, v in variance.items()]
+        times = bounces if title == SCENE else paths
+        products = {n: v * times[n] for n, v in variance.items()}
+        least = np.min([*products.values()], axis=0)  # round by round
+        figures += [figure(f"{title}: {n}", "x", list(v / least)) for n, v in products.items()]
+    return Group("noise", f"Equal-noise time of sampling on {device}", tuple(figures))

@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Time and noise of pictures that Mitsuba renders with the BSDFs of mxeon.
+
+    python -m tools.benchmarks.mitsuba_pictures
+
+Writes the tables of docs/mitsuba.md, a ball under an even sky with each BSDF, and of docs/sampling.md: scenes
+whose surfaces are all EON, with 50 bounces, lights and BSDF sampled by multiple importance sampling, with exact
+samples and with samples of the cosine. All in llvm_ad_rgb; times are processor time of a compiled kernel, the
+least of some pictures, and the variance is that of independent pictures, averaged over pixels and channels.
+"""
+
+import re
+import time
+from importlib import import_module
+from pathlib import Path
+
+import numpy as np
+
+from mxeon.io.files import write_text
+from mxeon.mitsuba import register
+from mxeon.mitsuba.diffuse import EonPlugin, RoughDiffusePlugin, register_plugin
+from tools.benchmarks.values import mitsuba_version
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+COSINE, EXACT = "eon_by_cosine", "eon"
+COLOR = {"type": "rgb", "value": [0.5, 0.3, 0.2]}
+ROUGH = {"reflectance": COLOR, "roughness": 0.6}
+BSDFS = {
+    "diffuse": {"reflectance": COLOR},
+    "eon": ROUGH,
+    "principled": {"base_color": COLOR, "roughness": 0.55, "specular": 0.5},
+    "roughplastic": {"distribution": "ggx", "diffuse_reflectance": COLOR, "alpha": 0.3},
+    "dielectric_over_eon": ROUGH | {"alpha": 0.3, "ior": 1.5},
+    "openpbr_base": {
+        "base_color": COLOR,
+        "base_diffuse_roughness": 0.6,
+        "base_metalness": 0.25,
+        "specular_roughness": 0.55,
+    },
+}
+
+
+class EonByCosinePlugin(RoughDiffusePlugin):
+    """EON, sampled by the cosine."""
+
+    brdf = staticmethod(EonPlugin.brdf)
+
+
+def sensor(mi, fov, origin, target, size):
+    """A camera and its square film."""
+    look = mi.ScalarTransform4f().look_at(origin=origin, target=target, up=[0, 0, 1])
+    film = {"type": "hdrfilm", "width": size, "height": size, "rfilter": {"type": "box"}}
+    return {"type": "perspective", "fov": fov, "to_world": look, "film": film}
+
+
+def ball(mi, bsdf):
+    """A ball with a BSDF under an even sky."""
+    return {
+        "type": "scene",
+        "integrator": {"type": "path", "max_depth": 8},
+        "sky": {"type": "constant"},
+        "ball": {"type": "sphere", "bsdf": bsdf},
+        "sensor": sensor(mi, 30, [0, -5, 0], [0, 0, 0], 256),
+    }
+
+
+def eon(kind, color, roughness):
+    """A BSDF of Mitsuba."""
+    reflectance = {"type": "rgb", "value": list(color)}
+    return {"type": kind, "reflectance": reflectance, "roughness": roughness}
+
+
+def cornell_box(mi, kind, roughness):
+    """Mitsuba's Cornell box, whose surfaces are EON."""
+    scene = mi.cornell_box()
+    for name, each in scene.items():
+        if isinstance(each, dict) and each.get("type") == "diffuse":
+            scene[name] = eon(kind, each["reflectance"]["value"], roughness)
+    scene["sensor"]["film"] = sensor(mi, 1, [0, -1, 0], [0, 0, 0], 96)["film"]
+    return scene
+
+
+def balls(mi, kind, roughness):
+    """Three balls on the ground under an even sky."""
+    clay = {"type": "twosided", "bsdf": eon(kind, (0.8, 0.8, 0.8), roughness)}
+    ground = {"type": "rectangle", "to_world": mi.ScalarTransform4f().scale([20, 20, 1])}
+    spheres = {
+        f"ball{k + 2}": {"type": "sphere", "center": [1.7 * k, 0, 0.8], "radius": 0.8, "bsdf": clay}
+        for k in (-1, 0, 1)
+    }
+    return {
+        "type": "scene",
+        "sky": {"type": "constant", "radiance": {"type": "rgb", "value": [1.0, 1.0, 1.0]}},
+        "ground": ground | {"bsdf": clay},
+        "sensor": sensor(mi, 40, [0, -6, 2.5], [0, 0, 0.6], 96),
+    } | spheres
+
+
+SCENES = {"Cornell box": cornell_box, "three balls under an even sky": balls}
+
+
+def rendered(mi, scenes, pictures, samples):
+    """Pictures of each scene, and their processor times, rendered in turns; a first one is dropped."""
+    found = {name: [] for name in scenes}
+    for seed in range(pictures + 1):
+        for name, scene in scenes.items():
+            start = time.process_time()
+            image = np.array(mi.render(scene, spp=samples, seed=seed))[..., :3]
+            found[name].append((image, time.process_time() - start))
+    return {name: tuple(zip(*each[1:], strict=True)) for name, each in found.items()}
+
+
+def time_table(mi):
+    """The table of docs/mitsuba.md."""
+    import_module("drjit").set_thread_count(1)
+    scenes = {name: mi.load_dict(ball(mi, {"type": name} | row)) for name, row in BSDFS.items()}
+    times = {n: min(seconds) for n, (_, seconds) in rendered(mi, scenes, 5, 64).items()}
+    yield f"| BSDF, Mitsuba {mitsuba_version()} | seconds | of `diffuse` |\n|---|---|---|\n"
+    for name, each in times.items():
+        yield f"| `{name}` | {each:.2f} | {each / times['diffuse']:.2f} |\n"
+
+
+def noise_table(mi):
+    """The table of docs/sampling.md."""
+    head = ("roughness", "variance", "time", "variance times time")
+    yield f"| cosine / exact, Mitsuba {mitsuba_version()} | {' | '.join(head)} |\n{'|---' * 5}|\n"
+    integrator = {"type": "path", "max_depth": 50, "rr_depth": 50}
+    for title, make in SCENES.items():
+        for roughness in (0.25, 1.0):
+            scenes = {
+                kind: mi.load_dict(make(mi, kind, roughness) | {"integrator": integrator})
+                for kind in (COSINE, EXACT)
+            }
+            cosine, exact = (
+                (np.var(images, axis=0, ddof=1).mean(), min(seconds), np.mean(images))
+                for images, seconds in rendered(mi, scenes, 12, 16).values()
+            )
+            noise, seconds, mean = (a / b for a, b in zip(cosine, exact, strict=True))
+            if abs(mean - 1.0) > 0.01:
+                raise ValueError(f"{title}: the pictures differ by {mean - 1.0:.3f} of their mean")
+            cells = f"{noise:.2f} | {seconds:.2f} | {noise * seconds:.2f}"
+            yield f"| {title} | {roughness} | {cells} |\n"
+
+
+def main():
+    """Write both tables."""
+    mi = import_module("mitsuba")
+    mi.set_variant("llvm_ad_rgb")
+    register()
+    register_plugin(mi, COSINE, EonByCosinePlugin)
+    # Noise first: the table of times takes the other threads away.
+    for page, mark, rows in (
+        ("sampling.md", "mitsuba", noise_table),
+        ("mitsuba.md", "time", time_table),
+    ):
+        found = "".join(rows(mi))
+        print(found, end="")
+        block = re.compile(rf"(<!-- {mark} -->\n).*?(<!-- end -->)", re.DOTALL)
+        text = (DOCS / page).read_text(encoding="utf-8")
+        write_text(DOCS / page, block.sub(lambda m, found=found: m[1] + found + m[2], text))
+
+
+if __name__ == "__main__":
+    main()
