@@ -74,15 +74,16 @@ def job(*options, cache=None, longest=None):
         start = time.perf_counter()
         launch = [sys.executable, "-ISc", LAUNCHER, size.name, *command]
         process = Popen(launch, stdout=PIPE, stderr=PIPE, text=True, env=environment)
+        stopped = False
         try:
             text, errors = process.communicate(timeout=longest)
         except TimeoutExpired:
+            stopped = True
             process.terminate()
             process.communicate()
-            text, errors = "", ""
         seconds = time.perf_counter() - start
         memory = float(size.read() or 0.0) / 1024.0
-    if not text and not errors:
+    if stopped:
         return Job(seconds, memory, np.inf, True)
     if not text:
         raise RuntimeError(f"{' '.join(command)}: {errors.strip()}")

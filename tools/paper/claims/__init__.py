@@ -2,7 +2,7 @@
 """Claims as measurements with a bound, and the page "The paper, checked" that lists them."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,18 +23,22 @@ table is about the text of MaterialX, not about the paper.
 TALLY = "{count} claims: {holds} hold, {part} hold in part, {fails} fail."
 
 
+# A sentence with the numbers, and the values that are bounded.
+Measured = tuple[str, ArrayLike]
+Measure = Callable[[], Measured]
+ROUNDING = 1e-12  # by which a formula agrees with another form of itself
+
+
 @dataclass(frozen=True)
 class Claim:
     """A sentence or formula in print, its measurement, and the bound that it has to meet."""
 
     where: str  # place in the paper
     text: str  # the claim in our words
-    measure: Callable[
-        [], tuple[str, ArrayLike]
-    ]  # a sentence with the numbers, and the values that are bounded
-    required: str  # the bounded quantity, such as "difference"
-    least: float = -np.inf  # every value lies in [least, most]
-    most: float = np.inf
+    measure: Measure
+    required: str  # the bounded quantity
+    least: float  # every value lies in [least, most]
+    most: float
 
     def row(self) -> tuple[str, ...]:
         """Measure the claim; its row of the page, in the order of COLUMNS."""
@@ -50,13 +54,32 @@ class Claim:
         return f"in [{self.least:.3g}, {self.most:.3g}]"
 
 
-@dataclass(frozen=True)
+@dataclass
 class Section:
     """Claims under one heading."""
 
     heading: str
-    claims: Sequence[Claim]
     remark: str = ""  # below the table, for what cannot be measured
+    claims: list[Claim] = field(default_factory=list)
+
+    def claim(
+        self,
+        where: str,
+        text: str,
+        required: str = "difference",
+        *,
+        least: float = -np.inf,
+        most: float | None = None,
+    ) -> Callable[[Measure], Measure]:
+        """Decorate a measurement: the claim that its values lie in [least, most]; alone, that they are roundings."""
+        if most is None:
+            most = ROUNDING if least == -np.inf else np.inf
+
+        def add(measure: Measure) -> Measure:
+            self.claims.append(Claim(where, text, measure, required, least, most))
+            return measure
+
+        return add
 
 
 def verdict(values: ArrayLike, least: float, most: float) -> str:

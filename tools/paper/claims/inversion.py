@@ -4,12 +4,11 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from mxeon.models.diffuse import inversion
 from mxeon.models.diffuse.albedo import eon_albedo_avg, eon_albedo_dir
 from mxeon.models.diffuse.formulas import C1, C2
-from tools.paper.claims import Claim, Section
+from tools.paper.claims import Measured, Section
 
 COLORS = np.linspace(0.0, 1.0, 401)
 ROUGHNESS = np.linspace(0.0, 1.0, 101)
@@ -17,6 +16,8 @@ ROUNDING = 1e-14
 STATED = 3e-3
 # The rounding of float32: a form of float64 that is worse than this has failed.
 FLOAT32 = 2.0**-24
+SECTION = Section("Appendix A: inversion of the albedo")
+claim = SECTION.claim
 
 
 def rho(name: str) -> Any:
@@ -24,37 +25,9 @@ def rho(name: str) -> Any:
     return getattr(inversion, f"eon_rho_from_albedo_{name}")(COLORS, ROUGHNESS)
 
 
-def normal() -> tuple[str, ArrayLike]:
-    return _round_trip(eon_albedo_dir(1.0, rho("normal"), ROUGHNESS))
-
-
-def average() -> tuple[str, ArrayLike]:
-    return _round_trip(eon_albedo_avg(rho("avg"), ROUGHNESS))
-
-
-def _round_trip(back: np.ndarray) -> tuple[str, ArrayLike]:
+def _round_trip(back: np.ndarray) -> Measured:
     largest = np.abs(back - COLORS).max()
     return f"color off by {largest:.1e} there and back", largest
-
-
-def printed_root() -> tuple[str, ArrayLike]:
-    """Eq. (30) as printed, at low roughness; its error at the lowest."""
-    errors = {}
-    for r in (1e-3, 1e-6, 1e-9):
-        A, B = _quadratic(r)
-        root = (-B + np.sqrt(B * B + 4.0 * A * COLORS)) / (2.0 * A)
-        errors[r] = _error(root, r)
-    ours = "2 C d / (b + sqrt(b^2 + 4 c2 r d C)) needs no switch to a series"
-    return f"error of the printed form in float64: {_listed(errors)}; {ours}", errors[1e-9]
-
-
-def taylor() -> tuple[str, ArrayLike]:
-    """The series below Eq. (31); its error at roughness 0.01 and 0.1."""
-    errors = {}
-    for r in (0.01, 0.1, 1.0):
-        A, B = _quadratic(r)
-        errors[r] = _error(COLORS * (B * B - A * COLORS) / B**3, r)
-    return f"error {_listed(errors)}", [errors[0.01], errors[0.1]]
 
 
 def _quadratic(r: float) -> tuple[float, np.ndarray]:
@@ -71,15 +44,7 @@ def _listed(errors: dict[float, float]) -> str:
     return ", ".join(f"{error:.0e} at r = {r:g}" for r, error in errors.items())
 
 
-def polynomial_normal() -> tuple[str, ArrayLike]:
-    return _polynomial("normal")
-
-
-def polynomial_average() -> tuple[str, ArrayLike]:
-    return _polynomial("avg")
-
-
-def _polynomial(constraint: str) -> tuple[str, ArrayLike]:
+def _polynomial(constraint: str) -> Measured:
     """Largest errors of the paper's polynomial and of ours, and the place of the first."""
     error = np.abs(rho(f"{constraint}_approx") - rho(constraint))
     ours = np.abs(rho(f"{constraint}_refit_approx") - rho(constraint)).max()
@@ -89,28 +54,48 @@ def _polynomial(constraint: str) -> tuple[str, ArrayLike]:
     return f"{sentence}; our fit of the same form {100 * ours:.3f} %", error.max()
 
 
-_EXACT: dict[str, Any] = {"required": "error", "most": ROUNDING}
-_WITHIN: dict[str, Any] = {"required": "error", "most": STATED}
-SECTION = Section(
-    "Appendix A: inversion of the albedo",
-    (
-        Claim("Eqs. (30), (31)", "rho from the color at normal incidence", normal, **_EXACT),
-        Claim(
-            "below Eq. (31)",
-            "the root as printed fails at low roughness",
-            printed_root,
-            required="error at r = 1e-9",
-            least=FLOAT32,
-        ),
-        Claim(
-            "below Eq. (31)",
-            "a series serves at low roughness",
-            taylor,
-            required="error up to r = 0.1",
-            most=STATED,
-        ),
-        Claim("Eq. (32)", "within 0.3 %", polynomial_normal, **_WITHIN),
-        Claim("Eq. (33)", "rho from the average albedo", average, **_EXACT),
-        Claim("Eq. (34)", "within 0.3 %", polynomial_average, **_WITHIN),
-    ),
+@claim("Eqs. (30), (31)", "rho from the color at normal incidence", "error", most=ROUNDING)
+def normal() -> Measured:
+    return _round_trip(eon_albedo_dir(1.0, rho("normal"), ROUGHNESS))
+
+
+@claim(
+    "below Eq. (31)",
+    "the root as printed fails at low roughness",
+    "error at r = 1e-9",
+    least=FLOAT32,
 )
+def printed_root() -> Measured:
+    """Eq. (30) as printed, at low roughness; its error at the lowest."""
+    errors = {}
+    for r in (1e-3, 1e-6, 1e-9):
+        A, B = _quadratic(r)
+        root = (-B + np.sqrt(B * B + 4.0 * A * COLORS)) / (2.0 * A)
+        errors[r] = _error(root, r)
+    ours = "2 C d / (b + sqrt(b^2 + 4 c2 r d C)) needs no switch to a series"
+    return f"error of the printed form in float64: {_listed(errors)}; {ours}", errors[1e-9]
+
+
+@claim("below Eq. (31)", "a series serves at low roughness", "error up to r = 0.1", most=STATED)
+def taylor() -> Measured:
+    """The series below Eq. (31); its error at roughness 0.01 and 0.1."""
+    errors = {}
+    for r in (0.01, 0.1, 1.0):
+        A, B = _quadratic(r)
+        errors[r] = _error(COLORS * (B * B - A * COLORS) / B**3, r)
+    return f"error {_listed(errors)}", [errors[0.01], errors[0.1]]
+
+
+@claim("Eq. (32)", "within 0.3 %", "error", most=STATED)
+def polynomial_normal() -> Measured:
+    return _polynomial("normal")
+
+
+@claim("Eq. (33)", "rho from the average albedo", "error", most=ROUNDING)
+def average() -> Measured:
+    return _round_trip(eon_albedo_avg(rho("avg"), ROUGHNESS))
+
+
+@claim("Eq. (34)", "within 0.3 %", "error", most=STATED)
+def polynomial_average() -> Measured:
+    return _polynomial("avg")

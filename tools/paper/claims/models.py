@@ -17,7 +17,7 @@ from mxeon.models.diffuse.albedo import (
 from mxeon.models.diffuse.brdf import eon_brdf, fon_brdf, oren_nayar_brdf, qon_brdf, qon_fujii_brdf
 from mxeon.models.diffuse.formulas import C1, qon_a, qon_b
 from mxeon.models.diffuse.qon_albedo import qon_albedo_avg, qon_albedo_dir
-from tools.paper.claims import Claim, Section
+from tools.paper.claims import Measured, Section
 
 MU = np.array([0.0, 1e-3, 0.03, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0])
 FINE = np.linspace(0.0, 1.0, 10001)
@@ -28,6 +28,8 @@ RHO = np.array([0.18, 0.8, 1.0])
 ROUNDING = 1e-12
 # Full Oren-Nayar exceeds albedo 1 below this sigma; above it is called high.
 HIGH_SIGMA = 0.6
+SECTION = Section("Sections 2 and 3: the models")
+claim = SECTION.claim
 
 
 def pairs(count: int = 100_000) -> np.ndarray:
@@ -38,7 +40,7 @@ def pairs(count: int = 100_000) -> np.ndarray:
     return np.stack([S * np.cos(phi), S * np.sin(phi), z], axis=-1)
 
 
-def agreement(*errors: ArrayLike) -> tuple[str, ArrayLike]:
+def agreement(*errors: ArrayLike) -> Measured:
     """Largest error, which should be rounding."""
     largest = max(float(np.max(np.abs(error))) for error in errors)
     return f"largest difference {largest:.1e}", largest
@@ -51,7 +53,8 @@ def average(albedo: Callable[..., Any], *parameter: float) -> float:
     return float(np.sum(weight * np.sin(2.0 * theta) * albedo(np.cos(theta), *parameter)))
 
 
-def vector_form() -> tuple[str, ArrayLike]:
+@claim("Eqs. (1)-(4)", "the vector form of QON is its angular form")
+def vector_form() -> Measured:
     wo, wi = pairs()
     theta_o, theta_i = np.arccos(wo[:, 2]), np.arccos(wi[:, 2])
     phi = np.arctan2(wi[:, 1], wi[:, 0]) - np.arctan2(wo[:, 1], wo[:, 0])
@@ -61,29 +64,44 @@ def vector_form() -> tuple[str, ArrayLike]:
     return agreement((value - qon_brdf(wo, wi, 1.0, 0.7)[:, 0]) / np.maximum(g, 1.0))
 
 
-def qon_directional() -> tuple[str, ArrayLike]:
+@claim("Eqs. (5), (8)", "directional albedo of QON")
+def qon_directional() -> Measured:
     return agreement(
         *(qon_albedo_dir(MU, s) - albedo_dir_quadrature(qon_brdf, MU, 1.0, s)[:, 0] for s in SIGMA)
     )
 
 
-def qon_grazing() -> tuple[str, ArrayLike]:
+@claim("below Eq. (8)", "G_q tends to pi/2 at grazing")
+def qon_grazing() -> Measured:
     G = np.pi * (qon_albedo_dir(0.0, SIGMA) - qon_a(SIGMA)) / qon_b(SIGMA)
     return agreement(G - np.pi / 2.0)
 
 
-def qon_average() -> tuple[str, ArrayLike]:
+@claim("Eq. (9)", "average albedo of QON")
+def qon_average() -> Measured:
     return agreement(*(qon_albedo_avg(s) - average(qon_albedo_dir, s) for s in SIGMA))
 
 
-def qon_gain() -> tuple[str, ArrayLike]:
+@claim(
+    "below Eq. (9)",
+    "QON exceeds albedo 1 at grazing and low sigma",
+    "excess over 1",
+    least=ROUNDING,
+)
+def qon_gain() -> Measured:
     sigma = np.linspace(0.0, 0.5 * np.pi, 1001)
     albedo = qon_albedo_dir(0.0, sigma)
     place = f"E = {albedo.max():.4f} at grazing, sigma = {sigma[albedo.argmax()]:.2f}"
     return f"{place}; above 1 up to sigma = {sigma[albedo > 1.0].max():.2f}", albedo.max() - 1.0
 
 
-def full_gain() -> tuple[str, ArrayLike]:
+@claim(
+    "footnote 4",
+    "full Oren-Nayar exceeds 1 near grazing, except at high sigma",
+    f"excess over 1 below sigma = {HIGH_SIGMA}, shortfall above,",
+    least=ROUNDING,
+)
+def full_gain() -> Measured:
     """The distance of the largest albedo from 1, on the side that is claimed."""
     mu = np.array([1e-4, 1e-3, 0.01, 0.03, 0.1, 0.2])
     albedos = np.array([albedo_dir_quadrature(oren_nayar_brdf, mu, 1.0, s).max() for s in SIGMA])
@@ -92,55 +110,13 @@ def full_gain() -> tuple[str, ArrayLike]:
     return f"largest E for mu <= 0.2: {listed}", side * (albedos - 1.0)
 
 
-def fon_directional() -> tuple[str, ArrayLike]:
-    return agreement(
-        *(
-            fon_albedo_dir(MU, r) - albedo_dir_quadrature(fon_brdf, MU, 1.0, r)[:, 0]
-            for r in ROUGHNESS
-        )
-    )
-
-
-def fon_conserves() -> tuple[str, ArrayLike]:
-    albedo = fon_albedo_dir(FINE[:, np.newaxis], ROUGHNESS)
-    excess, grazing = albedo.max() - 1.0, np.abs(albedo[0] - 1.0).max()
-    return f"largest E = 1 + {excess:.1e}; at mu = 0, E = 1 to {grazing:.1e}", [excess, grazing]
-
-
-def quartic() -> tuple[str, ArrayLike]:
-    error = np.abs(fon_albedo_dir_approx(FINE, 1.0) - fon_albedo_dir(FINE, 1.0)).max()
-    return f"{100 * error:.3f} % at r = 1", error
-
-
-def quartic_conserves() -> tuple[str, ArrayLike]:
-    mu = np.linspace(0.0, 0.01, 10001)
-    albedo = fon_albedo_dir_approx(mu, 1.0)
-    excess = albedo.max() - 1.0
-    return f"E exceeds 1 by {excess:.1e}, for mu < {mu[albedo > 1.0].max():.4f}", excess
-
-
-def fon_average() -> tuple[str, ArrayLike]:
-    return agreement(*(fon_albedo_avg(r) - average(fon_albedo_dir, r) for r in ROUGHNESS))
-
-
-def fon_loses() -> tuple[str, ArrayLike]:
-    average_loss, largest = 1.0 - fon_albedo_avg(1.0), 1.0 - fon_albedo_dir(1.0, 1.0)
-    sentence = f"at r = 1, {100 * average_loss:.1f} % on average, {100 * largest:.1f} % at most"
-    return sentence, [average_loss, largest]
-
-
-def kink() -> tuple[str, ArrayLike]:
-    """Jumps of the slope of f in s where s = 0, roughest, both directions at the same angle."""
-    parts, ratios = [], []
-    for degrees in (5, 25, 60):
-        mu = np.cos(np.radians(degrees))
-        qon, fon = qon_b(0.5 * np.pi) / mu, (1.0 / mu - 1.0) / (1.0 + C1)
-        parts.append(f"{qon:.2g} / pi in QON and {fon:.2g} / pi in FON at {degrees}°")
-        ratios.append(fon / qon)
-    return f"at s = 0 the slope of f in s jumps by {', '.join(parts)}", ratios
-
-
-def rms_to_full() -> tuple[str, ArrayLike]:
+@claim(
+    "Section 1, [Fujii2013]",
+    "Fujii's QON resembles full Oren-Nayar",
+    "its rms over the least of the others",
+    most=1.0,
+)
+def rms_to_full() -> Measured:
     wo, wi = pairs()
     full = oren_nayar_brdf(wo, wi, 0.8, 0.25 * np.pi)[:, 0]
     values = {
@@ -156,7 +132,73 @@ def rms_to_full() -> tuple[str, ArrayLike]:
     return sentence, rms["Fujii's QON"] / nearest
 
 
-def printed_eon() -> tuple[str, ArrayLike]:
+@claim(
+    "Sections 1, 2.2",
+    "FON fixes QON's discontinuity and dark ring",
+    "jump in FON over jump in QON",
+    most=0.1,
+)
+def kink() -> Measured:
+    """Jumps of the slope of f in s where s = 0, roughest, both directions at the same angle."""
+    parts, ratios = [], []
+    for degrees in (5, 25, 60):
+        mu = np.cos(np.radians(degrees))
+        qon, fon = qon_b(0.5 * np.pi) / mu, (1.0 / mu - 1.0) / (1.0 + C1)
+        parts.append(f"{qon:.2g} / pi in QON and {fon:.2g} / pi in FON at {degrees}°")
+        ratios.append(fon / qon)
+    return f"at s = 0 the slope of f in s jumps by {', '.join(parts)}", ratios
+
+
+@claim("Eqs. (12), (13)", "directional albedo of FON")
+def fon_directional() -> Measured:
+    return agreement(
+        *(
+            fon_albedo_dir(MU, r) - albedo_dir_quadrature(fon_brdf, MU, 1.0, r)[:, 0]
+            for r in ROUGHNESS
+        )
+    )
+
+
+@claim(
+    "below Eq. (13)",
+    "FON conserves energy, and preserves it at grazing",
+    "excess over 1",
+    most=ROUNDING,
+)
+def fon_conserves() -> Measured:
+    albedo = fon_albedo_dir(FINE[:, np.newaxis], ROUGHNESS)
+    excess, grazing = albedo.max() - 1.0, np.abs(albedo[0] - 1.0).max()
+    return f"largest E = 1 + {excess:.1e}; at mu = 0, E = 1 to {grazing:.1e}", [excess, grazing]
+
+
+@claim("Eq. (14)", "the quartic is within 0.1 % of the albedo", "error", most=1e-3)
+def quartic() -> Measured:
+    error = np.abs(fon_albedo_dir_approx(FINE, 1.0) - fon_albedo_dir(FINE, 1.0)).max()
+    return f"{100 * error:.3f} % at r = 1", error
+
+
+@claim("Eq. (14)", "with it the albedo stays at most 1", "excess over 1", most=ROUNDING)
+def quartic_conserves() -> Measured:
+    mu = np.linspace(0.0, 0.01, 10001)
+    albedo = fon_albedo_dir_approx(mu, 1.0)
+    excess = albedo.max() - 1.0
+    return f"E exceeds 1 by {excess:.1e}, for mu < {mu[albedo > 1.0].max():.4f}", excess
+
+
+@claim("Eq. (15)", "average albedo of FON")
+def fon_average() -> Measured:
+    return agreement(*(fon_albedo_avg(r) - average(fon_albedo_dir, r) for r in ROUGHNESS))
+
+
+@claim("below Eq. (15)", "FON loses about 20 % at high roughness", "loss", least=0.15, most=0.25)
+def fon_loses() -> Measured:
+    average_loss, largest = 1.0 - fon_albedo_avg(1.0), 1.0 - fon_albedo_dir(1.0, 1.0)
+    sentence = f"at r = 1, {100 * average_loss:.1f} % on average, {100 * largest:.1f} % at most"
+    return sentence, [average_loss, largest]
+
+
+@claim("Eqs. (16), (19)", "EON as printed is EON as computed here")
+def printed_eon() -> Measured:
     """Eqs. (16) and (19) as printed, with divisions that vanish together."""
     wo, wi = pairs()
     errors = []
@@ -170,7 +212,8 @@ def printed_eon() -> tuple[str, ArrayLike]:
     return agreement(*errors)
 
 
-def series() -> tuple[str, ArrayLike]:
+@claim("Eq. (18)", "closed form of the series of bounces")
+def series() -> Measured:
     bounces, errors = np.arange(1, 400)[:, np.newaxis], []
     for r in ROUGHNESS:
         E = fon_albedo_avg(r)
@@ -179,7 +222,8 @@ def series() -> tuple[str, ArrayLike]:
     return agreement(*errors)
 
 
-def multiple_albedo() -> tuple[str, ArrayLike]:
+@claim("Eq. (20)", "albedo of the multiple-scattering lobe")
+def multiple_albedo() -> Measured:
     def multiple_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, r: float) -> Any:
         return eon_brdf(wo, wi, rho, r) - fon_brdf(wo, wi, rho, r)
 
@@ -190,11 +234,19 @@ def multiple_albedo() -> tuple[str, ArrayLike]:
     return agreement(albedo[..., 0] - share * lost / (1.0 - E))
 
 
-def furnace() -> tuple[str, ArrayLike]:
+@claim("Section 3", "EON passes the white furnace: E = 1 at rho = 1")
+def furnace() -> Measured:
     return agreement(*(albedo_dir_quadrature(eon_brdf, MU, 1.0, r)[:, 0] - 1.0 for r in ROUGHNESS))
 
 
-def eon_directional() -> tuple[str, ArrayLike]:
+@claim("Section 3", "EON is reciprocal")
+def reciprocal() -> Measured:
+    wo, wi = pairs()
+    return agreement(eon_brdf(wo, wi, RHO, 1.0) - eon_brdf(wi, wo, RHO, 1.0))
+
+
+@claim("Eq. (28)", "directional albedo of EON")
+def eon_directional() -> Measured:
     return agreement(
         *(
             eon_albedo_dir(MU, rho, r)[:, 0] - albedo_dir_quadrature(eon_brdf, MU, rho, r)[:, 0]
@@ -204,12 +256,8 @@ def eon_directional() -> tuple[str, ArrayLike]:
     )
 
 
-def reciprocal() -> tuple[str, ArrayLike]:
-    wo, wi = pairs()
-    return agreement(eon_brdf(wo, wi, RHO, 1.0) - eon_brdf(wi, wo, RHO, 1.0))
-
-
-def listing_1() -> tuple[str, ArrayLike]:
+@claim("Listing 1", "its exact albedo is exact in float32, to 1e-6", "error", most=1e-6)
+def listing_1() -> Measured:
     """The exact albedo of the listing in float32, in the order of its operations."""
     mu = np.append(np.float32(0.0), np.logspace(-6.0, 0.0, 100_001, dtype=np.float32))
     one, third = np.float32(1.0), np.float32(2.0 / 3.0)
@@ -221,81 +269,3 @@ def listing_1() -> tuple[str, ArrayLike]:
     at = mu[np.nanargmax(error)]
     sentence = f"{error[0]} at mu = 0; error up to {np.nanmax(error):.2e}, at mu = {at:.1e}"
     return sentence, [error[0], np.nanmax(error)]
-
-
-_AGREES: dict[str, Any] = {"required": "difference", "most": ROUNDING}
-_EXCEEDS: dict[str, Any] = {"required": "excess over 1", "most": ROUNDING}
-SECTION = Section(
-    "Sections 2 and 3: the models",
-    (
-        Claim("Eqs. (1)-(4)", "the vector form of QON is its angular form", vector_form, **_AGREES),
-        Claim("Eqs. (5), (8)", "directional albedo of QON", qon_directional, **_AGREES),
-        Claim("below Eq. (8)", "G_q tends to pi/2 at grazing", qon_grazing, **_AGREES),
-        Claim("Eq. (9)", "average albedo of QON", qon_average, **_AGREES),
-        Claim(
-            "below Eq. (9)",
-            "QON exceeds albedo 1 at grazing and low sigma",
-            qon_gain,
-            required="excess over 1",
-            least=ROUNDING,
-        ),
-        Claim(
-            "footnote 4",
-            "full Oren-Nayar exceeds 1 near grazing, except at high sigma",
-            full_gain,
-            required=f"excess over 1 below sigma = {HIGH_SIGMA}, shortfall above,",
-            least=ROUNDING,
-        ),
-        Claim(
-            "Section 1, [Fujii2013]",
-            "Fujii's QON resembles full Oren-Nayar",
-            rms_to_full,
-            required="its rms over the least of the others",
-            most=1.0,
-        ),
-        Claim(
-            "Sections 1, 2.2",
-            "FON fixes QON's discontinuity and dark ring",
-            kink,
-            required="jump in FON over jump in QON",
-            most=0.1,
-        ),
-        Claim("Eqs. (12), (13)", "directional albedo of FON", fon_directional, **_AGREES),
-        Claim(
-            "below Eq. (13)",
-            "FON conserves energy, and preserves it at grazing",
-            fon_conserves,
-            **_EXCEEDS,
-        ),
-        Claim(
-            "Eq. (14)",
-            "the quartic is within 0.1 % of the albedo",
-            quartic,
-            required="error",
-            most=1e-3,
-        ),
-        Claim("Eq. (14)", "with it the albedo stays at most 1", quartic_conserves, **_EXCEEDS),
-        Claim("Eq. (15)", "average albedo of FON", fon_average, **_AGREES),
-        Claim(
-            "below Eq. (15)",
-            "FON loses about 20 % at high roughness",
-            fon_loses,
-            required="loss",
-            least=0.15,
-            most=0.25,
-        ),
-        Claim("Eqs. (16), (19)", "EON as printed is EON as computed here", printed_eon, **_AGREES),
-        Claim("Eq. (18)", "closed form of the series of bounces", series, **_AGREES),
-        Claim("Eq. (20)", "albedo of the multiple-scattering lobe", multiple_albedo, **_AGREES),
-        Claim("Section 3", "EON passes the white furnace: E = 1 at rho = 1", furnace, **_AGREES),
-        Claim("Section 3", "EON is reciprocal", reciprocal, **_AGREES),
-        Claim("Eq. (28)", "directional albedo of EON", eon_directional, **_AGREES),
-        Claim(
-            "Listing 1",
-            "its exact albedo is exact in float32, to 1e-6",
-            listing_1,
-            required="error",
-            most=1e-6,
-        ),
-    ),
-)

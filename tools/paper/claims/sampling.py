@@ -5,18 +5,19 @@ At unit reflectance the weight is f cos(theta_i) / p, and its mean should be 1.
 """
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from mxeon.models.core.quadrature import hemisphere_nodes
 from mxeon.models.diffuse.brdf import eon_brdf
 from mxeon.models.sampling import SAMPLERS, cltc, ltc
-from tools.paper.claims import Claim, Section
+from tools.paper.claims import Measured, Section
 
 PDF = {sampler.name: sampler.pdf for sampler in SAMPLERS}
 # A sum over all quadrature nodes agrees with its closed form up to rounding.
 ROUNDING = 1e-12
 DEGREES = np.append(np.arange(0.0, 90.0, 3.0), [89.0, 89.9])
 COSINES = np.linspace(0.0, 1.0, 10001)
+SECTION = Section("Section 4: importance sampling")
+claim = SECTION.claim
 
 
 def moments(
@@ -37,13 +38,19 @@ def over_angles(name: str, roughness: float) -> np.ndarray:
     return np.transpose([moments(name, degrees, roughness) for degrees in DEGREES])
 
 
-def cosine_variance() -> tuple[str, ArrayLike]:
+@claim(
+    "Fig. 11", "cosine sampling: variance over 100 times larger at grazing", "ratio", least=100.0
+)
+def cosine_variance() -> Measured:
     normal, grazing = (moments("cosine", degrees, 1.0)[0] for degrees in (0.0, 89.9))
     sentence = f"{normal:.4f} at normal incidence, {grazing:.2f} at 89.9°"
     return f"{sentence}, {grazing / normal:.0f} times", grazing / normal
 
 
-def cosine_diverges() -> tuple[str, ArrayLike]:
+@claim(
+    "Fig. 11", "the variance of cosine sampling has a peak", "step over the step before", most=0.9
+)
+def cosine_diverges() -> Measured:
     """How the growth of the variance shrinks from one factor of 10 in mu to the next.
 
     Before a peak it would shrink. It does not: each factor of 10 adds (A r)^2 / 2 ln 10.
@@ -55,7 +62,76 @@ def cosine_diverges() -> tuple[str, ArrayLike]:
     return f"{sentence} of the step before, without a bound", growth[1] / growth[0]
 
 
-def gain() -> tuple[str, ArrayLike]:
+@claim("Section 4", "det of the inverse of M is positive everywhere", "det M", least=ROUNDING)
+def determinant() -> Measured:
+    """Determinant of the inverse of M over all cosines and roughnesses."""
+    a, b, c, d = (
+        entry(COSINES[:, np.newaxis], np.linspace(0.0, 1.0, 101))
+        for entry in (ltc.ltc_a, ltc.ltc_b, ltc.ltc_c, ltc.ltc_d)
+    )
+    det = c * (a - b * d)
+    return f"det M from {det.min():.3f} to {det.max():.3f}", det.min()
+
+
+@claim("Section 4", "general LTC wastes samples below the horizon", "share", least=1e-3)
+def wasted() -> Measured:
+    """Share of the samples of LTC that fall below the horizon."""
+    d = ltc.ltc_d(COSINES, 1.0)
+    share = 1.0 - cltc.cltc_kept_fraction(d)
+    at = COSINES[share.argmax()]
+    sentence = f"up to {100 * share.max():.2f} % of the samples at r = 1, at mu = {at:g}"
+    return sentence, share.max()
+
+
+@claim("Eq. (27), Listing 3", "density of CLTC integrates to 1", "error", most=1e-3)
+def normalized() -> Measured:
+    """The density of CLTC over a fine grid; its edge limits the quadrature."""
+    errors = []
+    for degrees in (0.0, 30.0, 60.0, 85.0):
+        wo, wi, projected = hemisphere_nodes(np.cos(np.radians(degrees)), 200)
+        errors.append(projected @ (PDF["cltc"](wo, wi, 1.0) / wi[:, 2]) - 1.0)
+    largest = np.max(np.abs(errors))
+    return f"integral off by {largest:.0e} (quadrature)", largest
+
+
+@claim("Listing 3", "no sample below the horizon", "z", least=0.0)
+def side_of_the_lune() -> Measured:
+    """Lowest draw of Listing 3 along the normal, where the fitted d is positive."""
+    mu = np.linspace(0.999, 1.0, 100_001)
+    d = ltc.ltc_d(mu, 1.0)
+    u1, u2 = np.random.default_rng(2).random((2, 200_000))
+    wh = cltc.cltc_clipped(u1, u2, -d[-1])
+    lowest = np.min(d[-1] * wh[:, 0] + wh[:, 2])
+    sentence = f"d > 0 for mu > {mu[d > 0.0].min():.5f}: up to {d.max():.1e} at r = 1"
+    return f"{sentence}, where the listing draws z down to {lowest:.1e}", lowest
+
+
+@claim("Fig. 11", "CLTC alone is biased", "loss", least=1e-4)
+def clipped_bias() -> Measured:
+    losses = {r: 1.0 - over_angles("cltc", r)[2].min() for r in (0.25, 0.5, 0.7, 1.0)}
+    listed = ", ".join(f"{100 * loss:.2f} % at r = {r:g}" for r, loss in losses.items())
+    return f"energy lost, at most over the angle: {listed}", list(losses.values())
+
+
+@claim("Fig. 11", "the mixture: small largest weight", "weight", most=1.5)
+def mixture_weight() -> Measured:
+    variance, largest, _ = over_angles("eon_cltc", 1.0)
+    return f"variance up to {variance.max():.4f}, weight up to {largest.max():.2f}", largest.max()
+
+
+@claim("Fig. 11", "the mixture: no bias", "error", most=ROUNDING)
+def mixture_mean() -> Measured:
+    error = np.abs(over_angles("eon_cltc", 1.0)[2] - 1.0).max()
+    return f"mean weight within {error:.0e} of 1", error
+
+
+@claim(
+    "Section 4, Fig. 13",
+    "the mixture: variance over 100 times smaller at grazing",
+    "ratio",
+    least=100.0,
+)
+def gain() -> Measured:
     """The variance of cosine sampling over that of the mixture."""
     parts, ratios = [], []
     for degrees in (60.0, 85.0, 89.0, 89.9, 90.0 - np.degrees(1e-6)):
@@ -65,23 +141,13 @@ def gain() -> tuple[str, ArrayLike]:
     return f"at r = 1 the ratio is {', '.join(parts)}", ratios
 
 
-def clipped_bias() -> tuple[str, ArrayLike]:
-    losses = {r: 1.0 - over_angles("cltc", r)[2].min() for r in (0.25, 0.5, 0.7, 1.0)}
-    listed = ", ".join(f"{100 * loss:.2f} % at r = {r:g}" for r, loss in losses.items())
-    return f"energy lost, at most over the angle: {listed}", list(losses.values())
-
-
-def mixture_weight() -> tuple[str, ArrayLike]:
-    variance, largest, _ = over_angles("eon_cltc", 1.0)
-    return f"variance up to {variance.max():.4f}, weight up to {largest.max():.2f}", largest.max()
-
-
-def mixture_mean() -> tuple[str, ArrayLike]:
-    error = np.abs(over_angles("eon_cltc", 1.0)[2] - 1.0).max()
-    return f"mean weight within {error:.0e} of 1", error
-
-
-def low_roughness() -> tuple[str, ArrayLike]:
+@claim(
+    "Section 4",
+    "the mixture turns into cosine sampling as r goes to 0",
+    "variance of the mixture over that of cosine",
+    most=1.0,
+)
+def low_roughness() -> Measured:
     """The variance of mixture and cosine, each averaged over the projected hemisphere."""
     weight = np.sin(np.radians(2.0 * DEGREES))
     parts, ratios = [], []
@@ -94,128 +160,9 @@ def low_roughness() -> tuple[str, ArrayLike]:
     return f"variance of mixture and cosine: {', '.join(parts)}", ratios
 
 
-def no_number() -> tuple[str, ArrayLike]:
+@claim("Listing 4", "defined for u1 in [0, 1] and r in [0, 1]", "u1 / P_u", least=0.0, most=1.0)
+def no_number() -> Measured:
     """The draw of Listing 4 divides u1 by P_u where u1 <= P_u."""
     with np.errstate(invalid="ignore"):
         u1 = np.float64(0.0) / np.float64(0.0**0.1)
     return f"at r = 0, u1 = 0: P_u = 0, u1 / P_u = {u1}", u1
-
-
-def determinant() -> tuple[str, ArrayLike]:
-    """Determinant of the inverse of M over all cosines and roughnesses."""
-    a, b, c, d = (
-        entry(COSINES[:, np.newaxis], np.linspace(0.0, 1.0, 101))
-        for entry in (ltc.ltc_a, ltc.ltc_b, ltc.ltc_c, ltc.ltc_d)
-    )
-    det = c * (a - b * d)
-    return f"det M from {det.min():.3f} to {det.max():.3f}", det.min()
-
-
-def side_of_the_lune() -> tuple[str, ArrayLike]:
-    """Lowest draw of Listing 3 along the normal, where the fitted d is positive."""
-    mu = np.linspace(0.999, 1.0, 100_001)
-    d = ltc.ltc_d(mu, 1.0)
-    u1, u2 = np.random.default_rng(2).random((2, 200_000))
-    wh = cltc.cltc_clipped(u1, u2, -d[-1])
-    lowest = np.min(d[-1] * wh[:, 0] + wh[:, 2])
-    sentence = f"d > 0 for mu > {mu[d > 0.0].min():.5f}: up to {d.max():.1e} at r = 1"
-    return f"{sentence}, where the listing draws z down to {lowest:.1e}", lowest
-
-
-def normalized() -> tuple[str, ArrayLike]:
-    """The density of CLTC over a fine grid; its edge limits the quadrature."""
-    errors = []
-    for degrees in (0.0, 30.0, 60.0, 85.0):
-        wo, wi, projected = hemisphere_nodes(np.cos(np.radians(degrees)), 200)
-        errors.append(projected @ (PDF["cltc"](wo, wi, 1.0) / wi[:, 2]) - 1.0)
-    largest = np.max(np.abs(errors))
-    return f"integral off by {largest:.0e} (quadrature)", largest
-
-
-def wasted() -> tuple[str, ArrayLike]:
-    """Share of the samples of LTC that fall below the horizon."""
-    d = ltc.ltc_d(COSINES, 1.0)
-    share = 1.0 - cltc.cltc_kept_fraction(d)
-    at = COSINES[share.argmax()]
-    sentence = f"up to {100 * share.max():.2f} % of the samples at r = 1, at mu = {at:g}"
-    return sentence, share.max()
-
-
-SECTION = Section(
-    "Section 4: importance sampling",
-    (
-        Claim(
-            "Fig. 11",
-            "cosine sampling: variance over 100 times larger at grazing",
-            cosine_variance,
-            required="ratio",
-            least=100.0,
-        ),
-        Claim(
-            "Fig. 11",
-            "the variance of cosine sampling has a peak",
-            cosine_diverges,
-            required="step over the step before",
-            most=0.9,
-        ),
-        Claim(
-            "Section 4",
-            "det of the inverse of M is positive everywhere",
-            determinant,
-            required="det M",
-            least=ROUNDING,
-        ),
-        Claim(
-            "Section 4",
-            "general LTC wastes samples below the horizon",
-            wasted,
-            required="share",
-            least=1e-3,
-        ),
-        Claim(
-            "Eq. (27), Listing 3",
-            "density of CLTC integrates to 1",
-            normalized,
-            required="error",
-            most=1e-3,
-        ),
-        Claim(
-            "Listing 3",
-            "no sample below the horizon",
-            side_of_the_lune,
-            required="z",
-            least=0.0,
-        ),
-        Claim("Fig. 11", "CLTC alone is biased", clipped_bias, required="loss", least=1e-4),
-        Claim(
-            "Fig. 11",
-            "the mixture: small largest weight",
-            mixture_weight,
-            required="weight",
-            most=1.5,
-        ),
-        Claim("Fig. 11", "the mixture: no bias", mixture_mean, required="error", most=ROUNDING),
-        Claim(
-            "Section 4, Fig. 13",
-            "the mixture: variance over 100 times smaller at grazing",
-            gain,
-            required="ratio",
-            least=100.0,
-        ),
-        Claim(
-            "Section 4",
-            "the mixture turns into cosine sampling as r goes to 0",
-            low_roughness,
-            required="variance of the mixture over that of cosine",
-            most=1.0,
-        ),
-        Claim(
-            "Listing 4",
-            "defined for u1 in [0, 1] and r in [0, 1]",
-            no_number,
-            required="u1 / P_u",
-            least=0.0,
-            most=1.0,
-        ),
-    ),
-)

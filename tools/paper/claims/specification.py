@@ -1,13 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The pbrlib specification of MaterialX: its printed formulas, evaluated as they stand."""
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import ArrayLike
 
 from mxeon.models.diffuse.formulas import qon_a
-from tools.paper.claims import Claim, Section
+from tools.paper.claims import Measured, Section
 from tools.paper.curves import directions
 
 # A formula that is right agrees up to rounding.
@@ -17,9 +14,13 @@ REMARK = f"""Two sentences of the specification cannot be measured. It calls the
 the BRDF f, in 1/sr. It describes `roughness` as the sigma of Oren and Nayar; with
 `energy_compensation` it is the r of EON, which is dimensionless and lies in [0, 1], where r = 0.5
 corresponds to sigma = {0.25 * np.pi:.2f}."""
+_OREN_NAYAR = "oren_nayar_diffuse_bsdf"
+SECTION = Section("The specification of MaterialX's pbrlib", REMARK)
+claim = SECTION.claim
 
 
-def coefficient_b() -> tuple[str, ArrayLike]:
+@claim(f"{_OREN_NAYAR}, B", "the B of Oren and Nayar, 0 at sigma = 0", "error", most=ROUNDING)
+def coefficient_b() -> Measured:
     """A + B g with the printed B, for sigma = 0, both directions at 60 degrees and together."""
     g = np.sin(np.radians(60.0)) * np.tan(np.radians(60.0))
     value = qon_a(0.0) + (1.0 - 0.0) * g
@@ -28,7 +29,8 @@ def coefficient_b() -> tuple[str, ArrayLike]:
     return f"{sentence}; {right}", abs(value - 1.0)
 
 
-def azimuths() -> tuple[str, ArrayLike]:
+@claim(f"{_OREN_NAYAR}, g", "the g of Oren and Nayar", "error", most=ROUNDING)
+def azimuths() -> Measured:
     """The printed cosine of theta_i - theta_o, for azimuths that are opposite."""
     theta_o = theta_i = np.radians(60.0)
     factor = np.sin(theta_i) * np.tan(theta_o)
@@ -38,7 +40,8 @@ def azimuths() -> tuple[str, ArrayLike]:
     return f"{sentence}, {right:.0f} with max(0, cos(phi_i - phi_o))", abs(printed - right)
 
 
-def dielectric() -> tuple[str, ArrayLike]:
+@claim("dielectric_bsdf, R", "Fresnel's equations", "error", most=ROUNDING)
+def dielectric() -> Measured:
     """Normal incidence, index 1.5: c = 1, g = 1.5."""
     c, g = 1.0, 1.5
 
@@ -52,7 +55,8 @@ def dielectric() -> tuple[str, ArrayLike]:
     return sentence, abs(printed - right)
 
 
-def schlick() -> tuple[str, ArrayLike]:
+@claim("generalized_schlick_bsdf, F", "r0 at normal incidence", "error", most=ROUNDING)
+def schlick() -> Measured:
     """Normal incidence, r0 = 0.04, r90 = 1, exponent 5, color82 = 1 (so that a = 0)."""
     r0, r90, c = 0.04, 1.0, 1.0
     printed = (r0 + (r90 - r0)) * (1.0 - c) ** 5
@@ -61,7 +65,8 @@ def schlick() -> tuple[str, ArrayLike]:
     return f"{sentence}, {right:.2f} with the power on (r90 - r0) alone", abs(printed - r0)
 
 
-def sheen_distribution() -> tuple[str, ArrayLike]:
+@claim("sheen_bsdf, D", "a normalized distribution", "error", most=ROUNDING)
+def sheen_distribution() -> Measured:
     """Integral of D cos over the hemisphere, by Gauss-Legendre in theta."""
     x, weight = np.polynomial.legendre.leggauss(200)
     theta, weight = 0.25 * np.pi * (1.0 + x), 0.25 * np.pi * weight
@@ -73,7 +78,8 @@ def sheen_distribution() -> tuple[str, ArrayLike]:
     return f"integral of D cos is 1 to {max(errors):.0e}", errors
 
 
-def sheen_value() -> tuple[str, ArrayLike]:
+@claim("sheen_bsdf, L_r", "reflects no more than it receives", "albedo", most=1.0)
+def sheen_value() -> Measured:
     """Directional albedo of the printed value with c = 1, at roughness 1, for wo at 80 degrees."""
     x, weight = np.polynomial.legendre.leggauss(200)
     theta, d_theta = 0.25 * np.pi * (1.0 + x), 0.25 * np.pi * weight
@@ -86,27 +92,3 @@ def sheen_value() -> tuple[str, ArrayLike]:
     albedo = np.sum(value * wi[..., 2] * np.sin(theta) * np.outer(d_theta, d_phi))
     sentence = f"albedo at 80°, roughness 1, c = 1: {albedo:.2f} as printed"
     return f"{sentence}, {albedo / 4.0:.2f} with a 4 in the denominator", albedo
-
-
-_OREN_NAYAR = "oren_nayar_diffuse_bsdf"
-_ERROR: dict[str, Any] = {"required": "error", "most": ROUNDING}
-SECTION = Section(
-    "The specification of MaterialX's pbrlib",
-    (
-        Claim(
-            f"{_OREN_NAYAR}, B", "the B of Oren and Nayar, 0 at sigma = 0", coefficient_b, **_ERROR
-        ),
-        Claim(f"{_OREN_NAYAR}, g", "the g of Oren and Nayar", azimuths, **_ERROR),
-        Claim("dielectric_bsdf, R", "Fresnel's equations", dielectric, **_ERROR),
-        Claim("generalized_schlick_bsdf, F", "r0 at normal incidence", schlick, **_ERROR),
-        Claim("sheen_bsdf, D", "a normalized distribution", sheen_distribution, **_ERROR),
-        Claim(
-            "sheen_bsdf, L_r",
-            "reflects no more than it receives",
-            sheen_value,
-            required="albedo",
-            most=1.0,
-        ),
-    ),
-    REMARK,
-)
