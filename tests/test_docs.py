@@ -12,10 +12,13 @@ from pkgutil import resolve_name
 from urllib.parse import unquote, urldefrag
 
 import MaterialX as mx
+import numpy as np
 import pytest
 
 from mxeon import albedo, inversion, models, sampling
 from mxeon.hosts import HOSTS
+from tools.site.__main__ import made
+from tools.site.ledger import FOLDER
 
 ROOT = Path(__file__).resolve().parents[1]
 PROSE = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "tools/fits/README.md")
@@ -148,6 +151,18 @@ def test_every_module_that_the_prose_names_exists():
     assert "tests.fuzz" in scripts and "mxeon.models" in names
     assert [script for script in scripts if find_spec(script) is None] == []
     assert all(resolve_name(name) for name in names)
+
+
+def test_every_generated_file_is_that_of_today():
+    """`python -m tools.site` writes them; numbers may part by a last digit between machines."""
+    number = re.compile(r"-?\d+(?:\.\d+)?(?:e-?\d+)?")
+    files = made()
+    for path, text in files.items():
+        old = path.read_text(encoding="utf-8")
+        assert number.sub("", old) == number.sub("", text), path
+        figures = (np.array(number.findall(each), dtype=np.float64) for each in (old, text))
+        np.testing.assert_allclose(*figures, rtol=1e-2, atol=1e-6, err_msg=str(path))
+    assert set(FOLDER.glob("*.md")) <= set(files)
 
 
 def test_the_page_on_hosts_says_what_each_host_is_asked():

@@ -20,10 +20,8 @@ OF_A_DRIVER = "genglsl_albedo_acos"  # its figure is the error of the driver tha
 ISSUES = [each for each in measure.CHECKED if each.host not in ("three", "babylon")]
 
 
-def test_the_pages_are_those_of_the_entries():
-    """`python -m tools.site.ledger` writes them."""
-    written = {path: path.read_text(encoding="utf-8") for path in FOLDER.glob("*.md")}
-    assert written == pages.pages()
+def test_what_is_measured_is_complete():
+    """`python -m tools.site.ledger` completes it."""
     assert json.loads(json.dumps(completed(MEASURED, entries()))) == MEASURED
 
 

@@ -9,10 +9,8 @@ samples and with samples of the cosine. All in llvm_ad_rgb; times are processor 
 least of some pictures, and the variance is that of independent pictures, averaged over pixels and channels.
 """
 
-import re
 import time
 from importlib import import_module
-from pathlib import Path
 
 import numpy as np
 
@@ -20,8 +18,8 @@ from mxeon.io.files import write_text
 from mxeon.mitsuba import register
 from mxeon.mitsuba.diffuse import EonPlugin, RoughDiffusePlugin, register_plugin
 from tools.benchmarks.values import mitsuba_version
+from tools.site import DOCS, with_block
 
-DOCS = Path(__file__).resolve().parents[2] / "docs"
 COSINE, EXACT = "eon_by_cosine", "eon"
 COLOR = {"type": "rgb", "value": [0.5, 0.3, 0.2]}
 ROUGH = {"reflectance": COLOR, "roughness": 0.6}
@@ -155,9 +153,8 @@ def main():
     ):
         found = "".join(rows(mi))
         print(found, end="")
-        block = re.compile(rf"(<!-- {mark} -->\n).*?(<!-- end -->)", re.DOTALL)
         text = (DOCS / page).read_text(encoding="utf-8")
-        write_text(DOCS / page, block.sub(lambda m, found=found: m[1] + found + m[2], text))
+        write_text(DOCS / page, with_block(text, mark, found))
 
 
 if __name__ == "__main__":

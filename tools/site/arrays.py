@@ -1,26 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Write the table of the page on arrays: which functions take those of other libraries.
-
-python tools/site/arrays.py
-"""
+"""The table of the page on arrays: which functions take those of other libraries."""
 
 import inspect
 import re
-from pathlib import Path
 from pkgutil import resolve_name
 
-from mxeon.io.files import write_text
+from tools.site import DOCS, with_block
 
-FOLDER = Path(__file__).resolve().parents[2] / "docs"
-PAGE = FOLDER / "arrays.md"
-BLOCK = re.compile(r"(<!-- functions -->\n).*?(<!-- end -->)", re.DOTALL)
+PAGE = DOCS / "arrays.md"
 ARRAYS = "ArrayLike", "Mapping[str, ArrayLike]"
 PUBLIC = re.compile(r"^::: (mxeon\.(?:models|albedo|inversion|sampling)\.[\w.]*[a-z]\w*)$", re.M)
 
 
 def public():
     """Public functions of arrays by their documented names."""
-    pages = sorted((FOLDER / "api").glob("*.md"))
+    pages = sorted((DOCS / "api").glob("*.md"))
     names = [name for page in pages for name in PUBLIC.findall(page.read_text(encoding="utf-8"))]
     functions = {name: resolve_name(name) for name in names}
     return {
@@ -65,8 +59,4 @@ def table():
 
 def page(text):
     """The page with its table as it is now."""
-    return BLOCK.sub(lambda match: match[1] + table() + match[2], text)
-
-
-if __name__ == "__main__":
-    write_text(PAGE, page(PAGE.read_text(encoding="utf-8")))
+    return with_block(text, "functions", table())

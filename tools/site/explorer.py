@@ -1,18 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Make `docs/explore.html`, and its picture on the page about it: `python tools/site/explorer.py`."""
+"""Make `docs/explore.html`, and its picture on the page about it: `python -m tools.site.explorer`."""
 
 import os
-from pathlib import Path
 
 from playwright.sync_api import sync_playwright
 
 from mxeon.explorer import page, page_data
 from mxeon.hosts.webgl import FLAGS, program
 from mxeon.io.files import write_text
+from tools.site import DOCS
 
-FOLDER = Path(__file__).resolve().parents[2] / "docs"
-PAGE = FOLDER / "explore.html"
-PICTURE = FOLDER / "images" / "explorer.png"
+PAGE = DOCS / "explore.html"
+PICTURE = DOCS / "images" / "explorer.png"
 PAGES = "upstream/{}.html"  # beside the page in the built site
 SIZE = {"width": 1280, "height": 900}
 

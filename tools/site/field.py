@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Make `docs/field.html`: `python tools/site/field.py` checks every host that runs here, one after the other.
+"""Make `docs/field.html`: `python -m tools.site.field` checks every host that runs here, one after the other.
 
-`python tools/site/field.py DIR` makes it from the reports in a folder instead.
+`python -m tools.site.field DIR` makes it from the reports in a folder instead.
 """
 
 import sys

@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Render the materials of `examples/` with stock and with eonlib, and write the gallery page.
 
-python tools/site/gallery.py           the pictures, their differences, and gallery.md
-python tools/site/gallery.py --page    gallery.md alone
+python -m tools.site.gallery           the pictures, their differences, and gallery.md
+python -m tools.site.gallery --page    gallery.md alone
 """
 
 import json
 import sys
 from contextlib import suppress
 from dataclasses import replace
-from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
@@ -21,8 +20,9 @@ from mxeon.hosts.points import visible
 from mxeon.io.images import write_exr
 from mxeon.io.srgb import srgb_encoded
 from mxeon.shaders.scene import FURNACE, STUDIO
+from tools.site import DOCS
 
-DOCS = Path(__file__).resolve().parents[2] / "docs"
+PAGE = DOCS / "gallery.md"
 EXAMPLES = DOCS.parent / "examples"
 PICTURES = DOCS / "images" / "gallery"
 DIFFERENCES = PICTURES / "differences.json"  # in sRGB codes, by material; null without stock
@@ -38,7 +38,7 @@ BACKGROUND = 30  # sRGB code
 SEEN = 3  # sRGB codes: the least difference that an eye may find side by side
 TITANIUM = DOCS / "images" / "titanium.mtlx"  # of the README
 
-HEAD = """<!-- Made by `python tools/site/gallery.py`. -->
+HEAD = """<!-- Made by `python -m tools.site.gallery`. -->
 # Gallery
 
 The materials in `examples/` on a shader ball in a studio, rendered on the `gl` host: stock MaterialX on the left,
@@ -160,7 +160,7 @@ def main():
     """Write the pictures, unless `--page` asks for the page alone, and the page."""
     if "--page" not in sys.argv:
         render()
-    (DOCS / "gallery.md").write_text(page(), encoding="utf-8")
+    PAGE.write_text(page(), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -1,19 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measure the numbers of the technical note, and draw its figures.
-
-python -m tools.site.note
-"""
-
-import re
-from functools import cache
-from pathlib import Path
+"""Print the numbers of the technical note, and draw its figures: `python -m tools.site.note`."""
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from mxeon.io.files import replacing, write_text
+from mxeon.io.files import replacing
 from tools.paper.sheet import METADATA, styled
-from tools.site import marks
+from tools.site import DOCS, with_block
 from tools.site.note_measures import (
     albedo_errors,
     albedo_figures,
@@ -26,9 +19,7 @@ from tools.site.note_measures import (
     variances,
 )
 
-FOLDER = Path(__file__).resolve().parents[2] / "docs"
-PAGE = FOLDER / "note.md"
-TABLE = re.compile(r"(<!-- energy -->\n).*?(<!-- end -->)", re.DOTALL)
+PAGE = DOCS / "note.md"
 EXACT_VARIANCE = 1.7e-10  # bound of the two fits: tools/paper/weights.py
 
 
@@ -91,26 +82,19 @@ def albedo_figure():
 FIGURES = {"note_exact": exact_figure, "note_albedo": albedo_figure}
 
 
-@cache
-def figures():
-    """Numbers of the sentences, by their marks."""
-    found = loss_figures() | sampling_figures() | albedo_figures()
-    return {name: float(value) for name, value in found.items()}
-
-
 def page(text):
-    """The page with its numbers and its table as they are now."""
-    text = TABLE.sub(lambda match: match[1] + energy_table() + match[2], text)
-    return marks.filled(text, lambda: figures() | rounding_figures())
+    """The page with its table as it is now."""
+    return with_block(text, "energy", energy_table())
 
 
 def main():
-    """Write the page and its figures."""
+    """Draw the figures, and print the numbers of the sentences."""
     with styled():
         for name, draw in FIGURES.items():
-            with replacing(FOLDER / "figures" / f"{name}.png") as path:
+            with replacing(DOCS / "figures" / f"{name}.png") as path:
                 draw().savefig(path, dpi=110, metadata=METADATA["png"])
-    write_text(PAGE, page(PAGE.read_text(encoding="utf-8")))
+    for found in (loss_figures(), rounding_figures(), sampling_figures(), albedo_figures()):
+        print(*(f"{name}: {value:.3g}" for name, value in found.items()), sep="\n")
 
 
 if __name__ == "__main__":

@@ -1,18 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Write what the first example of the page for researchers prints.
-
-python tools/site/research.py
-"""
+"""What the first example of the page for researchers prints."""
 
 import contextlib
 import io
 import re
-from pathlib import Path
 
-from mxeon.io.files import write_text
+from tools.site import DOCS, with_block
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "research.md"
-BLOCK = re.compile(r"(<!-- fitted -->\n).*?(<!-- end -->)", re.DOTALL)
+PAGE = DOCS / "research.md"
 
 
 def blocks(text):
@@ -29,8 +24,4 @@ def printed(text):
 
 def page(text):
     """The page with that output as it is now."""
-    return BLOCK.sub(lambda match: f"{match[1]}```text\n{printed(text)}```\n{match[2]}", text)
-
-
-if __name__ == "__main__":
-    write_text(PAGE, page(PAGE.read_text(encoding="utf-8")))
+    return with_block(text, "fitted", f"```text\n{printed(text)}```\n")

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measure what the page on the specification shows, and its summaries.
 
-python tools/site/specification.py [HOST ...]  judge stock and eonlib on these hosts, on all of HOSTS if none is
+python -m tools.site.specification [HOST ...]  judge stock and eonlib on these hosts, on all of HOSTS if none is
                                          named; write out/specification.json and the pages
-python tools/site/specification.py --page      the pages alone, from out/specification.json
+python -m tools.site.specification --page      the pages alone, from out/specification.json
 """
 
 import json

@@ -4,7 +4,8 @@
 import re
 from pathlib import Path
 
-TOP = Path(__file__).resolve().parents[2]
+from tools.site import ROOT
+
 STEMS = (
     "lib/eon",
     "lib/ggx_albedo",
@@ -22,7 +23,7 @@ def osl_text(stem: str) -> str:
 
     GLSL's vec3 is a vector in the samplers and where it declares wo, wi or wh, and a color elsewhere.
     """
-    text = (TOP / "genglsl" / f"{stem}.glsl").read_text(encoding="utf-8")
+    text = (ROOT / "genglsl" / f"{stem}.glsl").read_text(encoding="utf-8")
     text = re.sub(r"\bvec3(?= w[oih]\b)", "vector", text)
     triple = "vector" if stem.endswith("_sampling") else "color"
     words = {"vec3": triple, "out": "output", "glsl": "osl"}
@@ -31,6 +32,11 @@ def osl_text(stem: str) -> str:
     return f"{license_line}\n{HEADER.format(stem=stem)}{rest}"
 
 
+def path(stem: str) -> Path:
+    """The generated file."""
+    return ROOT / "genosl" / f"{stem}.osl"
+
+
 if __name__ == "__main__":
     for each in STEMS:
-        (TOP / "genosl" / f"{each}.osl").write_text(osl_text(each), encoding="utf-8")
+        path(each).write_text(osl_text(each), encoding="utf-8")

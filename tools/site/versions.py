@@ -9,16 +9,15 @@ that file alone.
 import json
 import sys
 from collections import Counter
-from pathlib import Path
 
 from mxeon.io.files import write_text
 from mxeon.shaders.library import TESTED
 from tests.reliability.versions import run
 from tests.support.wheels import MAIN, wheel
-from tools.site.ledger import entries, pages, pairs
+from tools.site import DOCS
+from tools.site.ledger import dumped, entries, pages, pairs
 
-HERE = Path(__file__).parents[2] / "docs"
-PAGE, RECORD = HERE / "versions.md", pages.VERSIONS
+PAGE, RECORD = DOCS / "versions.md", pages.VERSIONS
 VERSIONS = (*TESTED, "main")
 LIBRARIES = ("eonlib", "stock")
 COMMAND = ("check", "--host", "gl", "--node", "all", "--workers", "0", "--json")
@@ -153,7 +152,7 @@ def main():
     """Judge every version, or take what is known, and write the pages."""
     if sys.argv[1:] != ["page"]:
         known = record({name: judged(name) for name in VERSIONS})
-        write_text(RECORD, json.dumps(known, indent=1) + "\n")
+        write_text(RECORD, dumped(known, 3) + "\n")
     write_text(PAGE, page_text(json.loads(RECORD.read_text(encoding="utf-8"))))
     pages.main()
 

@@ -20,9 +20,9 @@ from pathlib import Path
 from typing import Any
 
 from mxeon.conformance.results import known_issues
+from tools.site import DOCS, ROOT
 
-ROOT = Path(__file__).parents[3]
-FOLDER, PATCHES = ROOT / "docs" / "upstream", ROOT / "patches"
+FOLDER, PATCHES = DOCS / "upstream", ROOT / "patches"
 ENTRIES = Path(known_issues.__file__).with_name("known_issues.toml")
 MEASURED = ENTRIES.with_name("measured.json")
 SPECIFICATION = ROOT / "out" / "specification.json"  # errors as measured here last, by host
@@ -83,8 +83,15 @@ def measured() -> dict[str, Any]:
 
 def write_measured(found: dict[str, Any]) -> None:
     """Write what was measured, a line for each page."""
-    lines = ",\n".join(f"{json.dumps(page)}: {json.dumps(found[page])}" for page in sorted(found))
-    MEASURED.write_text(f"{{\n{lines}\n}}\n", encoding="utf-8")
+    MEASURED.write_text(dumped(dict(sorted(found.items())), 1) + "\n", encoding="utf-8")
+
+
+def dumped(found: Any, depth: int) -> str:
+    """JSON with a line for each entry down to a depth."""
+    if depth == 0 or not isinstance(found, dict):
+        return json.dumps(found)
+    lines = (f"{json.dumps(name)}: {dumped(each, depth - 1)}" for name, each in found.items())
+    return "{\n" + ",\n".join(lines) + "\n}"
 
 
 def completed(found: dict[str, Any], known: dict[str, Entry]) -> dict[str, Any]:

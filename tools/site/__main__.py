@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Writes every generated file that needs no engine and no other version of MaterialX: `python -m tools.site`.
+
+These are the OSL twins, the explorer, the ledger, and the tables of other pages. What is measured on hosts
+(`specification`, `field`, `documents`, `versions`, `ledger.measure`, pictures) has its own command.
+"""
+
+import json
+from pathlib import Path
+
+from mxeon.explorer import page, page_data
+from mxeon.io.files import write_text
+from tools.site import arrays, explorer, gallery, note, research, twins, versions
+from tools.site.ledger import pages
+
+
+def made() -> dict[Path, str]:
+    """The text of each file, by its path."""
+    tables = {each.PAGE: each.page for each in (arrays, research, note)}
+    record = json.loads(versions.RECORD.read_text(encoding="utf-8"))
+    return {
+        **{twins.path(stem): twins.osl_text(stem) for stem in twins.STEMS},
+        **{path: of(path.read_text(encoding="utf-8")) for path, of in tables.items()},
+        gallery.PAGE: gallery.page(),
+        versions.PAGE: versions.page_text(record),
+        explorer.PAGE: page(page_data(pages=explorer.PAGES)),
+        **pages.pages(),
+    }
+
+
+if __name__ == "__main__":
+    for each, text in made().items():
+        if not each.is_file() or each.read_text(encoding="utf-8") != text:
+            write_text(each, text)
+            print(f"written: {each.relative_to(twins.ROOT)}")
