@@ -14,20 +14,18 @@ from mxeon.shaders.document.policy import DEFAULT
 from tools.benchmarks.mutants import __main__ as command
 from tools.benchmarks.mutants import operators, trial
 from tools.benchmarks.mutants.mutant import FOLDERS, read_table
-from tools.benchmarks.mutants.quick import Quick
 
 TABLE = read_table()
 NAMED = {mutant.name: mutant for mutant in TABLE}
 # By name, the check that is meant to notice it.
 SLICE = {
-    "throughput is 1": "throughput",
-    "weight dropped, direct": "value",
+    "throughput is 0.01": "throughput",
+    "weight squared, direct": "value",
     "environment behind": "surroundings",
-    "normal not turned": "frame",
     "0 at mu_o = 0": "value",
     "c1 1e-5 off": "value",
     "EON: multiple scattering dropped": "value",
-    "density: cosine dropped": "densities",
+    "density: not normalized": "densities",
     "osl, stock node: keyword misspelled": "closure",
     "osl: s negated": "languages",
     "mdl, eon node: tint not squared": "closure",
@@ -44,12 +42,6 @@ def judge():
         yield opened
 
 
-@pytest.fixture(scope="module")
-def quick():
-    with closing(Quick()) as opened:
-        yield opened
-
-
 def test_every_mutant_changes_the_sources():
     read = cache(lambda file: (trial.ROOT / file).read_text())
     texts = [(each.name, *text) for each in TABLE for text in each.texts().items()]
@@ -63,20 +55,15 @@ def test_names_are_unique():
 def test_every_source_and_every_document_of_implementations_has_mutants():
     files = [path for folder in FOLDERS for path in (trial.ROOT / folder).rglob("*.*")]
     sources = {file.relative_to(trial.ROOT).as_posix() for file in files}
-    assert sources - {mutant.file for mutant in TABLE} == set()
-
-
-def test_every_file_has_a_negative_control():
-    controls = [mutant.file for mutant in TABLE if mutant.control]
-    assert sorted(controls) == sorted({mutant.file for mutant in TABLE})
+    assert sources - {mutant.file for mutant in TABLE} - set(operators.files()) == set()
 
 
 def test_operators_change_every_shader_once_and_repeatably():
     made = operators.made(1, 1.0)
     texts = {(each.file, each.texts()[each.file]) for each in made}
-    assert len(texts) == len({each.name for each in made}) == len(made) > 4000
+    assert len(texts) == len({each.name for each in made}) == len(made) > 8000
     assert operators.made(1, 0.01) == operators.made(1, 0.01) != operators.made(2, 0.01)
-    assert {each.name.split(",")[0] for each in made} == operators.OPERATORS.keys()
+    assert {each.name.split(",")[0] for each in made} >= operators.OPERATORS.keys()
 
 
 def test_a_mutant_of_an_operator_is_killed(gl, tmp_path, monkeypatch):
@@ -107,30 +94,24 @@ NODES = {
 
 
 @pytest.mark.parametrize(("name", "check"), NODES.items())
-def test_wrong_node_is_killed_by_the_check_meant(gl, quick, name, check):
-    found = trial.trial(NAMED[name], None, quick)
-    assert [each["check"] for each in found["failures"]] == [check]
+def test_wrong_node_is_killed_by_the_check_meant(gl, judge, name, check):
+    found = trial.trial(NAMED[name], judge)
+    assert {each["check"] for each in found["failures"]} == {check}
 
 
 def test_the_tests_of_the_models_kill_a_wrong_reference():
-    found = trial.trial(NAMED["reference: anisotropy without its root"], None, None)
+    found = trial.trial(NAMED["reference: anisotropy without its root"], None)
     assert found["failures"][0]["check"].startswith("test_anisotropy_stretches")
 
 
 @pytest.mark.parametrize("name", ["diffuse", "control"])
-def test_tests_in_blenders_osl_judge_what_cycles_cannot_show(hosts, quick, name):
+def test_tests_in_blenders_osl_judge_what_cycles_cannot_show(hosts, judge, name):
     hosts("osl")
     file = "genosl/cycles/subsurface_bsdf_cycles.osl"
     mutant = NAMED.get(f"subsurface in Cycles: {name}") or NAMED[f"{name}: {file}"]
-    found = trial.trial(mutant, None, quick)
+    found = trial.trial(mutant, judge)
     assert found["verdict"] == (trial.SURVIVED if mutant.control else trial.KILLED)
     assert mutant.control or found["host"] == "tests"
-
-
-def test_a_check_that_fails_without_a_mutant_kills_none(gl, quick):
-    task = Task("output", "blackbody", "gl", "stock")
-    with closing(Quick("stock")) as same:
-        assert quick.failure(task) and same.failure(task) is None
 
 
 def test_a_result_that_fails_without_a_mutant_kills_none(gl, judge):
@@ -139,6 +120,6 @@ def test_a_result_that_fails_without_a_mutant_kills_none(gl, judge):
     assert not trial.failures_of(tasks, judge, clean="stock")
 
 
-def test_a_changed_comment_survives(gl, quick):
+def test_a_changed_comment_survives(gl, judge):
     control = NAMED["control: genglsl/blackbody.glsl"]
-    assert trial.trial(control, None, quick) == {"verdict": trial.SURVIVED}
+    assert trial.trial(control, judge) == {"verdict": trial.SURVIVED}

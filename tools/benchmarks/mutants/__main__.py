@@ -25,7 +25,6 @@ from mxeon.io.files import write_text
 from mxeon.shaders.document.policy import DEFAULT
 from tools.benchmarks.mutants import operators
 from tools.benchmarks.mutants.mutant import ROOT, Mutant, read_table
-from tools.benchmarks.mutants.quick import Quick
 from tools.benchmarks.mutants.trial import KILLED, trial
 
 OUTPUT = ROOT / "out" / "mutants"
@@ -51,9 +50,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     trials: dict[str, Any] = json.loads(file.read_text()) if file.exists() else {}
     if options.resume:
         chosen = [each for each in chosen if trials.get(each.name, {}).get("digest") != each.digest]
-    with closing(Judge(DEFAULT)) as judge, closing(Quick()) as quick:
+    with closing(Judge(DEFAULT)) as judge:
         for mutant in tqdm(chosen, disable=None):
-            found = trial(mutant, judge, quick, options.all)
+            found = trial(mutant, judge, options.all)
             trials[mutant.name] = {"digest": mutant.digest} | summary(found)
             write_text(file, json.dumps(trials, indent=1, sort_keys=True) + "\n")
     print(*lines(chosen, trials), sep="\n")

@@ -63,11 +63,13 @@ def node_tasks(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
 def _tasks(host: str) -> tuple[Task, ...]:
     """All tasks of a host with eonlib: subject by subject, since each has a shader to compile.
 
-    The last subjects come first: those of films and of transmission, which need most of a source.
+    The last subjects come first, those of transmission, which need most of a source; films, whose failures take
+    longest to diagnose, come last.
     """
     places = {title: -place for place, title in enumerate(TITLES)}
     tasks = make_plan((), [host], ["eonlib"], nodes=["all"]).tasks
-    return tuple(sorted(tasks, key=lambda task: (task.check in LATE, places.get(task.subject, 0))))
+    late = {task: (task.check in LATE, "film" in task.subject) for task in tasks}
+    return tuple(sorted(tasks, key=lambda task: (late[task], places.get(task.subject, 0))))
 
 
 @cache

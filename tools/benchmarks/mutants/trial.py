@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The trial of a mutant: `mxeon check` of a copy of eonlib that holds it, cheapest tasks first."""
 
-import atexit
 import shutil
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from functools import cache
 from itertools import islice
 from pathlib import Path
-from tempfile import TemporaryDirectory, mkdtemp
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from mxeon.conformance.nodes.diffuse import SUBJECTS
@@ -22,7 +21,6 @@ from mxeon.shaders import generators, library
 from mxeon.shaders.generation import generate
 from tools.benchmarks.mutants.mutant import FOLDERS, ROOT, Mutant
 from tools.benchmarks.mutants.nodes import changed_nodes, node_tasks
-from tools.benchmarks.mutants.quick import Quick
 from tools.benchmarks.mutants.reference import TESTS, trial_of_reference, trial_of_tests
 
 KILLED, SURVIVED = "killed", "survived"
@@ -48,11 +46,11 @@ CHANGED = {
 }
 
 
-def trial(mutant: Mutant, judge: Judge, quick: Quick, every: bool = False) -> dict[str, Any]:
+def trial(mutant: Mutant, judge: Judge, every: bool = False) -> dict[str, Any]:
     """Verdict on a mutant, and the failures that it caused on the first host that saw any."""
     if mutant.tests:
         return _by_tests(trial_of_reference(mutant))
-    found = _on_hosts(mutant, judge, quick, every)
+    found = _on_hosts(mutant, judge, every)
     if found["verdict"] == SURVIVED and mutant.file.startswith(PROFILE):
         return _by_tests(trial_of_tests(mutant, (PROFILE_TESTS,)))
     return found
@@ -63,17 +61,15 @@ def _by_tests(failure: dict[str, Any] | None) -> dict[str, Any]:
     return {"verdict": KILLED if failure else SURVIVED} | found
 
 
-def _on_hosts(mutant: Mutant, judge: Judge, quick: Quick, every: bool) -> dict[str, Any]:
+def _on_hosts(mutant: Mutant, judge: Judge, every: bool) -> dict[str, Any]:
     nodes = bool(changed_nodes(mutant))
-    sources = nodes and not any(file.endswith(".mtlx") for file in mutant.texts())
-    with (wrong_sources if sources else wrong_library)(mutant) as path:
+    with wrong_library(mutant) as path:
         try:
-            if nodes:
-                return trial_of_nodes(mutant, path, quick)
-            if not mutant.control:
+            if not nodes and not mutant.control:
                 assert_changed(mutant, path)
-            limit = 1 if mutant.equivalent and not mutant.control else None
-            for host, stage in islice(stages(mutant, path), limit):
+            limit = 1 if mutant.equivalent and not mutant.control and not nodes else None
+            found = node_tasks(mutant, path) if nodes else stages(mutant, path)
+            for host, stage in islice(found, limit):
                 if failures := failures_of(stage, judge, every):
                     rows = ordered(failures)
                     seen = TEXT if rows[0]["host"] == SOURCE else host
@@ -86,56 +82,19 @@ def _on_hosts(mutant: Mutant, judge: Judge, quick: Quick, every: bool) -> dict[s
         return {"verdict": SURVIVED}
 
 
-def trial_of_nodes(mutant: Mutant, path: str, quick: Quick) -> dict[str, Any]:
-    """Verdict of the nodes that a mutant changes, up to the first failure."""
-    quick.renew()
-    for host, tasks in node_tasks(mutant, path):
-        for task in tasks:
-            if failure := quick.failure(task):
-                return {"verdict": KILLED, "host": host, "failures": [failure]}
-    return {"verdict": SURVIVED}
-
-
 @contextmanager
 def wrong_library(mutant: Mutant) -> Iterator[str]:
     """Path of a library that is eonlib with one change, in a folder that no cache knows."""
     with TemporaryDirectory(prefix="mxeon-mutant-") as base:
-        _copy(base, mutant.texts())
+        for name in FOLDERS:
+            shutil.copytree(ROOT / name, Path(base, name))
+        for file, text in mutant.texts().items():
+            Path(base, file).write_text(text, encoding="utf-8")
         try:
             yield str(Path(base, "libraries"))
         finally:
             library.read_library.cache_clear()
             generators._library_generator.cache_clear()
-
-
-@contextmanager
-def wrong_sources(mutant: Mutant) -> Iterator[str]:
-    """The same where no document changes: one copy for all mutants, which is loaded once."""
-    base = _shared()
-    for file, text in mutant.texts().items():
-        Path(base, file).write_text(text, encoding="utf-8")
-    try:
-        yield str(Path(base, "libraries"))
-    finally:
-        for file in mutant.texts():
-            shutil.copyfile(ROOT / file, Path(base, file))
-
-
-def _copy(base: str, texts: Mapping[str, str]) -> None:
-    """Copy eonlib, with other texts in the place of some files."""
-    for name in FOLDERS:
-        shutil.copytree(ROOT / name, Path(base, name))
-    for file, text in texts.items():
-        Path(base, file).write_text(text, encoding="utf-8")
-
-
-@cache
-def _shared() -> str:
-    """A folder with a copy of eonlib, which is removed as the program ends."""
-    base = mkdtemp(prefix="mxeon-mutants-")
-    atexit.register(shutil.rmtree, base)
-    _copy(base, {})
-    return base
 
 
 def tasks_on_gl(path: str) -> list[Task]:
