@@ -32,6 +32,7 @@ from tools.fits import (
     varnish_walk,
 )
 from tools.fits.minimax import least_largest, mp
+from tools.fits.rational import shipped as shipped_coefficients
 from tools.site import research
 
 by_language = pytest.mark.parametrize("language", twins.LANGUAGES)
@@ -99,16 +100,8 @@ def test_the_script_gives_the_series_of_the_angle(language):
     assert error <= tolerances.FIT_ANGLE
 
 
-def shipped_in(stem, prefix):
-    """Coefficients of a rational fit in a GLSL file, numerator first."""
-    pattern = rf"#define {prefix}_([ND])\d+ (\S+)"
-    found = re.findall(pattern, source_file("glsl", stem).read_text())
-    assert [letter for letter, _ in found] == sorted((each for each, _ in found), reverse=True)
-    return tuple(float(number) for _, number in found)
-
-
 def test_the_albedo_of_ggx_has_the_error_that_stands_beside_it():
-    coefficients = shipped_in("ggx_albedo", "GGX_ALBEDO")
+    coefficients = shipped_coefficients("ggx_albedo", "GGX_ALBEDO")
     assert ggx_albedo.largest_error(coefficients) <= tolerances.FIT_GGX
     wrong = (coefficients[0] + 1e-2, *coefficients[1:])
     assert ggx_albedo.largest_error(wrong, 61, 41) > tolerances.FIT_GGX
@@ -116,7 +109,9 @@ def test_the_albedo_of_ggx_has_the_error_that_stands_beside_it():
 
 def test_the_albedo_of_smooth_ggx_has_the_error_that_its_tolerance_states():
     mu = np.linspace(0.05, 1.0, 400)
-    fitted = ggx_albedo.fitted(mu, np.full_like(mu, 1e-6), shipped_in("ggx_albedo", "GGX_ALBEDO"))
+    fitted = ggx_albedo.fitted(
+        mu, np.full_like(mu, 1e-6), shipped_coefficients("ggx_albedo", "GGX_ALBEDO")
+    )
     error = np.abs(1.0 - fitted).max()
     assert 0.9 * bsdf.SMOOTH_ESS_FIT < error <= bsdf.SMOOTH_ESS_FIT
 
@@ -128,7 +123,7 @@ def test_the_quadrature_of_the_fit_is_that_of_the_models():
 
 
 def test_the_albedo_of_conty_kulla_has_the_error_that_stands_beside_it():
-    coefficients = shipped_in("conty_kulla_albedo", "CONTY_KULLA_ALBEDO")
+    coefficients = shipped_coefficients("conty_kulla_albedo", "CONTY_KULLA_ALBEDO")
     mu, roughness = np.meshgrid(np.linspace(1e-4, 1.0, 60), np.geomspace(1e-4, 1.0, 40))
     exact = np.minimum(conty_kulla_albedo_dir(mu, roughness), 1.0)
     error = np.abs(conty_kulla_albedo.fitted(mu, roughness, coefficients) - exact).max()
@@ -152,7 +147,7 @@ def test_the_cosines_of_ggx_have_the_errors_that_stand_beside_them():
             [1.9e-3 if q == 5 else 3.2e-3 for q in ggx_cosine.EXPONENTS],
         ),
     ):
-        coefficients = shipped_in(stem, curves.prefix)
+        coefficients = shipped_coefficients(stem, curves.prefix)
         errors = ggx_cosine.errors(curves, coefficients, *grid)
         assert np.all(np.array(errors) <= largest)
         wrong = (coefficients[0] * 1.1, *coefficients[1:])
@@ -160,7 +155,7 @@ def test_the_cosines_of_ggx_have_the_errors_that_stand_beside_them():
 
 
 def test_the_average_of_a_dielectric_has_the_error_that_stands_beside_it():
-    coefficients = shipped_in("fresnel_dielectric", "FRESNEL_AVG")
+    coefficients = shipped_coefficients("fresnel_dielectric", "FRESNEL_AVG")
     assert fresnel_average.dielectric_error(coefficients) <= 5.35e-5
     wrong = (coefficients[0] * 1.01, *coefficients[1:])
     assert fresnel_average.dielectric_error(wrong) > 5.35e-5

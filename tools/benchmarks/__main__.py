@@ -26,7 +26,7 @@ QUICK = {  # sizes of each group with --quick
     "instructions": {"nodes": ("oren_nayar", "dielectric_bsdf")},
     "registers": {"nodes": ("oren_nayar", "dielectric_bsdf")},
     "models": {"rounds": 3, "pairs": (10_000, 100_000)},
-    "values": {"rounds": 2, "pairs": 100_000, "calls": 200},
+    "values": {"rounds": 2, "pairs": 100_000},
     "tool": {"rounds": 2, "counts": (1, 10), "documents": 10},
     "check": {"rounds": 1, "whole": False},
 }

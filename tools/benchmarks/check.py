@@ -10,10 +10,8 @@ import statistics
 import sys
 import time
 from collections.abc import Callable
-from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 from subprocess import PIPE, Popen, TimeoutExpired
 from tempfile import NamedTemporaryFile, TemporaryDirectory
 
@@ -22,8 +20,7 @@ import numpy as np
 from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES
 from mxeon.hosts import HOSTS
 from mxeon.shaders.library import examples_folder
-from mxeon.shaders.library_export import export_library
-from tools.benchmarks.rounds import Check, Group, figure, ratio
+from tools.benchmarks.rounds import Check, Group, figure
 
 BOTH = ("--library", "eonlib", "--library", "stock")
 # The field as tools/site/field.py asks it: the diffuse nodes on hosts, and all common ones of renderers' own.
@@ -35,7 +32,6 @@ FIELD = {
 }
 LONGEST = 240.0  # seconds of each half of the field, which is stopped then
 CACHE, FOLDER = "MESA_SHADER_CACHE_DISABLE", "MESA_SHADER_CACHE_DIR"
-NONE, TWO = "gl, no workers", "gl, 2 workers"
 MEMORY = 600.0  # MiB
 # What starts the command, and writes the KiB of its largest process to a file: Linux counts what the process
 # that starts a program had in memory as the program's, and this one is small.
@@ -48,8 +44,6 @@ with open(sys.argv[1], "w") as file:
     file.write(str(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss))
 sys.exit(os.waitstatus_to_exitcode(status))
 """
-# A coefficient of EON's albedo, and a wrong one, of which the first digits are right.
-RIGHT, WRONG = "#define EON_Q0 0.527481849\n", "#define EON_Q0 0.52\n"
 
 
 @dataclass(frozen=True)
@@ -97,41 +91,17 @@ def memory(name, jobs, goal=None):
     return figure(f"{name}, largest process", "MiB", [max(each.memory for each in jobs)], goal)
 
 
-def share(name, jobs, usual, goal):
-    """Figure of the time of some runs, relative to a usual one."""
-    return figure(name, "x", [each.seconds / usual for each in jobs], goal)
-
-
 def main_job(rounds, files, cache):
-    """Figures and checks of the examples on gl, without and with workers in turn; and its seconds."""
-    options = {NONE: (*files, "--workers", "0"), TWO: (*files, "--workers", "2")}
-    cold = job(*options[TWO], cache=cache)  # fills the cache for both
-    found = {name: [] for name in options}
-    for _ in range(rounds):
-        for name, each in options.items():
-            found[name].append(job(*each, cache=cache))
-    seconds = {name: [each.seconds for each in jobs] for name, jobs in found.items()}
+    """Figures and checks of the examples on gl, with an empty cache and again; and the seconds."""
+    jobs = [job(*files, "--workers", "2", cache=cache) for _ in range(rounds + 1)]
+    seconds = [each.seconds for each in jobs]
     figures = [
-        figure(NONE, "s", seconds[NONE], goal=12.0),
-        figure(TWO, "s", seconds[TWO], goal=9.0),
-        ratio(f"{TWO} / no workers", seconds[TWO], seconds[NONE], goal=1.0),
-        figure("gl, the driver's cache empty", "s", [cold.seconds], goal=30.0),
-        memory("gl", [cold, *found[NONE], *found[TWO]], MEMORY),
+        figure("gl, 2 workers", "s", seconds[1:], goal=9.0),
+        figure("gl, the driver's cache empty", "s", seconds[:1], goal=30.0),
+        memory("gl", jobs, MEMORY),
     ]
-    wrong = [Check(name, max(each.wrong for each in jobs), 0.0) for name, jobs in found.items()]
-    return figures, wrong, statistics.median(seconds[TWO])
-
-
-@contextmanager
-def wrong_library():
-    """A copy of eonlib with one wrong coefficient."""
-    with TemporaryDirectory() as folder:
-        library = export_library(Path(folder, "eonlib"))
-        path = library / "genglsl" / "lib" / "eon.glsl"
-        text = path.read_text(encoding="utf-8")
-        assert RIGHT in text
-        path.write_text(text.replace(RIGHT, WRONG), encoding="utf-8")
-        yield library
+    wrong = Check("gl", max(each.wrong for each in jobs), 0.0)
+    return figures, [wrong], statistics.median(seconds[1:])
 
 
 def reporting(rounds, files, cache, usual):
@@ -152,23 +122,14 @@ def reporting(rounds, files, cache, usual):
 
 
 def libraries(rounds, files, cache, usual):
-    """Figures and checks of two libraries, and of a wrong one with its diagnosis."""
-
-    def warm(*options):
-        """Runs after one that fills the cache."""
-        jobs = [job(*files, "--workers", "2", *options, cache=cache) for _ in range(rounds + 1)]
-        return jobs[1:]
-
-    two = warm(*BOTH)
-    with wrong_library() as library:
-        wrong = warm("--library", str(library))
+    """Figures of two libraries, after a run that fills the cache."""
+    jobs = [job(*files, "--workers", "2", *BOTH, cache=cache) for _ in range(rounds + 1)][1:]
+    share = [each.seconds / usual for each in jobs]
     figures = [
-        share("gl, two libraries / one", two, usual, 1.6),
-        share("gl, a wrong coefficient / none", wrong, usual, 1.5),
-        memory("gl, two libraries", two, MEMORY),
+        figure("gl, two libraries / one", "x", share, 1.6),
+        memory("gl, two libraries", jobs, MEMORY),
     ]
-    missed = 0.0 if all(each.wrong > 0.0 for each in wrong) else np.inf
-    return figures, [Check("a wrong coefficient is found", missed, 0.0)]
+    return figures, []
 
 
 def all_nodes(files):

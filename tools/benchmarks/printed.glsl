@@ -1,20 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Functions to time the shaders against, none of which is shipped: EON and its sampling with the
-// operations of the paper's listings, and forms whose terms of the material are hoisted.
+// operations of the paper's listings.
 //
 // Included after eon_sampling.glsl, whose constants and matrix it uses. H stands for albedos there:
-// printed_* keep the divisions, bounds and shared terms of [Portsmouth2025], Listings 1, 3 and 4.
+// they keep the divisions, bounds and shared terms of [Portsmouth2025], Listings 1, 3 and 4.
 
 #define PRINTED_EPSILON 1.0e-7
-
-// [Portsmouth2025], Eqs. (12), (13).
-float printed_albedo_exact(float mu, float roughness)
-{
-    float A = 1.0 / (1.0 + EON_C1 * roughness);
-    float S = sqrt(1.0 - mu * mu);
-    float G = S * (acos(mu) - S * mu) + 2.0 / 3.0 * (S / mu * (1.0 - S * S * S) - S);
-    return A + roughness * A * (1.0 / EON_PI) * G;
-}
 
 // [Portsmouth2025], Eqs. (12), (14).
 float printed_albedo_quartic(float mu, float roughness)
@@ -37,57 +28,11 @@ vec3 printed_eon(float mu_o, float mu_i, float s, vec3 rho, float roughness, flo
     return single + multiple;
 }
 
-vec3 printed_exact(float mu_o, float mu_i, float s, vec3 rho, float roughness)
-{
-    float E_o = printed_albedo_exact(mu_o, roughness);
-    float E_i = printed_albedo_exact(mu_i, roughness);
-    return printed_eon(mu_o, mu_i, s, rho, roughness, E_o, E_i);
-}
-
 vec3 printed_quartic(float mu_o, float mu_i, float s, vec3 rho, float roughness)
 {
     float E_o = printed_albedo_quartic(mu_o, roughness);
     float E_i = printed_albedo_quartic(mu_i, roughness);
     return printed_eon(mu_o, mu_i, s, rho, roughness, E_o, E_i);
-}
-
-// What printed_quartic_of takes: all of Eq. (19) that depends on the material alone.
-vec3 printed_tint(vec3 rho, float roughness, float A)
-{
-    float average = A * (1.0 + EON_C2 * roughness);
-    vec3 tint = rho * rho * average / (vec3(1.0) - rho * (1.0 - average));
-    return tint * (1.0 / EON_PI) / max(PRINTED_EPSILON, 1.0 - average);
-}
-
-// printed_quartic with the material's terms taken out of it.
-vec3 printed_quartic_of(float mu_o, float mu_i, float s, vec3 scale, vec3 tint, float roughness,
-                        float A)
-{
-    float m_o = 1.0 - mu_o;
-    float m_i = 1.0 - mu_i;
-    float G_o = m_o * (EON_G1 + m_o * (EON_G2 + m_o * (EON_G3 + m_o * EON_G4)));
-    float G_i = m_i * (EON_G1 + m_i * (EON_G2 + m_i * (EON_G3 + m_i * EON_G4)));
-    float lost_o = max(PRINTED_EPSILON, 1.0 - A * (1.0 + roughness * G_o));
-    float lost_i = max(PRINTED_EPSILON, 1.0 - A * (1.0 + roughness * G_i));
-    float quotient = s > 0.0 ? s / max(mu_i, mu_o) : s;
-    return scale * (1.0 + roughness * quotient) + tint * lost_o * lost_i;
-}
-
-// Not shipped: eon_brdf_mu from the colors of its two lobes, which depend on the material alone and are
-// computed once for many directions: fon_scale, and fon_scale times eon_multiple_weight.
-vec3 hoisted_eon(float mu_o, float mu_i, float s, vec3 single, vec3 multiple, float roughness)
-{
-    float quotient = fon_quotient(mu_o, mu_i, s);
-    return (1.0 + roughness * quotient) * single + fon_loss(mu_o) * fon_loss(mu_i) * multiple;
-}
-
-// [Portsmouth2025], Eq. (28).
-vec3 printed_environment(float mu, vec3 rho, float roughness)
-{
-    float E = printed_albedo_quartic(mu, roughness);
-    float average = (1.0 + EON_C2 * roughness) / (1.0 + EON_C1 * roughness);
-    vec3 tint = rho * rho * average / (vec3(1.0) - rho * (1.0 - average));
-    return rho * E + tint * (1.0 - E);
 }
 
 // Direction and density together, which share the matrix: [Portsmouth2025], Listing 3.

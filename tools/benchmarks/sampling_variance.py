@@ -10,6 +10,7 @@ CLTC alone does not exist: their density falls to 0 along a line on which EON do
 
 import numpy as np
 
+from mxeon.models.core.quadrature import hemisphere_nodes
 from mxeon.models.diffuse.brdf import eon_brdf
 from mxeon.models.sampling import SAMPLERS, eon_pdf
 
@@ -19,25 +20,6 @@ ROUGHNESS = (0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 1.0)
 VIEWS = (1.0, 0.7, 0.3, 0.1)
 BY_NAME = {sampler.name: sampler for sampler in SAMPLERS}
 PRINTED = [BY_NAME[name] for name in ("uniform", "cosine", "ltc0", "eon_cltc", "eon")]
-
-
-def view(mu):
-    """Direction with cosine `mu` at azimuth 0."""
-    return np.array([np.sqrt((1.0 - mu) * (1.0 + mu)), 0.0, mu])
-
-
-def hemisphere(mu, nodes=48):
-    """Directions and weights in solid angle; the weights count both sides of the view's plane."""
-    x, weight = np.polynomial.legendre.leggauss(nodes)
-    x, weight = 0.5 * (1.0 + x), 0.5 * weight
-    kink = np.arccos(mu)
-    theta = np.concatenate([kink * x, kink + (0.5 * np.pi - kink) * x])
-    d_theta = np.concatenate([kink * weight, (0.5 * np.pi - kink) * weight])
-    phi = 0.5 * np.pi * np.concatenate([x, 1.0 + x])
-    d_phi = np.pi * np.concatenate([weight, weight])
-    theta, phi = (grid.ravel() for grid in np.meshgrid(theta, phi, indexing="ij"))
-    wi = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], -1)
-    return wi, np.outer(d_theta, d_phi).ravel() * np.sin(theta)
 
 
 def lobe(polar, sharpness):
@@ -64,12 +46,13 @@ LIGHTS = (
 
 def moments(sampler, mu, roughness, light=None):
     """Mean, variance and largest value of one sample of light times EON at reflectance 1."""
-    wi, weights = hemisphere(mu)
-    value = eon_brdf(view(mu), wi, 1.0, roughness)[:, 0] * wi[:, 2]
+    wo, wi, projected = hemisphere_nodes(mu, 96)
+    value, cosine = eon_brdf(wo, wi, 1.0, roughness)[:, 0], wi[:, 2]
     value = value if light is None else value * light(wi)
-    pdf = sampler.pdf(view(mu), wi, roughness)
+    pdf = sampler.pdf(wo, wi, roughness)
     drawn = pdf > 0.0
-    sample, weights = value[drawn] / pdf[drawn], weights[drawn] * pdf[drawn]
+    sample = value[drawn] * cosine[drawn] / pdf[drawn]
+    weights = projected[drawn] * pdf[drawn] / cosine[drawn]
     mean = sample @ weights
     return mean, (sample - mean) ** 2 @ weights, sample.max()
 
@@ -118,12 +101,12 @@ def print_lighting(name):
 
 def relative_variance(mu, rho, roughness):
     """Largest variance of a channel's weight over its mean squared, sampling rho = 1 and gray."""
-    wi, weights = hemisphere(mu)
-    value = eon_brdf(view(mu), wi, rho, roughness) * wi[:, 2:]
+    wo, wi, projected = hemisphere_nodes(mu, 96)
+    value, weights = eon_brdf(wo, wi, rho, roughness) * wi[:, 2:], projected / wi[:, 2]
     albedo = weights @ value
     found = []
     for gray in (1.0, np.mean(rho)):
-        pdf = eon_pdf(view(mu), wi, roughness, rho=gray)[:, np.newaxis]
+        pdf = eon_pdf(wo, wi, roughness, rho=gray)[:, np.newaxis]
         found.append(np.max(weights @ ((value / pdf / albedo - 1.0) ** 2 * pdf)))
     return found
 

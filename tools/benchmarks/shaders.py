@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values and sampling in a compute shader, nanoseconds per call on one invocation's share.
+"""Values and sampling of EON in a compute shader, nanoseconds per call on one invocation's share.
 
 Each invocation calls its function many times, with arguments that change from call to call in ways
 no compiler foresees, and stores the sum. A loop that adds up the arguments alone is subtracted. A
@@ -8,6 +8,8 @@ software device processor time is taken, which other work on the machine does no
 """
 
 import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
@@ -15,20 +17,29 @@ import MaterialX as mx
 import moderngl
 import numpy as np
 
+from mxeon.conformance.accuracy import diffuse as tolerances
+from mxeon.models.diffuse.brdf import eon_brdf
+from mxeon.models.sampling import SAMPLERS
 from mxeon.shaders import functions as twins
-from tools.benchmarks.rivals import BASES, BRDFS, GOALS, RIVALS
 from tools.benchmarks.rounds import Check, Group, clock_of, interleave, less, ratio, scaled
 
 PRINTED = Path(__file__).with_name("printed.glsl")
 CALLS, INVOCATIONS = 256, 2**14
 COLUMNS = ("mu_o", "mu_i", "turn", "roughness", "r", "g", "b", "u1", "u2")
 
-STEP = """
-    mu_o = fract(mu_o + 0.6180339); mu_i = fract(mu_i + 0.4142135); turn = fract(turn + 0.7320508);
-    u1 = fract(u1 + 0.3247179); u2 = fract(u2 + 0.5698402);"""
-MATERIAL = """
-    roughness = fract(roughness + 0.2360679);
-    rho = fract(rho + vec3(0.1622776, 0.6457513, 0.3166247));"""
+# pi f cos in float32: as the conformance checks.
+VALUE = tolerances.VALUE.value
+# Listing 1 in float32: 1 - E loses digits, 1.3e-4 in E, and 3.61 x 0.29 x 1.3e-4 x 2 in the value.
+EXACT = 3e-4
+# [Portsmouth2025], Eq. (14): 6.0e-4 in E, twice 3.61 x 0.288 x 6.0e-4 in the value.
+QUARTIC = 1.25e-3
+# Weights of samples: a random number stretched over a part, and its rounding with it, tenfold.
+WEIGHT = 2e-4
+# Samples beside a border between parts may fall to its other side.
+SHARE = 2e-3
+# Largest weights but for that share, to scale the tolerances of values: cosine, and transformed.
+LARGEST, LARGEST_LTC = 20.0, 4.0
+
 KERNEL = """#version 430
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) buffer Arguments { float given[]; };
@@ -41,7 +52,7 @@ void main()
     float mu_o = given[n], mu_i = given[n + 1u], turn = given[n + 2u], roughness = given[n + 3u];
     vec3 rho = vec3(given[n + 4u], given[n + 5u], given[n + 6u]);
     float u1 = given[n + 7u], u2 = given[n + 8u];
-    vec3 sum = vec3(0.0);%s
+    vec3 sum = vec3(0.0);
     for (int i = 0; i < calls; ++i)
     {
         float S_o = sqrt(1.0 - mu_o * mu_o), S_i = sqrt(1.0 - mu_i * mu_i);
@@ -49,11 +60,89 @@ void main()
         vec3 wo = vec3(S_o, 0.0, mu_o), wi = vec3(S_i * x, S_i * sqrt(1.0 - x * x), mu_i);
         float cosine = dot(wo, wi);
         %s
-        %s
+        mu_o = fract(mu_o + 0.6180339); mu_i = fract(mu_i + 0.4142135); turn = fract(turn + 0.7320508);
+        u1 = fract(u1 + 0.3247179); u2 = fract(u2 + 0.5698402);
+        roughness = fract(roughness + 0.2360679);
+        rho = fract(rho + vec3(0.1622776, 0.6457513, 0.3166247));
     }
     sums[3u * k] = sum.x; sums[3u * k + 1u] = sum.y; sums[3u * k + 2u] = sum.z;
 }
 """
+BASES = {
+    "value": "sum += rho * (cosine + mu_o + mu_i + roughness);",
+    "draw": "sum += rho * (wo.x + wo.z + u1 + u2 + roughness);",
+}  # the loops to subtract
+
+
+@dataclass(frozen=True)
+class Rival:
+    """A function to time."""
+
+    statement: str  # GLSL that adds to `sum`
+    base: str  # key in BASES
+    exact: Callable[[Mapping[str, np.ndarray]], np.ndarray]  # of columns of arguments, (N, 3)
+    tolerance: float
+
+
+def directions(a):
+    """Directions of columns of arguments, in float64, and unit."""
+    mu_o, mu_i, x = a["mu_o"], a["mu_i"], 2.0 * a["turn"] - 1.0
+    S_o, S_i = np.sqrt(1.0 - mu_o**2), np.sqrt(1.0 - mu_i**2)
+    wi = np.stack([S_i * x, S_i * np.sqrt(1.0 - x * x), mu_i], -1)
+    return np.stack([S_o, 0.0 * S_o, mu_o], -1), wi
+
+
+def value_of(a):
+    """EON at columns of arguments."""
+    return eon_brdf(*directions(a), np.stack([a["r"], a["g"], a["b"]], -1), a["roughness"])
+
+
+def weight_of(name, a):
+    """EON times the cosine over the density of the sampler's own sample, 0 below."""
+    sampler = next(each for each in SAMPLERS if each.name == name)
+    wo, _ = directions(a)
+    wi, pdf = sampler.sample(wo, np.stack([a["u1"], a["u2"]], -1), a["roughness"])
+    above = wi[:, 2] > 0.0
+    wi = np.where(above[:, None], wi, [0.0, 0.0, 1.0])
+    share = np.divide(wi[:, 2], pdf, out=np.zeros_like(pdf), where=above)
+    rho = np.stack([a["r"], a["g"], a["b"]], -1)
+    return eon_brdf(wo, wi, rho, a["roughness"]) * share[:, None]
+
+
+def _value(call, tolerance):
+    return Rival(f"sum += {call};", "value", value_of, tolerance)
+
+
+def _draw(draw, pdf, value, sampler, tolerance):
+    """Sample, density and value together."""
+    body = f"{{ {draw} sum += {value} * (wi.z / {pdf}); }}"
+    return Rival(body, "draw", partial(weight_of, sampler), tolerance)
+
+
+EON = "eon_brdf(wo, wi, rho, roughness)"
+DRAWN = "printed_quartic(min(wo.z, 1.0), min(wi.z, 1.0), dot(wo, wi) - wo.z * wi.z, rho, roughness)"
+COSINE = "wi = cosine_sample(u1, u2);", "cosine_pdf(wi)"
+MIXTURE = "vec4 w = printed_sample(wo, u1, u2, roughness); wi = w.xyz;", "w.w"
+OWN = "wi = eon_sample(wo, u1, u2, 1.0, roughness);", "eon_pdf(wo, wi, 1.0, roughness)"
+RIVALS = {
+    "EON, quartic": _value(
+        "printed_quartic(mu_o, mu_i, cosine - mu_o * mu_i, rho, roughness)", QUARTIC
+    ),
+    "EON, stock": _value(
+        "mx_oren_nayar_compensated_diffuse(mu_o, mu_i, cosine, roughness, rho) / EON_PI", EXACT
+    ),
+    "EON, eonlib": _value("eon_brdf_mu(mu_o, mu_i, cosine - mu_o * mu_i, rho, roughness)", VALUE),
+    "cosine + quartic": _draw(*COSINE, DRAWN, "cosine", LARGEST * QUARTIC),
+    "CLTC + quartic": _draw(*MIXTURE, DRAWN, "eon_cltc", LARGEST_LTC * QUARTIC),
+    "CLTC + eonlib": _draw(*MIXTURE, EON, "eon_cltc", LARGEST_LTC * VALUE + WEIGHT),
+    "exact + eonlib": _draw(*OWN, EON, "eon", WEIGHT),
+}
+GOALS = (
+    ("EON, eonlib", "EON, quartic", 0.9),
+    ("EON, eonlib", "EON, stock", 0.7),
+    ("exact + eonlib", "CLTC + quartic", None),
+    ("exact + eonlib", "cosine + quartic", None),
+)
 
 
 def library_source():
@@ -82,9 +171,9 @@ class Device:
         self._given = self.context.buffer(given.tobytes())
         self._sums = self.context.buffer(reserve=12 * invocations)
 
-    def kernel(self, statement, before="", step=STEP + MATERIAL):
-        """The compiled loop around a statement, after what comes before the loop."""
-        return self.context.compute_shader(KERNEL % (self.source, before, statement, step))
+    def kernel(self, statement):
+        """The compiled loop around a statement."""
+        return self.context.compute_shader(KERNEL % (self.source, statement))
 
     def run(self, kernel, calls=CALLS):
         """The sums of so many calls, as raw memory of the device, complete."""
@@ -94,44 +183,30 @@ class Device:
         kernel.run(self.invocations // 64)
         self.context.finish()
 
-    def values(self, kernel):
-        """Sum that one call adds, (N, 3)."""
+    def checked(self, name, kernel):
+        """The check of a rival's values: the largest error, but for the share of samples."""
+        rival = RIVALS[name]
         self.run(kernel, calls=1)
-        return np.frombuffer(self._sums.read(), np.float32).reshape(-1, 3)
-
-
-def checked(device, rival, kernel):
-    """The check of a rival's values: the largest error but for its share."""
-    error = np.abs(device.values(kernel) - rival.exact(device.columns)).max(axis=1)
-    error = error * np.pi * device.columns["mu_i"] if rival.base in BRDFS else error
-    worst = np.sort(error)[-1 - int(rival.share * error.size)]
-    return Check(rival.name, float(worst), rival.tolerance)
-
-
-def kernels(device):
-    """The loops to subtract and those of the rivals, by name; a hoisted material stays the same."""
-    bases = {
-        name: device.kernel(text, step=STEP if name == "hoisted" else STEP + MATERIAL)
-        for name, text in BASES.items()
-    }
-    found = {
-        each.name: device.kernel(
-            each.statement, each.before, STEP if each.base == "hoisted" else STEP + MATERIAL
-        )
-        for each in RIVALS
-    }
-    return bases, found
+        values = np.frombuffer(self._sums.read(), np.float32).reshape(-1, 3)
+        error = np.abs(values - rival.exact(self.columns)).max(axis=1)
+        if rival.base == "value":
+            error, share = error * np.pi * self.columns["mu_i"], 0.0
+        else:
+            share = SHARE
+        worst = np.sort(error)[-1 - int(share * error.size)]
+        return Check(name, float(worst), rival.tolerance)
 
 
 def measure(rounds=21, invocations=INVOCATIONS, calls=CALLS):
     """The `Group` of all rivals."""
     device = Device(invocations)
-    bases, timed = kernels(device)
-    checks = tuple(checked(device, each, timed[each.name]) for each in RIVALS)
-    runs = {n: partial(device.run, k, calls) for n, k in (bases | timed).items()}
+    kernels = {name: device.kernel(each.statement) for name, each in RIVALS.items()}
+    bases = {name: device.kernel(text) for name, text in BASES.items()}
+    checks = tuple(device.checked(name, kernel) for name, kernel in kernels.items())
+    runs = {n: partial(device.run, k, calls) for n, k in (bases | kernels).items()}
     renderer = device.context.info["GL_RENDERER"]
     seconds = interleave(runs, rounds, clock_of(renderer))
-    net = {each.name: less(seconds[each.name], seconds[each.base]) for each in RIVALS}
+    net = {name: less(seconds[name], seconds[each.base]) for name, each in RIVALS.items()}
     factor = 1e9 / (invocations * calls)
     figures = [scaled(name, "ns", values, factor) for name, values in net.items()]
     figures += [ratio(f"{a} / {b}", net[a], net[b], goal) for a, b, goal in GOALS]

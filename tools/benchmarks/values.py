@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values of the models a second on one thread, beside Mitsuba's scalar and LLVM variants.
+"""Values of the models a second on one thread, beside those of Mitsuba's LLVM variant.
 
-Mitsuba computes in float32, the models in float64 with NumPy, and in float32 with Dr.Jit and JAX. Mitsuba's
+Mitsuba computes in float32, the models in float64 with NumPy and in float32 with Dr.Jit. Mitsuba's
 `eon` is the plugin of `mxeon.mitsuba`; it has no lobe of Schlick's curve or of sheen alone, but `principled` has
 both in one. Times are processor time.
 """
 
-import os
 import sys
 import time
 from functools import partial
@@ -29,16 +28,13 @@ from tools.benchmarks.models import arguments
 from tools.benchmarks.rounds import Check, Group, figure, interleave, ratio
 
 CLOCK = time.process_time
-PAIRS, CALLS = 1_000_000, 500  # of arrays; of calls for one pair each
+PAIRS = 1_000_000
 GOLD = (0.183, 0.421, 1.373), (3.424, 2.346, 1.770)
 SECONDS = {"one": 0.5, "own": 3.0}  # of a million pairs of microfacets, by material
 COMPENSATION = 1e-10  # of the table of E_ss
 PLUGIN = 3e-6  # of pi f cos in float32
-LLVM, SCALAR = "Mitsuba, llvm", "Mitsuba, scalar"
-DRJIT, JAX = "arrays of Dr.Jit, llvm", "arrays of JAX, jit"
+LLVM, DRJIT = "Mitsuba, llvm", "arrays of Dr.Jit, llvm"
 BARE = "Schlick without compensation"  # which Mitsuba has not
-ONE_THREAD = "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"  # of JAX
-PASS = "the sum wo + wi", "one pass of NumPy"
 # Models, and Mitsuba's nodes beside them.
 NODES = {
     "EON": {"type": "eon", "reflectance": {"type": "rgb", "value": [0.2, 0.5, 0.8]}, "roughness": 0.7},
@@ -84,12 +80,6 @@ def in_float32(wo, wi):
     }
 
 
-def scalar_rivals(wo, wi):
-    """Mitsuba's nodes over these pairs, one pair a call."""
-    mi = _mitsuba("scalar_rgb")
-    return {(name, SCALAR): _scalar(mi, mi.load_dict(node), wo, wi) for name, node in NODES.items()}
-
-
 def compiled_rivals(wo, wi):
     """Mitsuba's nodes over these pairs in one call, and the models over the same arrays, on one thread."""
     mi = _mitsuba("llvm_ad_rgb")
@@ -104,24 +94,6 @@ def compiled_rivals(wo, wi):
     for name, model in in_float32(view, light).items():
         ways[name, DRJIT] = partial(_evaluated, dr, model)
     return ways
-
-
-def jax_rivals(wo, wi):
-    """The models compiled by JAX, on one thread."""
-    os.environ.setdefault("XLA_FLAGS", ONE_THREAD)  # before the first import
-    try:
-        import jax
-    except ImportError:
-        raise PackageError("jax is not installed: pip install jax") from None
-    arrays = [jax.numpy.asarray(w, "float32") for w in (wo, wi)]
-
-    def compiled(name):
-        traced = jax.jit(lambda wo, wi: in_float32(wo, wi)[name]())
-        with unchecked():
-            traced(*arrays)
-        return lambda: np.asarray(traced(*arrays).block_until_ready())
-
-    return {(name, JAX): compiled(name) for name in (*RIVALED, BARE)}
 
 
 def _mitsuba(variant):
@@ -155,17 +127,6 @@ def mitsuba_version():
         return "not installed"
 
 
-def _scalar(mi, bsdf, wo, wi):
-    """A call for each pair, in Mitsuba's words si.wi and wo."""
-    context, pairs = mi.BSDFContext(), []
-    for view, light in zip(wo, wi, strict=True):
-        si = mi.SurfaceInteraction3f()
-        si.wi, si.t = mi.Vector3f(*view), 1.0
-        pairs.append((si, mi.Vector3f(*light)))
-
-    return lambda: [bsdf.eval(context, si, light) for si, light in pairs]
-
-
 def _vectorized(mi, dr, bsdf, view, light):
     """A call for all pairs, which ends when all values are in memory."""
     si = dr.zeros(mi.SurfaceInteraction3f, dr.width(view))
@@ -188,52 +149,33 @@ def checks(wo, wi, rivals):
         found.append(Check(f"EON, {LLVM}", float(np.abs(theirs - exact).max()), PLUGIN))
         same = np.pi * np.array(rivals["EON", DRJIT]()).T * wi[:, 2:]
         found.append(Check(f"EON, {DRJIT}", float(np.abs(same - exact).max()), PLUGIN))
-    if ("EON", JAX) in rivals:
-        same = np.pi * rivals["EON", JAX]() * wi[:, 2:]
-        found.append(Check(f"EON, {JAX}", float(np.abs(same - exact).max()), PLUGIN))
     return found
 
 
-def _installed(make, wo, wi):
-    """Rivals, or none where their package is missing."""
-    try:
-        return make(wo, wi)
-    except (NotRun, PackageError) as reason:
-        print(f"benchmarks: {make.__name__} left out: {reason}", file=sys.stderr)
-        return {}
-
-
-def measure(rounds=3, pairs=PAIRS, calls=CALLS):
+def measure(rounds=3, pairs=PAIRS):
     """The `Group` of values a second, and of the seconds of a million pairs."""
     wo, wi = arguments(pairs, "one")[:2]
-    seconds = interleave(_installed(scalar_rivals, wo[:calls], wi[:calls]), rounds, CLOCK)
-    # Time what takes all pairs at once side by side; a change of variant would count as theirs.
     rivals = {(name, "one material"): way for name, way in ours(wo, wi, "one").items()}
     rivals |= {(name, "a material each"): way for name, way in ours(wo, wi, "own").items()}
-    rivals[PASS] = partial(np.add, wo, wi)
-    rivals |= _installed(jax_rivals, wo, wi)
-    rivals |= _installed(compiled_rivals, wo, wi)
-    seconds |= interleave(rivals, rounds, CLOCK)
+    try:
+        rivals |= compiled_rivals(wo, wi)
+    except (NotRun, PackageError) as reason:
+        print(f"benchmarks: Mitsuba left out: {reason}", file=sys.stderr)
+    seconds = interleave(rivals, rounds, CLOCK)
     # Values a second, and ratios to the fastest rival.
     figures = []
     for (name, way), times in seconds.items():
-        count = min(calls, pairs) if way == SCALAR else pairs
-        rates = [1e-6 * count / each for each in times]
-        node = f" ({NODES[name]['type']}, {mitsuba_version()})" if way in (LLVM, SCALAR) else ""
+        rates = [1e-6 * pairs / each for each in times]
+        node = f" ({NODES[name]['type']}, {mitsuba_version()})" if way == LLVM else ""
         figures.append(figure(f"{name}, {way}{node}", "million values/s", rates))
-    for name, way in seconds:
         theirs = seconds.get((RIVALS.get(name, name), LLVM))
-        if theirs and way in ("one material", DRJIT, JAX):
+        if theirs and way in ("one material", DRJIT):
             goal = GOALS.get((name, way))
-            label = f"{name}, {way} / {LLVM}"
-            figures.append(ratio(label, theirs, seconds[name, way], goal, at_least=True))
+            figures.append(ratio(f"{name}, {way} / {LLVM}", theirs, times, goal, at_least=True))
     for name in ("conductor", "dielectric"):
         for way, goal in (("one material", SECONDS["one"]), ("a material each", SECONDS["own"])):
             million = [1e6 / pairs * each for each in seconds[name, way]]
             figures.append(figure(f"{name}, {way}, a million pairs", "s", million, goal))
-    return Group(
-        "values",
-        "Values a second, one thread, processor time",
-        tuple(figures),
-        tuple(checks(wo, wi, rivals)),
-    )
+    found = checks(wo, wi, rivals)
+    title = "Values a second, one thread, processor time"
+    return Group("values", title, tuple(figures), tuple(found))

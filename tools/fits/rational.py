@@ -7,10 +7,12 @@ of least largest error in 40 digits, see `minimax.py`, give coefficients that ar
 """
 
 import math
+import re
 from dataclasses import dataclass
 
 import numpy as np
 
+from mxeon.shaders.functions import source_file
 from tools.fits.minimax import least_largest, mp
 
 DIGITS = 8  # decimal digits of a printed coefficient, one more than float32 tells apart
@@ -82,6 +84,12 @@ def defines(form, coefficients, prefix):
         for letter, monomials, row in parts
         for m, x in zip(monomials, row, strict=True)
     ]
+
+
+def shipped(stem, prefix, kinds="ND"):
+    """Coefficients of a fit in a GLSL file, numerator first."""
+    text = source_file("glsl", stem).read_text(encoding="utf-8")
+    return tuple(float(x) for x in re.findall(rf"#define {prefix}_[{kinds}]\d+ (\S+)", text))
 
 
 def _monomial(point, exponents):

@@ -6,7 +6,6 @@ float64, for the pairs and materials that checks ask for, drawn with other seeds
 together change a value and an albedo at most, and in the mean of a set.
 """
 
-import re
 from contextlib import ExitStack, contextmanager, suppress
 from itertools import count
 from unittest.mock import patch
@@ -21,18 +20,12 @@ from mxeon.conformance.samples.measurement import mean_scaled, scaled
 from mxeon.errors import OutsideModel
 from mxeon.models.microfacet import fresnel_formulas as fresnel
 from mxeon.models.microfacet import lobe as microfacets
-from mxeon.shaders.functions import source_file
 from tools.fits import conty_kulla_albedo, fresnel_average, ggx_albedo, ggx_cosine
+from tools.fits.rational import shipped
 
 SETS = 32
 LEAST = 1e-6  # cosine and roughness from which on shaders take their fits
 EXACT = lobes._albedo
-
-
-def shipped(stem, prefix, kinds="ND"):
-    """Coefficients of a fit in a GLSL file, numerator first."""
-    text = source_file("glsl", stem).read_text(encoding="utf-8")
-    return [float(each) for each in re.findall(rf"#define {prefix}_[{kinds}]\d+ (\S+)", text)]
 
 
 GGX = shipped("ggx_albedo", "GGX_ALBEDO")

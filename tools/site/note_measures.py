@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Numbers of the technical note: errors, variances, and the energy that white surfaces return."""
 
-import re
-from functools import cache
-
 import numpy as np
 
 from mxeon.models import (
@@ -24,11 +21,11 @@ from mxeon.models.microfacet.albedo import dielectric_albedo_dir
 from mxeon.models.microfacet.defects import fitted_albedo
 from mxeon.models.transmission.schlick import READINGS
 from mxeon.models.transmission.transmittance import dielectric_transmittance_dir
-from mxeon.shaders.functions import source_file
-from tools.benchmarks.sampling_variance import BY_NAME, hemisphere, view
+from tools.benchmarks.sampling_variance import BY_NAME, moments
 from tools.fits import fon_loss as loss_fit
 from tools.fits import ggx_albedo as albedo_fit
 from tools.fits import ggx_cosine as cosine_fit
+from tools.fits.rational import shipped
 
 GLASS, DENSE = 1.5, 3.0
 SCHLICK = (0.04, 0.25, 0.6), (1.0, 0.5, 0.8), 1.0  # color0, color82, color90
@@ -72,18 +69,8 @@ def closed_loss(mu):
 
 def fitted_loss(mu):
     """1 - E at roughness 1 by the polynomials of the shaders."""
-    p, q = (np.float32(each) for each in shipped_loss())
+    p, q = (np.float32(shipped("eon", "EON", each)) for each in "PQ")
     return loss_fit.fitted(mu, p, q) / (np.float32(1.0) + np.float32(C1))
-
-
-@cache
-def shipped_loss():
-    """Coefficients P and Q of H in the shaders."""
-    text = source_file("glsl", "eon").read_text(encoding="utf-8")
-    return tuple(
-        np.array([float(x) for x in re.findall(rf"#define EON_{name}\d (\S+)", text)])
-        for name in "PQ"
-    )
 
 
 LOSSES = {
@@ -130,13 +117,7 @@ def rounding_figures(stride=1):
 # Sampling of EON.
 def variances(name, roughness, mu):
     """Variance of the weight at unit reflectance, by quadrature."""
-    pdf, found = BY_NAME[name].pdf, []
-    for each in mu:
-        wi, solid_angle = hemisphere(each)
-        wo = view(each)
-        flow = eon_brdf(wo, wi, 1.0, roughness)[:, 0] * wi[:, 2]
-        found.append(np.sum(solid_angle * flow * flow / pdf(wo, wi, roughness)) - 1.0)
-    return np.array(found)
+    return np.array([moments(BY_NAME[name], each, roughness)[1] for each in mu])
 
 
 def sampling_figures():
@@ -150,12 +131,6 @@ def sampling_figures():
 
 
 # Albedos of microfacets.
-def shipped(stem, prefix):
-    """Coefficients of a rational fit in the shaders, numerator first."""
-    text = source_file("glsl", stem).read_text(encoding="utf-8")
-    return tuple(float(x) for x in re.findall(rf"#define {prefix}_[ND]\d+ (\S+)", text))
-
-
 def grid(count):
     """Cosines and roughnesses from 0.001 to 1, `count` of each."""
     return tuple(each.ravel() for each in np.meshgrid(*2 * [np.geomspace(1e-3, 1.0, count)]))

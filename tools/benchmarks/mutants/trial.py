@@ -3,7 +3,7 @@
 
 import shutil
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import cache
 from itertools import islice
@@ -11,14 +11,12 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.results import PASSED, SOURCE, Result
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import make_plan
 from mxeon.conformance.run.tasks import CURVE, PICTURE, Task
 from mxeon.errors import MxeonError
 from mxeon.shaders import generators, library
-from mxeon.shaders.generation import generate
 from tools.benchmarks.mutants.mutant import FOLDERS, ROOT, Mutant
 from tools.benchmarks.mutants.nodes import changed_nodes, node_tasks
 from tools.benchmarks.mutants.reference import TESTS, trial_of_reference, trial_of_tests
@@ -34,16 +32,6 @@ NOISY = ("environment", "furnace")  # checks that take Cycles longest
 ON_CYCLES = ("genosl/",)
 NOT_ON_GL = (*ON_CYCLES, "libraries/diffuse/eonlib_genosl", "libraries/diffuse/eonlib_genmdl")
 TEXT_FIRST = ("libraries/diffuse/eonlib_defs.mtlx",)  # other checks fail for what its check names
-# Files of the implementations, and the target whose text has to differ.
-CHANGED = {
-    "genglsl/lib/oren_nayar_lobe.glsl": "glsl",
-    "genglsl/oren_nayar_diffuse_bsdf.glsl": "glsl",
-    "genglsl/eon_diffuse_bsdf.glsl": "glsl",
-    "genglsl/lib/eon.glsl": "glsl",
-    "libraries/diffuse/eonlib_genglsl_impl.mtlx": "glsl",
-    "libraries/diffuse/eonlib_genosl_impl.mtlx": "osl",
-    "libraries/diffuse/eonlib_genmdl_impl.mtlx": "mdl",
-}
 
 
 def trial(mutant: Mutant, judge: Judge, every: bool = False) -> dict[str, Any]:
@@ -65,8 +53,6 @@ def _on_hosts(mutant: Mutant, judge: Judge, every: bool) -> dict[str, Any]:
     nodes = bool(changed_nodes(mutant))
     with wrong_library(mutant) as path:
         try:
-            if not nodes and not mutant.control:
-                assert_changed(mutant, path)
             limit = 1 if mutant.equivalent and not mutant.control and not nodes else None
             found = node_tasks(mutant, path) if nodes else stages(mutant, path)
             for host, stage in islice(found, limit):
@@ -172,26 +158,6 @@ def _ratio(result: Result) -> float:
     if result.error is None:
         return float("inf")
     return result.error / max(result.tolerance or 0.0, 1e-9)
-
-
-def assert_changed(mutant: Mutant, path: str) -> None:
-    """Raise RuntimeError unless the generated text has the change, where text must have it."""
-    target = CHANGED.get(mutant.file)
-    if target is None:
-        return
-    with suppress(MxeonError):
-        if _texts(target, path) == _original(target):
-            raise RuntimeError(f"{mutant.name}: the generated text for {target} is the same")
-
-
-@cache
-def _original(target: str) -> list[str]:
-    return _texts(target, "eonlib")
-
-
-def _texts(target: str, name: str) -> list[str]:
-    documents = [subject.document() for subject in SUBJECTS]
-    return [generate(text, target, library=name)[0].stages["pixel"] for text in documents]
 
 
 def first_line(text: str) -> str:
