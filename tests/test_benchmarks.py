@@ -15,7 +15,6 @@ SMALLEST = {
     "shaders": {"rounds": 1, "invocations": 1024, "calls": 2},
     "noise": {"rounds": 1, "size": 16, "pictures": 2, "spokes": 2},
     "materials": {"processes": 1, "size": 32, "nodes": ("dielectric_bsdf",)},
-    "instructions": {"nodes": ("oren_nayar",)},
     "registers": {"nodes": ("oren_nayar",)},
     "models": {"rounds": 1, "pairs": (1000,)},
     "values": {"rounds": 1, "pairs": 1000},

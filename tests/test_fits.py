@@ -33,7 +33,6 @@ from tools.fits import (
 )
 from tools.fits.minimax import least_largest, mp
 from tools.fits.rational import shipped as shipped_coefficients
-from tools.site import research
 
 by_language = pytest.mark.parametrize("language", twins.LANGUAGES)
 
@@ -213,19 +212,6 @@ def test_the_shader_has_the_nodes_of_a_film():
     np.testing.assert_allclose(
         np.reshape(macros(r"GAUSS\d"), (-1, 2)).T, thin_film.gauss(5), atol=1e-8
     )
-
-
-def test_pages_state_how_much_brighter_a_layer_is_than_eon_below_an_interface():
-    blocks = [
-        re.findall(r"<!-- walk -->\n(.*?)<!-- end -->", page.read_text(encoding="utf-8"), re.DOTALL)
-        for page in (research.PAGE, research.PAGE.with_name("mitsuba.md"))
-    ]
-    assert blocks[0] == blocks[1] and len(blocks[0]) == 1
-    rows = re.findall(r"^\| (\S+) \| (\S+) to (\S+) \|$", blocks[0][0], re.MULTILINE)
-    assert tuple(float(rho) for rho, *_ in rows) == varnish_walk.RHO
-    for rho, *stated in rows:
-        found = varnish_walk.quotients(float(rho), 1 << 13)
-        np.testing.assert_allclose([found.min(), found.max()], np.float64(stated), rtol=0.04)
 
 
 def test_facets_pass_as_much_light_out_as_in():

@@ -2,13 +2,12 @@
 """The record of versions of MaterialX, and what upstream pages say of them."""
 
 import json
-from copy import deepcopy
 
 import pytest
 
 from tests.support.wheels import MAIN
 from tools.site import versions
-from tools.site.ledger import entries, measure, pages
+from tools.site.ledger import entries, measure
 
 KNOWN = json.loads(versions.RECORD.read_text())
 LAST = versions.VERSIONS[-2:]  # the release, and main
@@ -33,10 +32,3 @@ def test_eonlib_passes_with_the_release_and_with_main():
 @pytest.mark.parametrize("page", OURS)
 def test_a_page_whose_checks_pass_in_main_names_what_repaired_it(page):
     assert not KNOWN["pages"][page]["main"]["passed"] or OURS[page].pull
-
-
-def test_a_page_that_is_gone_says_so():
-    gone = deepcopy(KNOWN)
-    gone["pages"]["genglsl_clamped_dot"]["main"]["passed"] = True
-    text = pages.seen(OURS["genglsl_clamped_dot"], gone)
-    assert text.startswith("Seen in MaterialX 1.39.3, 1.39.4 and 1.39.5; gone in main of ")

@@ -16,7 +16,16 @@ import subprocess
 import sys
 from pathlib import Path
 
-HOSTS = ("gl", "webgl", "vulkan", "wgsl", "slang", "osl", "materialx", "storm", "cycles") + (
+HOSTS = [
+    "gl",
+    "webgl",
+    "vulkan",
+    "wgsl",
+    "slang",
+    "osl",
+    "materialx",
+    "storm",
+    "cycles",
     "cycles-native",
     "mitsuba",
     "three",
@@ -24,7 +33,7 @@ HOSTS = ("gl", "webgl", "vulkan", "wgsl", "slang", "osl", "materialx", "storm", 
     "three-gpu-pathtracer",
     "msl",
     "mdl",
-)
+]
 LIBRARIES = ("eonlib", "stock", "diffuse")
 PLACE = ("host", "library", "subject", "check")
 SAME = ("verdict", "tolerance", "caught", "diagnosis", "pages", "reason")
@@ -38,15 +47,8 @@ def lines(host: str, library: str) -> list[Line]:
     if not run.stdout.startswith("{"):  # a renderer with materials of its own takes no --node
         run = subprocess.run([*command[:6], "--json"], capture_output=True, text=True, check=False)
     if not run.stdout.startswith("{"):
-        return [
-            {
-                "host": host,
-                "library": library,
-                "subject": "",
-                "check": "",
-                "reason": run.stderr.strip(),
-            }
-        ]
+        place = dict(zip(PLACE, (host, library, "", ""), strict=True))
+        return [{**place, "reason": run.stderr.strip()}]
     return [line(each) for each in json.loads(run.stdout)["results"]]
 
 

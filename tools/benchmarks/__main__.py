@@ -23,7 +23,6 @@ QUICK = {  # sizes of each group with --quick
     "shaders": {"rounds": 5},
     "noise": {"rounds": 3, "size": 64, "pictures": 8, "spokes": 6},
     "materials": {"processes": 3, "size": 256},
-    "instructions": {"nodes": ("oren_nayar", "dielectric_bsdf")},
     "registers": {"nodes": ("oren_nayar", "dielectric_bsdf")},
     "models": {"rounds": 3, "pairs": (10_000, 100_000)},
     "values": {"rounds": 2, "pairs": 100_000},

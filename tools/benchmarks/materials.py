@@ -2,7 +2,7 @@
 """Generated materials with eonlib and with stock MaterialX: source, compilation, frame time."""
 
 import statistics
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import partial
@@ -198,19 +198,10 @@ def measure(
             )
             if keep:
                 keep(group)
-    means = tuple(_mean(group, kind, nodes) for kind in ("frame", COMPILATION))
-    return replace(group, figures=group.figures + tuple(each for each in means if each))
+    return group
 
 
 COMPILATION = "compilation and first frame"
-
-
-def _mean(group: Group, kind: str, nodes: Iterable[str]):
-    """The mean ratio of the materials without a film."""
-    found = {each.name: each.median for each in group.figures}
-    ratios = [found[f"{kind}, {node}, eonlib / stock"] for node in nodes if node in BARE]
-    name = f"{kind}, mean of nodes without a film, eonlib / stock"
-    return figure(name, "x", [float(np.mean(ratios))], 1.0) if ratios else None
 
 
 def _figures(node, runs):

@@ -10,7 +10,6 @@ from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 
 import moderngl
-import numpy as np
 
 from tools.benchmarks.rounds import Check, Figure, Group
 
@@ -21,7 +20,6 @@ def machine():
     """Hardware and versions that the figures depend on, by name."""
     found = {
         "processor": _processor(),
-        "NumPy's vectors": _vectors(),
         "cores": os.cpu_count(),
         "load before": round(os.getloadavg()[0], 2),
         "system": platform.platform(terse=True),
@@ -29,22 +27,6 @@ def machine():
         "date": datetime.now(UTC).date().isoformat(),
     }
     return found | {name: _version(name) for name in PACKAGES}
-
-
-# Features of processors that NumPy has code for, the widest first, and their width.
-VECTORS = {
-    "AVX512_SKX": "AVX-512, 512 bits",
-    "AVX2": "AVX2, 256 bits",
-    "SVE": "SVE",
-    "ASIMD": "ASIMD, 128 bits",
-    "SSE42": "SSE4.2, 128 bits",
-}
-
-
-def _vectors():
-    """The widest vectors that NumPy uses; NPY_DISABLE_CPU_FEATURES takes some from it."""
-    enabled = np._core._multiarray_umath.__cpu_features__
-    return next((VECTORS[name] for name in VECTORS if enabled.get(name)), "unknown")
 
 
 def _renderer():

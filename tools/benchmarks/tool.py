@@ -12,10 +12,10 @@ import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
 
 from mxeon.shaders.generation import GENERATORS, TARGETS, generate
-from mxeon.shaders.library import examples_folder, load_library, read_library
+from mxeon.shaders.library import examples_folder, load_library
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 from tools.benchmarks.models import peak_memory, reset_memory
-from tools.benchmarks.rounds import Check, Group, figure, interleave, less, ratio, scaled
+from tools.benchmarks.rounds import Check, Group, figure, interleave, less, ratio
 
 DOCUMENTS = (1, 10, 100, 1000)
 
@@ -101,8 +101,6 @@ def generating(rounds, documents=100):
         }
         checks.append(Check(f"same text, {target}", same_text(library, texts[0], target), 0.0))
         seconds = interleave(rivals, rounds)
-        name = f"generate, {target}, per document"
-        figures.append(scaled(name, "ms", seconds["ours"], 1e3 / documents))
         name = f"generate / raw MaterialX calls, {target}, {documents} documents"
         figures.append(ratio(name, seconds["ours"], seconds["raw"], goal=1.2))
     return figures, checks
@@ -124,20 +122,9 @@ def growing(counts):
     return figures
 
 
-def loading(rounds):
-    """Figures of loading the library anew."""
-    fresh = partial(read_library.__wrapped__, profile=None, definitions=())
-    work = {name: partial(fresh, name) for name in ("eonlib", "stock")}
-    seconds = interleave(work, rounds)
-    return [
-        scaled("library load, eonlib", "ms", seconds["eonlib"], 1e3),
-        ratio("library load, eonlib / stock", seconds["eonlib"], seconds["stock"]),
-    ]
-
-
 def measure(rounds=5, counts=DOCUMENTS, documents=100):
     """The `Group` of all that."""
     with unwarned():
         figures, checks = generating(rounds, documents)
-    figures = starting(4 * rounds) + loading(rounds) + figures + growing(counts)
+    figures = starting(4 * rounds) + figures + growing(counts)
     return Group("tool", "The tool", tuple(figures), tuple(checks))
