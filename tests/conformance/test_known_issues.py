@@ -75,3 +75,8 @@ def test_a_page_explains_an_error_of_its_size_and_its_model(
 ):
     result = Result(check, "", subject, "gl", STOCK, FAILED, error, "", 1e-6, diagnosis=diagnosis)
     assert with_pages(result).pages == pages
+
+
+def test_no_page_on_a_value_explains_a_shader_that_does_not_compile():
+    broken = Result("output", "", "blackbody", "slang", STOCK, FAILED, diagnosis="slang: refused")
+    assert with_pages(broken).pages == ("genslang_blackbody_constant",)

@@ -125,6 +125,8 @@ def _explains(issue: Issue, result: Result, materialx: str) -> bool:
     row = result.check, result.subject
     # Hosts that show pictures alone measure relative errors, which have no size in another unit.
     sized = result.host == issue.host or result.unit != "relative"
+    if result.error is None and issue.sizes:  # as of a shader that does not compile
+        return False
     if sized and (result.error or 0.0) > SPREAD * issue.sizes.get(row, math.inf):
         return False
     gone = row in issue.repaired or set(issue.rows) <= set(issue.repaired)
