@@ -11,7 +11,7 @@ from mxeon.errors import NotRun
 from tests.support.availability import available
 from tests.support.sharing import shared
 from tests.support.tolerances import PRINTED
-from tools.site.ledger import FOLDER, completed, entries, measure, measured, pages, patches
+from tools.site.ledger import FOLDER, completed, entries, measure, measured, patches
 
 MEASURED = measured()
 OF_A_DRIVER = "genglsl_albedo_acos"  # its figure is the error of the driver that its page names
@@ -22,28 +22,6 @@ ISSUES = [each for each in measure.CHECKED if each.host not in ("three", "babylo
 def test_what_is_measured_is_complete():
     """`python -m tools.site.ledger` completes it."""
     assert json.loads(json.dumps(completed(MEASURED, entries()))) == MEASURED
-
-
-def test_a_new_defect_takes_one_entry():
-    index, page = (
-        pages.pages(entries() | entries(NEW))[FOLDER / f"{name}.md"]
-        for name in ("README", "a_new_page")
-    )
-    assert "- [A new defect](a_new_page.md) (*differs*)\n" in index
-    assert page.startswith("# A new defect\n\nIt is wrong.\n\n## Cause\n\nA slip.\n")
-
-
-@pytest.mark.parametrize(
-    "old, new, message",
-    [
-        ("differs", "verdict", "entry a_new_page of known_issues.toml: .* 'verdict'"),
-        ('cause = "A slip."', "", "entry a_new_page of known_issues.toml: .* 'cause'"),
-        ("sheen", "cloth", "group of a_new_page must be one of rough_diffuse, .*; got cloth"),
-    ],
-)
-def test_a_wrong_entry_is_refused(old, new, message):
-    with pytest.raises(ValueError, match=message):
-        pages.pages(entries() | entries(NEW.replace(old, new, 1)))
 
 
 @pytest.fixture(scope="module")
