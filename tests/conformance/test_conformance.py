@@ -192,7 +192,7 @@ def test_a_host_that_gives_no_numbers_fails():
     host.evaluate = lambda shader, wo, *_, **options: np.full(wo.shape, np.nan)
     result = judged(host)["value"]
     assert result.verdict == FAILED and result.error == np.inf
-    assert "not finite" in result.diagnosis
+    assert "NaN or infinity" in result.diagnosis
 
 
 def test_a_control_that_passes_makes_the_verdict_failed():

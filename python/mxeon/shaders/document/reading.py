@@ -119,7 +119,7 @@ def _check_tokens(elements: Iterable[mx.Element]) -> None:
     for element in elements:
         if element.isA(mx.Token) and element.getType() in ("filename", "geomname"):
             raise DocumentError(
-                f"{location(element)} must not have the type {element.getType()}, which ends "
+                f"{location(element)} must not have the type {element.getType()}, which crashes "
                 "MaterialX: give it the type string"
             )
 
