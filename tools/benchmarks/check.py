@@ -17,7 +17,8 @@ from tempfile import NamedTemporaryFile, TemporaryDirectory
 
 import numpy as np
 
-from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES
+from mxeon.conformance.specs.diffuse import DIFFUSE as DIFFUSE_SPECS
+from mxeon.conformance.specs.diffuse import SURFACE_LOBES
 from mxeon.hosts import HOSTS
 from mxeon.shaders.library import examples_folder
 from tools.benchmarks.rounds import Check, Group, figure
@@ -25,7 +26,7 @@ from tools.benchmarks.rounds import Check, Group, figure
 BOTH = ("--library", "eonlib", "--library", "stock")
 # The field as tools/site/field.py asks it: the diffuse nodes on hosts, and all common ones of renderers' own.
 EXAMPLE = str(examples_folder() / "clay.mtlx")
-DIFFUSE = tuple(dict.fromkeys(row.node for row in (*SUBJECTS, *SURFACES)))
+DIFFUSE = tuple(dict.fromkeys(row.node for row in (*DIFFUSE_SPECS, *SURFACE_LOBES)))
 FIELD = {
     "hosts": ([row.name for row in HOSTS if row.module and not row.nodes], DIFFUSE),
     "renderers": ([row.name for row in HOSTS if row.module and row.nodes], ("common",)),

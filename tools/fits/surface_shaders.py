@@ -12,11 +12,10 @@ from unittest.mock import patch
 
 import numpy as np
 
-from mxeon.conformance.nodes.surface_shaders import SHADERS
-from mxeon.conformance.probes import surface_shaders as probes
 from mxeon.conformance.reference import lobes
-from mxeon.conformance.samples.batch import SEED
-from mxeon.conformance.samples.measurement import mean_scaled, scaled
+from mxeon.conformance.samples import SEED
+from mxeon.conformance.specs import surface_shaders as specs
+from mxeon.conformance.tolerance import mean_scaled, scaled
 from mxeon.errors import OutsideModel
 from mxeon.models.microfacet import fresnel_formulas as fresnel
 from mxeon.models.microfacet import lobe as microfacets
@@ -127,13 +126,13 @@ def fits():
 
 def errors(shader, seed):
     """Errors of one set, by name: of values and albedos the largest, and those of their means."""
-    with patch.object(probes, "SEED", seed):
-        probe = probes.SurfaceShaderProbe(None, shader, "eonlib")
-        [batch], [views] = probe.batches, probe.cosines
-    asked = ((batch, "direct"), (views, "environment"))  # of which a probe keeps the first answer
-    exact = [probe._reference(*each) for each in asked]
+    with patch.object(specs, "SEED", seed):
+        [batch] = batches = shader.batches(shader.counts)
+        [views] = shader.views(batches, batches, shader.counts)
+    asked = ((batch, "direct"), (views, "environment"))
+    exact = [shader._reference(*each) for each in asked]
     with fits():
-        fitted = [probe._reference(*each) for each in asked]
+        fitted = [shader._reference(*each) for each in asked]
     exact[0], fitted[0] = np.pi * exact[0], np.pi * fitted[0]
     pairs = {"values": (fitted[0], exact[0]), "albedos": (fitted[1], exact[1])}
     return {
@@ -154,6 +153,6 @@ def largest(shader, sets=SETS):
 
 
 if __name__ == "__main__":
-    for shader in SHADERS:
+    for shader in specs.SURFACE_SHADERS:
         text = ", ".join(f"{name} {error:.2g}" for name, error in largest(shader).items())
         print(f"{shader.node}: {text}")

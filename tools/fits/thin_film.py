@@ -9,7 +9,7 @@ nm on each kind of substrate, for cosines from 0.1 on. `thin_film_search.py` sea
 
 import numpy as np
 
-from mxeon.conformance.probes.thin_films import LEAST_FILM, LEAST_OIL, SHARP
+from mxeon.conformance.specs.thin_films import LEAST_FILM, LEAST_OIL, SHARP
 from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
 from mxeon.models.thin_film import curve
 from mxeon.models.thin_film import formulas as film
@@ -19,7 +19,12 @@ from tools.fits.thin_film_search import COLORED, WHITE, largest
 
 # Each in a range: roughness, cosine of the view, thickness in nm, index.
 FILMS = {"alpha": (1e-2, 1.0), "mu": (0.1, 1.0), "thickness": (0.0, 1000.0), "index": (1.0, 2.5)}
-CLEAR = {**SHARP, "index": (LEAST_OIL, 2.5)}
+CLEAR = {
+    "alpha": SHARP.alpha,
+    "mu": SHARP.mu,
+    "thickness": SHARP.thickness,
+    "index": (LEAST_OIL, 2.5),
+}
 DARK = 1e-3  # reflectance below which errors are no longer relative
 STEP = 1e-6  # of a thickness, relative, by which the slope of a curve is measured
 # Of the shader, chosen by `thin_film_nodes.py`: the width of five cosines; two cosines, their weights and

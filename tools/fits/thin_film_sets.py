@@ -8,10 +8,16 @@ wrong digit, which is wrong for all films, shows where a bound on the largest er
 
 import numpy as np
 
-from mxeon.conformance.checks.film_measures import SMOOTH
-from mxeon.conformance.nodes.thin_films import FILMS
-from mxeon.conformance.probes import thin_films as probes
-from mxeon.conformance.samples.batch import SEED
+from mxeon.conformance.checks.thin_films import SMOOTH
+from mxeon.conformance.samples import SEED
+from mxeon.conformance.specs.thin_films import (
+    FILM_SPECS,
+    FRINGED,
+    GLOSSY,
+    ORDERED,
+    STEEP,
+    film_views,
+)
 from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
 from tools.fits import thin_film as fit
 
@@ -25,35 +31,35 @@ def smooth_errors(category, material, _, mu):
     return fit.pair_errors(category, material) * F * (1.0 - E_ss) / E_ss
 
 
-# What is measured, by name: errors, size of a set, and the ranges of its films.
+# What is measured, by name: errors, and a set of films.
 MEASURED = {
-    "all orders": (fit.curve_errors, probes.CURVES, probes.ORDERED),
-    "F_ss": (fit.average_errors, probes.FEW_FILMS, probes.FRINGED),
-    "compensation in two cosines": (smooth_errors, probes.FEW_FILMS, probes.FRINGED),
-    "visible facets": (fit.visible_errors, probes.FEW_FILMS, probes.STEEP),
-    "visible facets that are much alike": (fit.visible_errors, probes.FEW_FILMS, probes.GLOSSY),
+    "all orders": (fit.curve_errors, ORDERED),
+    "F_ss": (fit.average_errors, FRINGED),
+    "compensation in two cosines": (smooth_errors, FRINGED),
+    "visible facets": (fit.visible_errors, STEEP),
+    "visible facets that are much alike": (fit.visible_errors, GLOSSY),
 }
 
 
-def films(subject, count, ranges, seed):
+def films(spec, ranges, seed):
     """Category, material, roughness and cosine of the films that a check asks for, of another seed."""
-    batch = probes.film_views(subject, count, ranges, seed)
+    batch = film_views(spec, ranges, seed)
     material = {
         name: np.moveaxis(batch.inputs[name], -1, 0)
         for name in batch.inputs
         if name not in ("roughness", "retroreflective")
     }
-    return subject.node, material, batch.inputs["roughness"][:, 0], batch.wo[:, 2]
+    return spec.node, material, batch.inputs["roughness"][:, 0], batch.wo[:, 2]
 
 
-def largest(errors, count, ranges, sets=SETS):
+def largest(errors, ranges, sets=SETS):
     """The largest root mean square of errors, by category."""
     return {
-        subject.node: max(
-            float(np.sqrt(np.mean(errors(*films(subject, count, ranges, seed)) ** 2)))
+        spec.node: max(
+            float(np.sqrt(np.mean(errors(*films(spec, ranges, seed)) ** 2)))
             for seed in range(SEED + 1, SEED + 1 + sets)
         )
-        for subject in FILMS
+        for spec in FILM_SPECS
     }
 
 

@@ -9,9 +9,10 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from mxeon import report
-from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES
 from mxeon.conformance.results import NOT_RUN
 from mxeon.conformance.run import check
+from mxeon.conformance.specs.diffuse import DIFFUSE as DIFFUSE_SPECS
+from mxeon.conformance.specs.diffuse import SURFACE_LOBES
 from mxeon.hosts import HOSTS
 from mxeon.report.field import read_field
 from mxeon.shaders.library import examples_folder
@@ -19,7 +20,7 @@ from mxeon.shaders.library import examples_folder
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "field.html"
 PAGES = "upstream/{}.md"  # in the checkout; the site has pages in their place, see hooks.py
 EXAMPLE = examples_folder() / "clay.mtlx"
-DIFFUSE = tuple(dict.fromkeys(row.node for row in (*SUBJECTS, *SURFACES)))
+DIFFUSE = tuple(dict.fromkeys(row.node for row in (*DIFFUSE_SPECS, *SURFACE_LOBES)))
 LIBRARIES = ("eonlib", "stock")
 TIMEOUT = 600.0
 

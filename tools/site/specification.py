@@ -14,12 +14,12 @@ from pathlib import Path
 
 import MaterialX as mx
 
-from mxeon.conformance.nodes.diffuse import SUBJECTS
-from mxeon.conformance.probes.families import PBR_SUBJECTS
 from mxeon.conformance.results import DIFFERS, NOT_RUN, PASSED
 from mxeon.conformance.results.known_issues import ISSUES
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import make_plan
+from mxeon.conformance.specs import PBRLIB
+from mxeon.conformance.specs.diffuse import DIFFUSE
 from mxeon.io.files import write_text
 from mxeon.shaders.document.policy import DEFAULT
 
@@ -37,7 +37,7 @@ HOSTS = {
     "cycles": "Blender's Cycles, its closures",
 }
 HOST, LIBRARIES = "gl", ("stock", "eonlib")  # the host of the page and its summaries
-JUDGED = (*SUBJECTS, *PBR_SUBJECTS)
+JUDGED = (*DIFFUSE, *PBRLIB)
 NODES = (*dict.fromkeys(row.node for row in JUDGED if row.node != "eon_diffuse_bsdf"),)
 BLOCK = re.compile(r"(<!-- measured (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 # Rows of the summaries of other pages, and what stock computes.

@@ -4,9 +4,8 @@
 The only package that sees both chains, the shaders and the models. The public functions are
 `check` (`mxeon.conformance.run`), `check_brdf` and `brdf_test` (`mxeon.conformance.callables`).
 
-A *subject* is what is judged: a node in one mode, with its inputs and their ranges (`nodes`). A *probe* is a
-subject on a host: its samples, the host's values for them and the expected ones (`probes.probe.Probe`). A
-*check* is a claim about a probe, how it is measured, and a control that it has to fail (`checks`). Its bound is
-the tolerance of its quantity in the probe's row of `accuracy.accuracy.ACCURACY`, with a derivation. docs/design.md
-says where the rest stands.
+A *spec* is what a node in one mode is judged by: its inputs and their ranges, models, errors and samples (`specs`).
+A *backend* is a way of asking an engine (`backends`), a *case* a spec on an engine with a library (`case.Case`), and a
+*check* a claim about a case, what it measures, and a control that it has to fail (`checks`). A tolerance is the spec's
+error plus the backend's precision. docs/design.md says where the rest stands.
 """

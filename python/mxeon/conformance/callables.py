@@ -8,36 +8,34 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib.metadata import version
-from typing import ClassVar, cast
+from typing import cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import mxeon
-from mxeon.conformance.checks.application import judge_check
-from mxeon.conformance.checks.controls import Altered
-from mxeon.conformance.checks.table import CHECKS, Check
+from mxeon.conformance.backends import Backend, Samples
+from mxeon.conformance.case import Case, edge_values
+from mxeon.conformance.check import Check
+from mxeon.conformance.checks import CHECKS
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.diagnosis.comparisons import VALUE
 from mxeon.conformance.diagnosis.regions import smallest
-from mxeon.conformance.nodes import kinds
-from mxeon.conformance.nodes.diffuse import CHANGES, ModelSubject
-from mxeon.conformance.probes.cases import edge_case
-from mxeon.conformance.probes.memory import Evaluations
-from mxeon.conformance.probes.probe import LobeProbe, Probe
+from mxeon.conformance.memory import Evaluations
 from mxeon.conformance.results import PASSED, Run
-from mxeon.conformance.samples.batch import (
+from mxeon.conformance.samples import (
     PAIRS,
     SEED,
     Array,
     Batch,
-    Changes,
+    Counts,
     Values,
     directions,
-    random_inputs,
+    special_directions,
 )
-from mxeon.conformance.samples.edge_cases import diffuse_edges, special_directions, special_inputs
-from mxeon.conformance.samples.measurement import Case, absolute, point_of
+from mxeon.conformance.spec import Spec
+from mxeon.conformance.specs.diffuse import ERRORS, DiffuseModelSpec, diffuse_edges
+from mxeon.conformance.tolerance import Compared, Tolerance, absolute, point_of
 from mxeon.errors import InputError, assert_known
 from mxeon.hosts.base import Host, Identity
 from mxeon.models import table as reference
@@ -61,46 +59,33 @@ class CallableHost(Host):
         return Identity(self.name, "version not given", "device not given")
 
 
-@dataclass(frozen=True)
-class ClaimedModel(ModelSubject):
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ClaimedModel(DiffuseModelSpec):
     """The model that a function has to be, instead of a node."""
 
-    title: str
-    model: str
-
-    node: ClassVar[str] = "a function"
-    kind: ClassVar[str] = kinds.DIFFUSE
-    inputs: ClassVar[tuple[str, ...]] = ("color", "roughness")
-    libraries: ClassVar[tuple[str, ...]] = ()
-
     @property
-    def _others(self) -> tuple[reference.Model, ...]:
+    def other_models(self) -> tuple[reference.Model, ...]:
         return reference.PARAMETRIZATIONS
 
     def document(self, inputs: Values | None = None) -> str:
         """None: a function needs no document."""
         return ""
 
-    @property
-    def changes(self) -> dict[str, Changes]:
-        return {name: ({}, {name: CHANGES[name]}) for name in self.inputs}
-
-
-class CallableProbe(LobeProbe):
-    """A function evaluated for pairs."""
-
-    kind = kinds.DIFFUSE
-
-    host: CallableHost
-    subject: ClaimedModel
-
-    @cached_property
-    def batches(self) -> tuple[Batch, ...]:
-        rng, row = np.random.default_rng(SEED), reference.model(self.subject.model)
+    def batches(self, counts: Counts) -> tuple[Batch, ...]:
+        """Random pairs and special ones."""
+        rng = np.random.default_rng(SEED)
         wo, wi = directions(rng, PAIRS), directions(rng, PAIRS)
         exact = special_directions(rng)
-        special = Batch(*exact, special_inputs(rng, len(exact[0]), row))
-        return Batch(wo, wi, random_inputs(rng, PAIRS, row)), special
+        special = Batch(*exact, self.special_inputs(rng, len(exact[0])))
+        return Batch(wo, wi, self.random_inputs(rng, PAIRS)), special
+
+
+class CallableSamples(Samples):
+    """All samples of all checks are at the edges of the domain, where values must be finite."""
+
+    def __init__(self, function: Function) -> None:
+        super().__init__(function.spec, function.spec.counts)
+        self._function = function
 
     @cached_property
     def edges(self) -> Batch:
@@ -111,12 +96,30 @@ class CallableProbe(LobeProbe):
             asked.append(batch)
             return batch
 
-        for check in _checks(self.subject.model):
+        noted = Case(self.spec, self._function, self, inputs=note, control=True)
+        for check in _checks(self.spec.model):
             if check.key != "finite":
-                check.measured(Altered(self, note), absolute)
+                check.measured(noted, absolute)
         columns = zip(*map(_arguments, asked), strict=True)
         wo, wi, rho, roughness = map(np.concatenate, columns)
         return Batch(wo, wi, {"color": rho, "roughness": roughness})
+
+
+class Function(Backend):
+    """A function evaluated for pairs."""
+
+    host: CallableHost
+
+    @classmethod
+    def supports(cls, spec: Spec) -> bool:
+        return isinstance(spec, ClaimedModel)
+
+    @classmethod
+    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
+        return spec.errors.get(quantity)
+
+    def samples(self) -> Samples:
+        return CallableSamples(self)
 
     def direct(self, batch: Batch) -> Array:
         """pi f cos(theta_i), (N, 3); NaN in every channel where one is not finite."""
@@ -148,24 +151,24 @@ def _arguments(batch: Batch) -> tuple[Array, Array, Array, Array]:
     return batch.wo, batch.wi, rho, roughness
 
 
-def _finite_rows(cases: Iterable[Case]) -> Iterator[Case]:
-    """Cases without the rows that are not finite, which are for one check; as they are if all are so."""
-    for case in cases:
-        expected = np.broadcast_to(case.expected, case.measured.shape)
-        rows = np.asarray(np.isfinite(case.measured + expected).all(axis=1))
-        kept = Case(case.batch.where(rows), case.measured[rows], expected[rows])
-        yield kept if rows.any() else case
+def _finite_rows(found: Compared | Iterable[Compared]) -> Iterator[Compared]:
+    """Values without the rows that are not finite, which are for one check; as they are if all are so."""
+    for each in [found] if isinstance(found, Compared) else found:
+        expected = np.broadcast_to(each.expected, each.measured.shape)
+        rows = np.asarray(np.isfinite(each.measured + expected).all(axis=1))
+        kept = Compared(each.batch.where(rows), each.measured[rows], expected[rows])
+        yield kept if rows.any() else each
 
 
-VALUE_OF_REST = replace(VALUE, cases=lambda probe: _finite_rows(VALUE.cases(probe)))
+VALUE_OF_REST = replace(VALUE, compared=lambda case: _finite_rows(VALUE(case)))
 
 
-def _explain_not_finite(probe: Probe) -> Diagnosis:
+def _explain_not_finite(case: Case) -> Diagnosis:
     """How many values are not finite, where, and the arguments of the first."""
-    case = edge_case(probe)
-    wrong = np.asarray(~np.isfinite(case.measured).all(axis=1))
-    place = smallest([case.batch], [wrong])
-    point = point_of(case.batch, int(wrong.argmax()))
+    found = edge_values(case)
+    wrong = np.asarray(~np.isfinite(found.measured).all(axis=1))
+    place = smallest([found.batch], [wrong])
+    point = point_of(found.batch, int(wrong.argmax()))
     wo, wi, rho, roughness = (", ".join(f"{x:.6g}" for x in each) for each in point.values())
     return Diagnosis(
         f"{wrong.sum()} of {len(wrong)} values are not finite{place and f', all {place}'}; the "
@@ -174,16 +177,16 @@ def _explain_not_finite(probe: Probe) -> Diagnosis:
 
 
 def _of_rest(check: Check) -> Check:
-    """A row of the table that judges the finite values; "finite" says of the others where they are."""
+    """A check that judges the finite values; "finite" says of the others where they are."""
     if check.key == "finite":
         return replace(check, diagnose=_explain_not_finite)
     if check.key == "inputs":
         return check
-    if check.measure is VALUE:
-        return replace(check, measure=VALUE_OF_REST)
-    measure = cast(Callable[[Probe], Iterable[Case]], check.measure)
+    measure = cast(Callable[[Case], Iterable[Compared]], check.measure)
     return replace(
-        check, measure=lambda probe: _finite_rows(measure(probe)), diagnose=VALUE_OF_REST.diagnose
+        check,
+        measure=lambda case: _finite_rows(measure(case)),
+        diagnose=VALUE_OF_REST.diagnose,
     )
 
 
@@ -221,12 +224,12 @@ def check_brdf(brdf: Brdf, model: str = "eon", name: str | None = None) -> Run:
     >>> {result.verdict for result in check_brdf(eon_brdf).results}
     {'passed'}
     """
-    probe = _probe(brdf, model, name)
-    results = tuple(judge_check(check, probe) for check in _checks(model))
+    case = _case(brdf, model, name)
+    results = tuple(check.judge(case) for check in _checks(model))
     return Run(
         version=mxeon.__version__,
         software={"Python": platform.python_version(), "numpy": version("numpy")},
-        hosts=(probe.host.identity(),),
+        hosts=(case.host.identity(),),
         results=results,
     )
 
@@ -245,21 +248,27 @@ def brdf_test(brdf: Brdf, model: str = "eon", name: str | None = None) -> Callab
     """
     import pytest
 
-    probe = _probe(brdf, model, name)
+    case = _case(brdf, model, name)
 
     @pytest.mark.parametrize("check", _checks(model), ids=lambda check: check.key)
     def test_brdf(check: Check) -> None:
-        result = judge_check(check, probe)
+        result = check.judge(case)
         assert result.verdict == PASSED, f"{check.claim} {result.explanation}"
 
     return cast(Callable[..., None], test_brdf)
 
 
-def _probe(brdf: Brdf, model: str, name: str | None) -> CallableProbe:
+def _case(brdf: Brdf, model: str, name: str | None) -> Case:
     title = name or str(getattr(brdf, "__name__", type(brdf).__name__))
-    return CallableProbe(
-        CallableHost(title, brdf), ClaimedModel(reference.model(model).title, model), LIBRARY
+    spec = ClaimedModel(
+        title=reference.model(model).title,
+        node="a function",
+        model=model,
+        ports=("color", "roughness"),
+        errors=ERRORS,
     )
+    function = Function(CallableHost(title, brdf), spec, LIBRARY)
+    return Case(spec, function, function.samples())
 
 
 def _checks(model: str) -> tuple[Check, ...]:

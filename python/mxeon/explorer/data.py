@@ -66,7 +66,7 @@ class Controls:
 
 @dataclass(frozen=True)
 class ReferenceBounds:
-    """Largest errors that a shader may have, from `mxeon.conformance.accuracy`."""
+    """Largest errors that a shader may have, from the errors of a spec."""
 
     direct: float
     white: float

@@ -5,19 +5,21 @@ The models of all lobes, in float64, are too much to write twice. So a page hold
 DIGITS significant digits, which is an error of 5e-8 of a value, below the roundings of any shader.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 import MaterialX as mx
 import numpy as np
 
 from mxeon.conformance import reference
-from mxeon.conformance.accuracy.accuracy import ACCURACY
-from mxeon.conformance.nodes import kinds
-from mxeon.conformance.nodes.bsdf import BSDFS, BsdfSubject
-from mxeon.conformance.nodes.hair import HAIRS
-from mxeon.conformance.nodes.rows import ZERO
-from mxeon.conformance.nodes.thin_films import FILMS
-from mxeon.conformance.samples.batch import Array, Batch, Candidate, rounded
+from mxeon.conformance.samples import Array, Batch, Candidate, rounded
+from mxeon.conformance.spec import ZERO
+from mxeon.conformance.specs import PLAIN_LOBES
+from mxeon.conformance.specs.diffuse import DIFFUSE
+from mxeon.conformance.specs.hair import HAIR
+from mxeon.conformance.specs.lobes import PbrSpec
+from mxeon.conformance.specs.surface_shaders import SURFACE_SHADERS
+from mxeon.conformance.specs.thin_films import FILM_SPECS
+from mxeon.conformance.tolerance import Tolerance
 from mxeon.errors import NotRun
 from mxeon.explorer.data import Direction, ReferenceBounds, ReferenceTable, ShaderForm
 from mxeon.shaders.generation import Shader
@@ -64,22 +66,22 @@ def _directions(rows: Array) -> tuple[Direction, ...]:
 def reference_of(shader: Shader) -> ReferenceTable | None:
     """Values of a shader's material with its own inputs; None where no model covers all of its lobes."""
     lobes = _lobes(shader)
-    subject = _subject(lobes)
+    spec = _spec(lobes)
     try:
-        direct, white = _hair(shader) if subject in HAIRS else _values(shader)
+        direct, white = _hair(shader) if spec is HAIR else _values(shader)
     except (NotRun, ValueError):  # a lobe without a model, an input outside of the model's domain
         return None
     if not (np.isfinite(direct).all() and np.isfinite(white).all()):
         return None
-    forms = tuple(_forms(subject, shader)) if subject else ()
+    forms = tuple(_forms(spec, shader)) if spec else ()
     return ReferenceTable(_digits(direct), _digits(white), _bounds(lobes), forms)
 
 
 def _bounds(lobes: list[mx.Node]) -> ReferenceBounds:
     """Largest errors of lobes: of a single one its own, of layers the sums with their throughputs."""
-    rows = [ACCURACY[_kind(node)] for node in lobes if node.getCategory() not in COMBINATIONS]
-    value = sum(row.value.value for row in rows if row.value)
-    albedo = sum(row.albedo.value for row in rows if row.albedo)
+    errors = [_errors(node) for node in lobes if node.getCategory() not in COMBINATIONS]
+    value = sum(each["value"].value for each in errors if "value" in each)
+    albedo = sum(each["albedo"].value for each in errors if "albedo" in each)
     return (
         ReferenceBounds(value, albedo)
         if len(lobes) == 1
@@ -87,17 +89,18 @@ def _bounds(lobes: list[mx.Node]) -> ReferenceBounds:
     )
 
 
-def _kind(node: mx.Node) -> str:
-    """Kind of the probe that judges a lobe or a surface shader."""
+def _errors(node: mx.Node) -> Mapping[str, Tolerance]:
+    """Errors of a lobe or a surface shader, by quantity."""
     if node.getCategory() in DIFFUSE_NODES:
-        return "pairs"
-    return next((each.kind for each in _rows(node) if _is_of(node, each)), kinds.SURFACE_SHADER)
+        return DIFFUSE[0].errors
+    found = next((each for each in _rows(node) if _is_of(node, each)), SURFACE_SHADERS[0])
+    return found.errors
 
 
-def _rows(node: mx.Node) -> tuple[BsdfSubject, ...]:
-    """The subjects that a node may be: those with a film if it has one."""
+def _rows(node: mx.Node) -> tuple[PbrSpec, ...]:
+    """The specs that a node may be: those with a film if it has one."""
     film = node.getInput(FILM)
-    return FILMS if film is not None and film.getValue() != 0.0 else (*BSDFS, *HAIRS)
+    return FILM_SPECS if film is not None and film.getValue() != 0.0 else (*PLAIN_LOBES, HAIR)
 
 
 def _values(shader: Shader) -> tuple[Array, Array]:
@@ -109,31 +112,30 @@ def _values(shader: Shader) -> tuple[Array, Array]:
 
 def _hair(shader: Shader) -> tuple[Array, Array]:
     """Values of hair on a fiber, as those of `_values`; its curve lies along x."""
-    [subject] = HAIRS
-    lights, surroundings = _batches(subject, shader)
-    return subject.expected(lights), subject.albedo(surroundings)
+    lights, surroundings = _batches(HAIR, shader)
+    return HAIR.value(lights), HAIR.albedo(surroundings)
 
 
-def _forms(subject: BsdfSubject, shader: Shader) -> Iterator[ShaderForm]:
-    """What shaders have in place of a subject's functions: other values, and other albedos."""
-    lights, surroundings = _batches(subject, shader)
-    for candidate in _others(subject.value_candidates):
+def _forms(spec: PbrSpec, shader: Shader) -> Iterator[ShaderForm]:
+    """What shaders have instead of a spec's functions: other values, and other albedos."""
+    lights, surroundings = _batches(spec, shader)
+    for candidate in _others(spec.value_candidates):
         values = _digits(candidate.values(lights))
         yield ShaderForm(candidate.title, candidate.permitted, direct=values)
-    for candidate in _others(subject.albedo_candidates):
+    for candidate in _others(spec.albedo_candidates):
         values = _digits(candidate.values(surroundings))
         yield ShaderForm(candidate.title, candidate.permitted, white=values)
 
 
 def _others(candidates: tuple[Candidate, ...]) -> list[Candidate]:
-    """Candidates but for the first, which is the subject's own, and the one that is nothing."""
+    """Candidates but for the first, which is the spec's own, and the one that is nothing."""
     return [each for each in candidates[1:] if each is not ZERO]
 
 
-def _batches(subject: BsdfSubject, shader: Shader) -> tuple[Batch, Batch]:
+def _batches(spec: PbrSpec, shader: Shader) -> tuple[Batch, Batch]:
     """The pairs and the views with the inputs of a shader that is one node."""
     own = {port.path.rpartition("/")[2]: np.asarray(port.value) for port in shader.inputs}
-    inputs = {name: own[name] for name in (*subject.row.inputs, "weight") if name in own}
+    inputs = {name: own[name] for name in (*spec.row.inputs, "weight") if name in own}
     return Batch(WO, WI, inputs), Batch(SEEN, SEEN, inputs)
 
 
@@ -145,7 +147,7 @@ def _lobes(shader: Shader) -> list[mx.Node]:
     return [each for each in nodes if each.getType() in LOBES and each.getCategory() != "surface"]
 
 
-def _subject(lobes: list[mx.Node]) -> BsdfSubject | None:
+def _spec(lobes: list[mx.Node]) -> PbrSpec | None:
     """What a material is that is one node of pbrlib whose inputs are constants; None for others."""
     if len(lobes) != 1:
         return None
@@ -155,13 +157,13 @@ def _subject(lobes: list[mx.Node]) -> BsdfSubject | None:
     return next((each for each in _rows(node) if _is_of(node, each)), None)
 
 
-def _is_of(node: mx.Node, subject: BsdfSubject) -> bool:
-    """Whether a node is a subject: its category, in its mode."""
-    if node.getCategory() != subject.node:
+def _is_of(node: mx.Node, spec: PbrSpec) -> bool:
+    """Whether a node is that of a spec: its category, in its mode."""
+    if node.getCategory() != spec.node:
         return False
     definition = node.getNodeDef()
-    ports = {name: node.getInput(name) or definition.getInput(name) for name in subject.row.fixed}
-    return all(port.getValueString() == subject.row.fixed[name] for name, port in ports.items())
+    ports = {name: node.getInput(name) or definition.getInput(name) for name in spec.row.fixed}
+    return all(port.getValueString() == spec.row.fixed[name] for name, port in ports.items())
 
 
 def _digits(values: Array) -> tuple[float, ...]:

@@ -8,7 +8,6 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.conformance.accuracy.diffuse import HALF_ROUNDING
 from mxeon.kit.views import Material, View
 from mxeon.models.core.quadrature import albedo_dir_quadrature
 from mxeon.models.table import Model
@@ -18,6 +17,7 @@ from mxeon.shaders.scene import VIEW, Scene, local_directions, sphere
 # depends on the position within a pixel. With 64 pixels or more, a whole pixel above the cut lies
 # on the sphere.
 CUT = 0.2
+HALF_ROUNDING = 2.0**-11  # of float16
 
 # Cosines at which an albedo is integrated. Between them, 1/128 apart, it is read linearly: its
 # second derivative is below 2 there, the error below 2e-5.

@@ -8,12 +8,12 @@ from os import PathLike
 from pathlib import Path
 from typing import TypeAlias
 
-from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES, DiffuseLobe, DiffuseSubject
-from mxeon.conformance.nodes.renderer_nodes import RendererNode, all_renderer_nodes
 from mxeon.conformance.results import DIRECT, FAILED, NOT_RUN, PASSED, PORTRAIT, Result
+from mxeon.conformance.specs.diffuse import DIFFUSE, SURFACE_LOBES, DiffuseModelSpec
 from mxeon.errors import InputError
 from mxeon.models import table as reference
 from mxeon.report.diff import Report, read_results
+from mxeon.survey.backends import RENDERER_SPECS, RendererSpec
 
 Place: TypeAlias = tuple[str, str, str]  # host, library and node
 
@@ -115,11 +115,7 @@ def _reports(folder: Path) -> list[Path]:
 
 def _entries(report: Report, folder: Path) -> Iterator[Entry]:
     """Entries of a report, in its order."""
-    nodes: tuple[DiffuseSubject | DiffuseLobe, ...] = (
-        *SUBJECTS,
-        *SURFACES,
-        *all_renderer_nodes(),
-    )
+    nodes: tuple[DiffuseModelSpec, ...] = (*DIFFUSE, *SURFACE_LOBES, *RENDERER_SPECS)
     claims = {each.title: claim(each) for each in nodes}
     places: dict[Place, dict[str, Result]] = {}
     for result in report.results:
@@ -142,10 +138,10 @@ def _identity(report: Report, host: str) -> tuple[str, str]:
     return found.get(host, ("", ""))
 
 
-def claim(subject: DiffuseSubject | DiffuseLobe) -> str:
+def claim(spec: DiffuseModelSpec) -> str:
     """Title of the model that a node claims: of its first published form, if there are several."""
-    forms = subject.forms if isinstance(subject, RendererNode) else ()
-    return reference.model((*forms, subject.model)[0]).title
+    forms = spec.forms if isinstance(spec, RendererSpec) else ()
+    return reference.model((*forms, spec.model)[0]).title
 
 
 def _portraits(report: Report, place: Place, folder: Path) -> Iterator[Portrait]:

@@ -2,6 +2,7 @@
 """The BSDF nodes, their inputs, and materials of one node as MaterialX text."""
 
 from collections.abc import Mapping
+from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,27 +26,17 @@ INPUT_TYPES = {
     FLAG: "boolean",
 }
 
-# Inputs of the other BSDF nodes of pbrlib, by category, as their definitions have them.
-_MICROFACET = """roughness vector2, retroreflective boolean, thinfilm_thickness float, thinfilm_ior float,
-    normal vector3, tangent vector3, distribution string"""
-_DEFINED = {
-    "burley_diffuse_bsdf": "weight float, color color3, roughness float, normal vector3",
-    "dielectric_bsdf": f"weight float, tint color3, ior float, {_MICROFACET}, scatter_mode string",
-    "conductor_bsdf": f"weight float, ior color3, extinction color3, {_MICROFACET}",
-    "generalized_schlick_bsdf": f"""weight float, color0 color3, color82 color3, color90 color3,
-        exponent float, {_MICROFACET}, scatter_mode string""",
-    "subsurface_bsdf": """weight float, color color3, radius color3, anisotropy float,
-        normal vector3""",
-    "translucent_bsdf": "weight float, color color3, normal vector3",
-    "sheen_bsdf": "weight float, color color3, roughness float, normal vector3, mode string",
-    "chiang_hair_bsdf": """tint_R color3, tint_TT color3, tint_TRT color3, ior float,
-        roughness_R vector2, roughness_TT vector2, roughness_TRT vector2, cuticle_angle float,
-        absorption_coefficient vector3, normal vector3, curve_direction vector3""",
-}
-BSDF_INPUTS = {
-    category: dict(each.split() for each in inputs.split(","))
-    for category, inputs in _DEFINED.items()
-}
+# The other BSDF nodes of pbrlib, whose inputs MaterialX's definitions have.
+BSDF_NODES = (
+    "burley_diffuse_bsdf",
+    "dielectric_bsdf",
+    "conductor_bsdf",
+    "generalized_schlick_bsdf",
+    "subsurface_bsdf",
+    "translucent_bsdf",
+    "sheen_bsdf",
+    "chiang_hair_bsdf",
+)
 
 DOCUMENT = """<?xml version="1.0"?>
 <materialx version="1.39">
@@ -59,11 +50,18 @@ DOCUMENT = """<?xml version="1.0"?>
 FRAME = ("normal", "tangent", "curve_direction")  # inputs that are vectors of the surface
 
 
+@cache
 def input_types(category: str) -> Mapping[str, str]:
     """Type of each input of a BSDF node, by name; none for a node that is not known."""
-    return INPUT_TYPES if category in DIFFUSE_NODES else BSDF_INPUTS.get(category, {})
+    if category not in BSDF_NODES:
+        return INPUT_TYPES if category in DIFFUSE_NODES else {}
+    from mxeon.shaders.library import load_library  # which loads MaterialX
+
+    [definition] = load_library("stock").getMatchingNodeDefs(category)
+    return {each.getName(): each.getType() for each in definition.getActiveInputs()}
 
 
+@cache
 def types_of(name: str) -> frozenset[str]:
     """Types that an input of a name has in the nodes.
 
@@ -72,7 +70,7 @@ def types_of(name: str) -> frozenset[str]:
     >>> sorted(types_of("roughness"))
     ['float', 'vector2']
     """
-    tables = (INPUT_TYPES, *BSDF_INPUTS.values())
+    tables = map(input_types, (*DIFFUSE_NODES, *BSDF_NODES))
     return frozenset(kinds[name] for kinds in tables if name in kinds)
 
 
@@ -132,7 +130,7 @@ def lobe_text(
     name: str = "lobe",
     types: Mapping[str, str] | None = None,
 ) -> str:
-    """XML of a BSDF node; `types` of its inputs for one that is not in BSDF_INPUTS.
+    """XML of a BSDF node; `types` of its inputs for one that is not known.
 
     MaterialX ignores a normal or a tangent that is not connected: it comes from a node of its own.
     """

@@ -9,10 +9,10 @@ from functools import cache
 from pathlib import Path
 from xml.etree import ElementTree
 
-from mxeon.conformance.nodes.combinations import COMBINED_NODES
-from mxeon.conformance.probes.families import PBR_SUBJECTS
 from mxeon.conformance.run.plan import make_plan
 from mxeon.conformance.run.tasks import Task
+from mxeon.conformance.specs import PBRLIB
+from mxeon.conformance.specs.combinations import COMBINED_SPECS
 from mxeon.shaders.library import load_library
 from tools.benchmarks.mutants.mutant import ROOT, Mutant
 
@@ -27,7 +27,7 @@ INCLUDE = re.compile(r'^#include "([\w./]+)"$', re.MULTILINE)
 HOSTS = (("genglsl", "gl"), ("genosl", "osl"), ("genosl", "cycles"))
 # Checks that take longest.
 LATE = ("inputs", "transmitted_inputs", "integral", "energy")
-TITLES = tuple(subject.title for subject in PBR_SUBJECTS)
+TITLES = tuple(spec.title for spec in PBRLIB)
 
 
 def changed_nodes(mutant: Mutant) -> set[tuple[str, str]]:
@@ -80,13 +80,13 @@ def _titles(nodedef: str) -> frozenset[str]:
         return frozenset()
     kind, node = definition.getType(), definition.getNodeString()
     return frozenset(
-        subject.title
-        for subject in PBR_SUBJECTS
+        spec.title
+        for spec in PBRLIB
         if (
-            subject.node == node
-            and all((word == kind) == (word in subject.title.upper()) for word in ("EDF", "VDF"))
+            spec.node == node
+            and all((word == kind) == (word in spec.title.upper()) for word in ("EDF", "VDF"))
         )
-        or (kind == "BSDF" and subject in COMBINED_NODES and f"<{node} " in subject.document())
+        or (kind == "BSDF" and spec in COMBINED_SPECS and f"<{node} " in spec.document())
     )
 
 

@@ -1,104 +1,123 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of the nodes that emit light."""
+"""Checks of the nodes that emit light, and of media."""
 
-from mxeon.conformance.accuracy import emission as tolerances
-from mxeon.conformance.accuracy.diffuse import count_of
-from mxeon.conformance.accuracy.engine import widen_for_engine
-from mxeon.conformance.checks import emission_measures as measures
-from mxeon.conformance.checks.check import Check
-from mxeon.conformance.checks.controls import gray, mistake, offset, scale, shifted, with_inputs
-from mxeon.conformance.checks.names import EMITTER, MEDIUM_NAMES
+from collections.abc import Iterator
+
+import numpy as np
+
+from mxeon.conformance.backends import implementation
+from mxeon.conformance.case import Case, over_condition, values
+from mxeon.conformance.check import (
+    check,
+    control,
+    gray,
+    offset,
+    scale,
+    shifted,
+    with_inputs,
+)
+from mxeon.conformance.checks.energy import summed
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.diagnosis.comparisons import BACK, RADIANCE, TRANSMITTANCE, VALUE
-from mxeon.conformance.nodes import kinds
-from mxeon.conformance.nodes.emission import (
+from mxeon.conformance.spec import Spec
+from mxeon.conformance.specs.emission import (
+    OPACITY,
     UNIMPLEMENTED,
+    AbsentSpec,
+    EmissionSpec,
+    EmittingSurface,
 )
-from mxeon.conformance.probes.cases import (
-    back_cases,
-    conditioned,
-    value_cases,
+from mxeon.conformance.specs.media import MediumSpec
+from mxeon.conformance.tolerance import Compared, Measurement, count_of
+
+
+def is_emission(spec: Spec) -> bool:
+    return isinstance(spec, EmissionSpec)
+
+
+@control("the node is one that nothing implements")
+def unimplemented(case: Case) -> Case:
+    return case.another(UNIMPLEMENTED)
+
+
+@check(
+    "implemented",
+    "The target implements the node.",
+    lambda spec: isinstance(spec, (EmissionSpec, MediumSpec, AbsentSpec)),
+    unimplemented,
+    tolerance=count_of("nodes"),
+    diagnose=lambda case: Diagnosis(
+        f"{case.host.target} has no implementation of {case.spec.title}"
+    ),
 )
-from mxeon.conformance.probes.probe import Probe
+def implemented(case: Case) -> Measurement:
+    """Number of documents, one, that the target has no implementation for."""
+    shader = implementation(case.host, case.spec.document(), case.library)
+    return Measurement(float(shader is None), {})
 
 
-@mistake("the node is one that nothing implements")
-def unimplemented(probe: Probe) -> Probe:
-    return probe.of(UNIMPLEMENTED)
+@check(
+    "radiance",
+    "The radiance matches the node's equation for every view from the front.",
+    is_emission,
+    gray,
+    "value",
+    diagnose=RADIANCE.diagnose,
+)
+def radiance(case: Case) -> Iterator[Compared]:
+    return (over_condition(case, each) for each in values(case))
 
 
-def diagnose_missing(probe: Probe) -> Diagnosis:
-    """The node that the target lacks."""
-    return Diagnosis(f"{probe.host.target} has no implementation of {probe.subject.title}")
+@check(
+    "back",
+    "The back of the surface emits what the equation gives.",
+    is_emission,
+    offset,
+    "value",
+    pairs=True,
+    open=True,
+    diagnose=BACK.diagnose,
+)
+def back(case: Case) -> Iterator[Compared]:
+    return (over_condition(case, each) for each in BACK(case))
 
 
-def diagnose_opacity(probe: Probe) -> Diagnosis:
+@check(
+    "exitance",
+    "The radiance integrates to the power that the equation gives.",
+    is_emission,
+    scale("the radiance is 1 % too low", 0.99),
+    "integral",
+    diagnose=RADIANCE.diagnose,
+)
+def exitance(case: Case) -> Compared:
+    """Exitance over pi, integrated from the host's radiance, against its closed form."""
+    spec = case.of(EmissionSpec)
+    views, measured = summed(case, *case.samples.take(spec.integrated))
+    return Compared(views, measured, spec.exitance(views) / np.pi)
+
+
+check(
+    "transmittance",
+    "Over one meter, a medium transmits what its coefficients give.",
+    lambda spec: isinstance(spec, MediumSpec),
+    shifted,
+)(TRANSMITTANCE)
+
+
+def diagnose_opacity(case: Case) -> Diagnosis:
     """Whether the opacity is dropped."""
     full = max(
-        tolerances.OPACITY.metric(
-            case.measured, probe.expected(case.batch.altered(opacity=1.0))
-        ).max()
-        for case in value_cases(probe)
+        OPACITY.metric(each.measured, case.expected(each.batch.altered(opacity=1.0))).max()
+        for each in values(case)
     )
-    return Diagnosis("the opacity is ignored" if full <= tolerances.OPACITY.value else "")
+    return Diagnosis("the opacity is ignored" if full <= OPACITY.value else "")
 
 
-CHECKS = (
-    Check(
-        "implemented",
-        "The target implements the node.",
-        (*EMITTER, *MEDIUM_NAMES, kinds.ABSENT),
-        measures.implemented,
-        unimplemented,
-        count_of("nodes"),
-        diagnose=diagnose_missing,
-    ),
-    Check(
-        "radiance",
-        "The radiance matches the node's equation for every view from the front.",
-        EMITTER,
-        conditioned(value_cases),
-        gray,
-        "value",
-        diagnose=RADIANCE.diagnose,
-        adapt=widen_for_engine,
-    ),
-    Check(
-        "back",
-        "The back of the surface emits what the equation gives.",
-        EMITTER,
-        conditioned(back_cases),
-        offset,
-        "value",
-        pairs=True,
-        diagnose=BACK.diagnose,
-        open=True,
-        adapt=widen_for_engine,
-    ),
-    Check(
-        "exitance",
-        "The radiance integrates to the power that the equation gives.",
-        EMITTER,
-        measures.exitance,
-        scale("the radiance is 1 % too low", 0.99),
-        "integral",
-        diagnose=RADIANCE.diagnose,
-        adapt=widen_for_engine,
-    ),
-    Check(
-        "transmittance",
-        "Over one meter, a medium transmits what its coefficients give.",
-        MEDIUM_NAMES,
-        TRANSMITTANCE,
-        shifted,
-        adapt=widen_for_engine,
-    ),
-    Check(
-        "opacity",
-        "The light that a surface emits is scaled by its opacity.",
-        (kinds.EMITTING_SURFACE,),
-        VALUE,
-        with_inputs("the opacity is 1", opacity=1.0),
-        diagnose=diagnose_opacity,
-    ),
-)
+check(
+    "opacity",
+    "The light that a surface emits is scaled by its opacity.",
+    lambda spec: isinstance(spec, EmittingSurface),
+    with_inputs("the opacity is 1", opacity=1.0),
+    diagnose=diagnose_opacity,
+)(VALUE)

@@ -1,133 +1,140 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of energy: what a lobe scatters in all, what it lets through, and both of two lobes together."""
 
+from collections.abc import Callable, Iterator
+
 import numpy as np
 
-from mxeon.conformance.accuracy import bsdf as tolerances
-from mxeon.conformance.checks import bsdf_measures as measures
-from mxeon.conformance.checks.check import Check
-from mxeon.conformance.checks.controls import Altered, mistake, pass_all, scale, shifted
-from mxeon.conformance.checks.names import COMBINATION, OTHERS
-from mxeon.conformance.diagnosis.candidates import Diagnosis
-from mxeon.conformance.diagnosis.comparisons import ALBEDO, THROUGHPUT, TRANSMISSION, VALUE
-from mxeon.conformance.nodes.combinations import SINGLE
-from mxeon.conformance.probes.probe import Probe
-from mxeon.conformance.samples.batch import Array, Batch
-from mxeon.models.nodes import NODES
-from mxeon.models.nodes.combinations import FACTOR
+from mxeon.conformance.backends import WHITE
+from mxeon.conformance.case import Case
+from mxeon.conformance.check import check, pass_all, scale
+from mxeon.conformance.checks.lobes import is_lobe, is_plain
+from mxeon.conformance.diagnosis.comparisons import THROUGHPUT, TRANSMISSION
+from mxeon.conformance.samples import LEAST_COLOR82, Array, Batch, Values
+from mxeon.conformance.spec import Spec
+from mxeon.conformance.specs.lobes import PbrSpec
+from mxeon.conformance.tolerance import Compared
 
-LAYERS = tuple(row.name for row in NODES if row.layerable)
+ROUNDED = 1e-9  # difference of two albedos that are the same
 
 
-@mistake("values are multiplied twice")
-def again(probe: Probe) -> Altered:
-    def scaled(batch: Batch, values: Array) -> Array:
-        return values * np.reshape(batch.inputs[FACTOR], (len(values), -1))
-
-    return Altered(probe, values=scaled)
+def is_layer(spec: Spec) -> bool:
+    """Whether a node lets 1 - E through to what lies below."""
+    return is_plain(spec) and isinstance(spec, PbrSpec) and spec.row.layerable
 
 
-CHECKS = (
-    Check(
-        "layering",
-        "The throughput of a layer is 1 - E for light from above, for every weight.",
-        LAYERS,
-        THROUGHPUT,
-        pass_all,
-    ),
-    Check(
-        "transmission",
-        "The throughput of a layer is 1 - E for light through the base, too.",
-        LAYERS,
-        TRANSMISSION,
-        pass_all,
-    ),
-    Check(
-        "dip",
-        "Where color82 lowers the reflectance, the layer passes on what it does not reflect.",
-        tuple(row.name for row in NODES if row.layerable and "color82" in row.inputs),
-        measures.dip,
-        pass_all,
-        tolerances.DIP,
-        pairs=True,
-        lit=True,
-        diagnose=THROUGHPUT.diagnose,
-    ),
-    Check(
-        "denser",
-        "For indices below 1, which the fit does not cover, the throughput is within its stated error.",
-        tuple(row.name for row in NODES if row.layerable and "tint" in row.inputs),
-        measures.denser,
-        pass_all,
-        tolerances.UNFITTED,
-        pairs=True,
-        lit=True,
-        diagnose=THROUGHPUT.diagnose,
-    ),
-    Check(
-        "layer",
-        "A layer over a white base returns all light.",
-        LAYERS,
-        measures.layer,
-        pass_all,
-        "light",
-        diagnose=THROUGHPUT.diagnose,
-    ),
-    Check(
-        "integral",
-        "Values integrate to the directional albedo that the equations give.",
-        OTHERS,
-        measures.integral,
-        scale("values are 2 % too large", 1.02),
-        "integral",
-        open=True,
-    ),
-    Check(
-        "energy",
-        "No albedo exceeds 1 or what the equations give.",
-        OTHERS,
-        measures.energy,
-        scale("values are 100 times as large", 100.0),
-        "integral",
-    ),
+def reads(name: str) -> Callable[[Spec], bool]:
+    """Whether a layer is one of an input of a name."""
+    return lambda spec: is_layer(spec) and isinstance(spec, PbrSpec) and name in spec.row.inputs
+
+
+check(
+    "layering",
+    "The throughput of a layer is 1 - E for light from above, for every weight.",
+    is_layer,
+    pass_all,
+)(THROUGHPUT)
+
+check(
+    "transmission",
+    "The throughput of a layer is 1 - E for light through the base, too.",
+    is_layer,
+    pass_all,
+)(TRANSMISSION)
+
+
+@check(
+    "dip",
+    "Where color82 lowers the reflectance, the layer passes on what it does not reflect.",
+    reads("color82"),
+    pass_all,
+    pairs=True,
+    lit=True,
+    diagnose=THROUGHPUT.diagnose,
 )
-# Of the nodes that combine two lobes.
-COMBINED_CHECKS = (
-    Check(
-        "combination",
-        "Two combined lobes have the value that the node's equation gives.",
-        COMBINATION,
-        VALUE,
-        shifted,
-        pairs=True,
-    ),
-    Check(
-        "combined_albedo",
-        "The environment branch of two combined lobes returns their albedo.",
-        COMBINATION,
-        ALBEDO,
-        shifted,
-        pairs=True,
-    ),
-    Check(
-        "combined_throughput",
-        "Two combined lobes pass on what they do not scatter, as the layer equation requires.",
-        COMBINATION,
-        measures.passing,
-        pass_all,
-        "throughput",
-        diagnose=THROUGHPUT.diagnose,
-        open=True,
-    ),
-    Check(
-        "factor",
-        "Factors are clamped to [0, 1].",
-        SINGLE,
-        measures.factors,
-        again,
-        tolerances.FACTOR,
-        pairs=True,
-        diagnose=lambda probe: Diagnosis("the factor is not clamped", permitted=True),
-        open=True,
-    ),
+def dip(case: Case) -> Iterator[Compared]:
+    """Throughput of lobes that are white but for a dip at 82 degrees."""
+    dipped = (LEAST_COLOR82,) * 3
+    white: Values = {"color0": WHITE, "color90": WHITE, "color82": dipped, "exponent": 5.0}
+    return (_passed(case, batch.altered(**white)) for batch in case.views)
+
+
+@check(
+    "denser",
+    "For indices below 1, which the fit does not cover, the throughput is within its stated error.",
+    reads("tint"),
+    pass_all,
+    pairs=True,
+    lit=True,
+    diagnose=THROUGHPUT.diagnose,
 )
+def denser(case: Case) -> Iterator[Compared]:
+    """Throughput of lobes of the inverse indices."""
+    for batch in case.views:
+        inverse = batch.altered(ior=1.0 / np.asarray(batch.inputs["ior"]), tint=WHITE)
+        yield _passed(case, inverse)
+
+
+def _passed(case: Case, batch: Batch) -> Compared:
+    """Throughput at full weight against 1 - E."""
+    full = batch.altered(weight=1.0)
+    passed = np.maximum(1.0 - case.expected_albedo(full), 0.0)
+    return Compared(full, case.throughput(full, "direct"), passed)
+
+
+@check(
+    "layer",
+    "A layer over a white base returns all light.",
+    is_layer,
+    pass_all,
+    "light",
+    diagnose=THROUGHPUT.diagnose,
+)
+def layer(case: Case) -> Compared:
+    """Light that a lobe reflects and light that it passes to a white base, against all of it."""
+    views, albedo = integrals(case)
+    total = albedo + case.throughput(views, "direct")
+    # Where the equations gain energy by themselves, no throughput makes up for it.
+    own = case.lobe.albedo(views)
+    sound = np.asarray((case.samples.integrals <= own + ROUNDED).all(axis=1))
+    return Compared(views.where(sound), total[sound], np.ones((1, 3)))
+
+
+@check(
+    "integral",
+    "Values integrate to the directional albedo that the equations give.",
+    is_lobe,
+    scale("values are 2 % too large", 1.02),
+    open=True,
+)
+def integral(case: Case) -> Compared:
+    """Directional albedo, integrated from the host's values, against that of the equations."""
+    views, albedo = integrals(case)
+    return Compared(views, albedo, case.samples.integrals)
+
+
+@check(
+    "energy",
+    "No albedo exceeds 1 or what the equations give.",
+    is_lobe,
+    scale("values are 100 times as large", 100.0),
+    "integral",
+)
+def energy(case: Case) -> Compared:
+    """Albedos above 1, and above what the node's own equations have."""
+    views, albedo = integrals(case)
+    allowed = np.maximum(1.0, case.samples.integrals)
+    return Compared(views, np.maximum(albedo, allowed), allowed)
+
+
+def integrals(case: Case) -> tuple[Batch, Array]:
+    """Views of the integrated materials, and their albedos from the host's values, (N, 3)."""
+    return summed(case, *case.samples.integrated)
+
+
+def summed(case: Case, batch: Batch, weights: Array) -> tuple[Batch, Array]:
+    """Views of materials in many directions of light, and their albedos, (N, 3)."""
+    count, nodes = weights.shape
+    values = case.direct(batch).reshape(count, nodes, 3)
+    albedo = (weights[..., np.newaxis] * values).sum(axis=1)
+    return batch.where(np.arange(count) * nodes), albedo

@@ -1,24 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of surface shaders as a whole; a failure names the lobe without which it vanishes."""
 
-from collections.abc import Iterable
+from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
-from mxeon.conformance.accuracy import surface_shaders as tolerances
-from mxeon.conformance.accuracy.diffuse import count_of
-from mxeon.conformance.checks.check import Check
-from mxeon.conformance.checks.controls import Altered, Mistake, scale, shifted
-from mxeon.conformance.checks.measures import counted
+from mxeon.conformance.case import SCATTERING, Case, albedos, values
+from mxeon.conformance.check import check, control, scale, shifted
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.diagnosis.comparisons import ALBEDO, VALUE
-from mxeon.conformance.nodes.surface_shaders import SHADERS, SurfaceShader
-from mxeon.conformance.probes.cases import SCATTERING, albedo_cases, value_cases
-from mxeon.conformance.probes.probe import Probe, subject_of
-from mxeon.conformance.samples.batch import Array, Batch
-from mxeon.conformance.samples.measurement import Case, scaled
+from mxeon.conformance.samples import Batch
+from mxeon.conformance.spec import Spec
+from mxeon.conformance.specs.surface_shaders import VALUE as VALUE_ERROR
+from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
+from mxeon.conformance.tolerance import Compared, Measurement, count_named, count_of, scaled
 
-MODELS = tuple(shader.model for shader in SHADERS)
 WORST = 32  # pairs that are looked at
 # Inputs that take a lobe away, by its name.
 LOBE_INPUTS = {
@@ -29,73 +26,130 @@ LOBE_INPUTS = {
 }
 
 
-def energy(probe: Probe) -> Iterable[Case]:
-    """Albedos above 1 over random materials with every lobe."""
-    albedo = probe.albedo(probe.materials)
-    return [Case(probe.materials, np.maximum(albedo, 1.0), np.ones((1, 3)))]
+def is_shader(spec: Spec) -> bool:
+    return isinstance(spec, SurfaceShaderSpec)
 
 
-def mean(probe: Probe) -> Iterable[Case]:
-    """Direct light and albedos against those by the layer equation."""
-    return [*value_cases(probe), *albedo_cases(probe)]
-
-
-def furnace(probe: Probe) -> Iterable[Case]:
-    """Albedo against 1 of a material that loses no light."""
-    albedo = probe.albedo(probe.white)
-    return [Case(probe.white, albedo, np.ones((1, 3)))]
-
-
-def misplaced(probe: Probe) -> list[str]:
-    """Inputs that change something where the page says nothing, or the reverse."""
-    table = subject_of(probe, SurfaceShader).table
-    wrong = set(table.without_effect).symmetric_difference(without_effect(probe))
-    return sorted(wrong.difference(table.curved, probe.unset))
-
-
-def without_effect(probe: Probe) -> list[str]:
-    """Inputs that change no value in any branch."""
-    names = subject_of(probe, SurfaceShader).inputs
-    effective = np.zeros(len(names), bool)
-    for branch in SCATTERING:
-        values = probe.response(probe.changed, branch).reshape(len(names), 2, -1)
-        effective |= (values[:, 0] != values[:, 1]).any(axis=1)
-    return [name for name, each in zip(names, effective, strict=True) if not each]
-
-
-def diagnose_lobes(probe: Probe) -> Diagnosis:
+def diagnose_lobes(case: Case) -> Diagnosis:
     """The lobe whose absence leaves the smallest error of the worst pairs."""
-    # Pick the worst pairs.
-    [batch] = probe.batches
-    expected = probe.expected(batch)
-    worst = np.argsort(scaled(probe.direct(batch), expected))[-WORST:]
+    [batch] = case.batches
+    worst = np.argsort(scaled(case.direct(batch), case.expected(batch)))[-WORST:]
     pairs = batch.where(worst)
-    # Find their error without each lobe.
     errors = {}
     for lobe, inputs in LOBE_INPUTS.items():
         if names := tuple(name for name in inputs if name in batch.inputs):
-            errors[lobe] = _error(probe, pairs, names)
+            errors[lobe] = _error(case, pairs, names)
     lobe = min(errors, key=errors.__getitem__)
-    if errors[lobe] <= tolerances.VALUE.value:
+    if errors[lobe] <= VALUE_ERROR.value:
         return Diagnosis(f"the layer equation holds without the {lobe}")
     least = " and ".join(sorted(errors, key=errors.__getitem__)[:2])
     return Diagnosis(f"no single lobe explains it; the error is smallest without {least}")
 
 
-def _error(probe: Probe, pairs: Batch, names: tuple[str, ...]) -> float:
+def _error(case: Case, pairs: Batch, names: tuple[str, ...]) -> float:
     """Largest error of pairs whose materials lack a lobe."""
     plain = pairs.altered(**{name: np.zeros_like(pairs.inputs[name]) for name in names})
-    return float(scaled(probe.direct(plain), probe.expected(plain)).max())
+    return float(scaled(case.direct(plain), case.expected(plain)).max())
 
 
-def diagnose_sum(probe: Probe) -> Diagnosis:
-    """Where the lobes are judged."""
+def diagnose_sum(case: Case) -> Diagnosis:
     return Diagnosis("see the checks of each lobe and of `layer`")
 
 
-def diagnose_reach(probe: Probe) -> Diagnosis:
+check(
+    "lobes",
+    "In direct light, the material is the sum of its lobes by the layer equation.",
+    is_shader,
+    shifted,
+    diagnose=diagnose_lobes,
+)(VALUE)
+
+check(
+    "lobes_albedo",
+    "The environment branch returns the albedo of all lobes by the layer equation.",
+    is_shader,
+    shifted,
+    diagnose=diagnose_sum,
+)(ALBEDO)
+
+
+@check(
+    "lobes_mean",
+    "Averaged over many materials and views, no light is gained or lost.",
+    is_shader,
+    scale("every value is 1 % too low", 0.99),
+    lit=True,
+    diagnose=diagnose_sum,
+)
+def mean(case: Case) -> Iterator[Compared]:
+    """Direct light and albedos against those by the layer equation."""
+    yield from values(case)
+    yield from albedos(case)
+
+
+@check(
+    "lobes_furnace",
+    "A white material with many lobes disappears in a white environment.",
+    is_shader,
+    scale("every value is 10 % too low", 0.9),
+    "albedo",
+    lit=True,
+    diagnose=diagnose_sum,
+)
+def furnace(case: Case) -> Compared:
+    """Albedo against 1 of a material that loses no light."""
+    white = replace(case.samples.views[0], inputs=case.of(SurfaceShaderSpec).table.white)
+    return Compared(white, case.albedo(white), np.ones((1, 3)))
+
+
+@check(
+    "lobes_energy",
+    "No material with these lobes reflects and transmits more light than it receives.",
+    is_shader,
+    scale("every value is 50 % too high", 1.5),
+    "albedo",
+    lit=True,
+    diagnose=diagnose_sum,
+)
+def energy(case: Case) -> Compared:
+    """Albedos above 1 over random materials with every lobe."""
+    batch = case.samples.take(case.of(SurfaceShaderSpec).materials)
+    return Compared(batch, np.maximum(case.albedo(batch), 1.0), np.ones((1, 3)))
+
+
+def misplaced(case: Case) -> list[str]:
+    """Inputs that change something where the page says nothing, or the reverse."""
+    table = case.of(SurfaceShaderSpec).table
+    wrong = set(table.without_effect).symmetric_difference(without_effect(case))
+    return sorted(wrong.difference(table.curved, case.backend.unset))
+
+
+def without_effect(case: Case) -> list[str]:
+    """Inputs that change no value in any branch."""
+    spec, evaluating = case.of(SurfaceShaderSpec), case.evaluating
+    ports = {port.path.rsplit("/", 1)[-1]: port.value for port in evaluating.shader.inputs}
+    batch = spec.changed(case.samples.batches[0], ports)
+    effective = np.zeros(len(spec.names), bool)
+    for branch in SCATTERING:
+        found = case.measured(lambda each, branch=branch: evaluating.evaluate(each, branch), batch)  # type: ignore[misc]
+        pairs = found.reshape(len(spec.names), 2, -1)
+        effective |= (pairs[:, 0] != pairs[:, 1]).any(axis=1)
+    return [name for name, each in zip(spec.names, effective, strict=True) if not each]
+
+
+@control("every change is dropped")
+def ignore_changes(case: Case) -> Case:
+    """The host sees the first pair only."""
+    return replace(
+        case,
+        inputs=lambda batch: batch.first(1),
+        outputs=lambda batch, found: np.repeat(found, len(batch.wo), axis=0),
+    )
+
+
+def diagnose_reach(case: Case) -> Diagnosis:
     """The inputs."""
-    known, wrong = subject_of(probe, SurfaceShader).table.without_effect, misplaced(probe)
+    known, wrong = case.of(SurfaceShaderSpec).table.without_effect, misplaced(case)
     groups = {
         verb: [name for name in wrong if (name in known) == effective]
         for verb, effective in (("changes nothing", False), ("changes something", True))
@@ -104,67 +158,13 @@ def diagnose_reach(probe: Probe) -> Diagnosis:
     return Diagnosis("; ".join(texts))
 
 
-class IgnoreChanges(Altered):
-    """A probe whose host sees the first pair only."""
-
-    def response(self, batch: Batch, branch: str) -> Array:
-        return np.repeat(self.probe.response(batch.first(1), branch), len(batch.wo), axis=0)
-
-
-CHECKS = (
-    Check(
-        "lobes",
-        "In direct light, the material is the sum of its lobes by the layer equation.",
-        MODELS,
-        VALUE,
-        shifted,
-        diagnose=diagnose_lobes,
-    ),
-    Check(
-        "lobes_albedo",
-        "The environment branch returns the albedo of all lobes by the layer equation.",
-        MODELS,
-        ALBEDO,
-        shifted,
-        diagnose=diagnose_sum,
-    ),
-    Check(
-        "lobes_mean",
-        "Averaged over many materials and views, no light is gained or lost.",
-        MODELS,
-        mean,
-        scale("every value is 1 % too low", 0.99),
-        tolerances.MEAN,
-        lit=True,
-        diagnose=diagnose_sum,
-    ),
-    Check(
-        "lobes_furnace",
-        "A white material with many lobes disappears in a white environment.",
-        MODELS,
-        furnace,
-        scale("every value is 10 % too low", 0.9),
-        "albedo",
-        lit=True,
-        diagnose=diagnose_sum,
-    ),
-    Check(
-        "lobes_energy",
-        "No material with these lobes reflects and transmits more light than it receives.",
-        MODELS,
-        energy,
-        scale("every value is 50 % too high", 1.5),
-        "albedo",
-        lit=True,
-        diagnose=diagnose_sum,
-    ),
-    Check(
-        "reach",
-        "Every input changes a value unless its page says otherwise.",
-        MODELS,
-        counted(misplaced),
-        Mistake("every change is dropped", IgnoreChanges),
-        count_of("inputs"),
-        diagnose=diagnose_reach,
-    ),
+@check(
+    "reach",
+    "Every input changes a value unless its page says otherwise.",
+    is_shader,
+    ignore_changes,
+    tolerance=count_of("inputs"),
+    diagnose=diagnose_reach,
 )
+def reach(case: Case) -> Measurement:
+    return count_named(misplaced(case))

@@ -6,13 +6,12 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from mxeon.conformance.case import Case
 from mxeon.conformance.diagnosis.faults import Fault, scaled_by
 from mxeon.conformance.diagnosis.regions import Mask, smallest
-from mxeon.conformance.nodes.diffuse import SUBJECTS
-from mxeon.conformance.probes.probe import Probe
-from mxeon.conformance.samples.batch import Array, Batch, Candidate
-from mxeon.conformance.samples.measurement import Case, mean_error
-from mxeon.conformance.samples.tolerance import Tolerance
+from mxeon.conformance.samples import Array, Batch, Candidate
+from mxeon.conformance.specs.diffuse import DIFFUSE
+from mxeon.conformance.tolerance import Compared, Tolerance, mean_error
 from mxeon.models import table as reference
 from mxeon.shaders.nodes import FLAG
 
@@ -62,36 +61,24 @@ def sentence(distances: Sequence[tuple[str, float]]) -> str:
 
 
 def explain(
-    probe: Probe,
-    cases: Sequence[Case],
+    case: Case,
+    cases: Sequence[Compared],
     candidates: Sequence[Candidate],
     faults: Sequence[Fault],
     tolerance: Tolerance,
 ) -> Diagnosis:
-    """The explanation of cases, by candidates and by faults on the way to the first, the own one.
+    """The explanation of values, by candidates and by faults on the way to the first, the own one.
 
-    Parameters
-    ----------
-    probe : Probe
-    cases : sequence of Case
-    candidates : sequence of Candidate
-        Functions that may give the values, its own model first.
-    faults : sequence of Fault
-        Of the way from the inputs to that model.
-    tolerance : Tolerance
-        Up to which a value is right.
-
-    Returns
-    -------
-    Diagnosis
+    `candidates` are functions that may give the values, its own model first; a value is right up to the
+    tolerance.
     """
     # What is not finite has no distance to anything.
     unbounded = not_finite(cases)
     if unbounded:
         return Diagnosis(unbounded)
     # Rank the candidates by their distance.
-    few = probe.counts.diagnosed
-    short = [Case(batch.first(few), *(each[:few] for each in rest)) for batch, *rest in cases]
+    few = case.samples.counts.diagnosed
+    short = [Compared(batch.first(few), *(each[:few] for each in rest)) for batch, *rest in cases]
     candidates = [_remembered(each, short) for each in candidates]
     own = candidates[0]
     models = {each.title: _distance(short, each, Fault(""), tolerance) for each in candidates}
@@ -103,11 +90,11 @@ def explain(
         text = _fault(distances, models, own.title, tolerance.value)
         if text:
             return Diagnosis(text, models)
-    text = _model(probe, cases, ranking, own.title, tolerance)
+    text = _model(case, cases, ranking, own.title, tolerance)
     return Diagnosis(text, models, _permitted(cases, candidates, ranking[0][0], tolerance))
 
 
-def _remembered(candidate: Candidate, cases: Sequence[Case]) -> Candidate:
+def _remembered(candidate: Candidate, cases: Sequence[Compared]) -> Candidate:
     """A candidate that computes its values of each case once: many a fault leaves its inputs alone."""
     known = [(case.batch, candidate.values(case.batch)) for case in cases]
 
@@ -120,7 +107,7 @@ def _remembered(candidate: Candidate, cases: Sequence[Case]) -> Candidate:
 
 
 def _permitted(
-    cases: Sequence[Case], candidates: Sequence[Candidate], title: str, tolerance: Tolerance
+    cases: Sequence[Compared], candidates: Sequence[Candidate], title: str, tolerance: Tolerance
 ) -> bool:
     """Whether the candidate of a title is permitted, and every value is its."""
     candidate = next(each for each in candidates if each.title == title)
@@ -131,7 +118,7 @@ def _permitted(
 
 
 def _distance(
-    cases: Sequence[Case], candidate: Candidate, fault: Fault, tolerance: Tolerance
+    cases: Sequence[Compared], candidate: Candidate, fault: Fault, tolerance: Tolerance
 ) -> float:
     """Root-mean-square distance of the measured values from those of a candidate with a fault.
 
@@ -151,7 +138,7 @@ def _distance(
     return float(np.sqrt(np.mean(np.concatenate(errors) ** 2)))
 
 
-def _factor(cases: Sequence[Case]) -> float:
+def _factor(cases: Sequence[Compared]) -> float:
     """The factor by which the expected values come nearest to the measured ones."""
     scaled = [(case, np.maximum(1.0, np.abs(case.expected)) ** 2) for case in cases]
     squares = sum(float(np.sum(case.expected**2 / scale)) for case, scale in scaled)
@@ -168,18 +155,18 @@ def _fault(faults: dict[str, float], models: dict[str, float], own: str, enough:
     return f"fault: {text} (rms {least:.2g})"
 
 
-def _flag(probe: Probe, title: str) -> str:
+def _flag(case: Case, title: str) -> str:
     """Words on the flag, where the title is that of the model with the other one."""
-    for subject in SUBJECTS:
-        other = subject.node == probe.subject.node and subject.title != probe.subject.title
-        if other and reference.model(subject.model).title == title:
-            return f", as with {FLAG} {str(subject.flag).lower()}"
+    for spec in DIFFUSE:
+        other = spec.node == case.spec.node and spec.title != case.spec.title
+        if other and reference.model(spec.model).title == title:
+            return f", as with {FLAG} {str(spec.flag).lower()}"
     return ""
 
 
 def _model(
-    probe: Probe,
-    cases: Sequence[Case],
+    case: Case,
+    cases: Sequence[Compared],
     ranking: Sequence[tuple[str, float]],
     own: str,
     tolerance: Tolerance,
@@ -190,7 +177,7 @@ def _model(
     (first, least), (_, rival) = ranking[:2]
     # Another model explains all.
     if first != own and least <= max(tolerance.value, SAME * rival):
-        return sentence(ranking) + _flag(probe, first)
+        return sentence(ranking) + _flag(case, first)
     # Its own model is correct except in a region, or not accurate enough.
     place = region([case.batch for case in cases], wrong)
     if place or not any(map(np.any, wrong)):
@@ -211,7 +198,7 @@ def _model(
     return f"no known model matches{closest}; wrong for {share}, worst {place}"
 
 
-def _worst_place(cases: Sequence[Case], tolerance: Tolerance) -> str:
+def _worst_place(cases: Sequence[Compared], tolerance: Tolerance) -> str:
     """Cosines of the pair with the largest error, in words."""
     errors = [tolerance.metric(case.measured, case.expected) for case in cases]
     index = int(np.argmax([error.max() for error in errors]))
@@ -227,7 +214,7 @@ def region(batches: Sequence[Batch], wrong: Sequence[Mask]) -> str:
     return f"correct except for {count} of {total} pairs, all {name}" if name else ""
 
 
-def not_finite(cases: Sequence[Case]) -> str:
+def not_finite(cases: Sequence[Compared]) -> str:
     """Where values are not finite; "" if all are."""
     wrong = [np.asarray(~np.isfinite(case.measured).all(axis=1)) for case in cases]
     if not any(map(np.any, wrong)):

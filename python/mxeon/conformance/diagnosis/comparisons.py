@@ -1,91 +1,53 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a probe's values are compared with, by quantity, and what may explain a difference: one row each."""
+"""What a case's values are compared with, by quantity, and what may explain a difference."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from mxeon.conformance.accuracy.accuracy import ACCURACY, Quantity
-from mxeon.conformance.accuracy.engine import widen_for_engine
+from mxeon.conformance.case import LIGHT, Case, albedos, throughputs, values
 from mxeon.conformance.diagnosis.candidates import Diagnosis, explain
 from mxeon.conformance.diagnosis.faults import DIRECT_FAULTS, ENVIRONMENT_FAULTS, Fault
-from mxeon.conformance.probes.cases import (
-    albedo_cases,
-    back_cases,
-    layering_cases,
-    transmission_cases,
-    transmittance_cases,
-    value_cases,
-)
-from mxeon.conformance.probes.probe import Probe
-from mxeon.conformance.samples.batch import Array, Batch, Candidate
-from mxeon.conformance.samples.measurement import Case
-from mxeon.conformance.samples.tolerance import Tolerance
+from mxeon.conformance.samples import Array, Batch, Candidate
+from mxeon.conformance.specs.emission import EmissionSpec
+from mxeon.conformance.specs.media import MediumSpec
+from mxeon.conformance.tolerance import Compared
 
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """Values of a quantity against the ones expected.
+    """Values of a quantity against the ones expected."""
 
-    Attributes
-    ----------
-    quantity : Quantity
-        By whose accuracy they are judged.
-    cases : callable (probe) -> iterable of Case
-        Measured and expected values.
-    candidates : callable (probe) -> sequence of Candidate
-        Functions that may explain them, its own model first.
-    faults : sequence of Fault
-        Of the way from the inputs to that model.
-    """
+    quantity: str  # by whose error they are judged
+    compared: Callable[[Case], Iterable[Compared]]
+    candidates: Callable[[Case], Sequence[Candidate]]  # that may explain them, its own model first
+    faults: Sequence[Fault] = ()  # of the way from the inputs to that model
 
-    quantity: Quantity
-    cases: Callable[[Probe], Iterable[Case]]
-    candidates: Callable[[Probe], Sequence[Candidate]]
-    faults: Sequence[Fault] = ()
+    def __call__(self, case: Case) -> Iterable[Compared]:
+        return self.compared(case)
 
-    def __call__(self, probe: Probe) -> Iterable[Case]:
-        """Its cases, as a check measures them."""
-        return self.cases(probe)
-
-    def diagnose(self, probe: Probe) -> Diagnosis:
-        """The explanation of a probe's values, made once: several checks of a subject fail for one reason."""
-        known = DIAGNOSES.setdefault(probe, {})
+    def diagnose(self, case: Case) -> Diagnosis:
+        """The explanation of a case, made once: several checks of a node fail for one reason."""
+        known = DIAGNOSES.setdefault(case, {})
         if self not in known:
-            cases = list(self.cases(probe))
-            candidates, tolerance = self.candidates(probe), self.tolerance(probe)
-            known[self] = explain(probe, cases, candidates, self.faults, tolerance)
+            tolerance = case.tolerance(self.quantity) or case.tolerance("value")
+            assert tolerance is not None, f"{case.spec.title} has no values"
+            compared = list(self.compared(case))
+            known[self] = explain(case, compared, self.candidates(case), self.faults, tolerance)
         return known[self]
 
-    def tolerance(self, probe: Probe) -> Tolerance:
-        """The tolerance of a probe, a value's with the errors of the engine; a value's where there is no other."""
-        accuracy = ACCURACY[probe.kind]
-        tolerance = accuracy.of(self.quantity) or accuracy.value
-        assert tolerance is not None, f"nothing is asked of {probe.kind}"
-        if tolerance is accuracy.value:
-            return widen_for_engine(tolerance, probe.subject, probe.kind, probe.host)
-        return tolerance
+
+# By case, which it does not keep alive: samples take some memory.
+DIAGNOSES: WeakKeyDictionary[Case, dict[Comparison, Diagnosis]] = WeakKeyDictionary()
 
 
-# By probes, which are not kept alive by it: their samples take some memory.
-DIAGNOSES: WeakKeyDictionary[Probe, dict[Comparison, Diagnosis]] = WeakKeyDictionary()
-
-
-def _values(probe: Probe) -> Sequence[Candidate]:
-    return probe.value_candidates
-
-
-def _albedos(probe: Probe) -> Sequence[Candidate]:
-    return probe.albedo_candidates
-
-
-def _rests(probe: Probe) -> Sequence[Candidate]:
+def _rests(case: Case) -> Sequence[Candidate]:
     """Functions that may explain throughputs: what each albedo leaves, or all light."""
-    *albedos, nothing = probe.albedo_candidates
-    rests = (Candidate(each.title, partial(_rest, each), each.permitted) for each in albedos)
+    *own, nothing = case.albedo_candidates
+    rests = (Candidate(each.title, partial(_rest, each), each.permitted) for each in own)
     return (*rests, Candidate("all light passes", partial(_rest, nothing)))
 
 
@@ -94,10 +56,35 @@ def _rest(candidate: Candidate, batch: Batch) -> Array:
     return np.maximum(1.0 - candidate.values(batch), 0.0)
 
 
-VALUE = Comparison("value", value_cases, _values, DIRECT_FAULTS)
-ALBEDO = Comparison("albedo", albedo_cases, _albedos, ENVIRONMENT_FAULTS)
-THROUGHPUT = Comparison("throughput", layering_cases, _rests)  # of a layer, for light from above
-TRANSMISSION = Comparison("throughput", transmission_cases, _rests)  # for light through the base
-RADIANCE = Comparison("value", value_cases, _values)  # of an emission from the front
-BACK = Comparison("value", back_cases, _values)  # of an emission from the back
-TRANSMITTANCE = Comparison("value", transmittance_cases, _values)  # of a medium
+def _values(case: Case) -> Sequence[Candidate]:
+    return case.value_candidates
+
+
+def _backs(case: Case) -> Iterator[Compared]:
+    """Radiance towards views from the back."""
+    batch = case.samples.take(case.of(EmissionSpec).backs)
+    yield Compared(batch, case.direct(batch), case.expected(batch))
+
+
+def _transmittances(case: Case) -> Iterator[Compared]:
+    """Light through a medium and the throughput of a surface over it, against its transmittance."""
+    spec, evaluate = case.of(MediumSpec), case.evaluating.evaluate
+    [batch] = case.batches
+    expected = case.expected(batch)
+    yield Compared(batch, case.direct(batch), expected)
+    lit = batch.altered(**{"top/weight": 1.0})
+    coefficients = (each for each in spec.names if np.shape(batch.inputs[each])[1:])
+    clear = lit.altered(**dict.fromkeys(coefficients, (0.0, 0.0, 0.0)))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        through = evaluate(lit, "transmission") / evaluate(clear, "transmission")
+    yield Compared(batch, through, expected)
+
+
+VALUE = Comparison("value", values, _values, DIRECT_FAULTS)
+ALBEDO = Comparison("albedo", albedos, lambda case: case.albedo_candidates, ENVIRONMENT_FAULTS)
+# Of a layer, for light from above, and for light through the base.
+THROUGHPUT = Comparison("throughput", lambda case: throughputs(case, *LIGHT), _rests)
+TRANSMISSION = Comparison("throughput", lambda case: throughputs(case, "transmission"), _rests)
+RADIANCE = Comparison("value", values, _values)  # of an emission from the front
+BACK = Comparison("value", _backs, _values)
+TRANSMITTANCE = Comparison("value", _transmittances, _values)

@@ -8,7 +8,7 @@ from itertools import permutations
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import Array, Batch
+from mxeon.conformance.samples import Array, Batch
 
 CHANNELS = ("red", "green", "blue")
 CONSTANTS = (0.1, 0.25, 0.3, 0.5, 0.75, 1.0)  # roughness that may be wired in

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.conformance.samples.batch import Array, Batch
+from mxeon.conformance.samples import Array, Batch
 
 Mask = NDArray[np.bool_]
 

@@ -7,8 +7,7 @@ from contextlib import contextmanager
 
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Control, Place, Result
-from mxeon.conformance.samples.measurement import Measurement
-from mxeon.conformance.samples.tolerance import Tolerance
+from mxeon.conformance.tolerance import Measurement, Tolerance
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts.base import RendererWarning
 
@@ -23,23 +22,7 @@ def judge_measurements(
     wrong: Measurement,
     diagnosis: Diagnosis,
 ) -> Result:
-    """The result of a check from its measurement and that of its control.
-
-    Parameters
-    ----------
-    place : Place
-        Check, claim, subject, host and library of the result.
-    tolerance : Tolerance
-    right, wrong : Measurement
-        Of the probe and of its control.
-    variant : str
-        The error that the control makes.
-    diagnosis : Diagnosis
-
-    Returns
-    -------
-    Result
-    """
+    """The result of a check from its measurement and that of its control, whose mistake is `variant`."""
     caught = wrong.error > tolerance.value
     verdict = DIFFERS if diagnosis.permitted else FAILED
     right_too = right.error <= tolerance.value and not caught

@@ -13,14 +13,20 @@ from typing import TypeAlias
 
 import numpy as np
 
-from mxeon.conformance.accuracy import diffuse as tolerances
 from mxeon.conformance.diagnosis.candidates import SAME, Diagnosis, sentence
 from mxeon.conformance.diagnosis.verdicts import judge_measurements, not_measured
 from mxeon.conformance.functions.numpy_functions import POINTS
 from mxeon.conformance.results import Place, Result
-from mxeon.conformance.samples.batch import SEED, Array, float32
-from mxeon.conformance.samples.measurement import Measurement, absolute
-from mxeon.conformance.samples.tolerance import Tolerance
+from mxeon.conformance.samples import SEED, Array, float32
+from mxeon.conformance.tolerance import (
+    Measurement,
+    Term,
+    Tolerance,
+    absolute,
+    given,
+    roundings,
+    sum_of,
+)
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts.base import Host
 from mxeon.models.diffuse import albedo, inversion
@@ -34,6 +40,14 @@ from mxeon.shaders.nodes import (
     node_text,
 )
 
+INVERSION_ERROR = sum_of(
+    Term(3 * 5e-7, "three constants of six decimals"),
+    roundings(12, "of numbers up to 1"),
+    unit="reflectance",
+    metric=absolute,
+)
+# An albedo grows at most twice as fast as the reflectance.
+ROUND_TRIP = given(2.0 * INVERSION_ERROR.value, "albedo", "twice the error of the reflectance")
 VARIANT = "roughness is 5 % off"
 FUNCTION = re.compile(r"^\w+ (\w+)\([^()]*\)\s*(?=\{)", re.MULTILINE)
 # Its variables must not be those of a nodegraph.
@@ -98,13 +112,13 @@ def judge_inversion(probe: InversionProbe) -> tuple[Result, ...]:
         (
             "inversion",
             "The node returns the reflectance of the NumPy function of the same name.",
-            tolerances.INVERSION,
+            INVERSION_ERROR,
             _value,
         ),
         (
             "round_trip",
             "EON with the node's reflectance has the input color as its albedo.",
-            tolerances.ROUND_TRIP,
+            ROUND_TRIP,
             _round_trip,
         ),
     )

@@ -12,7 +12,7 @@ from itertools import product
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import GRAZING, SEED, Array, directions, float32
+from mxeon.conformance.samples import GRAZING, SEED, Array, directions, float32
 from mxeon.models import sampling
 from mxeon.models.diffuse import albedo, formulas, qon_albedo
 from mxeon.models.sampling import cltc, eon, hemisphere, ltc

@@ -11,15 +11,23 @@ from functools import cache, cached_property
 
 import numpy as np
 
-from mxeon.conformance.accuracy import diffuse as tolerances
-from mxeon.conformance.accuracy.engine import TURN
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.diagnosis.verdicts import judge_measurements, not_measured
+from mxeon.conformance.engine import TURN
 from mxeon.conformance.functions import numpy_functions
 from mxeon.conformance.results import SHADER_FUNCTIONS, Place, Result
-from mxeon.conformance.samples.batch import Array
-from mxeon.conformance.samples.measurement import Measurement, absolute, relative
-from mxeon.conformance.samples.tolerance import Tolerance
+from mxeon.conformance.samples import Array
+from mxeon.conformance.specs.diffuse import LOSS_FIT
+from mxeon.conformance.specs.diffuse import VALUE as MODEL_VALUE
+from mxeon.conformance.tolerance import (
+    Measurement,
+    Term,
+    Tolerance,
+    absolute,
+    relative,
+    roundings,
+    sum_of,
+)
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts.base import Host
 from mxeon.shaders import functions
@@ -29,6 +37,21 @@ ROTATIONS = ("eon_around", "eon_azimuth_frame", "eon_rotate_z", "eon_towards")
 SAMPLES = re.compile(rf"\w+_(sample|draw|clipped|transformed)|{'|'.join(ROTATIONS)}")
 DENSITIES = re.compile(r"\w+_pdf|ltc_(density|[abcd])")
 STEP = 2.0**-22  # of the arguments by which a function's condition is measured
+
+
+CONDITIONED = "over 1, the value, and its change with each argument"
+LOSS = sum_of(Term(LOSS_FIT, "the fit of H"), roundings(12), unit="relative", metric=relative)
+PART = sum_of(roundings(16), unit=CONDITIONED, metric=absolute)
+# An inverse fourth power takes the 8 of an entry of a matrix four times, and 16 beside them.
+DENSITY = sum_of(
+    roundings(48, "four times the 8 of a matrix entry, and 16"), unit=CONDITIONED, metric=absolute
+)
+
+
+def _direction(sine_error: float) -> Tolerance:
+    """Tolerance of sampled directions on an engine whose own sine is off by so much."""
+    turned = Term(4.0 * sine_error, "the engine's sine and cosine, which turn a direction twice")
+    return sum_of(roundings(16), turned, unit=CONDITIONED, metric=absolute)
 
 
 @dataclass(frozen=True)
@@ -125,35 +148,35 @@ FUNCTION_CHECKS = (
         "The shader functions of models and albedos match the NumPy models.",
         lambda name: "_brdf" in name or "_albedo_" in name,
         value_error,
-        lambda probe: tolerances.VALUE,
+        lambda probe: MODEL_VALUE,
     ),
     FunctionCheck(
         "loss",
         "1 - E keeps its relative accuracy down to a cosine of 1e-6.",
         lambda name: name == "fon_loss",
         loss_error,
-        lambda probe: tolerances.LOSS,
+        lambda probe: LOSS,
     ),
     FunctionCheck(
         "samples",
         "The sampling functions return the same directions as NumPy's.",
         lambda name: bool(SAMPLES.fullmatch(name)),
         part_error,
-        lambda probe: tolerances.direction_of(probe.sine_error),
+        lambda probe: _direction(probe.sine_error),
     ),
     FunctionCheck(
         "densities",
         "The sampling densities and the matrix of linearly transformed cosines match NumPy's.",
         lambda name: bool(DENSITIES.fullmatch(name)),
         part_error,
-        lambda probe: tolerances.DENSITY,
+        lambda probe: DENSITY,
     ),
     FunctionCheck(
         "parts",
         "The functions that models and sampling are built from match NumPy's.",
         lambda name: True,
         part_error,
-        lambda probe: tolerances.PART,
+        lambda probe: PART,
     ),
 )
 VARIANT = "the last argument is 5 % off"

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import mxeon
+from mxeon.conformance.backends import picture_pairs
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.diagnosis.verdicts import judge_measurements, not_measured
 from mxeon.conformance.pictures.tolerances import (
@@ -21,20 +22,18 @@ from mxeon.conformance.pictures.tolerances import (
     rounded_by,
     tolerance_of,
 )
-from mxeon.conformance.probes.pictures import picture_pairs
 from mxeon.conformance.reference import ExpectedPicture
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.reference.measured import HostValues
 from mxeon.conformance.results import FAILED, PASSED, Control, Picture, Place, Result, of_white
-from mxeon.conformance.samples.measurement import Measurement, Metric, absolute, scaled
-from mxeon.conformance.samples.tolerance import Tolerance
+from mxeon.conformance.tolerance import Measurement, Metric, Tolerance, absolute, scaled
 from mxeon.errors import NotRun, OutsideModel, ShaderError
 from mxeon.hosts import host_row
 from mxeon.hosts.base import Host
 from mxeon.shaders.document.notes import DocumentWarning, MissingFileWarning, same_names
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.generation import ApproximationWarning, CodeWarning, Shader
-from mxeon.shaders.nodes import BSDF_INPUTS
+from mxeon.shaders.nodes import BSDF_NODES
 from mxeon.shaders.scene import Scene, sphere
 
 Pixels: TypeAlias = NDArray[np.floating]
@@ -185,7 +184,7 @@ def _assert_judged(shader: Shader, host: Host) -> None:
     """Raise NotRun where the host shows another material, or closures of its own, judged by themselves."""
     if reason := host.unread(shader):
         raise NotRun(f"{host.name}: {reason}: the picture is shown and only has to be finite")
-    own = sorted(categories(inner_nodes(shader)) & set(BSDF_INPUTS))
+    own = sorted(categories(inner_nodes(shader)) & set(BSDF_NODES))
     if own and host.language == "osl":
         raise NotRun(
             f"{host.name} has closures of its own for {', '.join(own)}: their picture is shown and "

@@ -7,57 +7,50 @@ import numpy as np
 from numpy.typing import NDArray
 
 import mxeon
-from mxeon.conformance.nodes.diffuse import DiffuseSubject
-from mxeon.conformance.probes.pictures import Mask, PictureProbe, picture_pairs
-from mxeon.conformance.probes.probe import Probe
-from mxeon.conformance.probes.rendered import RenderedSamples
-from mxeon.conformance.probes.renderer_nodes import FacetPairProbe, FacetProbe
+from mxeon.conformance.backends import Mask, Rendered
+from mxeon.conformance.case import Case
 from mxeon.conformance.results import PORTRAIT, Picture
-from mxeon.conformance.samples.batch import Array, Batch, Values, rounded
-from mxeon.shaders.facets import facet_points
-from mxeon.shaders.scene import BACK, SIDE, Scene, sphere
+from mxeon.conformance.samples import Array, Batch, Values
+from mxeon.conformance.specs.diffuse import DiffuseModelSpec, SurfaceLobe, model_value
+from mxeon.shaders.scene import BACK, SIDE, Scene
 
 INPUTS: Values = {"color": (0.8, 0.4, 0.1), "roughness": 1.0}
 SIZE = 96
 SCENES = tuple(replace(scene, size=SIZE) for scene in (SIDE, BACK))
 
 
-def comparison_pictures(probe: Probe) -> tuple[Picture, ...]:
+def comparison_pictures(case: Case) -> tuple[Picture, ...]:
     """Pictures of a rough node in light from the side and from behind, each beside its model's.
 
     None for a surface shader's lobe, and on a renderer without exact mirror pairs. Rim and
     terminator are black in both.
     """
-    if not isinstance(probe.subject, DiffuseSubject) or isinstance(probe, RenderedSamples):
+    rough = isinstance(case.spec, DiffuseModelSpec) and not isinstance(case.spec, SurfaceLobe)
+    if not rough or isinstance(case.backend, Rendered):
         return ()
-    points = ((scene, *_points(probe, scene)) for scene in SCENES)
-    return tuple(_comparison(probe, *each) for each in points if len(each[1].wo))
+    points = ((scene, *_points(case, scene)) for scene in SCENES)
+    return tuple(_comparison(case, *each) for each in points if len(each[1].wo))
 
 
-def _comparison(probe: Probe, scene: Scene, batch: Batch, where: Mask) -> Picture:
-    subject, host = probe.subject, probe.host
-    names = (PORTRAIT, subject.title, host.name, probe.library, scene.name)
+def _points(case: Case, scene: Scene) -> tuple[Batch, Mask]:
+    """The pairs of a picture, and the pixels where they are, (size, size)."""
+    wo, wi, judged, mask = case.backend.portrait(scene)
+    where = mask.copy()
+    where[where] = judged
+    return Batch(wo[judged], wi[judged], INPUTS, scene), where
+
+
+def _comparison(case: Case, scene: Scene, batch: Batch, where: Mask) -> Picture:
+    spec, host = case.spec, case.host
+    names = (PORTRAIT, spec.title, host.name, case.library, scene.name)
     keys = ("document", "element", "host", "library", "scene")
     metadata = dict(zip(keys, names, strict=True)) | {"version": mxeon.__version__}
     metadata |= {"points": host.name}  # which differ where a host has its model in part
-    image = _picture(probe.direct(batch), where)
-    return Picture(*names, image, _picture(batch.expected(subject.model), where), metadata)
+    image = _picture(case.direct(batch), where)
+    return Picture(*names, image, _picture(model_value(batch, spec.model), where), metadata)
 
 
 def _picture(values: Array, where: Mask) -> NDArray[np.float32]:
     picture = np.zeros((*where.shape, 3), dtype=np.float32)
     picture[where] = values
     return picture
-
-
-def _points(probe: Probe, scene: Scene) -> tuple[Batch, Mask]:
-    """The pairs of a picture, and the pixels where they are, (size, size)."""
-    if isinstance(probe, PictureProbe) and not isinstance(probe, FacetPairProbe):
-        wo, wi, judged = probe.points(scene)
-    else:
-        wo, wi, judged = picture_pairs(scene)
-        wo, wi = rounded(wo.T), rounded(wi.T)
-    faceted = isinstance(probe, FacetProbe) and not isinstance(probe, FacetPairProbe)
-    where = (facet_points(scene.size) if faceted else sphere(scene.size)).mask.copy()
-    where[where] = judged
-    return Batch(wo[judged], wi[judged], INPUTS, scene), where

@@ -2,19 +2,20 @@
 """Tolerances of the pictures of materials: of the lobes that they have, and of what else may add to them."""
 
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 
 import MaterialX as mx
 import numpy as np
 
-from mxeon.conformance.accuracy import surface_shaders as surfaces
-from mxeon.conformance.accuracy.bsdf import MICROFACET_MEAN, RINGS, UNFITTED, sum_of
-from mxeon.conformance.accuracy.hair import error_of
-from mxeon.conformance.accuracy.thin_films import FILM_ALBEDO, FILM_TRAPPED
-from mxeon.conformance.accuracy.utilities import BLACKBODY
-from mxeon.conformance.probes.thin_films import LEAST_FILM
 from mxeon.conformance.reference.nodes import ShownLobe
-from mxeon.conformance.samples.measurement import absolute
-from mxeon.conformance.samples.tolerance import ROUNDING, Tolerance
+from mxeon.conformance.specs import surface_shaders as surfaces
+from mxeon.conformance.specs.hair import lobe_terms
+from mxeon.conformance.specs.microfacets import ERRORS as FACET_ERRORS
+from mxeon.conformance.specs.microfacets import MEAN, sum_over
+from mxeon.conformance.specs.subsurface import RINGS
+from mxeon.conformance.specs.thin_films import FILM_ALBEDO, FILM_TRAPPED, LEAST_FILM
+from mxeon.conformance.specs.utilities import BLACKBODY
+from mxeon.conformance.tolerance import Term, Tolerance, absolute, given, roundings
 from mxeon.hosts import host_row
 from mxeon.hosts.base import Host
 from mxeon.io.srgb import SLOPE
@@ -33,60 +34,40 @@ COSINES = 256  # of views, among which a sheen's albedo is largest
 UNIT = "pi f cos, times cos(theta_o)"
 RELATIVE = "pi f cos, relative above 1, times cos(theta_o)"
 PLAIN = Tolerance(
-    48 * ROUNDING,
-    UNIT,
-    absolute,
-    "16 roundings of float32, 2^-24 each, in the position of a pixel's point, and 32 in the value",
+    (roundings(16, "of a pixel's point"), roundings(32, "in the value")), UNIT, absolute, exact=True
 )
-TEXTURED = Tolerance(
-    2.0**-8,
-    UNIT,
-    absolute,
-    "a filter's weights have 8 bits after the point, the least OpenGL asks for, and texels differ "
-    "by 1 at most",
+# The least OpenGL asks for; texels differ by 1 at most.
+TEXTURED = given(2.0**-8, UNIT, "a filter's weights of 8 bits")
+ENCODED = given(
+    SLOPE * TEXTURED.value, UNIT, f"filtered codes of sRGB, times its slope {SLOPE:.3g}"
 )
-ENCODED = Tolerance(
-    SLOPE * TEXTURED.value,
-    UNIT,
-    absolute,
-    f"{TEXTURED.derivation}; they are codes of sRGB, whose decoding has the slope {SLOPE:.3g} at most",
-)
-
 FITTED = Tolerance(
-    MICROFACET_MEAN.value + sum_of(256),
-    RELATIVE,
-    absolute,
-    "the error of microfacets by the fit of their albedo, and that of a sum over 256 directions of an "
-    "environment",
+    (MEAN.term("the fits of microfacets"), sum_over(256)), RELATIVE, absolute, exact=True
 )
-
 SHADED = Tolerance(
-    surfaces.ALBEDO.value + sum_of(256),
+    (surfaces.ALBEDO.term("all lobes of a surface shader"), sum_over(256)),
     RELATIVE,
     absolute,
-    f"the errors of all lobes of a surface shader, {surfaces.ALBEDO.value:g}, and that of a sum over 256 directions of an "
-    "environment",
+    exact=True,
 )
 
 
 def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe]) -> Tolerance:
     """Tolerance of a material's pictures: that of its lobes, with what else may add to it."""
-    tolerance = _lobes_tolerance(shader)
-    others = [RINGS] * (SUBSURFACE in inner_lobes(shader))
-    others += [BLACKBODY] * ("blackbody" in categories(inner_nodes(shader)))
+    others = [RINGS.term("subsurface scattering in six circles")] * (
+        SUBSURFACE in inner_lobes(shader)
+    )
+    others += BLACKBODY.terms * ("blackbody" in categories(inner_nodes(shader)))
     others += _others(tuple(lobes))
-    for other in others:
-        words = f"{tolerance.derivation}; and {other.derivation}"
-        tolerance = Tolerance(tolerance.value + other.value, RELATIVE, absolute, words)
-    return tolerance
+    tolerance = _lobes_tolerance(shader)
+    return replace(tolerance.plus(*others), unit=RELATIVE) if others else tolerance
 
 
 def rounded_by(host: Host, tolerance: Tolerance) -> Tolerance:
     rounding = host_row(host.name).rounding
     if not rounding:
         return tolerance
-    words = f"{tolerance.derivation}; and the pixels' own rounding, {rounding:.1e}"
-    return Tolerance(tolerance.value + rounding, RELATIVE, absolute, words)
+    return replace(tolerance.plus(Term(rounding, "the pixels' own rounding")), unit=RELATIVE)
 
 
 def categories(elements: Iterable[mx.Element]) -> set[str]:
@@ -105,13 +86,13 @@ def inner_nodes(shader: Shader) -> Iterator[mx.Element]:
                 waiting.append(graph)
 
 
-def _others(lobes: tuple[ShownLobe, ...]) -> list[Tolerance]:
+def _others(lobes: tuple[ShownLobe, ...]) -> list[Term]:
     """What inputs of lobes add: a film, an index without a fit, and narrow lobes of hair and sheen."""
-    # A film, and an index below 1.
-    others = [FILM_ALBEDO] * _any(lobes, "thinfilm_thickness", lambda value: value > 0.0)
-    others += [FILM_TRAPPED] * _any(lobes, "thinfilm_ior", lambda value: value < LEAST_FILM)
-    others += [UNFITTED] * _any(lobes, "ior", lambda value: value < 1.0, "dielectric_bsdf")
-    # Narrow hair.
+    film, trapped = FILM_ALBEDO.term("a film"), FILM_TRAPPED.term("a film of an index below 1.25")
+    unfitted = FACET_ERRORS["denser"].term("an index below 1, without a fit")
+    others = [film] * _any(lobes, "thinfilm_thickness", lambda value: value > 0.0)
+    others += [trapped] * _any(lobes, "thinfilm_ior", lambda value: value < LEAST_FILM)
+    others += [unfitted] * _any(lobes, "ior", lambda value: value < 1.0, "dielectric_bsdf")
     hairs = [
         np.reshape(lobe.inputs[name], (-1, 2)).min(axis=0)
         for lobe in lobes
@@ -119,19 +100,14 @@ def _others(lobes: tuple[ShownLobe, ...]) -> list[Tolerance]:
         if lobe.category == HAIR
     ]
     if hairs:
-        words = "the roundings of hair's lobes, by the slope of their logarithms"
-        others.append(Tolerance(error_of(*np.min(hairs, axis=0)), RELATIVE, absolute, words))
-    # A narrow sheen.
+        others += lobe_terms(*np.min(hairs, axis=0))
     narrow = [
         np.ravel(lobe.inputs["roughness"]).min()
         for lobe in lobes
         if lobe.inputs.get("mode") == "conty_kulla"
     ]
     if narrow and (excess := _excess(min(narrow))):
-        words = (
-            "what a narrow sheen returns beyond all light, of which fits of its albedo have none"
-        )
-        others.append(Tolerance(excess, RELATIVE, absolute, words))
+        others.append(Term(excess, "what a narrow sheen returns beyond all light"))
     return others
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from mxeon.conformance.recent import Recent, contents
+from mxeon.conformance.cache import Recent, contents
 from mxeon.conformance.reference.operations import Operation, Values
 from mxeon.errors import NotRun
 from mxeon.models import table

@@ -6,23 +6,22 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
-from typing import cast
 
-from mxeon.conformance.checks.application import judge_curve, judge_subject
-from mxeon.conformance.checks.table import CHECKS
+import numpy as np
+
+from mxeon.conformance.backends import backend_of, own_nodes
+from mxeon.conformance.case import Case, make_case
+from mxeon.conformance.checks import CHECKS
+from mxeon.conformance.checks.lobes import integrated
 from mxeon.conformance.functions.inversion import InversionProbe, judge_inversion
 from mxeon.conformance.functions.shader_functions import FunctionProbe, judge_functions
-from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
 from mxeon.conformance.pictures.document_pictures import MATCH, judge_document
 from mxeon.conformance.pictures.documents import DOCUMENT_CLAIM, generate_document
 from mxeon.conformance.pictures.node_pictures import comparison_pictures
-from mxeon.conformance.probes.families import ALL_SUBJECTS, probe_type, probe_type_of
-from mxeon.conformance.probes.probe import Probe
-from mxeon.conformance.probes.renderer_nodes import ExactProbe
 from mxeon.conformance.reference import Host as Reference
-from mxeon.conformance.results import DIRECT, FAILED, NOT_RUN, SOURCE, Picture, Result
+from mxeon.conformance.results import DIRECT, FAILED, NOT_RUN, SOURCE, AlbedoCurve, Picture, Result
 from mxeon.conformance.results.known_issues import with_pages
-from mxeon.conformance.run.plan import subjects
+from mxeon.conformance.run.plan import diffuse_specs
 from mxeon.conformance.run.tasks import (
     CURVE,
     DEFINITION,
@@ -34,6 +33,7 @@ from mxeon.conformance.run.tasks import (
     Findings,
     Task,
 )
+from mxeon.conformance.specs import ALL
 from mxeon.conformance.text import check_definitions, check_texts
 from mxeon.errors import DocumentError, ImageError, InterfaceError, NotRun, ShaderError
 from mxeon.hosts import open_engine
@@ -42,7 +42,8 @@ from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.library_tree import root
 
-ROWS = {check.key: check for check in CHECKS}
+CURVE_COLOR, CURVE_ROUGHNESS = (0.8, 0.4, 0.1), 1.0
+CURVE_COSINES = np.linspace(0.05, 1.0, 20)
 CLAIMS = {check.key: check.claim for check in CHECKS} | {
     HOST: "The host runs on this machine.",
     DEFINITION: "The nodes are defined as specified.",
@@ -85,7 +86,7 @@ class Judge:
         self._policy = policy
         self._hosts: dict[str, Host | RendererHost | NotRun] = {}  # or the reason why there is none
         self._reference = Reference()
-        self._probe = lru_cache(maxsize=1)(_probe)  # its pairs take some memory
+        self._case = lru_cache(maxsize=1)(_case)  # its pairs take some memory
 
     def work(self, task: Task) -> Findings:
         """Findings of a task; a document that cannot be read is among its errors.
@@ -124,7 +125,7 @@ class Judge:
         if task.check == DEFINITION:
             return Findings(check_definitions(task.library))
         if task.check == SOURCE:
-            return Findings(check_texts(subjects(task.library), task.library))
+            return Findings(check_texts(diffuse_specs(task.library), task.library))
         if task.check == DOCUMENT:
             return self._generate(task)
         host = self._host(task.host)
@@ -141,14 +142,15 @@ class Judge:
                 return Findings(judge_inversion(inversion))
             if task.check == FUNCTIONS:
                 return Findings(judge_functions(FunctionProbe(host, task.library)))
-        probe = self._probe(host, task.subject, task.library)
+        case = self._case(host, task.subject, task.library)
         if task.check == CURVE:
-            return Findings(curves=judge_curve(probe))
-        results = judge_subject(probe, (ROWS[task.check],))
+            return Findings(curves=(_curve(case),))
+        check = next(each for each in CHECKS if each.key == task.check)
+        results = (check.judge(case),)
         pictures: tuple[Picture, ...] = ()
         if task.check in DIRECT:
             with suppress(NotRun, ShaderError):  # the check's result says so
-                pictures = comparison_pictures(probe)
+                pictures = comparison_pictures(case)
         return Findings(results, pictures)
 
     def _generate(self, task: Task) -> Findings:
@@ -177,11 +179,23 @@ def _unread(path: Path, error: DocumentError | ImageError) -> Findings:
     return Findings(errors=error.args)
 
 
-def _probe(host: Host | RendererHost, title: str, library: str) -> Probe:
-    subjects = renderer_nodes(host.name) or ALL_SUBJECTS
-    subject = next(each for each in subjects if each.title == title)
-    own = probe_type(host.name)
-    probe = own and probe_type_of(subject, own)
-    assert probe is not None  # or there were no task
-    made = probe(cast(Host, host), subject, library)
-    return made.nearest_form() if isinstance(made, ExactProbe) else made
+def _case(host: Host | RendererHost, title: str, library: str) -> Case:
+    spec = next(each for each in own_nodes(host.name) or ALL if each.title == title)
+    backend = backend_of(host.name, spec)
+    assert backend is not None  # or there were no task
+    return make_case(backend, host, spec, library)
+
+
+def _curve(case: Case) -> AlbedoCurve:
+    """The node's directional albedo over the cosine, integrated from its values."""
+    measured, expected = integrated(case, CURVE_COSINES, CURVE_COLOR, CURVE_ROUGHNESS)
+    return AlbedoCurve(
+        case.spec.title,
+        case.host.name,
+        case.library,
+        CURVE_COLOR,
+        CURVE_ROUGHNESS,
+        CURVE_COSINES,
+        measured,
+        expected,
+    )

@@ -14,22 +14,9 @@ import numpy as np
 import OpenImageIO as oiio
 
 import mxeon
-from mxeon.conformance.checks.application import applies
-from mxeon.conformance.checks.table import CHECKS
+from mxeon.conformance.backends import Evaluating, backend_of, own_nodes, ways_of
+from mxeon.conformance.checks import CHECKS
 from mxeon.conformance.functions import shader_functions as functions
-from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES, DiffuseSubject
-from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
-from mxeon.conformance.nodes.subject import Subject
-from mxeon.conformance.probes.families import (
-    ALL_SUBJECTS,
-    COMMON_SUBJECTS,
-    PBR_SUBJECTS,
-    probe_type,
-    probe_type_of,
-)
-from mxeon.conformance.probes.pairs import PairProbe
-from mxeon.conformance.probes.probe import Probe
-from mxeon.conformance.probes.renderer_nodes import NativeProbe
 from mxeon.conformance.results import SHADER_FUNCTIONS, SOURCE
 from mxeon.conformance.results.known_issues.issue import RENDERER_NODES
 from mxeon.conformance.run.dependencies import digests
@@ -46,6 +33,11 @@ from mxeon.conformance.run.tasks import (
     Plan,
     Task,
 )
+from mxeon.conformance.spec import Spec
+from mxeon.conformance.specs import ALL as ALL_SPECS
+from mxeon.conformance.specs import COMMON as COMMON_SPECS
+from mxeon.conformance.specs import PBRLIB
+from mxeon.conformance.specs.diffuse import DIFFUSE, SURFACE_LOBES, DiffuseSpec
 from mxeon.errors import InputError, assert_known
 from mxeon.hosts import HOSTS, host_names, host_row
 from mxeon.shaders.document.policy import DEFAULT, LIMITS, Policy
@@ -74,7 +66,7 @@ def assert_known_names(hosts: Iterable[str], nodes: Iterable[str]) -> None:
 
 def node_names() -> tuple[str, ...]:
     """Categories of the nodes that are judged."""
-    return tuple(dict.fromkeys(row.node for row in ALL_SUBJECTS))
+    return tuple(dict.fromkeys(row.node for row in ALL_SPECS))
 
 
 def selected(
@@ -88,8 +80,8 @@ def selected(
 
     Raise InputError if none of the nodes is judged.
     """
-    titles = {row.title for row in ALL_SUBJECTS if row.node in nodes}
-    rare = {each.title for each in PBR_SUBJECTS} - {each.title for each in COMMON_SUBJECTS}
+    titles = {row.title for row in ALL_SPECS if row.node in nodes}
+    rare = {each.title for each in PBRLIB} - {each.title for each in COMMON_SPECS}
     audit = COMMON in nodes or not (nodes or files)
     if not nodes:
         titles = {title for file in files for title in survey.nodes.get(file, ())}
@@ -156,12 +148,10 @@ def make_plan(
         for host in hosts:
             if not host_row(host).scenes:
                 tasks += [Task(DOCUMENT, file, host, library) for file in readable]
-            tasks += _on_host(host, library, paths, PBR_SUBJECTS, everywhere)
+            tasks += _on_host(host, library, paths, PBRLIB, everywhere)
     for host in hosts:  # nodes of a renderer's own, which use no library of ours
-        probe = probe_type(host)
-        if probe is not None and issubclass(probe, NativeProbe):
-            for subject in renderer_nodes(host):
-                tasks += _checks_of(subject, probe, host, RENDERER_NODES)
+        for spec in own_nodes(host):
+            tasks += _checks_of(spec, host, RENDERER_NODES)
     tasks = selected(tasks, list(map(str, files)), nodes, survey, partial(_elsewhere, nodes))
     tasks += [Task(HOST, EVERY_NODE, host, libraries[0]) for host in unmeasured(tasks, hosts)]
     if not files and nodes and {ALL, COMMON}.isdisjoint(nodes):
@@ -185,22 +175,22 @@ def make_plan(
 
 def _elsewhere(nodes: Sequence[str]) -> str:
     """Words on the libraries and hosts with which nodes are judged; "" for none."""
-    titles = {subject.title for subject in ALL_SUBJECTS if subject.node in nodes}
+    titles = {spec.title for spec in ALL_SPECS if spec.node in nodes}
     words = []
     for library in LIBRARIES:
         names = [
             row.name
             for row in HOSTS
-            if any(task.subject in titles for task in _on_host(row.name, library, (), PBR_SUBJECTS))
+            if any(task.subject in titles for task in _on_host(row.name, library, (), PBRLIB))
         ]
         if names:
             words.append(f"with --library {library} on {', '.join(names)}")
     return f", judged {'; '.join(words)}" if words else ""
 
 
-def subjects(library: str) -> list[DiffuseSubject]:
+def diffuse_specs(library: str) -> list[DiffuseSpec]:
     data = load_library(library)
-    return [subject for subject in SUBJECTS if data.getMatchingNodeDefs(subject.node)]
+    return [spec for spec in DIFFUSE if data.getMatchingNodeDefs(spec.node)]
 
 
 def inversions(library: str) -> list[str]:
@@ -212,50 +202,51 @@ def _on_host(
     host: str,
     library: str,
     files: Iterable[Path],
-    nodes: Iterable[Subject],
+    nodes: Iterable[Spec],
     everywhere: bool = False,
 ) -> Iterator[Task]:
     """Tasks of one host with one library, for files and nodes of pbrlib, or those it repairs."""
-    probe, row = probe_type(host), host_row(host)
-    if probe is None:
+    ways, row = ways_of(host), host_row(host)
+    if not ways:
         yield Task(HOST, EVERY_NODE, host, library)
-    if probe is None or issubclass(probe, NativeProbe):
+    if not ways or row.nodes:
         return
+    evaluates = ways[0] is Evaluating
     language = "osl" if row.target == "osl" else "glsl"
     if row.probe in functions.KINDS and has_functions(library, language):
         yield Task(FUNCTIONS, SHADER_FUNCTIONS, host, library)
-    if probe is PairProbe:
+    if evaluates:
         yield from (Task(INVERSION, node, host, library) for node in inversions(library))
-    for subject in subjects(library):
-        yield from _checks_of(subject, probe, host, library)
-        if probe is PairProbe:
-            yield Task(CURVE, subject.title, host, library)
+    for spec in diffuse_specs(library):
+        yield from _checks_of(spec, host, library)
+        if evaluates:
+            yield Task(CURVE, spec.title, host, library)
     for each in nodes:
         # Where pictures show a renderer's own closures, they are judged with the stock library alone.
         own = row.target == "osl" and kind_of(library) in ("eonlib", "diffuse")
         left = each.closure and row.probe == "pictures" and own
         if not left and (everywhere or _is_judged(each, library)):
-            yield from _checks_of(each, probe, host, library)
+            yield from _checks_of(each, host, library)
     if row.surfaces:
         kind = kind_of(library) if kind_of(library) in LIBRARIES else "eonlib"
-        for surface in SURFACES:
-            if everywhere or kind in (surface.libraries or LIBRARIES):
-                yield from _checks_of(surface, probe, host, library)
+        for lobe in SURFACE_LOBES:
+            if everywhere or kind in (lobe.libraries or LIBRARIES):
+                yield from _checks_of(lobe, host, library)
     if row.scenes:
         yield from (Task(PICTURE, str(file), host, library) for file in files)
 
 
-def _is_judged(subject: Subject, library: str) -> bool:
+def _is_judged(spec: Spec, library: str) -> bool:
     """Whether a node is judged with a library: one that no library of ours repairs, with stock."""
     kind = kind_of(library)
-    return kind not in LIBRARIES or kind in (subject.libraries or LIBRARIES)
+    return kind not in LIBRARIES or kind in (spec.libraries or LIBRARIES)
 
 
-def _checks_of(subject: Subject, own: type[Probe], host: str, library: str) -> Iterator[Task]:
-    probe = probe_type_of(subject, own)
+def _checks_of(spec: Spec, host: str, library: str) -> Iterator[Task]:
+    backend = backend_of(host, spec)
     for check in CHECKS:
-        if probe and applies(check, subject, probe.kind_of(subject), host):
-            yield Task(check.key, subject.title, host, library)
+        if backend and check.asked(spec, backend, host):
+            yield Task(check.key, spec.title, host, library)
 
 
 def _folder_of_materialx() -> dict[str, str]:
@@ -279,7 +270,7 @@ def _software() -> dict[str, str]:
 def _examples(library: str) -> list[Path]:
     """The bundled documents, except those with a node that the library lacks."""
     files = sorted(examples_folder().glob("*.mtlx"))
-    missing = [subject.node for subject in SUBJECTS if subject not in subjects(library)]
+    missing = [spec.node for spec in DIFFUSE if spec not in diffuse_specs(library)]
     return [file for file in files if not any(node in file.read_text() for node in missing)]
 
 

@@ -9,10 +9,10 @@ from functools import cache, partial
 from pathlib import Path
 
 from mxeon.conformance.diagnosis.regions import unreached
-from mxeon.conformance.nodes.emission import SurfaceSubject
-from mxeon.conformance.nodes.subject import Subject, ValuedSubject
-from mxeon.conformance.nodes.thin_films import FilmSubject
-from mxeon.conformance.probes.families import ALL_SUBJECTS
+from mxeon.conformance.spec import Spec, ValueSpec
+from mxeon.conformance.specs import ALL
+from mxeon.conformance.specs.emission import EmittingSurface
+from mxeon.conformance.specs.thin_films import FilmSpec
 from mxeon.errors import DocumentError, MxeonError
 from mxeon.jobs import pool
 from mxeon.shaders.contents import ShownNode, document_nodes, node_of
@@ -101,30 +101,28 @@ def _answers(
 
 def _titles(nodes: Iterable[ShownNode]) -> Iterator[tuple[str, set[str]]]:
     """Titles of the subjects that nodes of a document are, each with regions its inputs are not in."""
-    for subject, mode in _modes():
+    for spec, mode in _modes():
         for node in nodes:
-            if _is(node, subject, mode):
-                yield subject.title, set(unreached(dict(node.values)))
+            if _is(node, spec, mode):
+                yield spec.title, set(unreached(dict(node.values)))
 
 
-def _is(node: ShownNode, subject: Subject, mode: ShownNode) -> bool:
-    if isinstance(subject, SurfaceSubject) and subject.lit != ("bsdf" in dict(node.inputs)):
+def _is(node: ShownNode, spec: Spec, mode: ShownNode) -> bool:
+    if isinstance(spec, EmittingSurface) and spec.has_bsdf != ("bsdf" in dict(node.inputs)):
         return False
-    return node.has(mode) and (node.film or not isinstance(subject, FilmSubject))
+    return node.has(mode) and (node.film or not isinstance(spec, FilmSpec))
 
 
 @cache
-def _modes() -> tuple[tuple[Subject, ShownNode], ...]:
+def _modes() -> tuple[tuple[Spec, ShownNode], ...]:
     """Every node that is judged, in the mode in which it is judged."""
-    return tuple((row, node_of(row.document(), row.node)) for row in ALL_SUBJECTS)
+    return tuple((row, node_of(row.document(), row.node)) for row in ALL)
 
 
 def model_of(title: str) -> str:
     """Name of the model that a node has to be, by its title; its letters where it has some."""
-    subject = next(row for row, _ in _modes() if row.title == title)
-    if not isinstance(subject, ValuedSubject):
-        return "as specified"
-    own = subject.value_candidates
+    spec = next(row for row, _ in _modes() if row.title == title)
+    own = spec.value_candidates if isinstance(spec, ValueSpec) else ()
     name = own[0].title if own else "as specified"
     letters = LETTERS.search(name)
     return letters[1] if letters else name

@@ -20,7 +20,7 @@ EVERY_NODE = "every node"
 class Task:
     """One independent piece of a run: a check of one subject on one host with one library."""
 
-    # Key of a row of `mxeon.conformance.checks.table`, or HOST, DEFINITION, SOURCE, CURVE, PICTURE,
+    # Key of a row of `mxeon.conformance.checks`, or HOST, DEFINITION, SOURCE, CURVE, PICTURE,
     # FUNCTIONS, INVERSION or DOCUMENT.
     check: str
     subject: str  # title of a node, path of a document, or SHADER_FUNCTIONS

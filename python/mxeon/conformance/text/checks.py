@@ -13,10 +13,11 @@ from typing import Any
 import MaterialX as mx
 import numpy as np
 
-from mxeon.conformance.nodes.bsdf import BSDFS, BsdfSubject
-from mxeon.conformance.nodes.diffuse import DiffuseSubject
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, SOURCE, Control, Result
-from mxeon.conformance.samples.batch import SEED
+from mxeon.conformance.samples import SEED
+from mxeon.conformance.specs import PLAIN_LOBES
+from mxeon.conformance.specs.diffuse import DiffuseSpec
+from mxeon.conformance.specs.lobes import PbrSpec
 from mxeon.conformance.text.expressions import Array, evaluate
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import HOSTS
@@ -55,13 +56,13 @@ CLAIMS = {
 }
 
 
-def check_texts(subjects: Iterable[DiffuseSubject], library: str) -> tuple[Result, ...]:
+def check_texts(subjects: Iterable[DiffuseSpec], library: str) -> tuple[Result, ...]:
     """Results of all checks of generated text and of functions for the nodes of a library."""
     subjects = tuple(subjects)
     return (
         *check_closures(subjects, library),
         *check_languages(library),
-        *check_calls((*subjects, *BSDFS), library),
+        *check_calls((*subjects, *PLAIN_LOBES), library),
     )
 
 
@@ -216,10 +217,10 @@ ASSIGNED = re.compile(r"\b(?:BSDF|material) lobe_out = ([^;]*);")
 CALLEE = re.compile(r"(?:\w+::)*\w+(?=\()")
 
 
-def source(subject: DiffuseSubject | BsdfSubject, target: str, library: str) -> str:
+def source(subject: DiffuseSpec | PbrSpec, target: str, library: str) -> str:
     """Pixel stage of a subject; the variable of an input is `lobe_` and its name."""
     frame = {"normal": (0.0, 0.6, 0.8), "tangent": (1.0, 0.0, 0.0)}
-    document = subject.document({name: frame[name] for name in frame if name in subject.inputs})
+    document = subject.document({name: frame[name] for name in frame if name in subject.names})
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ApproximationWarning)
         return generate(document, target, library=library)[0].stages["pixel"]
@@ -238,25 +239,21 @@ def _evaluated(expression: str, inputs: Inputs, functions: Mapping[str, Any]) ->
     return evaluate(expression, {"closureData": (), **variables, **functions})
 
 
-def check_calls(
-    subjects: Iterable[DiffuseSubject | BsdfSubject], library: str
-) -> tuple[Result, ...]:
+def check_calls(subjects: Iterable[DiffuseSpec | PbrSpec], library: str) -> tuple[Result, ...]:
     """Results for every subject and target that no host runs."""
     return tuple(
         _judged("source", f"{each.title}, {target}", library, _dropped, each, target, library)
         for each in subjects
         for target in TARGETS
         # Of MDL's rough diffuse nodes the check of closures compares every argument.
-        if target in TEXT_ONLY and (target != "mdl" or isinstance(each, BsdfSubject))
+        if target in TEXT_ONLY and (target != "mdl" or isinstance(each, PbrSpec))
     )
 
 
-def _dropped(
-    subject: DiffuseSubject | BsdfSubject, target: str, library: str
-) -> tuple[list[str], int]:
+def _dropped(subject: DiffuseSpec | PbrSpec, target: str, library: str) -> tuple[list[str], int]:
     """Inputs whose values, which no text holds by itself, are no arguments of a call."""
     expression = _expression(source(subject, target, library))
-    names = tuple(subject.types) if isinstance(subject, BsdfSubject) else subject.inputs
+    names = tuple(subject.types) if isinstance(subject, PbrSpec) else subject.names
     inputs = {name: np.array([[0.371 + index]]) for index, name in enumerate(names)}
 
     def missing(given: Inputs) -> list[str]:
@@ -349,7 +346,7 @@ FUNCTIONS: Mapping[str, Mapping[str, Any]] = {
 }
 
 
-def check_closures(subjects: Iterable[DiffuseSubject], library: str) -> tuple[Result, ...]:
+def check_closures(subjects: Iterable[DiffuseSpec], library: str) -> tuple[Result, ...]:
     return tuple(
         _judged(
             "closure", f"{each.title}, {target}", library, _closure_faults, each, target, library
@@ -359,7 +356,7 @@ def check_closures(subjects: Iterable[DiffuseSubject], library: str) -> tuple[Re
     )
 
 
-def _closure_faults(subject: DiffuseSubject, target: str, library: str) -> tuple[list[str], int]:
+def _closure_faults(subject: DiffuseSpec, target: str, library: str) -> tuple[list[str], int]:
     text = source(subject, target, library)
     if filled := FILLED.search(text):
         raise NotRun(f"{filled[1].partition('(')[0]} is a function, which the host {target} runs")
@@ -379,7 +376,7 @@ def _closure_faults(subject: DiffuseSubject, target: str, library: str) -> tuple
 
 
 def _argument_faults(
-    subject: DiffuseSubject, target: str, text: str, given: Inputs, inputs: Inputs
+    subject: DiffuseSpec, target: str, text: str, given: Inputs, inputs: Inputs
 ) -> Iterator[str]:
     """Arguments of the closure of given inputs that are not the node's inputs."""
     closure = _evaluated(_expression(text), given, FUNCTIONS[target])
@@ -402,7 +399,7 @@ def _argument_faults(
             yield f"{name} is not {wanted}{instead}: off by up to {error:.2g}"
 
 
-def _tint(subject: DiffuseSubject, inputs: Inputs) -> Array:
+def _tint(subject: DiffuseSpec, inputs: Inputs) -> Array:
     """rho^2 <E> / (1 - rho (1 - <E>)): [Portsmouth2025], Eq. (19); MDL without the flag is FON."""
     if subject.model != "eon":
         return np.zeros((MATERIALS, 3))

@@ -1,0 +1,1118 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The ways of asking an engine for values of a node: what each supports, takes, and adds to an error.
+
+An engine evaluates any pairs of directions, returns closures, lights a point by a camera and a light, or
+renders pictures of a sphere. Each returns its values in the same form, so that a check is written once.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property, lru_cache
+from importlib import import_module
+from typing import TYPE_CHECKING, ClassVar, TypeAlias, TypeVar, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mxeon.conformance.memory import Evaluations
+from mxeon.conformance.results import Claims
+from mxeon.conformance.samples import (
+    LEAST_TURNED,
+    LOBE_RIM,
+    RIM,
+    SEED,
+    Array,
+    Batch,
+    Counts,
+    Values,
+    directions,
+    rounded,
+)
+from mxeon.conformance.spec import LobeSpec, Spec, ValueSpec
+from mxeon.conformance.specs.combinations import CombinedSpec
+from mxeon.conformance.specs.diffuse import (
+    LOBE_VALUE,
+    DiffuseModelSpec,
+    DiffuseSpec,
+    SurfaceLobe,
+    difference_of,
+    random_inputs,
+)
+from mxeon.conformance.specs.emission import AbsentSpec, EmissionSpec, EmittingSurface
+from mxeon.conformance.specs.hair import HairSpec
+from mxeon.conformance.specs.lobes import PbrSpec
+from mxeon.conformance.specs.media import MediumSpec
+from mxeon.conformance.specs.microfacets import FacetSpec
+from mxeon.conformance.specs.subsurface import SubsurfaceSpec
+from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
+from mxeon.conformance.specs.thin_films import FilmSpec
+from mxeon.conformance.specs.transmission import TransmissionSpec
+from mxeon.conformance.specs.utilities import UtilitySpec
+from mxeon.conformance.tolerance import (
+    Term,
+    Tolerance,
+    absolute,
+    given,
+    largest,
+    mean_error,
+    relative,
+    roundings,
+    sum_of,
+)
+from mxeon.errors import DocumentError, NotRun
+from mxeon.hosts import front_lit_only, host_row
+from mxeon.hosts.base import Host
+from mxeon.hosts.pairs import DISTANCE, JITTER, LEAST_SINE, PIXEL, perpendicular, visible
+from mxeon.hosts.testrender.scenes import EYE, NEAREST
+from mxeon.models.nodes.bsdl import BSDL_VARIANTS
+from mxeon.models.nodes.cycles import CYCLES_VARIANTS
+from mxeon.models.nodes.node import Scattering, Variant
+from mxeon.shaders.document.values import Plain
+from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, VIEW, Scene, local_directions, sphere
+
+if TYPE_CHECKING:
+    from mxeon.shaders.generation import Shader
+
+WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
+NO_IMPLEMENTATION = "Could not find a matching implementation"
+Mask: TypeAlias = NDArray[np.bool_]
+Pairs: TypeAlias = tuple[Array, Array, Mask]  # wo, wi, and which of them are judged
+Draw: TypeAlias = Callable[[Counts], "T"]
+T = TypeVar("T")
+
+
+def implementation(host: Host, text: str, library: str) -> Shader | None:
+    """Shader of a document; None where the target has no implementation of one of its nodes."""
+    try:
+        return host.compile(text, library=library)[0]
+    except DocumentError as error:
+        if NO_IMPLEMENTATION not in str(error):
+            raise
+        return None
+
+
+class Samples:
+    """The samples of a spec that a backend takes, each drawn once."""
+
+    def __init__(self, spec: Spec, counts: Counts) -> None:
+        self.spec, self.counts = spec, counts
+        self._drawn: dict[str, object] = {}
+
+    def take(self, draw: Draw[T]) -> T:
+        """What a method of the spec draws."""
+        if draw.__qualname__ not in self._drawn:
+            self._drawn[draw.__qualname__] = draw(self.counts)
+        return cast(T, self._drawn[draw.__qualname__])
+
+    @property
+    def lobe(self) -> LobeSpec:
+        assert isinstance(self.spec, LobeSpec), f"{self.spec.title} scatters nothing"
+        return self.spec
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        """All samples, those near the mirror direction of microfacets among them."""
+        assert isinstance(self.spec, ValueSpec), f"{self.spec.title} has no values"
+        return (*self.spec.batches(self.counts), *self._peaks)
+
+    @cached_property
+    def few(self) -> tuple[Batch, ...]:
+        """Some of them, for what takes long and for controls."""
+        assert isinstance(self.spec, ValueSpec), f"{self.spec.title} has no values"
+        peaks = (each.first(self.counts.few) for each in self._peaks)
+        return (*self.spec.few(self.batches, self.counts), *peaks)
+
+    @cached_property
+    def views(self) -> tuple[Batch, ...]:
+        """Views whose albedo is compared."""
+        return self.lobe.views(self.batches, self.few, self.counts)
+
+    @cached_property
+    def edges(self) -> Batch:
+        """Pairs and inputs at the edges of the domain."""
+        return self.lobe.edges(self.counts)
+
+    @cached_property
+    def turned(self) -> Batch:
+        """Pairs in frames of their own."""
+        return self.lobe.turned(self.counts)
+
+    @cached_property
+    def mirrored(self) -> tuple[Batch, Batch]:
+        """Two lights near the mirror direction of each view."""
+        assert isinstance(self.spec, FacetSpec), f"{self.spec.title} has no mirror direction"
+        return self.spec.mirrored(self.counts)
+
+    @cached_property
+    def integrated(self) -> tuple[Batch, Array]:
+        """Materials at the nodes of a quadrature, and the weights of their values."""
+        assert isinstance(self.spec, PbrSpec), f"{self.spec.title} has no quadrature"
+        return self.spec.integrated(self.counts, self.taken)
+
+    @cached_property
+    def integrals(self) -> Array:
+        """Integrals of the values of the integrated materials, by the equations, (N, 3)."""
+        assert isinstance(self.spec, PbrSpec), f"{self.spec.title} has no quadrature"
+        batch, weights = self.integrated
+        return self.spec.integral(batch.where(np.arange(len(weights)) * weights.shape[1]))
+
+    def taken(self, inputs: Mapping[str, Array]) -> dict[str, Array]:
+        """Inputs that the backend takes."""
+        return dict(inputs)
+
+    @property
+    def _peaks(self) -> tuple[Batch, ...]:
+        peaked = isinstance(self.spec, FacetSpec) and not isinstance(self.spec, FilmSpec)
+        return (self.mirrored[0],) if peaked else ()
+
+
+class Backend(ABC):
+    """A way of asking an engine about one node: its shader, and values of it."""
+
+    def __init__(self, host: Host, spec: Spec, library: str) -> None:
+        self.host, self.spec, self.library = host, spec, library
+
+    @classmethod
+    @abstractmethod
+    def supports(cls, spec: Spec) -> bool:
+        """Whether an engine that is asked in this way has values of a node."""
+
+    @classmethod
+    def prepared(cls, spec: Spec) -> Spec:
+        """The spec with what an engine may have instead of its model."""
+        return spec
+
+    def samples(self) -> Samples:
+        return Samples(self.spec, self.spec.counts)
+
+    @classmethod
+    @abstractmethod
+    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
+        """The largest error of a quantity, engine functions apart; None where it is not asked."""
+
+    @classmethod
+    def any_pairs(cls, spec: Spec) -> bool:
+        """Whether it takes any pairs of directions, those at the edges of the domain too."""
+        return True
+
+    @classmethod
+    def lit(cls, spec: Spec) -> bool:
+        """Whether the host itself finds light and lets it pass."""
+        return True
+
+    def precision(self, quantity: str) -> tuple[Term, ...]:
+        """What the engine's own functions, measured on the host, add to the error of a quantity."""
+        return ()
+
+    @property
+    def unset(self) -> tuple[str, ...]:
+        """Inputs that the host cannot set."""
+        return ()
+
+    @property
+    def claims(self) -> Claims:
+        """What a result says of a renderer's own node beside its verdict."""
+        return {}
+
+    def measured(self) -> Spec:
+        """The spec, in the published form that is nearest to what is measured where there are several."""
+        return self.spec
+
+    def portrait(self, scene: Scene) -> tuple[Array, Array, Mask, Mask]:
+        """Pairs at the points of a picture, which are judged, and the pixels of the points."""
+        wo, wi, judged = picture_pairs(scene)
+        return rounded(wo.T), rounded(wi.T), judged, sphere(scene.size).mask
+
+    @abstractmethod
+    def direct(self, batch: Batch) -> Array:
+        """Values in direct light, (N, 3): pi f cos(theta_i), a radiance, or an output."""
+
+    @abstractmethod
+    def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
+        """Values of the environment branch, (N, 3); the environment is uniform unless given."""
+
+
+# Hosts that evaluate any pairs of directions.
+
+
+class Evaluating(Backend):
+    """An engine that runs the generated shader for any pairs."""
+
+    @classmethod
+    def supports(cls, spec: Spec) -> bool:
+        return not isinstance(spec, (SurfaceLobe, EmittingSurface))
+
+    @classmethod
+    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
+        if quantity == "difference" and "value" in spec.errors:
+            return difference_of(spec.errors["value"])
+        return spec.errors.get(quantity)
+
+    def precision(self, quantity: str) -> tuple[Term, ...]:
+        return self.spec.engine(quantity, self.host)
+
+    @cached_property
+    def shader(self) -> Shader:
+        """The shader of the node; NotRun if the target has no implementation of an optional one."""
+        if not self.spec.optional:
+            return self.host.compile(self.spec.document(), library=self.library)[0]
+        shader = implementation(self.host, self.spec.document(), self.library)
+        if shader is None:
+            raise NotRun(f"{self.host.target}: no implementation of {self.spec.node}")
+        return shader
+
+    def direct(self, batch: Batch) -> Array:
+        branch, output, factor = self.spec.asked
+        return factor * self.evaluate(batch, branch, output)
+
+    def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
+        return self.evaluate(batch, "environment", irradiance=irradiance)
+
+    def throughput(self, batch: Batch, branch: str) -> Array:
+        """The share of the light from below that passes the node, in a branch, (N, 3)."""
+        return self.evaluate(batch, branch, "throughput")
+
+    def transmitted(self, batch: Batch, radiance: NDArray[np.float32] | None = None) -> Array:
+        """Light of an environment through the surface, (N, 3); it is uniform unless given."""
+        return self.evaluate(batch, "transmission", irradiance=radiance)
+
+    def evaluate(
+        self,
+        batch: Batch,
+        branch: str,
+        output: str = "response",
+        irradiance: NDArray[np.float32] | None = None,
+    ) -> Array:
+        def evaluated() -> Array:
+            inputs = {**self.spec.fixed, **batch.inputs}
+            wo, wi = batch.world(batch.wo), batch.world(batch.wi)
+            values = self.host.evaluate(
+                self.shader, wo, wi, inputs, branch, output=output, irradiance=irradiance
+            )
+            return values.astype(np.float64)
+
+        return self._evaluations.values(batch, (branch, output, irradiance), evaluated)
+
+    @cached_property
+    def _evaluations(self) -> Evaluations:
+        return Evaluations()
+
+
+class InTheDark(Evaluating):
+    """The same of media, and of nodes whose implementation alone is judged, on a renderer."""
+
+    @classmethod
+    def supports(cls, spec: Spec) -> bool:
+        return isinstance(spec, (MediumSpec, AbsentSpec))
+
+
+# OSL: closures are trees of arguments and weights, which the models evaluate in float64.
+
+# The closures are few, and their values are those of the models: more pairs would tell the models apart.
+FEW_CLOSURES = Counts(1 << 12, 1 << 6, 1 << 8, albedos=16, materials=8, mirrored=1 << 8)
+SOME = 1 << 8  # pairs of every kind but the random ones
+# The models round in float64, 2^-53, and the sharpest lobe, of alpha 1e-4, takes that 1e8 times.
+ARGUMENTS = Tolerance(
+    (roundings(1, "of arguments with nine digits, evaluated in float64"),), exact=True
+)
+GRAPH = sum_of(
+    roundings(
+        4 * 16, "from an input to an argument, 16 times 4: a distribution's log grows 4 times"
+    )
+)
+
+
+class ClosureSamples(Samples):
+    """Fewer samples, with weights of at least 0: OSL multiplies a closure by any number.
+
+    Some dielectrics have the index 0, for which a shader may make another closure.
+    """
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        random, *others = map(_altered, super().batches)
+        return (random, *(batch.first(SOME) for batch in others))
+
+    @cached_property
+    def few(self) -> tuple[Batch, ...]:
+        """Few of each, together where possible: a run takes its time however few they are."""
+        groups: dict[tuple[str, ...], list[Batch]] = {}
+        for batch in self.batches:
+            few, names = batch.first(self.counts.few), tuple(sorted(batch.inputs))
+            groups.setdefault((*names, str(batch.frame is None)), []).append(few)
+        return tuple(map(_joined, groups.values()))
+
+    @cached_property
+    def turned(self) -> Batch:
+        return super().turned.first(SOME)
+
+    @cached_property
+    def edges(self) -> Batch:
+        edges = super().edges
+        return edges.where(np.random.default_rng(SEED).permutation(len(edges.wo))[:SOME])
+
+
+def _joined(batches: Sequence[Batch]) -> Batch:
+    """One batch of all pairs, whose inputs have the same names."""
+    if len(batches) == 1:
+        return batches[0]
+    wo, wi = (np.concatenate(each) for each in ([b.wo for b in batches], [b.wi for b in batches]))
+    inputs = {name: np.concatenate([_each(b, name) for b in batches]) for name in batches[0].inputs}
+    frames = [batch.frame for batch in batches if batch.frame is not None]
+    return Batch(wo, wi, inputs, frame=np.concatenate(frames) if frames else None)
+
+
+def _each(batch: Batch, name: str) -> Array:
+    """An input of each pair."""
+    values = np.asarray(batch.inputs[name])
+    constant = values.shape[:1] != (len(batch.wo),)
+    return np.broadcast_to(values, (len(batch.wo), *values.shape)) if constant else values
+
+
+def _altered(batch: Batch) -> Batch:
+    changes: dict[str, Array] = {}
+    if "weight" in batch.inputs:
+        changes["weight"] = np.maximum(batch.inputs["weight"], 0.0)
+    if {"tint", "ior"} <= batch.inputs.keys():
+        index = _each(batch, "ior")
+        changes["ior"] = np.where(np.arange(len(index)) % 7 == 3, 0.0, index)
+    return batch.altered(**changes)
+
+
+class Closures(Evaluating):
+    """A host that returns closures; arguments have no errors, and no closure finds light."""
+
+    def __init__(self, host: Host, spec: Spec, library: str) -> None:
+        from mxeon.conformance.reference.closures import evaluated
+
+        super().__init__(evaluated(host), spec, library)
+
+    def samples(self) -> Samples:
+        few = self.spec.counts.pairs < FEW_CLOSURES.pairs
+        return ClosureSamples(self.spec, self.spec.counts if few else FEW_CLOSURES)
+
+    @classmethod
+    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
+        own = super().error(spec, quantity)
+        if not isinstance(spec, LobeSpec) or quantity not in QUANTITIES:
+            return own
+        exact = GRAPH if isinstance(spec, SurfaceShaderSpec) else ARGUMENTS
+        if quantity == "difference":
+            return difference_of(exact)
+        if quantity == "frame":
+            return own  # frames are turned in float32
+        told = quantity in ("value", "albedo") or (own and quantity in ("throughput", "lambert"))
+        return exact if told else None
+
+    @classmethod
+    def lit(cls, spec: Spec) -> bool:
+        return not isinstance(spec, LobeSpec)
+
+    def precision(self, quantity: str) -> tuple[Term, ...]:
+        return () if isinstance(self.spec, LobeSpec) else super().precision(quantity)
+
+    @property
+    def unset(self) -> tuple[str, ...]:
+        """Frames of a surface shader's lobes: its text takes them from the surface, and has no input."""
+        names = self.spec.names if isinstance(self.spec, SurfaceShaderSpec) else ()
+        return tuple(each for each in names if each.endswith(("normal", "tangent")))
+
+
+# Quantities of a lobe that depend on how it is asked; other checks have an error of their own.
+QUANTITIES = (
+    "value",
+    "albedo",
+    "throughput",
+    "frame",
+    "integral",
+    "light",
+    "reciprocity",
+    "lambert",
+    "difference",
+)
+
+# Renderers whose camera and light show one pair for each pixel.
+
+SMOOTH = ("eon", "qon", "burley")  # models whose roughness sharpens no lobe
+# Sine times cosine of a view whose mirror direction is far from it and from its opposite.
+OBLIQUE = 0.25
+FARTHER = 1.001 * LEAST_SINE  # beyond roundings
+NO_SINE = 1e-6  # of directions that are the same up to the roundings of float32
+FEW_RENDERED = Counts(1 << 12, 1 << 10, 1 << 9, albedos=8, materials=16, nodes=32, mirrored=1 << 10)
+FAST_ARC_COSINE = Term(4.6e-5, "OpenImageIO's fast arc cosine")  # by its source
+POINT = 3.0 * EYE / NEAREST  # roundings of a point at the distance 40, seen from a light 1/2 away
+FLAT_SLOPE = 8.0  # largest of the diffuse models
+SHARP_SLOPE = (
+    2.0 / LEAST_TURNED + 3.0
+)  # twice over the least alpha, and 3 for Fresnel and shadowing
+FLAT = sum_of(roundings(FLAT_SLOPE * POINT, "of a point, times the slope 8"), FAST_ARC_COSINE)
+SHARP = sum_of(roundings(SHARP_SLOPE * POINT, "of a point, times the slope 23"), FAST_ARC_COSINE)
+# A light seen from a point of a triangle that is steep.
+TURN = JITTER * PIXEL / (RIM * DISTANCE)
+TRACED_FLAT = sum_of(
+    Term(FLAT_SLOPE * TURN, "a point up to 0.007 pixels beside the middle, at cosine 0.05, times 8")
+)
+TRACED_SHARP = sum_of(
+    Term(
+        SHARP_SLOPE * TURN, "a point up to 0.007 pixels beside the middle, at cosine 0.05, times 23"
+    )
+)
+BELOW = sum_of(
+    roundings(4.0 * 16.0 * POINT, "of a point, times 16 by the lobes above, in four values"),
+    FAST_ARC_COSINE,
+)
+VIEWS, PIXELS = 8, 1 << 12  # of a case, and of a picture of them
+NOISE = sum_of(
+    Term(
+        5.0 * 0.01 / math.sqrt(PIXELS / VIEWS),
+        "five standard errors of the mean of 512 pixels of 64 paths, each off by 0.01 rms",
+    ),
+    unit="albedo",
+    metric=absolute,
+)
+PASSED = given(2e-3, "albedo", "testrender's tables of albedos, off by 1e-3 for a white dielectric")
+INTEGRAL = sum_of(
+    SHARP.term("an average of values"),
+    Term(1.2e-3, "32 x 32 nodes, those next to the view moved by up to 0.08"),
+    unit="albedo",
+    metric=absolute,
+)
+LIGHT = sum_of(
+    INTEGRAL.term("an integral of values"),
+    PASSED.term("a throughput"),
+    unit="light",
+    metric=absolute,
+)
+
+
+class RenderedSamples(Samples):
+    """Pairs that a renderer shows, and inputs that it takes.
+
+    Both cosines are at least RIM, and no lobe is so sharp that the place of a pixel counts. A roughness is at
+    most 1, as OSL's stdosl.h has it, a weight is not negative, and there is no occlusion.
+    """
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        shown = (self._plain(batch.where(_is_shown(batch))) for batch in super().batches)
+        return tuple(batch for batch in shown if len(batch.wo))
+
+    @cached_property
+    def views(self) -> tuple[Batch, ...]:
+        """Few views of the random pairs: each has its share of the paths."""
+        return (super().views[0].first(self.counts.albedos),)
+
+    @cached_property
+    def edges(self) -> Batch:
+        edges = super().edges
+        return self._plain(edges.where(_is_shown(edges)))
+
+    @cached_property
+    def mirrored(self) -> tuple[Batch, Batch]:
+        first, second = super().mirrored
+        shown = _is_shown(first) & _is_shown(second)
+        return self._plain(first.where(shown)), self._plain(second.where(shown))
+
+    @cached_property
+    def integrated(self) -> tuple[Batch, Array]:
+        """Views of which the nodes next to them are smooth."""
+        batch, weights = super().integrated
+        nodes = weights.shape[1]
+        height = batch.wo[::nodes, 2]
+        oblique = height * np.sqrt(1.0 - height * height) >= OBLIQUE
+        return batch.where(np.repeat(oblique, nodes)), weights[oblique]
+
+    def taken(self, inputs: Mapping[str, Array]) -> dict[str, Array]:
+        taken = {**inputs}
+        taken.pop("occlusion", None)
+        if "weight" in taken:
+            taken["weight"] = np.maximum(taken["weight"], 0.0)
+        least = 0.0 if self.spec.model in SMOOTH else LEAST_TURNED
+        rough = [name for name in taken if name.endswith("roughness")]
+        return taken | {name: np.clip(taken[name], least, 1.0) for name in rough}
+
+    def _plain(self, batch: Batch) -> Batch:
+        return replace(batch, inputs=self.taken(batch.inputs))
+
+
+class RenderedLobeSamples(RenderedSamples):
+    """Random pairs far from the rim, with colors and roughnesses of a lobe below others."""
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        assert isinstance(self.spec, SurfaceLobe)
+        rng, count = np.random.default_rng(SEED), self.counts.few
+        inputs = self.taken(random_inputs(rng, count, self.spec.row))
+        batch = Batch(directions(rng, count), directions(rng, count), inputs)
+        return (batch.where(_is_shown(batch, LOBE_RIM)),)
+
+    @cached_property
+    def few(self) -> tuple[Batch, ...]:
+        return self.batches
+
+
+class Rendered(Evaluating):
+    """OSL's testrender, whose own closures light a point."""
+
+    variants: ClassVar[Mapping[str, tuple[Variant[Scattering], ...]]] = BSDL_VARIANTS
+    flat: ClassVar[Tolerance] = FLAT
+    sharp: ClassVar[Tolerance] = SHARP
+
+    @classmethod
+    def supports(cls, spec: Spec) -> bool:
+        return isinstance(spec, (DiffuseSpec, SubsurfaceSpec)) or _is_plain(spec)
+
+    @classmethod
+    def prepared(cls, spec: Spec) -> Spec:
+        return _with_variants(cls, spec)
+
+    def samples(self) -> Samples:
+        return RenderedSamples(self.spec, FEW_RENDERED)
+
+    @classmethod
+    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
+        flat = isinstance(spec, LobeSpec) and spec.flat
+        value = cls.flat if flat else cls.sharp
+        if quantity in ("retroreflection", "anisotropy"):
+            return largest(spec.errors[quantity], cls.place) if cls.place else spec.errors[quantity]
+        own = {
+            "value": value,
+            "reciprocity": value,
+            "albedo": NOISE,
+            "throughput": PASSED,
+            "integral": INTEGRAL,
+            "light": LIGHT,
+            "lambert": cls.flat,
+            "difference": difference_of(value),
+        }
+        return own.get(quantity) if quantity in QUANTITIES else spec.errors.get(quantity)
+
+    place: ClassVar[Tolerance | None] = None  # error of values of microfacets by a pixel's place
+
+    @classmethod
+    def lit(cls, spec: Spec) -> bool:
+        return False
+
+    def precision(self, quantity: str) -> tuple[Term, ...]:
+        return ()
+
+    def direct(self, batch: Batch) -> Array:
+        """Values, where need be of a pair that is shown next to the one that is not."""
+        return super().direct(replace(batch, wi=apart(batch.wo, batch.wi)))
+
+
+class Traced(Rendered):
+    """Cycles, whose closures of pbrlib's nodes light a point; pictures show the diffuse ones."""
+
+    variants = CYCLES_VARIANTS
+    flat, sharp, place = TRACED_FLAT, TRACED_SHARP, TRACED_SHARP
+
+    @classmethod
+    def supports(cls, spec: Spec) -> bool:
+        return _is_plain(spec)
+
+
+class RenderedLobes(Rendered):
+    """The diffuse lobe of a surface shader, told apart from what lies over it; see SurfaceLobe."""
+
+    @classmethod
+    def supports(cls, spec: Spec) -> bool:
+        return isinstance(spec, SurfaceLobe)
+
+    def samples(self) -> Samples:
+        return RenderedLobeSamples(self.spec, FEW_RENDERED)
+
+    @classmethod
+    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
+        return BELOW if quantity == "value" else None
+
+    @classmethod
+    def any_pairs(cls, spec: Spec) -> bool:
+        return False
+
+    def direct(self, batch: Batch) -> Array:
+        others = self._lit(batch.altered(color=BLACK))
+        lambert = self._lit(batch.altered(color=WHITE, roughness=0.0)) - others
+        with np.errstate(
+            divide="ignore", invalid="ignore"
+        ):  # a shader that stays black has no value
+            values: Array = (self._lit(batch) - others) / lambert * batch.wi[:, 2:]
+        return values
+
+    def _lit(self, batch: Batch) -> Array:
+        assert isinstance(self.spec, SurfaceLobe)
+        ports = {"color": self.spec.color, "roughness": self.spec.roughness}
+        inputs: Values = {port: batch.inputs[name] for name, port in ports.items() if port}
+        values = self.host.evaluate(self.shader, batch.wo, batch.wi, inputs, "direct")
+        return values.astype(np.float64)
+
+
+def _is_plain(spec: Spec) -> bool:
+    """Whether a node of pbrlib has a closure of its own in renderers."""
+    others = (HairSpec, SubsurfaceSpec, FilmSpec, TransmissionSpec)
+    return isinstance(spec, PbrSpec) and not isinstance(spec, others)
+
+
+@lru_cache(maxsize=16)
+def _with_variants(backend: type[Rendered], spec: Spec) -> Spec:
+    """A spec with the functions of a renderer among those that may explain its values."""
+    if not isinstance(spec, PbrSpec) or spec.row.name not in backend.variants:
+        return spec
+    variants = (*backend.variants[spec.row.name], *spec.row.variants)
+    return replace(spec, row=replace(spec.row, variants=variants))
+
+
+def apart(wo: Array, wi: Array) -> Array:
+    """Lights turned away from the view, or from its opposite, until a renderer shows the pair."""
+    # The direction across the view in which a light lies, or any where it has none.
+    cosine = (wo * wi).sum(axis=1, keepdims=True)
+    across = wi - cosine * wo
+    sine = np.linalg.norm(across, axis=1, keepdims=True)
+    across = np.where(sine > NO_SINE, across, perpendicular(wo))
+    along = np.sign(cosine) * np.sqrt(1.0 - FARTHER**2)
+    moved = along * wo + FARTHER * across / np.linalg.norm(across, axis=1, keepdims=True)
+    moved = moved / np.linalg.norm(moved, axis=1, keepdims=True)  # wo is one up to its roundings
+    return np.where(visible(wo, wi)[:, np.newaxis], wi, moved)
+
+
+def _is_shown(batch: Batch, rim: float = RIM) -> Mask:
+    """Which pairs of a batch a renderer shows."""
+    least = np.minimum(batch.wo[:, 2], np.abs(batch.wi[:, 2]))
+    return np.asarray(visible(batch.wo, batch.wi) & (least >= rim))
+
+
+# Hosts that render pictures: the lit points of a sphere are the pairs.
+
+# Colors and roughnesses of the pictures that stand for a rough diffuse node.
+PICTURE_INPUTS: tuple[Values, ...] = (
+    {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
+    {"color": (0.8, 0.4, 0.1), "roughness": 0.5, "weight": 0.5},
+)
+PICTURE_SIZE = 128
+HALF_CUT = Term(2.0**-10, "half floats, cut off")  # as llvmpipe does
+# A ray's point is off by an angle, by which the logarithm of a lobe changes at most so many times as fast:
+# twice 1 / alpha of a distribution, whose alpha is at least 0.4, and 3 for Fresnel, shadowing and the cosine.
+LOBE_SLOPE = 2.0 / 0.4 + 3.0
+# In each of two cosines of at least 0.05 five roundings, times 20 by s / t, and times 2 by s and the cosine.
+EXACT = sum_of(
+    roundings(28, "of numbers up to 2, 14 of each"),
+    roundings(2 * 5 * (1.0 / RIM + 2.0), "of two cosines, five each, times 22"),
+    unit="pi f cos",
+    metric=absolute,
+)
+EXACT_ALBEDO = sum_of(roundings(21 * 1.02, "of numbers up to 1.02"), unit="albedo", metric=absolute)
+HALF = Tolerance((HALF_CUT, *EXACT.terms), "relative", relative, exact=True)
+HALF_ALBEDO = Tolerance(
+    (
+        HALF_CUT._replace(
+            value=2.0 * HALF_CUT.value, words="half floats of map and picture, cut off"
+        ),
+    )
+    + (EXACT_ALBEDO.term("roundings"),),
+    "albedo",
+    absolute,
+    exact=True,
+)
+HALF_LOBE = Tolerance(
+    (
+        Term(
+            96.0 * HALF_CUT.value,
+            "half floats in four pictures, 48 times as large, half of them alike",
+        ),
+        *LOBE_VALUE.terms,
+    ),
+    "pi f cos",
+    absolute,
+    exact=True,
+)
+
+
+def ray_error(rim: float) -> tuple[Term, ...]:
+    """Relative error of f cos in a picture of Cycles, where both cosines are at least `rim`.
+
+    A point is a ray's origin plus its length, both at most 2: three roundings of 2^-23 together. A
+    ray that grazes divides them by its cosine, and cos(theta_i), relative to itself, by the other.
+    """
+    return (
+        roundings(3.0 * 2.0 / rim**2, "of a pixel's point, over the least cosine squared"),
+        Term(1e-5, "a roughness that counts as 0"),
+    )
+
+
+def mean_noise(pixels: int) -> Term:
+    """Error of the mean of so many pixels of Cycles in an environment, of 256 samples each.
+
+    Measured over seeds 0 to 15 at roughness 1 and reflectance 1: a pixel is off by 1.3e-3 rms, and
+    the mean of 3212 pixels has a standard deviation of 3.1e-5, 1.34 times that of independent ones.
+    """
+    words = f"four standard errors of the mean of {pixels} pixels, each off by 1.3e-3, times 1.4"
+    return Term(4.0 * 1.4 * 1.3e-3 / math.sqrt(pixels), words)
+
+
+CYCLES_RAY = sum_of(*ray_error(RIM), unit="relative", metric=relative)
+CYCLES_NOISE = sum_of(mean_noise(12_836), unit="mean albedo", metric=mean_error)
+
+
+class PictureSamples(Samples):
+    """The lit points of a sphere away from rim and terminator, for each light and material."""
+
+    def __init__(self, pictures: Pictures) -> None:
+        super().__init__(pictures.spec, pictures.spec.counts)
+        self._pictures = pictures
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        pictures = self._pictures
+        batches = (
+            pictures.batch(replace(scene, size=pictures.size), inputs)
+            for scene in pictures.scenes
+            for inputs in pictures.materials
+        )
+        return tuple(batch for batch in batches if len(batch.wo))
+
+    @cached_property
+    def few(self) -> tuple[Batch, ...]:
+        return self.batches
+
+    @cached_property
+    def views(self) -> tuple[Batch, ...]:
+        """The points in a white environment."""
+        scene = replace(FURNACE, size=self._pictures.size)
+        return tuple(self._pictures.batch(scene, inputs) for inputs in self._pictures.materials)
+
+
+class Pictures(Backend):
+    """A host that renders pictures of a sphere."""
+
+    scenes: ClassVar[tuple[Scene, ...]] = (SIDE, FRONT, BACK)
+
+    def samples(self) -> Samples:
+        return PictureSamples(self)
+
+    @classmethod
+    def any_pairs(cls, spec: Spec) -> bool:
+        return False
+
+    @property
+    def size(self) -> int:
+        if isinstance(self.spec, SurfaceLobe):
+            return PICTURE_SIZE // 4  # the shaders are long
+        return PICTURE_SIZE // 2 if isinstance(self.spec, PbrSpec) else PICTURE_SIZE
+
+    @property
+    def materials(self) -> Sequence[Values]:
+        if isinstance(self.spec, PbrSpec):
+            return self.spec.materials
+        names = {"color", "roughness", *self.spec.names}
+        return [
+            {name: value for name, value in inputs.items() if name in names}
+            for inputs in PICTURE_INPUTS
+        ]
+
+    def batch(self, scene: Scene, inputs: Values) -> Batch:
+        wo, wi, mask = self.points(scene)
+        return Batch(wo[mask], wi[mask], inputs, scene)
+
+    def points(self, scene: Scene) -> Pairs:
+        """Directions at the points of a picture, and the mask of the points to judge."""
+        wo, wi, mask = picture_pairs(scene)
+        if isinstance(self.spec, LobeSpec) and self.spec.side < 0.0 and scene.light is not None:
+            mask = (wo[:, 2] >= RIM) & (wi[:, 2] <= -RIM)
+        if isinstance(self.spec, SurfaceLobe):  # an error in position is divided twice
+            mask = mask & (np.minimum(wo[:, 2], wi[:, 2]) >= LOBE_RIM)
+        return wo, wi, mask
+
+    def portrait(self, scene: Scene) -> tuple[Array, Array, Mask, Mask]:
+        return *self.points(scene), sphere(scene.size).mask
+
+    def direct(self, batch: Batch) -> Array:
+        if not isinstance(self.spec, SurfaceLobe):
+            return self.picture(batch)
+        others = self.picture(batch.altered(color=BLACK))
+        lambert = self.picture(batch.altered(color=WHITE, roughness=0.0)) - others
+        return (self.picture(batch) - others) / lambert * batch.wi[:, 2:]
+
+    def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
+        """Values in the batch's own environment."""
+        return self.picture(batch)
+
+    def picture(self, batch: Batch) -> Array:
+        scene = scene_of(batch)
+        values = self.host.picture(self.shader_of(batch.inputs), scene)[sphere(scene.size).mask]
+        return values[self.points(scene)[2]].astype(np.float64)
+
+    def shader_of(self, inputs: Values) -> Shader:
+        return _compile(self.host, self.spec.document(inputs), self.library)
+
+
+@lru_cache(maxsize=8)  # a check makes many pictures of a few documents
+def _compile(host: Host, text: str, library: str) -> Shader:
+    from mxeon.shaders.generation import ApproximationWarning  # which loads MaterialX
+
+    with warnings.catch_warnings():  # approximations are not judged: see CyclesPictures.points
+        warnings.simplefilter("ignore", ApproximationWarning)
+        return host.compile(text, library=library)[0]
+
+
+def scene_of(batch: Batch) -> Scene:
+    assert batch.scene is not None
+    return batch.scene
+
+
+@lru_cache(maxsize=8)
+def picture_pairs(scene: Scene) -> Pairs:
+    """Directions at the points of the sphere, and the mask of the points to judge."""
+    points = sphere(scene.size)
+    return lit_pairs(points.normal[points.mask], scene)
+
+
+def lit_pairs(normal: Array, scene: Scene) -> Pairs:
+    """Directions at points with normals in a picture, and the mask of the points to judge."""
+    wo = local_directions(normal, VIEW)
+    wi = wo if scene.light is None else local_directions(normal, scene.light)
+    return wo, wi, (wo[:, 2] >= RIM) & (wi[:, 2] >= RIM)
+
+
+class CyclesPictures(Pictures):
+    """Cycles's pictures of a rough diffuse node, whose closure is its own."""
+
+    @classmethod
+    def supports(cls, spec: Spec) -> bool:
+        return isinstance(spec, DiffuseSpec)
+
+    @classmethod
+    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
+        own = {"value": CYCLES_RAY, "albedo": CYCLES_NOISE, "lambert": CYCLES_RAY}
+        return difference_of(CYCLES_RAY) if quantity == "difference" else own.get(quantity)
+
+    def points(self, scene: Scene) -> Pairs:
+        """The points for which the host has a closure that can be the model."""
+        wo, wi, mask = super().points(scene)
+        if front_lit_only(self.host.name, self.spec.model):
+            mask = mask & (wo[:, 0] * wi[:, 0] + wo[:, 1] * wi[:, 1] >= 0.0)
+        return wo, wi, mask
+
+
+class LobePictures(Pictures):
+    """The diffuse lobe of a surface shader in pictures of a host that evaluates."""
+
+    @classmethod
+    def supports(cls, spec: Spec) -> bool:
+        return isinstance(spec, SurfaceLobe)
+
+    @classmethod
+    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
+        return spec.errors.get(quantity)
+
+    def shader_of(self, inputs: Values) -> Shader:
+        """One shader for all inputs: long as it is, it is compiled once."""
+        assert isinstance(self.spec, SurfaceLobe)
+        shader = super().shader_of(PICTURE_INPUTS[0])
+        values = {self.spec.color: inputs["color"], self.spec.roughness: inputs["roughness"]}
+        ports = (
+            replace(port, value=cast(Plain, values.get(port.path.rsplit("/", 1)[-1], port.value)))
+            for port in shader.inputs
+        )
+        return replace(shader, inputs=tuple(ports))
+
+
+class Drawn(Pictures):
+    """Pictures of a sphere whose points and light have no error but rounding."""
+
+    diffuse: ClassVar[Mapping[str, Tolerance]] = {
+        "value": EXACT,
+        "albedo": EXACT_ALBEDO,
+        "lambert": EXACT,
+    }
+    lobe: ClassVar[Tolerance] = LOBE_VALUE
+
+    @classmethod
+    def supports(cls, spec: Spec) -> bool:
+        plain = _is_plain(spec) and not isinstance(spec, CombinedSpec)
+        return plain or isinstance(spec, (DiffuseSpec, SurfaceLobe))
+
+    @classmethod
+    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
+        if quantity == "difference":
+            return difference_of(cls.diffuse["value"])
+        if isinstance(spec, DiffuseModelSpec):
+            own = {"value": cls.lobe} if isinstance(spec, SurfaceLobe) else cls.diffuse
+            return own.get(quantity)
+        if quantity == "value":
+            return cls.drawn(spec.errors["value"])
+        if quantity == "albedo":
+            return cls.drawn(spec.errors.get("picture albedo", spec.errors["albedo"]))
+        return None
+
+    @classmethod
+    def drawn(cls, error: Tolerance) -> Tolerance:
+        """Error of a node's picture with exact points, of its value or albedo."""
+        points = roundings(LOBE_SLOPE * 2 * 5 / RIM, "of two cosines of at least 0.05, times 8")
+        return sum_of(error.term("a number"), points, unit=error.unit)
+
+
+class Half(Drawn):
+    """The same on a host that keeps colors as half floats: Storm, whose modes are the default ones."""
+
+    diffuse: ClassVar[Mapping[str, Tolerance]] = {
+        "value": HALF,
+        "albedo": HALF_ALBEDO,
+        "lambert": HALF,
+    }
+    lobe: ClassVar[Tolerance] = HALF_LOBE
+
+    @classmethod
+    def supports(cls, spec: Spec) -> bool:
+        return super().supports(spec) and spec.model != "zeltner"
+
+    @classmethod
+    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
+        if quantity == "albedo" and isinstance(spec, PbrSpec):
+            return None  # its furnace has another sum of directions
+        return super().error(spec, quantity)
+
+    @classmethod
+    def drawn(cls, error: Tolerance) -> Tolerance:
+        drawn = super().drawn(error)
+        return replace(drawn, terms=(drawn.term("a drawn number"), HALF_CUT), exact=True)
+
+    @property
+    def unset(self) -> tuple[str, ...]:
+        """Inputs later than MaterialX 1.39.3, which Storm has."""
+        return ("retroreflective",)
+
+
+DARK = Scene("dark", size=32)
+# A pixel's point is off by three roundings of 2^-23, over a cosine of 0.05.
+PICTURE_RADIANCE = sum_of(
+    roundings(5 * 6 / RIM, "of a pixel's point, over the least cosine, times the slope 5"),
+    roundings(8),
+    unit="radiance",
+)
+
+
+class DarkPictures(Pictures):
+    """An emitting surface in the dark, one picture for each material of its samples."""
+
+    @classmethod
+    def supports(cls, spec: Spec) -> bool:
+        return isinstance(spec, EmittingSurface)
+
+    def samples(self) -> Samples:
+        return Samples(self.spec, self.spec.counts)
+
+    @classmethod
+    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
+        return spec.errors.get(quantity)
+
+    def picture(self, batch: Batch) -> Array:
+        scene = scene_of(batch)
+        [shader] = self.host.compile(self.spec.document(batch.inputs), library=self.library)
+        return self.host.picture(shader, scene)[sphere(scene.size).mask].astype(np.float64)
+
+
+class EmissionPictures(DarkPictures):
+    """An EDF node on a sphere in the dark."""
+
+    scenes = (DARK,)
+
+    @classmethod
+    def supports(cls, spec: Spec) -> bool:
+        return isinstance(spec, EmissionSpec)
+
+    def samples(self) -> Samples:
+        return PictureSamples(self)
+
+    @classmethod
+    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
+        return PICTURE_RADIANCE if quantity == "value" else None
+
+    @property
+    def size(self) -> int:
+        return DARK.size
+
+    @property
+    def materials(self) -> Sequence[Values]:
+        assert isinstance(self.spec, EmissionSpec)
+        return self.spec.materials
+
+    def picture(self, batch: Batch) -> Array:
+        shader = implementation(self.host, self.spec.document(batch.inputs), self.library)
+        if shader is None:
+            raise NotRun(f"{self.host.target}: no implementation of {self.spec.node}")
+        image = self.host.picture(shader, DARK)[sphere(DARK.size).mask]
+        return np.asarray(image[self.points(DARK)[2]], np.float64)
+
+
+class UtilitySamples(Samples):
+    """All samples in one batch, which takes a renderer one run."""
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        return (_joined(super().batches),)
+
+    @cached_property
+    def few(self) -> tuple[Batch, ...]:
+        return self.batches
+
+
+class UtilityOsl(Evaluating):
+    """Outputs of a utility node on a renderer with OSL, which has mathematics of its own."""
+
+    def samples(self) -> Samples:
+        return UtilitySamples(self.spec, self.spec.counts)
+
+    @classmethod
+    def supports(cls, spec: Spec) -> bool:
+        return isinstance(spec, UtilitySpec)
+
+    @classmethod
+    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
+        return spec.errors.get(f"{quantity} in OSL", spec.errors.get(quantity))
+
+    @classmethod
+    def any_pairs(cls, spec: Spec) -> bool:
+        return False
+
+
+# Nodes that renderers have of their own, by host: `mxeon.survey` adds them, and its backends.
+OWN_NODES: dict[str, tuple[Spec, ...]] = {}
+# By the word of a host's row for how it is asked; the first that supports a spec asks for it.
+BACKENDS: dict[str, tuple[type[Backend], ...]] = {
+    "pairs": (Evaluating, LobePictures, DarkPictures),
+    "closures": (Closures,),
+    "rendered": (Rendered, RenderedLobes),
+    "pictures": (
+        CyclesPictures,
+        Traced,
+        EmissionPictures,
+        InTheDark,
+        DarkPictures,
+        UtilityOsl,
+    ),
+    "drawn pictures": (Drawn,),
+    "half pictures": (Half,),
+}
+
+
+def ways_of(host: str) -> tuple[type[Backend], ...]:
+    """How a host is asked; () where only the text of its target is checked."""
+    row = host_row(host)
+    if row.nodes:
+        import_module("mxeon.survey")
+    return BACKENDS.get(row.probe, ())
+
+
+def own_nodes(host: str) -> tuple[Spec, ...]:
+    """Nodes of a host's own that are judged; none for a host of generated shaders."""
+    return OWN_NODES.get(host, ()) if ways_of(host) else ()
+
+
+def backend_of(host: str, spec: Spec) -> type[Backend] | None:
+    """How a host is asked about a node; None if it is not."""
+    return next((way for way in ways_of(host) if way.supports(spec)), None)

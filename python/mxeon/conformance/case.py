@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A node on an engine with a library: its samples, the engine's values of them, and the ones expected.
+
+A negative control is the same case with other inputs or outputs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import TypeVar, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mxeon.conformance.backends import Backend, Evaluating, Samples
+from mxeon.conformance.memory import albedo_candidates, albedo_of, value_of
+from mxeon.conformance.results import Claims
+from mxeon.conformance.samples import Array, Batch, Candidate, Changes
+from mxeon.conformance.spec import LobeSpec, Spec, ValueSpec
+from mxeon.conformance.tolerance import Compared, Tolerance
+from mxeon.hosts.base import Host, RendererHost
+
+F = TypeVar("F", bound=Spec)
+Change = Callable[[Batch, Array], Array]  # of values of a batch
+
+
+def unchanged(batch: Batch) -> Batch:
+    return batch
+
+
+def as_measured(batch: Batch, values: Array) -> Array:
+    return values
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """A node on a backend; `inputs`, `outputs` and `throughputs` are what a control does wrong."""
+
+    spec: Spec
+    backend: Backend
+    samples: Samples
+    inputs: Callable[[Batch], Batch] = unchanged
+    outputs: Change = as_measured
+    throughputs: Change = as_measured
+    control: bool = False  # on a subset: one failing sample is enough
+
+    @property
+    def host(self) -> Host:
+        return self.backend.host
+
+    @property
+    def library(self) -> str:
+        return self.backend.library
+
+    def of(self, family: type[F]) -> F:
+        """The spec of a case that a check asks of one family alone."""
+        assert isinstance(self.spec, family), f"{self.spec.title} is no {family.__name__}"
+        return self.spec
+
+    def another(self, spec: Spec) -> Case:
+        """The same engine and library for another spec."""
+        return make_case(type(self.backend), self.host, spec, self.library)
+
+    # Samples.
+
+    @property
+    def batches(self) -> tuple[Batch, ...]:
+        return self.samples.few if self.control else self.samples.batches
+
+    @property
+    def few(self) -> tuple[Batch, ...]:
+        return self.samples.few
+
+    @property
+    def views(self) -> tuple[Batch, ...]:
+        return self.samples.views[:1] if self.control else self.samples.views
+
+    # Values of the engine.
+
+    def direct(self, batch: Batch) -> Array:
+        """Values in direct light, (N, 3): pi f cos(theta_i), a radiance, or an output."""
+        return self.measured(self.backend.direct, batch)
+
+    def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
+        """Values of the environment branch, (N, 3)."""
+        return self.outputs(batch, self.backend.albedo(self.inputs(batch), irradiance))
+
+    def transmitted(self, batch: Batch, radiance: NDArray[np.float32] | None = None) -> Array:
+        """Light of an environment through the surface, (N, 3)."""
+        return self.outputs(batch, self.evaluating.transmitted(self.inputs(batch), radiance))
+
+    def throughput(self, batch: Batch, branch: str) -> Array:
+        """The share of the light from below that passes the node, in a branch, (N, 3)."""
+        return self.throughputs(batch, self.evaluating.throughput(self.inputs(batch), branch))
+
+    def measured(self, ask: Callable[[Batch], Array], batch: Batch) -> Array:
+        """What a function of the engine returns for a batch."""
+        return self.outputs(batch, ask(self.inputs(batch)))
+
+    @property
+    def evaluating(self) -> Evaluating:
+        assert isinstance(self.backend, Evaluating), f"{self.host.name} evaluates no pairs"
+        return self.backend
+
+    # Values that are expected, and how wrong they may be.
+
+    def expected(self, batch: Batch) -> Array:
+        return value_of(self.valued)(batch)
+
+    def expected_albedo(self, batch: Batch) -> Array:
+        return albedo_of(self.lobe)(batch)
+
+    @property
+    def lobe(self) -> LobeSpec:
+        assert isinstance(self.spec, LobeSpec), f"{self.spec.title} scatters nothing"
+        return self.spec
+
+    @property
+    def valued(self) -> ValueSpec:
+        assert isinstance(self.spec, ValueSpec), f"{self.spec.title} has no values"
+        return self.spec
+
+    @property
+    def changes(self) -> Mapping[str, Changes]:
+        """For each input that the engine sets: inputs without and with a change of it alone."""
+        changes, unset = self.spec.changes, self.backend.unset
+        return {name: changes[name] for name in changes if name not in unset}
+
+    @property
+    def value_candidates(self) -> tuple[Candidate, ...]:
+        return self.valued.value_candidates
+
+    @property
+    def albedo_candidates(self) -> tuple[Candidate, ...]:
+        return albedo_candidates(self.lobe)
+
+    @property
+    def claims(self) -> Claims:
+        """What a result says of a renderer's own node beside its verdict."""
+        return self.backend.claims
+
+    def tolerance(self, quantity: str) -> Tolerance | None:
+        """The error of the spec in a quantity, and what the engine adds."""
+        error = self.backend.error(self.spec, quantity)
+        return error and error.plus(*self.backend.precision(quantity))
+
+
+def make_case(backend: type[Backend], host: Host | RendererHost, spec: Spec, library: str) -> Case:
+    spec = backend.prepared(spec).within(library)
+    made = backend(cast(Host, host), spec, library)
+    if (form := made.measured()) is not spec:
+        made = backend(cast(Host, host), form, library)
+    return Case(made.spec, made, made.samples())
+
+
+SCATTERING = ("direct", "environment", "transmission")  # branches of light that is scattered
+BRANCHES = (*SCATTERING, "emission")
+LIGHT = ("direct", "environment")  # branches that light a base from above
+
+
+def values(case: Case) -> Iterator[Compared]:
+    """Values against the expected ones, over all samples."""
+    for batch in case.batches:
+        yield Compared(batch, case.direct(batch), case.expected(batch))
+
+
+def albedos(case: Case) -> Iterator[Compared]:
+    """The environment branch against the directional albedo."""
+    for batch in case.views:
+        yield Compared(batch, case.albedo(batch), case.expected_albedo(batch))
+
+
+def throughputs(case: Case, *branches: str) -> Iterator[Compared]:
+    """Throughput of a layer against 1 - E."""
+    for branch in branches:
+        for batch in case.views:
+            expected = np.maximum(1.0 - case.expected_albedo(batch), 0.0)
+            yield Compared(batch, case.throughput(batch, branch), expected)
+
+
+def over_condition(case: Case, compared: Compared) -> Compared:
+    """Values that count relative to what they are sensitive to."""
+    batch, measured, expected = compared
+    condition = case.valued.condition(batch)
+    return Compared(batch, measured / condition, expected / condition)
+
+
+def frames(case: Case) -> Iterator[Compared]:
+    """Values in turned frames, half of them with a normal that faces away, against those in none."""
+    batch = case.samples.turned
+    local = replace(batch.altered(normal=(0.0, 0.0, 1.0), tangent=(1.0, 0.0, 0.0)), frame=None)
+    for output in (case.direct, case.albedo):
+        yield Compared(batch, output(batch), output(local))
+
+
+def dead_inputs(case: Case) -> list[str]:
+    """Names of the inputs whose change has no effect on the values."""
+    batch = case.few[0]
+    plain = case.direct(batch)  # most changes are of the batch as it is
+    dead = []
+    for name, (before, after) in case.changes.items():
+        one = case.direct(batch.altered(**before)) if before else plain
+        other = case.direct(batch.altered(**after))
+        if np.array_equal(one, other, equal_nan=True):
+            dead.append(name)
+    return dead
+
+
+def edge_values(case: Case) -> Compared:
+    """Values and albedos at the edges of the domain, beside 0."""
+    batch = case.samples.edges
+    found = np.concatenate([case.direct(batch), case.albedo(batch)], axis=1)
+    return Compared(batch, found, np.zeros_like(found))

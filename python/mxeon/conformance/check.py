@@ -1,0 +1,224 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A check: a claim, what is measured of a case, how wrong it may be, and the control that it must catch.
+
+A check passes at error <= tolerance. Its control is the same case with other inputs or outputs, on the same
+engine; the check has to fail on it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from typing import TypeAlias, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from mxeon.conformance.backends import Backend
+from mxeon.conformance.case import Case
+from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.diagnosis.comparisons import VALUE, Comparison
+from mxeon.conformance.diagnosis.verdicts import (
+    judge_measurements,
+    not_measured,
+    renderer_warnings,
+)
+from mxeon.conformance.results import Place, Result
+from mxeon.conformance.samples import Array, Batch
+from mxeon.conformance.spec import Spec
+from mxeon.conformance.tolerance import Compared, Measurement, Metric, Tolerance, worst_of
+from mxeon.errors import NotRun, ShaderError
+
+Measure: TypeAlias = Callable[[Case], Compared | Iterable[Compared] | Measurement]
+
+M = TypeVar("M", bound=Measure)
+
+
+@dataclass(frozen=True)
+class Control:
+    """A mistake that a check must catch: in words, and the case that makes it."""
+
+    words: str
+    make: Callable[[Case], Case]
+
+    def of(self, case: Case) -> Case:
+        return replace(self.make(case), control=True)
+
+
+@dataclass(frozen=True)
+class Check:
+    """A claim about nodes."""
+
+    key: str  # one word
+    claim: str  # a sentence
+    applies: Callable[[Spec], bool]
+    measure: Measure  # the worst row counts, or a number of its own
+    control: Control
+    quantity: str  # by whose error it is judged
+    tolerance: Tolerance | None  # where it is the same for all
+    pairs: bool  # whether it needs pairs of directions that not every host has
+    lit: bool  # whether it is about how light is found, summed or let through, unlike closures
+    open: (
+        bool  # whether an error differs, and does not fail, where a permitted function explains it
+    )
+    hosts: Callable[[Spec, str], bool]  # whether it can be asked on the host of a name
+    diagnose: Callable[[Case], Diagnosis]
+
+    def measured(self, case: Case, metric: Metric) -> Measurement:
+        """The worst error of a case."""
+        found = self.measure(case)
+        if isinstance(found, Measurement):
+            return found
+        return worst_of(metric, [found] if isinstance(found, Compared) else found)
+
+    def asked(self, spec: Spec, backend: type[Backend], host: str) -> bool:
+        """Whether it is asked about a node on a host, by one of its backends."""
+        if not (self.applies(spec) and self.hosts(spec, host)):
+            return False
+        if (self.pairs and not backend.any_pairs(spec)) or (self.lit and not backend.lit(spec)):
+            return False
+        return (self.tolerance or backend.error(spec, self.quantity)) is not None
+
+    def tolerance_of(self, case: Case) -> Tolerance:
+        tolerance = self.tolerance or case.tolerance(self.quantity)
+        assert tolerance is not None, f"{self.key} is not asked about {case.spec.title}"
+        return tolerance
+
+    def judge(self, case: Case) -> Result:
+        """The result for a case, with its control and, on failure, a diagnosis."""
+        place: Place = {
+            "check": self.key,
+            "claim": self.claim,
+            "subject": case.spec.title,
+            "host": case.host.name,
+            "library": case.library,
+            **case.backend.claims,
+        }
+        tolerance = self.tolerance_of(case)
+        diagnosis = Diagnosis()
+        try:
+            with renderer_warnings() as notes:
+                right = self.measured(case, tolerance.metric)
+                wrong = self.measured(self.control.of(case), tolerance.metric)
+                if right.error > tolerance.value:
+                    diagnosis = self.diagnose(case)
+        except (NotRun, ShaderError) as error:
+            return not_measured(place, error)
+        # A permitted function excuses an open check alone.
+        diagnosis = replace(diagnosis, permitted=self.open and diagnosis.permitted)
+        if diagnosis.text:
+            diagnosis = replace(diagnosis, text="; ".join([diagnosis.text, *notes]))
+        return judge_measurements(place, tolerance, right, self.control.words, wrong, diagnosis)
+
+
+CHECKS: list[Check] = []  # in the order in which they are defined
+
+
+def check(
+    key: str,
+    claim: str,
+    applies: Callable[[Spec], bool],
+    control: Control,
+    quantity: str = "",
+    tolerance: Tolerance | None = None,
+    *,
+    pairs: bool = False,
+    lit: bool = False,
+    open: bool = False,
+    hosts: Callable[[Spec, str], bool] = lambda spec, host: True,
+    diagnose: Callable[[Case], Diagnosis] | None = None,
+) -> Callable[[M], M]:
+    """Make a function that measures a case a check; its quantity is its key unless given."""
+
+    def add(measure: M) -> M:
+        comparison = measure if isinstance(measure, Comparison) else VALUE
+        quantities = comparison.quantity if measure is comparison else key
+        CHECKS.append(
+            Check(
+                key,
+                claim,
+                applies,
+                measure,
+                control,
+                quantity or quantities,
+                tolerance,
+                pairs,
+                lit,
+                open,
+                hosts,
+                diagnose or comparison.diagnose,
+            )
+        )
+        return measure
+
+    return add
+
+
+# Controls.
+
+
+def control(words: str) -> Callable[[Callable[[Case], Case]], Control]:
+    return lambda make: Control(words, make)
+
+
+def with_inputs(words: str, **inputs: ArrayLike) -> Control:
+    """The engine gets these inputs instead of the batch's."""
+    return Control(words, lambda case: replace(case, inputs=lambda batch: batch.altered(**inputs)))
+
+
+def with_values(words: str, change: Callable[[Batch, Array], Array]) -> Control:
+    return Control(words, lambda case: replace(case, outputs=change))
+
+
+def scale(words: str, factor: float) -> Control:
+    return with_values(words, lambda batch, values: factor * values)
+
+
+def scale_cosine(words: str, power: int) -> Control:
+    """Values carry a power of cos(theta_o) too many."""
+
+    def change(batch: Batch, values: Array) -> Array:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.asarray(values * batch.wo[:, 2:] ** power)
+
+    return with_values(words, change)
+
+
+offset = with_values("0.001 is added to every value", lambda batch, values: values + 1e-3)
+no_number = with_values(
+    "one output is not a number",
+    lambda batch, values: np.where(np.arange(len(values))[:, None], values, np.nan),
+)
+pass_all = Control(
+    "all light passes",
+    lambda case: replace(case, throughputs=lambda batch, values: np.ones_like(values)),
+)
+take_response = Control(
+    "the response is returned as the throughput",
+    lambda case: replace(case, throughputs=lambda batch, values: case.direct(batch)),
+)
+drop_changes = Control(
+    "every change is dropped", lambda case: replace(case, inputs=lambda batch: case.few[0])
+)
+
+
+@control("every channel gets the mean color")
+def gray(case: Case) -> Case:
+    def mean_color(batch: Batch) -> Batch:
+        colors = {
+            name: np.repeat(np.mean(values, axis=-1, keepdims=True), 3, axis=-1)
+            for name, values in batch.inputs.items()
+            if name != "normal" and np.shape(values)[-1:] == (3,)
+        }
+        return batch.altered(**colors)
+
+    return replace(case, inputs=mean_color)
+
+
+@control("each row uses the inputs of another row")
+def shifted(case: Case) -> Case:
+    def inputs(batch: Batch) -> Batch:
+        rolled = {name: np.roll(values, 1, axis=0) for name, values in batch.inputs.items()}
+        return batch.altered(**rolled)
+
+    return replace(case, inputs=inputs)

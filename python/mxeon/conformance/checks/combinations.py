@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks of the nodes that combine two lobes."""
+
+from collections.abc import Iterator
+from itertools import product
+
+import numpy as np
+
+from mxeon.conformance.case import LIGHT, Case, throughputs
+from mxeon.conformance.check import check, pass_all, shifted, with_values
+from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.diagnosis.comparisons import ALBEDO, THROUGHPUT, VALUE
+from mxeon.conformance.samples import Array, Batch
+from mxeon.conformance.spec import Spec
+from mxeon.conformance.specs.combinations import SINGLE, CombinedSpec
+from mxeon.conformance.tolerance import Compared
+from mxeon.models.nodes.combinations import FACTOR
+
+
+def is_combined(spec: Spec) -> bool:
+    return isinstance(spec, CombinedSpec)
+
+
+def again(batch: Batch, values: Array) -> Array:
+    return values * np.reshape(batch.inputs[FACTOR], (len(values), -1))
+
+
+check(
+    "combination",
+    "Two combined lobes have the value that the node's equation gives.",
+    is_combined,
+    shifted,
+    pairs=True,
+)(VALUE)
+
+check(
+    "combined_albedo",
+    "The environment branch of two combined lobes returns their albedo.",
+    is_combined,
+    shifted,
+    pairs=True,
+)(ALBEDO)
+
+
+@check(
+    "combined_throughput",
+    "Two combined lobes pass on what they do not scatter, as the layer equation requires.",
+    is_combined,
+    pass_all,
+    "throughput",
+    open=True,
+    diagnose=THROUGHPUT.diagnose,
+)
+def passing(case: Case) -> Iterator[Compared]:
+    """Throughput of a combination against 1 - E; a negative one counts as 0, as `layer` takes it."""
+    for compared in throughputs(case, *LIGHT):
+        yield compared._replace(measured=np.maximum(compared.measured, 0.0))
+
+
+@check(
+    "factor",
+    "Factors are clamped to [0, 1].",
+    lambda spec: spec.model in SINGLE,
+    with_values("values are multiplied twice", again),
+    pairs=True,
+    open=True,
+    diagnose=lambda case: Diagnosis("the factor is not clamped", permitted=True),
+)
+def factors(case: Case) -> Iterator[Compared]:
+    """Values and throughputs with factors beyond [0, 1], against those of the nearest end."""
+    for batch, (factor, end) in product(case.few, ((2.0, 1.0), (-1.0, 0.0))):
+        beyond, nearest = (
+            batch.altered(**{FACTOR: np.full_like(batch.inputs[FACTOR], number)})
+            for number in (factor, end)
+        )
+        yield Compared(beyond, case.direct(beyond), case.direct(nearest))
+        passed = (case.throughput(each, "direct") for each in (beyond, nearest))
+        yield Compared(beyond, *passed)

@@ -1,0 +1,266 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pairs of directions with the inputs of a node: random ones, exact ones, turned frames, an uneven sky.
+
+All numbers are float32 numbers in float64, so that a float32 engine sees the same samples.
+"""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from itertools import product
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mxeon.hosts.base import TURN
+from mxeon.hosts.textures import latlong_directions
+from mxeon.shaders.scene import Scene
+
+SEED = 1
+PAIRS = 1 << 16
+FEW = 1 << 14  # pairs of the checks that do not ask for all
+GRAZING = 1e-6  # smallest cosine of the random pairs
+RIM = 0.05  # smallest cosine judged in a picture: nearer to the rim a pixel's place is uncertain
+LOBE_RIM = 0.25  # of a lobe below others
+
+Array: TypeAlias = NDArray[np.float64]
+Values: TypeAlias = Mapping[str, ArrayLike]  # of a node's inputs, by name
+Changes: TypeAlias = tuple[Values, Values]  # inputs before and after a change of one of them
+
+
+@dataclass(frozen=True)
+class Counts:
+    """How many samples a probe draws."""
+
+    pairs: int = PAIRS  # random pairs, and those of them for what takes long
+    few: int = FEW
+    diagnosed: int = FEW  # pairs of each batch that a diagnosis looks at
+    albedos: int = 1 << 7  # views whose albedo is asked
+    # Materials whose values are integrated or averaged, and nodes of a quadrature on each axis.
+    materials: int = 64
+    nodes: int = 48
+    mirrored: int = 1 << 11  # views with lights near the mirror direction
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Pairs of directions and the node's inputs for them."""
+
+    # Local frame; float32 numbers, so that a float32 host sees the same pairs. `wo` is on or above
+    # the horizon.
+    wo: Array
+    wi: Array
+    # Node inputs and "occlusion", (N, ...) or constant. The normal is in world space.
+    inputs: Mapping[str, Any]  # array_like, which NumPy types so that nobody can compute with it
+    scene: Scene | None = None  # the picture whose points these are
+    # World axes of the local frames, as columns; None where they are the same.
+    frame: Array | None = None
+
+    def altered(self, **inputs: ArrayLike) -> "Batch":
+        return replace(self, inputs={**self.inputs, **inputs})
+
+    def first(self, count: int) -> "Batch":
+        return self.where(slice(count))
+
+    def where(self, rows: slice | NDArray[np.bool_] | NDArray[np.integer]) -> "Batch":
+        """Some pairs of the batch: a slice, a mask or indices of them."""
+        count = len(self.wo)
+        inputs = {
+            name: values[rows] if np.shape(values)[:1] == (count,) else values
+            for name, values in self.inputs.items()
+        }
+        frame = None if self.frame is None else self.frame[rows]
+        return replace(self, wo=self.wo[rows], wi=self.wi[rows], inputs=inputs, frame=frame)
+
+    def world(self, local: Array) -> Array:
+        """Local directions (N, 3) in world space, as float32 numbers."""
+        if self.frame is None:
+            return local
+        return rounded((self.frame @ local[:, :, np.newaxis])[:, :, 0].T)
+
+    @property
+    def normal(self) -> Array:
+        """Normals on the viewer's side, in world space, (N, 3)."""
+        return self.world(np.broadcast_to([0.0, 0.0, 1.0], self.wo.shape))
+
+    @property
+    def strength(self) -> Array:
+        """Factor of an albedo, (N, 1) or (1, 1): the weight; a negative one counts as 0."""
+        return np.maximum(np.reshape(self.inputs.get("weight", 1.0), (-1, 1)), 0.0)
+
+    @property
+    def rough(self) -> Array:
+        """Roughness of each pair, the larger of two; 0 where there is none, (N,)."""
+        roughness = np.asarray(self.inputs.get("roughness", 0.0), np.float64)
+        if roughness.shape[-1:] == (2,):
+            roughness = roughness.max(axis=-1)
+        return np.broadcast_to(roughness, len(self.wo))
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A function that may explain some values."""
+
+    title: str
+    values: Callable[[Batch], Array]
+    permitted: bool = False  # whether the specification leaves it open
+
+
+def directions(rng: np.random.Generator, count: int) -> Array:
+    """Random directions: cosines uniform, a quarter of them log-uniform down to GRAZING."""
+    mu = rng.random(count)
+    mu[: count // 4] = GRAZING ** rng.random(count // 4)
+    rng.shuffle(mu)
+    mu = float32(mu)
+    radius, azimuth = np.sqrt(1.0 - mu * mu), 2.0 * np.pi * rng.random(count)
+    return rounded([radius * np.cos(azimuth), radius * np.sin(azimuth), mu])
+
+
+def float32(values: ArrayLike) -> Array:
+    """Values rounded to float32, in float64."""
+    return np.asarray(values, np.float32).astype(np.float64)
+
+
+def rounded(columns: Iterable[Array]) -> Array:
+    """Columns as rows of float32 numbers in float64."""
+    return float32(np.stack(list(columns), axis=-1))
+
+
+EACH = 256  # pairs of each kind
+GRID = (1.0, 0.999, 0.6, 0.25, 0.05, 1e-3, 1e-5, 1e-6, 3e-7, 1e-7)  # cosines
+AZIMUTHS = (0.0, 0.5 * np.pi, np.pi)
+ABOVE_ONE = 1.0 + 2.0**-23  # a cosine of unit vectors, by a rounding of float32
+HORIZON = 0.1  # least cosine of the other direction where one is at the horizon or below it
+POLE = 0.99  # largest height of a normal in turned frames: a map of the sky ends at the poles
+TURNED = (0.25, 0.95)  # cosines in turned frames, where a cosine has roundings
+LEAST_SHEEN = 0.01  # roughness of the other lobes, which the Zeltner sheen has at least
+LEAST_COLOR82 = 0.5  # of a lobe whose albedo is asked; see docs/loading.md
+LEAST_TURNED = 0.1  # roughness of microfacets in turned frames
+WEIGHTS = (-0.5, 0.0, 1e-4, 0.01, 0.5)
+OCCLUSIONS = (0.0, 1e-3, 0.5)
+
+
+def special_directions(rng: np.random.Generator) -> tuple[Array, Array]:
+    """Exact directions `wo` and `wi`, above the horizon or on it.
+
+    A grid of cosines down to 1e-7 with equal, perpendicular and opposite azimuths; and with a random
+    other direction: exact retro-reflection, the mirror direction, the viewer or the light along the
+    normal, the viewer or the light on the horizon.
+    """
+    mu_o, mu_i, azimuth = np.array(list(product(GRID, GRID, AZIMUTHS))).T
+    free, other = directions(rng, EACH), directions(rng, EACH)
+    high = _directions(HORIZON + (1.0 - HORIZON) * rng.random(EACH), 2.0 * np.pi * rng.random(EACH))
+    rim = _directions(np.zeros(EACH), 2.0 * np.pi * rng.random(EACH))
+    normal = np.broadcast_to([0.0, 0.0, 1.0], free.shape)
+    pairs = (
+        (_directions(mu_o, 0.0 * mu_o), _directions(mu_i, azimuth)),
+        (free, free),
+        (free, free * [-1.0, -1.0, 1.0]),
+        (normal, free),
+        (free, normal),
+        (normal[:1], normal[:1]),
+        (rim, high),
+        (high, rim),
+        (free, other),
+    )
+    wo, wi = (np.concatenate(each) for each in zip(*pairs, strict=True))
+    return wo, wi
+
+
+def outside_directions(rng: np.random.Generator) -> tuple[Array, Array]:
+    """Directions that no model has: light from below the horizon, and cosines that exceed 1."""
+    below = directions(rng, EACH) * [1.0, 1.0, -1.0]
+    high = _directions(HORIZON + (1.0 - HORIZON) * rng.random(EACH), 2.0 * np.pi * rng.random(EACH))
+    straight = np.broadcast_to([0.0, 0.0, ABOVE_ONE], below.shape)
+    wo = np.concatenate([high, straight, directions(rng, EACH)])
+    wi = np.concatenate([below, directions(rng, EACH), straight])
+    return wo, wi
+
+
+def turned_frames(rng: np.random.Generator, count: int) -> Array:
+    """Axes of at most so many random frames, as columns.
+
+    Each normal points to the middle of a texel of the sky, and none to a pole.
+    """
+    axes, _ = np.linalg.qr(rng.standard_normal((count, 3, 3)))
+    axes = axes[np.abs(axes[:, 1, 2]) <= POLE]
+    return aimed(axes, axes[:, :, 2], texel_middles(axes[:, :, 2]))
+
+
+def aimed(axes: Array, of: Array, to: Array) -> Array:
+    """Frames (N, 3, 3), turned the shortest way that takes unit vectors `of` to others `to`, (N, 3).
+
+    That is half a turn about the middle of both, and half a turn about the second.
+    """
+    for vectors in (of + to, to):
+        about = vectors[:, :, np.newaxis]
+        along = np.sum(about * axes, axis=1, keepdims=True) / np.sum(
+            about**2, axis=1, keepdims=True
+        )
+        axes = 2.0 * along * about - axes
+    return axes
+
+
+def turned_directions(rng: np.random.Generator, count: int) -> Array:
+    """Directions for turned frames, (count, 3)."""
+    low, high = TURNED
+    return _directions(low + (high - low) * rng.random(count), 2.0 * np.pi * rng.random(count))
+
+
+def node_inputs(rng: np.random.Generator, count: int) -> dict[str, Array]:
+    """Random weights and occlusions: 1 for half of the pairs, an edge for many others."""
+    return {
+        name: np.where(rng.random(count) < 0.5, 1.0, with_edges(rng, rng.random(count), edges))
+        for name, edges in (("weight", WEIGHTS), ("occlusion", OCCLUSIONS))
+    }
+
+
+def with_edges(rng: np.random.Generator, values: Array, edges: ArrayLike) -> Array:
+    """Values of which half are replaced by random edges, as float32 numbers."""
+    picked = rng.choice(np.asarray(edges, np.float64), np.shape(values))
+    mixed = np.where(rng.random(np.shape(values)) < 0.5, picked, values)
+    return float32(mixed)
+
+
+def _directions(mu: Array, azimuth: Array) -> Array:
+    """Directions of given cosines, float32 numbers, and azimuths."""
+    mu = float32(mu)
+    radius = np.sqrt(1.0 - mu * mu)
+    return rounded([radius * np.cos(azimuth), radius * np.sin(azimuth), mu])
+
+
+FRAMES = 1 << 12  # pairs in frames of their own
+LEAN = 0.3  # slope of their tangents
+SKY_ROWS = 128  # of its map, which has twice as many columns
+SLOPE = 0.5  # of the irradiance over a component of the normal
+
+
+def sky(normal: Array) -> Array:
+    """Irradiance over pi at normals (N, 3): each channel grows along an axis of its own."""
+    return 0.5 + SLOPE * normal
+
+
+def sky_behind(values: Array) -> Array:
+    """Means of the sky with every normal turned around, from those with none."""
+    return 1.0 - values
+
+
+@lru_cache(maxsize=1)
+def sky_map() -> NDArray[np.float32]:
+    """The irradiance over pi as a latitude-longitude map, (SKY_ROWS, 2 SKY_ROWS, 3)."""
+    directions, _ = latlong_directions(SKY_ROWS, 2 * SKY_ROWS)
+    return sky(directions @ TURN[:3, :3]).reshape(SKY_ROWS, 2 * SKY_ROWS, 3).astype(np.float32)
+
+
+def texel_middles(near: Array) -> Array:
+    """The directions to the middles of texels of the map next to unit vectors, both (N, 3).
+
+    There every filter reads one texel. So is the opposite direction such a middle.
+    """
+    polar = np.arccos(np.clip(near[:, 1], -1.0, 1.0)) / np.pi
+    azimuth = np.arctan2(near[:, 0], -near[:, 2]) / (2.0 * np.pi) + 0.5
+    row = np.minimum((SKY_ROWS * polar).astype(int), SKY_ROWS - 1)
+    column = (2 * SKY_ROWS * azimuth).astype(int) % (2 * SKY_ROWS)
+    middles, _ = latlong_directions(SKY_ROWS, 2 * SKY_ROWS)
+    return np.asarray(middles[2 * SKY_ROWS * row + column])

@@ -1,0 +1,298 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a node is judged by: its inputs and their ranges, its models, its errors and the samples it needs.
+
+A family of nodes is one file under `specs`. A spec knows no engine; a backend knows no node.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from functools import partial
+from typing import ClassVar, Protocol, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from mxeon.conformance.samples import (
+    FRAMES,
+    LEAN,
+    SEED,
+    Array,
+    Batch,
+    Candidate,
+    Changes,
+    Counts,
+    Values,
+    directions,
+    float32,
+    node_inputs,
+    outside_directions,
+    rounded,
+    sky,
+    special_directions,
+    turned_directions,
+    turned_frames,
+    with_edges,
+)
+from mxeon.conformance.tolerance import Term, Tolerance
+from mxeon.hosts.base import Host
+from mxeon.models.nodes.node import Function, Variant
+
+COMPONENTS = {"float": (), "vector2": (2,), "vector3": (3,), "color3": (3,)}  # shape by type
+CHANGED_COLOR = (0.9, 0.1, 0.6)
+
+
+@dataclass(frozen=True)
+class Input:
+    """An input of a node, by name or path."""
+
+    name: str
+    type: str = "float"  # in MaterialX
+    low: ArrayLike = 0.0  # ends of the range of random values, of all components or of each
+    high: ArrayLike = 1.0
+    edges: tuple[float, ...] = ()  # what half of the special values are; () for none
+    # Another value than the default, which must have an effect; None where it has none by itself.
+    change: ArrayLike | None = None
+    needs: Values = field(default_factory=dict, hash=False)  # inputs with which the change shows
+    logarithmic: bool = (
+        False  # random values uniform in their logarithm; else a tenth on either end
+    )
+    often: float | None = None  # every other random value, of an input that is rarely set
+    equal: bool = False  # both components are the same in every other random value
+    # Values in the two materials that stand for a node in pictures; () for the default.
+    materials: tuple[ArrayLike, ...] = ()
+    variable: str = ""  # that a host sets instead, where the default is a variable
+    default: ArrayLike = 1.0  # in a document that has to set it
+
+
+def color(name: str, *materials: ArrayLike, edges: tuple[float, ...] = (0.0, 1e-3, 1.0)) -> Input:
+    return Input(name, "color3", 0.0, 1.0, edges, CHANGED_COLOR, materials=materials)
+
+
+def draw(rng: np.random.Generator, count: int, inputs: Iterable[Input]) -> dict[str, Array]:
+    """Random values of inputs in their ranges, by name."""
+    return {each.name: _drawn(rng, count, each) for each in inputs}
+
+
+def _drawn(rng: np.random.Generator, count: int, row: Input) -> Array:
+    low, high = np.asarray(row.low, np.float64), np.asarray(row.high, np.float64)
+    share = rng.random((count, *COMPONENTS[row.type]))
+    if row.logarithmic:
+        values = low * (high / low) ** share
+    else:
+        values = low + (high - low) * np.clip(1.25 * share - 0.125, 0.0, 1.0)
+    if row.often is not None:
+        values[::2] = row.often
+    if row.equal:
+        values[::2] = values[::2, :1]
+    return float32(values)
+
+
+def draw_edges(rng: np.random.Generator, count: int, inputs: Iterable[Input]) -> dict[str, Array]:
+    """Random values of inputs, half of them on an edge where the input has some."""
+    inputs = tuple(inputs)
+    values = draw(rng, count, inputs)
+    edged = {
+        each.name: with_edges(rng, values[each.name], each.edges) for each in inputs if each.edges
+    }
+    return values | edged
+
+
+def broadcast_inputs(batch: Batch) -> dict[str, Array]:
+    """The inputs of a batch with a row for each pair."""
+    count = len(batch.wo)
+    return {
+        name: np.broadcast_to(values, (count, *np.shape(values)[-1:]))
+        if np.shape(values)[:1] != (count,)
+        else values
+        for name, values in batch.inputs.items()
+    }
+
+
+USUAL = Counts()
+ZERO = Candidate("zero", lambda batch: np.zeros((len(batch.wo), 3)))
+F = TypeVar("F")  # a function of a model
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Spec(ABC):
+    """A node in one mode."""
+
+    title: str  # in reports; unique
+    node: str  # category
+    model: str  # name of the model that it has to be
+    inputs: tuple[Input, ...] = ()  # all but those that select the mode
+    errors: Mapping[str, Tolerance] = field(default_factory=dict)  # of a right shader, by quantity
+    libraries: tuple[str, ...] = ()  # with which it is judged; () for all
+    closure: bool = True  # whether eonlib leaves it to a renderer's own closures, in OSL
+    counts: Counts = USUAL
+    fixed: Values = field(
+        default_factory=dict
+    )  # inputs that an evaluation sets unless a batch does
+    # How a host that evaluates is asked for a value: branch, output, and the factor of what it returns.
+    asked: tuple[str, str, float] = ("direct", "response", np.pi)
+    optional: bool = False  # whether a target may lack the node, so that it is not run there
+
+    @abstractmethod
+    def document(self, inputs: Values | None = None) -> str:
+        """MaterialX text of a material of this node alone, with these inputs."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the inputs that must have an effect."""
+        return tuple(each.name for each in self.inputs)
+
+    @property
+    def changes(self) -> Mapping[str, Changes]:
+        """For each input: inputs without and with a change of it alone."""
+        return {
+            each.name: (each.needs, {**each.needs, each.variable or each.name: each.change})
+            for each in self.inputs
+            if each.change is not None and each.name in self.names
+        }
+
+    def within(self, library: str) -> "Spec":
+        """The spec where the document is that of a library: most do not depend on it."""
+        return self
+
+    def engine(self, quantity: str, host: Host) -> tuple[Term, ...]:
+        """What functions of an engine's own, measured there, add to the error of a quantity."""
+        return ()
+
+
+class ValueSpec(Spec):
+    """A node with values that have a reference: light that it scatters or emits, or an output."""
+
+    @abstractmethod
+    def value(self, batch: Batch) -> Array:
+        """Values of a right shader, (N, 3): pi f |cos(theta_i)|, a radiance, or an output."""
+
+    @property
+    @abstractmethod
+    def value_candidates(self) -> tuple[Candidate, ...]:
+        """Functions that may explain the values, its own model first."""
+
+    @abstractmethod
+    def batches(self, counts: Counts) -> tuple[Batch, ...]:
+        """All samples."""
+
+    def few(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
+        """Some of them, for controls and for what takes long."""
+        return batches
+
+    def condition(self, batch: Batch) -> Array:
+        """What errors of values are divided by, (N, 3), (N, 1) or one number."""
+        return np.ones((1, 1))
+
+
+class LobeSpec(ValueSpec):
+    """A node that scatters light."""
+
+    flat: ClassVar[bool] = False  # whether its values have no peak
+
+    @property
+    def side(self) -> float:
+        """-1 where it scatters light from below the horizon, else 1."""
+        return 1.0
+
+    @abstractmethod
+    def albedo(self, batch: Batch) -> Array:
+        """Directional albedo of a right shader, (N, 3)."""
+
+    @property
+    @abstractmethod
+    def albedo_candidates(self) -> tuple[Candidate, ...]:
+        """Functions that may explain the albedo, its own model first."""
+
+    @property
+    @abstractmethod
+    def black(self) -> Values:
+        """Inputs with which it scatters nothing; none where it always scatters some light."""
+
+    @abstractmethod
+    def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]: ...
+
+    @abstractmethod
+    def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
+        """Random values of the inputs, half of them on an edge."""
+
+    @abstractmethod
+    def edges(self, counts: Counts) -> Batch:
+        """Pairs and inputs at the edges of the domain."""
+
+    def sky(self, batch: Batch) -> Array:
+        """Mean of the uneven sky that it scatters, (N, 3)."""
+        return sky(batch.normal)
+
+    def batches(self, counts: Counts) -> tuple[Batch, ...]:
+        """Random pairs, a quarter of each direction grazing; special ones; and outside ones."""
+        rng, count = np.random.default_rng(SEED), counts.pairs
+        pairs = directions(rng, count), directions(rng, count)
+        return (
+            self._batch(rng, pairs, self.random_inputs),
+            self._batch(rng, special_directions(rng), self.special_inputs),
+            self._batch(rng, outside_directions(rng), self.random_inputs),
+        )
+
+    def few(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
+        """Few of the random pairs, and the special ones; none of them is outside."""
+        return batches[0].first(counts.few), batches[1]
+
+    def views(
+        self, batches: tuple[Batch, ...], few: tuple[Batch, ...], counts: Counts
+    ) -> tuple[Batch, ...]:
+        """Views for the environment branch, which does not depend on `wi`."""
+        return (*few, batches[-1])
+
+    def turned(self, counts: Counts) -> Batch:
+        """Pairs in frames of their own.
+
+        Half of the normals face away from the viewer. Tangents lean out of the surface by up to LEAN,
+        as those of a geometry do where a picture turns the normal.
+        """
+        rng = np.random.default_rng(SEED)
+        frames = turned_frames(rng, FRAMES)
+        count = len(frames)
+        wo, wi = turned_directions(rng, count), turned_directions(rng, count)
+        facing = np.where(np.arange(count) % 2, 1.0, -1.0)[:, np.newaxis]
+        normal = facing * rounded(frames[:, :, 2].T)
+        lean = LEAN * np.linspace(-1.0, 1.0, count)[:, np.newaxis]
+        tangent = frames[:, :, 0] + lean * frames[:, :, 2]
+        axes = {"normal": normal, "tangent": rounded(tangent.T)}
+        inputs = {**self.random_inputs(rng, count), **axes}
+        return Batch(wo, wi * [1.0, 1.0, self.side], inputs, frame=frames)
+
+    def _batch(
+        self,
+        rng: np.random.Generator,
+        pairs: tuple[Array, Array],
+        inputs: Callable[[np.random.Generator, int], dict[str, Array]],
+    ) -> Batch:
+        """Pairs with random inputs, weights and occlusions, lit from the side that it scatters."""
+        wo, wi = pairs
+        inputs_and_weights = {**inputs(rng, len(wo)), **node_inputs(rng, len(wo))}
+        return Batch(wo, wi * [1.0, 1.0, self.side], inputs_and_weights)
+
+
+class NodeRow(Protocol[Function]):
+    """A row of `mxeon.models.nodes`; see `mxeon.models.nodes.node.Node`."""
+
+    @property
+    def title(self) -> str: ...
+    @property
+    def value(self) -> Function: ...
+    @property
+    def variants(self) -> tuple[Variant[Function], ...]: ...
+
+
+def row_candidates(
+    row: NodeRow[F], values: Callable[[F, Batch], Array], *others: Candidate
+) -> tuple[Candidate, ...]:
+    """The functions of a row: its own, its variants, and others."""
+    functions = ((row.title, row.value, False),) + tuple(
+        (each.title, each.value, each.permitted) for each in row.variants if each.value
+    )
+    return (
+        *(Candidate(title, partial(values, each), open) for title, each, open in functions),
+        *others,
+    )

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: Apache-2.0
+"""All nodes that are judged, a family a file."""
+
+from mxeon.conformance.spec import Spec
+from mxeon.conformance.specs.burley import BURLEY, TRANSLUCENT
+from mxeon.conformance.specs.combinations import COMBINED_SPECS
+from mxeon.conformance.specs.diffuse import DIFFUSE, SURFACE_LOBES
+from mxeon.conformance.specs.emission import ABSENT, EMISSION_SPECS, EMITTING_SURFACES
+from mxeon.conformance.specs.hair import HAIR
+from mxeon.conformance.specs.media import MEDIUM_SPECS
+from mxeon.conformance.specs.microfacets import FACET_SPECS
+from mxeon.conformance.specs.sheen import CONTY_KULLA, ZELTNER
+from mxeon.conformance.specs.subsurface import SUBSURFACE
+from mxeon.conformance.specs.surface_shaders import SURFACE_SHADERS
+from mxeon.conformance.specs.thin_films import FILM_SPECS
+from mxeon.conformance.specs.transmission import TRANSMISSION_SPECS
+from mxeon.conformance.specs.utilities import UTILITY_SPECS
+
+PLAIN_LOBES = (BURLEY, TRANSLUCENT, CONTY_KULLA, ZELTNER, *FACET_SPECS)
+# Every run judges the common ones; the others are judged where they are asked for by name.
+COMMON: tuple[Spec, ...] = (*PLAIN_LOBES, *COMBINED_SPECS)
+PBRLIB: tuple[Spec, ...] = (
+    *COMMON,
+    HAIR,
+    *EMISSION_SPECS,
+    *MEDIUM_SPECS,
+    *EMITTING_SURFACES,
+    *ABSENT,
+    *TRANSMISSION_SPECS,
+    SUBSURFACE,
+    *FILM_SPECS,
+    *UTILITY_SPECS,
+    *SURFACE_SHADERS,
+)
+ALL: tuple[Spec, ...] = (*DIFFUSE, *PBRLIB, *SURFACE_LOBES)

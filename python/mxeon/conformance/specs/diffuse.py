@@ -1,0 +1,329 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The rough diffuse nodes, each mode with the model it has to be, and the diffuse lobes of surface shaders."""
+
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import partial
+from itertools import product
+from typing import ClassVar
+
+import numpy as np
+
+from mxeon.conformance.samples import (
+    LOBE_RIM,
+    TURNED,
+    Array,
+    Batch,
+    Candidate,
+    Changes,
+    Counts,
+    Values,
+    rounded,
+    with_edges,
+)
+from mxeon.conformance.spec import LobeSpec
+from mxeon.conformance.tolerance import Term, Tolerance, absolute, roundings, sum_of
+from mxeon.models import table as reference
+from mxeon.models.table import Model
+from mxeon.shaders.nodes import (
+    EON,
+    FLAG,
+    INPUT_TYPES,
+    OREN_NAYAR,
+    document_text,
+    input_text,
+    material_text,
+    node_text,
+)
+
+TINY = (0.0, 1e-6, 1e-3, 1.0)  # edges of a color channel
+SMOOTH = (0.0, 1e-6, 1e-3, 1.0)  # edges of the roughness, in units of the largest
+UNIT = "pi f cos"
+LOSS_FIT = 2.7e-7  # relative error of the fit of FON's loss H: tools/fits
+
+VALUE = sum_of(
+    roundings(28, "of numbers up to 2, 14 of each"),
+    Term(LOSS_FIT, "two fits of H, times a multiple-scattering part of at most 1/2"),
+    unit=UNIT,
+    metric=absolute,
+)
+# 12 in the longest chain, two in the cosine, and two for the fit of H, which enters times 0.29.
+ENVIRONMENT = sum_of(
+    roundings(16 * 1.02, "of numbers up to 1.02, the fit of H among them"),
+    unit="albedo",
+    metric=absolute,
+)
+# In each of two cosines of at least 1/4 five, times 4 by s / t, 3 by a sine, and 2 by s and the cosine.
+FRAME = sum_of(
+    roundings(2 * 28, "of two values"),
+    roundings(2 * 5 * (1.0 / TURNED[0] + 5.0), "of two cosines, five each, times 9"),
+    unit="pi f cos or albedo",
+    metric=absolute,
+)
+LAMBERT = sum_of(roundings(8), unit=UNIT, metric=absolute)
+ERRORS = {
+    "value": VALUE,
+    "albedo": ENVIRONMENT,
+    "frame": FRAME,
+    "integral": Tolerance((VALUE.term("an average of values"),), "albedo", absolute, exact=True),
+    "reciprocity": Tolerance(VALUE.terms, "pi f cos cos", absolute),
+    "lambert": LAMBERT,
+}
+LOBE_VALUE = Tolerance(
+    (
+        roundings(16 / LOBE_RIM**2, "of a pixel's point, over the square of the least cosine, 1/4"),
+        roundings(32, "in the lobe"),
+        roundings(4 * 48, "in sums that other lobes make 48 times as large"),
+    ),
+    UNIT,
+    absolute,
+    exact=True,
+)
+
+
+def difference_of(value: Tolerance) -> Tolerance:
+    """Tolerance of the difference of two values, relative to the largest such difference, 0.4."""
+    return sum_of(
+        value.term("two values, over a difference of 0.4", 2.0 / 0.4),
+        unit="relative",
+        metric=absolute,
+    )
+
+
+CHANGES: Values = {
+    "weight": 0.5,
+    "color": (0.9, 0.1, 0.6),
+    "roughness": 0.3,
+    "normal": (0.0, 0.6, 0.8),
+}
+
+
+def model_value(batch: Batch, model: str) -> Array:
+    """pi f cos(theta_i) of a model or a known defect with weight and occlusion, (N, 3).
+
+    It is 0 for light from below the horizon.
+    """
+    row = reference.model(model)
+    parameter = [batch.inputs["roughness"]] if row.parameter else []
+    above = batch.wi * np.where(batch.wi[:, 2:] < 0.0, [1.0, 1.0, -1.0], 1.0)
+    value: Array = row.brdf(batch.wo, above, batch.inputs["color"], *parameter)
+    occlusion = np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))
+    return np.pi * value * np.clip(batch.wi[:, 2:], 0.0, 1.0) * (batch.strength * occlusion)
+
+
+def model_albedo(batch: Batch, model: str) -> Array:
+    """Directional albedo of a model or a known defect with weight, (N, 3)."""
+    row = reference.model(model)
+    parameter = [batch.inputs["roughness"]] if row.parameter else []
+    mu = np.minimum(batch.wo[:, 2], 1.0)
+    return batch.strength * row.closed_albedo_dir(mu, batch.inputs["color"], *parameter)
+
+
+def random_inputs(rng: np.random.Generator, count: int, row: Model) -> dict[str, Array]:
+    """Random colors and roughnesses; a tenth of each lies on either end of its range.
+
+    The last colors are gray.
+    """
+    color, roughness = rng.random((count, 3)), rng.random(count)
+    color = np.clip(1.25 * color - 0.125, 0.0, 1.0)
+    color[-(count // 16) :] = color[-(count // 16) :, :1]
+    roughness = row.largest * np.clip(1.25 * roughness - 0.125, 0.0, 1.0)
+    return {"color": rounded(color.T), "roughness": _rounded_roughness(roughness, row)}
+
+
+def special_inputs(rng: np.random.Generator, count: int, row: Model) -> dict[str, Array]:
+    """Colors and roughnesses of a diffuse model, half of them on an edge."""
+    inputs = random_inputs(rng, count, row)
+    inputs["color"] = with_edges(rng, inputs["color"], TINY)
+    roughness = with_edges(rng, inputs["roughness"], [row.largest * x for x in SMOOTH])
+    inputs["roughness"] = _rounded_roughness(roughness, row)
+    return inputs
+
+
+def _rounded_roughness(roughness: Array, row: Model) -> Array:
+    """Roughnesses as float32 numbers, none of which exceeds the model's largest by a rounding."""
+    largest = np.float32(row.largest)
+    if float(largest) > row.largest:
+        largest = np.nextafter(largest, np.float32(0.0))
+    return np.minimum(roughness.astype(np.float32), largest).astype(np.float64)
+
+
+def diffuse_edges() -> Batch:
+    """Pairs, colors and roughnesses at the edges of the domain of a diffuse node."""
+    cosine = [0.0, 1e-30, 1e-6, 0.5, 1.0]
+    rows = product(cosine, cosine, [0.0, 1.0, 2.0, math.pi], [0.0, 1e-6, 1.0], [0.0, 0.5, 1.0])
+    mu_o, mu_i, azimuth, roughness, color = np.array(list(rows)).T
+    S_o, S_i = np.sqrt(1.0 - mu_o**2), np.sqrt(1.0 - mu_i**2)
+    wo = np.stack([S_o, 0.0 * S_o, mu_o], axis=-1)
+    wi = np.stack([S_i * np.cos(azimuth), S_i * np.sin(azimuth), mu_i], axis=-1)
+    return Batch(wo, wi, {"color": np.stack([color] * 3, axis=-1), "roughness": roughness})
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class DiffuseModelSpec(LobeSpec):
+    """What has to be a rough diffuse model: a row of `mxeon.models.table`."""
+
+    ports: tuple[str, ...]  # names of the inputs that must have an effect
+    beside: bool = False  # whether lobes that ignore the color lie beside it
+
+    flat: ClassVar[bool] = True
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return self.ports
+
+    @property
+    def row(self) -> Model:
+        return reference.model(self.model)
+
+    @property
+    def changes(self) -> dict[str, Changes]:
+        return {name: ({}, {name: CHANGES[name]}) for name in self.names}
+
+    @property
+    def other_models(self) -> tuple[Model, ...]:
+        """Models beside the common ones that it may be."""
+        return ()
+
+    @property
+    def value_candidates(self) -> tuple[Candidate, ...]:
+        rows = {
+            row.brdf: row for row in self.other_models + reference.KNOWN_DEFECTS + reference.MODELS
+        }
+        rows[self.row.brdf] = self.row
+        return self._candidates(rows.values(), model_value)
+
+    @property
+    def albedo_candidates(self) -> tuple[Candidate, ...]:
+        rows = reference.MODELS + reference.KNOWN_DEFECTS + self.other_models
+        return self._candidates((row for row in rows if row.albedo_dir), model_albedo)
+
+    def _candidates(
+        self, rows: Iterable[Model], output: Callable[[Batch, str], Array]
+    ) -> tuple[Candidate, ...]:
+        ordered = sorted(rows, key=lambda row: row.name != self.model)
+        return tuple(Candidate(row.title, partial(_limited, row, output)) for row in ordered)
+
+    @property
+    def black(self) -> Values:
+        return {"color": (0.0, 0.0, 0.0)}
+
+    def value(self, batch: Batch) -> Array:
+        return model_value(batch, self.model)
+
+    def albedo(self, batch: Batch) -> Array:
+        return model_albedo(batch, self.model)
+
+    def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
+        return random_inputs(rng, count, self.row)
+
+    def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
+        return special_inputs(rng, count, self.row)
+
+    def edges(self, counts: Counts) -> Batch:
+        return diffuse_edges()
+
+
+def _limited(row: Model, output: Callable[[Batch, str], Array], batch: Batch) -> Array:
+    """Output of a model where no roughness exceeds its largest."""
+    roughness = np.minimum(batch.inputs["roughness"], row.largest)
+    return output(batch.altered(roughness=roughness), row.name)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class DiffuseSpec(DiffuseModelSpec):
+    """A rough diffuse node with its flag."""
+
+    flag: bool | None  # energy_compensation, or None where the node has no such input
+
+    @property
+    def changes(self) -> dict[str, Changes]:
+        values = {**CHANGES, FLAG: not self.flag}
+        return {name: ({}, {name: values[name]}) for name in self.names}
+
+    def document(self, inputs: Values | None = None) -> str:
+        return material_text(self.node, {**self.fixed, **(inputs or {})}, self.node)
+
+
+def _diffuse(node: str, flag: bool | None, model: str) -> DiffuseSpec:
+    words = "" if flag is None else f", energy_compensation {str(flag).lower()}"
+    return DiffuseSpec(
+        title=node + words,
+        node=node,
+        model=model,
+        flag=flag,
+        ports=tuple(name for name in INPUT_TYPES if flag is not None or name != FLAG),
+        fixed={} if flag is None else {FLAG: flag},
+        errors=ERRORS | {"difference": difference_of(VALUE)},
+    )
+
+
+DIFFUSE = (
+    _diffuse(OREN_NAYAR, True, "eon"),
+    _diffuse(OREN_NAYAR, False, "qon"),
+    _diffuse(EON, None, "eon"),
+)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class SurfaceLobe(DiffuseModelSpec):
+    """The diffuse lobe of a surface shader, whose other lobes cannot be switched off.
+
+    What lies over the lobe depends on the directions alone, so that values of other colors tell the lobe
+    apart: a black lobe leaves the other lobes, and a white one at roughness 0, which is Lambert in every
+    model, gives how much of the light reaches the lobe and comes back.
+    """
+
+    color: str  # names of the inputs of the lobe
+    roughness: str = ""  # "" for none
+    set_inputs: tuple[tuple[str, str, str], ...] = ()  # name, type and value of further inputs
+
+    def document(self, inputs: Values | None = None) -> str:
+        inputs = inputs or {}
+        lobe = {"color": (self.color, "color3"), "roughness": (self.roughness, "float")}
+        values = [
+            (*port, inputs[name]) for name, port in lobe.items() if name in inputs and port[0]
+        ]
+        ports = "".join(input_text(*each) for each in (*values, *self.set_inputs))
+        return document_text(node_text(self.node, "surfaceshader", "shading", ports))
+
+
+def _lobe(
+    title: str,
+    model: str,
+    color: str,
+    roughness: str = "",
+    *set_inputs: tuple[str, str, str],
+    libraries: tuple[str, ...] = (),
+) -> SurfaceLobe:
+    return SurfaceLobe(
+        title=title,
+        node=title.split(",")[0],
+        model=model,
+        ports=(),
+        color=color,
+        roughness=roughness,
+        set_inputs=set_inputs,
+        libraries=libraries,
+        errors={"value": LOBE_VALUE},
+    )
+
+
+# OpenPBR asks for EON, Standard Surface for Oren-Nayar, USD Preview Surface and glTF for Lambert.
+# The thin-walled lobe is MaterialX's own whatever the library, so it is judged once.
+SURFACE_LOBES = (
+    _lobe("open_pbr_surface", "eon", "base_color", "base_diffuse_roughness"),
+    _lobe(
+        "open_pbr_surface, thin-walled",
+        "eon",
+        "subsurface_color",
+        "base_diffuse_roughness",
+        ("geometry_thin_walled", "boolean", "true"),
+        ("subsurface_weight", "float", "1.0"),
+        libraries=("stock",),
+    ),
+    _lobe("standard_surface", "qon", "base_color", "diffuse_roughness", ("base", "float", "1.0")),
+    _lobe("UsdPreviewSurface", "lambert", "diffuseColor"),
+    _lobe("gltf_pbr", "lambert", "base_color", "", ("metallic", "float", "0.0")),
+)

@@ -1,0 +1,329 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The hair node: pairs of the whole sphere, pairs in its lobes, and regions where shaders differ from it."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mxeon.conformance.samples import (
+    LEAST_TURNED,
+    SEED,
+    Array,
+    Batch,
+    Counts,
+    Values,
+    directions,
+    rounded,
+    sky,
+    special_directions,
+)
+from mxeon.conformance.spec import Input, broadcast_inputs, color
+from mxeon.conformance.specs.lobes import NORMAL, PbrSpec, lobe_errors
+from mxeon.conformance.tolerance import (
+    Term,
+    absolute,
+    rounded_up,
+    roundings,
+    sum_of,
+)
+from mxeon.models.hair import ROUGHNESSES, TINTS, chiang_hair_attenuation
+from mxeon.models.hair.defects import BESSEL, CLAMPED, UNIFORM
+from mxeon.models.hair.formulas import SCALE, section
+from mxeon.models.nodes.hair import HAIR_NODE
+from mxeon.models.nodes.node import Scattering
+
+COUNTS = replace(PbrSpec.counts, diagnosed=1 << 9)
+LEAST_VARIANCE, LEAST_SCALE = 1e-4, 0.01  # of random pairs
+WIDE_VARIANCE, WIDE_SCALE = 0.05, 0.3  # least ones of values that are integrated
+MOST_VARIANCE, MOST_SCALE = 100.0, 10.0  # which the node of artistic roughness reaches
+FRONT = np.array([1.0, 0.0, 1.0, 0.5])  # share of R, TT, TRT and TRRT+ from the viewer's side
+STEP = 1e-6  # of an angle, by which slopes are measured
+LEAST = 0.01  # value of which errors count relative, where there is less
+
+INPUTS = (
+    *(color(name, edges=()) for name in TINTS),
+    Input("ior", low=1.1, high=2.5, edges=(1.0, 1.55), change=1.3),
+    *(
+        Input(
+            name,
+            "vector2",
+            (LEAST_VARIANCE, LEAST_SCALE),
+            (MOST_VARIANCE, MOST_SCALE),
+            (0.0, 1e-3, 1.0, 100.0),
+            (0.3, 0.7),
+            logarithmic=True,
+        )
+        for name in ROUGHNESSES
+    ),
+    Input("cuticle_angle", change=0.55, often=0.5),
+    Input("absorption_coefficient", "vector3", 0.0, 4.0, (0.0,), (0.9, 0.1, 0.6)),
+    NORMAL,
+    # The variable of its default is the surface's tangent.
+    Input("curve_direction", "vector3", change=(0.6, 0.8, 0.0), variable="tangent"),
+)
+
+UNIT = "pi f, relative above 1"
+REACH = math.sqrt(
+    2.0 * math.log(1e5)
+)  # times sqrt(v): from the largest pi f, 1e5, a lobe falls to 1
+ANGLE, CHAIN = 12, 48  # roundings of an angle, and of all that follows
+
+
+def lobe_terms(variance: float, scale: float, angle: float = ANGLE) -> tuple[Term, ...]:
+    """Error of pi f of lobes that are no narrower, where an angle has so many roundings.
+
+    The logarithm of M changes by at most REACH / sqrt(v) in an angle, and that of N by 1 / s'.
+    """
+    slope = REACH / math.sqrt(variance) + 1.0 / (SCALE * scale)
+    words = (
+        f"{angle} of an angle, times the slope of the logarithm for v {variance:g} and s {scale:g}"
+    )
+    return roundings(slope * angle, f"({words})"), roundings(CHAIN)
+
+
+def error_of(variance: float, scale: float) -> float:
+    return rounded_up(sum(term.value for term in lobe_terms(variance, scale)))
+
+
+VALUE = sum_of(*lobe_terms(LEAST_VARIANCE, LEAST_SCALE), unit=UNIT)
+# Two values, in which five roundings of each product of turned vectors come to those of an angle.
+FRAME = sum_of(*lobe_terms(LEAST_TURNED**2, LEAST_TURNED, 2 * (ANGLE + 5)), unit=UNIT)
+# Mean slopes of the logarithms of a Gaussian and of a logistic function.
+MEAN_SLOPE = math.sqrt(2.0 / (math.pi * WIDE_VARIANCE)) + 0.5 / (SCALE * WIDE_SCALE)
+MEAN = sum_of(
+    roundings(MEAN_SLOPE * ANGLE, "(12 of an angle, times the mean slope of the logarithm)"),
+    roundings(CHAIN),
+    unit=UNIT,
+)
+ALBEDO = sum_of(roundings(CHAIN, "of numbers up to 1"), unit="albedo", metric=absolute)
+REGION = sum_of(
+    Term(5e-7, "the fit of I_0"),  # [AbramowitzStegun1964], 9.8.1 and 9.8.2
+    roundings(12 + 4, "of factors and exponents, and of each angle"),
+    unit="pi f and its slopes",
+    metric=absolute,
+)
+
+LOBE_TINTS = {name: tuple(map(float, row)) for name, row in zip(TINTS, np.eye(3), strict=True)}
+APART: Values = {**LOBE_TINTS, "tint_TRT": (0.0, 0.0, 0.0)}  # R and TT in two channels
+STRAIGHT = 0.05  # azimuth, in radian, up to which a view counts as along the normal
+SLANTED = (0.3, 1.2)  # azimuths of other views
+
+
+@dataclass(frozen=True)
+class Region:
+    """Views and roughnesses of which a check asks."""
+
+    claim: str
+    azimuths: tuple[float, float]  # of the views from the normal, in radian
+    variances: tuple[float, float]
+    scales: tuple[float, float]
+    tints: Values  # which lobe is in which channel
+    tilt: float = 0.05  # largest distance of `cuticle_angle` from 1/2
+    ior: tuple[float, float] | None = None  # ends of the index; None for those of any pair
+    # Title of the form of the model that shaders have in its place there; "" if there is none.
+    form: str = ""
+
+
+# By the key of the check.
+REGIONS = {
+    "each_lobe": Region(
+        "Each lobe matches the equations: R, TT, and TRT with all higher orders.",
+        SLANTED,
+        (0.2, 1.0),
+        (0.2, 1.0),
+        LOBE_TINTS,
+        form=UNIFORM,
+    ),
+    "narrow_lobes": Region(
+        "R and TT match the equations where they are narrow.",
+        SLANTED,
+        (1e-3, 0.1),
+        (0.9, 1.0),
+        APART,
+        tilt=0.0,
+        form=BESSEL,
+    ),
+    "tilted_lobes": Region(
+        "R and TT match the equations for every tilt of the cuticle.",
+        SLANTED,
+        (1e-3, 0.1),
+        (0.9, 1.0),
+        APART,
+        tilt=0.5,
+        form=BESSEL,
+    ),
+    "wide_lobes": Region(
+        "R and TT match the equations beyond a roughness of 1.",
+        SLANTED,
+        (1.0, 100.0),
+        (1.0, 10.0),
+        APART,
+        form=CLAMPED,
+    ),
+    "straight_views": Region(
+        "R and TT match the equations for a view along the normal.",
+        (0.0, STRAIGHT),
+        (0.2, 1.0),
+        (0.05, 0.2),
+        APART,
+    ),
+    "low_index": Region(
+        "R and TT match the equations for an index below 1, including total reflection.",
+        SLANTED,
+        (0.2, 1.0),
+        (0.2, 1.0),
+        APART,
+        ior=(0.6, 0.95),
+    ),
+}
+ERRORS = lobe_errors(VALUE, ALBEDO, FRAME, 5e-6, mean=MEAN) | dict.fromkeys(REGIONS, REGION)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class HairSpec(PbrSpec):
+    """The hair node. Light comes from the whole sphere, and its values take no cosine."""
+
+    counts: Counts = COUNTS
+
+    @property
+    def black(self) -> Values:
+        return dict.fromkeys(TINTS, (0.0, 0.0, 0.0))
+
+    def values(self, function: Scattering, batch: Batch) -> Array:
+        """pi f with occlusion, (N, 3)."""
+        occlusion = np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))
+        return np.asarray(np.pi * function(batch.wo, batch.wi, broadcast_inputs(batch)) * occlusion)
+
+    def sky(self, batch: Batch) -> Array:
+        """R and TRT leave on the side where light comes in, TT on the other one, and the rest on both."""
+        inputs = broadcast_inputs(batch)
+        A = chiang_hair_attenuation(batch.wo, inputs["ior"], inputs["absorption_coefficient"])
+        shares = A * np.stack([inputs[name] for name in (*TINTS, TINTS[-1])], axis=-1)
+        front = shares @ FRONT / shares.sum(axis=-1)
+        return np.asarray(front * sky(batch.normal) + (1.0 - front) * sky(-batch.normal))
+
+    def condition(self, batch: Batch) -> Array:
+        """The values, or LEAST, and their slopes in inclination and azimuth of both directions."""
+        total = np.maximum(self.value(batch), LEAST)
+        for step in np.eye(4) * STEP:
+            up, down = (
+                self.value(
+                    replace(batch, wo=_turned(batch.wo, *turn[:2]), wi=_turned(batch.wi, *turn[2:]))
+                )
+                for turn in (step, -step)
+            )
+            total += np.abs(up - down) / (2.0 * STEP)
+        return total
+
+    def batches(self, counts: Counts) -> tuple[Batch, ...]:
+        """Random pairs, as many in the lobes, and special ones, with roughness above 0."""
+        rng, count = np.random.default_rng(SEED), counts.pairs
+        wo, inputs = directions(rng, count), self.random_inputs(rng, count)
+        free = directions(rng, count) * _sides(rng, count)
+        view, light = special_directions(rng)
+        return (
+            Batch(wo, free, {**inputs, "occlusion": np.round(rng.random(count), 2)}),
+            Batch(wo, aimed(rng, wo, inputs), inputs),
+            Batch(view, light * _sides(rng, len(view)), self.random_inputs(rng, len(view))),
+        )
+
+    def few(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
+        return tuple(batch.first(counts.few) for batch in batches[:2])
+
+    def views(
+        self, batches: tuple[Batch, ...], few: tuple[Batch, ...], counts: Counts
+    ) -> tuple[Batch, ...]:
+        """Views of fibers without tilt, whose albedo has a closed form."""
+        return tuple(
+            batch.altered(cuticle_angle=0.5) for batch in super().views(batches, few, counts)
+        )
+
+    def edges(self, counts: Counts) -> Batch:
+        """Exact directions, those along the fiber among them, and inputs on their edges."""
+        rng = np.random.default_rng(SEED)
+        along = np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+        pairs = np.repeat(along, 4, axis=0), np.tile(along, (4, 1))
+        wo, wi = (np.concatenate(each) for each in zip(special_directions(rng), pairs, strict=True))
+        wi = wi * _sides(rng, len(wi))
+        return Batch(wo, wi, self.special_inputs(rng, len(wo)))
+
+    def turned(self, counts: Counts) -> Batch:
+        """Pairs in frames of their own, none with a narrow lobe, whose place would be uncertain."""
+        batch = super().turned(counts)
+        wide = {
+            name: np.maximum(batch.inputs[name], [LEAST_TURNED**2, LEAST_TURNED])
+            for name in ROUGHNESSES
+        }
+        sides = _sides(np.random.default_rng(SEED), len(batch.wi))
+        return replace(batch.altered(**wide), wi=batch.wi * sides)
+
+    def region(self, key: str, count: int) -> Batch:
+        """Pairs in the lobes of a row of REGIONS, with each lobe in a channel of its own."""
+        rng, row = np.random.default_rng(SEED), REGIONS[key]
+        sine = 0.9 * (2.0 * rng.random(count) - 1.0)
+        low, high = row.azimuths
+        azimuth = (low + (high - low) * rng.random(count)) * rng.choice([-1.0, 1.0], count)
+        cosine = np.sqrt(1.0 - sine * sine)
+        wo = rounded([sine, cosine * np.sin(azimuth), cosine * np.cos(azimuth)])
+        inputs = self.random_inputs(rng, count)
+        inputs["cuticle_angle"] = 0.5 + 2.0 * row.tilt * (inputs["cuticle_angle"] - 0.5)
+        if row.ior:
+            least, most = row.ior
+            inputs["ior"] = rounded([np.linspace(least, most, count)])[:, 0]
+        for name in ROUGHNESSES:
+            inputs[name] = rounded(
+                low * (high / low) ** rng.random(count) for low, high in (row.variances, row.scales)
+            )
+        return Batch(wo, aimed(rng, wo, inputs), {**inputs, **row.tints})
+
+    def integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
+        """Wide lobes without tilt."""
+        least = WIDE_VARIANCE, WIDE_SCALE
+        wide = {name: np.maximum(inputs[name], least) for name in ROUGHNESSES}
+        return {**inputs, **wide, "cuticle_angle": np.full(len(inputs["ior"]), 0.5)}
+
+    def nodes(self, wo: Array, inputs: dict[str, Array], count: int) -> tuple[Array, Array]:
+        """Directions (M, K, 3) and weights (M, K) of a quadrature over all lights."""
+        x, w = np.polynomial.legendre.leggauss(count)
+        phi = np.pi * (np.arange(2 * count) + 0.5) / count
+        sine, angle = (each.ravel() for each in np.meshgrid(x, phi))
+        cosine = np.sqrt(1.0 - sine * sine)
+        wi = rounded([sine, cosine * np.cos(angle), cosine * np.sin(angle)])
+        weights = np.tile(w, 2 * count) / count
+        shape = (len(wo), *wi.shape)
+        return np.broadcast_to(wi, shape), np.broadcast_to(weights, shape[:2])
+
+
+def _turned(direction: Array, inclination: float, azimuth: float) -> Array:
+    """Directions turned by two angles, (N, 3)."""
+    x, y, z = direction.T
+    theta, phi = np.arctan2(x, np.hypot(y, z)) + inclination, np.arctan2(y, z) + azimuth
+    cosine = np.cos(theta)
+    return np.stack([np.sin(theta), cosine * np.sin(phi), cosine * np.cos(phi)], axis=-1)
+
+
+def _sides(rng: np.random.Generator, count: int) -> Array:
+    """Factors of directions, (count, 3), by which half change the side of the surface."""
+    return np.stack([np.ones(count), np.ones(count), rng.choice([-1.0, 1.0], count)], axis=-1)
+
+
+def aimed(rng: np.random.Generator, wo: Array, inputs: dict[str, Array]) -> Array:
+    """Directions of light in one of the lobes R, TT and TRT of each view, float32 numbers, (N, 3)."""
+    count = len(wo)
+    lobe, chosen = rng.integers(0, 3, count), np.arange(count)
+    v, s = (np.stack([inputs[name] for name in ROUGHNESSES])[lobe, chosen]).T
+    # Draw the longitudinal angle around the one that the cuticle sends it to.
+    view, _ = section(wo.T, inputs["ior"])
+    tilt = (2.0 - 3.0 * lobe) * np.pi * (inputs["cuticle_angle"] - 0.5)
+    theta = -np.arcsin(np.clip(view.sin_o, -1.0, 1.0)) - tilt
+    theta = theta + np.sqrt(np.minimum(v, 1.0)) * rng.standard_normal(count)
+    # Draw the azimuth from its logistic distribution.
+    u = 1e-3 + 0.998 * rng.random(count)
+    exit_angle = 2.0 * lobe * view.gamma_t - 2.0 * view.gamma_o + lobe * np.pi
+    phi = np.arctan2(wo[:, 2], wo[:, 1]) + exit_angle + SCALE * s * np.log(u / (1.0 - u))
+    cosine = np.abs(np.cos(theta))
+    return rounded([np.sin(theta), cosine * np.cos(phi), cosine * np.sin(phi)])
+
+
+HAIR = HairSpec.of(HAIR_NODE, INPUTS, ERRORS)

@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A mode of a BSDF node of `mxeon.models.nodes`, and the terms of errors that such nodes share."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any, ClassVar, Self
+
+import numpy as np
+
+from mxeon.conformance.samples import (
+    SEED,
+    TURNED,
+    Array,
+    Batch,
+    Candidate,
+    Counts,
+    Values,
+    rounded,
+    sky,
+    special_directions,
+)
+from mxeon.conformance.spec import (
+    ZERO,
+    Input,
+    LobeSpec,
+    broadcast_inputs,
+    color,
+    draw,
+    draw_edges,
+    row_candidates,
+)
+from mxeon.conformance.tolerance import Term, Tolerance, absolute, roundings, sum_of
+from mxeon.models.nodes.node import Inputs, PbrNode, Scattering
+from mxeon.shaders.nodes import input_types, material_text
+
+COUNTS = Counts(pairs=1 << 12, few=1 << 10, diagnosed=1 << 11)
+LEAST_VIEW = 0.02  # cosine of the views whose values are integrated
+# Weights and normals are not drawn: samples have weights of their own, and frames.
+WEIGHT = Input("weight", change=0.5, materials=(1.0, 0.5))
+COLOR = color("color", (0.2, 0.5, 0.8), (0.8, 0.4, 0.1))
+NORMAL = Input("normal", "vector3", change=(0.0, 0.6, 0.8))
+
+CLOSED_ALBEDO = sum_of(
+    roundings(32, "of the albedo or 1: 20 in an exponent, times 0.6, and 20 beside it"),
+    unit="albedo",
+)
+# Five roundings in each of three cosines, over the least of them.
+FLAT_FRAME = sum_of(roundings(15 / TURNED[0], "of three cosines of at least 1/4, five in each"))
+
+
+def lobe_errors(
+    value: Tolerance,
+    albedo: Tolerance,
+    frame: Tolerance,
+    quadrature: float,
+    throughput: Tolerance | None = None,
+    light: Tolerance | None = None,
+    mean: Tolerance | None = None,
+) -> dict[str, Tolerance]:
+    """Errors of a lobe: `mean` of values in an integral, whose quadrature errs by so much on the equations."""
+    throughput = throughput or albedo
+    integral = sum_of(
+        (mean or value).term("an average of values"),
+        Term(quadrature, "the quadrature on the equations"),
+        unit="albedo",
+        metric=absolute,
+    )
+    passed = sum_of(
+        integral.term("an albedo"), throughput.term("a throughput"), unit="light", metric=absolute
+    )
+    return {
+        "value": value,
+        "albedo": albedo,
+        "frame": frame,
+        "throughput": throughput,
+        "integral": integral,
+        "light": light or passed,
+        "reciprocity": value,
+    }
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class PbrSpec(LobeSpec):
+    """A mode of a BSDF node: a row of `mxeon.models.nodes`."""
+
+    row: PbrNode
+    counts: Counts = COUNTS
+
+    least_cosine: ClassVar[float] = 0.0  # of a view whose albedo is compared
+
+    @classmethod
+    def of(
+        cls, row: PbrNode, inputs: tuple[Input, ...], errors: Mapping[str, Tolerance], **rest: Any
+    ) -> Self:
+        words = [row.category, *(f"{name} {value}" for name, value in row.fixed.items())]
+        own = {"title": ", ".join(words), "node": row.category, "model": row.name}
+        return cls(row=row, inputs=inputs, errors=errors, **(own | rest))
+
+    @property
+    def drawn(self) -> tuple[Input, ...]:
+        """The inputs that its functions read."""
+        inputs = {each.name: each for each in self.inputs}
+        return tuple(inputs[name] for name in self.row.inputs)
+
+    @property
+    def materials(self) -> tuple[Values, ...]:
+        """Two materials that stand for the node in pictures."""
+        rows = (WEIGHT, *self.drawn)
+        return tuple(
+            {each.name: each.materials[which] for each in rows if len(each.materials) > which}
+            for which in (0, 1)
+        )
+
+    @property
+    def black(self) -> Values:
+        names = ("color", "tint", "color0", "color90")
+        return {name: (0.0, 0.0, 0.0) for name in names if name in self.row.inputs}
+
+    @property
+    def side(self) -> float:
+        return -1.0 if self.row.transmits else 1.0
+
+    @property
+    def types(self) -> dict[str, str]:
+        return {**input_types(self.node), **{each.name: each.type for each in self.inputs}}
+
+    def document(self, inputs: Values | None = None) -> str:
+        values = {**(inputs or {}), **self.row.fixed}
+        return material_text(self.node, values, self.node, self.types)
+
+    def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
+        return draw(rng, count, self.drawn)
+
+    def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
+        return draw_edges(rng, count, self.drawn)
+
+    # What it has to be.
+
+    def values(self, function: Scattering, batch: Batch) -> Array:
+        """pi f |cos(theta_i)| with weight and occlusion, (N, 3); 0 on the other side."""
+        side = np.where(batch.wi[:, 2:] < 0.0, -1.0, 1.0) * (-1.0 if self.row.transmits else 1.0)
+        wi = batch.wi * np.concatenate([np.ones((len(side), 2)), side], axis=1)
+        occlusion = np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))
+        factor = batch.strength * (1.0 if self.row.transmits else occlusion)
+        lit = np.where(side < 0.0, 0.0, np.clip(np.abs(wi[:, 2:]), 0.0, 1.0))
+        return np.asarray(np.pi * function(batch.wo, wi, broadcast_inputs(batch)) * lit * factor)
+
+    def value(self, batch: Batch) -> Array:
+        return self.values(self.row.value, batch)
+
+    def albedo(self, batch: Batch) -> Array:
+        return _albedo(self.row.albedo, batch)
+
+    def integral(self, batch: Batch) -> Array:
+        """Integral of the values with weight, (N, 3)."""
+        return _albedo(self.row.integral or self.row.albedo, batch)
+
+    def sky(self, batch: Batch) -> Array:
+        return sky(self.side * batch.normal)
+
+    @property
+    def value_candidates(self) -> tuple[Candidate, ...]:
+        return row_candidates(self.row, self.values, *self.others)
+
+    @property
+    def others(self) -> tuple[Candidate, ...]:
+        """A lobe that transmits, taken for one that reflects; and zero."""
+        if not self.row.transmits:
+            return (ZERO,)
+        opaque = replace(self, row=replace(self.row, transmits=False))
+
+        def mirrored(wo: Array, wi: Array, inputs: Inputs) -> Array:
+            return self.row.value(wo, wi * [1.0, 1.0, -1.0], inputs)
+
+        def reflection(batch: Batch) -> Array:
+            return opaque.values(mirrored, batch.altered(occlusion=1.0))  # light through the base
+
+        return Candidate("a reflection instead", reflection), ZERO
+
+    @property
+    def albedo_candidates(self) -> tuple[Candidate, ...]:
+        own = Candidate(self.row.title, self.albedo)
+        variants = (
+            Candidate(each.title, partial(_albedo, each.albedo), each.permitted)
+            for each in self.row.variants
+            if each.albedo
+        )
+        return (own, *variants, ZERO)
+
+    # Its samples.
+
+    def views(
+        self, batches: tuple[Batch, ...], few: tuple[Batch, ...], counts: Counts
+    ) -> tuple[Batch, ...]:
+        return tuple(
+            batch.where(batch.wo[:, 2] >= self.least_cosine).first(counts.albedos)
+            for batch in batches[:2]
+        )
+
+    def edges(self, counts: Counts) -> Batch:
+        """Exact directions and inputs on their edges, roughness and index 0 among them."""
+        rng = np.random.default_rng(SEED)
+        wo, wi = special_directions(rng)
+        inputs = self.special_inputs(rng, len(wo))
+        for name, start, step in (("roughness", 0, 4), ("ior", 0, 3), ("extinction", 1, 6)):
+            if name in inputs:
+                inputs[name][start::step] = 0.0
+        return Batch(wo, wi * [1.0, 1.0, self.side], inputs)
+
+    def integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
+        """The inputs of which a quadrature has all light."""
+        return inputs
+
+    def integrated(
+        self, counts: Counts, taken: Callable[[dict[str, Array]], dict[str, Array]]
+    ) -> tuple[Batch, Array]:
+        """Materials, each in nodes^2 directions of light, and the weights of their values.
+
+        The weighted sum of pi f cos over a material's directions is its directional albedo.
+        """
+        rng, count = np.random.default_rng(SEED), counts.materials
+        mu = LEAST_VIEW + (1.0 - LEAST_VIEW) * rng.random(count)
+        radius, azimuth = np.sqrt(1.0 - mu * mu), 2.0 * np.pi * rng.random(count)
+        wo = rounded([radius * np.cos(azimuth), radius * np.sin(azimuth), mu])
+        inputs = taken(self.integrable(self.random_inputs(rng, count)))
+        wi, weights = self.nodes(wo, inputs, counts.nodes)
+        each = np.repeat(np.arange(count), wi.shape[1])
+        spread = {name: values[each] for name, values in inputs.items()}
+        return Batch(wo[each], wi.reshape(-1, 3), spread), weights
+
+    def nodes(self, wo: Array, inputs: dict[str, Array], count: int) -> tuple[Array, Array]:
+        """Directions (M, K, 3) and weights (M, K) of a quadrature over each view's hemisphere."""
+        # Gauss nodes, moved to the horizon and to the normal, and even azimuths.
+        x, w = np.polynomial.legendre.leggauss(count)
+        t = 0.5 * (x + 1.0)
+        mu = t * t * (3.0 - 2.0 * t)  # dense at the horizon and around the normal
+        slope = 6.0 * t * (1.0 - t) * 0.5 * w
+        azimuth = np.arctan2(wo[:, 1], wo[:, 0])[:, np.newaxis, np.newaxis]
+        phi = azimuth + 2.0 * np.pi * (np.arange(count) + 0.5) / count
+        radius = np.sqrt(1.0 - mu * mu)[:, np.newaxis]
+        height = self.side * mu[:, np.newaxis] + 0.0 * phi
+        wi = rounded((radius * np.cos(phi), radius * np.sin(phi), height)).reshape(len(wo), -1, 3)
+        weights = np.repeat(slope * 2.0 / count, count)
+        return wi, np.broadcast_to(weights, wi.shape[:2])
+
+
+def _albedo(albedo: Callable[[Array, Inputs], Array], batch: Batch) -> Array:
+    """A directional albedo with weight, (N, 3)."""
+    return batch.strength * albedo(batch.wo, broadcast_inputs(batch))

@@ -1,0 +1,288 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The microfacet nodes in scatter mode R: dielectric, conductor and generalized Schlick."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+
+from mxeon.conformance.samples import (
+    LEAST_COLOR82,
+    LEAST_TURNED,
+    SEED,
+    TURNED,
+    Array,
+    Batch,
+    Counts,
+    Values,
+    directions,
+    rounded,
+)
+from mxeon.conformance.spec import Input, color
+from mxeon.conformance.specs.burley import VALUE as BURLEY_VALUE
+from mxeon.conformance.specs.lobes import NORMAL, WEIGHT, PbrSpec, lobe_errors
+from mxeon.conformance.specs.sheen import FIT_COSINE
+from mxeon.conformance.tolerance import (
+    Term,
+    Tolerance,
+    absolute,
+    given,
+    largest,
+    roundings,
+    sum_of,
+)
+from mxeon.models.nodes.microfacets import MICROFACET_NODES
+from mxeon.models.sampling.visible_normals import ggx_pdf, ggx_sample
+
+COUNTS = replace(PbrSpec.counts, diagnosed=1 << 8)  # references take long
+LEAST_ALPHA = 1e-3  # of random pairs
+LEAST_STRETCHED = 0.05  # alpha and cosine of anisotropic albedos: a sum over directions is coarse
+LEAST_INVERTED = 0.1  # index of a dielectric of which the inverse is taken
+LEAST_INDEX = 1.05  # above 1, to which shaders fit their averages: tools/fits/ggx_cosine.py
+LEAST_TANGENT_ALPHA = 0.05  # of values whose tangent is turned: what rounds is divided by it
+LEAST_TANGENT_COSINE = 0.1  # of the same
+
+INDEX = Input("ior", low=0.5, high=3.0, edges=(1.0, 1.5, 3.0), change=1.6, materials=(1.5, 1.2))
+FILM: Values = {"thinfilm_thickness": 400.0}
+FACETS = (
+    Input(
+        "roughness",
+        "vector2",
+        LEAST_ALPHA,
+        1.0,
+        (1e-4, 0.01, 1.0),
+        (0.3, 0.3),
+        logarithmic=True,
+        equal=True,
+        materials=((0.8, 0.8), (0.4, 0.4)),
+    ),
+    Input("retroreflective", "boolean", change=True),
+    Input("thinfilm_thickness", high=1000.0, edges=(0.0, 1.0, 100.0), change=400.0),
+    Input("thinfilm_ior", low=1.0, high=2.5, edges=(1.0, 1.5), change=2.0, needs=FILM),
+    NORMAL,
+    Input("tangent", "vector3", change=(0.6, 0.8, 0.0), needs={"roughness": (0.1, 0.4)}),
+)
+INPUTS = {
+    "dielectric_bsdf": (
+        WEIGHT,
+        color("tint", (0.2, 0.5, 0.8), (0.9, 0.6, 0.3)),
+        INDEX,
+        *FACETS,
+    ),
+    "conductor_bsdf": (
+        WEIGHT,
+        replace(
+            INDEX,
+            type="color3",
+            change=(0.9, 1.1, 1.6),
+            materials=((0.2, 0.9, 1.1), (1.5, 0.6, 2.0)),
+        ),
+        Input(
+            "extinction",
+            "color3",
+            0.2,
+            6.0,
+            (0.2, 3.0),
+            (0.9, 2.1, 3.6),
+            materials=((3.9, 2.5, 1.8), (0.5, 1.0, 4.0)),
+        ),
+        *FACETS,
+    ),
+    "generalized_schlick_bsdf": (
+        WEIGHT,
+        color("color0", (0.1, 0.4, 0.9), (0.8, 0.5, 0.2)),
+        color("color82", (0.5, 0.7, 0.8), (1.0, 1.0, 1.0)),
+        color("color90", (0.9, 0.8, 0.6), (1.0, 1.0, 1.0)),
+        Input("exponent", low=1.0, high=8.0, edges=(1.0, 5.0), change=2.5, materials=(5.0, 3.0)),
+        *FACETS,
+    ),
+}
+
+# Largest errors of the fits that shaders are held to, each found by its script in tools/fits.
+ESS_FIT = 5e-4  # ggx_albedo.py: albedo of GGX where every facet reflects everything, E_ss
+SMOOTH_ESS_FIT = 5.3e-5  # the same of smooth lobes, from a cosine of 0.05 on
+FRESNEL_FIT = 3.6e-4  # fresnel_average.py: mean of a Fresnel curve, F_ss
+LOBE_FIT = 3.2e-3  # ggx_cosine.py: albedo of GGX with a Fresnel curve
+DIP_FIT = 5.9e-3  # ggx_cosine.py: what a full dip at 82 degrees adds to it
+LEAST_ESS = 1.0 - math.log(2.0)  # E_ss at alpha 1 along the normal
+# Largest v / E_ss, v the value pi f cos of facets that reflect everything, or 1 if that is less, as
+# errors of a compensation count: at alpha 0.58 and a cosine of 0.6.
+SEEN_ESS = 1.58
+
+
+def sum_over(directions: int) -> Term:
+    """Error of a sum over so many directions of an environment, drawn for a microfacet lobe.
+
+    Measured on pictures of brushed metal in a furnace: 2.5e-2 of 64 directions, 5.1e-3 of 256, 1.4e-3 of
+    1024.
+    """
+    return Term(1.7 / directions, f"a sum over {directions} directions of an environment")
+
+
+ESS = Term(ESS_FIT / LEAST_ESS, "the fit of E_ss over the least, 0.31")
+COMPENSATION = (ESS, Term(FRESNEL_FIT * (1.0 - LEAST_ESS), "the fit of F_ss, times 1 - E_ss"))
+LOBE = Term(LOBE_FIT, "the fit of the lobe's albedo")
+HALF_DIP = Term((1.0 - LEAST_COLOR82) * DIP_FIT, "half of the fit of the dip at 82 degrees")
+# E_ss is least where values are small.
+VALUE = sum_of(
+    Term(ESS_FIT * SEEN_ESS, "the fit of E_ss, times 1.58 at most"),
+    Term(FRESNEL_FIT * (SEEN_ESS - 1.0), "the fit of F_ss, times 0.58"),
+)
+MEAN = sum_of(
+    ESS,
+    Term(FRESNEL_FIT * (1.0 - LEAST_ESS) / LEAST_ESS, "the fit of F_ss, times (1 - E_ss) / E_ss"),
+    unit="albedo",
+    metric=absolute,
+)
+# Of lobes that lose little, a sum of directions; of others the fits too, and a sum for alpha from 0.3 on.
+ENVIRONMENT = largest(
+    sum_of(sum_over(1024), unit="albedo", metric=absolute),
+    sum_of(
+        *COMPENSATION,
+        Term(5e-4, "a sum over 1024 directions for alpha from 0.3 on"),
+        unit="albedo",
+        metric=absolute,
+    ),
+)
+THROUGHPUT = sum_of(LOBE, ESS, unit="albedo", metric=absolute)
+SCHLICK_THROUGHPUT = sum_of(LOBE, HALF_DIP, ESS, unit="albedo", metric=absolute)
+# Twice the largest slope of the distribution, q^-4 of q^2 = h_z^2 + (h_x / a_x)^2 + (h_y / a_y)^2.
+FRAME = sum_of(
+    roundings(
+        2 * 2 * 5 / (2 * TURNED[0] * LEAST_TURNED),
+        "of two directions, five each, over twice the least cosine and the least alpha",
+    )
+)
+ERRORS = {
+    "picture albedo": sum_of(*COMPENSATION, sum_over(256), unit="albedo", metric=absolute),
+    "anisotropic_albedo": sum_of(*COMPENSATION, sum_over(1024), unit="albedo"),
+    # The half vector of exact directions has no other errors.
+    "shape": sum_of(roundings(2 * 64, "of two values"), unit="relative", metric=absolute),
+    # One function of the same numbers but for signs.
+    "retroreflection": BURLEY_VALUE,
+    "anisotropy": sum_of(
+        roundings(
+            2 * 2 * 2 / (2 * LEAST_TANGENT_COSINE * LEAST_TANGENT_ALPHA),
+            "of two directions, two each, over twice the least cosine and the least alpha",
+        )
+    ),
+    "dip": sum_of(HALF_DIP, unit="albedo", metric=absolute),
+    "denser": given(
+        0.78,
+        "albedo",
+        "the largest error of a cosine that is fitted to indices from 1.03 on",
+    ),
+}
+WHITE_FURNACE = given(
+    4e-3,
+    "light",
+    "what a repaired layer over white may gain or lose, 6e-4 of it by the quadrature",
+)
+
+
+def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
+    own = lobe_errors(VALUE, ENVIRONMENT, FRAME, 6e-4, throughput, WHITE_FURNACE, MEAN)
+    return {**ERRORS, **own, "lossless": own["integral"]}
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class FacetSpec(PbrSpec):
+    """A node of microfacets, whose values are large near the mirror direction."""
+
+    counts: Counts = COUNTS
+
+    least_cosine: ClassVar[float] = FIT_COSINE
+
+    def views(
+        self, batches: tuple[Batch, ...], few: tuple[Batch, ...], counts: Counts
+    ) -> tuple[Batch, ...]:
+        return tuple(
+            replace(batch, inputs=simple(batch.inputs))
+            for batch in super().views(batches, few, counts)
+        )
+
+    def mirrored(self, counts: Counts) -> tuple[Batch, Batch]:
+        """Two lights near the mirror direction of each view, by normals that the view sees."""
+        rng, count = np.random.default_rng(SEED), counts.mirrored
+        wo, inputs = directions(rng, count), self.random_inputs(rng, count)
+        first, second = (
+            reflected(wo, inputs["roughness"], rng.random(count), rng.random(count))
+            for _ in range(2)
+        )
+        above = (np.minimum(first[:, 2], second[:, 2]) > 0.0) & (wo[:, 2] > 0.0)
+        return Batch(wo, first, inputs).where(above), Batch(wo, second, inputs).where(above)
+
+    def stretched(self, counts: Counts) -> tuple[Batch, Array]:
+        """Views of materials whose roughness has a direction, and the integrals of their values."""
+        rng, count = np.random.default_rng(SEED), counts.materials
+        inputs = simple(self.random_inputs(rng, count))
+        inputs["roughness"] = rounded(LEAST_STRETCHED ** rng.random((2, count)))
+        batch = Batch(directions(rng, count), directions(rng, count), inputs)
+        batch = batch.where(batch.wo[:, 2] >= LEAST_STRETCHED)
+        return batch, self.integral(batch)
+
+    def turned(self, counts: Counts) -> Batch:
+        """Pairs in frames of their own, none with a sharp lobe, whose place would be uncertain.
+
+        Dielectrics are denser than air: at a critical angle their curve has an infinite slope.
+        """
+        batch = super().turned(counts)
+        changes = {"roughness": np.maximum(batch.inputs["roughness"], LEAST_TURNED)}
+        if "tint" in batch.inputs:
+            index = np.maximum(batch.inputs["ior"], LEAST_INVERTED)
+            changes["ior"] = np.maximum(index, 1.0 / index)
+        return batch.altered(**changes)
+
+    def integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
+        return simple(inputs)
+
+    def nodes(self, wo: Array, inputs: dict[str, Array], count: int) -> tuple[Array, Array]:
+        """Directions and weights of a quadrature over the normals that each view sees."""
+        # Gauss nodes of the height of visible normals, and even azimuths.
+        x, w = np.polynomial.legendre.leggauss(count)
+        height, around = np.meshgrid(0.5 * (x + 1.0), (np.arange(count) + 0.5) / count)
+        size = height.size
+        views, alpha = (np.repeat(each, size, axis=0) for each in (wo, inputs["roughness"]))
+        wi = reflected(
+            views, alpha, np.tile(height.ravel(), len(wo)), np.tile(around.ravel(), len(wo))
+        )
+        lit = wi[:, 2] > 0.0
+        wi[~lit] = (0.0, 0.0, 1.0)
+        density = np.where(lit, ggx_pdf(views, wi, alpha), np.inf)
+        weights = np.tile(np.meshgrid(0.5 * w, np.ones(count))[0].ravel() / count, len(wo))
+        return wi.reshape(len(wo), size, 3), (weights / (np.pi * density)).reshape(len(wo), size)
+
+
+def simple(inputs: Mapping[str, Array]) -> dict[str, Array]:
+    """Inputs whose albedo is that of the lobe and can be integrated.
+
+    The roughness is the same in both directions. The index of a dielectric is 1, where nothing is
+    reflected, or LEAST_INDEX and more: the fits of shaders begin there (docs/loading.md says how far off
+    they are between), and nodes^2 directions do not resolve a critical angle. Deep dips at 82 degrees,
+    which turn F negative, are left out.
+    """
+    changed = dict(inputs)
+    changed["roughness"] = np.repeat(inputs["roughness"][:, :1], 2, axis=1)
+    if np.ndim(inputs.get("ior", ())) == 1 and np.size(inputs.get("ior", ())):
+        index = np.asarray(inputs["ior"])
+        changed["ior"] = np.where(index > 1.0, np.maximum(index, LEAST_INDEX), 1.0)
+    if "color82" in inputs:
+        changed["color82"] = np.maximum(inputs["color82"], LEAST_COLOR82)
+    return changed
+
+
+def reflected(wo: Array, alpha: Array, height: Array, around: Array) -> Array:
+    """Mirror images of views about normals that they see, (N, 3)."""
+    return rounded(ggx_sample(wo, np.stack([height, around], axis=-1), alpha)[0].T)
+
+
+FACET_SPECS = tuple(
+    FacetSpec.of(
+        row,
+        INPUTS[row.category],
+        facet_errors(SCHLICK_THROUGHPUT if row.name == "schlick" else THROUGHPUT),
+    )
+    for row in MICROFACET_NODES
+)

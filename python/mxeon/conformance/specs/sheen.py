@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The sheen node: Zeltner's, whose value and albedo are closed forms, and Conty and Kulla's, with fits."""
+
+from functools import lru_cache
+from typing import ClassVar
+
+import numpy as np
+
+from mxeon.conformance.engine import COUNT, POWER
+from mxeon.conformance.samples import LEAST_SHEEN, SEED, float32
+from mxeon.conformance.spec import Input
+from mxeon.conformance.specs.lobes import (
+    CLOSED_ALBEDO,
+    COLOR,
+    FLAT_FRAME,
+    NORMAL,
+    WEIGHT,
+    PbrSpec,
+    lobe_errors,
+)
+from mxeon.conformance.tolerance import (
+    ROUNDING,
+    Term,
+    Tolerance,
+    absolute,
+    roundings,
+    sum_of,
+)
+from mxeon.hosts.base import Host
+from mxeon.models.nodes import node
+
+ROUGHNESS = Input(
+    "roughness", low=LEAST_SHEEN, edges=(0.01, 0.05, 1.0), change=0.3, materials=(0.8, 0.4)
+)
+INPUTS = (WEIGHT, COLOR, ROUGHNESS, NORMAL)
+FIT_COSINE = 1e-4  # least cosine of the domain of the fits
+EXPONENT = 1.0 / LEAST_SHEEN  # largest of a sine
+
+ZELTNER_VALUE = sum_of(
+    roundings(48, "of the value or 1: an inverse fourth power takes the 8 of a length four times")
+)
+LOGARITHM = 4 * 0.5 / LEAST_SHEEN  # four roundings of a logarithm, over twice the roughness
+CONTY_KULLA_VALUE = sum_of(
+    roundings(32), roundings(LOGARITHM, "in the logarithm of a sine, over twice the roughness")
+)
+CONTY_KULLA_ALBEDO = Tolerance(
+    (
+        Term(1.5e-3, "the fit of the albedo"),  # tools/fits/conty_kulla_albedo.py
+        CLOSED_ALBEDO.term("roundings of an albedo in closed form"),
+    ),
+    "albedo",
+    absolute,
+    exact=True,
+)
+
+
+class FittedSheen(PbrSpec):
+    """The sheen whose values are powers, and whose albedo a shader takes from a fit."""
+
+    least_cosine: ClassVar[float] = FIT_COSINE
+
+    def engine(self, quantity: str, host: Host) -> tuple[Term, ...]:
+        """What the engine's own power is off by beyond the roundings of a logarithm."""
+        excess = EXPONENT * ROUNDING + _error(host) - LOGARITHM * ROUNDING
+        return (Term(excess, "the engine's pow()"),) if quantity == "value" and excess > 0.0 else ()
+
+
+@lru_cache(maxsize=16)
+def _error(host: Host) -> float:
+    """Error of the sheen by the engine's own power, relative where the sheen exceeds 1.
+
+    The sheen, as pi f cos, is at most (2 + n) / 8 times a sine to the power of n, 1 / roughness.
+    """
+    rng = np.random.default_rng(SEED)
+    exponent = LEAST_SHEEN ** -rng.random(COUNT)
+    sine = float32(rng.random(COUNT) ** (1.0 / exponent))  # uniform powers
+    exponent = float32(exponent)
+    factor = (2.0 + exponent) / 8.0
+    scale = np.maximum(1.0, factor * sine**exponent)
+    return float((factor * POWER.errors(host, sine, exponent) / scale).max())
+
+
+ZELTNER = PbrSpec.of(
+    node("zeltner"), INPUTS, lobe_errors(ZELTNER_VALUE, CLOSED_ALBEDO, FLAT_FRAME, quadrature=1e-8)
+)
+CONTY_KULLA = FittedSheen.of(
+    node("conty_kulla"),
+    INPUTS,
+    {
+        **lobe_errors(CONTY_KULLA_VALUE, CONTY_KULLA_ALBEDO, FLAT_FRAME, quadrature=2e-4),
+        # The half vector has the same digits, and so has its power.
+        "reciprocity": sum_of(roundings(32)),
+    },
+)

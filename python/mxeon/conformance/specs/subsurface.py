@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Subsurface scattering: Lambert on a plane, and on a sphere, over which its profile spreads light."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import lru_cache, partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mxeon.conformance.samples import Array, Batch, Candidate, Counts, Values
+from mxeon.conformance.spec import ZERO, Input, broadcast_inputs
+from mxeon.conformance.specs.burley import ERRORS, FlatSpec
+from mxeon.conformance.specs.lobes import COLOR, NORMAL, WEIGHT
+from mxeon.conformance.tolerance import given, mean_error
+from mxeon.models.media.subsurface import FAR, blur_to
+from mxeon.models.nodes.subsurface import SUBSURFACE_NODE, circle_blur
+from mxeon.shaders.scene import BACK, SIDE, VIEW, Scene, local_directions, sphere
+
+LEAST_COSINE = 1e-6  # M_FLOAT_EPS of MaterialX
+COSINES = np.linspace(-1.0, 1.0, 129)
+SCENES = tuple(replace(scene, size=32) for scene in (SIDE, BACK))  # of a sphere of radius 1
+LEAST_HEIGHT = 0.3  # of its normals; next to the rim a pixel's point is far from the next one's
+MATERIALS: tuple[Values, ...] = (  # from one whose light is everywhere to one like a plane
+    {"color": (0.9, 0.6, 0.3), "radius": (0.5, 0.2, 0.05), "anisotropy": 0.0},
+    {"color": (0.4, 0.7, 1.0), "radius": (0.02, 0.1, 1.0), "anisotropy": 0.5},
+)
+# What may stand in the place of the radius, and of the far exponential's length, which is 3.
+EVEN = (0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.0)
+FARTHER = (1.0, 1.5, 2.0, 2.5, 4.0, 5.0, 6.0, 9.0, 12.0)
+
+# Straight towards or away from the light a whole circle comes into light at once: 9.3e-3 at most.
+RINGS = given(0.01, "pi f cos", "six circles instead of the profile's integral")
+RINGS_MEAN = given(
+    0.003, "pi f cos, mean", "twice the mean over a sphere of the errors of six circles", mean_error
+)
+
+
+class SubsurfaceSpec(FlatSpec):
+    """The node on a plane, where its radius and its anisotropy have no effect, and on a sphere."""
+
+    @property
+    def others(self) -> tuple[Candidate, ...]:
+        """Zero, and what MaterialX has in its place."""
+        return ZERO, Candidate("MaterialX's blur along a circle of radius 100", _blurred)
+
+    def turned(self, counts: Counts) -> Batch:
+        """Pairs in frames of their own, which no light leaves elsewhere: such a surface is not flat."""
+        return super().turned(counts).altered(radius=(0.0, 0.0, 0.0))
+
+    def spheres(self, counts: Counts) -> tuple[Batch, ...]:
+        """Points of a sphere under each light, for some materials."""
+        return tuple(_points(scene, inputs) for scene in SCENES for inputs in MATERIALS)
+
+
+def _blurred(batch: Batch) -> Array:
+    """What MaterialX has on a plane: light below the horizon and in shadow.
+
+    It has none where a cosine is rounded above 1, of which the arc cosine is not a number.
+    """
+    mu = batch.wi[:, 2]
+    shadow = 1.0 - np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))
+    lit = 1.0 - shadow * np.clip(mu, LEAST_COSINE, 1.0)[:, np.newaxis]
+    inputs = broadcast_inputs(batch)
+    light = np.where(mu[:, np.newaxis] > 1.0, 0.0, circle_blur(mu, inputs["radius"]))
+    return np.asarray(batch.strength * inputs["color"] * light * lit)
+
+
+SUBSURFACE = SubsurfaceSpec.of(
+    SUBSURFACE_NODE,
+    (WEIGHT, COLOR, Input("radius", "color3", high=2.0), NORMAL),
+    {**ERRORS, "sphere": RINGS, "sphere_mean": RINGS_MEAN},
+)
+
+
+def spread(batch: Batch, far: float = FAR) -> Array:
+    """Light on a unit sphere by the profile of l / (1 - g), (N, 3)."""
+    reach = np.array(batch.inputs["radius"]) / (1.0 - batch.inputs["anisotropy"])
+    return _light(batch, reach.tolist(), far)
+
+
+def _even(batch: Batch, reach: float) -> Array:
+    """Light on a unit sphere by one mean free path l / (1 - g), whatever the radius, (N, 3)."""
+    return _light(batch, [reach / (1.0 - batch.inputs["anisotropy"])] * 3)
+
+
+def _light(batch: Batch, reaches: Sequence[float], far: float = FAR) -> Array:
+    """Light on a unit sphere by the profiles of a mean free path for each channel, (N, 3)."""
+    mu = batch.wi[:, 2]
+    light = [np.interp(mu, COSINES, _profile(each, far)) for each in reaches]
+    return np.asarray(batch.inputs["color"] * np.stack(light, axis=-1))
+
+
+@lru_cache(maxsize=128)
+def _profile(reach: float, far: float) -> Array:
+    """The blurred cosine at COSINES: between them it is straight within 2e-4."""
+    return blur_to(COSINES, np.array(reach), far)
+
+
+def _around(batch: Batch) -> Array:
+    """Light on a unit sphere as MaterialX blurs it."""
+    mu = np.clip(batch.wi[:, 2], -1.0, 1.0)
+    radius = np.broadcast_to(batch.inputs["radius"], batch.wi.shape)
+    return np.asarray(batch.inputs["color"] * circle_blur(mu, radius, body=1.0))
+
+
+ON_SPHERES = (
+    Candidate("the diffusion profile over the sphere", spread),
+    Candidate(
+        "Lambert, whatever the radius",
+        lambda batch: np.asarray(batch.inputs["color"] * np.maximum(batch.wi[:, 2:], 0.0)),
+    ),
+    Candidate(
+        "the profile, whatever the anisotropy",
+        lambda batch: _light(batch, list(batch.inputs["radius"])),
+    ),
+    Candidate("MaterialX's blur along a circle of radius 1", _around),
+    *(
+        Candidate(
+            f"the profile of a mean free path of {each:g}, whatever the radius",
+            partial(_even, reach=each),
+        )
+        for each in EVEN
+    ),
+    *(
+        Candidate(
+            f"a far exponential of {each:g} mean free paths instead of {FAR:g}",
+            partial(spread, far=each),
+        )
+        for each in FARTHER
+    ),
+)
+
+
+def _points(scene: Scene, inputs: Values) -> Batch:
+    """Points of a sphere away from its rim, those in the shadow among them."""
+    normal = sphere(scene.size).normal[inner(scene.size)]
+    wo, wi = (local_directions(normal, each) for each in (VIEW, scene.light or VIEW))
+    return Batch(wo, wi, inputs, scene)
+
+
+def inner(size: int) -> NDArray[np.bool_]:
+    """Mask of a picture's points away from the rim of the sphere."""
+    points = sphere(size)
+    mask: NDArray[np.bool_] = points.mask & (points.normal[..., 2] > LEAST_HEIGHT)
+    return mask

@@ -1,0 +1,417 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Surface shaders, each with all of its lobes, against the layer equation."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from mxeon.conformance.reference import Host as Reference
+from mxeon.conformance.samples import (
+    SEED,
+    Array,
+    Batch,
+    Candidate,
+    Counts,
+    Values,
+    directions,
+    float32,
+)
+from mxeon.conformance.spec import CHANGED_COLOR, Input, LobeSpec, color, draw
+from mxeon.conformance.specs.lobes import LEAST_VIEW
+from mxeon.conformance.specs.microfacets import reflected, sum_over
+from mxeon.conformance.tolerance import Term, absolute, mean_scaled, sum_of
+from mxeon.errors import NotRun
+from mxeon.hosts.calls import NORMAL, TANGENT
+from mxeon.shaders.document.values import Plain
+from mxeon.shaders.generation import Shader, generate
+from mxeon.shaders.nodes import document_text, node_text
+
+# Inputs by the range that is asked of them; a change is another value than any default.
+RANGES = {
+    "color": color("", edges=()),
+    "share": Input("", change=0.7),
+    "rough": Input("", low=0.1, change=0.73),
+    "sheen_rough": Input("", low=0.15, change=0.745),
+    "fuzz_rough": Input("", low=0.4, change=0.82),
+    "index": Input("", low=1.1, high=2.5, change=2.08),
+    "thickness": Input("", high=1000.0, change=700.0),
+    "film": Input("", low=100.0, high=1000.0, change=730.0),
+}
+# The mean free path below the surface, which shows on a curved one: an evaluation has a plane.
+FREE_PATHS = ("subsurface_radius", "subsurface_scale", "subsurface_radius_scale")
+TURNED_FRAME = {"normal": (0.0, 0.6, 0.8), "tangent": (0.6, 0.8, 0.0)}
+
+
+def _ports(**names: str) -> tuple[Input, ...]:
+    """Inputs with the names in each of RANGES."""
+    return tuple(
+        replace(RANGES[key], name=name) for key, words in names.items() for name in words.split()
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Lobes:
+    """Inputs of a surface shader that its lobes may depend on."""
+
+    judged: tuple[Input, ...]  # those whose values have a reference
+    others: tuple[Input, ...]  # those of other lobes and of thin films, which are asked for energy
+    seen: Values  # a material in which every lobe takes part
+    more: Values  # further inputs, with values that this material does not have
+    # Inputs of `changed` that change no value of rasterized targets; docs/upstream/
+    # surface_inputs.md says why.
+    without_effect: tuple[str, ...]
+    white: Values  # a material that loses no light, by the layer equation
+    # What else the material has where an input is changed.
+    needs: Mapping[str, Values] = field(default_factory=dict)
+    # Inputs of `changed` that a curved surface alone has to show; that of pairs is a plane.
+    curved: tuple[str, ...] = ()
+
+    @cached_property
+    def changed(self) -> Values:
+        """For each input but FREE_PATHS a value that the material with every lobe does not have."""
+        ports = (each for each in (*self.judged, *self.others) if each.name not in FREE_PATHS)
+        changes = {each.name: each.change for each in ports if each.change is not None}
+        return {**changes, **self.more}
+
+
+STANDARD = Lobes(
+    _ports(
+        share="base diffuse_roughness metalness specular specular_anisotropy specular_rotation sheen coat coat_anisotropy coat_rotation coat_affect_color coat_affect_roughness",
+        color="base_color specular_color sheen_color coat_color",
+        rough="specular_roughness coat_roughness",
+        index="specular_IOR coat_IOR",
+        sheen_rough="sheen_roughness",
+    ),
+    _ports(
+        share="transmission transmission_extra_roughness subsurface subsurface_scale",
+        color="transmission_color subsurface_color subsurface_radius",
+        thickness="thin_film_thickness",
+        index="thin_film_IOR",
+    ),
+    seen={
+        "metalness": 0.4,
+        "specular_anisotropy": 0.5,
+        "sheen": 0.5,
+        "coat": 0.5,
+        "coat_anisotropy": 0.5,
+        "coat_affect_color": 0.5,
+        "coat_affect_roughness": 0.5,
+        "transmission": 0.4,
+        "subsurface": 0.4,
+        "thin_film_thickness": 400.0,
+    },
+    more=dict(
+        transmission_depth=2.0,
+        transmission_scatter=CHANGED_COLOR,
+        transmission_scatter_anisotropy=0.5,
+        transmission_dispersion=20.0,
+        subsurface_anisotropy=0.5,
+        thin_walled=True,
+        coat_normal=TURNED_FRAME["normal"],
+        **TURNED_FRAME,
+    ),
+    without_effect=(
+        "transmission_depth",
+        "transmission_scatter",
+        "transmission_scatter_anisotropy",
+        "transmission_dispersion",
+        "subsurface_anisotropy",
+    ),
+    curved=("subsurface_radius", "subsurface_scale"),
+    white={
+        "base": 1.0,
+        "base_color": (1.0, 1.0, 1.0),
+        "specular_roughness": 0.4,
+        "sheen": 1.0,
+        "coat": 1.0,
+    },
+)
+
+OPEN_PBR = Lobes(
+    _ports(
+        share="base_weight base_diffuse_roughness base_metalness specular_weight specular_roughness_anisotropy coat_weight coat_roughness_anisotropy coat_darkening fuzz_weight",
+        color="base_color specular_color coat_color fuzz_color",
+        rough="specular_roughness coat_roughness",
+        index="specular_ior coat_ior",
+        sheen_rough="fuzz_roughness",
+    ),
+    (
+        *_ports(
+            share="transmission_weight subsurface_weight subsurface_radius",
+            color="transmission_color subsurface_color subsurface_radius_scale",
+        ),
+        *_ports(share="thin_film_weight thin_film_thickness", index="thin_film_ior"),
+    ),
+    seen={
+        "base_metalness": 0.4,
+        "specular_roughness_anisotropy": 0.5,
+        "coat_weight": 0.5,
+        "coat_roughness": 0.4,
+        "coat_roughness_anisotropy": 0.5,
+        "fuzz_weight": 0.5,
+        "transmission_weight": 0.4,
+        "transmission_color": (0.5, 0.6, 0.7),
+        "subsurface_weight": 0.4,
+        "thin_film_weight": 0.5,
+    },
+    more=dict(
+        transmission_depth=2.0,
+        transmission_scatter=CHANGED_COLOR,
+        transmission_scatter_anisotropy=0.5,
+        transmission_dispersion_scale=0.5,
+        transmission_dispersion_abbe_number=40.0,
+        subsurface_scatter_anisotropy=0.5,
+        geometry_thin_walled=True,
+        geometry_normal=TURNED_FRAME["normal"],
+        geometry_tangent=TURNED_FRAME["tangent"],
+        geometry_coat_normal=TURNED_FRAME["normal"],
+        geometry_coat_tangent=TURNED_FRAME["tangent"],
+    ),
+    without_effect=(
+        "transmission_scatter",
+        "transmission_scatter_anisotropy",
+        "transmission_dispersion_scale",
+        "transmission_dispersion_abbe_number",
+        "subsurface_scatter_anisotropy",
+    ),
+    curved=("subsurface_radius", "subsurface_radius_scale"),
+    needs={"subsurface_weight": {"subsurface_color": CHANGED_COLOR}},  # on a plane, its base else
+    white={
+        "base_weight": 1.0,
+        "base_color": (1.0, 1.0, 1.0),
+        "base_diffuse_roughness": 0.5,
+        "coat_weight": 1.0,
+        "coat_roughness": 0.3,
+        "coat_darkening": 0.0,
+        "fuzz_weight": 1.0,
+        "fuzz_color": (1.0, 1.0, 1.0),
+    },
+)
+
+GLTF = Lobes(
+    _ports(
+        color="base_color specular_color sheen_color",
+        share="metallic specular anisotropy_strength anisotropy_rotation clearcoat",
+        rough="roughness clearcoat_roughness",
+        index="ior",
+        fuzz_rough="sheen_roughness",
+    ),
+    _ports(share="transmission iridescence", index="iridescence_ior", film="iridescence_thickness"),
+    seen={
+        "metallic": 0.4,
+        "roughness": 0.5,
+        "anisotropy_strength": 0.5,
+        "sheen_color": (0.4, 0.5, 0.6),
+        "sheen_roughness": 0.5,
+        "clearcoat": 0.5,
+        "transmission": 0.4,
+        "iridescence": 0.5,
+        "iridescence_thickness": 400.0,
+    },
+    more=dict(
+        thickness=0.5,
+        attenuation_distance=2.0,
+        attenuation_color=CHANGED_COLOR,
+        dispersion=0.5,
+        clearcoat_normal=TURNED_FRAME["normal"],
+        **TURNED_FRAME,
+    ),
+    without_effect=("thickness", "attenuation_distance", "attenuation_color", "dispersion"),
+    white={
+        "base_color": (1.0, 1.0, 1.0),
+        "metallic": 0.0,
+        "roughness": 0.5,
+        "sheen_color": (1.0, 1.0, 1.0),
+        "sheen_roughness": 0.6,
+        "clearcoat": 1.0,
+        "clearcoat_roughness": 0.4,
+    },
+)
+
+PREVIEW = Lobes(
+    _ports(
+        color="diffuseColor specularColor",
+        share="metallic clearcoat",
+        rough="roughness clearcoatRoughness",
+        index="ior",
+    ),
+    _ports(share="opacity"),
+    seen={"metallic": 0.4, "clearcoat": 0.5, "opacity": 0.6},
+    more=dict(
+        useSpecularWorkflow=1,
+        opacityMode=1,
+        opacityThreshold=0.5,
+        normal=(0.6, 0.0, 0.8),
+        displacement=0.5,
+    ),
+    without_effect=("displacement",),
+    white={"diffuseColor": (1.0, 1.0, 1.0), "clearcoat": 1.0, "clearcoatRoughness": 0.4},
+    needs={"specularColor": {"useSpecularWorkflow": 1}},
+)
+
+
+CHANGED = 8  # pairs that a change of an input has to show in
+SPREAD = 0.3  # alpha of the lobe in which half of the lights lie about the mirror direction
+STRETCHED = "anisotropy"  # in the names of inputs: an environment is summed too coarsely for them
+# Largest errors by the fits of all lobes of a material, of 32 sets of the size that a check asks for, with
+# the layer equation in float64: tools/fits/surface_shaders.py. They are a third of the sum of what each lobe's
+# fits change at most, since no material has the worst of all.
+VALUE = sum_of(Term(3.5e-3, "the fits of all lobes of a material, over 32 sets of 256 pairs"))
+ALBEDO = sum_of(
+    Term(2.6e-3, "the fits of all lobes of a material, over 32 sets of 64 views"),
+    sum_over(1024),
+    unit="albedo",
+    metric=absolute,
+)
+# The sums of 64 views err independently of each other.
+MEAN = sum_of(
+    Term(2.2e-4, "the mean of the errors by fits, over 32 sets of 64 views"),
+    Term(sum_over(1024).value / 8.0, "sums over 1024 directions, over the root of 64 views"),
+    unit="pi f cos, relative above 1, or albedo, mean",
+    metric=mean_scaled,
+)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class SurfaceShaderSpec(LobeSpec):
+    """A surface shader with every lobe on."""
+
+    table: Lobes
+    library: str = "eonlib"  # whose document the reference evaluates
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(self.table.changed)
+
+    def within(self, library: str) -> "SurfaceShaderSpec":
+        return replace(self, library=library)
+
+    def document(self, inputs: Values | None = None) -> str:
+        return document_text(node_text(self.node, "surfaceshader", "shading"))
+
+    # What it has to be.
+
+    def value(self, batch: Batch) -> Array:
+        return np.pi * self._reference(batch, "direct")
+
+    def albedo(self, batch: Batch) -> Array:
+        return self._reference(batch, "environment")
+
+    @cached_property
+    def _shader(self) -> Shader:
+        [shader] = generate(self.document(), "glsl", library=self.library)
+        return shader
+
+    def _reference(self, batch: Batch, branch: str) -> Array:
+        return Reference().evaluate(self._shader, batch.wo, batch.wi, batch.inputs, branch)
+
+    @property
+    def value_candidates(self) -> tuple[Candidate, ...]:
+        return ()
+
+    @property
+    def albedo_candidates(self) -> tuple[Candidate, ...]:
+        return ()
+
+    @property
+    def black(self) -> Values:
+        return {}
+
+    # Its samples.
+
+    def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
+        return draw(rng, count, self.table.judged)
+
+    def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
+        return draw(rng, count, (*self.table.judged, *self.table.others))
+
+    def edges(self, counts: Counts) -> Batch:
+        return self.materials(counts)
+
+    def batches(self, counts: Counts) -> tuple[Batch, ...]:
+        """Random pairs, half of them near the mirror direction, with random materials."""
+        rng, count = np.random.default_rng(SEED), counts.pairs
+        wo, wi = _views(rng, count), directions(rng, count)
+        alpha = np.full((count, 2), SPREAD)
+        near = reflected(wo, alpha, rng.random(count), rng.random(count))
+        kept = (np.arange(count) % 2 == 0) & (near[:, 2] > 0.0)
+        wi = np.where(kept[:, np.newaxis], near, wi)
+        return (Batch(wo, wi, self.random_inputs(rng, count)),)
+
+    def few(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
+        return batches
+
+    def views(
+        self, batches: tuple[Batch, ...], few: tuple[Batch, ...], counts: Counts
+    ) -> tuple[Batch, ...]:
+        return (_isotropic(batches[0].first(counts.albedos)),)
+
+    def materials(self, counts: Counts) -> Batch:
+        """Views of materials in which every lobe takes part."""
+        rng, count = np.random.default_rng(SEED), counts.materials
+        wo = _views(rng, count)
+        return _isotropic(Batch(wo, wo, self.special_inputs(rng, count)))
+
+    def changed(self, batch: Batch, ports: Mapping[str, Plain]) -> Batch:
+        """A few views for each input: of the material with every lobe, then with a change of it.
+
+        `ports` has the values of the inputs that a document does not set.
+        """
+        table = self.table
+        rows = []
+        for name in self.names:
+            before = {**table.seen, **table.needs.get(name, {})}
+            rows += [before, {**before, name: table.changed[name]}]
+        few = batch.first(CHANGED)
+        vectors = {
+            name: TANGENT if "tangent" in name else NORMAL
+            for name in self.names
+            if name.endswith(("normal", "tangent"))
+        }
+        defaults = {**vectors, **ports}
+        names = sorted({name for row in rows for name in row})
+        if missing := [name for name in names if name not in defaults]:
+            raise NotRun(
+                f"{self.node} of this MaterialX lacks an input that is varied: {', '.join(missing)}"
+            )
+        inputs = {
+            name: np.repeat(
+                [np.asarray(row.get(name, defaults[name]), float) for row in rows], CHANGED, 0
+            )
+            for name in names
+        }
+        return Batch(np.tile(few.wo, (len(rows), 1)), np.tile(few.wi, (len(rows), 1)), inputs)
+
+
+def _views(rng: np.random.Generator, count: int) -> Array:
+    """Random directions, none so grazing that a sheen's own equations gain energy."""
+    wo = directions(rng, count)
+    return float32(np.where(wo[:, 2:] < LEAST_VIEW, [0.6, 0.0, 0.8], wo))
+
+
+def _isotropic(batch: Batch) -> Batch:
+    """The same pairs with lobes that are not stretched."""
+    return batch.altered(
+        **{name: np.zeros(len(batch.wo)) for name in batch.inputs if STRETCHED in name}
+    )
+
+
+def _spec(node: str, table: Lobes) -> SurfaceShaderSpec:
+    return SurfaceShaderSpec(
+        title=f"{node}, every lobe",
+        node=node,
+        model=node,
+        table=table,
+        errors={"value": VALUE, "albedo": ALBEDO, "lobes_mean": MEAN},
+        counts=Counts(256, albedos=64, materials=1 << 11),  # a material a pair
+    )
+
+
+SURFACE_SHADERS = (
+    _spec("standard_surface", STANDARD),
+    _spec("open_pbr_surface", OPEN_PBR),
+    _spec("gltf_pbr", GLTF),
+    _spec("UsdPreviewSurface", PREVIEW),
+)

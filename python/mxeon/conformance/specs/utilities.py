@@ -1,0 +1,306 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Each output of the utility nodes of pbrlib, which compute numbers and colors that feed the lobes.
+
+An error is relative to the largest component where that exceeds 1; of an artistic index it is in units
+in which its roundings are alike.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from mxeon.conformance.engine import LOGARITHM, POWER
+from mxeon.conformance.samples import (
+    SEED,
+    Array,
+    Batch,
+    Candidate,
+    Changes,
+    Counts,
+    Values,
+    float32,
+)
+from mxeon.conformance.spec import COMPONENTS, Input, ValueSpec, draw, draw_edges, row_candidates
+from mxeon.conformance.tolerance import Term, Tolerance, absolute, given, roundings, scaled, sum_of
+from mxeon.hosts.base import Host
+from mxeon.hosts.calls import GRAPH
+from mxeon.models.nodes.utilities import LARGEST_REFLECTIVITY, UTILITIES, UtilityNode
+from mxeon.models.nodes.utilities import Values as Outputs
+from mxeon.shaders.nodes import connection_text, document_text, input_text, node_text
+
+NAME, COLOR = "value", "color"  # of the node in its document, and of its conversion to a color
+TYPES = {(): "float", (2,): "vector2", (3,): "color3"}  # types of the inputs by shape
+SHARES = (0.0, 1e-4, 1e-3, 0.5, 0.98, 0.99, 0.9999, 1.0)  # edges of most inputs
+PIGMENTS = (0.01, 0.5, 1.0)
+TEMPERATURES = (800.0, 1000.0, 1667.0, 2222.0, 4000.0, 6504.0, 25000.0)
+BEYOND = (-1.0, 0.0, 0.5, 1.0, 2.0, 1e3)  # of an input that may leave its range
+COLD = (-1.0, 0.0, 1.0, 800.0, 25000.0, 1e9)  # temperatures of the same
+# Inputs with a range or a change of their own. A change is from the default of a document.
+INPUTS = {
+    each.name: each
+    for each in (
+        Input(
+            "temperature",
+            "float",
+            TEMPERATURES[0],
+            TEMPERATURES[-1],
+            TEMPERATURES,
+            2000.0,
+            logarithmic=True,
+            default=5000.0,
+        ),
+        Input("scale_TT", high=3.0, edges=(0.0, 0.5, 1.0), change=0.7, default=0.5),
+        Input("scale_TRT", high=3.0, edges=(0.0, 1.0, 2.0), change=1.5, default=2.0),
+        Input("eumelanin_color", "color3", 0.01, 1.0, PIGMENTS, 0.25, default=0.5),
+        Input("pheomelanin_color", "color3", 0.01, 1.0, PIGMENTS, 0.25, default=0.7),
+    )
+}
+
+UNIT = "relative above 1"
+# 0.98 is rounded by half of one, over 2 (1 - 0.98) in the aspect; the least alpha, 1e-8, is less than either.
+ALPHA = sum_of(
+    roundings(12),
+    roundings(0.25 / 0.02, "(half of one of 0.98, over 0.04)"),
+    unit="alpha",
+    metric=absolute,
+)
+BLACKBODY = sum_of(
+    Term(1.9e-4, "the fits of X and Z: 1.2e-4 in red, 7e-5 in a clipped luminance"),
+    unit=UNIT,
+)
+ERRORS: Mapping[str, dict[str, Tolerance]] = {
+    "roughness_anisotropy": {"value": ALPHA},
+    "roughness_dual": {"value": sum_of(roundings(2), unit="alpha", metric=absolute)},
+    "glossiness_anisotropy": {"value": ALPHA},
+    "artistic_ior, ior": {
+        # n_max is 1 in this unit at most.
+        "value": sum_of(
+            roundings(16, "four over 1 - sqrt(r), six beside, six in the mix"),
+            unit="n (1 - sqrt(r))^2",
+            metric=absolute,
+        ),
+        # k^2 makes up for the error of n.
+        "round_trip": sum_of(roundings(16), unit="reflectance", metric=absolute),
+    },
+    "artistic_ior, extinction": {
+        "value": sum_of(
+            roundings(8 + 16 + 4, "8 of the terms of k^2, 16 of n, 4 of 1 - r and the root"),
+            unit="k^2 (1 - r) / (n_max + 1)^2",
+            metric=absolute,
+        )
+    },
+    "blackbody": {
+        "value": BLACKBODY,
+        "value in OSL": given(
+            4e-3,
+            UNIT,
+            "OSL's blackbody() has an observer from 380 nm to 780 nm, a table and primaries of its own",
+            scaled,
+        ),
+    },
+    "chiang_hair_roughness": {"value": sum_of(roundings(24), unit=UNIT)},
+    "deon_hair_absorption_from_melanin": {"value": sum_of(roundings(16), unit=UNIT)},
+    "chiang_hair_absorption_from_color": {
+        "value": sum_of(roundings(2 * 12, "of a square"), unit=UNIT)
+    },
+}
+FEWER = 1 << 12  # arguments of an engine's functions
+LEAST_LOGARITHM = 1e-4  # number whose logarithm is measured
+
+
+@lru_cache(maxsize=16)
+def _power_error(host: Host) -> float:
+    """Error of the engine's own 20th and 22nd power in [0, 1]."""
+    x = _shares()
+    return float(POWER.errors(host, x, np.where(np.arange(len(x)) % 2, 20.0, 22.0)).max())
+
+
+@lru_cache(maxsize=16)
+def _logarithm_error(host: Host) -> float:
+    """Error of the engine's own logarithm of numbers below 1."""
+    return float(LOGARITHM.errors(host, float32(LEAST_LOGARITHM ** (1.0 - _shares()))).max())
+
+
+def _shares() -> Array:
+    """Numbers in [0, 1], the last of which is 1."""
+    return float32(np.append(np.random.default_rng(SEED).random(FEWER), 1.0))
+
+
+# What an engine's function adds, by node: the other factor of a product, or a slope.
+ENGINE: Mapping[str, tuple[float, Callable[[Host], float], str]] = {
+    "chiang_hair_roughness": (1.5, _power_error, "the engine's pow(), times 2 x 3.7 / 5.24"),
+    "deon_hair_absorption_from_melanin": (
+        14.0,
+        _logarithm_error,
+        "the engine's log(), times 9.2 of the concentration and 4.6 of the colors",
+    ),
+    "chiang_hair_absorption_from_color": (
+        2.0,
+        _logarithm_error,
+        "the engine's log(), times 2 x 6.9 / 3.4^2",
+    ),
+}
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class UtilitySpec(ValueSpec):
+    """An output of a node of `mxeon.models.nodes.utilities`."""
+
+    row: UtilityNode
+    output: str
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(  # one scale belongs to one lobe
+            name
+            for name in self.row.inputs
+            if not name.startswith("scale_") or name.endswith(self.output.removeprefix("roughness"))
+        )
+
+    @property
+    def changes(self) -> dict[str, Changes]:
+        before = {each.name: _filled(each, each.default) for each in self.inputs}
+        return {
+            each.name: (before, {**before, each.name: _filled(each, each.change)})
+            for each in self.inputs
+            if each.name in self.names
+        }
+
+    def document(self, inputs: Values | None = None) -> str:
+        values = {**self.row.inputs, **(inputs or {})}
+        ports = "".join(
+            input_text(name, self._type(name), values[name]) for name in self.row.inputs
+        )
+        kind, single = self.row.outputs[self.output], len(self.row.outputs) == 1
+        text = node_text(self.node, kind if single else "multioutput", NAME, ports)
+        source, port = NAME, "" if single else self.output
+        if kind != "color3":
+            text += node_text("convert", "color3", COLOR, connection_text("in", kind, NAME, port))
+            source, port = COLOR, ""
+        text += node_text(
+            "uniform_edf", "EDF", "lobe", connection_text("color", "color3", source, port)
+        )
+        surface = connection_text("edf", "EDF", "lobe")
+        return document_text(text + node_text("surface", "surfaceshader", "shading", surface))
+
+    def engine(self, quantity: str, host: Host) -> tuple[Term, ...]:
+        if quantity != "value" or self.node not in ENGINE:
+            return ()
+        factor, error, words = ENGINE[self.node]
+        return (Term(factor * error(host), words),)
+
+    def batches(self, counts: Counts) -> tuple[Batch, ...]:
+        rng, count = np.random.default_rng(SEED), counts.pairs
+        return _batch(draw(rng, count, self.inputs)), _batch(draw_edges(rng, count, self.inputs))
+
+    def few(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
+        return tuple(batch.first(counts.few) for batch in batches)
+
+    def outside(self, counts: Counts) -> Batch:
+        """Values at the ends of the ranges and beyond them."""
+        rng, count = np.random.default_rng(SEED), counts.pairs
+        return _batch(
+            {
+                name: rng.choice(
+                    COLD if name == "temperature" else BEYOND, (count, *self._shape(name))
+                )
+                for name in self.row.inputs
+            }
+        )
+
+    def values(self, function: Outputs, batch: Batch) -> Array:
+        """The output as a color, whose missing channels are 0, (N, 3)."""
+        output = np.asarray(function(self._whole(batch))[self.output])
+        color = np.zeros((len(batch.wo), 3))
+        color[:, : output.shape[-1]] = output
+        return color
+
+    def value(self, batch: Batch) -> Array:
+        return self.values(self.row.value, batch)
+
+    @property
+    def value_candidates(self) -> tuple[Candidate, ...]:
+        return row_candidates(self.row, self.values)
+
+    @property
+    def unit(self) -> Callable[[Array, Batch], Array]:
+        """The values in a unit in which their roundings are alike."""
+        return UNITS.get(self.title, lambda values, batch: values)
+
+    def _whole(self, batch: Batch) -> dict[str, Array]:
+        """All inputs with a row for each element."""
+        count, whole = len(batch.wo), {}
+        for name, default in self.row.inputs.items():
+            value = np.asarray(batch.inputs.get(name, default), np.float64)
+            whole[name] = np.broadcast_to(value, (count, *self._shape(name)))
+        return whole
+
+    def _type(self, name: str) -> str:
+        return TYPES[self._shape(name)]
+
+    def _shape(self, name: str) -> tuple[int, ...]:
+        return np.shape(self.row.inputs[name])
+
+
+def _of_index(values: Array, batch: Batch) -> Array:
+    """n (1 - sqrt(r))^2: a rounding of 1 - sqrt(r) is divided by it in n."""
+    root = np.sqrt(_reflectivity(batch))
+    return np.asarray(values * np.square(1.0 - root))
+
+
+def _of_extinction(values: Array, batch: Batch) -> Array:
+    """k^2 (1 - r) / (n_max + 1)^2: k^2 is a difference of terms that large, over 1 - r."""
+    r = _reflectivity(batch)
+    largest = 2.0 / (1.0 - np.sqrt(r))  # n_max + 1
+    return np.asarray(np.square(values) * (1.0 - r) / np.square(largest))
+
+
+def _reflectivity(batch: Batch) -> Array:
+    return np.asarray(np.clip(batch.inputs["reflectivity"], 0.0, LARGEST_REFLECTIVITY))
+
+
+# Of outputs in which a rounding grows, by title.
+UNITS: Mapping[str, Callable[[Array, Batch], Array]] = {
+    "artistic_ior, ior": _of_index,
+    "artistic_ior, extinction": _of_extinction,
+}
+
+
+def _batch(inputs: Mapping[str, Array]) -> Batch:
+    """A batch of inputs, whose directions mean nothing."""
+    count = len(next(iter(inputs.values())))
+    up = np.broadcast_to([0.0, 0.0, 1.0], (count, 3))
+    return Batch(up, up, inputs)
+
+
+def _filled(row: Input, value: ArrayLike | None) -> ArrayLike:
+    """A number in each component of an input."""
+    filled: list[float] | float = np.full(COMPONENTS[row.type], value).tolist()
+    return filled
+
+
+def _spec(row: UtilityNode, output: str) -> UtilitySpec:
+    title = row.category if len(row.outputs) == 1 else f"{row.category}, {output}"
+
+    def usual(name: str) -> Input:
+        kind = TYPES[np.shape(row.inputs[name])]
+        return Input(name, kind, edges=SHARES, change=0.25, default=0.5)
+
+    return UtilitySpec(
+        title=title,
+        node=row.category,
+        model=row.name,
+        row=row,
+        output=output,
+        inputs=tuple(INPUTS.get(name, usual(name)) for name in row.inputs),
+        errors=ERRORS.get(title) or ERRORS[row.category],
+        closure=False,
+        counts=Counts(1 << 12, 1 << 9, 1 << 9),
+        asked=(GRAPH, "response", 1.0),
+    )
+
+
+UTILITY_SPECS = tuple(_spec(row, output) for row in UTILITIES for output in row.outputs)

@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Measured values beside expected ones, their errors, and the largest error that passes as a sum of terms."""
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import reduce
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from mxeon.conformance.samples import Array, Batch, Values
+
+Metric = Callable[[Array, Array], Array]  # of measured and expected values: error of each row
+
+SCALED = "pi f cos, relative above 1"
+ROUNDING = 2.0**-24  # unit roundoff of float32
+
+
+class Compared(NamedTuple):
+    """A batch with measured and expected values."""
+
+    batch: Batch
+    measured: Array
+    expected: Array
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """The worst error of a check, and its sample."""
+
+    error: float
+    worst: dict[str, list[float]]  # inputs and values of the worst sample, by name
+
+
+def _largest(values: Array) -> Array:
+    """Largest of the last axis, channel by channel: NumPy's maximum takes five times as long."""
+    return reduce(np.maximum, np.moveaxis(values, -1, 0))
+
+
+def absolute(measured: ArrayLike, expected: ArrayLike) -> Array:
+    """Largest difference of each row; infinity for what is not a number."""
+    error = _largest(np.abs(np.subtract(measured, expected)))
+    return np.where(np.isfinite(error), error, np.inf)
+
+
+def _scale(expected: Array) -> Array:
+    return np.asarray(np.maximum(1.0, _largest(np.abs(expected)))[..., np.newaxis])
+
+
+def scaled(measured: Array, expected: Array) -> Array:
+    """Largest difference of each row, relative to its largest expected value where that exceeds 1."""
+    scale = _scale(expected)
+    return absolute(measured / scale, expected / scale)
+
+
+def relative(measured: Array, expected: Array) -> Array:
+    return absolute(measured / expected, 1.0)
+
+
+def mean_error(measured: Array, expected: Array) -> Array:
+    """Difference of the means over all rows, for every row: noise averages out."""
+    return np.broadcast_to(absolute(np.mean(measured - expected, axis=0), 0.0), len(measured))
+
+
+def mean_scaled(measured: Array, expected: Array) -> Array:
+    """Mean of the differences of all rows, each relative to its largest expected value above 1."""
+    scale = _scale(expected)
+    return mean_error(measured / scale, expected / scale)
+
+
+def root_mean_square(measured: Array, expected: Array) -> Array:
+    """Root mean square of the largest differences of all rows, for every row.
+
+    It notices a small error of many rows, where the largest error leaves room for that of a few.
+    """
+    errors = absolute(measured, expected)
+    return np.broadcast_to(np.sqrt(np.mean(errors * errors)), len(errors))
+
+
+def worst_of(metric: Metric, compared: Iterable[Compared]) -> Measurement:
+    worst = Measurement(-1.0, {})
+    for batch, measured, expected in compared:
+        errors = metric(measured, expected)
+        row = int(np.argmax(errors))
+        if errors[row] > worst.error:
+            expected = np.broadcast_to(expected, measured.shape)
+            values = {"measured": measured[row].tolist(), "expected": expected[row].tolist()}
+            worst = Measurement(float(errors[row]), {**point_of(batch, row), **values})
+    return worst
+
+
+def count_not_finite(batch: Batch, values: Array) -> Measurement:
+    """Number of rows that are not finite, and the first of them."""
+    bad = ~np.isfinite(values).all(axis=1)
+    return Measurement(int(bad.sum()), point_of(batch, int(bad.argmax())) if bad.any() else {})
+
+
+def count_named(names: Sequence[str]) -> Measurement:
+    """Number of inputs that are wrong, and their names."""
+    return Measurement(len(names), {name: [0.0] for name in names})
+
+
+def point_of(batch: Batch, row: int) -> dict[str, list[float]]:
+    columns: Values = {"wo": batch.wo, "wi": batch.wi, **batch.inputs}
+    return {
+        name: np.ravel(
+            np.asarray(values)[row] if np.shape(values)[:1] == (len(batch.wo),) else values
+        )
+        .astype(float)
+        .tolist()
+        for name, values in columns.items()
+    }
+
+
+class Term(NamedTuple):
+    """An error that adds to others, and what makes it."""
+
+    value: float
+    words: str
+
+
+def roundings(count: float, words: str = "") -> Term:
+    """The error of so many roundings of float32, each half a unit in the last place of 1."""
+    return Term(count * ROUNDING, f"{count:.3g} float32 roundings{words and ' '}{words}")
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """The largest error that passes: a sum of terms, rounded up to one digit unless it is `exact`."""
+
+    terms: tuple[Term, ...]
+    unit: str = SCALED
+    metric: Metric = scaled  # error of each row
+    exact: bool = False
+
+    @property
+    def value(self) -> float:
+        total = sum(term.value for term in self.terms)
+        return total if self.exact or not total else rounded_up(total)
+
+    @property
+    def derivation(self) -> str:
+        text = " + ".join(
+            f"{words} ({value:.2g})" if value else words for value, words in self.terms
+        )
+        return text if self.exact or not self.value else f"{text}, rounded up"
+
+    def plus(self, *terms: Term) -> "Tolerance":
+        return replace(self, terms=(*self.terms, *terms))
+
+    def term(self, words: str, factor: float = 1.0) -> Term:
+        """The whole as a term of another tolerance."""
+        return Term(factor * self.value, words)
+
+    def scale(self, expected: Array) -> Array:
+        """Numbers that errors are divided by, which are 1 but for large scaled values, (N, 1)."""
+        if self.metric is not scaled:
+            return np.ones((len(expected), 1))
+        return _scale(expected)
+
+
+def sum_of(*terms: Term, unit: str = SCALED, metric: Metric = scaled) -> Tolerance:
+    return Tolerance(terms, unit, metric)
+
+
+def given(value: float, unit: str, words: str, metric: Metric = absolute) -> Tolerance:
+    """A tolerance of one term, taken as it is."""
+    return Tolerance((Term(value, words),), unit, metric, exact=True)
+
+
+def count_of(unit: str) -> Tolerance:
+    """The tolerance of a count, which must be 0."""
+    return given(0.0, unit, "a count")
+
+
+def largest(*tolerances: Tolerance) -> Tolerance:
+    return max(tolerances, key=lambda each: each.value)
+
+
+def rounded_up(value: float) -> float:
+    """The next number with one digit.
+
+    >>> rounded_up(1.94e-6)
+    2e-06
+    """
+    exponent = math.floor(math.log10(value))
+    return float(f"{math.ceil(value / 10.0**exponent)}e{exponent}")

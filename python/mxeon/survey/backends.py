@@ -1,0 +1,339 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Nodes that a renderer has of its own, and how it is asked about them: by pictures, or for pairs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from typing import ClassVar, cast
+
+import numpy as np
+
+from mxeon import hosts
+from mxeon.conformance.backends import (
+    BACKENDS,
+    CYCLES_NOISE,
+    CYCLES_RAY,
+    EXACT,
+    EXACT_ALBEDO,
+    OWN_NODES,
+    PICTURE_INPUTS,
+    PICTURE_SIZE,
+    Backend,
+    CyclesPictures,
+    Mask,
+    Pairs,
+    PictureSamples,
+    Samples,
+    lit_pairs,
+    scene_of,
+)
+from mxeon.conformance.results import Claims
+from mxeon.conformance.samples import (
+    SEED,
+    Array,
+    Batch,
+    Counts,
+    Values,
+    directions,
+    outside_directions,
+    special_directions,
+)
+from mxeon.conformance.spec import Spec
+from mxeon.conformance.specs.diffuse import DiffuseModelSpec, difference_of, model_value
+from mxeon.conformance.tolerance import (
+    Term,
+    Tolerance,
+    absolute,
+    mean_error,
+    roundings,
+    sum_of,
+)
+from mxeon.hosts.base import RendererHost
+from mxeon.models import table as reference
+from mxeon.models.table import OTHERS, Model
+from mxeon.shaders.facets import NARROWEST, facet_points
+from mxeon.shaders.scene import FURNACE, Scene, sphere
+
+BLACK = (0.0, 0.0, 0.0)
+FACET_PIXELS = 7169  # of a picture of the polyhedron that lie in one facet and are judged
+FEW_CALLS = Counts(1 << 13)  # a renderer's own function is called for each
+SHORTEST = 2.0**-10  # wo + wi of special pairs: Fresnel's formulas square its cosine, and round it
+EXACT_INPUTS: tuple[Values, ...] = (  # from dark to white and from rough to smooth
+    {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
+    {"color": (0.02, 0.05, 0.1), "roughness": 1.0},
+    {"color": (1.0, 0.8, 0.0), "roughness": 0.75},
+    {"color": (0.8, 0.4, 0.1), "roughness": 0.5},
+    {"color": (0.5, 0.2, 1.0), "roughness": 0.1},
+)
+# The normal of a facet: three float32 vertices, over the narrowest edge, twice for its two ends.
+FACETS = sum_of(
+    roundings(8 * 2.0 * math.sqrt(3.0) / NARROWEST, "of a facet's vertices, times the slope 8"),
+    unit="pi f cos",
+    metric=absolute,
+)
+# EEVEE keeps light in 32 bits for three channels, of which blue has the fewest.
+COARSE_FACETS = sum_of(
+    Term(2.0**-6, "five bits below the leading one, cut off"),
+    Term(2.4e-3, "packed normals, measured"),
+    unit="pi f cos or albedo",
+    metric=absolute,
+)
+FACET_NOISE = sum_of(
+    Term(
+        4.0 * 0.0716 / math.sqrt(FACET_PIXELS),
+        "four standard errors of the mean of 7169 pixels of 64 paths, each off by 0.0716 rms",
+    ),
+    unit="mean albedo",
+    metric=mean_error,
+)
+# Burley's two factors have a product of at most 25/4; the coats and facets that are judged have less.
+FACET_PAIRS = sum_of(
+    roundings(16 * 2.5**2, "of numbers up to 25/4"), unit="pi f cos", metric=absolute
+)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class RendererSpec(DiffuseModelSpec):
+    """A node of a renderer's own, and the model that its documentation claims."""
+
+    forms: tuple[str, ...] = ()  # as those of `mxeon.hosts.OwnNode`
+    sampled: bool = False
+
+    @property
+    def other_models(self) -> tuple[Model, ...]:
+        """Models of renderers' own nodes; Burley's with the albedo that the node's own has."""
+        name = self.model if self.model.startswith("burley") else "burley"
+        left_out = {"burley", "burley_lambert"} - {name}
+        return tuple(row for row in OTHERS if row.name not in left_out)
+
+    def document(self, inputs: Values | None = None) -> str:
+        """None: nothing is generated."""
+        return ""
+
+
+def own_nodes(host: str) -> tuple[RendererSpec, ...]:
+    own = (each for row in hosts.HOSTS if row.name == host for each in row.nodes)
+    return tuple(
+        RendererSpec(
+            title=each.title,
+            node=each.title,
+            model=each.model,
+            ports=each.inputs,
+            forms=each.forms,
+            beside=each.others,
+            sampled=each.sampled,
+        )
+        for each in own
+    )
+
+
+class Native(CyclesPictures):
+    """A node that a renderer has of its own, on a sphere."""
+
+    errors: ClassVar[Mapping[str, Tolerance]] = {
+        "value": CYCLES_RAY,
+        "albedo": CYCLES_NOISE,
+        "lambert": CYCLES_RAY,
+    }
+
+    @classmethod
+    def supports(cls, spec: Spec) -> bool:
+        return isinstance(spec, RendererSpec)
+
+    @classmethod
+    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
+        if quantity == "difference":
+            return difference_of(cls.errors["value"])
+        return cls.errors.get(quantity)
+
+    @property
+    def renderer(self) -> RendererHost:
+        return cast(RendererHost, self.host)
+
+    @property
+    def node(self) -> RendererSpec:
+        assert isinstance(self.spec, RendererSpec), f"{self.spec.title} is no renderer's"
+        return self.spec
+
+    @property
+    def claims(self) -> Claims:
+        """Titles of the model that the node claims, and of the form of it that is judged."""
+        claimed, *_ = self.node.forms or (self.node.model,)
+        title, own = (reference.model(name).title for name in (claimed, self.node.model))
+        return {"claimed": title, "model": own}
+
+    def picture(self, batch: Batch) -> Array:
+        scene, inputs = scene_of(batch), batch.inputs
+        image = self.renderer.node(self.node.node, inputs["color"], inputs["roughness"], scene)
+        return image[self.seen(scene)][self.points(scene)[2]].astype(np.float64)
+
+    def seen(self, scene: Scene) -> Mask:
+        return sphere(scene.size).mask
+
+
+class FormSamples(PictureSamples):
+    """Pictures of several materials, one light of which is enough for a control."""
+
+    @cached_property
+    def few(self) -> tuple[Batch, ...]:
+        return self.batches[:: len(EXACT_INPUTS)]
+
+
+class Exact(Native):
+    """A node on a sphere whose points and light have no error but rounding."""
+
+    errors: ClassVar[Mapping[str, Tolerance]] = {
+        "value": EXACT,
+        "albedo": EXACT_ALBEDO,
+        "lambert": EXACT,
+    }
+
+    def samples(self) -> Samples:
+        return FormSamples(self)
+
+    @property
+    def size(self) -> int:
+        return PICTURE_SIZE // 2
+
+    @property
+    def materials(self) -> Sequence[Values]:
+        return EXACT_INPUTS
+
+    def measured(self) -> Spec:
+        """The spec of the published form of the model that is nearest to what is measured."""
+        if not self.node.forms:
+            return self.node
+        batch = self.samples().batches[0]
+        values = self.direct(batch)
+        errors = {
+            form: float(np.abs(values - model_value(batch, form)).max()) for form in self.node.forms
+        }
+        return replace(self.node, model=min(errors, key=errors.__getitem__))
+
+
+class FacetSamples(FormSamples):
+    """The points in a white environment for two materials: they take long."""
+
+    @cached_property
+    def views(self) -> tuple[Batch, ...]:
+        scene = replace(FURNACE, size=self._pictures.size)
+        names = ("color", "roughness")
+        return tuple(
+            self._pictures.batch(scene, {name: inputs[name] for name in names})
+            for inputs in PICTURE_INPUTS
+        )
+
+
+class Facets(Exact):
+    """A node on a polyhedron, with noise under an environment."""
+
+    errors: ClassVar[Mapping[str, Tolerance]] = {
+        "value": FACETS,
+        "albedo": FACET_NOISE,
+        "lambert": FACETS,
+    }
+
+    def samples(self) -> Samples:
+        return FacetSamples(self)
+
+    @property
+    def size(self) -> int:
+        return PICTURE_SIZE
+
+    def points(self, scene: Scene) -> Pairs:
+        return facet_pairs(scene)
+
+    def picture(self, batch: Batch) -> Array:
+        """Values at the points of a batch, without those of a black lobe where others lie beside it."""
+        values = super().picture(batch)
+        if self.node.beside:
+            values = values - super().picture(batch.altered(color=BLACK))
+        return values
+
+    def seen(self, scene: Scene) -> Mask:
+        return facet_points(scene.size).mask
+
+    def portrait(self, scene: Scene) -> tuple[Array, Array, Mask, Mask]:
+        return *self.points(scene), self.seen(scene)
+
+
+class CoarseFacets(Facets):
+    """A node on the polyhedron, by a renderer that keeps light in a few bits."""
+
+    errors: ClassVar[Mapping[str, Tolerance]] = {"value": COARSE_FACETS, "albedo": COARSE_FACETS}
+
+
+class FacetPairSamples(FacetSamples):
+    """Random pairs, a quarter of each direction grazing; special ones; and outside ones."""
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        rng, spec, count = np.random.default_rng(SEED), self.lobe, FEW_CALLS.pairs
+        random = directions(rng, count), directions(rng, count)
+        special = Batch(*special_directions(rng), {})
+        half = np.linalg.norm(special.wo + special.wi, axis=1)
+        special = special.where((special.wo[:, 2] > 0.0) & (half >= SHORTEST))
+        outside = Batch(*outside_directions(rng), {})
+        return (
+            Batch(*random, spec.random_inputs(rng, count)),
+            special.altered(**spec.special_inputs(rng, len(special.wo))),
+            outside.altered(**spec.random_inputs(rng, len(outside.wo))),
+        )
+
+    @cached_property
+    def few(self) -> tuple[Batch, ...]:
+        return self.batches[:2]
+
+
+class FacetPairs(Facets):
+    """A node that its renderer evaluates for any pairs; the polyhedron shows its environment."""
+
+    errors: ClassVar[Mapping[str, Tolerance]] = {
+        "value": FACET_PAIRS,
+        "albedo": FACET_NOISE,
+        "reciprocity": FACET_PAIRS,
+    }
+
+    def samples(self) -> Samples:
+        return FacetPairSamples(self)
+
+    def portrait(self, scene: Scene) -> tuple[Array, Array, Mask, Mask]:
+        return Backend.portrait(self, scene)
+
+    def direct(self, batch: Batch) -> Array:
+        count = len(batch.wo)
+        color = np.broadcast_to(batch.inputs["color"], (count, 3))
+        roughness = np.broadcast_to(batch.inputs["roughness"], count)
+        values = self.renderer.pairs(self.node.node, batch.wo, batch.wi, color, roughness)
+        return np.pi * values.astype(np.float64)
+
+    def density(self, batch: Batch) -> Array:
+        """Density in solid angle of the directions that the renderer draws, (N,)."""
+        roughness = np.broadcast_to(batch.inputs["roughness"], len(batch.wo))
+        return self.renderer.density(batch.wo, batch.wi, roughness).astype(np.float64)
+
+    def sample(self, batch: Batch, u: Array) -> Array:
+        """Directions that the renderer draws, (N, 3)."""
+        roughness = np.broadcast_to(batch.inputs["roughness"], len(batch.wo))
+        return self.renderer.sample(batch.wo, u, roughness).astype(np.float64)
+
+
+@lru_cache(maxsize=8)
+def facet_pairs(scene: Scene) -> Pairs:
+    """The pixels within a facet of the polyhedron, as pairs."""
+    points = facet_points(scene.size)
+    return lit_pairs(points.normal[points.mask], scene)
+
+
+BACKENDS |= {
+    "native": (Native,),
+    "exact": (Exact,),
+    "facets": (Facets,),
+    "coarse facets": (CoarseFacets,),
+    "facet pairs": (FacetPairs,),
+}
+OWN_NODES |= {row.name: own_nodes(row.name) for row in hosts.HOSTS if row.nodes}
+RENDERER_SPECS = tuple(spec for row in hosts.HOSTS for spec in own_nodes(row.name))

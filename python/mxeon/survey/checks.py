@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks of a renderer's own sampling: its density, and its directions against that."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from mxeon.conformance.case import Case
+from mxeon.conformance.check import check, with_inputs
+from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.samples import SEED, Array, Batch
+from mxeon.conformance.spec import Spec
+from mxeon.conformance.tolerance import Compared, Measurement, given, roundings, sum_of
+from mxeon.models.sampling.cltc import eon_cltc_pdf
+from mxeon.survey.backends import FacetPairs, RendererSpec
+
+# A right sampler exceeds them once in 3.5 million times.
+CHI_SQUARE = given(5.0, "standard deviations", "five standard deviations")
+# The differences in the transformed direction, whose fourth power the density has, lose up to three bits.
+OWN_DENSITY = sum_of(
+    roundings(48 * 2.0**3, "of a density, three bits of it lost"), unit="1/sr, relative above 1"
+)
+COSINES = (0.05, 0.3, 0.7, 0.99)  # of the viewer
+SAMPLES = 1 << 15
+BINS = 8, 16  # of the cosine and of the azimuth
+FINE = 8  # points of a bin, along each axis, at which the density is averaged
+LEAST = 10.0  # samples that a bin has to expect
+ROUGHNESS = 1.0
+
+
+def is_sampled(spec: Spec) -> bool:
+    """Whether a renderer's own sampling of the node can be called."""
+    own = isinstance(spec, RendererSpec) and spec.sampled
+    return own and spec.model in ("eon", "eon_fitted")
+
+
+@check(
+    "density",
+    "The sampling density is the paper's.",
+    is_sampled,
+    with_inputs("roughness is dropped", roughness=0.0),
+    tolerance=OWN_DENSITY,
+    diagnose=lambda case: Diagnosis("the density differs from the paper's listings"),
+)
+def density(case: Case) -> Iterator[Compared]:
+    """The renderer's density against that of the paper's sampling."""
+    for batch in case.few:
+        batch = batch.where(batch.wi[:, 2] > 0.0)
+        expected = eon_cltc_pdf(batch.wo, batch.wi, batch.inputs["roughness"])[:, np.newaxis]
+        yield Compared(batch, _density(case, batch)[:, np.newaxis], expected)
+
+
+def _density(case: Case, batch: Batch) -> Array:
+    assert isinstance(case.backend, FacetPairs), f"{case.host.name} has no sampling of its own"
+    return case.backend.density(case.inputs(batch))
+
+
+@check(
+    "samples",
+    "Samples follow the density that is returned with them.",
+    is_sampled,
+    with_inputs("the density is that of roughness 0", roughness=0.0),
+    tolerance=CHI_SQUARE,
+    diagnose=lambda case: Diagnosis("the samples do not follow the density"),
+)
+def samples(case: Case) -> Measurement:
+    """Deviation of the chi-square of directions against their own density, in standard deviations.
+
+    Drawn for COSINES at ROUGHNESS. The cube root of a chi-square over its degrees of freedom is
+    nearly normal, which gives the deviation [WilsonHilferty1931].
+    """
+    deviations = [_deviation(case, mu) for mu in COSINES]
+    worst = int(np.argmax(deviations))
+    return Measurement(float(deviations[worst]), {"mu_o": [COSINES[worst]]})
+
+
+def _deviation(case: Case, mu: float) -> float:
+    """Standard deviations by which the counts of one viewer's samples leave their density."""
+    # Draw directions, and count them in bins of the hemisphere.
+    assert isinstance(case.backend, FacetPairs), f"{case.host.name} has no sampling of its own"
+    rng = np.random.default_rng(SEED)
+    wo = np.array([np.sqrt(1.0 - mu * mu), 0.0, mu])
+    wi = case.backend.sample(_batch(np.broadcast_to(wo, (SAMPLES, 3))), rng.random((SAMPLES, 2)))
+    azimuth = np.arctan2(wi[:, 1], wi[:, 0])
+    edges = np.linspace(0.0, 1.0, BINS[0] + 1), np.linspace(-np.pi, np.pi, BINS[1] + 1)
+    counts, _, _ = np.histogram2d(np.clip(wi[:, 2], 0.0, 1.0), azimuth, edges)
+    expected = SAMPLES * _shares(case, wo)
+    kept = expected >= LEAST
+    # The rest goes into one bin more; samples that no bin holds are in it too.
+    observed = np.append(counts[kept], SAMPLES - counts[kept].sum())
+    mean = np.append(expected[kept], SAMPLES - expected[kept].sum())
+    mean[-1] = max(mean[-1], LEAST)
+    # Make a standard normal of the chi-square, by Wilson and Hilferty.
+    chi_square, freedom = ((observed - mean) ** 2 / mean).sum(), len(mean) - 1
+    spread = 2.0 / (9.0 * freedom)
+    return float(((chi_square / freedom) ** (1.0 / 3.0) - (1.0 - spread)) / np.sqrt(spread))
+
+
+def _shares(case: Case, wo: Array) -> Array:
+    """Integral of the renderer's density over each bin."""
+    heights, turns = (FINE * count for count in BINS)
+    mu, azimuth = np.meshgrid(
+        (np.arange(heights) + 0.5) / heights,
+        (2.0 * np.arange(turns) + 1.0) / turns * np.pi - np.pi,
+        indexing="ij",
+    )
+    radius = np.sqrt(1.0 - mu * mu)
+    wi = np.stack([radius * np.cos(azimuth), radius * np.sin(azimuth), mu], axis=-1)
+    batch = _batch(np.broadcast_to(wo, wi.shape).reshape(-1, 3), wi.reshape(-1, 3))
+    values = _density(case, batch).reshape(BINS[0], FINE, BINS[1], FINE)
+    shares: Array = values.sum(axis=(1, 3)) * (2.0 * np.pi / (heights * turns))
+    return shares
+
+
+def _batch(wo: Array, wi: Array | None = None) -> Batch:
+    """Directions at ROUGHNESS."""
+    return Batch(wo, wo if wi is None else wi, {"color": (1.0, 1.0, 1.0), "roughness": ROUGHNESS})
