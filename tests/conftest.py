@@ -18,6 +18,7 @@ from mxeon.hosts.process import Worker
 from mxeon.jobs.signals import ENDING
 from tests.support.availability import available, required
 from tests.support.tracing import untraced
+from tests.support.verdicts import Verdicts
 
 
 def pytest_configure():
@@ -106,6 +107,12 @@ def hosts():
     yield host
     for each in opened.values():
         each.close()
+
+
+@pytest.fixture(scope="session")
+def judged(hosts):
+    """A function that judges one check of one node: see `Verdicts`."""
+    return Verdicts(hosts)
 
 
 @pytest.fixture(scope="session")

@@ -4,19 +4,14 @@
 from dataclasses import replace
 
 from mxeon.conformance import run
-from mxeon.conformance.probes.families import PBR_SUBJECTS
-
-OTHERS = {subject.title for subject in PBR_SUBJECTS}
+from mxeon.conformance.run.plan import node_names
+from mxeon.shaders.nodes import EON, OREN_NAYAR
 
 
 def keep_checks(patch, *keys):
     """Let every run that this process plans consist of these checks of diffuse nodes alone."""
-    _keep(patch, lambda task: task.check in keys and task.subject not in OTHERS)
-
-
-def keep_diffuse(patch):
-    """Let every run that this process plans leave out the other nodes of pbrlib."""
-    _keep(patch, lambda task: task.subject not in OTHERS)
+    others = {*node_names()} - {EON, OREN_NAYAR}
+    _keep(patch, lambda task: task.check in keys and task.subject.split(",")[0] not in others)
 
 
 def keep_host(patch, host):

@@ -54,6 +54,13 @@ def wrong_stock_node(folder, name, old, new):
     return str(folder)
 
 
+def wrong_library(folder, file, old, new):
+    """Path of a library with another text in a file: of eonlib, or by its bare name in MaterialX's GLSL."""
+    if "/" in file:
+        return wrong_copy(folder, old, new, file)
+    return wrong_stock_node(folder, file, old, new)
+
+
 def place_of(name, language="glsl"):
     """Path of a source of eonlib, by its stem, in a copy."""
     return source_file(language, name).relative_to(data_folder())

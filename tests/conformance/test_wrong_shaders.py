@@ -1,0 +1,346 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Libraries with one wrong line each: the check meant for it fails, and its diagnosis says why."""
+
+import pytest
+
+from mxeon.conformance.results import FAILED
+from tests.support.wrong_libraries import wrong_library
+
+# Files of eonlib have their path; those of MaterialX, their name alone.
+LOBE, FACETS = "genglsl/lib/oren_nayar_lobe.glsl", "genglsl/lib/microfacet_lobe.glsl"
+HAIR, FILM = "genglsl/chiang_hair_bsdf.glsl", "genglsl/lib/thin_film.glsl"
+
+# By title: file, a text, the text in its place, where OLD stands for the first, the check that notices it, words of
+# its diagnosis, and the verdict where it is not "failed".
+WRONG = {
+    "oren_nayar_diffuse_bsdf, energy_compensation true": (
+        (LOBE, "brdf * mu_i * weight * closureData.occlusion", "brdf * mu_i * closureData.occlusion", "value",
+         "fault: the weight is ignored"),
+        (LOBE, "mx_environment_irradiance(N) * weight", "OLD * closureData.occlusion", "environment",
+         "fault: the occlusion is applied here and again by the caller (rms "),
+        (LOBE, "bsdf.throughput = vec3(0.0);", "", "throughput",
+         "throughput 1 (branches: direct, environment, transmission, emission)"),
+        (LOBE, "N = mx_forward_facing_normal(N, wo);", "", "frame",
+         "all of them where the normal faces away from the viewer"),
+        (LOBE, "bsdf.response = brdf", "if (mu_o == 1.0) brdf *= 2.0;\n        OLD", "value",
+         "all of them with the viewer along the normal"),
+        (LOBE, "bsdf.response = brdf", "if (mu_o < 1.0e-6) brdf *= 0.0;\n        OLD", "value",
+         "all of them with the viewer's cosine in [0, 1e-06]"),
+        (LOBE, "min(dot(N, wo), 1.0)", "dot(N, wo)", "environment",
+         "values that are not finite with dot(N, V) above 1 by a rounding"),
+        (LOBE, "N = mx_forward_facing_normal(N, wo);", "color = color.bgr;\n    OLD", "value",
+         "fault: the color channels are exchanged: they arrive as blue, green, red (rms "),
+        (LOBE, "energy_compensation ? eon_brdf_mu", "!OLD", "value", ", as with energy_compensation false"),
+    ),
+    "eon_diffuse_bsdf": (
+        (LOBE, "brdf * mu_i * weight * closureData.occlusion", "brdf * mu_i * weight", "value",
+         "fault: the occlusion is ignored (rms "),
+        (LOBE, "weight <= 0.0", "OLD1", "value", "all of them with a weight in (0, 0.01]"),
+        (LOBE, "irradiance(N)", "irradiance(-N)", "surroundings",
+         "the environment is looked up opposite to the normal"),
+        (LOBE, "bsdf.response = brdf", "if (mu_o == 0.0) brdf *= 0.0;\n        OLD", "value",
+         "all of them with the viewer on the horizon"),
+        (LOBE, "N = mx_forward_facing_normal(N, wo);", "roughness = 0.3;\n    OLD", "inputs",
+         "without effect: roughness"),
+        (LOBE, "N = mx_forward_facing_normal(N, wo);", "roughness *= roughness;\n    OLD", "environment",
+         "fault: the roughness is squared (rms "),
+        (LOBE, "brdf * mu_i", "(brdf + 0.05 * color * mu_o * mu_o) * mu_i", "value", "no known model matches: "),
+    ),
+    "oren_nayar_diffuse_bsdf, energy_compensation false": (
+        (LOBE, "mx_environment_irradiance(N) * weight", "mx_environment_irradiance(N)", "environment",
+         "fault: the weight is ignored"),
+        (LOBE, "bsdf.response = brdf", "bsdf.throughput = vec3(0.5); OLD", "throughput",
+         "throughput 0.5 (branches: direct)"),
+        (LOBE, "mx_forward_facing_normal(N, wo)", "mx_forward_facing_normal(closureData.N, wo)", "frame",
+         "the node's normal is ignored; the surface's is used instead"),
+        (LOBE, "bsdf.response = brdf", "if (wo == wi) brdf *= 1.5;\n        OLD", "value",
+         "all of them in exact retro-reflection (L = V)"),
+        (LOBE, "clamp(dot(N, wi), 0.0, 1.0)", "min(abs(dot(N, wi)), 1.0)", "value",
+         "all of them with light from below the horizon"),
+        (LOBE, "brdf * mu_i", "3.14159265 * OLD", "value", "fault: the factor 1/pi is missing (rms "),
+    ),
+    "translucent_bsdf": (
+        ("genglsl/translucent_bsdf.glsl", "mx_environment_irradiance(N)", "mx_environment_irradiance(-N)",
+         "surroundings", "on the other side of the surface"),
+        ("mx_translucent_bsdf.glsl", "color * weight * NdotL", "color * NdotL", "value",
+         "fault: the weight is ignored but for 0 and below (rms "),
+        ("mx_translucent_bsdf.glsl", "N = -N;", "", "value", "nearest known model: a reflection in its place (rms "),
+        ("mx_translucent_bsdf.glsl", "Li * color", "OLD.bgr", "environment",
+         "fault: the color channels are exchanged: they arrive as blue, green, red (rms "),
+    ),
+    "subsurface_bsdf": (
+        ("genglsl/subsurface_bsdf.glsl", "curvature * max(radius, vec3(0.0))",
+         "curvature * vec3(0.5) * step(0.0, radius.x + 1.0)", "sphere",
+         "nearest known model: the profile of a mean free path of 0.5, whatever the radius"),
+        ("genglsl/lib/subsurface_blur.glsl", "(1.0 + t * t)", "(2.0 * t + t * t)", "sphere",
+         "nearest known model: a far exponential of 1.5 mean free paths instead of 3"),
+    ),
+    "conical_edf": (
+        ("genglsl/conical_edf.glsl", "w / 42.0 * tail", "w / 42.0", "exitance", "right but for"),
+        ("genglsl/conical_edf.glsl", "u = angle", "u = min(2.0 * angle, 360.0)", "radiance",
+         "a cone whose angles count from its axis (rms "),
+        ("genglsl/conical_edf.glsl", "dot(N, ", "dot(closureData.N, ", "inputs", "without effect: normal"),
+    ),
+    "dielectric_bsdf, scatter_mode R": (
+        ("mx_dielectric_bsdf.glsl", "(4.0 * NdotV)", "NdotV", "value",
+         "no factor 4 in the denominator, and MaterialX's compensation (rms "),
+        ("mx_dielectric_bsdf.glsl", "mx_ggx_smith_G2(NdotL, NdotV, avgAlpha)",
+         "mx_ggx_smith_G1(NdotL, avgAlpha) * mx_ggx_smith_G1(NdotV, avgAlpha)", "shape",
+         "masking and shadowing uncorrelated, and MaterialX's compensation (rms "),
+        ("mx_dielectric_bsdf.glsl", "mx_ggx_energy_compensation(NdotV, avgAlpha, F)",
+         "mx_ggx_energy_compensation(NdotV, avgAlpha, vec3(F0))", "value",
+         "compensation with F along the normal and MaterialX's fit of E_ss (rms "),
+        ("mx_dielectric_bsdf.glsl", "X = normalize(X - dot(X, N) * N);",
+         "X = normalize(cross(vec3(0.0, 1.0, 0.0), N));", "frame", "branch direct: tangent is ignored"),
+        ("mx_dielectric_bsdf.glsl", "(ior, thinfilm_thickness, ", "(ior, 0.0, ", "inputs",
+         "without effect: thinfilm_thickness, thinfilm_ior"),
+        ("mx_dielectric_bsdf.glsl", "1.0 - dirAlbedo * weight;", "vec3(1.0);", "transmission",
+         "all light passes (rms 0)"),
+        (FACETS, "mirrored ? reflect(-closureData.V, N) :", "", "retroreflection", ""),
+        (FACETS, "mx_forward_facing_normal(N, lobe.wo)", "N", "frame", ""),
+        (FACETS, "clamp(dot(lobe.N, lobe.wo),", "clamp(dot(lobe.N, lobe.wi),", "value", ""),
+        (FACETS, "clamp(roughness, M_FLOAT_EPS, 1.0)", "clamp(roughness.yx, M_FLOAT_EPS, 1.0)", "value", ""),
+    ),
+    "generalized_schlick_bsdf, scatter_mode R": (
+        ("mx_generalized_schlick_bsdf.glsl", "clamp(roughness, M_FLOAT_EPS, 1.0)",
+         "clamp(roughness * roughness, M_FLOAT_EPS, 1.0)", "shape",
+         "roughness squared once more, and MaterialX's compensation (rms "),
+        ("mx_generalized_schlick_bsdf.glsl", "mx_ggx_energy_compensation(NdotV, avgAlpha, F)", "vec3(1.0)",
+         "lossless", "no energy compensation (rms "),
+        ("mx_generalized_schlick_bsdf.glsl", "X = normalize(X - dot(X, N) * N);",
+         "X = normalize(cross(vec3(0.0, 1.0, 0.0), N));", "anisotropy", "tangent is ignored"),
+        ("mx_generalized_schlick_bsdf.glsl", "dirAlbedo = mx_ggx_dir_albedo",
+         "dirAlbedo = 1.0 + 0.0 * mx_ggx_dir_albedo", "layering", ""),
+        ("mx_generalized_schlick_bsdf.glsl", "clamp(dot(N, V), M_FLOAT_EPS, 1.0)", "dot(N, V)", "finite",
+         "values that are not finite with the viewer on the horizon"),
+    ),
+    "conductor_bsdf": (
+        ("mx_conductor_bsdf.glsl", "V = retroreflective", "V = false", "retroreflection",
+         "retroreflective is ignored"),
+    ),
+    "burley_diffuse_bsdf": (
+        ("mx_burley_diffuse_bsdf.glsl", "bsdf.throughput = vec3(0.0);", "bsdf.throughput = vec3(0.5);", "throughput",
+         "throughput 0.5 (branches: direct, environment, transmission, emission)"),
+        ("mx_burley_diffuse_bsdf.glsl", "LdotH, roughness)", "LdotH, 0.0)", "value",
+         "Burley diffuse of roughness 0, without retro-reflection (rms "),
+        ("mx_burley_diffuse_bsdf.glsl", "bsdf.response *= mx", "bsdf.response *= 1.0 + 0.0 * mx", "value",
+         "nearest known model: Lambert (rms "),
+        ("mx_burley_diffuse_bsdf.glsl", "mx_burley_diffuse(NdotV, NdotL", "mx_burley_diffuse(NdotV, NdotV",
+         "reciprocity", "no known model matches: Burley diffuse comes nearest"),
+        ("mx_burley_diffuse_bsdf.glsl", "* M_PI_INV;", "* M_PI_INV + 0.001;", "black", ""),
+        ("mx_burley_diffuse_bsdf.glsl", "bsdf.response *= mx", "bsdf.response *= 0.9 * mx", "integral",
+         "fault: every value is 0.9 times the right one (rms "),
+        ("mx_burley_diffuse_bsdf.glsl", "bsdf.response *= mx", "bsdf.response *= 1.5 * mx", "energy",
+         "fault: every value is 1.5 times the right one (rms "),
+        ("mx_burley_diffuse_bsdf.glsl", "(N, V);", "(vec3(0.0, 0.0, 1.0), V);", "frame",
+         "branch direct: the node's normal is ignored; the surface's is used instead"),
+        ("mx_burley_diffuse_bsdf.glsl", "color * closureData.occlusion", "color", "value",
+         "fault: the occlusion is ignored (rms "),
+    ),
+    "sheen_bsdf, mode conty_kulla": (
+        ("mx_sheen_bsdf.glsl", "mode == 0", "mode != 0", "environment", "nearest known model: Zeltner sheen (rms "),
+    ),
+    "sheen_bsdf, mode zeltner": (
+        ("mx_sheen_bsdf.glsl", "mode == 0", "mode != 0", "environment",
+         "nearest known model: Conty-Kulla sheen (rms "),
+        ("mx_sheen_bsdf.glsl", "roughness = clamp(roughness, 0.01, 1.0);", "", "finite",
+         "values that are not finite with roughness 0"),
+        ("mx_sheen_bsdf.glsl", "1.0 - dirAlbedo * weight", "0.0", "layer", ""),
+    ),
+    "chiang_hair_bsdf": (
+        (HAIR, "M = chiang_hair_longitudinal(tilted, inclined_o, r.x)",
+         "M = chiang_hair_longitudinal(complex_multiply(inclined_o, complex_multiply(tilted, inclined_i * vec2(1.0, -1.0)) / dot(inclined_i, inclined_i)), inclined_i, r.x)",
+         "tilted_lobes", "nearest known model: the viewer's inclination tilted in place of the light's (rms "),
+        (HAIR, "M * 0.5 * M_PI_INV", "M * 0.5 * M_PI", "each_lobe",
+         "nearest known model: N of TRRT+ pi/2 instead of 1/(2 pi) (rms "),
+        (HAIR, "max(roughness[p], vec2(1e-8, 1e-4))", "clamp(roughness[p], 0.001, 1.0)", "wide_lobes",
+         "nearest known model: every roughness in [0.001, 1] (rms "),
+        (HAIR, "total * closureData", "4.0 * OLD", "energy", "fault: every value is 4 times the right one (rms "),
+        (HAIR, "exp(-absorption", "exp(-0.0 * absorption", "inputs", "without effect: absorption"),
+        (HAIR, "closureData.occlusion", "1.0", "value", "fault: the occlusion is ignored"),
+        (HAIR, "* closureData.occlusion *", "* closureData.occlusion + 0.001 *", "black", ""),
+        (HAIR, "throughput = vec3(0.0)", "throughput = vec3(0.5)", "throughput", "throughput 0.5"),
+        (HAIR, "X = normalize(X - dot(X, N) * N);", "X = normalize(cross(vec3(0.0, 1.0, 0.0), N));", "frame",
+         "branch direct: curve_direction is ignored"),
+        (HAIR, "max(1.0 - F * T, 1e-7)", "(1.0 - F * T)", "finite", "values that are not finite"),
+        (HAIR, "back * mx_environment_irradiance(-N)", "vec3(0.0)", "environment", "no known model matches"),
+        (HAIR, "front * mx_environment_irradiance(N) + back * mx_environment_irradiance(-N)",
+         "back * mx_environment_irradiance(N) + front * mx_environment_irradiance(-N)", "surroundings",
+         "the environment is looked up on the other side of the surface"),
+    ),
+    "conductor_bsdf, thin film": (
+        (FILM, "-r_s * im_s,", "r_s * im_s,", "film", ""),
+        (FILM, "4.3278e9, 4.5282e9", "4.3728e9, 4.5282e9", "film_curve", ""),
+        (FILM, "THIN_FILM_ORDER_RATIO 0.6", "THIN_FILM_ORDER_RATIO 0.006", "film_orders", ""),
+        (FILM, "clamp(0.5 * mean - orders, 0.0, 1.0)", "1.1 + 0.0 * mean", "film_energy", ""),
+        (FACETS, "int i = is_known ? last : 0;", "facets = 1; int i = 0;", "film_environment", ""),
+        (FILM, "vec2(0.785, 0.725)", "vec2(0.785, 0.625)", "film_smooth", ""),
+        (FACETS, "vec4 curve = vec4(F.average, float(fd.model));", "vec4 curve = vec4(1.0);", "film_sum", ""),
+    ),
+    "dielectric_bsdf, thin film": (
+        (FILM, "orders = vec3(0.0)", "orders = vec3(0.01)", "film_limit", ""),
+        (FILM, "clamp(0.5 * mean - orders, 0.0, 1.0)", "mean / step(1.0, fd.tf_ior)", "film_finite", ""),
+    ),
+    "uniform_edf": (
+        ("mx_uniform_edf.glsl", "result = color;", "result = color * 0.31830989;", "radiance",
+         "nearest known model: the color as an exitance, over pi (rms "),
+        ("mx_uniform_edf.glsl", "result = color;", "result = color * 0.31830989;", "exitance",
+         "nearest known model: the color as an exitance, over pi (rms "),
+        ("mx_uniform_edf.glsl", "result = color;",
+         "result = (dot(closureData.N, closureData.V) < 0.0) ? vec3(0.0) : color;", "back",
+         "emission from the front alone (rms 0)", "differs"),
+    ),
+    "generalized_schlick_edf": (
+        ("mx_generalized_schlick_edf.glsl", ", exponent)", ", 5.0)", "inputs", "without effect: exponent"),
+        ("mx_generalized_schlick_edf.glsl", "result = base * f;", "result = base;", "radiance",
+         "nearest known model: the base without its curve (rms "),
+        ("mx_generalized_schlick_edf.glsl", "closureData.V), M_FLOAT_EPS", "closureData.V) * 0.5, M_FLOAT_EPS",
+         "back", ""),
+    ),
+    "mix, EDF": (
+        ("mx_mix_edf.glsl", "mix(bg, fg, ", "mix(fg, bg, ", "radiance", ""),
+    ),
+    "anisotropic_vdf": (
+        ("mx_anisotropic_vdf.glsl", "exp(-absorption)", "vec3(1.0)", "transmittance",
+         "nearest known model: no medium at all (rms "),
+    ),
+    "mix, VDF": (
+        ("genglsl/mix_vdf.glsl", "vec3(1.0 - share)", "vec3(share)", "transmittance", ""),
+    ),
+    "add, VDF": (
+        ("genglsl/add_vdf.glsl", "in1.throughput * in2", "0.5 * in1.throughput + 0.5 * in2", "transmittance", ""),
+    ),
+    "multiply, VDF, in2 float": (
+        ("genglsl/multiply_vdf_float.glsl", "max(in2, 0.0)", "min(in2, 0.5)", "transmittance", ""),
+    ),
+    "multiply, VDF, in2 color3": (
+        ("genglsl/multiply_vdf_color3.glsl", "max(in2, vec3(0.0))", "in2.zyx", "transmittance", ""),
+    ),
+    "dielectric_bsdf, scatter_mode T": (
+        ("mx_dielectric_bsdf.glsl", "scatter_mode == 1)", "scatter_mode == 7)", "kept", ""),
+        ("mx_dielectric_bsdf.glsl", "mx_surface_transmission(N, V, X, safeAlpha, distribution, fd, safeTint)",
+         "mx_surface_transmission(N, V, X, safeAlpha, distribution, mx_init_fresnel_dielectric(1.0, thinfilm_thickness, thinfilm_ior), safeTint)",
+         "critical", ""),
+        ("mx_dielectric_bsdf.glsl", "mx_surface_transmission(N, V, X, safeAlpha, distribution, fd, safeTint)",
+         "mx_surface_transmission(N, V, X, safeAlpha, distribution, mx_init_fresnel_dielectric(1.0 / ior, thinfilm_thickness, thinfilm_ior), safeTint)",
+         "refraction", ""),
+        ("mx_dielectric_bsdf.glsl", "retroreflective && (closureData.closureType != CLOSURE_TYPE_TRANSMISSION)",
+         "retroreflective", "transmitted_inputs", ""),
+    ),
+    "dielectric_bsdf, scatter_mode RT": (
+        ("mx_dielectric_bsdf.glsl", "scatter_mode != 0)", "scatter_mode != 7)", "kept", ""),
+        ("mx_dielectric_bsdf.glsl", "1.0 - dirAlbedo * weight;", "scatter_mode == 2 ? vec3(1.0) : 1.0 - dirAlbedo;",
+         "kept", ""),
+        ("mx_dielectric_bsdf.glsl", "mx_surface_transmission(N, V, X, safeAlpha, distribution, fd, safeTint)",
+         "mx_surface_transmission(N, V, X, safeAlpha, distribution, fd, vec3(1.0))", "transmitted_inputs", ""),
+        ("mx_dielectric_bsdf.glsl", "mx_surface_transmission(N, V, X, safeAlpha, distribution, fd, safeTint)",
+         "mx_surface_transmission(N, V, X, safeAlpha, distribution, fd, safeTint * safeTint)", "critical", ""),
+    ),
+    "roughness_anisotropy": (
+        ("mx_roughness_anisotropy.glsl", "sqrt(1.0 - clamp(anisotropy, 0.0, 0.98))", "sqrt(1.0 - 0.9 * anisotropy)",
+         "output", "Burley's aspect of 2012", "differs"),
+        ("mx_roughness_anisotropy.glsl",
+         "        result.x = min(roughness_sqr / aspect, 1.0);\n        result.y = roughness_sqr * aspect;",
+         "        aspect = 1.0 - anisotropy;\n        result.x = roughness_sqr * sqrt(2.0 / (1.0 + aspect * aspect));\n        result.y = aspect * result.x;",
+         "output", "OpenPBR's aspect", "differs"),
+        ("mx_roughness_anisotropy.glsl", "result.y = roughness_sqr * aspect", "result.y = roughness_sqr / aspect",
+         "output", ""),
+    ),
+    "roughness_dual": (
+        ("mx_roughness_dual.glsl",
+         "roughness.x * roughness.x, M_FLOAT_EPS, 1.0);\n    result.y = clamp(roughness.y * roughness.y",
+         "roughness.x, M_FLOAT_EPS, 1.0);\n    result.y = clamp(roughness.y", "output",
+         "a roughness that is not squared"),
+    ),
+    "artistic_ior, ior": (
+        ("mx_artistic_ior.glsl", "mix(n_max, n_min, edge_color)", "mix(n_min, n_max, edge_color)", "output",
+         "the ends of n exchanged"),
+        ("mx_artistic_ior.glsl", "(np1*np1 * r - nm1*nm1)", "(np1*np1 * r)", "round_trip", ""),
+    ),
+    "artistic_ior, extinction": (
+        ("mx_artistic_ior.glsl", "sqrt(k2)", "k2", "output", ""),
+    ),
+    "chiang_hair_roughness, roughness_TRT": (
+        ("mx_chiang_hair_bsdf.glsl", "v * scale_TRT * scale_TRT", "v * 4.0", "output_inputs",
+         "without effect: scale_TRT"),
+        ("mx_chiang_hair_bsdf.glsl", "v * scale_TRT * scale_TRT", "v * scale_TRT", "output",
+         "scales that are not squared"),
+        ("mx_chiang_hair_bsdf.glsl", "v = v * v;", "", "output", "a deviation in place of the variance"),
+    ),
+    "deon_hair_absorption_from_melanin": (
+        ("mx_chiang_hair_bsdf.glsl", "eumelanin * -log(eumelanin_color) + pheomelanin * -log(pheomelanin_color)",
+         "pheomelanin * -log(eumelanin_color) + eumelanin * -log(pheomelanin_color)", "output",
+         "the shares of both melanins exchanged"),
+    ),
+    "chiang_hair_absorption_from_color": (
+        ("mx_chiang_hair_bsdf.glsl", "5.574 * b4", "5.547 * b4", "output", ""),
+        ("mx_chiang_hair_bsdf.glsl", "min(max(color, 0.001), vec3(1.0))", "color", "output_finite",
+         "with color 0 or below"),
+    ),
+    "mix, of a sum": (
+        ("genglsl/add_bsdf.glsl", "= in1.throughput + in2.throughput - 1.0",
+         "= max(in1.throughput + in2.throughput - 1.0, 0.0)", "combined_throughput", ""),
+    ),
+    "add": (
+        ("genglsl/add_bsdf.glsl", "in2.throughput - 1.0", "in2.throughput - 1.1", "combined_throughput", ""),
+        ("genglsl/add_bsdf.glsl", "in1.response + in2.response", "in1.response", "combination", ""),
+    ),
+    "layer, under a mix of a sum": (
+        ("genglsl/layer_bsdf.glsl", "max(top.throughput, 0.0)", "top.throughput", "combination", ""),
+    ),
+    "layer": (
+        ("genglsl/layer_bsdf.glsl", "base.response * passed", "base.response", "combination", ""),
+        ("genglsl/layer_bsdf.glsl", "passed * base.throughput", "passed", "combined_throughput", ""),
+    ),
+    "mix, of a layer under a sum": (
+        ("genglsl/layer_bsdf.glsl", "min(top.throughput, 0.0) + ", "", "combined_throughput", ""),
+    ),
+    "multiply, of a sum": (
+        ("genglsl/multiply_bsdf_color3.glsl", "= 1.0 - weight * (1.0 - in1.throughput)", "= in1.throughput",
+         "combined_throughput", ""),
+    ),
+    "multiply, in2 float": (
+        ("genglsl/multiply_bsdf_float.glsl", "response * weight", "response", "combination", ""),
+    ),
+    "UsdPreviewSurface, every lobe": (
+        (FACETS, "bsdf.throughput = max(1.0 - lobe.albedo", "bsdf.throughput = max(1.002 - lobe.albedo", "lobes_mean",
+         ""),
+    ),
+}  # fmt: skip
+DIFFUSE = next(iter(WRONG))
+ROWS = [(title, *row) for title, rows in WRONG.items() for row in rows]
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: f"{row[4]}, {row[0]}")
+def test_a_wrong_line_fails_the_check_meant_for_it_and_is_named(judged, tmp_path, row):
+    title, file, old, new, check, words, *verdict = row
+    result = judged(
+        check, title, library=wrong_library(tmp_path, file, old, new.replace("OLD", old))
+    )
+    assert result.verdict == (verdict or [FAILED])[0] and result.control.caught
+    assert words in result.diagnosis
+
+
+def test_every_check_of_a_node_has_a_shader_that_it_fails(stock, run):
+    """A wrong one, or MaterialX's own."""
+    failing = {row[4] for row in ROWS}
+    failing |= {each.check for each in stock.results if each.verdict == FAILED}
+    asked = {each.check for each in (*stock.results, *run.results) if each.host == "gl"}
+    assert asked - failing == WITHOUT
+
+
+# What a library cannot break in one line of GLSL: other tests do, of functions, inversions and whole documents.
+WITHOUT = {"x"}
+
+
+@pytest.mark.parametrize("host", ["webgl", "vulkan", "wgsl", "slang"])
+@pytest.mark.parametrize(
+    "old, check, words",
+    [
+        ("N = mx_forward_facing_normal(N, wo);", "frame", "where the normal faces away"),
+        ("bsdf.throughput = vec3(0.0);", "throughput", "throughput 1 (branches: direct, "),
+    ],
+)
+def test_the_other_hosts_see_what_is_around_the_model(judged, tmp_path, host, old, check, words):
+    result = judged(check, DIFFUSE, host, wrong_library(tmp_path, LOBE, old, ""))
+    assert result.verdict == FAILED and words in result.diagnosis
