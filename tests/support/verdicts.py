@@ -4,7 +4,7 @@
 import pytest
 
 from mxeon.conformance.run import judge as judging
-from mxeon.conformance.run.tasks import Task
+from mxeon.conformance.run.tasks import EVERY_NODE, Task
 from mxeon.shaders.document.policy import DEFAULT
 
 
@@ -16,7 +16,17 @@ class Verdicts:
 
     def __call__(self, check, subject, host="gl", library="eonlib"):
         """The result of a check of a node, by its title."""
+        [result] = self.all(check, subject, host, library)
+        return result
+
+    def all(self, check, subject, host, library):
+        """Results of a task: those of texts, functions and inversions are several."""
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(judging, "open_engine", self._hosts)
-            [result] = self._judge.work(Task(check, subject, host, library)).results
-        return result
+            return self._judge.work(Task(check, subject, host, library)).results
+
+    def texts(self, check, library):
+        """Results of the checks of texts that have this key, by their subject."""
+        task = check if check == "definition" else "source"
+        results = self.all(task, EVERY_NODE, "source", library)
+        return {each.subject: each for each in results if each.check == check}
