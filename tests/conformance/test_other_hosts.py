@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Nodes on hosts beside gl: one check of each kind that a host alone decides."""
+
+import pytest
+
+from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
+
+EON, QON = (f"oren_nayar_diffuse_bsdf, energy_compensation {flag}" for flag in ("true", "false"))
+ZELTNER, DIELECTRIC = "sheen_bsdf, mode zeltner", "dielectric_bsdf, scatter_mode R"
+HAIR = (
+    *("chiang_hair_roughness, roughness_TRT", "deon_hair_absorption_from_melanin"),
+    "chiang_hair_absorption_from_color",
+)
+CONSTANT = "whatever the inputs are (rms 0)"
+CUBED = "nearest known model: EON with rho^3 (rms "
+
+
+@pytest.mark.parametrize(
+    "host, library, check, title, verdict, words",
+    [
+        ("webgl", "stock", "layering", ZELTNER, FAILED, "without the color"),
+        ("webgl", "eonlib", "radiance", "conical_edf", PASSED, ""),
+        ("wgsl", "stock", "layering", ZELTNER, FAILED, "without the color"),
+        ("slang", "eonlib", "value", ZELTNER, PASSED, ""),
+        ("slang", "eonlib", "value", DIELECTRIC, PASSED, ""),
+        ("cycles", "stock", "value", EON, FAILED, CUBED),
+        ("cycles", "stock", "value", QON, FAILED, CUBED),
+        ("cycles", "stock", "value", "burley_diffuse_bsdf", PASSED, ""),
+        ("cycles", "stock", "value", DIELECTRIC, FAILED, "single"),
+        ("cycles", "stock", "value", "conductor_bsdf", FAILED, "single"),
+        ("cycles", "stock", "layering", ZELTNER, FAILED, ""),
+        ("cycles", "stock", "layering", DIELECTRIC, FAILED, ""),
+        ("cycles", "stock", "black", "translucent_bsdf", NOT_RUN, "'translucent_bsdf' is not supported"),
+        ("cycles", "stock", "radiance", "generalized_schlick_edf", PASSED, ""),
+        ("cycles", "eonlib", "radiance", "conical_edf", PASSED, ""),
+        ("cycles", "stock", "radiance", "add, EDF", PASSED, ""),
+        ("cycles", "stock", "opacity", "surface, an EDF alone", PASSED, ""),
+        ("cycles", "stock", "implemented", "conical_edf", FAILED, ""),
+        ("cycles", "stock", "transmittance", "anisotropic_vdf", NOT_RUN, ""),
+        ("cycles", "stock", "output_inputs", HAIR[2], FAILED, ""),
+        *(("cycles", "stock", "output", title, FAILED, CONSTANT) for title in HAIR),
+        *(("cycles", "eonlib", "output", title, PASSED, "") for title in HAIR),
+        ("cycles", "stock", "output", "blackbody", PASSED, ""),
+        *(
+            (host, "eonlib", check, EON, PASSED, "")
+            for host in ("storm", "materialx")
+            for check in ("value", "environment", "furnace")
+        ),
+        *(
+            (host, "eonlib", "value", title, PASSED, "")
+            for host in ("storm", "materialx")
+            for title in ("burley_diffuse_bsdf", "translucent_bsdf", DIELECTRIC)
+        ),
+        ("materialx", "eonlib", "environment", "translucent_bsdf", PASSED, ""),
+        ("storm", "eonlib", "lobe", "UsdPreviewSurface", PASSED, ""),
+    ],
+)  # fmt: skip
+def test_a_host_has_the_verdict_that_is_known(judged, host, library, check, title, verdict, words):
+    result = judged(check, title, host, library)
+    assert result.verdict == verdict and words in result.diagnosis + result.reason
+    assert verdict == NOT_RUN or not result.control or result.control.caught
+
+
+def test_cycles_names_the_closures_that_it_lacks(hosts):
+    answers = hosts("cycles").closures()
+    assert [name for name, reason in answers.items() if reason] == [
+        *("translucent_bsdf", "chiang_hair_bsdf")
+    ]
