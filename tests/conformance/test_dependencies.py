@@ -7,14 +7,14 @@ from pathlib import Path
 import pytest
 
 from mxeon.cli import main
-from mxeon.conformance.nodes.diffuse import SUBJECTS
-from mxeon.conformance.run import check, plan, read_run
+from mxeon.conformance.run import check, read_run
 from mxeon.conformance.run.dependencies import digests
 from mxeon.conformance.run.journal import JOURNAL
 from mxeon.hosts.base import Identity
 from mxeon.hosts.gl import Host
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.library import examples_folder
+from tests.support.plans import keep_checks
 
 INCLUDE = '<xi:include xmlns:xi="http://www.w3.org/2001/XInclude" href="{}"/>'
 FILE = '<input name="file" type="filename" value="{}"/>'
@@ -121,9 +121,7 @@ def test_the_code_and_the_libraries_are_dependencies():
 @pytest.fixture
 def run(tmp_path, monkeypatch):
     """A folder with a short run on the gl host, and its document."""
-    monkeypatch.setattr(plan, "subjects", lambda library: SUBJECTS[:1])
-    monkeypatch.setattr(plan, "SURFACES", ())
-    monkeypatch.setattr(plan, "CHECKS", ())
+    keep_checks(monkeypatch, "picture")
     texture(tmp_path / "grid.png")
     token = '<token name="t" type="string" value="grid.png"/></materialx>'
     text = (examples_folder() / "plaster.mtlx").read_text(encoding="utf-8")

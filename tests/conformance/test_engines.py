@@ -33,7 +33,9 @@ def swapped(host, shader, wo, wi, *rest, **options):
 
 
 def uncoated(host, shader, wo, wi, inputs, *rest, **options):
-    return EVALUATE(host, shader, wo, wi, {**inputs, "coat": 0.0 * inputs["coat"]}, *rest, **options)
+    return EVALUATE(
+        host, shader, wo, wi, {**inputs, "coat": 0.0 * inputs["coat"]}, *rest, **options
+    )
 
 
 def without_numbers(host, shader, wo, *rest, **options):

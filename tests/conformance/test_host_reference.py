@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mxeon.conformance.accuracy.bsdf import MICROFACET_VALUE
 from mxeon.conformance.pictures.document_pictures import judge_document
 from mxeon.conformance.reference import Host as Reference
 from mxeon.errors import NotRun, OutsideModel
@@ -24,6 +23,7 @@ from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import EON, OREN_NAYAR, document_text
 from mxeon.shaders.scene import FRONT, FURNACE, SIDE, VIEW, Scene, sphere
 from tests.support.documents import connected, lobe, material
+from tests.support.tolerances import MICROFACET_VALUE
 
 A = f'<{EON} name="a" type="BSDF"><input name="color" type="color3" value="0.8, 0.4, 0.1"/></{EON}>'
 B = f'<{EON} name="b" type="BSDF"><input name="color" type="color3" value="0.1, 0.2, 0.6"/></{EON}>'
@@ -222,7 +222,7 @@ def test_a_surface_shader_has_a_picture_like_gl(category):
     scene = replace(SIDE, size=32)
     with open_host("gl") as host:
         measured = host.picture(shader, scene)
-    assert np.abs(measured - Reference().picture(shader, scene)).max() < MICROFACET_VALUE.value
+    assert np.abs(measured - Reference().picture(shader, scene)).max() < MICROFACET_VALUE
 
 
 def test_emission_is_scaled_by_the_opacity():

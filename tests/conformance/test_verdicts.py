@@ -54,7 +54,8 @@ def film(choices):
         **dict.fromkeys(("film", "film_curve", "film_orders"), f"{choices}, and its compensation"),
         "film_limit": choices,
         **dict.fromkeys(
-            ("film_environment", "film_visible", "film_glossy"), f"{choices}, in light from all sides"
+            ("film_environment", "film_visible", "film_glossy"),
+            f"{choices}, in light from all sides",
         ),
         **dict.fromkeys(("film_average", "film_smooth"), AVERAGE),
     }
@@ -154,7 +155,9 @@ def test_eonlib_passes_every_check_that_stock_is_asked_too(run, stock):
 
 
 def test_stock_materialx_fails_where_its_pages_say_and_nowhere_else(stock):
-    found = {(e.subject, e.check): e.verdict for e in stock.results if e.verdict not in (PASSED, NOT_RUN)}
+    found = {
+        (e.subject, e.check): e.verdict for e in stock.results if e.verdict not in (PASSED, NOT_RUN)
+    }
     rows = [(title, check) for title, checks in STOCK.items() for check in checks]
     assert found == {row: DIFFERS if row in FREE else FAILED for row in rows}
     assert {each.subject for each in stock.results if each.verdict == NOT_RUN} < {*ABSENT}

@@ -4,10 +4,8 @@
 import numpy as np
 import pytest
 
-from mxeon.conformance.nodes.hair import HAIRS
-from mxeon.conformance.samples.batch import Batch
 from mxeon.explorer.lobes import MATERIALS
-from mxeon.models.hair import DEFAULTS
+from mxeon.models.hair import DEFAULTS, chiang_hair_bcsdf
 from mxeon.shaders.generation import generate
 from tests.explorer.stage import frame, opened_stage, side, towards, view
 
@@ -38,8 +36,8 @@ def expected(pick, along):
     wo = EYE - position
     pair = [axes @ (wo / np.linalg.norm(wo)), axes @ towards("side")]
     inputs = {name: own.get(name, np.asarray(value)) for name, value in DEFAULTS.items()}
-    [subject] = HAIRS
-    return subject.expected(Batch(pair[0][None], pair[1][None], inputs))[0]
+    wo, wi = (each[np.newaxis] for each in pair)
+    return np.pi * chiang_hair_bcsdf(wo, wi, **inputs)[0]
 
 
 def along_ring(position):

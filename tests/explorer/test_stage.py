@@ -4,7 +4,6 @@
 import numpy as np
 import pytest
 
-from mxeon.conformance.accuracy.diffuse import ENVIRONMENT, VALUE
 from mxeon.conformance.pictures.tolerances import PLAIN, TEXTURED
 from mxeon.explorer import documents
 from mxeon.models.core.quadrature import albedo_dir_quadrature
@@ -26,6 +25,7 @@ from tests.explorer.stage import (
     view,
     written,
 )
+from tests.support.tolerances import TWIN_ALBEDO, TWIN_VALUE
 
 DOCUMENTS = ("brick", "mixed_lobes")
 ROWS = MODELS + KNOWN_DEFECTS
@@ -102,8 +102,8 @@ def test_in_uniform_surroundings_pixels_are_the_albedo(stage, sources, row):
     # The clamp of one variant has a kink across the rectangles of 16 nodes, h apart: a jump of 1 in
     # the slope costs h^2 / 12 per unit of its length, at most pi.
     kink = (np.pi / 2 / 16) ** 2 / 12 * np.pi if row.name == "eon_clamped" else 0.0
-    assert np.abs(measured[points.mask] - white(row, mu)).max() < ENVIRONMENT.value + kink
-    assert np.abs(measured[points.mask] - 1.01 * white(row, mu)).max() > ENVIRONMENT.value + kink
+    assert np.abs(measured[points.mask] - white(row, mu)).max() < TWIN_ALBEDO + kink
+    assert np.abs(measured[points.mask] - 1.01 * white(row, mu)).max() > TWIN_ALBEDO + kink
 
 
 def compiled(host, library, flag):
@@ -124,7 +124,7 @@ def test_pixels_of_the_nodes_are_those_of_the_gl_host(stage, gl, flag, light):
         measured = picture(stage, name)
         scene = Scene(light, light=towards(light), size=len(measured))
         expected = gl.picture(compiled(gl, library, flag), scene)
-        tolerance = ARC_COSINE if flag and library == "stock" else VALUE.value
+        tolerance = ARC_COSINE if flag and library == "stock" else TWIN_VALUE
         assert error(measured, expected) < tolerance
         assert error(measured, 1.001 * expected) > tolerance
 
@@ -136,7 +136,7 @@ def test_the_flag_and_the_inputs_of_a_document_reach_its_shader(stage):
     view(stage, side(source), inputs={source: {"brick_lobe_weight": 0.5}})
     half = picture(stage)
     view(stage, side(source))
-    assert np.abs(picture(stage) - 2.0 * half).max() < VALUE.value < half.max()
+    assert np.abs(picture(stage) - 2.0 * half).max() < TWIN_VALUE < half.max()
 
 
 @pytest.mark.parametrize(("name", "library"), [("brick", "eonlib"), ("mixed_lobes", "stock")])
@@ -166,7 +166,7 @@ def test_surroundings_are_an_irradiance_times_the_albedo(stage, sources, name):
     for each in ("left", "right"):
         measured = picture(stage, each)[points.mask]
         # Both look the map up with the same expressions.
-        assert np.abs(measured - expected).max() < VALUE.value * irradiance.max()
+        assert np.abs(measured - expected).max() < TWIN_VALUE * irradiance.max()
         assert np.abs(measured - irradiance[points.mask]).max() > 0.05
 
 
@@ -185,8 +185,8 @@ def test_single_values_are_those_of_numpy(stage, sources, row):
     for name, compared in (("left", row), ("right", model("eon"))):
         measured = np.array([answer[name] for answer in answers])
         expected = np.pi * wi[:, 2:] * compared.brdf(wo, wi, RHO, *parameter_of(compared))
-        assert np.abs(measured - expected).max() < VALUE.value
-        assert np.abs(measured - expected[::-1]).max() > VALUE.value
+        assert np.abs(measured - expected).max() < TWIN_VALUE
+        assert np.abs(measured - expected[::-1]).max() > TWIN_VALUE
 
 
 def test_a_pick_has_the_directions_of_its_point(stage):

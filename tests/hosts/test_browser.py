@@ -7,25 +7,23 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mxeon.conformance.accuracy import diffuse as tolerances
-from mxeon.conformance.checks.application import judge_check
-from mxeon.conformance.checks.table import CHECKS
-from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
-from mxeon.conformance.probes.families import HOST_PROBES
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
 from mxeon.conformance.results.known_issues import ISSUES
 from mxeon.conformance.results.known_issues.issue import RENDERER_NODES
 from mxeon.errors import NotRun
-from mxeon.hosts import browser, host_row, open_engine
+from mxeon.hosts import browser, open_engine
 from mxeon.hosts.browser import pathtracer
 from mxeon.models.sampling.cltc import eon_cltc_sample
 from mxeon.shaders.nodes import material_text
 from mxeon.shaders.scene import SIDE, sphere
 from tests.support.availability import available
+from tests.support.verdicts import Verdicts
 from tests.test_upstream import same_record
 from tools.site import ledger
 from tools.site.ledger import measure
 
+# Pictures of a renderer in a browser, in half floats or finer, in light of 1.
+EXACT = 2e-5
 QUARTIC = "EON with the paper's quartic"
 # The nodes whose pictures are looked at: one for each engine of a host.
 TITLES = {
@@ -52,17 +50,15 @@ of_each_issue = pytest.mark.parametrize(
 )
 
 
-def judged(host, check, title):
-    """Result of a check of a node of a host's own."""
-    [subject] = [each for each in renderer_nodes(host.name) if each.title == title]
-    [row] = [each for each in CHECKS if each.key == check]
-    probe = HOST_PROBES[host_row(host.name).probe]
-    return judge_check(row, probe(host, subject, RENDERER_NODES).nearest_form())
+@pytest.fixture
+def own(judged):
+    """A function that judges a check of a node of a host's own."""
+    return lambda host, check, title: judged(check, title, host, RENDERER_NODES)
 
 
 @pytest.mark.parametrize("renderer", ["WebGLRenderer", "WebGPURenderer"])
-def test_three_has_eon_with_the_quartic(hosts, renderer):
-    result = judged(hosts("three"), "value", f"MeshPhysicalMaterial, {renderer}")
+def test_three_has_eon_with_the_quartic(own, renderer):
+    result = own("three", "value", f"MeshPhysicalMaterial, {renderer}")
     assert (result.verdict, result.model) == (PASSED, QUARTIC) and result.control.caught
     assert result.claimed == "energy-preserving Oren-Nayar (EON)"
 
@@ -71,8 +67,8 @@ def test_three_has_eon_with_the_quartic(hosts, renderer):
     "check, title",
     [("value", "PBRMaterial BURLEY, WebGL2"), ("lobe", "PBRMaterial LAMBERT, WebGPU")],
 )
-def test_babylon_has_its_other_models(hosts, check, title):
-    result = judged(hosts("babylon"), check, title)
+def test_babylon_has_its_other_models(own, check, title):
+    result = own("babylon", check, title)
     assert result.verdict == PASSED and result.control.caught
 
 
@@ -85,7 +81,7 @@ def test_pictures_are_linear_and_finer_than_bytes(hosts, name):
         picture = host.node(title, color, 0.0, scene)
         error = np.abs(picture - cosine[..., np.newaxis] * color)[points.mask]
         coarse = np.abs(np.round(255.0 * picture) / 255.0 - picture)[points.mask]
-        assert error.max() <= tolerances.EXACT.value < coarse.max()
+        assert error.max() <= EXACT < coarse.max()
         assert not picture[~points.mask].any()
 
 
@@ -96,7 +92,7 @@ def test_bright_light_is_not_compressed(hosts):
         answer = host._browser.ask(job | {"light": [0, 0, 1], "irradiance": 1e4 * math.pi})
         values = browser.pixels(answer, 16)[sphere(16).mask][:, 1]
         expected = 1e4 * sphere(16).normal[sphere(16).mask][:, 2]
-        assert np.abs(values / expected - 1.0).max() <= tolerances.EXACT.value
+        assert np.abs(values / expected - 1.0).max() <= EXACT
 
 
 def test_three_refuses_a_material_of_a_bsdf_node(hosts):
@@ -106,9 +102,8 @@ def test_three_refuses_a_material_of_a_bsdf_node(hosts):
 
 
 @of_each_issue
-def test_each_defect_is_as_its_page_says(hosts, issue):
-    host = hosts(issue.host)
-    results = [judged(host, *row) for row in issue.rows]
+def test_each_defect_is_as_its_page_says(own, issue):
+    results = [own(issue.host, *row) for row in issue.rows]
     assert all(each.verdict == FAILED for each in results), f"{issue.page}.md is out of date"
     same_record(measure.record(issue, results, ""), ledger.measured()[issue.page])
 
@@ -129,7 +124,7 @@ def repaired(tmp_path_factory):
             ledger.apply(ledger.linked(installed, modules / package), *diffs[name])
             patch.setenv(browser.MODULES, str(modules))
             opened[name] = open_engine(name)
-    yield opened
+    yield {name: Verdicts(opened.get) for name in opened}
     for host in opened.values():
         host.close()
 
@@ -139,7 +134,7 @@ def repaired(tmp_path_factory):
 )
 def test_a_repair_makes_the_checks_pass_that_show_the_defect(repaired, issue):
     for check, title in issue.rows:
-        result = judged(repaired[issue.host], check, title)
+        result = repaired[issue.host](check, title, issue.host, RENDERER_NODES)
         assert result.verdict == PASSED and result.control.caught, result.explanation
 
 
@@ -162,14 +157,14 @@ def tracer(hosts):
 
 
 @pytest.mark.parametrize("check", ["value", "black", "reciprocity", "inputs", "density", "samples"])
-def test_the_webgpu_lobe_is_eon_with_the_papers_sampling(tracer, check):
-    result = judged(tracer, check, EON)
+def test_the_webgpu_lobe_is_eon_with_the_papers_sampling(own, tracer, check):
+    result = own(tracer.name, check, EON)
     assert result.verdict == PASSED and result.control.caught
 
 
-def test_the_webgpu_lobe_has_the_quartic_and_beside_it_fon(tracer):
-    assert judged(tracer, "value", EON).model == "EON with the paper's quartic"
-    assert judged(tracer, "value", FON).verdict == PASSED
+def test_the_webgpu_lobe_has_the_quartic_and_beside_it_fon(own, tracer):
+    assert own(tracer.name, "value", EON).model == "EON with the paper's quartic"
+    assert own(tracer.name, "value", FON).verdict == PASSED
 
 
 def test_directions_are_those_of_the_papers_listing_for_the_same_numbers(tracer):
@@ -182,20 +177,20 @@ def test_directions_are_those_of_the_papers_listing_for_the_same_numbers(tracer)
     assert np.median(error) < 1e-3  # a root at the edge of the disk loses half of the digits
 
 
-def test_the_webgl_lobe_is_no_model_that_is_known_but_its_own(tracer):
-    result = judged(tracer, "value", f"{LOBE}, shorter wh")
+def test_the_webgl_lobe_is_no_model_that_is_known_but_its_own(own, tracer):
+    result = own(tracer.name, "value", f"{LOBE}, shorter wh")
     name = "Burley with Schlick's weight for the cosine of retro-reflection"
-    assert result.verdict == FAILED and f"best match: {name}" in result.diagnosis
+    assert result.verdict == FAILED and f"nearest known model: {name}" in result.diagnosis
     assert result.distances[name] < 1e-6
 
 
-def test_the_webgl_lobe_is_not_finite_in_retro_reflection(tracer):
-    result = judged(tracer, "value", LOBE)
-    assert "NaN or infinity in exact retro-reflection" in result.diagnosis
+def test_the_webgl_lobe_is_not_finite_in_retro_reflection(own, tracer):
+    result = own(tracer.name, "value", LOBE)
+    assert "not finite in exact retro-reflection" in result.diagnosis
 
 
-def test_pictures_are_not_run_and_say_why(tracer):
-    result = judged(tracer, "environment", EON)
+def test_pictures_are_not_run_and_say_why(own, tracer):
+    result = own(tracer.name, "environment", EON)
     assert result.verdict == NOT_RUN and "wavefront kernels do not compile" in result.reason
 
 

@@ -9,21 +9,19 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
-from mxeon.conformance.accuracy.bsdf import MICROFACET_VALUE
-from mxeon.conformance.probes.pictures import picture_pairs
 from mxeon.conformance.reference import Host as Reference
-from mxeon.conformance.samples.batch import directions
 from mxeon.errors import NotRun
-from mxeon.hosts import open_host, raster
+from mxeon.hosts import fragment, open_host, raster
 from mxeon.hosts.points import visible
 from mxeon.hosts.textures import irradiance, read_latlong
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.generation import generate
-from mxeon.shaders.nodes import EON, OREN_NAYAR, document_text
+from mxeon.shaders.nodes import EON, OREN_NAYAR, document_text, material_text
 from mxeon.shaders.scene import FRONT, FURNACE, SCENES, SHAPES, Scene, sphere
 from mxeon.shaders.shader_ball import shader_ball
+from tests.support.cases import directions_32
 from tests.support.documents import material
-from tests.support.tolerances import PICTURE
+from tests.support.tolerances import MICROFACET_VALUE, PICTURE
 
 SIZE = 96
 ROUGH = '<input name="roughness" type="float" value="0.9"/>'
@@ -48,9 +46,9 @@ def picture(host, nodes, scene):
 @pytest.mark.parametrize("name", LOBES)
 def test_every_pixel_is_the_models(gl, reference, name, scene):
     image, expected = (picture(host, LOBES[name], scene) for host in (gl, reference))
-    wo = picture_pairs(replace(scene, size=SIZE))[0]
-    mask = sphere(SIZE).mask
-    error = np.abs(image - expected)[mask].max(axis=1) * wo[:, 2]
+    points = sphere(SIZE)
+    mask = points.mask
+    error = np.abs(image - expected)[mask].max(axis=1) * points.normal[mask][:, 2]
     assert error.max() <= PICTURE
     assert not image[~mask].any()
 
@@ -127,7 +125,7 @@ def test_a_normal_that_faces_away_is_turned_and_light_below_the_horizon_gives_no
 @pytest.mark.parametrize("flag", [True, False])
 def test_inputs_outside_their_ranges_give_finite_numbers(gl, flag, branch):
     rng = np.random.default_rng(1)
-    wo, wi = directions(rng, 4096), directions(rng, 4096)
+    wo, wi = directions_32(rng, 4096), directions_32(rng, 4096)
     inputs = {
         "color": rng.uniform(-1.0, 1.0, (4096, 3)),
         "roughness": rng.uniform(-1.0, 10.0, 4096),
@@ -165,7 +163,7 @@ def test_it_evaluates_a_surface_shader_with_inputs_of_each_pair(gl, category):
     inputs = {color: np.array([[0.8, 0.4, 0.1], [0.1, 0.2, 0.6]]), "metallic": 0.0}
     values = np.pi * gl.evaluate(shader, wo, wi, inputs, "direct")
     expected = np.pi * Reference().evaluate(shader, wo, wi, inputs, "direct")
-    assert np.abs(values - expected).max() < MICROFACET_VALUE.value
+    assert np.abs(values - expected).max() < MICROFACET_VALUE
     assert np.abs(values[0] - values[1]).max() > 0.05
 
 
@@ -209,3 +207,21 @@ def test_each_pixel_of_a_shape_is_in_one_band(shape, size):
     mask = visible(size, shape).mask[::-1]
     assert (drawn[mask] == 1).all() and drawn.max() == 1
     assert drawn.sum() <= mask.sum() + 4 * raster.BAND * size
+
+
+def test_a_long_evaluation_is_that_of_its_parts(gl):
+    [shader] = generate(material_text("conductor_bsdf", {}), "glsl")
+    count = fragment.PART + 7
+    wo, wi = (np.tile(each, (count, 1)) for each in ([0.6, 0.0, 0.8], [-0.28, 0.0, 0.96]))
+    rough = np.linspace(0.1, 0.9, 2 * count).reshape(count, 2)
+    values = gl.evaluate(shader, wo, wi, {"roughness": rough}, "direct")
+    last = gl.evaluate(shader, wo[-7:], wi[-7:], {"roughness": rough[-7:]}, "direct")
+    assert len(values) == count
+    np.testing.assert_array_equal(values[-7:], last)
+
+
+def test_a_shader_without_a_uniform_edf_has_no_graph(gl):
+    text = document_text('<surface_unlit name="shading" type="surfaceshader"/>')
+    wo = np.array([[0.0, 0.0, 1.0]])
+    with pytest.raises(ValueError, match="element 'look' must call a uniform EDF"):
+        gl.evaluate(gl.compile(text)[0], wo, wo, {}, "graph")

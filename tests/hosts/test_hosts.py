@@ -6,14 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mxeon.conformance.nodes.bsdf import BSDFS
-from mxeon.conformance.nodes.diffuse import SUBJECTS
-from mxeon.conformance.probes.bsdf import BsdfProbe
-from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.errors import ShaderError
 from mxeon.hosts import calls
 from mxeon.models import table as reference
 from mxeon.shaders.generation import generate
+from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, material_text
+from tests.support.cases import pairs
 from tests.support.tolerances import SUMMED_DIRECTIONS, TWIN_ALBEDO, TWIN_VALUE
 
 HOSTS = ("gl", "webgl", "vulkan", "wgsl", "slang")
@@ -26,9 +24,13 @@ def host(request, hosts):
     return hosts(request.param)
 
 
-@pytest.fixture(params=SUBJECTS, ids=lambda subject: subject.title)
-def probe(host, request):
-    return PairProbe(host, request.param, "eonlib")
+LOBES = (("eon", OREN_NAYAR, {FLAG: True}), ("qon", OREN_NAYAR, {FLAG: False}), ("eon", EON, {}))
+
+
+def drawn(count=COUNT):
+    """Pairs with colors and roughnesses, as float32 has them."""
+    wo, wi, rho, roughness = (each.astype("f4") for each in pairs(count, 1))
+    return wo, wi, {"color": rho, "roughness": roughness}
 
 
 def test_the_identity_names_a_version_and_a_device_after_work_too(host):
@@ -37,28 +39,24 @@ def test_the_identity_names_a_version_and_a_device_after_work_too(host):
     assert identity.name == host.name and identity.version and identity.device
 
 
-def test_the_generated_bsdf_is_the_model(probe):
-    batch = probe.few[0].first(COUNT)
-    np.testing.assert_allclose(
-        probe.direct(batch), batch.expected(probe.subject.model), rtol=0.0, atol=TWIN_VALUE
-    )
-
-
-def test_the_environment_branch_is_the_albedo(probe):
-    batch = probe.few[0].first(COUNT).altered(weight=1.0)
-    row = reference.model(probe.subject.model)
-    expected = row.albedo_dir(batch.wo[:, 2], batch.inputs["color"], batch.inputs["roughness"])
-    np.testing.assert_allclose(probe.albedo(batch), expected, rtol=0.0, atol=TWIN_ALBEDO)
+@pytest.mark.parametrize("model, node, fixed", LOBES)
+def test_the_generated_bsdf_is_the_model(host, model, node, fixed):
+    [shader] = host.compile(material_text(node, fixed))
+    (wo, wi, inputs), row = drawn(), reference.model(model)
+    rho, roughness = inputs.values()
+    values = np.pi * host.evaluate(shader, wo, wi, inputs, "direct")
+    expected = np.pi * row.brdf(wo, wi, rho, roughness) * wi[:, 2:]
+    np.testing.assert_allclose(values, expected, rtol=0.0, atol=TWIN_VALUE)
+    albedo = host.evaluate(shader, wo, wi, inputs, "environment")
+    expected = row.albedo_dir(wo[:, 2], rho, roughness)
+    np.testing.assert_allclose(albedo, expected, rtol=0.0, atol=TWIN_ALBEDO)
 
 
 def test_a_function_of_the_twins_is_the_model(host):
-    batch = PairProbe(host, SUBJECTS[0], "eonlib").few[0].first(COUNT)
-    batch = batch.altered(weight=1.0, occlusion=1.0)
-    rho, roughness = batch.inputs["color"], batch.inputs["roughness"]
-    brdf = host.call("eon_brdf", batch.wo, batch.wi, rho, roughness)
-    np.testing.assert_allclose(
-        np.pi * brdf * batch.wi[:, 2:], batch.expected("eon"), rtol=0.0, atol=TWIN_VALUE
-    )
+    wo, wi, inputs = drawn()
+    values = np.pi * host.call("eon_brdf", wo, wi, *inputs.values()) * wi[:, 2:]
+    expected = np.pi * reference.model("eon").brdf(wo, wi, *inputs.values()) * wi[:, 2:]
+    np.testing.assert_allclose(values, expected, rtol=0.0, atol=TWIN_VALUE)
 
 
 def test_a_scalar_fills_three_columns_and_one_row_serves_all(host):
@@ -67,14 +65,19 @@ def test_a_scalar_fills_three_columns_and_one_row_serves_all(host):
 
 
 def test_inputs_that_are_not_given_have_the_documents_values(host):
-    shader = generate(SUBJECTS[2].document({"weight": 0.25}), host.target)[0]
+    shader = generate(material_text(EON, {"weight": 0.25}), host.target)[0]
     white = {"color": np.ones((1, 3)), "roughness": np.zeros(1)}
     values = host.evaluate(shader, PAIR, PAIR, white, "direct")
     np.testing.assert_allclose(np.pi * values, 0.25 * 0.8, rtol=0.0, atol=TWIN_VALUE)
 
 
 def test_what_the_compiler_refuses_is_a_shader_error_and_the_host_works_on(host):
-    good = generate(SUBJECTS[2].document(), host.target)[0]
+    good = generate(
+        material_text(
+            EON,
+        ),
+        host.target,
+    )[0]
     wrong = good.stages["pixel"].replace("eon_brdf_mu", "no_such_function", 1)
     bad = replace(good, stages={**good.stages, "pixel": wrong})
     for flag in (0.25, 0.5):
@@ -86,7 +89,12 @@ def test_what_the_compiler_refuses_is_a_shader_error_and_the_host_works_on(host)
 
 @pytest.mark.parametrize("word", ["branch", "output"])
 def test_an_unknown_branch_or_output_is_refused(host, word):
-    shader = generate(SUBJECTS[2].document(), host.target)[0]
+    shader = generate(
+        material_text(
+            EON,
+        ),
+        host.target,
+    )[0]
     options = {"branch": "direct", word: "both"}
     with pytest.raises(ValueError, match=f"{word} must be one of .*; got 'both'"):
         host.evaluate(shader, PAIR, PAIR, {}, **options)
@@ -94,7 +102,13 @@ def test_an_unknown_branch_or_output_is_refused(host, word):
 
 @pytest.mark.parametrize("branch", calls.CLOSURES)
 def test_an_opaque_lobe_lets_no_light_through_in_any_branch(host, branch):
-    shader = generate(SUBJECTS[2].document(), host.target, lights=True)[0]
+    shader = generate(
+        material_text(
+            EON,
+        ),
+        host.target,
+        lights=True,
+    )[0]
     assert not host.evaluate(shader, PAIR, PAIR, {}, branch, output="throughput").any()
     leaks = shader.stages["pixel"].replace("bsdf.throughput = ", "bsdf.response = ")
     leaky = replace(shader, stages={**shader.stages, "pixel": leaks})
@@ -102,7 +116,13 @@ def test_an_opaque_lobe_lets_no_light_through_in_any_branch(host, branch):
 
 
 def test_the_environment_is_looked_up_at_the_normal(host):
-    shader = generate(SUBJECTS[2].document(), host.target, lights=True)[0]
+    shader = generate(
+        material_text(
+            EON,
+        ),
+        host.target,
+        lights=True,
+    )[0]
     rows = np.linspace(0.0, 1.0, 8)[:, np.newaxis, np.newaxis]
     sky = np.broadcast_to(rows, (8, 16, 3)).astype(np.float32)  # brighter downwards
     inputs = {"color": np.ones((1, 3)), "roughness": np.zeros(1)}
@@ -114,15 +134,14 @@ def test_the_environment_is_looked_up_at_the_normal(host):
         assert (expected.start <= values).all() and (values <= expected.stop).all()
 
 
-@pytest.mark.parametrize(
-    "subject", [each for each in BSDFS if each.anisotropic][:1], ids=lambda each: each.model
-)
-def test_a_lobe_of_microfacets_sums_as_many_directions_on_every_host(host, gl, subject):
-    ours, theirs = (BsdfProbe(each, subject, "stock") for each in (host, gl))
-    batch = ours.cosines[0]
-    np.testing.assert_allclose(
-        ours.albedo(batch), theirs.albedo(batch), rtol=0.0, atol=SUMMED_DIRECTIONS
+def test_a_lobe_of_microfacets_sums_as_many_directions_on_every_host(host, gl):
+    wo, wi, _ = drawn(1 << 10)
+    rough = {"roughness": np.linspace(0.05, 1.0, 2 << 10).reshape(-1, 2)}
+    ours, theirs = (
+        each.evaluate(*each.compile(material_text("dielectric_bsdf")), wo, wi, rough, "environment")
+        for each in (host, gl)
     )
+    np.testing.assert_allclose(ours, theirs, rtol=0.0, atol=SUMMED_DIRECTIONS)
 
 
 def test_an_unknown_function_is_refused(host):

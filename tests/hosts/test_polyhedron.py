@@ -6,41 +6,48 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mxeon.conformance.accuracy.diffuse import COARSE_FACETS, FACET_PAIRS, FACETS
-from mxeon.conformance.checks.application import judge_check, judge_subject
-from mxeon.conformance.checks.table import CHECKS
-from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
-from mxeon.conformance.probes.families import HOST_PROBES
-from mxeon.conformance.probes.renderer_nodes import FacetPairProbe, facet_pairs
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
-from mxeon.conformance.results.known_issues import with_pages
 from mxeon.conformance.results.known_issues.issue import RENDERER_NODES
 from mxeon.conformance.run import check
 from mxeon.errors import NotRun
-from mxeon.hosts import host_row, open_engine
+from mxeon.hosts import host_row
 from mxeon.hosts.polyhedron import eevee, luxcore, mitsuba
 from mxeon.shaders.facets import facet_points
 from mxeon.shaders.library import examples_folder
-from mxeon.shaders.scene import BACK, FRONT, SIDE
+from mxeon.shaders.scene import BACK, FRONT, SIDE, VIEW, local_directions
 from tests.support.availability import available, required
+from tests.support.plans import keep_host
+from tests.support.sharing import shared
+from tests.support.verdicts import Verdicts
 
 EXAMPLE = examples_folder() / "plaster.mtlx"
 HOSTS = {"mitsuba": mitsuba.Host, "luxcore": luxcore.Host}
 SMALL = replace(SIDE, size=64)
 COLOR = (0.8, 0.4, 0.1)
+# Errors of pictures of facets, times the light's cosine; of EEVEE's, in half floats; and of values of pairs.
+FACETS, COARSE_FACETS, FACET_PAIRS = 7e-5, 0.02, 6e-6
 
 
-def judged(name):
+def titles(name):
+    """A host's own nodes."""
+    return [each.title for each in host_row(name).nodes]
+
+
+def judged_all(name, factory):
     """Results of a host, by check and subject."""
-    with available(name), open_engine(name) as host:
+    with available(name), HOSTS[name]() as host:
         host.identity()
-        probe = HOST_PROBES[host_row(name).probe]
-        results = [
-            with_pages(result)
-            for subject in renderer_nodes(name)
-            for result in judge_subject(probe(host, subject, RENDERER_NODES))
-        ]
-    return {(each.check, each.subject): each for each in results}
+    with pytest.MonkeyPatch.context() as patch:
+        keep_host(patch, name)
+        results = shared(factory, name, lambda: check([EXAMPLE], [name], nodes=["common"])).results
+    return {(each.check, each.subject): each for each in results if each.library == RENDERER_NODES}
+
+
+def facet_pairs(scene):
+    """Directions to the camera and the light at each facet, and which facets both see."""
+    normal = facet_points(scene.size).normal[facet_points(scene.size).mask]
+    wo, wi = (local_directions(each, normal) for each in (VIEW, scene.light))
+    return wo, wi, (wo[:, 2] > 0.0) & (wi[:, 2] > 0.0)
 
 
 @pytest.fixture(scope="module", params=HOSTS)
@@ -51,29 +58,27 @@ def host(request):
 
 
 @pytest.fixture(scope="module")
-def of_mitsuba():
-    return judged("mitsuba")
+def of_mitsuba(tmp_path_factory):
+    return judged_all("mitsuba", tmp_path_factory)
 
 
 @pytest.fixture(scope="module")
-def of_luxcore():
-    return judged("luxcore")
+def of_luxcore(tmp_path_factory):
+    return judged_all("luxcore", tmp_path_factory)
 
 
 def test_mitsuba_has_the_models_that_it_documents(of_mitsuba):
-    documented = {each.node for each in renderer_nodes("mitsuba")}
-    assert {subject for _, subject in of_mitsuba} == documented
+    assert {subject for _, subject in of_mitsuba} == {*titles("mitsuba")}
     assert {each.verdict for each in of_mitsuba.values()} == {PASSED}
     assert all(each.control.caught for each in of_mitsuba.values())
 
 
 def test_a_base_with_another_metalness_fails(monkeypatch):
-    [subject] = [each for each in renderer_nodes("mitsuba") if each.node.startswith("openpbr")]
-    wrong = mitsuba.Host.nodes[subject.node] | {"base_metalness": 0.49}
-    monkeypatch.setitem(mitsuba.Host.nodes, subject.node, wrong)
-    [value] = [each for each in CHECKS if each.key == "value"]
+    [title] = [each for each in titles("mitsuba") if each.startswith("openpbr")]
+    wrong = mitsuba.Host.nodes[title] | {"base_metalness": 0.49}
+    monkeypatch.setitem(mitsuba.Host.nodes, title, wrong)
     with available("mitsuba"), mitsuba.Host() as host:
-        result = judge_check(value, FacetPairProbe(host, subject, RENDERER_NODES))
+        result = Verdicts(lambda name: host)("value", title, "mitsuba", RENDERER_NODES)
     assert result.verdict == FAILED and result.control.caught
 
 
@@ -103,24 +108,24 @@ def test_eevee_is_lambert_whatever_the_roughness():
             pictures = [host.node(title, COLOR, roughness, SMALL) for roughness in (0.0, 1.0)]
             np.testing.assert_array_equal(*pictures)
             values = pictures[0][facet_points(SMALL.size).mask][mask]
-            assert np.abs(values - wi[mask][:, 2:] * COLOR).max() <= COARSE_FACETS.value
+            assert np.abs(values - wi[mask][:, 2:] * COLOR).max() <= COARSE_FACETS
 
 
 @pytest.mark.parametrize("scene", [FRONT, SIDE, BACK], ids=lambda each: each.name)
 def test_pictures_are_linear_and_have_float_precision(host, scene):
     """A dark color beside a bright one: 8 bits or a tone curve would be off by far more."""
     scene = replace(scene, size=64)
-    title = renderer_nodes(host.name)[0].node
+    title = titles(host.name)[0]
     picture = host.node(title, (1.0, 0.02, 1e-4), 0.0, scene)[facet_points(64).mask]
     _, wi, mask = facet_pairs(scene)
     expected = wi[mask][:, 2:] * np.array([1.0, 0.02, 1e-4])
     relative = np.abs(picture[mask] / expected - 1.0) * wi[mask][:, 2:]
-    assert relative.max() <= FACETS.value
+    assert relative.max() <= FACETS
 
 
 def test_a_surface_in_no_light_is_black(host):
     dark = replace(SMALL, light=(0.0, 0.0, -1.0))
-    assert host.node(renderer_nodes(host.name)[0].node, COLOR, 0.0, dark).max() == 0.0
+    assert host.node(titles(host.name)[0], COLOR, 0.0, dark).max() == 0.0
 
 
 def test_a_picture_agrees_with_the_values_of_mitsubas_own_function():
@@ -130,7 +135,7 @@ def test_a_picture_agrees_with_the_values_of_mitsubas_own_function():
         count = np.count_nonzero(mask)
         color, roughness = np.broadcast_to(COLOR, (count, 3)), np.full(count, 0.7)
         values = np.pi * host.pairs("principled", wo[mask], wi[mask], color, roughness)
-    assert np.abs(picture[mask] - values).max() <= FACETS.value + FACET_PAIRS.value
+    assert np.abs(picture[mask] - values).max() <= FACETS + FACET_PAIRS
 
 
 def test_a_missing_package_names_the_remedy(monkeypatch, tmp_path):

@@ -9,9 +9,8 @@ import pytest
 
 from mxeon import hosts
 from mxeon.cli import main
-from mxeon.conformance.checks.table import CHECKS
-from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.pictures.documents import generate_document
+from mxeon.conformance.results import SHADER_FUNCTIONS
 from mxeon.conformance.run import check
 from mxeon.errors import NotRun, Unsupported
 from mxeon.hosts import base
@@ -19,8 +18,10 @@ from mxeon.hosts.base import RendererHost
 from mxeon.models import table
 from mxeon.shaders.generation import generate
 from mxeon.shaders.library import examples_folder
+from mxeon.shaders.nodes import EON, material_text
 from mxeon.shaders.scene import SIDE
 from mxeon.shaders.targets import CLASSES
+from tests.support.plans import keep_checks
 
 VERBS = {
     "picture": (None, SIDE),
@@ -49,7 +50,7 @@ class Host(base.Host):
     def evaluate(self, shader, wo, wi, inputs, branch, **options):
         rho = np.broadcast_to(inputs["color"], wo.shape)
         above = wi * np.where(wi[:, 2:] < 0.0, [1.0, 1.0, -1.0], 1.0)
-        brdf = table.model("eon").brdf(wo, above, rho, inputs["roughness"])
+        brdf = table.model("eon").brdf(wo, above, rho, np.minimum(inputs["roughness"], 1.0))
         factor = np.maximum(inputs.get("weight", 1.0), 0.0) * inputs.get("occlusion", 1.0)
         return brdf * np.clip(wi[:, 2:], 0.0, 1.0) * np.reshape(factor, (-1, 1))
 
@@ -62,16 +63,15 @@ def toy(monkeypatch):
 
 
 def test_a_new_host_is_one_module_and_one_row(toy, monkeypatch):
-    checks = [row for row in CHECKS if row.key in ("value", "twins")]
-    items = import_module("mxeon.conformance.run.plan")
-    monkeypatch.setattr(items, "CHECKS", checks)
-    monkeypatch.setattr(items, "subjects", lambda library: SUBJECTS[2:])
-    monkeypatch.setattr(items, "PBR_SUBJECTS", ())
+    keep_checks(monkeypatch, "value", "twins")
     run = check([examples_folder() / "clay.mtlx"], ["toy"], workers=0, nodes=["common"])
     assert [each.device for each in run.hosts] == ["paper"]
-    results = {each.check: each for each in run.results if each.host == "toy"}
-    assert results["value"].verdict == "passed"
-    assert results["twins"].reason == "toy: this host has no calls of a shader function; use gl"
+    results = {(each.check, each.subject): each for each in run.results if each.host == "toy"}
+    assert results["value", EON].verdict == "passed"
+    assert (
+        results["twins", SHADER_FUNCTIONS].reason
+        == "toy: this host has no calls of a shader function; gl has"
+    )
 
 
 def test_the_help_names_every_host(capsys):
@@ -89,7 +89,7 @@ def test_a_verb_that_a_host_lacks_is_unsupported(engine, verb, arguments):
 
     with (
         Silent() as host,
-        pytest.raises(Unsupported, match="^silent: this host has no .*; use [a-z-]+$"),
+        pytest.raises(Unsupported, match="^silent: this host has no .*; [a-z-]+ has$"),
     ):
         getattr(host, verb)(*arguments)
 
@@ -102,12 +102,12 @@ def test_a_renderer_executes_no_shaders(monkeypatch):
     monkeypatch.setattr(hosts, "HOSTS", (hosts.Row("renderer", "", __name__, "native"),))
     monkeypatch.setitem(globals(), "Host", Renderer)
     assert isinstance(hosts.open_engine("renderer"), Renderer)
-    with pytest.raises(Unsupported, match="^renderer: this renderer only has its own materials"):
+    with pytest.raises(Unsupported, match="^renderer: this renderer shows materials of its own"):
         hosts.open_host("renderer")
 
 
 def test_a_document_is_not_run_on_a_renderer():
-    with pytest.raises(NotRun, match="^mitsuba: this renderer .*; it reads no documents$"):
+    with pytest.raises(NotRun, match="^mitsuba: this renderer .*; it reads no document$"):
         generate_document(examples_folder() / "clay.mtlx", "mitsuba", "eonlib")
 
 
@@ -115,7 +115,7 @@ def test_a_host_compiles_for_its_target_and_profile_and_with_lights():
     class Profiled(Host):
         target, profile = "osl", "cycles"
 
-    document = SUBJECTS[2].document()
+    document = material_text(EON)
     assert Host().compile(document) == generate(document, "glsl", lights=True)
     assert Profiled().compile(document) == generate(document, "osl", profile="cycles")
 

@@ -6,11 +6,10 @@ import struct
 import numpy as np
 import pytest
 
-from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.hosts import fragment, vulkan
 from mxeon.hosts.base import TURN
 from mxeon.shaders.generation import generate
-from mxeon.shaders.nodes import FLAG
+from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 
 PAIR, BEHIND = np.array([[[0.6, 0.0, 0.8]], [[-0.6, 0.0, 0.8]]])
 BLOCK = """
@@ -28,14 +27,14 @@ def host(hosts):
 
 
 def test_the_text_is_evaluated_as_it_was_generated():
-    shader = generate(SUBJECTS[0].document(), "wgsl")[0]
+    shader = generate(material_text(OREN_NAYAR, {FLAG: True}), "wgsl")[0]
     text, _ = fragment.bsdf_evaluation(shader, PAIR, PAIR, {}, "direct")
     head, body = shader.stages["pixel"].split("\n", 1)
     assert text.startswith(head) and body in text
 
 
 def test_an_integer_of_the_text_is_the_boolean_that_it_was(host):
-    shader = generate(SUBJECTS[0].document(), "wgsl")[0]
+    shader = generate(material_text(OREN_NAYAR, {FLAG: True}), "wgsl")[0]
     inputs = {"color": np.ones((1, 3)), "roughness": np.ones(1)}
     on, off = (
         host.evaluate(shader, PAIR, BEHIND, {**inputs, FLAG: flag}, "direct")

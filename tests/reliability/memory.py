@@ -8,7 +8,7 @@ from tempfile import TemporaryDirectory
 
 import psutil
 
-from mxeon.conformance.nodes.diffuse import SUBJECTS
+from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 from tests.reliability.runs import start
 
 COUNTS = (10, 100, 1000)
@@ -35,7 +35,9 @@ def document(folder, number):
     """A material that no other document has."""
     path = folder / f"document_{number:04}.mtlx"
     color = (number % 97 / 97, 0.5, number % 31 / 31)
-    path.write_text(SUBJECTS[0].document({"color": color, "roughness": number % 13 / 13}))
+    path.write_text(
+        material_text(OREN_NAYAR, {"color": color, "roughness": number % 13 / 13, FLAG: True})
+    )
     return path
 
 

@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 from mxeon.cli import main
-from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.results import (
     FAILED,
     NOT_RUN,
@@ -29,7 +28,7 @@ from mxeon.report import write, write_field
 from mxeon.report.field import CHECKS, read_field
 
 FIELD = Path(__file__).parents[2] / "docs" / "field.html"
-EON = SUBJECTS[0]
+EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
 TITLE = reference.model("eon").title
 HOSTILE = "<script>alert(1)</script>"
 TOLERANCE = 1e-6
@@ -39,7 +38,7 @@ def made(check, error, **changes):
     """A result of a check of EON's node on gl."""
     verdict = PASSED if error <= TOLERANCE else FAILED
     result = Result(
-        check, "claim.", EON.title, "gl", "stock", verdict, error, "pi f cos", TOLERANCE,
+        check, "claim.", EON, "gl", "stock", verdict, error, "pi f cos", TOLERANCE,
         worst={"roughness": [0.875], "color": [0.2, 0.5, 0.8]}, control=Control("wrong", 1.0, True),
     )  # fmt: skip
     return replace(result, **changes)
@@ -49,7 +48,7 @@ def portrait(scene, offset, host="gl"):
     """A portrait that is brighter than its reference by an offset."""
     model = np.full((8, 8, 3), 0.25, dtype=np.float32)
     metadata = {"host": host, "points": host}
-    names = (PORTRAIT, EON.title, host, "stock", scene)
+    names = (PORTRAIT, EON, host, "stock", scene)
     return Picture(*names, model + np.float32(offset), model, metadata)
 
 

@@ -7,14 +7,14 @@ import re
 import numpy as np
 import pytest
 
-from mxeon.conformance.accuracy.bsdf import CONTY_KULLA_FIT, ESS_FIT
 from mxeon.models.diffuse import albedo, formulas, qon_albedo
 from mxeon.models.diffuse import brdf as models
 from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
 from mxeon.models.sheen import conty_kulla_albedo_dir
 from mxeon.shaders.functions import source_file
 from tests.support.cases import directions_32
-from tests.support.tolerances import TWIN_ALBEDO, TWIN_LOSS, TWIN_VALUE
+from tests.support.tolerances import FIT_CONTY_KULLA, FIT_GGX, TWIN_ALBEDO, TWIN_LOSS, TWIN_VALUE
+from tools.site.twins import STEMS, TOP, osl_text
 
 ALBEDOS_OF_NODES = ("ggx_albedo", "conty_kulla_albedo")
 FITTED_ROUNDING = 32 * 2.0**-24  # of a rational function in float32
@@ -63,6 +63,11 @@ def name_of(function):
     return function.__name__
 
 
+@pytest.mark.parametrize("stem", STEMS)
+def test_osl_twin_is_written_from_the_glsl_twin(stem):
+    assert (TOP / "genosl" / f"{stem}.osl").read_text(encoding="utf-8") == osl_text(stem)
+
+
 @pytest.mark.parametrize("function", VALUES, ids=name_of)
 def test_twin_values_agree_with_float64_down_to_grazing(gl, function):
     rng = np.random.default_rng(1)
@@ -95,8 +100,8 @@ def test_twin_loss_keeps_its_relative_accuracy_down_to_grazing(gl):
 
 
 NODE_ALBEDOS = (
-    ("ggx_albedo", ggx_albedo_dir, ESS_FIT),
-    ("conty_kulla_albedo", conty_kulla_albedo_dir, CONTY_KULLA_FIT),
+    ("ggx_albedo", ggx_albedo_dir, FIT_GGX),
+    ("conty_kulla_albedo", conty_kulla_albedo_dir, FIT_CONTY_KULLA),
 )
 
 

@@ -14,16 +14,16 @@ from pathlib import Path
 
 import numpy as np
 
-from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.hosts.testrender import scenes
 from mxeon.hosts.testrender.programs import VARIABLES, find_program
 from mxeon.hosts.testrender.renderer import Host
 from mxeon.shaders.generation import generate
+from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 
 FOLDER = Path(__file__).parent
 FACTS = FOLDER / "facts.json"
 PICTURE = FOLDER / "pairs.tif"  # testrender's picture of the pairs
-SUBJECT, INPUTS = SUBJECTS[0], {"color": (0.2, 0.5, 0.8), "roughness": 1.0}
+INPUTS = {"color": (0.2, 0.5, 0.8), "roughness": 1.0, FLAG: True}
 VIEWS = np.array([(0.6, 0.0, 0.8), (0.0, 0.28, 0.96), (-0.48, 0.64, 0.6), (0.96, 0.0, 0.28)])
 LIGHTS = np.array([(0.0, 0.6, 0.8), (0.96, 0.0, 0.28), (0.48, -0.6, 0.64), (-0.6, 0.0, 0.8)])
 
@@ -60,7 +60,7 @@ def facts():
 
 def shader():
     """The shader of the recorded picture."""
-    return generate(SUBJECT.document(INPUTS), "osl")[0]
+    return generate(material_text(OREN_NAYAR, INPUTS, OREN_NAYAR), "osl")[0]
 
 
 def values(host):
