@@ -48,7 +48,7 @@ def without_numbers(host, shader, wo, *rest, **options):
         (turned, "reciprocity", EON, ""),
         (swapped, "value", EON, ""),
         (uncoated, "lobes", SHADER, "the layer equation holds without the coat"),
-        (without_numbers, "value", EON, "not finite"),
+        (without_numbers, "value", EON, "NaN or infinity"),
     ],
 )
 def test_a_host_that_mistakes_its_arguments_fails(monkeypatch, evaluate, check, title, words):

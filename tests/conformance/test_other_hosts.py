@@ -12,7 +12,7 @@ HAIR = (
     "chiang_hair_absorption_from_color",
 )
 CONSTANT = "whatever the inputs are (rms 0)"
-CUBED = "nearest known model: EON with rho^3 (rms "
+CUBED = "best match: EON with rho^3 (rms "
 
 
 @pytest.mark.parametrize(

@@ -29,13 +29,13 @@ G_1 = "anisotropic visible normals are weighted by G_1 at the mean alpha"
 UNTINTED = "MaterialX's fit of its albedo without a tint (rms "
 AVERAGED = "MaterialX's fit of its albedo, averaged over the channels (rms "
 CLAMPED = "EON with clamped dot(wo, wi)"
-AWAY = "all of them where the normal faces away from the viewer"
+AWAY = "all where the normal faces away from the viewer"
 UNCOLORED = "its albedo without the color (rms "
 FIT = "MaterialX's fit of its albedo (rms "
-NAN = "values that are not finite"
+NAN = "NaN or infinity"
 UNSHADOWED = "the mean of 1 - F over the visible normals, divided by G_1 of the view"
 UNSCALED = "the throughput of the lobe before it is scaled"
-ENDED = "a sum whose throughput ends at 0"
+ENDED = "a sum whose throughput is clamped at 0"
 BLUR = "MaterialX's blur along a circle of radius "
 CHOICES = "MaterialX's matrix, orders and mixed channels"
 SUBSTRATE = "half of the substrate's reflectance, and MaterialX's choices"
@@ -81,7 +81,7 @@ STOCK = {
         **dict.fromkeys(("layering", "layer"), "MaterialX's fit of its albedo without the color (rms "),
     },
     "sheen_bsdf, mode zeltner": {
-        "value": "all of them with dot(N, V) above 1 by a rounding",
+        "value": "all with dot(N, V) rounded above 1",
         "transmission": "all light passes (rms 0)", **dict.fromkeys(("layering", "layer"), UNCOLORED),
     },
     "dielectric_bsdf, scatter_mode R": {
@@ -107,17 +107,17 @@ STOCK = {
     ),
     "chiang_hair_bsdf": {
         **dict.fromkeys(("value", "black", "finite", "integral", "low_index"), NAN),
-        "environment": "a GGX lobe of the mean roughness and tint, without absorption comes nearest",
-        "each_lobe": "nearest known model: N of TRRT+ pi/2 instead of 1/(2 pi) (rms ",
-        "narrow_lobes": "nearest known model: I_0 by ten terms, and half a term of its logarithm (rms ",
+        "environment": "the closest is a GGX lobe of the mean roughness and tint, without absorption",
+        "each_lobe": "best match: N of TRRT+ pi/2 instead of 1/(2 pi) (rms ",
+        "narrow_lobes": "best match: I_0 from ten terms, and half a term of its logarithm (rms ",
         "tilted_lobes": f"{NAN} with a tilted cuticle",
-        "wide_lobes": "nearest known model: every roughness in [0.001, 1] (rms ",
+        "wide_lobes": "best match: roughness clamped to [0.001, 1] (rms ",
         "straight_views": "", "surroundings": "",
     },
     **{title: {"implemented": f"glsl has no implementation of {title}"} for title in ABSENT},
     "anisotropic_vdf": {
-        "inputs": "without effect: scattering",
-        "transmittance": "nearest known model: absorption alone (rms ",
+        "inputs": "inputs without effect: scattering",
+        "transmittance": "best match: absorption alone (rms ",
     },
     "surface, an EDF alone": {"opacity": "the opacity is ignored"},
     **{
@@ -132,7 +132,7 @@ STOCK = {
     "dielectric_bsdf, thin film": film(CHOICES) | {"film_throughput": f"{CHOICES}: {BARE}"},
     "conductor_bsdf, thin film": film(CHOICES),
     "generalized_schlick_bsdf, thin film": film(SUBSTRATE) | {"film_throughput": f"{SUBSTRATE}: {BARE}"},
-    "blackbody": {"output": "Kang's cubic, drawn on below 1667 K"},
+    "blackbody": {"output": "Kang's cubic, extrapolated below 1667 K"},
     "deon_hair_absorption_from_melanin": {"output_finite": "outputs are not finite"},
     **{f"{node}, every lobe": SURFACE for node in ("standard_surface", "gltf_pbr", "UsdPreviewSurface")},
     "open_pbr_surface, every lobe": {key: SURFACE[key] for key in SURFACE if key != "lobes_energy"},
@@ -206,9 +206,9 @@ def test_a_defect_that_was_repaired_upstream_is_said_to_be_once_all_its_rows_pas
     assert noted("value", "albedo", "lobe")[page].startswith("repaired in MaterialX 2.0")
 
 
-CLAMPED_MODEL = f"nearest known model: {CLAMPED} (rms 0.001), then Lambert (0.2)"
-FITTED = f"nearest known model: {FIT}9e-09), then Conty-Kulla sheen (0.01)"
-OTHER = "nearest known model: Lambert (rms 0.001), then EON (0.2)"
+CLAMPED_MODEL = f"best match: {CLAMPED} (rms 0.001), then Lambert (0.2)"
+FITTED = f"best match: {FIT}9e-09), then Conty-Kulla sheen (0.01)"
+OTHER = "best match: Lambert (rms 0.001), then EON (0.2)"
 COSINE = "fault: the cosine of the light is missing (rms 1e-08)"
 CHOICE = "genglsl_microfacet_compensation"
 

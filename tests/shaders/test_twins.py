@@ -14,7 +14,6 @@ from mxeon.models.sheen import conty_kulla_albedo_dir
 from mxeon.shaders.functions import source_file
 from tests.support.cases import directions_32
 from tests.support.tolerances import FIT_CONTY_KULLA, FIT_GGX, TWIN_ALBEDO, TWIN_LOSS, TWIN_VALUE
-from tools.site.twins import STEMS, TOP, osl_text
 
 ALBEDOS_OF_NODES = ("ggx_albedo", "conty_kulla_albedo")
 FITTED_ROUNDING = 32 * 2.0**-24  # of a rational function in float32
@@ -61,11 +60,6 @@ def twin_error(gl, function, columns):
 
 def name_of(function):
     return function.__name__
-
-
-@pytest.mark.parametrize("stem", STEMS)
-def test_osl_twin_is_written_from_the_glsl_twin(stem):
-    assert (TOP / "genosl" / f"{stem}.osl").read_text(encoding="utf-8") == osl_text(stem)
 
 
 @pytest.mark.parametrize("function", VALUES, ids=name_of)
