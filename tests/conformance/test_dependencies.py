@@ -121,7 +121,7 @@ def test_the_code_and_the_libraries_are_dependencies():
 @pytest.fixture
 def run(tmp_path, monkeypatch):
     """A folder with a short run on the gl host, and its document."""
-    keep_checks(monkeypatch, "picture")
+    keep_checks(monkeypatch, "curve", "picture")
     texture(tmp_path / "grid.png")
     token = '<token name="t" type="string" value="grid.png"/></materialx>'
     text = (examples_folder() / "plaster.mtlx").read_text(encoding="utf-8")

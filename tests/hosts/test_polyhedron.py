@@ -46,8 +46,8 @@ def judged_all(name, factory):
 def facet_pairs(scene):
     """Directions to the camera and the light at each facet, and which facets both see."""
     normal = facet_points(scene.size).normal[facet_points(scene.size).mask]
-    wo, wi = (local_directions(each, normal) for each in (VIEW, scene.light))
-    return wo, wi, (wo[:, 2] > 0.0) & (wi[:, 2] > 0.0)
+    wo, wi = (local_directions(normal, each) for each in (VIEW, scene.light))
+    return wo, wi, (np.minimum(wo, wi)[:, 2] >= 0.05)
 
 
 @pytest.fixture(scope="module", params=HOSTS)

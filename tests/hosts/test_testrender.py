@@ -12,17 +12,11 @@ import numpy as np
 import pytest
 
 import tests.support.osl as osl
-from mxeon.conformance.accuracy.rendered import FLAT, INTEGRAL, SHARP
-from mxeon.conformance.functions.shader_functions import FUNCTION_CHECKS
-from mxeon.conformance.nodes.bsdf import BSDFS
-from mxeon.conformance.nodes.diffuse import SUBJECTS
-from mxeon.conformance.probes.families import RenderedProbe, probe_type_of
-from mxeon.conformance.probes.rendered import apart
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import make_plan
 from mxeon.errors import InputError, NotRun, ShaderError
-from mxeon.hosts import base, pairs
+from mxeon.hosts import pairs
 from mxeon.hosts.base import RendererWarning
 from mxeon.hosts.testrender import programs, scenes
 from mxeon.hosts.testrender.renderer import Host
@@ -30,7 +24,9 @@ from mxeon.models import eon_brdf
 from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.nodes import document_text, input_text, node_text
 
-EON = SUBJECTS[0].title
+EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
+# Of pi f cos: 3 roundings of a point 40 away, seen from a light at 1/2, times 8, and OpenImageIO's arc cosine.
+FLAT = 2e-4
 REAL = all(os.environ.get(variable) for variable in programs.VARIABLES.values())
 real = pytest.mark.skipif(not REAL, reason="its variables name no build of OSL")
 
@@ -113,9 +109,9 @@ def test_the_recorded_picture_is_the_model(host):
     color, roughness = osl.INPUTS["color"], osl.INPUTS["roughness"]
     expected = np.pi * eon_brdf(wo, wi, np.array(color), roughness) * wi[:, 2:]
     error = np.abs(values - expected).max()
-    assert 0.0 < error < FLAT.value  # floats: half floats are off by 2^-11
+    assert 0.0 < error < FLAT  # floats: half floats are off by 2^-11
     swapped = np.pi * eon_brdf(wo, wi, np.array(color[::-1]), roughness) * wi[:, 2:]
-    assert np.abs(values - swapped).max() > FLAT.value
+    assert np.abs(values - swapped).max() > FLAT
 
 
 def test_what_the_renderer_warns_of_is_passed_on(host):
@@ -148,32 +144,6 @@ def test_a_pair_that_no_scene_shows_is_refused(host):
         host.evaluate(osl.shader(), osl.VIEWS, osl.VIEWS, {}, "direct")
 
 
-def test_a_light_next_to_the_view_is_moved_apart():
-    wo = np.array([[0.6, 0.0, 0.8], [0.6, 0.0, 0.8], [0.0, 0.0, 1.0]])
-    wi = np.array([[0.6, 0.0, 0.8], [0.6, 0.01, 0.8], [0.6, 0.0, 0.8]])
-    moved = apart(wo, wi / np.linalg.norm(wi, axis=1, keepdims=True))
-    assert pairs.visible(wo, moved).all() and (moved[2] == wi[2]).all()
-    assert moved[1, 1] > 0.0 and np.abs(moved - wi).max() < 1.1 * pairs.LEAST_SINE
-
-
-@pytest.mark.parametrize("subject", BSDFS, ids=lambda subject: subject.title)
-def test_moved_lights_integrate_to_the_albedo(subject):
-    probe = probe_type_of(subject, RenderedProbe)(Named(), subject, "stock")
-    batch, weights = probe.integrated
-    values = subject.expected(replace(batch, wi=apart(batch.wo, batch.wi)))
-    sums = (weights[..., np.newaxis] * values.reshape(*weights.shape, 3)).sum(axis=1)
-    assert np.abs(sums - probe.integrals).max() < INTEGRAL.value - SHARP.value
-
-
-class Named(base.Host):
-    """A host that is asked for nothing."""
-
-    name, target = "testrender", "osl"
-
-    def identity(self):
-        raise NotImplementedError
-
-
 QON = "qualitative Oren-Nayar (QON)"
 NEAREST = "best match: "
 
@@ -184,7 +154,7 @@ NEAREST = "best match: "
     [
         *(("eonlib", EON, check, "") for check in ("value", "environment", "inputs")),
         *(("eonlib", shader, "lobe", "") for shader in ("open_pbr_surface", "UsdPreviewSurface")),
-        *(("eonlib", "shader twins", check.key, "") for check in FUNCTION_CHECKS),
+        ("eonlib", "shader twins", "twins", ""),
         ("stock", EON, "value", QON),
         ("stock", "open_pbr_surface", "lobe", QON),
         ("stock", "open_pbr_surface", "lobe", "docs/upstream/genosl_dropped_flag.md"),
@@ -218,8 +188,8 @@ def test_the_real_renderer_is_judged(library, subject, check, words):
     tasks = make_plan([], ["testrender"], [library]).tasks
     with closing(Judge(DEFAULT)) as judge:
         [task] = [each for each in tasks if (each.subject, each.check) == (subject, check)]
-        [result] = judge.work(task).results
-    assert result.verdict == (FAILED if words else PASSED) and words in result.explanation
+        for result in judge.work(task).results:
+            assert result.verdict == (FAILED if words else PASSED) and words in result.explanation
 
 
 @real
