@@ -9,7 +9,7 @@ import re
 import numpy as np
 import pytest
 
-from mxeon.conformance.accuracy import bsdf
+from mxeon.conformance.specs import microfacets
 from mxeon.models.diffuse import inversion
 from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
 from mxeon.models.sampling import eon as shipped
@@ -112,7 +112,7 @@ def test_the_albedo_of_smooth_ggx_has_the_error_that_its_tolerance_states():
         mu, np.full_like(mu, 1e-6), shipped_coefficients("ggx_albedo", "GGX_ALBEDO")
     )
     error = np.abs(1.0 - fitted).max()
-    assert 0.9 * bsdf.SMOOTH_ESS_FIT < error <= bsdf.SMOOTH_ESS_FIT
+    assert 0.9 * microfacets.SMOOTH_ESS_FIT < error <= microfacets.SMOOTH_ESS_FIT
 
 
 def test_the_quadrature_of_the_fit_is_that_of_the_models():

@@ -19,11 +19,11 @@ DATA = ("libraries", "genglsl", "genosl", "examples")
 
 # By the file that a recipe changes: texts, each before the one at which it is put in.
 
-# A node that dims its color by a number: its model and its ports. Its third place is its section of
+# A node that dims its color by a number: its model and its spec. Its third place is its section of
 # docs/specification.md.
 ROWS = "python/mxeon/models/nodes/lobes.py"
 DEFAULTS, RANGES = "python/mxeon/models/nodes/parameters.py", "python/mxeon/models/core/ranges.py"
-PORTS = "python/mxeon/conformance/nodes/bsdf.py"
+SPEC, SPECS = (f"python/mxeon/conformance/specs/{each}.py" for each in ("shaded", "__init__"))
 NODE = {
     ROWS: {
         "LOBE_NODES = (\n": """def _left(wo: Array, inputs: Inputs) -> Array:
@@ -44,9 +44,19 @@ SHADED = PbrNode(
     },
     DEFAULTS: {'    "translucent_bsdf": {': '    "shaded_bsdf": {"color": WHITE, "shade": 0.0},\n'},
     RANGES: {'    **_each("u reflectivity': '    "shade": _SHARE,\n'},
-    PORTS: {
-        '    "burley_diffuse_bsdf": (': '    "shaded_bsdf": '
-        '(WEIGHT, COLOR, Port("shade", edges=(0.0, 1.0), change=0.5), NORMAL),\n'
+    SPEC: {
+        "": """from mxeon.conformance.spec import Input
+from mxeon.conformance.specs.burley import ERRORS, FlatSpec
+from mxeon.conformance.specs.lobes import COLOR, NORMAL, WEIGHT
+from mxeon.models.nodes import node
+
+SHADE = Input("shade", edges=(0.0, 1.0), change=0.5)
+SHADED = FlatSpec.of(node("shaded"), (WEIGHT, COLOR, SHADE, NORMAL), ERRORS)
+"""
+    },
+    SPECS: {
+        "PLAIN_LOBES = (": "from mxeon.conformance.specs.shaded import SHADED\n\n",
+        "TRANSLUCENT, CONTY_KULLA, ZELTNER": "SHADED, ",
     },
 }
 GLSL = """#include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
@@ -117,32 +127,27 @@ class Host(RendererHost):
     },
 }
 
-# A check that half of the color gives half of the light: its measure, and its row beside it.
+# A check that half of the color gives half of the light.
 ENERGY = "python/mxeon/conformance/checks/energy.py"
 CHECK = {
     ENERGY: {
-        "LAYERS = tuple(": """def halved(probe: Probe) -> Iterator[Case]:
-    batches = [batch for batch in probe.few if "color" in batch.inputs]
-    half = [batch.altered(color=0.5 * batch.inputs["color"]) for batch in batches]
-    values = zip(batches, map(probe.direct, half), map(probe.direct, batches), strict=True)
-    return (Case(batch, 2.0 * low, full) for batch, low, full in values)
+        '@check(\n    "energy",': """@check(
+    "halved",
+    "Half of the color gives half of the light.",
+    lambda spec: spec.model in ("burley", "shaded"),
+    offset,
+    "value",
+    pairs=True,
+)
+def halved(case: Case) -> Iterator[Compared]:
+    for batch in case.few:
+        if "color" in batch.inputs:
+            half = batch.altered(color=0.5 * batch.inputs["color"])
+            yield Compared(batch, 2.0 * case.direct(half), case.direct(batch))
 
 
 """,
-        '    Check(\n        "energy",': """    Check(
-        "halved",
-        "Half of the color gives half of the light.",
-        ("burley", "shaded"),
-        halved,
-        offset,
-        "value",
-        pairs=True,
-    ),
-""",
-        "from mxeon.conformance.checks.names": "from collections.abc import Iterator\n"
-        "from mxeon.conformance.checks.controls import offset\n"
-        "from mxeon.conformance.probes.probe import Probe\n"
-        "from mxeon.conformance.samples.measurement import Case\n",
+        "from mxeon.conformance.checks.lobes": "from mxeon.conformance.check import offset\n",
     }
 }
 
@@ -212,8 +217,8 @@ def verdicts(results, subject):
     return {key[2]: row[0] for key, row in results.items() if key[:2] == ("right", subject)}
 
 
-def test_a_node_takes_its_model_and_its_ports(results):
-    assert set(NODE) == {ROWS, DEFAULTS, RANGES, PORTS}
+def test_a_node_takes_its_model_and_its_spec(results):
+    assert set(NODE) == {ROWS, DEFAULTS, RANGES, SPEC, SPECS}
     judged = verdicts(results, "shaded_bsdf")
     assert set(judged.values()) == {"passed"}
     assert {"value", "environment", "inputs", "surroundings", "frame", "integral"} < set(judged)

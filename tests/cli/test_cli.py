@@ -62,7 +62,9 @@ def test_check_of_stock_fails_and_names_the_defects(capsys, monkeypatch):
     stock = ["check", PLASTER, "--library", "stock", "--workers", "0"]
     assert main(stock) == FAILED
     short = capsys.readouterr().out
-    assert "EON in GLSL is wrong for light from behind: docs/upstream/genglsl_clamped_dot.md" in short
+    assert (
+        "EON in GLSL is wrong for light from behind: docs/upstream/genglsl_clamped_dot.md" in short
+    )
     assert main([*stock, "--full"]) == FAILED
     assert "EON with clamped dot(wo, wi)" in capsys.readouterr().out
 

@@ -6,21 +6,18 @@ from functools import partial
 
 import pytest
 
-from mxeon.conformance.accuracy.accuracy import ACCURACY
-from mxeon.conformance.accuracy.diffuse import CYCLES_NOISE, mean_noise
-from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
-from mxeon.conformance.probes.pictures import PICTURE_SIZE
-from mxeon.conformance.probes.renderer_nodes import NativeProbe
+from mxeon.conformance.backends import CYCLES_NOISE, PICTURE_SIZE, mean_noise, own_nodes
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.conformance.run import check
 from mxeon.hosts import open_engine
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.scene import sphere
+from mxeon.survey.backends import Native
 from tests.support.availability import available
 from tests.support.plans import keep_host
 from tests.support.sharing import shared
 
-NATIVE = renderer_nodes("cycles-native")
+NATIVE = own_nodes("cycles-native")
 EXAMPLE = examples_folder() / "plaster.mtlx"
 SIZE = PICTURE_SIZE // 2  # the bound of so few pixels is twice as wide; the defect is off by 0.1
 
@@ -30,11 +27,11 @@ def results(tmp_path_factory):
     with available("cycles-native"):
         open_engine("cycles-native").close()
     libraries = ["eonlib", "stock"]
-    small = replace(CYCLES_NOISE, value=mean_noise(int(sphere(SIZE).mask.sum())))
+    small = replace(CYCLES_NOISE, terms=(mean_noise(int(sphere(SIZE).mask.sum())),))
     with pytest.MonkeyPatch.context() as patch:
         keep_host(patch, "cycles-native")
-        patch.setattr(NativeProbe, "size", SIZE)
-        patch.setitem(ACCURACY, "pictures", replace(ACCURACY["pictures"], albedo=small))
+        patch.setattr(Native, "size", SIZE)
+        patch.setattr(Native, "errors", Native.errors | {"albedo": small})
         make = partial(check, [EXAMPLE], ["cycles-native"], libraries, nodes=["common"])
         return shared(tmp_path_factory, "native", make).results
 
