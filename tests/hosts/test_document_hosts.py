@@ -23,7 +23,7 @@ DOCUMENT = examples_folder() / "eon_node.mtlx"
 SMALL = replace(FRONT, size=16)
 EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
 # Half floats: 2^-11 of a value, twice; and of a sum over an environment, twice that.
-HALF, HALF_SURROUNDINGS = 1e-3, 2e-3
+HALF, HALF_SURROUNDINGS = 2.0**-10 + 248 * 2.0**-24, 2.0**-9 + 2e-6
 # A line of eonlib and a wrong one: light from behind would be as that from the side.
 SIGN = ("float s = dot(wo, wi) - mu_o * mu_i;", "float s = abs(dot(wo, wi) - mu_o * mu_i);")
 BROKEN = (SIGN[0], "float s = no_such_function(wo);")

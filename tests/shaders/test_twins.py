@@ -13,7 +13,7 @@ from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
 from mxeon.models.sheen import conty_kulla_albedo_dir
 from mxeon.shaders.functions import source_file
 from tests.support.cases import directions_32
-from tests.support.tolerances import FIT_CONTY_KULLA, FIT_GGX, TWIN_ALBEDO, TWIN_LOSS, TWIN_VALUE
+from tests.support.tolerances import FIT_GGX, TWIN_ALBEDO, TWIN_LOSS, TWIN_VALUE
 
 ALBEDOS_OF_NODES = ("ggx_albedo", "conty_kulla_albedo")
 FITTED_ROUNDING = 32 * 2.0**-24  # of a rational function in float32
@@ -95,7 +95,7 @@ def test_twin_loss_keeps_its_relative_accuracy_down_to_grazing(gl):
 
 NODE_ALBEDOS = (
     ("ggx_albedo", ggx_albedo_dir, FIT_GGX),
-    ("conty_kulla_albedo", conty_kulla_albedo_dir, FIT_CONTY_KULLA),
+    ("conty_kulla_albedo", conty_kulla_albedo_dir, 1.5e-3),
 )
 
 
