@@ -4,7 +4,7 @@
 import os
 from contextlib import contextmanager
 
-from playwright.sync_api import sync_playwright
+import pytest
 
 from mxeon.hosts.webgl import FLAGS, program
 
@@ -13,6 +13,9 @@ SMALL = {"viewport": {"width": 880, "height": 180}, "device_scale_factor": 0.5}
 HAS = """fields => Object.entries(fields).every(([name, value]) =>
     JSON.stringify(mxeon.state()[name]) === JSON.stringify(value))"""
 DRAWN = "mxeon?.stage?.isSettled(mxeon.state())"
+
+
+sync_playwright = pytest.importorskip("playwright.sync_api").sync_playwright
 
 
 @contextmanager

@@ -9,7 +9,6 @@ from urllib.parse import urlsplit
 import numpy as np
 import OpenImageIO as oiio
 import pytest
-from playwright.sync_api import sync_playwright
 
 from mxeon.conformance.run import check
 from mxeon.hosts.webgl import program
@@ -17,6 +16,7 @@ from mxeon.report import write
 from mxeon.shaders.library import examples_folder
 from tests.support.plans import keep_checks
 
+sync_playwright = pytest.importorskip("playwright.sync_api").sync_playwright
 EXAMPLE = examples_folder() / "plaster.mtlx"
 
 

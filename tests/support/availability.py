@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What becomes of a test whose host cannot run: skipped, or failed where the host is required.
 
-MXEON_REQUIRE holds names of hosts with commas between. `./run test` names all that it installs.
+MXEON_REQUIRE holds names of hosts with commas between. `./run test --all` names all that it installs.
 """
 
 import os
