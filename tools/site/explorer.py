@@ -3,8 +3,6 @@
 
 import os
 
-from playwright.sync_api import sync_playwright
-
 from mxeon.explorer import page, page_data
 from mxeon.hosts.webgl import FLAGS, program
 from mxeon.io.files import write_text
@@ -18,6 +16,8 @@ SIZE = {"width": 1280, "height": 900}
 
 def main() -> None:
     """Write both files."""
+    from playwright.sync_api import sync_playwright
+
     write_text(PAGE, page(page_data(pages=PAGES)))
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(
