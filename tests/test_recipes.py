@@ -14,8 +14,11 @@ from pathlib import Path
 
 import pytest
 
+from mxeon.conformance.specs.combinations import COMBINED_SPECS
+
 ROOT = Path(__file__).parents[1]
 DATA = ("libraries", "genglsl", "genosl", "examples")
+COMBINED = [each.title for each in COMBINED_SPECS]
 
 # By the file that a recipe changes: texts, each before the one at which it is put in.
 
@@ -151,6 +154,11 @@ def halved(case: Case) -> Iterator[Compared]:
     }
 }
 
+TOLERANCES = """
+import json
+from mxeon.conformance import specs
+print(json.dumps({each.title: {q: e.value for q, e in each.errors.items()} for each in specs.ALL}))
+"""
 RUN = """
 import json
 import numpy as np
@@ -184,23 +192,19 @@ def add(folder, recipe):
         path.write_text(source, encoding="utf-8")
 
 
-@pytest.fixture(scope="module")
-def results(tmp_path_factory):
-    """Results of what a copy of the package judges that has one more node, renderer and check."""
-    folder = tmp_path_factory.mktemp("recipes")
+def copied(folder):
+    """A folder with a copy of the package, beside its data."""
     ignore = shutil.ignore_patterns("__pycache__")
     shutil.copytree(ROOT / "python" / "mxeon", folder / "python" / "mxeon", ignore=ignore)
     for name in DATA:
         (folder / name).symlink_to(ROOT / name)
-    for recipe in (NODE, RENDERER, CHECK):
-        add(folder, recipe)
-    for name, factor in (("right", "0.5 * shade"), ("wrong", "0.0 * shade")):
-        (folder / name).mkdir()
-        text = GLSL.replace("0.5 * shade", factor)
-        (folder / name / "shaded_bsdf.glsl").write_text(text, encoding="utf-8")
-        (folder / name / "shaded.mtlx").write_text(DOCUMENT, encoding="utf-8")
+    return folder
+
+
+def said(folder, code):
+    """What code that runs with the package in a folder prints, as JSON."""
     done = subprocess.run(
-        [sys.executable, "-P", "-c", RUN],
+        [sys.executable, "-P", "-c", code],
         env=os.environ | {"PYTHONPATH": str(folder / "python")},
         cwd=folder,
         capture_output=True,
@@ -208,7 +212,21 @@ def results(tmp_path_factory):
         timeout=300,
     )
     assert done.returncode == 0, done.stderr
-    rows = json.loads(done.stdout)
+    return json.loads(done.stdout)
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    """Results of what a copy of the package judges that has one more node, renderer and check."""
+    folder = copied(tmp_path_factory.mktemp("recipes"))
+    for recipe in (NODE, RENDERER, CHECK):
+        add(folder, recipe)
+    for name, factor in (("right", "0.5 * shade"), ("wrong", "0.0 * shade")):
+        (folder / name).mkdir()
+        text = GLSL.replace("0.5 * shade", factor)
+        (folder / name / "shaded_bsdf.glsl").write_text(text, encoding="utf-8")
+        (folder / name / "shaded.mtlx").write_text(DOCUMENT, encoding="utf-8")
+    rows = said(folder, RUN)
     return {(library, subject, check): tuple(rest) for library, subject, check, *rest in rows}
 
 
@@ -237,3 +255,13 @@ def test_a_check_takes_one_file(results):
     assert set(CHECK) == {ENERGY}
     for subject in ("burley_diffuse_bsdf", "shaded_bsdf"):
         assert verdicts(results, subject)["halved"] == "passed"
+
+
+def test_a_tolerance_of_a_sheen_is_one_line_and_moves_no_other_lobe(tmp_path):
+    file = copied(tmp_path) / "python/mxeon/conformance/specs/sheen.py"
+    before, text = said(tmp_path, TOLERANCES), file.read_text(encoding="utf-8")
+    assert text.count("roundings(48,") == 1
+    file.write_text(text.replace("roundings(48,", "roundings(480,"), encoding="utf-8")
+    after = said(tmp_path, TOLERANCES)
+    moved = {title for title in before if before[title] != after[title]}
+    assert moved - set(COMBINED) == {"sheen_bsdf, mode zeltner"}  # they combine two of it
