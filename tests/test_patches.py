@@ -8,7 +8,7 @@ from pathlib import Path
 import MaterialX as mx
 import pytest
 
-from mxeon.hosts.browser import packages_folder
+from mxeon.survey.browser import packages_folder
 from tests.hosts.test_cycles_kernel import kernel
 from tests.support.availability import available
 from tests.support.wheels import MAIN, git

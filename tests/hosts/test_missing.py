@@ -8,7 +8,8 @@ import sys
 import pytest
 
 from mxeon.errors import NotRun
-from mxeon.hosts import browser, open_engine
+from mxeon.hosts import open_engine
+from mxeon.survey import browser
 
 BLENDER, NOWHERE = "MXEON_CYCLES_PYTHON", "/nowhere/python"
 NPM = f"npm ci --prefix {browser.packages_folder()}$"

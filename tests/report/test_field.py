@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mxeon.conformance.nodes.diffuse import SUBJECTS
 
 from mxeon.cli import main
 from mxeon.conformance.results import (
@@ -24,8 +25,8 @@ from mxeon.conformance.results import (
 )
 from mxeon.hosts.base import Identity
 from mxeon.models import table as reference
-from mxeon.report import write, write_field
-from mxeon.report.field import CHECKS, read_field
+from mxeon.report import write
+from mxeon.survey.field import CHECKS, read_field, write_field
 
 FIELD = Path(__file__).parents[2] / "docs" / "field.html"
 EON = "oren_nayar_diffuse_bsdf, energy_compensation true"

@@ -21,6 +21,7 @@ from mxeon.conformance.specs.diffuse import DIFFUSE as DIFFUSE_SPECS
 from mxeon.conformance.specs.diffuse import SURFACE_LOBES
 from mxeon.hosts import HOSTS
 from mxeon.shaders.library import examples_folder
+from mxeon.survey import ROWS
 from tools.benchmarks.rounds import Check, Group, figure
 
 BOTH = ("--library", "eonlib", "--library", "stock")
@@ -28,8 +29,8 @@ BOTH = ("--library", "eonlib", "--library", "stock")
 EXAMPLE = str(examples_folder() / "clay.mtlx")
 DIFFUSE = tuple(dict.fromkeys(row.node for row in (*DIFFUSE_SPECS, *SURFACE_LOBES)))
 FIELD = {
-    "hosts": ([row.name for row in HOSTS if row.module and not row.nodes], DIFFUSE),
-    "renderers": ([row.name for row in HOSTS if row.module and row.nodes], ("common",)),
+    "hosts": ([row.name for row in HOSTS if row.module], DIFFUSE),
+    "renderers": ([row.name for row in ROWS], ("common",)),
 }
 LONGEST = 240.0  # seconds of each half of the field, which is stopped then
 CACHE, FOLDER = "MESA_SHADER_CACHE_DISABLE", "MESA_SHADER_CACHE_DIR"

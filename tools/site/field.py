@@ -13,9 +13,9 @@ from mxeon.conformance.results import NOT_RUN
 from mxeon.conformance.run import check
 from mxeon.conformance.specs.diffuse import DIFFUSE as DIFFUSE_SPECS
 from mxeon.conformance.specs.diffuse import SURFACE_LOBES
-from mxeon.hosts import HOSTS
-from mxeon.report.field import read_field
+from mxeon.hosts import host_rows
 from mxeon.shaders.library import examples_folder
+from mxeon.survey.field import read_field, write_field
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "field.html"
 PAGES = "upstream/{}.md"  # in the checkout; the site has pages in their place, see hooks.py
@@ -28,19 +28,19 @@ TIMEOUT = 600.0
 def main(folder: str = "") -> None:
     """Write the page."""
     if folder:
-        report.write_field(read_field([folder]), PAGE, PAGES)
+        write_field(read_field([folder]), PAGE, PAGES)
         return
     with TemporaryDirectory(prefix="mxeon-field-") as new:
-        for row in HOSTS:
+        for row in host_rows():
             if row.module:
-                nodes = ("common",) if row.nodes else DIFFUSE
+                nodes = DIFFUSE if row.target else ("common",)
                 run = check(
                     [EXAMPLE], [row.name], LIBRARIES, workers=1, timeout=TIMEOUT, nodes=nodes
                 )
                 if any(e.host == row.name and e.verdict != NOT_RUN for e in run.results):
                     report.write(run, Path(new, row.name))
                 print(row.name, run.summary.sentence, flush=True)
-        report.write_field(read_field([new]), PAGE, PAGES)
+        write_field(read_field([new]), PAGE, PAGES)
 
 
 if __name__ == "__main__":

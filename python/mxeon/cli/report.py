@@ -47,8 +47,7 @@ def run_make(options: argparse.Namespace) -> int:
 
 def run_field(options: argparse.Namespace) -> int:
     """Write the page of the field; return PASSED: the page says what failed."""
-    from mxeon.report import write_field
-    from mxeon.report.field import read_field
+    from mxeon.survey.field import read_field, write_field
 
     arguments.assert_no_link(options.output)
     entries = read_field(options.reports)

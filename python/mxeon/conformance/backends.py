@@ -1080,9 +1080,8 @@ class UtilityOsl(Evaluating):
         return False
 
 
-# Nodes that renderers have of their own, by host: `mxeon.survey` adds them, and its backends.
-OWN_NODES: dict[str, tuple[Spec, ...]] = {}
-# By the word of a host's row for how it is asked; the first that supports a spec asks for it.
+# By the word of a host's row for how it is asked; the first that supports a spec asks for it. `mxeon.survey`
+# adds those of renderers with materials of their own.
 BACKENDS: dict[str, tuple[type[Backend], ...]] = {
     "pairs": (Evaluating, LobePictures, DarkPictures),
     "closures": (Closures,),
@@ -1103,14 +1102,15 @@ BACKENDS: dict[str, tuple[type[Backend], ...]] = {
 def ways_of(host: str) -> tuple[type[Backend], ...]:
     """How a host is asked; () where only the text of its target is checked."""
     row = host_row(host)
-    if row.nodes:
-        import_module("mxeon.survey")
+    if not row.target:
+        import_module("mxeon.survey.checks")
     return BACKENDS.get(row.probe, ())
 
 
 def own_nodes(host: str) -> tuple[Spec, ...]:
     """Nodes of a host's own that are judged; none for a host of generated shaders."""
-    return OWN_NODES.get(host, ()) if ways_of(host) else ()
+    row = host_row(host)
+    return () if row.target else import_module(row.module).NODES
 
 
 def backend_of(host: str, spec: Spec) -> type[Backend] | None:

@@ -19,7 +19,7 @@ from mxeon.conformance.results import Claims
 from mxeon.conformance.samples import Array, Batch, Candidate, Changes
 from mxeon.conformance.spec import LobeSpec, Spec, ValueSpec
 from mxeon.conformance.tolerance import Compared, Tolerance
-from mxeon.hosts.base import Host, RendererHost
+from mxeon.hosts.base import Engine, Host
 
 F = TypeVar("F", bound=Spec)
 Change = Callable[[Batch, Array], Array]  # of values of a batch
@@ -146,7 +146,7 @@ class Case:
         return error and error.plus(*self.backend.precision(quantity))
 
 
-def make_case(backend: type[Backend], host: Host | RendererHost, spec: Spec, library: str) -> Case:
+def make_case(backend: type[Backend], host: Engine, spec: Spec, library: str) -> Case:
     spec = backend.prepared(spec).within(library)
     made = backend(cast(Host, host), spec, library)
     if (form := made.measured()) is not spec:

@@ -8,20 +8,8 @@ from importlib import import_module
 from typing import cast
 
 from mxeon.errors import NotRun, Unsupported, assert_known
-from mxeon.hosts.base import Host, RendererHost
+from mxeon.hosts.base import Engine, Host
 from mxeon.shaders.scene import BACK, FURNACE, SIDE, Scene
-
-
-@dataclass(frozen=True)
-class OwnNode:
-    """A node of a renderer's own, with the model that its documentation claims."""
-
-    title: str  # in reports and in requests to the renderer
-    model: str  # a row of `mxeon.models.table`
-    inputs: tuple[str, ...] = ("color", "roughness")
-    forms: tuple[str, ...] = ()  # published; the nearest to what is measured is judged
-    others: bool = False  # whether lobes that ignore the color lie beside the diffuse one
-    sampled: bool = False  # whether the function that draws its directions can be called
 
 
 @dataclass(frozen=True)
@@ -35,12 +23,7 @@ class Row:
     surfaces: bool = False  # whether surface shaders are judged on it
     rounding: float = 0.0  # relative, of its pixels beyond float32's
     front_lit: tuple[str, ...] = ()  # models that it has for s >= 0 alone
-    nodes: tuple[OwnNode, ...] = ()
 
-
-COLOR = ("color",)  # input of a Lambert node
-PUBLISHED = ("eon", "eon_fitted")  # the paper prints EON with the exact albedo, and with a quartic
-BROWSER = ("WebGL2", "WebGPU")
 
 HOSTS = (
     # Its pictures are exact and take no time.
@@ -70,103 +53,25 @@ HOSTS = (
     ),
     # Its environment has noise. No closure of Cycles is QON for s < 0.
     Row("cycles", "osl", "mxeon.hosts.cycles", "pictures", scenes=(SIDE, BACK), front_lit=("qon",)),
-    Row(
-        "cycles-native",
-        "",
-        "mxeon.hosts.cycles.native",
-        "native",
-        nodes=(OwnNode("Diffuse BSDF", "eon"), OwnNode("Principled BSDF", "eon")),
-    ),
-    # OpenPBR asks for EON, Standard Surface for Oren-Nayar.
-    Row(
-        "three",
-        "",
-        "mxeon.hosts.browser.three",
-        "exact",
-        nodes=(
-            OwnNode("MeshPhysicalMaterial, WebGLRenderer", "eon", forms=PUBLISHED),
-            OwnNode("MeshPhysicalMaterial, WebGPURenderer", "eon", forms=PUBLISHED),
-            OwnNode("open_pbr_surface, MaterialXLoader", "eon", forms=PUBLISHED),
-            OwnNode("standard_surface, MaterialXLoader", "qon"),
-        ),
-    ),
-    Row(
-        "babylon",
-        "",
-        "mxeon.hosts.browser.babylon",
-        "exact",
-        nodes=(
-            *(
-                OwnNode(f"PBRMaterial E_OREN_NAYAR, {each}", "eon", forms=PUBLISHED)
-                for each in BROWSER
-            ),
-            *(OwnNode(f"OpenPBRMaterial, {each}", "eon", forms=PUBLISHED) for each in BROWSER),
-            *(OwnNode(f"PBRMaterial BURLEY, {each}", "burley") for each in BROWSER),
-            *(OwnNode(f"PBRMaterial LEGACY, {each}", "burley_lambert") for each in BROWSER),
-            *(OwnNode(f"PBRMaterial LAMBERT, {each}", "lambert", COLOR) for each in BROWSER),
-        ),
-    ),
-    Row(
-        "three-gpu-pathtracer",
-        "",
-        "mxeon.hosts.browser.pathtracer",
-        "facet pairs",
-        nodes=(
-            OwnNode("WebGPUPathTracer, eonBrdf", "eon", forms=PUBLISHED, sampled=True),
-            OwnNode("WebGPUPathTracer, fonBrdf", "fon"),
-            OwnNode("WebGLPathTracer, diffuseEval", "burley"),
-            OwnNode("WebGLPathTracer, diffuseEval, shorter wh", "burley"),
-        ),
-    ),
-    Row(
-        "mitsuba",
-        "",
-        "mxeon.hosts.polyhedron.mitsuba",
-        "facet pairs",
-        nodes=(
-            OwnNode("diffuse", "lambert", COLOR),
-            OwnNode("principled", "burley"),
-            *(OwnNode(f"{each} of mxeon.mitsuba", each) for each in ("eon", "fon", "qon")),
-            OwnNode("dielectric_over_eon of mxeon.mitsuba", "eon_coated"),
-            OwnNode("openpbr_base of mxeon.mitsuba", "openpbr_half_metal"),
-        ),
-    ),
-    # Its manual has the roughness of both nodes for Cycles only.
-    Row(
-        "eevee",
-        "",
-        "mxeon.hosts.polyhedron.eevee",
-        "coarse facets",
-        nodes=(
-            OwnNode("Diffuse BSDF", "lambert", COLOR),
-            OwnNode("Principled BSDF", "lambert", COLOR),
-        ),
-    ),
-    Row(
-        "luxcore",
-        "",
-        "mxeon.hosts.polyhedron.luxcore",
-        "facets",
-        nodes=(
-            OwnNode("matte", "lambert", COLOR),
-            OwnNode("roughmatte", "qon"),
-            OwnNode("roughmatte, sigma in degrees", "qon"),
-            OwnNode("disney", "burley", others=True),
-        ),
-    ),
     Row("testrender", "osl", "mxeon.hosts.testrender.renderer", "rendered", surfaces=True),
     Row("msl", "msl", needs="Metal, which macOS alone has"),
     Row("mdl", "mdl", needs="a renderer that compiles MDL"),
 )
 
 
+def host_rows() -> tuple[Row, ...]:
+    """The table, and the rows of `mxeon.survey`: renderers with materials of their own."""
+    renderers: tuple[Row, ...] = import_module("mxeon.survey").ROWS
+    return HOSTS + renderers
+
+
 def host_names() -> tuple[str, ...]:
-    return tuple(row.name for row in HOSTS)
+    return tuple(row.name for row in host_rows())
 
 
 def host_row(name: str, *others: Row) -> Row:
-    """The row of a host, from the table or from `others`; InputError lists the known ones."""
-    rows = {row.name: row for row in (*HOSTS, *others)}
+    """The row of a host, from `host_rows` or from `others`; InputError lists the known ones."""
+    rows = {row.name: row for row in (*host_rows(), *others)}
     assert_known("host", name, rows)
     return rows[name]
 
@@ -185,7 +90,7 @@ def open_host(name: str, *others: Row) -> Host:
     raise Unsupported(f"{name}: this renderer only has its own materials; gl renders MaterialX's")
 
 
-def open_engine(name: str, *others: Row) -> Host | RendererHost:
+def open_engine(name: str, *others: Row) -> Engine:
     """The host or renderer of a name, started, or NotRun; `others` are rows beside the table's."""
     from mxeon.shaders.generation import TARGETS
 
@@ -201,4 +106,4 @@ def open_engine(name: str, *others: Row) -> Host | RendererHost:
             f"{name}: MaterialX must have a generator for {row.target}; {mx.__version__} has none: "
             f"pip install materialx=={TESTED[-1]}"
         )
-    return cast(Host | RendererHost, import_module(row.module).Host())
+    return cast(Engine, import_module(row.module).Host())

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from mxeon.hosts.osl.trees import TreeRows
     from mxeon.io.files import AnyPath
     from mxeon.shaders.generation import Shader
-from collections.abc import Sequence
 
 Array: TypeAlias = NDArray[Any]  # float32 or float64, as a caller or an engine has it
 Inputs: TypeAlias = Mapping[str, ArrayLike]  # of a node by name, for all pairs or for each
@@ -52,7 +51,7 @@ class Identity:
 
 
 class Engine(ABC):
-    """A program that executes shaders or renders; a context manager, which closes it."""
+    """A program that executes shaders, or renders its own materials; a context manager, which closes it."""
 
     name: str
     draws_images: ClassVar[bool] = False  # whether the environment of its pictures may be an image
@@ -81,9 +80,6 @@ class Engine(ABC):
             raise InputError(
                 f"{self.name}: shape must be sphere; got {scene.shape}, which gl and webgl draw"
             )
-
-    def _unsupported(self, verb: str, other: str) -> Unsupported:
-        return Unsupported(f"{self.name}: this host has no {verb}; use {other}")
 
 
 class Host(Engine):
@@ -213,27 +209,5 @@ class Host(Engine):
 
         return self.execute(functions.source(self.language), function, *arguments)
 
-
-class RendererHost(Engine):
-    """A renderer with materials of its own, for which nothing is generated.
-
-    A caller may rely on this: `node` shows one of these materials by its title, with the color and
-    the roughness of the call and nothing else above its diffuse lobe; a verb that a renderer lacks
-    raises `Unsupported`. It reads no document.
-    """
-
-    def node(self, title: str, color: Sequence[float], roughness: float, scene: Scene) -> Array:
-        """Picture of the sphere or the polyhedron with one of `mxeon.hosts.Row.nodes` on it; see `Host.picture`."""
-        raise self._unsupported("nodes of its own", "cycles-native")
-
-    def pairs(self, title: str, wo: Array, wi: Array, color: Array, roughness: Array) -> Array:
-        """f cos(theta_i) of a node of the renderer's own, (N, 3) in 1/sr, for unit vectors with normal +z."""
-        raise self._unsupported("values of its own nodes", "mitsuba")
-
-    def sample(self, wo: Array, u: Array, roughness: Array) -> Array:
-        """Directions to the light (N, 3) that the renderer draws for EON from u (N, 2) in [0, 1)."""
-        raise self._unsupported("sampling of its own", "three-gpu-pathtracer")
-
-    def density(self, wo: Array, wi: Array, roughness: Array) -> Array:
-        """Density in solid angle of the directions that `sample` draws, (N,); see there."""
-        raise self._unsupported("density of its own", "three-gpu-pathtracer")
+    def _unsupported(self, verb: str, other: str) -> Unsupported:
+        return Unsupported(f"{self.name}: this host has no {verb}; use {other}")

@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Generator, Iterable, Iterator, Sequence
+from collections.abc import Generator, Iterable, Iterator
 from contextlib import closing, contextmanager
 from dataclasses import replace
 from functools import partial
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -24,9 +24,6 @@ from mxeon.report.junit import to_junit
 from mxeon.report.threads import in_threads
 
 PAGES = "upstream"  # folder beside the report with the pages on defects
-
-if TYPE_CHECKING:
-    from mxeon.report.field import Entry
 
 JSON_FORMAT = 1
 
@@ -178,15 +175,6 @@ def _write_picture(folder: Path, place: tuple[Picture, str]) -> None:
     image = np.asarray(picture.image)
     write_exr(below(folder, f"{name}.exr"), image, picture.metadata)
     write_png(below(folder, f"{name}.png"), image, picture.metadata)
-
-
-def write_field(entries: Sequence[Entry], file: str | PathLike[str], pages: str = "") -> Path:
-    """Write the page of the field, and return it; see `mxeon.report.field_page.render`."""
-    with needing_extra("the page of the field"):
-        from mxeon.report.field_page import render
-    with replacing(Path(file)) as beside, open(beside, "w", encoding="utf-8") as page:
-        page.writelines(render(entries, pages))
-    return Path(file)
 
 
 @contextmanager

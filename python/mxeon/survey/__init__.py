@@ -1,8 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Renderers with materials of their own: their nodes, and how they are asked about them.
+"""Renderers with materials of their own: their engines, nodes and checks, and the page of the field.
 
-Importing it adds them to `mxeon.conformance`, which knows none of them.
+`mxeon.hosts` and `mxeon.conformance` name no renderer: they take `ROWS`, and from the module of a row its
+`Host` and its `NODES`. `checks` and `backends` add themselves to those of `mxeon.conformance`.
 """
 
-from mxeon.survey import backends as backends
-from mxeon.survey import checks as checks
+from mxeon.hosts import Row
+
+ROWS = (
+    Row("cycles-native", "", "mxeon.survey.cycles_native", "native"),
+    Row("three", "", "mxeon.survey.browser.three", "exact"),
+    Row("babylon", "", "mxeon.survey.browser.babylon", "exact"),
+    Row("three-gpu-pathtracer", "", "mxeon.survey.browser.pathtracer", "facet pairs"),
+    Row("mitsuba", "", "mxeon.survey.polyhedron.mitsuba", "facet pairs"),
+    Row("eevee", "", "mxeon.survey.polyhedron.eevee", "coarse facets"),
+    Row("luxcore", "", "mxeon.survey.polyhedron.luxcore", "facets"),
+)

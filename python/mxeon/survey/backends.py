@@ -5,20 +5,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, lru_cache
-from typing import ClassVar, cast
+from typing import ClassVar, Protocol, cast
 
 import numpy as np
 
-from mxeon import hosts
 from mxeon.conformance.backends import (
     BACKENDS,
     CYCLES_NOISE,
     CYCLES_RAY,
     EXACT,
     EXACT_ALBEDO,
-    OWN_NODES,
     PICTURE_INPUTS,
     PICTURE_SIZE,
     Backend,
@@ -42,7 +40,7 @@ from mxeon.conformance.samples import (
     special_directions,
 )
 from mxeon.conformance.spec import Spec
-from mxeon.conformance.specs.diffuse import DiffuseModelSpec, difference_of, model_value
+from mxeon.conformance.specs.diffuse import difference_of, model_value
 from mxeon.conformance.tolerance import (
     Term,
     Tolerance,
@@ -51,11 +49,10 @@ from mxeon.conformance.tolerance import (
     roundings,
     sum_of,
 )
-from mxeon.hosts.base import RendererHost
 from mxeon.models import table as reference
-from mxeon.models.table import OTHERS, Model
-from mxeon.shaders.facets import NARROWEST, facet_points
 from mxeon.shaders.scene import FURNACE, Scene, sphere
+from mxeon.survey.facets import NARROWEST, facet_points
+from mxeon.survey.specs import Material, RendererSpec
 
 BLACK = (0.0, 0.0, 0.0)
 FACET_PIXELS = 7169  # of a picture of the polyhedron that lie in one facet and are judged
@@ -95,39 +92,22 @@ FACET_PAIRS = sum_of(
 )
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class RendererSpec(DiffuseModelSpec):
-    """A node of a renderer's own, and the model that its documentation claims."""
+class Renderer(Protocol):
+    """What an engine is asked about its own nodes; each has some of these verbs."""
 
-    forms: tuple[str, ...] = ()  # as those of `mxeon.hosts.OwnNode`
-    sampled: bool = False
+    def node(self, material: Material, scene: Scene) -> Array:
+        """Picture of the sphere or the polyhedron with a material on it; see `Host.picture`."""
 
-    @property
-    def other_models(self) -> tuple[Model, ...]:
-        """Models of renderers' own nodes; Burley's with the albedo that the node's own has."""
-        name = self.model if self.model.startswith("burley") else "burley"
-        left_out = {"burley", "burley_lambert"} - {name}
-        return tuple(row for row in OTHERS if row.name not in left_out)
+    def pairs(
+        self, material: Material, wo: Array, wi: Array, color: Array, roughness: Array
+    ) -> Array:
+        """f cos(theta_i), (N, 3) in 1/sr, for unit vectors with normal +z; inputs stand in the material."""
 
-    def document(self, inputs: Values | None = None) -> str:
-        """None: nothing is generated."""
-        return ""
+    def sample(self, wo: Array, u: Array, roughness: Array) -> Array:
+        """Directions to the light (N, 3) that the renderer draws for EON from u (N, 2) in [0, 1)."""
 
-
-def own_nodes(host: str) -> tuple[RendererSpec, ...]:
-    own = (each for row in hosts.HOSTS if row.name == host for each in row.nodes)
-    return tuple(
-        RendererSpec(
-            title=each.title,
-            node=each.title,
-            model=each.model,
-            ports=each.inputs,
-            forms=each.forms,
-            beside=each.others,
-            sampled=each.sampled,
-        )
-        for each in own
-    )
+    def density(self, wo: Array, wi: Array, roughness: Array) -> Array:
+        """Density in solid angle of the directions that `sample` draws, (N,)."""
 
 
 class Native(CyclesPictures):
@@ -150,8 +130,8 @@ class Native(CyclesPictures):
         return cls.errors.get(quantity)
 
     @property
-    def renderer(self) -> RendererHost:
-        return cast(RendererHost, self.host)
+    def renderer(self) -> Renderer:
+        return cast(Renderer, self.host)
 
     @property
     def node(self) -> RendererSpec:
@@ -167,7 +147,8 @@ class Native(CyclesPictures):
 
     def picture(self, batch: Batch) -> Array:
         scene, inputs = scene_of(batch), batch.inputs
-        image = self.renderer.node(self.node.node, inputs["color"], inputs["roughness"], scene)
+        material = self.node.made(inputs["color"], inputs["roughness"])
+        image = self.renderer.node(material, scene)
         return image[self.seen(scene)][self.points(scene)[2]].astype(np.float64)
 
     def seen(self, scene: Scene) -> Mask:
@@ -307,7 +288,7 @@ class FacetPairs(Facets):
         count = len(batch.wo)
         color = np.broadcast_to(batch.inputs["color"], (count, 3))
         roughness = np.broadcast_to(batch.inputs["roughness"], count)
-        values = self.renderer.pairs(self.node.node, batch.wo, batch.wi, color, roughness)
+        values = self.renderer.pairs(self.node.material, batch.wo, batch.wi, color, roughness)
         return np.pi * values.astype(np.float64)
 
     def density(self, batch: Batch) -> Array:
@@ -335,5 +316,3 @@ BACKENDS |= {
     "coarse facets": (CoarseFacets,),
     "facet pairs": (FacetPairs,),
 }
-OWN_NODES |= {row.name: own_nodes(row.name) for row in hosts.HOSTS if row.nodes}
-RENDERER_SPECS = tuple(spec for row in hosts.HOSTS for spec in own_nodes(row.name))

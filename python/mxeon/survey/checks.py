@@ -12,7 +12,8 @@ from mxeon.conformance.samples import SEED, Array, Batch
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.tolerance import Compared, Measurement, given, roundings, sum_of
 from mxeon.models.sampling.cltc import eon_cltc_pdf
-from mxeon.survey.backends import FacetPairs, RendererSpec
+from mxeon.survey.backends import FacetPairs
+from mxeon.survey.specs import RendererSpec
 
 # A right sampler exceeds them once in 3.5 million times.
 CHI_SQUARE = given(5.0, "standard deviations", "five standard deviations")

@@ -37,7 +37,7 @@ from mxeon.conformance.specs import ALL
 from mxeon.conformance.text import check_definitions, check_texts
 from mxeon.errors import DocumentError, ImageError, InterfaceError, NotRun, ShaderError
 from mxeon.hosts import open_engine
-from mxeon.hosts.base import Host, RendererHost
+from mxeon.hosts.base import Engine, Host
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.library_tree import root
@@ -84,7 +84,7 @@ class Judge:
 
     def __init__(self, policy: Policy) -> None:
         self._policy = policy
-        self._hosts: dict[str, Host | RendererHost | NotRun] = {}  # or the reason why there is none
+        self._hosts: dict[str, Engine | NotRun] = {}  # or the reason why there is none
         self._reference = Reference()
         self._case = lru_cache(maxsize=1)(_case)  # its pairs take some memory
 
@@ -109,7 +109,7 @@ class Judge:
             if not isinstance(host, NotRun):
                 host.close()
 
-    def _host(self, name: str) -> Host | RendererHost:
+    def _host(self, name: str) -> Engine:
         """The host of that name; it is opened, or its absence noticed, once."""
         if name not in self._hosts:
             try:
@@ -133,7 +133,7 @@ class Judge:
             raise NotRun(f"{task.host}: this host judges nothing that was requested")
         return replace(self._on_host(task, host), hosts=(host.identity(),))
 
-    def _on_host(self, task: Task, host: Host | RendererHost) -> Findings:
+    def _on_host(self, task: Task, host: Engine) -> Findings:
         if isinstance(host, Host):
             if task.check == PICTURE:
                 return self._document(task, host)
@@ -179,7 +179,7 @@ def _unread(path: Path, error: DocumentError | ImageError) -> Findings:
     return Findings(errors=error.args)
 
 
-def _case(host: Host | RendererHost, title: str, library: str) -> Case:
+def _case(host: Engine, title: str, library: str) -> Case:
     spec = next(each for each in own_nodes(host.name) or ALL if each.title == title)
     backend = backend_of(host.name, spec)
     assert backend is not None  # or there were no task

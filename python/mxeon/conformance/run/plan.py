@@ -209,7 +209,7 @@ def _on_host(
     ways, row = ways_of(host), host_row(host)
     if not ways:
         yield Task(HOST, EVERY_NODE, host, library)
-    if not ways or row.nodes:
+    if not ways or not row.target:
         return
     evaluates = ways[0] is Evaluating
     language = "osl" if row.target == "osl" else "glsl"

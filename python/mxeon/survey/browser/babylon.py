@@ -4,11 +4,9 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Sequence
 
-from mxeon.hosts import browser
-from mxeon.hosts.base import Array
-from mxeon.shaders.scene import Scene
+from mxeon.survey import browser
+from mxeon.survey.specs import BOTH, COLOR, PUBLISHED, node
 
 PACKAGE = "@babylonjs/core"
 IMPORTS = {"@babylonjs/core/": "@babylonjs/core/"}
@@ -21,26 +19,21 @@ ASSETS = {
     )
 }
 
-# Materials -> the name of the diffuse model in Babylon.js; OpenPBRMaterial has no choice.
-MODELS = {
-    "PBRMaterial E_OREN_NAYAR": "E_OREN_NAYAR",
-    "PBRMaterial BURLEY": "BURLEY",
-    "PBRMaterial LAMBERT": "LAMBERT",
-    "PBRMaterial LEGACY": "LEGACY",
-    "OpenPBRMaterial": "",
-}
-# Title of a node -> backend and diffuse model.
-NODES = {
-    f"{material}, {name}": (backend, model)
-    for material, model in MODELS.items()
+# Material, its diffuse model in Babylon.js, of which OpenPBRMaterial has no choice; ours, its inputs and forms.
+MATERIALS = (
+    ("PBRMaterial E_OREN_NAYAR", "E_OREN_NAYAR", "eon", BOTH, PUBLISHED),
+    ("OpenPBRMaterial", "", "eon", BOTH, PUBLISHED),
+    ("PBRMaterial BURLEY", "BURLEY", "burley", BOTH, ()),
+    ("PBRMaterial LEGACY", "LEGACY", "burley_lambert", BOTH, ()),
+    ("PBRMaterial LAMBERT", "LAMBERT", "lambert", COLOR, ()),
+)
+NODES = tuple(
+    node(f"{title}, {name}", ours, browser.material(backend, model=model), ports, forms=forms)
+    for title, model, ours, ports, forms in MATERIALS
     for name, backend in BACKENDS.items()
-}
+)
 
 
 class Host(browser.PackageHost):
     name, title, package = "babylon", "Babylon.js", PACKAGE
     imports, assets = IMPORTS, ASSETS
-
-    def node(self, title: str, color: Sequence[float], roughness: float, scene: Scene) -> Array:
-        backend, model = NODES[title]
-        return self._draw(color, roughness, scene, backend=backend, model=model)

@@ -8,12 +8,17 @@ from os import PathLike
 from pathlib import Path
 from typing import TypeAlias
 
+from mxeon.conformance.backends import own_nodes
 from mxeon.conformance.results import DIRECT, FAILED, NOT_RUN, PASSED, PORTRAIT, Result
-from mxeon.conformance.specs.diffuse import DIFFUSE, SURFACE_LOBES, DiffuseModelSpec
+from mxeon.conformance.spec import Spec
+from mxeon.conformance.specs.diffuse import DIFFUSE, SURFACE_LOBES
 from mxeon.errors import InputError
+from mxeon.io.files import replacing
 from mxeon.models import table as reference
+from mxeon.report import needing_extra
 from mxeon.report.diff import Report, read_results
-from mxeon.survey.backends import RENDERER_SPECS, RendererSpec
+from mxeon.survey import ROWS
+from mxeon.survey.specs import RendererSpec
 
 Place: TypeAlias = tuple[str, str, str]  # host, library and node
 
@@ -115,8 +120,8 @@ def _reports(folder: Path) -> list[Path]:
 
 def _entries(report: Report, folder: Path) -> Iterator[Entry]:
     """Entries of a report, in its order."""
-    nodes: tuple[DiffuseModelSpec, ...] = (*DIFFUSE, *SURFACE_LOBES, *RENDERER_SPECS)
-    claims = {each.title: claim(each) for each in nodes}
+    own = (spec for row in ROWS for spec in own_nodes(row.name))
+    claims = {each.title: claim(each) for each in (*DIFFUSE, *SURFACE_LOBES, *own)}
     places: dict[Place, dict[str, Result]] = {}
     for result in report.results:
         place = result.host, result.library, result.subject
@@ -138,7 +143,7 @@ def _identity(report: Report, host: str) -> tuple[str, str]:
     return found.get(host, ("", ""))
 
 
-def claim(spec: DiffuseModelSpec) -> str:
+def claim(spec: Spec) -> str:
     """Title of the model that a node claims: of its first published form, if there are several."""
     forms = spec.forms if isinstance(spec, RendererSpec) else ()
     return reference.model((*forms, spec.model)[0]).title
@@ -185,3 +190,12 @@ def _back_lit(direct: Result, error: float) -> Result:
         direct.unit,
         allowed,
     )
+
+
+def write_field(entries: Sequence[Entry], file: str | PathLike[str], pages: str = "") -> Path:
+    """Write the page of the field, and return it; see `mxeon.survey.field_page.render`."""
+    with needing_extra("the page of the field"):
+        from mxeon.survey.field_page import render
+    with replacing(Path(file)) as beside, open(beside, "w", encoding="utf-8") as page:
+        page.writelines(render(entries, pages))
+    return Path(file)

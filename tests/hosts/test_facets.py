@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from mxeon.shaders.facets import NARROWEST, facet_points, polyhedron
+from mxeon.survey.facets import NARROWEST, facet_points, polyhedron
 
 ROUNDING = 2.0**-24  # of the vertices
 

@@ -5,30 +5,31 @@ from __future__ import annotations
 
 import base64
 import math
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from mxeon.errors import NotRun
-from mxeon.hosts import browser, webgl
+from mxeon.hosts import webgl
 from mxeon.hosts.base import Array
-from mxeon.hosts.browser import three
 from mxeon.shaders.scene import Scene
+from mxeon.survey import browser
+from mxeon.survey.browser import three
+from mxeon.survey.specs import PUBLISHED, Material, node
 
 PACKAGE = "three-gpu-pathtracer"
 IMPORTS = {**three.IMPORTS, f"{PACKAGE}/": f"{PACKAGE}/"}
 
 LOBE = "WebGLPathTracer, diffuseEval"
-# Title of a node -> function of the WGSL that WebGPUPathTracer has, or "" for that of the GLSL.
-NODES = {
-    "WebGPUPathTracer, eonBrdf": "eon",
-    "WebGPUPathTracer, fonBrdf": "fon",
-    LOBE: "",
-    f"{LOBE}, shorter wh": "",
-}
 SHORTER = 1.0 - 2.0**-22  # a half vector whose product with wo exceeds 1 by no rounding
+# A function of the WGSL that WebGPUPathTracer has, or the length of the half vector for that of the GLSL.
+NODES = (
+    node("WebGPUPathTracer, eonBrdf", "eon", {"call": "eon"}, forms=PUBLISHED, sampled=True),
+    node("WebGPUPathTracer, fonBrdf", "fon", {"call": "fon"}),
+    node(LOBE, "burley", {"scale": 1.0}),
+    node(f"{LOBE}, shorter wh", "burley", {"scale": SHORTER}),
+)
 
 PI = "#define PI 3.141592653589793"
 # Without refraction nothing of the light is lost above the diffuse lobe.
@@ -58,14 +59,16 @@ class Host(browser.PackageHost):
         super().__init__()
         self._webgl: webgl.Host | None = None
 
-    def pairs(self, title: str, wo: Array, wi: Array, color: Array, roughness: Array) -> Array:
-        if NODES[title]:
-            return self._execute(NODES[title], wo, wi, color, roughness)
-        scale = np.full(len(wo), SHORTER if title.endswith("shorter wh") else 1.0)
+    def pairs(
+        self, material: Material, wo: Array, wi: Array, color: Array, roughness: Array
+    ) -> Array:
+        if "call" in material:
+            return self._execute(material["call"], wo, wi, color, roughness)
+        scale = np.full(len(wo), material["scale"])
         arguments = (wo, wi, color, roughness, scale)
         return self._glsl().execute(self._source(), "diffuse_value", *arguments)
 
-    def node(self, title: str, color: Sequence[float], roughness: float, scene: Scene) -> Array:
+    def node(self, material: Material, scene: Scene) -> Array:
         raise NotRun(
             f"{self.name}: its path tracers do not draw here: with three 0.187.0 the wavefront "
             "kernels do not compile, and the megakernel crashes the software device"

@@ -12,7 +12,7 @@ import inspect
 import json
 import math
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import ClassVar
@@ -22,10 +22,11 @@ from numpy.typing import NDArray
 
 from mxeon.errors import NotRun
 from mxeon.hosts import webgl
-from mxeon.hosts.base import Array, Identity, RendererHost
+from mxeon.hosts.base import Array, Engine, Identity
 from mxeon.hosts.webgl import Answer, Page
 from mxeon.shaders.library import data_folder
 from mxeon.shaders.scene import Scene
+from mxeon.survey.specs import Material
 
 MODULES = "MXEON_NODE_MODULES"  # environment variable that names another node_modules
 ORIGIN = "https://renderers.invalid/"  # a secure origin, without which there is no WebGPU
@@ -134,7 +135,12 @@ def pixels(answer: Answer, size: int) -> NDArray[np.float32]:
     return values.reshape(size, size, 4)[..., :3]
 
 
-class PackageHost(RendererHost):
+def material(backend: str, **more: str) -> Material:
+    """Material of a node that a backend draws."""
+    return {"color": "{color}", "roughness": "{roughness}", "backend": backend, **more}
+
+
+class PackageHost(Engine):
     """The materials of an npm package, drawn on its backends by the page beside a host's module."""
 
     title: ClassVar[str]  # of the package, in the version
@@ -159,18 +165,13 @@ class PackageHost(RendererHost):
     def close(self) -> None:
         self._browser.close()
 
-    def _draw(
-        self, color: Sequence[float], roughness: float, scene: Scene, **more: object
-    ) -> Array:
-        """Picture of a material by a backend."""
+    def node(self, material: Material, scene: Scene) -> Array:
         self.refuse_paths(scene)
         job = {
-            "color": [float(channel) for channel in color],
-            "roughness": float(roughness),
             "size": scene.size,
             "light": scene.light,
             "irradiance": math.pi,
             "environment": scene.environment,
-            **more,
+            **material,
         }
         return self._browser.picture(job, scene.size)

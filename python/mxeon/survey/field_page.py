@@ -10,16 +10,16 @@ from importlib.resources import files
 from typing import Any
 
 import numpy as np
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 import mxeon
 from mxeon.conformance.results import Result
 from mxeon.io.images import difference, difference_scale, read_image
 from mxeon.io.srgb import srgb_encoded
-from mxeon.report.field import CHECKS, Entry
 from mxeon.report.formats import LOOKS, number, share, vector
 from mxeon.report.plots import difference_gradient, difference_pixels, picture_uri
+from mxeon.survey.field import CHECKS, Entry
 
 # Column -> its heading, and what it tells.
 HEADINGS = {
@@ -52,9 +52,9 @@ def render(entries: Sequence[Entry], pages: str = "") -> Iterator[str]:
     `pages` is the address of a page of the ledger with `{}` for its name, "" for no links. The page loads
     nothing, runs only its own script, and is complete without it. Text of the reports is escaped.
     """
-    script = files("mxeon.report").joinpath("templates/field.js").read_text(encoding="utf-8")
+    script = files("mxeon.survey").joinpath("templates/field.js").read_text(encoding="utf-8")
     environment = Environment(
-        loader=PackageLoader("mxeon.report"),
+        loader=ChoiceLoader([PackageLoader("mxeon.survey"), PackageLoader("mxeon.report")]),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Renderers with a Python package, which render their own nodes on the polyhedron.
+
+Each runs in its own process: a worker renders, `<name>.py` asks it. The samples of
+these renderers spread over a pixel, so they show `mxeon.survey.facets` instead of a sphere.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from functools import lru_cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import ClassVar
+
+import numpy as np
+
+from mxeon.errors import NotRun, install
+from mxeon.hosts.base import Array, Engine, Identity
+from mxeon.hosts.process import Worker
+from mxeon.shaders.scene import Scene
+from mxeon.survey.facets import polyhedron
+from mxeon.survey.specs import Material
+
+PICTURES = 64  # that are kept: the checks of a node ask for some of them again
+MESH = "polyhedron.npz"
+
+
+class PolyhedronHost(Engine):
+    """A renderer that shows its own nodes on the polyhedron, with a process and a folder.
+
+    `samples` are those per pixel under an environment; one is enough under a distant light. A request
+    may take `limit` seconds.
+    """
+
+    samples: ClassVar[int]
+    script: ClassVar[Path]  # of the worker
+    device: ClassVar[str]
+    missing: ClassVar[str] = ""  # what to do where the renderer is not installed
+
+    def __init__(self, limit: float = 120.0) -> None:
+        python = self._interpreter()
+        self._temporary = TemporaryDirectory(prefix=f"mxeon-{self.name}-")
+        self._folder = Path(self._temporary.name)
+        mesh = polyhedron()
+        np.savez(self._folder / MESH, vertices=mesh.vertices, triangles=mesh.triangles)
+        self.worker = Worker(self.name, python, self.script, self._folder / "log.txt", limit)
+        self._picture = lru_cache(maxsize=PICTURES)(self._rendered)
+
+    def identity(self) -> Identity:
+        try:
+            self.worker.start()
+        except NotRun as error:
+            if "No module named" in str(error):
+                raise self._not_installed() from None
+            raise
+        return Identity(self.name, f"{self.name} {self.worker.version}", self.device)
+
+    def node(self, material: Material, scene: Scene) -> Array:
+        self.refuse_paths(scene)
+        request = {
+            "material": material,
+            "mesh": str(self._folder / MESH),
+            "size": scene.size,
+            "light": scene.light,
+            "environment": scene.environment,
+            "samples": 1 if scene.environment is None else self.samples,
+        }
+        return self._picture(json.dumps(request))
+
+    def close(self) -> None:
+        self.worker.close()
+        self._temporary.cleanup()
+
+    def _rendered(self, request: str) -> Array:
+        """Picture of a node; read-only."""
+        picture = self._ask(**json.loads(request))
+        picture.flags.writeable = False  # shared by all callers
+        return picture
+
+    def _ask(self, **request: object) -> Array:
+        self.identity()
+        output = self._folder / "output.npy"
+        output.unlink(missing_ok=True)
+        self.worker.ask(output=str(output), **request)
+        values: Array = np.load(output, allow_pickle=False)
+        return values
+
+    def _interpreter(self) -> Path:
+        """Path of the Python that has the renderer: a variable names it, or this one."""
+        path = os.environ.get(f"MXEON_{self.name.upper()}_PYTHON")
+        python = Path(path or sys.executable)
+        if not (python.is_file() and os.access(python, os.X_OK)):
+            raise self._not_installed(f"; no interpreter {path}")
+        return python
+
+    def _not_installed(self, reason: str = "") -> NotRun:
+        remedy = self.missing or (
+            f"not installed: {install(self.name)}, or name an interpreter "
+            f"that has it in MXEON_{self.name.upper()}_PYTHON"
+        )
+        return NotRun(f"{self.name}: {remedy}{reason}")

@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Blender's EEVEE with its own nodes, drawn by OpenGL without a screen."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from mxeon.hosts.cycles import process
+from mxeon.survey.cycles_native import MATERIALS
+from mxeon.survey.polyhedron import PolyhedronHost
+from mxeon.survey.specs import COLOR, node
+
+# Blender's manual has the roughness of both nodes for Cycles only.
+NODES = tuple(node(title, "lambert", material, COLOR) for title, material in MATERIALS.items())
+
+
+class Host(PolyhedronHost):
+    name = "eevee"
+    script = Path(process.__file__).with_name("worker.py")
+    samples = 1  # it has no noise
+    device = "OpenGL"
+    missing = (
+        "no Blender: pip install bpy==5.0.1 in an environment of Python 3.11 and name "
+        "its interpreter in MXEON_CYCLES_PYTHON"
+    )
+
+    def _interpreter(self) -> Path:
+        return process.interpreter(self.name)

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a node of a renderer's own is judged by, and how its material is made."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, TypeAlias
+
+from mxeon.conformance.samples import Values
+from mxeon.conformance.specs.diffuse import DiffuseModelSpec
+from mxeon.models.table import OTHERS, Model
+
+Material: TypeAlias = Mapping[str, Any]  # properties of a renderer's material
+
+BOTH = ("color", "roughness")
+COLOR = ("color",)  # input of a Lambert node
+PUBLISHED = ("eon", "eon_fitted")  # the paper prints EON with the exact albedo, and with a quartic
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class RendererSpec(DiffuseModelSpec):
+    """A node of a renderer's own, and the model that its documentation claims.
+
+    In `material`, "{color}", "{roughness}" and "{degrees}" stand for the inputs; nothing but the diffuse
+    lobe may depend on them.
+    """
+
+    material: Material = field(default_factory=dict)
+    forms: tuple[str, ...] = ()  # published; the nearest to what is measured is judged
+    sampled: bool = False  # whether the function that draws its directions can be called
+
+    @property
+    def other_models(self) -> tuple[Model, ...]:
+        """Models of renderers' own nodes; Burley's with the albedo that the node's own has."""
+        name = self.model if self.model.startswith("burley") else "burley"
+        left_out = {"burley", "burley_lambert"} - {name}
+        return tuple(row for row in OTHERS if row.name not in left_out)
+
+    def document(self, inputs: Values | None = None) -> str:
+        """None: nothing is generated."""
+        return ""
+
+    def made(self, color: Sequence[float], roughness: float) -> Material:
+        """The material with these inputs."""
+        inputs = {
+            "{color}": tuple(map(float, color)),
+            "{roughness}": float(roughness),
+            "{degrees}": math.degrees(roughness),
+        }
+        return {
+            name: inputs.get(value, value) if isinstance(value, str) else value
+            for name, value in self.material.items()
+        }
+
+
+def node(
+    title: str, model: str, material: Material, ports: tuple[str, ...] = BOTH, **more: Any
+) -> RendererSpec:
+    return RendererSpec(
+        title=title, node=title, model=model, material=material, ports=ports, **more
+    )
