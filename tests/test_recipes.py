@@ -100,32 +100,32 @@ DOCUMENT = """<?xml version="1.0"?>
 """
 
 # A renderer whose one material is Lambert.
-HOSTS = "python/mxeon/hosts/__init__.py"
-PAINTER = "python/mxeon/hosts/painter.py"
+SURVEY = "python/mxeon/survey/__init__.py"
+PAINTER = "python/mxeon/survey/painter.py"
 RENDERER = {
-    HOSTS: {
-        '    Row("msl",': '    Row("painter", "", "mxeon.hosts.painter", "exact", '
-        'nodes=(OwnNode("paint", "lambert", COLOR),)),\n'
-    },
+    SURVEY: {'    Row("luxcore",': '    Row("painter", "", "mxeon.survey.painter", "exact"),\n'},
     PAINTER: {
         "": """import numpy as np
 
-from mxeon.hosts.base import Identity, RendererHost
+from mxeon.hosts.base import Engine, Identity
 from mxeon.shaders.scene import sphere
+from mxeon.survey.specs import COLOR, node
+
+NODES = (node("paint", "lambert", {"color": "{color}"}, COLOR),)
 
 
-class Host(RendererHost):
+class Host(Engine):
     name = "painter"
 
     def identity(self):
         return Identity(self.name, "1", "paper")
 
-    def node(self, title, color, roughness, scene):
+    def node(self, material, scene):
         points = sphere(scene.size)
         light = np.full(points.mask.shape, scene.environment or 0.0)
         if scene.light is not None:
             light += np.clip(points.normal @ scene.light, 0.0, 1.0)
-        return np.where(points.mask, light, 0.0)[..., np.newaxis] * np.asarray(color)
+        return np.where(points.mask, light, 0.0)[..., np.newaxis] * np.asarray(material["color"])
 """
     },
 }
@@ -246,7 +246,7 @@ def test_a_node_takes_its_model_and_its_spec(results):
 
 
 def test_a_renderer_takes_its_module_and_its_row(results):
-    assert set(RENDERER) == {HOSTS, PAINTER}
+    assert set(RENDERER) == {SURVEY, PAINTER}
     judged = verdicts(results, "paint")
     assert set(judged.values()) == {"passed"} and {"lobe", "environment", "black"} < set(judged)
 

@@ -11,11 +11,12 @@ from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
 from mxeon.conformance.results.known_issues import ISSUES
 from mxeon.conformance.results.known_issues.issue import RENDERER_NODES
 from mxeon.errors import NotRun
-from mxeon.hosts import browser, open_engine
-from mxeon.hosts.browser import pathtracer
+from mxeon.hosts import open_engine
 from mxeon.models.sampling.cltc import eon_cltc_sample
 from mxeon.shaders.nodes import material_text
 from mxeon.shaders.scene import SIDE, sphere
+from mxeon.survey import browser
+from mxeon.survey.browser import babylon, pathtracer, three
 from tests.support.availability import available
 from tests.support.verdicts import Verdicts
 from tests.test_upstream import same_record
@@ -26,10 +27,7 @@ from tools.site.ledger import measure
 EXACT = 2e-5
 QUARTIC = "EON with the paper's quartic"
 # The nodes whose pictures are looked at: one for each engine of a host.
-TITLES = {
-    "three": ("MeshPhysicalMaterial, WebGLRenderer", "MeshPhysicalMaterial, WebGPURenderer"),
-    "babylon": ("PBRMaterial E_OREN_NAYAR, WebGL2", "OpenPBRMaterial, WebGPU"),
-}
+PICTURED = {"three": three.NODES[:2], "babylon": babylon.NODES[:4:3]}
 PAGE = """
 export async function draw({ task }) {
     if (task === "hang") await new Promise(() => {});
@@ -46,7 +44,7 @@ PACKAGES = {
 EON, FON, LOBE = "WebGPUPathTracer, eonBrdf", "WebGPUPathTracer, fonBrdf", pathtracer.LOBE
 
 of_each_issue = pytest.mark.parametrize(
-    "issue", [each for each in ISSUES if each.host in TITLES], ids=lambda each: each.page
+    "issue", [each for each in ISSUES if each.host in PICTURED], ids=lambda each: each.page
 )
 
 
@@ -77,8 +75,8 @@ def test_pictures_are_linear_and_finer_than_bytes(hosts, name):
     host, scene, color = hosts(name), replace(SIDE, size=32), (0.02, 0.5, 1.0)
     points = sphere(scene.size)
     cosine = np.clip(points.normal @ np.array(scene.light), 0.0, None)
-    for title in TITLES[name]:
-        picture = host.node(title, color, 0.0, scene)
+    for node in PICTURED[name]:
+        picture = host.node(node.made(color, 0.0), scene)
         error = np.abs(picture - cosine[..., np.newaxis] * color)[points.mask]
         coarse = np.abs(np.round(255.0 * picture) / 255.0 - picture)[points.mask]
         assert error.max() <= EXACT < coarse.max()

@@ -5,12 +5,12 @@ import pytest
 
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.conformance.results.known_issues.issue import RENDERER_NODES
-from mxeon.hosts import host_row
+from mxeon.survey.cycles_native import NODES
 
 CHECKS = ("value", "environment", "furnace", "black", "lambert", "inputs")
 
 
-@pytest.mark.parametrize("title", [each.title for each in host_row("cycles-native").nodes])
+@pytest.mark.parametrize("title", [each.title for each in NODES])
 def test_blender_has_one_power_of_the_color_too_many(judged, title):
     found = {key: judged(key, title, "cycles-native", RENDERER_NODES) for key in CHECKS}
     assert {key for key, each in found.items() if each.verdict == FAILED} == {

@@ -10,32 +10,26 @@ from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
 from mxeon.conformance.results.known_issues.issue import RENDERER_NODES
 from mxeon.conformance.run import check
 from mxeon.errors import NotRun
-from mxeon.hosts import host_row
-from mxeon.hosts.polyhedron import eevee, luxcore, mitsuba
-from mxeon.shaders.facets import facet_points
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.scene import BACK, FRONT, SIDE, VIEW, local_directions
+from mxeon.survey.facets import facet_points
+from mxeon.survey.polyhedron import eevee, luxcore, mitsuba
 from tests.support.availability import available, required
 from tests.support.plans import keep_host
 from tests.support.sharing import shared
 from tests.support.verdicts import Verdicts
 
 EXAMPLE = examples_folder() / "plaster.mtlx"
-HOSTS = {"mitsuba": mitsuba.Host, "luxcore": luxcore.Host}
+MODULES = {"mitsuba": mitsuba, "luxcore": luxcore}
 SMALL = replace(SIDE, size=64)
 COLOR = (0.8, 0.4, 0.1)
 # Errors of pictures of facets, times the light's cosine; of EEVEE's, in half floats; and of values of pairs.
 FACETS, COARSE_FACETS, FACET_PAIRS = 7e-5, 0.02, 6e-6
 
 
-def titles(name):
-    """A host's own nodes."""
-    return [each.title for each in host_row(name).nodes]
-
-
 def judged_all(name, factory):
     """Results of a host, by check and subject."""
-    with available(name), HOSTS[name]() as host:
+    with available(name), MODULES[name].Host() as host:
         host.identity()
     with pytest.MonkeyPatch.context() as patch:
         keep_host(patch, name)
@@ -50,9 +44,9 @@ def facet_pairs(scene):
     return wo, wi, (np.minimum(wo, wi)[:, 2] >= 0.05)
 
 
-@pytest.fixture(scope="module", params=HOSTS)
+@pytest.fixture(scope="module", params=MODULES)
 def host(request):
-    with available(request.param), HOSTS[request.param]() as host:
+    with available(request.param), MODULES[request.param].Host() as host:
         host.identity()
         yield host
 
@@ -68,15 +62,14 @@ def of_luxcore(tmp_path_factory):
 
 
 def test_mitsuba_has_the_models_that_it_documents(of_mitsuba):
-    assert {subject for _, subject in of_mitsuba} == {*titles("mitsuba")}
+    assert {subject for _, subject in of_mitsuba} == {each.title for each in mitsuba.NODES}
     assert {each.verdict for each in of_mitsuba.values()} == {PASSED}
     assert all(each.control.caught for each in of_mitsuba.values())
 
 
 def test_a_base_with_another_metalness_fails(monkeypatch):
-    [title] = [each for each in titles("mitsuba") if each.startswith("openpbr")]
-    wrong = mitsuba.Host.nodes[title] | {"base_metalness": 0.49}
-    monkeypatch.setitem(mitsuba.Host.nodes, title, wrong)
+    monkeypatch.setitem(mitsuba.BASE, "base_metalness", 0.49)
+    title = "openpbr_base of mxeon.mitsuba"
     with available("mitsuba"), mitsuba.Host() as host:
         result = Verdicts(lambda name: host)("value", title, "mitsuba", RENDERER_NODES)
     assert result.verdict == FAILED and result.control.caught
@@ -104,8 +97,8 @@ def test_eevee_is_lambert_whatever_the_roughness():
         pytest.skip("a minute on a software driver: MXEON_REQUIRE=eevee runs it")
     _, wi, mask = facet_pairs(SMALL)
     with eevee.Host(limit=300.0) as host:
-        for title in host.nodes:
-            pictures = [host.node(title, COLOR, roughness, SMALL) for roughness in (0.0, 1.0)]
+        for node in eevee.NODES:
+            pictures = [host.node(node.made(COLOR, roughness), SMALL) for roughness in (0.0, 1.0)]
             np.testing.assert_array_equal(*pictures)
             values = pictures[0][facet_points(SMALL.size).mask][mask]
             assert np.abs(values - wi[mask][:, 2:] * COLOR).max() <= COARSE_FACETS
@@ -115,8 +108,8 @@ def test_eevee_is_lambert_whatever_the_roughness():
 def test_pictures_are_linear_and_have_float_precision(host, scene):
     """A dark color beside a bright one: 8 bits or a tone curve would be off by far more."""
     scene = replace(scene, size=64)
-    title = titles(host.name)[0]
-    picture = host.node(title, (1.0, 0.02, 1e-4), 0.0, scene)[facet_points(64).mask]
+    material = MODULES[host.name].NODES[0].made((1.0, 0.02, 1e-4), 0.0)
+    picture = host.node(material, scene)[facet_points(64).mask]
     _, wi, mask = facet_pairs(scene)
     expected = wi[mask][:, 2:] * np.array([1.0, 0.02, 1e-4])
     relative = np.abs(picture[mask] / expected - 1.0) * wi[mask][:, 2:]
@@ -125,16 +118,17 @@ def test_pictures_are_linear_and_have_float_precision(host, scene):
 
 def test_a_surface_in_no_light_is_black(host):
     dark = replace(SMALL, light=(0.0, 0.0, -1.0))
-    assert host.node(titles(host.name)[0], COLOR, 0.0, dark).max() == 0.0
+    assert host.node(MODULES[host.name].NODES[0].made(COLOR, 0.0), dark).max() == 0.0
 
 
 def test_a_picture_agrees_with_the_values_of_mitsubas_own_function():
     with available("mitsuba"), mitsuba.Host() as host:
-        picture = host.node("principled", COLOR, 0.7, SMALL)[facet_points(64).mask]
+        node = mitsuba.NODES[1]
+        picture = host.node(node.made(COLOR, 0.7), SMALL)[facet_points(64).mask]
         wo, wi, mask = facet_pairs(SMALL)
         count = np.count_nonzero(mask)
         color, roughness = np.broadcast_to(COLOR, (count, 3)), np.full(count, 0.7)
-        values = np.pi * host.pairs("principled", wo[mask], wi[mask], color, roughness)
+        values = np.pi * host.pairs(node.material, wo[mask], wi[mask], color, roughness)
     assert np.abs(picture[mask] - values).max() <= FACETS + FACET_PAIRS
 
 

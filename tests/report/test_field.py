@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from mxeon.conformance.nodes.diffuse import SUBJECTS
 
 from mxeon.cli import main
 from mxeon.conformance.results import (
