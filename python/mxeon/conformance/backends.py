@@ -881,14 +881,21 @@ def lit_pairs(normal: Array, scene: Scene) -> Pairs:
 class CyclesPictures(Pictures):
     """Cycles's pictures of a rough diffuse node, whose closure is its own."""
 
+    errors: ClassVar[Mapping[str, Tolerance]] = {
+        "value": CYCLES_RAY,
+        "albedo": CYCLES_NOISE,
+        "lambert": CYCLES_RAY,
+    }
+
     @classmethod
     def supports(cls, spec: Spec) -> bool:
         return isinstance(spec, DiffuseSpec)
 
     @classmethod
     def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
-        own = {"value": CYCLES_RAY, "albedo": CYCLES_NOISE, "lambert": CYCLES_RAY}
-        return difference_of(CYCLES_RAY) if quantity == "difference" else own.get(quantity)
+        if quantity == "difference":
+            return difference_of(cls.errors["value"])
+        return cls.errors.get(quantity)
 
     def points(self, scene: Scene) -> Pairs:
         """The points for which the host has a closure that can be the model."""

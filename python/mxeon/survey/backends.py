@@ -13,8 +13,6 @@ import numpy as np
 
 from mxeon.conformance.backends import (
     BACKENDS,
-    CYCLES_NOISE,
-    CYCLES_RAY,
     EXACT,
     EXACT_ALBEDO,
     PICTURE_INPUTS,
@@ -40,7 +38,7 @@ from mxeon.conformance.samples import (
     special_directions,
 )
 from mxeon.conformance.spec import Spec
-from mxeon.conformance.specs.diffuse import difference_of, model_value
+from mxeon.conformance.specs.diffuse import model_value
 from mxeon.conformance.tolerance import (
     Term,
     Tolerance,
@@ -113,21 +111,9 @@ class Renderer(Protocol):
 class Native(CyclesPictures):
     """A node that a renderer has of its own, on a sphere."""
 
-    errors: ClassVar[Mapping[str, Tolerance]] = {
-        "value": CYCLES_RAY,
-        "albedo": CYCLES_NOISE,
-        "lambert": CYCLES_RAY,
-    }
-
     @classmethod
     def supports(cls, spec: Spec) -> bool:
         return isinstance(spec, RendererSpec)
-
-    @classmethod
-    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
-        if quantity == "difference":
-            return difference_of(cls.errors["value"])
-        return cls.errors.get(quantity)
 
     @property
     def renderer(self) -> Renderer:
@@ -290,16 +276,6 @@ class FacetPairs(Facets):
         roughness = np.broadcast_to(batch.inputs["roughness"], count)
         values = self.renderer.pairs(self.node.material, batch.wo, batch.wi, color, roughness)
         return np.pi * values.astype(np.float64)
-
-    def density(self, batch: Batch) -> Array:
-        """Density in solid angle of the directions that the renderer draws, (N,)."""
-        roughness = np.broadcast_to(batch.inputs["roughness"], len(batch.wo))
-        return self.renderer.density(batch.wo, batch.wi, roughness).astype(np.float64)
-
-    def sample(self, batch: Batch, u: Array) -> Array:
-        """Directions that the renderer draws, (N, 3)."""
-        roughness = np.broadcast_to(batch.inputs["roughness"], len(batch.wo))
-        return self.renderer.sample(batch.wo, u, roughness).astype(np.float64)
 
 
 @lru_cache(maxsize=8)

@@ -2,6 +2,7 @@
 """Checks of a renderer's own sampling: its density, and its directions against that."""
 
 from collections.abc import Iterator
+from typing import cast
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from mxeon.conformance.samples import SEED, Array, Batch
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.tolerance import Compared, Measurement, given, roundings, sum_of
 from mxeon.models.sampling.cltc import eon_cltc_pdf
-from mxeon.survey.backends import FacetPairs
+from mxeon.survey.backends import Renderer
 from mxeon.survey.specs import RendererSpec
 
 # A right sampler exceeds them once in 3.5 million times.
@@ -52,8 +53,9 @@ def density(case: Case) -> Iterator[Compared]:
 
 
 def _density(case: Case, batch: Batch) -> Array:
-    assert isinstance(case.backend, FacetPairs), f"{case.host.name} has no sampling of its own"
-    return case.backend.density(case.inputs(batch))
+    batch = case.inputs(batch)
+    roughness = np.broadcast_to(batch.inputs["roughness"], len(batch.wo))
+    return cast(Renderer, case.host).density(batch.wo, batch.wi, roughness).astype(np.float64)
 
 
 @check(
@@ -78,10 +80,10 @@ def samples(case: Case) -> Measurement:
 def _deviation(case: Case, mu: float) -> float:
     """Standard deviations by which the counts of one viewer's samples leave their density."""
     # Draw directions, and count them in bins of the hemisphere.
-    assert isinstance(case.backend, FacetPairs), f"{case.host.name} has no sampling of its own"
     rng = np.random.default_rng(SEED)
     wo = np.array([np.sqrt(1.0 - mu * mu), 0.0, mu])
-    wi = case.backend.sample(_batch(np.broadcast_to(wo, (SAMPLES, 3))), rng.random((SAMPLES, 2)))
+    draws = np.broadcast_to(wo, (SAMPLES, 3)), rng.random((SAMPLES, 2)), np.full(SAMPLES, ROUGHNESS)
+    wi = cast(Renderer, case.host).sample(*draws).astype(np.float64)
     azimuth = np.arctan2(wi[:, 1], wi[:, 0])
     edges = np.linspace(0.0, 1.0, BINS[0] + 1), np.linspace(-np.pi, np.pi, BINS[1] + 1)
     counts, _, _ = np.histogram2d(np.clip(wi[:, 2], 0.0, 1.0), azimuth, edges)
@@ -107,12 +109,8 @@ def _shares(case: Case, wo: Array) -> Array:
     )
     radius = np.sqrt(1.0 - mu * mu)
     wi = np.stack([radius * np.cos(azimuth), radius * np.sin(azimuth), mu], axis=-1)
-    batch = _batch(np.broadcast_to(wo, wi.shape).reshape(-1, 3), wi.reshape(-1, 3))
+    pairs = np.broadcast_to(wo, wi.shape).reshape(-1, 3), wi.reshape(-1, 3)
+    batch = Batch(*pairs, {"roughness": ROUGHNESS})
     values = _density(case, batch).reshape(BINS[0], FINE, BINS[1], FINE)
     shares: Array = values.sum(axis=(1, 3)) * (2.0 * np.pi / (heights * turns))
     return shares
-
-
-def _batch(wo: Array, wi: Array | None = None) -> Batch:
-    """Directions at ROUGHNESS."""
-    return Batch(wo, wo if wi is None else wi, {"color": (1.0, 1.0, 1.0), "roughness": ROUGHNESS})

@@ -3,8 +3,8 @@
 
 import math
 from base64 import b64encode
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from hashlib import sha256
 from importlib.resources import files
 from typing import Any
@@ -35,17 +35,6 @@ SCENES = {"side": "light from the side", "back": "light from behind"}
 INPUTS = ("color", "roughness", "wo", "wi", "measured", "expected")
 
 
-@dataclass(frozen=True)
-class Frame:
-    """A portrait and its difference map as the page shows them."""
-
-    entry: int
-    image: str
-    apart: str
-    scale: float
-    largest: float
-
-
 def render(entries: Sequence[Entry], pages: str = "") -> Iterator[str]:
     """Pieces of the page of the field; a picture is read when its piece is due.
 
@@ -60,6 +49,7 @@ def render(entries: Sequence[Entry], pages: str = "") -> Iterator[str]:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    counts = Counter(entry.verdict for entry in entries)
     filters = {"number": number, "share": share, "look": LOOKS.__getitem__, "breakable": breakable}
     environment.filters |= filters
     return environment.get_template("field.html.jinja").generate(
@@ -69,8 +59,8 @@ def render(entries: Sequence[Entry], pages: str = "") -> Iterator[str]:
         script_hash=b64encode(sha256(script.encode()).digest()).decode(),
         columns={column: HEADINGS[column] for column in CHECKS},
         claims=sorted({entry.claimed for entry in entries}),
-        verdicts=tuple(dict.fromkeys(entry.verdict for entry in entries)),
-        counts=counts(entries),
+        verdicts=tuple(counts),
+        counts=counts,
         scenes=SCENES,
         frames=lambda scene: frames(entries, scene),
         where=where,
@@ -79,12 +69,6 @@ def render(entries: Sequence[Entry], pages: str = "") -> Iterator[str]:
         linked=bool(pages),
         gradient=Markup(difference_gradient()),
     )
-
-
-def counts(entries: Sequence[Entry]) -> Mapping[str, int]:
-    """Numbers of entries by verdict."""
-    verdicts = [entry.verdict for entry in entries]
-    return {verdict: verdicts.count(verdict) for verdict in dict.fromkeys(verdicts)}
 
 
 def order(cell: Result | None) -> float:
@@ -103,8 +87,13 @@ def where(cell: Result) -> dict[str, str]:
     return {name: vector(cell.worst[name]) for name in INPUTS if name in cell.worst}
 
 
-def frames(entries: Sequence[Entry], scene: str) -> Iterator[Frame]:
-    """Portraits of a scene, and their difference maps, in which the tolerance is dark."""
+def frames(
+    entries: Sequence[Entry], scene: str
+) -> Iterator[tuple[int, Entry, str, str, float, float]]:
+    """Portraits of a scene: row, entry, image, difference map, its scale, and the largest difference.
+
+    In the map the tolerance is dark.
+    """
     for row, entry in enumerate(entries):
         portrait = entry.portraits.get(scene)
         if portrait is None:
@@ -114,4 +103,5 @@ def frames(entries: Sequence[Entry], scene: str) -> Iterator[Frame]:
         apart[np.isnan(apart)] = np.inf
         scale = max(difference_scale(apart), entry.cells["direct"].tolerance or 0.0)
         shown, apart = srgb_encoded(image), difference_pixels(apart, scale)
-        yield Frame(row, picture_uri(shown), picture_uri(apart), scale, portrait.difference)
+        uris = picture_uri(shown), picture_uri(apart)
+        yield row, entry, *uris, scale, portrait.difference

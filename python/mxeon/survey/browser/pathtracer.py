@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import base64
 import math
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -55,9 +56,9 @@ class Host(browser.PackageHost):
     imports = IMPORTS
     backends = ("",)
 
-    def __init__(self) -> None:
-        super().__init__()
-        self._webgl: webgl.Host | None = None
+    @cached_property
+    def _webgl(self) -> webgl.Host:
+        return webgl.Host()
 
     def pairs(
         self, material: Material, wo: Array, wi: Array, color: Array, roughness: Array
@@ -66,7 +67,7 @@ class Host(browser.PackageHost):
             return self._execute(material["call"], wo, wi, color, roughness)
         scale = np.full(len(wo), material["scale"])
         arguments = (wo, wi, color, roughness, scale)
-        return self._glsl().execute(self._source(), "diffuse_value", *arguments)
+        return self._webgl.execute(self._source(), "diffuse_value", *arguments)
 
     def node(self, material: Material, scene: Scene) -> Array:
         raise NotRun(
@@ -83,7 +84,7 @@ class Host(browser.PackageHost):
 
     def close(self) -> None:
         super().close()
-        if self._webgl:
+        if "_webgl" in vars(self):
             self._webgl.close()
 
     def _execute(self, call: str, *columns: ArrayLike) -> Array:
@@ -97,11 +98,6 @@ class Host(browser.PackageHost):
             {"call": call, "rows": base64.b64encode(rows.tobytes()).decode()}
         )
         return browser.pixels(answer, size).reshape(-1, 3)[:count]
-
-    def _glsl(self) -> webgl.Host:
-        if self._webgl is None:
-            self._webgl = webgl.Host()
-        return self._webgl
 
     def _source(self) -> str:
         """The package's GLSL of the diffuse lobe, and a function that calls it."""

@@ -11,7 +11,17 @@ from mxeon.survey.specs import COLOR, node
 # What switches off all but the diffuse lobe of the Disney material; what is left of its specular
 # lobe does not depend on the color.
 DISNEY = dict.fromkeys(
-    ["subsurface", "metallic", "specular", "speculartint", "clearcoat", "clearcoatgloss", "anisotropic", "sheen", "sheentint"],
+    [
+        "subsurface",
+        "metallic",
+        "specular",
+        "speculartint",
+        "clearcoat",
+        "clearcoatgloss",
+        "anisotropic",
+        "sheen",
+        "sheentint",
+    ],
     0.0,
 )
 MATTE = {"type": "roughmatte", "kd": "{color}"}
