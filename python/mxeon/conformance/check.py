@@ -18,16 +18,11 @@ from mxeon.conformance.backends import Backend
 from mxeon.conformance.case import Case
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.diagnosis.comparisons import VALUE, Comparison
-from mxeon.conformance.diagnosis.verdicts import (
-    judge_measurements,
-    not_measured,
-    renderer_warnings,
-)
+from mxeon.conformance.diagnosis.verdicts import judge
 from mxeon.conformance.results import Place, Result
 from mxeon.conformance.samples import Array, Batch
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.tolerance import Compared, Measurement, Metric, Tolerance, worst_of
-from mxeon.errors import NotRun, ShaderError
 
 Measure: TypeAlias = Callable[[Case], Compared | Iterable[Compared] | Measurement]
 
@@ -86,29 +81,27 @@ class Check:
 
     def judge(self, case: Case) -> Result:
         """The result for a case, with its control and, on failure, a diagnosis."""
-        place: Place = {
-            "check": self.key,
-            "claim": self.claim,
-            "subject": case.spec.title,
-            "host": case.host.name,
-            "library": case.library,
+        place = Place(
+            check=self.key,
+            claim=self.claim,
+            subject=case.spec.title,
+            host=case.host.name,
+            library=case.library,
             **case.backend.claims,
-        }
+        )
         tolerance = self.tolerance_of(case)
-        diagnosis = Diagnosis()
-        try:
-            with renderer_warnings() as notes:
-                right = self.measured(case, tolerance.metric)
-                wrong = self.measured(self.control.of(case), tolerance.metric)
-                if right.error > tolerance.value:
-                    diagnosis = self.diagnose(case)
-        except (NotRun, ShaderError) as error:
-            return not_measured(place, error)
-        # A permitted function excuses an open check alone.
-        diagnosis = replace(diagnosis, permitted=self.open and diagnosis.permitted)
-        if diagnosis.text:
-            diagnosis = replace(diagnosis, text="; ".join([diagnosis.text, *notes]))
-        return judge_measurements(place, tolerance, right, self.control.words, wrong, diagnosis)
+
+        def diagnose() -> Diagnosis:
+            diagnosis = self.diagnose(case)  # a permitted function excuses an open check alone
+            return replace(diagnosis, permitted=self.open and diagnosis.permitted)
+
+        return judge(
+            place,
+            tolerance,
+            lambda wrong: self.measured(self.control.of(case) if wrong else case, tolerance.metric),
+            self.control.words,
+            diagnose,
+        )
 
 
 CHECKS: list[Check] = []  # in the order in which they are defined

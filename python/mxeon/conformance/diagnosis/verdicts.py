@@ -2,7 +2,7 @@
 """Verdicts: results from a measurement, that of a control, and a diagnosis."""
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from mxeon.conformance.diagnosis.candidates import Diagnosis
@@ -14,27 +14,34 @@ from mxeon.hosts.base import RendererWarning
 CANNOT_TELL = "inconclusive: the values are right, but the control passed too:"
 
 
-def judge_measurements(
+def judge(
     place: Place,
     tolerance: Tolerance,
-    right: Measurement,
+    measure: Callable[[bool], Measurement],
     variant: str,
-    wrong: Measurement,
-    diagnosis: Diagnosis,
+    diagnose: Callable[[], Diagnosis],
 ) -> Result:
-    """The result of a check from its measurement and that of its control, whose mistake is `variant`."""
-    caught = wrong.error > tolerance.value
-    verdict = DIFFERS if diagnosis.permitted else FAILED
-    right_too = right.error <= tolerance.value and not caught
+    """The result of a check that measures a subject, and its control if True, whose mistake is `variant`.
+
+    A check whose engine is not there is not run; a shader error fails it.
+    """
+    try:
+        with renderer_warnings() as notes:
+            right, wrong = measure(False), measure(True)
+            diagnosis = diagnose() if right.error > tolerance.value else Diagnosis()
+    except (NotRun, ShaderError) as error:
+        return not_measured(place, error)
+    caught, passed = wrong.error > tolerance.value, right.error <= tolerance.value
+    text = "; ".join([diagnosis.text, *notes]) if diagnosis.text else ""
     return Result(
         **place,
-        verdict=PASSED if right.error <= tolerance.value and caught else verdict,
+        verdict=PASSED if passed and caught else DIFFERS if diagnosis.permitted else FAILED,
         error=right.error,
         unit=tolerance.unit,
         tolerance=tolerance.value,
         derivation=tolerance.derivation,
         worst=right.worst,
-        diagnosis=f"{CANNOT_TELL} {variant}" if right_too else diagnosis.text,
+        diagnosis=f"{CANNOT_TELL} {variant}" if passed and not caught else text,
         distances=diagnosis.distances,
         control=Control(variant, wrong.error, caught),
     )

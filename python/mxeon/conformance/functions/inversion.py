@@ -9,12 +9,11 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeAlias
 
 import numpy as np
 
 from mxeon.conformance.diagnosis.candidates import SAME, Diagnosis, sentence
-from mxeon.conformance.diagnosis.verdicts import judge_measurements, not_measured
+from mxeon.conformance.diagnosis.verdicts import judge
 from mxeon.conformance.functions.numpy_functions import POINTS
 from mxeon.conformance.results import Place, Result
 from mxeon.conformance.samples import SEED, Array, float32
@@ -103,12 +102,8 @@ class InversionProbe:
         return values.astype(np.float64)
 
 
-# Errors of values that a node gives.
-Errors: TypeAlias = Callable[[InversionProbe, Array], Array]
-
-
 def judge_inversion(probe: InversionProbe) -> tuple[Result, ...]:
-    rows: tuple[tuple[str, str, Tolerance, Errors], ...] = (
+    rows = (
         (
             "inversion",
             "The node returns the reflectance of the NumPy function of the same name.",
@@ -126,23 +121,30 @@ def judge_inversion(probe: InversionProbe) -> tuple[Result, ...]:
 
 
 def _judge(
-    probe: InversionProbe, key: str, claim: str, tolerance: Tolerance, measure: Errors
+    probe: InversionProbe,
+    key: str,
+    claim: str,
+    tolerance: Tolerance,
+    errors: Callable[[InversionProbe, Array], Array],
 ) -> Result:
-    place: Place = {
-        "check": key,
-        "claim": claim,
-        "subject": probe.node,
-        "host": probe.host.name,
-        "library": probe.library,
-    }
-    try:
-        values, wrong = probe.values(), probe.values(0.95)
-    except (NotRun, ShaderError) as error:
-        return not_measured(place, error)
-    right = _worst(probe, values, measure(probe, values))
-    control = _worst(probe, wrong, measure(probe, wrong))
-    diagnosis = Diagnosis() if right.error <= tolerance.value else _nearest(probe, values)
-    return judge_measurements(place, tolerance, right, VARIANT, control, diagnosis)
+    host, library = probe.host.name, probe.library
+
+    def worst(wrong: bool) -> Measurement:
+        values = probe.values(0.95 if wrong else 1.0)
+        found = errors(probe, values)
+        row = int(found.argmax())
+        color, roughness = probe.inputs
+        columns = {"color": color, "roughness": roughness, "measured": values}
+        point = {name: np.ravel(each[row]).tolist() for name, each in columns.items()}
+        return Measurement(float(found[row]), point)
+
+    return judge(
+        Place(check=key, claim=claim, subject=probe.node, host=host, library=library),
+        tolerance,
+        worst,
+        VARIANT,
+        lambda: _nearest(probe, probe.values()),
+    )
 
 
 def _value(probe: InversionProbe, values: Array) -> Array:
@@ -159,14 +161,6 @@ def _round_trip(probe: InversionProbe, values: Array) -> Array:
     else:
         reached = albedo.eon_albedo_avg(rho, roughness)
     return np.where(finite, absolute(reached, color), np.inf)
-
-
-def _worst(probe: InversionProbe, values: Array, errors: Array) -> Measurement:
-    color, roughness = probe.inputs
-    row = int(errors.argmax())
-    worst = {"color": color, "roughness": roughness, "measured": values}
-    point = {name: np.ravel(each[row]).tolist() for name, each in worst.items()}
-    return Measurement(float(errors[row]), point)
 
 
 def _nearest(probe: InversionProbe, values: Array) -> Diagnosis:
@@ -193,8 +187,7 @@ def _nearest(probe: InversionProbe, values: Array) -> Diagnosis:
 def _functions(text: str, use: str) -> str:
     """Functions of a text that a piece of it calls, directly or through others, in their order."""
     bodies = {match[1]: _whole(text, match) for match in FUNCTION.finditer(text)}
-    needed: set[str] = set()
-    waiting = [use]
+    needed, waiting = set[str](), [use]
     while waiting:
         words = set(re.findall(r"\w+", waiting.pop())) & bodies.keys() - needed
         needed |= words

@@ -33,10 +33,6 @@ AXES = (
 Columns = Mapping[str, Array]
 
 
-def _s(wo: Array, wi: Array) -> Array:
-    return formulas.cosines(wo, wi)[2]
-
-
 def _upper_root(m: Array) -> Array:
     """y of the angle whose cosine is 1 - m, by the integral of which the shader has a fit."""
     return eon.eon_upper_limit(1.0 - m, np.sqrt(m * (2.0 - m)))
@@ -44,26 +40,26 @@ def _upper_root(m: Array) -> Array:
 
 # Functions that have another name in NumPy, or other parameters.
 NAMED: Mapping[str, Callable[..., Array]] = {
-    "eon_around": lambda mu, S, u2: hemisphere.around(mu, S, u2),
+    "eon_around": hemisphere.around,
     "eon_azimuth_frame": lambda wo: hemisphere.stack_xyz(*hemisphere.azimuth_frame(wo)),
     "eon_gray_weight": lambda gray, roughness: formulas.eon_multiple_weight(gray, roughness),
     "eon_rotate_z": lambda wi, cosine, sine: hemisphere.rotate_z(wi, cosine, sine),
     "eon_upper_root": _upper_root,
     "ltc_transformed": lambda wo, wh, roughness, d: ltc.ltc_transformed(wo, wh, roughness, d)[0],
-    "oren_nayar_s": _s,
+    "oren_nayar_s": lambda wo, wi: formulas.cosines(wo, wi)[2],
 }
 
 
 def expected(function: str, columns: Columns) -> Array:
     """Values of a shader function in NumPy, (N, 1) or (N, 3)."""
     version, channels_first = _version(function)
-    names = [name for name in inspect.signature(version).parameters if name in columns]
-    arguments = {name: columns[name] for name in names}
+    arguments = {
+        name: columns[name] for name in inspect.signature(version).parameters if name in columns
+    }
     # Colors have their channels first in some, and one channel in others.
-    if "rho" in arguments and channels_first:
-        arguments["rho"] = arguments["rho"].T
-    if "rho" in arguments and _takes_gray(function):
-        arguments["rho"] = columns["gray"]
+    if "rho" in arguments:
+        arguments["rho"] = columns["gray"] if _takes_gray(function) else columns["rho"]
+        arguments["rho"] = arguments["rho"].T if channels_first else arguments["rho"]
     values = version(**arguments)
     values = np.asarray(values[0] if isinstance(values, tuple) else values)
     if channels_first and values.ndim == 2 and "rho" in arguments:
@@ -71,10 +67,10 @@ def expected(function: str, columns: Columns) -> Array:
     return values.reshape(len(columns["mu"]), -1)
 
 
-def arguments(function: str, columns: Columns) -> list[Array]:
-    """Arguments of a shader function, in the order of its parameters."""
+def argument_names(function: str) -> list[str]:
+    """Names of the columns of a function's parameters, in their order."""
     names = [name for _, name in functions.signature("glsl", function)]
-    return [columns["gray" if name == "rho" and _takes_gray(function) else name] for name in names]
+    return ["gray" if name == "rho" and _takes_gray(function) else name for name in names]
 
 
 def numbers(function: str) -> list[str]:
@@ -108,14 +104,9 @@ def _version(function: str) -> tuple[Callable[..., Array], bool]:
     """NumPy's version of a shader function, and whether colors have their channels first."""
     if function in NAMED:
         return NAMED[function], False
-    for module in (sampling, albedo, qon_albedo):
+    for module in (sampling, albedo, qon_albedo, formulas, eon, ltc, cltc):
         if hasattr(module, function):
-            return getattr(module, function), False
-    if hasattr(formulas, function):
-        return getattr(formulas, function), True
-    for module in (eon, ltc, cltc):
-        if hasattr(module, function):
-            return getattr(module, function), False
+            return getattr(module, function), module is formulas
     raise LookupError(f"the shader function {function} has no version in NumPy")
 
 
@@ -144,7 +135,7 @@ def random_columns() -> Columns:
             "mu": mu,
             "mu_o": np.minimum(wo[:, 2], 1.0),
             "mu_i": np.minimum(wi[:, 2], 1.0),
-            "s": _s(wo, wi),
+            "s": formulas.cosines(wo, wi)[2],
             "S": np.sqrt((1.0 - mu) * (1.0 + mu)),
             "S_o": np.hypot(wo[:, 0], wo[:, 1]),
             "S_i": np.hypot(wi[:, 0], wi[:, 1]),

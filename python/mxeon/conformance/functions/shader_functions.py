@@ -5,16 +5,23 @@ The host compiles one program for all of them, with one function more that calls
 """
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache, cached_property
 
 import numpy as np
 
 from mxeon.conformance.diagnosis.candidates import Diagnosis
-from mxeon.conformance.diagnosis.verdicts import judge_measurements, not_measured
+from mxeon.conformance.diagnosis.verdicts import judge, not_measured
 from mxeon.conformance.engine import TURN
-from mxeon.conformance.functions import numpy_functions
+from mxeon.conformance.functions.numpy_functions import (
+    POINTS,
+    argument_names,
+    moved,
+    numbers,
+    random_columns,
+)
+from mxeon.conformance.functions.numpy_functions import expected as expected_values
 from mxeon.conformance.results import SHADER_FUNCTIONS, Place, Result
 from mxeon.conformance.samples import Array
 from mxeon.conformance.specs.diffuse import LOSS_FIT
@@ -38,7 +45,6 @@ SAMPLES = re.compile(rf"\w+_(sample|draw|clipped|transformed)|{'|'.join(ROTATION
 DENSITIES = re.compile(r"\w+_pdf|ltc_(density|[abcd])")
 STEP = 2.0**-22  # of the arguments by which a function's condition is measured
 
-
 CONDITIONED = "over 1, the value, and its change with each argument"
 LOSS = sum_of(Term(LOSS_FIT, "the fit of H"), roundings(12), unit="relative", metric=relative)
 PART = sum_of(roundings(16), unit=CONDITIONED, metric=absolute)
@@ -56,10 +62,10 @@ def _direction(sine_error: float) -> Tolerance:
 
 @dataclass(frozen=True)
 class FunctionProbe:
-    """The shader functions of a library on a host."""
+    """The shader functions of a library, which brings such functions, on a host."""
 
     host: Host
-    library: str  # one that brings such functions
+    library: str
 
     @cached_property
     def text(self) -> str:
@@ -75,40 +81,38 @@ class FunctionProbe:
     @cached_property
     def values(self) -> Mapping[str, Array]:
         """Values of every function of eonlib that the library has."""
-        return self._values(1.0)
+        return self.scaled_values(1.0)
 
     @cached_property
     def wrong_values(self) -> Mapping[str, Array]:
-        """The same where the last argument is 5 % off."""
-        return self._values(0.95)
+        return self.scaled_values(0.95)
 
     @cached_property
     def sine_error(self) -> float:
         """Error of the engine's own cosine and sine over a turn, of which samples are made."""
-        return float(TURN.errors(self.host, numpy_functions.random_columns()["u2"]).max())
+        return float(TURN.errors(self.host, random_columns()["u2"]).max())
 
-    def _values(self, scale: float) -> Mapping[str, Array]:
-        """Values of the functions, in one call; each of them has POINTS rows."""
-        language = self.host.language
+    def scaled_values(self, scale: float) -> Mapping[str, Array]:
+        """Values of the functions whose last argument is scaled, in one call; each has POINTS rows."""
+        language, columns = self.host.language, random_columns()
         names = [name for name in functions.names(language) if name not in self.missing_functions]
         text = functions.dispatched(self.text, names, language)
         slots = functions.parameters(text, functions.EACH)
-        count = numpy_functions.POINTS
         rows = {
-            name: np.zeros((count * len(names), 1 if kind == "float" else 3))
+            name: np.zeros((len(names), POINTS, 1 if kind == "float" else 3))
             for kind, name in slots
         }
         for number, name in enumerate(names):
-            block = slice(number * count, (number + 1) * count)
-            rows["which"][block] = number
-            kinds = [kind for kind, _ in functions.signature(language, name)]
-            *others, last = numpy_functions.arguments(name, numpy_functions.random_columns())
-            for slot, values in zip(
-                functions.slot_names(kinds), [*others, scale * last], strict=True
-            ):
-                rows[slot][block] = values.reshape(count, -1)
-        columns = [rows[name] if kind != "float" else rows[name][:, 0] for kind, name in slots]
-        values = self.host.execute(text, functions.EACH, *columns).astype(np.float64)
+            rows["which"][number] = number
+            own = functions.slot_names([kind for kind, _ in functions.signature(language, name)])
+            *others, last = (columns[each] for each in argument_names(name))
+            for slot, values in zip(own, [*others, scale * last], strict=True):
+                rows[slot][number] = values.reshape(POINTS, -1)
+        given = [
+            rows[name].reshape(-1, 3) if kind != "float" else rows[name].ravel()
+            for kind, name in slots
+        ]
+        values = self.host.execute(text, functions.EACH, *given).astype(np.float64)
         return dict(zip(names, np.split(values, len(names)), strict=True))
 
 
@@ -118,15 +122,14 @@ class FunctionCheck:
 
     key: str  # one word, and a sentence
     claim: str
-    # Whether a function of a name is asked; the first row that asks it takes it.
-    holds: Callable[[str], bool]
+    holds: Callable[[str], bool]  # whether it asks a function; the first row that does takes it
     error: Callable[[str, Array], float]  # largest error of a function's values
     tolerance: Callable[[FunctionProbe], Tolerance]
 
 
 def value_error(function: str, values: Array) -> float:
     """Largest error of a model, in pi f cos, or of an albedo."""
-    columns = numpy_functions.random_columns()
+    columns = random_columns()
     scale = np.pi * columns["mu_i"][:, None] if "_brdf" in function else 1.0
     return float(absolute(scale * (values - _expected(function)), 0.0).max())
 
@@ -186,56 +189,42 @@ def row_of(function: str) -> FunctionCheck:
     return next(row for row in FUNCTION_CHECKS if row.holds(function))
 
 
-def judge_functions(
-    probe: FunctionProbe, checks: Sequence[FunctionCheck] = FUNCTION_CHECKS
-) -> tuple[Result, ...]:
-    return tuple(_judge_check(check, probe) for check in checks)
+def judge_functions(probe: FunctionProbe) -> tuple[Result, ...]:
+    return tuple(_judged(check, probe) for check in FUNCTION_CHECKS)
 
 
-def _judge_check(check: FunctionCheck, probe: FunctionProbe) -> Result:
-    place: Place = {
-        "check": check.key,
-        "claim": check.claim,
-        "subject": SHADER_FUNCTIONS,
-        "host": probe.host.name,
-        "library": probe.library,
-    }
+def _judged(check: FunctionCheck, probe: FunctionProbe) -> Result:
+    host, library = probe.host.name, probe.library
+    place = Place(
+        check=check.key, claim=check.claim, subject=SHADER_FUNCTIONS, host=host, library=library
+    )
     try:
         tolerance = check.tolerance(probe)
-        right, wrong = (
-            _measure(check, probe, values) for values in (probe.values, probe.wrong_values)
-        )
-        wrong_functions = _diagnosis(check, probe) if right.error > tolerance.value else ""
     except (NotRun, ShaderError) as error:
         return not_measured(place, error)
-    diagnosis = Diagnosis(wrong_functions)
-    return judge_measurements(place, tolerance, right, VARIANT, wrong, diagnosis)
+
+    def measure(wrong: bool) -> Measurement:
+        """The function of the row that is furthest from its NumPy version."""
+        values = probe.wrong_values if wrong else probe.values
+        errors = {
+            name: check.error(name, each) for name, each in values.items() if row_of(name) is check
+        }
+        errors |= {name: np.inf for name in probe.missing_functions if row_of(name) is check}
+        name = max(errors, key=lambda function: errors[function])
+        return Measurement(errors[name], {name: [errors[name]]})
+
+    return judge(place, tolerance, measure, VARIANT, lambda: Diagnosis(_causes(check, probe)))
 
 
-def _measure(
-    check: FunctionCheck, probe: FunctionProbe, values: Mapping[str, Array]
-) -> Measurement:
-    """The function of a row that is furthest from its NumPy version."""
-    errors = {
-        name: check.error(name, each) for name, each in values.items() if row_of(name) is check
-    }
-    errors |= {name: np.inf for name in probe.missing_functions if row_of(name) is check}
-    name = max(errors, key=lambda function: errors[function])
-    return Measurement(errors[name], {name: [errors[name]]})
-
-
-def _diagnosis(check: FunctionCheck, probe: FunctionProbe) -> str:
+def _causes(check: FunctionCheck, probe: FunctionProbe) -> str:
     """The functions that are wrong by themselves, and those of the row that use them."""
     errors = {name: row_of(name).error(name, values) for name, values in probe.values.items()}
-    wrong = {
-        name: error for name, error in errors.items() if error > row_of(name).tolerance(probe).value
-    }
+    wrong = [name for name in errors if errors[name] > row_of(name).tolerance(probe).value]
     uses = functions.uses(probe.text)
     causes = [name for name in wrong if not any(other in wrong for other in uses[name])]
     affected = [name for name in wrong if row_of(name) is check]
-    own = [
-        name for name in causes if name in affected or any(name in uses[each] for each in affected)
-    ]
+    reached = {*affected}.union(*(uses[each] for each in affected))
+    own = [name for name in causes if name in reached]
     users = [name for name in affected if name not in own]
     parts = [f"{name} is not defined as eonlib has it" for name in probe.missing_functions]
     parts += [f"{name} is off by {errors[name]:.2g}" for name in own]
@@ -245,15 +234,15 @@ def _diagnosis(check: FunctionCheck, probe: FunctionProbe) -> str:
 
 @cache
 def _expected(function: str) -> Array:
-    return numpy_functions.expected(function, numpy_functions.random_columns())
+    return expected_values(function, random_columns())
 
 
 @cache
 def _condition(function: str) -> Array:
     """1, or the value if larger, and by how much it changes with each of its numbers, (N,)."""
-    columns, exact = numpy_functions.random_columns(), _expected(function)
+    columns, exact = random_columns(), _expected(function)
     total: Array = np.maximum(1.0, np.abs(exact).max(axis=1))
-    for name in numpy_functions.numbers(function):
-        moved = numpy_functions.expected(function, numpy_functions.moved(columns, name, STEP))
-        total = total + np.abs(moved - exact).max(axis=1) / STEP
+    for name in numbers(function):
+        change = expected_values(function, moved(columns, name, STEP)) - exact
+        total = total + np.abs(change).max(axis=1) / STEP
     return np.asarray(total)

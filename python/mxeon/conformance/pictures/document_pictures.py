@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 import mxeon
 from mxeon.conformance.backends import picture_pairs
 from mxeon.conformance.diagnosis.candidates import Diagnosis
-from mxeon.conformance.diagnosis.verdicts import judge_measurements, not_measured
+from mxeon.conformance.diagnosis.verdicts import judge, not_measured
 from mxeon.conformance.pictures.tolerances import (
     RELATIVE,
     categories,
@@ -80,11 +80,13 @@ def judge_document(
         results.append(result)
         pictures += images
     notes = [(text, f"{file.name}: {element}") for element, text in approximations.items()]
-    notes += [
+    # Why pictures cannot be right, each reason once.
+    notes += dict.fromkeys(
         (text, f"{file.name}: {shader.element}")
         for shader in shaders
-        for text in _picture_notes(shader, host)
-    ]
+        for scene in host_row(host.name).scenes
+        for text in host.approximations(shader, scene)
+    )
     others = (CodeWarning, DocumentWarning)
     notes += [(str(message), file.name) for message in messages if isinstance(message, others)]
     return tuple(results), tuple(pictures), tuple(notes)
@@ -96,13 +98,7 @@ def _judge_material(
     """One material; `front_lit` where the host has its model for s >= 0 only."""
     scenes, library = host_row(host.name).scenes, values.library
     subject = f"{file.name}: {shader.element}"
-    place: Place = {
-        "check": "picture",
-        "claim": MATCH,
-        "subject": subject,
-        "host": host.name,
-        "library": library,
-    }
+    place = Place(check="picture", claim=MATCH, subject=subject, host=host.name, library=library)
     try:
         images = [host.picture(shader, scene) for scene in scenes]
     except (NotRun, ShaderError) as error:
@@ -138,13 +134,6 @@ def _known(shader: Shader) -> str:
     graph = element.getImplementation() if element.isA(mx.Node) else None
     defined = element.getType() == "material" and graph and graph.isA(mx.NodeGraph)
     return DEFINED_MATERIAL if defined else ""
-
-
-def _picture_notes(shader: Shader, host: Host) -> tuple[str, ...]:
-    """Why a host's pictures of a material cannot be right, each reason once."""
-    scenes = host_row(host.name).scenes
-    reasons = (text for scene in scenes for text in host.approximations(shader, scene))
-    return tuple(dict.fromkeys(reasons))
 
 
 def _picture(
@@ -195,21 +184,20 @@ def _assert_judged(shader: Shader, host: Host) -> None:
 def _judge_finite(place: Place, images: Sequence[Pixels], reason: str) -> Result:
     """Result for a material that the models do not cover: its pixels have to be numbers."""
     control = [np.where(np.arange(3) == 0, np.nan, images[0])]
-    error, control_error = _not_finite(images), _not_finite(control)
+    error, wrong = (
+        float(sum((~np.isfinite(image)).any(axis=-1).sum() for image in each))
+        for each in (images, control)
+    )
     return Result(
         **(place | {"check": "finite", "claim": FINITE}),
-        verdict=PASSED if error == 0 < control_error else FAILED,
+        verdict=PASSED if error == 0 < wrong else FAILED,
         error=error,
         unit="pixels",
         tolerance=0,
         derivation="a count",
         diagnosis=reason,
-        control=Control("one channel is not a number", control_error, control_error > 0),
+        control=Control("one channel is not a number", wrong, wrong > 0),
     )
-
-
-def _not_finite(images: Sequence[Pixels]) -> float:
-    return float(sum((~np.isfinite(image)).any(axis=-1).sum() for image in images))
 
 
 def _judge_match(
@@ -220,21 +208,18 @@ def _judge_match(
     pixels = [_worst_pixel(case, front_lit, metric) for case in cases]
     error, worst, _ = max(pixels, key=lambda entry: entry[0])
     first, image, expected = cases[0]
-    measured = tuple(dict.fromkeys(name for case in cases for name in case[2].measured))
-    brighter = image + np.float32(3.0 * tolerance.value) * np.maximum(1.0, image)
-    control_error, _, _ = _worst_pixel((first, brighter, expected), front_lit, metric)
-    words = (
-        "" if error <= tolerance.value else _appearance(pixels, [case[0].name for case in cases])
-    )
-    result = judge_measurements(
-        place,
-        tolerance,
-        Measurement(error, worst),
-        "the picture is brighter by three tolerances",
-        Measurement(control_error, {}),
-        Diagnosis(words),
-    )
-    return replace(result, measured=measured)
+
+    def measure(wrong: bool) -> Measurement:
+        if not wrong:
+            return Measurement(error, worst)
+        brighter = image + np.float32(3.0 * tolerance.value) * np.maximum(1.0, image)
+        return Measurement(_worst_pixel((first, brighter, expected), front_lit, metric)[0], {})
+
+    words = "the picture is brighter by three tolerances"
+    names = [scene.name for scene, *_ in cases]
+    result = judge(place, tolerance, measure, words, lambda: Diagnosis(_appearance(pixels, names)))
+    measured = dict.fromkeys(name for *_, each in cases for name in each.measured)
+    return replace(result, measured=tuple(measured))
 
 
 def _appearance(pixels: Sequence[Pixel], scenes: Sequence[str]) -> str:

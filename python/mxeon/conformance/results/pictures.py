@@ -28,7 +28,7 @@ class Picture:
     image : ndarray, shape (size, size, 3), float32
         Linear radiance; see `mxeon.shaders.scene` for its scale.
     reference : ndarray or None
-        The same from the NumPy models, or None where the material has other lobes.
+        The same from the NumPy models; None where the material has other lobes.
     metadata : dict of str to str
         Its origin: version, host, device, library, document, element, scene.
     judged : ndarray or None, shape (size, size, 1), float32
@@ -81,16 +81,7 @@ def image_names(pictures: Sequence[Picture]) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class AlbedoCurve:
-    """Directional albedo over the cosine, measured on a host beside its closed form.
-
-    Attributes
-    ----------
-    subject, host, library : str
-    rho : tuple of 3 floats
-    roughness : float
-    mu : ndarray, shape (N,)
-    measured, expected : ndarray, shape (N, 3)
-    """
+    """Directional albedo over the cosine `mu`, (N, 3), measured on a host beside its closed form."""
 
     subject: str
     host: str

@@ -11,7 +11,7 @@ from typing import Any, TypeAlias, TypeVar, get_origin
 import cattrs
 import numpy as np
 from cattrs.gen import make_dict_structure_fn, make_dict_unstructure_fn, override
-from numpy.typing import DTypeLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from mxeon.conformance.results.pictures import Picture
 from mxeon.conformance.results.result import Control, Result
@@ -29,6 +29,7 @@ ERRORS = (
     cattrs.BaseValidationError,
 )
 # JSON calls the error of a result or a control its figure.
+IMAGES = ("image", "reference", "judged")  # fields of a picture
 FIGURE = {"error": override(rename="figure")}
 T = TypeVar("T")
 Overrides: TypeAlias = dict[str, Any]  # by field; cattrs types the options beside them alone
@@ -36,15 +37,9 @@ Overrides: TypeAlias = dict[str, Any]  # by field; cattrs types the options besi
 
 @dataclass(frozen=True)
 class StoredImage:
-    """Pixels in a file, read anew by every `np.asarray`, so that a run holds none of them.
+    """Pixels in a file, read anew by every `np.asarray`, so that a run holds none of them."""
 
-    Attributes
-    ----------
-    path : Path
-        Its stem is the SHA-256 of the file.
-    """
-
-    path: Path
+    path: Path  # its stem is the SHA-256 of the file
 
     def __array__(
         self, dtype: DTypeLike | None = None, copy: bool | None = None
@@ -68,34 +63,27 @@ class StoredImage:
 def make_converter(folder: Path | None = None) -> cattrs.Converter:
     """A converter between the dataclasses of `mxeon.conformance.results` and the types of JSON.
 
-    Numbers that are not finite are written as the texts NOT_FINITE.
-
-    Parameters
-    ----------
-    folder : Path or None
-        Of the pictures' files, which JSON names; None where no pictures are converted.
-
-    Returns
-    -------
-    cattrs.Converter
-        Its `structure` raises some of ERRORS.
+    Numbers that are not finite are written as the texts NOT_FINITE, and pictures as the names of
+    their files in a folder, if there is one. `structure` raises some of ERRORS.
     """
     converter = cattrs.Converter(
         forbid_extra_keys=True, unstruct_collection_overrides={tuple: list}
     )
-    # Types are exact: JSON takes true for 1.
+    # Types are exact: Python takes true for 1.
     for kind, words in ((str, "a text"), (bool, "true or false"), (int, "a whole number")):
         converter.register_structure_hook(kind, _exactly(kind, words))
-    # Numbers that are not finite are texts.
     converter.register_structure_hook(float, _number)
     converter.register_unstructure_hook(float, spelled)
     converter.register_structure_hook_func(_is_array, lambda rows, _: np.array(rows, dtype=float))
     converter.register_unstructure_hook_func(_is_array, lambda array: array.tolist())
-    # Records whose keys in JSON are other ones.
-    for record in (Control, Result):
-        _register(converter, record, FIGURE)
-    if folder is not None:
-        _register(converter, Picture, _image_fields(folder))
+    fields: dict[Any, Overrides] = {
+        Control: FIGURE,
+        Result: FIGURE,
+    }  # records with other keys, or fields of other types
+    for record, own in (fields | ({Picture: _image_fields(folder)} if folder else {})).items():
+        to_json: Any = make_dict_unstructure_fn(record, converter, **own)
+        converter.register_unstructure_hook(record, to_json)
+        converter.register_structure_hook(record, make_dict_structure_fn(record, converter, **own))
     return converter
 
 
@@ -109,16 +97,14 @@ def spelled(number: float) -> float | str:
 def read_record(value: object, kind: type[T]) -> T:
     """An instance of a dataclass from JSON's types; every key has to be there.
 
-    Raises
-    ------
-    ValueError
-        Names the first value that is wrong, its path and the rule.
+    Raise InputError for the first value that is wrong, with its path and the rule.
     """
     converter = make_converter()
     try:
         record = converter.structure(value, kind)
     except ERRORS as error:
-        raise InputError(_first(error)) from None
+        first = cattrs.transform_error(error, format_exception=_reason)[0]
+        raise InputError(first) from None
     if converter.unstructure(record) != value:  # a text was taken for a list, for example
         raise InputError("it must have the structure that mxeon writes")
     return record
@@ -126,15 +112,6 @@ def read_record(value: object, kind: type[T]) -> T:
 
 def _is_array(kind: object) -> bool:
     return (get_origin(kind) or kind) is np.ndarray
-
-
-def _register(converter: cattrs.Converter, kind: type, fields: Overrides) -> None:
-    """Convert some fields of a dataclass in another way than their types say."""
-    to_json: Callable[[object], dict[str, object]] = make_dict_unstructure_fn(
-        kind, converter, **fields
-    )
-    converter.register_unstructure_hook(kind, to_json)
-    converter.register_structure_hook(kind, make_dict_structure_fn(kind, converter, **fields))
 
 
 def _image_fields(folder: Path) -> Overrides:
@@ -146,14 +123,17 @@ def _image_fields(folder: Path) -> Overrides:
     def stored(name: str, _: object = None) -> StoredImage:
         return StoredImage((folder / "name").with_name(name))
 
-    def stored_or_none(name: str | None, _: object) -> StoredImage | None:
+    def optional(name: str | None, _: object) -> StoredImage | None:
         return None if name is None else stored(name)
 
-    return {
-        "image": override(unstruct_hook=name, struct_hook=stored),
-        "reference": override(unstruct_hook=name, struct_hook=stored_or_none),
-        "judged": override(unstruct_hook=name, struct_hook=stored_or_none),
-    }
+    structure = dict.fromkeys(IMAGES, optional) | {"image": stored}
+    return {each: override(unstruct_hook=name, struct_hook=structure[each]) for each in IMAGES}
+
+
+def images_of(picture: Picture) -> dict[str, ArrayLike]:
+    """The images that a picture has, by the field."""
+    images = {name: getattr(picture, name) for name in IMAGES}
+    return {name: image for name, image in images.items() if image is not None}
 
 
 def _exactly(kind: type[T], words: str) -> Callable[[object, type], T]:
@@ -168,18 +148,12 @@ def _exactly(kind: type[T], words: str) -> Callable[[object, type], T]:
 def _number(value: object, _: type) -> float:
     if type(value) not in (int, float) and value not in NOT_FINITE:
         raise InputError(f"must be a number; got {value!r}")
-    assert isinstance(value, (int, float, str))
     try:
-        return float(value)
+        return float(value)  # type: ignore[arg-type]
     except OverflowError:
         raise InputError(
             f"must be a number below 1.8e308; got one of {len(str(value))} digits"
         ) from None
-
-
-def _first(error: BaseException) -> str:
-    """The first reason of an error, with its path."""
-    return cattrs.transform_error(error, format_exception=_reason)[0]
 
 
 def _reason(error: BaseException, kind: type | None) -> str:

@@ -14,21 +14,11 @@ NAMED = 3  # documents that were refused, beside the number of the others
 
 @dataclass(frozen=True)
 class Summary:
-    """The verdict on a whole run.
+    """The verdict on a whole run."""
 
-    Attributes
-    ----------
-    verdict : str
-        FAILED if any check failed, else NOT_RUN if any or all did not run or the run is not
-        finished, else PASSED.
-    counts : dict of str to int
-        Number of checks that ended with each of VERDICTS.
-    sentence : str
-        The same for a reader.
-    """
-
+    # FAILED if any check failed, else NOT_RUN if any or all did not run or are missing, else PASSED.
     verdict: str
-    counts: dict[str, int]
+    counts: dict[str, int]  # number of checks that ended with each of VERDICTS
     sentence: str
 
 
@@ -38,31 +28,22 @@ def summarize(
     refused: Sequence[str] = (),
     elsewhere: int = 0,
 ) -> Summary:
-    """Verdict on `results`.
+    """Verdict on results, with the tasks that are missing and the documents that were refused.
 
-    Parameters
-    ----------
-    results : sequence of Result
-    missing : sequence of str
-        Tasks of an interrupted run that are not done yet.
-    refused : sequence of str
-        Documents that were refused.
-    elsewhere : int
-        Number of failures for inputs that no document uses.
+    `elsewhere` is the number of failures for inputs that no document uses.
 
     Examples
     --------
     >>> summarize((), (), ["clay.mtlx"]).sentence
     'Refused and not judged: clay.mtlx. No check ran.'
     """
-    # Judge what there is.
     summary = _summarize_results(results)
     if elsewhere:
         words = f" {elsewhere} of them for inputs that no document uses."
         summary = replace(summary, sentence=summary.sentence + words)
     if not missing and not refused:
         return summary
-    # Say what is not there: without it nothing has passed.
+    # Without what is not there nothing has passed.
     verdict = FAILED if summary.verdict == FAILED else NOT_RUN
     sentence = summary.sentence
     if missing:
@@ -77,32 +58,29 @@ def summarize(
 def _summarize_results(results: Sequence[Result]) -> Summary:
     tally = Counter(result.verdict for result in results)
     counts = {verdict: tally[verdict] for verdict in VERDICTS}
-    total = len(results)
-    # A failure decides.
+    total = counted(len(results), "check")
+
+    def summary(verdict: str, sentence: str) -> Summary:
+        return Summary(verdict, counts, sentence)
+
     if counts[FAILED]:
         failed = Counter(result.location for result in results if result.verdict == FAILED)
         listed = "; ".join(f"{count} on {location}" for location, count in failed.items())
-        return Summary(
-            FAILED, counts, f"{counts[FAILED]} of {counted(total, 'check')} failed: {listed}."
-        )
-    # Then what did not run.
+        return summary(FAILED, f"{counts[FAILED]} of {total} failed: {listed}.")
     if not counts[PASSED] + counts[DIFFERS]:
-        return Summary(NOT_RUN, counts, "No check ran.")
+        return summary(NOT_RUN, "No check ran.")
     if counts[NOT_RUN]:
-        sentence = (
-            f"Nothing failed, but {counts[NOT_RUN]} of {counted(total, 'check')} did not run."
-        )
-        return Summary(NOT_RUN, counts, sentence)
-    # All ran: they passed, or differ where they may.
+        return summary(NOT_RUN, f"Nothing failed, but {counts[NOT_RUN]} of {total} did not run.")
     hosts = " and ".join(dict.fromkeys(result.location for result in results))
     if counts[DIFFERS]:
-        sentence = (
-            f"{counts[PASSED]} of {counted(total, 'check')} passed on {hosts}; {counts[DIFFERS]} "
-            f"{'differs' if counts[DIFFERS] == 1 else 'differ'} where the specification leaves it open."
+        differ = "differs" if counts[DIFFERS] == 1 else "differ"
+        return summary(
+            PASSED,
+            f"{counts[PASSED]} of {total} passed on {hosts}; {counts[DIFFERS]} {differ} where the "
+            "specification leaves it open.",
         )
-        return Summary(PASSED, counts, sentence)
-    passed = "The check" if total == 1 else f"All {total} checks"
-    return Summary(PASSED, counts, f"{passed} passed on {hosts}.")
+    passed = "The check" if len(results) == 1 else f"All {len(results)} checks"
+    return summary(PASSED, f"{passed} passed on {hosts}.")
 
 
 def counted(count: int, noun: str) -> str:

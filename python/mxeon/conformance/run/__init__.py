@@ -30,7 +30,6 @@ __all__ = ["check", "read_run", "to_run", "work"]
 EVALUATING = tuple(row.name for row in HOSTS if row.probe == "pairs")  # texts of any library
 
 Executor = Callable[[Sequence[Task]], Iterable[tuple[int, pool.Outcome]]]
-Note = tuple[str, str]  # a text, and the place that it is about
 
 
 def check(
@@ -118,43 +117,44 @@ def check(
     # Work; an executor that cannot work leaves the folder as it is.
     with (
         _executor(policy, workers, timeout, scheduler, wait) as executor,
-        nullcontext(InMemoryJournal())
-        if folder is None
-        else Journal(folder, planned, resume) as journal,
+        nullcontext() if folder is None else Journal(folder, planned, resume) as journal,
     ):
-        numbers = [n for n in range(len(planned.tasks)) if n not in journal.findings]
+        done: dict[int, Findings] = journal.findings if journal else {}
+        numbers = [n for n in range(len(planned.tasks)) if n not in done]
         waiting = [planned.tasks[number] for number in numbers]
         # A farm's machines may differ from each other.
-        identities = {} if scheduler else _identities(journal.findings.values())
+        identities = {} if scheduler else _identities(done.values())
         with closing(_outcomes(waiting, executor)) as outcomes:
             for position, findings in progress(outcomes, len(waiting)):
                 _assert_same_hosts(folder, identities, _identities([findings]))
-                journal.add(numbers[position], findings)
-        return to_run(planned, journal.findings)
+                if journal:
+                    journal.add(numbers[position], findings)  # with its pictures on disk
+                else:
+                    done[numbers[position]] = findings
+        return to_run(planned, done)
 
 
 def read_run(folder: str | os.PathLike[str]) -> Run:
-    """The run in a folder, as far as it is done.
-
-    Raises
-    ------
-    ValueError
-        If the folder holds no journal that this version reads.
-    """
+    """The run in a folder, as far as it is done; ValueError if it holds no journal of this version."""
     return to_run(*read_journal(folder))
 
 
 def work(policy: Policy, task: Task) -> Findings:
-    """Findings of a task, by this process's judge; runs in workers.
-
-    Raise NotRun if the host cannot be opened here.
-    """
+    """Findings of a task; runs in workers. Raise NotRun if the host cannot be opened here."""
     return _judge(policy).work(task)
 
 
-def work_or_not_run(policy: Policy, task: Task) -> Findings:
+def work_or_not_run(policy: Policy, task: Task, judge: Judge | None = None) -> Findings:
     """Findings of a task; those that say "not run" where the host cannot be opened here."""
-    return _work_or_not_run(_judge(policy), task)
+    try:
+        return (judge or _judge(policy)).work(task)
+    except NotRun as reason:
+        return not_run(task, str(reason))
+
+
+@lru_cache(maxsize=1)
+def _judge(policy: Policy) -> Judge:
+    return Judge(policy)
 
 
 def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
@@ -171,7 +171,13 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
     for document, library in product(planned.contents, planned.compared):
         lines = refused.pop(f"{document} with {library}", ())
         notes += tuple((line, document) for line in lines)
-    notes += repaired(results, planned.software) + _untested(planned.software)
+    notes += repaired(results, planned.software)
+    version = planned.software.get("MaterialX")
+    if version and (warning := untested(version)):
+        notes += ((warning, "every result"),)
+    places: dict[str, list[str]] = {}  # of each note
+    for text, place in dict.fromkeys(notes):
+        places.setdefault(text, []).append(place)
     return Run(
         version=planned.version,
         software=planned.software,
@@ -179,7 +185,7 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
         results=results,
         pictures=tuple(picture for part in done for picture in part.pictures),
         curves=tuple(curve for part in done for curve in part.curves),
-        notes=_grouped(notes),
+        notes=tuple(f"{text}: {', '.join(listed)}" for text, listed in places.items()),
         refused=refused,
         contents=planned.contents,
         unreached=planned.unreached,
@@ -208,16 +214,6 @@ def _assert_same_hosts(
     ]
     if differences:
         raise InputError(refusal(folder, differences))
-
-
-class InMemoryJournal:
-    """In-memory stand-in for Journal."""
-
-    def __init__(self) -> None:
-        self.findings: dict[int, Findings] = {}
-
-    def add(self, number: int, findings: Findings) -> None:
-        self.findings[number] = findings
 
 
 @contextmanager
@@ -257,31 +253,4 @@ def _subject(task: Task) -> tuple[str, str, str]:
 def _run_inline(policy: Policy, tasks: Sequence[Task]) -> Iterator[tuple[int, pool.Outcome]]:
     with closing(Judge(policy)) as judge:
         for position in by_group(list(map(_subject, tasks))):
-            yield position, pool.Outcome(_work_or_not_run(judge, tasks[position]))
-
-
-def _work_or_not_run(judge: Judge, task: Task) -> Findings:
-    try:
-        return judge.work(task)
-    except NotRun as reason:
-        return not_run(task, str(reason))
-
-
-@lru_cache(maxsize=1)
-def _judge(policy: Policy) -> Judge:
-    return Judge(policy)
-
-
-def _untested(software: Mapping[str, str]) -> tuple[Note, ...]:
-    """A note on a version of MaterialX that mxeon has not been tested with."""
-    version = software.get("MaterialX")
-    warning = untested(version) if version else None
-    return ((warning, "every result"),) if warning else ()
-
-
-def _grouped(notes: Iterable[Note]) -> tuple[str, ...]:
-    """One line for each text, with all its places."""
-    places: dict[str, list[str]] = {}
-    for text, place in dict.fromkeys(notes):
-        places.setdefault(text, []).append(place)
-    return tuple(f"{text}: {', '.join(listed)}" for text, listed in places.items())
+            yield position, pool.Outcome(work_or_not_run(policy, tasks[position], judge))

@@ -16,14 +16,14 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
-from typing import Self, cast
+from typing import Any, Self, cast
 
 import numpy as np
 from filelock import FileLock, Timeout
 from numpy.lib.format import header_data_from_array_1_0, write_array_header_1_0
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.conformance.results.records import ERRORS, StoredImage, make_converter
+from mxeon.conformance.results.records import ERRORS, StoredImage, images_of, make_converter
 from mxeon.conformance.run.tasks import Findings, Plan
 from mxeon.errors import InputError
 from mxeon.io.files import below, regular, replacing
@@ -69,20 +69,25 @@ class Journal:
 
         Raises OSError if there is no room; the journal is then as it was before.
         """
-        pictures = tuple(
-            replace(
-                picture,
-                image=self._store(picture.image),
-                reference=None if picture.reference is None else self._store(picture.reference),
-                judged=None if picture.judged is None else self._store(picture.judged),
-            )
+        images: list[dict[str, Any]] = [
+            {name: self._store(image) for name, image in images_of(picture).items()}
             for picture in findings.pictures
+        ]
+        pictures = tuple(
+            map(lambda picture, own: replace(picture, **own), findings.pictures, images)
         )
         if pictures:
             _sync(self._path.parent)
         findings = replace(findings, pictures=pictures)
         record = {"task": number, "findings": self._converter.unstructure(findings)}
-        self._append(_line(record, self._seed))
+        size, rest = os.fstat(self._file).st_size, memoryview(_line(record, self._seed))
+        try:
+            while rest:
+                rest = rest[os.write(self._file, rest) :]
+            os.fsync(self._file)
+        except OSError as error:
+            os.ftruncate(self._file, size)
+            raise OSError(error.errno, error.strerror, str(self._path)) from None
         self.findings[number] = findings
 
     def _begin(self) -> str:
@@ -104,16 +109,6 @@ class Journal:
             raise InputError(refusal(self._folder, _differences(plan, self._plan)))
         os.truncate(self._path, size)
         return seed
-
-    def _append(self, line: bytes) -> None:
-        size, rest = os.fstat(self._file).st_size, memoryview(line)
-        try:
-            while rest:
-                rest = rest[os.write(self._file, rest) :]
-            os.fsync(self._file)
-        except OSError as error:
-            os.ftruncate(self._file, size)
-            raise OSError(error.errno, error.strerror, str(self._path)) from None
 
     def _store(self, image: ArrayLike) -> NDArray[np.float32]:
         """An image in a file of the folder, hashed and written without a copy of its pixels."""
@@ -168,10 +163,8 @@ def _read(folder: Path) -> tuple[Plan, dict[int, Findings], str, int]:
                 raise InputError(f"task must be one of {len(plan.tasks)}; got {task!r}")
             if not part.answer(plan.tasks[task]):
                 raise InputError(f"findings must be those of {plan.tasks[task]}")
-            images = (
-                each for one in part.pictures for each in (one.image, one.reference, one.judged)
-            )
-            if all(cast(StoredImage, each).whole for each in images if each is not None):
+            images = (each for one in part.pictures for each in images_of(one).values())
+            if all(cast(StoredImage, each).whole for each in images):
                 findings[task] = part
     except ERRORS as error:
         rule = f"{path}: must be a journal of format {FORMAT} as mxeon wrote it"

@@ -57,26 +57,12 @@ CLAIMS = {check.key: check.claim for check in CHECKS} | {
 
 
 def not_run(task: Task, reason: str) -> Findings:
-    claim = CLAIMS[task.check]
-    result = Result(
-        task.check, claim, task.subject, task.host, task.library, NOT_RUN, reason=reason
-    )
-    return Findings(results=(result,))
+    return _one_result(task, NOT_RUN, reason=reason)
 
 
-def refused(task: Task, reason: str) -> Findings:
-    """Findings of a task whose document, which is ours, the library makes invalid."""
-    meaning = f"the library refuses a document of mxeon's own: {reason}"
-    result = Result(
-        task.check,
-        CLAIMS[task.check],
-        task.subject,
-        task.host,
-        task.library,
-        FAILED,
-        diagnosis=meaning,
-    )
-    return Findings(results=(result,))
+def _one_result(task: Task, verdict: str, **words: str) -> Findings:
+    place = (task.check, CLAIMS[task.check], task.subject, task.host, task.library)
+    return Findings((Result(*place, verdict, **words),))  # type: ignore[arg-type]
 
 
 class Judge:
@@ -101,8 +87,9 @@ class Judge:
             return replace(findings, results=tuple(results))
         except InterfaceError as reason:
             return not_run(task, str(reason))
-        except DocumentError as reason:
-            return refused(task, str(reason))
+        except DocumentError as reason:  # a document of ours
+            meaning = f"the library refuses a document of mxeon's own: {reason}"
+            return _one_result(task, FAILED, diagnosis=meaning)
 
     def close(self) -> None:
         for host in self._hosts.values():
@@ -110,7 +97,7 @@ class Judge:
                 host.close()
 
     def _host(self, name: str) -> Engine:
-        """The host of that name; it is opened, or its absence noticed, once."""
+        """The host of that name, opened once."""
         if name not in self._hosts:
             try:
                 self._hosts[name] = open_engine(name)
@@ -127,7 +114,7 @@ class Judge:
         if task.check == SOURCE:
             return Findings(check_texts(diffuse_specs(task.library), task.library))
         if task.check == DOCUMENT:
-            return self._generate(task)
+            return self._document(task)
         host = self._host(task.host)
         if task.check == HOST:
             raise NotRun(f"{task.host}: this host judges nothing that was requested")
@@ -144,7 +131,11 @@ class Judge:
                 return Findings(judge_functions(FunctionProbe(host, task.library)))
         case = self._case(host, task.subject, task.library)
         if task.check == CURVE:
-            return Findings(curves=(_curve(case),))
+            inputs = CURVE_COLOR, CURVE_ROUGHNESS
+            measured, expected = integrated(case, CURVE_COSINES, *inputs)
+            names = case.spec.title, host.name, case.library
+            curve = AlbedoCurve(*names, *inputs, CURVE_COSINES, measured, expected)
+            return Findings(curves=(curve,))
         check = next(each for each in CHECKS if each.key == task.check)
         results = (check.judge(case),)
         pictures: tuple[Picture, ...] = ()
@@ -153,30 +144,23 @@ class Judge:
                 pictures = comparison_pictures(case)
         return Findings(results, pictures)
 
-    def _generate(self, task: Task) -> Findings:
+    def _document(self, task: Task, host: Host | None = None) -> Findings:
+        """Findings of a document: its pictures on a host, or that its shaders are generated."""
         path = Path(task.subject)
+        pictures: tuple[Picture, ...] = ()
         try:
-            results, notes = generate_document(path, task.host, task.library, self._policy)
-        except DocumentError as error:
-            return _unread(path, error)
-        return Findings(results, notes=notes)
-
-    def _document(self, task: Task, host: Host) -> Findings:
-        path = Path(task.subject)
-        try:
-            results, pictures, notes = judge_document(
-                path, host, self._reference, task.library, self._policy
-            )
+            if host is None:
+                results, notes = generate_document(path, task.host, task.library, self._policy)
+            else:
+                results, pictures, notes = judge_document(
+                    path, host, self._reference, task.library, self._policy
+                )
         except (DocumentError, ImageError) as error:
-            return _unread(path, error)
+            ours = path.resolve().is_relative_to(examples_folder())
+            if ours and isinstance(error, DocumentError):
+                raise
+            return Findings(errors=error.args)
         return Findings(results, pictures, notes=notes)
-
-
-def _unread(path: Path, error: DocumentError | ImageError) -> Findings:
-    """Findings of a document that cannot be read: of one of ours, the library is to blame."""
-    if path.resolve().is_relative_to(examples_folder()) and isinstance(error, DocumentError):
-        raise error
-    return Findings(errors=error.args)
 
 
 def _case(host: Engine, title: str, library: str) -> Case:
@@ -184,18 +168,3 @@ def _case(host: Engine, title: str, library: str) -> Case:
     backend = backend_of(host.name, spec)
     assert backend is not None  # or there were no task
     return make_case(backend, host, spec, library)
-
-
-def _curve(case: Case) -> AlbedoCurve:
-    """The node's directional albedo over the cosine, integrated from its values."""
-    measured, expected = integrated(case, CURVE_COSINES, CURVE_COLOR, CURVE_ROUGHNESS)
-    return AlbedoCurve(
-        case.spec.title,
-        case.host.name,
-        case.library,
-        CURVE_COLOR,
-        CURVE_ROUGHNESS,
-        CURVE_COSINES,
-        measured,
-        expected,
-    )

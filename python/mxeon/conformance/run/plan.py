@@ -4,8 +4,7 @@
 import os
 import platform
 import sysconfig
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from functools import partial
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 import MaterialX as mx
@@ -49,7 +48,7 @@ from mxeon.shaders.library import (
     library_name,
     load_library,
 )
-from mxeon.shaders.library_tree import LIBRARIES, origins
+from mxeon.shaders.library_tree import LIBRARIES, OVERLAY, origins
 from mxeon.shaders.nodes import INVERSIONS
 
 ALL, COMMON = "all", "common"  # in place of the nodes' names
@@ -69,12 +68,8 @@ def node_names() -> tuple[str, ...]:
     return tuple(dict.fromkeys(row.node for row in ALL_SPECS))
 
 
-def selected(
-    tasks: Sequence[Task],
-    files: Sequence[str],
-    nodes: Sequence[str],
-    survey: Survey,
-    elsewhere: Callable[[], str] = str,
+def _selected(
+    tasks: Sequence[Task], files: Sequence[str], nodes: Sequence[str], survey: Survey
 ) -> list[Task]:
     """The tasks that are asked for, those of the user's documents first.
 
@@ -93,23 +88,26 @@ def selected(
         or task.subject in titles
         or (audit and task.subject not in rare)
     ]
-    if nodes and not chosen:
-        hosts = ", ".join(dict.fromkeys(task.host for task in tasks if task.host != "source"))
-        raise InputError(
-            f"node must be judged on one of the hosts {hosts}; got {', '.join(nodes)}{elsewhere()}"
-        )
-    return sorted(chosen, key=lambda task: task.subject not in files)
-
-
-def unmeasured(tasks: Sequence[Task], hosts: Iterable[str]) -> list[str]:
-    """Hosts on which tasks would measure nothing, and none says so.
-
-    The task of a document says so on a host that reads none.
-    """
-    telling = {
-        task.host for task in tasks if task.check != DOCUMENT or not host_row(task.host).target
+    if chosen or not nodes:
+        return sorted(chosen, key=lambda task: task.subject not in files)
+    hosts = ", ".join(dict.fromkeys(task.host for task in tasks if task.host != "source"))
+    places = {
+        library: [
+            row.name
+            for row in HOSTS
+            if any(task.subject in titles for task in _on_host(row.name, library, (), PBRLIB))
+        ]
+        for library in LIBRARIES
     }
-    return [host for host in hosts if tasks and host not in telling]
+    words = "; ".join(
+        f"with --library {library} on {', '.join(names)}"
+        for library, names in places.items()
+        if names
+    )
+    raise InputError(
+        f"node must be judged on one of the hosts {hosts}; got {', '.join(nodes)}"
+        f"{words and ', judged '}{words}"
+    )
 
 
 EMPTY = Survey()
@@ -152,8 +150,13 @@ def make_plan(
     for host in hosts:  # nodes of a renderer's own, which use no library of ours
         for spec in own_nodes(host):
             tasks += _checks_of(spec, host, RENDERER_NODES)
-    tasks = selected(tasks, list(map(str, files)), nodes, survey, partial(_elsewhere, nodes))
-    tasks += [Task(HOST, EVERY_NODE, host, libraries[0]) for host in unmeasured(tasks, hosts)]
+    tasks = _selected(tasks, list(map(str, files)), nodes, survey)
+    # A host that measures nothing says so; the task of a document does, on a host that reads none.
+    telling = {
+        task.host for task in tasks if task.check != DOCUMENT or not host_row(task.host).target
+    }
+    silent = [host for host in hosts if tasks and host not in telling]
+    tasks += [Task(HOST, EVERY_NODE, host, libraries[0]) for host in silent]
     if not files and nodes and {ALL, COMMON}.isdisjoint(nodes):
         documents = []
     return Plan(
@@ -173,29 +176,9 @@ def make_plan(
     )
 
 
-def _elsewhere(nodes: Sequence[str]) -> str:
-    """Words on the libraries and hosts with which nodes are judged; "" for none."""
-    titles = {spec.title for spec in ALL_SPECS if spec.node in nodes}
-    words = []
-    for library in LIBRARIES:
-        names = [
-            row.name
-            for row in HOSTS
-            if any(task.subject in titles for task in _on_host(row.name, library, (), PBRLIB))
-        ]
-        if names:
-            words.append(f"with --library {library} on {', '.join(names)}")
-    return f", judged {'; '.join(words)}" if words else ""
-
-
 def diffuse_specs(library: str) -> list[DiffuseSpec]:
     data = load_library(library)
     return [spec for spec in DIFFUSE if data.getMatchingNodeDefs(spec.node)]
-
-
-def inversions(library: str) -> list[str]:
-    data = load_library(library)
-    return [node for node in INVERSIONS if data.getMatchingNodeDefs(node)]
 
 
 def _on_host(
@@ -211,35 +194,32 @@ def _on_host(
         yield Task(HOST, EVERY_NODE, host, library)
     if not ways or not row.target:
         return
-    evaluates = ways[0] is Evaluating
-    language = "osl" if row.target == "osl" else "glsl"
-    if row.probe in functions.KINDS and has_functions(library, language):
+    evaluates, kind = ways[0] is Evaluating, kind_of(library)
+    if row.probe in functions.KINDS and has_functions(
+        library, "osl" if row.target == "osl" else "glsl"
+    ):
         yield Task(FUNCTIONS, SHADER_FUNCTIONS, host, library)
     if evaluates:
-        yield from (Task(INVERSION, node, host, library) for node in inversions(library))
+        inversions = filter(load_library(library).getMatchingNodeDefs, INVERSIONS)
+        yield from (Task(INVERSION, node, host, library) for node in inversions)
     for spec in diffuse_specs(library):
         yield from _checks_of(spec, host, library)
         if evaluates:
             yield Task(CURVE, spec.title, host, library)
     for each in nodes:
         # Where pictures show a renderer's own closures, they are judged with the stock library alone.
-        own = row.target == "osl" and kind_of(library) in ("eonlib", "diffuse")
+        own = row.target == "osl" and kind in ("eonlib", "diffuse")
         left = each.closure and row.probe == "pictures" and own
-        if not left and (everywhere or _is_judged(each, library)):
+        # Without documents a library of ours is judged by the nodes that it repairs.
+        if not left and (everywhere or kind in (OVERLAY, *(each.libraries or LIBRARIES))):
             yield from _checks_of(each, host, library)
     if row.surfaces:
-        kind = kind_of(library) if kind_of(library) in LIBRARIES else "eonlib"
         for lobe in SURFACE_LOBES:
-            if everywhere or kind in (lobe.libraries or LIBRARIES):
+            listed = lobe.libraries or LIBRARIES
+            if everywhere or ("eonlib" if kind == OVERLAY else kind) in listed:
                 yield from _checks_of(lobe, host, library)
     if row.scenes:
         yield from (Task(PICTURE, str(file), host, library) for file in files)
-
-
-def _is_judged(spec: Spec, library: str) -> bool:
-    """Whether a node is judged with a library: one that no library of ours repairs, with stock."""
-    kind = kind_of(library)
-    return kind not in LIBRARIES or kind in (spec.libraries or LIBRARIES)
 
 
 def _checks_of(spec: Spec, host: str, library: str) -> Iterator[Task]:
@@ -249,18 +229,14 @@ def _checks_of(spec: Spec, host: str, library: str) -> Iterator[Task]:
             yield Task(check.key, spec.title, host, library)
 
 
-def _folder_of_materialx() -> dict[str, str]:
-    """The folder of a MaterialX that is not the installed one."""
-    folder = str(Path(mx.__file__).parents[1])
-    return {} if folder in sysconfig.get_paths().values() else {"MaterialX folder": folder}
-
-
 def _software() -> dict[str, str]:
     """Versions of the packages, as the modules have them: a build from source has no metadata."""
+    folder = str(Path(mx.__file__).parents[1])
+    installed = folder in sysconfig.get_paths().values()
     return {
         "Python": platform.python_version(),
         "MaterialX": mx.getVersionString(),
-        **_folder_of_materialx(),
+        **({} if installed else {"MaterialX folder": folder}),
         "numpy": np.__version__,
         "OpenImageIO": oiio.__version__,
         "moderngl": moderngl.__version__,  # type: ignore[attr-defined]

@@ -2,10 +2,11 @@
 """The documents of a run, read before any other work: their nodes, and those that cannot be read."""
 
 import re
-from collections.abc import Generator, Iterable, Iterator, Sequence
+from collections.abc import Generator, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
 from functools import cache, partial
+from itertools import product
 from pathlib import Path
 
 from mxeon.conformance.diagnosis.regions import unreached
@@ -49,17 +50,25 @@ def survey_documents(
     sources = [(file, library) for file in dict.fromkeys(files) for library in libraries]
     titles: dict[str, dict[str, set[str]]] = {file: {} for file in files}
     faults: dict[Source, tuple[str, ...]] = {}
-    # Collect nodes, and errors; those of an example are the library's fault.
     with closing(_answers(sources, policy, workers, timeout)) as answers:
         for (file, library), answer in zip(sources, answers, strict=True):
             if isinstance(answer, DocumentError):
+                # An example that cannot be read is the library's fault.
                 if not Path(file).resolve().is_relative_to(examples_folder()):
                     faults[file, library] = answer.args
             elif isinstance(answer, MxeonError):
                 raise answer
             else:
-                for title, regions in _titles(answer or ()):
-                    titles[file].setdefault(title, regions).intersection_update(regions)
+                for (spec, mode), node in product(_modes(), answer or ()):
+                    if _is(node, spec, mode):
+                        regions = set(unreached(dict(node.values)))
+                        titles[file].setdefault(spec.title, regions).intersection_update(regions)
+    refused: dict[str, tuple[str, ...]] = {}
+    for (file, library), lines in faults.items():
+        if all((file, each) in faults for each in libraries):
+            refused[file] = tuple(dict.fromkeys((*refused.get(file, ()), *lines)))
+        else:  # another library can read it
+            refused[f"{file} with {library}"] = tuple(f"{line} (with {library})" for line in lines)
     return Survey(
         {file: tuple(each) for file, each in titles.items()},
         {
@@ -67,21 +76,8 @@ def survey_documents(
             for file, found in titles.items()
         },
         frozenset(faults),
-        _by_document(faults, libraries),
+        refused,
     )
-
-
-def _by_document(
-    faults: dict[Source, tuple[str, ...]], libraries: Sequence[str]
-) -> dict[str, tuple[str, ...]]:
-    """Faults by document, and by the library too if another one can read the document."""
-    refused: dict[str, tuple[str, ...]] = {}
-    for (file, library), lines in faults.items():
-        if all((file, each) in faults for each in libraries):
-            refused[file] = tuple(dict.fromkeys((*refused.get(file, ()), *lines)))
-        else:
-            refused[f"{file} with {library}"] = tuple(f"{line} (with {library})" for line in lines)
-    return refused
 
 
 def _answers(
@@ -97,14 +93,6 @@ def _answers(
     elif sources:
         for outcome in pool.in_order(pool.run(work, sources, workers, timeout)):
             yield outcome.value
-
-
-def _titles(nodes: Iterable[ShownNode]) -> Iterator[tuple[str, set[str]]]:
-    """Titles of the subjects that nodes of a document are, each with regions its inputs are not in."""
-    for spec, mode in _modes():
-        for node in nodes:
-            if _is(node, spec, mode):
-                yield spec.title, set(unreached(dict(node.values)))
 
 
 def _is(node: ShownNode, spec: Spec, mode: ShownNode) -> bool:

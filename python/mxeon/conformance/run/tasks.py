@@ -69,11 +69,8 @@ class Findings:
 
     def answer(self, task: Task) -> bool:
         """Whether these are findings of a task: there are some, and all are of its host."""
-        records: list[Result | Picture | AlbedoCurve] = [
-            *self.results,
-            *self.pictures,
-            *self.curves,
-        ]
+        records: list[Result | Picture | AlbedoCurve]
+        records = [*self.results, *self.pictures, *self.curves]
         location = (task.host, task.library)
         return bool(records or self.errors) and all(
             (record.host, record.library) == location for record in records

@@ -65,47 +65,8 @@ def with_pages(result: Result, materialx: str = "") -> Result:
     `materialx` is the folder whose `libraries` were judged instead of the installed ones: a copy of
     MaterialX's has the issues of stock, but for those that it repairs.
     """
-    return replace(result, pages=tuple(issue.page for issue in _issues(result, materialx)))
-
-
-def repaired(results: Sequence[Result], software: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
-    """Notes on issues that are repaired, all of whose rows pass: a text and a page for each.
-
-    Parameters
-    ----------
-    results : sequence of Result
-    software : dict of str to str
-        The versions of the packages, by name.
-
-    Returns
-    -------
-    tuple of (str, str)
-    """
-    verdicts = {
-        (result.library, result.host, result.check, result.subject): result.verdict
-        for result in results
-    }
-    return tuple(
-        (
-            f"repaired in {_software_of(issue, software)}, so that its page can go",
-            f"docs/upstream/{issue.page}.md",
-        )
-        for issue in ISSUES
-        if issue.rows
-        and all(verdicts.get((issue.library, issue.host, *row)) == PASSED for row in issue.rows)
-    )
-
-
-def _software_of(issue: Issue, software: Mapping[str, str]) -> str:
-    """The software that has an issue, in words; MaterialX's pages have the name of a generator."""
-    materialx = f"MaterialX {software['MaterialX']}"
-    return materialx if issue.page.startswith("gen") else RENDERERS.get(issue.host, materialx)
-
-
-def _issues(result: Result, materialx: str) -> list[Issue]:
-    """Issues that a result shows that failed or differs, if it is of a library that has them."""
     if result.verdict not in (FAILED, DIFFERS):
-        return []
+        return replace(result, pages=())
     library = STOCK if materialx else result.library
     found = [
         issue
@@ -117,7 +78,29 @@ def _issues(result: Result, materialx: str) -> list[Issue]:
     ]
     # What the text leaves open explains no failure by itself.
     left_open = result.verdict == FAILED and all(issue.differs for issue in found)
-    return [] if left_open else found
+    return replace(result, pages=() if left_open else tuple(issue.page for issue in found))
+
+
+def repaired(results: Sequence[Result], software: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
+    """Notes on issues that are repaired, all of whose rows pass: a text and a page for each."""
+    verdicts = {
+        (result.library, result.host, result.check, result.subject): result.verdict
+        for result in results
+    }
+
+    def software_of(issue: Issue) -> str:  # MaterialX's pages have the name of a generator
+        materialx = f"MaterialX {software['MaterialX']}"
+        return materialx if issue.page.startswith("gen") else RENDERERS.get(issue.host, materialx)
+
+    return tuple(
+        (
+            f"repaired in {software_of(issue)}, so that its page can go",
+            f"docs/upstream/{issue.page}.md",
+        )
+        for issue in ISSUES
+        if issue.rows
+        and all(verdicts.get((issue.library, issue.host, *row)) == PASSED for row in issue.rows)
+    )
 
 
 def _explains(issue: Issue, result: Result, materialx: str) -> bool:
