@@ -68,11 +68,9 @@ class ClaimedModel(DiffuseModelSpec):
         return reference.PARAMETRIZATIONS
 
     def document(self, inputs: Values | None = None) -> str:
-        """None: a function needs no document."""
-        return ""
+        return ""  # a function needs none
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random pairs and special ones."""
         rng = np.random.default_rng(SEED)
         wo, wi = directions(rng, PAIRS), directions(rng, PAIRS)
         exact = special_directions(rng)
@@ -208,10 +206,7 @@ def check_brdf(brdf: Brdf, model: str = "eon", name: str | None = None) -> Run:
     Returns
     -------
     Run
-        See `mxeon.report.write`.
-
-        Values that are not finite fail one check, which says how many, where and the first; the others
-        judge the rest.
+        See `mxeon.report.write`. Values that are not finite fail one check; the others judge the rest.
 
     Raises
     ------

@@ -25,33 +25,19 @@ LEAST_LIGHT = 1e-3  # cosine of the light up to which factors of it cannot be to
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """The explanation of some values.
+    """The explanation of some values."""
 
-    Attributes
-    ----------
-    text : str
-        The model, defect or fault that explains them; or where they are wrong.
-    distances : dict of str to float
-        Root-mean-square distance to every model and defect, by title, in units of pi f cos.
-    permitted : bool
-        Whether a function that the specification leaves open gives all values.
-    """
-
-    text: str = ""
+    text: str = ""  # the model, defect or fault that explains them; or where they are wrong
+    # Root-mean-square distance to every model and defect, by title, in units of pi f cos.
     distances: dict[str, float] = field(default_factory=dict)
-    permitted: bool = False
+    permitted: bool = (
+        False  # whether a function that the specification leaves open gives all values
+    )
 
 
 def sentence(distances: Sequence[tuple[str, float]]) -> str:
-    """The nearest model and the second nearest, in words.
+    """The nearest models in words, of titles and root-mean-square distances, nearest first.
 
-    Parameters
-    ----------
-    distances : sequence of (str, float)
-        Title and root-mean-square distance of one model or more, nearest first.
-
-    Examples
-    --------
     >>> sentence([("Lambert", 0.001), ("EON", 0.25)])
     'best match: Lambert (rms 0.001), then EON (0.25)'
     """
@@ -72,11 +58,8 @@ def explain(
     `candidates` are functions that may give the values, its own model first; a value is right up to the
     tolerance.
     """
-    # What is not finite has no distance to anything.
-    unbounded = not_finite(cases)
-    if unbounded:
+    if unbounded := not_finite(cases):  # it has no distance to anything
         return Diagnosis(unbounded)
-    # Rank the candidates by their distance.
     few = case.samples.counts.diagnosed
     short = [Compared(batch.first(few), *(each[:few] for each in rest)) for batch, *rest in cases]
     candidates = [_remembered(each, short) for each in candidates]
@@ -87,11 +70,15 @@ def explain(
     if ranking[0][0] == own.title or ranking[0][1] > tolerance.value:
         faults = (*faults, scaled_by(_factor(short)))
         distances = {fault.text: _distance(short, own, fault, tolerance) for fault in faults}
-        text = _fault(distances, models, own.title, tolerance.value)
-        if text:
+        if text := _fault(distances, models, own.title, tolerance.value):
             return Diagnosis(text, models)
     text = _model(case, cases, ranking, own.title, tolerance)
-    return Diagnosis(text, models, _permitted(cases, candidates, ranking[0][0], tolerance))
+    nearest = next(each for each in candidates if each.title == ranking[0][0])
+    permitted = nearest.permitted and all(
+        tolerance.metric(each.measured, nearest.values(each.batch)).max() <= tolerance.value
+        for each in cases
+    )
+    return Diagnosis(text, models, permitted)
 
 
 def _remembered(candidate: Candidate, cases: Sequence[Compared]) -> Candidate:
@@ -104,17 +91,6 @@ def _remembered(candidate: Candidate, cases: Sequence[Compared]) -> Candidate:
         return candidate.values(batch) if found is None else found
 
     return replace(candidate, values=values)
-
-
-def _permitted(
-    cases: Sequence[Compared], candidates: Sequence[Candidate], title: str, tolerance: Tolerance
-) -> bool:
-    """Whether the candidate of a title is permitted, and every value is its."""
-    candidate = next(each for each in candidates if each.title == title)
-    return candidate.permitted and all(
-        tolerance.metric(case.measured, candidate.values(case.batch)).max() <= tolerance.value
-        for case in cases
-    )
 
 
 def _distance(
@@ -155,15 +131,6 @@ def _fault(faults: dict[str, float], models: dict[str, float], own: str, enough:
     return f"fault: {text} (rms {least:.2g})"
 
 
-def _flag(case: Case, title: str) -> str:
-    """Words on the flag, where the title is that of the model with the other one."""
-    for spec in DIFFUSE:
-        other = spec.node == case.spec.node and spec.title != case.spec.title
-        if other and reference.model(spec.model).title == title:
-            return f", as with {FLAG} {str(spec.flag).lower()}"
-    return ""
-
-
 def _model(
     case: Case,
     cases: Sequence[Compared],
@@ -177,7 +144,13 @@ def _model(
     (first, least), (_, rival) = ranking[:2]
     # Another model explains all.
     if first != own and least <= max(tolerance.value, SAME * rival):
-        return sentence(ranking) + _flag(case, first)
+        flags = (
+            f", as with {FLAG} {str(spec.flag).lower()}"
+            for spec in DIFFUSE
+            if spec.node == case.spec.node and spec.title != case.spec.title
+            if reference.model(spec.model).title == first
+        )
+        return sentence(ranking) + next(flags, "")
     # Its own model is correct except in a region, or not accurate enough.
     place = region([case.batch for case in cases], wrong)
     if place or not any(map(np.any, wrong)):
@@ -188,7 +161,10 @@ def _model(
     if first != own and least <= NEAR * rival:
         return sentence(ranking)
     share = f"{100.0 * np.concatenate(wrong).mean():.3g} % of the pairs"
-    place = _worst_place(cases, tolerance)
+    index = int(np.argmax([error.max() for error in errors]))
+    row, batch = int(errors[index].argmax()), cases[index].batch
+    light = f" and a light cosine of {batch.wi[row, 2]:.2g}" * ("albedo" not in tolerance.unit)
+    place = f"at a view cosine of {batch.wo[row, 2]:.2g}{light}"
     if first == own and np.concatenate(wrong).mean() < 0.5:
         return f"correct except for {share}; worst {place}"
     # What is off by as much as black would be resembles nothing.
@@ -196,15 +172,6 @@ def _model(
     near = least < NAMED * _distance(cases, black, Fault(""), tolerance)
     closest = f", the closest is {first} (rms {least:.2g})" if near else ""
     return f"no known model matches{closest}; wrong for {share}, worst {place}"
-
-
-def _worst_place(cases: Sequence[Compared], tolerance: Tolerance) -> str:
-    """Cosines of the pair with the largest error, in words."""
-    errors = [tolerance.metric(case.measured, case.expected) for case in cases]
-    index = int(np.argmax([error.max() for error in errors]))
-    row, batch = int(errors[index].argmax()), cases[index].batch
-    light = f" and a light cosine of {batch.wi[row, 2]:.2g}" * ("albedo" not in tolerance.unit)
-    return f"at a view cosine of {batch.wo[row, 2]:.2g}{light}"
 
 
 def region(batches: Sequence[Batch], wrong: Sequence[Mask]) -> str:

@@ -2,8 +2,9 @@
 """What a case's values are compared with, by quantity, and what may explain a difference."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
+from operator import attrgetter
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -47,17 +48,12 @@ DIAGNOSES: WeakKeyDictionary[Case, dict[Comparison, Diagnosis]] = WeakKeyDiction
 def _rests(case: Case) -> Sequence[Candidate]:
     """Functions that may explain throughputs: what each albedo leaves, or all light."""
     *own, nothing = case.albedo_candidates
-    rests = (Candidate(each.title, partial(_rest, each), each.permitted) for each in own)
-    return (*rests, Candidate("all light passes", partial(_rest, nothing)))
+    named = [*own, replace(nothing, title="all light passes", permitted=False)]
+    return [replace(each, values=partial(_rest, each)) for each in named]
 
 
 def _rest(candidate: Candidate, batch: Batch) -> Array:
-    """The light that a candidate's albedo leaves."""
     return np.maximum(1.0 - candidate.values(batch), 0.0)
-
-
-def _values(case: Case) -> Sequence[Candidate]:
-    return case.value_candidates
 
 
 def _backs(case: Case) -> Iterator[Compared]:
@@ -80,11 +76,13 @@ def _transmittances(case: Case) -> Iterator[Compared]:
     yield Compared(batch, through, expected)
 
 
-VALUE = Comparison("value", values, _values, DIRECT_FAULTS)
-ALBEDO = Comparison("albedo", albedos, lambda case: case.albedo_candidates, ENVIRONMENT_FAULTS)
+VALUE = Comparison("value", values, attrgetter("value_candidates"), DIRECT_FAULTS)
+ALBEDO = Comparison("albedo", albedos, attrgetter("albedo_candidates"), ENVIRONMENT_FAULTS)
 # Of a layer, for light from above, and for light through the base.
 THROUGHPUT = Comparison("throughput", lambda case: throughputs(case, *LIGHT), _rests)
 TRANSMISSION = Comparison("throughput", lambda case: throughputs(case, "transmission"), _rests)
-RADIANCE = Comparison("value", values, _values)  # of an emission from the front
-BACK = Comparison("value", _backs, _values)
-TRANSMITTANCE = Comparison("value", _transmittances, _values)
+RADIANCE = Comparison(
+    "value", values, attrgetter("value_candidates")
+)  # of an emission from the front
+BACK = Comparison("value", _backs, attrgetter("value_candidates"))
+TRANSMITTANCE = Comparison("value", _transmittances, attrgetter("value_candidates"))

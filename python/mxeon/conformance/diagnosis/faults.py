@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Known faults of the way from a node's inputs to a model, whatever the model, to name them by."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import permutations
+from operator import itemgetter
 
 import numpy as np
 
@@ -16,15 +17,7 @@ CONSTANTS = (0.1, 0.25, 0.3, 0.5, 0.75, 1.0)  # roughness that may be wired in
 
 @dataclass(frozen=True)
 class Fault:
-    """A fault, as it changes what a model gives: its batch on the way in, its values on the way out.
-
-    Attributes
-    ----------
-    text : str
-        The fault in words.
-    batch : callable (batch) -> batch
-    values : callable (batch, values) -> values
-    """
+    """A fault, as it changes what a model gives: its batch on the way in, its values on the way out."""
 
     text: str
     batch: Callable[[Batch], Batch] = lambda batch: batch
@@ -40,11 +33,6 @@ def _input(name: str, change: Callable[[Array], Array]) -> Callable[[Batch], Bat
         return batch.altered(**{name: change(np.asarray(batch.inputs[name], np.float64))})
 
     return batch
-
-
-def _channels(order: Sequence[int]) -> Callable[[Batch], Batch]:
-    """A change of the color to channels in this order."""
-    return _input("color", lambda color: color[..., list(order)])
 
 
 def _scaled(scale: Callable[[Batch], Array]) -> Callable[[Batch, Array], Array]:
@@ -65,9 +53,15 @@ def _column(name: str) -> Callable[[Batch], Array]:
 def _of_colors() -> Iterator[Fault]:
     for order in permutations(range(3)):
         words = ", ".join(CHANNELS[channel] for channel in order)
-        yield Fault(f"the color channels are exchanged: they arrive as {words}", _channels(order))
+        yield Fault(
+            f"the color channels are exchanged: they arrive as {words}",
+            _input("color", itemgetter((..., list(order)))),
+        )
     for channel, name in enumerate(CHANNELS):
-        yield Fault(f"every channel takes the {name} of the color", _channels([channel] * 3))
+        yield Fault(
+            f"every channel takes the {name} of the color",
+            _input("color", itemgetter((..., [channel] * 3))),
+        )
     yield Fault(
         "every channel takes the mean of the color",
         _input("color", lambda color: color.mean(axis=-1, keepdims=True) * np.ones(3)),
@@ -113,11 +107,7 @@ def _of_weight() -> Iterator[Fault]:
     yield Fault("the weight is applied twice", values=_scaled(_column("weight")))
 
 
-INPUT_FAULTS = (
-    *_of_weight(),
-    *_of_colors(),
-    *_of_roughness(),
-)
+INPUT_FAULTS = (*_of_weight(), *_of_colors(), *_of_roughness())
 
 DIRECT_FAULTS = (
     *INPUT_FAULTS,

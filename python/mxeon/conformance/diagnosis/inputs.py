@@ -55,11 +55,8 @@ def diagnose_throughput(passed: Mapping[str, Sequence[Compared]]) -> Diagnosis:
             number = f"{values.flat[0]:.3g}" if np.ptp(values) == 0.0 else "not 0"
             place = smallest([each.batch for each in compared], wrong)
             branches.setdefault(f"{number} {place}".rstrip(), []).append(branch)
-    return Diagnosis(
-        "; ".join(
-            f"throughput {text} (branches: {', '.join(names)})" for text, names in branches.items()
-        )
-    )
+    texts = (f"throughput {text} (branches: {', '.join(branches[text])})" for text in branches)
+    return Diagnosis("; ".join(texts))
 
 
 def diagnose_frame(case: Case) -> Diagnosis:

@@ -2,6 +2,7 @@
 """Named sets of pairs and inputs, to say of a shader that is wrong for some of them for which."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,18 +29,15 @@ COSINES = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1)
 
 
 def smallest(batches: Sequence[Batch], wrong: Sequence[Mask]) -> str:
-    """Name of the smallest region that holds all wrong pairs; "" if there is none worth a name.
+    """Name of the smallest region that holds all wrong pairs, which a mask for each batch marks.
 
-    Parameters
-    ----------
-    batches : sequence of Batch
-    wrong : sequence of ndarray of bool
-        One mask for each batch.
+    "" if there is none worth a name.
     """
     count = sum(map(len, wrong))
     bad = np.concatenate(wrong)
     sizes: dict[str, int] = {}
-    for regions in zip(*map(_regions, batches), strict=True):
+    found = (chain(_directions(batch), _inputs(batch)) for batch in batches)
+    for regions in zip(*found, strict=True):
         name = regions[0][0]
         mask = np.concatenate([mask for _, mask in regions])
         if mask[bad].all() and bad[mask].mean() >= DENSITY and mask.sum() <= LARGEST * count:
@@ -50,23 +48,14 @@ def smallest(batches: Sequence[Batch], wrong: Sequence[Mask]) -> str:
 def unreached(values: Mapping[str, Sequence[float]]) -> tuple[str, ...]:
     """Names of the regions that a node with constant inputs is not in, of inputs that are all known."""
     one = np.array([[0.0, 0.0, 1.0]])
-    batch = Batch(one, one, {name: np.array([_plain(each)]) for name, each in values.items()})
+    inputs = {name: np.array([each if len(each) > 1 else each[0]]) for name, each in values.items()}
+    batch = Batch(one, one, inputs)
     return tuple(
         name
         for name, mask in _inputs(batch)
         if not mask.any()
         and any(word in name and port in values for word, ports in NAMED.items() for port in ports)
     )
-
-
-def _plain(value: Sequence[float]) -> float | Sequence[float]:
-    return value if len(value) > 1 else value[0]
-
-
-def _regions(batch: Batch) -> Iterator[tuple[str, Mask]]:
-    """Names and masks, narrow ones first."""
-    yield from _directions(batch)
-    yield from _inputs(batch)
 
 
 def _directions(batch: Batch) -> Iterator[tuple[str, Mask]]:
@@ -78,9 +67,11 @@ def _directions(batch: Batch) -> Iterator[tuple[str, Mask]]:
     yield "with dot(N, V) rounded above 1", mu_o > 1.0
     yield "with dot(N, L) rounded above 1", mu_i > 1.0
     yield "with both directions on the horizon", (mu_o == 0.0) & (mu_i == 0.0)
-    yield "in exact retro-reflection (L = V)", _equal(wo, wi)
-    yield "in the mirror direction", _equal(wo * [-1.0, -1.0, 1.0], wi)
-    yield "with the half vector along the normal", _upright(wo, wi)
+    yield "in exact retro-reflection (L = V)", (wo == wi).all(axis=1)
+    yield "in the mirror direction", (wo * [-1.0, -1.0, 1.0] == wi).all(axis=1)
+    half = wo + wi
+    upright = np.abs(half[:, :2]).max(axis=1) <= UPRIGHT * half[:, 2]
+    yield "with the half vector along the normal", upright
     # By one cosine, then by both.
     for name, mu in (("viewer", mu_o), ("light", mu_i)):
         yield f"with the {name} along the normal", mu >= 1.0
@@ -128,17 +119,19 @@ def _inputs(batch: Batch) -> Iterator[tuple[str, Mask]]:
     # By inputs of some nodes.
     for name, words in INDICES.items():
         index = _rows(batch.inputs.get(name, 1.0), count)
-        yield f"with {words} of 0", _any(index == 0.0)
+        yield f"with {words} of 0", np.asarray((index == 0.0).any(axis=1))
     if "cuticle_angle" in batch.inputs:
         yield "with a tilted cuticle", _rows(batch.inputs["cuticle_angle"], count)[:, 0] != 0.5
     # By colors and normals.
-    yield "with a white color", (color == 1.0).all(axis=1)
-    yield "with a gray color", (color == color[:, :1]).all(axis=1)
-    yield "with a color channel at 0", _any(color == 0.0)
-    yield "with a color channel in [0, 0.001]", _any(color <= 1e-3)
-    yield "with a color channel at 1", _any(color == 1.0)
-    yield "with a color channel above 0.99", _any(color > 0.99)
-    yield "where the normal faces away from the viewer", _faces_away(batch)
+    yield "with a white color", np.asarray((color == 1.0).all(axis=1))
+    yield "with a gray color", np.asarray((color == color[:, :1]).all(axis=1))
+    yield "with a color channel at 0", (color == 0.0).any(axis=1)
+    yield "with a color channel in [0, 0.001]", (color <= 1e-3).any(axis=1)
+    yield "with a color channel at 1", (color == 1.0).any(axis=1)
+    yield "with a color channel above 0.99", (color > 0.99).any(axis=1)
+    normal = np.broadcast_to(batch.inputs.get("normal", batch.normal), batch.wo.shape)
+    away = (normal * batch.normal).sum(axis=1) < 0.0
+    yield "where the normal faces away from the viewer", away
 
 
 def _rows(values: ArrayLike, count: int) -> Array:
@@ -147,22 +140,3 @@ def _rows(values: ArrayLike, count: int) -> Array:
     if array.shape[:1] == (count,):
         return array.reshape(count, -1)
     return np.broadcast_to(array.reshape(1, -1), (count, array.size))
-
-
-def _equal(one: Array, other: Array) -> Mask:
-    return np.asarray((one == other).all(axis=1))
-
-
-def _upright(wo: Array, wi: Array) -> Mask:
-    """Mask of the pairs whose half vector is the normal, but for some roundings of float32."""
-    half = wo + wi
-    return np.asarray(np.abs(half[:, :2]).max(axis=1) <= UPRIGHT * half[:, 2])
-
-
-def _any(channels: Mask) -> Mask:
-    return np.asarray(channels.any(axis=1))
-
-
-def _faces_away(batch: Batch) -> Mask:
-    normal = np.broadcast_to(batch.inputs.get("normal", batch.normal), batch.wo.shape)
-    return np.asarray((normal * batch.normal).sum(axis=1) < 0.0)

@@ -32,35 +32,29 @@ def generate_document(
         warnings.simplefilter("always")
         warnings.simplefilter("error", MissingFileWarning)
         shaders = generate(file, target, library=library, policy=policy)
-    messages = [record.message for record in records]
-    notes = [
-        (str(message), file.name)
-        for message in messages
-        if isinstance(message, (CodeWarning, DocumentWarning))
-    ]
-    error = float(not shaders)
-    caught = _refused(file.read_bytes(), target, library)
+    notes = tuple(
+        (str(record.message), file.name)
+        for record in records
+        if isinstance(record.message, (CodeWarning, DocumentWarning))
+    )
+    data = file.read_bytes()
+    half = data[: len(data) // 2].decode(errors="replace")
+    try:
+        generate(half if "<" in half else "<", target, library=library)
+        caught = False
+    except DocumentError:
+        caught = True
     result = Result(
         DOCUMENT_KEY,
         DOCUMENT_CLAIM,
         file.name,
         host,
         library,
-        PASSED if error == 0 and caught else FAILED,
-        error=error,
+        PASSED if shaders and caught else FAILED,
+        error=float(not shaders),
         unit="documents without a shader",
         tolerance=0,
         derivation="a count",
         control=Control("half of the document is cut off", float(caught), caught),
     )
-    return (result,), tuple(notes)
-
-
-def _refused(data: bytes, target: str, library: str) -> bool:
-    """Whether the first half of a document is refused."""
-    half = data[: len(data) // 2].decode(errors="replace")
-    try:
-        generate(half if "<" in half else "<", target, library=library)
-    except DocumentError:
-        return True
-    return False
+    return (result,), notes

@@ -28,26 +28,25 @@ def comparison_pictures(case: Case) -> tuple[Picture, ...]:
     rough = isinstance(case.spec, DiffuseModelSpec) and not isinstance(case.spec, SurfaceLobe)
     if not rough or isinstance(case.backend, Rendered):
         return ()
-    points = ((scene, *_points(case, scene)) for scene in SCENES)
-    return tuple(_comparison(case, *each) for each in points if len(each[1].wo))
-
-
-def _points(case: Case, scene: Scene) -> tuple[Batch, Mask]:
-    """The pairs of a picture, and the pixels where they are, (size, size)."""
-    wo, wi, judged, mask = case.backend.portrait(scene)
-    where = mask.copy()
-    where[where] = judged
-    return Batch(wo[judged], wi[judged], INPUTS, scene), where
+    pictures = []
+    for scene in SCENES:
+        wo, wi, judged, mask = case.backend.portrait(scene)
+        where = mask.copy()
+        where[where] = judged
+        if judged.any():
+            batch = Batch(wo[judged], wi[judged], INPUTS, scene)
+            pictures.append(_comparison(case, scene, batch, where))
+    return tuple(pictures)
 
 
 def _comparison(case: Case, scene: Scene, batch: Batch, where: Mask) -> Picture:
-    spec, host = case.spec, case.host
-    names = (PORTRAIT, spec.title, host.name, case.library, scene.name)
+    names = (PORTRAIT, case.spec.title, case.host.name, case.library, scene.name)
     keys = ("document", "element", "host", "library", "scene")
     metadata = dict(zip(keys, names, strict=True)) | {"version": mxeon.__version__}
-    metadata |= {"points": host.name}  # which differ where a host has its model in part
+    metadata |= {"points": case.host.name}  # which differ where a host has its model in part
     image = _picture(case.direct(batch), where)
-    return Picture(*names, image, _picture(model_value(batch, spec.model), where), metadata)
+    expected = _picture(model_value(batch, case.spec.model), where)
+    return Picture(*names, image, expected, metadata)
 
 
 def _picture(values: Array, where: Mask) -> NDArray[np.float32]:

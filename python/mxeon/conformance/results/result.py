@@ -60,7 +60,7 @@ class Result:
     Attributes
     ----------
     check, claim : str
-        Key of the check's row and the sentence it tests.
+        Key of the check and the sentence it tests.
     subject : str
         A node and its flag, or a document and its element.
     host, library : str
@@ -82,11 +82,11 @@ class Result:
     reason : str
         Why it did not run.
     claimed, model : str
-        Titles of the model that a renderer's own node claims, and of the form of it that was judged,
-        which is the one that it has where the check passes; "" for other subjects.
+        Titles of the model that a renderer's own node claims, and of its published form that was
+        judged; "" for other subjects.
     measured : tuple of str
-        Inputs of a document's nodes whose values the expected picture has from the host itself,
-        since nodes of patterns have no model; see `mxeon.conformance.reference.measured`.
+        Inputs of a document's nodes whose values come from the host itself, since nodes of patterns
+        have no model; see `mxeon.conformance.reference.measured`.
     pages : tuple of str
         Names of the pages of `docs/upstream/` on the defects that it shows.
 
