@@ -104,6 +104,11 @@ class Check:
         )
 
 
+def of_family(*kinds: type[Spec]) -> Callable[[Spec], bool]:
+    """Whether a spec is one of these families."""
+    return lambda spec: isinstance(spec, kinds)
+
+
 CHECKS: list[Check] = []  # in the order in which they are defined
 
 

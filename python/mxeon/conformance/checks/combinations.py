@@ -7,22 +7,14 @@ from itertools import product
 import numpy as np
 
 from mxeon.conformance.case import LIGHT, Case, throughputs
-from mxeon.conformance.check import check, pass_all, shifted, with_values
+from mxeon.conformance.check import check, of_family, pass_all, shifted, with_values
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.diagnosis.comparisons import ALBEDO, THROUGHPUT, VALUE
-from mxeon.conformance.samples import Array, Batch
-from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs.combinations import SINGLE, CombinedSpec
 from mxeon.conformance.tolerance import Compared
 from mxeon.models.nodes.combinations import FACTOR
 
-
-def is_combined(spec: Spec) -> bool:
-    return isinstance(spec, CombinedSpec)
-
-
-def again(batch: Batch, values: Array) -> Array:
-    return values * np.reshape(batch.inputs[FACTOR], (len(values), -1))
+is_combined = of_family(CombinedSpec)
 
 
 check(
@@ -61,7 +53,10 @@ def passing(case: Case) -> Iterator[Compared]:
     "factor",
     "Factors are clamped to [0, 1].",
     lambda spec: spec.model in SINGLE,
-    with_values("values are multiplied twice", again),
+    with_values(
+        "values are multiplied twice",
+        lambda batch, values: values * np.reshape(batch.inputs[FACTOR], (len(values), -1)),
+    ),
     pairs=True,
     open=True,
     diagnose=lambda case: Diagnosis("the factor is not clamped", permitted=True),

@@ -8,9 +8,10 @@ import numpy as np
 from mxeon.conformance.backends import implementation
 from mxeon.conformance.case import Case, over_condition, values
 from mxeon.conformance.check import (
+    Control,
     check,
-    control,
     gray,
+    of_family,
     offset,
     scale,
     shifted,
@@ -19,7 +20,6 @@ from mxeon.conformance.check import (
 from mxeon.conformance.checks.energy import summed
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.diagnosis.comparisons import BACK, RADIANCE, TRANSMITTANCE, VALUE
-from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs.emission import (
     OPACITY,
     UNIMPLEMENTED,
@@ -30,20 +30,18 @@ from mxeon.conformance.specs.emission import (
 from mxeon.conformance.specs.media import MediumSpec
 from mxeon.conformance.tolerance import Compared, Measurement, count_of
 
-
-def is_emission(spec: Spec) -> bool:
-    return isinstance(spec, EmissionSpec)
+is_emission = of_family(EmissionSpec)
 
 
-@control("the node is one that nothing implements")
-def unimplemented(case: Case) -> Case:
-    return case.another(UNIMPLEMENTED)
+unimplemented = Control(
+    "the node is one that nothing implements", lambda case: case.another(UNIMPLEMENTED)
+)
 
 
 @check(
     "implemented",
     "The target implements the node.",
-    lambda spec: isinstance(spec, (EmissionSpec, MediumSpec, AbsentSpec)),
+    of_family(EmissionSpec, MediumSpec, AbsentSpec),
     unimplemented,
     tolerance=count_of("nodes"),
     diagnose=lambda case: Diagnosis(
@@ -100,7 +98,7 @@ def exitance(case: Case) -> Compared:
 check(
     "transmittance",
     "Over one meter, a medium transmits what its coefficients give.",
-    lambda spec: isinstance(spec, MediumSpec),
+    of_family(MediumSpec),
     shifted,
 )(TRANSMITTANCE)
 
@@ -117,7 +115,7 @@ def diagnose_opacity(case: Case) -> Diagnosis:
 check(
     "opacity",
     "The light that a surface emits is scaled by its opacity.",
-    lambda spec: isinstance(spec, EmittingSurface),
+    of_family(EmittingSurface),
     with_inputs("the opacity is 1", opacity=1.0),
     diagnose=diagnose_opacity,
 )(VALUE)

@@ -16,6 +16,7 @@ from mxeon.conformance.check import (
     control,
     drop_changes,
     gray,
+    of_family,
     offset,
     scale_cosine,
     take_response,
@@ -201,7 +202,6 @@ def integrated(
     diagnose=ALBEDO.diagnose,
 )
 def furnace(case: Case) -> Iterator[Compared]:
-    """Albedo of a white surface against 1."""
     for batch in case.views:
         white = batch.altered(color=WHITE, weight=1.0)
         yield Compared(white, case.albedo(white), np.ones((1, 3)))
@@ -212,21 +212,19 @@ def furnace(case: Case) -> Iterator[Compared]:
     "A black surface scatters nothing.",
     lambda spec: (
         (is_plain(spec) and isinstance(spec, LobeSpec) and bool(spec.black))
-        or (is_model(spec, *ROUGH, "lambert", "burley") and is_node(spec) and is_alone(spec))
+        or (
+            is_model(spec, *ROUGH, "lambert", "burley")
+            and is_node(spec)
+            and not getattr(spec, "beside", False)
+        )
     ),
     offset,
     tolerance=ZERO,
 )
 def black(case: Case) -> Iterator[Compared]:
-    """Values of a black surface against 0."""
     for batch in case.few:
         batch = batch.altered(**case.lobe.black)
         yield Compared(batch, case.direct(batch), np.zeros((1, 3)))
-
-
-def is_alone(spec: Spec) -> bool:
-    """Whether no other lobe lies beside a diffuse one."""
-    return not (isinstance(spec, DiffuseModelSpec) and spec.beside)
 
 
 check(
@@ -269,7 +267,6 @@ def surroundings(case: Case) -> Compared:
 
 
 def diagnose_sphere(case: Case) -> Diagnosis:
-    """The explanation of light on a sphere."""
     return explain(case, list(spheres(case)), ON_SPHERES, (), RINGS)
 
 
@@ -279,7 +276,7 @@ ON_SPHERE = with_inputs("the mean free path is 0.3 in every channel", radius=(0.
 @check(
     "sphere_mean",
     "On average, a sphere reflects the share of light that the profile predicts.",
-    lambda spec: isinstance(spec, SubsurfaceSpec),
+    of_family(SubsurfaceSpec),
     ON_SPHERE,
     lit=True,
     diagnose=diagnose_sphere,
@@ -287,7 +284,7 @@ ON_SPHERE = with_inputs("the mean free path is 0.3 in every channel", radius=(0.
 @check(
     "sphere",
     "On a sphere, light spreads as the diffusion profile predicts from radius and anisotropy.",
-    lambda spec: isinstance(spec, SubsurfaceSpec),
+    of_family(SubsurfaceSpec),
     ON_SPHERE,
     lit=True,
     diagnose=diagnose_sphere,
@@ -322,7 +319,6 @@ def opaque_values(case: Case, branch: str) -> Iterator[Compared]:
     ),
 )
 def throughput(case: Case) -> Iterator[Compared]:
-    """Throughput against 0 of an opaque node, in every branch and for every weight."""
     return (each for branch in BRANCHES for each in opaque_values(case, branch))
 
 
@@ -350,7 +346,6 @@ def reciprocity(case: Case) -> Iterator[Compared]:
     with_inputs("roughness is 0.1", roughness=0.1),
 )
 def lambert(case: Case) -> Iterator[Compared]:
-    """Values at roughness 0 against Lambert's."""
     for batch in case.few:
         batch = batch.altered(roughness=0.0)
         yield Compared(batch, case.direct(batch), model_value(batch, "lambert"))

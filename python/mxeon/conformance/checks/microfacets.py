@@ -110,7 +110,6 @@ def _clear(batch: Batch) -> Batch:
     diagnose=input_diagnosis.ignored("retroreflective"),
 )
 def retroreflection(case: Case) -> Iterator[Compared]:
-    """Values in retroreflective mode against those of the mirrored view."""
     for batch in case.few:
         mirrored = replace(batch, wo=batch.wo * [-1.0, -1.0, 1.0])
         measured = case.direct(batch.altered(retroreflective=True))
@@ -126,7 +125,6 @@ def retroreflection(case: Case) -> Iterator[Compared]:
     diagnose=input_diagnosis.ignored("tangent"),
 )
 def anisotropy(case: Case) -> Compared:
-    """Values with a turned tangent against those of directions turned the other way."""
     batch = case.samples.mirrored[0].first(FEW)
     batch = batch.where(np.minimum(batch.wo[:, 2], batch.wi[:, 2]) >= LEAST_TANGENT_COSINE)
     batch = batch.altered(roughness=np.maximum(batch.inputs["roughness"], LEAST_TANGENT_ALPHA))

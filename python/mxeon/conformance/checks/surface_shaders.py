@@ -7,11 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from mxeon.conformance.case import SCATTERING, Case, albedos, values
-from mxeon.conformance.check import check, control, scale, shifted
+from mxeon.conformance.check import check, control, of_family, scale, shifted
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.diagnosis.comparisons import ALBEDO, VALUE
-from mxeon.conformance.samples import Batch
-from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs.surface_shaders import VALUE as VALUE_ERROR
 from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
 from mxeon.conformance.tolerance import Compared, Measurement, count_named, count_of, scaled
@@ -25,9 +23,7 @@ LOBE_INPUTS = {
     "specular reflection": ("specular", "specular_weight"),
 }
 
-
-def is_shader(spec: Spec) -> bool:
-    return isinstance(spec, SurfaceShaderSpec)
+is_shader = of_family(SurfaceShaderSpec)
 
 
 def diagnose_lobes(case: Case) -> Diagnosis:
@@ -37,19 +33,14 @@ def diagnose_lobes(case: Case) -> Diagnosis:
     pairs = batch.where(worst)
     errors = {}
     for lobe, inputs in LOBE_INPUTS.items():
-        if names := tuple(name for name in inputs if name in batch.inputs):
-            errors[lobe] = _error(case, pairs, names)
+        if names := [name for name in inputs if name in batch.inputs]:
+            plain = pairs.altered(**{name: np.zeros_like(pairs.inputs[name]) for name in names})
+            errors[lobe] = float(scaled(case.direct(plain), case.expected(plain)).max())
     lobe = min(errors, key=errors.__getitem__)
     if errors[lobe] <= VALUE_ERROR.value:
         return Diagnosis(f"the layer equation holds without the {lobe}")
     least = " and ".join(sorted(errors, key=errors.__getitem__)[:2])
     return Diagnosis(f"no single lobe explains it; the error is smallest without {least}")
-
-
-def _error(case: Case, pairs: Batch, names: tuple[str, ...]) -> float:
-    """Largest error of pairs whose materials lack a lobe."""
-    plain = pairs.altered(**{name: np.zeros_like(pairs.inputs[name]) for name in names})
-    return float(scaled(case.direct(plain), case.expected(plain)).max())
 
 
 def diagnose_sum(case: Case) -> Diagnosis:

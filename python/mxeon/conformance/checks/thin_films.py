@@ -13,6 +13,7 @@ from mxeon.conformance.case import Case, edge_values
 from mxeon.conformance.check import (
     check,
     control,
+    of_family,
     pass_all,
     scale_cosine,
     with_inputs,
@@ -22,7 +23,6 @@ from mxeon.conformance.diagnosis import inputs as input_diagnosis
 from mxeon.conformance.diagnosis.candidates import NEAR, Diagnosis
 from mxeon.conformance.diagnosis.comparisons import ALBEDO, THROUGHPUT, VALUE
 from mxeon.conformance.samples import Array, Batch
-from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs.microfacets import LEAST_INDEX
 from mxeon.conformance.specs.thin_films import (
     FRINGED,
@@ -48,9 +48,7 @@ LEAST_F = 0.01  # of a curve by which its averages are divided
 THIN_LIMIT = 1e-3  # thickness in nm of a film that changes nothing
 RARE = 0.5  # index of a film that MaterialX counts as vacuum
 
-
-def is_film(spec: Spec) -> bool:
-    return isinstance(spec, FilmSpec)
+is_film = of_family(FilmSpec)
 
 
 @control("the film is a quarter thicker")

@@ -7,12 +7,19 @@ from dataclasses import replace
 import numpy as np
 
 from mxeon.conformance.case import SCATTERING, Case
-from mxeon.conformance.check import check, drop_changes, offset, scale, with_inputs, with_values
+from mxeon.conformance.check import (
+    check,
+    drop_changes,
+    of_family,
+    offset,
+    scale,
+    with_inputs,
+    with_values,
+)
 from mxeon.conformance.checks.lobes import SURROUNDINGS
 from mxeon.conformance.diagnosis import inputs as input_diagnosis
 from mxeon.conformance.diagnosis.candidates import NEAR, Diagnosis, not_finite
 from mxeon.conformance.samples import Array, Batch, aimed, rounded, sky, sky_map, texel_middles
-from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs.transmission import TransmissionSpec
 from mxeon.conformance.tolerance import (
     Compared,
@@ -34,9 +41,7 @@ LEAST_PASSED = 0.01  # light of which the place is asked
 NORMAL = (0.0, 0.0, 1.0)
 ONE = np.ones((1, 3))
 
-
-def is_transmitting(spec: Spec) -> bool:
-    return isinstance(spec, TransmissionSpec)
+is_transmitting = of_family(TransmissionSpec)
 
 
 def unknown(case: Case) -> Diagnosis:

@@ -7,11 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from mxeon.conformance.case import Case, dead_inputs
-from mxeon.conformance.check import check, drop_changes, no_number, shifted
+from mxeon.conformance.check import check, drop_changes, no_number, of_family, shifted
 from mxeon.conformance.diagnosis import inputs as input_diagnosis
 from mxeon.conformance.diagnosis.candidates import Diagnosis, explain
 from mxeon.conformance.samples import Array, Batch, Candidate
-from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs.utilities import UtilitySpec
 from mxeon.conformance.tolerance import (
     Compared,
@@ -23,9 +22,7 @@ from mxeon.conformance.tolerance import (
 from mxeon.models.microfacet.artistic_ior import normal_reflectance
 from mxeon.models.nodes.utilities import LARGEST_REFLECTIVITY
 
-
-def is_utility(spec: Spec) -> bool:
-    return isinstance(spec, UtilitySpec)
+is_utility = of_family(UtilitySpec)
 
 
 def explained(case: Case) -> Diagnosis:

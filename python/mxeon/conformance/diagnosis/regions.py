@@ -123,12 +123,12 @@ def _inputs(batch: Batch) -> Iterator[tuple[str, Mask]]:
     if "cuticle_angle" in batch.inputs:
         yield "with a tilted cuticle", _rows(batch.inputs["cuticle_angle"], count)[:, 0] != 0.5
     # By colors and normals.
-    yield "with a white color", np.asarray((color == 1.0).all(axis=1))
-    yield "with a gray color", np.asarray((color == color[:, :1]).all(axis=1))
+    yield "with a white color", (color == 1.0).all(axis=1)
+    yield "with a gray color", (color == color[:, :1]).all(axis=1)
     yield "with a color channel at 0", (color == 0.0).any(axis=1)
-    yield "with a color channel in [0, 0.001]", (color <= 1e-3).any(axis=1)
+    yield "with a color channel in [0, 0.001]", np.asarray((color <= 1e-3).any(axis=1))
     yield "with a color channel at 1", (color == 1.0).any(axis=1)
-    yield "with a color channel above 0.99", (color > 0.99).any(axis=1)
+    yield "with a color channel above 0.99", np.asarray((color > 0.99).any(axis=1))
     normal = np.broadcast_to(batch.inputs.get("normal", batch.normal), batch.wo.shape)
     away = (normal * batch.normal).sum(axis=1) < 0.0
     yield "where the normal faces away from the viewer", away

@@ -1,48 +1,460 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The results of a conformance run as plain data, and the verdict on them."""
+"""The results of a conformance run as plain data: checks, pictures, albedos, and the verdict on all."""
 
-from mxeon.conformance.results.pictures import AlbedoCurve, Picture, image_names
-from mxeon.conformance.results.result import (
-    DIFFERS,
-    DIRECT,
-    FAILED,
-    NOT_RUN,
-    PASSED,
-    PORTRAIT,
-    SHADER_FUNCTIONS,
-    SOURCE,
-    VERDICTS,
-    Claims,
-    Control,
-    Place,
-    Result,
-    in_words,
-    of_white,
-)
-from mxeon.conformance.results.run import Run
-from mxeon.conformance.results.summary import Summary, counted, summarize
+from __future__ import annotations
 
-__all__ = [
-    "DIFFERS",
-    "DIRECT",
-    "FAILED",
-    "NOT_RUN",
-    "PASSED",
-    "PORTRAIT",
-    "SHADER_FUNCTIONS",
-    "SOURCE",
-    "VERDICTS",
-    "AlbedoCurve",
-    "Claims",
-    "Control",
-    "Picture",
-    "Place",
-    "Result",
-    "Run",
-    "Summary",
-    "counted",
-    "image_names",
-    "in_words",
-    "of_white",
-    "summarize",
-]
+import re
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TypedDict
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mxeon.errors import InputError
+from mxeon.hosts.base import Identity
+from mxeon.io.images import difference
+
+PASSED, DIFFERS, FAILED, NOT_RUN = "passed", "differs", "failed", "not run"
+VERDICTS = (PASSED, DIFFERS, FAILED, NOT_RUN)
+# In the place of a document: one material of each node, as every host shows it.
+PORTRAIT = "portrait"
+SOURCE = "source"  # in the place of a host, for what none has to run
+SHADER_FUNCTIONS = "shader twins"  # in the place of a node, for the functions of a library
+NAMED = 3  # documents that were refused, beside the number of the others
+NOT_PLAIN = re.compile("[^A-Za-z0-9]+")
+DIRECT = ("value", "lobe")  # the checks of a node in direct light, of which it has one
+
+
+@dataclass(frozen=True)
+class Control:
+    """The deliberately wrong variant of a check, run on the same host; it has to fail.
+
+    Attributes
+    ----------
+    variant : str
+        The change that makes it wrong.
+    error : float
+        Measured by the check on it.
+    caught : bool
+        Whether the check failed on it, as it must.
+    """
+
+    variant: str
+    error: float
+    caught: bool
+
+
+class Claims(TypedDict, total=False):
+    """What a result says of a renderer's own node beside its verdict; see Result."""
+
+    claimed: str
+    model: str
+
+
+class Place(Claims):
+    """What a result is of; see Result."""
+
+    check: str
+    claim: str
+    subject: str
+    host: str
+    library: str
+
+
+@dataclass(frozen=True)
+class Result:
+    """The outcome of one check of one subject on one host.
+
+    Attributes
+    ----------
+    check, claim : str
+        Key of the check and the sentence it tests.
+    subject : str
+        A node and its flag, or a document and its element.
+    host, library : str
+        The host it ran on, and the data library it used.
+    verdict : str
+        PASSED, FAILED or NOT_RUN; DIFFERS where the error is what the specification leaves open.
+    error, tolerance : float or None
+        Measured and allowed, in `unit`; a check passes at error <= tolerance.
+    unit, derivation : str
+        Unit of both, and the derivation of the tolerance.
+    worst : dict of str to list of float
+        The inputs and values at the worst point, by name.
+    diagnosis : str
+        The best-matching model with its distance, or another explanation of a failure.
+    distances : dict of str to float
+        Root-mean-square distance to each known model and defect, by title, where diagnosed.
+    control : Control or None
+        None only where the check did not run.
+    reason : str
+        Why it did not run.
+    claimed, model : str
+        Titles of the model that a renderer's own node claims, and of its published form that was
+        judged; "" for other subjects.
+    measured : tuple of str
+        Inputs of a document's nodes whose values come from the host itself, since nodes of patterns
+        have no model; see `mxeon.conformance.reference.measured`.
+    pages : tuple of str
+        Names of the pages of `docs/upstream/` on the defects that it shows.
+
+    Raises
+    ------
+    ValueError
+        If the verdict is unknown, or an error is negative or has no tolerance.
+    """
+
+    check: str
+    claim: str
+    subject: str
+    host: str
+    library: str
+    verdict: str
+    error: float | None = None
+    unit: str = ""
+    tolerance: float | None = None
+    derivation: str = ""
+    worst: dict[str, list[float]] = field(default_factory=dict)
+    diagnosis: str = ""
+    distances: dict[str, float] = field(default_factory=dict)
+    control: Control | None = None
+    reason: str = ""
+    claimed: str = ""
+    model: str = ""
+    measured: tuple[str, ...] = ()
+    pages: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.verdict not in VERDICTS:
+            raise InputError(f"verdict must be one of {', '.join(VERDICTS)}; got {self.verdict!r}")
+        if self.error is None:
+            return
+        if self.tolerance is None:
+            raise InputError(f"an error must have a tolerance; got {self.error} and none")
+        if min(self.error, self.tolerance) < 0:
+            raise InputError(
+                f"error and tolerance must be at least 0; got {self.error} and {self.tolerance}"
+            )
+
+    @property
+    def location(self) -> str:
+        """Host and library, in words."""
+        return f"{self.host} with {self.library}"
+
+    @property
+    def excess(self) -> str:
+        """The error that is too large, or the control that passed; "" for neither."""
+        control = self.control
+        if self.error is not None and not self.error <= (self.tolerance or 0.0):
+            if self.unit.startswith("times "):
+                return f"the error is {in_words(self.error)} {self.unit}"
+            return f"{self.error:.3g} > {self.tolerance:.3g} {self.unit}".rstrip()
+        if control and not control.caught:
+            return f"the negative control is not caught: {control.variant}, {control.error:.3g}"
+        return ""
+
+    @property
+    def explanation(self) -> str:
+        """The reason for a failure: the excess, the diagnosis, and where the defect is described."""
+        return "; ".join(filter(None, (self.excess, self.diagnosis, self.references)))
+
+    @property
+    def references(self) -> str:
+        """Where the defects that it shows are described, in words; "" for none."""
+        return "; ".join(f"see docs/upstream/{page}.md" for page in self.pages)
+
+
+def of_white(radiance: float) -> str:
+    """A difference as a share of the radiance of a white, matte surface that faces the light.
+
+    Examples
+    --------
+    >>> of_white(0.2035), of_white(1e-7)
+    ('up to 20 % of white', 'less than 0.1 % of white')
+    """
+    share = 100.0 * radiance
+    return f"up to {in_words(share)} % of white" if share >= 0.1 else "less than 0.1 % of white"
+
+
+def in_words(number: float) -> str:
+    """A number of two digits, without a power of ten.
+
+    Examples
+    --------
+    >>> in_words(1.234), in_words(1234.5)
+    ('1.2', '1,200')
+    """
+    return f"{float(f'{number:.2g}'):,.10g}"
+
+
+@dataclass(frozen=True)
+class Picture:
+    """One host's picture of one element, and the reference's where the models can express it.
+
+    Attributes
+    ----------
+    document, element, host, library, scene : str
+        The material, the host that rendered it, and the light.
+    image : ndarray, shape (size, size, 3), float32
+        Linear radiance; see `mxeon.shaders.scene` for its scale.
+    reference : ndarray or None
+        The same from the NumPy models; None where the material has other lobes.
+    metadata : dict of str to str
+        Its origin: version, host, device, library, document, element, scene.
+    judged : ndarray or None, shape (size, size, 1), float32
+        1 in the pixels that were compared with the reference, else 0; None where all were.
+    """
+
+    document: str
+    element: str
+    host: str
+    library: str
+    scene: str
+    image: NDArray[np.floating]
+    reference: NDArray[np.floating] | None
+    metadata: dict[str, str]
+    judged: NDArray[np.floating] | None = None
+
+    def difference(self) -> NDArray[np.float64]:
+        """Difference from the reference, (size, size): infinite where a value is not finite.
+
+        Pixels between those of a judged lattice take the difference of the nearest one; other
+        pixels that were not judged are NaN.
+        """
+        if self.reference is None:
+            raise ValueError(f"{self.element}: a difference needs a reference; there is none")
+        apart = difference(self.image, self.reference)
+        apart = np.where(np.isfinite(apart), apart, np.inf)
+        if self.judged is None:
+            return apart
+        judged = np.asarray(self.judged)[..., 0] > 0.0
+        nearest = []
+        for axis in (1, 0):
+            lines = np.flatnonzero(judged.any(axis))
+            gaps = np.abs(np.subtract.outer(np.arange(len(judged)), lines))
+            nearest.append(lines[gaps.argmin(axis=1)])
+        return np.where(judged, apart, np.nan)[np.ix_(*nearest)]
+
+
+def image_names(pictures: Sequence[Picture]) -> tuple[str, ...]:
+    """File names for pictures, without suffix: ASCII, and different whatever the case."""
+    names, uses = [], Counter[str]()
+    for picture in pictures:
+        document = Path(picture.document).stem
+        words = (document, picture.element, picture.host, picture.library, picture.scene)
+        name = "-".join(NOT_PLAIN.sub("_", word)[:40] for word in words)
+        uses[name.lower()] += 1
+        # A counter is a sixth word, which no other name has.
+        names.append(name if uses[name.lower()] == 1 else f"{name}-{uses[name.lower()]}")
+    return tuple(names)
+
+
+@dataclass(frozen=True)
+class AlbedoCurve:
+    """Directional albedo over the cosine `mu`, (N, 3), measured on a host beside its closed form."""
+
+    subject: str
+    host: str
+    library: str
+    rho: tuple[float, float, float]
+    roughness: float
+    mu: NDArray[np.float64]
+    measured: NDArray[np.float64]
+    expected: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Summary:
+    """The verdict on a whole run."""
+
+    # FAILED if any check failed, else NOT_RUN if any or all did not run or are missing, else PASSED.
+    verdict: str
+    counts: dict[str, int]  # number of checks that ended with each of VERDICTS
+    sentence: str
+
+
+def summarize(
+    results: Sequence[Result],
+    missing: Sequence[str] = (),
+    refused: Sequence[str] = (),
+    elsewhere: int = 0,
+) -> Summary:
+    """Verdict on results, with the tasks that are missing and the documents that were refused.
+
+    `elsewhere` is the number of failures for inputs that no document uses.
+
+    Examples
+    --------
+    >>> summarize((), (), ["clay.mtlx"]).sentence
+    'Refused and not judged: clay.mtlx. No check ran.'
+    """
+    summary = _summarize_results(results)
+    if elsewhere:
+        words = f" {elsewhere} of them for inputs that no document uses."
+        summary = replace(summary, sentence=summary.sentence + words)
+    if not missing and not refused:
+        return summary
+    # Without what is not there nothing has passed.
+    verdict = FAILED if summary.verdict == FAILED else NOT_RUN
+    sentence = summary.sentence
+    if missing:
+        verb = "is" if len(missing) == 1 else "are"
+        sentence += f" The run is not finished: {counted(len(missing), 'item')} {verb} missing."
+    if refused:
+        more = f" and {len(refused) - NAMED} more" if len(refused) > NAMED else ""
+        sentence = f"Refused and not judged: {', '.join(refused[:NAMED])}{more}. {sentence}"
+    return replace(summary, verdict=verdict, sentence=sentence)
+
+
+def _summarize_results(results: Sequence[Result]) -> Summary:
+    tally = Counter(result.verdict for result in results)
+    counts = {verdict: tally[verdict] for verdict in VERDICTS}
+    total = counted(len(results), "check")
+
+    def summary(verdict: str, sentence: str) -> Summary:
+        return Summary(verdict, counts, sentence)
+
+    if counts[FAILED]:
+        failed = Counter(result.location for result in results if result.verdict == FAILED)
+        listed = "; ".join(f"{count} on {location}" for location, count in failed.items())
+        return summary(FAILED, f"{counts[FAILED]} of {total} failed: {listed}.")
+    if not counts[PASSED] + counts[DIFFERS]:
+        return summary(NOT_RUN, "No check ran.")
+    if counts[NOT_RUN]:
+        return summary(NOT_RUN, f"Nothing failed, but {counts[NOT_RUN]} of {total} did not run.")
+    hosts = " and ".join(dict.fromkeys(result.location for result in results))
+    if counts[DIFFERS]:
+        differ = "differs" if counts[DIFFERS] == 1 else "differ"
+        return summary(
+            PASSED,
+            f"{counts[PASSED]} of {total} passed on {hosts}; {counts[DIFFERS]} {differ} where the "
+            "specification leaves it open.",
+        )
+    passed = "The check" if len(results) == 1 else f"All {len(results)} checks"
+    return summary(PASSED, f"{passed} passed on {hosts}.")
+
+
+def counted(count: int, noun: str) -> str:
+    """A number of things.
+
+    Examples
+    --------
+    >>> counted(1, "check"), counted(2, "check")
+    ('1 check', '2 checks')
+    """
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
+@dataclass(frozen=True)
+class Run:
+    """Everything that one `mxeon check` measured.
+
+    Attributes
+    ----------
+    version : str
+        Of mxeon.
+    software : dict of str to str
+        Versions of what took part (Python, NumPy, MaterialX, ...).
+    hosts : tuple of Identity
+    results : tuple of Result
+    pictures : tuple of Picture
+    curves : tuple of AlbedoCurve
+    notes : tuple of str
+        Warnings a reader has to see, e.g. what a host cannot express.
+    refused : dict of str to tuple of str
+        The faults of each document that could not be judged, a line each, by its path; if other
+        libraries can read it, the key names the library behind it: "clay.mtlx with stock".
+    documents : tuple of Path
+    contents : dict of str to tuple of str
+        Titles of the nodes of each document that the user gave, by its path.
+    unreached : dict of str to dict of str to tuple of str
+        For each of these, by title of a node, the regions that its inputs are not in, as diagnoses
+        name them.
+    missing : tuple of str
+        Tasks that are not done yet, where the run was interrupted.
+    libraries : dict of str to dict of str to tuple of str
+        By folder that was judged as a library: its files, under "folder", and those of MaterialX that
+        complete it, under "MaterialX", unless it is loaded before all of them.
+    compared : tuple of str
+        Libraries judged for comparison; the verdict ignores their failures.
+    """
+
+    version: str
+    software: dict[str, str]
+    hosts: tuple[Identity, ...]
+    results: tuple[Result, ...]
+    pictures: tuple[Picture, ...] = ()
+    curves: tuple[AlbedoCurve, ...] = ()
+    notes: tuple[str, ...] = ()
+    refused: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    documents: tuple[Path, ...] = ()
+    contents: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    missing: tuple[str, ...] = ()
+    unreached: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
+    libraries: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
+    compared: tuple[str, ...] = ()
+
+    @cached_property
+    def summary(self) -> Summary:
+        """The verdict on this run."""
+        judged = [each for each in self.results if each.library not in self.compared]
+        elsewhere = sum(map(self.is_elsewhere, judged))
+        summary = summarize(judged, self.missing, tuple(self.refused), elsewhere)
+        for library in self.compared:
+            results = [
+                each for each in self.results if each.library == library and each.verdict != NOT_RUN
+            ]
+            failed = sum(each.verdict == FAILED for each in results)
+            words = f" For comparison, {failed} of {len(results)} failed with {library}."
+            if results:
+                summary = replace(summary, sentence=summary.sentence + words)
+        return summary
+
+    @property
+    def errors(self) -> tuple[str, ...]:
+        """The faults of all documents that were refused."""
+        return tuple(line for lines in self.refused.values() for line in lines)
+
+    def is_elsewhere(self, result: Result, *documents: str) -> bool:
+        """Whether a check fails for inputs alone that no document has that shows its node."""
+        region = result.diagnosis.split(";")[0]
+        shown = [
+            self.unreached.get(each, {}).get(result.subject, ())
+            for each in documents or self.contents
+            if result.subject in self.contents[each]
+        ]
+        return (
+            result.verdict == FAILED
+            and bool(shown)
+            and all(any(region.endswith(name) for name in names) for names in shown)
+        )
+
+    @property
+    def sentence(self) -> str:
+        """The verdict, and the MaterialX that was judged, with its folder if it is not the installed one."""
+        version, folder = (self.software.get(name) for name in ("MaterialX", "MaterialX folder"))
+        judged = f" MaterialX {version}{f', from {folder}' if folder else ''}." if version else ""
+        return self.summary.sentence + judged
+
+    @property
+    def origins(self) -> tuple[str, ...]:
+        """For each folder judged as a library, how many files are its own and how many MaterialX's."""
+        return tuple(
+            f"library {folder}: {counted(len(files['folder']), 'file')} from the folder, "
+            + (
+                f"{len(files['MaterialX']) or 'none'} from"
+                if "MaterialX" in files
+                else "loaded before"
+            )
+            + f" MaterialX {self.software['MaterialX']}"
+            for folder, files in self.libraries.items()
+        )
+
+    @cached_property
+    def image_names(self) -> tuple[str, ...]:
+        """File names for the pictures, without suffix: ASCII, and different whatever the case."""
+        return image_names(self.pictures)

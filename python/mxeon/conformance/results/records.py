@@ -13,8 +13,7 @@ import numpy as np
 from cattrs.gen import make_dict_structure_fn, make_dict_unstructure_fn, override
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from mxeon.conformance.results.pictures import Picture
-from mxeon.conformance.results.result import Control, Result
+from mxeon.conformance.results import Control, Picture, Result
 from mxeon.errors import InputError
 from mxeon.io.files import regular
 
