@@ -12,18 +12,7 @@ import warnings
 from collections.abc import Sequence
 
 import mxeon
-from mxeon.cli import (
-    check,
-    doc,
-    explore,
-    figures,
-    generate,
-    invert,
-    kit,
-    library,
-    render,
-    report,
-)
+from mxeon.cli import check, doc, explore, figures, generate, invert, kit, library, render, report
 from mxeon.cli.arguments import Parser, use_materialx
 from mxeon.cli.output import discard, fail, flush, open_streams, show_warning, status_of
 from mxeon.errors import NOT_RUN, InputError, MxeonError, NotRun

@@ -182,11 +182,7 @@ def add_workers(command: argparse.ArgumentParser) -> None:
         help="stop a worker that takes longer than this for one item (default: %(default)g)",
     )
     command.add_argument(  # its name in version 0.1
-        "--limit",
-        dest="timeout",
-        type=float,
-        default=argparse.SUPPRESS,
-        help=argparse.SUPPRESS,
+        "--limit", dest="timeout", type=float, default=argparse.SUPPRESS, help=argparse.SUPPRESS
     )
 
 

@@ -1093,14 +1093,7 @@ BACKENDS: dict[str, tuple[type[Backend], ...]] = {
     "pairs": (Evaluating, LobePictures, DarkPictures),
     "closures": (Closures,),
     "rendered": (Rendered, RenderedLobes),
-    "pictures": (
-        CyclesPictures,
-        Traced,
-        EmissionPictures,
-        InTheDark,
-        DarkPictures,
-        UtilityOsl,
-    ),
+    "pictures": (CyclesPictures, Traced, EmissionPictures, InTheDark, DarkPictures, UtilityOsl),
     "drawn pictures": (Drawn,),
     "half pictures": (Half,),
 }

@@ -9,14 +9,7 @@ import numpy as np
 from markupsafe import Markup
 from numpy.typing import ArrayLike
 
-from mxeon.conformance.results import (
-    DIFFERS,
-    FAILED,
-    NOT_RUN,
-    PASSED,
-    Result,
-    in_words,
-)
+from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Result, in_words
 from mxeon.conformance.results.known_issues import issues_of, link
 from mxeon.conformance.results.known_issues.issue import Issue
 

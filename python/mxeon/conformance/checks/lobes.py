@@ -28,24 +28,13 @@ from mxeon.conformance.diagnosis.comparisons import ALBEDO, VALUE
 from mxeon.conformance.samples import SKY_ROWS, SLOPE, Array, Batch, sky_map
 from mxeon.conformance.spec import LobeSpec, Spec
 from mxeon.conformance.specs.combinations import CombinedSpec
-from mxeon.conformance.specs.diffuse import (
-    DiffuseModelSpec,
-    DiffuseSpec,
-    SurfaceLobe,
-    model_value,
-)
+from mxeon.conformance.specs.diffuse import DiffuseModelSpec, DiffuseSpec, SurfaceLobe, model_value
 from mxeon.conformance.specs.emission import EmissionSpec
 from mxeon.conformance.specs.hair import HairSpec
 from mxeon.conformance.specs.lobes import PbrSpec
 from mxeon.conformance.specs.media import MediumSpec
 from mxeon.conformance.specs.microfacets import FacetSpec
-from mxeon.conformance.specs.subsurface import (
-    ON_SPHERES,
-    RINGS,
-    SubsurfaceSpec,
-    inner,
-    spread,
-)
+from mxeon.conformance.specs.subsurface import ON_SPHERES, RINGS, SubsurfaceSpec, inner, spread
 from mxeon.conformance.specs.thin_films import FilmSpec
 from mxeon.conformance.specs.transmission import TransmissionSpec
 from mxeon.conformance.tolerance import (

@@ -16,11 +16,7 @@ from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.samples import LEAST_COLOR82, Array, Batch, rounded
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs.lobes import PbrSpec
-from mxeon.conformance.specs.microfacets import (
-    LEAST_TANGENT_ALPHA,
-    LEAST_TANGENT_COSINE,
-    FacetSpec,
-)
+from mxeon.conformance.specs.microfacets import LEAST_TANGENT_ALPHA, LEAST_TANGENT_COSINE, FacetSpec
 from mxeon.conformance.tolerance import Compared
 
 FEW = 1 << 12

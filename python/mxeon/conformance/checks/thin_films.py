@@ -264,10 +264,7 @@ def _visible_cases(case: Case, batch: Batch) -> Compared:
 
 
 @check(
-    "film_sum",
-    "A lobe under a film keeps its own averages next to another lobe.",
-    is_film,
-    thicker,
+    "film_sum", "A lobe under a film keeps its own averages next to another lobe.", is_film, thicker
 )
 def film_sum(case: Case) -> list[Compared]:
     """Sums of two lobes in one pixel against both by themselves, of which one thing is another.

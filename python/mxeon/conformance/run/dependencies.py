@@ -21,12 +21,7 @@ from mxeon.io.files import regular
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.references import inside
 from mxeon.shaders.document.xml import decode, strict
-from mxeon.shaders.library import (
-    SOURCE_FOLDERS,
-    documents_folder,
-    library_folders,
-    source_folder,
-)
+from mxeon.shaders.library import SOURCE_FOLDERS, documents_folder, library_folders, source_folder
 from mxeon.shaders.library_tree import LIBRARIES, standard_folders
 
 ATTRIBUTE = re.compile(r"""([\w:.-]+)\s*=\s*("[^"]*"|'[^']*')""")

@@ -182,11 +182,7 @@ def diffuse_specs(library: str) -> list[DiffuseSpec]:
 
 
 def _on_host(
-    host: str,
-    library: str,
-    files: Iterable[Path],
-    nodes: Iterable[Spec],
-    everywhere: bool = False,
+    host: str, library: str, files: Iterable[Path], nodes: Iterable[Spec], everywhere: bool = False
 ) -> Iterator[Task]:
     """Tasks of one host with one library, for files and nodes of pbrlib, or those it repairs."""
     ways, row = ways_of(host), host_row(host)

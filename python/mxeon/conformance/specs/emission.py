@@ -363,10 +363,7 @@ EMITTING_SURFACES = tuple(
         errors={"value": OPACITY},
         libraries=("stock",),
     )
-    for title, has_bsdf in (
-        ("surface, an EDF alone", False),
-        ("surface, a BSDF and an EDF", True),
-    )
+    for title, has_bsdf in (("surface, an EDF alone", False), ("surface, a BSDF and an EDF", True))
 )
 
 

@@ -20,13 +20,7 @@ from mxeon.conformance.samples import (
 )
 from mxeon.conformance.spec import Input, broadcast_inputs, color
 from mxeon.conformance.specs.lobes import NORMAL, PbrSpec, lobe_errors
-from mxeon.conformance.tolerance import (
-    Term,
-    absolute,
-    rounded_up,
-    roundings,
-    sum_of,
-)
+from mxeon.conformance.tolerance import Term, absolute, rounded_up, roundings, sum_of
 from mxeon.models.hair import ROUGHNESSES, TINTS, chiang_hair_attenuation
 from mxeon.models.hair.defects import BESSEL, CLAMPED, UNIFORM
 from mxeon.models.hair.formulas import SCALE, section

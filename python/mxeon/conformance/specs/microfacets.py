@@ -24,15 +24,7 @@ from mxeon.conformance.spec import Input, color
 from mxeon.conformance.specs.burley import VALUE as BURLEY_VALUE
 from mxeon.conformance.specs.lobes import NORMAL, WEIGHT, PbrSpec, lobe_errors
 from mxeon.conformance.specs.sheen import FIT_COSINE
-from mxeon.conformance.tolerance import (
-    Term,
-    Tolerance,
-    absolute,
-    given,
-    largest,
-    roundings,
-    sum_of,
-)
+from mxeon.conformance.tolerance import Term, Tolerance, absolute, given, largest, roundings, sum_of
 from mxeon.models.nodes.microfacets import MICROFACET_NODES
 from mxeon.models.sampling.visible_normals import ggx_pdf, ggx_sample
 
@@ -65,12 +57,7 @@ FACETS = (
     Input("tangent", "vector3", change=(0.6, 0.8, 0.0), needs={"roughness": (0.1, 0.4)}),
 )
 INPUTS = {
-    "dielectric_bsdf": (
-        WEIGHT,
-        color("tint", (0.2, 0.5, 0.8), (0.9, 0.6, 0.3)),
-        INDEX,
-        *FACETS,
-    ),
+    "dielectric_bsdf": (WEIGHT, color("tint", (0.2, 0.5, 0.8), (0.9, 0.6, 0.3)), INDEX, *FACETS),
     "conductor_bsdf": (
         WEIGHT,
         replace(
@@ -170,15 +157,11 @@ ERRORS = {
     ),
     "dip": sum_of(HALF_DIP, unit="albedo", metric=absolute),
     "denser": given(
-        0.78,
-        "albedo",
-        "the largest error of a cosine that is fitted to indices from 1.03 on",
+        0.78, "albedo", "the largest error of a cosine that is fitted to indices from 1.03 on"
     ),
 }
 WHITE_FURNACE = given(
-    4e-3,
-    "light",
-    "what a repaired layer over white may gain or lose, 6e-4 of it by the quadrature",
+    4e-3, "light", "what a repaired layer over white may gain or lose, 6e-4 of it by the quadrature"
 )
 
 

@@ -18,14 +18,7 @@ from mxeon.conformance.specs.lobes import (
     PbrSpec,
     lobe_errors,
 )
-from mxeon.conformance.tolerance import (
-    ROUNDING,
-    Term,
-    Tolerance,
-    absolute,
-    roundings,
-    sum_of,
-)
+from mxeon.conformance.tolerance import ROUNDING, Term, Tolerance, absolute, roundings, sum_of
 from mxeon.hosts.base import Host
 from mxeon.models.nodes import node
 

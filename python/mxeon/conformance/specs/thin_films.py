@@ -21,13 +21,7 @@ from mxeon.conformance.samples import (
 )
 from mxeon.conformance.specs.combinations import node_over
 from mxeon.conformance.specs.lobes import PbrSpec
-from mxeon.conformance.specs.microfacets import (
-    ESS_FIT,
-    INPUTS,
-    SEEN_ESS,
-    FacetSpec,
-    simple,
-)
+from mxeon.conformance.specs.microfacets import ESS_FIT, INPUTS, SEEN_ESS, FacetSpec, simple
 from mxeon.conformance.specs.microfacets import VALUE as FACET_VALUE
 from mxeon.conformance.tolerance import (
     Term,

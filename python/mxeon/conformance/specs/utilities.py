@@ -68,8 +68,7 @@ ALPHA = sum_of(
     metric=absolute,
 )
 BLACKBODY = sum_of(
-    Term(1.9e-4, "the fits of X and Z: 1.2e-4 in red, 7e-5 in a clipped luminance"),
-    unit=UNIT,
+    Term(1.9e-4, "the fits of X and Z: 1.2e-4 in red, 7e-5 in a clipped luminance"), unit=UNIT
 )
 ERRORS: Mapping[str, dict[str, Tolerance]] = {
     "roughness_anisotropy": {"value": ALPHA},
