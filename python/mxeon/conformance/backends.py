@@ -47,11 +47,10 @@ from mxeon.conformance.specs.emission import AbsentSpec, EmissionSpec, EmittingS
 from mxeon.conformance.specs.hair import HairSpec
 from mxeon.conformance.specs.lobes import PbrSpec
 from mxeon.conformance.specs.media import MediumSpec
-from mxeon.conformance.specs.microfacets import FacetSpec
+from mxeon.conformance.specs.microfacets import FacetSpec, TransmissionSpec
 from mxeon.conformance.specs.subsurface import SubsurfaceSpec
 from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
 from mxeon.conformance.specs.thin_films import FilmSpec
-from mxeon.conformance.specs.transmission import TransmissionSpec
 from mxeon.conformance.specs.utilities import UtilitySpec
 from mxeon.conformance.tolerance import (
     Term,

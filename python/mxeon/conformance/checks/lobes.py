@@ -33,10 +33,9 @@ from mxeon.conformance.specs.emission import EmissionSpec
 from mxeon.conformance.specs.hair import HairSpec
 from mxeon.conformance.specs.lobes import PbrSpec
 from mxeon.conformance.specs.media import MediumSpec
-from mxeon.conformance.specs.microfacets import FacetSpec
+from mxeon.conformance.specs.microfacets import FacetSpec, TransmissionSpec
 from mxeon.conformance.specs.subsurface import ON_SPHERES, RINGS, SubsurfaceSpec, inner, spread
 from mxeon.conformance.specs.thin_films import FilmSpec
-from mxeon.conformance.specs.transmission import TransmissionSpec
 from mxeon.conformance.tolerance import (
     Compared,
     Measurement,

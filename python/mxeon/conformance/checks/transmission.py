@@ -20,7 +20,7 @@ from mxeon.conformance.checks.lobes import SURROUNDINGS
 from mxeon.conformance.diagnosis import inputs as input_diagnosis
 from mxeon.conformance.diagnosis.candidates import NEAR, Diagnosis, not_finite
 from mxeon.conformance.samples import Array, Batch, aimed, rounded, sky, sky_map, texel_middles
-from mxeon.conformance.specs.transmission import TransmissionSpec
+from mxeon.conformance.specs.microfacets import TransmissionSpec
 from mxeon.conformance.tolerance import (
     Compared,
     Measurement,
