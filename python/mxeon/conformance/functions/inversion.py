@@ -14,7 +14,7 @@ import numpy as np
 
 from mxeon.conformance.diagnosis.candidates import SAME, Diagnosis, sentence
 from mxeon.conformance.diagnosis.verdicts import judge
-from mxeon.conformance.functions.numpy_functions import POINTS
+from mxeon.conformance.functions.shader_functions import POINTS
 from mxeon.conformance.results import Place, Result
 from mxeon.conformance.samples import SEED, Array, float32
 from mxeon.conformance.tolerance import (
