@@ -83,6 +83,7 @@ Mask: TypeAlias = NDArray[np.bool_]
 Pairs: TypeAlias = tuple[Array, Array, Mask]  # wo, wi, and which of them are judged
 Draw: TypeAlias = Callable[[Counts], "T"]
 T = TypeVar("T")
+F = TypeVar("F", bound=Spec)
 
 
 def implementation(host: Host, text: str, library: str) -> Shader | None:
@@ -108,23 +109,29 @@ class Samples:
             self._drawn[draw.__qualname__] = draw(self.counts)
         return cast(T, self._drawn[draw.__qualname__])
 
+    def of(self, family: type[F]) -> F:
+        """The spec, of which a backend asks what one family alone has."""
+        assert isinstance(self.spec, family), f"{self.spec.title} is no {family.__name__}"
+        return self.spec
+
     @property
     def lobe(self) -> LobeSpec:
-        assert isinstance(self.spec, LobeSpec), f"{self.spec.title} scatters nothing"
-        return self.spec
+        return self.of(LobeSpec)  # type: ignore[type-abstract]
+
+    @property
+    def valued(self) -> ValueSpec:
+        return self.of(ValueSpec)  # type: ignore[type-abstract]
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
         """All samples, those near the mirror direction of microfacets among them."""
-        assert isinstance(self.spec, ValueSpec), f"{self.spec.title} has no values"
-        return (*self.spec.batches(self.counts), *self._peaks)
+        return (*self.valued.batches(self.counts), *self._peaks)
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
         """Some of them, for what takes long and for controls."""
-        assert isinstance(self.spec, ValueSpec), f"{self.spec.title} has no values"
         peaks = (each.first(self.counts.few) for each in self._peaks)
-        return (*self.spec.few(self.batches, self.counts), *peaks)
+        return (*self.valued.few(self.batches, self.counts), *peaks)
 
     @cached_property
     def views(self) -> tuple[Batch, ...]:
@@ -144,21 +151,18 @@ class Samples:
     @cached_property
     def mirrored(self) -> tuple[Batch, Batch]:
         """Two lights near the mirror direction of each view."""
-        assert isinstance(self.spec, FacetSpec), f"{self.spec.title} has no mirror direction"
-        return self.spec.mirrored(self.counts)
+        return self.of(FacetSpec).mirrored(self.counts)
 
     @cached_property
     def integrated(self) -> tuple[Batch, Array]:
         """Materials at the nodes of a quadrature, and the weights of their values."""
-        assert isinstance(self.spec, PbrSpec), f"{self.spec.title} has no quadrature"
-        return self.spec.integrated(self.counts, self.taken)
+        return self.of(PbrSpec).integrated(self.counts, self.taken)
 
     @cached_property
     def integrals(self) -> Array:
         """Integrals of the values of the integrated materials, by the equations, (N, 3)."""
-        assert isinstance(self.spec, PbrSpec), f"{self.spec.title} has no quadrature"
         batch, weights = self.integrated
-        return self.spec.integral(batch.where(np.arange(len(weights)) * weights.shape[1]))
+        return self.of(PbrSpec).integral(batch.where(np.arange(len(weights)) * weights.shape[1]))
 
     def taken(self, inputs: Mapping[str, Array]) -> dict[str, Array]:
         """Inputs that the backend takes."""
@@ -173,13 +177,17 @@ class Samples:
 class Backend(ABC):
     """A way of asking an engine about one node: its shader, and values of it."""
 
+    families: ClassVar[tuple[type[Spec], ...]] = ()  # of nodes of which it has values
+    others: ClassVar[tuple[type[Spec], ...]] = ()  # of these, families of which it has none
+
     def __init__(self, host: Host, spec: Spec, library: str) -> None:
         self.host, self.spec, self.library = host, spec, library
+        self._evaluations = Evaluations()
 
     @classmethod
-    @abstractmethod
     def supports(cls, spec: Spec) -> bool:
         """Whether an engine that is asked in this way has values of a node."""
+        return isinstance(spec, cls.families) and not isinstance(spec, cls.others)
 
     @classmethod
     def prepared(cls, spec: Spec) -> Spec:
@@ -190,9 +198,9 @@ class Backend(ABC):
         return Samples(self.spec, self.spec.counts)
 
     @classmethod
-    @abstractmethod
     def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
         """The largest error of a quantity, engine functions apart; None where it is not asked."""
+        return spec.errors.get(quantity)
 
     @classmethod
     def any_pairs(cls, spec: Spec) -> bool:
@@ -203,6 +211,13 @@ class Backend(ABC):
     def lit(cls, spec: Spec) -> bool:
         """Whether the host itself finds light and lets it pass."""
         return True
+
+    def implemented(self, text: str) -> Shader:
+        """Shader of a document; NotRun where the target has no implementation of its node."""
+        shader = implementation(self.host, text, self.library)
+        if shader is None:
+            raise NotRun(f"{self.host.target}: no implementation of {self.spec.node}")
+        return shader
 
     def precision(self, quantity: str) -> tuple[Term, ...]:
         """What the engine's own functions, measured on the host, add to the error of a quantity."""
@@ -242,15 +257,14 @@ class Backend(ABC):
 class Evaluating(Backend):
     """An engine that runs the generated shader for any pairs."""
 
-    @classmethod
-    def supports(cls, spec: Spec) -> bool:
-        return not isinstance(spec, (SurfaceLobe, EmittingSurface))
+    families: ClassVar[tuple[type[Spec], ...]] = (Spec,)
+    others = (SurfaceLobe, EmittingSurface)
 
     @classmethod
     def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
         if quantity == "difference" and "value" in spec.errors:
             return difference_of(spec.errors["value"])
-        return spec.errors.get(quantity)
+        return super().error(spec, quantity)
 
     def precision(self, quantity: str) -> tuple[Term, ...]:
         return self.spec.engine(quantity, self.host)
@@ -260,10 +274,7 @@ class Evaluating(Backend):
         """The shader of the node; NotRun if the target has no implementation of an optional one."""
         if not self.spec.optional:
             return self.host.compile(self.spec.document(), library=self.library)[0]
-        shader = implementation(self.host, self.spec.document(), self.library)
-        if shader is None:
-            raise NotRun(f"{self.host.target}: no implementation of {self.spec.node}")
-        return shader
+        return self.implemented(self.spec.document())
 
     def direct(self, batch: Batch) -> Array:
         branch, output, factor = self.spec.asked
@@ -297,17 +308,11 @@ class Evaluating(Backend):
 
         return self._evaluations.values(batch, (branch, output, irradiance), evaluated)
 
-    @cached_property
-    def _evaluations(self) -> Evaluations:
-        return Evaluations()
-
 
 class InTheDark(Evaluating):
     """The same of media, and of nodes whose implementation alone is judged, on a renderer."""
 
-    @classmethod
-    def supports(cls, spec: Spec) -> bool:
-        return isinstance(spec, (MediumSpec, AbsentSpec))
+    families = (MediumSpec, AbsentSpec)
 
 
 # OSL: closures are trees of arguments and weights, which the models evaluate in float64.
@@ -885,10 +890,7 @@ class CyclesPictures(Pictures):
         "albedo": CYCLES_NOISE,
         "lambert": CYCLES_RAY,
     }
-
-    @classmethod
-    def supports(cls, spec: Spec) -> bool:
-        return isinstance(spec, DiffuseSpec)
+    families = (DiffuseSpec,)
 
     @classmethod
     def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
@@ -907,13 +909,7 @@ class CyclesPictures(Pictures):
 class LobePictures(Pictures):
     """The diffuse lobe of a surface shader in pictures of a host that evaluates."""
 
-    @classmethod
-    def supports(cls, spec: Spec) -> bool:
-        return isinstance(spec, SurfaceLobe)
-
-    @classmethod
-    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
-        return spec.errors.get(quantity)
+    families = (SurfaceLobe,)
 
     def shader_of(self, inputs: Values) -> Shader:
         """One shader for all inputs: long as it is, it is compiled once."""
@@ -1005,16 +1001,10 @@ PICTURE_RADIANCE = sum_of(
 class DarkPictures(Pictures):
     """An emitting surface in the dark, one picture for each material of its samples."""
 
-    @classmethod
-    def supports(cls, spec: Spec) -> bool:
-        return isinstance(spec, EmittingSurface)
+    families: ClassVar[tuple[type[Spec], ...]] = (EmittingSurface,)
 
     def samples(self) -> Samples:
         return Samples(self.spec, self.spec.counts)
-
-    @classmethod
-    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
-        return spec.errors.get(quantity)
 
     def picture(self, batch: Batch) -> Array:
         scene = scene_of(batch)
@@ -1027,9 +1017,7 @@ class EmissionPictures(DarkPictures):
 
     scenes = (DARK,)
 
-    @classmethod
-    def supports(cls, spec: Spec) -> bool:
-        return isinstance(spec, EmissionSpec)
+    families = (EmissionSpec,)
 
     def samples(self) -> Samples:
         return PictureSamples(self)
@@ -1048,9 +1036,7 @@ class EmissionPictures(DarkPictures):
         return self.spec.materials
 
     def picture(self, batch: Batch) -> Array:
-        shader = implementation(self.host, self.spec.document(batch.inputs), self.library)
-        if shader is None:
-            raise NotRun(f"{self.host.target}: no implementation of {self.spec.node}")
+        shader = self.implemented(self.spec.document(batch.inputs))
         image = self.host.picture(shader, DARK)[sphere(DARK.size).mask]
         return np.asarray(image[self.points(DARK)[2]], np.float64)
 
@@ -1073,9 +1059,7 @@ class UtilityOsl(Evaluating):
     def samples(self) -> Samples:
         return UtilitySamples(self.spec, self.spec.counts)
 
-    @classmethod
-    def supports(cls, spec: Spec) -> bool:
-        return isinstance(spec, UtilitySpec)
+    families = (UtilitySpec,)
 
     @classmethod
     def error(cls, spec: Spec, quantity: str) -> Tolerance | None:

@@ -21,7 +21,6 @@ from mxeon.conformance.checks import CHECKS
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.diagnosis.comparisons import VALUE
 from mxeon.conformance.diagnosis.regions import smallest
-from mxeon.conformance.memory import Evaluations
 from mxeon.conformance.results import PASSED, Run
 from mxeon.conformance.samples import (
     PAIRS,
@@ -33,9 +32,8 @@ from mxeon.conformance.samples import (
     directions,
     special_directions,
 )
-from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs.diffuse import ERRORS, DiffuseModelSpec, diffuse_edges
-from mxeon.conformance.tolerance import Compared, Tolerance, absolute, point_of
+from mxeon.conformance.tolerance import Compared, absolute, point_of
 from mxeon.errors import InputError, assert_known
 from mxeon.hosts.base import Host, Identity
 from mxeon.models import table as reference
@@ -108,13 +106,7 @@ class Function(Backend):
 
     host: CallableHost
 
-    @classmethod
-    def supports(cls, spec: Spec) -> bool:
-        return isinstance(spec, ClaimedModel)
-
-    @classmethod
-    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
-        return spec.errors.get(quantity)
+    families = (ClaimedModel,)
 
     def samples(self) -> Samples:
         return CallableSamples(self)
@@ -132,10 +124,6 @@ class Function(Backend):
             return np.pi * (np.where(finite, values, np.nan) * batch.wi[:, 2:])
 
         return self._evaluations.values(batch, (), evaluated)
-
-    @cached_property
-    def _evaluations(self) -> Evaluations:
-        return Evaluations()
 
     def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
         """Nothing, (N, 0): a function has no environment branch."""

@@ -168,9 +168,9 @@ class ValueSpec(Spec):
         """Values of a right shader, (N, 3): pi f |cos(theta_i)|, a radiance, or an output."""
 
     @property
-    @abstractmethod
     def value_candidates(self) -> tuple[Candidate, ...]:
         """Functions that may explain the values, its own model first."""
+        return ()
 
     @abstractmethod
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
@@ -200,14 +200,14 @@ class LobeSpec(ValueSpec):
         """Directional albedo of a right shader, (N, 3)."""
 
     @property
-    @abstractmethod
     def albedo_candidates(self) -> tuple[Candidate, ...]:
         """Functions that may explain the albedo, its own model first."""
+        return ()
 
     @property
-    @abstractmethod
     def black(self) -> Values:
         """Inputs with which it scatters nothing; none where it always scatters some light."""
+        return {}
 
     @abstractmethod
     def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]: ...

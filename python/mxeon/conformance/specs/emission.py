@@ -349,10 +349,6 @@ class EmittingSurface(ValueSpec):
         radiance = surface_radiance(SURFACE_COLOR, (0.0, 0.0, 0.0), batch.inputs["opacity"])
         return np.broadcast_to(radiance, batch.wo.shape)
 
-    @property
-    def value_candidates(self) -> tuple[Candidate, ...]:
-        return ()
-
 
 EMITTING_SURFACES = tuple(
     EmittingSurface(

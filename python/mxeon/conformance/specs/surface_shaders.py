@@ -12,7 +12,6 @@ from mxeon.conformance.samples import (
     SEED,
     Array,
     Batch,
-    Candidate,
     Counts,
     Values,
     directions,
@@ -306,18 +305,6 @@ class SurfaceShaderSpec(LobeSpec):
 
     def _reference(self, batch: Batch, branch: str) -> Array:
         return Reference().evaluate(self._shader, batch.wo, batch.wi, batch.inputs, branch)
-
-    @property
-    def value_candidates(self) -> tuple[Candidate, ...]:
-        return ()
-
-    @property
-    def albedo_candidates(self) -> tuple[Candidate, ...]:
-        return ()
-
-    @property
-    def black(self) -> Values:
-        return {}
 
     # Its samples.
 
