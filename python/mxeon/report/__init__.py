@@ -98,18 +98,18 @@ def _picture_fields(run: Run) -> list[dict[str, Any]]:
     keys = ("document", "element", "host", "library", "scene")
     fields: list[dict[str, Any]] = []
     pictures = _with_references(run.pictures)
-    stems = dict(zip(map(_place, pictures), image_names(pictures), strict=True))
+    places = [(each.host, *_subject(each)) for each in pictures]
+    stems = dict(zip(places, image_names(pictures), strict=True))
     with in_threads(_largest_difference, run.pictures) as each:
         differences = list(each)
     for picture, stem, largest in zip(run.pictures, run.image_names, differences, strict=True):
-        files = {"exr": f"pictures/{stem}.exr", "png": f"pictures/{stem}.png"}
-        named = {key: getattr(picture, key) for key in keys}
         reference = stems.get((REFERENCE, *_subject(picture)))
-        compared = {
-            "reference": f"pictures/{reference}.exr" if reference else None,
-            "largest_difference": largest,
-        }
-        fields.append(named | files | compared)
+        fields.append(
+            {key: getattr(picture, key) for key in keys}
+            | {"exr": f"pictures/{stem}.exr", "png": f"pictures/{stem}.png"}
+            | {"reference": f"pictures/{reference}.exr" if reference else None}
+            | {"largest_difference": largest}
+        )
     return fields
 
 
@@ -209,13 +209,9 @@ def _with_references(pictures: Iterable[Picture]) -> tuple[Picture, ...]:
             continue
         shown.add(_subject(picture))
         kept = {key: picture.metadata[key] for key in SHARED_METADATA if key in picture.metadata}
+        metadata = kept | {"host": REFERENCE}
         references.append(
-            replace(
-                picture,
-                host=REFERENCE,
-                image=picture.reference,
-                metadata=kept | {"host": REFERENCE},
-            )
+            replace(picture, host=REFERENCE, image=picture.reference, metadata=metadata)
         )
     return (*pictures, *references)
 
@@ -224,7 +220,3 @@ def _subject(picture: Picture) -> tuple[str, ...]:
     """What pictures with one reference share; the points of a portrait are those of its host."""
     points = picture.metadata.get("points", "")
     return picture.document, picture.element, picture.library, picture.scene, points
-
-
-def _place(picture: Picture) -> tuple[str, ...]:
-    return picture.host, *_subject(picture)

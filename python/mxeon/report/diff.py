@@ -104,12 +104,9 @@ def read_results(folder: str | PathLike[str]) -> Report:
         with open(path, encoding="utf-8", opener=regular) as file:
             content = json.load(file)
         if (written := content["format"]) == JSON_FORMAT:
-            # Keys that earlier reports lack.
-            later: dict[str, object] = {
-                **{"elsewhere": [], "refused": [], "compared": []},
-                "libraries": {},
-            }
-            return read_record(later | content, Report)
+            # Earlier reports lack some keys.
+            later: dict[str, object] = {"elsewhere": [], "refused": [], "compared": []}
+            return read_record({**later, "libraries": {}, **content}, Report)
     except OSError as error:
         raise InputError(f"{rule}; {error.strerror}") from None
     except ERRORS as error:
@@ -125,7 +122,7 @@ def compare(before: Report, after: Report) -> tuple[Change, ...]:
     changes = [
         *_results(_by(PLACE, before.results), _by(PLACE, after.results)),
         *_pictures(_by(SHOWN, before.pictures), _by(SHOWN, after.pictures)),
-        *_facts(_identities(before), _identities(after)),
+        *_facts(before, after),
     ]
     return tuple(sorted(changes, key=lambda change: (WORSE, BETTER, OTHER).index(change.kind)))
 
@@ -168,16 +165,17 @@ def _pictures(
             yield Change(OTHER, place, _number(old), _number(new))
 
 
-def _facts(before: Mapping[str, str], after: Mapping[str, str]) -> Iterator[Change]:
-    for name in dict.fromkeys((*before, *after)):
-        old, new = before.get(name, "none"), after.get(name, "none")
-        if old != new:
-            yield Change(OTHER, name, old, new)
-
-
-def _identities(run: Report) -> dict[str, str]:
-    hosts = {f"host {each.name}": f"{each.version}, {each.device}" for each in run.hosts}
-    return {"mxeon": run.version} | run.software | hosts
+def _facts(before: Report, after: Report) -> Iterator[Change]:
+    """Changes of the versions of mxeon, of packages and of hosts."""
+    old, new = (
+        {"mxeon": each.version}
+        | each.software
+        | {f"host {host.name}": f"{host.version}, {host.device}" for host in each.hosts}
+        for each in (before, after)
+    )
+    for name in dict.fromkeys((*old, *new)):
+        if old.get(name) != new.get(name):
+            yield Change(OTHER, name, old.get(name, "none"), new.get(name, "none"))
 
 
 def _apart(old: float | None, new: float | None) -> bool:

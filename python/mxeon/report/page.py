@@ -1,16 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The report page, one self-contained HTML file. Needs the `report` extra."""
 
-from base64 import b64encode
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from hashlib import sha256
-from importlib.resources import files
 from typing import Any, TypeAlias
 
 import numpy as np
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 from numpy.typing import NDArray
 
@@ -32,12 +28,10 @@ from mxeon.conformance.results import (
 from mxeon.io.images import difference_scale
 from mxeon.io.srgb import srgb_encoded
 from mxeon.report.formats import (
-    LOOKS,
+    generate_page,
     linked,
     nearest,
-    number,
     of_white,
-    share,
     unit_meaning,
     vector,
 )
@@ -283,28 +277,19 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, 
     others = len(shown) - len(at_once) - nodes
     folded = [counted(others, "more material")] * bool(others)
     folded += [f"{counted(nodes, 'node')} rendered without a document"] * bool(nodes)
-    script = files("mxeon.report").joinpath("templates/report.js").read_text(encoding="utf-8")
-    environment = Environment(
-        loader=PackageLoader("mxeon.report"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    filters: dict[str, Callable[..., Any]] = {"number": number, "vector": vector, "linked": linked}
-    filters |= {"share": share, "look": LOOKS.__getitem__, "nearest": nearest, "tally": tally}
-    filters |= {"of_white": of_white, "meaning": unit_meaning, "title": title_of, "worst": worst}
-    environment.filters |= filters
+    filters: dict[str, Callable[..., Any]] = {"vector": vector, "linked": linked, "tally": tally}
+    filters |= {"nearest": nearest, "of_white": of_white, "meaning": unit_meaning}
+    filters |= {"title": title_of, "worst": worst}
     with in_threads(partial(material, verdicts), shown) as drawn:
-        yield from environment.get_template("report.html.jinja").generate(
+        yield from generate_page(
+            "report",
+            filters,
             run=run,
             failed_rows=failed_rows,
             judged=list(
                 dict.fromkeys(each.library for each in asked if each.library not in run.compared)
             ),
             summary=run.summary,
-            script=Markup(script),
-            script_hash=b64encode(sha256(script.encode()).digest()).decode(),
             every=every,
             located=checks_by_place(run.results),
             places=places,
