@@ -3,7 +3,6 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -46,6 +45,7 @@ RIGHT = "each value on its own is within tolerance"  # of an explanation that fo
 FILM_INPUTS = ("thinfilm_thickness", "thinfilm_ior")
 LEAST_F = 0.01  # of a curve by which its averages are divided
 THIN_LIMIT = 1e-3  # thickness in nm of a film that changes nothing
+SLANT = 2.0 / 3.0  # mean cosine of a hemisphere, weighted by the cosine
 RARE = 0.5  # index of a film that MaterialX counts as vacuum
 
 is_film = of_family(FilmSpec)
@@ -271,9 +271,9 @@ def film_sum(case: Case) -> list[Compared]:
 
     In an environment that is the roughness, by which the visible facets are others.
     """
-    batch = film_views(case.of(FilmSpec), STEEP)
+    batch, spec = film_views(case.of(FilmSpec), STEEP), case.of(FilmSpec)
     substrate = tuple(name for name in batch.inputs if name not in (*FILM_INPUTS, "roughness"))
-    both = case.another(_sum_of(case.of(FilmSpec)))
+    both = case.another(FilmSum.of(spec.row, spec.inputs, spec.errors, title=spec.title))
     cases = []
     for output, names in (
         ("direct", FILM_INPUTS[:1]),
@@ -283,21 +283,10 @@ def film_sum(case: Case) -> list[Compared]:
     ):
         other = batch.altered(**{name: np.roll(batch.inputs[name], 1, axis=0) for name in names})
         first, second = (getattr(case, output)(each) for each in (batch, other))
-        cases.append(
-            Compared(batch, getattr(both, output)(_together(batch, other)), first + second)
-        )
+        inputs = {f"{SUMMED[1]}/{name}": value for name, value in other.inputs.items()}
+        together = replace(batch, inputs={**batch.inputs, **inputs})
+        cases.append(Compared(batch, getattr(both, output)(together), first + second))
     return cases
-
-
-@lru_cache(maxsize=1)
-def _sum_of(spec: FilmSpec) -> FilmSum:
-    return FilmSum.of(spec.row, spec.inputs, spec.errors, title=spec.title)
-
-
-def _together(first: Batch, second: Batch) -> Batch:
-    """Two lobes with the inputs of two batches of the same pairs."""
-    inputs = {f"{SUMMED[1]}/{name}": value for name, value in second.inputs.items()}
-    return replace(first, inputs={**first.inputs, **inputs})
 
 
 check(
@@ -327,7 +316,8 @@ def diagnose_average(case: Case) -> Diagnosis:
     """Whether F at one cosine stands in the place of its average."""
     batch, measured, expected = average_case(case, film_views(case.of(FilmSpec), FRINGED))
     direct, model = _sides(case)
-    slanted = replace(batch, wo=view_at(2.0 / 3.0, batch), wi=view_at(2.0 / 3.0, batch) * MIRRORED)
+    view = np.broadcast_to([np.sqrt(1.0 - SLANT * SLANT), 0.0, SLANT], batch.wo.shape)
+    slanted = replace(batch, wo=view, wi=view * MIRRORED)
     others = {
         "at the half vector": _averages(case, direct, batch)[0],
         "at the cosine 2/3": _averages(case, model, slanted)[0],
@@ -346,11 +336,6 @@ def diagnose_visible(case: Case) -> Diagnosis:
     if RIGHT not in explained.text:
         return explained
     return Diagnosis("the visible facets are not weighted by masking and shadowing")
-
-
-def view_at(mu: float, batch: Batch) -> Array:
-    """Views of one cosine, (N, 3)."""
-    return np.broadcast_to([np.sqrt(1.0 - mu * mu), 0.0, mu], batch.wo.shape)
 
 
 def _sides(case: Case) -> tuple[Function, Function]:
@@ -372,13 +357,9 @@ def _averages(case: Case, direct: Function, batch: Batch) -> tuple[Array, Array]
 
 
 def _parts(case: Case, direct: Function, batch: Batch) -> tuple[Array, Array]:
-    """F (1 + F_ss k) and k of films in mirrored lights, (N, 3) each."""
-    return direct(batch) / _facets(batch), _k(case, direct, batch)
-
-
-def _k(case: Case, direct: Function, batch: Batch) -> Array:
-    """(1 - E_ss) / E_ss in mirrored lights, (N, 3)."""
-    return np.asarray(direct(_mirror(case, batch)) / _facets(batch) - 1.0)
+    """F (1 + F_ss k) and k of films in mirrored lights, (N, 3) each; k is (1 - E_ss) / E_ss."""
+    facets = _facets(batch)
+    return direct(batch) / facets, direct(_mirror(case, batch)) / facets - 1.0
 
 
 def _facets(batch: Batch) -> Array:
@@ -393,7 +374,7 @@ def _visible(case: Case, direct: Function, albedo: Function, batch: Batch) -> tu
     The albedo is that over the one of a mirror, E_ss (1 + k) = 1.
     """
     F, F_ss = _averages(case, direct, batch)
-    k = _k(case, direct, batch)
+    _, k = _parts(case, direct, batch)
     return F, np.asarray(albedo(batch) * (1.0 + k) / (1.0 + F_ss * k))
 
 

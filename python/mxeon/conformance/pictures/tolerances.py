@@ -41,22 +41,19 @@ TEXTURED = given(2.0**-8, UNIT, "a filter's weights of 8 bits")
 ENCODED = given(
     SLOPE * TEXTURED.value, UNIT, f"filtered codes of sRGB, times its slope {SLOPE:.3g}"
 )
-FITTED = Tolerance(
-    (MEAN.term("the fits of microfacets"), sum_over(256)), RELATIVE, absolute, exact=True
-)
-SHADED = Tolerance(
-    (surfaces.ALBEDO.term("all lobes of a surface shader"), sum_over(256)),
-    RELATIVE,
-    absolute,
-    exact=True,
+FITTED, SHADED = (
+    Tolerance((each, sum_over(256)), RELATIVE, absolute, exact=True)
+    for each in (
+        MEAN.term("the fits of microfacets"),
+        surfaces.ALBEDO.term("all lobes of a surface shader"),
+    )
 )
 
 
 def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe]) -> Tolerance:
     """Tolerance of a material's pictures: that of its lobes, with what else may add to it."""
-    others = [RINGS.term("subsurface scattering in six circles")] * (
-        SUBSURFACE in inner_lobes(shader)
-    )
+    rings = RINGS.term("subsurface scattering in six circles")
+    others = [rings] * (SUBSURFACE in inner_lobes(shader))
     others += BLACKBODY.terms * ("blackbody" in categories(inner_nodes(shader)))
     others += _others(tuple(lobes))
     tolerance = _lobes_tolerance(shader)
@@ -101,20 +98,14 @@ def _others(lobes: tuple[ShownLobe, ...]) -> list[Term]:
     ]
     if hairs:
         others += lobe_terms(*np.min(hairs, axis=0))
-    narrow = [
-        np.ravel(lobe.inputs["roughness"]).min()
-        for lobe in lobes
-        if lobe.inputs.get("mode") == "conty_kulla"
-    ]
-    if narrow and (excess := _excess(min(narrow))):
-        others.append(Term(excess, "what a narrow sheen returns beyond all light"))
+    sheens = (lobe for lobe in lobes if lobe.inputs.get("mode") == "conty_kulla")
+    narrow = [np.ravel(lobe.inputs["roughness"]).min() for lobe in sheens]
+    if narrow:
+        mu = np.linspace(1e-3, 1.0, COSINES)
+        excess = float((mu * (conty_kulla_albedo_dir(mu, min(narrow)) - 1.0)).max())
+        if excess > 0.0:
+            others.append(Term(excess, "what a narrow sheen returns beyond all light"))
     return others
-
-
-def _excess(roughness: float) -> float:
-    """Light beyond all that the Conty-Kulla sheen returns, times cos(theta_o), at most."""
-    mu = np.linspace(1e-3, 1.0, COSINES)
-    return float((mu * (conty_kulla_albedo_dir(mu, roughness) - 1.0)).max().clip(0.0))
 
 
 def _any(
@@ -132,16 +123,14 @@ def _any(
 
 
 def _lobes_tolerance(shader: Shader) -> Tolerance:
-    """Tolerance of lobes without light below the surface."""
+    """Tolerance of lobes without light below the surface: of their fits, or of images.
+
+    An image's filter works on codes, before a decoding.
+    """
     if categories(shader.document.traverseTree()) & FITTED_NODES:
         return FITTED
     if categories(inner_nodes(shader)) & FITTED_NODES:
         return SHADED
-    return _images_tolerance(shader)
-
-
-def _images_tolerance(shader: Shader) -> Tolerance:
-    """Tolerance of what a shader reads from images, whose filter works on codes before a decoding."""
     if not any(port.type == "filename" and port.value for port in shader.inputs):
         return PLAIN
     inputs = (each for each in inner_nodes(shader) if each.isA(mx.Input))

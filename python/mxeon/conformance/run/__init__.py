@@ -81,8 +81,7 @@ def check(
     refuse : callable (str)
         Called with each fault of each document that cannot be read, before any other work.
     compared : sequence of str
-        Those of `libraries` that are judged for comparison: their failures and refusals do not
-        change the verdict.
+        Those of `libraries` whose failures and refusals do not change the verdict.
 
     Returns
     -------
@@ -92,8 +91,7 @@ def check(
     Raises
     ------
     ValueError
-        If a name is unknown, a number out of its range, the run to resume another one or one of other
-        drivers, or no scheduler answers or has workers that fit.
+        If a name or number is wrong, the run to resume is another one, or no scheduler answers.
     NotRun
         If no process can start, or the cluster has no workers for too long.
     """

@@ -17,14 +17,8 @@ REFUSED = "refused"
 NO_REFERENCE = "no reference"  # whose pixels are numbers
 FROM_HOST = "as the reference's, with inputs that the host computed"
 WHOLE = "as the reference's"
-STATES = (
-    FAILED,
-    NOT_RUN,
-    REFUSED,
-    DIFFERS,
-    NO_REFERENCE,
-    PASSED,
-)  # the first decides about a document
+# The first decides about a document.
+STATES = (FAILED, NOT_RUN, REFUSED, DIFFERS, NO_REFERENCE, PASSED)
 QUOTED = re.compile(r"'[^']*/[^']*'|\"[^\"]*\"")  # names of one document in a reason
 SHARE = re.compile(r"(up to|less than) [\d.,]+ % of white ")  # which no two documents share
 KEYS = ("picture", "finite", DOCUMENT_KEY)
