@@ -7,7 +7,17 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
-from mxeon.conformance.results import DIFFERS, DIRECT, FAILED, NOT_RUN, PASSED, Result, Run, counted
+from mxeon.conformance.results import (
+    DIFFERS,
+    DIRECT,
+    FAILED,
+    NOT_RUN,
+    PASSED,
+    Result,
+    Run,
+    counted,
+    listed,
+)
 from mxeon.conformance.results.known_issues import issues_of, link
 from mxeon.conformance.run.documents import KEYS, REFUSED, causes, document_verdicts, is_refused
 from mxeon.conformance.run.survey import model_of
@@ -20,7 +30,6 @@ MANY = 20  # documents; more are counted by cause
 LOOKS = 4  # lines on the materials of one document
 FEWEST = 3  # nodes and causes on several documents, and reasons why checks did not run
 UNBOUNDED = 1e3  # errors above this are put into words
-NAMED = 3  # names in a list, before the number of the others
 AS_SPECIFIED = "looks as specified"
 
 
@@ -137,7 +146,7 @@ def _appearance(run: Run, document: str, result: Result) -> str:
     ):
         return "the picture is within tolerance, but nodes are wrong for other inputs"
     if result.measured:
-        return f"as specified, with {_listed(result.measured)} as the host computes it"
+        return f"as specified, with {listed(result.measured)} as the host computes it"
     return AS_SPECIFIED
 
 
@@ -151,11 +160,6 @@ def _title(run: Run, library: str) -> str:
 def _is_picture(result: Result, document: str) -> bool:
     name = Path(document).name
     return result.check in KEYS and result.subject.split(": ")[0] in (name, document)
-
-
-def _listed(names: Sequence[str]) -> str:
-    more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
-    return ", ".join(names[:NAMED]) + more
 
 
 WRONG, ELSEWHERE, RIGHT = range(3)
@@ -285,7 +289,7 @@ def _sentence(results: Sequence[Result]) -> str:
     subjects = list(dict.fromkeys(each.subject for each in results))
     nodes = _unique(each.partition(",")[0] for each in subjects)
     keys = ", ".join(_unique(each.check for each in results))
-    about = f"{subjects[0] if len(subjects) == 1 else _listed(nodes)} ({keys})"
+    about = f"{subjects[0] if len(subjects) == 1 else listed(nodes)} ({keys})"
     if issues := issues_of(results[0]):
         links = ", ".join(map(link, issues))
         return f"{about}: {'; '.join(issue.title for issue in issues)}: {links}"

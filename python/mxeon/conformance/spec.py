@@ -69,6 +69,14 @@ def color(name: str, *materials: ArrayLike, edges: tuple[float, ...] = (0.0, 1e-
     return Input(name, "color3", 0.0, 1.0, edges, CHANGED_COLOR, materials=materials)
 
 
+def materials(*inputs: Input) -> tuple[Values, ...]:
+    """Two materials that stand for a node in pictures."""
+    return tuple(
+        {each.name: each.materials[which] for each in inputs if len(each.materials) > which}
+        for which in (0, 1)
+    )
+
+
 def draw(rng: np.random.Generator, count: int, inputs: Iterable[Input]) -> dict[str, Array]:
     """Random values of inputs in their ranges, by name."""
     return {each.name: _drawn(rng, count, each) for each in inputs}

@@ -14,6 +14,7 @@ from mxeon.conformance.results import (
     DIFFERS,
     DIRECT,
     FAILED,
+    LIGHTS,
     NOT_RUN,
     PASSED,
     PORTRAIT,
@@ -46,12 +47,6 @@ OPEN_MATERIALS = 8  # the others wait for a click
 VISIBLE = 1e-3  # of white: about the smallest step of a display
 OPEN_ROWS = 20  # of failed checks; with more of them, each check waits for a click
 WORST_FIRST = (FAILED, NOT_RUN, DIFFERS, PASSED)
-SCENES = {
-    "side": "light from the side",
-    "front": "light from the front",
-    "back": "light from behind",
-    "furnace": "a white environment",
-}
 
 Place: TypeAlias = tuple[str, str]  # host and library
 Verdicts: TypeAlias = Mapping[tuple[str, str, str], Result]  # by subject, host and library
@@ -221,7 +216,7 @@ def _row(pictures: Sequence[Picture], tolerance: float) -> dict[str, Any]:
             note += f" at the {np.count_nonzero(one.judged):,} pixels that were compared"
         pixels = difference_pixels(values, scale)
         shown.append(_figure("difference", f"Difference, {one.library}", note, pixels))
-    scene = SCENES.get(pictures[0].scene, pictures[0].scene)
+    scene = LIGHTS.get(pictures[0].scene, pictures[0].scene)
     common = {"host": pictures[0].host, "scene": scene}
     return common | {"figures": shown, "largest": largest, "scale": scale}
 

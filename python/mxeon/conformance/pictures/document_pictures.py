@@ -25,7 +25,16 @@ from mxeon.conformance.pictures.tolerances import (
 from mxeon.conformance.reference import ExpectedPicture
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.reference.measured import HostValues
-from mxeon.conformance.results import FAILED, PASSED, Control, Picture, Place, Result, of_white
+from mxeon.conformance.results import (
+    FAILED,
+    LIGHTS,
+    PASSED,
+    Control,
+    Picture,
+    Place,
+    Result,
+    of_white,
+)
 from mxeon.conformance.tolerance import Measurement, Metric, Tolerance, absolute, scaled
 from mxeon.errors import NotRun, OutsideModel, ShaderError
 from mxeon.hosts import host_row
@@ -46,12 +55,6 @@ DEFINED_MATERIAL = (
     "a material that a nodegraph defines is not generated; see docs/upstream/material_graphs.md"
 )
 FINITE = "Every pixel is finite."
-LIGHTS = {
-    "front": "light from the front",
-    "side": "light from the side",
-    "back": "light from behind",
-    "furnace": "a white environment",
-}
 
 
 def judge_document(

@@ -24,7 +24,13 @@ VERDICTS = (PASSED, DIFFERS, FAILED, NOT_RUN)
 PORTRAIT = "portrait"
 SOURCE = "source"  # in the place of a host, for what none has to run
 SHADER_FUNCTIONS = "shader twins"  # in the place of a node, for the functions of a library
-NAMED = 3  # documents that were refused, beside the number of the others
+NAMED = 3  # names in a list, before the number of the others
+LIGHTS = {
+    "side": "light from the side",
+    "front": "light from the front",
+    "back": "light from behind",
+    "furnace": "a white environment",
+}
 NOT_PLAIN = re.compile("[^A-Za-z0-9]+")
 DIRECT = ("value", "lobe")  # the checks of a node in direct light, of which it has one
 
@@ -305,8 +311,7 @@ def summarize(
         verb = "is" if len(missing) == 1 else "are"
         sentence += f" The run is not finished: {counted(len(missing), 'item')} {verb} missing."
     if refused:
-        more = f" and {len(refused) - NAMED} more" if len(refused) > NAMED else ""
-        sentence = f"Refused and not judged: {', '.join(refused[:NAMED])}{more}. {sentence}"
+        sentence = f"Refused and not judged: {listed(refused)}. {sentence}"
     return replace(summary, verdict=verdict, sentence=sentence)
 
 
@@ -320,8 +325,8 @@ def _summarize_results(results: Sequence[Result]) -> Summary:
 
     if counts[FAILED]:
         failed = Counter(result.location for result in results if result.verdict == FAILED)
-        listed = "; ".join(f"{count} on {location}" for location, count in failed.items())
-        return summary(FAILED, f"{counts[FAILED]} of {total} failed: {listed}.")
+        places = "; ".join(f"{count} on {location}" for location, count in failed.items())
+        return summary(FAILED, f"{counts[FAILED]} of {total} failed: {places}.")
     if not counts[PASSED] + counts[DIFFERS]:
         return summary(NOT_RUN, "No check ran.")
     if counts[NOT_RUN]:
@@ -336,6 +341,16 @@ def _summarize_results(results: Sequence[Result]) -> Summary:
         )
     passed = "The check" if len(results) == 1 else f"All {len(results)} checks"
     return summary(PASSED, f"{passed} passed on {hosts}.")
+
+
+def listed(names: Sequence[str]) -> str:
+    """The first names of a list, and the number of the others.
+
+    >>> listed(["a", "b", "c", "d"])
+    'a, b, c and 1 more'
+    """
+    more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
+    return ", ".join(names[:NAMED]) + more
 
 
 def counted(count: int, noun: str) -> str:

@@ -23,6 +23,7 @@ from filelock import FileLock, Timeout
 from numpy.lib.format import header_data_from_array_1_0, write_array_header_1_0
 from numpy.typing import ArrayLike, NDArray
 
+from mxeon.conformance.results import listed
 from mxeon.conformance.results.records import ERRORS, StoredImage, images_of, make_converter
 from mxeon.conformance.run.tasks import Findings, Plan
 from mxeon.errors import InputError
@@ -32,7 +33,6 @@ FORMAT = 5
 JOURNAL = "journal/items.jsonl"
 PREVIOUS, LOCK = "journal.previous", ".journal.lock"  # beside the folder `journal`
 HALF = b"\\ud"  # begins the escape of half of a character
-LISTED = 3  # names in a message
 
 
 class Journal:
@@ -134,8 +134,8 @@ def read_journal(folder: str | os.PathLike[str]) -> tuple[Plan, dict[int, Findin
 
 def refusal(folder: str | os.PathLike[str] | None, differences: Sequence[str]) -> str:
     """The reason for not resuming the run in a folder: one line that lists what differs."""
-    listed = _listed(differences)
-    return f"{folder}: --resume needs the same run, or another --report folder; changed: {listed}"
+    changed = listed(differences)
+    return f"{folder}: --resume needs the same run, or another --report folder; changed: {changed}"
 
 
 def _read(folder: Path) -> tuple[Plan, dict[int, Findings], str, int]:
@@ -222,12 +222,7 @@ def _facts(plan: Plan) -> dict[str, str]:
         for name in ("host", "library")
     )
     facts = {"mxeon": plan.version} | plan.software | plan.options
-    return facts | {"hosts": hosts, "libraries": libraries, "documents": _listed(plan.documents)}
-
-
-def _listed(names: Sequence[str]) -> str:
-    more = f" and {len(names) - LISTED} more" if len(names) > LISTED else ""
-    return ", ".join(names[:LISTED]) + more
+    return facts | {"hosts": hosts, "libraries": libraries, "documents": listed(plan.documents)}
 
 
 def _sync(folder: Path) -> None:

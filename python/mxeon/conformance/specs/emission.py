@@ -30,6 +30,7 @@ from mxeon.conformance.spec import (
     broadcast_inputs,
     color,
     draw,
+    materials,
     row_candidates,
 )
 from mxeon.conformance.tolerance import Term, Tolerance, roundings, sum_of
@@ -126,11 +127,7 @@ class EmissionSpec(ValueSpec):
 
     @property
     def materials(self) -> tuple[Values, ...]:
-        """Two materials that stand for the node in pictures."""
-        return tuple(
-            {each.name: each.materials[which] for each in self.drawn if len(each.materials) > which}
-            for which in (0, 1)
-        )
+        return materials(*self.drawn)
 
     def document(self, inputs: Values | None = None) -> str:
         return document_text(self.emission_text(inputs) + EMITTING_TEXT, "look")

@@ -28,6 +28,7 @@ from mxeon.conformance.spec import (
     color,
     draw,
     draw_edges,
+    materials,
     row_candidates,
 )
 from mxeon.conformance.tolerance import Term, Tolerance, absolute, roundings, sum_of
@@ -105,12 +106,7 @@ class PbrSpec(LobeSpec):
 
     @property
     def materials(self) -> tuple[Values, ...]:
-        """Two materials that stand for the node in pictures."""
-        rows = (WEIGHT, *self.drawn)
-        return tuple(
-            {each.name: each.materials[which] for each in rows if len(each.materials) > which}
-            for which in (0, 1)
-        )
+        return materials(WEIGHT, *self.drawn)
 
     @property
     def black(self) -> Values:
