@@ -49,12 +49,11 @@ SHADED = PbrNode(
     RANGES: {'    **_each("u reflectivity': '    "shade": _SHARE,\n'},
     SPEC: {
         "": """from mxeon.conformance.spec import Input
-from mxeon.conformance.specs.burley import ERRORS, FlatSpec
-from mxeon.conformance.specs.lobes import COLOR, NORMAL, WEIGHT
+from mxeon.conformance.specs.lobes import COLOR, FLAT_ERRORS, NORMAL, WEIGHT, FlatSpec
 from mxeon.models.nodes import node
 
 SHADE = Input("shade", edges=(0.0, 1.0), change=0.5)
-SHADED = FlatSpec.of(node("shaded"), (WEIGHT, COLOR, SHADE, NORMAL), ERRORS)
+SHADED = FlatSpec.of(node("shaded"), (WEIGHT, COLOR, SHADE, NORMAL), FLAT_ERRORS)
 """
     },
     SPECS: {

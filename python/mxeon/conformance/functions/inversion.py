@@ -12,8 +12,8 @@ from functools import cached_property
 
 import numpy as np
 
+from mxeon.conformance.check import judge
 from mxeon.conformance.diagnosis.candidates import SAME, Diagnosis, sentence
-from mxeon.conformance.diagnosis.verdicts import judge
 from mxeon.conformance.functions.shader_functions import POINTS
 from mxeon.conformance.results import Place, Result
 from mxeon.conformance.samples import SEED, Array, float32

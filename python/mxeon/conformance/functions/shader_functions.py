@@ -14,8 +14,8 @@ from itertools import product
 
 import numpy as np
 
+from mxeon.conformance.check import judge, not_measured
 from mxeon.conformance.diagnosis.candidates import Diagnosis
-from mxeon.conformance.diagnosis.verdicts import judge, not_measured
 from mxeon.conformance.engine import TURN
 from mxeon.conformance.results import SHADER_FUNCTIONS, Place, Result
 from mxeon.conformance.samples import GRAZING, SEED, Array, directions, float32

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 import mxeon
 from mxeon.conformance.backends import picture_pairs
+from mxeon.conformance.check import judge, not_measured
 from mxeon.conformance.diagnosis.candidates import Diagnosis
-from mxeon.conformance.diagnosis.verdicts import judge, not_measured
 from mxeon.conformance.pictures.tolerances import (
     RELATIVE,
     categories,

@@ -2,11 +2,11 @@
 """All nodes that are judged, a family a file."""
 
 from mxeon.conformance.spec import Spec
-from mxeon.conformance.specs.burley import BURLEY, TRANSLUCENT
 from mxeon.conformance.specs.combinations import COMBINED_SPECS
 from mxeon.conformance.specs.diffuse import DIFFUSE, SURFACE_LOBES
 from mxeon.conformance.specs.emission import ABSENT, EMISSION_SPECS, EMITTING_SURFACES
 from mxeon.conformance.specs.hair import HAIR
+from mxeon.conformance.specs.lobes import BURLEY, TRANSLUCENT
 from mxeon.conformance.specs.media import MEDIUM_SPECS
 from mxeon.conformance.specs.microfacets import FACET_SPECS, TRANSMISSION_SPECS
 from mxeon.conformance.specs.sheen import CONTY_KULLA, ZELTNER

@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from mxeon.conformance.samples import (
+    LEAST_SHEEN,
     SEED,
     TURNED,
     Array,
@@ -32,6 +33,7 @@ from mxeon.conformance.spec import (
     row_candidates,
 )
 from mxeon.conformance.tolerance import Term, Tolerance, absolute, roundings, sum_of
+from mxeon.models.nodes import node
 from mxeon.models.nodes.node import Inputs, PbrNode, Scattering
 from mxeon.shaders.nodes import input_types, material_text
 
@@ -39,6 +41,10 @@ COUNTS = Counts(pairs=1 << 12, few=1 << 10, diagnosed=1 << 11)
 LEAST_VIEW = 0.02  # cosine of the views whose values are integrated
 # Weights and normals are not drawn: samples have weights of their own, and frames.
 WEIGHT = Input("weight", change=0.5, materials=(1.0, 0.5))
+# Of lobes that are no microfacets.
+ROUGHNESS = Input(
+    "roughness", low=LEAST_SHEEN, edges=(0.01, 0.05, 1.0), change=0.3, materials=(0.8, 0.4)
+)
 COLOR = color("color", (0.2, 0.5, 0.8), (0.8, 0.4, 0.1))
 NORMAL = Input("normal", "vector3", change=(0.0, 0.6, 0.8))
 
@@ -244,3 +250,20 @@ class PbrSpec(LobeSpec):
 def _albedo(albedo: Callable[[Array, Inputs], Array], batch: Batch) -> Array:
     """A directional albedo with weight, (N, 3)."""
     return batch.strength * albedo(batch.wo, broadcast_inputs(batch))
+
+
+# 17 in each factor of Burley's, ten of them in the cosine of the half vector, and seven in the products.
+BURLEY_VALUE = sum_of(
+    roundings(2 * 17 + 7, "of the value or 1: 17 in each factor, 7 in the products")
+)
+FLAT_ERRORS = lobe_errors(BURLEY_VALUE, CLOSED_ALBEDO, FLAT_FRAME, quadrature=1e-8)
+
+
+class FlatSpec(PbrSpec):
+    """A lobe without a peak."""
+
+    flat = True
+
+
+BURLEY = FlatSpec.of(node("burley"), (WEIGHT, COLOR, ROUGHNESS, NORMAL), FLAT_ERRORS)
+TRANSLUCENT = FlatSpec.of(node("translucent"), (WEIGHT, COLOR, NORMAL), FLAT_ERRORS)

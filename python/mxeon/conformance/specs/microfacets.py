@@ -21,8 +21,7 @@ from mxeon.conformance.samples import (
     rounded,
 )
 from mxeon.conformance.spec import Input, color
-from mxeon.conformance.specs.burley import VALUE as BURLEY_VALUE
-from mxeon.conformance.specs.lobes import NORMAL, WEIGHT, PbrSpec, lobe_errors
+from mxeon.conformance.specs.lobes import BURLEY_VALUE, NORMAL, WEIGHT, PbrSpec, lobe_errors
 from mxeon.conformance.specs.sheen import FIT_COSINE
 from mxeon.conformance.tolerance import Term, Tolerance, absolute, given, largest, roundings, sum_of
 from mxeon.models.nodes.microfacets import MICROFACET_NODES

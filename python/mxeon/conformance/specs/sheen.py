@@ -8,12 +8,12 @@ import numpy as np
 
 from mxeon.conformance.engine import COUNT, POWER
 from mxeon.conformance.samples import LEAST_SHEEN, SEED, float32
-from mxeon.conformance.spec import Input
 from mxeon.conformance.specs.lobes import (
     CLOSED_ALBEDO,
     COLOR,
     FLAT_FRAME,
     NORMAL,
+    ROUGHNESS,
     WEIGHT,
     PbrSpec,
     lobe_errors,
@@ -22,9 +22,6 @@ from mxeon.conformance.tolerance import ROUNDING, Term, Tolerance, absolute, rou
 from mxeon.hosts.base import Host
 from mxeon.models.nodes import node
 
-ROUGHNESS = Input(
-    "roughness", low=LEAST_SHEEN, edges=(0.01, 0.05, 1.0), change=0.3, materials=(0.8, 0.4)
-)
 INPUTS = (WEIGHT, COLOR, ROUGHNESS, NORMAL)
 FIT_COSINE = 1e-4  # least cosine of the domain of the fits
 EXPONENT = 1.0 / LEAST_SHEEN  # largest of a sine

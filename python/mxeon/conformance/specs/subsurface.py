@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from mxeon.conformance.samples import Array, Batch, Candidate, Counts, Values
 from mxeon.conformance.spec import ZERO, Input, broadcast_inputs
-from mxeon.conformance.specs.burley import ERRORS, FlatSpec
-from mxeon.conformance.specs.lobes import COLOR, NORMAL, WEIGHT
+from mxeon.conformance.specs.lobes import COLOR, FLAT_ERRORS, NORMAL, WEIGHT, FlatSpec
 from mxeon.conformance.tolerance import given, mean_error
 from mxeon.models.media.subsurface import FAR, blur_to
 from mxeon.models.nodes.subsurface import SUBSURFACE_NODE, circle_blur
@@ -69,7 +68,7 @@ def _blurred(batch: Batch) -> Array:
 SUBSURFACE = SubsurfaceSpec.of(
     SUBSURFACE_NODE,
     (WEIGHT, COLOR, Input("radius", "color3", high=2.0), NORMAL),
-    {**ERRORS, "sphere": RINGS, "sphere_mean": RINGS_MEAN},
+    {**FLAT_ERRORS, "sphere": RINGS, "sphere_mean": RINGS_MEAN},
 )
 
 
