@@ -21,7 +21,11 @@ def to_junit(run: Run) -> str:
     root = ElementTree.Element("testsuites", name="mxeon")
     for name in dict.fromkeys(result.location for result in run.results):
         results = [_counted(run, result) for result in run.results if result.location == name]
-        suite = ElementTree.SubElement(root, "testsuite", {"name": _xml(name)} | _totals(results))
+        counts = summarize(results).counts
+        totals = {"tests": len(results), "failures": counts[FAILED], "errors": 0}
+        totals["skipped"] = counts[NOT_RUN]
+        words = {key: str(value) for key, value in totals.items()}
+        suite = ElementTree.SubElement(root, "testsuite", {"name": _xml(name)} | words)
         properties = ElementTree.SubElement(suite, "properties")
         for key, value in _properties(run, results[0].host).items():
             ElementTree.SubElement(properties, "property", name=_xml(key), value=_xml(value))
@@ -51,13 +55,6 @@ def _add_errors(root: ElementTree.Element, refused: Mapping[str, Sequence[str]])
         case = ElementTree.SubElement(suite, "testcase", named)
         first = ElementTree.SubElement(case, "error", type="refused", message=_xml(lines[0]))
         first.text = _xml("\n".join(lines))
-
-
-def _totals(results: Sequence[Result]) -> dict[str, str]:
-    counts = summarize(results).counts
-    totals = {"tests": len(results), "failures": counts[FAILED], "errors": 0}
-    totals["skipped"] = counts[NOT_RUN]
-    return {key: str(value) for key, value in totals.items()}
 
 
 def _properties(run: Run, host: str) -> dict[str, str]:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mxeon.conformance.backends import WHITE
-from mxeon.conformance.case import Case, edge_values
+from mxeon.conformance.case import Case
 from mxeon.conformance.check import (
     check,
     control,
@@ -18,6 +18,7 @@ from mxeon.conformance.check import (
     with_inputs,
     with_values,
 )
+from mxeon.conformance.checks.lobes import finite
 from mxeon.conformance.diagnosis import inputs as input_diagnosis
 from mxeon.conformance.diagnosis.candidates import NEAR, Diagnosis
 from mxeon.conformance.diagnosis.comparisons import ALBEDO, THROUGHPUT, VALUE
@@ -34,7 +35,7 @@ from mxeon.conformance.specs.thin_films import (
     FilmSum,
     film_views,
 )
-from mxeon.conformance.tolerance import Compared, Measurement, count_not_finite, count_of
+from mxeon.conformance.tolerance import Compared, count_of
 from mxeon.models.microfacet.ggx_formulas import smith_lambda
 
 Function = Callable[[Batch], Array]
@@ -298,7 +299,7 @@ check(
 )(THROUGHPUT)
 
 
-@check(
+check(
     "film_finite",
     "Every value under a film is finite at the edges of the domain.",
     is_film,
@@ -306,10 +307,7 @@ check(
     tolerance=count_of("values"),
     lit=True,
     diagnose=input_diagnosis.diagnose_finite,
-)
-def film_finite(case: Case) -> Measurement:
-    batch, found, _ = edge_values(case)
-    return count_not_finite(batch, found)
+)(finite)
 
 
 def diagnose_average(case: Case) -> Diagnosis:

@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from mxeon.conformance.case import Case, dead_inputs
+from mxeon.conformance.case import Case
 from mxeon.conformance.check import check, drop_changes, no_number, of_family, shifted
+from mxeon.conformance.checks.lobes import inputs
 from mxeon.conformance.diagnosis import inputs as input_diagnosis
 from mxeon.conformance.diagnosis.candidates import Diagnosis, explain
 from mxeon.conformance.samples import Array, Batch, Candidate
@@ -15,7 +16,6 @@ from mxeon.conformance.specs.utilities import UtilitySpec
 from mxeon.conformance.tolerance import (
     Compared,
     Measurement,
-    count_named,
     count_not_finite,
     count_of,
 )
@@ -72,16 +72,14 @@ def round_trip(case: Case) -> Iterator[Compared]:
         yield Compared(batch, reflectance, asked)
 
 
-@check(
+check(
     "output_inputs",
     "Every input of the utility node changes the outputs that depend on it.",
     is_utility,
     drop_changes,
     tolerance=count_of("inputs"),
     diagnose=input_diagnosis.diagnose_inputs,
-)
-def output_inputs(case: Case) -> Measurement:
-    return count_named(dead_inputs(case))
+)(inputs)
 
 
 def explained_finite(case: Case) -> Diagnosis:

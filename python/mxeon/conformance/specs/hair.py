@@ -20,7 +20,7 @@ from mxeon.conformance.samples import (
 )
 from mxeon.conformance.spec import Input, broadcast_inputs, color
 from mxeon.conformance.specs.lobes import NORMAL, PbrSpec, lobe_errors
-from mxeon.conformance.tolerance import Term, absolute, rounded_up, roundings, sum_of
+from mxeon.conformance.tolerance import Term, absolute, roundings, sum_of
 from mxeon.models.hair import ROUGHNESSES, TINTS, chiang_hair_attenuation
 from mxeon.models.hair.defects import BESSEL, CLAMPED, UNIFORM
 from mxeon.models.hair.formulas import SCALE, section
@@ -74,10 +74,6 @@ def lobe_terms(variance: float, scale: float, angle: float = ANGLE) -> tuple[Ter
         f"{angle} of an angle, times the slope of the logarithm for v {variance:g} and s {scale:g}"
     )
     return roundings(slope * angle, f"({words})"), roundings(CHAIN)
-
-
-def error_of(variance: float, scale: float) -> float:
-    return rounded_up(sum(term.value for term in lobe_terms(variance, scale)))
 
 
 VALUE = sum_of(*lobe_terms(LEAST_VARIANCE, LEAST_SCALE), unit=UNIT)
