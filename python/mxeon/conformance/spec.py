@@ -8,7 +8,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
-from typing import ClassVar, Protocol, TypeVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -36,7 +36,6 @@ from mxeon.conformance.samples import (
 )
 from mxeon.conformance.tolerance import Term, Tolerance
 from mxeon.hosts.base import Host
-from mxeon.models.nodes.node import Function, Variant
 
 COMPONENTS = {"float": (), "vector2": (2,), "vector3": (3,), "color3": (3,)}  # shape by type
 CHANGED_COLOR = (0.9, 0.1, 0.6)
@@ -119,7 +118,6 @@ def broadcast_inputs(batch: Batch) -> dict[str, Array]:
 
 USUAL = Counts()
 ZERO = Candidate("zero", lambda batch: np.zeros((len(batch.wo), 3)))
-F = TypeVar("F")  # a function of a model
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -282,25 +280,30 @@ class LobeSpec(ValueSpec):
         return Batch(wo, wi * [1.0, 1.0, self.side], inputs_and_weights)
 
 
-class NodeRow(Protocol[Function]):
-    """A row of `mxeon.models.nodes`; see `mxeon.models.nodes.node.Node`."""
+class RowSpec(ValueSpec):
+    """A node whose functions are those of a row of `mxeon.models.nodes`."""
+
+    row: Any
+
+    @abstractmethod
+    def values(self, function: Any, batch: Batch) -> Array:
+        """Values of a function of the row, (N, 3)."""
+
+    def value(self, batch: Batch) -> Array:
+        return self.values(self.row.value, batch)
 
     @property
-    def title(self) -> str: ...
-    @property
-    def value(self) -> Function: ...
-    @property
-    def variants(self) -> tuple[Variant[Function], ...]: ...
+    def others(self) -> tuple[Candidate, ...]:
+        """What else may explain the values."""
+        return ()
 
-
-def row_candidates(
-    row: NodeRow[F], values: Callable[[F, Batch], Array], *others: Candidate
-) -> tuple[Candidate, ...]:
-    """The functions of a row: its own, its variants, and others."""
-    functions = ((row.title, row.value, False),) + tuple(
-        (each.title, each.value, each.permitted) for each in row.variants if each.value
-    )
-    return (
-        *(Candidate(title, partial(values, each), open) for title, each, open in functions),
-        *others,
-    )
+    @property
+    def value_candidates(self) -> tuple[Candidate, ...]:
+        """The functions of the row: its own and its variants; and others."""
+        own = Candidate(self.row.title, self.value)
+        variants = (
+            Candidate(each.title, partial(self.values, each.value), each.permitted)
+            for each in self.row.variants
+            if each.value
+        )
+        return (own, *variants, *self.others)

@@ -34,7 +34,7 @@ from mxeon.conformance.run.tasks import (
     Task,
 )
 from mxeon.conformance.specs import ALL
-from mxeon.conformance.text import check_definitions, check_texts
+from mxeon.conformance.text.checks import check_definitions, check_texts
 from mxeon.errors import DocumentError, ImageError, InterfaceError, NotRun, ShaderError
 from mxeon.hosts import open_engine
 from mxeon.hosts.base import Engine, Host

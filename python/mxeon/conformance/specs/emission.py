@@ -25,13 +25,13 @@ from mxeon.conformance.spec import (
     COMPONENTS,
     ZERO,
     Input,
+    RowSpec,
     Spec,
     ValueSpec,
     broadcast_inputs,
     color,
     draw,
     materials,
-    row_candidates,
 )
 from mxeon.conformance.tolerance import Term, Tolerance, roundings, sum_of
 from mxeon.hosts.base import Host
@@ -117,7 +117,7 @@ def power_error(host: Host) -> float:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class EmissionSpec(ValueSpec):
+class EmissionSpec(RowSpec):
     """A row of `mxeon.models.nodes.emissions`."""
 
     row: Emission
@@ -161,15 +161,12 @@ class EmissionSpec(ValueSpec):
         """Radiance, (N, 3), of views whose cosines do not exceed 1 by a rounding."""
         return function(np.clip(batch.wo, -1.0, 1.0), broadcast_inputs(batch))
 
-    def value(self, batch: Batch) -> Array:
-        return self.values(self.row.value, batch)
-
     def exitance(self, batch: Batch) -> Array:
         return self.row.exitance(broadcast_inputs(batch))
 
     @property
-    def value_candidates(self) -> tuple[Candidate, ...]:
-        return row_candidates(self.row, self.values, ZERO)
+    def others(self) -> tuple[Candidate, ...]:
+        return (ZERO,)
 
     def engine(self, quantity: str, host: Host) -> tuple[Term, ...]:
         if self.row.name != "schlick_emission" or quantity not in ("value", "integral"):

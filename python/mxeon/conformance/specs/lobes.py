@@ -25,12 +25,12 @@ from mxeon.conformance.spec import (
     ZERO,
     Input,
     LobeSpec,
+    RowSpec,
     broadcast_inputs,
     color,
     draw,
     draw_edges,
     materials,
-    row_candidates,
 )
 from mxeon.conformance.tolerance import Term, Tolerance, absolute, roundings, sum_of
 from mxeon.models.nodes import node
@@ -88,7 +88,7 @@ def lobe_errors(
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class PbrSpec(LobeSpec):
+class PbrSpec(RowSpec, LobeSpec):
     """A mode of a BSDF node: a row of `mxeon.models.nodes`."""
 
     row: PbrNode
@@ -148,9 +148,6 @@ class PbrSpec(LobeSpec):
         lit = np.where(side < 0.0, 0.0, np.clip(np.abs(wi[:, 2:]), 0.0, 1.0))
         return np.asarray(np.pi * function(batch.wo, wi, broadcast_inputs(batch)) * lit * factor)
 
-    def value(self, batch: Batch) -> Array:
-        return self.values(self.row.value, batch)
-
     def albedo(self, batch: Batch) -> Array:
         return _albedo(self.row.albedo, batch)
 
@@ -160,10 +157,6 @@ class PbrSpec(LobeSpec):
 
     def sky(self, batch: Batch) -> Array:
         return sky(self.side * batch.normal)
-
-    @property
-    def value_candidates(self) -> tuple[Candidate, ...]:
-        return row_candidates(self.row, self.values, *self.others)
 
     @property
     def others(self) -> tuple[Candidate, ...]:

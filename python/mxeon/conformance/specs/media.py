@@ -11,7 +11,6 @@ from mxeon.conformance.samples import (
     SEED,
     Array,
     Batch,
-    Candidate,
     Counts,
     Values,
     directions,
@@ -20,11 +19,10 @@ from mxeon.conformance.samples import (
 from mxeon.conformance.spec import (
     COMPONENTS,
     Input,
-    ValueSpec,
+    RowSpec,
     broadcast_inputs,
     color,
     draw,
-    row_candidates,
 )
 from mxeon.conformance.specs.emission import power_error
 from mxeon.conformance.tolerance import Term, roundings, sum_of
@@ -53,7 +51,7 @@ PORTS = connection_text("top", "BSDF", "top") + connection_text("base", "VDF", "
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class MediumSpec(ValueSpec):
+class MediumSpec(RowSpec):
     """A row of `mxeon.models.nodes.media`."""
 
     row: Medium
@@ -101,13 +99,6 @@ class MediumSpec(ValueSpec):
 
     def values(self, function: Value, batch: Batch) -> Array:
         return np.asarray(function(broadcast_inputs(batch)))
-
-    def value(self, batch: Batch) -> Array:
-        return self.values(self.row.value, batch)
-
-    @property
-    def value_candidates(self) -> tuple[Candidate, ...]:
-        return row_candidates(self.row, self.values)
 
     def engine(self, quantity: str, host: Host) -> tuple[Term, ...]:
         if quantity != "value":

@@ -17,13 +17,12 @@ from mxeon.conformance.samples import (
     SEED,
     Array,
     Batch,
-    Candidate,
     Changes,
     Counts,
     Values,
     float32,
 )
-from mxeon.conformance.spec import COMPONENTS, Input, ValueSpec, draw, draw_edges, row_candidates
+from mxeon.conformance.spec import COMPONENTS, Input, RowSpec, draw, draw_edges
 from mxeon.conformance.tolerance import Term, Tolerance, absolute, given, roundings, scaled, sum_of
 from mxeon.hosts.base import Host
 from mxeon.hosts.calls import GRAPH
@@ -145,7 +144,7 @@ ENGINE: Mapping[str, tuple[float, Callable[[Host], float], str]] = {
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class UtilitySpec(ValueSpec):
+class UtilitySpec(RowSpec):
     """An output of a node of `mxeon.models.nodes.utilities`."""
 
     row: UtilityNode
@@ -216,13 +215,6 @@ class UtilitySpec(ValueSpec):
         color = np.zeros((len(batch.wo), 3))
         color[:, : output.shape[-1]] = output
         return color
-
-    def value(self, batch: Batch) -> Array:
-        return self.values(self.row.value, batch)
-
-    @property
-    def value_candidates(self) -> tuple[Candidate, ...]:
-        return row_candidates(self.row, self.values)
 
     @property
     def unit(self) -> Callable[[Array, Batch], Array]:
