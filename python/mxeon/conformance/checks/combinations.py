@@ -62,7 +62,6 @@ def passing(case: Case) -> Iterator[Compared]:
     diagnose=lambda case: Diagnosis("the factor is not clamped", permitted=True),
 )
 def factors(case: Case) -> Iterator[Compared]:
-    """Values and throughputs with factors beyond [0, 1], against those of the nearest end."""
     for batch, (factor, end) in product(case.few, ((2.0, 1.0), (-1.0, 0.0))):
         beyond, nearest = (
             batch.altered(**{FACTOR: np.full_like(batch.inputs[FACTOR], number)})

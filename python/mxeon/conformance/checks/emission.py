@@ -49,7 +49,6 @@ unimplemented = Control(
     ),
 )
 def implemented(case: Case) -> Measurement:
-    """Number of documents, one, that the target has no implementation for."""
     shader = implementation(case.host, case.spec.document(), case.library)
     return Measurement(float(shader is None), {})
 
@@ -89,7 +88,6 @@ def back(case: Case) -> Iterator[Compared]:
     diagnose=RADIANCE.diagnose,
 )
 def exitance(case: Case) -> Compared:
-    """Exitance over pi, integrated from the host's radiance, against its closed form."""
     spec = case.of(EmissionSpec)
     views, measured = summed(case, *case.samples.take(spec.integrated))
     return Compared(views, measured, spec.exitance(views) / np.pi)

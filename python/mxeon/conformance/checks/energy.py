@@ -91,7 +91,6 @@ def _passed(case: Case, batch: Batch) -> Compared:
     diagnose=THROUGHPUT.diagnose,
 )
 def layer(case: Case) -> Compared:
-    """Light that a lobe reflects and light that it passes to a white base, against all of it."""
     views, albedo = integrals(case)
     total = albedo + case.throughput(views, "direct")
     # Where the equations gain energy by themselves, no throughput makes up for it.
@@ -108,7 +107,6 @@ def layer(case: Case) -> Compared:
     open=True,
 )
 def integral(case: Case) -> Compared:
-    """Directional albedo, integrated from the host's values, against that of the equations."""
     views, albedo = integrals(case)
     return Compared(views, albedo, case.samples.integrals)
 
@@ -121,7 +119,6 @@ def integral(case: Case) -> Compared:
     "integral",
 )
 def energy(case: Case) -> Compared:
-    """Albedos above 1, and above what the node's own equations have."""
     views, albedo = integrals(case)
     allowed = np.maximum(1.0, case.samples.integrals)
     return Compared(views, np.maximum(albedo, allowed), allowed)

@@ -150,7 +150,6 @@ check(
     "integral",
 )
 def quadrature(case: Case) -> list[Compared]:
-    """Directional albedo, integrated from the host's values, against its closed form."""
     rows = list(product((0.1, 0.3, 0.6, 0.95), COLORS, (0.25, 1.0)))
     mu, color, roughness = (np.array(column) for column in zip(*rows, strict=True))
     wo = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=1)
@@ -278,7 +277,6 @@ ON_SPHERE = with_inputs("the mean free path is 0.3 in every channel", radius=(0.
     diagnose=diagnose_sphere,
 )
 def spheres(case: Case) -> Iterator[Compared]:
-    """Points of a sphere, with the light that the profile spreads over it."""
 
     def picture(batch: Batch) -> Array:
         scene = scene_of(batch)
@@ -410,6 +408,5 @@ def inputs(case: Case) -> Measurement:
     diagnose=input_diagnosis.diagnose_finite,
 )
 def finite(case: Case) -> Measurement:
-    """The number of values that are not finite at the edges of the domain."""
     batch, found, _ = edge_values(case)
     return count_not_finite(batch, found)

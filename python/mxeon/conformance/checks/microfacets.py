@@ -54,7 +54,6 @@ def isotropic(case: Case) -> Case:
     "integral",
 )
 def lossless(case: Case) -> Compared:
-    """Albedo of a lobe that reflects all light, integrated from the host's values, against 1."""
     batch, weights = case.samples.integrated
     mirror = batch.altered(**case.of(PbrSpec).row.mirror)
     views, albedo = summed(case, mirror, weights)

@@ -73,7 +73,6 @@ check(
     diagnose=diagnose_sum,
 )
 def mean(case: Case) -> Iterator[Compared]:
-    """Direct light and albedos against those by the layer equation."""
     yield from values(case)
     yield from albedos(case)
 
@@ -88,7 +87,6 @@ def mean(case: Case) -> Iterator[Compared]:
     diagnose=diagnose_sum,
 )
 def furnace(case: Case) -> Compared:
-    """Albedo against 1 of a material that loses no light."""
     white = replace(case.samples.views[0], inputs=case.of(SurfaceShaderSpec).table.white)
     return Compared(white, case.albedo(white), np.ones((1, 3)))
 
@@ -103,7 +101,6 @@ def furnace(case: Case) -> Compared:
     diagnose=diagnose_sum,
 )
 def energy(case: Case) -> Compared:
-    """Albedos above 1 over random materials with every lobe."""
     batch = case.samples.take(case.of(SurfaceShaderSpec).materials)
     return Compared(batch, np.maximum(case.albedo(batch), 1.0), np.ones((1, 3)))
 

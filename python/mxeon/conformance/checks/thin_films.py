@@ -158,7 +158,6 @@ def _compared(case: Case) -> Batch:
     lit=True,
 )
 def film_energy(case: Case) -> list[Compared]:
-    """Values under a film, where they exceed those of a lobe that reflects all light."""
     cases = []
     for batch in case.few[::2]:  # a mirror of index 0 is another check where directions are exact
         mirror = batch.altered(thinfilm_thickness=0.0, **case.of(FilmSpec).row.mirror)
@@ -187,7 +186,6 @@ check(
     diagnose=lambda case: diagnose_average(case),
 )
 def film_average(case: Case) -> Compared:
-    """F_ss of a film, from values at two roughnesses, against that of the equations."""
     return average_case(case, film_views(case.of(FilmSpec), FRINGED))
 
 
@@ -232,7 +230,6 @@ def film_smooth(case: Case) -> Compared:
     diagnose=lambda case: diagnose_visible(case),
 )
 def film_visible(case: Case) -> Compared:
-    """A film's mean over the visible facets, from its albedo, against that of the equations."""
     return _visible_cases(case, film_views(case.of(FilmSpec), STEEP))
 
 

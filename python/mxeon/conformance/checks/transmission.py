@@ -109,7 +109,6 @@ def transmitted(case: Case) -> Iterator[Compared]:
     diagnose=diagnose_transmitted,
 )
 def clear(case: Case) -> Iterator[Compared]:
-    """Light of a uniform environment that a white lobe reflects and transmits, against all of it."""
     for batch in case.views:
         white = batch.altered(tint=(1.0, 1.0, 1.0), weight=1.0)
         yield Compared(white, case.albedo(white) + case.transmitted(white), ONE)
@@ -148,7 +147,6 @@ DENSER = with_inputs("the index is different", ior=2.5, color0=(0.5, 0.5, 0.5))
     diagnose=diagnose_transmitted,
 )
 def critical(case: Case) -> Compared:
-    """Light through smooth surfaces against 1 - F, and against none beyond the critical angle."""
     batch = _smooth(case)
     functions = case.of(TransmissionSpec).functions
     index, mu = functions.ior(batch.inputs), np.minimum(batch.wo[:, 2], 1.0)
@@ -168,7 +166,6 @@ def critical(case: Case) -> Compared:
     diagnose=unknown,
 )
 def refraction(case: Case) -> Compared:
-    """An uneven environment through smooth surfaces, over a uniform one, against its place."""
     batch, place = _looking(_smooth(case), case.of(TransmissionSpec).functions.ior)
     level = case.transmitted(batch)
     bright = level.min(axis=1) > LEAST_PASSED

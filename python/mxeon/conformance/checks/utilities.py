@@ -64,7 +64,6 @@ def output(case: Case) -> Iterator[Compared]:
     diagnose=explained,
 )
 def round_trip(case: Case) -> Iterator[Compared]:
-    """Reflectance at normal incidence of an artistic index, against the reflectivity asked for."""
     extinction = case.another(replace(case.of(UtilitySpec), output="extinction"))
     for batch in case.batches:
         reflectance = normal_reflectance(case.direct(batch), extinction.direct(batch))
