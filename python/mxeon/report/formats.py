@@ -3,14 +3,9 @@
 
 import math
 import re
-from base64 import b64encode
-from collections.abc import Callable, Generator, Mapping
-from hashlib import sha256
-from importlib.resources import files
-from typing import Any
+from collections.abc import Mapping
 
 import numpy as np
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 from numpy.typing import ArrayLike
 
@@ -35,24 +30,6 @@ UNITS = {
     "throughput": "a throughput of 1 passes all light",
     "light": "1 is all of the light",
 }
-
-
-def generate_page(
-    name: str, filters: Mapping[str, Callable[..., Any]], **values: Any
-) -> Generator[str, None, None]:
-    """Pieces of a page from its template and its script, which is the only one that it runs."""
-    environment = Environment(
-        loader=PackageLoader("mxeon.report"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters |= {"number": number, "share": share, "look": LOOKS.__getitem__, **filters}
-    template = environment.get_template(f"{name}.html.jinja")
-    script = files("mxeon.report").joinpath(f"templates/{name}.js").read_text(encoding="utf-8")
-    digest = b64encode(sha256(script.encode()).digest()).decode()
-    yield from template.generate(script=Markup(script), script_hash=digest, **values)
 
 
 def share(result: Result) -> float:

@@ -29,14 +29,19 @@ from mxeon.conformance.results import (
 from mxeon.io.images import difference_scale
 from mxeon.io.srgb import srgb_encoded
 from mxeon.report.formats import (
-    generate_page,
     linked,
     nearest,
     of_white,
     unit_meaning,
     vector,
 )
-from mxeon.report.plots import albedo_plot, difference_gradient, difference_pixels, picture_uri
+from mxeon.report.plots import (
+    albedo_plot,
+    difference_gradient,
+    difference_pixels,
+    generate_page,
+    picture_uri,
+)
 from mxeon.report.threads import in_threads
 
 # Markers of hosts in plots, in order: matplotlib's name, and the character that looks like it.

@@ -1,13 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Images and plots inside a page. Needs matplotlib, of the `report` extra."""
+"""Pages from templates, and images and plots inside them. Needs the `report` extra."""
 
 import base64
 import io
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
+from hashlib import sha256
+from importlib.resources import files
+from typing import Any
 
 import matplotlib
 import numpy as np
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
 from matplotlib import style
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
@@ -16,6 +21,7 @@ from PIL import Image
 from mxeon.conformance.results import AlbedoCurve
 from mxeon.io.srgb import NOT_FINITE
 from mxeon.models.lobe_plot import CHANNEL_COLORS
+from mxeon.report.formats import LOOKS, number, share
 
 # Larger pictures are shown by every second, third, ... pixel; the files hold them all.
 SHOWN_SIZE = 256
@@ -43,6 +49,24 @@ STYLE = {
     "grid.alpha": 0.12,
     "grid.linewidth": 0.6,
 }
+
+
+def generate_page(
+    name: str, filters: Mapping[str, Callable[..., Any]], **values: Any
+) -> Generator[str, None, None]:
+    """Pieces of a page from its template and its script, which is the only one that it runs."""
+    environment = Environment(
+        loader=PackageLoader("mxeon.report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {"number": number, "share": share, "look": LOOKS.__getitem__, **filters}
+    template = environment.get_template(f"{name}.html.jinja")
+    script = files("mxeon.report").joinpath(f"templates/{name}.js").read_text(encoding="utf-8")
+    digest = base64.b64encode(sha256(script.encode()).digest()).decode()
+    yield from template.generate(script=Markup(script), script_hash=digest, **values)
 
 
 def picture_uri(pixels: NDArray[np.uint8]) -> str:

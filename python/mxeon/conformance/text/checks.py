@@ -59,10 +59,27 @@ CLAIMS = {
 def check_texts(subjects: Iterable[DiffuseSpec], library: str) -> tuple[Result, ...]:
     """Results of all checks of generated text and of functions for the nodes of a library."""
     subjects = tuple(subjects)
+    results = [
+        _judged(
+            "closure", f"{each.title}, {target}", library, _closure_faults, each, target, library
+        )
+        for each in subjects
+        for target in FUNCTIONS
+    ]
+    if all(has_functions(library, language) for language in LANGUAGES):
+        glsl, osl = (COMMENT.sub(" ", twins(language, library)) for language in LANGUAGES)
+        texts = glsl, osl, re.sub(r"\b\d+\.\d+\b", "777.0", osl, count=1)
+        title, parts = "shader twins, osl", map(_parts, texts)
+        results.append(_judged("languages", title, library, _language_faults, *parts))
     return (
-        *check_closures(subjects, library),
-        *check_languages(library),
-        *check_calls((*subjects, *PLAIN_LOBES), library),
+        *results,
+        *(
+            _judged("source", f"{each.title}, {target}", library, _dropped, each, target, library)
+            for each in (*subjects, *PLAIN_LOBES)
+            for target in TARGETS
+            # Of MDL's rough diffuse nodes the check of closures compares every argument.
+            if target in TEXT_ONLY and (target != "mdl" or isinstance(each, PbrSpec))
+        ),
     )
 
 
@@ -176,18 +193,6 @@ def _plain(text: str) -> tuple[object, ...]:
 GLSL_WORDS = {"color": "vec3", "vector": "vec3", "output": "out", "atan2": "atan"}
 
 
-def check_languages(library: str) -> tuple[Result, ...]:
-    """The result for a library that brings shader functions in both languages."""
-    if not all(has_functions(library, language) for language in LANGUAGES):
-        return ()
-
-    glsl, osl = (COMMENT.sub(" ", twins(language, library)) for language in LANGUAGES)
-    texts = glsl, osl, re.sub(r"\b\d+\.\d+\b", "777.0", osl, count=1)
-    return (
-        _judged("languages", "shader twins, osl", library, _language_faults, *map(_parts, texts)),
-    )
-
-
 def _language_faults(glsl: Parts, *osl: Parts) -> tuple[list[str], int]:
     found, control = (
         [name for name in glsl | each if glsl.get(name) != each.get(name)] for each in osl
@@ -237,17 +242,6 @@ def _expression(text: str) -> str:
 def _evaluated(expression: str, inputs: Inputs, functions: Mapping[str, Any]) -> Any:
     variables = {f"lobe_{name}": value for name, value in inputs.items()}
     return evaluate(expression, {"closureData": (), **variables, **functions})
-
-
-def check_calls(subjects: Iterable[DiffuseSpec | PbrSpec], library: str) -> tuple[Result, ...]:
-    """Results for every subject and target that no host runs."""
-    return tuple(
-        _judged("source", f"{each.title}, {target}", library, _dropped, each, target, library)
-        for each in subjects
-        for target in TARGETS
-        # Of MDL's rough diffuse nodes the check of closures compares every argument.
-        if target in TEXT_ONLY and (target != "mdl" or isinstance(each, PbrSpec))
-    )
 
 
 def _dropped(subject: DiffuseSpec | PbrSpec, target: str, library: str) -> tuple[list[str], int]:
@@ -344,16 +338,6 @@ FUNCTIONS: Mapping[str, Mapping[str, Any]] = {
         ),
     },
 }
-
-
-def check_closures(subjects: Iterable[DiffuseSpec], library: str) -> tuple[Result, ...]:
-    return tuple(
-        _judged(
-            "closure", f"{each.title}, {target}", library, _closure_faults, each, target, library
-        )
-        for each in subjects
-        for target in FUNCTIONS
-    )
 
 
 def _closure_faults(subject: DiffuseSpec, target: str, library: str) -> tuple[list[str], int]:
