@@ -282,6 +282,7 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, 
     filters |= {"title": title_of, "worst": worst}
     with in_threads(partial(material, verdicts), shown) as drawn:
         yield from generate_page(
+            "mxeon.report",
             "report",
             filters,
             run=run,

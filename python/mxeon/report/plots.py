@@ -11,7 +11,7 @@ from typing import Any
 
 import matplotlib
 import numpy as np
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 from matplotlib import style
 from matplotlib.figure import Figure
@@ -52,11 +52,11 @@ STYLE = {
 
 
 def generate_page(
-    name: str, filters: Mapping[str, Callable[..., Any]], **values: Any
+    package: str, name: str, filters: Mapping[str, Callable[..., Any]], **values: Any
 ) -> Generator[str, None, None]:
-    """Pieces of a page from its template and its script, which is the only one that it runs."""
+    """Pieces of a page from a package's template and script, which is the only one that it runs."""
     environment = Environment(
-        loader=PackageLoader("mxeon.report"),
+        loader=ChoiceLoader([PackageLoader(package), PackageLoader("mxeon.report")]),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
@@ -64,7 +64,7 @@ def generate_page(
     )
     environment.filters |= {"number": number, "share": share, "look": LOOKS.__getitem__, **filters}
     template = environment.get_template(f"{name}.html.jinja")
-    script = files("mxeon.report").joinpath(f"templates/{name}.js").read_text(encoding="utf-8")
+    script = files(package).joinpath(f"templates/{name}.js").read_text(encoding="utf-8")
     digest = base64.b64encode(sha256(script.encode()).digest()).decode()
     yield from template.generate(script=Markup(script), script_hash=digest, **values)
 

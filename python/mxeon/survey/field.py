@@ -133,14 +133,9 @@ def _entries(report: Report, folder: Path) -> Iterator[Entry]:
             portraits = {each.scene: each for each in _portraits(report, place, folder)}
             cells = _cells(results, direct, portraits.get(BACK))
             pages = tuple(dict.fromkeys(page for each in results.values() for page in each.pages))
-            names = (*place, *_identity(report, direct.host), claimed, direct.model)
+            hosts = {each.name: (each.version, each.device) for each in report.hosts}
+            names = (*place, *hosts.get(direct.host, ("", "")), claimed, direct.model)
             yield Entry(*names, cells, pages, portraits)
-
-
-def _identity(report: Report, host: str) -> tuple[str, str]:
-    """Version and device of a host; "" where it did not run."""
-    found = {each.name: (each.version, each.device) for each in report.hosts}
-    return found.get(host, ("", ""))
 
 
 def claim(spec: Spec) -> str:
@@ -179,17 +174,8 @@ def _back_lit(direct: Result, error: float) -> Result:
     allowed = direct.tolerance or 0.0
     verdict = PASSED if error <= allowed else FAILED
     claim = "Light from behind, at the points of a sphere."
-    return Result(
-        PORTRAIT,
-        claim,
-        direct.subject,
-        direct.host,
-        direct.library,
-        verdict,
-        error,
-        direct.unit,
-        allowed,
-    )
+    place = PORTRAIT, claim, direct.subject, direct.host, direct.library
+    return Result(*place, verdict, error, direct.unit, allowed)
 
 
 def write_field(entries: Sequence[Entry], file: str | PathLike[str], pages: str = "") -> Path:

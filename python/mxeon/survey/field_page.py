@@ -2,23 +2,19 @@
 """The page of the field, one self-contained HTML file. Needs the `report` extra."""
 
 import math
-from base64 import b64encode
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from hashlib import sha256
-from importlib.resources import files
 from typing import Any
 
 import numpy as np
-from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 import mxeon
 from mxeon.conformance.results import Result
 from mxeon.io.images import difference, difference_scale, read_image
 from mxeon.io.srgb import srgb_encoded
-from mxeon.report.formats import LOOKS, number, share, vector
-from mxeon.report.plots import difference_gradient, difference_pixels, picture_uri
+from mxeon.report.formats import share, vector
+from mxeon.report.plots import difference_gradient, difference_pixels, generate_page, picture_uri
 from mxeon.survey.field import CHECKS, Entry
 
 # Column -> its heading, and what it tells.
@@ -41,22 +37,13 @@ def render(entries: Sequence[Entry], pages: str = "") -> Iterator[str]:
     `pages` is the address of a page of the ledger with `{}` for its name, "" for no links. The page loads
     nothing, runs only its own script, and is complete without it. Text of the reports is escaped.
     """
-    script = files("mxeon.survey").joinpath("templates/field.js").read_text(encoding="utf-8")
-    environment = Environment(
-        loader=ChoiceLoader([PackageLoader("mxeon.survey"), PackageLoader("mxeon.report")]),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
     counts = Counter(entry.verdict for entry in entries)
-    filters = {"number": number, "share": share, "look": LOOKS.__getitem__, "breakable": breakable}
-    environment.filters |= filters
-    return environment.get_template("field.html.jinja").generate(
+    return generate_page(
+        "mxeon.survey",
+        "field",
+        {"breakable": breakable},
         version=mxeon.__version__,
         entries=entries,
-        script=Markup(script),
-        script_hash=b64encode(sha256(script.encode()).digest()).decode(),
         columns={column: HEADINGS[column] for column in CHECKS},
         claims=sorted({entry.claimed for entry in entries}),
         verdicts=tuple(counts),
