@@ -78,6 +78,14 @@ def test_the_color_of_a_noise_comes_from_the_host(host, tmp_path):
     assert np.ptp(pictures[0].reference[128]) > 0.5  # the pattern is there
 
 
+def test_a_pattern_that_no_surface_shader_is_made_of_comes_from_the_host(host, tmp_path):
+    wave = """<texcoord name="where" type="vector2"/>
+      <sin name="wave" type="vector2"><input name="in" type="vector2" nodename="where"/></sin>
+      <convert name="pattern" type="color3"><input name="in" type="vector2" nodename="wave"/></convert>"""
+    [result], _, _ = judged(host, tmp_path, document_text(wave + LOBE + SURFACE))
+    assert (result.check, result.verdict, result.measured) == ("picture", "passed", ("lobe.color",))
+
+
 def test_a_look_does_not_keep_a_value_from_being_measured(host, tmp_path):
     look = '<look name="day"><materialassign name="all" material="look1" geom="/"/></look>'
     text = document_text(NOISE + LOBE + SURFACE).replace("</materialx>", look + "</materialx>")

@@ -11,6 +11,7 @@ import MaterialX as mx
 import numpy as np
 
 from mxeon.conformance import reference
+from mxeon.conformance.reference.nodes import COMBINATIONS
 from mxeon.conformance.samples import Array, Batch, Candidate, rounded
 from mxeon.conformance.spec import ZERO
 from mxeon.conformance.specs import PLAIN_LOBES
@@ -30,7 +31,6 @@ POLES = (8.0, 35.0, 60.0, 80.0)  # degrees from the normal, of both directions
 AZIMUTHS = (0.0, 100.0, 180.0)  # between them; at 180 degrees they mirror each other
 VIEWS = (0.05, 0.2, 0.4, 0.6, 0.8, 0.98)  # cosines
 LOBES = ("BSDF", "VDF", "surfaceshader")
-COMBINATIONS = ("layer", "mix", "add", "multiply")
 FILM = "thinfilm_thickness"
 
 

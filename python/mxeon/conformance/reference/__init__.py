@@ -66,20 +66,14 @@ class Host(base.Host):
         image[mask] = _lighted(shader, _shown(scene))[0]
         return image
 
-    def expected(self, shader: Shader, scene: Scene, values: HostValues) -> ExpectedPicture:
+    def expected(
+        self, shader: Shader, scene: Scene, values: HostValues, stride: int = 1
+    ) -> ExpectedPicture:
         """What a host's picture has to show, some inputs of lobes being as that host has them.
 
-        Raise NotRun as `picture` does.
+        At every so many rows and columns, if there are too many materials for all. Raise NotRun as
+        `picture` does.
         """
-        try:
-            return self._expected(shader, scene, values, 1)
-        except ManyMaterialsError:
-            return self._expected(shader, scene, values, STRIDE)
-
-    def _expected(
-        self, shader: Shader, scene: Scene, values: HostValues, stride: int
-    ) -> ExpectedPicture:
-        """The same at the pixels of every so many rows and columns."""
         mask = sphere(scene.size).mask
         chosen = mask & _lattice(scene.size, stride)
         points = _shown(scene, stride)
@@ -90,12 +84,16 @@ class Host(base.Host):
         image = np.zeros((*mask.shape, 3))
         try:
             image[chosen], measured, lobes = _lighted(shader, points, measure)
+        except ManyMaterialsError:
+            return self.expected(shader, scene, values, STRIDE)
         except NotRun:
-            if (output := _pattern(shader)) is None:
+            shown = shader.document.getDescendant(shader.element)
+            if not shown.isA(mx.Output) or shown.getType() in LIT:
                 raise
-            if output.getType() in PATTERNS:
-                image = values.emitted(scene.size, output)
-            return ExpectedPicture(image, mask, (output.getName(),))
+            # Of a pattern, a host draws the color that a surface emits of it; black for other types.
+            if shown.getType() in PATTERNS:
+                image = values.emitted(scene.size, shown)
+            return ExpectedPicture(image, mask, (shown.getName(),))
         middle = (np.arange(scene.size) // stride * stride + stride // 2).clip(max=scene.size - 1)
         return ExpectedPicture(image[np.ix_(middle, middle)], chosen, measured, lobes)
 
@@ -138,15 +136,6 @@ def _lighted(
         behind = Graph(shader.document, replace(points, behind=True), measure=measure)
         values = values + behind.element(shader.element)
     return values, tuple(graph.measured), tuple(graph.lobes)
-
-
-def _pattern(shader: Shader) -> mx.Output | None:
-    """The output that a shader shows, unless it is a material.
-
-    A host draws the color that a surface emits of it, and black where its type is none.
-    """
-    element = shader.document.getDescendant(shader.element)
-    return element if element.isA(mx.Output) and element.getType() not in LIT else None
 
 
 def _lattice(size: int, stride: int) -> NDArray[np.bool_]:

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.conformance.reference.lobes import Albedo, diffuse
-from mxeon.conformance.reference.nodes import NOTHING
+from mxeon.conformance.reference.lobes import Albedo
+from mxeon.conformance.reference.nodes import DIFFUSE, NOTHING
 from mxeon.conformance.reference.operations import Values
 from mxeon.conformance.reference.points import ShadingPoints
 from mxeon.errors import OutsideModel
@@ -22,6 +22,7 @@ from mxeon.hosts.osl.trees import ClosureTree
 from mxeon.models import table
 from mxeon.models.core import layering
 from mxeon.models.core.layering import Bsdf
+from mxeon.models.hair import ROUGHNESSES
 from mxeon.models.media.volume import transmittance
 from mxeon.models.nodes import node
 from mxeon.models.nodes.frames import ALONG, UP
@@ -32,7 +33,7 @@ from mxeon.models.nodes.subsurface import SUBSURFACE_NODE
 from mxeon.models.nodes.transmissions import TRANSMISSIONS
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.generation import Shader
-from mxeon.shaders.nodes import EON, OREN_NAYAR
+from mxeon.shaders.nodes import FLAG, OREN_NAYAR
 
 if TYPE_CHECKING:
     import MaterialX as mx
@@ -43,28 +44,16 @@ Arguments: TypeAlias = Mapping[str, Values]
 THROUGH, GRAPH = "transmission", "graph"  # branches of `Host.evaluate`
 ONE = np.ones((1, 1))
 LEAST_HAIR = 1e-12  # roughness, below which the model is a delta
-HAIR_LOBES = ("R", "TT", "TRT")
-EMISSION, MEDIUM, HAIR = "uniform_edf", "anisotropic_vdf", "chiang_hair_bsdf"
+EMISSION, MEDIUM, HAIR = "uniform_edf", "anisotropic_vdf", HAIR_NODE.category
 LIGHTLESS = (EMISSION, MEDIUM, "transparent")  # closures that scatter no light at the surface
-MICROFACETS = {
-    "dielectric_bsdf": node("dielectric"),
-    "conductor_bsdf": node("conductor"),
-    "generalized_schlick_bsdf": node("schlick"),
-}
-SCHLICK = MICROFACETS["generalized_schlick_bsdf"]
-ROWS = {
-    "burley_diffuse_bsdf": node("burley"),
-    "translucent_bsdf": node("translucent"),
-    "subsurface_bssrdf": SUBSURFACE_NODE,
-    HAIR: HAIR_NODE,
-    **MICROFACETS,
-}
+SCHLICK = node("schlick")
+MICROFACETS = {row.category: row for row in (node("dielectric"), node("conductor"), SCHLICK)}
+OTHERS = (node("burley"), node("translucent"), HAIR_NODE)
+# Closures have the names of their nodes, but for one.
+ROWS = MICROFACETS | {row.category: row for row in OTHERS} | {"subsurface_bssrdf": SUBSURFACE_NODE}
 # By a keyword, 0 unless given, that picks the model.
 FLAGGED = {
-    "oren_nayar_diffuse_bsdf": (
-        "energy_compensation",
-        (diffuse("qon", OREN_NAYAR), diffuse("eon", EON)),
-    ),
+    OREN_NAYAR: (FLAG, (DIFFUSE[False], DIFFUSE[True])),
     "sheen_bsdf": ("mode", (node("conty_kulla"), node("zeltner"))),
 }
 
@@ -102,7 +91,7 @@ class Views:
     def _layer(self, top: ClosureTree | None, base: ClosureTree | None, layered: bool) -> Bsdf:
         """A lobe over another, or over a medium, which dims what passes the surface."""
         medium = _coefficient(base, "extinction", MEDIUM)
-        if medium is None or _names(base) != {MEDIUM}:
+        if medium is None or not _only_medium(base):
             return layering.layer(self.bsdf(top, True), self.bsdf(base, layered))
         passed, surface = transmittance(medium, 0.0, METER), self.bsdf(top, layered)
         value = surface.value * (passed if self.branch == THROUGH else 1.0)
@@ -129,7 +118,7 @@ class Views:
         tint = np.asarray(closure.arguments["reflection_tint"], np.float64) if tinted else ONE
         try:
             value = self._value(closure, row, wo, wi, inputs)
-            seen = _albedo(row, row.albedo, _ended(wo), inputs) if layered else None
+            seen = _albedo(row, row.albedo, wo, inputs) if layered else None
             left = NOTHING.throughput if seen is None else 1.0 - tint * seen
         except ValueError as error:
             raise OutsideModel(f"osl: {closure.name}: {error}") from None
@@ -140,9 +129,15 @@ class Views:
     ) -> Values:
         """Light that a lobe sends to the viewer, times the cosine, (N, 3)."""
         if self.branch == THROUGH:
-            return _transmitted(closure, wo, inputs)
+            if closure.name not in TRANSMISSIONS:
+                return np.zeros(wo.shape)
+            tint, white = (
+                closure.arguments["transmission_tint"],
+                {**inputs, "tint": np.ones((1, 3))},
+            )
+            return np.asarray(tint * TRANSMISSIONS[closure.name].passed(wo, white, True))
         if self.branch != "direct":
-            return _albedo(row, row.integral or row.albedo, _ended(wo), inputs)
+            return _albedo(row, row.integral or row.albedo, wo, inputs)
         if row is HAIR_NODE:  # which light meets from all sides
             return self.occlusion * row.value(wo, wi, inputs)
         side = np.where((wi[:, 2:] < 0.0) == row.transmits, 1.0, -1.0)
@@ -189,11 +184,11 @@ def _coefficient(tree: ClosureTree | None, argument: str, name: str) -> Values |
     return np.asarray(factor * sum(known))
 
 
-def _names(tree: ClosureTree | None) -> set[str]:
-    """Names of the closures of a tree, but those that combine others."""
+def _only_medium(tree: ClosureTree | None) -> bool:
+    """Whether closures are nothing but mediums."""
     if tree is None or tree.name not in OPERATIONS:
-        return set() if tree is None else {tree.name}
-    return set().union(*map(_names, tree.parts))
+        return tree is None or tree.name == MEDIUM
+    return all(map(_only_medium, tree.parts))
 
 
 def _mixed(first: Callable[[], Bsdf], second: Callable[[], Bsdf], share: Values) -> Bsdf:
@@ -205,6 +200,7 @@ def _mixed(first: Callable[[], Bsdf], second: Callable[[], Bsdf], share: Values)
 
 def _albedo(row: PbrNode, albedo: Albedo, wo: Values, inputs: Arguments) -> Values:
     """An albedo of a lobe, once for the points that have the same view and inputs if it is no closed form."""
+    wo = np.minimum(wo, 1.0)  # a rounding may have made a cosine larger
     if not row.fitted and row.integral is None:
         return np.asarray(albedo(wo, inputs))
     columns = [
@@ -218,23 +214,15 @@ def _albedo(row: PbrNode, albedo: Albedo, wo: Values, inputs: Arguments) -> Valu
     return np.asarray(albedo(wo[first], some)[places.ravel()])
 
 
-def _transmitted(closure: ClosureTree, wo: Values, inputs: Arguments) -> Values:
-    """Light of a uniform environment through the surface, (N, 3)."""
-    if closure.name not in TRANSMISSIONS:
-        return np.zeros(wo.shape)
-    tint = closure.arguments["transmission_tint"]
-    white = {**inputs, "tint": np.ones((1, 3))}
-    return np.asarray(tint * TRANSMISSIONS[closure.name].passed(wo, white, True))
-
-
 def _inputs(closure: ClosureTree, row: PbrNode) -> Arguments:
     given = {key: value for key, value in closure.arguments.items() if not isinstance(value, str)}
-    if closure.name == "oren_nayar_diffuse_bsdf":
+    if closure.name == OREN_NAYAR:
         given["roughness"] = np.minimum(given["roughness"], table.model(row.name).largest)
     if closure.name == HAIR:
-        for lobe in HAIR_LOBES:
+        for name in ROUGHNESSES:
+            lobe = name.removeprefix("roughness_")
             rough = np.stack([given[f"variance_{lobe}"], given[f"scale_{lobe}"]], axis=-1)
-            given[f"roughness_{lobe}"] = np.clip(rough, LEAST_HAIR, None)
+            given[name] = np.clip(rough, LEAST_HAIR, None)
     if closure.name in MICROFACETS:
         # OpenPBR stretches a lobe beyond 1, and shaders take 1.
         alphas = np.stack([given["roughness_x"], given["roughness_y"]], axis=-1)
@@ -245,11 +233,6 @@ def _inputs(closure: ClosureTree, row: PbrNode) -> Arguments:
         if not np.any(given.get("thinfilm_thickness", 0.0)):
             given.pop("thinfilm_thickness", None)
     return given
-
-
-def _ended(directions: Values) -> Values:
-    """Directions whose cosine a rounding has not made larger than 1."""
-    return np.minimum(directions, 1.0)
 
 
 def column(values: ArrayLike) -> Values:

@@ -2,55 +2,68 @@
 """Material graphs evaluated in NumPy, over all the points of a picture at once.
 
 A graph may contain the lobes that have a model, with their combinations; emissions; images; the
-operations of the standard library; and nodes that are nodegraphs of these, surface shaders among
-them. Any other node is NotRun, with its name, unless it adds nothing: a lobe whose weight is 0
-everywhere, or that a mix leaves out.
+operations that surface shaders are made of; and nodes that are nodegraphs of these. Any other node is
+NotRun, with its name, unless it adds nothing: a lobe whose weight is 0 everywhere, or that a mix leaves
+out.
+
+A path names a node within the nodes and nodegraphs around it: a tuple of name paths, the outermost first.
 """
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
-from functools import cached_property, partial
+from functools import cached_property, lru_cache, partial
 from operator import itemgetter
 from typing import TypeAlias
 
 import MaterialX as mx
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from mxeon.conformance.reference.elements import Elements, Path, graph_output, lookup
 from mxeon.conformance.reference.lobes import VOLUMES, over_volume
-from mxeon.conformance.reference.measured import DRAWN, Measure
+from mxeon.conformance.reference.measured import CLOSURES, DRAWN, Measure
 from mxeon.conformance.reference.nodes import (
     COMBINATIONS,
     LOBES,
     NOTHING,
     ShownLobe,
-    combined,
     definition,
     node_lobe,
+    plain,
 )
 from mxeon.conformance.reference.operations import (
     OPERATIONS,
     Operation,
     Value,
     Values,
-    computed,
     fitted,
     same,
 )
-from mxeon.conformance.reference.pbr_operations import UTILITIES, emissions, surfaces
 from mxeon.conformance.reference.points import ShadingPoints
-from mxeon.errors import NotRun
+from mxeon.errors import NotRun, OutsideModel
+from mxeon.hosts.textures import read_texture
+from mxeon.io.srgb import srgb_decoded
 from mxeon.models.core.layering import Bsdf
+from mxeon.models.nodes import utilities
+from mxeon.models.nodes.emissions import BASE, EMISSIONS, Emission
 from mxeon.shaders.document.graphs import reachable
+from mxeon.shaders.document.values import color_spaces
 
+Path: TypeAlias = tuple[str, ...]
 Step: TypeAlias = tuple[Callable[..., Value], tuple[Path, ...]]
 
 NUMBERS = ("float", "boolean", "integer")
-# Operations in which hosts differ: jumps and ties, and the arc functions of drivers. They are measured.
-HOSTS_OWN = ("round", "floor", "ceil", "modulo", "asin", "acos")
+# Where nothing is connected: black, and for a lobe zero, which hides nothing.
+UNCONNECTED: dict[str, Value] = {
+    "BSDF": NOTHING,
+    "EDF": np.zeros(3),
+    "surfaceshader": np.zeros(3),
+    "VDF": None,
+}
+FILES = 16  # images whose values at the points of a picture are kept
+CHANNELS = {"float": 1, "color3": 3}  # of an image, by the type that it is read as
+UTILITIES = {row.category: row for row in utilities.UTILITIES}
 
 
 class Graph:
@@ -72,7 +85,7 @@ class Graph:
         self._shader: Path | None = None  # the surface shader that is a nodegraph
         self._tops: list[Path] = []  # of layers: their throughputs are needed
         self._hiding: set[Path] = set()  # and those of what they are made of
-        self._elements = Elements(document, points)
+        self._elements: dict[Path, mx.Element] = {(): document}
         self._steps: dict[Path, Step] = {}
 
     def element(self, name_path: str) -> Values:
@@ -82,10 +95,10 @@ class Graph:
         """
         element = self._document.getDescendant(name_path)
         graph = element.getParent()
-        around = self._elements.inner((), graph) if graph.isA(mx.NodeGraph) else ()
+        around = self._inner((), graph) if graph.isA(mx.NodeGraph) else ()
         # Ignore what is not finite: another node may leave it out.
         with np.errstate(divide="ignore", invalid="ignore"):
-            find = self._connected if element.isA(mx.Output) else self._elements.inner
+            find = self._connected if element.isA(mx.Output) else self._inner
             path = find(around, element)
             self._parts([path])
             self._hiding.update(self._parts(self._tops))
@@ -95,7 +108,24 @@ class Graph:
         return reachable(roots, lambda path: self._step(path)[1])
 
     def _evaluate(self, root: Path) -> Value:
-        return evaluated(root, self._parts([root]), lambda path: self._step(path)[0])
+        """Value at a path: neither a long chain nor a part with many uses does harm."""
+        parts = self._parts([root])
+        uses = Counter(part for inner in parts.values() for part in inner)
+        values: dict[Path, Value] = {}
+        waiting = [root]
+        while waiting:
+            key = waiting[-1]
+            if key in values:
+                waiting.pop()
+            elif missing := [part for part in parts[key] if part not in values]:
+                waiting.append(missing[0])
+            else:
+                values[key] = self._step(key)[0](*(values[part] for part in parts[key]))
+                for part in parts[key]:
+                    uses[part] -= 1
+                    if not uses[part]:
+                        del values[part]
+        return values[root]
 
     def _step(self, path: Path) -> Step:
         """Function that computes the value at a path, and the paths of its arguments."""
@@ -111,10 +141,12 @@ class Graph:
         if kind == "BSDF" and category in COMBINATIONS:
             return self._combination(path, node)
         if category == "image":
-            return lookup(node, self._points.texcoord, self._elements.linear), ()
-        if category in self._operations and not (self._measure and category in HOSTS_OWN):
+            value = self._image(node)
+            return lambda: value, ()
+        if category in self._operations:
             ports, operation = self._operations[category]
-            return partial(computed, kind, operation), self._sources(path, ports)
+            sources = self._sources(path, ports)
+            return lambda *values: fitted(kind, operation(*values)), sources
         if kind == "surfaceshader" and self._shader is None:
             self._shader = path
         if inner := self._inside(path, node):
@@ -125,14 +157,34 @@ class Graph:
 
     @cached_property
     def _operations(self) -> dict[str, Operation]:
-        """Nodes that compute numbers or colors, some of them by the points."""
-        shown = surfaces(self._emits, self._points.behind)
-        return {**OPERATIONS, **UTILITIES, **VOLUMES, **emissions(self._points), **shown}
+        """Nodes that compute numbers or colors, some of them by the points: inputs and function."""
+        known = OPERATIONS | VOLUMES | {"surfacematerial": (("surfaceshader",), same)}
+        for row in EMISSIONS:
+            ports = tuple("base" if name == BASE else name for name in row.inputs)
+            known[row.category] = ports, partial(_radiance, row, ports, self._points)
+        for utility in UTILITIES.values():
+            known[utility.category] = tuple(utility.inputs), partial(_utility, utility)
+        if self._points.behind:
+            known["surface"] = ("bsdf", "opacity"), lambda bsdf, opacity: bsdf.value * opacity
+            known["surface_unlit"] = (), lambda: np.zeros(3)
+            return known
+        unlit = ("emission", "emission_color", "opacity")
+        known["surface_unlit"] = unlit, lambda strength, color, opacity: strength * color * opacity
+        if self._emits:
+            lit = ("bsdf", "edf", "opacity")
+            known["surface"] = lit, lambda bsdf, edf, opacity: (bsdf.value + edf) * opacity
+        else:
+            known["surface"] = ("bsdf",), lambda bsdf: bsdf.value
+        return known
 
     def _inside(self, path: Path, node: mx.Node, output: str = "") -> Path | None:
-        """Path of what an output of a node has in its nodegraph; None if that is none."""
-        port = graph_output(node, output)
-        return self._connected(path, port) if port else None
+        """Path of what an output of a node, or its only one, has in its nodegraph; None if that is none."""
+        graph = node.getImplementation()
+        outputs = graph.getOutputs() if graph and graph.isA(mx.NodeGraph) else []
+        found = [each for each in outputs if each.getName() == output] or outputs
+        if len(found) == 1 and found[0].getConnectedNode():
+            return self._connected(path, found[0])
+        return None
 
     def _weighs(self, path: Path, node: mx.Node) -> bool:
         """Whether a lobe without a model has a weight that is not 0 everywhere."""
@@ -169,7 +221,14 @@ class Graph:
                 if not self._points.round:
                     self._assert_empty(path)
                 return same, self._sources(path, ("top",))
-        return partial(combined, node.getNamePath(), operation), self._sources(path, ports)
+
+        def combined(*values: Bsdf | Values) -> Bsdf:
+            try:
+                return operation(*values)
+            except ValueError as error:
+                raise OutsideModel(f"reference: node {node.getNamePath()!r}: {error}") from None
+
+        return combined, self._sources(path, ports)
 
     def _assert_empty(self, path: Path) -> None:
         """Raise NotRun if the volume below a layer absorbs or scatters anything."""
@@ -188,20 +247,18 @@ class Graph:
         """Path of an input's value: of the node connected to it, or of a constant."""
         owner = path
         while (given := self._given(path, name)) is None:
-            port = self._elements.port(path, name)
+            port = self._port(path, name)
             if not port.hasInterfaceName():
                 break
             path, name = path[:-1], port.getInterfaceName()
         else:
             return self._constant(path, name, given)
-        if port.getConnectedNode():
-            shown = (
-                f"{port.getParent().getName()}.{name}"
-                if self._elements.scatter(owner, path)
-                else ""
-            )
-            return self._connected(path[:-1], port, shown)
-        return self._constant(path, name, self._elements.value(path, name, port))
+        if not port.getConnectedNode():
+            return self._constant(path, name, self._written(path, name, port))
+        # An input has a name to measure if a lobe, or a node around one, asks for it.
+        scatters = any(each.getType() in CLOSURES for each in self._along(owner, path))
+        shown = f"{port.getParent().getName()}.{name}" if scatters else ""
+        return self._connected(path[:-1], port, shown)
 
     def _given(self, path: Path, name: str) -> Values | None:
         """Value that was handed in for an input, (N, 1) if it is one number for each point; or None."""
@@ -209,7 +266,7 @@ class Graph:
         lobe = element is not None and element.getCategory() in LOBES
         if name not in self._inputs or not (path == self._shader if self._shader else lobe):
             return None
-        number = self._elements.port(path, name).getType() in NUMBERS
+        number = self._port(path, name).getType() in NUMBERS
         value = np.asarray(self._inputs[name])
         return np.reshape(value, (-1, 1)) if number else value
 
@@ -226,8 +283,8 @@ class Graph:
         if port.isA(mx.Input):
             scope = scope.getParent()
         if graph.getNamePath() != scope.getNamePath():
-            around = self._elements.inner((), graph)
-        path, output = self._elements.inner(around, node), source.getOutputString()
+            around = self._inner((), graph)
+        path, output = self._inner(around, node), source.getOutputString()
         kind = port.getType()
         if not (shown and self._measure and kind in DRAWN):
             return self._output(path, output)
@@ -236,7 +293,9 @@ class Graph:
             self._parts([found])
         except NotRun:
             self.measured[shown] = None
-            return self._measurement(path, kind, output)
+            part = (*path, f"={output}")
+            self._steps[part] = partial(self._measure, self._along(path), kind, output), ()
+            return part
         return found
 
     def _output(self, path: Path, output: str) -> Path:
@@ -252,39 +311,136 @@ class Graph:
             return inner
         raise NotRun(f"reference: there is no model for node {node.getCategory()!r}")
 
-    def _measurement(self, path: Path, kind: str, output: str) -> Path:
-        """Path of a node's value as the host has it."""
-        assert self._measure is not None
-        part = (*path, f"={output}")
-        self._steps[part] = partial(self._measure, self._elements.along(path), kind, output), ()
-        return part
-
     def _constant(self, path: Path, name: str, value: Value) -> Path:
         """Path of a value that has no parts."""
         constant = (*path, f":{name}")
         self._steps[constant] = (lambda: value), ()
         return constant
 
+    def _inner(self, around: Path, element: mx.Element) -> Path:
+        """Path of an element within another path, under which it is kept."""
+        path = (*around, element.getNamePath())
+        self._elements[path] = element
+        return path
 
-def evaluated(
-    root: Path,
-    parts: Mapping[Path, tuple[Path, ...]],
-    function: Callable[[Path], Callable[..., Value]],
-) -> Value:
-    """Value at a path: neither a long chain nor a part with many uses does harm."""
-    uses = Counter(part for inner in parts.values() for part in inner)
-    values: dict[Path, Value] = {}
-    waiting = [root]
-    while waiting:
-        key = waiting[-1]
-        if key in values:
-            waiting.pop()
-        elif missing := [part for part in parts[key] if part not in values]:
-            waiting.append(missing[0])
-        else:
-            values[key] = function(key)(*(values[part] for part in parts[key]))
-            for part in parts[key]:
-                uses[part] -= 1
-                if not uses[part]:
-                    del values[part]
-    return values[root]
+    def _along(self, path: Path, outer: Path = ()) -> list[mx.Element]:
+        """Elements at a path and around it, up to one within another path, the outermost first."""
+        ends = range(max(len(outer), 1), len(path) + 1)
+        return [self._elements[path[:end]] for end in ends if path[:end] in self._elements]
+
+    def _port(self, path: Path, name: str) -> mx.Input:
+        """Input of a node, or else of its nodedef."""
+        element = self._elements.get(path)
+        nodedef = element.getNodeDef() if element and path else None
+        port = element and element.getInput(name)
+        port = port or (nodedef and nodedef.getActiveInput(name))
+        if not port:
+            raise NotRun(f"reference: node {'/'.join(path[-1:])!r} has no input {name!r}")
+        return port
+
+    def _written(self, path: Path, name: str, port: mx.Input) -> Value:
+        """Value of an input without a connection, in the document's color space and in meters."""
+        element = self._elements[path]
+        nodedef = element.getNodeDef() if element.isA(mx.Node) else None
+        declared = nodedef.getActiveInput(name) if nodedef else port
+        if declared and declared.hasDefaultGeomPropString():  # nothing else sets it
+            return self._points.geometry(declared.getDefaultGeomPropString())
+        value = port.getValue()
+        if value is None and declared:  # a connection that MaterialX ignores
+            value = declared.getValue()
+        if port.getType() in UNCONNECTED:
+            return UNCONNECTED[port.getType()]
+        constant = plain(value)
+        if not isinstance(constant, np.ndarray):
+            return constant
+        if port.getType() in ("color3", "color4"):
+            return _linear(port, constant)
+        if not port.hasUnit():
+            return constant
+        library = self._document.getDataLibrary() or self._document
+        lengths = library.getUnitTypeDef("distance")
+        scales = mx.LinearUnitConverter.create(lengths).getUnitScale() if lengths else {}
+        return constant * float(scales.get(port.getUnit(), 1.0))
+
+    def _image(self, node: mx.Node) -> Values:
+        """Values of an image node: texel centers at half-integers, v = 0 at the bottom."""
+        if self._points.texcoord is None or node.getInput("texcoord") is not None:
+            raise NotRun("reference: images are read at the sphere's own coordinates only")
+        file = node.getInput("file")
+        if not file or not file.getValueString():
+            raise NotRun("reference: an image must name its file itself")
+        if file.hasUnit():
+            raise NotRun("reference: an image must hold no lengths")
+        channels = CHANNELS.get(node.getType(), 0)
+        values = _texels(file.getValueString(), self._points.texcoord.tobytes())
+        if not 0 < channels <= values.shape[-1]:
+            raise NotRun(
+                f"reference: {file.getValueString()}: must be read as float, or as color3 from an "
+                f"image of 3 channels; got {node.getType()} from {values.shape[-1]}"
+            )
+        read = values[:, :channels]
+        return _linear(file, read) if channels == 3 else read
+
+
+def _radiance(
+    row: Emission, ports: tuple[str, ...], points: ShadingPoints, *values: Values
+) -> Values:
+    """Radiance of an emission to the viewer; a color has a row for each point, a number one value."""
+    wo = points.view
+    inputs = {
+        name: np.broadcast_to(value, wo.shape)
+        if np.shape(value)[-1:] == (3,)
+        else np.broadcast_to(np.ravel(value), len(wo))
+        for name, value in zip(ports, values, strict=True)
+    }
+    try:
+        return row.value(wo, inputs)
+    except ValueError as error:
+        raise OutsideModel(f"reference: node {row.category!r}: {error}") from None
+
+
+def _utility(row: utilities.UtilityNode, *values: Values) -> Values | Mapping[str, Values]:
+    """The one output of a utility node, or all by name; numbers come as () or (N, 1)."""
+    columns = [
+        np.atleast_2d(np.asarray(value, np.float64).reshape(-1, np.size(default)))
+        for value, default in zip(values, row.inputs.values(), strict=True)
+    ]
+    count = max(map(len, columns))
+    inputs = {
+        name: np.broadcast_to(column, (count, column.shape[1]))
+        for name, column in zip(row.inputs, columns, strict=True)
+    }
+    numbers = {name: each[:, 0] if each.shape[1] == 1 else each for name, each in inputs.items()}
+    outputs = row.value(numbers)
+    return next(iter(outputs.values())) if len(outputs) == 1 else outputs
+
+
+def _linear(element: mx.Element, value: Values) -> Values:
+    """Color in the document's space, as the generators' color management has it; alpha stays.
+
+    Raise NotRun if that takes a transform other than the decoding of sRGB.
+    """
+    spaces = color_spaces(element)
+    if spaces is None:
+        return value
+    if spaces != ("srgb_texture", "lin_rec709"):
+        raise NotRun(f"reference: there is no transform from color space {' to '.join(spaces)}")
+    return np.concatenate([srgb_decoded(value[..., :3]), value[..., 3:]], axis=-1)
+
+
+@lru_cache(maxsize=FILES)
+def _texels(path: str, texcoord: bytes) -> Values:
+    """Values of all channels of an image at points, (N, channels), by its four nearest texels."""
+    texels = read_texture(path)
+    height, width = texels.shape[:2]
+    texel = np.frombuffer(texcoord).reshape(-1, 2) * [width, height] - 0.5
+    corner = np.floor(texel).astype(int)
+    u, v = (texel - corner).T[..., None]
+    x, y = corner.T
+
+    def at(dx: int, dy: int) -> NDArray[np.float64]:
+        return np.asarray(texels[(y + dy) % height, (x + dx) % width], np.float64)
+
+    lower = at(0, 0) * (1.0 - u) + at(1, 0) * u
+    upper = at(0, 1) * (1.0 - u) + at(1, 1) * u
+    return np.asarray(lower * (1.0 - v) + upper * v)

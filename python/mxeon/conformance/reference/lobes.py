@@ -116,12 +116,6 @@ def kept(lobe: Lobe) -> Lobe:
     return values
 
 
-def weighted(lobe: Bsdf, weight: Values, layerable: bool) -> Bsdf:
-    """Lobe times its weight; what hides its base does so at any weight."""
-    left = 1.0 - weight * (1.0 - lobe.throughput) if layerable else lobe.throughput
-    return Bsdf(lobe.value * weight, left)
-
-
 def _at(inputs: Inputs, points: NDArray[np.bool_]) -> dict[str, Values]:
     """Inputs at some of the points, each (M,) or (M, components)."""
     count = int(points.sum())
@@ -150,12 +144,13 @@ def _albedo(
     if closed or varied or len(wo) < FEW:
         return albedo(wo, _at(inputs, points))
     material = tuple((name, tuple(value.ravel().tolist())) for name, value in inputs.items())
-    turns = _turns(inputs)
+    # Whether the lobe stays itself when it is turned about the normal.
+    roughness = inputs.get("roughness", np.zeros(1))
+    turns = roughness.ndim == 1 or bool(np.ptp(roughness[0]) == 0.0)
     low = float(np.sqrt(wo[:, 2].min()))
     series = _series(albedo, material, low, ISOTROPIC if turns else ANISOTROPIC)
     if series is not None:
-        root, turn = _arguments(wo, low)
-        return _sums(series, root, np.zeros_like(turn) if turns else turn)
+        return _interpolated(series, wo, low, turns)
     if not turns:
         raise NotRun("reference: the albedo of so anisotropic a lobe takes too long over a picture")
     # The symmetric points of a sphere have cosines that differ by roundings.
@@ -164,29 +159,20 @@ def _albedo(
     return _albedos(albedo, material, mu.tobytes())[indices]
 
 
-def _turns(inputs: Inputs) -> bool:
-    """Whether a lobe stays itself when it is turned about the normal."""
-    roughness = inputs.get("roughness", np.zeros(1))
-    return roughness.ndim == 1 or bool(np.ptp(roughness[0]) == 0.0)
-
-
 def _directions(mu: Values, phi: Values) -> Values:
     """Unit vectors with cosine mu at azimuth phi, (N, 3)."""
     sine = np.sqrt((1.0 - mu) * (1.0 + mu))
     return np.stack([sine * np.cos(phi), sine * np.sin(phi), mu], axis=1)
 
 
-def _arguments(wo: Values, low: float) -> tuple[Values, Values]:
-    """Arguments of a series in [-1, 1]: of sqrt(mu) from `low` on, and cos(2 phi)."""
+def _interpolated(series: Values, wo: Values, low: float, turns: bool) -> Values:
+    """Sums of a series (X, Y, 3) in sqrt(mu) from `low` on and cos(2 phi), (N, 3)."""
     root = np.sqrt(np.minimum(wo[:, 2], 1.0))
+    u = np.clip(2.0 * (root - low) / (1.0 - low) - 1.0, -1.0, 1.0)
     x, y = np.square(wo[:, 0]), np.square(wo[:, 1])
-    turn = (x - y) / np.maximum(x + y, 1e-300)
-    return np.clip(2.0 * (root - low) / (1.0 - low) - 1.0, -1.0, 1.0), turn
-
-
-def _sums(series: Values, x: Values, y: Values) -> Values:
-    """Sums of a series (X, Y, 3) at arguments (N,), as those of a picture: many are alike, (N, 3)."""
-    each, indices = np.unique(np.round(x + 1j * y, 13), return_inverse=True)
+    v = np.zeros_like(u) if turns else (x - y) / np.maximum(x + y, 1e-300)
+    # Many directions of a picture are alike.
+    each, indices = np.unique(np.round(u + 1j * v, 13), return_inverse=True)
     parts = np.array_split(each, 1 + len(each) // ROWS)
     sums = [chebyshev.chebval2d(part.real, part.imag, series).T for part in parts]
     return np.asarray(np.concatenate(sums)[indices], np.float64)

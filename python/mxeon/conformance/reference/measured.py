@@ -36,7 +36,7 @@ Measure: TypeAlias = Callable[[Elements, str, str], Values]
 
 
 class HostValues:
-    """Values of a shader's nodes at the pixels of a picture, as a host draws them."""
+    """Values of a shader's nodes at the pixels of a picture, as a host draws them; NotRun if it cannot."""
 
     def __init__(self, host: Host, shader: Shader, library: str, policy: Policy) -> None:
         self._host, self._shader = host, shader
@@ -44,36 +44,35 @@ class HostValues:
         self._pictures: dict[tuple[str, ...], Values] = {}
 
     def __call__(self, size: int, elements: Elements, kind: str, output: str = "") -> Values:
-        """Values of a node in a picture, (size, size, components).
-
-        Raise NotRun if the host cannot draw it.
-        """
+        """Values of a node in a picture, (size, size, components)."""
         key = (*(each.getNamePath() for each in elements), output, str(size))
-        if key not in self._pictures:
-            document, path = value_document(self._shader.document, elements, kind, output)
-            self._pictures[key] = self._drawn(document, path, elements[-1].getNamePath(), size)
-        return self._pictures[key][..., : DRAWN[kind]]
+        make = partial(value_document, self._shader.document, elements, kind, output)
+        return self._drawn(key, make, elements[-1].getNamePath(), size)[..., : DRAWN[kind]]
 
     def emitted(self, size: int, output: mx.Output) -> Values:
-        """Picture of a surface that emits the color of an output, (size, size, 3).
+        """Picture of a surface that emits the color of an output, (size, size, 3)."""
+        make = partial(emission_document, self._shader.document, output)
+        return self._drawn((output.getNamePath(), str(size)), make, output.getNamePath(), size)
 
-        Raise NotRun if the host cannot draw it.
-        """
-        key = (output.getNamePath(), str(size))
-        if key not in self._pictures:
-            document, path = emission_document(self._shader.document, output)
-            self._pictures[key] = self._drawn(document, path, output.getNamePath(), size)
-        return self._pictures[key]
-
-    def _drawn(self, document: mx.Document, path: str, name: str, size: int) -> Values:
-        """Picture of a document's element, on which no light falls, for what has a name."""
+    def _drawn(
+        self,
+        key: tuple[str, ...],
+        make: Callable[[], tuple[mx.Document, str]],
+        name: str,
+        size: int,
+    ) -> Values:
+        """Picture of the element of a document to be made, on which no light falls; kept by a key."""
+        if key in self._pictures:
+            return self._pictures[key]
         if self._host.target not in TARGETS:
             raise NotRun(f"{self._host.name}: the value of {name!r} cannot be drawn here")
+        document, path = make()
         try:
             [shader] = self._host.compile(document, path, library=self.library, policy=self._policy)
         except DocumentError as error:
             raise NotRun(f"reference: the value of {name!r} cannot be drawn; {error}") from None
-        return np.asarray(self._host.picture(shader, Scene(NAME, size=size)), np.float64)
+        image = self._host.picture(shader, Scene(NAME, size=size))
+        return self._pictures.setdefault(key, np.asarray(image, np.float64))
 
 
 def value_document(
@@ -164,9 +163,7 @@ def _opened(document: mx.Document, graph: mx.NodeGraph) -> mx.NodeGraph:
     copy.copyContentFrom(graph)
     copy.removeAttribute("nodedef")
     _drop_closures(copy)
-    for port in graph.getNodeDef().getActiveInputs():
-        if port.getType() not in CLOSURES:
-            copy.addInput(port.getName(), port.getType()).copyContentFrom(port)
+    _add_inputs(copy, graph.getNodeDef().getActiveInputs())
     return copy
 
 
@@ -174,20 +171,22 @@ def _definition(document: mx.Document, node: mx.Node, kind: str) -> mx.NodeDef:
     """A new definition with the inputs of a node's own, and one output of another type."""
     name = document.createValidChildName(f"ND_{NAME}")
     definition = document.addNodeDef(name, kind, name.removeprefix("ND_"))
-    for port in node.getNodeDef().getActiveInputs():
-        if port.getType() not in CLOSURES:
-            definition.addInput(port.getName(), port.getType()).copyContentFrom(port)
+    _add_inputs(definition, node.getNodeDef().getActiveInputs())
     return definition
 
 
 def _instance(owner: mx.Node, definition: mx.NodeDef, kind: str, scope: mx.GraphElement) -> str:
     """Name of a new node in a scope: of a definition, with the inputs of another node."""
     name = str(scope.createValidChildName(NAME))
-    node = scope.addNode(definition.getNodeString(), name, kind)
-    for port in owner.getInputs():
-        if port.getType() not in CLOSURES:
-            node.addInput(port.getName(), port.getType()).copyContentFrom(port)
+    _add_inputs(scope.addNode(definition.getNodeString(), name, kind), owner.getInputs())
     return name
+
+
+def _add_inputs(target: mx.InterfaceElement, ports: Sequence[mx.Input]) -> None:
+    """Give an element copies of all inputs of other types than closures."""
+    for port in ports:
+        if port.getType() not in CLOSURES:
+            target.addInput(port.getName(), port.getType()).copyContentFrom(port)
 
 
 def _show(scope: mx.GraphElement, name: str, node: str, kind: str, output: str) -> mx.Output:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import MaterialX as mx
 import numpy as np
 
-from mxeon.conformance.reference.lobes import INNER_NODES, diffuse, weighted
+from mxeon.conformance.reference.lobes import INNER_NODES, diffuse
 from mxeon.conformance.reference.operations import WIDTHS, Values
 from mxeon.conformance.reference.points import ShadingPoints
 from mxeon.errors import NotRun, OutsideModel
@@ -79,7 +79,9 @@ def node_lobe(
         values = lobe(row, arguments, layered)
     except ValueError as error:
         raise OutsideModel(f"{name}: {error}") from None
-    return weighted(values, weight, row.layerable)
+    # What hides its base does so at any weight.
+    left = 1.0 - weight * (1.0 - values.throughput) if row.layerable else values.throughput
+    return Bsdf(values.value * weight, left)
 
 
 def definition(node: mx.Node) -> mx.NodeDef:
@@ -102,21 +104,11 @@ def _row(node: mx.Node, inputs: Mapping[str, Values]) -> PbrNode:
 
 def _assert_known(node: mx.Node, row: PbrNode, inputs: Mapping[str, Values]) -> None:
     """Raise NotRun if an input that the model does not have differs from its default."""
+    frame = ("normal", "tangent", "curve_direction")
+    known = {"weight", *frame, FLAG, *FILM, *row.inputs, *row.fixed}
     for port, value in inputs.items():
-        if port in (
-            "weight",
-            "normal",
-            "tangent",
-            "curve_direction",
-            FLAG,
-            *FILM,
-            *row.inputs,
-            *row.fixed,
-        ):
-            continue
-        if not np.array_equal(
-            value, np.asarray(plain(definition(node).getActiveInput(port).getValue()))
-        ):
+        default = definition(node).getActiveInput(port).getValue()
+        if port not in known and not np.array_equal(value, np.asarray(plain(default))):
             raise NotRun(
                 f"reference: there is no model for input {port!r} of node {node.getCategory()!r}"
             )
@@ -124,14 +116,13 @@ def _assert_known(node: mx.Node, row: PbrNode, inputs: Mapping[str, Values]) -> 
 
 def _shaped(node: mx.Node, port: str, value: Values) -> Values:
     """Value of an input as (1,) or (N,) if it is a number, else with its components."""
-    if definition(node).getActiveInput(port).getType() in ("float", "boolean"):
+    kind = definition(node).getActiveInput(port).getType()
+    if kind in ("float", "boolean"):
         return np.reshape(np.asarray(value, np.float64), -1)
     array = np.atleast_2d(np.asarray(value, np.float64))
     if port == "roughness":  # OpenPBR stretches a lobe beyond 1, and shaders take 1
         array = np.clip(array, 0.0, 1.0)
-    return np.broadcast_to(
-        array, (len(array), WIDTHS[definition(node).getActiveInput(port).getType()])
-    )
+    return np.broadcast_to(array, (len(array), WIDTHS[kind]))
 
 
 def _where_shown(value: Values, weight: Values) -> Values:
@@ -142,14 +133,6 @@ def _where_shown(value: Values, weight: Values) -> Values:
     shown = value.copy()
     shown[idle] = value[int(idle.argmin())]
     return shown
-
-
-def combined(name: str, operation: Callable[..., Bsdf], *values: Bsdf | Values) -> Bsdf:
-    """Lobes combined; the values of numbers are the node's own."""
-    try:
-        return operation(*values)
-    except ValueError as error:
-        raise OutsideModel(f"reference: node {name!r}: {error}") from None
 
 
 def plain(value: Plain) -> Values | bool | str | None:

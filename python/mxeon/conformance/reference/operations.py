@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes of the standard library that compute numbers, by category.
+"""Nodes that the surface shaders of MaterialX compute numbers with, by category.
+
+A host draws the values of every other node that is no nodegraph of these: see `measured`.
 
 A value is an array whose last axis holds its components; a number is () or (N, 1). What a function
 returns is repeated over the components of the node's type, so that a number becomes a color.
@@ -40,29 +42,22 @@ def fitted(kind: str, value: Value) -> Value:
     return array[..., :width]
 
 
+def same(value: Value) -> Value:
+    """The value of a node that passes its input on."""
+    return value
+
+
 def _dot(in1: Values, in2: Values) -> Values:
     return np.asarray((in1 * in2).sum(axis=-1, keepdims=True), np.float64)
 
 
-def _magnitude(value: Values) -> Values:
-    return np.sqrt(_dot(value, value))
-
-
 def _normalize(value: Values) -> Values:
-    return value / _magnitude(value)
+    return value / np.sqrt(_dot(value, value))
 
 
 def _combine(*values: Values) -> Values:
     parts = np.broadcast_arrays(*(np.atleast_1d(value) for value in values))
     return np.concatenate(parts, axis=-1)
-
-
-def _rotate2d(value: Values, amount: Values) -> Values:
-    """Vector turned clockwise by an angle in degrees, as MaterialX's row vectors are."""
-    angle = np.radians(amount)
-    x, y = value[..., :1], value[..., 1:]
-    cosine, sine = np.cos(angle), np.sin(angle)
-    return _combine(cosine * x + sine * y, cosine * y - sine * x)
 
 
 def _rotate3d(value: Values, amount: Values, axis: Values) -> Values:
@@ -83,75 +78,47 @@ def _normalmap(
     return _normalize(np.where(black, normal, turned))
 
 
-def _when(compare: Callable[..., NDArray[np.bool_]]) -> Callable[..., Values]:
+def _when(compare: Callable[..., NDArray[np.bool_]]) -> Operation:
     """One of two values, by a comparison of two others."""
 
     def choose(value1: Values, value2: Values, in1: Values, in2: Values) -> Values:
         return np.where(compare(value1, value2), in1, in2)
 
-    return choose
+    return ("value1", "value2", "in1", "in2"), choose
 
 
 ONE, TWO = ("in",), ("in1", "in2")
-COMPARED = ("value1", "value2", "in1", "in2")
 
 # Category -> its inputs, and the function of them.
 OPERATIONS: dict[str, Operation] = {
-    "constant": (("value",), lambda value: value),
+    "constant": (("value",), same),
     "convert": (ONE, lambda value: np.asarray(value, np.float64)),
-    "dot": (ONE, lambda value: value),
+    "dot": (ONE, same),
     "add": (TWO, add),
     "subtract": (TWO, sub),
     "multiply": (TWO, mul),
     "divide": (TWO, truediv),
-    "modulo": (TWO, lambda a, b: a - b * np.floor(a / b)),
     "power": (TWO, pow),
-    "safepower": (TWO, lambda a, b: np.sign(a) * np.abs(a) ** b),
     "min": (TWO, np.minimum),
     "max": (TWO, np.maximum),
     "clamp": (("in", "low", "high"), lambda x, low, high: np.minimum(np.maximum(x, low), high)),
     "invert": (("amount", "in"), sub),
     "absval": (ONE, np.abs),
     "sign": (ONE, np.sign),
-    "floor": (ONE, np.floor),
-    "ceil": (ONE, np.ceil),
-    "round": (ONE, lambda value: np.floor(value + 0.5)),
     "sqrt": (ONE, np.sqrt),
     "ln": (ONE, np.log),
-    "exp": (ONE, np.exp),
-    "sin": (ONE, np.sin),
-    "cos": (ONE, np.cos),
-    "tan": (ONE, np.tan),
-    "asin": (ONE, np.arcsin),
-    "acos": (ONE, np.arccos),
-    "atan2": (("iny", "inx"), np.arctan2),
-    "dotproduct": (TWO, _dot),
-    "crossproduct": (TWO, np.cross),
-    "magnitude": (ONE, _magnitude),
     "normalize": (ONE, _normalize),
-    "rotate2d": (("in", "amount"), _rotate2d),
     "rotate3d": (("in", "amount", "axis"), _rotate3d),
     "normalmap": (("in", "scale", "normal", "tangent", "bitangent"), _normalmap),
     "combine2": (TWO, _combine),
     "combine3": (("in1", "in2", "in3"), _combine),
-    "combine4": (("in1", "in2", "in3", "in4"), _combine),
     "extract": (
         ("in", "index"),
         lambda value, index: np.take(value, [int(np.ravel(index)[0])], axis=-1),
     ),
     "luminance": (("in", "lumacoeffs"), lambda value, weights: _dot(value[..., :3], weights)),
     "mix": (("fg", "bg", "mix"), lambda fg, bg, mix: fg * mix + bg * (1.0 - mix)),
-    "ifgreater": (COMPARED, _when(np.greater)),
-    "ifgreatereq": (COMPARED, _when(np.greater_equal)),
-    "ifequal": (COMPARED, _when(np.equal)),
+    "ifgreater": _when(np.greater),
+    "ifgreatereq": _when(np.greater_equal),
+    "ifequal": _when(np.equal),
 }
-
-
-def same(value: Value) -> Value:
-    """The value of a node that passes its input on."""
-    return value
-
-
-def computed(kind: str, operation: Callable[..., Value], *values: Value) -> Value:
-    """Value of an operation, fitted to the type of its node."""
-    return fitted(kind, operation(*values))
