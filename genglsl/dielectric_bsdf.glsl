@@ -19,6 +19,10 @@ void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior
     F.value = vec3(fresnel_dielectric(lobe.mu_h, ior));
     F.average = vec3(fresnel_dielectric_avg(ior));
     F.visible = vec3(fresnel_dielectric(mu_visible, ior));
+    if (ior < 1.0)
+    {
+        F.visible = vec3(fresnel_dielectric_inside(lobe.mu_o, lobe.alpha, ior));
+    }
     microfacet_add_film(lobe, fd, F);
     microfacet_bsdf(closureData, lobe, fd, F, max(tint, 0.0), weight, distribution, scatter_mode,
                     bsdf);

@@ -27,6 +27,7 @@ from tools.fits import (
     fresnel_average,
     ggx_albedo,
     ggx_cosine,
+    ggx_inside,
     thin_film,
     thin_film_nodes,
     varnish_walk,
@@ -113,6 +114,21 @@ def test_the_albedo_of_smooth_ggx_has_the_error_that_its_tolerance_states():
     )
     error = np.abs(1.0 - fitted).max()
     assert 0.9 * microfacets.SMOOTH_ESS_FIT < error <= microfacets.SMOOTH_ESS_FIT
+
+
+def test_the_albedo_of_an_index_below_1_has_the_error_that_its_tolerance_states():
+    # The largest error is near the critical angle of smooth surfaces.
+    n = np.repeat(ggx_inside.INDICES, 5)
+    alpha = np.full_like(n, 3e-3)
+    near = np.sqrt(1.0 - n * n) + n * alpha * np.tile(np.linspace(-1.0, 1.0, 5), len(n) // 5)
+    mu, alpha = np.concatenate([[near, alpha], ggx_inside.points(count=100)], axis=1)
+    sampled = ggx_inside.sample(mu, alpha)
+    coefficients = ggx_inside.shipped()
+    error = np.abs(ggx_inside.errors(coefficients, mu, alpha, *sampled)).max()
+    assert 0.9 * microfacets.INSIDE_FIT < error <= microfacets.INSIDE_FIT
+    coefficients[20] += 0.1
+    wrong = np.abs(ggx_inside.errors(coefficients, mu, alpha, *sampled)).max()
+    assert wrong > microfacets.INSIDE_FIT
 
 
 def test_the_quadrature_of_the_fit_is_that_of_the_models():

@@ -81,7 +81,7 @@ def tolerance(text, **inputs):
     "inputs, more",
     [
         ({"ior": [1.5]}, 0.0),
-        ({"ior": [1.5, 0.9]}, 0.78),
+        ({"ior": [1.5, 0.9]}, 0.03),
         ({"thinfilm_thickness": [0.0, 300.0]}, 0.04),
         ({"thinfilm_ior": [1.2, 1.5]}, 0.024),
     ],

@@ -100,6 +100,8 @@ WRONG = {
          "inputs without effect: thinfilm_thickness, thinfilm_ior"),
         ("mx_dielectric_bsdf.glsl", "1.0 - dirAlbedo * weight;", "vec3(1.0);", "transmission",
          "all light passes (rms 0)"),
+        ("genglsl/dielectric_bsdf.glsl", "fresnel_dielectric_inside(lobe.mu_o, lobe.alpha, ior)",
+         "fresnel_dielectric(ggx_cosine_dielectric(lobe.mu_o, lobe.alpha, 1.0 / ior), ior)", "denser", ""),
         (FACETS, "mirrored ? reflect(-closureData.V, N) :", "", "retroreflection", ""),
         (FACETS, "mx_forward_facing_normal(N, lobe.wo)", "N", "frame", ""),
         (FACETS, "clamp(dot(lobe.N, lobe.wo),", "clamp(dot(lobe.N, lobe.wi),", "value", ""),

@@ -61,7 +61,7 @@ def dip(case: Case) -> Iterator[Compared]:
 
 @check(
     "denser",
-    "For indices below 1, which the fit does not cover, the throughput is within its stated error.",
+    "For indices below 1, where facets reflect totally, the throughput is 1 - E, too.",
     reads("tint"),
     pass_all,
     pairs=True,

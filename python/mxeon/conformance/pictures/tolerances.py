@@ -84,12 +84,12 @@ def inner_nodes(shader: Shader) -> Iterator[mx.Element]:
 
 
 def _others(lobes: tuple[ShownLobe, ...]) -> list[Term]:
-    """What inputs of lobes add: a film, an index without a fit, and narrow lobes of hair and sheen."""
+    """What inputs of lobes add: a film, an index below 1, and narrow lobes of hair and sheen."""
     film, trapped = FILM_ALBEDO.term("a film"), FILM_TRAPPED.term("a film of an index below 1.25")
-    unfitted = FACET_ERRORS["denser"].term("an index below 1, without a fit")
+    inside = FACET_ERRORS["denser"].term("the throughput of an index below 1")
     others = [film] * _any(lobes, "thinfilm_thickness", lambda value: value > 0.0)
     others += [trapped] * _any(lobes, "thinfilm_ior", lambda value: value < LEAST_FILM)
-    others += [unfitted] * _any(lobes, "ior", lambda value: value < 1.0, "dielectric_bsdf")
+    others += [inside] * _any(lobes, "ior", lambda value: value < 1.0, "dielectric_bsdf")
     hairs = [
         np.reshape(lobe.inputs[name], (-1, 2)).min(axis=0)
         for lobe in lobes

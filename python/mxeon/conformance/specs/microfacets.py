@@ -92,6 +92,7 @@ ESS_FIT = 5e-4  # ggx_albedo.py: albedo of GGX where every facet reflects everyt
 SMOOTH_ESS_FIT = 5.3e-5  # the same of smooth lobes, from a cosine of 0.05 on
 FRESNEL_FIT = 3.6e-4  # fresnel_average.py: mean of a Fresnel curve, F_ss
 LOBE_FIT = 3.2e-3  # ggx_cosine.py: albedo of GGX with a Fresnel curve
+INSIDE_FIT = 2.8e-2  # ggx_inside.py: albedo of a dielectric of index below 1
 DIP_FIT = 5.9e-3  # ggx_cosine.py: what a full dip at 82 degrees adds to it
 LEAST_ESS = 1.0 - math.log(2.0)  # E_ss at alpha 1 along the normal
 # Largest v / E_ss, v the value pi f cos of facets that reflect everything, or 1 if that is less, as
@@ -111,6 +112,7 @@ def sum_over(directions: int) -> Term:
 ESS = Term(ESS_FIT / LEAST_ESS, "the fit of E_ss over the least, 0.31")
 COMPENSATION = (ESS, Term(FRESNEL_FIT * (1.0 - LEAST_ESS), "the fit of F_ss, times 1 - E_ss"))
 LOBE = Term(LOBE_FIT, "the fit of the lobe's albedo")
+INSIDE = Term(INSIDE_FIT, "the fit of the albedo of an index below 1")
 HALF_DIP = Term((1.0 - LEAST_COLOR82) * DIP_FIT, "half of the fit of the dip at 82 degrees")
 # E_ss is least where values are small.
 VALUE = sum_of(
@@ -156,9 +158,7 @@ ERRORS = {
         )
     ),
     "dip": sum_of(HALF_DIP, unit="albedo", metric=absolute),
-    "denser": given(
-        0.78, "albedo", "the largest error of a cosine that is fitted to indices from 1.03 on"
-    ),
+    "denser": sum_of(INSIDE, ESS, unit="albedo", metric=absolute),
 }
 WHITE_FURNACE = given(
     4e-3, "light", "what a repaired layer over white may gain or lose, 6e-4 of it by the quadrature"
