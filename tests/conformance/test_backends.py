@@ -55,7 +55,7 @@ def test_a_host_is_asked_for_what_it_has(host):
 
 
 def test_a_host_that_evaluates_is_asked_for_every_node():
-    rows = [row.name for row in HOSTS if row.probe == "pairs"]
+    rows = [row.name for row in HOSTS if row.way == "pairs"]
     assert len(rows) == 5
     assert all(backend_of(name, spec) for name in rows for spec in specs.ALL)
 

@@ -117,5 +117,5 @@ def test_a_row_is_that_of_its_module(row):
 
 
 def test_a_row_has_a_module_or_says_what_running_it_needs():
-    assert all(bool(row.module) == bool(row.probe) != bool(row.needs) for row in hosts.host_rows())
+    assert all(bool(row.module) == bool(row.way) != bool(row.needs) for row in hosts.host_rows())
     assert {row.target for row in hosts.HOSTS if row.target} == set(CLASSES)

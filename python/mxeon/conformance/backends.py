@@ -71,10 +71,10 @@ from mxeon.hosts.testrender.scenes import EYE, NEAREST
 from mxeon.models.nodes.bsdl import BSDL_VARIANTS
 from mxeon.models.nodes.cycles import CYCLES_VARIANTS
 from mxeon.models.nodes.node import Scattering, Variant
-from mxeon.shaders.document.values import Plain
 from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, VIEW, Scene, local_directions, sphere
 
 if TYPE_CHECKING:
+    from mxeon.shaders.document.values import Plain
     from mxeon.shaders.generation import Shader
 
 WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
@@ -228,7 +228,7 @@ class Backend(ABC):
         """What a result says of a renderer's own node beside its verdict."""
         return {}
 
-    def measured(self) -> Spec:
+    def nearest_form(self) -> Spec:
         """The spec, in the published form that is nearest to what is measured where there are several."""
         return self.spec
 
@@ -906,7 +906,7 @@ class LobePictures(Pictures):
         shader = super().shader_of(PICTURE_INPUTS[0])
         values = {self.spec.color: inputs["color"], self.spec.roughness: inputs["roughness"]}
         ports = (
-            replace(port, value=cast(Plain, values.get(port.path.rsplit("/", 1)[-1], port.value)))
+            replace(port, value=cast("Plain", values.get(port.path.rsplit("/", 1)[-1], port.value)))
             for port in shader.inputs
         )
         return replace(shader, inputs=tuple(ports))
@@ -1076,7 +1076,7 @@ def ways_of(host: str) -> tuple[type[Backend], ...]:
     row = host_row(host)
     if not row.target:
         import_module("mxeon.survey.checks")
-    return BACKENDS.get(row.probe, ())
+    return BACKENDS.get(row.way, ())
 
 
 def own_nodes(host: str) -> tuple[Spec, ...]:

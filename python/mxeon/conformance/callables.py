@@ -32,7 +32,12 @@ from mxeon.conformance.samples import (
     directions,
     special_directions,
 )
-from mxeon.conformance.specs.diffuse import ERRORS, DiffuseModelSpec, diffuse_edges
+from mxeon.conformance.specs.diffuse import (
+    ERRORS,
+    DiffuseModelSpec,
+    diffuse_edges,
+    inputs_of,
+)
 from mxeon.conformance.tolerance import Compared, absolute, point_of
 from mxeon.errors import InputError, assert_known
 from mxeon.hosts.base import Host, Identity
@@ -245,7 +250,7 @@ def _case(brdf: Brdf, model: str, name: str | None) -> Case:
         title=reference.model(model).title,
         node="a function",
         model=model,
-        ports=("color", "roughness"),
+        inputs=inputs_of("color", "roughness"),
         errors=ERRORS,
     )
     function = Function(CallableHost(title, brdf), spec, LIBRARY)

@@ -133,7 +133,7 @@ class Case:
 def make_case(backend: type[Backend], host: Engine, spec: Spec, library: str) -> Case:
     spec = backend.prepared(spec).within(library)
     made = backend(cast(Host, host), spec, library)
-    if (form := made.measured()) is not spec:
+    if (form := made.nearest_form()) is not spec:
         made = backend(cast(Host, host), form, library)
     return Case(made.spec, made, made.samples())
 

@@ -11,7 +11,7 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from typing import TypeAlias, TypeVar
+from typing import TypeAlias, TypedDict, TypeVar, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -45,6 +45,15 @@ class Control:
         return replace(self.make(case), control=True)
 
 
+class Options(TypedDict, total=False):
+    """What a check may say beside its claim; see Check."""
+
+    pairs: bool
+    lit: bool
+    open: bool
+    hosts: Callable[[Spec, str], bool]
+
+
 @dataclass(frozen=True)
 class Check:
     """A claim about nodes."""
@@ -55,14 +64,16 @@ class Check:
     measure: Measure  # the worst row counts, or a number of its own
     control: Control
     quantity: str  # by whose error it is judged
-    tolerance: Tolerance | None  # where it is the same for all
-    pairs: bool  # whether it needs pairs of directions that not every host has
-    lit: bool  # whether it is about how light is found, summed or let through, unlike closures
-    open: (
-        bool  # whether an error differs, and does not fail, where a permitted function explains it
-    )
-    hosts: Callable[[Spec, str], bool]  # whether it can be asked on the host of a name
     diagnose: Callable[[Case], Diagnosis]
+    tolerance: Tolerance | None = None  # where it is the same for all
+    pairs: bool = False  # whether it needs pairs of directions that not every host has
+    lit: bool = (
+        False  # whether it is about how light is found, summed or let through, unlike closures
+    )
+    # Whether an error differs, and does not fail, where a permitted function explains it.
+    open: bool = False
+    # Whether it can be asked on the host of a name.
+    hosts: Callable[[Spec, str], bool] = lambda spec, host: True
 
     def measured(self, case: Case, metric: Metric) -> Measurement:
         """The worst error of a case."""
@@ -71,7 +82,7 @@ class Check:
             return found
         return worst_of(metric, [found] if isinstance(found, Compared) else found)
 
-    def asked(self, spec: Spec, backend: type[Backend], host: str) -> bool:
+    def applies_to(self, spec: Spec, backend: type[Backend], host: str) -> bool:
         """Whether it is asked about a node on a host, by one of its backends."""
         if not (self.applies(spec) and self.hosts(spec, host)):
             return False
@@ -179,32 +190,17 @@ def check(
     quantity: str = "",
     tolerance: Tolerance | None = None,
     *,
-    pairs: bool = False,
-    lit: bool = False,
-    open: bool = False,
-    hosts: Callable[[Spec, str], bool] = lambda spec, host: True,
     diagnose: Callable[[Case], Diagnosis] | None = None,
+    **rest: Unpack[Options],
 ) -> Callable[[M], M]:
     """Make a function that measures a case a check; its quantity is its key unless given."""
 
     def add(measure: M) -> M:
-        comparison = measure if isinstance(measure, Comparison) else VALUE
-        quantities = comparison.quantity if measure is comparison else key
+        own = measure if isinstance(measure, Comparison) else None
+        found = quantity or (own.quantity if own else key)
+        explain = diagnose or (own or VALUE).diagnose
         CHECKS.append(
-            Check(
-                key,
-                claim,
-                applies,
-                measure,
-                control,
-                quantity or quantities,
-                tolerance,
-                pairs,
-                lit,
-                open,
-                hosts,
-                diagnose or comparison.diagnose,
-            )
+            Check(key, claim, applies, measure, control, found, explain, tolerance, **rest)
         )
         return measure
 

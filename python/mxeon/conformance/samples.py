@@ -31,7 +31,7 @@ Changes: TypeAlias = tuple[Values, Values]  # inputs before and after a change o
 
 @dataclass(frozen=True)
 class Counts:
-    """How many samples a probe draws."""
+    """How many samples a spec draws."""
 
     pairs: int = PAIRS  # random pairs, and those of them for what takes long
     few: int = FEW

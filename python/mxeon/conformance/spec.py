@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a node is judged by: its inputs and their ranges, its models, its errors and the samples it needs.
 
-A family of nodes is one file under `specs`. A spec knows no engine; a backend knows no node.
+A family of nodes is one file under `specs`. How an engine is asked about it is a backend's business.
 """
 
 from abc import ABC, abstractmethod

@@ -17,7 +17,7 @@ class Row:
     name: str
     target: str  # of its shaders; "" for a renderer of its own materials alone
     module: str = ""  # with its class `Host`; "" where only the text of the target is checked
-    probe: str = ""  # how it is asked: a key of `mxeon.conformance.backends.BACKENDS`; "" for none
+    way: str = ""  # how it is asked: a key of `mxeon.conformance.backends.BACKENDS`; "" for none
     needs: str = ""  # what running it would take, where only its text is checked
     scenes: tuple[Scene, ...] = ()  # lights under which it renders the materials of documents
     surfaces: bool = False  # whether surface shaders are judged on it

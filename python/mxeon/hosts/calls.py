@@ -10,14 +10,16 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import TypeAlias, cast
+from typing import TYPE_CHECKING, TypeAlias, cast
 
 from numpy.typing import ArrayLike
 
 from mxeon.errors import InputError, InterfaceError
 from mxeon.hosts.base import Inputs
-from mxeon.shaders.generation import Input, Shader
 from mxeon.shaders.nodes import types_of
+
+if TYPE_CHECKING:  # which loads MaterialX
+    from mxeon.shaders.generation import Input, Shader
 
 # A function that fills in a surface shader, and its statements before those of the lights. Slang
 # hands the vertex data on as the first parameter.

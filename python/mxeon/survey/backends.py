@@ -169,7 +169,7 @@ class Exact(Native):
     def materials(self) -> Sequence[Values]:
         return EXACT_INPUTS
 
-    def measured(self) -> Spec:
+    def nearest_form(self) -> Spec:
         """The spec of the published form of the model that is nearest to what is measured."""
         if not self.node.forms:
             return self.node

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
 from mxeon.conformance.samples import Values
-from mxeon.conformance.specs.diffuse import DiffuseModelSpec
+from mxeon.conformance.specs.diffuse import DiffuseModelSpec, inputs_of
 from mxeon.models.table import OTHERS, Model
 
 Material: TypeAlias = Mapping[str, Any]  # properties of a renderer's material
@@ -59,5 +59,5 @@ def node(
     title: str, model: str, material: Material, ports: tuple[str, ...] = BOTH, **more: Any
 ) -> RendererSpec:
     return RendererSpec(
-        title=title, node=title, model=model, material=material, ports=ports, **more
+        title=title, node=title, model=model, material=material, inputs=inputs_of(*ports), **more
     )

@@ -109,7 +109,7 @@ def is_opaque(spec: Spec) -> bool:
 
 def shows_exactly(spec: Spec, host: str) -> bool:
     """Whether a host has directions to the last bit, those on the horizon too."""
-    return all(row.probe not in ("rendered", "pictures") for row in HOSTS if row.name == host)
+    return all(row.way not in ("rendered", "pictures") for row in HOSTS if row.name == host)
 
 
 def has_environment(spec: Spec, host: str) -> bool:

@@ -27,7 +27,7 @@ from mxeon.shaders.library_tree import root
 
 __all__ = ["check", "read_run", "to_run", "work"]
 
-EVALUATING = tuple(row.name for row in HOSTS if row.probe == "pairs")  # texts of any library
+EVALUATING = tuple(row.name for row in HOSTS if row.way == "pairs")  # texts of any library
 
 Executor = Callable[[Sequence[Task]], Iterable[tuple[int, pool.Outcome]]]
 

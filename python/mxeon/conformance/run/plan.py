@@ -191,7 +191,7 @@ def _on_host(
     if not ways or not row.target:
         return
     evaluates, kind = ways[0] is Evaluating, kind_of(library)
-    if row.probe in functions.KINDS and has_functions(
+    if row.way in functions.KINDS and has_functions(
         library, "osl" if row.target == "osl" else "glsl"
     ):
         yield Task(FUNCTIONS, SHADER_FUNCTIONS, host, library)
@@ -205,7 +205,7 @@ def _on_host(
     for each in nodes:
         # Where pictures show a renderer's own closures, they are judged with the stock library alone.
         own = row.target == "osl" and kind in ("eonlib", "diffuse")
-        left = each.closure and row.probe == "pictures" and own
+        left = each.closure and row.way == "pictures" and own
         # Without documents a library of ours is judged by the nodes that it repairs.
         if not left and (everywhere or kind in (OVERLAY, *(each.libraries or LIBRARIES))):
             yield from _checks_of(each, host, library)
@@ -221,7 +221,7 @@ def _on_host(
 def _checks_of(spec: Spec, host: str, library: str) -> Iterator[Task]:
     backend = backend_of(host, spec)
     for check in CHECKS:
-        if backend and check.asked(spec, backend, host):
+        if backend and check.applies_to(spec, backend, host):
             yield Task(check.key, spec.title, host, library)
 
 

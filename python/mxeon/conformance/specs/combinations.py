@@ -63,7 +63,10 @@ def node_over(category: str, name: str = "lobe", value: str = "", **lobes: str) 
     return node_text(category, "BSDF", name, ports + value)
 
 
-TOP, BASE = (lobe_text("sheen_bsdf", {"mode": "zeltner"}, name) for name in ("top", "base"))
+TOP, BASE = (
+    lobe_text("sheen_bsdf", {"mode": "zeltner"}, name, {"mode": "string"})
+    for name in ("top", "base")
+)
 SUM = TOP + BASE + node_over("add", "sum", in1="top", in2="base")
 HALF_TEXT, ONE_TEXT = input_text("mix", "float", 0.5), input_text("in2", "float", 1.0)
 WHITE_TEXT = input_text("in2", "color3", (1.0, 1.0, 1.0))

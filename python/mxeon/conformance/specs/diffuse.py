@@ -16,20 +16,18 @@ from mxeon.conformance.samples import (
     Array,
     Batch,
     Candidate,
-    Changes,
     Counts,
     Values,
     rounded,
     with_edges,
 )
-from mxeon.conformance.spec import LobeSpec
+from mxeon.conformance.spec import CHANGED_COLOR, Input, LobeSpec
 from mxeon.conformance.tolerance import Term, Tolerance, absolute, roundings, sum_of
 from mxeon.models import table as reference
 from mxeon.models.table import Model
 from mxeon.shaders.nodes import (
     EON,
     FLAG,
-    INPUT_TYPES,
     OREN_NAYAR,
     document_text,
     input_text,
@@ -91,12 +89,16 @@ def difference_of(value: Tolerance) -> Tolerance:
     )
 
 
-CHANGES: Values = {
-    "weight": 0.5,
-    "color": (0.9, 0.1, 0.6),
-    "roughness": 0.3,
-    "normal": (0.0, 0.6, 0.8),
-}
+INPUTS = (
+    Input("weight", change=0.5),
+    Input("color", "color3", change=CHANGED_COLOR),
+    Input("roughness", change=0.3),
+    Input("normal", "vector3", change=(0.0, 0.6, 0.8)),
+)
+
+
+def inputs_of(*names: str) -> tuple[Input, ...]:
+    return tuple(each for each in INPUTS if each.name in names)
 
 
 def model_value(batch: Batch, model: str) -> Array:
@@ -164,22 +166,13 @@ def diffuse_edges() -> Batch:
 class DiffuseModelSpec(LobeSpec):
     """What has to be a rough diffuse model: a row of `mxeon.models.table`."""
 
-    ports: tuple[str, ...]  # names of the inputs that must have an effect
     beside: bool = False  # whether lobes that ignore the color lie beside it
 
     flat: ClassVar[bool] = True
 
     @property
-    def names(self) -> tuple[str, ...]:
-        return self.ports
-
-    @property
     def row(self) -> Model:
         return reference.model(self.model)
-
-    @property
-    def changes(self) -> dict[str, Changes]:
-        return {name: ({}, {name: CHANGES[name]}) for name in self.names}
 
     @property
     def other_models(self) -> tuple[Model, ...]:
@@ -237,11 +230,6 @@ class DiffuseSpec(DiffuseModelSpec):
 
     flag: bool | None  # energy_compensation, or None where the node has no such input
 
-    @property
-    def changes(self) -> dict[str, Changes]:
-        values = {**CHANGES, FLAG: not self.flag}
-        return {name: ({}, {name: values[name]}) for name in self.names}
-
     def document(self, inputs: Values | None = None) -> str:
         return material_text(self.node, {**self.fixed, **(inputs or {})}, self.node)
 
@@ -253,7 +241,7 @@ def _diffuse(node: str, flag: bool | None, model: str) -> DiffuseSpec:
         node=node,
         model=model,
         flag=flag,
-        ports=tuple(name for name in INPUT_TYPES if flag is not None or name != FLAG),
+        inputs=INPUTS if flag is None else (*INPUTS, Input(FLAG, "boolean", change=not flag)),
         fixed={} if flag is None else {FLAG: flag},
         errors=ERRORS | {"difference": difference_of(VALUE)},
     )
@@ -301,7 +289,6 @@ def _lobe(
         title=title,
         node=title.split(",")[0],
         model=model,
-        ports=(),
         color=color,
         roughness=roughness,
         set_inputs=set_inputs,

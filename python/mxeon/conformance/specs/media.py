@@ -41,7 +41,12 @@ from mxeon.shaders.nodes import (
 TRANSMITTANCE = sum_of(roundings(12), unit="transmittance")
 LEAST, LARGEST = 1e-3, 16.0  # coefficients, 1/m: of 1e-3 and 1 - 1e-7 of the light
 LARGEST_FACTOR = 3.0  # of a multiple
-INTERFACE = lobe_text("dielectric_bsdf", {"weight": 1.0, "scatter_mode": "T"}, "top")
+INTERFACE = lobe_text(
+    "dielectric_bsdf",
+    {"weight": 1.0, "scatter_mode": "T"},
+    "top",
+    {"weight": "float", "scatter_mode": "string"},
+)
 SOURCES = {  # names of the media that a node takes, by its port
     "mix": {"fg": "first", "bg": "second"},
     "add": {"in1": "first", "in2": "second"},

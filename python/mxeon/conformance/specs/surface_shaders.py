@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Surface shaders, each with all of its lobes, against the layer equation."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.samples import (
     SEED,
     Array,
@@ -23,9 +25,11 @@ from mxeon.conformance.specs.microfacets import reflected, sum_over
 from mxeon.conformance.tolerance import Term, absolute, mean_scaled, sum_of
 from mxeon.errors import NotRun
 from mxeon.hosts.calls import NORMAL, TANGENT
-from mxeon.shaders.document.values import Plain
-from mxeon.shaders.generation import Shader, generate
 from mxeon.shaders.nodes import document_text, node_text
+
+if TYPE_CHECKING:  # which load MaterialX
+    from mxeon.shaders.document.values import Plain
+    from mxeon.shaders.generation import Shader
 
 # Inputs by the range that is asked of them; a change is another value than any default.
 RANGES = {
@@ -284,7 +288,7 @@ class SurfaceShaderSpec(LobeSpec):
     def names(self) -> tuple[str, ...]:
         return tuple(self.table.changed)
 
-    def within(self, library: str) -> "SurfaceShaderSpec":
+    def within(self, library: str) -> SurfaceShaderSpec:
         return replace(self, library=library)
 
     def document(self, inputs: Values | None = None) -> str:
@@ -300,10 +304,14 @@ class SurfaceShaderSpec(LobeSpec):
 
     @cached_property
     def _shader(self) -> Shader:
+        from mxeon.shaders.generation import generate
+
         [shader] = generate(self.document(), "glsl", library=self.library)
         return shader
 
     def _reference(self, batch: Batch, branch: str) -> Array:
+        from mxeon.conformance.reference import Host as Reference
+
         return Reference().evaluate(self._shader, batch.wo, batch.wi, batch.inputs, branch)
 
     # Its samples.
