@@ -28,7 +28,7 @@ def test_a_page_of_the_field_is_not_written_through_a_link(tmp_path, capsys):
     other.write_text("mine")
     link.symlink_to(other)
     assert main(["report", "field", str(tmp_path), "--output", str(link)]) == MISUSE
-    assert "output must be no link" in capsys.readouterr().err and other.read_text() == "mine"
+    assert "output must not be a link" in capsys.readouterr().err and other.read_text() == "mine"
 
 
 def test_a_kit_is_written_over_a_kit_alone(tmp_path, monkeypatch, capsys):

@@ -55,7 +55,7 @@ def film(choices):
         "film_limit": choices,
         **dict.fromkeys(
             ("film_environment", "film_visible", "film_glossy"),
-            f"{choices}, in light from all sides",
+            f"{choices}, under an environment",
         ),
         **dict.fromkeys(("film_average", "film_smooth"), AVERAGE),
     }
@@ -225,11 +225,11 @@ CHOICE = "genglsl_microfacet_compensation"
         ("environment", SHEEN, "gl", "stock", FAILED, 1e7, FITTED, set()),
         ("environment", SHEEN, "gl", "stock", FAILED, 0.05, "no known model matches", set()),
         # What follows from a defect of stock refers to its page.
-        ("inputs", QON, "cycles", "stock", FAILED, 0.0, "", {"cycles_rho_cubed"}),
-        ("inputs", QON, "cycles", "eonlib", FAILED, 0.0, "", set()),
+        ("inputs", QON, "cycles", "stock", FAILED, 0.1, "", {"cycles_rho_cubed"}),
+        ("inputs", QON, "cycles", "eonlib", FAILED, 0.1, "", set()),
         # The page of what the text leaves open explains no failure alone.
-        ("value", "conductor_bsdf", "wgsl", "stock", DIFFERS, 0.0, "", {CHOICE}),
-        ("value", "conductor_bsdf", "wgsl", "stock", FAILED, 0.0, "", set()),
+        ("value", "conductor_bsdf", "wgsl", "stock", DIFFERS, 0.1, "", {CHOICE}),
+        ("value", "conductor_bsdf", "wgsl", "stock", FAILED, 0.1, "", set()),
         # A failure that no text can avoid has its page with each library.
         ("inputs", "conductor_bsdf", "osl", "stock", FAILED, 1.0, "", {"genosl_dropped_retroreflection"}),
         ("inputs", "conductor_bsdf", "osl", "eonlib", FAILED, 1.0, "", {"genosl_dropped_retroreflection"}),
@@ -240,8 +240,7 @@ CHOICE = "genglsl_microfacet_compensation"
 def test_a_failure_has_the_pages_that_explain_it(
     check, subject, host, library, verdict, error, diagnosis, pages
 ):
-    figures = (error, "", 1e-6) if error else ()
-    result = Result(check, "", subject, host, library, verdict, *figures, diagnosis=diagnosis)
+    result = Result(check, "", subject, host, library, verdict, error, "", 1e-6, diagnosis=diagnosis)
     assert {*with_pages(result).pages} == pages
 
 

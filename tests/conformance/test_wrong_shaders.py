@@ -48,7 +48,7 @@ WRONG = {
          "inputs without effect: roughness"),
         (LOBE, "N = mx_forward_facing_normal(N, wo);", "roughness *= roughness;\n    OLD", "environment",
          "fault: the roughness is squared (rms "),
-        (LOBE, "brdf * mu_i", "(brdf + 0.05 * color * mu_o * mu_o) * mu_i", "value", "no known model matches: "),
+        (LOBE, "brdf * mu_i", "(brdf + 0.05 * color * mu_o * mu_o) * mu_i", "value", "no known model matches, the closest is "),
     ),
     "oren_nayar_diffuse_bsdf, energy_compensation false": (
         (LOBE, "mx_environment_irradiance(N) * weight", "mx_environment_irradiance(N)", "environment",
@@ -132,7 +132,7 @@ WRONG = {
         ("mx_burley_diffuse_bsdf.glsl", "bsdf.response *= mx", "bsdf.response *= 1.0 + 0.0 * mx", "value",
          "best match: Lambert (rms "),
         ("mx_burley_diffuse_bsdf.glsl", "mx_burley_diffuse(NdotV, NdotL", "mx_burley_diffuse(NdotV, NdotV",
-         "reciprocity", "no known model matches: Burley diffuse comes nearest"),
+         "reciprocity", "no known model matches, the closest is Burley diffuse"),
         ("mx_burley_diffuse_bsdf.glsl", "* M_PI_INV;", "* M_PI_INV + 0.001;", "black", ""),
         ("mx_burley_diffuse_bsdf.glsl", "bsdf.response *= mx", "bsdf.response *= 0.9 * mx", "integral",
          "fault: every value is 0.9 times the right one (rms "),
