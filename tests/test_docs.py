@@ -47,6 +47,7 @@ def build(configuration, site):
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
     """Folder of the built site."""
+    pytest.importorskip("mkdocs")
     folder = tmp_path_factory.mktemp("docs") / "site"
     built = build(ROOT / "mkdocs.yml", folder)
     assert built.returncode == 0, built.stdout + built.stderr

@@ -74,6 +74,8 @@ def test_what_was_found_stays_fixed_and_a_slice_of_the_fuzz_run_has_no_fault(out
 
 @pytest.mark.parametrize("family", SLICED)
 def test_a_slice_of_each_family_of_the_attack_ends_without_fault(outcomes, family):
+    if family in IN_BROWSER:
+        pytest.importorskip("playwright")
     assert len(outcomes[family]) >= 3
     assert [said for _, each in outcomes[family] if (said := each.failure or each.value[1])] == []
 
@@ -126,6 +128,7 @@ def test_a_trial_notices(monkeypatch, does, fault):
 
 
 def test_a_script_that_a_page_lets_in_is_a_fault(outcomes):
+    pytest.importorskip("playwright")
     status, fault = outcomes["unescaped"][0][1].value
     if status == pages.NOT_RUN:
         pytest.skip("Chromium does not run here")

@@ -8,6 +8,7 @@ from pathlib import Path
 import MaterialX as mx
 import pytest
 
+from mxeon.errors import NotRun
 from mxeon.survey.browser import packages_folder
 from tests.hosts.test_cycles_kernel import kernel
 from tests.support.availability import available
@@ -55,7 +56,10 @@ def test_the_patches_of_a_project_are_from_pages_and_apply_to_its_release(projec
     found = patches(project)
     assert set(found) <= set(ENTRIES)
     with available(HOSTS.get(project, project if project.startswith("three") else "gl")):
-        folder = repository(tmp_path, project, changed(*found.values()))
+        try:
+            folder = repository(tmp_path, project, changed(*found.values()))
+        except FileNotFoundError as error:
+            raise NotRun(f"{project}: {error}") from error
     git(folder, "am", "--quiet", *found.values())
     # The names that a patch has for its files are git's, for the last of them too.
     for text in (path.read_bytes().decode() for path in found.values()):

@@ -240,7 +240,9 @@ CHOICE = "genglsl_microfacet_compensation"
 def test_a_failure_has_the_pages_that_explain_it(
     check, subject, host, library, verdict, error, diagnosis, pages
 ):
-    result = Result(check, "", subject, host, library, verdict, error, "", 1e-6, diagnosis=diagnosis)
+    result = Result(
+        check, "", subject, host, library, verdict, error, "", 1e-6, diagnosis=diagnosis
+    )
     assert {*with_pages(result).pages} == pages
 
 
