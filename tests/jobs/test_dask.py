@@ -18,7 +18,7 @@ from mxeon.errors import InputError, NotRun
 from mxeon.jobs import dask
 from mxeon.jobs.pool import Outcome
 from mxeon.shaders.library import examples_folder
-from tests.support.faults import need, once, process, square
+from tests.support.faults import Lost, need, once, process, square
 from tests.support.plans import keep_checks
 
 ONE_THREAD = ["--nthreads", "1"]
@@ -88,6 +88,12 @@ def test_a_worker_killed_at_work_costs_nothing(pair, tmp_path):
     items = [str(tmp_path / name) for name in "ab"]
     assert run(once, items, pair) == dict.fromkeys((0, 1), Outcome("done"))
     assert run(square, [3], pair) == {0: Outcome(9)}
+
+
+def test_a_worker_killed_with_its_result_costs_nothing(tmp_path, monkeypatch):
+    monkeypatch.setattr(dask, "FETCH", 1.0)
+    with farm({}) as address:  # no other worker can do it instead
+        assert run(Lost, [str(tmp_path / "a")], address) == {0: Outcome("done")}
 
 
 def test_an_item_that_hangs_ends_its_workers_and_is_given_up():

@@ -46,6 +46,16 @@ def once(item):
     return "done"
 
 
+class Lost:
+    """A result whose process dies on the first attempt to send it."""
+
+    def __init__(self, item):
+        self.item = item
+
+    def __reduce__(self):
+        return str, (once(self.item),)
+
+
 def process(item):
     """Number of the process that works, after a moment."""
     time.sleep(0.05)

@@ -32,6 +32,7 @@ GONE = "scheduler must run until the end; it answers no more"
 LOGGERS = ("distributed", "tornado", "asyncio")
 WINDOW = 2  # items under way for each worker: results do not pile up, newcomers get their share
 POLL = 1.0  # seconds between looks at the workers that come and go
+FETCH = 10.0  # seconds for a result's way here, of which most have some kilobytes
 
 
 @contextmanager
@@ -207,24 +208,20 @@ def _progress(
     """The outcome of a task that is done, or the task to submit again, or neither."""
     if not future.done():
         return None, None if task.chosen & compatible else task  # its workers are gone
-    error = future.exception()
+    try:
+        error = future.exception(timeout=FETCH)
+        if error is None:
+            return Outcome(future.result(timeout=FETCH)), None
+    except TimeoutError:  # its worker ended with the result, so that it is not done any more
+        return None, None
     if isinstance(error, WorkerUnavailable):
         tried = task.tried | {error.worker}
-        return (
-            (None, replace(task, tried=tried)) if compatible - tried else (_outcome(future), None)
-        )
-    return _outcome(future), None
-
-
-def _outcome(future: Any) -> Outcome:
-    error = future.exception()
-    if error is None:
-        return Outcome(future.result())
-    if isinstance(error, WorkerUnavailable):
-        return Outcome(None, str(error))
+        if compatible - tried:
+            return None, replace(task, tried=tried)
+        return Outcome(None, str(error)), None
     if not type(error).__module__.startswith("distributed."):  # raised by the work
         log_bug(error)
-    return Outcome(None, " ".join(f"{type(error).__name__}: {error}".split()))
+    return Outcome(None, " ".join(f"{type(error).__name__}: {error}".split())), None
 
 
 def _work_timed(
