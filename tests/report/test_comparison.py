@@ -194,3 +194,36 @@ def test_figures_that_are_not_finite_are_the_same_only_by_name():
     assert changes(nan, nan) == changes(infinite, infinite) == ()
     (change,) = changes(nan, infinite)
     assert (change.before, change.after) == ("passed at NaN", "passed at Infinity")
+
+
+def run_with(*folders, verdict=PASSED):
+    """A run with folders as libraries, which fails with the last of them if it fails."""
+    verdicts = [PASSED] * (len(folders) - 1) + [verdict]
+    (result,) = made_run().results
+    results = tuple(
+        replace(result, library=folder, verdict=each)
+        for folder, each in zip(folders, verdicts, strict=True)
+    )
+    libraries = {folder: {"folder": ("a.mtlx",)} for folder in folders}
+    return replace(made_run(), results=results, libraries=libraries)
+
+
+@pytest.mark.parametrize(
+    "before, after",
+    [
+        (["/old/eonlib"], ["/new/eonlib"]),
+        (["/old/a", "/old/b"], ["/new/b", "/new/a"]),  # by the name, in any order
+        (["/old/a", "/same/b"], ["/new/c", "/same/b"]),  # by the place of what is left
+    ],
+)
+def test_a_library_that_lies_elsewhere_is_the_same_one(before, after):
+    assert changes(run_with(*before), run_with(*after)) == ()
+    (change,) = changes(run_with(*before), run_with(*after, verdict=FAILED))
+    expected = f"gl, {after[-1]}, value, clay"
+    assert (change.kind, change.place) == (WORSE, expected)
+
+
+def test_a_library_that_came_or_went_is_another_one():
+    one, two = run_with("/old/a"), run_with("/old/a", "/old/b")
+    assert [change.after for change in changes(two, one)] == ["none"]
+    assert [change.before for change in changes(one, two)] == ["none"]

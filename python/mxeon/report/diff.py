@@ -4,8 +4,8 @@
 import json
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -119,12 +119,37 @@ def read_results(folder: str | PathLike[str]) -> Report:
 
 def compare(before: Report, after: Report) -> tuple[Change, ...]:
     """Changes from one report to another, those for the worse first."""
+    before = _renamed(before, _moved(list(before.libraries), list(after.libraries)))
     changes = [
         *_results(_by(PLACE, before.results), _by(PLACE, after.results)),
         *_pictures(_by(SHOWN, before.pictures), _by(SHOWN, after.pictures)),
         *_facts(before, after),
     ]
     return tuple(sorted(changes, key=lambda change: (WORSE, BETTER, OTHER).index(change.kind)))
+
+
+def _moved(before: Sequence[str], after: Sequence[str]) -> dict[str, str]:
+    """The folder in `after` that each library folder of `before` is, wherever it lies now.
+
+    It has the same path, or else the same name, or else the same place in `--library`.
+    """
+    same = {folder: folder for folder in before if folder in after}
+    for alike in (lambda old, new: Path(old).name == Path(new).name, lambda old, new: True):
+        for old in before:
+            left = [new for new in after if new not in same.values() and alike(old, new)]
+            if old not in same and left:
+                same[old] = left[0]
+    return same
+
+
+def _renamed(report: Report, libraries: Mapping[str, str]) -> Report:
+    """A report whose results and pictures have other names of libraries."""
+    results, pictures = (
+        tuple(replace(each, library=libraries.get(each.library, each.library)) for each in records)
+        for records in (report.results, report.pictures)
+    )
+    compared = tuple(libraries.get(each, each) for each in report.compared)
+    return replace(report, results=results, pictures=pictures, compared=compared)
 
 
 def _by(names: tuple[str, ...], records: Iterable[Any]) -> dict[tuple[str, ...], Any]:

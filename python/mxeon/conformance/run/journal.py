@@ -135,7 +135,8 @@ def read_journal(folder: str | os.PathLike[str]) -> tuple[Plan, dict[int, Findin
 def refusal(folder: str | os.PathLike[str] | None, differences: Sequence[str]) -> str:
     """The reason for not resuming the run in a folder: one line that lists what differs."""
     changed = listed(differences)
-    return f"{folder}: --resume needs the same run, or another --report folder; changed: {changed}"
+    rule = "--resume needs the same run, or another --report folder: this one keeps the earlier run"
+    return f"{folder}: {rule}; changed: {changed}"
 
 
 def _read(folder: Path) -> tuple[Plan, dict[int, Findings], str, int]:
