@@ -29,7 +29,7 @@ SLICE = {
     "osl, stock node: keyword misspelled": "closure",
     "osl: s negated": "languages",
     "mdl, eon node: tint not squared": "closure",
-    "average: c2 1e-3 off": "inversion",
+    "average: c2 1e-3 off": "output",
     "stock node: flag on by default": "definition",
 }
 # The tasks that answer several checks.

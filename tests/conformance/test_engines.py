@@ -6,7 +6,7 @@ from contextlib import closing
 import numpy as np
 import pytest
 
-from mxeon.conformance.results import FAILED, NOT_RUN
+from mxeon.conformance.results import FAILED, NOT_RUN, SHADER_FUNCTIONS
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.tasks import Task
 from mxeon.errors import NotRun, ShaderError
@@ -59,7 +59,10 @@ def test_a_host_that_mistakes_its_arguments_fails(monkeypatch, evaluate, check, 
 
 
 @pytest.mark.parametrize("error, verdict", [(NotRun, NOT_RUN), (ShaderError, FAILED)])
-@pytest.mark.parametrize("check, title", [("value", EON), ("inversion", "eon_rho_from_albedo_avg")])
+@pytest.mark.parametrize(
+    "check, title",
+    [("value", EON), ("output", "eon_rho_from_albedo_avg"), ("twins", SHADER_FUNCTIONS)],
+)
 def test_what_does_not_run_is_never_passed(monkeypatch, error, verdict, check, title):
     def fails(*arguments, **options):
         raise error("0:1(1): error: here")

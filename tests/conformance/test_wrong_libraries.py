@@ -278,10 +278,10 @@ def test_a_wrong_inversion_node_fails_there_and_back(judged, copy, node, old, ne
     library = copy(GRAPHS, old, new)
     if "invert" in old:
         library = copy(GRAPHS, "</invert>", "</absval>")
-    found = failed(judged.all("inversion", node, "gl", library))
-    assert set(found) == {"inversion", "round_trip"}
-    expected = "NaN or infinity" if "invert" in old else "off by rms "
-    assert all(words.startswith(expected) for words in found.values())
+    found = [judged(check, node, library=library) for check in ("output", "round_trip")]
+    assert {result.verdict for result in found} == {FAILED}
+    expected = "NaN or infinity" if "invert" in old else f"the equations of {node}"
+    assert all(expected in result.diagnosis for result in found)
 
 
 def test_an_inversion_node_that_is_the_other_is_called_so(judged, copy):
@@ -289,8 +289,9 @@ def test_an_inversion_node_that_is_the_other_is_called_so(judged, copy):
     library = copy(
         GRAPHS, 'nodedef="ND_eon_rho_from_albedo_normal"', 'nodedef="ND_eon_rho_from_albedo_avg"'
     )
-    found = failed(judged.all("inversion", INVERSIONS[1], "gl", library))
-    assert "best match: eon_rho_from_albedo_normal (rms " in found["inversion"]
+    result = judged("output", INVERSIONS[1], library=library)
+    assert result.verdict == FAILED
+    assert result.diagnosis.startswith("best match: eon_rho_from_albedo_normal (rms ")
 
 
 # --- documents on hosts without pictures --------------------------------------------------------

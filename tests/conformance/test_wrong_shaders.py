@@ -339,8 +339,8 @@ def test_every_check_of_a_node_has_a_shader_that_it_fails(stock, run):
     assert asked - failing == WITHOUT
 
 
-# Of shader functions and inversions, which `test_wrong_libraries.py` breaks; and that no input is dead.
-WITHOUT = {"densities", "inversion", "loss", "parts", "reach", "samples", "twins"}
+# Of shader functions, which `test_wrong_libraries.py` breaks; and that no input is dead.
+WITHOUT = {"densities", "loss", "parts", "reach", "samples", "twins"}
 
 
 @pytest.mark.parametrize("host", ["webgl", "vulkan", "wgsl", "slang"])

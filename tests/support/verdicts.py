@@ -20,7 +20,7 @@ class Verdicts:
         return result
 
     def all(self, check, subject, host, library):
-        """Results of a task: those of texts, functions and inversions are several."""
+        """Results of a task: those of texts and functions are several."""
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(judging, "open_engine", self._hosts)
             return self._judge.work(Task(check, subject, host, library)).results

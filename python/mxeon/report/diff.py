@@ -134,9 +134,11 @@ def _moved(before: Sequence[str], after: Sequence[str]) -> dict[str, str]:
     It has the same path, or else the same name, or else the same place in `--library`.
     """
     same = {folder: folder for folder in before if folder in after}
-    for alike in (lambda old, new: Path(old).name == Path(new).name, lambda old, new: True):
+    for by_name in (True, False):
         for old in before:
-            left = [new for new in after if new not in same.values() and alike(old, new)]
+            left = [new for new in after if new not in same.values()]
+            if by_name:
+                left = [new for new in left if Path(new).name == Path(old).name]
             if old not in same and left:
                 same[old] = left[0]
     return same
@@ -144,12 +146,16 @@ def _moved(before: Sequence[str], after: Sequence[str]) -> dict[str, str]:
 
 def _renamed(report: Report, libraries: Mapping[str, str]) -> Report:
     """A report whose results and pictures have other names of libraries."""
-    results, pictures = (
-        tuple(replace(each, library=libraries.get(each.library, each.library)) for each in records)
-        for records in (report.results, report.pictures)
+
+    def name(library: str) -> str:
+        return libraries.get(library, library)
+
+    return replace(
+        report,
+        results=tuple(replace(each, library=name(each.library)) for each in report.results),
+        pictures=tuple(replace(each, library=name(each.library)) for each in report.pictures),
+        compared=tuple(map(name, report.compared)),
     )
-    compared = tuple(libraries.get(each, each) for each in report.compared)
-    return replace(report, results=results, pictures=pictures, compared=compared)
 
 
 def _by(names: tuple[str, ...], records: Iterable[Any]) -> dict[tuple[str, ...], Any]:

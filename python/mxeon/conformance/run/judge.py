@@ -13,7 +13,6 @@ from mxeon.conformance.backends import backend_of, own_nodes
 from mxeon.conformance.case import Case, make_case
 from mxeon.conformance.checks import CHECKS
 from mxeon.conformance.checks.lobes import integrated
-from mxeon.conformance.functions.inversion import InversionProbe, judge_inversion
 from mxeon.conformance.functions.shader_functions import FunctionProbe, judge_functions
 from mxeon.conformance.pictures.document_pictures import MATCH, judge_document
 from mxeon.conformance.pictures.documents import DOCUMENT_CLAIM, generate_document
@@ -28,7 +27,6 @@ from mxeon.conformance.run.tasks import (
     DOCUMENT,
     FUNCTIONS,
     HOST,
-    INVERSION,
     PICTURE,
     Findings,
     Task,
@@ -49,7 +47,6 @@ CLAIMS = {check.key: check.claim for check in CHECKS} | {
     DEFINITION: "The nodes are defined as specified.",
     SOURCE: "The generated text was checked.",
     DOCUMENT: DOCUMENT_CLAIM,
-    INVERSION: "The node matches the NumPy function of the same name.",
     FUNCTIONS: "The shader functions match NumPy's.",
     CURVE: "The albedo was measured over the cosine.",
     PICTURE: MATCH,
@@ -124,9 +121,6 @@ class Judge:
         if isinstance(host, Host):
             if task.check == PICTURE:
                 return self._document(task, host)
-            if task.check == INVERSION:
-                inversion = InversionProbe(host, task.subject, task.library)
-                return Findings(judge_inversion(inversion))
             if task.check == FUNCTIONS:
                 return Findings(judge_functions(FunctionProbe(host, task.library)))
         case = self._case(host, task.subject, task.library)

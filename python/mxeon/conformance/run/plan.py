@@ -27,7 +27,6 @@ from mxeon.conformance.run.tasks import (
     EVERY_NODE,
     FUNCTIONS,
     HOST,
-    INVERSION,
     PICTURE,
     Plan,
     Task,
@@ -49,7 +48,6 @@ from mxeon.shaders.library import (
     load_library,
 )
 from mxeon.shaders.library_tree import LIBRARIES, OVERLAY, origins
-from mxeon.shaders.nodes import INVERSIONS
 
 ALL, COMMON = "all", "common"  # in place of the nodes' names
 
@@ -195,19 +193,20 @@ def _on_host(
         library, "osl" if row.target == "osl" else "glsl"
     ):
         yield Task(FUNCTIONS, SHADER_FUNCTIONS, host, library)
-    if evaluates:
-        inversions = filter(load_library(library).getMatchingNodeDefs, INVERSIONS)
-        yield from (Task(INVERSION, node, host, library) for node in inversions)
     for spec in diffuse_specs(library):
         yield from _checks_of(spec, host, library)
         if evaluates:
             yield Task(CURVE, spec.title, host, library)
+    defines = load_library(library).getMatchingNodeDefs
     for each in nodes:
         # Where pictures show a renderer's own closures, they are judged with the stock library alone.
         own = row.target == "osl" and kind in ("eonlib", "diffuse")
         left = each.closure and row.way == "pictures" and own
         # Without documents a library of ours is judged by the nodes that it repairs.
-        if not left and (everywhere or kind in (OVERLAY, *(each.libraries or LIBRARIES))):
+        missing = each.libraries and not defines(each.node)  # as MaterialX lacks those of eonlib
+        if not (left or missing) and (
+            everywhere or kind in (OVERLAY, *(each.libraries or LIBRARIES))
+        ):
             yield from _checks_of(each, host, library)
     if row.surfaces:
         for lobe in SURFACE_LOBES:

@@ -12,7 +12,7 @@ from mxeon.hosts.base import Identity
 
 HOST, DEFINITION = "host", "definition"
 CURVE, PICTURE = "curve", "picture"
-FUNCTIONS, INVERSION, DOCUMENT = "twins", "inversion", "document"
+FUNCTIONS, DOCUMENT = "twins", "document"
 EVERY_NODE = "every node"
 
 
@@ -21,7 +21,7 @@ class Task:
     """One independent piece of a run: a check of one subject on one host with one library."""
 
     # Key of a row of `mxeon.conformance.checks`, or HOST, DEFINITION, SOURCE, CURVE, PICTURE,
-    # FUNCTIONS, INVERSION or DOCUMENT.
+    # FUNCTIONS or DOCUMENT.
     check: str
     subject: str  # title of a node, path of a document, or SHADER_FUNCTIONS
     host: str

@@ -13,11 +13,11 @@ from mxeon.conformance.specs.sheen import CONTY_KULLA, ZELTNER
 from mxeon.conformance.specs.subsurface import SUBSURFACE
 from mxeon.conformance.specs.surface_shaders import SURFACE_SHADERS
 from mxeon.conformance.specs.thin_films import FILM_SPECS
-from mxeon.conformance.specs.utilities import UTILITY_SPECS
+from mxeon.conformance.specs.utilities import INVERSION_SPECS, UTILITY_SPECS
 
 PLAIN_LOBES = (BURLEY, TRANSLUCENT, CONTY_KULLA, ZELTNER, *FACET_SPECS)
 # Every run judges the common ones; the others are judged where they are asked for by name.
-COMMON: tuple[Spec, ...] = (*PLAIN_LOBES, *COMBINED_SPECS)
+COMMON: tuple[Spec, ...] = (*PLAIN_LOBES, *COMBINED_SPECS, *INVERSION_SPECS)
 PBRLIB: tuple[Spec, ...] = (
     *COMMON,
     HAIR,

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Each output of the utility nodes of pbrlib, which compute numbers and colors that feed the lobes.
+"""Each output of the utility nodes, which compute numbers and colors that feed the lobes.
+
+Those of pbrlib, and the nodes of eonlib that return the reflectance with which EON has a given albedo.
 
 An error is relative to the largest component where that exceeds 1; of an artistic index it is in units
 in which its roundings are alike.
@@ -7,7 +9,7 @@ in which its roundings are alike.
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -26,9 +28,13 @@ from mxeon.conformance.spec import COMPONENTS, Input, RowSpec, draw, draw_edges
 from mxeon.conformance.tolerance import Term, Tolerance, absolute, given, roundings, scaled, sum_of
 from mxeon.hosts.base import Host
 from mxeon.hosts.calls import GRAPH
+from mxeon.models.diffuse import inversion
+from mxeon.models.diffuse.albedo import eon_albedo_avg, eon_albedo_dir
+from mxeon.models.microfacet.artistic_ior import normal_reflectance
+from mxeon.models.nodes.node import Variant
 from mxeon.models.nodes.utilities import LARGEST_REFLECTIVITY, UTILITIES, UtilityNode
 from mxeon.models.nodes.utilities import Values as Outputs
-from mxeon.shaders.nodes import connection_text, document_text, input_text, node_text
+from mxeon.shaders.nodes import INVERSIONS, connection_text, document_text, input_text, node_text
 
 NAME, COLOR = "value", "color"  # of the node in its document, and of its conversion to a color
 TYPES = {(): "float", (2,): "vector2", (3,): "color3"}  # types of the inputs by shape
@@ -69,7 +75,22 @@ ALPHA = sum_of(
 BLACKBODY = sum_of(
     Term(1.9e-4, "the fits of X and Z: 1.2e-4 in red, 7e-5 in a clipped luminance"), unit=UNIT
 )
+REFLECTANCE = sum_of(
+    Term(3 * 5e-7, "three constants of six decimals"),
+    roundings(12, "of numbers up to 1"),
+    unit="reflectance",
+    metric=absolute,
+)
+INVERSION = {
+    "value": REFLECTANCE,
+    "round_trip": given(
+        2.0 * REFLECTANCE.value,
+        "albedo",
+        "twice the error of the reflectance, since an albedo grows at most twice as fast",
+    ),
+}
 ERRORS: Mapping[str, dict[str, Tolerance]] = {
+    **dict.fromkeys(INVERSIONS, INVERSION),
     "roughness_anisotropy": {"value": ALPHA},
     "roughness_dual": {"value": sum_of(roundings(2), unit="alpha", metric=absolute)},
     "glossiness_anisotropy": {"value": ALPHA},
@@ -260,6 +281,30 @@ UNITS: Mapping[str, Callable[[Array, Batch], Array]] = {
 }
 
 
+def _reached(albedo: Callable[[Array, Array], Array], rho: Array, batch: Batch) -> Array:
+    """The albedo that EON has with a reflectance, (N, 3); infinite where that is no number."""
+    finite = np.isfinite(rho).all(axis=1, keepdims=True)
+    known = np.where(finite, np.clip(rho, 0.0, 1.0), 0.0)
+    return np.where(finite, albedo(known, np.asarray(batch.inputs["roughness"])), np.inf)
+
+
+# What the outputs of a node by name lead back to, and the input that it has to be.
+ROUND_TRIPS: Mapping[str, Callable[[Mapping[str, Array], Batch], tuple[Array, Array]]] = {
+    "artistic_ior": lambda outputs, batch: (
+        normal_reflectance(outputs["ior"], outputs["extinction"]),
+        np.minimum(batch.inputs["reflectivity"], LARGEST_REFLECTIVITY),
+    ),
+    INVERSIONS[0]: lambda outputs, batch: (
+        _reached(partial(eon_albedo_dir, 1.0), outputs["out"], batch),
+        np.asarray(batch.inputs["color"]),
+    ),
+    INVERSIONS[1]: lambda outputs, batch: (
+        _reached(eon_albedo_avg, outputs["out"], batch),
+        np.asarray(batch.inputs["color"]),
+    ),
+}
+
+
 def _batch(inputs: Mapping[str, Array]) -> Batch:
     """A batch of inputs, whose directions mean nothing."""
     count = len(next(iter(inputs.values())))
@@ -273,7 +318,21 @@ def _filled(row: Input, value: ArrayLike | None) -> ArrayLike:
     return filled
 
 
-def _spec(row: UtilityNode, output: str) -> UtilitySpec:
+def _inversion(node: str) -> UtilityNode:
+    """A node of eonlib, with the other inversions that it may be instead, and its input as it is."""
+
+    def output(name: str) -> Outputs:
+        function = getattr(inversion, name)
+        return lambda inputs: {"out": function(inputs["color"], inputs["roughness"])}
+
+    variants = [Variant("the color itself", lambda inputs: {"out": inputs["color"]})]
+    variants += [Variant(name, output(name)) for name in inversion.__all__ if name != node]
+    inputs: dict[str, float | tuple[float, ...]]
+    inputs = {"color": (0.18, 0.18, 0.18), "roughness": 0.0}
+    return UtilityNode(node, inputs, {"out": "color3"}, output(node), tuple(variants))
+
+
+def _spec(row: UtilityNode, output: str, *libraries: str) -> UtilitySpec:
     title = row.category if len(row.outputs) == 1 else f"{row.category}, {output}"
 
     def usual(name: str) -> Input:
@@ -288,6 +347,7 @@ def _spec(row: UtilityNode, output: str) -> UtilitySpec:
         output=output,
         inputs=tuple(INPUTS.get(name, usual(name)) for name in row.inputs),
         errors=ERRORS.get(title) or ERRORS[row.category],
+        libraries=libraries,
         closure=False,
         counts=Counts(1 << 12, 1 << 9, 1 << 9),
         asked=(GRAPH, "response", 1.0),
@@ -295,3 +355,4 @@ def _spec(row: UtilityNode, output: str) -> UtilitySpec:
 
 
 UTILITY_SPECS = tuple(_spec(row, output) for row in UTILITIES for output in row.outputs)
+INVERSION_SPECS = tuple(_spec(_inversion(node), "out", "eonlib", "diffuse") for node in INVERSIONS)
