@@ -25,6 +25,7 @@ from tools.site.ledger import (
 
 VERSIONS = Path(__file__).with_name("versions.json")
 INDEX = FOLDER / "README.md"
+SHOWN = 8  # lines of a diff on a page, unless its first change is longer
 TEMPLATES = Environment(
     loader=FileSystemLoader(Path(__file__).parent),
     trim_blocks=True,
@@ -73,7 +74,8 @@ def pages(known: dict[str, Entry] | None = None) -> dict[Path, str]:
             measured=found.get(name, {}),
             patches=_joined([f"`{path.relative_to(ROOT)}`" for path in patches_of(name)]),
             outcome=outcome(entry, numbers),
-            diff=short_diff(entry),
+            diff=short_diff(entry)[0],
+            more=short_diff(entry)[1],
             versions=seen(entry, versions),
         )
         for name, entry in known.items()
@@ -104,21 +106,40 @@ def groups(known: dict[str, Entry]) -> dict[str, list[Entry]]:
     return found
 
 
-def short_diff(entry: Entry) -> str:
-    """The changed lines of a repair: of its first patch, or of the entry's own diff."""
+def short_diff(entry: Entry) -> tuple[str, int]:
+    """The first changes of a repair, or its shortest one, and how many lines that leaves out.
+
+    The repair is the entry's first patch, or its own diff.
+    """
     files = patches_of(entry.page)
     text = files[0].read_text(encoding="utf-8").split("\n---\n", 1)[1] if files else entry.diff
-    lines: list[str] = []
-    apart = False
+    changes: list[tuple[str, list[str]]] = []  # file and lines
+    name, inside = "", False
     for line in text.splitlines():
+        changed = line[:1] in ("+", "-") and line[:4] not in ("--- ", "+++ ")
         if line.startswith("--- "):
-            lines.append(f"--- {line[4:].split('/', 1)[1]}")
-        elif line[:1] in ("+", "-") and not line.startswith("+++ "):
-            lines += ["@@", line] if apart else [line]
-            apart = False
+            name = line[4:].split("/", 1)[1]
+        if changed and not inside:
+            changes.append((name, []))
+        if changed:
+            changes[-1][1].append(line)
+        inside = changed
+    shown: list[str] = []
+    left = 0
+    for number, (file, lines) in enumerate(_from_a_short_one(changes)):
+        head = f"--- {file}" if f"--- {file}" not in shown else "@@"
+        if number == 0 or len(shown) + len(lines) < SHOWN:
+            shown += [head, *lines]
         else:
-            apart = True
-    return "\n".join(lines)
+            left += len(lines)
+    return "\n".join(shown), left
+
+
+def _from_a_short_one(changes: list[tuple[str, list[str]]]) -> list[tuple[str, list[str]]]:
+    """The changes, the shortest one first where the first is too long to show."""
+    if not changes or len(changes[0][1]) < SHOWN:
+        return changes
+    return sorted(changes, key=lambda change: len(change[1]))
 
 
 def outcome(entry: Entry, numbers: dict[str, str]) -> str:
