@@ -56,7 +56,7 @@ def test_the_action_installs_the_driver_that_run_installs():
 
 
 def test_the_five_lines_of_the_page_call_the_action():
-    [lines] = re.findall(r"```yaml\n(.*?)```", (ROOT / "docs" / "kit.md").read_text(), re.DOTALL)
+    [lines] = re.findall(r"```yaml\n(.*?)```", (ROOT / "docs" / "ci.md").read_text(), re.DOTALL)
     *_, step = yaml.safe_load(lines)["steps"]
     inputs = yaml.safe_load(ACTION.read_text())["inputs"]
     assert len(lines.splitlines()) == 5 and "/mxeon@" in step["uses"]

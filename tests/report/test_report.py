@@ -394,11 +394,11 @@ import mxeon.report.page, mxeon.report.junit; print({engines} & (set(sys.modules
     assert result.stdout == "set()\n"
 
 
-def test_the_examples_of_the_page_on_the_kit_run(tmp_path, monkeypatch):
+def test_the_examples_of_the_page_on_checking_run(tmp_path, monkeypatch):
     my_renderer = SimpleNamespace(my_brdf=eon_brdf)
     monkeypatch.setitem(sys.modules, "my_renderer", my_renderer)
     monkeypatch.chdir(tmp_path)
-    text = (Path(__file__).parents[2] / "docs/kit.md").read_text()
+    text = (Path(__file__).parents[2] / "docs/check.md").read_text()
     examples = re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
     assert len(examples) == 3
     exec("\n".join(examples), {})

@@ -33,18 +33,17 @@ COMMAND = ("check", "resources", "--path", ".", "--path", "resources", "--allowC
 TEXT = """\
 # MaterialX's documents
 
+Do MaterialX's own example documents render correctly? mxeon checks all documents in `resources` of MaterialX's
+repository, including its TestSuite and Examples, on gl with eonlib. {referenced} of {count} have a reference picture of
+each material. Every pixel is compared with the NumPy models in float64, in two distant lights and in white surroundings;
+if each pixel has a material of its own, every eighth row and column is. mxeon does not check patterns: if the reference
+cannot compute the input of a lobe, it takes the values from the host, pixel by pixel. Large images that the copy of the
+repository lacked may have been replaced by others of the same name.
+
+`mxeon check FOLDER` does the same for any folder, on any host. The page is made by
+
     python -m tools.site.documents run FOLDER DIR
     python -m tools.site.documents page docs/documents.md DIR ...
-
-The documents below `resources` of MaterialX's repository, its TestSuite and its Examples among them, on gl with
-eonlib. {referenced} of {count} have a reference picture of each material: every pixel is compared with what the NumPy
-models give in float64, in two distant lights and in white surroundings. Patterns are not what mxeon judges. Where an
-input of a lobe comes from a node that the reference has no function for, its values are taken from the same
-host, pixel by pixel. Where each pixel has a material of its own, every eighth row
-and column is compared. Files that a copy of the repository lacks, such as its largest images, may be others of
-their name: what an image shows is not judged.
-
-`mxeon check FOLDER` does the same for any folder, on any host; it prints the table of causes.
 """
 
 

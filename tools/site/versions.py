@@ -24,27 +24,42 @@ COMMAND = ("check", "--host", "gl", "--node", "all", "--workers", "0", "--json")
 TEXT = """\
 # Versions of MaterialX
 
-    python -m tools.site.versions
+Does eonlib work with your MaterialX, and which defects does that version have? mxeon runs with every MaterialX whose
+closure interface matches, including [your own build](check.md#your-build-of-materialx). A version that was not tested
+gets a warning and a note in the report. If its generators call a closure in another way than eonlib's sources define it,
+the checks of that node on that target are *not run*. Every [entry of the ledger](upstream/README.md) ends with the
+versions that have the defect.
 
-`mxeon check --host gl --node all` with each version: what its checks say of eonlib, and of MaterialX alone. The
-versions are wheels, with their own code and data; main is the data of MaterialX's main branch at commit
-{commit}, of {date}, with the code of {release}. `tests/shaders/test_library_export.py` judges the
-values of every node of eonlib with each of them, and `tests/test_materialx_repairs.py` the repairs with the
-data of main.
+## Targets
+
+Checks that pass with eonlib, out of those planned, for each wheel since 1.38.10:
+
+| MaterialX | gl | webgl | vulkan | slang |
+|---|---|---|---|---|
+| 1.38.10, 1.39.0, 1.39.1, 1.39.2 | refused | refused | refused | refused |
+| 1.39.3 | 35 of 35 | 31 of 31 | 2 of 33 | 0 of 33 |
+| 1.39.4 | 35 of 35 | 31 of 31 | 30 of 30 | 0 of 33 |
+| 1.39.5 | 35 of 35 | 31 of 31 | 30 of 30 | 30 of 30 |
+
+The Vulkan GLSL of 1.39.3 compiles with no library, because the declaration of the view direction is missing. The
+generator for Slang exists since 1.39.5. A version that lacks a method is refused before anything is generated:
+
+    mxeon: MaterialX 1.38.10 lacks Document.setDataLibrary; install 1.39.3 or later: pip install materialx==1.39.5
 
 ## Nodes
 
-How many checks pass, of all. Where the text leaves a choice, a check that *differs* is counted apart, behind a +.
+`mxeon check --host gl --node all` with each version (`python -m tools.site.versions`): the number of checks that pass,
+out of all. A check that *differs*, because the text leaves a choice, is counted behind the +. The versions are wheels,
+with their own code and data. *Main* is the data of MaterialX's main branch at commit {commit}, of {date}, with the code
+of {release}.
 
 {nodes}
-What of eonlib does not pass:
+What does not pass with eonlib:
 
 {open}
-MaterialX 1.39.3 and 1.39.4 have no input `retroreflective`, and their GLSL adds what a medium passes to what the
-layer above it passes. Their `gltf_pbr` has no input `dispersion`, so that `reach` cannot vary it, and
-`opacityMode` of their `UsdPreviewSurface` changes nothing that `reach` sees.
-
-[Every page on a defect](upstream/README.md) ends with the versions that have it.
+MaterialX 1.39.3 and 1.39.4 have no input `retroreflective`, and their GLSL adds the transmittance of a medium below a
+layer instead of multiplying. Their `gltf_pbr` has no input `dispersion` for `reach` to vary, and `opacityMode` of their
+`UsdPreviewSurface` changes nothing that `reach` measures.
 """
 
 

@@ -31,7 +31,7 @@ VIEW_DISTANCE = 1e8  # makes normalize(u_viewPosition - positionWorld) the z axi
 # Not of one texel, which has no mipmaps: Mesa would compile a program once more for an uneven environment.
 WHITE = np.ones((2, 2, 3), dtype=np.float32)
 
-# Directions over which a shader of microfacets sums its environment: see docs/host_notes.md for the error
+# Directions over which a shader of microfacets sums its environment: see docs/hosts.md for the error
 # of each number, and its cost. Of the environment's mipmaps they read the first alone.
 EVALUATION = {"u_envRadianceSamples": 1024, "u_envRadianceMips": 1}
 PICTURE = {"u_envRadianceSamples": 256, "u_envRadianceMips": 1}
