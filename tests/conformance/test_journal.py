@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 from mxeon.conformance.run import check, read_run, to_run
-from mxeon.conformance.run.journal import JOURNAL, LOCK, PREVIOUS, Journal, _line, read_journal
+from mxeon.conformance.run.journal import JOURNAL, LOCK, PREVIOUS, Journal, read_journal
 from mxeon.shaders.library import examples_folder
 from tests.support.journals import FILES, FINDINGS, PIXELS, PLAN, TASKS, journal
 from tests.support.plans import keep_checks
@@ -81,7 +81,7 @@ def test_a_task_whose_picture_is_damaged_is_done_again(tmp_path, content):
 
 def refused(folder):
     """The one line that refuses a journal."""
-    with pytest.raises(ValueError, match=f"{JOURNAL}: must be a journal of format 5") as error:
+    with pytest.raises(ValueError, match=f"{JOURNAL}: must be a journal of format 6") as error:
         read_run(folder)
     with pytest.raises(ValueError, match="as mxeon wrote it; .*; run again without --resume$"):
         journal(folder, resume=True).__enter__()
@@ -90,44 +90,19 @@ def refused(folder):
 
 
 @pytest.mark.parametrize(
-    "before, after", [(b"failed", b"passed"), (b'"task": 1', b'"task": 0'), (b"0.5", b"0.25")]
-)
-def test_an_edited_line_is_refused(tmp_path, before, after):
-    path = kept(tmp_path, 1, 2)
-    header, line, last = path.read_bytes().splitlines(keepends=True)
-    assert before in line
-    path.write_bytes(header + line.replace(before, after) + last)
-    assert "line 2 was edited" in refused(tmp_path)
-
-
-@pytest.mark.parametrize(
     "line", [b"", b"\0" * 9, b"[" * 100_000, b"1" * 5000, b"\xff", b'{"task": 0}']
 )
 def test_a_line_that_is_no_record_is_refused(tmp_path, line):
     with kept(tmp_path, 1).open("ab") as file:
         file.write(line + b"\n")
-    assert "line 3 was edited" in refused(tmp_path)
+    assert "line 3 is of another" in refused(tmp_path)
 
 
-@pytest.mark.parametrize("text", ["", "{}\n", "[]\n", '{"format": 0}\n', "\0\n", '{"format": 5}\n'])
+@pytest.mark.parametrize("text", ["", "{}\n", "[]\n", '{"format": 0}\n', "\0\n", '{"format": 6}\n'])
 def test_what_is_no_journal_is_refused(tmp_path, text):
     (tmp_path / JOURNAL).parent.mkdir()
     (tmp_path / JOURNAL).write_text(text)
-    assert "its first line was edited" in refused(tmp_path)
-
-
-def test_an_edited_plan_is_refused(tmp_path):
-    path = kept(tmp_path, 1)
-    path.write_bytes(path.read_bytes().replace(b'"version": "1.0"', b'"version": "2.0"', 1))
-    assert "its first line was edited" in refused(tmp_path)
-
-
-def test_findings_of_another_run_are_refused(tmp_path):
-    first = kept(tmp_path / "a", 1)
-    second = kept(tmp_path / "b", 1, plan=replace(PLAN, version="2.0"))
-    lines = [path.read_bytes().splitlines(keepends=True) for path in (first, second)]
-    first.write_bytes(lines[0][0] + lines[1][1])
-    assert "line 2" in refused(tmp_path / "a")
+    assert "its first line is of another" in refused(tmp_path)
 
 
 def changed_result(**values):
@@ -141,7 +116,6 @@ FORGED = [
     *(changed_result(worst=worst) for worst in ({"a": None}, {"a": "b"}, 5)),
     *(changed_result(figure=figure) for figure in (-1.0, "x", 10**400, True)),
     *(changed_result(**{name: "x"}) for name in ("host", "library", "control", "distances")),
-    lambda record: record["findings"].update(notes=[["half \ud83d", "place"]]),
 ]
 
 
@@ -150,9 +124,8 @@ def test_a_line_that_mxeon_does_not_write_is_refused(tmp_path, change):
     path = kept(tmp_path, 1, findings=PLAIN)
     header, line = path.read_bytes().splitlines(keepends=True)
     record = json.loads(line)
-    del record["digest"]
     change(record)
-    path.write_bytes(header + _line(record, json.loads(header)["digest"]))
+    path.write_bytes(header + json.dumps(record).encode() + b"\n")
     assert "line 2" in refused(tmp_path)
 
 
@@ -161,13 +134,12 @@ def test_a_picture_elsewhere_does_not_count(tmp_path, name):
     path = kept(tmp_path, 1)
     header, line = path.read_bytes().splitlines(keepends=True)
     record = json.loads(line)
-    del record["digest"]
     record["findings"]["pictures"][0]["image"] = name
-    path.write_bytes(header + _line(record, json.loads(header)["digest"]))
+    path.write_bytes(header + json.dumps(record).encode() + b"\n")
     try:
         assert read_journal(tmp_path)[1] == {}
     except ValueError as error:
-        assert "line 2 was edited" in str(error)
+        assert "line 2 is of another" in str(error)
 
 
 @pytest.mark.parametrize(

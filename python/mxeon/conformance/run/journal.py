@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The journal of a run: the findings of each task, on disk as soon as it ends.
 
-`journal/items.jsonl` in the folder of a run is JSON Lines. The first line is the plan of the run, with
-one hash of its version, options, files and tasks; each further line is the findings of a task, with a
-digest seeded by that hash. So a line that was edited, or comes from another run, is refused; a last
-line that the end of a run tore is dropped. Pictures are NumPy files, named by their SHA-256.
+`journal/items.jsonl` in the folder of a run is JSON Lines. The first line is the plan of the run, with its
+version, options and the hashes of its files: --resume needs the same. Each further line is the findings of a
+task; a last line that the end of a run tore is dropped. Pictures are NumPy files, named by their SHA-256.
 """
 
 import hashlib
@@ -29,10 +28,9 @@ from mxeon.conformance.run.tasks import Findings, Plan
 from mxeon.errors import InputError
 from mxeon.io.files import below, regular, replacing
 
-FORMAT = 5
+FORMAT = 6
 JOURNAL = "journal/items.jsonl"
 PREVIOUS, LOCK = "journal.previous", ".journal.lock"  # beside the folder `journal`
-HALF = b"\\ud"  # begins the escape of half of a character
 
 
 class Journal:
@@ -55,7 +53,10 @@ class Journal:
                 below(self._folder, name)
             stack.enter_context(_locked(self._folder))
             resumed = self._resume and self._path.exists()
-            self._seed = self._continue() if resumed else self._begin()
+            if resumed:
+                self._continue()
+            else:
+                self._begin()
             self._file = os.open(self._path, os.O_WRONLY | os.O_APPEND)
             stack.callback(os.close, self._file)
             self._exit = stack.pop_all()
@@ -80,7 +81,7 @@ class Journal:
             _sync(self._path.parent)
         findings = replace(findings, pictures=pictures)
         record = {"task": number, "findings": self._converter.unstructure(findings)}
-        size, rest = os.fstat(self._file).st_size, memoryview(_line(record, self._seed))
+        size, rest = os.fstat(self._file).st_size, memoryview(_line(record))
         try:
             while rest:
                 rest = rest[os.write(self._file, rest) :]
@@ -90,25 +91,22 @@ class Journal:
             raise OSError(error.errno, error.strerror, str(self._path)) from None
         self.findings[number] = findings
 
-    def _begin(self) -> str:
-        """Write the first line, and return the hash of the run; an earlier journal makes room."""
+    def _begin(self) -> None:
+        """Write the first line; an earlier journal makes room."""
         if self._path.exists():
             shutil.rmtree(self._folder / PREVIOUS, ignore_errors=True)
             os.replace(self._path.parent, self._folder / PREVIOUS)
-        header = _line({"format": FORMAT} | self._converter.unstructure(self._plan))
         with replacing(self._path) as beside:
-            beside.write_bytes(header)
+            beside.write_bytes(_line({"format": FORMAT} | self._converter.unstructure(self._plan)))
         _sync(self._path.parent)
         _sync(self._folder)
-        return str(json.loads(header)["digest"])
 
-    def _continue(self) -> str:
-        """Take the findings of the journal that is there, and return the hash of the run."""
-        plan, self.findings, seed, size = _read(self._folder)
+    def _continue(self) -> None:
+        """Take the findings of the journal that is there."""
+        plan, self.findings, size = _read(self._folder)
         if plan != self._plan:
             raise InputError(refusal(self._folder, _differences(plan, self._plan)))
         os.truncate(self._path, size)
-        return seed
 
     def _store(self, image: ArrayLike) -> NDArray[np.float32]:
         """An image in a file of the folder, hashed and written without a copy of its pixels."""
@@ -127,7 +125,7 @@ def read_journal(folder: str | os.PathLike[str]) -> tuple[Plan, dict[int, Findin
     """The plan of the run in a folder, and the findings of the tasks that are done.
 
     A task whose pictures are not as they were written is not done. Raises InputError if there is no
-    journal, or one that was edited or is of another version.
+    journal, or one with other lines than mxeon of this version writes.
     """
     return _read(Path(folder))[:2]
 
@@ -139,8 +137,8 @@ def refusal(folder: str | os.PathLike[str] | None, differences: Sequence[str]) -
     return f"{folder}: {rule}; changed: {changed}"
 
 
-def _read(folder: Path) -> tuple[Plan, dict[int, Findings], str, int]:
-    """Plan and findings of a journal, the hash of its run, and the bytes of its whole lines."""
+def _read(folder: Path) -> tuple[Plan, dict[int, Findings], int]:
+    """Plan and findings of a journal, and the bytes of its whole lines."""
     path, converter = folder / JOURNAL, make_converter((folder / JOURNAL).parent)
     try:
         with open(path, "rb", opener=regular) as file:
@@ -151,14 +149,13 @@ def _read(folder: Path) -> tuple[Plan, dict[int, Findings], str, int]:
     findings: dict[int, Findings] = {}
     place = "its first line"
     try:
-        if (version := json.loads((whole or [b""])[0])["format"]) != FORMAT:
+        header = json.loads((whole or [b""])[0])
+        if (version := header.pop("format")) != FORMAT:
             raise InputError(f"it has format {version!r}")
-        header, seed = _record(whole[0])
-        del header["format"]
         plan = converter.structure(header, Plan)
         for number, line in enumerate(whole[1:], 2):
             place = f"line {number}"
-            record, _ = _record(line, seed)
+            record = json.loads(line)
             task, part = record["task"], converter.structure(record["findings"], Findings)
             if type(task) is not int or not 0 <= task < len(plan.tasks):
                 raise InputError(f"task must be one of {len(plan.tasks)}; got {task!r}")
@@ -169,29 +166,13 @@ def _read(folder: Path) -> tuple[Plan, dict[int, Findings], str, int]:
                 findings[task] = part
     except ERRORS as error:
         rule = f"{path}: must be a journal of format {FORMAT} as mxeon wrote it"
-        reason = f"{place} was edited or is of another run or program; {error}"
+        reason = f"{place} is of another run or program; {error}"
         raise InputError(f"{rule}; {reason}; run again without --resume") from None
-    return plan, findings, seed, sum(map(len, whole))
+    return plan, findings, sum(map(len, whole))
 
 
-def _line(record: dict[str, object], seed: str = "") -> bytes:
-    """A record as a line, with a digest of it and of the run whose hash is `seed`."""
-    return (json.dumps(record | {"digest": _digest(record, seed)}) + "\n").encode()
-
-
-def _record(line: bytes, seed: str = "") -> tuple[dict[str, object], str]:
-    """The record of a line, and its digest."""
-    record = json.loads(line)
-    if HALF in line.lower():
-        json.dumps(record, ensure_ascii=False).encode()  # which no half of a character survives
-    digest = record.pop("digest")
-    if digest != _digest(record, seed):
-        raise InputError("its digest is that of another text")
-    return record, digest
-
-
-def _digest(record: dict[str, object], seed: str) -> str:
-    return hashlib.sha256((seed + json.dumps(record)).encode()).hexdigest()
+def _line(record: dict[str, object]) -> bytes:
+    return (json.dumps(record) + "\n").encode()
 
 
 @contextmanager
