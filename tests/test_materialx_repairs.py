@@ -14,8 +14,7 @@ import MaterialX as mx
 import pytest
 
 from mxeon.conformance.results import FAILED, PASSED, SOURCE
-from mxeon.conformance.results.known_issues import ISSUES
-from mxeon.conformance.results.known_issues.issue import STOCK
+from mxeon.conformance.results.known_issues import ISSUES, STOCK
 from mxeon.conformance.run.plan import ALL, make_plan
 from mxeon.errors import NotRun
 from tests.support.availability import available
@@ -43,7 +42,7 @@ JUDGE = """
 import json, sys
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.results import SOURCE
-from mxeon.conformance.run.tasks import EVERY_NODE, Task
+from mxeon.conformance.run.plan import EVERY_NODE, Task
 from mxeon.shaders.document.policy import DEFAULT
 judge = Judge(DEFAULT)
 results = {}

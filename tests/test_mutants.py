@@ -9,7 +9,7 @@ import pytest
 
 from mxeon.conformance.results import SOURCE
 from mxeon.conformance.run.judge import Judge
-from mxeon.conformance.run.tasks import Task
+from mxeon.conformance.run.plan import Task
 from mxeon.shaders.document.policy import DEFAULT
 from tools.benchmarks.mutants import __main__ as command
 from tools.benchmarks.mutants import operators, trial

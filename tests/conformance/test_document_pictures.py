@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from mxeon.conformance.pictures.document_pictures import judge_document
+from mxeon.conformance.pictures import judge_document
 from mxeon.conformance.pictures.tolerances import ENCODED, FITTED, PLAIN, TEXTURED, tolerance_of
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.reference.nodes import ShownLobe

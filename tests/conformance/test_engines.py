@@ -8,7 +8,7 @@ import pytest
 
 from mxeon.conformance.results import FAILED, NOT_RUN, SHADER_FUNCTIONS
 from mxeon.conformance.run.judge import Judge
-from mxeon.conformance.run.tasks import Task
+from mxeon.conformance.run.plan import Task
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts.gl import Host
 from mxeon.shaders.document.policy import DEFAULT

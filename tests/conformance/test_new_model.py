@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import mxeon
-from mxeon.conformance.functions.shader_functions import FunctionProbe, judge_functions
+from mxeon.conformance.shader_functions import FunctionProbe, judge_functions
 from mxeon.models import table
 from mxeon.models.diffuse.brdf import eon_brdf, lambert_brdf
 from mxeon.models.table import Model

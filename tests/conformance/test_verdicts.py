@@ -16,7 +16,7 @@ from mxeon.conformance.results import (
     known_issues,
 )
 from mxeon.conformance.results.known_issues import ISSUES, with_pages
-from mxeon.conformance.results.known_issues.issue import STOCK as STOCK_LIBRARY
+from mxeon.conformance.results.known_issues import STOCK as STOCK_LIBRARY
 
 EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
 QON = "oren_nayar_diffuse_bsdf, energy_compensation false"

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
-from mxeon.conformance.results.known_issues import ISSUES
-from mxeon.conformance.results.known_issues.issue import RENDERER_NODES
+from mxeon.conformance.results.known_issues import ISSUES, RENDERER_NODES
 from mxeon.errors import NotRun
 from mxeon.hosts import open_engine
 from mxeon.models.sampling.cltc import eon_cltc_sample

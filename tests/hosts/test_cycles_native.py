@@ -4,7 +4,7 @@
 import pytest
 
 from mxeon.conformance.results import FAILED, PASSED
-from mxeon.conformance.results.known_issues.issue import RENDERER_NODES
+from mxeon.conformance.results.known_issues import RENDERER_NODES
 from mxeon.survey.cycles_native import NODES
 
 CHECKS = ("value", "environment", "furnace", "black", "lambert", "inputs")

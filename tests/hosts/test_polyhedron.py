@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
-from mxeon.conformance.results.known_issues.issue import RENDERER_NODES
+from mxeon.conformance.results.known_issues import RENDERER_NODES
 from mxeon.conformance.run import check
 from mxeon.errors import NotRun
 from mxeon.shaders.library import examples_folder

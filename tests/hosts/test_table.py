@@ -9,7 +9,7 @@ import pytest
 
 from mxeon import hosts
 from mxeon.cli import main
-from mxeon.conformance.pictures.documents import generate_document
+from mxeon.conformance.pictures import generate_document
 from mxeon.conformance.results import SHADER_FUNCTIONS
 from mxeon.conformance.run import check
 from mxeon.errors import NotRun, Unsupported

@@ -3,7 +3,7 @@
 
 import pytest
 
-from mxeon.conformance.run.survey import survey_documents
+from mxeon.conformance.run.documents import survey_documents
 from mxeon.errors import InputError
 from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.library import examples_folder

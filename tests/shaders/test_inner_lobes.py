@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from mxeon.conformance.pictures.document_pictures import judge_document
+from mxeon.conformance.pictures import judge_document
 from mxeon.conformance.reference import Host as Reference
 from mxeon.errors import InputError
 from mxeon.hosts import open_host

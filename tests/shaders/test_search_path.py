@@ -8,7 +8,7 @@ import OpenImageIO as oiio
 import pytest
 
 from mxeon.cli import batch, main
-from mxeon.conformance.pictures.document_pictures import judge_document
+from mxeon.conformance.pictures import judge_document
 from mxeon.conformance.reference import Host as Reference
 from mxeon.errors import DocumentError, ImageError
 from mxeon.hosts import open_host

@@ -5,7 +5,7 @@ import numpy as np
 
 from mxeon.conformance.results import FAILED, AlbedoCurve, Control, Picture, Result
 from mxeon.conformance.run.journal import Journal
-from mxeon.conformance.run.tasks import Findings, Plan, Task
+from mxeon.conformance.run.plan import Findings, Plan, Task
 from mxeon.hosts.base import Identity
 
 TASKS = tuple(Task("value", name, "gl", "eonlib") for name in "abc")

@@ -4,7 +4,7 @@
 import pytest
 
 from mxeon.conformance.run import judge as judging
-from mxeon.conformance.run.tasks import EVERY_NODE, Task
+from mxeon.conformance.run.plan import EVERY_NODE, Task
 from mxeon.shaders.document.policy import DEFAULT
 
 

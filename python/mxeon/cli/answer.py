@@ -19,8 +19,14 @@ from mxeon.conformance.results import (
     listed,
 )
 from mxeon.conformance.results.known_issues import issues_of, link
-from mxeon.conformance.run.documents import KEYS, REFUSED, causes, document_verdicts, is_refused
-from mxeon.conformance.run.survey import model_of
+from mxeon.conformance.run.documents import (
+    KEYS,
+    REFUSED,
+    causes,
+    document_verdicts,
+    is_refused,
+    model_of,
+)
 from mxeon.errors import one_line
 from mxeon.shaders.library import eonlib_folder
 from mxeon.shaders.library_export import CLIENTS

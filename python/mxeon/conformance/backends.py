@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, ClassVar, TypeAlias, TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.conformance.memory import Evaluations
+from mxeon.conformance.cache import Evaluations
 from mxeon.conformance.results import Claims
 from mxeon.conformance.samples import (
     LEAST_TURNED,

@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Small LRU caches of values by the numbers that they depend on."""
+"""Small LRU caches of values by the numbers that they depend on.
+
+A check, its control, other checks and libraries ask for the same ones. Batches are equal if their numbers are:
+reading them takes less time than computing their values.
+"""
 
 from collections import OrderedDict
 from collections.abc import Callable, Hashable
@@ -7,6 +11,11 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
+from mxeon.conformance.samples import Array, Batch
+
+LARGEST = 1 << 14  # pairs of a batch whose values are kept
+KEPT = 32  # batches whose values are kept, of up to 400 kB each
+EVALUATIONS = 16  # batches whose values of a host are kept, of up to 3.5 megabytes each
 T = TypeVar("T")
 
 
@@ -32,3 +41,41 @@ def contents(value: object) -> Hashable:
         return value
     array = np.asarray(value)
     return array.dtype.str, array.shape, hash(array.tobytes())
+
+
+class Remembered:
+    """A function of batches that caches a few of its values, which are read-only."""
+
+    def __init__(self, function: Callable[[Batch], Array]) -> None:
+        self._function = function
+        self._known = Recent[Array](KEPT)
+
+    def __call__(self, batch: Batch) -> Array:
+        if len(batch.wo) > LARGEST:
+            return self._function(batch)
+        key = batch.scene, *_parts(batch)
+        return self._known.value(key, lambda: _read_only(self._function(batch)))
+
+
+class Evaluations:
+    """A cache of the values that a host returns for batches; they are read-only."""
+
+    def __init__(self) -> None:
+        self._known = Recent[Array](EVALUATIONS)
+
+    def values(
+        self, batch: Batch, rest: tuple[object, ...], evaluate: Callable[[], Array]
+    ) -> Array:
+        key = *_parts(batch), *map(contents, rest)
+        return self._known.value(key, lambda: _read_only(evaluate()))
+
+
+def _parts(batch: Batch) -> tuple[Hashable, ...]:
+    """A key for a batch, but for its scene."""
+    inputs = tuple((name, contents(values)) for name, values in batch.inputs.items())
+    return contents(batch.wo), contents(batch.wi), contents(batch.frame), inputs
+
+
+def _read_only(values: Array) -> Array:
+    values.setflags(write=False)
+    return values

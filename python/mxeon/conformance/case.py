@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.conformance.backends import Backend, Evaluating, Samples
-from mxeon.conformance.memory import albedo_candidates, albedo_of, value_of
+from mxeon.conformance.cache import Remembered
 from mxeon.conformance.samples import Array, Batch, Candidate, Changes
 from mxeon.conformance.spec import LobeSpec, Spec, ValueSpec
 from mxeon.conformance.tolerance import Compared, Tolerance
@@ -22,6 +23,26 @@ from mxeon.hosts.base import Engine, Host
 
 F = TypeVar("F", bound=Spec)
 Change = Callable[[Batch, Array], Array]  # of values of a batch
+KEPT_SPECS = 2  # whose expected values are kept: that of a case, and another that it asks
+
+
+@lru_cache(maxsize=KEPT_SPECS)
+def value_of(spec: ValueSpec) -> Remembered:
+    return Remembered(spec.value)
+
+
+@lru_cache(maxsize=KEPT_SPECS)
+def albedo_of(spec: LobeSpec) -> Remembered:
+    return Remembered(spec.albedo)
+
+
+@lru_cache(maxsize=KEPT_SPECS)
+def albedo_candidates(spec: LobeSpec) -> tuple[Candidate, ...]:
+    """The candidates of a spec's albedo, whose values several comparisons ask for."""
+    return tuple(
+        Candidate(each.title, Remembered(each.values), each.permitted)
+        for each in spec.albedo_candidates
+    )
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,7 @@ from xml.etree import ElementTree
 import MaterialX as mx
 import numpy as np
 
-from mxeon.conformance.pictures.document_pictures import judge_document
+from mxeon.conformance.pictures import judge_document
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.results import PASSED, Result
 from mxeon.errors import MxeonError, printable

@@ -10,8 +10,7 @@ from markupsafe import Markup
 from numpy.typing import ArrayLike
 
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Result, in_words
-from mxeon.conformance.results.known_issues import issues_of, link
-from mxeon.conformance.results.known_issues.issue import Issue
+from mxeon.conformance.results.known_issues import Issue, issues_of, link
 
 # CSS class of each verdict, and a sign for readers who cannot see the color.
 LOOKS = {

@@ -9,8 +9,7 @@ from functools import cache
 from pathlib import Path
 from xml.etree import ElementTree
 
-from mxeon.conformance.run.plan import make_plan
-from mxeon.conformance.run.tasks import Task
+from mxeon.conformance.run.plan import Task, make_plan
 from mxeon.conformance.specs import PBRLIB
 from mxeon.conformance.specs.combinations import COMBINED_SPECS
 from mxeon.shaders.library import load_library

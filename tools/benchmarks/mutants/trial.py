@@ -13,8 +13,7 @@ from typing import Any
 
 from mxeon.conformance.results import PASSED, SOURCE, Result
 from mxeon.conformance.run.judge import Judge
-from mxeon.conformance.run.plan import make_plan
-from mxeon.conformance.run.tasks import CURVE, PICTURE, Task
+from mxeon.conformance.run.plan import CURVE, PICTURE, Task, make_plan
 from mxeon.errors import MxeonError
 from mxeon.shaders import generators, library
 from tools.benchmarks.mutants.mutant import FOLDERS, ROOT, Mutant

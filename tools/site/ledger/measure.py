@@ -10,8 +10,7 @@ from typing import Any
 import MaterialX as mx
 
 from mxeon.conformance.results import SOURCE, Result
-from mxeon.conformance.results.known_issues import ISSUES, RENDERERS
-from mxeon.conformance.results.known_issues.issue import STOCK, Issue
+from mxeon.conformance.results.known_issues import ISSUES, RENDERERS, STOCK, Issue
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import ALL, make_plan
 from mxeon.errors import NotRun

@@ -1,2 +1,362 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of documents, and pictures beside the reference's."""
+"""Materials from documents, beside the reference's pictures pixel by pixel; and one material of each node."""
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TypeAlias
+
+import MaterialX as mx
+import numpy as np
+from numpy.typing import NDArray
+
+import mxeon
+from mxeon.conformance.backends import Rendered, picture_pairs
+from mxeon.conformance.case import Case
+from mxeon.conformance.check import judge, not_measured
+from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.pictures.tolerances import (
+    RELATIVE,
+    categories,
+    inner_nodes,
+    rounded_by,
+    tolerance_of,
+)
+from mxeon.conformance.reference import ExpectedPicture
+from mxeon.conformance.reference import Host as Reference
+from mxeon.conformance.reference.measured import HostValues
+from mxeon.conformance.results import (
+    FAILED,
+    LIGHTS,
+    PASSED,
+    PORTRAIT,
+    Control,
+    Picture,
+    Place,
+    Result,
+    of_white,
+)
+from mxeon.conformance.samples import Batch, Values
+from mxeon.conformance.specs.diffuse import DiffuseModelSpec, SurfaceLobe, model_value
+from mxeon.conformance.tolerance import Measurement, Metric, Tolerance, absolute, scaled
+from mxeon.errors import DocumentError, NotRun, OutsideModel, ShaderError
+from mxeon.hosts import host_row
+from mxeon.hosts.base import Host
+from mxeon.shaders.document.notes import DocumentWarning, MissingFileWarning, same_names
+from mxeon.shaders.document.policy import DEFAULT, Policy
+from mxeon.shaders.generation import TARGETS, ApproximationWarning, CodeWarning, Shader, generate
+from mxeon.shaders.nodes import BSDF_NODES
+from mxeon.shaders.scene import BACK, SIDE, Scene, sphere
+
+Pixels: TypeAlias = NDArray[np.floating]
+Shown: TypeAlias = tuple[Scene, Pixels, ExpectedPicture]  # with the host's picture
+Pixel: TypeAlias = tuple[float, dict[str, list[float]], float]
+
+MATCH = "Every pixel matches the reference."
+SAME_NAMES = "nodes {} have the values of one of them; see docs/upstream/same_names.md"
+DEFINED_MATERIAL = (
+    "a material that a nodegraph defines is not generated; see docs/upstream/material_graphs.md"
+)
+FINITE = "Every pixel is finite."
+
+
+def judge_document(
+    file: Path, host: Host, judge: Reference, library: str, policy: Policy = DEFAULT
+) -> tuple[tuple[Result, ...], tuple[Picture, ...], tuple[tuple[str, str], ...]]:
+    """Pictures of every material of a document on a host, judged against the reference's.
+
+    Raise DocumentError if no shader can be made from the document.
+    """
+    with warnings.catch_warnings(record=True) as records:
+        warnings.simplefilter("always")
+        warnings.simplefilter("error", MissingFileWarning)
+        shaders = host.compile(file, library=library, policy=policy)
+    messages = [record.message for record in records]
+    approximations = {
+        message.element: message.approximation
+        for message in messages
+        if isinstance(message, ApproximationWarning)
+    }
+    results: list[Result] = []
+    pictures: list[Picture] = []
+    for shader in shaders:
+        front_lit = shader.element in approximations
+        values = HostValues(host, shader, library, policy)
+        result, images = _judge_material(file, shader, host, judge, values, front_lit)
+        results.append(result)
+        pictures += images
+    notes = [(text, f"{file.name}: {element}") for element, text in approximations.items()]
+    # Why pictures cannot be right, each reason once.
+    notes += dict.fromkeys(
+        (text, f"{file.name}: {shader.element}")
+        for shader in shaders
+        for scene in host_row(host.name).scenes
+        for text in host.approximations(shader, scene)
+    )
+    others = (CodeWarning, DocumentWarning)
+    notes += [(str(message), file.name) for message in messages if isinstance(message, others)]
+    return tuple(results), tuple(pictures), tuple(notes)
+
+
+def _judge_material(
+    file: Path, shader: Shader, host: Host, judge: Reference, values: HostValues, front_lit: bool
+) -> tuple[Result, tuple[Picture, ...]]:
+    """One material; `front_lit` where the host has its model for s >= 0 only."""
+    scenes, library = host_row(host.name).scenes, values.library
+    subject = f"{file.name}: {shader.element}"
+    place = Place(check="picture", claim=MATCH, subject=subject, host=host.name, library=library)
+    try:
+        images = [host.picture(shader, scene) for scene in scenes]
+    except (NotRun, ShaderError) as error:
+        return not_measured(place, error), ()
+    # Compare them with the reference's, or ask for numbers where it has no model.
+    references: list[ExpectedPicture | None] = [None] * len(scenes)
+    try:
+        _assert_judged(shader, host)
+        expected = [judge.expected(shader, scene, values) for scene in scenes]
+    except OutsideModel as reason:
+        return not_measured(place, reason), ()
+    except NotRun as reason:
+        result = _judge_finite(place, images, str(reason))
+    else:
+        references = [*expected]
+        cases = list(zip(scenes, images, expected, strict=True))
+        lobes = (lobe for each in expected for lobe in each.lobes)
+        tolerance = rounded_by(host, tolerance_of(shader, lobes))
+        result = _judge_match(place, cases, tolerance, front_lit)
+        if result.verdict == FAILED and (known := _known(shader)):
+            result = replace(result, diagnosis=known)
+    return result, tuple(
+        _picture(file, shader, host, library, scene, image, reference, front_lit)
+        for scene, image, reference in zip(scenes, images, references, strict=True)
+    )
+
+
+def _known(shader: Shader) -> str:
+    """What MaterialX is known to make of a document like that of a shader; "" for nothing."""
+    element = shader.document.getDescendant(shader.element)
+    if names := same_names(element):
+        return SAME_NAMES.format(names[0])
+    graph = element.getImplementation() if element.isA(mx.Node) else None
+    defined = element.getType() == "material" and graph and graph.isA(mx.NodeGraph)
+    return DEFINED_MATERIAL if defined else ""
+
+
+def _picture(
+    file: Path,
+    shader: Shader,
+    host: Host,
+    library: str,
+    scene: Scene,
+    image: Pixels,
+    expected: ExpectedPicture | None,
+    front_lit: bool,
+) -> Picture:
+    identity = host.identity()
+    metadata = {
+        "version": mxeon.__version__,
+        "host": f"{host.name} {identity.version}",
+        "device": identity.device,
+        "library": library,
+        "document": str(file),
+        "element": shader.element,
+        "scene": scene.name,
+    }
+    if expected and expected.measured:
+        metadata["from the host"] = ", ".join(expected.measured)
+    names = (file.name, shader.element, host.name, library, scene.name)
+    if expected is None:
+        return Picture(*names, image, None, metadata)
+    reference, judged = np.asarray(expected.image, np.float32), expected.judged.copy()
+    if front_lit:
+        judged[judged] = _is_front_lit(*_directions(scene, judged))
+    partly = judged.sum() < sphere(scene.size).mask.sum()
+    where = judged[..., None].astype(np.float32) if partly else None
+    return Picture(*names, image, reference, metadata, where)
+
+
+def _assert_judged(shader: Shader, host: Host) -> None:
+    """Raise NotRun where the host shows another material, or closures of its own, judged by themselves."""
+    if reason := host.unread(shader):
+        raise NotRun(f"{host.name}: {reason}: the picture is shown and only has to be finite")
+    own = sorted(categories(inner_nodes(shader)) & set(BSDF_NODES))
+    if own and host.language == "osl":
+        raise NotRun(
+            f"{host.name} has closures of its own for {', '.join(own)}: their picture is shown and "
+            "only has to be finite"
+        )
+
+
+def _judge_finite(place: Place, images: Sequence[Pixels], reason: str) -> Result:
+    """Result for a material that the models do not cover: its pixels have to be numbers."""
+    control = [np.where(np.arange(3) == 0, np.nan, images[0])]
+    error, wrong = (
+        float(sum((~np.isfinite(image)).any(axis=-1).sum() for image in each))
+        for each in (images, control)
+    )
+    return Result(
+        **(place | {"check": "finite", "claim": FINITE}),
+        verdict=PASSED if error == 0 < wrong else FAILED,
+        error=error,
+        unit="pixels",
+        tolerance=0,
+        derivation="a count",
+        diagnosis=reason,
+        control=Control("one channel is not a number", wrong, wrong > 0),
+    )
+
+
+def _judge_match(
+    place: Place, cases: Sequence[Shown], tolerance: Tolerance, front_lit: bool
+) -> Result:
+    """Result for a material that the models cover: its pixels have to be the reference's."""
+    metric = scaled if tolerance.unit == RELATIVE else absolute
+    pixels = [_worst_pixel(case, front_lit, metric) for case in cases]
+    error, worst, _ = max(pixels, key=lambda entry: entry[0])
+    first, image, expected = cases[0]
+
+    def measure(wrong: bool) -> Measurement:
+        if not wrong:
+            return Measurement(error, worst)
+        brighter = image + np.float32(3.0 * tolerance.value) * np.maximum(1.0, image)
+        return Measurement(_worst_pixel((first, brighter, expected), front_lit, metric)[0], {})
+
+    words = "the picture is brighter by three tolerances"
+    names = [scene.name for scene, *_ in cases]
+    result = judge(place, tolerance, measure, words, lambda: Diagnosis(_appearance(pixels, names)))
+    measured = dict.fromkeys(name for *_, each in cases for name in each.measured)
+    return replace(result, measured=tuple(measured))
+
+
+def _appearance(pixels: Sequence[Pixel], scenes: Sequence[str]) -> str:
+    """The largest difference of pictures, in the words of those who look at them."""
+    differences = [difference for _, _, difference in pixels]
+    sizes = [abs(each) if np.isfinite(each) else np.inf for each in differences]
+    worst = int(np.argmax(sizes))
+    light = LIGHTS.get(scenes[worst], scenes[worst])
+    if not np.isfinite(sizes[worst]):
+        return f"has pixels that are infinite or not a number in {light}"
+    sign = "bright" if differences[worst] > 0 else "dark"
+    return f"{of_white(sizes[worst])} too {sign} in {light}"
+
+
+def _worst_pixel(case: Shown, front_lit: bool, metric: Metric) -> Pixel:
+    """Largest error times cos(theta_o), its pixel, and the largest difference of all pixels.
+
+    The difference has a sign, and is relative where the reference exceeds 1.
+    """
+    scene, image, (reference, mask) = case[0], case[1], (case[2].image, case[2].judged)
+    wo, wi = _directions(scene, mask)
+    measured, expected = (each[mask].astype(np.float64) for each in (image, reference))
+    error = metric(measured, expected) * wo[:, 2]
+    difference = (measured - expected) / np.maximum(1.0, np.abs(expected))
+    if front_lit:
+        front = _is_front_lit(wo, wi)
+        error = np.where(front, error, 0.0)
+        difference = np.where(front[:, np.newaxis], difference, 0.0)
+    worst = int(error.argmax())
+    row, column = np.argwhere(mask)[worst]
+    point = {
+        "row": [float(row)],
+        "column": [float(column)],
+        "measured": image[row, column].astype(float).tolist(),
+        "expected": reference[row, column].tolist(),
+    }
+    return float(error[worst]), point, float(difference.flat[np.abs(difference).argmax()])
+
+
+def _directions(scene: Scene, mask: NDArray[np.bool_]) -> tuple[Pixels, Pixels]:
+    """Directions `wo` and `wi` of the sphere's pixels in a mask."""
+    chosen = mask[sphere(scene.size).mask]
+    wo, wi, _ = picture_pairs(scene)
+    return wo[chosen], wi[chosen]
+
+
+def _is_front_lit(wo: Pixels, wi: Pixels) -> NDArray[np.bool_]:
+    lit: NDArray[np.bool_] = (wo[:, :2] * wi[:, :2]).sum(axis=1) >= 0.0
+    return lit
+
+
+# --- documents on hosts that make no pictures: their shaders are generated, and not run -----------
+
+DOCUMENT_KEY = "document"
+DOCUMENT_CLAIM = "Shaders are generated from every material of the document."
+
+
+def generate_document(
+    file: Path, host: str, library: str, policy: Policy = DEFAULT
+) -> tuple[tuple[Result, ...], tuple[tuple[str, str], ...]]:
+    """Result of generating a document's shaders for a host's target, and notes with their location.
+
+    Raise DocumentError if no shader can be made from the document; NotRun if the host reads no
+    documents, or this MaterialX has no generator for its target.
+    """
+    target = host_row(host).target
+    if not target:
+        raise NotRun(f"{host}: this renderer only has its own materials; it reads no documents")
+    if target not in TARGETS:
+        raise NotRun(f"{host}: this MaterialX has no generator for {target}")
+    with warnings.catch_warnings(record=True) as records:
+        warnings.simplefilter("always")
+        warnings.simplefilter("error", MissingFileWarning)
+        shaders = generate(file, target, library=library, policy=policy)
+    notes = tuple(
+        (str(record.message), file.name)
+        for record in records
+        if isinstance(record.message, (CodeWarning, DocumentWarning))
+    )
+    data = file.read_bytes()
+    half = data[: len(data) // 2].decode(errors="replace")
+    try:
+        generate(half if "<" in half else "<", target, library=library)
+        caught = False
+    except DocumentError:
+        caught = True
+    result = Result(
+        DOCUMENT_KEY,
+        DOCUMENT_CLAIM,
+        file.name,
+        host,
+        library,
+        PASSED if shaders and caught else FAILED,
+        error=float(not shaders),
+        unit="documents without a shader",
+        tolerance=0,
+        derivation="a count",
+        control=Control("half of the document is cut off", float(caught), caught),
+    )
+    return (result,), notes
+
+
+# --- one material of each node, for the page on which hosts stand together ------------------------
+
+PORTRAYED: Values = {"color": (0.8, 0.4, 0.1), "roughness": 1.0}
+PORTRAIT_SCENES = tuple(replace(scene, size=96) for scene in (SIDE, BACK))
+
+
+def comparison_pictures(case: Case) -> tuple[Picture, ...]:
+    """Pictures of a rough node in light from the side and from behind, each beside its model's.
+
+    None for a surface shader's lobe, and on a renderer without exact mirror pairs. Rim and
+    terminator are black in both.
+    """
+    rough = isinstance(case.spec, DiffuseModelSpec) and not isinstance(case.spec, SurfaceLobe)
+    if not rough or isinstance(case.backend, Rendered):
+        return ()
+    pictures = []
+    for scene in PORTRAIT_SCENES:
+        wo, wi, judged, mask = case.backend.portrait(scene)
+        if not judged.any():
+            continue
+        where = mask.copy()
+        where[where] = judged
+        batch = Batch(wo[judged], wi[judged], PORTRAYED, scene)
+        image, expected = (np.zeros((*where.shape, 3), np.float32) for _ in range(2))
+        image[where], expected[where] = case.direct(batch), model_value(batch, case.spec.model)
+        names = (PORTRAIT, case.spec.title, case.host.name, case.library, scene.name)
+        keys = ("document", "element", "host", "library", "scene")
+        metadata = dict(zip(keys, names, strict=True)) | {"version": mxeon.__version__}
+        metadata |= {"points": case.host.name}  # which differ where a host has its model in part
+        pictures.append(Picture(*names, image, expected, metadata))
+    return tuple(pictures)

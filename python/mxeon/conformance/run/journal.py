@@ -24,7 +24,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mxeon.conformance.results import listed
 from mxeon.conformance.results.records import ERRORS, StoredImage, images_of, make_converter
-from mxeon.conformance.run.tasks import Findings, Plan
+from mxeon.conformance.run.plan import Findings, Plan
 from mxeon.errors import InputError
 from mxeon.io.files import below, regular, replacing
 

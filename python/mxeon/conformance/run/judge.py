@@ -13,15 +13,17 @@ from mxeon.conformance.backends import backend_of, own_nodes
 from mxeon.conformance.case import Case, make_case
 from mxeon.conformance.checks import CHECKS
 from mxeon.conformance.checks.lobes import integrated
-from mxeon.conformance.functions.shader_functions import FunctionProbe, judge_functions
-from mxeon.conformance.pictures.document_pictures import MATCH, judge_document
-from mxeon.conformance.pictures.documents import DOCUMENT_CLAIM, generate_document
-from mxeon.conformance.pictures.node_pictures import comparison_pictures
+from mxeon.conformance.pictures import (
+    DOCUMENT_CLAIM,
+    MATCH,
+    comparison_pictures,
+    generate_document,
+    judge_document,
+)
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.results import DIRECT, FAILED, NOT_RUN, SOURCE, AlbedoCurve, Picture, Result
 from mxeon.conformance.results.known_issues import with_pages
-from mxeon.conformance.run.plan import diffuse_specs
-from mxeon.conformance.run.tasks import (
+from mxeon.conformance.run.plan import (
     CURVE,
     DEFINITION,
     DOCUMENT,
@@ -30,9 +32,11 @@ from mxeon.conformance.run.tasks import (
     PICTURE,
     Findings,
     Task,
+    diffuse_specs,
 )
+from mxeon.conformance.shader_functions import FunctionProbe, judge_functions
 from mxeon.conformance.specs import ALL
-from mxeon.conformance.text.checks import check_definitions, check_texts
+from mxeon.conformance.text import check_definitions, check_texts
 from mxeon.errors import DocumentError, ImageError, InterfaceError, NotRun, ShaderError
 from mxeon.hosts import open_engine
 from mxeon.hosts.base import Engine, Host

@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The plan of a run: which tasks are to be done for some documents, hosts, libraries and nodes."""
+"""The plan of a run: its tasks, each a check of one subject on one host with one library, and their findings.
+
+A task is a few words and its findings are plain data, so both travel to other processes and machines.
+"""
 
 import os
 import platform
 import sysconfig
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import MaterialX as mx
@@ -13,24 +17,13 @@ import numpy as np
 import OpenImageIO as oiio
 
 import mxeon
+from mxeon.conformance import shader_functions as functions
 from mxeon.conformance.backends import Evaluating, backend_of, own_nodes, ways_of
 from mxeon.conformance.checks import CHECKS
-from mxeon.conformance.functions import shader_functions as functions
-from mxeon.conformance.results import SHADER_FUNCTIONS, SOURCE
-from mxeon.conformance.results.known_issues.issue import RENDERER_NODES
+from mxeon.conformance.results import SHADER_FUNCTIONS, SOURCE, AlbedoCurve, Picture, Result
+from mxeon.conformance.results.known_issues import RENDERER_NODES
 from mxeon.conformance.run.dependencies import digests
-from mxeon.conformance.run.survey import Survey
-from mxeon.conformance.run.tasks import (
-    CURVE,
-    DEFINITION,
-    DOCUMENT,
-    EVERY_NODE,
-    FUNCTIONS,
-    HOST,
-    PICTURE,
-    Plan,
-    Task,
-)
+from mxeon.conformance.run.documents import Survey
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs import ALL as ALL_SPECS
 from mxeon.conformance.specs import COMMON as COMMON_SPECS
@@ -38,6 +31,7 @@ from mxeon.conformance.specs import PBRLIB
 from mxeon.conformance.specs.diffuse import DIFFUSE, SURFACE_LOBES, DiffuseSpec
 from mxeon.errors import InputError, assert_known
 from mxeon.hosts import HOSTS, host_names, host_row
+from mxeon.hosts.base import Identity
 from mxeon.shaders.document.policy import DEFAULT, LIMITS, Policy
 from mxeon.shaders.functions import has_functions
 from mxeon.shaders.library import (
@@ -48,6 +42,73 @@ from mxeon.shaders.library import (
     load_library,
 )
 from mxeon.shaders.library_tree import LIBRARIES, OVERLAY, origins
+
+HOST, DEFINITION = "host", "definition"
+CURVE, PICTURE = "curve", "picture"
+FUNCTIONS, DOCUMENT = "twins", "document"
+EVERY_NODE = "every node"
+
+
+@dataclass(frozen=True)
+class Task:
+    """One independent piece of a run: a check of one subject on one host with one library."""
+
+    # Key of a row of `mxeon.conformance.checks`, or HOST, DEFINITION, SOURCE, CURVE, PICTURE,
+    # FUNCTIONS or DOCUMENT.
+    check: str
+    subject: str  # title of a node, path of a document, or SHADER_FUNCTIONS
+    host: str
+    library: str
+
+    def __str__(self) -> str:
+        return f"{self.host}, {self.check}, {self.subject}, {self.library}"
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The tasks of a run and all that they depend on; equal plans are equal runs."""
+
+    version: str  # of mxeon
+    # Versions of the packages that take part (Python, NumPy, MaterialX, ...).
+    software: dict[str, str]
+    tasks: tuple[Task, ...]
+    documents: tuple[str, ...]  # their paths
+    # The policy for documents, by the option of the command.
+    options: dict[str, str] = field(default_factory=dict)
+    # SHA-256 of each file that the findings depend on, by path; "" where it cannot be read. Empty
+    # where the run is not kept.
+    files: dict[str, str] = field(default_factory=dict)
+    # Titles of the nodes of each document, by its path.
+    contents: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    # For each document, by title of a node, the regions that its inputs are not in.
+    unreached: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
+    # Documents that cannot be read; as of `mxeon.conformance.results.Run`.
+    refused: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    # As those of `mxeon.conformance.results.Run`.
+    libraries: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
+    compared: tuple[str, ...] = ()  # as of `mxeon.conformance.results.Run`
+
+
+@dataclass(frozen=True)
+class Findings:
+    """The outcome of one task; see Run for the fields."""
+
+    results: tuple[Result, ...] = ()
+    pictures: tuple[Picture, ...] = ()
+    curves: tuple[AlbedoCurve, ...] = ()
+    notes: tuple[tuple[str, str], ...] = ()
+    errors: tuple[str, ...] = ()
+    hosts: tuple[Identity, ...] = ()
+
+    def answer(self, task: Task) -> bool:
+        """Whether these are findings of a task: there are some, and all are of its host."""
+        records: list[Result | Picture | AlbedoCurve]
+        records = [*self.results, *self.pictures, *self.curves]
+        location = (task.host, task.library)
+        return bool(records or self.errors) and all(
+            (record.host, record.library) == location for record in records
+        )
+
 
 ALL, COMMON = "all", "common"  # in place of the nodes' names
 
