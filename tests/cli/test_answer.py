@@ -75,7 +75,7 @@ def test_an_answer_has_each_material_then_nodes_then_the_remedy_then_the_cause()
 def test_a_picture_within_tolerance_comes_before_nodes_that_are_wrong_for_other_inputs():
     seen = replace(PICTURE, library="stock")
     look, _, node, *_ = answer(made_run(made(), PICTURE, stock(), seen, compared=("stock",)))
-    assert look.index("picture is within tolerance") < look.index("wrong for other inputs")
+    assert look.index("the picture is right") < look.index("wrong for inputs that this")
     assert "wrong for other inputs, error 0.37" in node
 
 

@@ -24,7 +24,7 @@ DESCRIPTION = (
 )
 EXAMPLES = (
     "check my.mtlx  # what renders wrong, and why",
-    "explore my.mtlx --output my.html  # the same, to look at in a browser",
+    "explore my.mtlx --output my.html  # draw and compare them in a browser",
     "library  # how to load eonlib in your renderer",
 )
 LEAST_MEMORY = 2**28  # bytes of address space

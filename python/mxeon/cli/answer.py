@@ -150,7 +150,9 @@ def _appearance(run: Run, document: str, result: Result) -> str:
         for each in run.results
         if each.subject in run.contents[document]
     ):
-        return "the picture is within tolerance, but nodes are wrong for other inputs"
+        return (
+            "the picture is right; its nodes are wrong for inputs that this material does not use"
+        )
     if result.measured:
         return f"as specified, with {listed(result.measured)} as the host computes it"
     return AS_SPECIFIED

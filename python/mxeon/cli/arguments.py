@@ -15,11 +15,11 @@ from mxeon.jobs import TIMEOUT
 from mxeon.names import meant
 from mxeon.shaders.document.policy import LIMITS, SEARCH_PATH, Policy, environment_path
 
-STATUS = "exit status: 0 all passed, 1 a check failed, 2 misuse, 3 something did not run"
+STATUS = "exit status: 0 success, 1 a check failed, 2 misuse or bad input, 3 something did not run"
 UNTRUSTED = "documents you do not trust"  # heading of the options that --help-limits lists
 LIBRARY = (
-    "eonlib (default), stock, or a folder; a copy of MaterialX's libraries, or of a part of "
-    "them, replaces the installed ones, and any other folder is loaded before them"
+    "eonlib (default), stock, or a folder. A copy of MaterialX's libraries, whole or in part, "
+    "replaces the installed files; any other folder is loaded before them"
 )
 
 MATERIALX = "MXEON_MATERIALX"  # names the folder of --materialx to processes of hosts
@@ -122,7 +122,7 @@ def add_json(command: argparse.ArgumentParser) -> None:
 
 def add_report(command: argparse.ArgumentParser) -> None:
     command.add_argument(
-        "--report", metavar="DIR", help="write an HTML page, JSON, JUnit XML, and pictures to DIR"
+        "--report", metavar="DIR", help="write an HTML page, JSON, JUnit XML and pictures to DIR"
     )
 
 
@@ -139,7 +139,7 @@ def add_materialx(command: argparse.ArgumentParser) -> None:
         "--materialx",
         type=_folder,
         metavar="FOLDER",
-        help="use your own build of MaterialX: FOLDER has its Python package, MaterialX/",
+        help="use your own build of MaterialX; FOLDER holds its Python package, MaterialX/",
     )
 
 
@@ -224,7 +224,7 @@ def add_policy(command: argparse.ArgumentParser, runs_code: bool = False, **defa
     group.add_argument(
         "--allowOutside",
         action="store_true",
-        help="let documents read files outside their folder, the search path, and the libraries",
+        help="let documents read files outside their folder, the search path and the libraries",
     )
     if runs_code:
         group.add_argument(

@@ -23,9 +23,9 @@ def add_parser(commands: arguments.Commands) -> None:
     command = arguments.add_command(
         commands,
         "check",
-        "check the shaders of documents, or of a library, against the specification",
+        "check materials, or a shader library, against the specification",
         run,
-        "check my.mtlx  # your materials, node by node and as pictures",
+        "check my.mtlx  # your materials, with eonlib beside stock MaterialX",
         "check my.mtlx --library stock --report out  # with MaterialX's own shaders, and a report",
         "check --library ./libraries --node all  # every node of your copy of MaterialX",
     )
@@ -46,15 +46,15 @@ def add_parser(commands: arguments.Commands) -> None:
         "--library",
         action="append",
         metavar="NAME",
-        help=f"{arguments.LIBRARY}; repeatable; if omitted, FILEs are also checked with "
-        "stock, but only eonlib decides the exit status",
+        help=f"{arguments.LIBRARY}. Repeatable. Without it, FILEs are checked with stock too, "
+        "for comparison: only eonlib decides the exit status",
     )
     command.add_argument(
         "--node",
         action="append",
         metavar="NAME",
-        help="check nodes of this category, such as sheen_bsdf, whether the documents use them or "
-        "not; also all, or common; repeatable",
+        help="check nodes of this category, such as sheen_bsdf, 'common' or 'all', whether the "
+        "documents use them or not; repeatable",
     )
     arguments.add_report(command)
     command.add_argument(
@@ -63,7 +63,7 @@ def add_parser(commands: arguments.Commands) -> None:
     arguments.add_full(command)
     arguments.add_json(command)
     arguments.add_workers(command)
-    command.add_argument("--scheduler", metavar="ADDRESS", help="run on this Dask cluster instead")
+    command.add_argument("--scheduler", metavar="ADDRESS", help="run on this Dask cluster")
     command.add_argument(
         "--waitForWorkers",
         type=float,

@@ -37,7 +37,7 @@ def add_parser(commands: arguments.Commands) -> None:
         "--outputPath", metavar="DIR", required=True, help="folder to write the shaders to"
     )
     command.add_argument(
-        "--element", metavar="NAME", help="generate this renderable element only (default: all)"
+        "--element", metavar="NAME", help="generate this material only (default: all)"
     )
     command.add_argument(
         "--profile", metavar="NAME", help="variant of a target: cycles, the OSL of Blender's Cycles"

@@ -14,7 +14,7 @@ def add_parser(commands: arguments.Commands) -> None:
     examples = (
         "kit export kit  # then render its scenes to kit/renders",
         "kit check kit --renderer MyRenderer --report out",
-        "kit check kit --claims qon  # if QON is its only model",
+        "kit check kit --claims qon  # for a renderer that claims QON alone",
     )
     summary = "find out which rough-diffuse model a renderer uses, from its images"
     group = arguments.add_command(commands, "kit", summary, None, *examples)
@@ -48,7 +48,7 @@ def add_parser(commands: arguments.Commands) -> None:
         "--claims",
         default="",
         metavar="MODEL",
-        help="the only model that the renderer has: eon, qon, fon or lambert (default: EON and QON, "
+        help="the one model that the renderer claims: eon, qon, fon or lambert (default: EON and QON, "
         "chosen by energy_compensation)",
     )
     arguments.add_report(check)

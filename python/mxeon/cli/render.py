@@ -38,12 +38,12 @@ def add_parser(commands: arguments.Commands) -> None:
     command.add_argument(
         "--scene",
         metavar="NAME",
-        help="light: studio (default; side on hosts that cannot draw it), front, side, back, furnace",
+        help="light: studio, front, side, back, furnace (default: studio, or side where the host cannot draw it)",
     )
     command.add_argument(
         "--environment",
         metavar="IMAGE",
-        help="light it with this latitude-longitude image; with --scene, add that scene's light",
+        help="light it with this latitude-longitude image; with --scene, use both lights",
     )
     command.add_argument(
         "--shape",

@@ -11,11 +11,11 @@ from mxeon.errors import FAILED, PASSED, as_output, one_line
 
 def add_parser(commands: arguments.Commands) -> None:
     examples = (
-        "report make out  # the page of a run, finished or not",
+        "report make out  # even if the run was interrupted",
         "report diff before after  # what became better or worse",
         "report field out/*  # all renderers on one page",
     )
-    summary = "write the report of a run, compare two, or show many renderers on one page"
+    summary = "write the report of a run, compare two runs, or show many renderers on one page"
     group = arguments.add_command(commands, "report", summary, None, *examples)
     actions = group.add_subparsers(required=True, title="commands", metavar="ACTION")
     summary = "write the report of a run, finished or not"
@@ -23,10 +23,10 @@ def add_parser(commands: arguments.Commands) -> None:
     make.add_argument("report", metavar="DIR", help="the folder of the run")
     arguments.add_full(make)
     arguments.add_json(make)
-    summary = "list what changed between two reports"
+    summary = "list what changed between two runs"
     diff = arguments.add_command(actions, "diff", summary, run_diff, examples[1])
-    diff.add_argument("before", metavar="A", help="folder of a report, or its results.json")
-    diff.add_argument("after", metavar="B", help="the same for a later run")
+    diff.add_argument("before", metavar="BEFORE", help="folder of a report, or its results.json")
+    diff.add_argument("after", metavar="AFTER", help="the same of a later run")
     arguments.add_json(diff)
     summary = "show the renderers of many reports on one page"
     field = arguments.add_command(actions, "field", summary, run_field, examples[2])

@@ -44,9 +44,7 @@ def _line(result: Result) -> str:
     """A check with its error and tolerance, or why it did not pass."""
     numbers = result.reason or result.explanation
     if result.verdict == "passed":
-        numbers = (
-            f"{result.error or 0.0:.3g} <= {result.tolerance or 0.0:.3g} {result.unit}".rstrip()
-        )
-    return one_line(
-        f"{result.verdict}: {result.location}, {result.check}, {result.subject}: {numbers}"
-    )
+        error, tolerance = result.error or 0.0, result.tolerance or 0.0
+        numbers = f"{error:.3g} <= {tolerance:.3g} {result.unit}" if tolerance else ""
+    about = f"{result.verdict}: {result.location}, {result.check}, {result.subject}"
+    return one_line(f"{about}: {numbers}".rstrip(": "))

@@ -11,6 +11,7 @@ from markupsafe import Markup
 from numpy.typing import NDArray
 
 from mxeon.conformance.results import (
+    COUNTS,
     DIFFERS,
     DIRECT,
     FAILED,
@@ -202,8 +203,7 @@ def _row(pictures: Sequence[Picture], tolerance: float) -> dict[str, Any]:
     reference = None
     for one in pictures:
         # Read it once: pixels of a run that is kept are in a file.
-        note = one.library if one.library == "stock" else ""
-        shown.append(_figure("image", title_of(one.library), note, srgb_encoded(one.image)))
+        shown.append(_figure("image", title_of(one.library), "", srgb_encoded(one.image)))
         if one.reference is not None:
             reference = one.reference if reference is None else reference
             apart.append((one, one.difference()))
@@ -228,7 +228,7 @@ def _row(pictures: Sequence[Picture], tolerance: float) -> dict[str, Any]:
 
 def title_of(library: str) -> str:
     """What pictures with a library are called."""
-    return "As shipped" if library == "stock" else f"With {library}"
+    return "Stock MaterialX" if library == "stock" else f"With {library}"
 
 
 def _figure(kind: str, title: str, note: str, pixels: NDArray[np.uint8]) -> dict[str, Any]:
@@ -304,7 +304,12 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, 
             listed=pictures[SHOWN_MATERIALS:],
             next_material=drawn.__next__,
             file_of=file_of,
+            compared=[
+                (name, worst(each for each in run.results if each.library == name))
+                for name in run.compared
+            ],
             counted=counted,
+            COUNTS=COUNTS,
             gradient=Markup(difference_gradient()),
             plots=plots(run.curves),
             FAILED=FAILED,

@@ -78,7 +78,8 @@ def node_lobe(
     try:
         values = lobe(row, arguments, layered)
     except ValueError as error:
-        raise OutsideModel(f"{name}: {error}") from None
+        words = str(error).replace("rho must", "color must")  # as MaterialX calls it
+        raise OutsideModel(f"{name}: {words}") from None
     # What hides its base does so at any weight.
     left = 1.0 - weight * (1.0 - values.throughput) if row.layerable else values.throughput
     return Bsdf(values.value * weight, left)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections import Counter
 from collections.abc import Sequence
@@ -24,6 +25,7 @@ VERDICTS = (PASSED, DIFFERS, FAILED, NOT_RUN)
 PORTRAIT = "portrait"
 SOURCE = "source"  # in the place of a host, for what none has to run
 SHADER_FUNCTIONS = "shader twins"  # in the place of a node, for the functions of a library
+COUNTS = ("inputs", "values", "faults", "differences", "nodes")  # units of checks that count
 NAMED = 3  # names in a list, before the number of the others
 LIGHTS = {
     "side": "light from the side",
@@ -156,6 +158,8 @@ class Result:
         """The error that is too large, or the control that passed; "" for neither."""
         control = self.control
         if self.error is not None and not self.error <= (self.tolerance or 0.0):
+            if self.unit in COUNTS and math.isfinite(self.error):
+                return counted(int(self.error), self.unit.removesuffix("s"))
             if self.unit.startswith("times "):
                 return f"the error is {in_words(self.error)} {self.unit}"
             return f"{self.error:.3g} > {self.tolerance:.3g} {self.unit}".rstrip()

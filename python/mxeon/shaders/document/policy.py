@@ -19,10 +19,10 @@ LIMITS = {
     "tokens": "tokens in a document",
     "includes": "levels of nested includes",
     "nodes": "nodes in all shaders of a document, nodegraphs expanded",
-    "chain": "connected nodes in a row",
+    "chain": "nodes in a chain of connections",
     "shaders": "renderable elements",
     "ports": "node inputs in all shaders, each nodegraph counted as one node",
-    "text": "characters of the document's own code in all its shaders",
+    "text": "characters of shader code that the document brings, in all its shaders",
     "texels": "pixels in all images that a document reads",
 }
 
