@@ -62,6 +62,18 @@ def test_a_check_that_went_is_worse_and_one_that_came_is_not():
     assert (found[0].after, found[1].before) == ("none", "none")
 
 
+def test_the_loss_of_a_failed_check_is_no_worse():
+    changed = changes(made_run(FAILED), replace(made_run(), results=()))
+    assert [(each.kind, each.after) for each in changed] == [(OTHER, "none")]
+
+
+def test_a_document_that_is_refused_now_is_worse():
+    good, refused = made_run(), replace(made_run(), refused={"clay.mtlx": ("no such node",)})
+    assert changes(good, refused) == (Change(WORSE, "clay.mtlx", "not refused", "refused"),)
+    assert changes(refused, good) == (Change(BETTER, "clay.mtlx", "refused", "not refused"),)
+    assert changes(refused, refused) == ()
+
+
 def test_a_new_check_that_fails_is_worse(tmp_path, capsys):
     passed, failed = made_run(), made_run(FAILED, subject="slate")
     both = replace(passed, results=passed.results + failed.results)

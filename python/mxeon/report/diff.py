@@ -4,7 +4,7 @@
 import json
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
@@ -28,7 +28,8 @@ SHOWN = ("host", "library", "document", "element", "scene")
 class Change:
     """One difference between two reports, with their values; "none" where one has no such entry.
 
-    A worse verdict, a missing check and a new one that fails are WORSE, a figure alone is OTHER.
+    WORSE are a worse verdict, a new check that fails, a document that is refused now, and the loss of
+    a check that did not fail. A figure alone is OTHER.
     """
 
     kind: str  # WORSE, BETTER or OTHER
@@ -123,6 +124,7 @@ def compare(before: Report, after: Report) -> tuple[Change, ...]:
     changes = [
         *_results(_by(PLACE, before.results), _by(PLACE, after.results)),
         *_pictures(_by(SHOWN, before.pictures), _by(SHOWN, after.pictures)),
+        *_refusals(set(before.refused), set(after.refused)),
         *_facts(before, after),
     ]
     return tuple(sorted(changes, key=lambda change: (WORSE, BETTER, OTHER).index(change.kind)))
@@ -174,16 +176,17 @@ def _results(
 ) -> Iterator[Change]:
     for key in dict.fromkeys((*before, *after)):
         place, old, new = ", ".join(key), before.get(key), after.get(key)
-        if new is None:
-            yield Change(WORSE, place, before[key].verdict, "none")
-        elif old is None:
+        if old and new:
+            if old.verdict != new.verdict:
+                worse = ORDER.index(new.verdict) > ORDER.index(old.verdict)
+                yield Change(WORSE if worse else BETTER, place, _with_error(old), _with_error(new))
+            elif _apart(old.error, new.error):
+                yield Change(OTHER, place, _with_error(old), _with_error(new))
+        elif old:
+            yield Change(OTHER if old.verdict == FAILED else WORSE, place, old.verdict, "none")
+        elif new:
             kind = WORSE if new.verdict == FAILED else OTHER
             yield Change(kind, place, "none", _with_error(new))
-        elif old.verdict != new.verdict:
-            worse = ORDER.index(new.verdict) > ORDER.index(old.verdict)
-            yield Change(WORSE if worse else BETTER, place, _with_error(old), _with_error(new))
-        elif _apart(old.error, new.error):
-            yield Change(OTHER, place, _with_error(old), _with_error(new))
 
 
 def _pictures(
@@ -194,6 +197,13 @@ def _pictures(
         if _apart(old, new):
             place = f"{', '.join(key)}, largest difference"
             yield Change(OTHER, place, _number(old), _number(new))
+
+
+def _refusals(before: Set[str], after: Set[str]) -> Iterator[Change]:
+    """A document that is refused was not judged, so nothing else here speaks of it."""
+    for document in sorted(before ^ after):
+        old, new = ("refused" if document in each else "not refused" for each in (before, after))
+        yield Change(WORSE if document in after else BETTER, document, old, new)
 
 
 def _facts(before: Report, after: Report) -> Iterator[Change]:
