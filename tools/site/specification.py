@@ -64,7 +64,7 @@ RESULTS = FOLDER / "results.md"
 SUMMARY_HEAD = (
     "| check | eonlib | stock MaterialX 1.39.5 | what stock computes |\n|---|---|---|---|\n"
 )
-HEAD = "| check | mode | allowed | stock | eonlib | stock's defect |\n|---|---|---|---|---|---|\n"
+HEAD = "| check | mode | tolerance | stock | eonlib | stock's defect |\n|---|---|---|---|---|---|\n"
 
 
 def measured(host):
@@ -164,7 +164,7 @@ def _mode(subject):
 def _modes(modes, rows):
     """The modes that pass, where those are not all."""
     everything = {_mode(subject) for _, subject in rows}
-    listed = ", ".join(each or "by itself" for each in modes)
+    listed = ", ".join(each or "alone" for each in modes)
     return "" if set(modes) == everything else f" ({listed})"
 
 
