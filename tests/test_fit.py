@@ -14,14 +14,14 @@ from mxeon.errors import InputError, PackageError
 from mxeon.fit import (
     FIT_MODELS,
     MeasuredBrdf,
-    dielectric_over_eon,
     fit_brdf,
     merl_directions,
-    openpbr_base,
     read_merl,
 )
 from mxeon.fit.measured import MERL_CELLS, MERL_SCALES
 from mxeon.models import dielectric_brdf, eon_brdf, generalized_schlick_brdf
+from mxeon.models.coat import dielectric_over_eon_brdf
+from mxeon.models.coat.openpbr import openpbr_base_brdf
 from mxeon.models.core.layering import Bsdf, layer, throughput
 from tests.support.availability import available
 from tools.site import research
@@ -93,7 +93,7 @@ def test_a_base_that_is_all_metal_is_the_metal():
     rng = np.random.default_rng(SEED)
     wo, wi, pair = directions(rng, 20), directions(rng, 20), [0.25, 0.25]
     expected = generalized_schlick_brdf(wo, wi, CLAY["rho"], 1.0, 1.0, pair, 5.0)
-    metal = openpbr_base(wo, wi, CLAY["rho"], 0.5, 0.5, 1.5, 1.0)
+    metal = openpbr_base_brdf(wo, wi, CLAY["rho"], 0.5, 0.5, 1.5, 1.0)
     assert np.abs(metal - expected).max() < CURVES
 
 
@@ -106,11 +106,13 @@ def test_the_layers_are_those_of_the_specification():
             E = dielectric_albedo_dir(wo, 1.0, [alpha, alpha], ior)
             base = Bsdf(eon_brdf(wo, wi, [0.7], 0.5), np.zeros(1))
             expected = layer(Bsdf(top, throughput(E)), base).value
-            error = np.abs(dielectric_over_eon(wo, wi, [0.7], 0.5, alpha, ior) - expected)
+            error = np.abs(dielectric_over_eon_brdf(wo, wi, [0.7], 0.5, alpha, ior) - expected)
             assert (error / np.maximum(1.0, expected)).max() < CURVES
 
 
-@pytest.mark.parametrize("model, parameters", [(dielectric_over_eon, COATED), (openpbr_base, BASE)])
+@pytest.mark.parametrize(
+    "model, parameters", [(dielectric_over_eon_brdf, COATED), (openpbr_base_brdf, BASE)]
+)
 def test_lobes_over_eon_have_gradients_by_their_parameters(model, parameters):
     # Differentiate the sum of the values.
     torch, rng = pytest.importorskip("torch"), np.random.default_rng(SEED)

@@ -25,8 +25,6 @@ COMMAND = re.compile(r"(?:^|(?<=\r))\s*::|##\[", re.MULTILINE)
 def install(extra: str) -> str:
     """Command that installs what a part of mxeon needs besides.
 
-    Examples
-    --------
     >>> install("fit")
     "pip install '.[fit]' in a checkout of mxeon"
     """

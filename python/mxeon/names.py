@@ -14,8 +14,6 @@ def meant(
 ) -> str:
     """The end of a message on an unknown name: the known ones that it may stand for, or "".
 
-    Examples
-    --------
     >>> meant("cycels", ("gl", "cycles")), meant("EON", ("eon", "fon"))
     (': did you mean cycles?', ': did you mean eon?')
     >>> meant("sheen", ("zeltner", "eon"), titles={"zeltner": "Zeltner sheen"})

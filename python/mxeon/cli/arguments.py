@@ -181,9 +181,6 @@ def add_workers(command: argparse.ArgumentParser) -> None:
         metavar="SECONDS",
         help="stop a worker that takes longer than this for one item (default: %(default)g)",
     )
-    command.add_argument(  # its name in version 0.1
-        "--limit", dest="timeout", type=float, default=argparse.SUPPRESS, help=argparse.SUPPRESS
-    )
 
 
 def assert_other(output: str | None, files: Iterable[str | None]) -> None:

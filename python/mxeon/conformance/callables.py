@@ -182,33 +182,19 @@ def _of_rest(check: Check) -> Check:
 def check_brdf(brdf: Brdf, model: str = "eon", name: str | None = None) -> Run:
     """Run every check that applies to a function of directions and inputs.
 
-    Parameters
-    ----------
-    brdf : callable
-        `brdf(wo, wi, rho, roughness) -> values`, with wo, wi and rho (N, 3), roughness (N,) and
-        values (N, 3) in 1/sr, without the cosine. The directions leave the surface, in the local
-        frame with the normal +z; roughness lies in [0, 1], or is sigma, in radian, in [0, pi/2] for
-        models that have one: `mxeon.models.table`.
-    model : str
-        The model that it has to be: a row of `mxeon.models.table.MODELS` with a parameter.
-    name : str or None
-        Its name in the report; None for the function's own name.
+    - `brdf`: `brdf(wo, wi, rho, roughness) -> values`, with wo, wi and rho (N, 3), roughness (N,)
+      and values (N, 3) in 1/sr, without the cosine. The directions leave the surface, in the local
+      frame with the normal +z; roughness lies in [0, 1], or is sigma, in radian, in [0, pi/2] for
+      models that have one: `mxeon.models.table`.
+    - `model`: The model that it has to be: a row of `mxeon.models.table.MODELS` with a parameter.
+    - `name`: Its name in the report; None for the function's own name.
 
-    Returns
-    -------
-    Run
-        See `mxeon.report.write`. Values that are not finite fail one check; the others judge the rest.
+    Values that are not finite fail one check; the others judge the rest. `mxeon.report.write` makes a
+    report of the run. Raises ValueError if there is no such model, or the values have another shape.
 
-    Raises
-    ------
-    ValueError
-        If there is no such model, or the values have another shape.
-
-    Examples
-    --------
-    >>> from mxeon.models import eon_brdf
-    >>> {result.verdict for result in check_brdf(eon_brdf).results}
-    {'passed'}
+        >>> from mxeon.models import eon_brdf
+        >>> {result.verdict for result in check_brdf(eon_brdf).results}
+        {'passed'}
     """
     case = _case(brdf, model, name)
     results = tuple(check.judge(case) for check in _checks(model))

@@ -69,10 +69,8 @@ def page(data: PageData) -> str:
 
     Text of documents stands in it as JSON without any character that HTML knows.
 
-    Examples
-    --------
-    >>> "</b>" in page(PageData("1", "1", "</b>", ()))
-    False
+        >>> "</b>" in page(PageData("1", "1", "</b>", ()))
+        False
     """
     template = files("mxeon.explorer").joinpath("explorer.html").read_text(encoding="utf-8")
     fields = _with_texts(asdict(data))

@@ -19,8 +19,6 @@ from mxeon.models.coat import dielectric_over_eon_brdf
 from mxeon.models.coat.openpbr import openpbr_base_brdf
 from mxeon.models.core.arrays import Array, ArrayLike
 
-# Other spellings of both functions of `mxeon.models`.
-dielectric_over_eon, openpbr_base = dielectric_over_eon_brdf, openpbr_base_brdf
 LEAST_ALPHA = 0.02  # below, a lobe is narrower than what is measured
 
 
@@ -61,10 +59,8 @@ FIT_MODELS = {
 __all__ = [
     "Fit",
     "MeasuredBrdf",
-    "dielectric_over_eon",
     "fit_brdf",
     "merl_directions",
-    "openpbr_base",
     "read_merl",
 ]
 
@@ -78,21 +74,12 @@ UNDETERMINED = "not determined by the data"  # whose error is the parameter's wh
 class Fit:
     """Parameters of a model that fit a measured BRDF best, with their standard deviations.
 
-    Attributes
-    ----------
-    model : str
-    values, errors : dict of str to ndarray
-        By parameter: `rho` (C,), and numbers.
-    covariance : ndarray, shape (P, P)
-        Of rho's channels and then the others, in the order of `values`.
-    scatter : float
-        Root of the mean squared difference from the data, per degree of freedom: in units of `error`,
-        about 1 where model and errors are right; in 1/sr without errors.
-    weighted : bool
-        Whether the data had errors.
+    - `values`, `errors`: By parameter: `rho` (C,), and numbers.
+    - `covariance`: (P, P). Of rho's channels and then the others, in the order of `values`.
+    - `scatter`: Root of the mean squared difference from the data, per degree of freedom: in units
+      of `error`, about 1 where model and errors are right; in 1/sr without errors.
+    - `weighted`: Whether the data had errors.
 
-    Notes
-    -----
     With errors of the data, `errors` are what they make of the parameters if the model is right: a scatter
     of 10 says that it is not, and that the parameters are off by more. Without errors of the data the
     scatter counts as the error of each value, whether it is noise or misfit.
@@ -132,28 +119,13 @@ class Fit:
 def fit_brdf(measurement: MeasuredBrdf, model: str = "eon") -> Fit:
     """Parameters of a model that fit a measured BRDF best, by least squares.
 
-    Parameters
-    ----------
-    measurement : MeasuredBrdf
-    model : str
-        "eon", with `rho` and `roughness`; "dielectric_over_eon", a GGX lobe of a dielectric layered over
-        EON, with `alpha` and `ior` besides, whose `rho` is smaller than that of a pigment under varnish; or
-        "openpbr_base", mixed with a metal.
+    - `model`: "eon", with `rho` and `roughness`; "dielectric_over_eon", a GGX lobe of a dielectric
+      layered over EON, with `alpha` and `ior` besides, whose `rho` is smaller than that of a
+      pigment under varnish; or "openpbr_base", mixed with a metal.
 
-    Returns
-    -------
-    Fit
-        The best one of several starts.
+    Returns the best one of several starts. Raises InputError if the model is unknown; PackageError if scipy, of the `fit` extra, is not
+    installed.
 
-    Raises
-    ------
-    InputError
-        If the model is unknown.
-    PackageError
-        If scipy, of the `fit` extra, is not installed.
-
-    Notes
-    -----
     Errors of the data that are set from the measured values, such as 2 % of each, bias the fit: a value
     counts for more, the more noise has lowered it, and rho comes out too small by about twice the square of
     the relative error, which can be one standard deviation. Fit twice, the second time with the same part
@@ -164,13 +136,11 @@ def fit_brdf(measurement: MeasuredBrdf, model: str = "eon") -> Fit:
     data do not determine, such as the roughness of a black surface, has a very large one, and is printed
     without a number. At an end of a parameter's range they hold on the side that is left.
 
-    Examples
-    --------
-    >>> from mxeon.models import eon_brdf
-    >>> wo, wi = np.tile([0.6, 0.0, 0.8], (2, 1)), np.array([[0.0, 0.0, 1.0], [0.8, 0.0, 0.6]])
-    >>> fitted = fit_brdf(MeasuredBrdf(wo, wi, eon_brdf(wo, wi, [0.5], 0.25)))
-    >>> fitted.values["rho"].round(6), fitted.values["roughness"].round(6)
-    (array([0.5]), np.float64(0.25))
+        >>> from mxeon.models import eon_brdf
+        >>> wo, wi = np.tile([0.6, 0.0, 0.8], (2, 1)), np.array([[0.0, 0.0, 1.0], [0.8, 0.0, 0.6]])
+        >>> fitted = fit_brdf(MeasuredBrdf(wo, wi, eon_brdf(wo, wi, [0.5], 0.25)))
+        >>> fitted.values["rho"].round(6), fitted.values["roughness"].round(6)
+        (array([0.5]), np.float64(0.25))
     """
     assert_known("model", model, FIT_MODELS)
     row, data = FIT_MODELS[model], measurement

@@ -20,20 +20,12 @@ MERL_SCALES = (1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0)
 class MeasuredBrdf:
     """Measured values of a BRDF.
 
-    Attributes
-    ----------
-    wo, wi : ndarray, shape (N, 3)
-        Directions to the viewer and to the light, unit vectors, normal +z.
-    value : ndarray, shape (N, C)
-        BRDF in 1/sr, without the cosine.
-    error : ndarray, shape (N, C), or None
-        Standard deviation of each value. Without it all values count alike, and their scatter about
-        the fit tells the uncertainty.
+    - `wo`, `wi`: (N, 3). Directions to the viewer and to the light, unit vectors, normal +z.
+    - `value`: (N, C). BRDF in 1/sr, without the cosine.
+    - `error`: (N, C). Standard deviation of each value. Without it all values count alike, and
+      their scatter about the fit tells the uncertainty.
 
-    Raises
-    ------
-    InputError
-        If the shapes do not belong together, or a number is not finite.
+    Raises InputError if the shapes do not belong together, or a number is not finite.
     """
 
     wo: Array
@@ -60,26 +52,13 @@ class MeasuredBrdf:
 def read_merl(path: str | Path, step: int = 6) -> MeasuredBrdf:
     """Values of a file of the MERL database, in red, green and blue.
 
-    Parameters
-    ----------
-    path : str or Path
-        Binary file: three integers, and 90 x 90 x 180 numbers for each channel.
-    step : int
-        Every how many cells of each of the three angles are taken, from half of it on; 1 takes them all.
+    - `path`: Binary file: three integers, and 90 x 90 x 180 numbers for each channel.
+    - `step`: Every how many cells of each of the three angles are taken, from half of it on; 1
+      takes them all.
 
-    Returns
-    -------
-    MeasuredBrdf
-        At the centers of the cells, without those below the horizon or marked as unmeasured. The
-        file tells no errors.
+    They are at the centers of the cells, without those below the horizon or marked as unmeasured; the
+    file tells no errors. Raises InputError if the file is none of that database.
 
-    Raises
-    ------
-    InputError
-        If the file is none of that database.
-
-    References
-    ----------
     [Matusik2003]; [Rusinkiewicz1998] for the angles.
     """
     raw = Path(path).read_bytes()
@@ -99,8 +78,6 @@ def read_merl(path: str | Path, step: int = 6) -> MeasuredBrdf:
 def merl_directions(theta_h: Array, theta_d: Array, phi_d: Array) -> tuple[Array, Array]:
     """wo and wi of half and difference angles in radian, the half vector at azimuth 0.
 
-    Examples
-    --------
     >>> wo, wi = merl_directions(*np.array([[0.0], [0.5 * np.pi / 3.0], [0.0]]))
     >>> wo.round(6), wi.round(6)
     (array([[-0.5     ,  0.      ,  0.866025]]), array([[0.5     , 0.      , 0.866025]]))

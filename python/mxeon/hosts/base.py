@@ -150,30 +150,19 @@ class Host(Engine):
     ) -> Array:
         """Values of a shader's BSDF for pairs of directions, shape (N, 3).
 
-        Parameters
-        ----------
-        shader : Shader
-        wo, wi : ndarray, shape (N, 3)
-            Unit vectors in world space. The surface has the normal +z.
-        inputs : mapping of str to array
-            Node inputs by name, (N, ...) or constant, and "occlusion", 1 unless given. The node's
-            normal is that of the surface unless given.
-        branch : str
-            "direct", "environment", "transmission" or "emission"; or "graph": the color of the
-            uniform EDF, which the directions do not change.
-        output : str
-            "response", f cos(theta_i) in 1/sr or the directional albedo times the irradiance;
-            "throughput", the share of the light from below that passes the BSDF; or "radiance", what
-            the EDF emits towards `wo`, in any branch.
-        irradiance : ndarray, shape (rows, columns, 3), or None
-            Irradiance over pi of the environment for every normal, as a latitude-longitude map with
-            row 0 upwards (+y) and its middle towards +z; lookups of radiance find it too. None for a
-            uniform environment of radiance 1.
+        - `wo`, `wi`: (N, 3). Unit vectors in world space. The surface has the normal +z.
+        - `inputs`: Node inputs by name, (N, ...) or constant, and "occlusion", 1 unless given. The
+          node's normal is that of the surface unless given.
+        - `branch`: "direct", "environment", "transmission" or "emission"; or "graph": the color of
+          the uniform EDF, which the directions do not change.
+        - `output`: "response", f cos(theta_i) in 1/sr or the directional albedo times the
+          irradiance; "throughput", the share of the light from below that passes the BSDF; or
+          "radiance", what the EDF emits towards `wo`, in any branch.
+        - `irradiance`: (rows, columns, 3). Irradiance over pi of the environment for every normal,
+          as a latitude-longitude map with row 0 upwards (+y) and its middle towards +z; lookups of
+          radiance find it too. None for a uniform environment of radiance 1.
 
-        Raises
-        ------
-        ValueError
-            If the shader calls no BSDF, or branch or output is unknown.
+        Raises ValueError if the shader calls no BSDF, or branch or output is unknown.
         """
         raise self._unsupported("values for pairs of directions", "gl")
 
@@ -188,18 +177,11 @@ class Host(Engine):
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
         """Values of a function that a text defines, shape (N, 3); a float is in all three columns.
 
-        Parameters
-        ----------
-        source : str
-            Functions in the host's language, without includes.
-        function : str
-        *arguments : array_like, shape (N, 3) for a vector or color, (N,) for a float
-            Taken as float32; what is the same for all N may have one row.
+        - `source`: Functions in the host's language, without includes.
+        - `*arguments`: (N, 3) for a vector or color, (N,) for a float, taken as float32; what is the
+          same for all N may have one row.
 
-        Raises
-        ------
-        ValueError
-            If there is no such function.
+        Raises ValueError if there is no such function.
         """
         raise self._unsupported("calls of a shader function", "gl")
 

@@ -21,12 +21,8 @@ def image_files(shaders: Iterable[Shader]) -> tuple[str, ...]:
 def check_images(shaders: Iterable[Shader], policy: Policy) -> None:
     """Refuse images of a document that are too large together, before any of them is read.
 
-    Raises
-    ------
-    DocumentError
-        If they have more pixels than the policy permits.
-    ImageError
-        If one is no image, or has more channels than a color.
+    Raises DocumentError if they have more pixels than the policy permits; ImageError if one is no
+    image, or has more channels than a color.
     """
     shaders, texels = tuple(shaders), 0
     for file in {file for name in image_files(shaders) for file in files(Path(name))}:

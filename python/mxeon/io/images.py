@@ -45,8 +45,6 @@ class ImageWarning(UserWarning):
 def difference(image: ArrayLike, reference: ArrayLike) -> Floats:
     """Largest absolute difference over the channels of each pixel.
 
-    Examples
-    --------
     >>> difference([[1.0, 0.5, 0.0]], [[1.0, 0.25, 0.125]]).tolist()
     [0.25]
     """
@@ -63,10 +61,8 @@ def difference_scale(difference_map: ArrayLike) -> float:
     That is its 99th percentile, as a few pixels at a rim or a terminator must not darken the rest; at
     least 1e-9, so that equal images have a scale too. Values that are not finite are left out.
 
-    Examples
-    --------
-    >>> difference_scale([0.0, 0.003, 0.0031, float("nan")])
-    0.005
+        >>> difference_scale([0.0, 0.003, 0.0031, float("nan")])
+        0.005
     """
     difference_map = np.asarray(difference_map)
     positive = difference_map[np.isfinite(difference_map) & (difference_map > 0.0)]
@@ -116,8 +112,6 @@ def open_image(path: AnyPath) -> oiio.ImageInput:
 def words(message: Callable[[], str]) -> str:
     """A library's message on one line; bytes of a file in it that are no UTF-8 as backslashes and hex.
 
-    Examples
-    --------
     >>> words(lambda: b"channel \\xff is\\nmissing".decode())
     'channel \\\\xff is missing'
     """
@@ -131,8 +125,6 @@ def words(message: Callable[[], str]) -> str:
 def write_image(path: AnyPath, pixels: Pixels | Codes, attributes: Mapping[str, str | int]) -> None:
     """Write pixels to an image file in the format that the ending of `path` names.
 
-    Notes
-    -----
     The last row is read again: OpenImageIO's PNG writer, and any whose last bytes wait in a buffer of
     the C library, report no full disk.
     """

@@ -19,14 +19,10 @@ NOT_FINITE = (255, 0, 255)  # code values of a pixel that is not a finite number
 def srgb_decoded(image: ArrayLike) -> Floats:
     """Linear values of sRGB values in [0, 1].
 
-    References
-    ----------
     IEC 61966-2-1, the encoding of sRGB.
 
-    Examples
-    --------
-    >>> srgb_decoded([0.0, 0.5, 1.0]).round(3).tolist()
-    [0.0, 0.214, 1.0]
+        >>> srgb_decoded([0.0, 0.5, 1.0]).round(3).tolist()
+        [0.0, 0.214, 1.0]
     """
     image = np.asarray(image, np.float64)
     return np.where(image <= 0.04045, image / 12.92, ((image + 0.055) / 1.055) ** 2.4)
@@ -35,14 +31,10 @@ def srgb_decoded(image: ArrayLike) -> Floats:
 def srgb_encoded(image: ArrayLike) -> Codes:
     """Eight-bit sRGB code values of a linear image (..., 3), clipped; magenta if not finite.
 
-    References
-    ----------
     IEC 61966-2-1, the encoding of sRGB.
 
-    Examples
-    --------
-    >>> srgb_encoded([0.0, 0.18, 1.0]).tolist()
-    [0, 118, 255]
+        >>> srgb_encoded([0.0, 0.18, 1.0]).tolist()
+        [0, 118, 255]
     """
     image = np.asarray(image, dtype=np.float32)
     finite = reduce(np.logical_and, np.moveaxis(np.isfinite(image), -1, 0))

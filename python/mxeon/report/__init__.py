@@ -33,36 +33,29 @@ SHARED_METADATA = ("version", "library", "document", "element", "scene", "points
 
 
 def to_json(run: Run) -> str:
-    """A run as JSON text.
+    """A run as JSON text: an object.
 
-    Parameters
-    ----------
-    run : mxeon.conformance.results.Run
+    A number that is not finite is the string "NaN", "Infinity" or "-Infinity"; what is missing is null.
+    Keys:
 
-    Returns
-    -------
-    str
-        An object. A number that is not finite is the string "NaN", "Infinity" or "-Infinity";
-        what is missing is null. Keys:
-
-        - format: this layout's number, raised when a key changes or goes.
-        - verdict: "passed", "failed" or "not run", and "differs" of a check where the
-          specification leaves the difference open; counts: the number of checks with each.
-        - sentence: the same in words.
-        - missing: texts, the items that an interrupted run has not finished.
-        - refused: texts, the documents that were refused; errors: texts, their faults.
-        - compared: names of libraries judged for comparison, which verdict, counts and sentence ignore.
-        - version: of mxeon; software: name to version; documents: paths; notes: texts.
-        - libraries: by folder, its files under "folder", and under "MaterialX" those that complete it.
-        - hosts: objects of name, version, device.
-        - results: objects with the fields of `mxeon.conformance.results.Result`; control is null or an
-          object of variant, figure, caught.
-        - elsewhere: objects of document, check, subject, host, library: failures for inputs that the
-          document does not have.
-        - pictures: objects of document, element, host, library, scene; exr and png, paths
-          beside the JSON file; reference, that of the reference's EXR file, and largest_difference
-          from it, or null without one.
-        - curves: objects with the fields of `mxeon.conformance.results.AlbedoCurve`.
+    - format: this layout's number, raised when a key changes or goes.
+    - verdict: "passed", "failed" or "not run", and "differs" of a check where the
+      specification leaves the difference open; counts: the number of checks with each.
+    - sentence: the same in words.
+    - missing: texts, the items that an interrupted run has not finished.
+    - refused: texts, the documents that were refused; errors: texts, their faults.
+    - compared: names of libraries judged for comparison, which verdict, counts and sentence ignore.
+    - version: of mxeon; software: name to version; documents: paths; notes: texts.
+    - libraries: by folder, its files under "folder", and under "MaterialX" those that complete it.
+    - hosts: objects of name, version, device.
+    - results: objects with the fields of `mxeon.conformance.results.Result`; control is null or an
+      object of variant, figure, caught.
+    - elsewhere: objects of document, check, subject, host, library: failures for inputs that the
+      document does not have.
+    - pictures: objects of document, element, host, library, scene; exr and png, paths
+      beside the JSON file; reference, that of the reference's EXR file, and largest_difference
+      from it, or null without one.
+    - curves: objects with the fields of `mxeon.conformance.results.AlbedoCurve`.
     """
     summary = run.summary
     data = {
@@ -127,23 +120,8 @@ def write(run: Run, folder: str | PathLike[str]) -> Path:
     on defects that explain failures. Each file is written whole or not at all, the page last: if it
     cannot be made, all other files exist.
 
-    Parameters
-    ----------
-    run : mxeon.conformance.results.Run
-    folder : path-like
-        Created if it does not exist.
-
-    Returns
-    -------
-    Path
-        The page, report.html.
-
-    Raises
-    ------
-    OSError
-        If a file cannot be written.
-    ImportError
-        If jinja2 or matplotlib, the `report` extra, is not installed.
+    Returns the page, report.html. Raises OSError if a file cannot be written, and ImportError if jinja2
+    or matplotlib, the `report` extra, is not installed.
     """
     folder = Path(folder)
     write_text(below(folder, "results.json"), to_json(run))

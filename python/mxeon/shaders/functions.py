@@ -115,8 +115,6 @@ def dispatched(text: str, functions: Iterable[str], language: str) -> str:
 def slot_names(kinds: Iterable[str]) -> list[str]:
     """Names of the parameters of `dispatched` that carry parameters of these types.
 
-    Examples
-    --------
     >>> slot_names(["vec3", "float", "vec3"])
     ['vec3_0', 'float_0', 'vec3_1']
     """

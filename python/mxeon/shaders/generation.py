@@ -69,17 +69,12 @@ class ApproximationWarning(UserWarning):
 class Input:
     """A public input of a generated shader.
 
-    Attributes
-    ----------
-    name : str
-        Name of the variable in the source.
-    type : str
-        MaterialX's name of its type.
-    value : float, int, bool, str, tuple or None
-        The default: a color, a vector or an array is the tuple of its parts; a matrix that of its
-        numbers, row after row, which GLSL takes as its columns; a structure that of its members.
-    path : str
-        Name path of the element of the document that it comes from.
+    - `name`: Name of the variable in the source.
+    - `type`: MaterialX's name of its type.
+    - `value`: The default: a color, a vector or an array is the tuple of its parts; a matrix that
+      of its numbers, row after row, which GLSL takes as its columns; a structure that of its
+      members.
+    - `path`: Name path of the element of the document that it comes from.
     """
 
     name: str
@@ -92,23 +87,13 @@ class Input:
 class Shader:
     """Generated source.
 
-    Attributes
-    ----------
-    name : str
-        Valid as an identifier and a file name; unique within the document.
-    element : str
-        Name path of the renderable element.
-    target : str
-        One of TARGETS.
-    stages : mapping of str to str
-        Source text under "pixel" and, for targets with rasterization, "vertex".
-    inputs : tuple of Input
-    document : MaterialX.Document
-        The checked document that it was generated from, with its data library.
-    folders : tuple of str
-        Folders of that library which are loaded before MaterialX's own.
-    root : str
-        Folder whose `libraries` replace MaterialX's own; "" for the installed ones.
+    - `name`: Valid as an identifier and a file name; unique within the document.
+    - `element`: Name path of the renderable element.
+    - `target`: One of TARGETS.
+    - `stages`: Source text under "pixel" and, for targets with rasterization, "vertex".
+    - `document`: The checked document that it was generated from, with its data library.
+    - `folders`: Folders of that library which are loaded before MaterialX's own.
+    - `root`: Folder whose `libraries` replace MaterialX's own; "" for the installed ones.
     """
 
     name: str
@@ -133,60 +118,36 @@ def generate(
 ) -> tuple[Shader, ...]:
     """Shaders of a document, one for each renderable element.
 
-    Parameters
-    ----------
-    document : path-like, str or MaterialX.Document
-        A file, XML text, or a document; see `mxeon.shaders.document.reading.read_document`.
-    target : str
-        glsl, essl, vulkan, wgsl, msl, slang, osl or mdl.
-    element : str or None
-        Name or name path of one renderable element; None for all.
-    library : str
-        "eonlib", "stock" for MaterialX as it comes, or a folder; see `load_library`.
-    profile : str or None
-        "cycles" for osl that Blender's Cycles compiles.
-    lights : bool
-        Whether a shader of a rasterized target gets MaterialX's directional light, as light type 1.
-    policy : Policy
-        Permissions, limits and search path.
+    - `document`: A file, XML text, or a document; see
+      `mxeon.shaders.document.reading.read_document`.
+    - `target`: glsl, essl, vulkan, wgsl, msl, slang, osl or mdl.
+    - `element`: Name or name path of one renderable element; None for all.
+    - `library`: "eonlib", "stock" for MaterialX as it comes, or a folder; see `load_library`.
+    - `profile`: "cycles" for osl that Blender's Cycles compiles.
+    - `lights`: Whether a shader of a rasterized target gets MaterialX's directional light, as
+      light type 1.
+    - `policy`: Permissions, limits and search path.
 
-    Returns
-    -------
-    tuple of Shader
+    Raises ValueError if the target, the library, the profile or the element is unknown; DocumentError if no shader can be generated from the document; InterfaceError if
+    this MaterialX calls closures in another way than eonlib's sources define them.
 
-    Raises
-    ------
-    ValueError
-        If the target, the library, the profile or the element is unknown; lists the known ones.
-    DocumentError
-        If no shader can be generated from the document.
-    InterfaceError
-        If this MaterialX calls closures in another way than eonlib's sources define them.
+    Warns ApproximationWarning if the profile cannot express a model that the document asks for;
+    CodeWarning if the document brings shader code of its own, which the policy has to permit;
+    MissingFileWarning if a file that a shader names does not exist, whose name stays as it is;
+    DocumentWarning as `mxeon.shaders.document.reading.read_document` does, and if nodes take the
+    values of another.
 
-    Warns
-    -----
-    ApproximationWarning
-        If the profile cannot express a model that the document asks for.
-    CodeWarning
-        If the document brings shader code of its own, which the policy has to permit.
-    MissingFileWarning
-        If a file that a shader names does not exist; the name stays as it is.
-    DocumentWarning
-        As `mxeon.shaders.document.reading.read_document` does, and if nodes take the values of another.
-
-    Examples
-    --------
-    >>> text = '''<materialx version="1.39">
-    ...   <eon_diffuse_bsdf name="clay" type="BSDF"/>
-    ...   <surface name="shading" type="surfaceshader">
-    ...     <input name="bsdf" type="BSDF" nodename="clay"/>
-    ...   </surface>
-    ...   <surfacematerial name="look" type="material">
-    ...     <input name="surfaceshader" type="surfaceshader" nodename="shading"/>
-    ...   </surfacematerial>
-    ... </materialx>'''
-    >>> [shader.name for shader in generate(text, "osl")]
-    ['look']
+        >>> text = '''<materialx version="1.39">
+        ...   <eon_diffuse_bsdf name="clay" type="BSDF"/>
+        ...   <surface name="shading" type="surfaceshader">
+        ...     <input name="bsdf" type="BSDF" nodename="clay"/>
+        ...   </surface>
+        ...   <surfacematerial name="look" type="material">
+        ...     <input name="surfaceshader" type="surfaceshader" nodename="shading"/>
+        ...   </surfacematerial>
+        ... </materialx>'''
+        >>> [shader.name for shader in generate(text, "osl")]
+        ['look']
     """
     assert_known("target", target, TARGETS)
     if os.path.isdir(library) and root(library):

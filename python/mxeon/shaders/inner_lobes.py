@@ -36,8 +36,6 @@ CLOSURES = ("BSDF", "VDF", "surfaceshader", "volumeshader", "material")
 def inner_lobes(shader: Shader) -> tuple[str, ...]:
     """Kinds of a shader's lobes below the surface.
 
-    Examples
-    --------
     >>> from mxeon.shaders.generation import generate
     >>> from mxeon.shaders.nodes import SURFACE, document_text
     >>> text = document_text('<subsurface_bsdf name="lobe" type="BSDF"/>' + SURFACE)

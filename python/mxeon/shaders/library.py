@@ -181,34 +181,19 @@ def load_library(
 
     Loaded once for the same arguments and shared: attach it with `Document.setDataLibrary`.
 
-    Parameters
-    ----------
-    library : str
-        "eonlib", "stock" for MaterialX as it comes, or a folder: MaterialX's libraries or a part of
-        them, which it replaces, or others, which are loaded first; see `mxeon.shaders.library_tree`.
-    profile : str or None
-        "cycles" for the OSL implementations that eonlib has for Blender's Cycles.
-    definitions : tuple of str
-        Folders of further definitions, as absolute paths, which replace none of the library's.
+    - `library`: "eonlib", "stock" for MaterialX as it comes, or a folder: MaterialX's libraries or
+      a part of them, which it replaces, or others, which are loaded first; see
+      `mxeon.shaders.library_tree`.
+    - `profile`: "cycles" for the OSL implementations that eonlib has for Blender's Cycles.
+    - `definitions`: Folders of further definitions, as absolute paths, which replace none of the
+      library's.
 
-    Returns
-    -------
-    MaterialX.Document
+    Raises ValueError if the library or the profile is unknown, or a folder holds no definitions or
+    replaces some of the library's; ImportError if this MaterialX is too
+    old; see `check_version`; LibraryError if MaterialX chooses another implementation than
+    eonlib's.
 
-    Raises
-    ------
-    ValueError
-        If the library or the profile is unknown; lists the known ones. If a folder holds no definitions
-        or replaces some of the library's.
-    ImportError
-        If this MaterialX is too old; see `check_version`.
-    LibraryError
-        If MaterialX chooses another implementation than eonlib's.
-
-    Warns
-    -----
-    UntestedVersionWarning
-        If this MaterialX is none of TESTED.
+    Warns UntestedVersionWarning if this MaterialX is none of TESTED.
     """
     if library not in LIBRARIES and os.path.isdir(library):
         library = os.path.abspath(library)

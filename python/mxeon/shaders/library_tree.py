@@ -210,8 +210,6 @@ def decode_source(data: bytes, path: AnyPath) -> str:
 def included(line: str) -> str:
     """File that a line of source includes for MaterialX, or "": what its outer quotes hold.
 
-    Examples
-    --------
     >>> included('#include "lib/mx_math.glsl"')
     'lib/mx_math.glsl'
     """

@@ -65,8 +65,6 @@ def input_types(category: str) -> Mapping[str, str]:
 def types_of(name: str) -> frozenset[str]:
     """Types that an input of a name has in the nodes.
 
-    Examples
-    --------
     >>> sorted(types_of("roughness"))
     ['float', 'vector2']
     """
@@ -77,8 +75,6 @@ def types_of(name: str) -> frozenset[str]:
 def value_text(value: ArrayLike) -> str:
     """A value as MaterialX writes it.
 
-    Examples
-    --------
     >>> value_text(True), value_text(0.5), value_text((0.2, 0.5, 1))
     ('true', '0.5', '0.2, 0.5, 1.0')
     """

@@ -25,8 +25,6 @@ MOST_BOUNCES = 1024  # the most that Cycles takes
 class Paths:
     """The paths of light that a host traces for a picture; None for as many as the host finds enough.
 
-    Examples
-    --------
     >>> Paths(samples=64).bounces is None
     True
     """
@@ -86,8 +84,6 @@ STUDIO = Scene("studio", BACK.light, Path(__file__).with_name("studio.exr"), sha
 def scene(name: str) -> Scene:
     """The scene with that name: one of SCENES, or STUDIO.
 
-    Examples
-    --------
     >>> scene("furnace").environment
     1.0
     """

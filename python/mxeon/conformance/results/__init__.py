@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TypedDict
+from typing import Required, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,14 +41,9 @@ DIRECT = ("value", "lobe")  # the checks of a node in direct light, of which it 
 class Control:
     """The deliberately wrong variant of a check, run on the same host; it has to fail.
 
-    Attributes
-    ----------
-    variant : str
-        The change that makes it wrong.
-    error : float
-        Measured by the check on it.
-    caught : bool
-        Whether the check failed on it, as it must.
+    - `variant`: The change that makes it wrong.
+    - `error`: Measured by the check on it.
+    - `caught`: Whether the check failed on it, as it must.
     """
 
     variant: str
@@ -66,54 +61,34 @@ class Claims(TypedDict, total=False):
 class Place(Claims):
     """What a result is of; see Result."""
 
-    check: str
-    claim: str
-    subject: str
-    host: str
-    library: str
+    check: Required[str]
+    claim: Required[str]
+    subject: Required[str]
+    host: Required[str]
+    library: Required[str]
 
 
 @dataclass(frozen=True)
 class Result:
     """The outcome of one check of one subject on one host.
 
-    Attributes
-    ----------
-    check, claim : str
-        Key of the check and the sentence it tests.
-    subject : str
-        A node and its flag, or a document and its element.
-    host, library : str
-        The host it ran on, and the data library it used.
-    verdict : str
-        PASSED, FAILED or NOT_RUN; DIFFERS where the error is what the specification leaves open.
-    error, tolerance : float or None
-        Measured and allowed, in `unit`; a check passes at error <= tolerance.
-    unit, derivation : str
-        Unit of both, and the derivation of the tolerance.
-    worst : dict of str to list of float
-        The inputs and values at the worst point, by name.
-    diagnosis : str
-        The best-matching model with its distance, or another explanation of a failure.
-    distances : dict of str to float
-        Root-mean-square distance to each known model and defect, by title, where diagnosed.
-    control : Control or None
-        None only where the check did not run.
-    reason : str
-        Why it did not run.
-    claimed, model : str
-        Titles of the model that a renderer's own node claims, and of its published form that was
-        judged; "" for other subjects.
-    measured : tuple of str
-        Inputs of a document's nodes whose values come from the host itself, since nodes of patterns
-        have no model; see `mxeon.conformance.reference.measured`.
-    pages : tuple of str
-        Names of the pages of `docs/upstream/` on the defects that it shows.
+    - `check`, `claim`: Key of the check and the sentence that it tests.
+    - `subject`: A node and its flag, or a document and its element.
+    - `verdict`: PASSED, FAILED or NOT_RUN; DIFFERS where the specification leaves the error open.
+    - `error`, `tolerance`, `unit`: Measured and allowed; a check passes at error <= tolerance.
+    - `derivation`: That of the tolerance.
+    - `worst`: The inputs and values at the worst point, by name.
+    - `diagnosis`: The best-matching model with its distance, or another cause of a failure.
+    - `distances`: Root-mean-square distance to each known model and defect, where diagnosed.
+    - `control`: None only where the check did not run.
+    - `reason`: Why it did not run.
+    - `claimed`, `model`: Titles of the model that a renderer's own node claims, and of its published
+      form that was judged.
+    - `measured`: Inputs of a document's nodes whose values come from the host itself, since nodes of
+      patterns have no model; see `mxeon.conformance.reference.measured`.
+    - `pages`: Names of the pages of `docs/upstream/` on the defects that it shows.
 
-    Raises
-    ------
-    ValueError
-        If the verdict is unknown, or an error is negative or has no tolerance.
+    Raises ValueError if the verdict is unknown, or an error is negative or has no tolerance.
     """
 
     check: str
@@ -181,8 +156,6 @@ class Result:
 def of_white(radiance: float) -> str:
     """A difference as a share of the radiance of a white, matte surface that faces the light.
 
-    Examples
-    --------
     >>> of_white(0.2035), of_white(1e-7)
     ('up to 20 % of white', 'less than 0.1 % of white')
     """
@@ -193,8 +166,6 @@ def of_white(radiance: float) -> str:
 def in_words(number: float) -> str:
     """A number of two digits, without a power of ten.
 
-    Examples
-    --------
     >>> in_words(1.234), in_words(1234.5)
     ('1.2', '1,200')
     """
@@ -205,25 +176,17 @@ def in_words(number: float) -> str:
 class Picture:
     """One host's picture of one element, and the reference's where the models can express it.
 
-    Attributes
-    ----------
-    document, element, host, library, scene : str
-        The material, the host that rendered it, and the light.
-    image : ndarray, shape (size, size, 3), float32
-        Linear radiance; see `mxeon.shaders.scene` for its scale.
-    reference : ndarray or None
-        The same from the NumPy models; None where the material has other lobes.
-    metadata : dict of str to str
-        Its origin: version, host, device, library, document, element, scene.
-    judged : ndarray or None, shape (size, size, 1), float32
-        1 in the pixels that were compared with the reference, else 0; None where all were.
+    - `image`: Linear radiance, (size, size, 3), float32; see `mxeon.shaders.scene` for its scale.
+    - `reference`: The same from the NumPy models; None where the material has other lobes.
+    - `metadata`: Its origin: version, host, device, library, document, element, scene.
+    - `judged`: 1 in the pixels that were compared, else 0, (size, size, 1); None where all were.
     """
 
     document: str
     element: str
     host: str
     library: str
-    scene: str
+    scene: str  # the light
     image: NDArray[np.floating]
     reference: NDArray[np.floating] | None
     metadata: dict[str, str]
@@ -297,10 +260,8 @@ def summarize(
 
     `elsewhere` is the number of failures for inputs that no document uses.
 
-    Examples
-    --------
-    >>> summarize((), (), ["clay.mtlx"]).sentence
-    'Refused and not judged: clay.mtlx. No check ran.'
+        >>> summarize((), (), ["clay.mtlx"]).sentence
+        'Refused and not judged: clay.mtlx. No check ran.'
     """
     summary = _summarize_results(results)
     if elsewhere:
@@ -360,8 +321,6 @@ def listed(names: Sequence[str]) -> str:
 def counted(count: int, noun: str) -> str:
     """A number of things.
 
-    Examples
-    --------
     >>> counted(1, "check"), counted(2, "check")
     ('1 check', '2 checks')
     """
@@ -372,34 +331,17 @@ def counted(count: int, noun: str) -> str:
 class Run:
     """Everything that one `mxeon check` measured.
 
-    Attributes
-    ----------
-    version : str
-        Of mxeon.
-    software : dict of str to str
-        Versions of what took part (Python, NumPy, MaterialX, ...).
-    hosts : tuple of Identity
-    results : tuple of Result
-    pictures : tuple of Picture
-    curves : tuple of AlbedoCurve
-    notes : tuple of str
-        Warnings a reader has to see, e.g. what a host cannot express.
-    refused : dict of str to tuple of str
-        The faults of each document that could not be judged, a line each, by its path; if other
-        libraries can read it, the key names the library behind it: "clay.mtlx with stock".
-    documents : tuple of Path
-    contents : dict of str to tuple of str
-        Titles of the nodes of each document that the user gave, by its path.
-    unreached : dict of str to dict of str to tuple of str
-        For each of these, by title of a node, the regions that its inputs are not in, as diagnoses
-        name them.
-    missing : tuple of str
-        Tasks that are not done yet, where the run was interrupted.
-    libraries : dict of str to dict of str to tuple of str
-        By folder that was judged as a library: its files, under "folder", and those of MaterialX that
-        complete it, under "MaterialX", unless it is loaded before all of them.
-    compared : tuple of str
-        Libraries judged for comparison; the verdict ignores their failures.
+    - `version`, `software`: That of mxeon, and those of what took part: Python, NumPy, MaterialX, ...
+    - `notes`: Warnings that a reader has to see, e.g. what a host cannot express.
+    - `refused`: The faults of each document that could not be judged, by its path; if other libraries
+      can read it, the key names the library behind it: "clay.mtlx with stock".
+    - `contents`: Titles of the nodes of each document that the user gave, by its path.
+    - `unreached`: For each of these, by title of a node, the regions that its inputs are not in, as
+      diagnoses name them.
+    - `missing`: Tasks that are not done yet, where the run was interrupted.
+    - `libraries`: By folder that was judged as a library: its files, under "folder", and those of
+      MaterialX that complete it, under "MaterialX", unless it is loaded before all of them.
+    - `compared`: Libraries judged for comparison; the verdict ignores their failures.
     """
 
     version: str

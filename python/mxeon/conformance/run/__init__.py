@@ -51,47 +51,30 @@ def check(
 ) -> Run:
     """Run every check on every host, and compare pictures of documents with the reference's.
 
-    Parameters
-    ----------
-    files : sequence of path-like
-        MaterialX documents, and folders for all documents below them; none for the bundled examples.
-    hosts : sequence of str
-        Hosts to judge; `mxeon.hosts.host_names` lists them.
-    libraries : sequence of str
-        "eonlib", "stock" for MaterialX as it comes, and folders of MaterialX documents.
-    workers : int
-        Processes that share the work, each of which may crash or hang; 0 to work in this one.
-    timeout : float
-        Seconds that one task may take in a worker.
-    folder : path-like or None
-        Folder of the journal, from which an interrupted run can be resumed; None to keep none.
-    resume : bool
-        Continue the run in `folder`.
-    scheduler, wait : str or None, float
-        Address of a Dask scheduler whose workers do the work, and seconds to wait for one that fits.
-    policy : Policy
-        Permissions and limits of documents.
-    nodes : sequence of str
-        Categories of nodes to judge; "all", or "common" for those of an audit. None for the nodes of
-        `files`, or the common ones without files.
-    progress : callable (iterable, int) -> iterable
-        Wraps the iteration over the tasks, whose number it takes; a progress bar, for example.
-    refuse : callable (str)
-        Called with each fault of each document that cannot be read, before any other work.
-    compared : sequence of str
-        Those of `libraries` whose failures and refusals do not change the verdict.
+    - `files`: MaterialX documents, and folders for all documents below them; none for the bundled
+      examples.
+    - `hosts`: Hosts to judge; `mxeon.hosts.host_names` lists them.
+    - `libraries`: "eonlib", "stock" for MaterialX as it comes, and folders of MaterialX documents.
+    - `workers`: Processes that share the work, each of which may crash or hang; 0 to work in this
+      one.
+    - `timeout`: Seconds that one task may take in a worker.
+    - `folder`: Folder of the journal, from which an interrupted run can be resumed; None to keep
+      none.
+    - `resume`: Continue the run in `folder`.
+    - `scheduler`, `wait`: Address of a Dask scheduler whose workers do the work, and seconds to
+      wait for one that fits.
+    - `policy`: Permissions and limits of documents.
+    - `nodes`: Categories of nodes to judge; "all", or "common" for those of an audit. None for the
+      nodes of `files`, or the common ones without files.
+    - `progress`: Wraps the iteration over the tasks, whose number it takes; a progress bar, for
+      example.
+    - `refuse`: Called with each fault of each document that cannot be read, before any other work.
+    - `compared`: Those of `libraries` whose failures and refusals do not change the verdict.
 
-    Returns
-    -------
-    Run
-        A document that cannot be judged is among those refused; the others are judged.
+    A document that cannot be judged is among those refused; the others are judged.
 
-    Raises
-    ------
-    ValueError
-        If a name or number is wrong, the run to resume is another one, or no scheduler answers.
-    NotRun
-        If no process can start, or the cluster has no workers for too long.
+    Raises ValueError if a name or number is wrong, the run to resume is another one, or no
+    scheduler answers; NotRun if no process can start, or the cluster has no workers for too long.
     """
     assert_known_names(hosts, nodes)
     files = documents_in(files)

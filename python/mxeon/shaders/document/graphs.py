@@ -25,8 +25,6 @@ def reachable(
 ) -> dict[Key, tuple[Key, ...]]:
     """Graph of all keys that the roots lead to; the parts of a key may be None.
 
-    Examples
-    --------
     >>> reachable("a", {"a": "bc", "b": "c", "d": "a"}.get)
     {'a': ('b', 'c'), 'c': (), 'b': ('c',)}
     """

@@ -37,31 +37,18 @@ def environment_path() -> tuple[str, ...]:
 class Policy:
     """Permissions and limits of a document; plain data, so it can be pickled.
 
-    Attributes
-    ----------
-    outside : bool
-        Whether it may name files outside its own folder and the libraries.
-    code : bool
-        Whether it may bring shader code of its own, in text or in files.
-    definitions : tuple of str
-        Folders of definitions that it may use beside those of its library, as absolute paths. They are
-        trusted as the library is.
-    path : tuple of str
-        Folders, searched after its own, in which it may name files too; by default those of the
-        environment variable MATERIALX_SEARCH_PATH.
-    size, length, depth, elements, attributes, inputs, tokens, includes, nodes, chain, shaders, ports, \
-    text, texels : int
-        Limits of what LIMITS says. `size` and `includes` hold for the document's sources of code too, and
-        `elements` for their number; `text` counts functions once for each shader and the longest
-        expression once for each node; `texels` counts each file once.
+    - `outside`: Whether it may name files outside its own folder and the libraries.
+    - `code`: Whether it may bring shader code of its own, in text or in files.
+    - `definitions`: Folders of definitions that it may use beside those of its library, as
+      absolute paths. They are trusted as the library is.
+    - `path`: Folders, searched after its own, in which it may name files too; by default those of
+      the environment variable MATERIALX_SEARCH_PATH.
+    - the others: Limits of what LIMITS says. `size` and `includes` hold for the document's
+      sources of code too, and `elements` for their number; `text` counts functions once for each
+      shader and the longest expression once for each node; `texels` counts each file once.
 
-    Raises
-    ------
-    ValueError
-        If a limit is negative.
+    Raises ValueError if a limit is negative.
 
-    Notes
-    -----
     The limits keep MaterialX 1.39.5 below 15 s and 512 MiB for the worst documents known; images that
     are read for pictures take below 15 s and 2.75 GiB more. Seconds of a processor shared with others, for documents as large as each limit lets them be:
 
