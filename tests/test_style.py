@@ -1,22 +1,57 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The style that tools can check: lint, format and types, as pyproject.toml configures them."""
+"""The style that tools can check: lint, format and types, as pyproject.toml configures them, and stiff English."""
 
+import ast
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
+ROOT = Path(__file__).parents[1]
 TOOLS = {
     "lint": ("ruff", "check", "--no-cache"),
     "format": ("ruff", "format", "--check", "--no-cache"),
     "types": ("mypy",),
+}
+# Turns of phrase that a reader has to read twice, and what to write.
+STIFF = {
+    r"in (the )?place of": "instead of",
+    r"of which": "whose, or a new sentence",
+    r"there (is|are) (one|none),? where": "name who has it and who lacks it",
+    r"in an? \w+ of (its|their|one's) own": "in its own ...",
+    r"one's own": "your own",
+    r"(is|are) (asked|told|answered) (of|by|with|so)\b": "the verb of what happens",
+    r"stands? (in|on|at|for|below|there) (the|a|their|its) (page|report|summary|table|file|text|picture)s?\b": "is",
+    r"so (has|have|is|are) (that|those|the|its)\b": "repeat the noun",
+    r"that (is|are) no (?!longer|more|less)": "that is not a",
+    r"with the words of": "with the message of",
+    r"costs? (one|a) (check|task|item|run)": "loses one ...",
+    r"what (it|they|one) (has|have) (of|in|for)\b": "name the thing",
 }
 
 
 @pytest.mark.parametrize("tool", TOOLS)
 def test_the_code_passes(tool):
     command = [sys.executable, "-m", *TOOLS[tool]]
-    root = Path(__file__).parents[1]
-    done = subprocess.run(command, cwd=root, capture_output=True, text=True, timeout=550)
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=550)
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def printed(module):
+    """Strings of a module without its docstrings: its messages and help texts among them."""
+    nodes = list(ast.walk(ast.parse(module.read_text(encoding="utf-8"))))
+    lone = {id(each.value) for each in nodes if isinstance(each, ast.Expr)}
+    strings = (each for each in nodes if isinstance(each, ast.Constant) and id(each) not in lone)
+    return "\n".join(each.value for each in strings if isinstance(each.value, str))
+
+
+@pytest.mark.parametrize("pattern", STIFF)
+def test_pages_and_messages_read_as_written_not_as_translated(pattern):
+    pages = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
+    texts = {page: page.read_text(encoding="utf-8") for page in pages}
+    texts |= {module: printed(module) for module in sorted((ROOT / "python").rglob("*.py"))}
+    stiff = re.compile(r"\b" + pattern.replace(" ", r"\s+"), re.IGNORECASE)
+    found = [(str(path), each[0]) for path, text in texts.items() for each in stiff.finditer(text)]
+    assert found == [], f"write: {STIFF[pattern]}"

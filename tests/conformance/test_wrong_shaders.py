@@ -156,7 +156,7 @@ WRONG = {
     "chiang_hair_bsdf": (
         (HAIR, "M = chiang_hair_longitudinal(tilted, inclined_o, r.x)",
          "M = chiang_hair_longitudinal(complex_multiply(inclined_o, complex_multiply(tilted, inclined_i * vec2(1.0, -1.0)) / dot(inclined_i, inclined_i)), inclined_i, r.x)",
-         "tilted_lobes", "best match: the viewer's inclination tilted in place of the light's (rms "),
+         "tilted_lobes", "best match: the viewer's inclination tilted instead of the light's (rms "),
         (HAIR, "M * 0.5 * M_PI_INV", "M * 0.5 * M_PI", "each_lobe",
          "best match: N of TRRT+ pi/2 instead of 1/(2 pi) (rms "),
         (HAIR, "max(roughness[p], vec2(1e-8, 1e-4))", "clamp(roughness[p], 0.001, 1.0)", "wide_lobes",
@@ -273,7 +273,7 @@ WRONG = {
          "inputs without effect: scale_TRT"),
         ("mx_chiang_hair_bsdf.glsl", "v * scale_TRT * scale_TRT", "v * scale_TRT", "output",
          "scales that are not squared"),
-        ("mx_chiang_hair_bsdf.glsl", "v = v * v;", "", "output", "a deviation in place of the variance"),
+        ("mx_chiang_hair_bsdf.glsl", "v = v * v;", "", "output", "a deviation instead of the variance"),
     ),
     "deon_hair_absorption_from_melanin": (
         ("mx_chiang_hair_bsdf.glsl", "eumelanin * -log(eumelanin_color) + pheomelanin * -log(pheomelanin_color)",

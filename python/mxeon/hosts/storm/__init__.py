@@ -56,7 +56,7 @@ class Host(DocumentHost):
         if reason.startswith(COMPILE):
             raise ShaderError(f"storm: {reason}")
         if reason:
-            what = "use libraries in place of its own" if self._folders[0] else "show the document"
+            what = "use other libraries than its own" if self._folders[0] else "show the document"
             raise NotRun(f"storm: {self.worker.version} cannot {what}: {reason}")
 
 

@@ -47,7 +47,7 @@ UNIFORM, BESSEL, CLAMPED, TILTED = (
     "N of TRRT+ pi/2 instead of 1/(2 pi)",
     "I_0 from ten terms, and half a term of its logarithm",
     "roughness clamped to [0.001, 1]",
-    "the viewer's inclination tilted in place of the light's",
+    "the viewer's inclination tilted instead of the light's",
 )
 FORMS: dict[str, HairForm] = {
     UNIFORM: replace(TEXT, uniform=0.5 * np.pi),

@@ -239,7 +239,7 @@ UTILITIES = (
         (
             constant("chiang_hair_roughness", 0.0),
             Variant("scales that are not squared", _unsquared_scales),
-            Variant("a deviation in place of the variance", _unsquared_variance),
+            Variant("a deviation instead of the variance", _unsquared_variance),
         ),
     ),
     UtilityNode(
