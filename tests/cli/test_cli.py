@@ -15,7 +15,6 @@ import pytest
 from mxeon.cli import main, parser
 from mxeon.errors import FAILED, NOT_RUN, PASSED
 from mxeon.hosts import host_names
-from mxeon.jobs import TIMEOUT
 from mxeon.models.diffuse.inversion import eon_rho_from_albedo_avg, eon_rho_from_albedo_normal
 from mxeon.shaders.document.policy import LIMITS
 from mxeon.shaders.generation import TARGETS
@@ -231,11 +230,6 @@ def test_options_for_documents_without_trust_are_listed_apart(capsys):
         text = capsys.readouterr().out
         assert {f"--max{name.capitalize()}" for name in LIMITS} <= set(text.split())
         assert ("--allowCode" in text) == (command != "generate") and "--workers" not in text
-
-
-def test_a_limit_is_a_timeout():
-    old, new = (parser().parse_args(["check", f"--{name}", "7"]) for name in ("limit", "timeout"))
-    assert old.timeout == new.timeout == 7.0 and parser().parse_args(["check"]).timeout == TIMEOUT
 
 
 def test_help_loads_no_shader_generator():

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The short answer of a run: how each material looks, which nodes are wrong, why, and the remedy."""
+"""The answer of a run: how each material looks, which nodes are wrong, why, the remedy; and the exit status."""
 
 from __future__ import annotations
 
+import argparse
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from pathlib import Path
 
+from mxeon import errors
+from mxeon.cli.output import fail
 from mxeon.conformance.results import (
     DIFFERS,
     DIRECT,
@@ -27,7 +30,7 @@ from mxeon.conformance.run.documents import (
     is_refused,
     model_of,
 )
-from mxeon.errors import one_line
+from mxeon.errors import as_output, one_line, printable
 from mxeon.shaders.library import eonlib_folder
 from mxeon.shaders.library_export import CLIENTS
 
@@ -37,6 +40,42 @@ LOOKS = 4  # lines on the materials of one document
 FEWEST = 3  # nodes and causes on several documents, and reasons why checks did not run
 UNBOUNDED = 1e3  # errors above this are put into words
 AS_SPECIFIED = "looks as specified"
+STATUSES = {PASSED: errors.PASSED, FAILED: errors.FAILED, NOT_RUN: errors.NOT_RUN}
+
+
+def show_run(run: Run, options: argparse.Namespace, said: Collection[str] = ()) -> int:
+    """Write the report of a run and print its answer; return the exit status.
+
+    Errors of documents that were `said` already are not printed again.
+    """
+    from mxeon import report
+
+    page = report.write(run, options.report) if options.report else None
+    if options.json:
+        print(as_output(report.to_json(run)))
+    else:
+        files = [
+            one_line(f"library {folder}: {origin}: {', '.join(names) or 'nothing'}")
+            for folder, origins in run.libraries.items()
+            for origin, names in origins.items()
+        ]
+        checks = [*map(_line, run.results), *files] if options.full else []
+        print(printable("\n".join([*checks, *answer(run, options.full)])))
+        if page:
+            print(f"report: {page}")
+    if run.refused:
+        return fail(errors.MISUSE, *(each for each in run.errors if each not in said))
+    return STATUSES[run.summary.verdict]
+
+
+def _line(result: Result) -> str:
+    """A check with its error and tolerance, or why it did not pass."""
+    numbers = result.reason or result.explanation
+    if result.verdict == PASSED:
+        error, tolerance = result.error or 0.0, result.tolerance or 0.0
+        numbers = f"{error:.3g} <= {tolerance:.3g} {result.unit}" if tolerance else ""
+    about = f"{result.verdict}: {result.location}, {result.check}, {result.subject}"
+    return one_line(f"{about}: {numbers}".rstrip(": "))
 
 
 def answer(run: Run, full: bool = False) -> list[str]:

@@ -9,7 +9,6 @@ from typing import Any, TypeVar
 
 from mxeon.cli import arguments
 from mxeon.cli.output import Progress, fail
-from mxeon.cli.verdict import show_run
 from mxeon.errors import MISUSE, InputError
 from mxeon.hosts import host_names
 from mxeon.jobs import WAIT
@@ -79,6 +78,7 @@ def run(options: argparse.Namespace) -> int:
     """Check hosts and libraries; return the exit status."""
     progress = Progress("mxeon check", _label)
     progress.show("reads the documents" if options.files else "reads the library")
+    from mxeon.cli.answer import show_run
     from mxeon.conformance.run import check
 
     if options.resume and not options.report:

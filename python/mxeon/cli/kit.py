@@ -5,7 +5,6 @@ import argparse
 
 from mxeon.cli import arguments
 from mxeon.cli.output import Progress, warn
-from mxeon.cli.verdict import show_run
 from mxeon.errors import PASSED, PackageError
 from mxeon.shaders.nodes import OREN_NAYAR
 
@@ -72,6 +71,7 @@ def run_export(options: argparse.Namespace) -> int:
 
 def run_check(options: argparse.Namespace) -> int:
     """Check images of the kit; return the exit status."""
+    from mxeon.cli.answer import show_run
     from mxeon.kit.check import check_kit
 
     progress = Progress("mxeon kit check", lambda question: str(question.title))

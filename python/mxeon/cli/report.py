@@ -5,7 +5,6 @@ import argparse
 import json
 
 from mxeon.cli import arguments
-from mxeon.cli.verdict import show_run
 from mxeon.errors import FAILED, PASSED, as_output, one_line
 
 
@@ -40,6 +39,7 @@ def add_parser(commands: arguments.Commands) -> None:
 
 def run_make(options: argparse.Namespace) -> int:
     """Write the report of a run; return the exit status that the run means."""
+    from mxeon.cli.answer import show_run
     from mxeon.conformance.run import read_run
 
     return show_run(read_run(options.report), options)
