@@ -121,6 +121,9 @@ WRONG = {
          "NaN or infinity with the viewer on the horizon"),
     ),
     "conductor_bsdf": (
+        (FACETS, "vec3 X = normalize(lobe.X - dot(lobe.X, lobe.N) * lobe.N);\n    vec3 Y",
+         "vec3 X = lobe.X - dot(lobe.X, lobe.N) * lobe.N;\n    vec3 Y", "states",
+         "sums are wrong, all with a tangent that leans and is not of length 1"),
         ("mx_conductor_bsdf.glsl", "V = retroreflective", "V = false", "retroreflection",
          "retroreflective is ignored"),
     ),
@@ -147,6 +150,8 @@ WRONG = {
         ("mx_sheen_bsdf.glsl", "mode == 0", "mode != 0", "environment", "best match: Zeltner sheen (rms "),
     ),
     "sheen_bsdf, mode zeltner": (
+        ("genglsl/sheen_bsdf.glsl", "abs(N.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)", "vec3(1.0, 0.0, 0.0)",
+         "states", "all with the normal on an axis: the view along it"),
         ("mx_sheen_bsdf.glsl", "mode == 0", "mode != 0", "environment",
          "best match: Conty-Kulla sheen (rms "),
         ("mx_sheen_bsdf.glsl", "roughness = clamp(roughness, 0.01, 1.0);", "", "finite",
@@ -183,7 +188,8 @@ WRONG = {
         (FILM, "clamp(0.5 * mean - orders, 0.0, 1.0)", "1.1 + 0.0 * mean", "film_energy", ""),
         (FACETS, "int i = is_known ? last : 0;", "facets = 1; int i = 0;", "film_environment", ""),
         (FILM, "vec2(0.785, 0.725)", "vec2(0.785, 0.625)", "film_smooth", ""),
-        (FACETS, "vec4 curve = vec4(F.average, float(fd.model));", "vec4 curve = vec4(1.0);", "film_sum", ""),
+        (FACETS, "vec4 curve = vec4(F.average, float(fd.model));", "vec4 curve = vec4(1.0);", "states",
+         "all with two lobes that differ in extinction or two lobes that differ in ior"),
     ),
     "dielectric_bsdf, thin film": (
         (FILM, "orders = vec3(0.0)", "orders = vec3(0.01)", "film_limit", ""),

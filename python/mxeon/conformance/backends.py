@@ -66,6 +66,7 @@ from mxeon.conformance.tolerance import (
 from mxeon.errors import DocumentError, NotRun
 from mxeon.hosts import front_lit_only, host_row
 from mxeon.hosts.base import Host
+from mxeon.hosts.calls import LIT
 from mxeon.hosts.pairs import DISTANCE, JITTER, LEAST_SINE, PIXEL, perpendicular, visible
 from mxeon.hosts.testrender.scenes import EYE, NEAREST
 from mxeon.models.nodes.bsdl import BSDL_VARIANTS
@@ -174,6 +175,9 @@ class Backend(ABC):
 
     families: ClassVar[tuple[type[Spec], ...]] = ()  # of nodes of which it has values
     others: ClassVar[tuple[type[Spec], ...]] = ()  # of these, families of which it has none
+    plain: ClassVar[
+        tuple[str, ...]
+    ] = ()  # axes of `checks.states` of which it has the first state alone
 
     def __init__(self, host: Host, spec: Spec, library: str) -> None:
         self.host, self.spec, self.library = host, spec, library
@@ -259,6 +263,10 @@ class Evaluating(Backend):
     def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
         if quantity == "difference" and "value" in spec.errors:
             return difference_of(spec.errors["value"])
+        if quantity == "states" and "frame" in spec.errors:
+            return sum_of(
+                spec.errors["frame"].term("a part in another frame"), roundings(12, "of six parts")
+            )
         return super().error(spec, quantity)
 
     def precision(self, quantity: str) -> tuple[Term, ...]:
@@ -286,22 +294,35 @@ class Evaluating(Backend):
         """Light of an environment through the surface, (N, 3); it is uniform unless given."""
         return self.evaluate(batch, "transmission", irradiance=radiance)
 
+    @cached_property
+    def two(self) -> Shader:
+        """A shader of two lobes in one pixel."""
+        text = cast(LobeSpec, self.spec).two_lobes()
+        return self.host.compile(text, library=self.library)[0]
+
+    def together(self, batch: Batch, irradiance: NDArray[np.float32] | None, two: bool) -> Array:
+        """Light of several lights and of an environment in one pixel, from one lobe or from two."""
+        shader = self.two if two else self.shader
+        return self.evaluate(batch, LIT, irradiance=irradiance, shader=shader)
+
     def evaluate(
         self,
         batch: Batch,
         branch: str,
         output: str = "response",
         irradiance: NDArray[np.float32] | None = None,
+        shader: Shader | None = None,
     ) -> Array:
         def evaluated() -> Array:
             inputs = {**self.spec.fixed, **batch.inputs}
             wo, wi = batch.world(batch.wo), batch.world(batch.wi)
             values = self.host.evaluate(
-                self.shader, wo, wi, inputs, branch, output=output, irradiance=irradiance
+                shader or self.shader, wo, wi, inputs, branch, output=output, irradiance=irradiance
             )
             return values.astype(np.float64)
 
-        return self._evaluations.values(batch, (branch, output, irradiance), evaluated)
+        key = branch, output, irradiance, shader and shader.element
+        return self._evaluations.values(batch, key, evaluated)
 
 
 class InTheDark(Evaluating):
@@ -344,7 +365,7 @@ class ClosureSamples(Samples):
         for batch in self.batches:
             few, names = batch.first(self.counts.few), tuple(sorted(batch.inputs))
             groups.setdefault((*names, str(batch.frame is None)), []).append(few)
-        return tuple(map(_joined, groups.values()))
+        return tuple(map(joined, groups.values()))
 
     @cached_property
     def turned(self) -> Batch:
@@ -356,7 +377,7 @@ class ClosureSamples(Samples):
         return edges.where(np.random.default_rng(SEED).permutation(len(edges.wo))[:SOME])
 
 
-def _joined(batches: Sequence[Batch]) -> Batch:
+def joined(batches: Sequence[Batch]) -> Batch:
     """One batch of all pairs, whose inputs have the same names."""
     if len(batches) == 1:
         return batches[0]
@@ -386,6 +407,8 @@ def _altered(batch: Batch) -> Batch:
 class Closures(Evaluating):
     """A host that returns closures; arguments have no errors, and no closure finds light."""
 
+    plain = ("lights", "environment", "inputs")
+
     def __init__(self, host: Host, spec: Spec, library: str) -> None:
         from mxeon.conformance.reference.closures import evaluated
 
@@ -398,6 +421,8 @@ class Closures(Evaluating):
     @classmethod
     def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
         own = super().error(spec, quantity)
+        if quantity == "states" and isinstance(spec, TransmissionSpec):
+            return None  # a light shows nothing of what it transmits
         if not isinstance(spec, LobeSpec) or quantity not in QUANTITIES:
             return own
         exact = GRAPH if isinstance(spec, SurfaceShaderSpec) else ARGUMENTS
@@ -407,6 +432,9 @@ class Closures(Evaluating):
             return own  # frames are turned in float32
         told = quantity in ("value", "albedo") or (own and quantity in ("throughput", "lambert"))
         return exact if told else None
+
+    def together(self, batch: Batch, irradiance: NDArray[np.float32] | None, two: bool) -> Array:
+        return np.pi * self.evaluate(batch, "direct", shader=self.two if two else self.shader)
 
     @classmethod
     def lit(cls, spec: Spec) -> bool:
@@ -1035,7 +1063,7 @@ class UtilitySamples(Samples):
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        return (_joined(super().batches),)
+        return (joined(super().batches),)
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:

@@ -36,6 +36,14 @@ from mxeon.conformance.samples import (
 )
 from mxeon.conformance.tolerance import Term, Tolerance
 from mxeon.hosts.base import Host
+from mxeon.shaders.nodes import (
+    SURFACE,
+    connection_text,
+    document_text,
+    input_types,
+    lobe_text,
+    node_text,
+)
 
 COMPONENTS = {"float": (), "vector2": (2,), "vector3": (3,), "color3": (3,)}  # shape by type
 CHANGED_COLOR = (0.9, 0.1, 0.6)
@@ -195,11 +203,26 @@ class LobeSpec(ValueSpec):
     """A node that scatters light."""
 
     flat: ClassVar[bool] = False  # whether its values have no peak
+    plain: ClassVar[
+        tuple[str, ...]
+    ] = ()  # axes of `checks.states` of which it has the first state alone
 
     @property
     def side(self) -> float:
         """-1 where it scatters light from below the horizon, else 1."""
         return 1.0
+
+    @property
+    def mode(self) -> Values:
+        """Inputs that select the mode."""
+        return self.fixed
+
+    def two_lobes(self) -> str:
+        """MaterialX text of a material of two such lobes, `first` and `second`."""
+        types = {**input_types(self.node), **{each.name: each.type for each in self.inputs}}
+        lobes = (lobe_text(self.node, self.mode, name, types) for name in ("first", "second"))
+        ports = connection_text("in1", "BSDF", "first") + connection_text("in2", "BSDF", "second")
+        return document_text("".join(lobes) + node_text("add", "BSDF", "lobe", ports) + SURFACE)
 
     @abstractmethod
     def albedo(self, batch: Batch) -> Array:

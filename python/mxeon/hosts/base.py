@@ -154,7 +154,8 @@ class Host(Engine):
         - `inputs`: Node inputs by name, (N, ...) or constant, and "occlusion", 1 unless given. The
           node's normal is that of the surface unless given.
         - `branch`: "direct", "environment", "transmission" or "emission"; or "graph": the color of
-          the uniform EDF, which the directions do not change.
+          the uniform EDF, which the directions do not change; or "lit": pi times the sum over up to two
+          lights plus an environment, in one pixel, as the inputs of `mxeon.hosts.calls.LIT` say.
         - `output`: "response", f cos(theta_i) in 1/sr or the directional albedo times the
           irradiance; "throughput", the share of the light from below that passes the BSDF; or
           "radiance", what the EDF emits towards `wo`, in any branch.

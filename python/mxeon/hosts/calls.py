@@ -68,6 +68,23 @@ CLOSURES = {
 }
 EMISSION = "CLOSURE_TYPE_EMISSION"  # of the call of an EDF, in every branch
 GRAPH = "graph"  # instead of a branch: the color that the shader gives to its uniform EDF
+LIT = "lit"  # instead of a branch: several lights, then an environment on both sides, in one pixel
+# Inputs of LIT: number of lights, up to 2, direction of the second in world space, and whether an environment follows.
+LIGHTS, SECOND_LIGHT, SKY = "mxeon_lights", "mxeon_second", "mxeon_sky"
+LOOP = """{type} mxeon_sum = {type}(0.0);
+for (int mxeon_step = 0; mxeon_step < int({lights}) + ({sky} ? 2 : 0); ++mxeon_step)
+{{
+    bool mxeon_lit = mxeon_step < int({lights});
+    int mxeon_beside = mxeon_step == int({lights}) ? {indirect} : {transmission};
+    int mxeon_closure = mxeon_lit ? {direct} : mxeon_beside;
+    {type} mxeon_first = L;
+    {{
+        {type} L = mxeon_step == 1 ? {second} : mxeon_first;
+{block}
+        mxeon_sum += (mxeon_lit ? 3.14159265 : 1.0) * {result}.response;
+    }}
+}}
+"""
 OUTPUTS = ("response", "throughput", "radiance")  # the last is that of an EDF
 NORMAL, TANGENT = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
 ASKED = "throughput_asked"  # variable of an evaluation
@@ -96,28 +113,52 @@ def bsdf_call(
 
     InputError if it calls no BSDF or, for GRAPH, no uniform EDF, or branch or output is unknown.
     """
-    branches = (GRAPH, *CLOSURES)
+    branches = (GRAPH, LIT, *CLOSURES)
     for rule, word, known in (("branch", branch, branches), ("output", output, OUTPUTS)):
         if word not in known:
             raise InputError(f"{rule} must be one of {', '.join(known)}; got {word!r}")
     if branch == GRAPH:
         return _graph_call(shader, wo, inputs)
     emitted = output == "radiance"
-    called, closure = (EMISSION, EMISSION) if emitted else CLOSURES[branch]
+    called, closure = (EMISSION, EMISSION) if emitted else CLOSURES.get(branch, CLOSURES["direct"])
     text = shader.stages["pixel"]
     start, statements, result, names = _find_calls(text, called, shader.element)
     arguments: Arguments = {"V": ("vector3", wo), "L": ("vector3", wi), "N": ("vector3", NORMAL)}
     arguments["occlusion"] = ("float", inputs.get("occlusion", 1.0))
     if not emitted:
         arguments[ASKED] = ("boolean", output == "throughput")
+    statements = statements.replace(called, closure)
+    value = result if emitted else f"{ASKED} ? {result}.throughput : {result}.response"
+    if branch == LIT:
+        statements, value = _loop(shader, statements, result), "mxeon_sum"
+        arguments |= {
+            LIGHTS: ("float", inputs[LIGHTS]),
+            SECOND_LIGHT: ("vector3", inputs[SECOND_LIGHT]),
+            SKY: ("boolean", inputs[SKY]),
+        }
     if before := prelude(text, start):
         statements = before.statements + statements
         arguments = _surface_arguments(shader, before, inputs) | arguments
     else:
         ports = _ports(shader)
         arguments |= {name: _argument(name, ports, inputs) for name in names}
-    value = result if emitted else f"{ASKED} ? {result}.throughput : {result}.response"
-    return BsdfCall(statements.replace(called, closure), value, arguments)
+    return BsdfCall(statements, value, arguments)
+
+
+def _loop(shader: Shader, block: str, result: str) -> str:
+    """The statements of one light, once for each light and then for the environment."""
+    direct = CLOSURES["direct"][1]
+    return LOOP.format(
+        type="float3" if shader.target == "slang" else "vec3",
+        lights=LIGHTS,
+        second=SECOND_LIGHT,
+        sky=SKY,
+        direct=direct,
+        indirect=CLOSURES["environment"][1],
+        transmission=CLOSURES["transmission"][1],
+        block=block.replace(direct, "mxeon_closure"),
+        result=result,
+    )
 
 
 @lru_cache(maxsize=16)  # the checks of a node share its shader

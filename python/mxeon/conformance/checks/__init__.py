@@ -6,6 +6,7 @@ from mxeon.conformance.check import Check as Check
 
 from mxeon.conformance.checks import (  # isort: skip  # each adds its own, in this order
     lobes,
+    states,
     energy,
     microfacets,
     combinations,
@@ -26,6 +27,7 @@ __all__ = [
     "hair",
     "lobes",
     "microfacets",
+    "states",
     "surface_shaders",
     "thin_films",
     "transmission",

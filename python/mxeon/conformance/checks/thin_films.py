@@ -30,9 +30,7 @@ from mxeon.conformance.specs.thin_films import (
     ORDERED,
     SHARP,
     STEEP,
-    SUMMED,
     FilmSpec,
-    FilmSum,
     film_views,
 )
 from mxeon.conformance.tolerance import Compared, count_of
@@ -43,7 +41,6 @@ MIRRORED = (-1.0, -1.0, 1.0)
 ROUGHNESSES = (1.0, 0.3)  # with much and with little compensation
 SMOOTH = (0.04, 0.005)  # with next to none, for whose average a shader may take fewer cosines
 RIGHT = "each value on its own is within tolerance"  # of an explanation that found nothing
-FILM_INPUTS = ("thinfilm_thickness", "thinfilm_ior")
 LEAST_F = 0.01  # of a curve by which its averages are divided
 THIN_LIMIT = 1e-3  # thickness in nm of a film that changes nothing
 SLANT = 2.0 / 3.0  # mean cosine of a hemisphere, weighted by the cosine
@@ -259,32 +256,6 @@ def _visible_cases(case: Case, batch: Batch) -> Compared:
     )
     bright = F.min(axis=1) > LEAST_F
     return Compared(batch.where(bright), measured[bright], expected[bright])
-
-
-@check(
-    "film_sum", "A lobe under a film keeps its own averages next to another lobe.", is_film, thicker
-)
-def film_sum(case: Case) -> list[Compared]:
-    """Sums of two lobes in one pixel against both by themselves, of which one thing is another.
-
-    In an environment that is the roughness, by which the visible facets are others.
-    """
-    batch, spec = film_views(case.of(FilmSpec), STEEP), case.of(FilmSpec)
-    substrate = tuple(name for name in batch.inputs if name not in (*FILM_INPUTS, "roughness"))
-    both = case.another(FilmSum.of(spec.row, spec.inputs, spec.errors, title=spec.title))
-    cases = []
-    for output, names in (
-        ("direct", FILM_INPUTS[:1]),
-        ("direct", FILM_INPUTS[1:]),
-        ("direct", substrate),
-        ("albedo", ("roughness",)),
-    ):
-        other = batch.altered(**{name: np.roll(batch.inputs[name], 1, axis=0) for name in names})
-        first, second = (getattr(case, output)(each) for each in (batch, other))
-        inputs = {f"{SUMMED[1]}/{name}": value for name, value in other.inputs.items()}
-        together = replace(batch, inputs={**batch.inputs, **inputs})
-        cases.append(Compared(batch, getattr(both, output)(together), first + second))
-    return cases
 
 
 check(

@@ -153,6 +153,8 @@ class Views:
             np.broadcast_to(closure.arguments.get(name, axis), self.wo.shape)
             for name, axis in zip(names, (UP, ALONG), strict=True)
         )
+        if names[1] not in closure.arguments:  # any serves that is not parallel to the normal
+            tangent = np.where(np.abs(normal[:, :1]) > 0.9, UP, ALONG)
         above = bool(np.all(self.wo[:, 2] >= 0.0))
         if above and np.all(normal == UP) and np.all(tangent == ALONG):
             return self.wo, self.wi

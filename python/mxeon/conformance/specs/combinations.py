@@ -15,7 +15,7 @@ from mxeon.conformance.samples import (
     special_directions,
 )
 from mxeon.conformance.spec import Input, color
-from mxeon.conformance.specs.lobes import CLOSED_ALBEDO, PbrSpec
+from mxeon.conformance.specs.lobes import CLOSED_ALBEDO, FLAT_FRAME, PbrSpec
 from mxeon.conformance.specs.sheen import ZELTNER_VALUE
 from mxeon.conformance.tolerance import ROUNDING, Term, Tolerance, sum_of
 from mxeon.models.nodes import combinations
@@ -103,6 +103,8 @@ COLORED = ("multiply_color3", "multiply_sum")  # rows whose factor is a color
 class CombinedSpec(PbrSpec):
     """A node of `mxeon.models.nodes.combinations`, whose weights stay 1."""
 
+    plain = ("lobes",)
+
     @property
     def drawn(self) -> tuple[Input, ...]:
         """The inputs of the functions, by path: rows of `top` alone have those of both lobes."""
@@ -148,6 +150,7 @@ def _spec(row: PbrNode) -> CombinedSpec:
         "albedo": ALBEDO,
         "throughput": ALBEDO,
         "factor": FACTOR_ERROR,
+        "frame": sum_of(FLAT_FRAME.term("three lobes in another frame", 3.0)),
     }
     return CombinedSpec.of(
         row,

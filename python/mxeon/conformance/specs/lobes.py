@@ -124,6 +124,10 @@ class PbrSpec(RowSpec, LobeSpec):
         return -1.0 if self.row.transmits else 1.0
 
     @property
+    def mode(self) -> Values:
+        return self.row.fixed
+
+    @property
     def types(self) -> dict[str, str]:
         return {**input_types(self.node), **{each.name: each.type for each in self.inputs}}
 

@@ -285,6 +285,7 @@ def transmission_errors(passed: Tolerance) -> dict[str, Tolerance]:
             metric=absolute,
         ),
         "kept": BURLEY_VALUE,  # one function of the same numbers
+        "states": sum_of(roundings(32, "of the same parts in two programs")),
         "critical": sum_of(
             Term(SMOOTH_ESS_FIT, "the fit of E_ss of smooth lobes"),
             roundings(4 * FRESNEL_SLOPE, "of a cosine, times a Fresnel curve's largest slope, 7.3"),
@@ -298,6 +299,9 @@ def transmission_errors(passed: Tolerance) -> dict[str, Tolerance]:
 @dataclass(frozen=True, eq=False, kw_only=True)
 class TransmissionSpec(FacetSpec):
     """A node of `mxeon.models.nodes.transmissions`."""
+
+    # In another frame a rounding decides about what total reflection takes from a sum of refractions.
+    plain = ("frame",)
 
     @property
     def functions(self) -> Transmission:

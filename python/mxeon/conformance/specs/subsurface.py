@@ -38,6 +38,8 @@ RINGS_MEAN = given(
 class SubsurfaceSpec(FlatSpec):
     """The node on a plane, where its radius and its anisotropy have no effect, and on a sphere."""
 
+    plain = ("frame",)  # frames that turn from pixel to pixel are a curved surface
+
     @property
     def others(self) -> tuple[Candidate, ...]:
         """Zero, and what MaterialX has in its place."""

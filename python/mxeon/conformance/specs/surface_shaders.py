@@ -22,7 +22,7 @@ from mxeon.conformance.samples import (
 from mxeon.conformance.spec import CHANGED_COLOR, Input, LobeSpec, color, draw
 from mxeon.conformance.specs.lobes import LEAST_VIEW
 from mxeon.conformance.specs.microfacets import reflected, sum_over
-from mxeon.conformance.tolerance import Term, absolute, mean_scaled, sum_of
+from mxeon.conformance.tolerance import Term, absolute, mean_scaled, roundings, sum_of
 from mxeon.errors import NotRun
 from mxeon.hosts.calls import NORMAL, TANGENT
 from mxeon.shaders.nodes import document_text, node_text
@@ -275,11 +275,14 @@ MEAN = sum_of(
     unit="pi f cos, relative above 1, or albedo, mean",
     metric=mean_scaled,
 )
+STATES = sum_of(roundings(32, "of the same parts in two programs"))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SurfaceShaderSpec(LobeSpec):
     """A surface shader with every lobe on."""
+
+    plain = ("frame", "lobes")
 
     table: Lobes
     library: str = "eonlib"  # whose document the reference evaluates
@@ -399,7 +402,7 @@ def _spec(node: str, table: Lobes) -> SurfaceShaderSpec:
         node=node,
         model=node,
         table=table,
-        errors={"value": VALUE, "albedo": ALBEDO, "lobes_mean": MEAN},
+        errors={"value": VALUE, "albedo": ALBEDO, "lobes_mean": MEAN, "states": STATES},
         counts=Counts(256, albedos=64, materials=1 << 11),  # a material a pair
     )
 

@@ -13,15 +13,13 @@ from mxeon.conformance.samples import (
     Array,
     Batch,
     Counts,
-    Values,
     directions,
     float32,
     rounded,
     special_directions,
 )
-from mxeon.conformance.specs.combinations import node_over
 from mxeon.conformance.specs.lobes import PbrSpec
-from mxeon.conformance.specs.microfacets import ESS_FIT, INPUTS, SEEN_ESS, FacetSpec, simple
+from mxeon.conformance.specs.microfacets import ESS_FIT, FRAME, INPUTS, SEEN_ESS, FacetSpec, simple
 from mxeon.conformance.specs.microfacets import VALUE as FACET_VALUE
 from mxeon.conformance.tolerance import (
     Term,
@@ -34,7 +32,6 @@ from mxeon.conformance.tolerance import (
 )
 from mxeon.hosts.base import Host
 from mxeon.models.nodes.thin_films import FILM_NODES
-from mxeon.shaders.nodes import SURFACE, document_text, lobe_text
 
 # Largest errors of the shader's thin film, for cosines from 0.1 on and up to 1000 nm: tools/fits/thin_film.py
 # searches for each.
@@ -93,8 +90,9 @@ ERRORS = {
     "film_smooth": _mean(2e-5, "F_ss in two cosines, times what a lobe of alpha 0.04 loses"),
     "film_visible": _mean(3.7e-4, "visible facets in four cosines, films of 50 to 100 nm"),
     "film_glossy": _mean(7.4e-4, "visible facets in two or four cosines, alpha 0.03 to 0.1"),
-    # Two values by the same text, of which an engine may round each in another order.
-    "film_sum": sum_of(roundings(2 * CURVE_ROUNDINGS, "of two values, phases times 9.5")),
+    "frame": sum_of(
+        *FRAME.terms, roundings(2 * CURVE_ROUNDINGS, "of two values, phases times 9.5")
+    ),
 }
 
 
@@ -122,7 +120,6 @@ COUNTS = Counts(1 << 8, 1 << 6, diagnosed=1 << 5, albedos=24, materials=16)
 LEAST_OIL = 1.2  # index of these films, or there is none to see
 LEAST_FILM = 1.25  # where albedos are compared: below, metals of a lower index reflect totally, in finer fringes
 LEAST_FACET = 0.1  # cosine with the half vector: next to grazing all orders of a film count
-SUMMED = ("first", "second")  # names of lobes
 THICK = (0.0, 1.0, 100.0, 1e4)  # thicknesses at the edges of the domain
 
 
@@ -189,16 +186,6 @@ class FilmSpec(FacetSpec):
         inputs["thinfilm_thickness"] = rng.choice(THICK, len(wo))
         inputs["thinfilm_ior"][::16] = 0.0
         return Batch(wo, wi, inputs)
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class FilmSum(FilmSpec):
-    """Two lobes of a node in one pixel, `first` and `second`, each under a film."""
-
-    def document(self, inputs: Values | None = None) -> str:
-        lobes = (lobe_text(self.node, self.row.fixed, name, self.types) for name in SUMMED)
-        both = node_over("add", in1=SUMMED[0], in2=SUMMED[1])
-        return document_text("".join(lobes) + both + SURFACE)
 
 
 def _in_air(inputs: dict[str, Array]) -> dict[str, Array]:

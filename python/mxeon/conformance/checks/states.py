@@ -1,0 +1,314 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a pixel may hold beside one lobe under one light: a value is the sum of what each part has by itself.
+
+AXES lists the states, one line each. Every two states of different axes meet in some pixels. The host's own
+values of the parts are the expected ones, so a wrong model passes, and a failure has one reason.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from itertools import combinations, product
+
+import numpy as np
+
+from mxeon.conformance.backends import joined
+from mxeon.conformance.case import Case
+from mxeon.conformance.check import check, control
+from mxeon.conformance.diagnosis.candidates import Diagnosis, not_finite
+from mxeon.conformance.samples import SEED, Array, Batch, Values, rounded, sky_map
+from mxeon.conformance.spec import LobeSpec, broadcast_inputs
+from mxeon.conformance.tolerance import Compared
+from mxeon.hosts.calls import LIGHTS, NORMAL, SECOND_LIGHT, SKY, TANGENT
+
+EACH = 12  # pixels of a combination of states
+FRAME = ("normal", "tangent")
+WEIGHTS = (0.0, 0.3, 1.0, 1.0)
+CLEARER = 0.7  # share of the pixels of one state that those of two may have to be named instead
+Inputs = Mapping[str, Array]
+Random = np.random.Generator
+
+
+@dataclass(frozen=True)
+class Pixels:
+    """Pixels that share a combination of states."""
+
+    batch: Batch
+    states: tuple[str, ...]
+    light: Array  # direction of a second light, in the local frame
+    second: Inputs | None = None  # inputs of another lobe beside that of the batch
+    differ: tuple[str, ...] = ()  # the input in which the lobes of each pixel differ
+    lights: int = 1
+    sky: str = ""  # "uniform" or "uneven"
+
+
+Build = Callable[[Pixels, Random], Pixels]
+
+
+def _plain(pixels: Pixels, rng: Random) -> Pixels:
+    return pixels
+
+
+def _lights(count: int, first: float = 1.0, second: float = 1.0) -> Build:
+    """So many lights; -1 for one on the side that the lobe does not scatter."""
+
+    def build(pixels: Pixels, rng: Random) -> Pixels:
+        wi = pixels.batch.wi
+        batch = replace(pixels.batch, wi=wi * [1.0, 1.0, first])
+        light = np.roll(wi, 1, axis=0) * [1.0, 1.0, second]
+        return replace(pixels, batch=batch, lights=count, light=light)
+
+    return build
+
+
+def _sky(kind: str) -> Build:
+    return lambda pixels, rng: replace(pixels, sky=kind)
+
+
+def _frame(make: Callable[[Array], Array], along: bool = False, scaled: bool = False) -> Build:
+    """Frames made of random ones; the view may lie along the normal, the tangent may lean and have any length."""
+
+    def build(pixels: Pixels, rng: Random) -> Pixels:
+        batch = pixels.batch
+        assert batch.frame is not None
+        frame = make(batch.frame)
+        normal, tangent = frame[:, :, 2], frame[:, :, 0]
+        if scaled:
+            length = 10.0 ** rng.uniform(-1.0, 1.0, (len(frame), 1))
+            tangent = length * (tangent + rng.uniform(-0.5, 0.5, (len(frame), 1)) * normal)
+        axes = {"normal": rounded(normal.T), "tangent": rounded(tangent.T)}
+        wo = np.broadcast_to(NORMAL, batch.wo.shape) if along else batch.wo
+        return replace(pixels, batch=replace(batch.altered(**axes), wo=wo, frame=frame))
+
+    return build
+
+
+def _upright(frames: Array) -> Array:
+    return np.broadcast_to(np.eye(3), frames.shape)
+
+
+def _axes(frames: Array) -> Array:
+    """Frames whose normals are the axes in both directions, one after the other."""
+    turns = [np.roll(np.eye(3), shift, axis=0) for shift in range(3)]
+    return np.resize(
+        [turn * sign for turn in turns for sign in ([1, 1, 1], [1, -1, -1])], frames.shape
+    )
+
+
+def _lobes(component: bool = False, differ: bool = True, swapped: bool = False) -> Build:
+    """Another lobe, which differs in one input of each pixel, or in one component of it."""
+
+    def build(pixels: Pixels, rng: Random) -> Pixels:
+        first = broadcast_inputs(pixels.batch)
+        second, words = dict(first), [""] * EACH
+        names = [name for name in first if name not in FRAME]
+        for row in range(EACH) if differ else ():
+            name = words[row] = names[(row + rng.integers(2)) % len(names)]
+            values = second[name] = np.array(second[name])
+            parts = rng.integers(values.shape[-1]) if component and values.ndim == 2 else ...
+            values[row, parts] = first[name][row - 1, parts]
+        inputs, second = (second, first) if swapped else (first, second)
+        batch = replace(pixels.batch, inputs=inputs)
+        return replace(pixels, batch=batch, second=second, differ=tuple(words))
+
+    return build
+
+
+def _constant(pixels: Pixels, rng: Random) -> Pixels:
+    """The inputs of one pixel in all, but for its frame."""
+    row = rng.integers(EACH)
+
+    def constant(inputs: Inputs) -> Inputs:
+        return {name: each if name in FRAME else each[row] for name, each in inputs.items()}
+
+    batch = replace(pixels.batch, inputs=constant(broadcast_inputs(pixels.batch)))
+    differ = pixels.differ and (pixels.differ[row],) * EACH
+    return replace(
+        pixels, batch=batch, second=pixels.second and constant(pixels.second), differ=differ
+    )
+
+
+# The first state of each axis is that of every other check. States whose words are the same up to a colon are
+# diagnosed together, too.
+AXES: dict[str, dict[str, Build]] = {
+    "lights": {
+        "one light": _lights(1),
+        "no light": _lights(0),
+        "two lights": _lights(2),
+        "two lights: the second from behind": _lights(2, 1.0, -1.0),
+        "two lights: the first from behind": _lights(2, -1.0, 1.0),
+    },
+    "environment": {
+        "no environment": _plain,
+        "an environment: uniform": _sky("uniform"),
+        "an environment: uneven": _sky("uneven"),
+    },
+    "frame": {
+        "the surface's frame": _frame(_upright),
+        "a turned frame": _frame(lambda frames: frames),
+        "a tangent that leans and is not of length 1": _frame(_upright, scaled=True),
+        "the normal on an axis": _frame(_axes),
+        "the normal on an axis: the view along it": _frame(_axes, along=True),
+    },
+    "lobes": {
+        "one lobe": _plain,
+        "two lobes: equal": _lobes(differ=False),
+        "two lobes: another input": _lobes(),
+        "two lobes: another input: exchanged": _lobes(swapped=True),
+        "two lobes: another component": _lobes(component=True),
+        "two lobes: another component: exchanged": _lobes(component=True, swapped=True),
+    },
+    "inputs": {"inputs that vary": _plain, "constant inputs": _constant},
+}
+
+
+@lru_cache(maxsize=8)
+def covering(axes: tuple[tuple[str, ...], ...]) -> tuple[tuple[str, ...], ...]:
+    """Combinations of a state of each axis, in which every two states of different axes meet.
+
+    >>> covering((("a", "b"), ("x", "y"), ("1",)))
+    (('a', 'x', '1'), ('a', 'y', '1'), ('b', 'x', '1'), ('b', 'y', '1'))
+    """
+    waiting = {pair for one, other in combinations(axes, 2) for pair in product(one, other)}
+    rows = {row: set(combinations(row, 2)) for row in product(*axes)}
+    found = []
+    while waiting:
+        best = max(rows, key=lambda row: len(rows[row] & waiting))
+        found.append(best)
+        waiting -= rows[best]
+    return tuple(found)
+
+
+def pixels_of(case: Case) -> list[Pixels]:
+    """Pixels of combinations of the states that the node and the engine can have."""
+    rng, plain = np.random.default_rng(SEED), {*case.lobe.plain, *case.backend.plain}
+    axes = tuple(tuple(each)[: 1 if name in plain else None] for name, each in AXES.items())
+    rows = covering(axes)
+    turned = case.samples.turned
+    batch = turned.where(np.arange(EACH * len(rows)) % len(turned.wo))
+    if "weight" in case.spec.names:
+        batch = batch.altered(weight=rng.choice(WEIGHTS, len(batch.wo)))
+    found = []
+    for number, states in enumerate(rows):
+        part = batch.where(slice(EACH * number, EACH * (number + 1)))
+        pixels = Pixels(part, states, part.wi)
+        for axis, words in zip(AXES.values(), states, strict=True):
+            pixels = axis[words](pixels, rng)
+        found.append(pixels)
+    return found
+
+
+@control("each pixel has the view and the light of another")
+def exchanged(case: Case) -> Case:
+    def inputs(batch: Batch) -> Batch:
+        return replace(batch, wo=np.roll(batch.wo, 1, axis=0), wi=np.roll(batch.wi, 1, axis=0))
+
+    return replace(case, inputs=inputs)
+
+
+@check(
+    "states",
+    "Lights, environments and lobes add up in a pixel, in every frame, whether inputs vary or not.",
+    lambda spec: isinstance(spec, LobeSpec),
+    exchanged,
+    pairs=True,
+    diagnose=lambda case: diagnose(case),
+)
+def states(case: Case) -> Iterator[Compared]:
+    groups = pixels_of(case)
+    drawn: dict[tuple[bool, str, int], list[int]] = {}  # together; constant inputs by themselves
+    for number, pixels in enumerate(groups):
+        alone = number if "constant inputs" in pixels.states else -1
+        key = pixels.second is not None, "uneven" * (pixels.sky == "uneven"), alone
+        drawn.setdefault(key, []).append(number)
+    measured: dict[int, Array] = {}
+    for (two, uneven, _), numbers in drawn.items():
+        batch = joined([asked(groups[number]) for number in numbers])
+        sky = sky_map() if uneven else None
+        values = case.outputs(batch, case.evaluating.together(case.inputs(batch), sky, two))
+        measured |= zip(numbers, np.split(values, len(numbers)), strict=True)
+    for number, (pixels, expected) in enumerate(zip(groups, sums(case, groups), strict=True)):
+        yield Compared(pixels.batch, measured[number], expected)
+
+
+def asked(pixels: Pixels) -> Batch:
+    """The batch of pixels with all that a host is told of their states."""
+    batch, count = pixels.batch, len(pixels.batch.wo)
+    inputs: Values = {
+        LIGHTS: np.full(count, float(pixels.lights)),
+        SECOND_LIGHT: batch.world(pixels.light),
+        SKY: np.full(count, bool(pixels.sky)),
+        **{
+            f"second/{name}": each
+            for name, each in (pixels.second or {}).items()
+            if name not in FRAME
+        },
+    }
+    return batch.altered(**inputs)
+
+
+def sums(case: Case, groups: Sequence[Pixels]) -> list[Array]:
+    """Sums of the parts of pixels, each by itself and in the surface's frame; under an uneven sky in its own."""
+    found = [np.zeros_like(pixels.batch.wo) for pixels in groups]
+    parts: dict[str, list[tuple[int, Batch]]] = {}
+    for number, pixels in enumerate(groups):
+        for inputs in (pixels.batch.inputs, pixels.second):
+            if inputs is None:
+                continue
+            own = replace(pixels.batch, inputs=inputs)
+            own = replace(own, inputs=broadcast_inputs(own))
+            flat = replace(own.altered(normal=NORMAL, tangent=TANGENT), frame=None)
+            flat = replace(flat, inputs=broadcast_inputs(flat))
+            for light in (own.wi, pixels.light)[: pixels.lights]:
+                parts.setdefault("light", []).append((number, replace(flat, wi=light)))
+            if pixels.sky:
+                part = own if pixels.sky == "uneven" else flat
+                parts.setdefault(pixels.sky, []).append((number, part))
+    for kind, rows in parts.items():
+        batch = joined([each for _, each in rows])
+        if kind == "light":
+            values = case.backend.direct(batch)
+        else:
+            sky = sky_map() if kind == "uneven" else None
+            values = case.backend.albedo(batch, sky) + case.evaluating.transmitted(batch, sky)
+        for (number, _), each in zip(rows, np.split(values, len(rows)), strict=True):
+            found[number] += each
+    return found
+
+
+def diagnose(case: Case) -> Diagnosis:
+    """The states in which all wrong pixels are: one, two that meet in them, or either of two."""
+    tolerance = case.tolerance("states")
+    assert tolerance is not None, f"{case.spec.title} has no states"
+    compared = list(states(case))
+    bad = np.concatenate([tolerance.metric(*each[1:]) > tolerance.value for each in compared])
+    pixels = [words for each in pixels_of(case) for words in _words(each)]
+    names = sorted(set().union(*pixels))
+    found = {name: np.array([name in each for each in pixels]) for name in names}
+    pairs = list(combinations(names, 2))
+    sets = (
+        found,
+        {" and ".join(pair): found[pair[0]] & found[pair[1]] for pair in pairs},
+        {" or ".join(pair): found[pair[0]] | found[pair[1]] for pair in pairs},
+    )
+    one, both, either = (
+        min(
+            (int(mask.sum()), words)
+            for words, mask in {**each, "": bad | True}.items()
+            if mask[bad].all()
+        )
+        for each in sets
+    )
+    words = (both if both[0] < CLEARER * one[0] else min(one, either))[1]
+    wrong = not_finite(compared) or f"{bad.sum()} of {len(bad)} sums are wrong"
+    place = f", all with {words}" if words else ""
+    return Diagnosis(f"each part is right by itself, but {wrong}{place}")
+
+
+def _words(pixels: Pixels) -> Iterator[set[str]]:
+    """The states of each pixel but the first ones, in the words of a diagnosis."""
+    first = {next(iter(each)) for each in AXES.values()}
+    parts = [words.split(":") for words in pixels.states if words not in first]
+    common = {":".join(each[: count + 1]) for each in parts for count in range(len(each))}
+    for name in pixels.differ or ("",) * EACH:
+        yield common | ({f"two lobes that differ in {name}"} if name else set())
