@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `mxeon`: arguments in, exit status out. One module for each sub-command.
+"""The command `mxeon`: arguments in, exit status out. One module per sub-command.
 
 A sub-command imports what it needs when it runs, so that `mxeon --help` answers at once.
 """
@@ -34,8 +34,8 @@ COMMANDS = (check, generate, render, explore, library, invert, figures, report, 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command with these arguments; None for those of the process.
 
-    Returns 0 all passed, 1 a check failed, 2 misuse, 3 something did not run; above 128, the number of the
-    signal that ended it and 128.
+    Returns 0 all passed, 1 a check failed, 2 misuse, 3 something did not run; 128 plus the number of the
+    signal that ended it.
     """
     open_streams()
     try:
@@ -80,7 +80,7 @@ def _run(arguments: Sequence[str]) -> int:
 
 
 def _check_memory() -> None:
-    """Raise NotRun if the process may have too little memory for OpenBLAS, which would end it."""
+    """Raise NotRun if the memory limit is too low for OpenBLAS, which would abort the process."""
     limit, _ = resource.getrlimit(resource.RLIMIT_AS)
     if limit != resource.RLIM_INFINITY and limit < LEAST_MEMORY:
         raise NotRun(
@@ -89,7 +89,7 @@ def _check_memory() -> None:
 
 
 def _check_encoding(arguments: Sequence[str]) -> None:
-    """Raise InputError unless all arguments are text: other file names reach no library in C++."""
+    """Raise InputError unless all arguments are valid text: C++ libraries cannot open other file names."""
     for argument in arguments:
         try:
             argument.encode()

@@ -38,7 +38,7 @@ LINES = 10  # of the answer on one document
 MANY = 20  # documents; more are counted by cause
 LOOKS = 4  # lines on the materials of one document
 FEWEST = 3  # nodes and causes on several documents, and reasons why checks did not run
-UNBOUNDED = 1e3  # errors above this are put into words
+UNBOUNDED = 1e3  # larger errors are described in words
 AS_SPECIFIED = "looks as specified"
 STATUSES = {PASSED: errors.PASSED, FAILED: errors.FAILED, NOT_RUN: errors.NOT_RUN}
 
@@ -46,7 +46,7 @@ STATUSES = {PASSED: errors.PASSED, FAILED: errors.FAILED, NOT_RUN: errors.NOT_RU
 def show_run(run: Run, options: argparse.Namespace, said: Collection[str] = ()) -> int:
     """Write the report of a run and print its answer; return the exit status.
 
-    Errors of documents that were `said` already are not printed again.
+    Document errors in `said` are not printed again.
     """
     from mxeon import report
 
@@ -86,11 +86,11 @@ def answer(run: Run, full: bool = False) -> list[str]:
     remedy, failures = list(_remedy(run)), list(_failures(run))
     notes = [f"note: {note}" for note in new_notes(run)]
     first = list(map(one_line, [*run.origins, *_not_run(run)]))
-    # The verdict comes first where there are no documents, or something was not judged.
+    # The verdict comes first if there are no documents, or something was not judged.
     begins = run.refused or run.summary.verdict == NOT_RUN or not run.contents
     alone = len(run.contents) == 1
     seen = max(1, LOOKS - len(first)) if alone and not full else len(looks)
-    # The verdict and what is left out take a line each.
+    # The verdict and the number of omitted lines take a line each.
     room = LINES - len(first) - min(seen, len(looks)) - len(remedy) - 2
     least = 1 if alone else FEWEST
     kept = max(least, room - 1 - min(2, len(failures) + len(notes)))
@@ -109,7 +109,7 @@ def answer(run: Run, full: bool = False) -> list[str]:
 
 
 def summary_by_cause(run: Run) -> list[str]:
-    """A line for each cause of a verdict: how many documents have it, and the first of them."""
+    """A line for each cause of a verdict: the number of documents, and the first one."""
     verdicts = document_verdicts(run)
     every = {each.document for each in verdicts}
     referenced = len(every - {each.document for each in verdicts if not each.referenced})
@@ -126,7 +126,7 @@ def summary_by_cause(run: Run) -> list[str]:
 
 
 def new_notes(run: Run) -> list[str]:
-    """Notes of a run, without those that a diagnosis repeats."""
+    """Notes of a run, except those that a diagnosis repeats."""
     said = tuple({each.diagnosis for each in run.results if each.diagnosis})
     return [note for note in run.notes if not note.endswith(said)]
 
@@ -174,7 +174,7 @@ def _look(run: Run, document: str, results: Sequence[Result]) -> str:
 
 
 def _appearance(run: Run, document: str, result: Result) -> str:
-    """What a result says of a material."""
+    """What a result says about a material."""
     if result.verdict == NOT_RUN:
         return f"not judged: {result.reason}"
     if result.verdict == FAILED:
@@ -214,7 +214,7 @@ Rows = dict[tuple[str, str], list[Result]]  # by node and host
 
 
 def _rows(run: Run) -> Rows:
-    """What ran for the nodes of the documents: what their own inputs reach first, what is right last."""
+    """Results for the nodes of the documents: failures at their own inputs first, passed ones last."""
     nodes = {title for titles in run.contents.values() for title in titles}
     rows: Rows = {}
     for each in run.results:
@@ -225,7 +225,7 @@ def _rows(run: Run) -> Rows:
 
 
 def _rank(run: Run, result: Result) -> int:
-    """Whether a node is wrong in a document's picture, for other inputs alone, or right."""
+    """Whether a node is wrong in a document's picture, only for other inputs, or right."""
     if result.verdict != FAILED:
         return RIGHT
     if run.is_elsewhere(result):
@@ -261,7 +261,7 @@ def _table(run: Run, rows: Rows, kept: int) -> Iterator[str]:
 
 
 def _cell(run: Run, results: Sequence[Result]) -> str:
-    """What a node is with one library: its model or what is wrong, the error, the tolerance."""
+    """A node with one library: its model or what is wrong, the error, the tolerance."""
     if not results:
         return "not judged"
     rank = min(_rank(run, each) for each in results)
@@ -293,7 +293,7 @@ def _not_run(run: Run) -> Iterator[str]:
 
 
 def _remedy(run: Run) -> Iterator[str]:
-    """How to load eonlib, where it repairs what stock MaterialX fails at."""
+    """How to load eonlib, if it repairs what fails with stock MaterialX."""
     failed = {each.library for each in run.results if each.verdict == FAILED}
     if (
         run.contents
@@ -309,7 +309,7 @@ def _remedy(run: Run) -> Iterator[str]:
 def _failures(run: Run) -> Iterator[str]:
     """A line for each page or diagnosis that explains failures.
 
-    Those of a library that counts come first, then those of the documents' own inputs, then those
+    Failures of a library that counts come first, then those at the documents' own inputs, then those
     that no page explains.
     """
     groups: dict[tuple[str, str], list[Result]] = {}

@@ -48,7 +48,7 @@ class Parser(argparse.ArgumentParser):
         super().__init__(epilog=epilog, formatter_class=_Format, **options)
 
     def format_help(self, limits: bool = False) -> str:
-        """The help without the options for documents that are not trusted, or these alone."""
+        """The help without the options for untrusted documents, or only these."""
         help = self._get_formatter()
         if not limits:
             help.add_text(textwrap.fill(self.description or "", 79))
@@ -67,7 +67,7 @@ class Parser(argparse.ArgumentParser):
     def parse_known_args(  # type: ignore[override]
         self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
     ) -> tuple[argparse.Namespace, list[str]]:
-        """As argparse's, but an unknown option goes first, and a missing command prints help."""
+        """Like argparse, but unknown options are reported first, and a missing command prints help."""
         words = list(sys.argv[1:] if args is None else args)
         is_command = self.get_default("run") is not None  # no group of commands
         if not (words or is_command):
@@ -96,7 +96,7 @@ class Parser(argparse.ArgumentParser):
 
 
 class _HelpLimits(argparse.Action):
-    """Print the options for documents that are not trusted, and exit."""
+    """Print the options for untrusted documents, and exit."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> NoReturn:
         assert isinstance(parser, Parser)

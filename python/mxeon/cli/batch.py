@@ -115,8 +115,8 @@ def picture(
     """A picture of a document's one material, linear (size, size, 3), and what made it, as metadata.
 
     Without a scene and an environment, a latitude-longitude image, it shows a shader ball in the studio;
-    on hosts that draw no images, a sphere lit from the side, with a warning. Of lobes that a picture cannot
-    show right a LobeWarning tells.
+    on hosts that draw no images, a sphere lit from the side, with a warning. A LobeWarning reports lobes that a
+    picture cannot show correctly.
     """
     from mxeon.conformance import reference
     from mxeon.hosts import open_host

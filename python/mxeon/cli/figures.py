@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`mxeon figures`: make the figures of the EON paper and measure its claims, in a checkout.
 
-They lie in the folder `paper` of the repository, which the wheel does not hold.
+They are in the folder `tools/paper` of the repository, which the wheel does not contain.
 """
 
 import argparse

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Messages on standard error, progress, and streams that take no more."""
+"""Messages on standard error, progress, and closed streams."""
 
 import os
 import shutil
@@ -13,7 +13,7 @@ from mxeon.errors import MISUSE, DocumentError, one_line
 
 
 def open_streams() -> None:
-    """Open the standard streams that the process was started without: workers print to them.
+    """Open missing standard streams: workers print to them.
 
     A character that a stream cannot encode is printed as a backslash and its number.
     """
@@ -45,12 +45,12 @@ def flush(status: int) -> int:
 
 
 def discard(stream: IO[str]) -> None:
-    """Redirect a stream that failed to nothing, else it fails again when Python ends."""
+    """Redirect a failed stream to nothing; otherwise it fails again when Python ends."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def status_of(error: Exception) -> tuple[int, *tuple[str, ...]]:
-    """Exit status of an error that has words for the user, and its lines."""
+    """Exit status and lines of an error that has a message for users."""
     if isinstance(error, DocumentError):
         return error.status, *error.args
     if isinstance(error, OSError) and not hasattr(error, "status"):
@@ -78,7 +78,7 @@ def show_warning(message: Warning | str, *_: Any, **__: Any) -> None:
 
 
 def _print_line(line: str) -> None:
-    """Print a line on standard error, unless that takes none."""
+    """Print a line on standard error, unless that is closed."""
     try:
         print(f"{Progress.take()}mxeon: {line}", file=sys.stderr, flush=True)
     except OSError:
@@ -104,13 +104,13 @@ class Progress:
 
     @classmethod
     def take(cls) -> str:
-        """What erases the line, which is gone then."""
+        """Forget the line; return the text that erases it."""
         erase = "\r\033[K" if cls.visible else ""
         cls.visible = ""
         return erase
 
     def __call__(self, steps: Iterable[Any], total: int | None = None) -> Iterator[Any]:
-        """The steps, each of which is shown when it is handed on."""
+        """The steps; each is shown when it is passed on."""
         total = len(steps) if total is None and isinstance(steps, Sized) else total
         begin = 0.0
         self.show(f"0 of {total}")

@@ -38,7 +38,7 @@ def add_parser(commands: arguments.Commands) -> None:
 
 
 def run_make(options: argparse.Namespace) -> int:
-    """Write the report of a run; return the exit status that the run means."""
+    """Write the report of a run; return the exit status of the run."""
     from mxeon.cli.answer import show_run
     from mxeon.conformance.run import read_run
 
@@ -46,7 +46,7 @@ def run_make(options: argparse.Namespace) -> int:
 
 
 def run_field(options: argparse.Namespace) -> int:
-    """Write the page of the field; return PASSED: the page says what failed."""
+    """Write the page that compares renderers; return PASSED: the page shows what failed."""
     from mxeon.survey.field import read_field, write_field
 
     arguments.assert_no_link(options.output)

@@ -15,14 +15,14 @@ from mxeon.shaders.scene import BACK, FURNACE, SIDE, Scene
 @dataclass(frozen=True)
 class Row:
     name: str
-    target: str  # of its shaders; "" for a renderer of its own materials alone
+    target: str  # of its shaders; "" for a renderer that only has its own materials
     module: str = ""  # with its class `Host`; "" where only the text of the target is checked
-    way: str = ""  # how it is asked: a key of `mxeon.conformance.backends.BACKENDS`; "" for none
+    way: str = ""  # its backends: a key of `mxeon.conformance.backends.BACKENDS`; "" for none
     needs: str = ""  # what running it would take, where only its text is checked
     scenes: tuple[Scene, ...] = ()  # lights under which it renders the materials of documents
-    surfaces: bool = False  # whether surface shaders are judged on it
-    rounding: float = 0.0  # relative, of its pixels beyond float32's
-    front_lit: tuple[str, ...] = ()  # models that it has for s >= 0 alone
+    surfaces: bool = False  # whether surface shaders are checked on it
+    rounding: float = 0.0  # relative, of its pixels, in addition to float32's
+    front_lit: tuple[str, ...] = ()  # models that it only has for s >= 0
 
 
 HOSTS = (
@@ -41,7 +41,7 @@ HOSTS = (
         scenes=(SIDE, BACK, FURNACE),
         surfaces=True,
     ),
-    # Its furnace has another sum of directions for microfacets.
+    # Its furnace sums microfacets over other directions.
     Row(
         "storm",
         "glsl",
@@ -49,7 +49,7 @@ HOSTS = (
         "half pictures",
         scenes=(SIDE, BACK),
         surfaces=True,
-        rounding=2.0**-10,  # half floats, cut off
+        rounding=2.0**-10,  # half floats, truncated
     ),
     # Its environment has noise. No closure of Cycles is QON for s < 0.
     Row("cycles", "osl", "mxeon.hosts.cycles", "pictures", scenes=(SIDE, BACK), front_lit=("qon",)),
@@ -60,7 +60,7 @@ HOSTS = (
 
 
 def host_rows() -> tuple[Row, ...]:
-    """The table, and the rows of `mxeon.survey`: renderers with materials of their own."""
+    """The table, and the rows of `mxeon.survey`: renderers with their own materials."""
     renderers: tuple[Row, ...] = import_module("mxeon.survey").ROWS
     return HOSTS + renderers
 
@@ -70,19 +70,19 @@ def host_names() -> tuple[str, ...]:
 
 
 def host_row(name: str, *others: Row) -> Row:
-    """The row of a host, from `host_rows` or from `others`; InputError lists the known ones."""
+    """The row of a host in `host_rows` or `others`; otherwise InputError lists the known ones."""
     rows = {row.name: row for row in (*host_rows(), *others)}
     assert_known("host", name, rows)
     return rows[name]
 
 
 def front_lit_only(host: str, model: str) -> bool:
-    """Whether a host has a model for s >= 0 alone; what is not in the table has all of it."""
+    """Whether a host only has a model for s >= 0; hosts outside the table have all of it."""
     return any(row.name == host and model in row.front_lit for row in HOSTS)
 
 
 def open_host(name: str, *others: Row) -> Host:
-    """The host of a name, started; Unsupported for a renderer of its own materials alone."""
+    """Start the host of a name; Unsupported for a renderer that only has its own materials."""
     engine = open_engine(name, *others)
     if isinstance(engine, Host):
         return engine
@@ -91,7 +91,7 @@ def open_host(name: str, *others: Row) -> Host:
 
 
 def open_engine(name: str, *others: Row) -> Engine:
-    """The host or renderer of a name, started, or NotRun; `others` are rows beside the table's."""
+    """Start the host or renderer of a name, or raise NotRun; `others` are additional rows."""
     from mxeon.shaders.generation import TARGETS
 
     row = host_row(name, *others)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The base classes of all hosts: their verbs, and the error of those that a host lacks."""
+"""The base classes of all hosts: their verbs, and the error for verbs that a host lacks."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from mxeon.io.files import AnyPath
     from mxeon.shaders.generation import Shader
 
-Array: TypeAlias = NDArray[Any]  # float32 or float64, as a caller or an engine has it
+Array: TypeAlias = NDArray[Any]  # float32 or float64, whichever the caller or engine uses
 Inputs: TypeAlias = Mapping[str, ArrayLike]  # of a node by name, for all pairs or for each
 
 # Matrix by which shaders turn a direction before they look it up in an environment, as generated
@@ -31,11 +31,11 @@ TURN = np.diag([-1.0, 1.0, -1.0, 1.0])
 
 
 class RendererWarning(UserWarning):
-    """A renderer's own warning, which may explain what it renders."""
+    """A warning of the renderer itself, which may explain its picture."""
 
 
 class LobeWarning(UserWarning):
-    """A picture that cannot be right, since its material has light below the surface."""
+    """A picture that cannot be right because its material has light below the surface."""
 
     def __init__(self, element: str, reason: str) -> None:
         super().__init__(f"{element}: {reason}")
@@ -43,7 +43,7 @@ class LobeWarning(UserWarning):
 
 @dataclass(frozen=True)
 class Identity:
-    """Who executed: the host's name, its version and the device it ran on."""
+    """What executed: the host's name, its version and its device."""
 
     name: str
     version: str
@@ -103,9 +103,9 @@ class Host(Engine):
         library: str = "eonlib",
         policy: Policy = DEFAULT,
     ) -> tuple[Shader, ...]:
-        """Shaders of a document for this host; arguments and errors are those of `mxeon.generate`.
+        """Shaders of a document for this host; arguments and errors as for `mxeon.generate`.
 
-        Images that are too large together are refused too; see `mxeon.hosts.textures.check_images`.
+        Images that are too large in total are refused, too; see `mxeon.hosts.textures.check_images`.
         """
         from mxeon.hosts.image_limit import check_images
         from mxeon.shaders.generation import generate
@@ -125,16 +125,16 @@ class Host(Engine):
     def picture(self, shader: Shader, scene: Scene) -> Array:
         """Picture of the unit sphere with a shader on it: linear, row 0 at the top, 0 off the sphere.
 
-        `NotRun` if the host cannot show the scene, or fails; `InputError` for paths where it traces none.
+        `NotRun` if the host cannot show the scene or fails; `InputError` for paths if it traces none.
         """
         raise self._unsupported("pictures of a sphere", "gl")
 
     def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
-        """Why the `picture` of a shader cannot be right, in words; empty where it can."""
+        """Reasons, as text, why the `picture` of a shader cannot be right; empty if it can."""
         return ()
 
     def unread(self, shader: Shader) -> str:
-        """What the host does not read of a shader's document, in words; "" if it reads all."""
+        """The parts of a shader's document that the host does not read, as text; "" if it reads all."""
         return ""
 
     def evaluate(
@@ -176,7 +176,7 @@ class Host(Engine):
         raise self._unsupported("trees of closures", "osl")
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
-        """Values of a function that a text defines, shape (N, 3); a float is in all three columns.
+        """Values of a function defined in a text, shape (N, 3); a float fills all three columns.
 
         - `source`: Functions in the host's language, without includes.
         - `*arguments`: (N, 3) for a vector or color, (N,) for a float, taken as float32; what is the

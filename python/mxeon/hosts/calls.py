@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Calls of a generated shader: the statements by which its main evaluates its BSDFs, EDFs or graph.
+"""The statements with which the main of a generated shader evaluates its BSDFs, EDFs or graph.
 
-A host repeats the statements with arguments of its own, as local variables that hide the shader's.
+A host repeats the statements with its own arguments, in local variables that hide the shader's.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class Prelude:
 
 @lru_cache(maxsize=16)  # the checks of a node share its shader
 def prelude(text: str, end: int) -> Prelude | None:
-    """What is computed before the first BSDF, at `end`; None outside a surface shader's function."""
+    """The statements before the first BSDF, at `end`; None outside a surface shader's function."""
     *_, function = [None, *FUNCTION.finditer(text, 0, end)]
     if function is None or "\n}\n" in text[function.end() : end]:
         return None
@@ -58,8 +58,8 @@ def prelude(text: str, end: int) -> Prelude | None:
     return Prelude(GEOMETRY.sub("", function[2]), inputs | properties)
 
 
-# By branch: the closure type of the call that is repeated, and the one that takes its place. A BSDF
-# that only reflects is called in the first two branches alone.
+# By branch: the closure type of the repeated call, and its replacement. A BSDF
+# that only reflects is only called in the first two branches.
 CLOSURES = {
     "direct": ("CLOSURE_TYPE_REFLECTION", "CLOSURE_TYPE_REFLECTION"),
     "environment": ("CLOSURE_TYPE_INDIRECT", "CLOSURE_TYPE_INDIRECT"),
@@ -163,9 +163,9 @@ def _loop(shader: Shader, block: str, result: str) -> str:
 
 @lru_cache(maxsize=16)  # the checks of a node share its shader
 def _find_calls(text: str, closure: str, element: str) -> tuple[int, str, str, list[str]]:
-    """Place and text of the statements that evaluate BSDFs for a closure type, result, arguments.
+    """Position and text of the statements that evaluate BSDFs, by closure type, result and arguments.
 
-    The last call combines what the others before it return, or is the only one.
+    The last call combines the results of the others, or is the only one.
     """
     # MaterialX before 1.39.5 calls the constructor itself.
     constructor = r"(?:makeClosureData|ClosureData)"
@@ -227,12 +227,12 @@ def _ports(shader: Shader) -> dict[str, Input]:
 
 @lru_cache(maxsize=16)
 def booleans(text: str) -> list[str]:
-    """Names of the inputs that a text for WGSL makes booleans of."""
+    """Names of the inputs that a text for WGSL turns into booleans."""
     return BOOLEAN.findall(text)
 
 
 def _argument(name: str, ports: Mapping[str, Input], inputs: Inputs) -> tuple[str, ArrayLike]:
-    """Type and value of a BSDF's argument; one that is no input of the shader is of the surface."""
+    """Type and value of a BSDF's argument; if it is not an input of the shader, it belongs to the surface."""
     port = ports.get(name)
     if port is None:
         tangent = "tangent" in name.lower() or "tworld" in name.lower()

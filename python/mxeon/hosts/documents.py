@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What hosts share that read documents and libraries by themselves, each in a process of its own.
+"""Shared code of hosts that read documents and libraries themselves, each in its own process.
 
 They generate the shader again, and draw it with their own lights and uniforms on the quads of
 `mxeon.hosts.documents`.
@@ -35,9 +35,9 @@ STEEPEST = 0.05  # cosine of a tangent plane with the view: nearer to the rim it
 def quads(size: int, place: tuple[float, float] = (0.0, 0.0)) -> dict[str, NDArray[np.float32]]:
     """The quads of a picture of `size` x `size` pixels, four vertices each, counterclockwise.
 
-    Each has one normal, so that every pixel is an exact point, at `place` in half widths from its middle.
+    Each has one normal, so every pixel is an exact point, at `place` in half widths from its center.
     A quad lies in the tangent plane and covers the pixel: its derivatives of positions are those of the
-    sphere. Those of "texcoord" have their directions but are smaller, so that textures are read at full
+    sphere. Those of "texcoord" have the same directions but are smaller, so textures are read at full
     size, as from a point. Row 0 at the top comes first.
     """
     points = sphere(size)
@@ -64,7 +64,7 @@ def quads(size: int, place: tuple[float, float] = (0.0, 0.0)) -> dict[str, NDArr
 
 
 def quad_file(folder: Path, size: int, place: tuple[float, float] = (0.0, 0.0)) -> Path:
-    """File of the quads of a picture, written by the first request; parameters as those of `quads`."""
+    """File of the quads of a picture, written by the first request; parameters as for `quads`."""
     path = folder / f"quads{size}{place}.npz"
     if not path.exists():
         np.savez(path, **quads(size, place))  # type: ignore[arg-type]  # NumPy takes it for an option
@@ -74,15 +74,15 @@ def quad_file(folder: Path, size: int, place: tuple[float, float] = (0.0, 0.0)) 
 # Pixels along a quad where blocks of 2 x 2 have to lie in one of its two triangles, and the place of the
 # pixel that is read: right of the diagonal and below the middle.
 BLOCK, PLACE = 4, (0.25, -0.25)
-PICTURES = 64  # that are kept: the checks of a node ask for some of them again
+PICTURES = 64  # to keep: the checks of a node request some of them again
 
 
 class DocumentHost(base.Host):
-    """A renderer that reads documents, with a process for each library, one at a time, and a folder.
+    """A renderer that reads documents, with one process at a time, for one library, and a folder.
 
-    Beside the module of a host lies `worker.py`, which gets the folder whose `libraries` replace
-    MaterialX's own, or "", and those of the libraries that are loaded before these, as arguments. One
-    picture may take `limit` seconds, in which its shader is compiled.
+    Next to the module of a host is `worker.py`. Its arguments are the folder whose `libraries` replace
+    MaterialX's own, or "", and the libraries to load before these. One picture, including the
+    compilation of its shader, may take `limit` seconds.
     """
 
     target: ClassVar[str] = "glsl"
@@ -129,11 +129,11 @@ class DocumentHost(base.Host):
         """Raise NotRun or ShaderError for a reply's error or what the renderer printed."""
 
     def _document(self, shader: Shader) -> tuple[str, str]:
-        """Text of a shader's document, and the name path of the element that is shown."""
+        """Text of a shader's document, and the name path of the element to show."""
         return mx.writeToXmlString(shader.document), shader.element
 
     def _needs_blocks(self, shader: Shader) -> bool:
-        """Whether a pixel has to lie in a block of pixels that one triangle covers, which takes longer."""
+        """Whether one triangle has to cover the block of pixels around each pixel, which takes longer."""
         return False
 
     def _worker(self) -> Worker:
@@ -145,7 +145,7 @@ class DocumentHost(base.Host):
     def _drawn(
         self, text: str, element: str, scene: Scene, folders: tuple[str, ...], blocks: bool
     ) -> Array:
-        # Write the document, by a name of its own: OpenUSD keeps what it has read.
+        # Write the document under a new name: OpenUSD caches files.
         document = self._folder / f"{sha256(text.encode()).hexdigest()}.mtlx"
         document.write_text(text, encoding="utf-8")
         output = self._folder / "output.npy"

@@ -30,16 +30,16 @@ FETCH = {
 FETCH["vector3"] = FETCH["vec3"] = FETCH["color3"]
 FETCH["vector2"] = "vec2 {0} = {1}.xy;"
 FETCH["integer"] = "int {0} = int({1}.x);"
-# More arguments than a stage may have textures share one, whose layers lie above each other.
+# If a stage may not have enough textures, arguments share one with stacked layers.
 STACK = "mxeon_stack"
-MOST = 12  # textures of arguments; every device has 16, and the environment takes some
+MOST = 12  # textures of arguments; every device has 16, and the environment uses some
 LAYER = (
     f"texelFetch({STACK}, mxeon_pixel + ivec2(0, {{0}} * (textureSize({STACK}, 0).y / {{1}})), 0)"
 )
 COMPONENTS = {"float": 1, "boolean": 1, "integer": 1, "vector2": 2}  # 3 of every other type
 WIDTH = 1024  # most pixels in a row of an evaluation
 PART = 1 << 15  # elements of one frame of it
-# Columns and rows of a texture of arguments beside the even ones of its frame: Mesa compiles a program
+# Columns and rows of a texture of arguments, in addition to its frame's even number: Mesa compiles a program
 # once for textures whose sides are powers of two, and once for others.
 ODD = 1
 
@@ -108,7 +108,7 @@ def bsdf_evaluation(
     branch: str,
     output: str = OUTPUTS[0],
 ) -> tuple[str, Columns]:
-    """Pixel stage that evaluates a shader's BSDF, and its texels (N, 1 to 3) by sampler."""
+    """A pixel stage that evaluates a shader's BSDF, and its texels (N, 1 to 3) by sampler."""
     dialect = DIALECTS[shader.target]
     call = bsdf_call(shader, wo, wi, inputs, branch, output)
     version, text = shader.stages["pixel"].split("\n", 1)
@@ -131,7 +131,7 @@ def function_evaluation(
     arguments: Sequence[ArrayLike],
     target: str = "glsl",
 ) -> tuple[str, Columns]:
-    """Pixel stage that evaluates a function of `source`, and its texels as in `bsdf_evaluation`."""
+    """A pixel stage that evaluates a function of `source`, and its texels as in `bsdf_evaluation`."""
     dialect = DIALECTS[target]
     values = {
         name: (kind, value) for (kind, name), value in zip(parameters, arguments, strict=True)
@@ -142,7 +142,7 @@ def function_evaluation(
 
 
 def frame(arguments: Mapping[str, Array]) -> tuple[int, tuple[int, int]]:
-    """Number of elements, that of the longest argument, and size of the frame for them.
+    """Number of elements of the longest argument, and the size of a frame for them.
 
     Width and height are even: a change from pixel to pixel is that within a square of 2 x 2.
     """
@@ -164,7 +164,7 @@ def parts(arguments: Mapping[str, Array]) -> Iterator[dict[str, Array]]:
 def texels(values: Array, size: tuple[int, int], margin: int = 0) -> NDArray[np.float32]:
     """Values, a row per element or one for all, or layers of them, laid out over a frame of `size`.
 
-    With a margin a layer has so many columns and rows more.
+    A margin adds that many columns and rows to a layer.
     """
     width, height = size
     layers = values[np.newaxis] if values.ndim == 2 else values

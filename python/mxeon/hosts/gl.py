@@ -18,19 +18,19 @@ from mxeon.hosts.raster import FragmentHost
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.scene import Scene
 
-PROGRAMS = 6  # that are kept, of 10 MB each: a document's scenes and a node's checks share theirs
+PROGRAMS = 6  # to keep, of 10 MB each: a document's scenes and a node's checks share them
 ROWS = 256  # of a texture that are copied at a time
-CONSTANTS = 64  # textures of one value that are kept: most inputs are the same for all pixels
-POINTS = 4  # textures of points that are kept: most materials have the same vertex stage
+CONSTANTS = 64  # textures of one value to keep: most inputs are the same for all pixels
+POINTS = 4  # textures of points to keep: most materials have the same vertex stage
 
 P = ParamSpec("P")
 T = TypeVar("T")
 
 
 def _current(verb: Callable[Concatenate[Host, P], T]) -> Callable[Concatenate[Host, P], T]:
-    """Verb with the host's context current: other hosts of a process have contexts of their own.
+    """Make the host's context current for a verb: other hosts of the process have their own.
 
-    An object of OpenGL is a number that each context counts for itself. What Python drops at any
+    An object of OpenGL is a number that each context counts itself. What Python drops at any
     time is therefore deleted here, where its own context is current, and nowhere else.
     """
 
@@ -94,7 +94,7 @@ class Host(FragmentHost):
         size: tuple[int, int],
         passes: Iterable[int],
     ) -> NDArray[np.float32]:
-        """Sum of what a fragment shader draws in `passes`, each the value of the uniform `tracer_pass`.
+        """The sum of what a fragment shader draws, for each value of the uniform `tracer_pass` in `passes`.
 
         Shape (height, width, 4), row 0 at the bottom. Uniforms that the shader does not use are left out.
         """
@@ -158,7 +158,7 @@ class Host(FragmentHost):
         size: tuple[int, int],
         parts: Sequence[raster.Rectangle] = (),
     ) -> Array:
-        """One frame as float32 (height, width, 3), row 0 at the bottom; all of it, or only some parts."""
+        """One frame as float32 (height, width, 3), row 0 at the bottom; all of it or some parts."""
         context = self._context
         frame = context.framebuffer([context.renderbuffer(size, components=4, dtype="f4")])
         frame.use()
@@ -176,7 +176,7 @@ class Host(FragmentHost):
     def _textures(
         self, program: moderngl.Program, texels: Mapping[str, Array]
     ) -> dict[str, moderngl.Texture | moderngl.TextureArray]:
-        """Textures of the samplers that a program has; those of one array share one.
+        """Textures for the samplers of a program; samplers of one array share a texture.
 
         A map of the environment ends at its poles. The even one of a check repeats: clamping would
         turn a coordinate that is not a number into one, and the check would see nothing.

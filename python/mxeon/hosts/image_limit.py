@@ -19,7 +19,7 @@ def image_files(shaders: Iterable[Shader]) -> tuple[str, ...]:
 
 
 def check_images(shaders: Iterable[Shader], policy: Policy) -> None:
-    """Refuse images of a document that are too large together, before any of them is read.
+    """Refuse images of a document that are too large in total, before any of them is read.
 
     Raises DocumentError if they have more pixels than the policy permits; ImageError if one is no
     image, or has more channels than a color.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Renderers whose pictures show a pair of directions in each pixel, and so evaluate any pairs."""
+"""Renderers whose pictures show one pair of directions per pixel, so they evaluate any pairs."""
 
 from __future__ import annotations
 
@@ -40,9 +40,9 @@ class PairHost(base.Host):
         output: str = "response",
         irradiance: Array | None = None,
     ) -> Array:
-        """Values that a renderer gives to the closures of a shader; see `mxeon.hosts.base.Host`.
+        """The values of a shader's closures in a renderer; see `mxeon.hosts.base.Host`.
 
-        The throughput is what is seen of a white emission below. The environment is sampled, so that it
+        The throughput is the visible part of a white emission below. The environment is sampled, so it
         has noise; what comes through the surface is part of it. InputError if a pair in the light of a
         point is not `mxeon.hosts.pairs.visible`.
         """
@@ -134,7 +134,7 @@ def tilted_triangles(wo: Array, wi: Array, size: int) -> TiltedTriangles:
     """Triangles that show pairs (N, 3), N <= size^2, with a sine of at least LEAST_SINE.
 
     The camera looks down from far away with parallel rays, and a light of one point lies beside the
-    picture. The depth of a triangle on the ray of its pixel decides about the angle between view and
+    picture. The depth of a triangle on the ray of its pixel sets the angle between view and
     light. It is turned so that its own normal and the shaded one are the same.
     """
     # Points at which the light appears at the angle.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A process of a renderer's own, which answers one request after the other.
+"""A renderer's own process, which answers one request after the other.
 
 The other end of the pipe is a script of the host, started by its path. It reads one JSON object per line
 on standard input and answers each with one on standard output, the first one with its version. The process
@@ -69,7 +69,7 @@ class Worker:
         self.version, self.device = greeting["version"], greeting.get("device", "")
 
     def ask(self, **request: object) -> Reply:
-        """The reply to a request; NotRun, with its last lines, if the process ends or is silent."""
+        """The reply to a request; NotRun, with the last lines printed, if the process ends or is silent."""
         self.start()
         self._read = self.log.stat().st_size
         assert self._process

@@ -26,7 +26,7 @@ Uniforms: TypeAlias = dict[str, Plain]  # values by name
 
 Rectangle: TypeAlias = tuple[int, int, int, int]  # left, lowest row, width, height
 
-BAND = 4  # rows of a picture that are drawn as far as the shape reaches
+BAND = 4  # rows of a picture that are drawn together, as wide as the shape
 VIEW_DISTANCE = 1e8  # makes normalize(u_viewPosition - positionWorld) the z axis, in float32
 # Not of one texel, which has no mipmaps: Mesa would compile a program once more for an uneven environment.
 WHITE = np.ones((2, 2, 3), dtype=np.float32)
@@ -79,7 +79,7 @@ def environment(irradiance: Array | None) -> dict[str, Array]:
 
 
 def inputs(shader: Shader) -> Uniforms:
-    """Values of the uniforms that carry a shader's inputs, but for its images.
+    """Values of the uniforms for a shader's inputs, except images.
 
     A matrix is a flat tuple, whose rows are the columns of the uniform; each member of a structure
     is a uniform of its own.
@@ -116,7 +116,7 @@ def light(scene: Scene) -> Uniforms:
 
 @lru_cache(maxsize=8)
 def bands(size: int, shape: str) -> tuple[Rectangle, ...]:
-    """Rectangles that hold a shape in a frame whose row 0 is at the bottom: nothing shows beside it.
+    """Rectangles that cover a shape in a frame whose row 0 is at the bottom; the rest stays empty.
 
     Their edges are multiples of BAND, so that each pixel's neighbors are drawn with it.
     """

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Slang on a GPU or the CPU: generated Slang compiled by slangpy, in float32.
 
-A compute kernel after the generated text, which stays as it is, repeats the statements by which
+The generated text is unchanged; a compute kernel after it repeats the statements with which
 the text calls its BSDF. Arguments arrive in buffers, one row per thread.
 """
 
@@ -27,7 +27,7 @@ Resource: TypeAlias = Any  # an object of slangpy, whose types are known where i
 def _slangpy() -> Resource:
     """slangpy; None where it is not installed.
 
-    It imports PyTorch where that is installed, which takes two seconds and serves no buffer of ours.
+    It imports PyTorch if that is installed, which takes two seconds and is not needed here.
     """
     modules = cast(dict[str, object], sys.modules)
     unused = modules.setdefault("torch", None) is None  # as if it were not installed
@@ -73,7 +73,7 @@ void {entry}(uint3 mxeon_thread : SV_DispatchThreadID)
 }}
 """
 
-# GLSL's words for what the shader functions use, where Slang has other words.
+# GLSL's names that the shader functions use and Slang calls differently.
 GLSL = """typealias vec3 = float3;
 #define mix lerp
 """

@@ -30,9 +30,9 @@ def texels_of(path: str | Path) -> int:
 def read_texture(path: str | Path) -> NDArray[np.float32]:
     """Pixels of a texture, row 0 at the bottom, where MaterialX has v = 0.
 
-    Of a set of textures it is that of [0, 1]^2, in which all coordinates of a sphere lie. One channel
-    is repeated for all colors, as in MaterialX: by a view, whose last stride is 0. More channels than
-    those of a color raise ImageError; a value that is not finite warns.
+    For a set of textures, it is the one of [0, 1]^2, which contains all coordinates of a sphere. One channel
+    is repeated for all colors, as in MaterialX, by a view with a last stride of 0. More channels than
+    a color has raise ImageError; a value that is not finite warns.
     """
     for token, word in FIRST_TILE.items():
         path = str(path).replace(token, word)
@@ -60,7 +60,7 @@ def read_latlong(environment: float | str | Path | None) -> NDArray[np.float32]:
 
 
 def _not_finite(pixels: NDArray[np.float32]) -> str:
-    """The first value that is not a finite number, and how many there are; empty if none is."""
+    """The first value that is not finite, and their number; empty if all are finite."""
     if np.isfinite([pixels.min(), pixels.max()]).all():  # either is NaN if a value is
         return ""
     finite = np.isfinite(pixels)
@@ -74,7 +74,7 @@ def irradiance(radiance: NDArray[np.float32]) -> NDArray[np.float32]:
 
         (1 / pi) integral of L(omega) max(0, n . omega) d omega
 
-    That of a uniform environment is its radiance, exactly.
+    For a uniform environment, that is exactly its radiance.
     """
     if radiance.shape[:2] == (1, 1):
         return radiance

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A Vulkan device without a window: generated Vulkan GLSL as SPIR-V, in float32.
 
-glslang makes the SPIR-V, wgpu passes it to the driver. wgpu takes no interface block: the one that
+glslang makes the SPIR-V, wgpu passes it to the driver. wgpu rejects interface blocks, so the one that
 an evaluation leaves unused is removed from the SPIR-V, not from the text.
 """
 
@@ -58,7 +58,7 @@ FORMATS = {"uint8": "rgba8unorm", "float16": "rgba16float"}  # which can be filt
 FLOATS = {1: "r32float", 2: "rg32float", 4: "rgba32float"}  # components -> format
 WHITE = np.full((1, 1, 4), 255, dtype=np.uint8)
 
-PROGRAMS = 8  # kept: the checks of a node evaluate one shader many times
+PROGRAMS = 8  # to keep: the checks of a node evaluate one shader many times
 
 Resource: TypeAlias = Any  # an object of wgpu, whose types are known where it is installed
 Kind: TypeAlias = Mapping[str, object]  # of a resource, as wgpu wants it
@@ -133,7 +133,7 @@ class Host(FragmentHost):
     def _program(
         self, pixel: str, sets: Iterable[Bindings]
     ) -> tuple[tuple[Resource, ...], Resource]:
-        """Layouts of a text's bindings, and its pipeline: the same whatever the resources."""
+        """Layouts of a text's bindings, and its pipeline; both are independent of the resources."""
         if pixel not in self._programs:
             if len(self._programs) == PROGRAMS:
                 self._programs.clear()
@@ -197,7 +197,7 @@ class Host(FragmentHost):
         return _spirv(stage, text)
 
     def _generated(self, text: str, textures: Mapping[str, Array]) -> Bindings:
-        """Bindings that generated text declares: textures, white ones unless given, and blocks."""
+        """Bindings that generated text declares: textures (white unless given) and blocks."""
         unique = {id(texels): texels.astype(np.float16) for texels in textures.values()}
         halves = {name: unique[id(texels)] for name, texels in textures.items()}
         return {

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """WebGL2 in a headless Chromium: generated ESSL as a browser runs it, in float32.
 
-Playwright drives the browser that is installed. The page, `webgl.js`, draws a frame per request. It
+Playwright drives the installed browser. The page, `webgl.js`, draws one frame per request. It
 reads arrays from a file, bit for bit, and returns pixels as text. No host name resolves in this
-browser: nothing leaves the machine.
+browser, so nothing leaves the machine.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ try:
 except ImportError:
     sync_api = None
 
-Page: TypeAlias = Any  # and what it asks for, of Playwright, whose types mypy skips
+Page: TypeAlias = Any  # Playwright's types, which mypy skips
 Answer: TypeAlias = dict[str, str]  # of a page
 Layout: TypeAlias = dict[str, object]  # shape and offset in a file, by name
 
@@ -50,7 +50,7 @@ FLAGS = (
 PAGE = "<input type='file'><script>{}</script>"
 IDENTITY = np.eye(4).ravel().tolist()
 VERTEX = fragment.DIALECTS["essl"].vertex
-POINTS = 4  # pictures' points that are kept: most materials have the same vertex stage
+POINTS = 4  # points of pictures to keep: most materials have the same vertex stage
 
 # ESSL gives uniforms no initial values.
 UNIFORMS = {
@@ -60,13 +60,13 @@ UNIFORMS = {
     "u_envMatrix": TURN.ravel().tolist(),
     "u_envLightIntensity": 1.0,
 }
-IMAGE = {"uv_scale": (1.0, 1.0), "uv_offset": (0.0, 0.0)}  # of every image that is no atlas
+IMAGE = {"uv_scale": (1.0, 1.0), "uv_offset": (0.0, 0.0)}  # of every image outside an atlas
 
 
 class Chromium:
-    """A headless browser with a page, started by the first request and again after it died.
+    """A headless browser with a page, started by the first request and restarted after a crash.
 
-    Playwright wants a thread without an event loop, and always the same: it gets one of its own. A
+    Playwright needs one thread without an event loop, so it gets its own. A
     request that takes `limit` seconds ends the browser.
     """
 
@@ -93,7 +93,7 @@ class Chromium:
     def _ask(
         self, function: str, job: dict[str, object] | None = None, file: Path | None = None
     ) -> Answer:
-        """Answer of a function of the page, with the version of the browser."""
+        """The result of a function of the page, with the version of the browser."""
         answer = self._thread.submit(self._answer, function, job, file).result()
         if "failed" in answer:
             raise NotRun(f"{self._host}: {answer['failed']}")
@@ -190,7 +190,7 @@ class Host(Chromium, FragmentHost):
     def _capture(
         self, vertex: str, captured: tuple[points.Output, ...], size: int, shape: str
     ) -> NDArray[np.float32]:
-        """Texels of what a vertex stage gives at the points of a picture."""
+        """Texels of a vertex stage's outputs at the points of a picture."""
         attributes = points.vertices(size, shape)
         job = {
             "vertex": vertex,
@@ -206,7 +206,7 @@ class Host(Chromium, FragmentHost):
     def _bytes(
         self, function: str, job: Mapping[str, object], arrays: Mapping[str, Mapping[str, Array]]
     ) -> bytes:
-        """Bytes that a function of the page makes of a job and arrays."""
+        """Bytes that a function of the page returns for a job and arrays."""
         with TemporaryDirectory(prefix="mxeon-webgl-") as folder:
             file = Path(folder, "arrays")
             answer = self._ask(function, {**job, **_write(file, arrays)}, file)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """WebGPU without a browser: MaterialX's text for its target WGSL, in float32.
 
-That text is GLSL for a converter. wgpu has one, naga, which reads it as it is and makes of it what it
-makes of WGSL; no text of WGSL comes to light.
+That text is GLSL for a converter. wgpu's converter, naga, reads it unchanged and compiles it as it
+compiles WGSL, without writing any WGSL.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ class Host(vulkan.Host):
     programs = ()
 
     def _vertex(self, pixel: str) -> str:
-        """A vertex stage with the block that the pixel stage has, 0 in all of it.
+        """A vertex stage with the pixel stage's block, all 0.
 
-        naga keeps what an evaluation leaves unused, and wgpu then asks for it.
+        naga keeps what an evaluation does not use, and wgpu requires it.
         """
         head, rest = super()._vertex(pixel).split("\n", 1)
         outputs = [f"layout (location = 0) out {block}\n" for block in BLOCK.findall(pixel)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files: regular ones alone are read, and those that are written appear whole or not at all."""
+"""Files: only regular ones are read, and written ones appear whole or not at all."""
 
 import errno
 import os
@@ -12,7 +12,7 @@ from secrets import token_hex
 from mxeon.errors import InputError
 
 AnyPath = str | os.PathLike[str]
-TEMPORARY = ".mxeon-"  # begins the names of files and folders that are not whole yet
+TEMPORARY = ".mxeon-"  # prefix of files and folders that are not complete yet
 
 
 def below(folder: AnyPath, name: AnyPath) -> Path:
@@ -30,16 +30,16 @@ def below(folder: AnyPath, name: AnyPath) -> Path:
 
 @contextmanager
 def replacing(path: AnyPath) -> Iterator[Path]:
-    """New empty file beside `path` to write to, moved onto it when the block ends without an error.
+    """A new empty file next to `path`, moved onto it if the block ends without an error.
 
-    Its folder is created if need be. A link is followed: see `below` for names that the user did not
-    write. The new file has the same suffix, from which image writers take the format. After an error,
-    nothing half-written stays behind.
+    Its folder is created if needed. A link is followed: see `below` for names that the user did not
+    write. The new file has the same suffix, because image writers infer the format from it. After an
+    error, nothing half-written remains.
     """
     path = Path(os.path.realpath(path)) if os.path.islink(path) else Path(path)
     if not path.name:
         raise OSError(errno.EINVAL, "not the name of a file", str(path))
-    if path.exists() and not path.is_file():  # a device that is replaced is gone
+    if path.exists() and not path.is_file():  # replacing a device would destroy it
         raise OSError(errno.EINVAL, "not a regular file", str(path))
     path.parent.mkdir(parents=True, exist_ok=True)
     # Nobody can guess the name, and no link or other writer has it.
@@ -52,13 +52,13 @@ def replacing(path: AnyPath) -> Iterator[Path]:
                 os.fsync(file.fileno())  # some file systems report a full disk only here
             os.replace(beside, path)
         finally:
-            with suppress(OSError):  # of a folder that cannot be written: the first error says so
+            with suppress(OSError):  # of a folder that is not writable: the first error reports it
                 beside.unlink(missing_ok=True)
 
 
 @contextmanager
 def naming(path: AnyPath) -> Iterator[None]:
-    """Let the system's errors name `path`: they name a temporary file, or none on a full disk."""
+    """Make the system's errors name `path`; they name a temporary file, or none on a full disk."""
     try:
         yield
     except OSError as error:
@@ -70,7 +70,7 @@ def naming(path: AnyPath) -> Iterator[None]:
 def write_text(path: AnyPath, text: str) -> None:
     """Write `text` to `path` in UTF-8, replacing it whole; see `replacing`.
 
-    A lone surrogate, which a file name can bring in and UTF-8 cannot hold, becomes "?".
+    A lone surrogate, which a file name can contain and UTF-8 cannot, becomes "?".
     """
     with replacing(path) as beside:
         beside.write_text(text, encoding="utf-8", errors="replace")
@@ -89,5 +89,5 @@ def regular(path: AnyPath, flags: int) -> int:
 
 
 def assert_regular(path: AnyPath) -> None:
-    """Raise OSError unless a path names a readable regular file; for libraries that open by name."""
+    """Raise OSError unless a path is a readable regular file; for libraries that open by name."""
     os.close(regular(path, os.O_RDONLY))

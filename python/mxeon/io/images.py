@@ -39,7 +39,7 @@ INCOMPLETE = "the file is incomplete; the disk may be full"
 
 
 class ImageWarning(UserWarning):
-    """An image that can be read and is damaged, or that holds other values than numbers."""
+    """A readable image that is damaged or contains values that are not numbers."""
 
 
 def difference(image: ArrayLike, reference: ArrayLike) -> Floats:
@@ -56,9 +56,9 @@ def difference(image: ArrayLike, reference: ArrayLike) -> Floats:
 
 
 def difference_scale(difference_map: ArrayLike) -> float:
-    """Full scale of a plot of a difference: the next of 1, 2, 5, 10, ... above nearly all of it.
+    """Full scale of a plot of a difference: the next of 1, 2, 5, 10, ... above nearly all values.
 
-    That is its 99th percentile, as a few pixels at a rim or a terminator must not darken the rest; at
+    It is based on the 99th percentile, because a few pixels at a rim must not darken the rest, and is at
     least 1e-9, so that equal images have a scale too. Values that are not finite are left out.
 
         >>> difference_scale([0.0, 0.003, 0.0031, float("nan")])
@@ -76,8 +76,8 @@ def difference_scale(difference_map: ArrayLike) -> float:
 def read_image(path: AnyPath) -> Pixels:
     """Pixels of an image file, row 0 at the top, as stored: no color is transformed.
 
-    ImageError if it has more than LARGEST values, which a small file can; ImageWarning for an image that
-    OpenImageIO reads with an error, such as a JPEG file that is cut.
+    ImageError if it has more than LARGEST values, which even a small file can; ImageWarning for an image that
+    OpenImageIO reads with an error, such as a truncated JPEG.
     """
     import OpenImageIO as oiio
 
@@ -110,7 +110,7 @@ def open_image(path: AnyPath) -> oiio.ImageInput:
 
 
 def words(message: Callable[[], str]) -> str:
-    """A library's message on one line; bytes of a file in it that are no UTF-8 as backslashes and hex.
+    """A library's message on one line; bytes that are not UTF-8 become backslashes and hex.
 
     >>> words(lambda: b"channel \\xff is\\nmissing".decode())
     'channel \\\\xff is missing'
@@ -123,9 +123,9 @@ def words(message: Callable[[], str]) -> str:
 
 
 def write_image(path: AnyPath, pixels: Pixels | Codes, attributes: Mapping[str, str | int]) -> None:
-    """Write pixels to an image file in the format that the ending of `path` names.
+    """Write pixels to an image file in the format of `path`'s suffix.
 
-    The last row is read again: OpenImageIO's PNG writer, and any whose last bytes wait in a buffer of
+    The last row is read back: OpenImageIO's PNG writer, and others whose last bytes wait in a buffer of
     the C library, report no full disk.
     """
     import OpenImageIO as oiio
@@ -169,7 +169,7 @@ def _is_whole(path: Path, pixels: Pixels | Codes) -> bool:
 def without_threads() -> Iterator[None]:
     """Let OpenImageIO encode in the caller's thread, for callers that write many images at once.
 
-    To compress a row of a small EXR file takes less time than to give it to another thread.
+    Compressing a row of a small EXR file takes less time than handing it to another thread.
     """
     import OpenImageIO as oiio
 

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Work in other processes and on other machines. Knows nothing of shading."""
+"""Work in other processes and on other machines. Independent of shading."""
 
 from mxeon.errors import InputError
 
 TIMEOUT = 300.0  # for one item
-WAIT = 60.0  # for the workers of a cluster to come, or to come back when all restart at once
-LONGEST = 1e6  # what waits cannot count much further
+WAIT = 60.0  # for the workers of a cluster to arrive, or to return if all restart at once
+LONGEST = 1e6  # the longest wait that timers accept
 
 
 def check_timeout(seconds: float, name: str = "timeout") -> None:

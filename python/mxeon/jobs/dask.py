@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Work on many items on the machines of a Dask cluster. Needs the `dask` extra.
 
-Dask places the items, restarts workers and tries items again. This module adds what Dask does not
-have: items that only some machines can do, and timeouts.
+Dask schedules the items, restarts workers and retries items. This module adds what Dask does not
+have: items that only some machines can run, and timeouts.
 """
 
 from __future__ import annotations
@@ -30,16 +30,16 @@ from mxeon.jobs.pool import Outcome, log_bug
 ANSWER = 10.0  # seconds until a scheduler answers
 GONE = "scheduler must run until the end; it answers no more"
 LOGGERS = ("distributed", "tornado", "asyncio")
-WINDOW = 2  # items under way for each worker: results do not pile up, newcomers get their share
-POLL = 1.0  # seconds between looks at the workers that come and go
-FETCH = 10.0  # seconds for a result's way here, of which most have some kilobytes
+WINDOW = 2  # items in flight per worker: results do not pile up, and newcomers get their share
+POLL = 1.0  # seconds between polls of the workers, which come and go
+FETCH = 10.0  # seconds for the transfer of a result, usually a few kilobytes
 
 
 @contextmanager
 def connect(address: str, wait: float = WAIT) -> Iterator[Workers]:
     """Connect to the workers of a cluster by the address of its scheduler, "tcp://host:8786".
 
-    It may be without a compatible worker for `wait` seconds, now and later: else NotRun. InputError if no
+    NotRun if it has no compatible worker for `wait` seconds, now or later. InputError if no
     scheduler answers, or none of the workers is compatible.
     """
     check_timeout(wait, "waitForWorkers")
@@ -56,7 +56,7 @@ def _client(address: str, wait: float) -> Any:
     except ModuleNotFoundError:
         raise PackageError(f"--scheduler needs distributed: {install('dask')}") from None
     for name in (*LOGGERS, *logging.root.manager.loggerDict):
-        if name.partition(".")[0] in LOGGERS:  # what these tell is told here in one line
+        if name.partition(".")[0] in LOGGERS:  # their messages are reported here in one line
             logging.getLogger(name).setLevel(logging.CRITICAL + 1)
     rule = f"scheduler must be the address of a running Dask scheduler; got {address!r}"
     if not address.strip():
@@ -71,9 +71,9 @@ def _client(address: str, wait: float) -> Any:
 
 
 def _in_time(work: Callable[[], Any], seconds: float) -> Any:
-    """What work returns or raises within some seconds; None if it goes on, in a thread that nobody joins.
+    """The result or error of work within some seconds; None if it continues, in a thread that nobody joins.
 
-    Dask waits for a scheduler that takes a connection and says nothing for minutes.
+    Dask waits for minutes for a scheduler that accepts a connection and does not reply.
     """
     future: futures.Future[Any] = futures.Future()
 
@@ -89,7 +89,7 @@ def _in_time(work: Callable[[], Any], seconds: float) -> Any:
 
 
 class Workers:
-    """The workers of a cluster; those that have this version and one thread are compatible."""
+    """The workers of a cluster; those with this version and one thread are compatible."""
 
     def __init__(self, client: Any, wait: float) -> None:
         self.client = client
@@ -114,7 +114,7 @@ class Workers:
             time.sleep(min(POLL, self._wait))
 
     def compatible(self) -> frozenset[str]:
-        """Addresses of the compatible workers; warns once of each other one."""
+        """Addresses of the compatible workers; warns once about each other one."""
         info = self.client.scheduler_info(n_workers=-1)
         if "workers" not in info:  # the client has closed
             raise NotRun(GONE)
@@ -135,7 +135,7 @@ class Workers:
         return frozenset(address for address in threads if self._compatible.get(address))
 
     def submit(self, *task: Any, on: frozenset[str]) -> Any:
-        """The future of a task that some of the workers may do."""
+        """The future of a task that some of the workers may run."""
         return self.client.submit(*task, workers=sorted(on), pure=False)
 
 
@@ -148,8 +148,8 @@ def run(
 ) -> Iterator[tuple[int, Outcome]]:
     """Outcomes of `work` on every item, as they come; see `mxeon.jobs.pool.run`.
 
-    An item that takes `timeout` seconds ends its worker process, and the nanny starts another. Where
-    `work` raises `unavailable`, the item goes to other workers. NotRun if the cluster is without a
+    An item that takes `timeout` seconds ends its worker process, and the nanny starts another. If
+    `work` raises `unavailable`, the item goes to other workers. NotRun if the cluster has no
     compatible worker for too long, or its scheduler is gone.
     """
     from distributed import wait
@@ -192,7 +192,7 @@ class _Task:
 
 
 class WorkerUnavailable(Exception):
-    """A worker cannot do an item; holds the reason and its address."""
+    """A worker cannot run an item; holds the reason and the worker's address."""
 
     def __init__(self, reason: str, worker: str) -> None:
         super().__init__(reason, worker)
@@ -205,7 +205,7 @@ class WorkerUnavailable(Exception):
 def _progress(
     future: Any, task: _Task, compatible: frozenset[str]
 ) -> tuple[Outcome | None, _Task | None]:
-    """The outcome of a task that is done, or the task to submit again, or neither."""
+    """The outcome of a finished task, the task to resubmit, or neither."""
     if not future.done():
         return None, None if task.chosen & compatible else task  # its workers are gone
     try:
@@ -227,7 +227,7 @@ def _progress(
 def _work_timed(
     work: Callable[[Any], Any], item: Any, timeout: float, unavailable: type[Exception]
 ) -> Any:
-    """Work on an item, on a worker; its process ends at the timeout."""
+    """Run an item on a worker; its process ends at the timeout."""
     from distributed import get_worker
 
     faulthandler.dump_traceback_later(timeout, exit=True, file=sys.__stderr__ or 2)

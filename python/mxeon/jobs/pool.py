@@ -40,7 +40,7 @@ class Attempt:
 
 
 def by_group(groups: Sequence[Hashable]) -> list[int]:
-    """Positions of items by their groups, those of one group after each other, in the order of the first.
+    """Positions of items sorted by group, in the order in which the groups first appear.
 
     >>> by_group(["a", "b", "a"])
     [0, 2, 1]
@@ -52,11 +52,10 @@ def by_group(groups: Sequence[Hashable]) -> list[int]:
 
 
 class Queue:
-    """Attempts that wait, by group.
+    """Waiting attempts, by group.
 
-    What the items of a group have in common is then done by one worker once. A worker begins a group
-    that no other works on, in the order in which they came, and helps with the longest where there is
-    none.
+    Items of a group share work, so one worker does it once. A worker begins a group
+    that no other works on, in the order of arrival, or helps with the longest one.
     """
 
     def __init__(self, attempts: Sequence[Attempt]) -> None:
@@ -69,7 +68,7 @@ class Queue:
         self._groups.setdefault(attempt.group, deque()).append(attempt)
 
     def take(self, worker: int) -> Attempt:
-        """The next attempt for a worker; there has to be one."""
+        """The next attempt for a worker; one must be waiting."""
         if self._current.get(worker) not in self._groups or worker not in self._current:
             others = {group for each, group in self._current.items() if each != worker}
             free = (group for group in self._groups if group not in others)
@@ -91,13 +90,13 @@ class Queue:
 
 logger = logging.getLogger(__name__)
 
-# A tracker outlives a process that was killed, and would tell of its semaphores on the terminal.
+# A tracker outlives a killed process and would report its semaphores on the terminal.
 QUIET = "ignore::UserWarning:multiprocessing.resource_tracker"
 ATTEMPTS = 2
-BREAKS = 3  # pools that break one after the other before any item is done
+BREAKS = 3  # pools that may break in a row before any item is done
 START = 60.0  # seconds that a process may take before it begins to work
-LOCK = 10.0  # seconds until workers take over the lock of one that was killed while it held it
-LAST = 4  # tasks a worker that are left when none is scheduled ahead of its turn
+LOCK = 10.0  # seconds until workers take over the lock of a killed one
+LAST = 4  # tasks left per worker below which none is scheduled ahead
 LAST_LINES = 4  # of a worker's output, in the reason
 
 
@@ -120,16 +119,16 @@ def run(
     """Index and outcome of `work` on every item, as they come.
 
     `work` can be imported by name, and runs in `workers` processes. An item that takes `timeout` seconds
-    has its process killed. A crash or timeout affects that item alone, which is tried once more. One
-    process works on the items of a `group`, as long as there are groups for all. An exception that has no
-    words for the user (see `mxeon.errors`) is a bug: its traceback is logged. NotRun if no process starts.
+    has its process killed. A crash or timeout only affects that item, which is retried once. One
+    process works on the items of a `group`, as long as there are enough groups. An exception without
+    a message for users (see `mxeon.errors`) is a bug: its traceback is logged. NotRun if no process starts.
 
-    No process imports anything from the working folder. At most two items per worker are under way,
+    No process imports anything from the working folder. At most two items per worker are in flight,
     so results do not pile up in memory. What a worker prints goes to a file; its last lines are
     quoted when it fails.
 
-    The processes end with the iterator. Close it where an error may leave it: garbage collection may run in
-    any thread, and in one that this has to join it would be a deadlock.
+    The processes end with the iterator. Close it if an error may abandon it: garbage collection may run in
+    any thread, and in one that has to be joined, it would deadlock.
     """
     if workers < 1:
         raise InputError(f"workers must be at least 1; got {workers}")
@@ -150,7 +149,7 @@ def run(
 
 
 def _check_working_folder() -> None:
-    """Raise NotRun unless the folder exists in which processes start."""
+    """Raise NotRun if the folder in which processes start does not exist."""
     try:
         os.getcwd()
     except FileNotFoundError:
@@ -171,16 +170,16 @@ def in_order(outcomes: Iterable[tuple[int, Outcome]]) -> Iterator[Outcome]:
 def _serve(
     work: Callable[[Any], Any], waiting: Queue, workers: int, timeout: float, logs: str
 ) -> Iterator[tuple[int, Outcome]]:
-    """Outcomes until nothing waits or a pool breaks, which leaves its items waiting.
+    """Outcomes until nothing waits or a pool breaks; its items then wait again.
 
-    Each worker is a pool of its own, so that its items are chosen for it.
+    Each worker is its own pool, so items can be assigned to it.
     """
     pools = [ProcessPool(1, initializer=_prepare, context=Context()) for _ in range(workers)]
     running: list[dict[Future[Any], Attempt]] = [{} for _ in pools]
     try:
         active = all([_start(pool) for pool in pools])
         while active and (waiting or any(running)) and all(pool.active for pool in pools):
-            # Keep two tasks a worker scheduled, and one where few are left to share.
+            # Keep two tasks per worker scheduled, or one if few are left.
             for worker, (pool, own) in enumerate(zip(pools, running, strict=True)):
                 while waiting and len(own) < (2 if len(waiting) > LAST * workers else 1):
                     attempt = waiting.take(worker).logged(logs)
@@ -221,7 +220,7 @@ def _start(pool: ProcessPool) -> bool:
         with block_signals():
             return bool(pool.active)
     except (OSError, RuntimeError) as error:
-        cause = error.__cause__ or error  # pebble's own error has no words
+        cause = error.__cause__ or error  # pebble's own error has no message
         reason = getattr(cause, "strerror", None) or cause
         raise NotRun(f"worker processes must start; {reason}") from error
 
@@ -229,7 +228,7 @@ def _start(pool: ProcessPool) -> bool:
 def _again(future: Future[Any], attempt: Attempt, outcome: Outcome) -> Attempt | None:
     """The next attempt at an item, if there is one.
 
-    Which task a pool was at when it broke is not known: none of them is counted.
+    Nobody knows which task a pool ran when it broke, so none of them counts as an attempt.
     """
     if future.done() and isinstance(future.exception(), BrokenProcessPool):
         return attempt
@@ -253,7 +252,7 @@ def _outcome(future: Future[Any], attempt: Attempt, timeout: float) -> Outcome:
 
 
 def log_bug(error: BaseException) -> None:
-    """Log the traceback of an exception that a worker raised, unless it has words for the user."""
+    """Log the traceback of an exception from a worker, unless it has a message for users."""
     if not isinstance(error, (MxeonError, OSError, MemoryError)):
         logger.error("bug in a worker process", exc_info=error)
 
@@ -290,7 +289,7 @@ def _prepare() -> None:
 def _work_logged(work: Callable[[Any], Any], item: Any, log: str) -> Any:
     """Work on an item, with all output of this process, C++ included, in the file `log`.
 
-    Temporary files stay beside it, and are deleted with it whatever becomes of this process.
+    Temporary files are put next to it and deleted with it, whatever happens to this process.
     """
     tempfile.tempdir = os.path.dirname(log)
     if sys.stdout:  # a daemon may have none

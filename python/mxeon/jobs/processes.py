@@ -2,7 +2,7 @@
 """Python processes that import nothing from the working folder.
 
 Python puts the working folder first on the path of `python -c` and `python -m`, and
-`multiprocessing` starts its workers by the former: a file `pickle.py` that lies there would run.
+`multiprocessing` starts its workers with the former: a file `pickle.py` there would run.
 """
 
 import os
@@ -36,11 +36,11 @@ class Context(SpawnContext):
 
 @contextmanager
 def safe_path() -> Iterator[None]:
-    """Give the processes that `multiprocessing` starts meanwhile, in any thread, a safe path.
+    """Give the processes that `multiprocessing` starts in this block, in any thread, a safe path.
 
-    The flag is passed on the command line since PYTHONSAFEPATH has no effect beside -E. The
-    parent's own path goes to its workers, but for "", its working folder if it is `python -c` or
-    interactive. They inherit the working folder itself, which they may not be able to enter.
+    The flag goes on the command line because PYTHONSAFEPATH has no effect together with -E. The
+    Workers get the parent's path except "", its working folder if it is `python -c` or
+    interactive. They inherit the working folder, which they may not be able to enter.
     """
     with _patching:
         flags, data = _util._args_from_interpreter_flags, spawn.get_preparation_data

@@ -8,16 +8,16 @@ from contextlib import ExitStack, contextmanager
 from tempfile import TemporaryDirectory
 from types import FrameType
 
-TERMINAL = (signal.SIGINT, signal.SIGHUP)  # come to all processes of a terminal
+TERMINAL = (signal.SIGINT, signal.SIGHUP)  # reach all processes of a terminal
 ENDING = (*TERMINAL, signal.SIGTERM)
-# What ends a process that does not listen.
+# Signals that end a process without a handler.
 OTHERS = (signal.SIGALRM, signal.SIGUSR1, signal.SIGUSR2, signal.SIGXCPU)
 
-_pending: list[int] | None = None  # numbers of the signals that came while they are blocked
+_pending: list[int] | None = None  # numbers of the signals that came while blocked
 
 
 class SignalExit(KeyboardInterrupt):
-    """A signal that ends the command, with the exit status 128 + number, as a shell has it."""
+    """A signal that ends the command with the exit status 128 + number, like a shell."""
 
     def __init__(self, number: int) -> None:
         ended = f"ended by {signal.Signals(number).name}"
@@ -27,9 +27,9 @@ class SignalExit(KeyboardInterrupt):
 
 @contextmanager
 def raise_signals() -> Iterator[None]:
-    """Raise SignalExit at such a signal, so that all is cleaned up; an ignored one stays ignored.
+    """Raise SignalExit at such a signal, so that everything is cleaned up; an ignored one stays ignored.
 
-    So does one of OTHERS that the caller listens to.
+    A signal of OTHERS that the caller handles stays handled.
     """
 
     def end(number: int, _: FrameType | None) -> None:
@@ -37,7 +37,7 @@ def raise_signals() -> Iterator[None]:
             raise SignalExit(number)
         _pending.append(number)
 
-    main = threading.current_thread() is threading.main_thread()  # Python lets no other listen
+    main = threading.current_thread() is threading.main_thread()  # others may have no handlers
     numbers = [each for each in ENDING if main and signal.getsignal(each) != signal.SIG_IGN]
     numbers += [each for each in OTHERS if main and signal.getsignal(each) == signal.SIG_DFL]
     before = {number: signal.signal(number, end) for number in numbers}
@@ -52,8 +52,8 @@ def raise_signals() -> Iterator[None]:
 def block_signals() -> Iterator[None]:
     """Block the signals of a terminal, so that child processes inherit the blocked mask.
 
-    This process decides when they end, by SIGTERM, which must reach them at any time. What came
-    meanwhile is raised at the end.
+    This process ends them with SIGTERM, which must reach them at any time. Signals that came
+    in the meantime are raised at the end.
     """
     global _pending
     _pending = []

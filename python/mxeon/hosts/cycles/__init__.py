@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Blender's Cycles: OSL on the CPU, in a process of its own.
+"""Blender's Cycles: OSL on the CPU, in its own process.
 
-Cycles is part of the Python module `bpy`, which needs an environment of its own. This half writes
+Cycles is part of the Python module `bpy`, which needs its own environment. This half writes
 OSL files, `worker.py` renders them there, and this half reads the float32 pictures.
 """
 
@@ -42,7 +42,7 @@ from mxeon.shaders.scene import FRONT, Scene, sphere
 
 Socket: TypeAlias = float | Sequence[float]  # value of a Blender node's input
 
-# Pictures that are kept: the checks of a node ask for some of them again.
+# Pictures to keep: the checks of a node request some of them again.
 PICTURES = 64
 
 # Cycles has no surface coordinates on a point cloud: a block that opens like this gives the globals
@@ -53,8 +53,8 @@ TEXCOORD = """{
 """
 
 
-SKY_SAMPLES = 64  # paths of a pixel that shows a sky
-EMITTER = Scene("emitter")  # without light, for what shines by itself
+SKY_SAMPLES = 64  # paths per pixel under a sky
+EMITTER = Scene("emitter")  # without light, for emission
 CALL = """#include "{source}"
 
 shader call(output closure color out = 0)
@@ -89,7 +89,7 @@ CLOSURES = {
 
 
 class Host(PairHost):
-    """Blender's Cycles, with a process and a temporary folder.
+    """Blender's Cycles, with its process and a temporary folder.
 
     `sources` is the folder of the OSL files whose functions `call` executes, eonlib's unless given;
     `limit` the seconds that one picture may take.
@@ -116,7 +116,7 @@ class Host(PairHost):
         return Identity(self.name, f"Blender {self.worker.version}", "CPU, OSL")
 
     def picture(self, shader: Shader, scene: Scene) -> Array:
-        """Picture of the sphere with an OSL shader on it, float32, under a uniform environment at most.
+        """Picture of the sphere with an OSL shader, float32; the only environment is a uniform one.
 
         Exact but for float32 under a distant light. Under an environment a pixel is a mean of
         `process.ENVIRONMENT_SAMPLES` samples, always the same; at roughness 1 its error is 2e-3 rms, 0.1 at
@@ -177,16 +177,16 @@ class Host(PairHost):
         return values / (DISTANCE**2 * scene.irradiance) if light == LAMP else values
 
     def blender_node(self, kind: str, inputs: Mapping[str, Socket], scene: Scene) -> Array:
-        """Picture of the sphere with a Blender node, of a type, with inputs by the names of its sockets."""
+        """Picture of the sphere with a Blender node; `inputs` go by the names of its sockets."""
         return self._picture(scene, (), kind=kind, inputs=tuple(inputs.items()))
 
     def call(self, function: str, *arguments: ArrayLike) -> Array:
         return self.execute(functions.expanded(self._file(function)), function, *arguments)
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
-        """Values of a function: the light of a plane, whose shader reads the arguments pixel by pixel.
+        """Values of a function: a plane emits them, and its shader reads the arguments pixel by pixel.
 
-        It reads images by position and without a filter, so that every bit of a float32 survives.
+        It reads images by position and unfiltered, so every bit of a float32 survives.
         """
         types = [kind for kind, _ in functions.parameters(source, function)]
         if len(types) != len(arguments):
@@ -221,7 +221,7 @@ class Host(PairHost):
             return self._render(folder, text, **frame).reshape(-1, 3)[:count]
 
     def closures(self) -> dict[str, str]:
-        """For each of MaterialX's closures, "" if Cycles renders it, else its reason not to."""
+        """For each of MaterialX's closures, "" if Cycles renders it, otherwise why not."""
         frame, reasons = process.request(replace(FRONT, size=4), ()), dict.fromkeys(CLOSURES, "")
         for name, arguments in CLOSURES.items():
             text = f"shader asked(output closure color out = 0) {{ out = {name}({arguments}); }}\n"
@@ -274,7 +274,7 @@ class Host(PairHost):
         if "error" in reply:
             errors = " | ".join(self.worker.printed()[:4])
             raise ShaderError(f"cycles: the shader does not compile: {errors}")
-        # A closure that Cycles lacks makes the whole shader black, with no other sign than this.
+        # A closure that Cycles lacks makes the whole shader black; this is the only sign.
         for line in self.worker.printed():
             if line.startswith("ERROR"):
                 raise NotRun(f"cycles: {line.partition(', called from')[0]}")
@@ -285,7 +285,7 @@ class Host(PairHost):
 
 
 def _on_sphere(text: str) -> str:
-    """A generated shader with the sphere's texture coordinates."""
+    """A generated shader that reads the sphere's texture coordinates."""
     head, brace, body = text.rpartition("\n)\n{\n")
     return head + brace + TEXCOORD + body + "}"
 
@@ -313,7 +313,7 @@ def _graph_function(shader: Shader, inputs: Inputs) -> tuple[str, list[ArrayLike
             continue
         key = port.path if port.path in inputs else port.path.rsplit("/", 1)[-1]
         value = np.asarray(inputs.get(key, port.value), np.float32)
-        if port.type == "vector2":  # which OSL's textures do not have
+        if port.type == "vector2":  # which OSL's textures lack
             parts = [f"{port.name}_{axis}" for axis in "xy"]
             parameters += [f"float {part}" for part in parts]
             locals_.append(f"    vector2 {port.name} = vector2({', '.join(parts)});")

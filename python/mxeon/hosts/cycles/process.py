@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Blender's process: its interpreter, and how Cycles samples a picture.
 
-A point cloud is an exact sphere, and nothing goes through it: Cycles finds no exit for a path inside.
-So a material with lobes below its surface is shown on a mesh.
+A point cloud is an exact sphere, but Cycles finds no exit for paths inside it.
+So materials with lobes below the surface are shown on a mesh.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from mxeon.shaders.inner_lobes import SUBSURFACE
 from mxeon.shaders.library import data_folder
 from mxeon.shaders.scene import Scene
 
-CHECKOUT = data_folder()  # in an installed package, no folder that has an environment
+CHECKOUT = data_folder()  # in an installed package, a folder without environment
 
 
 def interpreter(name: str = "cycles") -> Path:
     """Path of the Python that has `bpy`: MXEON_CYCLES_PYTHON, or in the checkout's `.venv-cycles`.
 
-    A `.venv-cycles` in the working folder is not used: anyone may have put it there.
+    A `.venv-cycles` in the working folder is ignored: anyone may have put it there.
     """
     path = os.environ.get("MXEON_CYCLES_PYTHON")
     python = Path(path or Path(CHECKOUT, ".venv-cycles", "bin", "python"))
@@ -57,11 +57,11 @@ class SceneParts(TypedDict):
     body: str
 
 
-FEWEST_SAMPLES = 16  # below the surface, less is noise rather than a picture
+FEWEST_SAMPLES = 16  # below the surface; with fewer, the picture is noise
 
 
 def request(scene: Scene, lobes: Sequence[str]) -> SceneParts:
-    """Parts of a scene that the worker needs, for a material with such lobes below its surface."""
+    """Parts of a scene that the worker needs, for a material with these lobes below its surface."""
     samples = ENVIRONMENT_SAMPLES if scene.environment is not None else 1
     return {
         "size": scene.size,
@@ -75,7 +75,7 @@ def request(scene: Scene, lobes: Sequence[str]) -> SceneParts:
 
 
 def approximations(scene: Scene, lobes: Sequence[str]) -> tuple[str, ...]:
-    """Why a picture of such lobes cannot be right: paths that are too few or too short."""
+    """Why a picture of these lobes cannot be right: too few or too short paths."""
     if not lobes:
         return ()
     asked, reasons = request(scene, lobes), []

@@ -13,7 +13,7 @@ import sys
 from pathlib import Path
 from typing import Any, TypeAlias
 
-# Blender prints on standard output as soon as it is imported: that goes to standard error.
+# Blender prints to standard output as soon as it is imported; redirect that to standard error.
 REPLIES = os.fdopen(os.dup(1), "w", buffering=1)
 os.dup2(2, 1)
 
@@ -27,19 +27,19 @@ from mathutils import Vector  # noqa: E402
 Blender: TypeAlias = Any  # an object of bpy, which has no types
 Values: TypeAlias = dict[str, Any]  # by name, of a request in JSON
 
-# Script nodes read their sockets with `oslquery`, which lies in Blender's own Python folder.
+# Script nodes read their sockets with `oslquery` from Blender's own Python folder.
 BUNDLED = Path(bpy.utils.resource_path("LOCAL"), "python", "lib")
 sys.path.extend(str(folder) for folder in BUNDLED.glob("python*/site-packages"))
 
 
-SUBDIVISIONS = 7  # 81,920 triangles, whose edges lie within 1e-4 of the sphere
+SUBDIVISIONS = 7  # 81,920 triangles with edges within 1e-4 of the sphere
 KINDS = ("objects", "cameras", "meshes", "pointclouds", "materials", "lights", "worlds", "images")
 
 
 def unit_scene(distance: float) -> Blender:
     """An empty scene, the square [-1, 1]^2 seen orthographically from z = `distance`.
 
-    What an earlier request left is removed: loading Blender's settings anew takes as long as a
+    It removes the remains of earlier requests: reloading Blender's settings takes as long as a
     picture under a distant light.
     """
     bpy.data.batch_remove([each for kind in KINDS for each in getattr(bpy.data, kind)])
@@ -120,7 +120,7 @@ BODIES = {"points": add_sphere, "mesh": add_mesh, "plane": add_plane}
 
 
 def add_triangles(scene: Blender, width: float, corners: str, material: Blender) -> None:
-    """Add the triangles of a file, which neither shade nor light each other, in a picture of a width."""
+    """Add the triangles of a file, which neither shadow nor light each other."""
     scene.camera.data.ortho_scale = width
     scene.camera.data.clip_end = 2.0 * scene.camera.location.z
     points = np.load(corners).reshape(-1, 3)
@@ -206,7 +206,7 @@ def render(
     triangles: str | None = None,
     lamp: float | None = None,
 ) -> dict[str, str]:
-    """Render the OSL file `shader`, or a node of Blender's, on one of BODIES or on triangles; return the reply."""
+    """Render the OSL file `shader`, or a Blender node, on one of BODIES or on triangles; return the reply."""
     if shader:
         compiled = os.path.splitext(shader)[0] + ".oso"
         if not _cycles.osl_compile(shader, compiled):
@@ -238,7 +238,7 @@ def draw(
     environment: float | None,
     samples: int,
 ) -> dict[str, str]:
-    """Draw the mesh in a file with EEVEE and a node on it; write its numbers, row 0 at the top."""
+    """Draw the mesh in a file with EEVEE and a node; write the pixels, row 0 at the top."""
     path, data, scene = f"{output}.exr", np.load(mesh), unit_scene(2.0)
     set_output(scene, path, size)
     scene.render.engine = "BLENDER_EEVEE"

@@ -2,8 +2,8 @@
 """MaterialX's own renderer on OpenGL, `MaterialXRenderGlsl`: what MaterialXView shows.
 
 It generates the shader as `gl` does, and binds lights, environment and uniforms by itself. It needs an X
-display, and ends the process where it finds none: `worker.py` runs in one of its own, and starts Xvfb
-where DISPLAY names no display.
+display and ends the process if it finds none, so `worker.py` runs in its own process and starts Xvfb
+if DISPLAY names no display.
 """
 
 from __future__ import annotations

@@ -32,9 +32,9 @@ import MaterialX.PyMaterialXRenderGlsl as mx_render_glsl  # noqa: E402
 import numpy as np  # noqa: E402
 from numpy.typing import NDArray  # noqa: E402
 
-FAR = 1e6  # of the camera, from whose position the shader takes the view
-DIRECTIONS = 256  # over which a shader of microfacets sums its environment
-PICTURES = 8  # renderers that are kept, each with the program of a document
+FAR = 1e6  # of the camera; the shader computes the view from its position
+DIRECTIONS = 256  # directions over which microfacet shaders sum the environment
+PICTURES = 8  # renderers to keep, each with the program of a document
 ANISOTROPY = ("GL_ARB_texture_filter_anisotropic", "GL_EXT_texture_filter_anisotropic")
 SCREEN = ("-screen", "0", "64x64x24", "-nolisten", "tcp")
 DIES_WITH_PARENT = 1  # PR_SET_PDEATHSIG of prctl
@@ -46,7 +46,7 @@ ERRORS = (mx.Exception, mx_render.ExceptionRenderError, LookupError)
 
 
 def open_display() -> None:
-    """Make DISPLAY name a display: the one that there is, or an Xvfb that ends with this process."""
+    """Make DISPLAY name a display: the existing one, or an Xvfb that ends with this process."""
     if os.environ.get("DISPLAY"):
         return
     program = shutil.which("Xvfb")
@@ -170,7 +170,7 @@ def camera() -> mx_render.Camera:
 
 @lru_cache(maxsize=2)
 def geometry(path: str) -> mx_render.GeometryHandler:
-    """The quads in a file of NumPy, which all documents are drawn on: to read them takes longer than to draw."""
+    """The quads in a NumPy file, shared by all documents: reading them takes longer than drawing."""
     handler = mx_render.GeometryHandler.create()
     handler.addLoader(mx_render.TinyObjLoader.create())
     handler.loadGeometry(mx.FilePath(obj_file(path)), False)
@@ -178,7 +178,7 @@ def geometry(path: str) -> mx_render.GeometryHandler:
 
 
 def obj_file(path: str) -> str:
-    """The quads in a file of NumPy as a file of Wavefront's, which MaterialX reads."""
+    """The quads in a NumPy file as a Wavefront OBJ file, which MaterialX reads."""
     data, target = np.load(path), Path(path).with_suffix(".obj")
     lines = [
         f"{word} {' '.join(f'{number:.9g}' for number in row)}"
@@ -200,7 +200,7 @@ def pixels(image: mx_render.Image) -> NDArray[np.float32]:
 
 
 def device(renderer: mx_render_glsl.GlslRenderer) -> str:
-    """Name of what draws, by the context of a renderer."""
+    """Name of the device, from the context of a renderer."""
     renderer.setSize(1, 1)  # which makes it the current one
     function = ctypes.CDLL("libGL.so.1").glGetString
     function.restype = ctypes.c_char_p

@@ -4,7 +4,7 @@
     generated text --carriers--> labels instead of closures --Blender's OSL--> a line for each point
     --trees--> one tree of arrays --`mxeon.conformance.reference.closures`--> values by the models
 
-So what MaterialX's text says is judged, whatever a renderer makes of it.
+This checks MaterialX's text, whatever a renderer makes of it.
 """
 
 from __future__ import annotations
@@ -93,7 +93,7 @@ class Host(base.Host):
     def _run(
         self, shader: Shader, columns: Mapping[str, Column], view: Column, count: int
     ) -> tuple[TreeRows, ...]:
-        """Closures that a shader makes of so many values of its variables."""
+        """The closures that a shader makes, for each value of its variables."""
         with self._engine.folder() as name:
             folder, place = Path(name), self._engine.place
             block = statements(columns, folder / IMAGE, count, place)
@@ -123,7 +123,7 @@ class Host(base.Host):
         return np.array([row[ROOT].split() for row in rows], np.float32)
 
     def _printed(self, folder: Path, text: str, count: int) -> list[dict[str, str]]:
-        """Lines that a shader prints at each of so many points, by the label of each line."""
+        """The lines that a shader prints at each point, by their labels."""
         rows: list[dict[str, str]] = [{} for _ in range(count)]
         engine = self._engine
         head = f"{row(count, engine.place)}{prelude(text, engine.carrier)}"

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""OSL text that stands before a generated shader and makes every closure of it a label that can be printed.
+"""OSL text that goes before a generated shader and turns its closures into labels that can be printed.
 
-OSL prints a closure with six digits, and only what a renderer has a closure for. Here every closure of
+OSL prints closures with six digits, and only those that the renderer has. Here every closure of
 MaterialX, and every operation on closures, is a function that returns a closure of the engine whose
-label is its text, with nine digits, from which a float32 is read back exactly. The shader itself stays as it is.
+label is its text, with nine digits, enough to restore a float32 exactly. The shader itself is unchanged.
 
     layer<mul<0.5|sheen_bsdf<0 0 1|1 1 1|0.300000012>>|burley_diffuse_bsdf<0 0 1|1 1 1|0>>
 """
@@ -126,7 +126,7 @@ def prelude(text: str, carrier: Carrier) -> str:
             _function("__operator__mul__", MULTIPLE, closure, kind),
             _function("__operator__mul__", MULTIPLE, kind, closure),
         ]
-    # Closures, with as many keywords as anyone may write, so that an unknown one is told as well.
+    # Closures, with many keywords, so that unknown ones are reported, too.
     for name in names:
         lines += [_function(f"mxeon_{name}", name, *kinds) for kinds in _forms(CLOSURES[name])]
     # What is built in cannot be hidden, but renamed.

@@ -17,7 +17,7 @@ from mxeon.shaders.scene import Scene
 
 DARK = Scene("dark")
 SECONDS = 300.0  # for one run
-TROUBLE = ("ERROR", "WARNING")  # first words of what the engine has to say
+TROUBLE = ("ERROR", "WARNING")  # the first words of the engine's messages
 
 
 class Blender:

@@ -27,7 +27,7 @@ ROW = """#define MXEON_AT(x, y) ((int) floor({size} * (y)) * {size} + (int) floo
 """
 FILTER = '0.0, 0.0, 0.0, 0.0, "interp", "closest"'
 READ = f'texture("{{image}}", {{place}}, {FILTER}, "firstchannel", {{first}})'
-NO_WARNING = "#pragma osl nowarn"  # oslc warns where a surface shader sets what it has of its point
+NO_WARNING = "#pragma osl nowarn"  # oslc warns if a surface shader sets a global of its point
 IMAGE = "points.tif"  # of a shader's variables; EXR sorts more than ten channels by their names
 
 
@@ -97,7 +97,7 @@ def _write(image: Path, rows: NDArray[np.float32]) -> None:
 
 
 OUTPUT = re.compile(r"\boutput MATERIAL (\w+) *=")  # of a shader
-# What a shader finds in the place of the surface.
+# What a shader reads instead of the surface.
 SURFACE = {
     "N": ("normal", (0.0, 0.0, 1.0)),
     "dPdu": ("vector", (1.0, 0.0, 0.0)),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Printed labels of closures as trees: rows that differ in numbers alone share one tree of arrays."""
+"""Printed labels of closures as trees: rows that only differ in numbers share one tree of arrays."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class TreeRows:
 
 
 def whole_label(texts: Mapping[str, str], root: str) -> str:
-    """Text of a label in which every label has its own text in its place."""
+    """Text of a label, with every label in it replaced by its own text."""
     text = texts[root]
     for _ in range(DEEPEST):
         if not LABEL.search(text):
@@ -57,7 +57,7 @@ def whole_label(texts: Mapping[str, str], root: str) -> str:
 
 
 def read_trees(labels: Sequence[str]) -> tuple[TreeRows, ...]:
-    """Trees of labels, one for each shape; ShaderError for what OSL does not document."""
+    """Trees of labels, one per shape; ShaderError for closures that OSL does not document."""
     shapes: dict[str, list[int]] = {}
     numbers = []
     for row, label in enumerate(labels):
@@ -83,12 +83,12 @@ def with_roots(tree: ClosureTree | None) -> ClosureTree | None:
 
 
 def _exact(numbers: Sequence[Sequence[str]]) -> Values:
-    """Float32 numbers that nine digits tell, in float64, (N, numbers)."""
+    """Float32 numbers from nine digits, as float64, (N, numbers)."""
     return np.array(numbers, np.float32).astype(np.float64)
 
 
 def _tree(shape: str, numbers: Values) -> ClosureTree | None:
-    """Tree of a label with signs for the numbers, which differ from point to point."""
+    """Tree of a label with placeholders for the numbers, which differ from point to point."""
     columns = iter(range(numbers.shape[1])) if numbers.size else count()
     stack: list[tuple[str, list[Argument]]] = [("", [])]
     expected = "closure"
@@ -166,7 +166,7 @@ MOST = 1 << 16  # points of a shader
 
 
 class KeptTrees:
-    """Closures that one shader makes, by the values of all variables of a point.
+    """A cache of the closures that one shader makes, by the values of all variables of a point.
 
     Light does not change which closures a shader makes, and most texts do not read the view either. So a
     check of other lights, or of some of the points of another check, runs nothing.
@@ -178,7 +178,7 @@ class KeptTrees:
         self._places: dict[bytes, tuple[str, int]] = {}  # shape of a point's tree, and row in it
 
     def missing(self, keys: Sequence[bytes]) -> NDArray[np.intp]:
-        """Rows of the points that are not kept, one of each kind; too many are forgotten first."""
+        """Rows of the points that are not cached, one of each kind; a full cache is emptied first."""
         if len(self._places) > MOST:
             for each in (self._trees, self._counts, self._places):
                 each.clear()
@@ -207,14 +207,14 @@ class KeptTrees:
 
 
 def keys_of(text: str, columns: Mapping[str, Column], view: Column, count: int) -> list[bytes]:
-    """What the closures of each point depend on: the values of all variables, the view too if it is read."""
+    """What the closures of each point depend on: the values of all variables, and the view if it is read."""
     read = [*columns.values(), *([view] if VIEWED.search(text) else [])]
     values = [np.broadcast_to(each.rows, (count, each.rows.shape[1])) for each in read]
     return [row.tobytes() for row in np.concatenate(values, axis=1)]
 
 
 def _shape(tree: ClosureTree | None) -> str:
-    """What trees must have in common to be one: all but their numbers."""
+    """What trees must have in common to be merged: everything but their numbers."""
     if tree is None:
         return ""
     arguments = (f"{k}={v}" if isinstance(v, str) else k for k, v in tree.arguments.items())

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Hydra Storm, USD's own renderer.
 
-It comes with Blender's package, which has OpenUSD and MaterialX in versions of its own. This half writes
-the document, `worker.py` draws it there.
+It comes with Blender's package, which has its own versions of OpenUSD and MaterialX. This half writes
+the document, and `worker.py` draws it there.
 """
 
 from __future__ import annotations
@@ -38,9 +38,9 @@ class Host(DocumentHost):
         return interpreter(self.name)
 
     def _needs_blocks(self, shader: Shader) -> bool:
-        """Whether it has textures: llvmpipe reads Storm's buffers as 0 beside a triangle.
+        """Whether it has textures: next to a triangle, llvmpipe reads Storm's buffers as 0.
 
-        The change of a texture coordinate from there is wrong, and by it the size of the texture.
+        The derivative of a texture coordinate is then wrong, and so is the size of the texture.
         """
         return any(each.type == "filename" and each.value for each in shader.inputs)
 
@@ -61,7 +61,7 @@ class Host(DocumentHost):
 
 
 def _enumerated(node: mx.Node) -> Iterator[str]:
-    """Names of a closure's enumerated inputs that have another value than their default."""
+    """Names of a closure's enumerated inputs whose value is not the default."""
     definition = node.getNodeDef()
     if definition is None or node.getType() not in CLOSURES:
         return

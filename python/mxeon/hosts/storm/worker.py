@@ -18,7 +18,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, NoReturn, TypeAlias
 
-# OpenUSD prints on standard output too: that goes to standard error.
+# OpenUSD prints to standard output, too; redirect that to standard error.
 REPLIES = os.fdopen(os.dup(1), "w", buffering=1)
 os.dup2(2, 1)
 
@@ -31,10 +31,10 @@ Type: TypeAlias = type[c_void_p | c_uint | c_char_p] | None  # of a function of 
 
 INSTALL, DEBIAN = "pip install bpy==5.0.1", "apt-get install libegl1 libgl1-mesa-dri"
 MODULES = ("Gf", "Sdf", "Tf", "Usd", "UsdGeom", "UsdImagingGL", "UsdLux", "UsdShade", "Vt")
-FAR = 1e6  # of the camera: Storm takes the view from its position, of an orthographic one too
-ANGLE = 0.1  # degrees, of the distant light: one of 0 is black
+FAR = 1e6  # of the camera: Storm computes the view from its position, even for an orthographic one
+ANGLE = 0.1  # degrees, of the distant light: with 0 it is black
 # Storm sums a dome's irradiance over a right angle in 64 steps. 64 of them in float32 add up to less
-# than the angle, so that it takes a 65th, and divides by 65: a white dome gives this much light.
+# than the angle, so it takes a 65th and divides by 65: a white dome gives this much light.
 WHITE_DOME = math.pi / 130.0 / math.tan(math.pi / 128.0)
 # A white pixel in Radiance's format: a dome without a texture is black.
 WHITE = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\x80\x80\x80\x81"
@@ -42,7 +42,7 @@ WHITE = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\x80\x80\x80\x81"
 # Names of EGL and OpenGL.
 DEVICE, DESKTOP = 0x313F, 0x30A2
 CONFIG = (c_int * 5)(0x3040, 0x0008, 0x3033, 0, 0x3038)  # OpenGL, no surface
-# OpenGL 4.5, compatibility: in a core profile Storm asks for what OpenGL no longer has.
+# OpenGL 4.5, compatibility: Storm uses functions that the core profile lacks.
 CONTEXT = (c_int * 7)(0x3098, 4, 0x30FB, 5, 0x30FD, 2, 0x3038)
 FRAME, BUFFER, COLOR, DEPTH = 0x8D40, 0x8D41, 0x8CE0, 0x8D00
 RGBA32F, DEPTH32F, RGBA, FLOAT = 0x8814, 0x8CAC, 0x1908, 0x1406
@@ -202,7 +202,7 @@ def import_usd(root: str, libraries: str) -> Foreign:
     standard = Path(root or package / "lib" / "materialx", "libraries")
     os.environ["PXR_MTLX_STDLIB_SEARCH_PATHS"] = str(standard)
     os.environ["PXR_MTLX_PLUGIN_SEARCH_PATHS"] = libraries
-    # Mesa's filter of an anisotropic texture blurs, and Storm shows its picture by a texture.
+    # Storm shows its picture through a texture, which Mesa's anisotropic filter blurs.
     os.environ["HGI_MAX_ANISOTROPY"] = "1"
     for name in MODULES:
         import_module(f"pxr.{name}")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """OSL's own programs: generated OSL compiled by oslc and rendered by testrender.
 
-Each pixel of a picture shows a pair of directions of its own; see `scenes`. testshade evaluates functions.
+Each pixel of a picture shows its own pair of directions; see `scenes`. testshade evaluates functions.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class Host(PairHost):
     def _pixels(
         self, shader: Shader, wo: Array, wi: Array, inputs: Inputs, last: str, light: str
     ) -> NDArray[np.float64]:
-        """What pairs look like; the light of one point is too small to add to an emission."""
+        """Radiance of pairs; the light of one point is too small to add to an emission."""
         lit = light != SKY
         wo, wi = (np.asarray(each, np.float64) for each in (wo, wi))
         scene = scenes.pair_scene(wo, wi, side(len(wo)))

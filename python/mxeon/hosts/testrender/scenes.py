@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A scene in testrender's files in which each pixel shows a pair of directions of its own.
+"""A scene in testrender's format in which each pixel shows its own pair of directions.
 
 The camera sees a small triangle in each pixel, and a small light lies outside the picture. Where a
-triangle lies on the ray of its pixel decides about the angle between view and light. The frame of the
+triangle lies on the ray of its pixel sets the angle between view and light. The frame of the
 shaded surface is turned into them: a shader gets its normal and tangent, whatever the triangle is.
 
     camera ------- d ------> P        wo = -d
