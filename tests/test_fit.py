@@ -221,7 +221,8 @@ def test_a_measurement_that_does_not_fit_together_is_refused(arguments, message)
 
 def test_an_unknown_model_is_answered_with_the_known_ones():
     with pytest.raises(
-        InputError, match="model must be one of eon, dielectric_over_eon, openpbr_base; got 'ggx'"
+        InputError,
+        match="model must be one of eon, dielectric_over_eon, varnished, openpbr_base; got 'ggx'",
     ):
         fit_brdf(MeasuredBrdf(UP, UP, np.array([[0.1]])), "ggx")
 

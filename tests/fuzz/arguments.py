@@ -62,6 +62,7 @@ PLUMBING = (
     "mxeon.models.core.arguments",
     "mxeon.models.core.shapes",
     "mxeon.models.catalog",
+    "mxeon.models.coat.mixture",
     "mxeon.models.core.evaluation",
     "mxeon.models.lobe_plot",
     "mxeon.models.media_model",

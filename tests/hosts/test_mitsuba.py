@@ -12,7 +12,6 @@ import pytest
 from mxeon import mitsuba as plugins
 from mxeon import models
 from mxeon.errors import NotRun, PackageError
-from mxeon.fit import openpbr_base
 from tests.support.bsdfs import (
     COLOR,
     PAIRS,
@@ -27,7 +26,7 @@ from tests.support.bsdfs import (
 from tests.support.tolerances import MITSUBA_COAT, MITSUBA_DENSITY, MITSUBA_EVAL, MITSUBA_WEIGHT
 
 PAGE = Path(__file__).parents[2] / "docs" / "mitsuba.md"
-COAT, BASE = "dielectric_over_eon", "openpbr_base"
+COAT, VARNISH, BASE = "dielectric_over_eon", "varnished", "openpbr_base"
 DEVIATE = 4.5  # of a mean: exceeded once in 150,000 times
 STEP = 2.0**-13  # which float32 adds without a rounding
 VIEW, LIGHT = np.array([[0.6, 0.0, 0.8]]), np.array([[-0.48, 0.6, 0.64]])
@@ -36,12 +35,13 @@ MODELS = {
     "fon": models.fon_brdf,
     "qon": models.qon_brdf,
     COAT: models.dielectric_over_eon_brdf,
-    BASE: openpbr_base,
+    VARNISH: models.varnished_brdf,
+    BASE: models.openpbr_base_brdf,
 }
 # Inputs of each plugin by the model's names, and the plugin's names where they are others.
 INPUTS = {
     **{name: {parameter: 0.4} for name, parameter in PARAMETERS.items()},
-    COAT: {"roughness": 0.6, "alpha": 0.3, "ior": 1.5},
+    **{key: {"roughness": 0.6, "alpha": 0.3, "ior": 1.5} for key in (COAT, VARNISH)},
     BASE: {"roughness": 0.6, "specular_roughness": 0.5, "specular_ior": 1.5, "metalness": 0.25},
 }
 NAMES = {"roughness": "base_diffuse_roughness", "metalness": "base_metalness"}
@@ -67,12 +67,17 @@ def expected(name, wo, wi, **inputs):
 
 def allowed(name, value):
     """Largest error of a value: relative where a lobe of facets is larger."""
-    return np.maximum(MITSUBA_EVAL, MITSUBA_COAT * value if name in (COAT, BASE) else 0.0)
+    return np.maximum(MITSUBA_EVAL, MITSUBA_COAT * value if name in (COAT, VARNISH, BASE) else 0.0)
 
 
 CASES = (
     *((name, {key: each}) for name, key in PARAMETERS.items() for each in (0.0, 0.3, 1.0)),
-    *((COAT, {"alpha": a, "ior": n}) for a in (0.015625, 0.3, 1.0) for n in (1.02, 1.5, 4.0)),
+    *(
+        (name, {"alpha": a, "ior": n})
+        for name in (COAT, VARNISH)
+        for a in (0.015625, 0.3, 1.0)
+        for n in (1.02, 1.5, 4.0)
+    ),
     *((BASE, {"metalness": each}) for each in (0.0, 0.25, 1.0)),
 )
 
@@ -165,7 +170,7 @@ def test_an_input_outside_its_range_is_refused(mi, name, inputs, message):
 
 SAMPLED = [  # plugin, inputs, angle of the viewer
     *(("eon", {"roughness": each}, angle) for each in (0.3, 1.0) for angle in (0.0, 0.8, 1.5)),
-    *((COAT, {}, angle) for angle in (0.0, 1.4)),
+    *((name, {}, angle) for name in (COAT, VARNISH) for angle in (0.0, 1.4)),
     (BASE, {}, 0.8),
 ]
 
@@ -203,7 +208,8 @@ def test_a_white_furnace_keeps_its_energy(mi, name, lossless):
 
 
 @pytest.mark.parametrize(
-    "name, inputs", [(COAT, {"alpha": 0.05}), (COAT, {"alpha": 0.5}), (BASE, {})]
+    "name, inputs",
+    [*((name, {"alpha": a}) for name in (COAT, VARNISH) for a in (0.05, 0.5)), (BASE, {})],
 )
 def test_a_white_furnace_keeps_the_energy_of_facets_in_the_mean(mi, name, inputs):
     picture = furnace(mi, bsdf(name, (1.0,) * 3, **inputs), 64)[..., 0]
@@ -211,8 +217,9 @@ def test_a_white_furnace_keeps_the_energy_of_facets_in_the_mean(mi, name, inputs
     assert abs(picture.mean() - 1.0) < DEVIATE * picture.std() / np.sqrt(picture.size)
 
 
-def test_a_coat_has_two_lobes_that_are_evaluated_alone(mi):
-    made, light = mi.load_dict(bsdf(COAT)), mi.Vector3f(-0.48, 0.0, 0.877)
+@pytest.mark.parametrize("name", (COAT, VARNISH))
+def test_a_coat_has_two_lobes_that_are_evaluated_alone(mi, name):
+    made, light = mi.load_dict(bsdf(name)), mi.Vector3f(-0.48, 0.0, 0.877)
     context, point = mi.BSDFContext(), surface(mi, VIEW)
     whole, parts = np.array(made.eval(context, point, light)), []
     for component, kind in enumerate(("GlossyReflection", "DiffuseReflection")):

@@ -29,14 +29,14 @@ from tools.site import arrays as table
 TINTS = ("rho", "color", "tint", "radiance", "base", "absorption_coefficient")
 COLORS = {"rho", "color", "color0", "color82", "color90", "tint", "ior", "extinction"} | set(TINTS)
 PAIRS = ("microfacet", "ggx_", "btdf")  # in the names of functions whose roughness is a pair
-COAT = "dielectric_over_eon"
+INTERFACES = "dielectric_over_eon", "varnished"
 # What JAX compiles for seconds; their factors have functions of their own.
 COATS = ("brdf", "albedo_dir", "sample", "pdf")
 LONG = (
     "chiang_hair_bcsdf",
     "openpbr_base_brdf",
     "openpbr_base_albedo_dir",
-    *(f"{COAT}_{each}" for each in COATS),
+    *(f"{name}_{each}" for name in INTERFACES for each in COATS),
 )
 LONG += ("film_albedo_dir", "dielectric_albedo_dir")
 ROWS, FEW = 48, 8
@@ -187,7 +187,7 @@ def sampled(function):
         switches |= switches.pop(name)  # named inputs
     value = arguments.call(inspect.unwrap(function), arguments.base(inspect.unwrap(function)))
     channels = 0 if isinstance(value, tuple) else np.ndim(value)  # a sampler has none
-    channels = channels or COAT in function.__name__  # whose samples take a color
+    channels = channels or function.__name__.startswith(INTERFACES)  # whose samples take a color
     for name in COLORS & set(arrays) if channels else ():
         if arrays[name].ndim < 2 and (name.startswith(TINTS) or "conductor" in function.__name__):
             arrays[name] = arrays[name][:, np.newaxis]

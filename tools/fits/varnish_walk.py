@@ -1,20 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How much brighter a dielectric over EON is than EON below its interface: python -m tools.fits.varnish_walk.
+"""Albedo of EON below an interface, of both models and of light that walks: python -m tools.fits.varnish_walk.
 
 `dielectric_over_eon` is a `layer`: EON gets what the dielectric does not reflect, and what EON returns
-passes freely. Below an interface light is reflected and refracted on its way out too. Here it walks between
-EON and GGX facets, and among the facets as in [Heitz2016], so that the interface loses nothing.
+passes freely. `varnished` has exits and internal reflections in closed form. Here light walks between EON and
+GGX facets, and among the facets as in [Heitz2016], so that the interface loses nothing.
 """
+
+from itertools import product
 
 import numpy as np
 
-from mxeon.models import dielectric_over_eon_albedo_dir, eon_albedo_dir
+from mxeon.models import dielectric_over_eon_albedo_dir, eon_brdf, varnished_albedo_dir
 from mxeon.models.microfacet.fresnel_formulas import dielectric
 from mxeon.sampling import eon_sample
 
-SEED, PATHS = 1, 1 << 16
+SEED, PATHS = 1, 1 << 18
 FAINT = 1e-5  # weight at which a path ends
-RHO, COSINES, ALPHAS, ROUGHNESSES = (0.2, 0.5, 0.8, 1.0), (1.0, 0.5, 0.15), (0.1, 0.5), (0.0, 1.0)
+RHO = np.array([0.2, 0.5, 0.8, 1.0])
+COSINES, ROUGHNESSES = (1.0, 0.5, 0.15, 0.05), (0.0, 1.0)
+ALPHAS, INDICES = (0.05, 0.1, 0.2, 0.4, 0.7), (1.1, 1.3, 1.5, 2.0)
 
 
 def facets(w, alpha, rng):
@@ -56,33 +60,47 @@ def interface(w, alpha, ior, rng):
     return out, passed
 
 
-def walk(mu, rho, roughness, alpha, ior=1.5, paths=PATHS):
-    """Directional albedo of EON below the interface."""
-    rng = np.random.default_rng(SEED)
+def walk(mu, roughness, alpha, ior, paths=PATHS, seed=SEED):
+    """Light that leaves along each path, (paths, 4), for each of RHO."""
+    rng = np.random.default_rng(seed)
     w = np.tile([np.sqrt(1.0 - mu * mu), 0.0, mu], (paths, 1))
     w, inside = interface(w, alpha, ior, rng)
-    total, weight = np.sum(~inside), np.ones(paths)
-    while inside.any():
+    total, paths_left, weight = (
+        np.where(inside, 0.0, 1.0)[:, np.newaxis] + 0.0 * RHO,
+        np.flatnonzero(inside),
+        1.0,
+    )
+    w = w[inside]
+    while len(w):
         # Neither layer has a grain, so that the side of a direction does not matter.
-        w, weight = w[inside], weight[inside]
-        wi, _ = eon_sample(w, rng.random((weight.size, 2)), roughness, rho=rho)
-        weight = weight * eon_albedo_dir(w[:, 2], rho, roughness)[:, 0]
+        wi, pdf = eon_sample(w, rng.random((len(w), 2)), roughness, rho=1.0)
+        value = eon_brdf(w, wi, np.broadcast_to(RHO, (len(w), 4)), roughness)
+        weight = weight * value * (wi[:, 2] / pdf)[:, np.newaxis]
         w, leaves = interface(wi, alpha, 1.0 / ior, rng)
-        total += weight[leaves].sum()
-        inside = ~leaves & (weight > FAINT)
-    return total / paths
+        total[paths_left[leaves]] = weight[leaves]
+        stays = ~leaves & (weight[:, -1] > FAINT)
+        w, weight, paths_left = w[stays], weight[stays], paths_left[stays]
+    return total
 
 
-def quotients(rho, paths=PATHS):
-    """Albedos of the layer over those of the walk, for all views and roughnesses."""
+def rows(paths=PATHS):
+    """Albedos by the layer, varnished and the walk, for each of RHO: (cases, 3, 4)."""
     return np.array([
-        dielectric_over_eon_albedo_dir(mu, rho, roughness, alpha, 1.5)[0]
-        / walk(mu, rho, roughness, alpha, paths=paths)
-        for mu in COSINES for alpha in ALPHAS for roughness in ROUGHNESSES
+        [
+            dielectric_over_eon_albedo_dir(mu, RHO, roughness, alpha, ior),
+            varnished_albedo_dir(mu, RHO, roughness, alpha, ior),
+            walk(mu, roughness, alpha, ior, paths).mean(axis=0),
+        ]
+        for ior, alpha, roughness, mu in product(INDICES, ALPHAS, ROUGHNESSES, COSINES)
     ])  # fmt: skip
 
 
 if __name__ == "__main__":
-    for rho in RHO:
-        found = quotients(rho)
-        print(f"| {rho} | {found.min():.2f} to {found.max():.2f} |")
+    layer, varnished, walked = rows().transpose(1, 0, 2)
+    for k, rho in enumerate(RHO):
+        spans = [
+            f"{q.min():.2f} to {q.max():.2f}"
+            for q in ((layer / walked)[:, k], (varnished / walked)[:, k])
+        ]
+        off = np.abs(varnished - walked)[:, k].max()
+        print(f"| {rho} | {' | '.join(spans)} | {off:.3f} |")

@@ -14,7 +14,7 @@ import numpy as np
 
 from mxeon.errors import PackageError, assert_known, install
 from mxeon.fit.measured import MeasuredBrdf, merl_directions, read_merl
-from mxeon.models import eon_brdf
+from mxeon.models import eon_brdf, varnished_brdf
 from mxeon.models.coat import dielectric_over_eon_brdf
 from mxeon.models.coat.openpbr import openpbr_base_brdf
 from mxeon.models.core.arrays import Array, ArrayLike
@@ -33,11 +33,17 @@ class FitModel:
 
 FIT_MODELS = {
     "eon": FitModel(eon_brdf, {"roughness": (0.0, 1.0)}, {"roughness": (0.2, 0.8)}),
-    "dielectric_over_eon": FitModel(
-        dielectric_over_eon_brdf,
-        {"roughness": (0.0, 1.0), "alpha": (LEAST_ALPHA, 1.0), "ior": (1.0, 4.0)},
-        {"roughness": (0.5,), "alpha": (0.1, 0.4), "ior": (1.5,)},
-    ),
+    **{
+        name: FitModel(
+            value,
+            {"roughness": (0.0, 1.0), "alpha": (LEAST_ALPHA, 1.0), "ior": (1.0, 4.0)},
+            {"roughness": (0.5,), "alpha": (0.1, 0.4), "ior": (1.5,)},
+        )
+        for name, value in (
+            ("dielectric_over_eon", dielectric_over_eon_brdf),
+            ("varnished", varnished_brdf),
+        )
+    },
     "openpbr_base": FitModel(
         openpbr_base_brdf,
         {
@@ -119,9 +125,10 @@ class Fit:
 def fit_brdf(measurement: MeasuredBrdf, model: str = "eon") -> Fit:
     """Parameters of a model that fit a measured BRDF best, by least squares.
 
-    - `model`: "eon", with `rho` and `roughness`; "dielectric_over_eon", a GGX lobe of a dielectric
-      layered over EON, with `alpha` and `ior` besides, whose `rho` is smaller than that of a
-      pigment under varnish; or "openpbr_base", mixed with a metal.
+    - `model`: "eon", with `rho` and `roughness`; "varnished", EON below a rough dielectric
+      interface, with `alpha` and `ior` besides; "dielectric_over_eon", MaterialX's `layer` with
+      the same parameters, whose `rho` is smaller than that of a pigment under varnish; or
+      "openpbr_base", mixed with a metal.
 
     Returns the best one of several starts. Raises InputError if the model is unknown; PackageError if scipy, of the `fit` extra, is not
     installed.

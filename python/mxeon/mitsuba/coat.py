@@ -1,20 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A dielectric over EON as a BSDF of Mitsuba; see `mxeon.models.coat`.
+"""A dielectric over EON as a BSDF of Mitsuba; see `mxeon.models.coat` and `mxeon.models.varnished`.
 
-What the dielectric reflects depends on the viewer's cosine alone: a cubic in each part of an octave, whose
+What the dielectric reflects depends on a cosine alone: a cubic in each part of an octave, whose
 coefficients are computed in float64 whenever `alpha` or `ior` changes, with their derivatives where these
 are asked for.
 """
 
 from __future__ import annotations
 
-from typing import ClassVar
+from collections.abc import Callable
+from functools import partial
+from typing import Any, ClassVar
 
 import numpy as np
 
-from mxeon.mitsuba.diffuse import EonPlugin, Mitsuba
+from mxeon.mitsuba.diffuse import EonPlugin, Mitsuba, RoughDiffusePlugin
 from mxeon.models.coat import openpbr
-from mxeon.models.coat.curves import constant_coat
+from mxeon.models.coat.curves import Coat, constant_coat
 from mxeon.models.core.arrays import Array
 from mxeon.models.core.octaves import gather_cubic, octave_cells, octave_cubics
 from mxeon.models.core.ranges import RANGES
@@ -28,6 +30,7 @@ from mxeon.models.microfacet.fresnel_formulas import (
     schlick_avg,
 )
 from mxeon.models.sampling.visible_normals import visible_density, visible_normal
+from mxeon.models.varnished import Varnish, albedo, constant_varnish, cut, nonzero, under
 
 ALPHAS, IORS = (RANGES[name][:2] for name in ("coat_alpha", "coat_ior"))
 STEP = 1e-4  # of the differences that stand for the derivatives of the coefficients
@@ -44,6 +47,8 @@ class CoatPlugin(EonPlugin):
         "alpha": (0.05, *ALPHAS),
         "ior": (1.5, *IORS),
     }
+    interface: Callable[[float, float], Any] = staticmethod(constant_coat)
+    count = 2  # curves that it has
 
     def configure(self, properties: Mitsuba) -> None:
         EonPlugin.configure(self, properties)
@@ -71,14 +76,14 @@ class CoatPlugin(EonPlugin):
         """Compute the coefficients: linear in numbers that have gradients, about their values."""
         numbers = self._dielectric()
         values = [float(np.array(self.dr.detach(each)).item()) for each in numbers]
-        self.coat, self.average = constant_coat(*values), dielectric_avg(numbers[1])
+        self.coat, self.average = self.interface(*values), dielectric_avg(numbers[1])
         if not self._compiled:
             return
-        self.table = self.mi.Float(_table(*values))
+        self.table = self.mi.Float(self._rows(values))
         for k, number in enumerate(numbers):
             if self.dr.grad_enabled(number):
                 change = number - self.dr.detach(number)
-                self.table = self.table + self.mi.Float(_slopes(values, k)) * change
+                self.table = self.table + self.mi.Float(self._slopes(values, k)) * change
         self.dr.make_opaque(self.average, self.table, *(getattr(self, n) for n in self.numbers))
 
     def eval(self, context: Mitsuba, si: Mitsuba, wo: Mitsuba, active: Mitsuba = True) -> Mitsuba:
@@ -163,12 +168,28 @@ class CoatPlugin(EonPlugin):
 
     def _at(self, mu: Mitsuba) -> tuple[Mitsuba, Mitsuba]:
         """Light that facets miss, (1 - E_ss) / E_ss, and the albedo of the dielectric."""
-        # Sum the curves themselves in scalar variants.
-        if not self._compiled:
-            return self.coat.at(mu)
-        cell, x = octave_cells(mu)
-        missing, reflected = (gather_cubic(self.table, 2 * cell + k, x) for k in range(2))
+        missing, reflected = self._curves(mu)
         return self.dr.maximum(missing, 0.0), self.dr.clip(reflected, 0.0, 1.0)
+
+    def _curves(self, mu: Mitsuba) -> list[Mitsuba]:
+        """Curves of the interface at a cosine: sums of Chebyshev polynomials in scalar variants."""
+        if not self._compiled:
+            return list(self.coat.at(mu))
+        cell, x = octave_cells(mu)
+        return [gather_cubic(self.table, self.count * cell + k, x) for k in range(self.count)]
+
+    def _rows(self, values: list[float]) -> Array:
+        """Table of the curves, cell by cell, and of the interface's means."""
+        coat = self.interface(*values)
+        rows = [octave_cubics(partial(_curve, coat, k)) for k in range(self.count)]
+        return np.append(np.stack(rows, axis=1), getattr(coat, "means", ()))
+
+    def _slopes(self, values: list[float], k: int) -> Array:
+        """Derivatives of the table by one of both numbers, by differences within its range."""
+        low, high = (ALPHAS, IORS)[k]
+        ends = [min(max(values[k] + step, low), high) for step in (STEP, -STEP)]
+        rows = [self._rows([end if n == k else v for n, v in enumerate(values)]) for end in ends]
+        return (rows[0] - rows[1]) / (ends[0] - ends[1])
 
     def _roughness(self) -> Mitsuba:
         return (self._dielectric()[0],) * 2
@@ -189,19 +210,52 @@ class CoatPlugin(EonPlugin):
         return bool(self.dr.is_jit_v(self.mi.Float))
 
 
-def _table(alpha: float, ior: float) -> Array:
-    coat = constant_coat(alpha, ior)
-    missing = octave_cubics(lambda mu: coat.at(mu)[0])
-    reflected = octave_cubics(lambda mu: coat.at(mu)[1])
-    return np.stack([missing, reflected], axis=1).ravel()
+def _curve(coat: Coat | Varnish, k: int, mu: Array) -> Array:
+    return coat.at(mu)[k]
 
 
-def _slopes(values: list[float], k: int) -> Array:
-    """Derivatives of the table by one of both numbers, by differences within its range."""
-    low, high = (ALPHAS, IORS)[k]
-    ends = [min(max(values[k] + step, low), high) for step in (STEP, -STEP)]
-    rows = [_table(*(end if n == k else v for n, v in enumerate(values))) for end in ends]
-    return (rows[0] - rows[1]) / (ends[0] - ends[1])
+class VarnishPlugin(CoatPlugin):
+    """EON below a rough dielectric interface, sampled by facets or by the cosine."""
+
+    interface: Callable[[float, float], Any] = staticmethod(constant_varnish)
+    count = 3
+    _density, _draw = RoughDiffusePlugin._density, RoughDiffusePlugin._draw
+
+    def eval(self, context: Mitsuba, si: Mitsuba, wo: Mitsuba, active: Mitsuba = True) -> Mitsuba:
+        active = self._front(context, si.wi, wo, active)
+        is_glossy, is_diffuse = self._enabled(context)
+        color, amount = self.reflectance.eval(si, active), self.amount.eval_1(si, active)
+        (facets, c), (spread, *_) = self._facets(si.wi, wo), self._means()
+        ior, s = self._dielectric()[1], si.wi.x * wo.x + si.wi.y * wo.y
+        above, below = (cut(self._curves(w.z)) for w in (si.wi, wo))
+        passed = (1.0 - above[0] - above[1]) * (1.0 - below[0] - below[1]) / ior**2
+        several = above[1] * below[1] / (np.pi * nonzero(spread))
+        given = (si.wi.z, wo.z), s, (above[2], below[2]), ior, self._means()
+        channels = [
+            self.mi.Float(
+                is_glossy * facets * dielectric(c, ior)
+                + is_diffuse * (several + passed * under(*given, rho, self._clipped(amount)))
+            )
+            for rho in color
+        ]
+        return self.dr.select(active, type(color)(*channels) * wo.z, 0.0)
+
+    def _share(
+        self, context: Mitsuba, si: Mitsuba, rho: Mitsuba, amount: Mitsuba, active: Mitsuba
+    ) -> Mitsuba:
+        """Probability of the facets: their part of the albedo."""
+        enabled = self._enabled(context)
+        if not all(enabled):
+            return self.mi.Float(enabled[0])
+        curves, ior = cut(self._curves(si.wi.z)), self._dielectric()[1]
+        total = albedo(si.wi.z, curves, ior, self._means(), rho, amount)
+        return self.mi.Float(curves[0]) / self.dr.maximum(self.mi.Float(total), 1e-30)
+
+    def _means(self) -> list[Mitsuba]:
+        if not self._compiled:
+            return list(self.coat.means)
+        start = self.dr.width(self.table) - 4
+        return [self.dr.gather(self.mi.Float, self.table, start + k) for k in range(4)]
 
 
 EDGE: Mitsuba = openpbr.EDGE

@@ -135,6 +135,11 @@ from mxeon.models.transmission.schlick import schlick_ior as schlick_ior
 from mxeon.models.transmission.transmittance import (
     dielectric_transmittance_dir as dielectric_transmittance_dir,
 )
+from mxeon.models.varnished import varnished_albedo_avg as varnished_albedo_avg
+from mxeon.models.varnished import varnished_albedo_dir as varnished_albedo_dir
+from mxeon.models.varnished import varnished_brdf as varnished_brdf
+from mxeon.models.varnished import varnished_pdf as varnished_pdf
+from mxeon.models.varnished import varnished_sample as varnished_sample
 
 __all__ = ["SAMPLERS"] + [
     name for name, value in globals().items() if callable(value) and not name.startswith("_")

@@ -7,11 +7,11 @@ Inputs have MaterialX's names, order, units and defaults, whatever the functions
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Literal, TypeAlias, cast, overload
+from typing import Any, Literal, TypeAlias, cast, overload
 
 import numpy as np
 
-from mxeon.models import coat, sampling, table
+from mxeon.models import coat, sampling, table, varnished
 from mxeon.models.coat import openpbr
 from mxeon.models.coat import sampling as coat_sampling
 from mxeon.models.core.arguments import checked_choice, checked_directions
@@ -91,6 +91,21 @@ NODES_BY_CATEGORY = {
     **{row.category: row.name for row in reversed((*NODES, SUBSURFACE_NODE, HAIR_NODE))},
 }
 
+
+LAYERED = (
+    coat.dielectric_over_eon_brdf,
+    coat.dielectric_over_eon_albedo_dir,
+    coat.dielectric_over_eon_albedo_avg,
+    coat_sampling.dielectric_over_eon_sample,
+    coat_sampling.dielectric_over_eon_pdf,
+)
+VARNISHED = (
+    varnished.varnished_brdf,
+    varnished.varnished_albedo_dir,
+    varnished.varnished_albedo_avg,
+    varnished.varnished_sample,
+    varnished.varnished_pdf,
+)
 
 Edf: TypeAlias = Literal["uniform_edf", "conical_edf", "generalized_schlick_edf"]
 Vdf: TypeAlias = Literal["absorption_vdf", "anisotropic_vdf"]
@@ -216,25 +231,28 @@ def _of_table(row: table.Model) -> ShadingModel:
     return ShadingModel(row.name, row.title, node, tuple(inputs), value, albedo, known, sampler)
 
 
-def _of_coat() -> ShadingModel:
-    """The model of a dielectric over EON; `alpha` is the roughness of the dielectric."""
+def _over_eon(
+    name: str, title: str, node: str, functions: tuple[Callable[..., Any], ...]
+) -> ShadingModel:
+    """The model of an interface over EON; `alpha` is the roughness of the interface."""
     inputs = (
         parameter("oren_nayar_diffuse_bsdf", "color", "rho"),
         parameter("oren_nayar_diffuse_bsdf", "roughness"),
         Parameter("alpha", 0.05, "coat_alpha"),
         Parameter("ior", 1.5, "coat_ior"),
     )
+    brdf, albedo_dir, albedo_avg, sample, pdf = functions
     return ShadingModel(
-        "dielectric_over_eon",
-        "dielectric over EON",
-        "layer_bsdf",
+        name,
+        title,
+        node,
         inputs,
-        lambda wo, wi, i: _per_coat(coat.dielectric_over_eon_brdf, i, wo, wi)[0],
-        lambda wo, i: _per_coat(coat.dielectric_over_eon_albedo_dir, i, cosine(wo[:, 2]))[0],
-        lambda i: _per_coat(coat.dielectric_over_eon_albedo_avg, i)[0],
+        lambda wo, wi, i: _per_coat(brdf, i, wo, wi)[0],
+        lambda wo, i: _per_coat(albedo_dir, i, cosine(wo[:, 2]))[0],
+        lambda i: _per_coat(albedo_avg, i)[0],
         ModelSampler(
-            lambda wo, u, i: _per_coat(coat_sampling.dielectric_over_eon_sample, i, wo, u),
-            lambda wo, wi, i: _per_coat(coat_sampling.dielectric_over_eon_pdf, i, wo, wi)[0],
+            lambda wo, u, i: _per_coat(sample, i, wo, u),
+            lambda wo, wi, i: _per_coat(pdf, i, wo, wi)[0],
             side=None,
         ),
     )
@@ -304,7 +322,8 @@ MODELS: dict[str, NodeModel] = {
     for each in (
         *map(_of_table, (*table.MODELS, *table.KNOWN_DEFECTS, *table.OTHERS)),
         *map(_of_table, table.PARAMETRIZATIONS),
-        _of_coat(),
+        _over_eon("dielectric_over_eon", "dielectric over EON", "layer_bsdf", LAYERED),
+        _over_eon("varnished", "EON under a varnish", "layer_bsdf", VARNISHED),
         _of_openpbr(),
         *map(_of_node, (*NODES, *FILM_NODES, SUBSURFACE_NODE, HAIR_NODE)),
         *map(_of_transmission, TRANSMISSION_NODES),

@@ -7,8 +7,9 @@ The dielectric reflects E_r of the light, and EON gets the rest, as `layer` of t
 
 E_r, with the energy compensation, is at most the albedo of facets that reflect everything, and so at
 most 1. This is no varnish: what EON returns passes freely, while below an interface light is reflected
-and refracted on its way out. At index 1.5 the albedo is 1.17 to 1.80 times that of a random walk below
-the same interface for rho 0.2, 1.28 to 1.66 for 0.5, 1.17 to 1.30 for 0.8: tools/fits/varnish_walk.py.
+and refracted on its way out. The albedo is up to 2.2 times that of light that walks below the same
+interface, and 1.04 to 1.84 times at index 1.5 and rho 0.2: tools/fits/varnish_walk.py. `varnished` has
+both in closed form.
 
 - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
 - `mu` (...): Cosine of the viewer's polar angle, in [0, 1].
@@ -51,7 +52,7 @@ def dielectric_over_eon_brdf(
     Result (..., C): 1/sr. Accuracy: E_r and the energy compensation, which the first call for a
     dielectric tabulates, have an error below 2e-7. The value is not reciprocal, as neither of both
     is. A layer is no varnish: EON's light is not reflected on its way out, and at index 1.5 the
-    albedo is up to 1.8 times that of EON below the interface (docs/research.md). [MaterialX2026],
+    albedo is up to 1.8 times that of `varnished_brdf` (docs/research.md). [MaterialX2026],
     sections `layer` and Energy Compensation; [Portsmouth2025], Eq. (19).
 
         >>> wo, wi = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]

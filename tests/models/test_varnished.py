@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: Apache-2.0
+"""EON under a varnish: energy, reciprocity, samples, gradients, and light that walks.
+
+The seeds are fixed. FALSE_ALARM is the probability that the comparisons of samples in this file fail
+although all is right.
+"""
+
+from functools import partial
+
+import numpy as np
+import pytest
+from scipy import special
+
+import mxeon
+from mxeon.albedo import eon_albedo_avg
+from mxeon.fit import MeasuredBrdf, fit_brdf
+from mxeon.models import (
+    dielectric_over_eon_albedo_dir,
+    eon_albedo_dir,
+    eon_brdf,
+    unchecked,
+    varnished_albedo_avg,
+    varnished_albedo_dir,
+    varnished_brdf,
+    varnished_pdf,
+    varnished_sample,
+)
+from tests.support.hemispheres import gauss_legendre, hemisphere, probability, uniforms, view
+from tests.support.tolerances import COAT_INTEGRAL
+from tools.fits.varnish_walk import RHO, walk
+
+FALSE_ALARM = 1e-4
+CLAY = {"rho": np.array([0.7, 0.35, 0.12]), "roughness": 0.6}
+WHITE = {"rho": 1.0, "roughness": 0.6}
+VARNISH = {"alpha": 0.3, "ior": 1.5}
+SCENES = [(1.0, 0.3, 1.5), (0.5, 0.1, 1.5), (0.1, 0.5, 2.5), (0.0, 0.3, 1.1)]
+every_scene = pytest.mark.parametrize(("mu", "alpha", "ior"), SCENES)
+EDGES = [{"rho": [0.0, 1.0], "roughness": r, "alpha": a, "ior": n}
+         for r in (0.0, 1.0) for a in (0.01, 1.0) for n in (1.0, 4.0)]  # fmt: skip
+CURVES = 2e-5  # of the value and its integrals: curves of 28 nodes, at alpha 0.01 and index 1.02
+WALKED = 0.016  # largest error that the module states
+PATHS = 1 << 14
+
+
+def pairs(count, seed):
+    """Directions to viewers and lights."""
+    w = np.random.default_rng(seed).normal(size=(2, count, 3))
+    w[..., 2] = np.abs(w[..., 2])
+    return w / np.linalg.norm(w, axis=-1, keepdims=True)
+
+
+def test_index_1_is_eon_to_the_last_bit():
+    (wo, wi), none = pairs(200, 1), {"alpha": 0.3, "ior": 1.0}
+    assert np.array_equal(varnished_brdf(wo, wi, **CLAY, **none), eon_brdf(wo, wi, **CLAY))
+    mu = wo[:, 2]
+    assert np.array_equal(varnished_albedo_dir(mu, **CLAY, **none), eon_albedo_dir(mu, **CLAY))
+    off = varnished_albedo_avg(**CLAY, **none) - eon_albedo_avg(**CLAY)
+    assert np.abs(off).max() < 1e-15
+
+
+@pytest.mark.parametrize("ior", (1.02, 1.5, 4.0))
+@pytest.mark.parametrize("alpha", (0.01, 0.3, 1.0))
+def test_the_value_is_reciprocal_and_a_white_base_loses_nothing(alpha, ior):
+    (wo, wi), inputs = pairs(200, 2), {"alpha": alpha, "ior": ior}
+    value, exchanged = (varnished_brdf(*w, **CLAY, **inputs) for w in ((wo, wi), (wi, wo)))
+    assert np.allclose(value, exchanged, 1e-12, 0.0)
+    mu = np.append([0.0, 1e-8, 1e-3], wo[:, 2])
+    assert np.abs(varnished_albedo_dir(mu, **WHITE, **inputs) - 1.0).max() < 1e-14
+
+
+@pytest.mark.parametrize("inputs", (CLAY, WHITE))
+@pytest.mark.parametrize(
+    ("mu", "alpha", "ior"), [(1.0, 0.5, 1.5), (0.5, 1.0, 4.0), (0.1, 0.5, 1.1)]
+)
+def test_the_directional_albedo_is_the_integral_of_the_value(inputs, mu, alpha, ior):
+    wi, weights = hemisphere(mu)
+    value = varnished_brdf(view(mu), wi, **inputs, alpha=alpha, ior=ior)
+    albedo = varnished_albedo_dir(mu, **inputs, alpha=alpha, ior=ior)
+    assert np.abs((weights * wi[:, 2]) @ value - albedo).max() < COAT_INTEGRAL
+
+
+@pytest.mark.parametrize(("alpha", "ior"), [(0.02, 1.5), (0.3, 1.1), (1.0, 4.0)])
+def test_the_average_albedo_is_the_average(alpha, ior):
+    x, weight = gauss_legendre(400)
+    mu = (0.5 + 0.5 * x) ** 2  # whose nodes crowd at grazing
+    E = varnished_albedo_dir(mu, **CLAY, alpha=alpha, ior=ior)
+    average = (0.5 * weight * 4.0 * (0.5 + 0.5 * x) ** 3) @ E
+    assert np.abs(varnished_albedo_avg(**CLAY, alpha=alpha, ior=ior) - average).max() < CURVES
+
+
+@pytest.mark.parametrize(("ior", "alpha", "roughness", "mu"),
+    [(1.1, 0.7, 1.0, 0.15), (1.5, 0.05, 0.0, 0.15), (1.5, 0.4, 1.0, 0.5), (2.0, 0.2, 1.0, 1.0)])  # fmt: skip
+def test_light_that_walks_has_the_albedo_and_under_a_layer_another(ior, alpha, roughness, mu):
+    out = walk(mu, roughness, alpha, ior, PATHS)
+    deviate = -special.ndtri(0.5 * FALSE_ALARM / 16)
+    noise = deviate * out.std(axis=0) / np.sqrt(PATHS)
+    inputs = mu, RHO, roughness, alpha, ior
+    error = np.abs(out.mean(axis=0) - varnished_albedo_dir(*inputs))
+    assert (error < WALKED + noise).all() and error[3] < 1e-4
+    off = dielectric_over_eon_albedo_dir(*inputs) - out.mean(axis=0)
+    assert off[1] > WALKED + noise[1]
+
+
+def chi_square(mu, alpha, ior, sampled_alpha):
+    """Probability of a chi-square as large, for samples of one roughness and the density of another."""
+    u = uniforms(100_000, [SCENES.index((mu, alpha, ior)), 17])
+    sample = partial(varnished_sample, **CLAY, alpha=sampled_alpha, ior=ior)
+    pdf = partial(varnished_pdf, **CLAY, alpha=alpha, ior=ior)
+    return probability(sample, pdf, view(mu, 0.4), u, nodes=32)
+
+
+@every_scene
+def test_samples_pass_the_chi_square_test_against_their_density_and_others_fail(mu, alpha, ior):
+    assert chi_square(mu, alpha, ior, alpha) > 0.5 * FALSE_ALARM / len(SCENES)
+    assert chi_square(mu, alpha, ior, 1.5 * alpha) < FALSE_ALARM
+
+
+@every_scene
+def test_the_mean_weight_is_the_albedo(mu, alpha, ior):
+    wo, inputs = view(max(mu, 0.01), 0.4), CLAY | {"alpha": alpha, "ior": ior}
+    wi, pdf = varnished_sample(wo, uniforms(40_000, 9), **inputs)
+    above = wi[:, 2] >= 0.0
+    assert np.allclose(varnished_pdf(wo, wi[above], **inputs), pdf[above], 1e-9)
+    weight = np.zeros((len(wi), 3))
+    weight[above] = varnished_brdf(wo, wi[above], **inputs) * wi[above, 2:]
+    weight /= pdf[:, np.newaxis]
+    error = np.abs(weight.mean(axis=0) - varnished_albedo_dir(wo[2], **inputs))
+    deviate = -special.ndtri(0.5 * FALSE_ALARM / (6 * len(SCENES)))
+    assert (error < deviate * weight.std(axis=0) / np.sqrt(len(wi))).all()
+
+
+def torch_gradients(function, inputs):
+    """Derivatives of the sum of a function's values by its inputs."""
+    torch = pytest.importorskip("torch")
+    given = {k: torch.tensor(v, dtype=torch.float64, requires_grad=True) for k, v in inputs.items()}
+    function(**given).sum().backward()
+    return {k: t.grad.numpy() for k, t in given.items()}
+
+
+FUNCTIONS = (
+    lambda **inputs: varnished_brdf(view(0.6), view(0.3, 1.0), **inputs),
+    lambda **inputs: varnished_albedo_dir(0.6, **inputs),
+    varnished_albedo_avg,
+    lambda **inputs: varnished_sample(view(0.6), uniforms(4, 1), **inputs)[1],
+)
+
+
+@pytest.mark.parametrize("function", FUNCTIONS)
+def test_gradients_are_those_of_differences_and_finite_at_the_edges(function):
+    for name, found in torch_gradients(function, CLAY | VARNISH).items():
+        ends = [
+            function(**CLAY | VARNISH | {name: (CLAY | VARNISH)[name] + h}).sum()
+            for h in (1e-4, -1e-4)
+        ]
+        assert found.sum() == pytest.approx((ends[0] - ends[1]) / 2e-4, rel=1e-3, abs=1e-5)
+    for edge in EDGES:
+        assert all(np.isfinite(each).all() for each in torch_gradients(function, edge).values())
+        with unchecked():
+            assert np.isfinite(function(**edge)).all()
+
+
+def test_a_fit_finds_the_pigment_where_the_layer_finds_another():
+    wo, wi = pairs(200, 3)
+    inputs = CLAY | VARNISH
+    value = varnished_brdf(wo, wi, **inputs)
+    fit = fit_brdf(MeasuredBrdf(wo, wi, value, 0.01 * value), "varnished")
+    for name, right in inputs.items():
+        assert fit.values[name] == pytest.approx(right, abs=1e-4)
+    layer = fit_brdf(MeasuredBrdf(wo, wi, value, 0.01 * value), "dielectric_over_eon")
+    assert (layer.values["rho"] < 0.8 * CLAY["rho"]).all()
+
+
+def test_the_model_by_name_has_the_functions():
+    model, inputs = mxeon.model("varnished"), CLAY | VARNISH
+    wo, wi = pairs(5, 4)
+    assert np.array_equal(model.brdf(wo, wi, **inputs), varnished_brdf(wo, wi, **inputs))
+    assert np.array_equal(model.albedo_avg(**inputs), varnished_albedo_avg(**inputs))
+    with pytest.raises(ValueError, match=r"^ior must lie in \[1, 4\]; got 5.0"):
+        model.albedo_dir(0.5, **CLAY, alpha=0.3, ior=5.0)
