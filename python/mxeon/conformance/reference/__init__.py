@@ -13,10 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from mxeon import hosts
 from mxeon.conformance.reference.graph import Graph
-from mxeon.conformance.reference.lobes import ManyMaterialsError
+from mxeon.conformance.reference.lobes import ManyMaterialsError, ShadingPoints
 from mxeon.conformance.reference.measured import LIT, PATTERNS, Elements, HostValues, Measure
 from mxeon.conformance.reference.nodes import ShownLobe
-from mxeon.conformance.reference.points import ShadingPoints
 from mxeon.errors import NotRun
 from mxeon.hosts import base
 from mxeon.hosts.base import Identity
@@ -108,7 +107,7 @@ class Host(base.Host):
         output: str = "response",
         irradiance: NDArray[np.floating] | None = None,
     ) -> NDArray[np.float64]:
-        """Values of the document's lobes; see `mxeon.hosts.base.Host`.
+        """Array of the document's lobes; see `mxeon.hosts.base.Host`.
 
         Raise NotRun unless the response to a light or to a uniform environment is asked for.
         """
@@ -129,7 +128,7 @@ class Host(base.Host):
 def _lighted(
     shader: Shader, points: ShadingPoints, measure: Measure | None = None
 ) -> tuple[NDArray[np.float64], tuple[str, ...], tuple[ShownLobe, ...]]:
-    """Values of a shader's element at points, the inputs that were measured for them, and the lobes."""
+    """Array of a shader's element at points, the inputs that were measured for them, and the lobes."""
     graph = Graph(shader.document, points, measure=measure)
     values = graph.element(shader.element)
     if points.wi is None and TRANSMISSION in inner_lobes(shader):

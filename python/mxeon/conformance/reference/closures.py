@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.conformance.reference.lobes import Albedo
+from mxeon.conformance.reference.lobes import Albedo, ShadingPoints
 from mxeon.conformance.reference.nodes import DIFFUSE, NOTHING
-from mxeon.conformance.reference.operations import Values
-from mxeon.conformance.reference.points import ShadingPoints
+from mxeon.conformance.samples import Array
 from mxeon.errors import OutsideModel
-from mxeon.hosts.base import Array, Host, Identity, Inputs
+from mxeon.hosts import base
+from mxeon.hosts.base import Host, Identity, Inputs
 from mxeon.hosts.osl.carriers import LAYER, MIX, OPERATIONS, SUM
 from mxeon.hosts.osl.trees import ClosureTree
 from mxeon.models import table
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
     from mxeon.io.files import AnyPath
 
-Arguments: TypeAlias = Mapping[str, Values]
+Arguments: TypeAlias = Mapping[str, Array]
 THROUGH, GRAPH = "transmission", "graph"  # branches of `Host.evaluate`
 ONE = np.ones((1, 1))
 LEAST_HAIR = 1e-12  # roughness, below which the model is a delta
@@ -62,9 +62,9 @@ FLAGGED = {
 class Views:
     """Directions at some points, and the light whose way is followed."""
 
-    wo: Values
-    wi: Values
-    occlusion: Values  # share of a light that reaches the surface from above
+    wo: Array
+    wi: Array
+    occlusion: Array  # share of a light that reaches the surface from above
     branch: str  # as in `mxeon.hosts.base.Host.evaluate`
 
     def bsdf(self, tree: ClosureTree | None, layered: bool) -> Bsdf:
@@ -125,8 +125,8 @@ class Views:
         return Bsdf(value if self.branch == THROUGH else tint * value, left)
 
     def _value(
-        self, closure: ClosureTree, row: PbrNode, wo: Values, wi: Values, inputs: Arguments
-    ) -> Values:
+        self, closure: ClosureTree, row: PbrNode, wo: Array, wi: Array, inputs: Arguments
+    ) -> Array:
         """Light that a lobe sends to the viewer, times the cosine, (N, 3)."""
         if self.branch == THROUGH:
             if closure.name not in TRANSMISSIONS:
@@ -146,7 +146,7 @@ class Views:
         shade = ONE if row.transmits else self.occlusion
         return np.asarray(shade * row.value(wo, above, inputs) * lit)
 
-    def _directions(self, closure: ClosureTree) -> tuple[Values, Values]:
+    def _directions(self, closure: ClosureTree) -> tuple[Array, Array]:
         """Directions in the frame of a closure; those of the surface's own frame stay as they are."""
         names = ("normal", "curve_direction" if closure.name == HAIR else "tangent")
         normal, tangent = (
@@ -164,13 +164,13 @@ class Views:
         return wo, wi
 
 
-def radiance(tree: ClosureTree | None) -> Values:
+def radiance(tree: ClosureTree | None) -> Array:
     """What closures emit, (N or 1, 3)."""
     emitted = _coefficient(tree, "color", EMISSION)
     return np.zeros((1, 3)) if emitted is None else emitted
 
 
-def _coefficient(tree: ClosureTree | None, argument: str, name: str) -> Values | None:
+def _coefficient(tree: ClosureTree | None, argument: str, name: str) -> Array | None:
     """An argument of the closures of a name, by which light depends linearly on them; None without any."""
     if tree is None:
         return None
@@ -193,14 +193,14 @@ def _only_medium(tree: ClosureTree | None) -> bool:
     return all(map(_only_medium, tree.parts))
 
 
-def _mixed(first: Callable[[], Bsdf], second: Callable[[], Bsdf], share: Values) -> Bsdf:
+def _mixed(first: Callable[[], Bsdf], second: Callable[[], Bsdf], share: Array) -> Bsdf:
     """A share of the second of two lobes beside the first; what has none is not evaluated."""
     if not np.any(share):
         return first()
     return second() if np.all(share == 1.0) else layering.mix(second(), first(), share)
 
 
-def _albedo(row: PbrNode, albedo: Albedo, wo: Values, inputs: Arguments) -> Values:
+def _albedo(row: PbrNode, albedo: Albedo, wo: Array, inputs: Arguments) -> Array:
     """An albedo of a lobe, once for the points that have the same view and inputs if it is no closed form."""
     wo = np.minimum(wo, 1.0)  # a rounding may have made a cosine larger
     if not row.fitted and row.integral is None:
@@ -237,7 +237,7 @@ def _inputs(closure: ClosureTree, row: PbrNode) -> Arguments:
     return given
 
 
-def column(values: ArrayLike) -> Values:
+def column(values: ArrayLike) -> Array:
     """Numbers as (N, 1), colors as they are."""
     array = np.asarray(values, np.float64)
     return array if array.ndim == 2 else array.reshape(-1, 1)
@@ -263,21 +263,21 @@ class Evaluated(Host):
     ) -> tuple[Shader, ...]:
         return self._host.compile(document, element, library=library, policy=policy)
 
-    def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
+    def execute(self, source: str, function: str, *arguments: ArrayLike) -> base.Array:
         return self._host.execute(source, function, *arguments)
 
     def evaluate(
         self,
         shader: Shader,
-        wo: Array,
-        wi: Array,
+        wo: base.Array,
+        wi: base.Array,
         inputs: Inputs,
         branch: str,
         *,
         output: str = "response",
-        irradiance: Array | None = None,
-    ) -> Array:
-        """Values of the closures of a shader; see `mxeon.hosts.base.Host`.
+        irradiance: base.Array | None = None,
+    ) -> base.Array:
+        """Array of the closures of a shader; see `mxeon.hosts.base.Host`.
 
         Raise Unsupported if the environment is not uniform: closures look none up.
         """

@@ -21,26 +21,25 @@ import MaterialX as mx
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.conformance.reference.lobes import VOLUMES, over_volume
+from mxeon.conformance.reference.lobes import ShadingPoints
 from mxeon.conformance.reference.measured import CLOSURES, DRAWN, Measure
 from mxeon.conformance.reference.nodes import (
     COMBINATIONS,
     LOBES,
     NOTHING,
-    ShownLobe,
-    definition,
-    node_lobe,
-    plain,
-)
-from mxeon.conformance.reference.operations import (
     OPERATIONS,
+    VOLUMES,
     Operation,
+    ShownLobe,
     Value,
-    Values,
+    definition,
     fitted,
+    node_lobe,
+    over_volume,
+    plain,
     same,
 )
-from mxeon.conformance.reference.points import ShadingPoints
+from mxeon.conformance.samples import Array
 from mxeon.errors import NotRun, OutsideModel
 from mxeon.hosts.textures import read_texture
 from mxeon.io.srgb import srgb_decoded
@@ -88,8 +87,8 @@ class Graph:
         self._elements: dict[Path, mx.Element] = {(): document}
         self._steps: dict[Path, Step] = {}
 
-    def element(self, name_path: str) -> Values:
-        """Values of the renderable element at a name path, (N, 3).
+    def element(self, name_path: str) -> Array:
+        """Array of the renderable element at a name path, (N, 3).
 
         Raise NotRun if the graph holds a node that is none of the above.
         """
@@ -195,7 +194,7 @@ class Graph:
     def _lobe(self, path: Path, node: mx.Node) -> Step:
         names = tuple(port.getName() for port in definition(node).getActiveInputs())
 
-        def lobe(*values: Values) -> Bsdf:
+        def lobe(*values: Array) -> Bsdf:
             inputs = dict(zip(names, values, strict=True))
             if np.any(inputs.get("weight", 1.0)):
                 self.lobes.append(ShownLobe(node.getCategory(), inputs))
@@ -222,7 +221,7 @@ class Graph:
                     self._assert_empty(path)
                 return same, self._sources(path, ("top",))
 
-        def combined(*values: Bsdf | Values) -> Bsdf:
+        def combined(*values: Bsdf | Array) -> Bsdf:
             try:
                 return operation(*values)
             except ValueError as error:
@@ -260,7 +259,7 @@ class Graph:
         shown = f"{port.getParent().getName()}.{name}" if scatters else ""
         return self._connected(path[:-1], port, shown)
 
-    def _given(self, path: Path, name: str) -> Values | None:
+    def _given(self, path: Path, name: str) -> Array | None:
         """Value that was handed in for an input, (N, 1) if it is one number for each point; or None."""
         element = self._elements.get(path)
         lobe = element is not None and element.getCategory() in LOBES
@@ -362,8 +361,8 @@ class Graph:
         scales = mx.LinearUnitConverter.create(lengths).getUnitScale() if lengths else {}
         return constant * float(scales.get(port.getUnit(), 1.0))
 
-    def _image(self, node: mx.Node) -> Values:
-        """Values of an image node: texel centers at half-integers, v = 0 at the bottom."""
+    def _image(self, node: mx.Node) -> Array:
+        """Array of an image node: texel centers at half-integers, v = 0 at the bottom."""
         if self._points.texcoord is None or node.getInput("texcoord") is not None:
             raise NotRun("reference: images are read at the sphere's own coordinates only")
         file = node.getInput("file")
@@ -383,8 +382,8 @@ class Graph:
 
 
 def _radiance(
-    row: Emission, ports: tuple[str, ...], points: ShadingPoints, *values: Values
-) -> Values:
+    row: Emission, ports: tuple[str, ...], points: ShadingPoints, *values: Array
+) -> Array:
     """Radiance of an emission to the viewer; a color has a row for each point, a number one value."""
     wo = points.view
     inputs = {
@@ -399,7 +398,7 @@ def _radiance(
         raise OutsideModel(f"reference: node {row.category!r}: {error}") from None
 
 
-def _utility(row: utilities.UtilityNode, *values: Values) -> Values | Mapping[str, Values]:
+def _utility(row: utilities.UtilityNode, *values: Array) -> Array | Mapping[str, Array]:
     """The one output of a utility node, or all by name; numbers come as () or (N, 1)."""
     columns = [
         np.atleast_2d(np.asarray(value, np.float64).reshape(-1, np.size(default)))
@@ -415,7 +414,7 @@ def _utility(row: utilities.UtilityNode, *values: Values) -> Values | Mapping[st
     return next(iter(outputs.values())) if len(outputs) == 1 else outputs
 
 
-def _linear(element: mx.Element, value: Values) -> Values:
+def _linear(element: mx.Element, value: Array) -> Array:
     """Color in the document's space, as the generators' color management has it; alpha stays.
 
     Raise NotRun if that takes a transform other than the decoding of sRGB.
@@ -429,8 +428,8 @@ def _linear(element: mx.Element, value: Values) -> Values:
 
 
 @lru_cache(maxsize=FILES)
-def _texels(path: str, texcoord: bytes) -> Values:
-    """Values of all channels of an image at points, (N, channels), by its four nearest texels."""
+def _texels(path: str, texcoord: bytes) -> Array:
+    """Array of all channels of an image at points, (N, channels), by its four nearest texels."""
     texels = read_texture(path)
     height, width = texels.shape[:2]
     texel = np.frombuffer(texcoord).reshape(-1, 2) * [width, height] - 0.5

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values and throughputs of one lobe at all the points of a picture, under each kind of light."""
+"""Points of a picture or pairs of an evaluation, and values of one lobe at all of them, under each kind of light."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
-from functools import lru_cache, partial
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache, partial
 from typing import TypeAlias
 
 import numpy as np
@@ -13,20 +13,18 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from mxeon.conformance.cache import Recent, contents
-from mxeon.conformance.reference.operations import Operation, Values
-from mxeon.errors import NotRun
+from mxeon.conformance.samples import Array
+from mxeon.errors import NotRun, OutsideModel
 from mxeon.models import table
 from mxeon.models.core.layering import Bsdf, throughput
 from mxeon.models.media.subsurface import diffusion_blur
-from mxeon.models.media.volume import transmittance
 from mxeon.models.nodes.hair import HAIR_NODE
-from mxeon.models.nodes.media import METER
 from mxeon.models.nodes.microfacets import isotropic
 from mxeon.models.nodes.node import Inputs, PbrNode
 from mxeon.models.nodes.subsurface import SUBSURFACE_NODE
 from mxeon.models.nodes.transmissions import TRANSMISSION_NODES, TRANSMISSIONS
 
-Albedo: TypeAlias = Callable[[Values, Inputs], Values]
+Albedo: TypeAlias = Callable[[Array, Inputs], Array]
 Material: TypeAlias = tuple[
     tuple[str, tuple[float, ...]], ...
 ]  # inputs of one value each, hashable
@@ -42,7 +40,7 @@ ISOTROPIC = ((32, 0), (64, 0), (128, 0), (256, 0))
 ANISOTROPIC = ((32, 16), (48, 32))
 ROWS = 1 << 12  # arguments of a series at once
 KEPT = 4  # lobes of the pictures of a scene, of up to 2.5 megabytes each
-FEW = 1000  # directions, whose albedos are as soon computed one by one
+SEPARATE = 1000  # directions, whose albedos are as soon computed one by one
 
 
 def diffuse(name: str, category: str) -> PbrNode:
@@ -62,7 +60,7 @@ class ManyMaterialsError(Exception):
     """More points with a material of their own than may be integrated one by one."""
 
 
-def lit(wo: Values, wi: Values, irradiance: float, most: float = np.inf) -> Lobe:
+def lit(wo: Array, wi: Array, irradiance: float, most: float = np.inf) -> Lobe:
     """Lobe under a distant light: its irradiance times f |cos(theta_i)|, 0 on the dark side.
 
     Where materials of more than `most` points have albedos without a closed form, it raises
@@ -86,7 +84,7 @@ def lit(wo: Values, wi: Values, irradiance: float, most: float = np.inf) -> Lobe
     return lobe
 
 
-def furnace(wo: Values, radiance: float, most: float = np.inf, behind: bool = False) -> Lobe:
+def furnace(wo: Array, radiance: float, most: float = np.inf, behind: bool = False) -> Lobe:
     """Lobe in a uniform environment: its directional albedo, or the share that it transmits.
 
     `most` is as that of `lit`.
@@ -116,7 +114,7 @@ def kept(lobe: Lobe) -> Lobe:
     return values
 
 
-def _at(inputs: Inputs, points: NDArray[np.bool_]) -> dict[str, Values]:
+def _at(inputs: Inputs, points: NDArray[np.bool_]) -> dict[str, Array]:
     """Inputs at some of the points, each (M,) or (M, components)."""
     count = int(points.sum())
     return {
@@ -130,18 +128,18 @@ def _at(inputs: Inputs, points: NDArray[np.bool_]) -> dict[str, Values]:
 def _albedo(
     albedo: Albedo,
     node: PbrNode,
-    wo: Values,
+    wo: Array,
     inputs: Inputs,
     points: NDArray[np.bool_],
     most: float,
-) -> Values:
+) -> Array:
     """Albedo at `points`, of which `wo` are the directions."""
     # What is computed fast, or for other materials at each point, needs no series.
     closed = not node.fitted and node.integral is None
     varied = any(len(value) > 1 for value in inputs.values())
     if varied and not closed and len(wo) > most:
         raise ManyMaterialsError
-    if closed or varied or len(wo) < FEW:
+    if closed or varied or len(wo) < SEPARATE:
         return albedo(wo, _at(inputs, points))
     material = tuple((name, tuple(value.ravel().tolist())) for name, value in inputs.items())
     # Whether the lobe stays itself when it is turned about the normal.
@@ -159,13 +157,13 @@ def _albedo(
     return _albedos(albedo, material, mu.tobytes())[indices]
 
 
-def _directions(mu: Values, phi: Values) -> Values:
+def _directions(mu: Array, phi: Array) -> Array:
     """Unit vectors with cosine mu at azimuth phi, (N, 3)."""
     sine = np.sqrt((1.0 - mu) * (1.0 + mu))
     return np.stack([sine * np.cos(phi), sine * np.sin(phi), mu], axis=1)
 
 
-def _interpolated(series: Values, wo: Values, low: float, turns: bool) -> Values:
+def _interpolated(series: Array, wo: Array, low: float, turns: bool) -> Array:
     """Sums of a series (X, Y, 3) in sqrt(mu) from `low` on and cos(2 phi), (N, 3)."""
     root = np.sqrt(np.minimum(wo[:, 2], 1.0))
     u = np.clip(2.0 * (root - low) / (1.0 - low) - 1.0, -1.0, 1.0)
@@ -179,7 +177,7 @@ def _interpolated(series: Values, wo: Values, low: float, turns: bool) -> Values
 
 
 @lru_cache(maxsize=8)
-def _albedos(albedo: Albedo, material: Material, cosines: bytes) -> Values:
+def _albedos(albedo: Albedo, material: Material, cosines: bytes) -> Array:
     """Albedos of an isotropic material, which all scenes of a document ask for."""
     mu = np.frombuffer(cosines)
     every = np.ones(len(mu), bool)
@@ -189,7 +187,7 @@ def _albedos(albedo: Albedo, material: Material, cosines: bytes) -> Values:
 @lru_cache(maxsize=32)
 def _series(
     albedo: Albedo, material: Material, low: float, degrees: tuple[tuple[int, int], ...]
-) -> Values | None:
+) -> Array | None:
     """Chebyshev coefficients of an albedo, (., ., 3), or None where they fall too slowly."""
     inputs = _inputs(material)
     for degree, turns in degrees:
@@ -206,14 +204,14 @@ def _series(
     return None
 
 
-def _inputs(material: Material) -> dict[str, Values]:
+def _inputs(material: Material) -> dict[str, Array]:
     return {
         name: np.array(values) if len(values) == 1 else np.array([values])
         for name, values in material
     }
 
 
-def _transform(points: Values) -> Values:
+def _transform(points: Array) -> Array:
     """Matrix from the values at Chebyshev points to coefficients, (points, coefficients)."""
     degree = len(points) - 1
     scale = np.where(np.arange(degree + 1) == 0, 1.0, 2.0) / (degree + 1)
@@ -224,11 +222,11 @@ COSINES = np.linspace(-1.0, 1.0, 1025)  # of the light, between which its blur i
 REACHES = (1e-6, 1e3)  # of mean free paths, over the radius of the sphere
 
 
-def _dark(wo: Values, *_: object) -> Values:
+def _dark(wo: Array, *_: object) -> Array:
     return np.zeros(wo.shape)
 
 
-def _not_reflected(category: str, wo: Values, inputs: Inputs) -> Values:
+def _not_reflected(category: str, wo: Array, inputs: Inputs) -> Array:
     """Share of a uniform environment that passes microfacets."""
     functions = TRANSMISSIONS[category]
     rest = 1.0 - functions.reflected(wo, isotropic(inputs))
@@ -242,7 +240,7 @@ def _transmitting(row: PbrNode) -> PbrNode:
     return replace(row, value=_dark, albedo=_dark, integral=_dark)
 
 
-def _spread(wo: Values, wi: Values, inputs: Inputs) -> Values:
+def _spread(wo: Array, wi: Array, inputs: Inputs) -> Array:
     """Radiance of subsurface scattering over the irradiance of a distant light."""
     # The mean free path of isotropic scattering.
     count = len(wi)
@@ -258,17 +256,17 @@ def _spread(wo: Values, wi: Values, inputs: Inputs) -> Values:
 
 
 @lru_cache(maxsize=64)
-def _blur(reach: float) -> Values:
+def _blur(reach: float) -> Array:
     """The blurred cosine at COSINES."""
     return diffusion_blur(COSINES, reach)
 
 
 # Share of a uniform environment that is transmitted, by the name of a row.
-LET_THROUGH: dict[str, Callable[[Values, Inputs], Values]] = {
+LET_THROUGH: dict[str, Callable[[Array, Inputs], Array]] = {
     row.name: partial(_not_reflected, row.category) for row in TRANSMISSION_NODES
 }
 # Radiance over irradiance of what takes light from all sides, without a cosine.
-AROUND: dict[str, Callable[[Values, Values, Inputs], Values]] = {
+AROUND: dict[str, Callable[[Array, Array, Inputs], Array]] = {
     SUBSURFACE_NODE.category: _spread,
     HAIR_NODE.category: HAIR_NODE.value,
 }
@@ -277,14 +275,83 @@ INNER_NODES = (
     replace(SUBSURFACE_NODE, inputs=("color", "radius", "anisotropy")),
     HAIR_NODE,
 )
-# Nodes of a volume below a layer, by the light that passes them.
-VOLUMES: dict[str, Operation] = {
-    "absorption_vdf": (("absorption",), lambda a: transmittance(a, 0.0, METER)),
-    "anisotropic_vdf": (("absorption", "scattering"), lambda a, s: transmittance(a, s, METER)),
-}
 
 
-def over_volume(top: Bsdf, medium: Values | None) -> Bsdf:
-    """A layer over a volume, for light that is transmitted."""
-    passed = 1.0 if medium is None else medium
-    return Bsdf(top.value * passed, top.throughput * passed)
+UNIT = 1e-3  # by how much the length of a normal may differ from 1
+
+
+@dataclass(frozen=True, eq=False)
+class ShadingPoints:
+    """Where a graph is evaluated, and by which light."""
+
+    wo: Array  # unit vectors to the viewer, in world space
+    wi: Array | None  # unit vectors to a distant light; None in a uniform environment
+    strength: float  # irradiance of the light, or radiance of the environment
+    normal: Array  # of the surface, orthogonal unit vectors in world space
+    tangent: Array
+    texcoord: Array | None = None
+    # Points with materials of their own whose albedos are integrated; see `lobes.lit`.
+    most: float = np.inf
+    round: bool = False  # whether these are points of the unit sphere
+    behind: bool = False  # whether light that is transmitted is asked for, and no other
+
+    def lobe(self, normal: Array, tangent: Array) -> Lobe:
+        """Lobe whose frame has a normal, turned to the viewer, and a tangent.
+
+        Raise OutsideModel if a normal is no unit vector.
+        """
+        own = np.array_equal(normal, self.normal) and np.array_equal(tangent, self.tangent)
+        return self._own if own else self._turned(normal, tangent)
+
+    def geometry(self, name: str) -> Array:
+        """A property of the surface by its name in MaterialX; raises NotRun if it is not known."""
+        known = {
+            "Nworld": self.normal,
+            "Tworld": self.tangent,
+            "Bworld": np.cross(self.normal, self.tangent),
+            "UV0": self.texcoord,
+        }
+        if (value := known.get(name)) is None:
+            raise NotRun(f"reference: the surface has no {name} here")
+        return value
+
+    @cached_property
+    def view(self) -> Array:
+        """Unit vectors to the viewer in the frame of the surface, (N, 3)."""
+        return _within(self._axes(self.normal, self.tangent), self.wo)
+
+    @cached_property
+    def _own(self) -> Lobe:
+        """Lobe in the frame of the surface; the last ones are kept, which another library's document has too."""
+        return kept(self._turned(self.normal, self.tangent))
+
+    def _turned(self, normal: Array, tangent: Array) -> Lobe:
+        wo, wi = self.directions(normal, tangent)
+        if wi is None:
+            return furnace(wo, self.strength, self.most, self.behind)
+        return lit(wo, wi, self.strength, self.most)
+
+    def directions(self, normal: Array, tangent: Array) -> tuple[Array, Array | None]:
+        """Directions to the viewer and to the light in a frame, whose normal is turned to the viewer.
+
+        Raise OutsideModel if a normal is no unit vector.
+        """
+        length = np.linalg.norm(normal, axis=-1)
+        if (wrong := np.ravel(length)[np.ravel(~(np.abs(length - 1.0) <= UNIT))]).size:
+            raise OutsideModel(f"reference: normal must have the length 1; got {wrong[0]:g}")
+        side = np.where((self.wo * normal).sum(axis=-1, keepdims=True) < 0.0, -1.0, 1.0)
+        axes = self._axes(side * normal, tangent)
+        return _within(axes, self.wo), None if self.wi is None else _within(axes, self.wi)
+
+    def _axes(self, z: Array, tangent: Array) -> Array:
+        """Axes of a frame, orthogonal unit vectors, as rows (N, 3, 3)."""
+        x = tangent - (tangent * z).sum(axis=-1, keepdims=True) * z
+        axes = np.stack(np.broadcast_arrays(x, np.cross(z, x), z), axis=1)
+        with np.errstate(invalid="ignore"):  # a tangent along the normal shows in the values
+            return np.asarray(axes / np.linalg.norm(axes, axis=2, keepdims=True))
+
+
+def _within(axes: Array, directions: Array) -> Array:
+    """Directions in a frame, whose axes are the rows, as unit vectors (N, 3)."""
+    local = (axes @ directions[:, :, np.newaxis])[:, :, 0]
+    return np.asarray(local / np.linalg.norm(local, axis=1, keepdims=True), np.float64)

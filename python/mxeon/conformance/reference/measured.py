@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values of a document's nodes as the host that is judged computes them.
+"""Array of a document's nodes as the host that is judged computes them.
 
 Patterns are not what the reference knows: where it has no function for a node, the value that comes
 from it is drawn by the host, as an output of a document of its own, and the reference goes on from
@@ -16,7 +16,7 @@ from typing import TypeAlias
 import MaterialX as mx
 import numpy as np
 
-from mxeon.conformance.reference.operations import Values
+from mxeon.conformance.samples import Array
 from mxeon.errors import DocumentError, NotRun
 from mxeon.hosts.base import Host
 from mxeon.shaders.document.policy import Policy
@@ -31,25 +31,25 @@ CLOSURES = (*LIT, "displacementshader", "volumeshader", "lightshader")
 TARGETS = ("glsl", "essl", "vulkan", "wgsl")  # whose shaders of an output draw its value
 NAME = "mxeon_value"
 Elements: TypeAlias = Sequence[mx.Element]  # a node, after the nodes and nodegraphs around it
-# Values of a node, by its type and the name of its output.
-Measure: TypeAlias = Callable[[Elements, str, str], Values]
+# Array of a node, by its type and the name of its output.
+Measure: TypeAlias = Callable[[Elements, str, str], Array]
 
 
 class HostValues:
-    """Values of a shader's nodes at the pixels of a picture, as a host draws them; NotRun if it cannot."""
+    """Array of a shader's nodes at the pixels of a picture, as a host draws them; NotRun if it cannot."""
 
     def __init__(self, host: Host, shader: Shader, library: str, policy: Policy) -> None:
         self._host, self._shader = host, shader
         self.library, self._policy = library, policy
-        self._pictures: dict[tuple[str, ...], Values] = {}
+        self._pictures: dict[tuple[str, ...], Array] = {}
 
-    def __call__(self, size: int, elements: Elements, kind: str, output: str = "") -> Values:
-        """Values of a node in a picture, (size, size, components)."""
+    def __call__(self, size: int, elements: Elements, kind: str, output: str = "") -> Array:
+        """Array of a node in a picture, (size, size, components)."""
         key = (*(each.getNamePath() for each in elements), output, str(size))
         make = partial(value_document, self._shader.document, elements, kind, output)
         return self._drawn(key, make, elements[-1].getNamePath(), size)[..., : DRAWN[kind]]
 
-    def emitted(self, size: int, output: mx.Output) -> Values:
+    def emitted(self, size: int, output: mx.Output) -> Array:
         """Picture of a surface that emits the color of an output, (size, size, 3)."""
         make = partial(emission_document, self._shader.document, output)
         return self._drawn((output.getNamePath(), str(size)), make, output.getNamePath(), size)
@@ -60,7 +60,7 @@ class HostValues:
         make: Callable[[], tuple[mx.Document, str]],
         name: str,
         size: int,
-    ) -> Values:
+    ) -> Array:
         """Picture of the element of a document to be made, on which no light falls; kept by a key."""
         if key in self._pictures:
             return self._pictures[key]

@@ -1,21 +1,31 @@
 # SPDX-License-Identifier: Apache-2.0
-"""BSDF nodes of a document as rows of the models, and the nodes that combine them."""
+"""Nodes of a document: BSDFs as rows of the models, those that combine them, and those that compute numbers.
+
+A host draws the values of every other node that is no nodegraph of these: see `measured`.
+
+A value is an array whose last axis holds its components; a number is () or (N, 1). What a function returns is
+repeated over the components of the node's type, so that a number becomes a color.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from operator import add, mul, pow, sub, truediv
+from typing import TypeAlias
 
 import MaterialX as mx
 import numpy as np
+from numpy.typing import NDArray
 
-from mxeon.conformance.reference.lobes import INNER_NODES, diffuse
-from mxeon.conformance.reference.operations import WIDTHS, Values
-from mxeon.conformance.reference.points import ShadingPoints
+from mxeon.conformance.reference.lobes import INNER_NODES, ShadingPoints, diffuse
+from mxeon.conformance.samples import Array
 from mxeon.errors import NotRun, OutsideModel
 from mxeon.models.core import layering
 from mxeon.models.core.layering import Bsdf
+from mxeon.models.media.volume import transmittance
 from mxeon.models.nodes import NODES
+from mxeon.models.nodes.media import METER
 from mxeon.models.nodes.node import PbrNode
 from mxeon.models.thin_film.lobe import FILM
 from mxeon.shaders.document.values import Plain
@@ -45,11 +55,11 @@ class ShownLobe:
     """A lobe of a picture that has a weight."""
 
     category: str  # of its node
-    inputs: Mapping[str, Values]  # as `node_lobe` gets them
+    inputs: Mapping[str, Array]  # as `node_lobe` gets them
 
 
 def node_lobe(
-    node: mx.Node, inputs: Mapping[str, Values], points: ShadingPoints, layered: bool
+    node: mx.Node, inputs: Mapping[str, Array], points: ShadingPoints, layered: bool
 ) -> Bsdf:
     """Lobe of a node; raises NotRun if an input has a value that the models do not cover."""
     # A lobe without a weight scatters nothing.
@@ -92,7 +102,7 @@ def definition(node: mx.Node) -> mx.NodeDef:
     raise NotRun(f"reference: node {node.getNamePath()!r} has no definition")
 
 
-def _row(node: mx.Node, inputs: Mapping[str, Values]) -> PbrNode:
+def _row(node: mx.Node, inputs: Mapping[str, Array]) -> PbrNode:
     """Row of the model that a node with these inputs has."""
     category = node.getCategory()
     if category in DIFFUSE_NODES:
@@ -103,7 +113,7 @@ def _row(node: mx.Node, inputs: Mapping[str, Values]) -> PbrNode:
     raise NotRun(f"reference: there is no model for this mode of node {category!r}")
 
 
-def _assert_known(node: mx.Node, row: PbrNode, inputs: Mapping[str, Values]) -> None:
+def _assert_known(node: mx.Node, row: PbrNode, inputs: Mapping[str, Array]) -> None:
     """Raise NotRun if an input that the model does not have differs from its default."""
     frame = ("normal", "tangent", "curve_direction")
     known = {"weight", *frame, FLAG, *FILM, *row.inputs, *row.fixed}
@@ -115,7 +125,7 @@ def _assert_known(node: mx.Node, row: PbrNode, inputs: Mapping[str, Values]) -> 
             )
 
 
-def _shaped(node: mx.Node, port: str, value: Values) -> Values:
+def _shaped(node: mx.Node, port: str, value: Array) -> Array:
     """Value of an input as (1,) or (N,) if it is a number, else with its components."""
     kind = definition(node).getActiveInput(port).getType()
     if kind in ("float", "boolean"):
@@ -126,8 +136,8 @@ def _shaped(node: mx.Node, port: str, value: Values) -> Values:
     return np.broadcast_to(array, (len(array), WIDTHS[kind]))
 
 
-def _where_shown(value: Values, weight: Values) -> Values:
-    """Values of an input with another point's where its lobe has no weight: there it may be no number."""
+def _where_shown(value: Array, weight: Array) -> Array:
+    """Array of an input with another point's where its lobe has no weight: there it may be no number."""
     idle = weight[:, 0] == 0.0
     if len(value) != len(idle) or not idle.any():
         return value
@@ -136,10 +146,131 @@ def _where_shown(value: Values, weight: Values) -> Values:
     return shown
 
 
-def plain(value: Plain) -> Values | bool | str | None:
+def plain(value: Plain) -> Array | bool | str | None:
     """A MaterialX value as a bool, a string, an array or None; NotRun for a matrix."""
     if value is None or isinstance(value, (bool, str)):
         return value
     if isinstance(value, MATRICES):
         raise NotRun("reference: no node computes with a matrix here")
     return np.asarray(value if isinstance(value, (int, float)) else tuple(value), dtype=np.float64)
+
+
+# --- nodes that compute numbers -------------------------------------------------------------------
+
+# What a node or an input of a document has: numbers, a flag, a text, a lobe, outputs by name, or nothing.
+Value: TypeAlias = Array | bool | str | Bsdf | Mapping[str, Array] | None
+Operation: TypeAlias = tuple[tuple[str, ...], Callable[..., Value]]  # its inputs, the function
+
+# Types of several components, and how many.
+WIDTHS = {"vector2": 2, "color3": 3, "vector3": 3, "color4": 4, "vector4": 4}
+
+
+def fitted(kind: str, value: Value) -> Value:
+    """Value with the components of a type: a number once for each, what is missing 0 or opaque."""
+    width = WIDTHS.get(kind, 1)
+    if width == 1 or value is None or isinstance(value, str):
+        return value
+    array = np.atleast_1d(np.asarray(value, np.float64))
+    have = array.shape[-1]
+    if have == 1:
+        return np.repeat(array, width, axis=-1)
+    if have < width:
+        rest = np.full((*array.shape[:-1], width - have), 1.0 if kind == "color4" else 0.0)
+        return np.concatenate([array, rest], axis=-1)
+    return array[..., :width]
+
+
+def same(value: Value) -> Value:
+    """The value of a node that passes its input on."""
+    return value
+
+
+def _dot(in1: Array, in2: Array) -> Array:
+    return np.asarray((in1 * in2).sum(axis=-1, keepdims=True), np.float64)
+
+
+def _normalize(value: Array) -> Array:
+    return value / np.sqrt(_dot(value, value))
+
+
+def _combine(*values: Array) -> Array:
+    parts = np.broadcast_arrays(*(np.atleast_1d(value) for value in values))
+    return np.concatenate(parts, axis=-1)
+
+
+def _rotate3d(value: Array, amount: Array, axis: Array) -> Array:
+    """Vector turned by an angle in degrees, by Rodrigues' formula for row vectors."""
+    angle, axis = np.radians(amount), _normalize(axis)
+    along = axis * _dot(axis, value) * (1.0 - np.cos(angle))
+    return np.asarray(value * np.cos(angle) + np.cross(value, axis) * np.sin(angle) + along)
+
+
+def _normalmap(
+    value: Array, scale: Array, normal: Array, tangent: Array, bitangent: Array
+) -> Array:
+    """Unit vector in world space of one in the surface's frame, written as a color."""
+    x, y, z = np.moveaxis(2.0 * value - 1.0, -1, 0)[..., np.newaxis]
+    scale = np.atleast_1d(scale)
+    turned = tangent * x * scale[..., :1] + bitangent * y * scale[..., -1:] + normal * z
+    black = _dot(value, value) == 0.0
+    return _normalize(np.where(black, normal, turned))
+
+
+def _when(compare: Callable[..., NDArray[np.bool_]]) -> Operation:
+    """One of two values, by a comparison of two others."""
+
+    def choose(value1: Array, value2: Array, in1: Array, in2: Array) -> Array:
+        return np.where(compare(value1, value2), in1, in2)
+
+    return ("value1", "value2", "in1", "in2"), choose
+
+
+ONE, TWO = ("in",), ("in1", "in2")
+
+# Category -> its inputs, and the function of them.
+OPERATIONS: dict[str, Operation] = {
+    "constant": (("value",), same),
+    "convert": (ONE, lambda value: np.asarray(value, np.float64)),
+    "dot": (ONE, same),
+    "add": (TWO, add),
+    "subtract": (TWO, sub),
+    "multiply": (TWO, mul),
+    "divide": (TWO, truediv),
+    "power": (TWO, pow),
+    "min": (TWO, np.minimum),
+    "max": (TWO, np.maximum),
+    "clamp": (("in", "low", "high"), lambda x, low, high: np.minimum(np.maximum(x, low), high)),
+    "invert": (("amount", "in"), sub),
+    "absval": (ONE, np.abs),
+    "sign": (ONE, np.sign),
+    "sqrt": (ONE, np.sqrt),
+    "ln": (ONE, np.log),
+    "normalize": (ONE, _normalize),
+    "rotate3d": (("in", "amount", "axis"), _rotate3d),
+    "normalmap": (("in", "scale", "normal", "tangent", "bitangent"), _normalmap),
+    "combine2": (TWO, _combine),
+    "combine3": (("in1", "in2", "in3"), _combine),
+    "extract": (
+        ("in", "index"),
+        lambda value, index: np.take(value, [int(np.ravel(index)[0])], axis=-1),
+    ),
+    "luminance": (("in", "lumacoeffs"), lambda value, weights: _dot(value[..., :3], weights)),
+    "mix": (("fg", "bg", "mix"), lambda fg, bg, mix: fg * mix + bg * (1.0 - mix)),
+    "ifgreater": _when(np.greater),
+    "ifgreatereq": _when(np.greater_equal),
+    "ifequal": _when(np.equal),
+}
+
+# --- volumes --------------------------------------------------------------------------------------
+
+# Nodes of a volume below a layer, by the light that passes them.
+VOLUMES: dict[str, Operation] = {
+    "absorption_vdf": (("absorption",), lambda a: transmittance(a, 0.0, METER)),
+    "anisotropic_vdf": (("absorption", "scattering"), lambda a, s: transmittance(a, s, METER)),
+}
+
+
+def over_volume(top: Bsdf, medium: Array | None) -> Bsdf:
+    """A layer over a volume, for light that is transmitted."""
+    passed = 1.0 if medium is None else medium
+    return Bsdf(top.value * passed, top.throughput * passed)
