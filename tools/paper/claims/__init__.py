@@ -12,13 +12,14 @@ COLUMNS = ("where", "claim", "measured", "required", "verdict")
 
 HEAD = """# The paper, checked
 
-`mxeon figures` writes this page. It measures the numbers below, in float64 unless stated otherwise.
-Equations, figures and listings are those of [Portsmouth2025], the JCGT 2025 edition
-([bibliography](bibliography.md)). The figures are below the claims; their data are in the folder `figures`.
+Does the EON paper say what is true? `mxeon figures` measures its claims and writes this page, in float64
+unless stated otherwise. Equations, figures and listings have the numbers of [Portsmouth2025], the JCGT
+2025 edition ([bibliography](bibliography.md)). The figures follow the claims; their data are in the
+folder `figures`.
 
-A claim *holds* if all of its measured values lie within the bound in the column *required*, holds *in
-part* if some do, and *fails* if none does. A value that is not a number lies within no bound. The last
-table is about the text of MaterialX, not about the paper.
+A claim *holds* if all of its measured values meet the limit in the column *required*, holds *in part* if
+some do, and *fails* if none does; NaN meets no limit. The last table is about MaterialX's text, not the
+paper.
 """
 TALLY = "{count} claims: {holds} hold, {part} hold in part, {fails} fail."
 
