@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Renderers with materials of their own: their engines, nodes and checks, and the page of the field.
+"""Renderers with their own materials: their engines, nodes and checks, and the page that compares them.
 
 `mxeon.hosts` and `mxeon.conformance` name no renderer: they take `ROWS`, and from the module of a row its
 `Host` and its `NODES`. `checks` and `backends` add themselves to those of `mxeon.conformance`.

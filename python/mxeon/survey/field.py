@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The field: what the reports of any number of runs say of each renderer's node, side by side."""
+"""What the reports of any number of runs say about each renderer's nodes, side by side."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -179,8 +179,8 @@ def _back_lit(direct: Result, error: float) -> Result:
 
 
 def write_field(entries: Sequence[Entry], file: str | PathLike[str], pages: str = "") -> Path:
-    """Write the page of the field, and return it; see `mxeon.survey.field_page.render`."""
-    with needing_extra("the page of the field"):
+    """Write the page that compares renderers, and return its path; see `mxeon.survey.field_page.render`."""
+    with needing_extra("the page that compares renderers"):
         from mxeon.survey.field_page import render
     with replacing(Path(file)) as beside, open(beside, "w", encoding="utf-8") as page:
         page.writelines(render(entries, pages))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page of the field, one self-contained HTML file. Needs the `report` extra."""
+"""The page that compares renderers, one self-contained HTML file. Needs the `report` extra."""
 
 import math
 from collections import Counter
@@ -21,7 +21,7 @@ from mxeon.survey.field import CHECKS, Entry
 HEADINGS = {
     "direct": ("Direct light", "worst error of π f cos θ over all pairs of directions"),
     "surroundings": ("Surroundings", "worst error of the albedo in a uniform environment"),
-    "energy": ("White furnace", "what a white surface lacks, or has too much"),
+    "energy": ("White furnace", "what a white surface loses or gains"),
     "color": ("Color", "error of the albedo at mixed reflectance"),
     "black": ("Black", "what a black surface scatters"),
     "back": ("Back-lit", "worst error of the portrait in light from behind"),
@@ -32,7 +32,7 @@ INPUTS = ("color", "roughness", "wo", "wi", "measured", "expected")
 
 
 def render(entries: Sequence[Entry], pages: str = "") -> Iterator[str]:
-    """Pieces of the page of the field; a picture is read when its piece is due.
+    """Pieces of the page; a picture is read when its piece is due.
 
     `pages` is the address of a page of the ledger with `{}` for its name, "" for no links. The page loads
     nothing, runs only its own script, and is complete without it. Text of the reports is escaped.
