@@ -94,9 +94,9 @@ def test_values_are_those_of_the_model(mi, name, inputs):
     right = expected(name, wo, wi, **inputs)
     assert (np.abs(np.array(values).T - right) <= allowed(name, right)).all()
     assert not np.array(made.eval(context, surface(mi, wo), -light)).any()
-    if name == COAT:
-        numbers = {key: float(np.float32(each)) for key, each in (INPUTS[COAT] | inputs).items()}
-        density = models.dielectric_over_eon_pdf(wo, wi, COLOR, **numbers)
+    if name in (COAT, VARNISH):
+        numbers = {key: float(np.float32(each)) for key, each in (INPUTS[name] | inputs).items()}
+        density = getattr(models, f"{name}_pdf")(wo, wi, COLOR, **numbers)
         mu = wo[:, 2].astype(np.float64)
         reflected = models.dielectric_over_eon_albedo_dir(mu, 0.0, **numbers)[:, 0]
         error = np.abs(np.array(pdf) - density) / np.maximum(1.0, density)

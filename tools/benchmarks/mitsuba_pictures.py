@@ -29,6 +29,7 @@ BSDFS = {
     "principled": {"base_color": COLOR, "roughness": 0.55, "specular": 0.5},
     "roughplastic": {"distribution": "ggx", "diffuse_reflectance": COLOR, "alpha": 0.3},
     "dielectric_over_eon": ROUGH | {"alpha": 0.3, "ior": 1.5},
+    "varnished": ROUGH | {"alpha": 0.3, "ior": 1.5},
     "openpbr_base": {
         "base_color": COLOR,
         "base_diffuse_roughness": 0.6,

@@ -101,17 +101,18 @@ def inner(mu: Array, ior: float | Array) -> Array:
     return root(mu * mu + (1.0 - mu) * (1.0 + mu) * (1.0 - 1.0 / ior**2))
 
 
-def returned(
-    m: Array, turned: Array, means: Sequence[float | Array], rho: Array, r: Array
-) -> tuple[Array, Array, Array]:
-    """k at the inner cosine m, 1 - R `<k>`, and H(m)."""
+def shape(mu: Array, turned: Array, ior: float | Array, r: Array) -> tuple[Array, Array, Array]:
+    """mu', 1 + r b and H(mu'): k = rho A (1 + r b + W <H>_R H)."""
+    m = inner(mu, ior)
+    return m, 1.0 + r * turned * root((1.0 - m) * (1.0 + m)) / nonzero(m), fon_loss(m)
+
+
+def absorbed(means: Sequence[float | Array], rho: Array, r: Array) -> Array:
+    """1 - R `<k>`, as 1 - R + R (1 - `<k>`) without ones that cancel: (1 + c1 r) A is 1."""
     _, exits, loss, turn = means
-    b, H = turned * root((1.0 - m) * (1.0 + m)) / nonzero(m), fon_loss(m)
-    weight, scale = formulas.eon_multiple_weight(rho, r), rho * formulas.fon_a(r)
-    k = scale * (1.0 + r * b + weight * loss * H)
-    # 1 - R <k> = 1 - R + R (1 - <k>) without ones that cancel: (1 + c1 r) A is 1.
-    lost = 1.0 - rho + scale * (r * (C1 - turn) - weight * loss**2)
-    return k, exits + (1.0 - exits) * lost, H
+    weight = formulas.eon_multiple_weight(rho, r)
+    lost = 1.0 - rho + rho * formulas.fon_a(r) * (r * (C1 - turn) - weight * loss**2)
+    return exits + (1.0 - exits) * lost
 
 
 def under(
@@ -123,14 +124,20 @@ def under(
     rho: Array,
     r: Array,
 ) -> Array:
-    """The brackets of (1): EON itself at index 1, to the last bit."""
-    m_o, m_i = (inner(each, ior) for each in mu)
-    k_o, lost, H_o = returned(m_o, turned[0], means, rho, r)
-    k_i, _, H_i = returned(m_i, turned[1], means, rho, r)
+    """The brackets of (1): EON itself at index 1, to the last bit.
+
+    k k is expanded into powers of W, so that products with channels are few where the material is one.
+    """
+    (m_o, p_o, H_o), (m_i, p_i, H_i) = (
+        shape(*each, ior, r) for each in zip(mu, turned, strict=True)
+    )
     single = 1.0 + r * formulas.fon_quotient(m_o, m_i, s / ior**2)
-    several = formulas.eon_multiple_weight(rho, r) * (H_o * H_i)
-    first = formulas.fon_scale(rho, r) * (single + several)
-    return first + k_o * k_i * ((1.0 - means[1]) / (np.pi * lost))
+    weight = formulas.eon_multiple_weight(rho, r)
+    again = rho * formulas.fon_a(r) * (1.0 - means[1]) / absorbed(means, rho, r)
+    mixed = again * weight * means[2]
+    several = (weight + mixed * weight * means[2]) * (H_o * H_i)
+    several = several + mixed * (p_o * H_i + p_i * H_o) + again * (p_o * p_i)
+    return formulas.fon_scale(rho, r) * (single + several)
 
 
 def albedo(
@@ -142,9 +149,10 @@ def albedo(
     r: Array,
 ) -> Array:
     """(2)."""
-    single, several, turned = curves
-    k, lost, H = returned(inner(mu, ior), turned, means, rho, r)
-    kept = (1.0 - means[1]) * (1.0 - eon_albedo(means[2], rho, r)) / lost
+    (single, several, turned), (_, exits, loss, _) = curves, means
+    _, p, H = shape(mu, turned, ior, r)
+    k = rho * formulas.fon_a(r) * (p + formulas.eon_multiple_weight(rho, r) * (loss * H))
+    kept = (1.0 - exits) * (1.0 - eon_albedo(loss, rho, r)) / absorbed(means, rho, r)
     return single + several + (1.0 - single - several) * (eon_albedo(H, rho, r) - k * kept)
 
 
@@ -301,7 +309,7 @@ def varnished_albedo_avg(rho: ArrayLike, roughness: ArrayLike, alpha: float, ior
     (color,), (r,) = any_array(checked_colors)({"rho": rho}, roughness=roughness)
     varnish = varnish_of(alpha, ior)
     _, exits, loss, _ = varnish.means
-    _, lost, _ = returned(0.0 * r + 1.0, 0.0 * r, varnish.means, color, r)
+    lost = absorbed(varnish.means, color, r)
     mean, within = eon_albedo(C1 - C2, color, r), eon_albedo(loss, color, r)
     again = (1.0 - exits) * (within - 1.0 + lost) * (1.0 - within) / lost
     return 1.0 - varnish.ior**2 * (exits - mean + (1.0 - exits) * within + again)
