@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Whether the generators of this MaterialX call a library's functions as its sources define them.
 
-Versions of MaterialX pass closures other arguments. So a generator writes a call of each function that a
-shader uses, in a document of mxeon's own, where no name can be taken for another: the document of the
-shader, and its text, are not searched.
+Versions of MaterialX pass different arguments to closures. To find out, a generator writes a call of each
+function that a shader uses, in mxeon's own document, in which names are unambiguous. The shader's document
+and text are not searched.
 """
 
 import os
@@ -44,7 +44,7 @@ def check_closure_calls(
 
 @cache
 def _functions(library: str, profile: str | None) -> Mapping[str, list[tuple[str, str]]]:
-    """Nodedefs and functions of each source of a library, but for MaterialX's own and those in their place."""
+    """Nodedefs and functions of each source of a library, except MaterialX's own and their replacements."""
     functions: dict[str, list[tuple[str, str]]] = defaultdict(list)
     if root(library):
         return functions
@@ -64,7 +64,7 @@ def _is_standard(uri: str) -> bool:
 
 @cache
 def _signatures(file: str, function: str) -> list[list[str]]:
-    """Parameters of each function of a name that a source defines: one for each form of the call."""
+    """Parameters of each function of that name that a source defines: one for each form of the call."""
     text = COMMENT.sub("", Path(file).read_text(encoding="utf-8"))
     definitions = re.finditer(rf"\bvoid\s+{function}\s*\(", text)
     return [_arguments(text, definition.end()) for definition in definitions]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The nodes that a document's materials use, in nodegraphs and inside surface shaders too."""
+"""The nodes that a document's materials use, including those in nodegraphs and surface shaders."""
 
 import warnings
 from dataclasses import dataclass
@@ -34,7 +34,7 @@ class ShownNode:
     values: tuple[tuple[str, tuple[float, ...]], ...] = ()
 
     def has(self, other: "ShownNode") -> bool:
-        """Whether it may be in the mode of another node, whose inputs are those that are set."""
+        """Whether it may be in the mode of another node, given by the inputs that are set."""
         return (
             (self.category, self.type) == (other.category, other.type)
             and set(other.inputs) <= set(self.inputs)
@@ -43,7 +43,7 @@ class ShownNode:
 
 
 def document_nodes(policy: Policy, source: tuple[str, str]) -> tuple[ShownNode, ...] | MxeonError:
-    """The nodes that the materials of a document use, or the error that it cannot be read.
+    """The nodes that the materials of a document use, or the error if it cannot be read.
 
     The source is a file and the name of a library.
     """
@@ -62,7 +62,7 @@ def document_nodes(policy: Policy, source: tuple[str, str]) -> tuple[ShownNode, 
 
 
 def node_of(text: str, category: str) -> ShownNode:
-    """The first node of a category in a document, with the inputs that it sets alone."""
+    """The first node of a category in a document, with only the inputs that it sets."""
     document = mx.createDocument()
     mx.readFromXmlString(document, text)
     node = next(each for each in document.traverseTree() if each.getCategory() == category)

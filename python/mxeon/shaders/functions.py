@@ -31,7 +31,7 @@ def has_functions(library: str, language: str = "glsl") -> bool:
 
 
 def twins(language: str, library: str) -> str:
-    """Text of the files of a library that have one text in two languages, their includes expanded."""
+    """Text of the files of a library that are shared by two languages, their includes expanded."""
     stems = [
         stem
         for stem in TWINS
@@ -89,10 +89,10 @@ def uses(text: str) -> Mapping[str, frozenset[str]]:
 
 
 def dispatched(text: str, functions: Iterable[str], language: str) -> str:
-    """The text with one function more, which calls one of `functions` by its number.
+    """The text plus a function that calls one of `functions` by its number.
 
-    Its parameters are that number as a float, and for each type as many as a function has at most,
-    the first of them for the first parameter of that type. So a host compiles one program for all.
+    Its parameters are that number as a float, and for each type as many as any function has; the first
+    one is for the first parameter of that type. So a host compiles one program for all functions.
     """
     known, types = signatures(text), TYPES[language]
     slots = {kind: 0 for kind in types}
@@ -127,6 +127,6 @@ def slot_names(kinds: Iterable[str]) -> list[str]:
 
 
 def source_file(language: str, stem: str, library: str = "eonlib") -> Path:
-    """File of a library that holds shader functions, in whichever folder it lies."""
+    """File of a library with shader functions, in whichever folder it is."""
     folder, name = source_folder(library) / f"gen{language}", f"{stem}.{language}"
     return next(folder.rglob(name), folder / name)

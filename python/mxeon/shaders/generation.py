@@ -57,7 +57,7 @@ DEFINED = re.compile(r"(?:#define|\b(?!return\b|else\b)\w+)\s+(mx_\w+)")
 
 
 class ApproximationWarning(UserWarning):
-    """A shader whose renderer has only an approximation of a model, and where it differs from that."""
+    """A shader whose renderer only has an approximation of a model, and where the two differ."""
 
     def __init__(self, element: str, approximation: str) -> None:
         super().__init__(f"{element}: {approximation}")
@@ -128,8 +128,9 @@ def generate(
       light type 1.
     - `policy`: Permissions, limits and search path.
 
-    Raises ValueError if the target, the library, the profile or the element is unknown; DocumentError if no shader can be generated from the document; InterfaceError if
-    this MaterialX calls closures in another way than eonlib's sources define them.
+    Raises ValueError if the target, the library, the profile or the element is unknown; DocumentError if
+    no shader can be generated from the document; InterfaceError if this MaterialX calls closures in
+    another way than eonlib's sources define them.
 
     Warns ApproximationWarning if the profile cannot express a model that the document asks for;
     CodeWarning if the document brings shader code of its own, which the policy has to permit;

@@ -92,7 +92,7 @@ def context_of(
 def generated(
     generator: mx_gen.ShaderGenerator, name: str, element: mx.Element, context: mx_gen.GenContext
 ) -> mx_gen.Shader:
-    """Shader of an element, without what MaterialX prints of a text that it mends itself."""
+    """Shader of an element, without MaterialX's messages about text that it repairs itself."""
     wordy = isinstance(generator, GENERATORS.get("wgsl", ()))
     with lines_left_out(BOOLEANS) if wordy else nullcontext():
         return generator.generate(name, element, context)
@@ -100,7 +100,7 @@ def generated(
 
 @cache
 def tokens_of(target: str, library: str, profile: str | None) -> Mapping[str, str]:
-    """Words of includes, and the names that a generator has in their place: known once it has run."""
+    """Words of includes, and the names that a generator writes for them; known once it has run."""
     document = mx.createDocument()
     document.setDataLibrary(load_library(library, profile))
     generator = generator_of(document, target, library, profile)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lobes of a material that send light below its surface, which one look at the surface cannot show.
+"""Lobes of a material that send light below its surface, which a point of the surface cannot show.
 
 A document's graph is walked from its material. A side of a mix with the constant weight 0 or 1 that
 has no effect is left out, and so is a lobe of weight 0; a weight that is computed counts as any.
@@ -47,7 +47,7 @@ def inner_lobes(shader: Shader) -> tuple[str, ...]:
 
 
 class Walk:
-    """The nodes whose light a material shows, by their paths, and the kinds of lobes among them.
+    """The nodes that contribute light to a material, by their paths, and the kinds of lobes among them.
 
     Nodes of constant weight 0 are left out; with `values`, nodes that compute inputs are walked too.
     """
@@ -146,7 +146,7 @@ class Walk:
         return None if port is None or self.source(path, name) else str(port.getValueString())
 
     def _constant(self, path: Path, name: str) -> float | None:
-        """Number that an input has; None where there is none, or one that cannot be told here."""
+        """Number of an input; None if it has none, or if it is not constant."""
         if source := self.source(path, name):
             ports, function = ARITHMETIC.get(self._nodes[source].getCategory(), ((), None))
             numbers = [self._constant(source, port) for port in ports]

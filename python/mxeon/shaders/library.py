@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The data libraries: where they lie and in which order MaterialX has to load them.
+"""The data libraries: where they are and in which order MaterialX has to load them.
 
 MaterialX silently ignores later definitions of a name, so eonlib is loaded before the standard
 libraries. Which implementations MaterialX chooses is then checked: see `implementations`.
 
-No version of MaterialX is refused by its number: the methods that mxeon needs are looked up in it, and
-generated code is checked against the closure interface of eonlib's sources.
+mxeon refuses no version of MaterialX by its number: it looks up the methods that it needs, and checks
+generated code against the closure interface of eonlib's sources.
 """
 
 import os
@@ -84,9 +84,9 @@ def documents_folder(part: str = "eonlib") -> Path:
 
 @cache
 def kind_of(library: str) -> str:
-    """The one of LIBRARIES that a library is or holds a copy of, as far as its documents go, or OVERLAY.
+    """The one of LIBRARIES that a library is or, by its documents, is a copy of; otherwise OVERLAY.
 
-    A folder that takes the place of MaterialX's own libraries, or of a part of them, is "stock".
+    A folder that replaces MaterialX's own libraries, or a part of them, is "stock".
     """
     if library in LIBRARIES:
         return library
@@ -109,7 +109,7 @@ def source_folder(library: str) -> Path:
 
 
 def library_folders(library: str) -> list[Path]:
-    """A folder that is loaded as a library, and those that it may take sources from."""
+    """A folder to load as a library, and those from which it may take sources."""
     sources = (source_folder(library) / name for name in SOURCE_FOLDERS)
     return [Path(library), *(folder for folder in sources if folder.is_dir())]
 
@@ -117,7 +117,7 @@ def library_folders(library: str) -> list[Path]:
 def profile_documents(library: str, profile: str) -> list[Path]:
     """MaterialX documents of a profile, to be loaded before a library's.
 
-    They end in .xml, so that whatever loads all of a folder leaves them out.
+    They end in .xml so that programs that load a whole folder skip them.
     """
     if kind_of(library) == "stock":
         return []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The files behind a library that is given as a folder: its own, and those of MaterialX beside them.
+"""The files of a library that is a folder: its own, and those of MaterialX that complete it.
 
 A folder is one of three kinds.
 
@@ -11,9 +11,9 @@ part
 overlay
     It has names of its own, as eonlib does, and is loaded before MaterialX's libraries.
 
-MaterialX finds a node's source beside its document, what the source includes beside that, and what the
-generator includes on a search path. So a whole or a part is laid out as one tree of links, `libraries`, and
-both documents and sources come from there: no installed file can take the place of one in the folder.
+MaterialX looks for a node's source next to its document, for included files next to that, and for the
+generator's includes on a search path. So a whole or a part becomes one tree of links, `libraries`, with both
+documents and sources: no installed file can replace one in the folder.
 
 A library is trusted, so it may name any file. A pipe, a device or an encoding is still refused in one
 line: MaterialX would wait, fill the memory, or give text that no one can decode.
@@ -146,9 +146,9 @@ def origins(library: str) -> dict[str, tuple[str, ...]]:
 
 
 def root(library: str) -> str:
-    """Folder whose `libraries` take the place of MaterialX's own for a library; "" for the installed.
+    """Folder whose `libraries` replace MaterialX's own for a library; "" for the installed ones.
 
-    Each process lays its own, which goes when the process ends.
+    Each process makes its own and removes it when it ends.
     """
     known = None if library in LIBRARIES else tree(library)
     return _root(known.folder) if known and known.links else ""
@@ -191,7 +191,7 @@ INCLUDE = "#include"  # as MaterialX seeks it, for every target
 
 
 def read_source(path: AnyPath, limit: int) -> bytes:
-    """Content of a regular file; of one that is longer than the limit, one byte more."""
+    """Content of a regular file; if it is longer than the limit, one byte more than that."""
     try:
         with open(path, "rb", opener=regular) as file:
             return file.read(limit + 1)

@@ -111,7 +111,7 @@ SURFACE = node_text("surface", "surfaceshader", "shading", connection_text("bsdf
 
 
 def with_input(nodes: str, node: str, name: str, kind: str, value: ArrayLike) -> str:
-    """XML of nodes in which an input of one of them has a value, in the place of another if it has one."""
+    """XML of nodes with a new value for an input of one of them."""
     begin = nodes.index(f'name="{node}" type=')
     begin = nodes.index("\n", begin) + 1
     end = nodes.index("  </", begin)

@@ -23,7 +23,7 @@ MOST_BOUNCES = 1024  # the most that Cycles takes
 
 @dataclass(frozen=True)
 class Paths:
-    """The paths of light that a host traces for a picture; None for as many as the host finds enough.
+    """The paths of light that a host traces for a picture; None lets the host decide.
 
     >>> Paths(samples=64).bounces is None
     True

@@ -2,7 +2,7 @@
 """A shader ball as exact points: a ball with a groove and a belt, on a foot, seen from a little above.
 
 The shape is a signed distance, whose surface each ray of the picture finds by sphere tracing; its
-gradient is the normal. Nothing casts a shadow: the shaders that draw it know one point at a time.
+gradient is the normal. Nothing casts a shadow, because shaders see one point at a time.
 """
 
 from functools import lru_cache

@@ -3,7 +3,7 @@
 
 MaterialX writes a nodegraph once, however often it is used; a compiler copies it to each place. So
 nodes are counted as often as they are used, by weights, without visiting them as often. A graph is a
-mapping from each key to its parts. Nothing here recurses, as depth is not known before.
+mapping from each key to its parts. Nothing here recurses, because the depth is unknown.
 """
 
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
@@ -23,7 +23,7 @@ Graph = Mapping[Key, Iterable[Key]]
 def reachable(
     roots: Iterable[Key], parts: Callable[[Key], Iterable[Key] | None]
 ) -> dict[Key, tuple[Key, ...]]:
-    """Graph of all keys that the roots lead to; the parts of a key may be None.
+    """The graph of all keys that are reachable from the roots; the parts of a key may be None.
 
     >>> reachable("a", {"a": "bc", "b": "c", "d": "a"}.get)
     {'a': ('b', 'c'), 'c': (), 'b': ('c',)}
@@ -75,7 +75,7 @@ def check_shaders(
 def upstream(
     document: mx.Document, elements: Iterable[mx.Element], roots: Iterable[mx.Element]
 ) -> list[mx.Node]:
-    """Nodes among a document's elements that lead to some of them, these included."""
+    """The nodes upstream of some elements of a document, including these."""
     start = [each.getNamePath() for each in roots]
     paths = reachable(start, lambda path: _upstream(document, path))
     nodes = (each for each in elements if each.isA(mx.Node))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Warnings about a document that MaterialX accepts, one for each kind, at its first place."""
+"""Warnings about a document that MaterialX accepts, one per kind, at its first place."""
 
 import ctypes
 import math
@@ -20,18 +20,18 @@ ANY = (-math.inf, math.inf)
 
 
 class DocumentWarning(UserWarning):
-    """Text that MaterialX accepts and reads otherwise; names the place, the rule and the value."""
+    """Text that MaterialX accepts but misreads; names the place, the rule and the value."""
 
     def __init__(self, message: str) -> None:
         super().__init__(one_line(message))
 
 
 class CodeWarning(UserWarning):
-    """Shader code that a document brings along."""
+    """Shader code in a document."""
 
 
 class MissingFileWarning(DocumentError, UserWarning):
-    """Files that a shader names and that do not exist: an error wherever they have to be read."""
+    """Missing files that a shader names: an error when they have to be read."""
 
 
 def numbers(element: mx.ValueElement) -> tuple[float, ...]:
@@ -42,7 +42,7 @@ def numbers(element: mx.ValueElement) -> tuple[float, ...]:
 
 
 def warn_of_elements(document: mx.Document, elements: Iterable[mx.Element]) -> None:
-    """Warn of values that MaterialX misreads or that leave a model's range, and of code."""
+    """Warn about values that MaterialX misreads or that are outside a model's range, and about code."""
     values = [each for each in elements if each.isA(mx.ValueElement) and each.getValueString()]
     for note in (_misread, _out_of_range, _unknown_space):
         _warn(DocumentWarning, [text for text in map(note, values) if text])
@@ -52,16 +52,16 @@ def warn_of_elements(document: mx.Document, elements: Iterable[mx.Element]) -> N
 
 
 def warn_of_files(inputs: Iterable[tuple[str, str]], document: mx.Document) -> None:
-    """Warn of files that do not exist."""
+    """Warn about files that do not exist."""
     texts = [missing_fault(document, path, name) for path, name in dict(inputs).items()]
     if missing := tuple(filter(None, texts)):
         warnings.warn(MissingFileWarning(*missing), stacklevel=3)
 
 
 def same_names(element: mx.Element) -> tuple[str, ...]:
-    """Nodes behind an element that have one name in several nodegraphs, and other inputs, two in a text.
+    """Upstream nodes with the same name in several nodegraphs but different inputs, two per text.
 
-    MaterialX gives all of them the values of the first: a name of a shader's input has no nodegraph in it.
+    MaterialX gives all of them the values of the first, because names of shader inputs omit the nodegraph.
     """
     nodes = [element, *(edge.getUpstreamElement() for edge in element.traverseGraph())]
     first: dict[tuple[str, str], mx.Node] = {}
@@ -75,7 +75,7 @@ def same_names(element: mx.Element) -> tuple[str, ...]:
 
 
 def _inputs(node: mx.Node) -> set[tuple[str, str]]:
-    """Inputs of a node that have a value, with it."""
+    """Inputs of a node that have a value, with that value."""
     return {
         (port.getName(), port.getValueString())
         for port in node.getInputs()
@@ -84,7 +84,7 @@ def _inputs(node: mx.Node) -> set[tuple[str, str]]:
 
 
 def warn_of_names(elements: Iterable[mx.Element], document: mx.Document) -> None:
-    """Warn of nodes whose inputs are taken for those of another."""
+    """Warn about nodes whose inputs MaterialX confuses with those of another."""
     if not any(each.isA(mx.NodeGraph) for each in document.getChildren()):
         return  # within one graph no two nodes have one name
     pairs = dict.fromkeys(pair for element in elements for pair in same_names(element))
@@ -93,7 +93,7 @@ def warn_of_names(elements: Iterable[mx.Element], document: mx.Document) -> None
 
 
 def _warn(kind: type[Warning], texts: Sequence[str]) -> None:
-    """Warn with the first of similar texts and the number of the others: there may be thousands.
+    """Warn with the first of similar texts and the number of others, which may be thousands.
 
     The warning points to the caller of the function that calls `warn_of_...`.
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Permissions and limits of material documents, which need not be trusted."""
+"""Permissions and limits of untrusted material documents."""
 
 import os
 from dataclasses import dataclass, field
@@ -8,7 +8,7 @@ from mxeon.errors import DocumentError, InputError
 
 SEARCH_PATH = "MATERIALX_SEARCH_PATH"  # environment variable, MaterialX's own
 
-# Limits, each of which is an option of the command, and what they count.
+# Limits, which are options of the command, and what they count.
 LIMITS = {
     "size": "bytes in a document and everything it includes",
     "length": "characters in one attribute",
@@ -38,8 +38,8 @@ class Policy:
     """Permissions and limits of a document; plain data, so it can be pickled.
 
     - `outside`: Whether it may name files outside its own folder and the libraries.
-    - `code`: Whether it may bring shader code of its own, in text or in files.
-    - `definitions`: Folders of definitions that it may use beside those of its library, as
+    - `code`: Whether it may contain its own shader code, in text or in files.
+    - `definitions`: Folders of definitions that it may use in addition to its library, as
       absolute paths. They are trusted as the library is.
     - `path`: Folders, searched after its own, in which it may name files too; by default those of
       the environment variable MATERIALX_SEARCH_PATH.
@@ -50,7 +50,8 @@ class Policy:
     Raises ValueError if a limit is negative.
 
     The limits keep MaterialX 1.39.5 below 15 s and 512 MiB for the worst documents known; images that
-    are read for pictures take below 15 s and 2.75 GiB more. Seconds of a processor shared with others, for documents as large as each limit lets them be:
+    are read for pictures take below 15 s and 2.75 GiB more. Seconds on a shared processor, for documents
+    as large as each limit permits:
 
     ======================================================  =====
     9,800 names of files, with tokens                          12

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Material documents from files and text, checked.
 
-MaterialX accepts documents that no shader can be generated from, reads every file that a document
+MaterialX accepts documents from which no shader can be generated, reads every file that a document
 names, and copies its words into shaders. Such documents are refused here, in one line, before
 generation: their text before MaterialX reads it (`xml`), their elements after.
 """
@@ -115,7 +115,7 @@ def _is_text(source: AnyPath) -> TypeGuard[str]:
 
 
 def _check_tokens(elements: Iterable[mx.Element]) -> None:
-    """Raise DocumentError for tokens of names: MaterialX resolves them by themselves, for ever."""
+    """Raise DocumentError for tokens of names, which MaterialX would resolve by themselves forever."""
     for element in elements:
         if element.isA(mx.Token) and element.getType() in ("filename", "geomname"):
             raise DocumentError(
@@ -127,7 +127,7 @@ def _check_tokens(elements: Iterable[mx.Element]) -> None:
 def _resolve_files(
     document: mx.Document, elements: Iterable[mx.Element], folders: list[Path]
 ) -> None:
-    """Make names of files that lie in one of the folders absolute, also of sets of files."""
+    """Make names of files in one of the folders absolute, including sets of files."""
     path = mx.FileSearchPath()
     for each in folders:
         path.append(mx.FilePath(str(each)))
@@ -145,7 +145,7 @@ class _Reader:
     def __init__(self, policy: Policy, home: Path) -> None:
         self._policy, self._home = policy, home
         self._checker = XmlChecker(policy)
-        self._open: list[str] = []  # files that are being read, each included by the one before
+        self._open: list[str] = []  # files being read, each included by the previous one
 
     def read_file(self, document: mx.Document, name: str) -> None:
         """Read a file into a document."""
@@ -200,7 +200,7 @@ def _raise(faults: Sequence[str]) -> None:
 
 
 def _types(document: mx.Document) -> Iterator[str]:
-    """Members that end a generator's process, or that no shader can have."""
+    """Members that crash a generator, or that no shader can have."""
     for each in filter(lambda child: child.isA(mx.TypeDef), document.getChildren()):
         for member in each.getChildren():
             if member.getAttribute("type") == "filename":
@@ -217,7 +217,7 @@ def _types(document: mx.Document) -> Iterator[str]:
 
 
 def _faults(document: mx.Document, elements: Iterable[mx.Element], policy: Policy) -> Iterator[str]:
-    """Wrong values, and rules of MaterialX's own that are broken: it would take defaults silently."""
+    """Wrong values and violations of MaterialX's own rules, for which it would silently use defaults."""
     told = set()
     for each in elements:
         written = each.isA(mx.ValueElement) and each.getValueString()
@@ -261,7 +261,7 @@ def _value_fault(element: mx.ValueElement, policy: Policy) -> str:
 
 
 def _input_faults(node: mx.Node) -> Iterator[tuple[mx.Input, str]]:
-    """Inputs that a node must not have, or not of their type, each with its fault."""
+    """Inputs that a node must not have, or of a wrong type, each with its fault."""
     if not (definition := node.getNodeDef("", True)):  # the nearest one, whose inputs may differ
         return
     ports = {each.getName(): each.getType() for each in definition.getActiveInputs()}
@@ -275,7 +275,7 @@ def _input_faults(node: mx.Node) -> Iterator[tuple[mx.Input, str]]:
 
 
 def _undefined(document: mx.Document, nodes: Iterable[mx.Node]) -> Iterator[str]:
-    """Categories of nodes that have no definition, each at its first node."""
+    """Categories of nodes without a definition, each at its first node."""
     groups: dict[tuple[str, str], list[mx.Node]] = {}
     for node in nodes:
         if not node.getNodeDef("", True):

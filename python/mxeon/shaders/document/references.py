@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of the files that a document names and of the shader code that it brings."""
+"""Checks of the files that a document names and of its shader code."""
 
 import glob
 import os
@@ -46,7 +46,7 @@ def check_inside(path: AnyPath, home: Path, policy: Policy, prefix: str) -> None
 def file_fault(element: mx.ValueElement, policy: Policy) -> str:
     """Why the file that an input names must not be read if it exists; "" if it may.
 
-    Of a set of textures, each that exists is checked.
+    For a set of textures, every existing file is checked.
     """
     text, home, prefix = element.getValueString(), folder(element.getDocument()), location(element)
     if ENDS_A_STRING.search(text):
@@ -64,7 +64,7 @@ def file_fault(element: mx.ValueElement, policy: Policy) -> str:
 
 
 def missing_fault(document: mx.Document, path: str, name: str) -> str:
-    """That the file which the input with this name path names does not exist; "" if it does."""
+    """The message that the file of an input does not exist; "" if it does."""
     if files(folder(document) / name):
         return ""
     rule = f'{label(document)}: input "{path}" must name a file that exists; got {name}'
@@ -72,14 +72,14 @@ def missing_fault(document: mx.Document, path: str, name: str) -> str:
 
 
 def files(path: Path) -> list[Path]:
-    """Files that exist of a name: its own, or those of a set, which has `<UDIM>` in its name."""
+    """The existing files of a name: the file itself, or those of a set with `<UDIM>` in its name."""
     if "<" not in path.name:
         return [path] if os.path.isfile(path) else []
     return list(path.parent.glob(re.sub(r"(<\w*>)+", "*", glob.escape(path.name))))
 
 
 def foreign_code(document: mx.Document) -> list[mx.Implementation]:
-    """Implementations by which a document brings shader code of its own."""
+    """Implementations with shader code of the document itself."""
     return [
         each
         for each in document.getChildren()  # getImplementations has the data library's too
@@ -88,7 +88,7 @@ def foreign_code(document: mx.Document) -> list[mx.Implementation]:
 
 
 def code_faults(document: mx.Document, policy: Policy) -> Iterator[str]:
-    """Code that a document must not bring, or not from the files where it lies."""
+    """Code that a document must not contain, or not in these files."""
     home = folder(document)
     for element in foreign_code(document):
         prefix = location(element)
@@ -126,7 +126,7 @@ def library_path(path: AnyPath) -> str:
 
 @cache
 def _libraries() -> dict[Path, str]:
-    """Folders whose files any document may use: MaterialX's own and eonlib's, as MaterialX has them."""
+    """Folders whose files any document may use: MaterialX's own and eonlib's."""
     standard = mx.getDefaultDataSearchPath().asString().split(mx.PATH_LIST_SEPARATOR)
     ours = (eonlib_folder(), *(source_folder("eonlib") / name for name in SOURCE_FOLDERS))
     return {Path(each).resolve(): str(each) for each in (*standard, *ours)}

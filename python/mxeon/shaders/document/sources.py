@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shader sources that a document brings: read and checked here, and handed to MaterialX as copies.
+"""Shader sources of a document: read and checked here, and passed to MaterialX as copies.
 
 MaterialX opens whatever a source includes, and what that includes. So mxeon reads the sources of a
 document itself, to any depth, and writes copies into a temporary folder. A copy includes copies, and
@@ -33,7 +33,7 @@ def copied_sources(
     policy: Policy,
     tokens: Callable[[], Mapping[str, str]],
 ) -> Iterator["Sources"]:
-    """Let the implementations of a document take copies of their sources while the block runs.
+    """Make the implementations of a document use copies of their sources while the block runs.
 
     `tokens` returns the names that the generator writes for words of an include. DocumentError if a source
     of that target, or one that it includes, lies where the document may name no files, is no regular file
@@ -82,7 +82,7 @@ class Sources:
         return self._copy(element.getFile(), local, location(element), depth)
 
     def missing(self) -> str:
-        """Path of a copy that does not exist, for what the target does not use."""
+        """Path of a nonexistent copy, for sources that the target does not use."""
         return str(self._folder / "none.txt")
 
     def in_words(self, reason: str) -> str:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Elements of a document: their names in messages, their values in Python, and their color spaces."""
+"""Elements of a document: their names in messages, their values in Python and their color spaces."""
 
 import re
 from collections.abc import Iterable
@@ -58,7 +58,7 @@ def members(kind: str, document: mx.Document) -> tuple[tuple[str, str], ...]:
 
 
 def is_exact(text: str, kind: str) -> bool:
-    """Whether MaterialX reads a whole text as a value of a numeric type, not its start alone."""
+    """Whether MaterialX reads the whole text as a value of a numeric type, not only its start."""
     if kind in SCALARS:
         return bool(SCALARS[kind].fullmatch(text))
     if kind in ARRAYS:

@@ -2,8 +2,8 @@
 """Checks of the words of a document that may reach generated source.
 
 Generators write the names, the values of text and some of the attributes of a document into
-shaders as they are, so a word that is more than a word is code. `tests.fuzz.reach` finds out for every
-target which do; whatever else an attribute says (`doc`, `uiname`, an application's own) stays free.
+shaders unchanged, so anything but a plain word is code. `tests.fuzz.reach` finds out for every target
+which ones; all other attributes (`doc`, `uiname`, an application's own) are free.
 """
 
 import re
@@ -47,9 +47,9 @@ Choices = Callable[[], Collection[str]]
 
 
 def word_faults(document: mx.Document, elements: Iterable[mx.Element]) -> Iterator[str]:
-    """Names and text values of a document's elements that are no plain words.
+    """Names and text values of a document's elements that are not plain words.
 
-    Of the value of an input that names a variable, one word is permitted. The data library of the
+    The value of an input that names a variable may be one word. The data library of the
     document is not checked.
     """
     choices = cache(lambda: _choices(document))  # of a whole library, which few documents need
@@ -72,7 +72,7 @@ def _broken(element: mx.Element, name: str, text: str, choices: Choices) -> str:
 
 
 def _broken_value(element: mx.Element, text: str, choices: Choices) -> str:
-    """Rule that a value breaks, or ""; numbers and names of files have rules of their own."""
+    """Rule that a value breaks, or ""; numbers and file names have their own rules."""
     kind = element.getAttribute("type")
     if kind in NUMBERS or kind == "filename" or WORD.fullmatch(text):
         return ""

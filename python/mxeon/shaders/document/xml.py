@@ -105,7 +105,7 @@ LONGEST_NAME = 128  # characters; a file's name may have 255 and has three names
 
 
 class XmlChecker:
-    """Checks of the text of a document and of all that it includes, which counts as one."""
+    """Checks of the text of a document and of everything it includes, counted as one."""
 
     def __init__(self, policy: Policy) -> None:
         self._policy = policy
@@ -113,7 +113,7 @@ class XmlChecker:
         self._location = ""
 
     def read(self, file: AnyPath) -> bytes:
-        """Content of a file; of one that is too long, one byte more than the limit."""
+        """Content of a file; if it is too long, one byte more than the limit."""
         try:
             with Path(file).open("rb") as stream:
                 size = min(self._policy.size - self._size, os.fstat(stream.fileno()).st_size)
