@@ -1,72 +1,49 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tries cases in processes of their own, keeps those that fail, and writes the figures.
+"""Tries the cases of families, prints and keeps the figures; the exit status is 1 if there was a fault.
 
-With --keep the figures go to out/reliability.json under "fuzz".
+python -m tests.fuzz [FAMILY ...] [--cases N]
 """
 
 import argparse
-import json
 import sys
-import time
+from collections import Counter
 
 from tqdm import tqdm
 
 from mxeon.jobs import pool
-from tests.fuzz.cases import case
-from tests.fuzz.found import FOUND
-from tests.fuzz.trial import guarded, numbered, trial
+from tests.fuzz.families import FAMILIES, cases
 from tests.reliability.__main__ import keep
+
+LIMIT = 300.0  # seconds for one case, on a machine that is busy
+STATUSES = {0: "accepted", 1: "failed", 2: "refused", 3: "not_run"}
 
 
 def main(arguments=None):
-    """Run the command; the exit status is 1 if a case failed."""
-    options = _options(arguments)
-    if options.case is not None:
-        tried = case(options.seed, options.case)
-        fault = trial(tried)
-        print(*tried.files, tried.arguments, fault or "no fault", sep="\n")
-        return 1 if fault else 0
-    numbers = range(options.start, options.start + options.cases)
-    start = time.monotonic()
-    failed = tuple(_failed([(options.seed, number) for number in numbers], options))
-    seconds = time.monotonic() - start
-    found = pool.run(guarded, FOUND, 1, options.limit)
-    fixed = sum(not outcome.value and not outcome.failure for _, outcome in found)
-    figures = {
-        "cases": len(numbers),
-        "seed": options.seed,
-        "seconds": round(seconds),
-        "limit": options.limit,
-        "failed": len(failed),
-        "faults_found": len(FOUND),
-        "faults_fixed": fixed,
-    }
-    if options.keep:
-        keep("fuzz", figures)
-    else:
-        print(json.dumps(figures, indent=1))
-    return 1 if failed or fixed < len(FOUND) else 0
-
-
-def _options(arguments):
     parser = argparse.ArgumentParser(prog="tests.fuzz", description=__doc__.splitlines()[0])
-    parser.add_argument("--cases", type=int, default=20_000)
-    parser.add_argument("--start", type=int, default=0, help="number of the first case")
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--case", type=int, metavar="NUMBER", help="try this one alone, here")
+    parser.add_argument("families", nargs="*", metavar="FAMILY", help=", ".join(FAMILIES))
+    parser.add_argument("--cases", type=int, help="of each family")
     parser.add_argument("--workers", type=int, default=1)
-    parser.add_argument("--limit", type=float, default=20.0, help="seconds for one case")
-    parser.add_argument("--keep", action="store_true", help="keep the figures in out/")
-    return parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
+    figures = {
+        family: measured(family, options.cases, options.workers)
+        for family in options.families or FAMILIES
+    }
+    keep("fuzz", figures)
+    return 1 if any(each.get("faults") for each in figures.values()) else 0
 
 
-def _failed(keys, options):
-    """The cases that fail, told as they come."""
-    outcomes = pool.run(numbered, keys, options.workers, options.limit)
-    for place, outcome in tqdm(outcomes, total=len(keys), disable=None):
-        if reason := outcome.failure or outcome.value:
-            print(f"case {keys[place][1]}: {reason}", file=sys.stderr, flush=True)
-            yield keys[place]
+def measured(family, count, workers):
+    """Figures of a family, whose faults are told as they come."""
+    tried, tally, most = cases(family, count), Counter(), [0.0, 0]
+    outcomes = pool.run(FAMILIES[family].trial, tried, workers, LIMIT)
+    for place, outcome in tqdm(outcomes, total=len(tried), desc=family, disable=None):
+        status, fault, *taken = outcome.value or (None, outcome.failure)
+        most = list(map(max, most, taken)) if taken else most
+        tally["faults" if fault else STATUSES.get(status, "ended")] += 1
+        if fault:
+            print(f"{family}: {tried[place]}: {fault}", file=sys.stderr, flush=True)
+    taken = {"seconds": round(most[0], 1), "mebibytes": most[1]} if most[1] else {}
+    return {"tried": len(tried), **tally, **taken}
 
 
 if __name__ == "__main__":

@@ -14,8 +14,7 @@ from pathlib import Path
 import numpy as np
 import OpenImageIO as oiio
 
-from tests.fuzz.found import LOBE
-from tests.support.documents import material
+from tests.support.documents import textured
 
 SECONDS, MEBIBYTES = 15.0, 2816  # of a processor, and of memory, as docs/security.md has them
 LARGEST_PAGE = 32 * 2**20  # bytes
@@ -69,7 +68,7 @@ def weighed(row):
         document, files = Path(folder, "a.mtlx"), [_image(each) for each in DOCUMENTS[name]]
         for file in set(files):
             Path(folder, file.name).hardlink_to(file)
-        document.write_text(_document([file.name for file in files]))
+        document.write_text(textured([file.name for file in files]))
         process = subprocess.Popen(
             [sys.executable, "-P", "-m", "mxeon", command, str(document), *COMMANDS[command]]
             + ["--workers", "1"],
@@ -92,22 +91,6 @@ def weighed(row):
     faults += [f"took {mebibytes} MiB"] * (mebibytes > MEBIBYTES)
     faults += [f"wrote {size} bytes"] * (size > LARGEST_PAGE)
     return process.returncode, "; ".join(faults), seconds, mebibytes
-
-
-def _document(files):
-    """A document whose color is the sum of images."""
-    image = (
-        '<image name="i{0}" type="color3"><input name="file" type="filename" value="{1}"/></image>'
-    )
-    add = (
-        '<add name="s{0}" type="color3"><input name="in1" type="color3" nodename="{1}"/>'
-        '<input name="in2" type="color3" nodename="i{0}"/></add>'
-    )
-    nodes = [image.format(number, file) for number, file in enumerate(files)]
-    names = ["i0", *(f"s{number}" for number in range(1, len(files)))]
-    nodes += [add.format(number, names[number - 1]) for number in range(1, len(files))]
-    color = f'<input name="color" type="color3" nodename="{names[-1]}"/>'
-    return material("".join(nodes) + LOBE.format(color))
 
 
 @cache

@@ -75,17 +75,8 @@ def _document(rng, data):
     if kind < 0.2:
         host = "gl" if kind < 0.01 else "reference"
         element = ("--element", rng.choice(names)) if names else ()
-        return (
-            "render",
-            "base.mtlx",
-            "--host",
-            host,
-            *element,
-            "--size",
-            "4",
-            "--output",
-            f"{OUT}/a.png",
-        )
+        output = ("--size", "4", "--output", f"{OUT}/a.png")
+        return ("render", "base.mtlx", "--host", host, *element, *output)
     library = rng.choice(("eonlib", "eonlib", "eonlib", "stock"))
     arguments = ["generate", "base.mtlx", "--target", rng.choice(TARGETS), "--library", library]
     if rng.random() < 0.1:
@@ -115,11 +106,9 @@ def _command(rng):
 
 
 # What lies around the working folder of every case.
+SECRET = f'<materialx version="1.39"><constant name="{CANARY}" type="float"/></materialx>'
 AROUND = (
-    (
-        "secret.mtlx",
-        f'<materialx version="1.39"><constant name="{CANARY}" type="float"/></materialx>',
-    ),
+    ("secret.mtlx", SECRET),
     ("secret.glsl", f"// {CANARY}\n"),
     ("secret.png", CANARY),
     ("1001.png", CANARY),

@@ -200,36 +200,6 @@ def _deep(rng, root):
         element = ElementTree.SubElement(element, "nodegraph", {"name": f"d{depth}"})
 
 
-def _long(rng, root):
-    """A chain of nodes, or nodes of two inputs, behind a lobe's colour."""
-    count, inputs = rng.choice((10, 100, 1100)), rng.choice((("in1",), ("in1", "in2")))
-    lobe = next((each for each in root.iter() if each.get("type") == "BSDF"), root)
-    attributes = {"name": "color", "type": "color3", "nodename": f"long{count - 1}"}
-    ElementTree.SubElement(lobe, "input", attributes)
-    for number in range(count):
-        node = ElementTree.SubElement(root, "add", {"name": f"long{number}", "type": "color3"})
-        for name in inputs if number else ():
-            attributes = {"name": name, "type": "color3", "nodename": f"long{number - 1}"}
-            ElementTree.SubElement(node, "input", attributes)
-
-
-def _doubled(rng, root):
-    """Nodegraphs each of which uses the one before twice, and a lobe that uses the last."""
-    count = rng.choice((3, 12, 30, 100))
-    for number in range(count):
-        inner = f"d{number - 1}" if number else "eon_diffuse_bsdf"
-        text = f"""<x><nodedef name="ND_d{number}" node="d{number}"><output name="out" type="BSDF"/>
-          </nodedef><nodegraph name="NG_d{number}" nodedef="ND_d{number}"><{inner} name="p"
-          type="BSDF"/><{inner} name="q" type="BSDF"/><add name="r" type="BSDF"><input name="in1"
-          type="BSDF" nodename="p"/><input name="in2" type="BSDF" nodename="q"/></add><output
-          name="out" type="BSDF" nodename="r"/></nodegraph></x>"""
-        root.extend(ElementTree.fromstring(text))
-    lobes = [each for each in root.iter() if each.get("type") == "BSDF" and each.tag != "output"]
-    lobe = rng.choice(lobes or [root])
-    lobe.tag = f"d{count - 1}"
-    lobe[:] = []
-
-
 TEXTS = (
     ("geompropvalue", "geomprop"),
     ("image", "uaddressmode"),
@@ -238,7 +208,7 @@ TEXTS = (
 )
 TREE = (_number,) * 6 + (_connect,) * 4 + (_text,) * 2
 TREE += (_change,) * 8 + (_set,) * 4 + (_add, _category, _copy, _drop, _move, _path, _remove) * 2
-TREE += (_snippet, _snippet, _use, _deep, _long, _doubled)
+TREE += (_snippet, _snippet, _use, _deep)
 
 
 def _flip(rng, data):
@@ -261,11 +231,6 @@ def _repeat(rng, data):
     return data[:stop] + data[start:stop] * rng.choice((1, 3)) + data[stop:]
 
 
-def _splice(rng, data):
-    other = rng.choice(originals()).encode()
-    return data[: rng.randrange(len(data) + 1)] + other[rng.randrange(len(other)) :]
-
-
 def _encode(rng, data):
     encoding = rng.choice(("utf-16", "utf-32", "utf-8-sig", "utf-7", "latin-1"))
     text = data.decode("utf-8", "replace")
@@ -274,4 +239,4 @@ def _encode(rng, data):
     return text.encode(encoding, "replace")
 
 
-BYTES = (_flip, _flip, _flip, _cut, _insert, _insert, _repeat, _splice, _encode)
+BYTES = (_flip, _flip, _flip, _cut, _insert, _insert, _repeat, _encode)

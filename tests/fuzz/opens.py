@@ -25,8 +25,8 @@ from mxeon.shaders import generation
 from mxeon.shaders.document.references import library_path
 from mxeon.shaders.document.sources import Sources
 from mxeon.shaders.library import examples_folder
-from tests.fuzz.attack import cases
 from tests.fuzz.cases import case
+from tests.fuzz.families import cases
 from tests.fuzz.trial import trial
 
 ROOT = Path(__file__).resolve().parents[2]

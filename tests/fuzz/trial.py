@@ -14,54 +14,25 @@ from pathlib import Path
 
 from mxeon.errors import COMMAND, STEERING
 from mxeon.shaders.library import examples_folder
-from tests.fuzz.cases import AROUND, OUT, case
+from tests.fuzz.cases import AROUND, OUT
 from tests.fuzz.words import CANARY, POISON
 
 STATUSES = (0, 2, 3)
 OUTPUTS = ("--outputPath", "--output", "--report")
-MAKING = (
-    "generate",
-    "render",
-)  # commands that have a process for each document, which hides crashes
-JUDGING = (
-    "check",
-    "doc",
-    "kit",
-    "report",
-    "render",
-    "library",
-)  # commands that may end with 1: it failed
+# Commands that have a process for each document, which hides crashes; those that may end with 1: it failed.
+MAKING = ("generate", "render")
+JUDGING = ("check", "doc", "kit", "report", "render", "library")
 LONGEST_LINE = 1200  # a message of 1000 characters, its prefix, and a path
 MEMORY = 6 * 2**30
-
-
-def numbered(key):
-    """What `mxeon` did wrong with the case of a seed and a number."""
-    return guarded(case(*key))
-
-
-def guarded(tried):
-    """What `mxeon` did wrong with a case, in a process that may have so much memory and no more."""
-    return judged(tried)[1]
 
 
 def judged(tried):
     """Exit status of a case and what was wrong, in a process of limited memory."""
     _limit_memory()
-    return _run(tried)
-
-
-def unlimited(tried):
-    """The same in a process of any memory: a browser reserves more than it uses."""
-    return _run(tried)
+    return trial(tried)
 
 
 def trial(tried):
-    """What `mxeon` did wrong with a case, in one line, or ""."""
-    return _run(tried)[1]
-
-
-def _run(tried):
     """Exit status of a case, and what `mxeon` did wrong in one line, or ""."""
     with tempfile.TemporaryDirectory(prefix="mxeon-fuzz-") as folder:
         root = Path(folder).resolve()

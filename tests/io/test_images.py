@@ -12,7 +12,7 @@ from mxeon.errors import MISUSE, NOT_RUN, PASSED, ImageError
 from mxeon.hosts.textures import read_latlong, read_texture
 from mxeon.io.images import ImageWarning, read_image, write_image
 from mxeon.io.srgb import srgb_decoded, srgb_encoded
-from tests.support.documents import material
+from tests.support.documents import textured
 
 PIXELS = np.arange(24.0, dtype=np.float32).reshape(2, 4, 3)
 
@@ -77,24 +77,9 @@ def test_gray_pixels_of_a_texture_are_kept_once(tmp_path):
     assert gray.tolist() == PIXELS[::-1, :, :1].repeat(3, axis=-1).tolist() and not gray.strides[-1]
 
 
-def textured(folder, files):
-    """A document in a folder whose color is the sum of images."""
-    image = (
-        '<image name="i{0}" type="color3"><input name="file" type="filename" value="{1}"/></image>'
-    )
-    add = (
-        '<add name="s{0}" type="color3"><input name="in1" type="color3" nodename="{1}"/>'
-        '<input name="in2" type="color3" nodename="i{0}"/></add>'
-    )
-    nodes = [image.format(number, file) for number, file in enumerate(files)]
-    nodes += [
-        add.format(number, f"s{number - 1}" if number > 1 else "i0")
-        for number in range(1, len(files))
-    ]
-    last = f"s{len(files) - 1}" if len(files) > 1 else "i0"
-    color = f'<input name="color" type="color3" nodename="{last}"/>'
-    lobe = f'<eon_diffuse_bsdf name="lobe" type="BSDF">{color}</eon_diffuse_bsdf>'
-    (folder / "a.mtlx").write_text(material("".join(nodes) + lobe))
+def written(folder, files):
+    """Path of a document in a folder whose color is the sum of images."""
+    (folder / "a.mtlx").write_text(textured(files))
     return str(folder / "a.mtlx")
 
 
@@ -109,7 +94,7 @@ def test_images_of_a_document_have_a_limit_together(tmp_path, capsys, command, f
         write_image(tmp_path / name, PIXELS / 96.0, {})
     host = [] if "explore" in command else ["--host", "reference" if "render" in command else "gl"]
     output = ["--output", str(tmp_path / ("o.html" if "explore" in command else "o.exr"))]
-    line = [*command, textured(tmp_path, files), "--workers", "0", *host]
+    line = [*command, written(tmp_path, files), "--workers", "0", *host]
     line += output if "check" not in command else []
     assert main([*line, "--maxTexels", str(texels - 1)]) == MISUSE
     assert capsys.readouterr().err == (
@@ -127,7 +112,7 @@ def test_a_gray_image_is_drawn_as_one_of_three_channels(tmp_path):
     pictures = []
     for name in ("gray", "rgb"):
         output = str(tmp_path / f"{name}_picture.exr")
-        line = ["render", textured(tmp_path, [f"{name}.exr"]), "--size", "16", "--workers", "0"]
+        line = ["render", written(tmp_path, [f"{name}.exr"]), "--size", "16", "--workers", "0"]
         if (status := main([*line, "--output", output])) == NOT_RUN:
             pytest.skip("gl does not run here")
         assert status == PASSED

@@ -6,32 +6,34 @@ python -m tests.reliability [GROUP ...] [--folder FOLDER]
 
 import argparse
 import json
-from importlib import import_module
+from functools import partial
 from pathlib import Path
 
 from tqdm import tqdm
 
 from mxeon.io.files import write_text
+from tests.reliability import documents, faults, versions
 
-GROUPS = ("kills", "hangs", "disk", "memory", "versions")
-FOLDERS = ("documents",)  # groups that are measured on a folder
+GROUPS = {
+    "kills": faults.kills,
+    "hangs": faults.hangs,
+    "disk": faults.disk,
+    "memory": faults.memory,
+    "versions": versions.measure,
+}
 FIGURES = Path(__file__).resolve().parents[2] / "out" / "reliability.json"
 
 
 def main(arguments=None):
     parser = argparse.ArgumentParser(prog="tests.reliability", description=__doc__.splitlines()[0])
-    parser.add_argument("groups", nargs="*", metavar="GROUP", help=", ".join(GROUPS + FOLDERS))
-    parser.add_argument("--folder", help="of documents, for the group of that name")
+    parser.add_argument("groups", nargs="*", metavar="GROUP", help=", ".join(GROUPS))
+    parser.add_argument("--folder", help="documents that are generated on every target")
     options = parser.parse_args(arguments)
-    if unknown := set(options.groups) - {*GROUPS, *FOLDERS}:
-        known = ", ".join(GROUPS + FOLDERS)
-        parser.error(f"group must be one of {known}; got {', '.join(unknown)}")
-    if set(options.groups) & set(FOLDERS) and not options.folder:
-        parser.error("--folder must name the folder of the documents")
-    for name in options.groups or GROUPS:
-        measure = import_module(f"tests.reliability.{name}").measure
-        given = [options.folder] if name in FOLDERS else []
-        keep(name, measure(*given, progress=tqdm))
+    groups = {name: GROUPS[name] for name in options.groups or GROUPS}
+    if options.folder:
+        groups = {"documents": partial(documents.measure, options.folder)}
+    for name, measure in groups.items():
+        keep(name, measure(progress=tqdm))
 
 
 def keep(group, figures):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Documents of a folder on every target: what MaterialX generates and mxeon refuses, and the reverse.
 
-    python -m tests.reliability documents --folder FOLDER
+    python -m tests.reliability --folder FOLDER
 
 The folder `resources` of MaterialX's repository holds its own documents. They may name files outside
 their folders, and bring code.

@@ -13,7 +13,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from mxeon.conformance.run import read_run
-from tests.reliability.runs import DOCUMENT
+from tests.reliability.faults import DOCUMENT
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -23,3 +23,18 @@ def connected(**inputs):
         for each, attributes in inputs.items()
     )
     return f'<{OREN_NAYAR} name="lobe" type="BSDF">{ports}</{OREN_NAYAR}>'
+
+
+def textured(files):
+    """A document whose color is the sum of the images in these files."""
+    image = (
+        '<image name="i{0}" type="color3"><input name="file" type="filename" value="{1}"/></image>'
+    )
+    add = (
+        '<add name="s{0}" type="color3"><input name="in1" type="color3" nodename="{1}"/>'
+        '<input name="in2" type="color3" nodename="i{0}"/></add>'
+    )
+    nodes = [image.format(number, file) for number, file in enumerate(files)]
+    names = ["i0", *(f"s{number}" for number in range(1, len(files)))]
+    nodes += [add.format(number, names[number - 1]) for number in range(1, len(files))]
+    return material("".join(nodes) + connected(color=f'nodename="{names[-1]}"'))
