@@ -7,8 +7,10 @@ import pytest
 from mxeon.shaders.library import examples_folder
 from tests.support.availability import available
 from tools.benchmarks import __main__ as command
-from tools.benchmarks import record, shaders, tool
+from tools.benchmarks import record, tool
 from tools.benchmarks.rounds import Check, Group
+
+pytestmark = pytest.mark.whole
 
 CLAY = str(examples_folder() / "clay.mtlx")
 SMALLEST = {
@@ -39,12 +41,6 @@ def test_each_group_is_measured_and_written(gl, tmp_path, monkeypatch, name):
     assert group.name == name and group.figures
     assert all(np.isfinite([f.median, f.low, f.high]).all() for f in group.figures)
     assert record.table(group) in (tmp_path / "performance.md").read_text(encoding="utf-8")
-
-
-def test_check_of_shaders_tells_fon_from_eon(gl):
-    device = shaders.Device(1024)
-    kernel = device.kernel("sum += fon_brdf(wo, wi, rho, roughness);")
-    assert not device.checked("EON, eonlib", kernel).passed
 
 
 def test_command_fails_where_a_value_is_wrong(tmp_path, monkeypatch):

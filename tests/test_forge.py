@@ -38,21 +38,10 @@ def test_the_forge_can_read_the_file_and_the_linter_finds_nothing(path):
     assert is_safe(path)
 
 
-def test_the_workflow_names_jobs_steps_and_commands_that_there_are():
-    text, jobs = WORKFLOW.read_text(), yaml.safe_load(WORKFLOW.read_text())["jobs"]
-    assert {name for job in jobs.values() for name in job.get("needs", ())} <= set(jobs)
-    steps = {step["id"] for job in jobs.values() for step in job["steps"] if "id" in step}
-    assert set(re.findall(r"steps\.(\w+)", text)) == steps
-    known = set(re.findall(r"^(\w+)\)$", (ROOT / "run").read_text(), re.MULTILINE))
-    assert set(re.findall(r"\./run (\w+)", text.partition("\njobs:")[2])) == known - {
-        "demo",
-        "bench",
-    }
-
-
-def test_the_action_installs_the_driver_that_run_installs():
+@pytest.mark.parametrize("path", [ACTION, ROOT / "docs" / "ci.md"], ids=lambda path: path.name)
+def test_the_action_and_the_container_install_the_driver_that_run_installs(path):
     [driver] = re.findall(r'^driver="(.*)"', (ROOT / "run").read_text(), re.MULTILINE)
-    assert f"--no-install-recommends {driver}\n" in ACTION.read_text()
+    assert f"--no-install-recommends {driver}\n" in path.read_text()
 
 
 def test_the_five_lines_of_the_page_call_the_action():

@@ -23,6 +23,8 @@ from tests.support.wheels import MAIN, wheel
 from tools.site import ledger
 from tools.site.ledger import pages
 
+pytestmark = pytest.mark.whole
+
 # Slang compiles the repaired node; what is left is its fit.
 OF_SLANG = ("output", "blackbody", "slang")
 # Whatever the release fails, or differs in.

@@ -15,6 +15,8 @@ from tools.benchmarks.mutants import __main__ as command
 from tools.benchmarks.mutants import operators, trial
 from tools.benchmarks.mutants.mutant import FOLDERS, read_table
 
+pytestmark = pytest.mark.whole
+
 TABLE = read_table()
 NAMED = {mutant.name: mutant for mutant in TABLE}
 # By name, the check that is meant to notice it.

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from mxeon.hosts import host_rows
+
 ROOT = Path(__file__).parents[1]
 SAY = '#!/bin/sh\necho "$(basename "$0") $*"\n'
 PYTHON = """#!/bin/sh
@@ -75,3 +77,12 @@ def test_the_tests_complete_the_environment_of_the_demo_which_keeps_it(run):
     assert re.fullmatch(r"run test: set up in \d+:\d\d minutes", before)
     assert re.fullmatch(r"run test: \d+:\d\d minutes", whole)
     assert "pip" not in "".join(run("demo"))
+
+
+def test_all_tests_require_every_host_that_they_install():
+    names = re.search(r"MXEON_REQUIRE=\$\{MXEON_REQUIRE-([\w,-]+)\}", (ROOT / "run").read_text())
+    assert set(names[1].split(",")) == {row.name for row in host_rows() if row.module} - {
+        "eevee",  # its checks take minutes on a software driver
+        "luxcore",  # its package brings 200 MB for GPUs
+        "testrender",
+    }

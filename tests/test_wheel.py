@@ -16,6 +16,8 @@ from mxeon.conformance.results.known_issues import ISSUES
 from mxeon.shaders.nodes import EON
 from tests.support.documents import lobe, material
 
+pytestmark = pytest.mark.whole
+
 CHECKOUT = Path(__file__).parents[1]
 DATA = {
     "libraries": "eonlib/documents",
@@ -68,52 +70,38 @@ def environment(wheel, tmp_path_factory):
     return folder
 
 
-def run(command, folder):
-    """What a command prints, run from a folder; it has to succeed."""
+def run(command, folder, status=0):
+    """What a command prints or, if it fails as it has to, says; run from a folder, with no checkout on its path."""
     clean = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     done = subprocess.run(
         command, cwd=folder, env=clean, capture_output=True, text=True, check=False
     )
-    assert done.returncode == 0, done.stdout + done.stderr
-    return done.stdout
+    assert done.returncode == status, done.stdout + done.stderr
+    return done.stderr if status else done.stdout
 
 
-def contents(wheel):
+def test_the_wheel_holds_the_package_with_the_data_of_the_checkout_and_nothing_else(wheel):
     with zipfile.ZipFile(wheel) as archive:
-        return archive.namelist()
-
-
-def test_the_wheel_holds_the_data_of_the_checkout(wheel):
-    files = {name for name in contents(wheel) if name.startswith("mxeon/data/")}
-    assert {name.split("/")[2] for name in files} == {
-        *("eonlib", "examples", "renderers", "upstream", "LICENSE")
+        names = set(archive.namelist())
+    parts = {part for name in names for part in name.split("/")}
+    # A folder of that name would hide MaterialX's libraries.
+    assert not parts & {"libraries", "tests", "__pycache__"}
+    assert {name.split("/")[0] for name in names} == {
+        *("mxeon", f"mxeon-{mxeon.__version__}.dist-info")
     }
+    assert {"mxeon/py.typed", "mxeon/explorer/explorer.html", "mxeon/data/LICENSE"} <= names
     for folder, place in DATA.items():
-        source = CHECKOUT / folder
-        sources = [path for path in source.rglob("*") if path.suffix in SUFFIXES]
-        names = {f"mxeon/data/{place}/{path.relative_to(source).as_posix()}" for path in sources}
-        assert names and names <= files
-
-
-def test_the_wheel_pins_the_renderers_from_npm_and_holds_none(wheel):
-    folder = "mxeon/data/renderers/"
-    files = {name for name in contents(wheel) if name.startswith(folder)}
-    assert files == {f"{folder}package.json", f"{folder}package-lock.json"}
-
-
-def test_the_wheel_holds_the_page_of_each_known_issue_and_no_script(wheel):
-    folder = "mxeon/data/upstream/"
-    files = {name for name in contents(wheel) if name.startswith(folder)}
-    assert files >= {f"{folder}{issue.page}.md" for issue in ISSUES}
-    assert {Path(name).suffix for name in files} == {".md"}
-
-
-def test_the_wheel_says_that_it_has_types(wheel):
-    assert "mxeon/py.typed" in contents(wheel)
-
-
-def test_the_wheel_holds_the_page_of_the_explorer(wheel):
-    assert "mxeon/explorer/explorer.html" in contents(wheel)
+        sources = [path for path in (CHECKOUT / folder).rglob("*") if path.suffix in SUFFIXES]
+        paths = [path.relative_to(CHECKOUT / folder).as_posix() for path in sources]
+        assert paths and {f"mxeon/data/{place}/{path}" for path in paths} <= names
+    data = {name.removeprefix("mxeon/data/") for name in names if name.startswith("mxeon/data/")}
+    pins = {f"renderers/{name}.json" for name in ("package", "package-lock")}
+    assert {name for name in data if name.startswith("renderers/")} == pins
+    pages = {name for name in data if name.startswith("upstream/")}
+    assert {f"upstream/{issue.page}.md" for issue in ISSUES} <= pages
+    assert {Path(name).suffix for name in pages} == {".md"}
+    folders = {"eonlib", "examples", "renderers", "upstream", "LICENSE"}
+    assert {name.split("/")[0] for name in data} == folders
 
 
 def test_the_wheel_writes_a_copy_of_eonlib_for_others(environment, tmp_path):
@@ -121,19 +109,6 @@ def test_the_wheel_writes_a_copy_of_eonlib_for_others(environment, tmp_path):
     files = {path.relative_to(tmp_path / "copy").as_posix() for path in tmp_path.rglob("*.*")}
     assert {"genglsl/lib/eon.glsl", "README.txt"} <= files
     assert (tmp_path / "copy" / "LICENSE").read_bytes() == (CHECKOUT / "LICENSE").read_bytes()
-
-
-def test_no_folder_of_the_wheel_hides_materialxs_libraries(wheel):
-    assert [name for name in contents(wheel) if "libraries" in name.split("/")] == []
-
-
-def test_the_wheel_holds_the_package_alone(wheel):
-    roots = {name.split("/")[0] for name in contents(wheel)}
-    assert roots == {"mxeon", f"mxeon-{mxeon.__version__}.dist-info"}
-    parts = {part for name in contents(wheel) for part in name.split("/")}
-    assert [
-        part for part in parts if part in ("tests", "__pycache__") or part.startswith("test_")
-    ] == []
 
 
 def test_the_sdist_holds_what_the_tests_need_and_nothing_made(built):
@@ -157,16 +132,13 @@ def test_the_installed_package_loads_and_generates_outside_the_checkout(environm
     assert [line.split()[0] for line in made] == examples
 
 
-def test_the_installed_command_answers(environment, tmp_path):
-    answer = run([environment / "bin" / "mxeon", "--version"], tmp_path)
-    assert answer == f"mxeon {mxeon.__version__}\n"
-
-
-def test_the_installed_command_says_where_the_figures_of_the_paper_are(environment, tmp_path):
-    command = [environment / "bin" / "mxeon", "figures", tmp_path]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
-    [line] = done.stderr.splitlines()
-    assert done.returncode == 3 and "install a checkout of the repository" in line
+def test_the_installed_command_answers_and_says_where_the_figures_of_the_paper_are(
+    environment, tmp_path
+):
+    mxeon_there = environment / "bin" / "mxeon"
+    assert run([mxeon_there, "--version"], tmp_path) == f"mxeon {mxeon.__version__}\n"
+    [line] = run([mxeon_there, "figures", tmp_path], tmp_path, status=3).splitlines()
+    assert "install a checkout of the repository" in line
 
 
 @pytest.mark.parametrize(

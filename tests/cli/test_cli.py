@@ -30,11 +30,23 @@ MIRROR = """<generalized_schlick_bsdf name="lobe" type="BSDF">
 # --- status -------------------------------------------------------------------------------------
 
 
-def test_check_passes_and_writes_a_report(tmp_path, capsys, monkeypatch):
-    keep_checks(monkeypatch, "value", "curve", "picture")
-    assert main(["check", PLASTER, "--report", str(tmp_path / "report")]) == PASSED
-    printed = capsys.readouterr().out
-    assert "checks passed" in printed and "report.html" in printed
+def pattern(line):
+    """What fits a line that a page shows, but for files, errors, counts of checks, and what it leaves out."""
+    rest = r"\.\.\.|(?<=load )\w+|(?<=: )docs|(?<=error )[\d.e-]+|\s{2,}|\d+(?= checks| of )|(?<= of )\d+"
+    return ".*".join(map(re.escape, re.split(rest, line)))
+
+
+def test_check_passes_writes_a_report_and_answers_as_the_pages_show(tmp_path, capsys):
+    options = ["--report", str(tmp_path / "report"), "--workers", "0"]
+    assert main(["check", PLASTER, *options]) == PASSED
+    printed = capsys.readouterr().out.splitlines()
+    for page in ("README.md", "docs/commands.md"):
+        text = (Path(__file__).parents[2] / page).read_text(encoding="utf-8")
+        [shown] = re.findall(r"^(ochre_plaster: .*?)^(?:```|\.{3})", text, re.DOTALL | re.MULTILINE)
+        rest = iter(printed)  # of which each line is a later one
+        for line in shown.splitlines():
+            assert any(re.match(pattern(line), each) for each in rest), line
+    assert printed[-1].endswith("report.html")
     names = {path.name for path in (tmp_path / "report").iterdir()}
     assert names == {
         "report.html",
@@ -189,12 +201,6 @@ def test_invert_prints_rho(option, function, capsys):
     assert np.abs(printed - function([0.8, 0.4, 0.1], 0.7)).max() <= 5e-10  # nine digits printed
 
 
-def test_a_reader_who_has_enough_is_no_error():
-    command = f"{sys.executable} -m mxeon library --verify | head -1"
-    ended = subprocess.run(command, shell=True, capture_output=True, text=True, check=True)
-    assert ended.stderr == ""
-
-
 def test_help_names_every_choice(capsys):
     for command, choices in {
         "check": host_names(),
@@ -230,11 +236,6 @@ def test_options_for_documents_without_trust_are_listed_apart(capsys):
         text = capsys.readouterr().out
         assert {f"--max{name.capitalize()}" for name in LIMITS} <= set(text.split())
         assert ("--allowCode" in text) == (command != "generate") and "--workers" not in text
-
-
-def test_help_loads_no_shader_generator():
-    code = "import sys, mxeon.cli; mxeon.cli.parser(); sys.exit('MaterialX' in sys.modules)"
-    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
 def test_a_reader_who_has_had_enough_is_no_success():

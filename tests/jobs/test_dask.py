@@ -90,12 +90,14 @@ def test_a_worker_killed_at_work_costs_nothing(pair, tmp_path):
     assert run(square, [3], pair) == {0: Outcome(9)}
 
 
+@pytest.mark.whole
 def test_a_worker_killed_with_its_result_costs_nothing(tmp_path, monkeypatch):
     monkeypatch.setattr(dask, "FETCH", 1.0)
     with farm({}) as address:  # no other worker can do it instead
         assert run(Lost, [str(tmp_path / "a")], address) == {0: Outcome("done")}
 
 
+@pytest.mark.whole
 def test_an_item_that_hangs_ends_its_workers_and_is_given_up():
     import dask
 
@@ -104,6 +106,7 @@ def test_an_item_that_hangs_ends_its_workers_and_is_given_up():
     assert outcome.value is None and outcome.failure.startswith("KilledWorker: ")
 
 
+@pytest.mark.whole
 def test_workers_that_do_not_fit_get_no_work_and_are_named(tmp_path):
     preload = tmp_path / "preload.py"
     preload.write_text(OTHER_VERSION)
@@ -193,6 +196,7 @@ def test_an_address_without_an_answer_is_one_line(address, wait, words):
             check([EXAMPLE], scheduler=address, wait=wait)
 
 
+@pytest.mark.whole
 def test_a_farm_finds_what_one_machine_finds(pair, tmp_path, monkeypatch):
     keep_checks(monkeypatch, "value", "reciprocity", "curve", "picture")
     found = check([EXAMPLE], scheduler=pair, folder=tmp_path)

@@ -26,6 +26,7 @@ REFUTED = {
 }
 
 
+@pytest.mark.whole
 def test_measurements_refute_these_claims_and_no_others(tmp_path, gl, monkeypatch):
     monkeypatch.setattr(sampling, "DEGREES", sampling.DEGREES[[*range(0, 30, 2), -2, -1]])
     page = figures.figures(tmp_path, iter, size=16, samples=2, draws=100).read_text()

@@ -151,6 +151,7 @@ def spec_of(path):
     [
         ((), NOT_RUN),
         ((PASSED, PASSED), PASSED),
+        ((PASSED, DIFFERS), PASSED),
         ((PASSED, NOT_RUN), NOT_RUN),
         ((NOT_RUN,), NOT_RUN),
         ((PASSED, NOT_RUN, FAILED), FAILED),
@@ -279,17 +280,6 @@ def test_page_shows_a_failure_without_a_figure(run):
     assert text.count("no image came back") == 1
 
 
-def test_each_subject_of_a_failed_check_has_its_own_figure(run):
-    errors = {"slate": 0.25, "chalk": 4.5e3, "loam": 1.5e-6}
-    results = tuple(
-        made_result(FAILED, subject=name, error=error, tolerance=1e-6, diagnosis=f"wrong {name}")
-        for name, error in errors.items()
-    )
-    text = Page(page_of(replace(run, results=results, pictures=()))).text
-    for name, figure in zip(errors, ("0.25", "4.5e+3", "1.5e-6"), strict=True):
-        assert f"{name} {figure} > 1e-6 wrong {name}" in text
-
-
 EXACT = made_picture("clay").reference
 
 
@@ -318,24 +308,6 @@ def test_a_sentence_says_how_a_material_looks(run, result, picture, words):
     assert words in Page(page_of(one)).text
 
 
-def test_failures_that_the_documents_reach_stand_before_others(run):
-    far, near = (
-        made_result(FAILED, subject=name, error=0.25, diagnosis=f"wrong {name}")
-        for name in ("back-lit", "rough")
-    )
-    subjects = far.subject, near.subject
-    judged = replace(
-        run,
-        results=(far, near),
-        pictures=(),
-        contents={"a.mtlx": subjects},
-        unreached={"a.mtlx": {far.subject: (far.diagnosis,)}},
-    )
-    assert "rough 0.25 > 2e-6 wrong rough Evidence" in (
-        text := Page(page_of(judged)).text
-    ) and text.index("wrong rough") < text.index("Only for inputs that your documents do not use")
-
-
 def test_what_the_specification_leaves_open_stands_apart_from_failures(run):
     results = FAILURE, made_result(DIFFERS, check="flag", diagnosis="the form of the paper")
     page = page_of(replace(run, results=results, pictures=()))
@@ -358,36 +330,6 @@ def test_a_difference_is_shown_and_counted_where_it_was_judged(run):
     assert json.loads(to_json(one))["pictures"][0]["largest_difference"] == 0.0
     whole = replace(one, pictures=(replace(mosaic, judged=None),))
     assert "Difference, eonlib up to 97 % of white" in Page(page_of(whole)).text
-
-
-def test_the_picture_that_differs_most_is_first_and_materials_that_failed_are(run):
-    wrong = replace(
-        made_result(FAILED), check="picture", subject="a/clay.mtlx: Clay", library="stock"
-    )
-    pictures = [
-        made_picture(element, library=library, scene=scene, image=offset + made_picture("").image)
-        for element in ("clay", "Clay")
-        for library, offset in (("eonlib", 0.0), ("stock", 0.25))
-        for scene, offset in (("side", offset), ("back", 2.0 * offset))
-    ]
-    text = Page(page_of(replace(run, results=(wrong,), pictures=tuple(pictures)))).text
-    words = (
-        "Clay a/clay.mtlx",
-        "Stock MaterialX on gl",
-        "With eonlib on gl",
-        "Light from behind, gl",
-    )
-    words += (
-        "Stock MaterialX",
-        "With eonlib",
-        "Reference",
-        "Difference, stock",
-        "Difference, eonlib",
-    )
-    words += "More pictures: light from the side", "clay a/clay.mtlx", "Light from the side, gl"
-    place = text.index("Failed 1 of 1")
-    for word in words:
-        place = text.index(word, place)
 
 
 def test_a_report_loads_no_engine_beside_what_results_load():
@@ -495,22 +437,12 @@ def test_difference_scale_covers_and_is_at_most_two_and_a_half_times_too_long(la
     assert largest <= scale <= max(2.5 * largest, 1e-9)
 
 
-def test_difference_scale_disregards_a_hundredth_of_the_pixels():
-    assert difference_scale([*np.full(995, 0.9e-6), *np.full(5, 1.0)]) == 1e-6
-
-
 def test_files_are_replaced_whole_and_nothing_else_stays_behind(run, folder):
     (folder / "report.html").write_text("old")
     before = sorted(folder.rglob("*"))
     write(run, folder)
     assert sorted(folder.rglob("*")) == before
     assert (folder / "report.html").read_text(encoding="utf-8") == page_of(run)
-
-
-def test_a_folder_that_cannot_be_written_is_an_error(run, tmp_path):
-    (tmp_path / "file").write_text("in the way")
-    with pytest.raises(OSError, match="file"):
-        write(run, tmp_path / "file" / "report")
 
 
 def test_a_matplotlibrc_in_the_working_folder_changes_no_page(run):
