@@ -11,7 +11,10 @@ import pytest
 import mxeon
 
 ROOT = Path(__file__).parents[1]
-MODELS = ("models", "albedo", "inversion", "sampling", "models.table")
+NUMPY_ALONE = (
+    *("mxeon", "mxeon.models", "mxeon.albedo", "mxeon.inversion", "mxeon.sampling"),
+    *("mxeon.models.table", "mxeon.hosts", "mxeon.hosts.base", "mxeon.conformance.results"),
+)
 NEW_MODULES = """
 import json, sys
 before = set(sys.modules)
@@ -28,46 +31,22 @@ def loaded(module):
     return json.loads(process.stdout)
 
 
-def lint(folder):
-    """Exit status and output of the import contracts of pyproject.toml, for a source folder."""
-    command = (
-        "import sys; from importlinter.cli import lint_imports_command; lint_imports_command()"
-    )
+def test_a_package_imports_from_floors_below_its_own():
+    command = "from importlinter.cli import lint_imports_command; lint_imports_command()"
+    arguments = ["--config", str(ROOT / "pyproject.toml"), "--no-cache"]
     process = subprocess.run(
-        [
-            sys.executable,
-            "-P",
-            "-c",
-            command,
-            "--config",
-            str(ROOT / "pyproject.toml"),
-            "--no-cache",
-        ],
-        cwd=folder,
-        env={"PYTHONPATH": str(folder)},
+        [sys.executable, "-P", "-c", command, *arguments],
+        cwd=ROOT / "python",
+        env={"PYTHONPATH": str(ROOT / "python")},
         capture_output=True,
         text=True,
     )
-    return process.returncode, process.stdout + process.stderr
+    assert process.returncode == 0, process.stdout + process.stderr
 
 
-def test_a_package_imports_from_floors_below_its_own():
-    status, output = lint(ROOT / "python")
-    assert status == 0, output
-
-
-def test_importing_the_package_loads_nothing_else():
-    assert loaded("mxeon") == ["mxeon"]
-
-
-@pytest.mark.parametrize("module", MODELS)
-def test_importing_a_model_loads_numpy_alone(module):
-    assert loaded(f"mxeon.{module}") == ["mxeon", "numpy"]
-
-
-@pytest.mark.parametrize("module", ["hosts", "hosts.base", "conformance.results"])
-def test_importing_the_table_of_hosts_or_results_loads_numpy_alone(module):
-    assert loaded(f"mxeon.{module}") == ["mxeon", "numpy"]
+@pytest.mark.parametrize("module", NUMPY_ALONE)
+def test_importing_a_model_or_a_table_loads_numpy_alone(module):
+    assert loaded(module) == ["mxeon", *(["numpy"] if module != "mxeon" else [])]
 
 
 def test_checking_a_function_loads_no_engine():
@@ -79,17 +58,16 @@ def test_asking_for_help_loads_no_engine():
     assert set(loaded("mxeon.cli")) <= {"mxeon", "numpy"}
 
 
-@pytest.mark.parametrize("name", ["check", "generate", "load_library"])
-def test_public_names_stay_functions_whatever_was_imported_before(name):
-    code = f"import mxeon.conformance, mxeon.cli; mxeon.{name}; assert callable(mxeon.{name})"
-    subprocess.run([sys.executable, "-c", code], check=True)
+PUBLIC = """
+import mxeon
+assert set(mxeon.__all__) <= set(dir(mxeon)) and "check" in dir(mxeon)
+import mxeon.conformance, mxeon.cli
+assert all(map(callable, (mxeon.check, mxeon.generate, mxeon.load_library)))
+"""
 
 
-def test_public_names_are_listed_before_their_first_use():
-    code = (
-        "import mxeon; assert set(mxeon.__all__) <= set(dir(mxeon)); assert 'check' in dir(mxeon)"
-    )
-    subprocess.run([sys.executable, "-c", code], check=True)
+def test_public_names_are_listed_and_stay_functions_whatever_was_imported_before():
+    subprocess.run([sys.executable, "-c", PUBLIC], check=True)
 
 
 def test_an_unknown_public_name_is_an_attribute_error():

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The patches for upstream repositories: each is from a page, and applies."""
+"""Patches for upstream repositories: each is from a page, and applies; what versions of MaterialX do."""
 
+import json
 import re
 import subprocess
 from pathlib import Path
@@ -13,7 +14,8 @@ from mxeon.survey.browser import packages_folder
 from tests.hosts.test_cycles_kernel import kernel
 from tests.support.availability import available
 from tests.support.wheels import MAIN, git
-from tools.site.ledger import ROOT, entries, needed, patches, patches_of
+from tools.site import versions
+from tools.site.ledger import ROOT, entries, measure, needed, patches
 
 ENTRIES = entries()
 MATERIALX = patches("materialx")
@@ -67,13 +69,6 @@ def test_the_patches_of_a_project_are_from_pages_and_apply_to_its_release(projec
             git(folder, "cat-file", "-e", name)
 
 
-def test_what_an_entry_says_of_its_patch_needs_one():
-    with_patches = {page for page in ENTRIES if patches_of(page)}
-    said = {page for page, each in ENTRIES.items() if each.needs or each.kind}
-    assert said <= with_patches
-    assert all(set(each.needs) <= set(MATERIALX) for each in ENTRIES.values())
-
-
 @pytest.fixture(scope="module")
 def materialx(tmp_path_factory):
     """A repository with the files that MaterialX's patches change: tags `release` and `main`."""
@@ -122,7 +117,26 @@ def test_a_patch_of_what_main_has_repaired_is_refused_there(materialx):
             applied(materialx, "main", page)
 
 
-def test_a_pull_request_of_a_page_is_one_of_main():
-    commits = (MAIN.parent / "commits.txt").read_text()
-    cited = [each.pull for each in ENTRIES.values() if each.pull]
-    assert [pull for pull in cited if f"(#{pull})" not in commits] == []
+KNOWN = json.loads(versions.RECORD.read_text())
+LAST = versions.VERSIONS[-2:]  # the release, and main
+OURS = {page: each for page, each in entries().items() if page in KNOWN["pages"]}
+
+
+def test_the_record_has_every_page_and_version():
+    issues = [each for each in measure.CHECKED if each.library == "stock"]
+    assert set(KNOWN["pages"]) == {each.page for each in issues if each.host in ("gl", "source")}
+    assert all(tuple(each) == versions.VERSIONS for each in KNOWN["pages"].values())
+
+
+def test_the_record_is_of_the_main_of_the_tests():
+    first = (MAIN.parent / "commits.txt").read_text().split(" ", 2)
+    assert KNOWN["commit"] == first[:2]
+
+
+def test_eonlib_passes_with_the_release_and_with_main():
+    assert [KNOWN["open"][name] for name in LAST] == [{}, {}]
+
+
+@pytest.mark.parametrize("page", OURS)
+def test_a_page_whose_checks_pass_in_main_names_what_repaired_it(page):
+    assert not KNOWN["pages"][page]["main"]["passed"] or OURS[page].pull

@@ -13,9 +13,9 @@ import pytest
 from mxeon.cli import main
 from mxeon.cli.answer import LINES, answer
 from mxeon.cli.output import Progress, warn
-from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Result, Run, known_issues
+from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Result, Run
 from mxeon.conformance.run import check
-from mxeon.errors import MISUSE, InputError, assert_known
+from mxeon.errors import MISUSE
 from mxeon.errors import NOT_RUN as DID_NOT_RUN
 from mxeon.hosts.base import Identity
 from mxeon.report import to_json
@@ -51,25 +51,6 @@ def stock(verdict=FAILED, **fields):
 
 
 SEEN = "up to 5 % of white too dark in light from behind"
-
-
-def test_an_answer_has_each_material_then_nodes_then_the_remedy_then_the_cause():
-    wrong = [
-        stock(key=key, diagnosis="best match: X", pages=(NAME,)) for key in ("value", "albedo")
-    ]
-    dark = replace(PICTURE, library="stock", verdict=FAILED, error=0.1, diagnosis=SEEN)
-    run = made_run(made(), PICTURE, *wrong, dark, compared=("stock",))
-    look, head, node, remedy, cause, verdict = answer(run)
-    assert look == (
-        "terracotta: looks as specified with eonlib; with stock MaterialX 1.39.5, " + SEEN + "."
-    )
-    assert head.split() == ["nodes", "on", "gl", "eonlib", "stock"]
-    assert "EON, error 1e-07, tolerance 2e-06  wrong, error 0.37, tolerance 2e-06" in node
-    assert "load /" in remedy and "C++" in remedy
-    assert f"{EON} (value, albedo)" in cause and cause.endswith(PAGE)
-    assert "For comparison, 3 of 3 failed with stock" in verdict
-    # Its failures count where it is asked for.
-    assert (run.summary.verdict, replace(run, compared=()).summary.verdict) == (PASSED, FAILED)
 
 
 def test_a_picture_within_tolerance_comes_before_nodes_that_are_wrong_for_other_inputs():
@@ -155,27 +136,6 @@ def test_what_fails_for_other_inputs_than_the_documents_comes_last():
     causes = [line for line in lines if line.startswith("failed")]
     expected = ["fault: the weight is ignored", PAGE, "for inputs that no document uses"]
     assert [each in line for each, line in zip(expected, causes, strict=True)] == [True] * 3
-
-
-def test_the_link_is_that_of_the_site_where_the_package_has_its_address(monkeypatch):
-    urls = {"Documentation": "https://example.org/mxeon/"}
-    known_issues._site.cache_clear()
-    monkeypatch.setattr(known_issues, "metadata", lambda _: Metadata(urls))
-    (issue,) = known_issues.issues_of(made(FAILED, pages=(NAME,)))
-    try:
-        assert known_issues.link(issue) == (
-            "https://example.org/mxeon/upstream/genglsl_clamped_dot.html"
-        )
-    finally:
-        known_issues._site.cache_clear()
-
-
-class Metadata:
-    def __init__(self, urls):
-        self.urls = urls
-
-    def get_all(self, name):
-        return [f"{title}, {url}" for title, url in self.urls.items()]
 
 
 def test_a_failure_without_a_page_is_explained_by_its_diagnosis():
@@ -323,14 +283,6 @@ def test_a_host_of_which_the_text_alone_is_made_did_not_run(capsys):
     assert "not run: msl with eonlib, 1 check: msl: running it needs" in capsys.readouterr().out
 
 
-def test_a_host_that_judges_none_of_the_nodes_did_not_run(monkeypatch, capsys):
-    keep_checks(monkeypatch, "value", "host")
-    options = ["--host", "gl", "--host", "msl", "--node", "oren_nayar_diffuse_bsdf"]
-    assert main(["check", *options, "--workers", "0"]) == DID_NOT_RUN
-    printed = capsys.readouterr().out
-    assert printed.startswith("Nothing failed, but 1 of 3 checks did not run.")
-
-
 # --- progress and names ---------------------------------------------------------------------------
 
 
@@ -399,11 +351,3 @@ def test_without_a_command_there_is_help(arguments, capsys):
 def test_what_follows_two_dashes_is_no_option(capsys):
     assert main(["check", "--", "--libary"]) == MISUSE
     assert "must be a readable file; got '--libary'" in capsys.readouterr().err
-
-
-def test_an_unknown_name_of_many_lists_them_only_if_none_is_near():
-    known = [f"name_{number}" for number in range(30)]
-    with pytest.raises(InputError, match=r"^node must be one of name_0, .*; got 'x'$"):
-        assert_known("node", "x", known)
-    with pytest.raises(InputError, match="must be one of 30 names; got 'name_3x': did you mean"):
-        assert_known("node", "name_3x", known)

@@ -9,22 +9,14 @@ from pathlib import Path
 
 import pytest
 
-from mxeon.cli.batch import BatchResult, Source, WorkerCrashed, picture, run_batch, shader_texts
+from mxeon.cli.batch import BatchResult, WorkerCrashed, run_batch
 from mxeon.errors import DocumentError
-from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.library import examples_folder
-from mxeon.shaders.scene import Paths
-from tests.support.documents import lobe, material
 from tests.support.faults import misbehave
 
 CLAY = str(examples_folder() / "clay.mtlx")
-KNOWN = {"element": None, "library": "eonlib", "profile": None, "policy": DEFAULT}
 
 with_processes = pytest.mark.parametrize("workers", [0, 2])
-
-
-def clay(target):
-    return shader_texts(Source(CLAY, target), **KNOWN)
 
 
 def process(_):
@@ -47,13 +39,6 @@ def test_values_warnings_and_errors_come_in_order(workers):
     assert two == BatchResult("TWO", ("two is odd",))
 
 
-@with_processes
-def test_texts_are_those_of_generate(workers):
-    found = [each.value for each in run_batch(clay, ["glsl", "osl"], workers, 60.0)]
-    assert found == [clay("glsl"), clay("osl")]
-    assert set(found[1]) == {"clay.terracotta.osl", "clay.modeling_clay.osl"}
-
-
 def test_no_workers_means_this_process():
     assert [each.value for each in run_batch(process, [0], 0, 60.0)] == [os.getpid()]
     assert [each.value for each in run_batch(process, [0], 1, 60.0)] != [os.getpid()]
@@ -65,38 +50,6 @@ def test_a_process_that_crashes_costs_its_document_alone():
     assert isinstance(crashed.error, WorkerCrashed) and str(crashed.error) == (
         "SIGSEGV: worker process crashed (SIGSEGV); last output: about to SIGSEGV"
     )
-
-
-@pytest.mark.parametrize("workers, timeout, words", [(-1, 1.0, "workers"), (1, 0.0, "timeout")])
-def test_bad_options_are_refused(workers, timeout, words):
-    with pytest.raises(ValueError, match=words):
-        list(run_batch(process, [0], workers, timeout))
-
-
-def test_a_picture_says_what_made_it(tmp_path):
-    (tmp_path / "look.mtlx").write_text(material(lobe()))
-    image, said = picture(
-        str(tmp_path / "look.mtlx"),
-        "reference",
-        "side",
-        None,
-        4,
-        "sphere",
-        None,
-        "eonlib",
-        DEFAULT,
-        Paths(),
-    )
-    assert image.shape == (4, 4, 3)
-    assert (said["element"], said["scene"], said["library"]) == ("look", "side", "eonlib")
-
-
-def test_the_host_of_a_picture_closes_whatever_happens(tmp_path, monkeypatch):
-    closed = []
-    monkeypatch.setattr("mxeon.conformance.reference.Host.close", lambda host: closed.append(host))
-    with pytest.raises(ValueError, match="--element must name one of"):
-        picture(CLAY, "reference", "side", None, 4, "sphere", None, "eonlib", DEFAULT, Paths())
-    assert len(closed) == 1
 
 
 def test_a_bug_in_a_worker_prints_its_traceback():

@@ -17,8 +17,6 @@ PLASTER = str(examples_folder() / "plaster.mtlx")
 CHECK = ["check", PLASTER, "--workers", "1", "--report", "report"]
 DEADLINE = 300.0  # seconds, for a machine that is busy
 
-of_each_signal = pytest.mark.parametrize("number", ENDING, ids=[each.name for each in ENDING])
-
 
 def start(folder, *arguments, code="from mxeon.__main__ import main; sys.exit(main())"):
     """A command whose temporary files go to `folder`/tmp, which hears signals as in a terminal."""
@@ -40,8 +38,15 @@ def wait_for(condition, process):
         time.sleep(0.01)
 
 
-@of_each_signal
-@pytest.mark.parametrize("to", ["command", "terminal"])
+@pytest.mark.parametrize(
+    ("number", "to"),
+    [
+        (signal.SIGTERM, "command"),
+        (signal.SIGINT, "command"),
+        (signal.SIGINT, "terminal"),
+        (signal.SIGHUP, "terminal"),
+    ],
+)
 def test_a_signal_ends_the_command_in_one_line_and_nothing_stays(tmp_path, number, to):
     process = start(tmp_path, *CHECK)
     journal = tmp_path / "report" / "journal" / "items.jsonl"
@@ -54,7 +59,7 @@ def test_a_signal_ends_the_command_in_one_line_and_nothing_stays(tmp_path, numbe
     assert not list(tmp_path.rglob(".mxeon*"))
 
 
-@pytest.mark.parametrize("number", (signal.SIGTERM, *OTHERS), ids=lambda each: each.name)
+@pytest.mark.parametrize("number", (signal.SIGTERM, signal.SIGUSR1), ids=lambda each: each.name)
 def test_a_signal_before_the_workers_work_ends_them_too(tmp_path, number):
     process = start(tmp_path, *CHECK)
     # Python itself tries the folder with a file of a random name, without a prefix.
@@ -92,7 +97,7 @@ def test_a_signal_that_is_ignored_stays_ignored(tmp_path):
         signal.signal(signal.SIGHUP, before)
 
 
-@of_each_signal
+@pytest.mark.parametrize("number", (*ENDING, *OTHERS), ids=lambda each: each.name)
 def test_a_blocked_signal_comes_afterwards(number):
     steps = []
     with pytest.raises(SignalExit) as ended, raise_signals():

@@ -3,7 +3,6 @@
 
 import json
 import re
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -26,7 +25,7 @@ from mxeon.io.images import write_image
 from mxeon.models.table import KNOWN_DEFECTS, MODELS, model
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, material_text
-from tests.explorer.browser import judged, opened, show, until
+from tests.explorer.browser import judged, opened, until
 from tests.support.documents import material
 
 LARGEST = 2 * 2**20  # bytes of the page without documents
@@ -116,13 +115,6 @@ def test_the_command_refuses_in_one_line_and_writes_nothing(arguments, words, tm
     assert main(["explore", *arguments, "--output", str(out)]) == MISUSE
     said = capsys.readouterr().err
     assert words in said and said.count("\n") == 1 and not out.exists()
-
-
-def test_a_page_that_was_there_stays_where_writing_fails(tmp_path, capsys):
-    folder = tmp_path / "page.html"
-    folder.mkdir()
-    assert main(["explore", "--output", str(folder)]) == MISUSE
-    assert list(tmp_path.iterdir()) == [folder] and capsys.readouterr().err.count("\n") == 1
 
 
 def test_code_of_a_document_needs_a_permission(tmp_path, capsys):
@@ -255,20 +247,6 @@ def test_a_document_without_a_table_says_what_check_says(lobe, kind, words, tmp_
     assert source.checked.text.startswith(words)
 
 
-@pytest.mark.parametrize(
-    "name, first, last",
-    [
-        ("standard_surface_rough_base", ("base", "base_color"), "emission_color"),
-        ("openpbr_rough_base", ("base_color",), "thin_film_ior"),
-        ("brick", ("energy_compensation",), "default"),
-    ],
-)
-def test_inputs_that_matter_come_first(name, first, last):
-    (source, *_) = document_sources(str(examples_folder() / f"{name}.mtlx"))
-    names = [each.path.rpartition("/")[2] for each in source.inputs if each.shown]
-    assert (*names[: len(first)],) == first and names[-1] == last
-
-
 def test_more_materials_than_a_page_may_hold_are_refused(tmp_path, capsys):
     arguments = ["explore", CLAY, "--workers", "0", "--output", str(tmp_path / "out.html")]
     assert main([*arguments, "--maxShaders", "0"]) == MISUSE
@@ -338,26 +316,3 @@ def test_without_the_host_no_material_is_called_a_model(monkeypatch):
         assert not data.judged
     finally:
         measured_models.cache_clear()
-
-
-def test_a_shader_that_is_not_the_model_of_its_name_is_found_out(browser, tmp_path):
-    """A page that calls stock MaterialX by the name of a correct model."""
-    data = page_data()
-    sources = tuple(
-        replace(each, actual=each.meant) if each.id == "shader/stock" else each
-        for each in data.sources
-    )
-    file = tmp_path / "page.html"
-    file.write_text(page(replace(data, sources=sources)))
-    with opened(browser, f"{file.as_uri()}#azimuth=150") as sheet:
-        show(sheet, right={"source": "model/lambert", "flag": True, "sampler": "exact"})
-        until(sheet, "document.querySelector('.values').innerText.includes('float32')")
-        assert "The shader is not" not in sheet.locator(".values").inner_text()
-        show(sheet, left={"source": "shader/stock", "flag": True, "sampler": "exact"})
-        show(
-            sheet,
-            right={"source": "variant/genglsl_clamped_dot/0", "flag": True, "sampler": "exact"},
-        )
-        until(
-            sheet, "document.querySelector('.values').innerText.includes('The shader is not EON.')"
-        )

@@ -8,7 +8,7 @@ import pytest
 from mxeon.explorer import page, page_data
 from mxeon.explorer.lobes import MATERIALS
 from mxeon.io.files import write_text
-from tests.explorer.browser import opened, show, until
+from tests.explorer.browser import DRAWN, opened, show, until
 
 # OpenPBR takes a software driver a minute to compile; test_references.py judges it on another host.
 KEYS = [material.key for material in MATERIALS if material.key != "lobe/openpbr"]
@@ -97,7 +97,7 @@ def test_nothing_is_called_correct_before_a_value_is_read_back(browser, address)
     with opened(browser, address) as sheet:
         sheet.evaluate("mxeon.stage.evaluate = () => null")
         show(sheet, left={"source": "lobe/sheen/eonlib", "flag": True, "sampler": "exact"}, **PLAIN)
-        sheet.wait_for_timeout(1000)
+        until(sheet, DRAWN)
         assert kinds(sheet)[0] == "measuring"
         assert "measuring…" in sheet.locator(".values").inner_text()
         assert sheet.locator(".verdict.correct").count() == 0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Blender's Cycles as a host: exact values, exact pixels, exact EON, and what may go wrong."""
+"""Blender's Cycles: exact values, pixels and EON, what may go wrong, and its own nodes as one more renderer."""
 
 import os
 import signal
@@ -13,13 +13,15 @@ import numpy as np
 import pytest
 
 from mxeon.conformance.reference import Host as Reference
+from mxeon.conformance.results import FAILED, PASSED
+from mxeon.conformance.results.known_issues import RENDERER_NODES
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import cycles
 from mxeon.hosts.cycles import process as cycles_process
-from mxeon.hosts.pairs import DISTANCE, HEIGHT, tilted_triangles, visible
 from mxeon.shaders.generation import ApproximationWarning, generate
 from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, material_text
 from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, Paths, sphere
+from mxeon.survey.cycles_native import NODES
 from tests.support.availability import available
 from tests.support.documents import material
 from tests.support.tolerances import (
@@ -249,22 +251,21 @@ def test_subsurface_keeps_its_color(host):
     assert np.abs(means[1] - 1.0).max() < CYCLES_SUBSURFACE  # stock loses it: every color is white
 
 
-def test_each_triangle_shows_its_pair_and_has_the_shaded_normal():
-    pairs = np.random.default_rng(1).normal(size=(2, 4096, 3))
-    pairs[:, :, 2] = np.abs(pairs[:, :, 2]) + 0.05
-    wo, wi = pairs / np.linalg.norm(pairs, axis=2, keepdims=True)
-    shown = visible(wo, wi)
-    scene = tilted_triangles(wo[shown], wi[shown], 64)
-    points = scene.corners.mean(axis=1)
-    light = np.array([-DISTANCE, 0.0, 0.0]) - points
-    distance = np.linalg.norm(light, axis=1, keepdims=True)
-    np.testing.assert_allclose(
-        scene.turned(wo[shown]), np.tile([0, 0, 1], (len(points), 1)), atol=1e-12
+@pytest.mark.parametrize(
+    ("title", "others"),
+    [
+        (NODES[0].title, ("furnace", "black", "lambert", "inputs")),
+        *((each.title, ("black",)) for each in NODES[1:]),
+    ],
+)
+def test_blender_has_one_power_of_the_color_too_many(judged, title, others):
+    value, environment, *passed = (
+        judged(key, title, "cycles-native", RENDERER_NODES)
+        for key in ("value", "environment", *others)
     )
-    np.testing.assert_allclose(scene.turned(wi[shown]), light / distance, atol=2.0**-22)
-    np.testing.assert_allclose(scene.irradiance, distance**-2)
-    edges = np.diff(scene.corners, axis=1)
-    across = np.cross(edges[:, 0], edges[:, 1])
-    across /= np.linalg.norm(across, axis=1, keepdims=True)
-    np.testing.assert_allclose(across, scene.turned([[0.0, 0.0, 1.0]]), atol=1e-9)
-    assert (points[:, 2] < HEIGHT).all()
+    assert (value.verdict, environment.verdict) == (FAILED, FAILED)
+    assert {each.verdict for each in passed} == {PASSED}
+    assert all(each.control.caught for each in (value, environment, *passed))
+    assert "best match: EON with rho^3" in value.diagnosis
+    assert value.distances["EON with rho^3"] < 1e-6
+    assert environment.error > 100.0 * environment.tolerance

@@ -11,7 +11,6 @@ from mxeon.conformance.pictures.tolerances import TEXTURED
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import host_row, materialx, storm
-from mxeon.hosts.documents import PLACE, quads
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.library_export import export_library
 from mxeon.shaders.nodes import OREN_NAYAR, material_text, node_text
@@ -52,20 +51,6 @@ def copy_of_eonlib(tmp_path):
         return str(folder)
 
     return copy
-
-
-@pytest.mark.parametrize("place", [(0.0, 0.0), PLACE])
-def test_every_pixel_is_an_exact_point(place):
-    mesh, points = quads(8, place), sphere(8)
-    # Weights of the corners at the place.
-    x, y = (0.5 + 0.5 * each for each in place)
-    weights = np.array([(1 - x) * (1 - y), x * (1 - y), x * y, (1 - x) * y])
-    for name, values in mesh.items():
-        exact = vars(points)[name][points.mask]
-        middle = (weights[:, np.newaxis] * values.reshape(-1, 4, values.shape[1])).sum(axis=1)
-        np.testing.assert_allclose(middle, exact, atol=1e-6)
-    corners = mesh["position"].reshape(-1, 4, 3)
-    np.testing.assert_allclose(np.ptp(corners[..., :2], axis=1), 2.0 / 8.0, rtol=1e-6)
 
 
 def test_a_document_is_that_of_the_reference(host, reference):
@@ -152,8 +137,3 @@ def test_a_shader_that_does_not_compile_is_a_shader_error(host, copy_of_eonlib):
     [shader] = host.compile(material_text(OREN_NAYAR, {}), library=copy_of_eonlib(*BROKEN))
     with pytest.raises(ShaderError, match=f"^{host.name}: .*no_such_function"):
         host.picture(shader, SMALL)
-
-
-def test_the_identity_names_versions_and_a_device(host):
-    identity = host.identity()
-    assert identity.name == host.name and "MaterialX 1.39" in identity.version and identity.device

@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Hosts that evaluate pairs: each is the model, on every host alike, and says who it is."""
+"""Hosts that evaluate pairs: each is the model, on every host alike, says who it is, and runs the text unchanged."""
 
+import struct
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from mxeon.errors import ShaderError
-from mxeon.hosts import calls
+from mxeon.hosts import calls, fragment, vulkan
+from mxeon.hosts.base import TURN
 from mxeon.models import table as reference
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, material_text
@@ -33,6 +35,11 @@ def drawn(count=COUNT):
     return wo, wi, {"color": rho, "roughness": roughness}
 
 
+def of_eon(host):
+    [shader] = generate(material_text(EON), host.target, lights=True)
+    return shader
+
+
 def test_the_identity_names_a_version_and_a_device_after_work_too(host):
     host.call("fon_albedo_dir", np.array([0.5]), np.array([0.0]))
     identity = host.identity()
@@ -47,16 +54,12 @@ def test_the_generated_bsdf_is_the_model(host, model, node, fixed):
     values = np.pi * host.evaluate(shader, wo, wi, inputs, "direct")
     expected = np.pi * row.brdf(wo, wi, rho, roughness) * wi[:, 2:]
     np.testing.assert_allclose(values, expected, rtol=0.0, atol=TWIN_VALUE)
+    if node == EON:
+        twin = np.pi * host.call("eon_brdf", wo, wi, *inputs.values()) * wi[:, 2:]
+        np.testing.assert_allclose(twin, expected, rtol=0.0, atol=TWIN_VALUE)
     albedo = host.evaluate(shader, wo, wi, inputs, "environment")
     expected = row.albedo_dir(wo[:, 2], rho, roughness)
     np.testing.assert_allclose(albedo, expected, rtol=0.0, atol=TWIN_ALBEDO)
-
-
-def test_a_function_of_the_twins_is_the_model(host):
-    wo, wi, inputs = drawn()
-    values = np.pi * host.call("eon_brdf", wo, wi, *inputs.values()) * wi[:, 2:]
-    expected = np.pi * reference.model("eon").brdf(wo, wi, *inputs.values()) * wi[:, 2:]
-    np.testing.assert_allclose(values, expected, rtol=0.0, atol=TWIN_VALUE)
 
 
 def test_a_scalar_fills_three_columns_and_one_row_serves_all(host):
@@ -72,12 +75,7 @@ def test_inputs_that_are_not_given_have_the_documents_values(host):
 
 
 def test_what_the_compiler_refuses_is_a_shader_error_and_the_host_works_on(host):
-    good = generate(
-        material_text(
-            EON,
-        ),
-        host.target,
-    )[0]
+    good = of_eon(host)
     wrong = good.stages["pixel"].replace("eon_brdf_mu", "no_such_function", 1)
     bad = replace(good, stages={**good.stages, "pixel": wrong})
     for flag in (0.25, 0.5):
@@ -89,26 +87,14 @@ def test_what_the_compiler_refuses_is_a_shader_error_and_the_host_works_on(host)
 
 @pytest.mark.parametrize("word", ["branch", "output"])
 def test_an_unknown_branch_or_output_is_refused(host, word):
-    shader = generate(
-        material_text(
-            EON,
-        ),
-        host.target,
-    )[0]
     options = {"branch": "direct", word: "both"}
     with pytest.raises(ValueError, match=f"{word} must be one of .*; got 'both'"):
-        host.evaluate(shader, PAIR, PAIR, {}, **options)
+        host.evaluate(of_eon(host), PAIR, PAIR, {}, **options)
 
 
 @pytest.mark.parametrize("branch", calls.CLOSURES)
 def test_an_opaque_lobe_lets_no_light_through_in_any_branch(host, branch):
-    shader = generate(
-        material_text(
-            EON,
-        ),
-        host.target,
-        lights=True,
-    )[0]
+    shader = of_eon(host)
     assert not host.evaluate(shader, PAIR, PAIR, {}, branch, output="throughput").any()
     leaks = shader.stages["pixel"].replace("bsdf.throughput = ", "bsdf.response = ")
     leaky = replace(shader, stages={**shader.stages, "pixel": leaks})
@@ -116,13 +102,7 @@ def test_an_opaque_lobe_lets_no_light_through_in_any_branch(host, branch):
 
 
 def test_the_environment_is_looked_up_at_the_normal(host):
-    shader = generate(
-        material_text(
-            EON,
-        ),
-        host.target,
-        lights=True,
-    )[0]
+    shader = of_eon(host)
     rows = np.linspace(0.0, 1.0, 8)[:, np.newaxis, np.newaxis]
     sky = np.broadcast_to(rows, (8, 16, 3)).astype(np.float32)  # brighter downwards
     inputs = {"color": np.ones((1, 3)), "roughness": np.zeros(1)}
@@ -147,3 +127,37 @@ def test_a_lobe_of_microfacets_sums_as_many_directions_on_every_host(host, gl):
 def test_an_unknown_function_is_refused(host):
     with pytest.raises(ValueError, match="function must be one of .*; got 'no_such_function'"):
         host.call("no_such_function", PAIR)
+
+
+BEHIND = np.array([[-0.6, 0.0, 0.8]])
+BLOCK = """
+    mat4 u_envMatrix;
+    bool flag;
+    vec3 view;
+    float u_envLightIntensity;
+    structure last;
+"""
+
+
+def test_the_text_is_evaluated_as_it_was_generated():
+    shader = generate(material_text(OREN_NAYAR, {FLAG: True}), "wgsl")[0]
+    text, _ = fragment.bsdf_evaluation(shader, PAIR, PAIR, {}, "direct")
+    head, body = shader.stages["pixel"].split("\n", 1)
+    assert text.startswith(head) and body in text
+
+
+def test_an_integer_of_the_text_is_the_boolean_that_it_was(hosts):
+    shader = generate(material_text(OREN_NAYAR, {FLAG: True}), "wgsl")[0]
+    inputs = {"color": np.ones((1, 3)), "roughness": np.ones(1)}
+    on, off = (
+        hosts("wgsl").evaluate(shader, PAIR, BEHIND, {**inputs, FLAG: flag}, "direct")
+        for flag in (True, False)
+    )
+    assert (on > off + 0.01).all()
+
+
+def test_members_of_a_block_lie_where_std140_has_them():
+    data = vulkan._std140(BLOCK)
+    np.testing.assert_array_equal(struct.unpack_from("<16f", data), TURN.ravel())
+    assert struct.unpack_from("<f", data, offset=64 + 16 + 12) == (1.0,)
+    assert sum(data[64 + 16 + 16 :]) == 0

@@ -7,10 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mxeon.errors import NotRun, ShaderError
-from mxeon.hosts.osl import trees
-from mxeon.hosts.osl.points import Column
-from mxeon.hosts.osl.trees import keys_of
+from mxeon.errors import ShaderError
 from mxeon.models.diffuse import formulas
 from mxeon.models.media.emission import conical_edf
 from mxeon.shaders.generation import generate
@@ -136,34 +133,6 @@ def test_what_the_engine_says_of_a_text_fails(host):
         host.trees(wrong, WO, {})
 
 
-def test_a_closure_without_light_and_one_without_arguments_are_told():
-    [points] = trees.read_trees(["add<|transparent<>>"])
-    assert points.tree.parts[0] is None
-    assert points.tree.parts[1] == trees.ClosureTree("transparent")
-    [empty] = trees.read_trees([""])
-    assert empty.tree is None
-
-
-def test_closures_that_lie_too_deep_are_not_run():
-    texts = {
-        "root": "@0",
-        **{f"@{n}": f"mul<1|@{n + 1}>" for n in range(300)},
-        "@300": "transparent<>",
-    }
-    with pytest.raises(NotRun, match="must be less than 200 deep"):
-        trees.whole_label(texts, "root")
-
-
-def test_the_root_of_zeltners_roughness_undoes_a_square_to_the_last_bit():
-    rough = np.random.default_rng(1).random(4096).astype(np.float32)
-    squares = (rough * rough).astype(np.float64)
-    arguments = {"roughness": squares, "mode": np.where(np.arange(4096) % 2, 1.0, 0.0)}
-    sheen = trees.ClosureTree("sheen_bsdf", (), arguments)
-    [found] = trees.with_roots(trees.ClosureTree("mul", (sheen,), {"factor": rough})).parts
-    assert np.array_equal(found.arguments["roughness"][1::2], rough[1::2])
-    assert np.array_equal(found.arguments["roughness"][::2], squares[::2])
-
-
 @pytest.fixture
 def runs(host, monkeypatch):
     """Points of each run of the engine."""
@@ -186,23 +155,6 @@ def test_points_that_were_told_are_not_run_again(host, runs):
     [others] = host.trees(made, WO[:3], {"color": [*COLORS[:2], [0.5, 0.5, 0.25]]})
     assert runs == [5, 1]
     assert np.array_equal(leaf(others.tree).arguments["color"][1], COLORS[1])
-
-
-def test_inputs_of_other_names_are_other_points(host, runs):
-    made = shader("burley_diffuse_bsdf", weight=0.6)
-    values = np.linspace(0.1, 0.9, 5)
-    [rough] = host.trees(made, WO, {"roughness": values})
-    [weighed] = host.trees(made, WO, {"weight": values})
-    assert runs == [5, 5]
-    assert leaf(rough.tree).arguments["roughness"][4] == np.float32(0.9)
-    assert leaf(weighed.tree).arguments["roughness"][4] == 0.0
-
-
-def test_a_text_that_reads_the_view_is_run_for_each_view():
-    columns = {"x": Column("float", np.zeros(2))}
-    view = Column("vector", np.eye(3)[:2])
-    assert len(set(keys_of("color c = x;", columns, view, 2))) == 1
-    assert len(set(keys_of("color c = dot(I, N);", columns, view, 2))) == 2
 
 
 # --- what the profile for Cycles calls, in Cycles' meaning -----------------------------------------

@@ -6,10 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
+from mxeon.conformance.results import FAILED, PASSED
 from mxeon.conformance.results.known_issues import RENDERER_NODES
 from mxeon.conformance.run import check
-from mxeon.errors import NotRun
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.scene import BACK, FRONT, SIDE, VIEW, local_directions
 from mxeon.survey.facets import facet_points
@@ -130,20 +129,3 @@ def test_a_picture_agrees_with_the_values_of_mitsubas_own_function():
         color, roughness = np.broadcast_to(COLOR, (count, 3)), np.full(count, 0.7)
         values = np.pi * host.pairs(node.material, wo[mask], wi[mask], color, roughness)
     assert np.abs(picture[mask] - values).max() <= FACETS + FACET_PAIRS
-
-
-def test_a_missing_package_names_the_remedy(monkeypatch, tmp_path):
-    script = tmp_path / "absent_worker.py"
-    script.write_text("import a_package_that_is_absent\n")
-    with mitsuba.Host() as host:
-        host.worker._command[-1] = script
-        with pytest.raises(NotRun, match=r"^mitsuba: not installed: pip install '\.\[mitsuba\]'"):
-            host.identity()
-
-
-def test_checks_of_a_missing_renderer_are_not_run(monkeypatch):
-    monkeypatch.setenv("MXEON_LUXCORE_PYTHON", "/nowhere/python")
-    run = check([EXAMPLE], ["luxcore"], ["eonlib"], nodes=["common"])
-    results = [each for each in run.results if each.host == "luxcore" and each.check != "document"]
-    assert {each.verdict for each in results} == {NOT_RUN}
-    assert all("pip install '.[luxcore]'" in each.reason for each in results)

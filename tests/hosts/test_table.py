@@ -1,23 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """The table of hosts: a host is one module and one row, and says which verbs it lacks."""
 
-from contextlib import suppress
 from importlib import import_module
 
 import numpy as np
 import pytest
 
 from mxeon import hosts
-from mxeon.cli import main
 from mxeon.conformance.pictures import generate_document
 from mxeon.conformance.results import SHADER_FUNCTIONS
 from mxeon.conformance.run import check
 from mxeon.errors import NotRun, Unsupported
 from mxeon.hosts import base
 from mxeon.models import table
-from mxeon.shaders.generation import generate
 from mxeon.shaders.library import examples_folder
-from mxeon.shaders.nodes import EON, material_text
+from mxeon.shaders.nodes import EON
 from mxeon.shaders.scene import SIDE
 from mxeon.shaders.targets import CLASSES
 from tests.support.plans import keep_checks
@@ -63,13 +60,6 @@ def test_a_new_host_is_one_module_and_one_row(toy, monkeypatch):
     assert reason == "toy: this host has no calls of a shader function; use gl"
 
 
-def test_the_help_names_every_host(capsys):
-    with suppress(SystemExit):
-        main(["check", "--help"])
-    text = "".join(capsys.readouterr().out.split())  # a line may end in a name
-    assert f"gl(default),{','.join(hosts.host_names()[1:])},orall" in text
-
-
 @pytest.mark.parametrize("verb", VERBS)
 def test_a_verb_that_a_host_lacks_is_unsupported(verb):
     class Silent(base.Host):
@@ -98,15 +88,6 @@ def test_a_renderer_executes_no_shaders(monkeypatch):
 def test_a_document_is_not_run_on_a_renderer():
     with pytest.raises(NotRun, match="^mitsuba: this renderer .*; it reads no documents$"):
         generate_document(examples_folder() / "clay.mtlx", "mitsuba", "eonlib")
-
-
-def test_a_host_compiles_for_its_target_and_profile_and_with_lights():
-    class Profiled(Host):
-        target, profile = "osl", "cycles"
-
-    document = material_text(EON)
-    assert Host().compile(document) == generate(document, "glsl", lights=True)
-    assert Profiled().compile(document) == generate(document, "osl", profile="cycles")
 
 
 @pytest.mark.parametrize("row", ENGINES, ids=lambda row: row.name)

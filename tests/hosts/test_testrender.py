@@ -16,9 +16,8 @@ from mxeon.conformance.results import FAILED, PASSED
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import make_plan
 from mxeon.errors import InputError, NotRun, ShaderError
-from mxeon.hosts import pairs
 from mxeon.hosts.base import RendererWarning
-from mxeon.hosts.testrender import programs, scenes
+from mxeon.hosts.testrender import programs
 from mxeon.hosts.testrender.renderer import Host
 from mxeon.models import eon_brdf
 from mxeon.shaders.document.policy import DEFAULT
@@ -83,23 +82,8 @@ def test_what_oslc_refuses_is_a_shader_error(host):
         host.evaluate(replace(shader, stages={"pixel": wrong}), *pairs, {}, "direct")
 
 
-def test_a_program_may_be_named_from_here(monkeypatch, replay):
-    monkeypatch.chdir(replay)
-    for name, variable in programs.VARIABLES.items():
-        monkeypatch.setenv(variable, f"./{name}")
-    with closing(Host()) as host, pytest.warns(RendererWarning):
-        assert osl.values(host).shape == (4, 3)
-
-
 def test_its_identity_is_the_version_that_the_help_states(host):
     assert host.identity().version == "Open Shading Language 1.15.6.0"
-
-
-def test_the_programs_have_every_option_that_the_host_uses():
-    options = osl.facts()["options"]
-    assert {"-t NTHREADS", "--res W H", "-aa N"} <= set(options["testrender"])
-    assert {"-t NTHREADS", "--res XRES YRES", "-d NAME", "--center"} <= set(options["testshade"])
-    assert "-o VARIABLE FILENAME" in options["testshade"]
 
 
 @pytest.mark.filterwarnings("ignore::mxeon.hosts.base.RendererWarning")
@@ -117,26 +101,6 @@ def test_the_recorded_picture_is_the_model(host):
 def test_what_the_renderer_warns_of_is_passed_on(host):
     with pytest.warns(RendererWarning, match="testrender: WARNING: Unsupported closure keyword"):
         osl.values(host)
-
-
-def random_pairs(count):
-    """Pairs that a scene shows, of all angles between view and light."""
-    drawn = np.random.default_rng(1).normal(size=(2, count, 3))
-    wo, wi = drawn / np.linalg.norm(drawn, axis=2, keepdims=True)
-    shown = pairs.visible(wo, wi)
-    return wo[shown], wi[shown]
-
-
-def test_each_point_of_a_scene_shows_its_pair():
-    wo, wi = random_pairs(4096)
-    scene = scenes.pair_scene(wo, wi, 64)
-    light = -scene.points / np.linalg.norm(scene.points, axis=1, keepdims=True)
-    # Float32 points are off their rays by some roundings of the camera's distance.
-    error = 4.0 * scenes.EYE / scenes.NEAREST * 2.0**-24
-    np.testing.assert_allclose(scene.turned(wo), -scene.rays, atol=1e-12)
-    np.testing.assert_allclose(scene.turned(wi), light, atol=error)
-    assert (scene.points[:, 2] < scenes.EYE).all()  # before the camera
-    assert np.linalg.norm(scene.points, axis=1).min() > scenes.NEAREST
 
 
 def test_a_pair_that_no_scene_shows_is_refused(host):

@@ -27,36 +27,18 @@ if __name__ == "__main__":
     sys.exit(main())
 """
 
-RENDER = [
-    "render",
-    "in/plaster.mtlx",
-    "--element",
-    "ochre_plaster",
-    "--size",
-    "16",
-    "--workers",
-    "1",
-]
+RENDER = "render in/plaster.mtlx --element ochre_plaster --size 16 --workers 1"
 COMMANDS = {
-    "generate": [
-        "generate",
-        "in/plaster.mtlx",
-        "--target",
-        "osl",
-        "--outputPath",
-        "out",
-        "--workers",
-        "1",
-    ],
-    "render": [*RENDER, "--output", "out/a.png"],
-    "cycles": [*RENDER, "--output", "out/a.exr", "--host", "cycles"],
-    "check": ["check", "in/plaster.mtlx", "--host", "msl", "--workers", "1", "--report", "out"],
-    "report make": ["report", "make", "report"],
-    "report diff": ["report", "diff", "report", "report"],
-    "library": ["library", "--verify"],
-    "kit export": ["kit", "export", "out/kit", "--size", "64"],
-    "kit check": ["kit", "check", "out/kit"],
-    "invert": ["invert", "0.5", "0.5", "0.5", "--roughness", "1"],
+    "generate": "generate in/plaster.mtlx --target osl --outputPath out --workers 1",
+    "render": f"{RENDER} --output out/a.png",
+    "cycles": f"{RENDER} --output out/a.exr --host cycles",
+    "check": "check in/plaster.mtlx --host msl --workers 1 --report out",
+    "report make": "report make report",
+    "report diff": "report diff report report",
+    "library": "library --verify",
+    "kit export": "kit export out/kit --size 64",
+    "kit check": "kit check out/kit",
+    "invert": "invert 0.5 0.5 0.5 --roughness 1",
 }
 STATUS = {"check": 3, "report make": 3, "kit check": 3}  # msl and an empty kit do not run
 
@@ -70,15 +52,15 @@ def plant(folder, names, text):
         path.hardlink_to(first)
 
 
-def run(folder, *arguments):
+def run(folder, command):
     """The command as pip installs it, from a folder with a document."""
     (folder / "in").mkdir(exist_ok=True)
     (folder / "bin").mkdir(exist_ok=True)
     (folder / "bin" / "command").write_text(SCRIPT)
     document = (examples_folder() / "plaster.mtlx").read_text()
     (folder / "in" / "plaster.mtlx").write_text(document)
-    command = [sys.executable, str(folder / "bin" / "command"), *arguments]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    line = [sys.executable, str(folder / "bin" / "command"), *command.split()]
+    return subprocess.run(line, cwd=folder, capture_output=True, text=True, check=False)
 
 
 @pytest.fixture(scope="module")
@@ -98,7 +80,7 @@ def hostile(tmp_path, names):
 @pytest.fixture(scope="module")
 def report(tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
-    assert run(folder, *COMMANDS["check"]).returncode == 3
+    assert run(folder, COMMANDS["check"]).returncode == 3
     return folder / "out"
 
 
@@ -115,8 +97,8 @@ def test_no_command_imports_from_the_folders_it_works_in(hostile, report, comman
     need(command)
     (hostile / "report").symlink_to(report)
     if command == "kit check":
-        run(hostile, *COMMANDS["kit export"])
-    ended = run(hostile, *COMMANDS[command])
+        run(hostile, COMMANDS["kit export"])
+    ended = run(hostile, COMMANDS[command])
     assert not (hostile / "RAN").exists(), (hostile / "RAN").read_text()
     assert ended.returncode == STATUS.get(command, 0), ended.stderr
 
@@ -124,7 +106,7 @@ def test_no_command_imports_from_the_folders_it_works_in(hostile, report, comman
 @pytest.mark.parametrize("name", ["socket", "signal", "pickle"])
 def test_a_file_that_happens_to_have_the_name_of_a_module_is_no_obstacle(tmp_path, name):
     plant(tmp_path, [name], "x = 1\n")
-    ended = run(tmp_path, *COMMANDS["generate"])
+    ended = run(tmp_path, COMMANDS["generate"])
     assert (ended.returncode, ended.stderr) == (0, "") and list((tmp_path / "out").glob("*.osl"))
 
 
@@ -146,7 +128,7 @@ def test_workers_find_mxeon_where_the_parent_does(monkeypatch):
 def test_the_working_folder_is_off_the_path_whatever_starts_the_command(tmp_path, way):
     plant(tmp_path, ["pebble", "MaterialX", "numpy"], PLANT.format(str(tmp_path / "RAN")))
     run(tmp_path, "library")  # which leaves bin/command
-    command = [sys.executable, *way, *COMMANDS["generate"]]
+    command = [sys.executable, *way, *COMMANDS["generate"].split()]
     subprocess.run(command, cwd=tmp_path, check=True, capture_output=True)
     assert not (tmp_path / "RAN").exists()
 

@@ -7,7 +7,6 @@ records them again with the programs that MXEON_OSLC, MXEON_TESTRENDER and MXEON
 """
 
 import json
-import re
 import subprocess
 import tempfile
 from pathlib import Path
@@ -32,7 +31,6 @@ MISSPELLED = """shader wrong(output closure color out = 0)
     out = oren_nayar_diffuse_bsdf(N, color(0.5), 0.5, "energy_compensaton", 1);
 }
 """
-OPTION = re.compile(r"^ {4}(-\S+)(.*?) {2}", re.MULTILINE)
 
 # Replays the recording: help with the recorded title, a compiled shader for each source, and the
 # recorded picture for the recorded scene alone.
@@ -90,18 +88,9 @@ def record():
         PICTURE.write_bytes((folder / "picture.tif").read_bytes())
     recorded = {
         "title": _run("oslc", "--help")[0].splitlines()[0],
-        "options": {name: _options(name) for name in ("testrender", "testshade")},
         "warning": _warning(),
     }
     FACTS.write_text(json.dumps(recorded, indent=2) + "\n")
-
-
-def _options(program):
-    """Words of a program's options, each with those of its arguments."""
-    return [
-        " ".join((option + rest).split())
-        for option, rest in OPTION.findall(_run(program, "--help")[0])
-    ]
 
 
 def _warning():
