@@ -16,37 +16,19 @@ from pathlib import Path
 from unittest.mock import patch
 
 from mxeon.errors import NotRun
-from tools.benchmarks import record
+from tools.benchmarks import rounds
 from tools.benchmarks.check import CACHE
 
 QUICK = {  # sizes of each group with --quick
     "shaders": {"rounds": 5},
-    "noise": {"rounds": 3, "size": 64, "pictures": 8, "spokes": 6},
+    "sampling": {"rounds": 3, "size": 64, "pictures": 8, "spokes": 6},
     "materials": {"processes": 3, "size": 256},
     "registers": {"nodes": ("oren_nayar", "dielectric_bsdf")},
-    "models": {"rounds": 3, "pairs": (10_000, 100_000)},
-    "values": {"rounds": 2, "pairs": 100_000},
+    "models": {"rounds": 2, "pairs": (10_000, 100_000), "values_of": 100_000},
     "tool": {"rounds": 2, "counts": (1, 10), "documents": 10},
     "check": {"rounds": 1, "whole": False},
 }
 OUTPUT = Path(__file__).resolve().parents[2] / "out" / "benchmarks"
-
-
-def measure(options, file):
-    """Measure the groups that are asked for; each is printed and kept as soon as it is done."""
-    for name in options.groups or QUICK:
-        sizes, start = dict(QUICK[name]) if options.quick else {}, time.monotonic()
-        kept = partial(record.write, file, kind=options.kind, start=start)
-        if name in ("materials", "check"):  # the longest ones keep each part
-            sizes["keep"] = kept
-        try:
-            group = import_module(f"tools.benchmarks.{name}").measure(**sizes)
-        except NotRun as reason:
-            print(f"benchmarks: {name} not run: {reason}", file=sys.stderr)
-            continue
-        print(record.table(group), flush=True)
-        kept(group)
-        yield group
 
 
 def main(arguments=None):
@@ -61,12 +43,24 @@ def main(arguments=None):
     unknown = set(options.groups) - QUICK.keys()
     if unknown:
         parser.error(f"group must be one of {', '.join(QUICK)}; got {', '.join(unknown)}")
-    file = options.output / "performance.json"
-    with patch.dict(os.environ, {CACHE: "true"}):  # or a compilation is read from a file
-        groups = list(measure(options, file))
+    file, wrong = options.output / "performance.json", []
+    # Each group is printed and kept as soon as it is done, and the longest ones after each part.
+    for name in options.groups or QUICK:
+        sizes = dict(QUICK[name]) if options.quick else {}
+        kept = partial(rounds.write, file, kind=options.kind, start=time.monotonic())
+        if name in ("materials", "check"):
+            sizes["keep"] = kept
+        try:
+            with patch.dict(os.environ, {CACHE: "true"}):  # or a compilation is read from a file
+                group = import_module(f"tools.benchmarks.{name}").measure(**sizes)
+        except NotRun as reason:
+            print(f"benchmarks: {name} not run: {reason}", file=sys.stderr)
+            continue
+        print(rounds.table(group), flush=True)
+        kept(group)
+        wrong += [each.name for each in group.checks if not each.passed]
     if file.is_file():
-        file.with_suffix(".md").write_text(record.page(file), encoding="utf-8")
-    wrong = [each.name for group in groups for each in group.checks if not each.passed]
+        file.with_suffix(".md").write_text(rounds.page(file), encoding="utf-8")
     if wrong:
         print(f"benchmarks: wrong values: {', '.join(wrong)}", file=sys.stderr)
     return 1 if wrong else 0

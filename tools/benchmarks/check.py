@@ -10,8 +10,7 @@ import statistics
 import sys
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
-from functools import partial
+from dataclasses import dataclass, replace
 from subprocess import PIPE, Popen, TimeoutExpired
 from tempfile import NamedTemporaryFile, TemporaryDirectory
 
@@ -93,95 +92,84 @@ def memory(name, jobs, goal=None):
     return figure(f"{name}, largest process", "MiB", [max(each.memory for each in jobs)], goal)
 
 
-def main_job(rounds, files, cache):
-    """Figures and checks of the examples on gl, with an empty cache and again; and the seconds."""
-    jobs = [job(*files, "--workers", "2", cache=cache) for _ in range(rounds + 1)]
+def parts(rounds, files, whole, cache):
+    """Figures and checks of the main job, and of the others if the whole is measured."""
+    words = (*files, "--workers", "2")
+    # The examples on gl, with an empty cache and again.
+    jobs = [job(*words, cache=cache) for _ in range(rounds + 1)]
     seconds = [each.seconds for each in jobs]
-    figures = [
-        figure("gl, 2 workers", "s", seconds[1:], goal=9.0),
-        figure("gl, the driver's cache empty", "s", seconds[:1], goal=30.0),
-        memory("gl", jobs, MEMORY),
-    ]
-    wrong = Check("gl", max(each.wrong for each in jobs), 0.0)
-    return figures, [wrong], statistics.median(seconds[1:])
-
-
-def reporting(rounds, files, cache, usual):
-    """Figures of a report, and of the same run again, which finds it finished."""
-    found = {"first": [], "again": []}
+    usual = statistics.median(seconds[1:])
+    yield (
+        [
+            figure("gl, 2 workers", "s", seconds[1:], goal=9.0),
+            figure("gl, the driver's cache empty", "s", seconds[:1], goal=30.0),
+            memory("gl", jobs, MEMORY),
+        ],
+        [Check("gl", max(each.wrong for each in jobs), 0.0)],
+    )
+    if not whole:
+        return
+    # A report, and the same run again, which finds it finished.
+    first, again = [], []
     for _ in range(rounds):
         with TemporaryDirectory() as folder:
-            options = (*files, "--workers", "2", "--report", folder)
-            found["first"].append(job(*options, cache=cache))
-            found["again"].append(job(*options, "--resume", cache=cache))
-    beyond = [each.seconds - usual for each in found["first"]]
-    figures = [
-        figure("gl, beyond that with --report", "s", beyond, goal=2.0),
-        figure("gl, again with --resume", "s", [each.seconds for each in found["again"]], goal=5.0),
-        memory("gl, --report", found["first"], MEMORY),
-    ]
-    return figures, []
-
-
-def libraries(rounds, files, cache, usual):
-    """Figures of two libraries, after a run that fills the cache."""
-    jobs = [job(*files, "--workers", "2", *BOTH, cache=cache) for _ in range(rounds + 1)][1:]
+            first.append(job(*words, "--report", folder, cache=cache))
+            again.append(job(*words, "--report", folder, "--resume", cache=cache))
+    beyond = [each.seconds - usual for each in first]
+    yield (
+        [
+            figure("gl, beyond that with --report", "s", beyond, goal=2.0),
+            figure("gl, again with --resume", "s", [each.seconds for each in again], goal=5.0),
+            memory("gl, --report", first, MEMORY),
+        ],
+        [],
+    )
+    # Two libraries, after a run that fills the cache.
+    jobs = [job(*words, *BOTH, cache=cache) for _ in range(rounds + 1)][1:]
     share = [each.seconds / usual for each in jobs]
-    figures = [
-        figure("gl, two libraries / one", "x", share, 1.6),
-        memory("gl, two libraries", jobs, MEMORY),
-    ]
-    return figures, []
-
-
-def all_nodes(files):
-    """Figures and checks of all nodes, with an empty cache and again."""
-    with TemporaryDirectory() as cache:
-        runs = [job(*files, "--workers", "2", "--node", "all", cache=cache) for _ in range(2)]
-    figures = [
-        figure("gl, --node all, the driver's cache empty", "s", [runs[0].seconds], goal=40.0),
-        figure("gl, --node all", "s", [runs[1].seconds], goal=20.0),
-        memory("gl, --node all", runs, MEMORY),
-    ]
-    return figures, [Check("gl, --node all", max(each.wrong for each in runs), 0.0)]
-
-
-def field(cache):
-    """Figures of all hosts that run here with both libraries, of which stock MaterialX fails."""
-    found = {
-        name: job(
-            *(word for host in hosts for word in ("--host", host)),
-            *(word for node in nodes for word in ("--node", node)),
-            *(*BOTH, "--workers", "2", EXAMPLE),
-            cache=cache,
-            longest=LONGEST,
-        )
-        for name, (hosts, nodes) in FIELD.items()
-    }
+    yield (
+        [
+            figure("gl, two libraries / one", "x", share, 1.6),
+            memory("gl, two libraries", jobs, MEMORY),
+        ],
+        [],
+    )
+    # All nodes, with an empty cache and again.
+    with TemporaryDirectory() as empty:
+        jobs = [job(*words, "--node", "all", cache=empty) for _ in range(2)]
+    yield (
+        [
+            figure("gl, --node all, the driver's cache empty", "s", [jobs[0].seconds], goal=40.0),
+            figure("gl, --node all", "s", [jobs[1].seconds], goal=20.0),
+            memory("gl, --node all", jobs, MEMORY),
+        ],
+        [Check("gl, --node all", max(each.wrong for each in jobs), 0.0)],
+    )
+    # All hosts that run here with both libraries, of which stock MaterialX fails.
+    jobs = []
+    for hosts, nodes in FIELD.values():
+        asked = [*(f"--host={host}" for host in hosts), *(f"--node={node}" for node in nodes)]
+        last = (*asked, *BOTH, "--workers", "2", EXAMPLE)
+        jobs.append(job(*last, cache=cache, longest=LONGEST))
     figures = [
         figure(f"field, {name}{', stopped' if each.stopped else ''}", "s", [each.seconds])
-        for name, each in found.items()
+        for name, each in zip(FIELD, jobs, strict=True)
     ]
-    seconds = sum(each.seconds for each in found.values())
+    seconds = sum(each.seconds for each in jobs)
     figures.append(figure("field, eonlib and stock, 2 workers", "s", [seconds], goal=90.0))
-    return [*figures, memory("field", list(found.values()))], []
+    yield [*figures, memory("field", jobs)], []
 
 
 def measure(rounds=3, files=(), whole=True, keep: Callable[[Group], None] | None = None):
     """The `Group` of all that, or of the main job alone; `keep` is handed it after each part."""
+    group = Group("check", "`mxeon check`, bundled examples")
     with TemporaryDirectory() as cache:
-        figures, checks, usual = main_job(rounds, files, cache)
-        parts = (
-            partial(reporting, rounds, files, cache, usual),
-            partial(libraries, rounds, files, cache, usual),
-            partial(all_nodes, files),
-            partial(field, cache),
-        )
-        for part in (lambda: ([], []), *(parts if whole else ())):
-            found, more = part()
-            figures, checks = [*figures, *found], [*checks, *more]
-            title = "`mxeon check`, bundled examples"
-            group = Group("check", title, tuple(figures), tuple(checks))
+        for figures, checks in parts(rounds, files, whole, cache):
+            group = replace(
+                group,
+                figures=(*group.figures, *figures),
+                checks=(*group.checks, *checks),
+            )
             if keep:
                 keep(group)
     return group

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Generated materials with eonlib and with stock MaterialX: source, compilation, frame time."""
 
-import statistics
 from collections.abc import Callable, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
@@ -21,7 +20,7 @@ from mxeon.shaders.nodes import (
     node_text,
 )
 from mxeon.shaders.scene import SIDE, sphere
-from tools.benchmarks.rounds import Check, Group, clock_of, figure, interleave, ratio, scaled
+from tools.benchmarks.rounds import Check, Group, clock_of, figure, interleave
 
 SIZE = 512
 FIRST = 8  # pixels along a side of a first frame
@@ -86,11 +85,6 @@ SAME = {"oren_nayar": 3e-4}
 FACING = 0.2
 
 
-def shader(host, node, library):
-    """The generated shader of a material around one node."""
-    return host.compile(document_text(NODES[node]), library=library)[0]
-
-
 class Frame:
     """A material on the sphere, drawn again and again with its uniforms and buffers in place.
 
@@ -106,10 +100,13 @@ class Frame:
             if name in program:
                 host._texture(raster.WHITE, False).use(location=unit)
                 program[name].value = unit
-        vertices, indices = mesh(MESH)
+        # Vertices at the pixel centers of a small picture and beyond, and two triangles between four.
+        width = MESH + 2 * points.MARGIN
+        corner = np.arange(width * width).reshape(width, width)[:-1, :-1].ravel()
+        indices = (corner[:, None] + [0, 1, width, width, 1, width + 1]).astype("u4")
         buffers = [
             (context.buffer(values), f"{values.shape[1]}f", name)
-            for name, values in vertices.items()
+            for name, values in points.vertices(MESH, "sphere").items()
             if name in program
         ]
         self._mesh = context.vertex_array(program, buffers, context.buffer(indices))
@@ -133,14 +130,6 @@ class Frame:
         return pixels.reshape(height, width, 3)[::-1]
 
 
-def mesh(size):
-    """Vertices at the pixel centers of a small picture and beyond, and triangles between them."""
-    width = size + 2 * points.MARGIN
-    corner = np.arange(width * width).reshape(width, width)[:-1, :-1].ravel()
-    square = corner[:, None] + [0, 1, width, width, 1, width + 1]
-    return points.vertices(size, "sphere"), square.astype("u4")
-
-
 @dataclass(frozen=True)
 class Run:
     """One material in one process: the device, and by library characters, seconds of compilation and of a frame."""
@@ -149,12 +138,8 @@ class Run:
     lengths: Mapping[str, int]
     compilation: Mapping[str, float]
     frame: Mapping[str, float]
-    checks: tuple[Check, ...]
-
-
-def _start_compiler(host):
-    """Draw another material first, or the first compilation is that of a driver that starts."""
-    Frame(host, shader(host, "oren_nayar", "stock"), FIRST).draw()
+    infinite: float  # number of pixels that are not
+    apart: float  # largest difference of the libraries
 
 
 def run(node, size, libraries):
@@ -162,23 +147,30 @@ def run(node, size, libraries):
     host = gl.Host()
     device = host.identity().device
     clock = clock_of(device)
-    shaders = {library: shader(host, node, library) for library in libraries}
+    first, *shaders = (
+        host.compile(document_text(NODES[name]), library=library)[0]
+        for name, library in [("oren_nayar", "stock"), *((node, each) for each in libraries)]
+    )
     with host._context:  # which each verb of a host makes current, and frames do without
-        _start_compiler(host)
+        # Draw another material, or the first compilation is that of a driver that starts.
+        Frame(host, first, FIRST).draw()
         frames, compilation = {}, {}
-        for library, generated in shaders.items():
+        for library, generated in zip(libraries, shaders, strict=True):
             start = clock()
             frames[library] = Frame(host, generated, FIRST)
             frames[library].draw()
             compilation[library] = clock() - start
             frames[library].resize(size)
-        rivals = {library: frame.draw for library, frame in frames.items()}
-        drawing = interleave(rivals, FRAMES, clock)
-        checks = tuple(_checks(node, frames, size))
+        drawing = interleave({name: frame.draw for name, frame in frames.items()}, FRAMES, clock)
+        facing = sphere(size).normal[..., 2] > FACING
+        ours, stock = (frames[library].image()[facing] for library in LIBRARIES)
     host.close()
-    lengths = {library: len(each.stages["pixel"]) for library, each in shaders.items()}
-    seconds = {library: statistics.median(each) for library, each in drawing.items()}
-    return Run(device, lengths, compilation, seconds, checks)
+    lengths = {
+        library: len(each.stages["pixel"]) for library, each in zip(libraries, shaders, strict=True)
+    }
+    frame = {library: float(np.median(seconds)) for library, seconds in drawing.items()}
+    infinite, apart = (~np.isfinite(ours)).sum(), np.abs(ours - stock).max()
+    return Run(device, lengths, compilation, frame, float(infinite), float(apart))
 
 
 def measure(
@@ -186,51 +178,38 @@ def measure(
 ):
     """The `Group` of materials, each in so many processes; `keep` is handed it after each, as far as it is."""
     group = Group("materials", "Materials")
+    turns = [LIBRARIES[:: -1 if turn % 2 else 1] for turn in range(processes)]
     with ProcessPoolExecutor(1, get_context("spawn"), max_tasks_per_child=1) as pool:
         for node in nodes:
-            turns = [LIBRARIES[:: -1 if turn % 2 else 1] for turn in range(processes)]
             runs = list(pool.map(partial(run, node, size), turns))
+            figures = list(group.figures)
+            for kind, attribute, unit, factor, goal in (
+                ("frame", "frame", "ms", 1e3, TIMES[node]),
+                ("compilation and first frame", "compilation", "ms", 1e3, TIMES[node]),
+                ("source", "lengths", "characters", 1, TEXTS.get(node)),
+            ):
+                own, stock = (
+                    np.array([getattr(each, attribute)[library] for each in runs])
+                    for library in LIBRARIES
+                )
+                figures += [
+                    figure(f"{kind}, {node}, eonlib", unit, factor * own),
+                    figure(f"{kind}, {node}, eonlib / stock", "x", own / stock, goal),
+                ]
+            # A NaN is the largest error.
+            infinite, apart = (
+                float(np.max([getattr(each, name) for each in runs]))
+                for name in ("infinite", "apart")
+            )
+            checks = [Check(f"{node}, pixels that are not finite", infinite, 0.0)]
+            if node in SAME:
+                checks.append(Check(f"{node}, eonlib - stock", apart, SAME[node]))
             group = replace(
                 group,
                 title=f"Materials on {runs[0].device}, {size} x {size}",
-                figures=group.figures + _figures(node, runs),
-                checks=group.checks + tuple(_largest(runs)),
+                figures=tuple(figures),
+                checks=(*group.checks, *checks),
             )
             if keep:
                 keep(group)
     return group
-
-
-COMPILATION = "compilation and first frame"
-
-
-def _figures(node, runs):
-    """Figures of one material, a value for each process."""
-    frame, compilation, length = (
-        {library: [getattr(each, kind)[library] for each in runs] for library in LIBRARIES}
-        for kind in ("frame", "compilation", "lengths")
-    )
-    return (
-        scaled(f"frame, {node}, eonlib", "ms", frame["eonlib"], 1e3),
-        ratio(f"frame, {node}, eonlib / stock", *frame.values(), TIMES[node]),
-        scaled(f"{COMPILATION}, {node}, eonlib", "ms", compilation["eonlib"], 1e3),
-        ratio(f"{COMPILATION}, {node}, eonlib / stock", *compilation.values(), TIMES[node]),
-        figure(f"source, {node}, eonlib", "characters", length["eonlib"]),
-        ratio(f"source, {node}, eonlib / stock", *length.values(), TEXTS.get(node)),
-    )
-
-
-def _largest(runs):
-    """The checks of one material, with the largest error of all processes."""
-    for checks in zip(*(each.checks for each in runs), strict=True):
-        yield replace(checks[0], error=float(np.max([each.error for each in checks])))
-
-
-def _checks(node, frames, size):
-    """That a material's pixels are finite and, where both libraries have its model, the same."""
-    facing = sphere(size).normal[..., 2] > FACING
-    ours, stock = (frames[library].image()[facing] for library in LIBRARIES)
-    yield Check(f"{node}, pixels that are not finite", float((~np.isfinite(ours)).sum()), 0.0)
-    if node in SAME:
-        difference = float(np.abs(ours - stock).max())
-        yield Check(f"{node}, eonlib - stock", difference, SAME[node])

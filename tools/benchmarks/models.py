@@ -1,63 +1,205 @@
 # SPDX-License-Identifier: Apache-2.0
-"""EON in NumPy over many pairs: mxeon's blocks against the printed formula as it is.
+"""The NumPy models on one thread: values a second beside Mitsuba's LLVM variant, and EON's time and memory per pair.
 
-Memory beyond arguments and result is the growth of the resident peak in a process of its own.
+Mitsuba computes in float32, the models in float64 with NumPy and in float32 with Dr.Jit. Mitsuba's
+`eon` is the plugin of `mxeon.mitsuba`; it has no lobe of Schlick's curve or of sheen alone, but `principled` has
+both in one. Times of values a second are processor time.
+
+EON over many pairs is timed in mxeon's blocks against the printed formula as it is. Memory beyond
+arguments and result is the growth of the resident peak in a process of its own.
 """
 
 import subprocess
 import sys
+import time
 from functools import partial
 
 import numpy as np
 
-from mxeon.models import eon_brdf, threads
-from tools.benchmarks.rounds import Check, Group, figure, interleave, ratio, scaled
+from mxeon.albedo import ggx_albedo_dir
+from mxeon.errors import NotRun, PackageError
+from mxeon.models import (
+    conductor_brdf,
+    dielectric_brdf,
+    eon_brdf,
+    fresnel_conductor_avg,
+    generalized_schlick_brdf,
+    threads,
+    unchecked,
+    zeltner_brdf,
+)
+from tools.benchmarks.rounds import (
+    Check,
+    Group,
+    figure,
+    interleave,
+    peak_memory,
+    reset_memory,
+    version_of,
+)
+
+VALUES = 1_000_000  # pairs of the values a second
+COLORS, R = np.array([0.2, 0.5, 0.8]), 0.7  # one material for all pairs
+GOLD = (0.183, 0.421, 1.373), (3.424, 2.346, 1.770)
+COMPENSATION = 1e-10  # of the table of E_ss
+PLUGIN = 3e-6  # of pi f cos in float32
+ONE, OWN = "one material", "a material each"
+LLVM, DRJIT = "Mitsuba, llvm", "arrays of Dr.Jit, llvm"
+SECONDS = {ONE: 0.5, OWN: 3.0}  # goals of a million pairs of microfacets
+BARE = "Schlick without compensation"  # which Mitsuba has not; its rival is Schlick
+# Models, and Mitsuba's nodes beside them.
+NODES = {
+    "EON": {"type": "eon", "reflectance": {"type": "rgb", "value": [0.2, 0.5, 0.8]}, "roughness": 0.7},
+    "Schlick": {"type": "principled", "roughness": 0.55, "metallic": 1.0},
+    "sheen": {"type": "principled", "roughness": 0.7, "sheen": 1.0},
+    "conductor": {"type": "roughconductor", "distribution": "ggx", "alpha": 0.3, "material": "Au"},
+    "dielectric": {"type": "roughdielectric", "distribution": "ggx", "alpha": 0.3},
+}  # fmt: skip
+RIVALED = ("EON", "Schlick", "sheen")  # whose goal is to be as fast
+GOALS = {(name, ONE) for name in RIVALED} | {(name, DRJIT) for name in (*RIVALED, BARE)}
 
 C1 = 0.5 - 2.0 / (3.0 * np.pi)
 C2 = 2.0 / 3.0 - 28.0 / (15.0 * np.pi)
-
 # The printed forms lose digits where they cancel, as 1e-16 / mu: compared above this cosine.
 COMPARED = 1e-3
 TOLERANCE = 1e-11
 PAIRS = (10_000, 100_000, 1_000_000, 10_000_000, 30_000_000)
-GOALS = {1_000_000: 3.0, 10_000_000: 3.5}
+FASTER = {1_000_000: 3.0, 10_000_000: 3.5}  # goals of two threads, by the number of pairs
 
 
-def naive_fon_albedo(mu, r):
-    """[Portsmouth2025], Eqs. (8), (12), (13), as printed."""
-    S = np.sqrt(1.0 - mu**2)
-    g = S * (np.arccos(mu) - S * mu) + 2.0 / 3.0 * (S / mu * (1.0 - S**3) - S)
-    return (1.0 + r / np.pi * g) / (1.0 + C1 * r)
+def arguments(count, material):
+    """Random pairs with cosines above `COMPARED`, with one color and roughness for all, or one per pair."""
+    rng, pair = np.random.default_rng(1), []
+    for _ in range(2):
+        mu, phi = rng.uniform(COMPARED, 1.0, count), rng.uniform(0.0, 2.0 * np.pi, count)
+        S = np.sqrt(1.0 - mu * mu)
+        pair.append(np.stack([S * np.cos(phi), S * np.sin(phi), mu], axis=-1))
+    if material == ONE:
+        return *pair, COLORS, np.float64(R)
+    return *pair, rng.random((count, 3)), rng.random(count)
+
+
+# --- values a second ------------------------------------------------------------------------------
+
+
+def models(wo, wi, material):
+    """Each model over these pairs, with one material for all or one each."""
+    rng, count = np.random.default_rng(2), len(wo)
+    colors, alpha, r = COLORS, np.array([0.3, 0.3]), R
+    (n, k), ior = GOLD, 1.5
+    if material == OWN:
+        colors, alpha, r = rng.random((count, 3)), rng.random((count, 2)), rng.random(count)
+        n, k = rng.uniform(0.1, 3.0, (count, 3)), rng.uniform(0.5, 6.0, (count, 3))
+        ior = rng.uniform(1.0, 3.0, count)
+    return {
+        "EON": partial(eon_brdf, wo, wi, colors, r),
+        "Schlick": partial(generalized_schlick_brdf, wo, wi, colors, 1.0, 1.0, alpha, 5.0),
+        "sheen": partial(zeltner_brdf, wo, wi, colors, r),
+        "conductor": partial(conductor_brdf, wo, wi, alpha, n, k),
+        "dielectric": partial(dielectric_brdf, wo, wi, colors, alpha, ior),
+    }
+
+
+def compiled(wo, wi):
+    """Mitsuba's nodes over these pairs in one call, and the models over the same arrays, on one thread."""
+    try:
+        import mitsuba as mi
+    except ImportError:
+        raise PackageError("mitsuba is not installed: pip install '.[mitsuba]'") from None
+    from mxeon.mitsuba import register
+
+    mi.set_variant("llvm_ad_rgb")
+    register()
+    import drjit as dr
+
+    dr.set_thread_count(1)
+    view, light = (mi.Vector3f(np.ascontiguousarray(w.T)) for w in (wo, wi))
+    si, context = dr.zeros(mi.SurfaceInteraction3f, len(wo)), mi.BSDFContext()
+    si.wi, si.t = view, 1.0
+    dr.eval(view, light, si)
+
+    def evaluated(way):
+        """Values in memory."""
+        with unchecked():
+            found = way()
+        dr.eval(found)
+        dr.sync_thread()
+        return found
+
+    ways = {
+        (name, LLVM): partial(mi.load_dict(node).eval, context, si, light)
+        for name, node in NODES.items()
+    }
+    colors, alpha = COLORS.tolist(), [0.3, 0.3]
+    schlick = partial(generalized_schlick_brdf, view, light, colors, 1.0, 1.0, alpha, 5.0)
+    ways |= {
+        ("EON", DRJIT): partial(eon_brdf, view, light, colors, R),
+        ("Schlick", DRJIT): schlick,
+        (BARE, DRJIT): partial(schlick, compensate=False),
+        ("sheen", DRJIT): partial(zeltner_brdf, view, light, colors, R),
+        ("dielectric", DRJIT): partial(dielectric_brdf, view, light, colors, alpha, 1.5),
+    }
+    return {name: partial(evaluated, way) for name, way in ways.items()}
+
+
+def values(rounds, pairs):
+    """Figures of values a second, and of the seconds of a million pairs; and checks."""
+    wo, wi = arguments(pairs, ONE)[:2]
+    rivals = {
+        (name, each): way for each in (ONE, OWN) for name, way in models(wo, wi, each).items()
+    }
+    try:
+        rivals |= compiled(wo, wi)
+    except (NotRun, PackageError) as reason:
+        print(f"benchmarks: Mitsuba left out: {reason}", file=sys.stderr)
+    seconds = interleave(rivals, rounds, time.process_time)
+    figures = []
+    for (name, way), times in seconds.items():
+        node = f" ({NODES[name]['type']}, {version_of('mitsuba')})" if way == LLVM else ""
+        figures.append(figure(f"{name}, {way}{node}", "million values/s", 1e-6 * pairs / times))
+        theirs = seconds.get(("Schlick" if name == BARE else name, LLVM))
+        if theirs is not None and way in (ONE, DRJIT):
+            goal = 1.0 if (name, way) in GOALS else None
+            figures.append(figure(f"{name}, {way} / {LLVM}", "x", theirs / times, goal, True))
+    for name in ("conductor", "dielectric"):
+        for way, goal in SECONDS.items():
+            million = 1e6 / pairs * seconds[name, way]
+            figures.append(figure(f"{name}, {way}, a million pairs", "s", million, goal))
+    # The compensation is that of the quadrature, and the plugin's values are EON's.
+    few = slice(0, 500)
+    E = ggx_albedo_dir(wo[few, 2], 0.3)[:, np.newaxis]
+    factor = 1.0 + fresnel_conductor_avg(*GOLD) * (1.0 - E) / E
+    bare = conductor_brdf(wo[few], wi[few], 0.3, *GOLD, compensate=False)
+    value = conductor_brdf(wo[few], wi[few], 0.3, *GOLD)
+    error = float(np.abs(value / (bare * factor) - 1.0).max())
+    checks = [Check("conductor", error, COMPENSATION)]
+    exact = np.pi * eon_brdf(wo, wi, COLORS, R) * wi[:, 2:]
+    for way, cosine in ((LLVM, 1.0), (DRJIT, wi[:, 2:])):
+        if ("EON", way) in rivals:
+            theirs = np.pi * np.array(rivals["EON", way]()).T * cosine
+            checks.append(Check(f"EON, {way}", float(np.abs(theirs - exact).max()), PLUGIN))
+    return figures, checks
+
+
+# --- EON per pair ---------------------------------------------------------------------------------
 
 
 def naive_eon_brdf(wo, wi, rho, r):
-    """[Portsmouth2025], Eqs. (10), (11), (16), (19), as printed."""
+    """[Portsmouth2025], Eqs. (8), (10) to (13), (16), (19), as printed."""
     mu_o, mu_i = wo[..., 2], wi[..., 2]
     s = np.sum(wo * wi, axis=-1) - mu_o * mu_i
     quotient = np.where(s > 0.0, s / np.maximum(mu_o, mu_i), s)
     a = 1.0 / (1.0 + C1 * r)
     single = rho / np.pi * (a + r * a * quotient)[..., np.newaxis]
     average = np.asarray((1.0 + C2 * r) * a)
-    lost = (1.0 - naive_fon_albedo(mu_o, r)) * (1.0 - naive_fon_albedo(mu_i, r)) / (1.0 - average)
+    lost = 1.0 / (1.0 - average)
+    for mu in (mu_o, mu_i):
+        S = np.sqrt(1.0 - mu**2)
+        g = S * (np.arccos(mu) - S * mu) + 2.0 / 3.0 * (S / mu * (1.0 - S**3) - S)
+        lost = lost * (1.0 - (1.0 + r / np.pi * g) / (1.0 + C1 * r))
     average = average[..., np.newaxis]
     tint = rho**2 * average / (1.0 - rho * (1.0 - average))
     return single + tint / np.pi * lost[..., np.newaxis]
-
-
-def directions(count, rng):
-    """Unit vectors with uniform cosines above `COMPARED`."""
-    mu, phi = rng.uniform(COMPARED, 1.0, count), rng.uniform(0.0, 2.0 * np.pi, count)
-    S = np.sqrt(1.0 - mu * mu)
-    return np.stack([S * np.cos(phi), S * np.sin(phi), mu], axis=-1)
-
-
-def arguments(count, material):
-    """Random pairs with one material for all, or one per pair."""
-    rng = np.random.default_rng(1)
-    wo, wi = directions(count, rng), directions(count, rng)
-    if material == "one":
-        return wo, wi, np.array([0.2, 0.5, 0.8]), np.float64(0.7)
-    return wo, wi, rng.random((count, 3)), rng.random(count)
 
 
 def on_threads(count, *arguments):
@@ -66,72 +208,51 @@ def on_threads(count, *arguments):
         return eon_brdf(*arguments)
 
 
-def rivals(pairs):
-    """Every way to the same values."""
-    ways = {"naive": partial(naive_eon_brdf, *pairs)}
-    for count in (1, 2):
-        ways[f"blocks, {count} thread{'s'[: count - 1]}"] = partial(on_threads, count, *pairs)
-    return ways
+WAYS = {
+    "naive": naive_eon_brdf,
+    "blocks, 1 thread": partial(on_threads, 1),
+    "blocks, 2 threads": partial(on_threads, 2),
+}
 
 
-def compare(count, material, rounds):
+def per_pair(rounds, count, material):
     """Figures and checks of one number of pairs."""
-    ways = rivals(arguments(count, material))
+    ways = {name: partial(way, *arguments(count, material)) for name, way in WAYS.items()}
+    label = f"{count:.0e} pairs, {material}"
     exact = ways["naive"]()
-    checks, label = [], f"{count:.0e} pairs, {material} material"
-    for name, way in ways.items():
-        error = np.pi * float(np.abs(way() - exact).max())
-        checks.append(Check(f"{name}, {label}", error, TOLERANCE))
-    seconds = interleave(ways, rounds)
-    times = {n: scaled(f"{n}, {label}", "ns", s, 1e9 / count) for n, s in seconds.items()}
-    goals = {"blocks, 2 threads": GOALS.get(count)}
-    ratios = [
-        ratio(f"naive / {n}, {label}", seconds["naive"], s, goals.get(n), at_least=True)
-        for n, s in seconds.items()
-        if n != "naive"
+    checks = [
+        Check(f"{name}, {label}", np.pi * float(np.abs(way() - exact).max()), TOLERANCE)
+        for name, way in ways.items()
     ]
-    return [*times.values(), *ratios], checks
-
-
-def extra_memory(way, count):
-    """MiB by which the resident peak of a new process grows beyond arguments and result."""
-    code = f"from tools.benchmarks.models import peak; print(peak({way!r}, {count}))"
-    done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
-    return float(done.stdout)
+    seconds = interleave(ways, rounds)
+    figures = [figure(f"{n}, {label}", "ns", 1e9 / count * s) for n, s in seconds.items()]
+    naive = seconds.pop("naive")
+    for name, times in seconds.items():
+        goal = FASTER.get(count) if name == "blocks, 2 threads" else None
+        figures.append(figure(f"naive / {name}, {label}", "x", naive / times, goal, True))
+    return figures, checks
 
 
 def peak(way, count):
     """Growth of this process's resident peak in one call, without the result; MiB."""
-    rivals(arguments(8, "one"))[way]()
-    pairs = arguments(count, "one")
+    WAYS[way](*arguments(8, ONE))
+    pairs = arguments(count, ONE)
     before = reset_memory()
-    result = rivals(pairs)[way]()
+    result = WAYS[way](*pairs)
     return max(0.0, peak_memory() - before - result.nbytes / 2**20)
 
 
-def reset_memory():
-    """Resident MiB after the peak is set back to it."""
-    with open("/proc/self/clear_refs", "w", encoding="ascii") as file:
-        file.write("5")
-    return peak_memory()
-
-
-def peak_memory():
-    """Peak of this process's resident memory, MiB."""
-    with open("/proc/self/status", encoding="ascii") as file:
-        line = next(line for line in file if line.startswith("VmHWM"))
-    return int(line.split()[1]) / 1024.0
-
-
-def measure(rounds=7, pairs=PAIRS):
-    """The `Group` of both kinds of material over the numbers of pairs."""
-    figures, checks = [], []
-    for material in ("one", "own"):
+def measure(rounds=7, pairs=PAIRS, values_of=VALUES):
+    """The `Group` of values a second, and of EON over the numbers of pairs."""
+    figures, checks = values(min(rounds, 3), values_of)
+    for material in (ONE, OWN):
         for count in pairs:
-            found, right = compare(count, material, rounds if count < 1e7 else 3)
+            found, right = per_pair(rounds if count < 1e7 else 3, count, material)
             figures, checks = figures + found, checks + right
-    for way in rivals(arguments(8, "one")):
+    for way in WAYS:
         for count in pairs:
-            memory = extra_memory(way, count)
+            code = f"from tools.benchmarks.models import peak; print(peak({way!r}, {count}))"
+            done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
+            memory = float(done.stdout)
             figures.append(figure(f"extra memory, {way}, {count:.0e} pairs", "MiB", [memory]))
-    return Group("models", "NumPy reference, per pair", tuple(figures), tuple(checks))
+    return Group("models", "NumPy models", tuple(figures), tuple(checks))

@@ -14,11 +14,16 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from mxeon.errors import NotRun
-from tools.benchmarks.instructions import COMPILER, sources
-from tools.benchmarks.materials import BARE, DIFFUSE, OTHERS
-from tools.benchmarks.rounds import Group, figure, ratio
+import numpy as np
 
+from mxeon.errors import NotRun
+from mxeon.shaders.generation import generate
+from mxeon.shaders.nodes import document_text
+from tools.benchmarks.materials import BARE, DIFFUSE, LIBRARIES, NODES, OTHERS
+from tools.benchmarks.rounds import Group, figure
+
+COMPILER = ("glslangValidator", "-V", "--quiet", "--stdin", "-S")
+HEADER = 5  # words before the first SPIR-V instruction, whose high half counts its words
 CHIP = "navi21"
 PROGRAM = Path(__file__).with_name("pipeline_statistics.c")
 DRIVERS = Path("/usr/share/vulkan/icd.d")
@@ -40,56 +45,65 @@ KINDS = {"sampler2D": "c", "texture2D": "t", "sampler": "s", "": "u"}
 ATTRIBUTE = re.compile(r"^layout \(location = \d+\) in", re.MULTILINE)
 
 
-def driver():
-    """File that names RADV to Vulkan's loader; NotRun if that, a compiler or a header is missing."""
-    file = next(DRIVERS.glob("radeon_icd*.json"), None)
-    tools = all(map(shutil.which, ("gcc", COMPILER[0])))
-    if file is None or not tools or not Path("/usr/include/vulkan/vulkan.h").exists():
-        raise NotRun(f"registers: no RADV, compiler or headers; on Debian: {PACKAGES}")
-    return file
+def sources(node):
+    """Stages of a material in Vulkan's GLSL, by library."""
+    text = document_text(NODES[node])
+    return {
+        library: generate(text, "vulkan", library=library, lights=True)[0].stages
+        for library in LIBRARIES
+    }
 
 
-def one_light(stages):
-    """Stages of a material with its first light alone."""
+def compiled(source, kind, file):
+    """Compile a stage to a file of SPIR-V; its number of instructions. NotRun without the compiler."""
+    if not shutil.which(COMPILER[0]):
+        raise NotRun(f"registers: no program {COMPILER[0]!r}; on Debian: glslang-tools")
+    command = [*COMPILER, kind, "-o", file]
+    subprocess.run(command, input=source, text=True, check=True, capture_output=True)
+    words = np.fromfile(file, "<u4")
+    number, place = 0, HEADER
+    while place < len(words):
+        place += int(words[place]) >> 16
+        number += 1
+    return number
+
+
+def statistics(stages, program, driver):
+    """The driver's numbers of a material's fragment shader with its first light alone, by name."""
     before, loop, after = stages["pixel"].partition(LIGHTS)
     assert loop and LIGHTS not in after
-    return {**stages, "pixel": before + LIGHT + after}
-
-
-def statistics(stages, folder):
-    """The driver's numbers of a material's fragment shader for one light, by name."""
-    stages = one_light(stages)
-    program = folder / "statistics"
-    if not program.exists():
-        subprocess.run(["gcc", "-O1", PROGRAM, "-o", program, "-lvulkan"], check=True)
-    files = []
-    for stage, kind in (("vertex", "vert"), ("pixel", "frag")):
-        files.append(folder / f"{kind}.spv")
-        command = [*COMPILER, kind, "-o", files[-1]]
-        subprocess.run(command, input=stages[stage], text=True, check=True, capture_output=True)
+    stages = {**stages, "pixel": before + LIGHT + after}
+    files = [program.with_name("vert.spv"), program.with_name("frag.spv")]
+    for stage, file in zip(("vertex", "pixel"), files, strict=True):
+        compiled(stages[stage], file.stem, file)
     bindings = {
         number: KINDS[kind] for text in stages.values() for number, kind in BINDING.findall(text)
     }
     words = [str(len(ATTRIBUTE.findall(stages["vertex"]))), *map(":".join, bindings.items())]
-    environment = os.environ | {"RADV_FORCE_FAMILY": CHIP, "VK_ICD_FILENAMES": str(driver())}
-    command = [program, *files, *words]
-    run = subprocess.run(command, env=environment, text=True, capture_output=True, check=True)
-    return {
-        name: int(number) for name, number in (line.split("\t") for line in run.stdout.splitlines())
-    }
+    environment = os.environ | {"RADV_FORCE_FAMILY": CHIP, "VK_ICD_FILENAMES": str(driver)}
+    run = subprocess.run(
+        [program, *files, *words], env=environment, text=True, capture_output=True, check=True
+    )
+    rows = (line.split("\t") for line in run.stdout.splitlines())
+    return {name: int(number) for name, number in rows}
 
 
 def measure(nodes=(*DIFFUSE, *BARE, *OTHERS)):
-    """The `Group` of nodes."""
-    driver()
+    """The `Group` of nodes; NotRun if RADV, a compiler or a header is missing."""
+    driver = next(DRIVERS.glob("radeon_icd*.json"), None)
+    tools = all(map(shutil.which, ("gcc", COMPILER[0])))
+    if driver is None or not tools or not Path("/usr/include/vulkan/vulkan.h").exists():
+        raise NotRun(f"registers: no RADV, compiler or headers; on Debian: {PACKAGES}")
     figures = []
     with tempfile.TemporaryDirectory() as folder:
+        program = Path(folder, "statistics")
+        subprocess.run(["gcc", "-O1", PROGRAM, "-o", program, "-lvulkan"], check=True)
         for node in nodes:
-            own, stock = (statistics(each, Path(folder)) for each in sources(node).values())
+            own, stock = (statistics(each, program, driver) for each in sources(node).values())
             for name, unit in STATISTICS.items():
                 figures += [
                     figure(f"{node}, {unit}, eonlib", unit, [own[name]]),
-                    ratio(f"{node}, {unit}, eonlib / stock", [own[name]], [stock[name]]),
+                    figure(f"{node}, {unit}, eonlib / stock", "x", [own[name] / stock[name]]),
                 ]
     title = f"Fragment shaders as Mesa's RADV compiles them for {CHIP}, without the hardware"
     return Group("registers", title, tuple(figures))

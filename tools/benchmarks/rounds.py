@@ -1,14 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Interleaved rounds, their medians and ratios, and what one benchmark found.
+"""What all benchmarks share: rounds in which rivals take turns, figures with goals, tables, and their record.
 
 Rivals take turns within a round, so that what else the machine does falls on all of them alike; a
 ratio is the median of the ratios of the rounds. Benchmark libraries time one function after the
 other, which makes ratios of what drifts between them; hence these few lines.
 """
 
-import statistics
+import json
+import os
+import platform
 import time
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+
+import moderngl
+import numpy as np
+
+PACKAGES = ("mxeon", "MaterialX", "numpy", "moderngl", "mitsuba")
 
 
 @dataclass(frozen=True)
@@ -56,7 +65,7 @@ class Group:
 
 
 def interleave(rivals, rounds, clock=time.perf_counter):
-    """Seconds of each call of each rival, one call per round, in turn; a first round is dropped.
+    """Seconds of each rival as an array, one call per round, in turn; a first round is dropped.
 
     `time.process_time` as the clock leaves out what else the machine does, and adds up the cores.
     """
@@ -66,7 +75,7 @@ def interleave(rivals, rounds, clock=time.perf_counter):
             start = clock()
             rival()
             found[name].append(clock() - start)
-    return {name: seconds[1:] for name, seconds in found.items()}
+    return {name: np.array(seconds[1:]) for name, seconds in found.items()}
 
 
 def clock_of(device):
@@ -82,23 +91,126 @@ def figure(name, unit, values, goal=None, at_least=False):
     >>> figure("value", "x", [3.0, 1.0, 2.0], goal=2.0).reached
     True
     """
-    low, median, high = (
-        statistics.quantiles(values, n=4, method="inclusive") if len(values) > 1 else values * 3
-    )
+    low, median, high = np.quantile(values, (0.25, 0.5, 0.75)).tolist()
     return Figure(name, unit, median, low, high, goal, at_least)
 
 
-def scaled(name, unit, values, factor):
-    """The `Figure` of values times a factor."""
-    return figure(name, unit, [factor * value for value in values])
+# --- memory and machine ---------------------------------------------------------------------------
 
 
-def ratio(name, values, others, goal=None, at_least=False):
-    """The `Figure` of the ratios of two rivals, round by round."""
-    pairs = zip(values, others, strict=True)
-    return figure(name, "x", [a / b for a, b in pairs], goal, at_least)
+def reset_memory():
+    """Resident MiB after the peak is set back to it."""
+    with open("/proc/self/clear_refs", "w", encoding="ascii") as file:
+        file.write("5")
+    return peak_memory()
 
 
-def less(values, others):
-    """Differences of two rivals, round by round."""
-    return [a - b for a, b in zip(values, others, strict=True)]
+def peak_memory():
+    """Peak of this process's resident memory, MiB."""
+    with open("/proc/self/status", encoding="ascii") as file:
+        line = next(line for line in file if line.startswith("VmHWM"))
+    return int(line.split()[1]) / 1024.0
+
+
+def version_of(package):
+    """Version of an installed package; "not installed" without it."""
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return "not installed"
+
+
+def machine():
+    """Hardware and versions that the figures depend on, by name."""
+    with open("/proc/cpuinfo", encoding="utf-8") as file:
+        names = [line.split(":")[1].strip() for line in file if line.startswith("model name")]
+    return {
+        "processor": names[0] if names else platform.machine(),
+        "cores": os.cpu_count(),
+        "load before": round(os.getloadavg()[0], 2),
+        "system": platform.platform(terse=True),
+        "Python": platform.python_version(),
+        "date": datetime.now(UTC).date().isoformat(),
+        **{name: version_of(name) for name in PACKAGES},
+    }
+
+
+LOAD = machine()["load before"]
+
+
+# --- record ---------------------------------------------------------------------------------------
+
+
+def write(file, group, kind="", start=None):
+    """Add a group to the file; `start` is when its measurement began, by the monotonic clock."""
+    try:
+        context = moderngl.create_standalone_context(require=430, backend="egl")
+        renderer = context.info["GL_RENDERER"]  # for llvmpipe with the width of its vectors
+        context.release()
+    except Exception:  # moderngl and glcontext raise bare Exception
+        renderer = "none"
+    setting = machine() | {"OpenGL": renderer, "load before": LOAD}
+    setting["load after"] = round(os.getloadavg()[0], 2)
+    setting |= {} if start is None else {"minutes": round((time.monotonic() - start) / 60.0, 1)}
+    setting |= {"kind": kind} if kind else {}
+    suffix = f"; {kind}" if kind else ""
+    kept = json.loads(file.read_text(encoding="utf-8"))["groups"] if file.is_file() else {}
+    kept[group.name + suffix] = {
+        **asdict(group),
+        "title": group.title + suffix,
+        "machine": setting,
+    }
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(json.dumps({"groups": kept}, indent=1) + "\n", encoding="utf-8")
+
+
+def read(file):
+    """Pairs of a group and the machine it was measured on."""
+    return [
+        (
+            Group(
+                each["name"],
+                each["title"],
+                tuple(Figure(**figure) for figure in each["figures"]),
+                tuple(Check(**check) for check in each["checks"]),
+            ),
+            each["machine"],
+        )
+        for each in json.loads(file.read_text(encoding="utf-8"))["groups"].values()
+    ]
+
+
+def page(file):
+    """How many goals each group reaches and which it misses, and the tables of all groups, in Markdown."""
+    goals = ["## Goals", "", "| group | reached | missed |", "|---|---|---|"]
+    tables = []
+    for group, setting in read(file):
+        aims = [each for each in group.figures if each.goal is not None]
+        missed = [
+            f"{each.name} ({each.median:.3g} {each.unit}, goal {each.goal:g})"
+            for each in aims
+            if not each.reached
+        ]
+        if aims:
+            count = f"{len(aims) - len(missed)} of {len(aims)}"
+            goals.append(f"| {group.title} | {count} | {'; '.join(missed)} |")
+        words = ", ".join(f"{name} {value}" for name, value in setting.items())
+        tables += [table(group), f"Measured on: {words}."]
+    return "\n\n".join(["# Benchmarks", "\n".join(goals), *tables]) + "\n"
+
+
+def table(group):
+    """The figures of a group and its checks, in Markdown."""
+    lines = [f"## {group.title}", "", "| | median | quartiles | goal | |", "|---|---|---|---|---|"]
+    for each in group.figures:
+        sign = "≥" if each.at_least else "≤"
+        goal = "" if each.goal is None else f"{sign} {each.goal:g}"
+        verdict = {None: "", True: "reached", False: "**missed**"}[each.reached]
+        cells = f"{each.median:.3g} {each.unit} | {each.low:.3g} – {each.high:.3g} | {goal}"
+        lines.append(f"| {each.name} | {cells} | {verdict} |")
+    if group.checks:
+        right = sum(each.passed for each in group.checks)
+        lines += ["", f"Values: {right} of {len(group.checks)} within tolerance."]
+        lines += ["", "| values of | largest error | tolerance |", "|---|---|---|"]
+        lines += [f"| {c.name} | {c.error:.2g} | {c.tolerance:.2g} |" for c in group.checks]
+    return "\n".join(lines)

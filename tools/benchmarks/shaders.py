@@ -21,7 +21,7 @@ from mxeon.conformance.specs import diffuse
 from mxeon.models.diffuse.brdf import eon_brdf
 from mxeon.models.sampling import SAMPLERS
 from mxeon.shaders import functions as twins
-from tools.benchmarks.rounds import Check, Group, clock_of, interleave, less, ratio, scaled
+from tools.benchmarks.rounds import Check, Group, clock_of, figure, interleave
 
 PRINTED = Path(__file__).with_name("printed.glsl")
 CALLS, INVOCATIONS = 256, 2**14
@@ -206,9 +206,8 @@ def measure(rounds=21, invocations=INVOCATIONS, calls=CALLS):
     runs = {n: partial(device.run, k, calls) for n, k in (bases | kernels).items()}
     renderer = device.context.info["GL_RENDERER"]
     seconds = interleave(runs, rounds, clock_of(renderer))
-    net = {name: less(seconds[name], seconds[each.base]) for name, each in RIVALS.items()}
+    net = {name: seconds[name] - seconds[each.base] for name, each in RIVALS.items()}
     factor = 1e9 / (invocations * calls)
-    figures = [scaled(name, "ns", values, factor) for name, values in net.items()]
-    figures += [ratio(f"{a} / {b}", net[a], net[b], goal) for a, b, goal in GOALS]
-    title = f"Shaders on {renderer}, ns per call"
-    return Group("shaders", title, tuple(figures), checks)
+    figures = [figure(name, "ns", factor * values) for name, values in net.items()]
+    figures += [figure(f"{a} / {b}", "x", net[a] / net[b], goal) for a, b, goal in GOALS]
+    return Group("shaders", f"Shaders on {renderer}, ns per call", tuple(figures), checks)

@@ -14,27 +14,33 @@ import MaterialX.PyMaterialXGenShader as mx_gen
 from mxeon.shaders.generation import GENERATORS, TARGETS, generate
 from mxeon.shaders.library import examples_folder, load_library
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
-from tools.benchmarks.models import peak_memory, reset_memory
-from tools.benchmarks.rounds import Check, Group, figure, interleave, less, ratio
+from tools.benchmarks.rounds import (
+    Check,
+    Group,
+    figure,
+    interleave,
+    peak_memory,
+    reset_memory,
+)
 
+STAGES = "pixel", "vertex"
 DOCUMENTS = (1, 10, 100, 1000)
-
-
-def _process(*arguments):
-    subprocess.run([sys.executable, *arguments], check=True, capture_output=True)
 
 
 def starting(rounds):
     """Figures of imports and of the command's help, each in a process of its own."""
-    codes = {"numpy": "import numpy", "mxeon": "import numpy, mxeon, mxeon.models.table"}
-    rivals = {name: partial(_process, "-c", code) for name, code in codes.items()}
-    rivals["help"] = partial(_process, "-c", "from mxeon.cli import main; main(['--help'])")
+    codes = {
+        "numpy": "import numpy",
+        "mxeon": "import numpy, mxeon, mxeon.models.table",
+        "help": "from mxeon.cli import main; main(['--help'])",
+    }
+    start = partial(subprocess.run, check=True, capture_output=True)
+    rivals = {name: partial(start, [sys.executable, "-c", code]) for name, code in codes.items()}
     seconds = interleave(rivals, rounds)
-    over = [1e3 * each for each in less(seconds["mxeon"], seconds["numpy"])]
-    helped = [1e3 * each for each in seconds["help"]]
+    over = 1e3 * (seconds["mxeon"] - seconds["numpy"])
     return [
         figure("import mxeon and its models, beyond import numpy", "ms", over, goal=30.0),
-        figure("mxeon --help", "ms", helped, goal=300.0),
+        figure("mxeon --help", "ms", 1e3 * seconds["help"], goal=300.0),
     ]
 
 
@@ -64,16 +70,6 @@ def raw(library, text, target):
     return [generator.generate(each.getName(), each, context) for each in found]
 
 
-def same_text(library, text, target):
-    """Whether `generate` and `raw` give one text; 0 or 1."""
-    ours = [dict(each.stages) for each in generate(text, target)]
-    theirs = [
-        {stage: each.getSourceCode(stage) for stage in ("pixel", "vertex") if each.hasStage(stage)}
-        for each in raw(library, text, target)
-    ]
-    return float(ours != theirs)
-
-
 @contextmanager
 def unwarned():
     """Without what MaterialX writes to the standard error of the process itself."""
@@ -99,10 +95,14 @@ def generating(rounds, documents=100):
             "ours": lambda target=target: [generate(text, target) for text in texts],
             "raw": lambda target=target: [raw(library, text, target) for text in texts],
         }
-        checks.append(Check(f"same text, {target}", same_text(library, texts[0], target), 0.0))
+        same = [dict(each.stages) for each in generate(texts[0], target)] == [
+            {stage: each.getSourceCode(stage) for stage in STAGES if each.hasStage(stage)}
+            for each in raw(library, texts[0], target)
+        ]
+        checks.append(Check(f"same text, {target}", float(not same), 0.0))
         seconds = interleave(rivals, rounds)
         name = f"generate / raw MaterialX calls, {target}, {documents} documents"
-        figures.append(ratio(name, seconds["ours"], seconds["raw"], goal=1.2))
+        figures.append(figure(name, "x", seconds["ours"] / seconds["raw"], goal=1.2))
     return figures, checks
 
 

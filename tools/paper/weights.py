@@ -2,14 +2,16 @@
 """Figures 11 and 13 of [Portsmouth2025]: variance, largest value and mean of the throughput weight.
 
 The weight of a sample of EON at unit reflectance is f cos(theta_i) / p, and 0 below the horizon.
+`moments` has its statistics by quadrature; the figures draw samples.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mxeon.models.core.quadrature import hemisphere_nodes
 from mxeon.models.diffuse.brdf import eon_brdf
 from mxeon.models.sampling import SAMPLERS
 from tools.paper.curves import directions
@@ -27,25 +29,37 @@ STATISTICS = (
 EXACT_VARIANCE = 1.7e-10
 
 
-def weights(sampler: Any, theta_o: float, roughness: float, draws: int) -> NDArray[np.float64]:
-    """Throughput weights of `draws` samples at one angle in degrees."""
-    u = np.random.default_rng(int(4.0 * theta_o)).random((draws, 2))
-    wo = directions(theta_o, 0.0)
-    wi, pdf = sampler.sample(wo, u, roughness)
-    good = (wi[:, 2] > 0.0) & (pdf > 0.0)
-    weight = np.zeros(draws)
-    value = eon_brdf(wo, wi[good], 1.0, roughness)[:, 0]
-    weight[good] = value * wi[good, 2] / pdf[good]
-    return weight
+def moments(
+    name: str,
+    mu: float,
+    roughness: float,
+    light: Callable[[NDArray[np.float64]], NDArray[np.float64]] | None = None,
+    nodes: int = 96,
+) -> tuple[float, float, float]:
+    """Mean, variance and largest value of the weight times a light's radiance, by quadrature."""
+    wo, wi, projected = hemisphere_nodes(mu, nodes)
+    value, pdf = eon_brdf(wo, wi, 1.0, roughness)[:, 0], BY_NAME[name].pdf(wo, wi, roughness)
+    value = value if light is None else value * light(wi)
+    drawn, cosine = pdf > 0.0, wi[:, 2]
+    weight = value[drawn] * cosine[drawn] / pdf[drawn]
+    share = projected[drawn] * pdf[drawn] / cosine[drawn]
+    mean = float(weight @ share)
+    return mean, float((weight - mean) ** 2 @ share), float(weight.max())
 
 
 def statistics(
     sampler: Any, angles: NDArray[np.float64], roughness: float, draws: int
 ) -> NDArray[np.float64]:
-    """Variance, largest weight and mean weight over the angle, shape (3, angles)."""
+    """Variance, largest weight and mean weight of samples over the angle, shape (3, angles)."""
     rows = []
     for theta_o in angles:
-        weight = weights(sampler, theta_o, roughness, draws)
+        u = np.random.default_rng(int(4.0 * theta_o)).random((draws, 2))
+        wo = directions(theta_o, 0.0)
+        wi, pdf = sampler.sample(wo, u, roughness)
+        good = (wi[:, 2] > 0.0) & (pdf > 0.0)
+        weight = np.zeros(draws)
+        value = eon_brdf(wo, wi[good], 1.0, roughness)[:, 0]
+        weight[good] = value * wi[good, 2] / pdf[good]
         rows.append([function(weight) for _, function in STATISTICS])
     return np.transpose(rows)
 

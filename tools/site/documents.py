@@ -26,7 +26,7 @@ from mxeon.conformance.run.documents import (
     document_verdicts,
 )
 from mxeon.io.files import write_text
-from tools.benchmarks.record import machine
+from tools.benchmarks.rounds import machine
 
 TIMES = "times.json"  # beside a report
 COMMAND = ("check", "resources", "--path", ".", "--path", "resources", "--allowCode")

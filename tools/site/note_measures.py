@@ -21,11 +21,11 @@ from mxeon.models.microfacet.albedo import dielectric_albedo_dir
 from mxeon.models.microfacet.defects import fitted_albedo
 from mxeon.models.transmission.schlick import READINGS
 from mxeon.models.transmission.transmittance import dielectric_transmittance_dir
-from tools.benchmarks.sampling_variance import BY_NAME, moments
 from tools.fits import fon_loss as loss_fit
 from tools.fits import ggx_albedo as albedo_fit
 from tools.fits import ggx_cosine as cosine_fit
 from tools.fits.rational import shipped
+from tools.paper.weights import moments
 
 GLASS, DENSE = 1.5, 3.0
 SCHLICK = (0.04, 0.25, 0.6), (1.0, 0.5, 0.8), 1.0  # color0, color82, color90
@@ -117,7 +117,7 @@ def rounding_figures(stride=1):
 # Sampling of EON.
 def variances(name, roughness, mu):
     """Variance of the weight at unit reflectance, by quadrature."""
-    return np.array([moments(BY_NAME[name], each, roughness)[1] for each in mu])
+    return np.array([moments(name, each, roughness)[1] for each in mu])
 
 
 def sampling_figures():
