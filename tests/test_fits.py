@@ -28,8 +28,8 @@ from tools.fits import (
     thin_film,
     varnish_walk,
 )
-from tools.fits.minimax import least_largest, mp
-from tools.fits.rational import shipped as shipped_coefficients
+from tools.fits.minimax import defines, least_largest, mp, roots
+from tools.fits.minimax import shipped as shipped_coefficients
 
 by_language = pytest.mark.parametrize("language", twins.LANGUAGES)
 
@@ -65,7 +65,7 @@ def test_a_wrong_digit_in_a_coefficient_of_the_loss_shows_in_its_error():
 
 def test_the_root_of_the_sampling_twins_has_the_error_that_stands_beside_it():
     root = numbers(r"ROOT\d", twins.source("glsl"))
-    rows = eon_sampling.root_rows(eon_sampling.nodes(1001))
+    rows = eon_sampling.root_rows(roots(1001))
     assert max(abs(mp.fdot(row, root) - 1) for row in rows) <= tolerances.FIT_ROOT
 
 
@@ -165,7 +165,7 @@ def test_the_colors_of_a_black_body_have_the_errors_that_stand_beside_them():
     errors = blackbody.largest_errors(rows, 150)
     for error, limit in zip(errors.values(), map(float, stated[0]), strict=True):
         assert 0.9 * limit < error <= limit
-    lines = blackbody.defines(blackbody.FORM, rows["X"], "BLACKBODY_X")
+    lines = defines(blackbody.FORM, rows["X"], "BLACKBODY_X")
     assert all(line in text for line in lines)
 
 

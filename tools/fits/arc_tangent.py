@@ -9,7 +9,7 @@ The polynomial that meets atan(t) / t at the roots of a Chebyshev polynomial in 
 digits. Nearer than the branch points t^2 = -1 there is no singularity, so each term gains a factor of 25.
 """
 
-from tools.fits.minimax import mp
+from tools.fits.minimax import mp, roots
 
 TWINS = {"terms": 5, "top": mp.sqrt(2) - 1}
 DIGITS = 17  # that tell any two float64 numbers apart
@@ -17,8 +17,7 @@ DIGITS = 17  # that tell any two float64 numbers apart
 
 def coefficients(terms, top):
     """Coefficients for [0, top], lowest power first, as float64."""
-    angles = [mp.pi * (2 * k + 1) / (2 * terms) for k in range(terms)]
-    squares = [top**2 * (1 + mp.cos(angle)) / 2 for angle in angles]
+    squares = [top**2 * x for x in roots(terms)]
     powers = mp.matrix([[z**k for k in range(terms)] for z in squares])
     values = mp.matrix([mp.atan(mp.sqrt(z)) / mp.sqrt(z) for z in squares])
     return [float(each) for each in mp.lu_solve(powers, values)]
@@ -27,21 +26,11 @@ def coefficients(terms, top):
 def largest_error(series, top, count=2000):
     """Largest relative error of the polynomial itself, without the roundings of its evaluation."""
     points = [top * k / count for k in range(1, count + 1)]
-    values = [mp.fdot(series, _odd_powers(t, len(series))) / mp.atan(t) for t in points]
+    values = [mp.polyval(series[::-1], t * t) * t / mp.atan(t) for t in points]
     return float(max(abs(value - 1) for value in values))
 
 
-def _odd_powers(t, count):
-    """t, t^3, and so on."""
-    return [t ** (2 * k + 1) for k in range(count)]
-
-
-def main():
-    """Print the coefficients and their error."""
-    series = coefficients(**TWINS)
-    print(", ".join(f"{c:.{DIGITS}g}" for c in series))
-    print(f"largest relative error {largest_error(series, TWINS['top']):.2g}")
-
-
 if __name__ == "__main__":
-    main()
+    found = coefficients(**TWINS)
+    print(", ".join(f"{c:.{DIGITS}g}" for c in found))
+    print(f"largest relative error {largest_error(found, TWINS['top']):.2g}")

@@ -10,8 +10,7 @@ import numpy as np
 
 from mxeon.models.core.colorimetry import CIE_1931, WAVELENGTHS
 from mxeon.models.media.blackbody import BOLTZMANN, LIGHT, PLANCK
-from tools.fits.minimax import mp
-from tools.fits.rational import Form, defines, refined
+from tools.fits.minimax import Form, defines, mp, refined, roots
 
 COLDEST, HOTTEST = 800, 25000  # K
 COUNT = 120  # points of the fit
@@ -24,58 +23,43 @@ STARTS = {
 }
 
 
-def points(count):
-    """Points of t, dense at both ends."""
+def sampled(count):
+    """Points of t, dense at both ends, with X and Z of a black body with Y = 1."""
     low, high = mp.mpf(1000) / HOTTEST, mp.mpf(1000) / COLDEST
-    return [
-        low + (high - low) * (1 - mp.cos(mp.pi * (2 * k + 1) / (2 * count))) / 2
-        for k in range(count)
-    ]
-
-
-def xyz(t):
-    """X and Z of a black body with Y = 1."""
     second = mp.mpf(PLANCK) * mp.mpf(LIGHT) / mp.mpf(BOLTZMANN) * 10**6  # nm times 1000 K
-    totals = [mp.zero] * 3
-    for wavelength, row in zip(WAVELENGTHS, CIE_1931, strict=True):
-        length = mp.mpf(float(wavelength))
-        light = 1 / (length**5 * mp.expm1(second * t / length))
-        totals = [x + light * mp.mpf(float(each)) for x, each in zip(totals, row, strict=True)]
-    X, Y, Z = totals
-    return X / Y, Z / Y
+    points, quotients = [low + (high - low) * x for x in roots(count)], []
+    for t in points:
+        totals = [mp.zero] * 3
+        for wavelength, row in zip(WAVELENGTHS, CIE_1931, strict=True):
+            length = mp.mpf(float(wavelength))
+            light = 1 / (length**5 * mp.expm1(second * t / length))
+            totals = [x + light * mp.mpf(float(each)) for x, each in zip(totals, row, strict=True)]
+        X, Y, Z = totals
+        quotients.append((X / Y, Z / Y))
+    return np.array(points, float), *np.array(quotients, float).T
 
 
 def fit():
     """Coefficients of X and of Z, numerator first, rounded as printed."""
-    t = points(COUNT)
-    rows = np.array([[float(each) for each in xyz(x)] for x in t])
-    variables = (np.array([float(x) for x in t]),)
-    weights = np.ones(COUNT)
+    t, *rows = sampled(COUNT)
     return {
-        name: refined(FORM, variables, values, weights, STARTS[name])
-        for name, values in zip("XZ", rows.T, strict=True)
+        name: refined(FORM, (t,), values, np.ones(COUNT), STARTS[name])
+        for name, values in zip("XZ", rows, strict=True)
     }
 
 
 def largest_errors(coefficients, count=400):
     """Largest absolute errors of X and Z, at other points than those of the fit."""
-    t = points(count)
-    rows = np.array([[float(each) for each in xyz(x)] for x in t])
-    variables = (np.array([float(x) for x in t]),)
+    t, *rows = sampled(count)
     return {
-        name: float(np.abs(FORM.value(variables, coefficients[name]) - values).max())
-        for name, values in zip("XZ", rows.T, strict=True)
+        name: float(np.abs(FORM.value((t,), coefficients[name]) - values).max())
+        for name, values in zip("XZ", rows, strict=True)
     }
 
 
-def main():
-    """Print the lines for the shaders and the errors of the fits."""
-    coefficients = fit()
-    for name, row in coefficients.items():
-        print(*defines(FORM, row, f"BLACKBODY_{name}"), sep="\n")
-    for name, error in largest_errors(coefficients).items():
-        print(f"{name}: largest absolute error {error:.3g}")
-
-
 if __name__ == "__main__":
-    main()
+    found = fit()
+    for name, row in found.items():
+        print(*defines(FORM, row, f"BLACKBODY_{name}"), sep="\n")
+    for name, error in largest_errors(found).items():
+        print(f"{name}: largest absolute error {error:.3g}")

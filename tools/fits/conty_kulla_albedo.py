@@ -16,8 +16,7 @@ as that of `ggx_albedo.py`: roughness is 4 / k with whole k, so that its powers 
 import numpy as np
 
 from tools.fits.ggx_albedo import graded, legendre
-from tools.fits.minimax import mp
-from tools.fits.rational import Form, defines, refined
+from tools.fits.minimax import Form, defines, extrema, mp, refined
 
 FORM = Form(
     above=((0, 0), (0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 2), (3, 0), (3, 2)),
@@ -36,17 +35,6 @@ TOP, LEAST = 1.02, 1e-4  # albedos of the fit: above 1 the shaders clamp it, bel
 NODES = 20  # of a half turn, twice
 
 
-def power(x, eighths):
-    """x to the power of eighths / 8, by square roots and products."""
-    base = np.sqrt(np.sqrt(np.sqrt(x)))
-    result = np.ones_like(x)
-    while eighths:
-        if eighths & 1:
-            result = result * base
-        base, eighths = base * base, eighths >> 1
-    return result
-
-
 def albedo(mu, eighths):
     """E by quadrature at roughness 4 / eighths; its error is below 1e-4 of max(E, 1).
 
@@ -61,13 +49,15 @@ def albedo(mu, eighths):
     for near, far in ((1.0, x * x), (x * x, 1.0)):
         half = near / (near + far)
         flat = (s - s_i) * (s - s_i) + 4.0 * s * s_i * half
-        lobe = power(flat / (flat + M * M), eighths) * (4.0 * w / (1.0 + x * x))
-        inner = np.add.reduce(lobe, axis=1)
+        # sin(theta_h)^(2 p), by square roots and products.
+        base, lobe, power = np.sqrt(np.sqrt(np.sqrt(flat / (flat + M * M)))), 1.0, eighths
+        while power:
+            if power & 1:
+                lobe = lobe * base
+            base, power = base * base, power >> 1
+        inner = np.add.reduce(lobe * (4.0 * w / (1.0 + x * x)), axis=1)
         total += np.add.reduce((weight * mu_i / (M - mu * mu_i))[:, 0] * inner, axis=0)
-    return (1.0 + eighths / 8.0) / (4.0 * PI) * total
-
-
-PI = float(mp.pi)
+    return (1.0 + eighths / 8.0) / (4.0 * float(mp.pi)) * total
 
 
 def variables(mu, roughness):
@@ -86,7 +76,7 @@ def fitted(mu, roughness, coefficients):
 
 def points(count=37):
     """Cosines, roughnesses and albedos where these lie between `LEAST` and `TOP`."""
-    ends = np.array([float((1 - mp.cos(mp.pi * k / (count - 1))) / 2) for k in range(count)])
+    ends = np.array(extrema(count), float)
     rows = []
     for eighths in EIGHTHS:
         roughness = 4.0 / eighths
@@ -106,18 +96,9 @@ def fit():
     return refined(FORM, arguments, E / factor, factor / np.maximum(E, 1.0), START)
 
 
-def largest_error(coefficients, count=75):
-    """Largest absolute error of min(E, 1) on a grid that is finer than that of the fit."""
-    mu, roughness, E = points(count)
-    return float(np.max(np.abs(fitted(mu, roughness, coefficients) - np.minimum(E, 1.0))))
-
-
-def main():
-    """Print the lines for the shaders and the error of the fit."""
-    coefficients = fit()
-    print(*defines(FORM, coefficients, "CONTY_KULLA_ALBEDO"), sep="\n")
-    print(f"largest absolute error {largest_error(coefficients):.3g}")
-
-
 if __name__ == "__main__":
-    main()
+    found = fit()
+    mu, roughness, E = points(75)  # finer than those of the fit
+    largest = np.max(np.abs(fitted(mu, roughness, found) - np.minimum(E, 1.0)))
+    print(*defines(FORM, found, "CONTY_KULLA_ALBEDO"), sep="\n")
+    print(f"largest absolute error {largest:.3g}")

@@ -14,7 +14,7 @@ is analytic in m = 1 - cos: it takes an arc tangent, a cancellation and a power 
 """
 
 from tools.fits.fon_loss import closed_form
-from tools.fits.minimax import least_largest, mp
+from tools.fits.minimax import least_largest, mp, roots
 
 COUNT = 400  # points of a fit
 STEPS = 4  # after which Newton's last changes no digit that is printed
@@ -76,43 +76,34 @@ def fitted(points, basis, density, root):
     return coefficients
 
 
-def largest_error(points, basis, density, root, coefficients):
-    """Largest relative error of the density that the coefficients have on points."""
-    errors = (density_error(p, basis, density, root, coefficients)[0] for p in points)
-    return float(max(abs(error) for error in errors))
-
-
-def upper_root(m):
-    """y at the cosine 1 - m, y = (K / K(pi / 2))^(2/5); of 40 digits at most 14 cancel here."""
-    mu, S = 1 - m, mp.sqrt(m * (2 - m))
-    K = (mp.acos(mu) - S * mu) / 2 - S**3 / 3
-    return (K / UPPER_TOTAL) ** (mp.one * 2 / 5)
-
-
 def root_rows(points):
-    """Factors of the coefficients of y / m in powers of m, relative to y / m."""
-    return [[m ** (k + 1) / upper_root(m) for k in range(6)] for m in points]
+    """Factors of the coefficients of y / m in powers of m, relative to y / m.
+
+    y = (K / K(pi / 2))^(2/5) at the cosine 1 - m; of 40 digits at most 14 cancel here.
+    """
+    rows = []
+    for m in points:
+        mu, S = 1 - m, mp.sqrt(m * (2 - m))
+        K = (mp.acos(mu) - S * mu) / 2 - S**3 / 3
+        y = (K / UPPER_TOTAL) ** (mp.one * 2 / 5)
+        rows.append([m ** (k + 1) / y for k in range(6)])
+    return rows
 
 
 def root_fit():
     """Coefficients of y / m in powers of m with the least largest relative error, and that."""
-    return least_largest(root_rows(nodes(COUNT)), [mp.one] * COUNT)
-
-
-def nodes(count):
-    """Points of (0, 1), dense at both ends."""
-    return [mp.sin(mp.pi * (2 * k + 1) / (4 * count)) ** 2 for k in range(count)]
+    return least_largest(root_rows(roots(COUNT)), [mp.one] * COUNT)
 
 
 def multiple_nodes(count):
-    """The same for `multiple`, as t = 1 - w^2."""
-    return [1 - w**2 for w in nodes(count)]
+    """Points for `multiple`: t = 1 - w^2."""
+    return [1 - w**2 for w in roots(count)]
 
 
 # Name, points, basis, density, exponent of the random number.
 ROWS = (
     ("MULTIPLE", multiple_nodes, multiple_basis, multiple_density, mp.mpf(3)),
-    ("UPPER", nodes, upper_basis, upper_density, mp.mpf(5) / 2),
+    ("UPPER", roots, upper_basis, upper_density, mp.mpf(5) / 2),
 )
 
 
@@ -121,17 +112,12 @@ def printed(coefficients):
     return tuple(round(float(each), 10) for each in coefficients)
 
 
-def main():
-    """Print each fit as it stands in the package, and its error after rounding."""
-    for name, points, *row in ROWS:
-        coefficients = printed(fitted(points(COUNT), *row))
-        print(f"{name} = ({', '.join(f'{c:.10f}' for c in coefficients)})")
-        error = largest_error(points(10 * COUNT + 1), *row, coefficients)
-        print(f"largest relative error of the density {error:.3g}")
-    coefficients, error = root_fit()
-    print(f"ROOT = ({', '.join(f'{c:.10f}' for c in printed(coefficients))})")
-    print(f"largest relative error {float(error):.3g}")
-
-
 if __name__ == "__main__":
-    main()
+    for name, points, *row in ROWS:
+        found = printed(fitted(points(COUNT), *row))
+        print(f"{name} = ({', '.join(f'{c:.10f}' for c in found)})")
+        largest = max(abs(density_error(p, *row, found)[0]) for p in points(10 * COUNT + 1))
+        print(f"largest relative error of the density {float(largest):.3g}")
+    found, largest = root_fit()
+    print(f"ROOT = ({', '.join(f'{c:.10f}' for c in printed(found))})")
+    print(f"largest relative error {float(largest):.3g}")

@@ -11,9 +11,10 @@ least, from the closed form alone.
 """
 
 import numpy as np
+from numpy.polynomial.polynomial import polyval
 
 from mxeon.models.diffuse import formulas
-from tools.fits.minimax import least_largest, mp
+from tools.fits.minimax import extrema, least_largest, mp
 
 # One degree less in either costs a factor above ten; the table that this script prints says so.
 DEGREE_P, DEGREE_Q = 4, 3
@@ -38,12 +39,20 @@ def fitted(mu, p, q):
     one = mu.dtype.type(1.0)
     m = one - mu
     S = np.sqrt(m * (one + mu))
-    return mu * (_horner(mu, p) + (one - S) * m * _horner(mu, q))
+    return mu * (polyval(mu, p) + (one - S) * m * polyval(mu, q))
 
 
 def fit(degree_p=DEGREE_P, degree_q=DEGREE_Q):
-    """Coefficients with the least largest relative error on `COUNT` points."""
-    rows = [_row(mu, degree_p, degree_q) for mu in _points()]
+    """Coefficients with the least largest relative error on `COUNT` points, dense towards both ends."""
+    rows = []
+    for mu in extrema(COUNT + 1)[1:]:
+        even = mu / closed_form(mu)
+        odd = even * (1 - mp.sqrt(1 - mu**2)) * (1 - mu)
+        powers = [mu**k for k in range(max(degree_p, degree_q) + 1)]
+        rows.append(
+            [even * each for each in powers[: degree_p + 1]]
+            + [odd * each for each in powers[: degree_q + 1]]
+        )
     x, _ = least_largest(rows, [mp.one] * len(rows))
     rounded = np.array([float(mp.nstr(each, DIGITS)) for each in x])
     return rounded[: degree_p + 1], rounded[degree_p + 1 :]
@@ -65,37 +74,12 @@ def defines():
     ]
 
 
-def _points():
-    """Extrema of a Chebyshev polynomial, dense towards both ends, where errors are largest."""
-    return [(1 - mp.cos(mp.pi * k / COUNT)) / 2 for k in range(1, COUNT + 1)]
-
-
-def _row(mu, degree_p, degree_q):
-    """Factors of the coefficients, relative to H(mu)."""
-    factor = mu / closed_form(mu)
-    odd = factor * (1 - mp.sqrt(1 - mu**2)) * (1 - mu)
-    even = [factor * mu**k for k in range(degree_p + 1)]
-    return even + [odd * mu**k for k in range(degree_q + 1)]
-
-
-def _horner(mu, coefficients):
-    value = np.full_like(mu, coefficients[-1])
-    for coefficient in coefficients[-2::-1]:
-        value = coefficient + mu * value
-    return value
-
-
-def main():
-    """Print the lines for the shaders, and what other degrees would give."""
+if __name__ == "__main__":
     print(*defines(), sep="\n")
     print("\ncoefficients  P  Q   float64   float32   (largest relative error of H)")
     for total in (8, 9, 10):
-        for degree_q in range(5):
-            degree_p = total - 2 - degree_q
-            double, single = largest_errors(*fit(degree_p, degree_q))
-            chosen = " <" if (degree_p, degree_q) == (DEGREE_P, DEGREE_Q) else ""
-            print(f"{total:12}  {degree_p}  {degree_q}  {double:.2e}  {single:.2e}{chosen}")
-
-
-if __name__ == "__main__":
-    main()
+        for q in range(5):
+            p = total - 2 - q
+            double, single = largest_errors(*fit(p, q))
+            chosen = " <" if (p, q) == (DEGREE_P, DEGREE_Q) else ""
+            print(f"{total:12}  {p}  {q}  {double:.2e}  {single:.2e}{chosen}")

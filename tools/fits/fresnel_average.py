@@ -16,12 +16,13 @@ no fit.
     python -m tools.fits.fresnel_average
 """
 
+import numpy as np
+
 from tools.fits.ggx_albedo import legendre
-from tools.fits.minimax import least_largest, mp
-from tools.fits.rational import DIGITS
+from tools.fits.minimax import DIGITS, Form, defines, least_largest, mp, roots
 
 COUNT = 400  # points of the fit for dielectrics
-ABOVE, BELOW = 4, 3  # degrees of N and D
+FORM = Form(above=tuple((k,) for k in range(5)), below=tuple((k,) for k in range(1, 4)))
 STEPS = 12  # of the reweighted fit, after which no printed digit changes
 
 COSINES = (0.22, 0.58, 0.9)
@@ -43,40 +44,31 @@ def dielectric_average(n):
     )
 
 
-def reciprocals(count):
-    """Points of (0, 1), dense at both ends."""
-    return [(1 - mp.cos(mp.pi * (2 * k + 1) / (2 * count))) / 2 for k in range(count)]
-
-
 def dielectric_fit():
     """Coefficients of N and D but for the constant 1 of D, by linear fits of N - D T over D.
 
     Each takes D of the one before as weight; where they agree, the largest error is least.
     """
-    t = reciprocals(COUNT)
+    t, above = roots(COUNT), len(FORM.above)
     T = [(1 - dielectric_average(1 / x)) / x for x in t]
     D = [mp.one] * COUNT
     for _ in range(STEPS):
         rows, right = [], []
         for x, goal, divisor in zip(t, T, D, strict=True):
-            factor = x / divisor
-            above = [factor * x**k for k in range(ABOVE + 1)]
-            rows.append(above + [-factor * goal * x**k for k in range(1, BELOW + 1)])
-            right.append(factor * goal)
+            factors = [x / divisor * x**k for k in range(above)]
+            rows.append(factors + [-goal * each for each in factors[1 : 1 + len(FORM.below)]])
+            right.append(goal * factors[0])
         found, _ = least_largest(rows, right)
-        below = found[ABOVE + 1 :]
-        D = [1 + mp.fdot(below, [x**k for k in range(1, BELOW + 1)]) for x in t]
+        D = [mp.polyval([*found[: above - 1 : -1], 1], x) for x in t]
     return tuple(float(mp.nstr(x, DIGITS)) for x in found)
 
 
 def dielectric_error(coefficients):
     """Largest absolute error of F_ss on a finer set of points."""
-    worst = mp.zero
-    for t in reciprocals(4 * COUNT + 1):
-        N = mp.fdot((c, t**k) for k, c in enumerate(coefficients[: ABOVE + 1]))
-        D = 1 + mp.fdot((c, t**k) for k, c in enumerate(coefficients[ABOVE + 1 :], 1))
-        worst = max(worst, abs(1 - dielectric_average(1 / t) - t * N / D))
-    return float(worst)
+    t = roots(4 * COUNT + 1)
+    exact = np.array([dielectric_average(1 / x) for x in t], float)
+    t = np.array(t, float)
+    return float(np.abs(1.0 - exact - t * FORM.value((t,), coefficients)).max())
 
 
 def conductor(c, n, k):
@@ -91,33 +83,30 @@ def conductor(c, n, k):
     return perpendicular * (1 + (t3 - t4) / (t3 + t4)) / 2
 
 
-def conductor_average(n, k):
-    """F_ss of a conductor by Gauss-Legendre; its error is below 1e-6."""
-    x, w = legendre(NODES)
-    pairs = zip(map(mp.mpf, map(float, x)), map(mp.mpf, map(float, w)), strict=True)
-    return sum(2 * weight * c * conductor(c, n, k) for c, weight in pairs)
-
-
 def conductor_fit():
-    """Weights of the cosines, and the largest absolute error over the metals."""
-    metals = [(n, mp.mpf(k)) for n in INDICES for k in EXTINCTIONS]
-    rows = [[1 - conductor(mp.mpf(c), n, k) for c in COSINES] for n, k in metals]
-    weights, error = least_largest(rows, [1 - conductor_average(n, k) for n, k in metals])
+    """Weights of the cosines, and the largest absolute error over the metals.
+
+    F_ss of a metal is by Gauss-Legendre; its error is below 1e-6.
+    """
+    nodes = [[mp.mpf(float(x)) for x in each] for each in legendre(NODES)]
+    rows, right = [], []
+    for n in INDICES:
+        for k in map(mp.mpf, EXTINCTIONS):
+            rows.append([1 - conductor(mp.mpf(c), n, k) for c in COSINES])
+            right.append(
+                1 - sum(2 * w * c * conductor(c, n, k) for c, w in zip(*nodes, strict=True))
+            )
+    weights, error = least_largest(rows, right)
     return tuple(float(mp.nstr(w, DIGITS)) for w in weights), float(error)
 
 
-def main():
-    """Print the lines for the shaders and the errors of the fits."""
-    coefficients = dielectric_fit()
-    names = [f"N{k}" for k in range(ABOVE + 1)] + [f"D{k + 1}" for k in range(BELOW)]
-    for name, x in zip(names, coefficients, strict=True):
-        print(f"#define FRESNEL_AVG_{name} {x:.{DIGITS}g}")
-    print(f"largest absolute error, dielectrics: {dielectric_error(coefficients):.3g}")
-    weights, error = conductor_fit()
-    for k, (c, w) in enumerate(zip(COSINES, weights, strict=True)):
-        print(f"#define FRESNEL_AVG_C{k} {c}\n#define FRESNEL_AVG_W{k} {w:.{DIGITS}g}")
-    print(f"largest absolute error, metals: {error:.3g}")
-
-
 if __name__ == "__main__":
-    main()
+    found = dielectric_fit()
+    print(*defines(FORM, found, "FRESNEL_AVG"), sep="\n")
+    print(f"largest absolute error, dielectrics: {dielectric_error(found):.3g}")
+    shares, largest = conductor_fit()
+    for place, (cosine, share) in enumerate(zip(COSINES, shares, strict=True)):
+        print(
+            f"#define FRESNEL_AVG_C{place} {cosine}\n#define FRESNEL_AVG_W{place} {share:.{DIGITS}g}"
+        )
+    print(f"largest absolute error, metals: {largest:.3g}")

@@ -15,8 +15,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from tools.fits.minimax import mp
-from tools.fits.rational import Form, defines, refined
+from tools.fits.minimax import Form, defines, mp, refined
 
 FORM = Form(
     above=(

@@ -25,8 +25,7 @@ from itertools import pairwise, product
 import numpy as np
 
 from tools.fits.ggx_albedo import incident, legendre
-from tools.fits.minimax import mp
-from tools.fits.rational import Form, defines, numerator
+from tools.fits.minimax import Form, defines, mp, numerator
 
 LEAST = 1e-4  # least alpha and least cosine of the fits
 BLOCK = 20  # points that are integrated together

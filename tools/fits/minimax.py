@@ -1,17 +1,31 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Linear fits whose largest error is least, in 40 digits: the same on every machine.
+"""Linear and rational fits whose largest error is least, in 40 digits: the same on every machine.
 
 With N unknowns, the least largest residual over many rows is that over N + 1 of them, a reference,
 each of which takes it. Stiefel's exchange goes from reference to reference, each with a larger
 residual, until no row exceeds it: the simplex method on the dual linear program.
+
+A rational fit is N / D with D = 1 + ..., both polynomials in some monomials. A search in float64, which
+need not be repeatable, finds a start, or a denominator that stays away from 0. From there on linear fits
+give coefficients that are repeatable.
 """
 
+import math
+import re
+from dataclasses import dataclass
+
+import numpy as np
 from mpmath import MPContext
+
+from mxeon.shaders.functions import source_file
 
 mp = MPContext()
 mp.dps = 40
 
-STEPS = 500  # ten times what a fit of this project takes
+EXCHANGES = 500  # ten times what a fit of this project takes
+DIGITS = 8  # decimal digits of a printed coefficient, one more than float32 tells apart
+SCATTER = 2654435769  # 2^32 over the golden ratio
+STEPS = 2  # from a start of six digits; another changes no printed error
 
 
 def least_largest(rows, right):
@@ -19,43 +33,134 @@ def least_largest(rows, right):
 
     Of the rows that the exchange starts from, any N are independent. ArithmeticError if it does not end.
     """
+
+    def signed(i, sign):
+        """Coefficients of sign (row @ x) - level, which is sign times the right side."""
+        return [sign * each for each in rows[i]] + [-mp.one]
+
     count = len(rows[0])
     indices = [(len(rows) - 1) * k // count for k in range(count + 1)]
-    signs = _signs([rows[i] for i in indices])
-    for _ in range(STEPS):
-        matrix = mp.matrix([_signed(rows[i], sign) for i, sign in zip(indices, signs, strict=True)])
+    total = mp.matrix([0] * count + [-1])
+    # Signs with which the rows of a reference add up to zero under positive weights.
+    signs = [(-1) ** k for k in range(count + 1)]
+    weights = mp.lu_solve(mp.matrix(list(map(signed, indices, signs))).T, total)
+    signs = [sign * int(mp.sign(weight)) for sign, weight in zip(signs, weights, strict=True)]
+    for _ in range(EXCHANGES):
+        matrix = mp.matrix(list(map(signed, indices, signs)))
         sides = mp.matrix([sign * right[i] for i, sign in zip(indices, signs, strict=True)])
         *x, level = mp.lu_solve(matrix, sides)
         residuals = [mp.fdot(row, x) - side for row, side in zip(rows, right, strict=True)]
         worst = max(range(len(rows)), key=lambda i: abs(residuals[i]))
         if abs(residuals[worst]) <= level * (1 + mp.sqrt(mp.eps)):
             return x, level
+        # It replaces the row that leaves all weights positive.
         sign = int(mp.sign(residuals[worst]))
-        leaving = _leaving(matrix, _signed(rows[worst], sign))
+        weights = mp.lu_solve(matrix.T, total)
+        change = mp.lu_solve(matrix.T, mp.matrix(signed(worst, sign)))
+        ratios = enumerate(zip(weights, change, strict=True))
+        leaving = min((w / d, k) for k, (w, d) in ratios if d > 0)[1]
         indices[leaving], signs[leaving] = worst, sign
-    raise ArithmeticError(f"exchange must end within {STEPS} steps")
+    raise ArithmeticError(f"exchange must end within {EXCHANGES} steps")
 
 
-def _signed(row, sign):
-    """Coefficients of sign (row @ x) - level, which is sign times the right side."""
-    return [sign * each for each in row] + [-mp.one]
+def roots(count):
+    """Roots of a Chebyshev polynomial on [0, 1]: dense at both ends, which are left out."""
+    return [(1 - mp.cos(mp.pi * (2 * k + 1) / (2 * count))) / 2 for k in range(count)]
 
 
-def _weights(matrix, total):
-    """Weights of the rows of a reference whose weighted sum is `total`."""
-    return list(mp.lu_solve(matrix.T, mp.matrix(total)))
+def extrema(count):
+    """Extrema of a Chebyshev polynomial on [0, 1], both ends among them."""
+    return [(1 - mp.cos(mp.pi * k / (count - 1))) / 2 for k in range(count)]
 
 
-def _signs(rows):
-    """Signs with which the rows of a reference add up to zero under positive weights."""
-    alternate = [(-1) ** k for k in range(len(rows))]
-    matrix = mp.matrix([_signed(row, sign) for row, sign in zip(rows, alternate, strict=True)])
-    weights = _weights(matrix, [0] * len(rows[0]) + [-1])
-    return [sign * int(mp.sign(weight)) for sign, weight in zip(alternate, weights, strict=True)]
+# --- rational fits --------------------------------------------------------------------------------
 
 
-def _leaving(matrix, entering):
-    """Row of a reference that another replaces with all weights staying positive."""
-    weights = _weights(matrix, [0] * (len(entering) - 1) + [-1])
-    change = _weights(matrix, entering)
-    return min((w / d, k) for k, (w, d) in enumerate(zip(weights, change, strict=True)) if d > 0)[1]
+@dataclass(frozen=True)
+class Form:
+    """Monomials of a rational function, as tuples of exponents.
+
+    Attributes
+    ----------
+    above, below : tuple of tuple of int
+        Monomials of the numerator and of the denominator, whose constant 1 is left out.
+    """
+
+    above: tuple
+    below: tuple
+
+    def value(self, variables, coefficients):
+        """Values at arrays of variables, numerator's coefficients first."""
+        count = len(self.above)
+        above, below = (
+            sum(
+                (c * _monomial(variables, m) for m, c in zip(monomials, row, strict=True)),
+                np.zeros_like(variables[0]),
+            )
+            for monomials, row in (
+                (self.above, coefficients[:count]),
+                (self.below, coefficients[count:]),
+            )
+        )
+        return above / (1.0 + below)
+
+
+def _monomial(point, exponents):
+    return math.prod(x**k for x, k in zip(point, exponents, strict=True))
+
+
+def _exact(*columns):
+    """Columns of numbers with 40 digits."""
+    return [[mp.mpf(x) for x in column] for column in columns]
+
+
+def refined(form, variables, values, weights, start, steps=STEPS):
+    """Coefficients with the least largest weighted error, by Newton steps from a start."""
+    points = list(zip(*_exact(*variables), strict=True))
+    above, below = (
+        [[_monomial(point, m) for m in monomials] for point in points]
+        for monomials in (form.above, form.below)
+    )
+    goals, scale = _exact(values, weights)
+    found, count = [mp.mpf(c) for c in start], len(form.above)
+    for _ in range(steps):
+        rows, right = [], []
+        for a, b, goal, weight in zip(above, below, goals, scale, strict=True):
+            D = 1 + mp.fdot(b, found[count:])
+            N = mp.fdot(a, found[:count]) / D
+            factor = weight / D
+            rows.append([factor * x for x in a] + [-factor * N * x for x in b])
+            right.append(weight * (goal - N))
+        change, _ = least_largest(rows, right)
+        found = [x + d for x, d in zip(found, change, strict=True)]
+    return tuple(float(mp.nstr(x, DIGITS)) for x in found)
+
+
+def numerator(form, variables, values, weights, below):
+    """Numerator's coefficients with the least largest weighted error, and the denominator's given ones."""
+    rows, right = [], []
+    points = zip(*_exact(*variables), strict=True)
+    for point, value, weight in zip(points, *_exact(values, weights), strict=True):
+        D = 1 + mp.fdot([_monomial(point, m) for m in form.below], below)
+        rows.append([weight / D * _monomial(point, m) for m in form.above])
+        right.append(weight * value)
+    # Scattered, lest the rows that the exchange starts from lie on few lines of a grid.
+    order = sorted(range(len(rows)), key=lambda i: i * SCATTER % 2**32)
+    found, _ = least_largest([rows[i] for i in order], [right[i] for i in order])
+    return (*(float(mp.nstr(x, DIGITS)) for x in found), *below)
+
+
+def defines(form, coefficients, prefix):
+    """Lines of GLSL that define the coefficients, in the order of the form."""
+    names = [f"N{''.join(map(str, m))}" for m in form.above]
+    names += [f"D{''.join(map(str, m))}" for m in form.below]
+    return [
+        f"#define {prefix}_{name} {x:.{DIGITS}g}"
+        for name, x in zip(names, coefficients, strict=True)
+    ]
+
+
+def shipped(stem, prefix, kinds="ND"):
+    """Coefficients of a fit in a GLSL file, numerator first."""
+    text = source_file("glsl", stem).read_text(encoding="utf-8")
+    return tuple(float(x) for x in re.findall(rf"#define {prefix}_[{kinds}]\d+ (\S+)", text))

@@ -20,12 +20,11 @@ from mxeon.errors import OutsideModel
 from mxeon.models.microfacet import fresnel_formulas as fresnel
 from mxeon.models.microfacet import lobe as microfacets
 from tools.fits import conty_kulla_albedo, fresnel_average, ggx_albedo, ggx_cosine
-from tools.fits.rational import shipped
+from tools.fits.minimax import shipped
 
 SETS = 32
 LEAST = 1e-6  # cosine and roughness from which on shaders take their fits
 EXACT = lobes._albedo
-
 
 GGX = shipped("ggx_albedo", "GGX_ALBEDO")
 DIELECTRIC = shipped("fresnel_dielectric", "GGX_DIELECTRIC")
@@ -48,9 +47,8 @@ def missing_light(mu, alpha):
 
 def dielectric_average(ior):
     """F_ss of a dielectric from index 1 on by its fit."""
-    t, above = 1.0 / ior, fresnel_average.ABOVE + 1
-    N = sum(c * t**k for k, c in enumerate(AVERAGE[:above]))
-    return 1.0 - t * N / (1.0 + sum(c * t**k for k, c in enumerate(AVERAGE[above:], 1)))
+    t = np.asarray(1.0 / ior)
+    return 1.0 - t * fresnel_average.FORM.value((t,), AVERAGE)
 
 
 def conductor_average(ior, extinction):
@@ -144,15 +142,14 @@ def errors(shader, seed):
 
 def largest(shader, sets=SETS):
     """The largest errors of sets, by name."""
-    found = []
-    for seed in count(SEED + 1):
+    found, seeds = [], count(SEED + 1)
+    while len(found) < sets:
         with suppress(OutsideModel):  # a material that the layer equation does not have
-            found.append(errors(shader, seed))
-        if len(found) == sets:
-            return {name: max(each[name] for each in found) for name in found[0]}
+            found.append(errors(shader, next(seeds)))
+    return {name: max(each[name] for each in found) for name in found[0]}
 
 
 if __name__ == "__main__":
-    for shader in specs.SURFACE_SHADERS:
-        text = ", ".join(f"{name} {error:.2g}" for name, error in largest(shader).items())
-        print(f"{shader.node}: {text}")
+    for each in specs.SURFACE_SHADERS:
+        text = ", ".join(f"{name} {error:.2g}" for name, error in largest(each).items())
+        print(f"{each.node}: {text}")

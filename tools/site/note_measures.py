@@ -24,7 +24,7 @@ from mxeon.models.transmission.transmittance import dielectric_transmittance_dir
 from tools.fits import fon_loss as loss_fit
 from tools.fits import ggx_albedo as albedo_fit
 from tools.fits import ggx_cosine as cosine_fit
-from tools.fits.rational import shipped
+from tools.fits.minimax import shipped
 from tools.paper.weights import moments
 
 GLASS, DENSE = 1.5, 3.0
