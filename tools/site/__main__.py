@@ -5,7 +5,6 @@ These are the OSL twins, the explorer, the ledger, and the tables of other pages
 (`specification`, `field`, `documents`, `versions`, `ledger.measure`, pictures) has its own command.
 """
 
-import json
 from pathlib import Path
 
 from mxeon.explorer import page, page_data
@@ -16,13 +15,11 @@ from tools.site.ledger import pages
 
 def made() -> dict[Path, str]:
     """The text of each file, by its path."""
-    tables = {each.PAGE: each.page for each in (arrays, research, note)}
-    record = json.loads(versions.RECORD.read_text(encoding="utf-8"))
+    tables = {each.PAGE: each.page for each in (arrays, research, note, versions)}
     return {
         **{twins.path(stem): twins.osl_text(stem) for stem in twins.STEMS},
         **{path: of(path.read_text(encoding="utf-8")) for path, of in tables.items()},
         gallery.PAGE: gallery.page(),
-        versions.PAGE: versions.page_text(record),
         explorer.PAGE: page(page_data(pages=explorer.PAGES)),
         **pages.pages(),
     }

@@ -38,25 +38,19 @@ def takes_drjit(function):
     return getattr(function, "takes_drjit", False)
 
 
-def table():
-    """Lines of the table, and of the list of the other functions."""
-    rows = [
-        f"| `{name.removeprefix('mxeon.')}` | {', '.join(f'`{each}`' for each in arrays(function))} |"
-        for name, function in public().items()
-        if takes_any(function)
-    ]
-    others = [
-        f"`{name.rpartition('.')[2]}`" for name, each in public().items() if not takes_any(each)
-    ]
-    head = ["| function | arrays, and gradients by |", "|---|---|"]
-    mitsuba = [
-        f"`{name.rpartition('.')[2]}`" for name, each in public().items() if takes_drjit(each)
-    ]
-    compiled = f"These {len(mitsuba)} take arrays of Dr.Jit too: {', '.join(mitsuba)}."
-    rest = f"These {len(others)} take arrays of NumPy alone: {', '.join(others)}."
-    return "\n".join([*head, *rows, "", compiled, "", rest, ""])
-
-
 def page(text):
-    """The page with its table as it is now."""
-    return with_block(text, "functions", table())
+    """The page with its table, and its lists of the other functions, as they are now."""
+    lines = ["| function | arrays, and gradients by |", "|---|---|"]
+    compiled, others = [], []
+    for name, function in public().items():
+        short = f"`{name.rpartition('.')[2]}`"
+        if takes_drjit(function):
+            compiled.append(short)
+        if takes_any(function):
+            taken = ", ".join(f"`{each}`" for each in arrays(function))
+            lines.append(f"| `{name.removeprefix('mxeon.')}` | {taken} |")
+        else:
+            others.append(short)
+    lines += ["", f"These {len(compiled)} take arrays of Dr.Jit too: {', '.join(compiled)}."]
+    lines += ["", f"These {len(others)} take arrays of NumPy alone: {', '.join(others)}.", ""]
+    return with_block(text, "functions", "\n".join(lines))

@@ -71,53 +71,38 @@ def materials(document):
     return [each.get("name") for each in ElementTree.parse(document).iter("surfacematerial")]
 
 
-def scene(document):
-    """The scene that shows a document."""
-    if "furnace" in document.stem:
-        return replace(FURNACE, size=SIZE)
-    return replace(STUDIO, size=SIZE)
-
-
-def options(document):
-    """The scene as options of `mxeon render`."""
-    return "--scene furnace " if "furnace" in document.stem else ""
-
-
 def pictures(host, document):
     """A document's materials, each with its sRGB codes with stock, where that can generate it, and eonlib."""
-    shaders = []
+    shaders, scene = [], replace(FURNACE if "furnace" in document.stem else STUDIO, size=SIZE)
     for library in ("stock", "eonlib"):
         with suppress(DocumentError):
             shaders.append(host.compile(document, library=library))
-    mask = visible(SIZE, scene(document).shape).mask[..., None]
+    mask = visible(SIZE, scene.shape).mask[..., None]
     for pair in zip(*shaders, strict=True):
-        images = [srgb_encoded(host.picture(each, scene(document))) for each in pair]
+        images = [srgb_encoded(host.picture(each, scene)) for each in pair]
         yield pair[0].element, [np.where(mask, each, np.uint8(BACKGROUND)) for each in images]
 
 
-def save(path, codes):
-    """Write sRGB codes as WebP."""
-    Image.fromarray(codes).save(path, quality=QUALITY, method=6)
-
-
-def difference(stock, own):
-    """The difference in sRGB codes that one pixel in a hundred exceeds."""
-    apart = np.abs(stock.astype(int) - own.astype(int)).max(axis=-1)
-    return float(np.percentile(apart, 99))
-
-
 def render():
-    """Write the pictures, the difference of each material, and the README's picture of two balls."""
+    """Write the pictures, the difference of each material, and the README's picture of two balls.
+
+    The difference is that in sRGB codes which one pixel in a hundred exceeds.
+    """
     PICTURES.mkdir(parents=True, exist_ok=True)
     write_exr(STUDIO.environment, studio(), {})
     differences = {}
+
+    def save(path, codes):
+        Image.fromarray(np.hstack(codes)).save(path, quality=QUALITY, method=6)
+
     with open_host("gl") as host:
         for document in sorted(EXAMPLES.glob("*.mtlx")):
             for name, codes in pictures(host, document):
-                save(PICTURES / f"{name}.webp", np.hstack(codes))
-                differences[name] = difference(*codes) if len(codes) > 1 else None
+                save(PICTURES / f"{name}.webp", codes)
+                apart = np.ptp(np.array(codes, int), axis=0).max(axis=-1)
+                differences[name] = float(np.percentile(apart, 99)) if len(codes) > 1 else None
         [(_, balls)] = pictures(host, TITANIUM)
-    save(TITANIUM.with_suffix(".webp"), np.hstack(balls))
+    save(TITANIUM.with_suffix(".webp"), balls)
     DIFFERENCES.write_text(json.dumps(differences, indent=1) + "\n", encoding="utf-8")
 
 
@@ -130,38 +115,32 @@ def words(difference):
     return f"1 % of the pixels differ by {difference:.0f} of 255 sRGB codes or more"
 
 
-def section(document, differences):
-    """Heading, description, pictures and command of one document, as Markdown."""
-    description = document.read_text(encoding="utf-8").splitlines()[2]
-    names = sorted(materials(document), key=lambda name: -(differences[name] or 0.0))
-    shown = "\n\n".join(
-        f"![{name}](images/gallery/{name}.webp)\n\n*{name}: {words(differences[name])}.*"
-        for name in names
-    )
-    command = f"    mxeon render examples/{document.name} --element {names[0]} "
-    return (
-        f"## {document.stem}\n\n{description.removeprefix('<!-- ').removesuffix(' -->')}\n\n"
-        f"{shown}\n\n{command}{options(document)}--output {names[0]}.png\n"
-    )
-
-
 def page():
-    """The gallery as Markdown."""
+    """The gallery as Markdown: documents and their materials, those with the largest difference first."""
     differences = json.loads(DIFFERENCES.read_text(encoding="utf-8"))
-
-    def largest(document):
-        return max(differences[name] or 0.0 for name in materials(document))
-
-    documents = sorted(sorted(EXAMPLES.glob("*.mtlx")), key=largest, reverse=True)
-    return HEAD + "\n".join(section(each, differences) for each in documents)
-
-
-def main():
-    """Write the pictures, unless `--page` asks for the page alone, and the page."""
-    if "--page" not in sys.argv:
-        render()
-    PAGE.write_text(page(), encoding="utf-8")
+    named = {
+        document: sorted(materials(document), key=lambda name: -(differences[name] or 0.0))
+        for document in sorted(EXAMPLES.glob("*.mtlx"))
+    }
+    sections = []
+    for document, names in sorted(
+        named.items(), key=lambda each: -(differences[each[1][0]] or 0.0)
+    ):
+        description = document.read_text(encoding="utf-8").splitlines()[2]
+        shown = "\n\n".join(
+            f"![{name}](images/gallery/{name}.webp)\n\n*{name}: {words(differences[name])}.*"
+            for name in names
+        )
+        scene = "--scene furnace " if "furnace" in document.stem else ""
+        command = f"mxeon render examples/{document.name} --element {names[0]} {scene}--output {names[0]}.png"
+        sections.append(
+            f"## {document.stem}\n\n{description.removeprefix('<!-- ').removesuffix(' -->')}\n\n"
+            f"{shown}\n\n    {command}\n"
+        )
+    return HEAD + "\n".join(sections)
 
 
 if __name__ == "__main__":
-    main()
+    if "--page" not in sys.argv:
+        render()
+    PAGE.write_text(page(), encoding="utf-8")

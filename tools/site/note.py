@@ -5,35 +5,242 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from mxeon.io.files import replacing
-from tools.paper.sheet import METADATA, styled
-from tools.site import DOCS, with_block
-from tools.site.note_measures import (
-    albedo_errors,
-    albedo_figures,
-    energy_rows,
-    fresnel_errors,
-    loss_errors,
-    loss_figures,
-    rounding_figures,
-    sampling_figures,
-    variances,
+from mxeon.models import (
+    burley_albedo_dir,
+    chiang_hair_attenuation,
+    conty_kulla_albedo_dir,
+    eon_brdf,
+    generalized_schlick_albedo_dir,
+    generalized_schlick_transmittance_dir,
+    ggx_albedo_dir,
+    ggx_albedo_dir_anisotropic,
 )
+from mxeon.models.core.quadrature import albedo_dir_quadrature
+from mxeon.models.diffuse.brdf import oren_nayar_brdf
+from mxeon.models.diffuse.formulas import C1, FON_G, fon_loss
+from mxeon.models.diffuse.qon_albedo import qon_albedo_dir
+from mxeon.models.microfacet.albedo import dielectric_albedo_dir
+from mxeon.models.microfacet.defects import fitted_albedo
+from mxeon.models.transmission.schlick import READINGS
+from mxeon.models.transmission.transmittance import dielectric_transmittance_dir
+from tools.fits import fon_loss as loss_fit
+from tools.fits import ggx_albedo as albedo_fit
+from tools.fits import ggx_cosine as cosine_fit
+from tools.fits.minimax import shipped
+from tools.paper.sheet import METADATA, styled
+from tools.paper.weights import EXACT_VARIANCE, moments
+from tools.site import DOCS, with_block
 
 PAGE = DOCS / "note.md"
-EXACT_VARIANCE = 1.7e-10  # bound of the two fits: tools/paper/weights.py
+GLASS, DENSE = 1.5, 3.0
+SCHLICK = (0.04, 0.25, 0.6), (1.0, 0.5, 0.8), 1.0  # color0, color82, color90
+ROUGH = (1.0, 1.0)
+VIEWS = np.linspace(0.02, 1.0, 50)
 
 
-def energy_table():
-    """The table of the page."""
-    head = "| equation | reading | least | largest |\n|---|---|---|---|\n"
+# --- energy that FON loses, in float32 --------------------------------------------------------------
+
+
+def cosines():
+    """Cosines in float32, from 1e-6 to 1."""
+    return np.unique(np.geomspace(1e-6, 1.0, 4001).astype(np.float32))
+
+
+def printed_loss(mu):
+    """1 - E at roughness 1 by Listing 1 of [Portsmouth2025], operation by operation."""
+    one, third = np.float32(1.0), np.float32(2.0 / 3.0)
+    S = np.sqrt(one - mu * mu)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        G = S * (np.arccos(mu) - S * mu) + third * ((S / mu) * (one - S * S * S) - S)
+    A = one / (one + np.float32(C1))
+    return one - (A + A * G / np.float32(np.pi))
+
+
+def quartic_loss(mu):
+    """1 - E at roughness 1 by the quartic, [Portsmouth2025], Eq. (14)."""
+    one, (a, b, c, d) = np.float32(1.0), np.float32(FON_G)
+    m = one - mu
+    G = m * (a + m * (b + m * (c + m * d)))
+    return one - (one + G) / (one + np.float32(C1))
+
+
+def closed_loss(mu):
+    """1 - E at roughness 1 by H in closed form."""
+    one = np.float32(1.0)
+    S = np.sqrt((one - mu) * (one + mu))
+    t = mu / (one + S)
+    bracket = np.float32(C1) - S * t * (np.float32(2.0) + S) / np.float32(3.0 * np.pi)
+    H = mu * t * bracket + np.float32(2.0 / np.pi) * S * np.arctan(t)
+    return H / (one + np.float32(C1))
+
+
+def fitted_loss(mu):
+    """1 - E at roughness 1 by the polynomials of the shaders."""
+    p, q = (np.float32(shipped("eon", "EON", each)) for each in "PQ")
+    return loss_fit.fitted(mu, p, q) / (np.float32(1.0) + np.float32(C1))
+
+
+LOSSES = {
+    "Listing 1": printed_loss,
+    "quartic, Eq. (14)": quartic_loss,
+    "H, closed form": closed_loss,
+    "H, polynomials": fitted_loss,
+}
+
+
+def loss_errors(mu):
+    """Error of 1 - E of each form, and 1 - E."""
+    exact = fon_loss(np.float64(mu)) / (1.0 + C1)
+    return {name: np.float64(each(mu)) - exact for name, each in LOSSES.items()}, exact
+
+
+def loss_figures(stride=1):
+    """Largest errors, absolute, and relative ones of the energy that is lost.
+
+    The paper's forms at 4001 cosines from 1e-6 to 1, ours at each `stride`-th float32 number between.
+    """
+    mu = np.unique(np.geomspace(1e-6, 1.0, 4001).astype(np.float32))
+    errors, exact = loss_errors(mu)
+    listing, quartic, *_ = (np.abs(each) for each in errors.values())
+    found = {
+        "listing": listing.max(),
+        "listing relative": (listing / exact).max(),
+        "quartic": quartic.max(),
+        "quartic excess": -quartic_loss(mu).min(),
+        "quartic relative": (quartic / exact).max(),
+    }
+    low, high = np.float32([1e-6, 1.0]).view(np.int32)
+    ours = []
+    for start in range(low, high + 1, stride << 20):
+        bits = np.arange(start, min(start + (stride << 20), high + 1), stride, dtype=np.int32)
+        mu = bits.view(np.float32)
+        exact = fon_loss(np.float64(mu)) / (1.0 + C1)
+        closed, fitted = (np.abs(each(mu) - exact) for each in (closed_loss, fitted_loss))
+        ours.append(((closed / exact).max(), fitted.max(), (fitted / exact).max()))
+    names = "closed relative", "fitted", "fitted relative"
+    return found | dict(zip(names, np.max(ours, axis=0).tolist(), strict=True))
+
+
+# --- sampling and albedos -----------------------------------------------------------------------------
+
+
+def variances(name, roughness, mu):
+    """Variance of the weight at unit reflectance, by quadrature."""
+    return np.array([moments(name, each, roughness)[1] for each in mu])
+
+
+def albedo_errors(mu, alpha):
+    """Errors of E_ss: of MaterialX's fit and of that in z and alpha."""
+    exact = ggx_albedo_dir(mu, alpha)
+    ours = albedo_fit.fitted(mu, alpha, shipped("ggx_albedo", "GGX_ALBEDO"))
+    return fitted_albedo(mu, alpha, 1.0, 1.0) - exact, ours - exact
+
+
+def fresnel_errors(mu, alpha, ior=GLASS):
+    """Errors of a dielectric's albedo without compensation: three forms.
+
+    F at the view; MaterialX's fit for Schlick's curve with the index's F0; F at the cosine c.
+    """
+    curves = cosine_fit.DIELECTRIC
+    shape = np.sqrt((ior - 1.0) / (ior + 1.0))
+    E, (mean,) = cosine_fit.averages(mu, alpha, [lambda c: curves.reflectance(c, ior)])
+    c = cosine_fit.cosine(curves, mu, alpha, shape, shipped("fresnel_dielectric", curves.prefix))
+    F0 = ((ior - 1.0) / (ior + 1.0)) ** 2
+    exact = E * mean
+    return {
+        "F at the view": E * curves.reflectance(mu, ior) - exact,
+        "MaterialX's fit": fitted_albedo(mu, alpha, F0, 1.0) - exact,
+        "F at the cosine c": E * curves.reflectance(c, ior) - exact,
+    }
+
+
+def largest_figures():
+    """Largest variances over cosines; largest errors of E_ss and of a dielectric's albedo, and means of some."""
+    mu = np.append(0.01, np.linspace(0.05, 1.0, 20))
+    found = {
+        f"{name} {r}": variances(name, r, mu).max()
+        for name in ("cosine", "eon_cltc")
+        for r in (0.01, 1.0)
+    }
+    fine, coarse = (
+        [each.ravel() for each in np.meshgrid(*2 * [np.geomspace(1e-3, 1.0, count)])]
+        for count in (40, 16)
+    )
+    theirs, ours = (np.abs(each) for each in albedo_errors(*fine))
+    at_view, fit, cosine = (np.abs(each) for each in fresnel_errors(*coarse).values())
+    *_, dense = fresnel_errors(*coarse, DENSE).values()
+    return found | {
+        "stock E": theirs.max(),
+        "stock E mean": theirs.mean(),
+        "E": ours.max(),
+        "E mean": ours.mean(),
+        "view": at_view.max(),
+        "stock F": fit.max(),
+        "stock F mean": fit.mean(),
+        "cosine": cosine.max(),
+        "cosine mean": cosine.mean(),
+        "cosine dense": np.abs(dense).max(),
+    }
+
+
+# --- energy of readings -------------------------------------------------------------------------------
+
+
+def energy_rows():
+    """Equation, reading, and the least and the largest share of light that a white surface returns."""
+    mu = VIEWS
+    wo = np.stack([np.sqrt((1.0 - mu) * (1.0 + mu)), 0.0 * mu, mu], axis=-1)
+    E = ggx_albedo_dir(mu, 1.0)
+    R, T = (
+        function(wo, 1.0, ROUGH, GLASS)[:, 0]
+        for function in (dielectric_albedo_dir, dielectric_transmittance_dir)
+    )
+    around = np.concatenate([wo, wo[:, [1, 0, 2]]])  # along the tangent, and the bitangent
+    yield "Microfacet BRDF, F = 1, alpha 1", "as it is", E
+    whole = dielectric_albedo_dir(wo, 1.0, ROUGH, 0.0)  # index 0 reflects everything
+    yield "", "times 1 + F_ss (1 - E_ss) / E_ss", whole
+    yield (
+        "alpha 0.001 and 1",
+        "masking at the mean alpha",
+        ggx_albedo_dir_anisotropic(around, [0.001, 1.0]),
+    )
+    yield "Microfacet BTDF, rough glass, alpha 1", "R compensated, T as printed", R + T
+    single = generalized_schlick_albedo_dir(wo, *SCHLICK, (0.0, 0.0), 5.0, compensate=False)
+    for name, reading in READINGS.items():
+        passed = generalized_schlick_transmittance_dir(wo, *SCHLICK, (0.0, 0.0), 5.0, name)
+        head = "Generalized Schlick BTDF, smooth" if name == "text" else ""
+        yield head, reading.title, single + passed
+    yield "Burley, roughness 1", "as printed", burley_albedo_dir(mu, 1.0, 1.0)
+    yield "Conty-Kulla sheen, roughness 0.05", "as printed", conty_kulla_albedo_dir(mu, 0.05)
+    yield (
+        "Oren-Nayar, sigma 0.3",
+        "full model",
+        albedo_dir_quadrature(oren_nayar_brdf, mu, 1.0, 0.3),
+    )
+    yield "", "QON, of the node's default", qon_albedo_dir(mu, 0.3)
+    yield (
+        "EON, roughness 1",
+        "with energy compensation",
+        albedo_dir_quadrature(eon_brdf, mu, 1.0, 1.0),
+    )
+    hair = chiang_hair_attenuation(wo, 1.55, 0.0).sum(axis=-1)
+    yield "Chiang hair, white", "with the printed factor 1/pi", hair / np.pi
+    yield "", "without it", hair
+
+
+def page(text):
+    """The page with its table as it is now."""
     lines = [
         f"| {name} | {reading} | {np.min(share):.3f} | {np.max(share):.3f} |\n"
         for name, reading, share in energy_rows()
     ]
-    return head + "".join(lines)
+    head = "| equation | reading | least | largest |\n|---|---|---|---|\n"
+    return with_block(text, "energy", head + "".join(lines))
 
 
-# Figures.
+# --- figures ---
+
+
 def exact_figure():
     """Errors of the energy that FON loses, and variance of the samples of EON."""
     figure = Figure(figsize=(7.6, 3.0), layout="constrained")
@@ -79,23 +286,10 @@ def albedo_figure():
     return figure
 
 
-FIGURES = {"note_exact": exact_figure, "note_albedo": albedo_figure}
-
-
-def page(text):
-    """The page with its table as it is now."""
-    return with_block(text, "energy", energy_table())
-
-
-def main():
-    """Draw the figures, and print the numbers of the sentences."""
+if __name__ == "__main__":
     with styled():
-        for name, draw in FIGURES.items():
+        for name, draw in (("note_exact", exact_figure), ("note_albedo", albedo_figure)):
             with replacing(DOCS / "figures" / f"{name}.png") as path:
                 draw().savefig(path, dpi=110, metadata=METADATA["png"])
-    for found in (loss_figures(), rounding_figures(), sampling_figures(), albedo_figures()):
-        print(*(f"{name}: {value:.3g}" for name, value in found.items()), sep="\n")
-
-
-if __name__ == "__main__":
-    main()
+    for name, value in (loss_figures() | largest_figures()).items():
+        print(f"{name}: {value:.3g}")

@@ -9,8 +9,8 @@ python -m tools.site.specification --page      the pages alone, from out/specifi
 import json
 import re
 import sys
+from collections import Counter
 from contextlib import closing
-from pathlib import Path
 
 import MaterialX as mx
 
@@ -22,9 +22,10 @@ from mxeon.conformance.specs import PBRLIB
 from mxeon.conformance.specs.diffuse import DIFFUSE
 from mxeon.io.files import write_text
 from mxeon.shaders.document.policy import DEFAULT
+from tools.site import DOCS
+from tools.site.ledger import SPECIFICATION, figure
 
-FOLDER = Path(__file__).resolve().parents[2] / "docs"
-DATA, PAGE = FOLDER.parent / "out" / "specification.json", FOLDER / "specification.md"
+PAGE, RESULTS = DOCS / "specification.md", DOCS / "results.md"
 # By host: the shader that it runs.
 HOSTS = {
     "gl": "GLSL",
@@ -60,7 +61,6 @@ SUMMARY = (
     ),
     ("output", "blackbody", "a fit beyond its range"),
 )
-RESULTS = FOLDER / "results.md"
 SUMMARY_HEAD = (
     "| check | eonlib | stock MaterialX 1.39.5 | what stock computes |\n|---|---|---|---|\n"
 )
@@ -70,9 +70,8 @@ HEAD = "| check | mode | tolerance | stock | eonlib | stock's defect |\n|---|---
 def measured(host):
     """Where a host ran, and its results of the nodes with both libraries, as rows of text."""
     tasks = make_plan((), (host,), LIBRARIES, nodes=NODES).tasks
-    chosen = [task for task in tasks if task.host == host and task.check != "curve"]
     with closing(Judge(DEFAULT)) as judge:
-        findings = [judge.work(task) for task in chosen]
+        findings = [judge.work(t) for t in tasks if t.host == host and t.check != "curve"]
     [device] = findings[0].hosts
     results = [
         {
@@ -80,7 +79,7 @@ def measured(host):
             "subject": each.subject,
             "library": each.library,
             "verdict": each.verdict,
-            "error": _figure(each),
+            "error": "" if each.error is None else figure(each),
             "allowed": "" if each.tolerance is None else f"{each.tolerance:.2g} {each.unit}",
         }
         for finding in findings
@@ -90,131 +89,111 @@ def measured(host):
     return {"place": place, "results": results}
 
 
-def _figure(result):
-    """The error of a result in print; "" where nothing ran."""
-    if result.error is None:
-        return ""
-    return f"{result.error:.0f}" if result.unit == "values" else f"{result.error:.2g}"
-
-
 def page(text, data):
     """The page, with its tables from the data of all hosts."""
-    return BLOCK.sub(lambda found: found[1] + table(found[2], data) + found[3], text)
+
+    def table(name):
+        if name == "targets":
+            return targets(data)
+        results = data[HOST]["results"]
+        return summary(results) if name == "summary" else node_table(name, results)
+
+    return BLOCK.sub(lambda found: found[1] + table(found[2]) + found[3], text)
 
 
-def table(name, data):
-    """The table of a node, the summary, or the table of every target."""
-    if name == "targets":
-        return targets(data)
-    return summary(data[HOST]) if name == "summary" else node_table(name, data[HOST])
+def mode_of(subject):
+    """The mode of a subject, without its node; "" where the node has one alone."""
+    node, _, mode = subject.partition(", ")
+    if sum(row.node == node for row in JUDGED) == 1:
+        return ""
+    return mode.removeprefix("scatter_").removeprefix("mode ")
 
 
-def summary(data):
+def summary(results):
     """A table of what stock computes in place of the specification."""
-    errors = {(r["check"], r["subject"], r["library"]): r["error"] for r in data["results"]}
+    errors = {(r["check"], r["subject"], r["library"]): r["error"] for r in results}
     lines = []
     for check, subject, words in SUMMARY:
         stock, eonlib = (errors.get((check, subject, each), "") for each in LIBRARIES)
-        name = f"`{subject.split(',')[0]}`{_mode(subject) and ', ' + _mode(subject)}, `{check}`"
+        mode = mode_of(subject)
+        name = f"`{subject.split(',')[0]}`{mode and ', ' + mode}, `{check}`"
         lines.append(f"| {name} | {eonlib} | {stock} | {words} |\n")
     return "\n" + SUMMARY_HEAD + "".join(lines)
 
 
-def node_table(node, data):
-    """What does not pass of a node with either library, and what passes with both."""
+def node_table(node, results):
+    """What does not pass of a node with either library, with links to stock's defects, and what passes with both."""
     rows = {}
-    for each in data["results"]:
+    for each in results:
         if each["subject"].split(",")[0] == node:
             rows.setdefault((each["check"], each["subject"]), {})[each["library"]] = each
     lines, passed = [], {}
     for (check, subject), found in rows.items():
-        if all(found.get(library, {}).get("verdict") == PASSED for library in LIBRARIES):
-            passed.setdefault(check, []).append(_mode(subject))
-        else:
-            lines.append(_line(check, subject, found))
-    words = ", ".join(f"`{check}`{_modes(modes, rows)}" for check, modes in passed.items())
+        both = [found.get(each) for each in LIBRARIES]
+        if all(each and each["verdict"] == PASSED for each in both):
+            passed.setdefault(check, []).append(mode_of(subject))
+            continue
+        # An error and its verdict; a dash where the check was not asked.
+        errors = [
+            ", ".join(filter(None, (each["error"], each["verdict"]))) if each else "-"
+            for each in both
+        ]
+        allowed = next((each["allowed"] for each in both if each and each["allowed"]), "")
+        pages = dict.fromkeys(
+            issue.page
+            for issue in ISSUES
+            if issue.host == HOST and (check, subject) in (*issue.rows, *issue.implied)
+        )
+        links = (
+            f"[{each.partition('_')[2].replace('_', ' ')}](upstream/{each}.md)" for each in pages
+        )
+        cells = check, mode_of(subject) or "all", allowed, *errors, ", ".join(links)
+        lines.append(f"| {' | '.join(cells)} |\n")
+    # The modes that pass, where those are not all.
+    everything = {mode_of(subject) for _, subject in rows}
+    words = ", ".join(
+        f"`{check}`"
+        + (set(modes) != everything) * f" ({', '.join(each or 'alone' for each in modes)})"
+        for check, modes in passed.items()
+    )
     parts = [HEAD + "".join(lines)] if lines else []
     parts += [f"Passed with both: {words}.\n"] if words else []
     return "\n" + "\n".join(parts)
 
 
-def _line(check, subject, found):
-    """A row of a table."""
-    results = [found.get(each) for each in LIBRARIES]
-    errors = [_words(each) for each in results]
-    allowed = next((each["allowed"] for each in results if each and each["allowed"]), "")
-    cells = check, _mode(subject) or "all", allowed, *errors, _links(check, subject)
-    return f"| {' | '.join(cells)} |\n"
-
-
-def _words(result):
-    """An error and its verdict; a dash where the check was not asked."""
-    if not result:
-        return "-"
-    return ", ".join(filter(None, (result["error"], result["verdict"])))
-
-
-def _mode(subject):
-    """The mode of a subject, without its node; "" where the node has one alone."""
-    if sum(row.node == subject.split(",")[0] for row in JUDGED) == 1:
-        return ""
-    return subject.partition(", ")[2].removeprefix("scatter_").removeprefix("mode ")
-
-
-def _modes(modes, rows):
-    """The modes that pass, where those are not all."""
-    everything = {_mode(subject) for _, subject in rows}
-    listed = ", ".join(each or "alone" for each in modes)
-    return "" if set(modes) == everything else f" ({listed})"
-
-
-def _links(check, subject):
-    """Links to the pages on stock's failures of a check."""
-    pages = [
-        issue.page
-        for issue in ISSUES
-        if issue.host == HOST and (check, subject) in (*issue.rows, *issue.implied)
-    ]
-    names = {each: each.partition("_")[2].replace("_", " ") for each in pages}
-    return ", ".join(f"[{name}](upstream/{each}.md)" for each, name in names.items())
-
-
 def targets(data):
-    """How many checks of each node pass on each host, with stock MaterialX / with eonlib, of all."""
+    """How many checks of each node pass, or differ where the text permits it, on each host, with stock / eonlib."""
     hosts = [host for host in HOSTS if host in data]
     lines = [f"- `{host}`: {HOSTS[host]}, {data[host]['place']}\n" for host in hosts]
     lines.append(f"\n| node | {' | '.join(hosts)} |\n|{'---|' * (1 + len(hosts))}\n")
     for node in NODES:
-        rows = {
-            host: [each for each in data[host]["results"] if each["subject"].split(",")[0] == node]
-            for host in hosts
-        }
-        lines.append(f"| {node} | {' | '.join(map(_passing, rows.values()))} |\n")
+        cells = []
+        for host in hosts:
+            shares = []
+            for library in LIBRARIES:
+                counts = Counter(
+                    each["verdict"]
+                    for each in data[host]["results"]
+                    if each["library"] == library and each["subject"].split(",")[0] == node
+                )
+                asked, right = counts.total() - counts[NOT_RUN], counts[PASSED] + counts[DIFFERS]
+                words = "all" if right == asked else f"{right} of {asked}"
+                shares.append(words if asked else "-")
+            cells.append("" if shares == ["-", "-"] else " / ".join(shares))
+        lines.append(f"| {node} | {' | '.join(cells)} |\n")
     return "\n" + "".join(lines)
 
 
-def _passing(results):
-    """How many results of a node pass or differ where the text permits it; "" if none was asked."""
-    cells = []
-    for library in LIBRARIES:
-        verdicts = [each["verdict"] for each in results if each["library"] == library]
-        asked = len(verdicts) - verdicts.count(NOT_RUN)
-        right = verdicts.count(PASSED) + verdicts.count(DIFFERS)
-        cells.append("all" if asked and right == asked else f"{right} of {asked}" if asked else "-")
-    return "" if cells == ["-", "-"] else " / ".join(cells)
-
-
-def main():
+def main(words):
     """Write the pages, and the data that they show unless --page is given."""
-    words = sys.argv[1:]
-    data = json.loads(DATA.read_text(encoding="utf-8")) if DATA.exists() else {}
+    data = json.loads(SPECIFICATION.read_text(encoding="utf-8")) if SPECIFICATION.exists() else {}
     for host in [] if words == ["--page"] else words or HOSTS:
         data[host] = measured(host)
-        DATA.parent.mkdir(exist_ok=True)
-        write_text(DATA, json.dumps(data))
+        SPECIFICATION.parent.mkdir(exist_ok=True)
+        write_text(SPECIFICATION, json.dumps(data))
     for file in (PAGE, RESULTS):
         write_text(file, page(file.read_text(encoding="utf-8"), data))
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

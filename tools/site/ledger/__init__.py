@@ -19,7 +19,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from mxeon.conformance.results import known_issues
+from mxeon.conformance.results import Result, known_issues
 from tools.site import DOCS, ROOT
 
 FOLDER, PATCHES = DOCS / "upstream", ROOT / "patches"
@@ -141,6 +141,11 @@ def _shortest_change(patch: str) -> tuple[str, str, str]:
             old, new = ("".join(line[1:] for line in lines if line[0] != sign) for sign in "+-")
             changes.append((file, old, new))
     return min(changes, key=lambda change: len(change[1] + change[2]))
+
+
+def figure(result: Result) -> str:
+    """The error of a result in print."""
+    return f"{result.error:.0f}" if result.unit == "values" else f"{result.error:.2g}"
 
 
 def pairs(subjects: Subjects) -> list[tuple[str, str]]:

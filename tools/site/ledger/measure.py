@@ -15,7 +15,7 @@ from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import ALL, make_plan
 from mxeon.errors import NotRun
 from mxeon.shaders.document.policy import DEFAULT
-from tools.site.ledger import measured, pages, write_measured
+from tools.site.ledger import figure, measured, pages, write_measured
 
 CHECKED = tuple(each for each in ISSUES if each.rows)  # issues whose pages have a table of checks
 
@@ -51,7 +51,7 @@ def record(issue: Issue, results: Sequence[Result], place: str) -> dict[str, Any
         [
             each.check,
             each.subject,
-            f"{each.error:.0f}" if each.unit == "values" else f"{each.error:.2g}",
+            figure(each),
             f"{each.tolerance:.2g}",
             each.unit,
         ]
