@@ -121,6 +121,8 @@ WRONG = {
          "NaN or infinity with the viewer on the horizon"),
     ),
     "conductor_bsdf": (
+        ("genglsl/conductor_bsdf.glsl", "MicrofacetLobe lobe = microfacet_lobe(", "extinction = min(extinction, vec3(6.0));\n        OLD",
+         "domain", "the value is wrong with extinction 10, 100"),
         (FACETS, "vec3 X = normalize(lobe.X - dot(lobe.X, lobe.N) * lobe.N);\n    vec3 Y",
          "vec3 X = lobe.X - dot(lobe.X, lobe.N) * lobe.N;\n    vec3 Y", "states",
          "sums are wrong, all with a tangent that leans and is not of length 1"),
@@ -147,6 +149,8 @@ WRONG = {
          "fault: the occlusion is ignored (rms "),
     ),
     "sheen_bsdf, mode conty_kulla": (
+        ("genglsl/sheen_bsdf.glsl", "mode == 0 ? 1e-4 : 0.01", "0.01", "domain",
+         "the value is wrong with roughness 0.001, 0.0001"),
         ("mx_sheen_bsdf.glsl", "mode == 0", "mode != 0", "environment", "best match: Zeltner sheen (rms "),
     ),
     "sheen_bsdf, mode zeltner": (
@@ -192,6 +196,8 @@ WRONG = {
          "all with two lobes that differ in extinction or two lobes that differ in ior"),
     ),
     "dielectric_bsdf, thin film": (
+        (FILM, "2.0e-9 * fd.tf_thickness", "2.0e-9 * min(fd.tf_thickness, 2000.0)", "domain",
+         "the value is wrong with thinfilm_thickness 2500, 3000, 6000, 100000"),
         (FILM, "orders = vec3(0.0)", "orders = vec3(0.01)", "film_limit", ""),
         (FILM, "clamp(0.5 * mean - orders, 0.0, 1.0)", "mean / step(1.0, fd.tf_ior)", "film_finite", ""),
     ),

@@ -70,6 +70,8 @@ class Input:
     materials: tuple[ArrayLike, ...] = ()
     variable: str = ""  # that a host sets instead, where the default is a variable
     default: ArrayLike = 1.0  # in a document that has to set it
+    beyond: tuple[float, ...] = ()  # values outside the range that hosts pass, too
+    ends: tuple[float, float] = (-np.inf, np.inf)  # beyond which the node takes the nearest value
 
 
 def color(name: str, *materials: ArrayLike, edges: tuple[float, ...] = (0.0, 1e-3, 1.0)) -> Input:

@@ -111,6 +111,11 @@ class PbrSpec(RowSpec, LobeSpec):
         return tuple(inputs[name] for name in self.row.inputs)
 
     @property
+    def bounded(self) -> tuple[Input, ...]:
+        """The inputs of which values outside their ranges are asked, too."""
+        return tuple(each for each in self.drawn if each.beyond)
+
+    @property
     def materials(self) -> tuple[Values, ...]:
         return materials(WEIGHT, *self.drawn)
 

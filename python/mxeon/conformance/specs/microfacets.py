@@ -23,7 +23,17 @@ from mxeon.conformance.samples import (
 from mxeon.conformance.spec import Input, color
 from mxeon.conformance.specs.lobes import BURLEY_VALUE, NORMAL, WEIGHT, PbrSpec, lobe_errors
 from mxeon.conformance.specs.sheen import FIT_COSINE
-from mxeon.conformance.tolerance import Term, Tolerance, absolute, given, largest, roundings, sum_of
+from mxeon.conformance.tolerance import (
+    SCALED,
+    Term,
+    Tolerance,
+    absolute,
+    given,
+    largest,
+    roundings,
+    scaled,
+    sum_of,
+)
 from mxeon.models.nodes.microfacets import MICROFACET_NODES
 from mxeon.models.nodes.transmissions import TRANSMISSION_NODES, TRANSMISSIONS, Transmission
 from mxeon.models.sampling.visible_normals import ggx_pdf, ggx_sample
@@ -36,7 +46,15 @@ LEAST_INDEX = 1.05  # above 1, to which shaders fit their averages: tools/fits/g
 LEAST_TANGENT_ALPHA = 0.05  # of values whose tangent is turned: what rounds is divided by it
 LEAST_TANGENT_COSINE = 0.1  # of the same
 
-INDEX = Input("ior", low=0.5, high=3.0, edges=(1.0, 1.5, 3.0), change=1.6, materials=(1.5, 1.2))
+INDEX = Input(
+    "ior",
+    low=0.5,
+    high=3.0,
+    edges=(1.0, 1.5, 3.0),
+    change=1.6,
+    materials=(1.5, 1.2),
+    beyond=(0.0, 0.2, 4.0, 10.0, 100.0),
+)
 FILM: Values = {"thinfilm_thickness": 400.0}
 FACETS = (
     Input(
@@ -49,10 +67,27 @@ FACETS = (
         logarithmic=True,
         equal=True,
         materials=((0.8, 0.8), (0.4, 0.4)),
+        beyond=(1e-4, 2.0),
+        ends=(0.0, 1.0),
     ),
     Input("retroreflective", "boolean", change=True),
-    Input("thinfilm_thickness", high=1000.0, edges=(0.0, 1.0, 100.0), change=400.0),
-    Input("thinfilm_ior", low=1.0, high=2.5, edges=(1.0, 1.5), change=2.0, needs=FILM),
+    Input(
+        "thinfilm_thickness",
+        high=1000.0,
+        edges=(0.0, 1.0, 100.0),
+        change=400.0,
+        beyond=(1500.0, 2500.0, 3000.0, 6000.0, 1e5),
+    ),
+    Input(
+        "thinfilm_ior",
+        low=1.0,
+        high=2.5,
+        edges=(1.0, 1.5),
+        change=2.0,
+        needs=FILM,
+        beyond=(0.5, 3.0, 5.0),
+        ends=(1.0, np.inf),
+    ),
     NORMAL,
     Input("tangent", "vector3", change=(0.6, 0.8, 0.0), needs={"roughness": (0.1, 0.4)}),
 )
@@ -65,6 +100,7 @@ INPUTS = {
             type="color3",
             change=(0.9, 1.1, 1.6),
             materials=((0.2, 0.9, 1.1), (1.5, 0.6, 2.0)),
+            beyond=(0.05, 5.0, 10.0),
         ),
         Input(
             "extinction",
@@ -74,6 +110,7 @@ INPUTS = {
             (0.2, 3.0),
             (0.9, 2.1, 3.6),
             materials=((3.9, 2.5, 1.8), (0.5, 1.0, 4.0)),
+            beyond=(0.0, 10.0, 100.0),
         ),
         *FACETS,
     ),
@@ -82,7 +119,15 @@ INPUTS = {
         color("color0", (0.1, 0.4, 0.9), (0.8, 0.5, 0.2)),
         color("color82", (0.5, 0.7, 0.8), (1.0, 1.0, 1.0)),
         color("color90", (0.9, 0.8, 0.6), (1.0, 1.0, 1.0)),
-        Input("exponent", low=1.0, high=8.0, edges=(1.0, 5.0), change=2.5, materials=(5.0, 3.0)),
+        Input(
+            "exponent",
+            low=1.0,
+            high=8.0,
+            edges=(1.0, 5.0),
+            change=2.5,
+            materials=(5.0, 3.0),
+            beyond=(0.5, 10.0, 20.0, 100.0),
+        ),
         *FACETS,
     ),
 }
@@ -144,6 +189,9 @@ FRAME = sum_of(
         "of two directions, five each, over twice the least cosine and the least alpha",
     )
 )
+BARE = given(
+    0.07, "albedo", "F_ss in three cosines, which miss total reflection without extinction"
+)
 ERRORS = {
     "picture albedo": sum_of(*COMPENSATION, sum_over(256), unit="albedo", metric=absolute),
     "anisotropic_albedo": sum_of(*COMPENSATION, sum_over(1024), unit="albedo"),
@@ -157,6 +205,26 @@ ERRORS = {
             "of two directions, two each, over twice the least cosine and the least alpha",
         )
     ),
+    # Where a fit ends, by the largest error that was found there.
+    **{
+        f"throughput with ior {index}": given(
+            0.17, "albedo", "the fit of a cosine, which ends at index 3"
+        )
+        for index in (4, 10, 100)
+    },
+    **{
+        f"throughput with exponent {exponent}": given(
+            0.16, "albedo", "the fit of a cosine, which ends at exponent 10"
+        )
+        for exponent in (20, 100)
+    },
+    "throughput with exponent 0.5": given(
+        0.06, "albedo", "the fit of a cosine, which begins at exponent 1"
+    ),
+    "value with extinction 0": given(
+        0.08, SCALED, "F_ss in three cosines, which miss total reflection", scaled
+    ),
+    "albedo with extinction 0": BARE,
     "dip": sum_of(HALF_DIP, unit="albedo", metric=absolute),
     "denser": sum_of(INSIDE, ESS, unit="albedo", metric=absolute),
 }

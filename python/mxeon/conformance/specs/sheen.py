@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The sheen node: Zeltner's, whose value and albedo are closed forms, and Conty and Kulla's, with fits."""
 
+from dataclasses import replace
 from functools import lru_cache
 from typing import ClassVar
 
@@ -22,7 +23,13 @@ from mxeon.conformance.tolerance import ROUNDING, Term, Tolerance, absolute, rou
 from mxeon.hosts.base import Host
 from mxeon.models.nodes import node
 
-INPUTS = (WEIGHT, COLOR, ROUGHNESS, NORMAL)
+INPUTS = (WEIGHT, COLOR, replace(ROUGHNESS, beyond=(1e-3, 1e-4, 2.0), ends=(1e-4, 1.0)), NORMAL)
+ZELTNER_INPUTS = (
+    WEIGHT,
+    COLOR,
+    replace(ROUGHNESS, beyond=(0.0, 1e-3, 2.0), ends=(0.01, 1.0)),
+    NORMAL,
+)
 FIT_COSINE = 1e-4  # least cosine of the domain of the fits
 EXPONENT = 1.0 / LEAST_SHEEN  # largest of a sine
 
@@ -71,7 +78,9 @@ def _error(host: Host) -> float:
 
 
 ZELTNER = PbrSpec.of(
-    node("zeltner"), INPUTS, lobe_errors(ZELTNER_VALUE, CLOSED_ALBEDO, FLAT_FRAME, quadrature=1e-8)
+    node("zeltner"),
+    ZELTNER_INPUTS,
+    lobe_errors(ZELTNER_VALUE, CLOSED_ALBEDO, FLAT_FRAME, quadrature=1e-8),
 )
 CONTY_KULLA = FittedSheen.of(
     node("conty_kulla"),

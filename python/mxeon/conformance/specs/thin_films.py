@@ -18,8 +18,16 @@ from mxeon.conformance.samples import (
     rounded,
     special_directions,
 )
+from mxeon.conformance.spec import Input
 from mxeon.conformance.specs.lobes import PbrSpec
-from mxeon.conformance.specs.microfacets import ESS_FIT, FRAME, INPUTS, SEEN_ESS, FacetSpec, simple
+from mxeon.conformance.specs.microfacets import (
+    ESS_FIT,
+    FRAME,
+    INPUTS,
+    SEEN_ESS,
+    FacetSpec,
+    simple,
+)
 from mxeon.conformance.specs.microfacets import VALUE as FACET_VALUE
 from mxeon.conformance.tolerance import (
     Term,
@@ -130,6 +138,10 @@ class FilmSpec(FacetSpec):
     counts: Counts = COUNTS
 
     least_cosine: ClassVar[float] = LEAST_FACET
+
+    @property
+    def bounded(self) -> tuple[Input, ...]:
+        return tuple(each for each in super().bounded if each.name.startswith("thinfilm"))
 
     def engine(self, quantity: str, host: Host) -> tuple[Term, ...]:
         if quantity != "film_curve":

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Inputs outside the ranges that other checks draw from, as far as hosts pass them."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from mxeon.conformance.case import Case
+from mxeon.conformance.check import check, scale
+from mxeon.conformance.checks.energy import is_layer
+from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.samples import Batch
+from mxeon.conformance.spec import Input, Spec
+from mxeon.conformance.specs.lobes import PbrSpec
+from mxeon.conformance.specs.microfacets import TransmissionSpec
+from mxeon.conformance.tolerance import Compared, Tolerance, absolute, given, scaled
+from mxeon.errors import NotRun
+
+PAIRS = 24  # of each value
+TOLERANCES = given(1.0, "tolerances", "the tolerance of each quantity")
+
+
+class Beyond(NamedTuple):
+    """A quantity of a node with a value of an input that lies outside its range."""
+
+    quantity: str
+    input: Input
+    value: float
+    compared: Compared  # divided by the largest error that passes
+
+
+def is_bounded(spec: Spec) -> bool:
+    """Whether a lobe has inputs outside whose ranges it is asked."""
+    if not isinstance(spec, PbrSpec) or isinstance(spec, TransmissionSpec):
+        return False
+    return bool(spec.bounded)
+
+
+def quantities(case: Case, batch: Batch, right: Batch) -> Iterator[tuple[str, Compared]]:
+    """Values, albedos and throughputs, each by its name, against those that are expected of other inputs."""
+    albedo = case.expected_albedo(right)
+    yield "value", Compared(batch, case.direct(batch), case.expected(right))
+    yield "albedo", Compared(batch, case.albedo(batch), albedo)
+    if is_layer(case.spec):
+        passed = case.throughput(batch, "direct")
+        yield "throughput", Compared(batch, passed, np.maximum(1.0 - albedo, 0.0))
+
+
+def outside(case: Case) -> Iterator[Beyond]:
+    """Each quantity of a few pairs for each value, but for what is wrong inside the ranges already."""
+    spec, views = case.of(PbrSpec), case.samples.views[0]
+    mirrored = np.arange(len(views.wo))[:, np.newaxis] % 2 == 1  # where microfacets reflect most
+    views = replace(views, wi=np.where(mirrored, views.wo * [-1.0, -1.0, spec.side], views.wi))
+    plain = replace(case, outputs=lambda batch, values: values)
+    wrong = {
+        name
+        for name, (_, measured, expected) in quantities(plain, views, views)
+        if scaled(measured, expected).max() > _tolerance(case, name).value
+    }
+    if len(wrong) == 2 + is_layer(spec):
+        raise NotRun(f"{case.host.name}: {spec.title} is wrong inside its inputs' usual ranges")
+    batch = views.first(PAIRS)
+    for each in spec.bounded:
+        for value in each.beyond:
+            lit, right = (
+                batch.altered(**{each.name: np.full_like(batch.inputs[each.name], number)})
+                for number in (value, float(np.clip(value, *each.ends)))
+            )
+            for name, (_, measured, expected) in quantities(case, lit, right):
+                if name not in wrong:
+                    tolerance = _tolerance(case, name, f" with {each.name} {value:g}")
+                    scale = tolerance.value * tolerance.scale(expected)
+                    compared = Compared(lit, measured / scale, expected / scale)
+                    yield Beyond(name, each, value, compared)
+
+
+def _tolerance(case: Case, name: str, place: str = "") -> Tolerance:
+    tolerance = case.tolerance(f"{name}{place}") or case.tolerance(name)
+    assert tolerance is not None, f"{case.spec.title} has no {name}"
+    return tolerance
+
+
+def diagnose(case: Case) -> Diagnosis:
+    """The inputs, and the values of each, with which a quantity is wrong."""
+    wrong: dict[tuple[str, str], list[float]] = {}
+    for each in outside(case):
+        if absolute(*each.compared[1:]).max() > TOLERANCES.value:
+            wrong.setdefault((each.input.name, each.quantity), []).append(each.value)
+    texts = (
+        f"the {quantity} is wrong with {name} {', '.join(f'{value:g}' for value in values)}"
+        for (name, quantity), values in wrong.items()
+    )
+    return Diagnosis("; ".join(texts))
+
+
+@check(
+    "domain",
+    "Inputs outside their usual range have the value, the albedo and the throughput of the model, too.",
+    is_bounded,
+    scale("values are 10 % too large", 1.1),
+    tolerance=TOLERANCES,
+    pairs=True,
+    lit=True,
+    diagnose=diagnose,
+)
+def domain(case: Case) -> Iterator[Compared]:
+    return (each.compared for each in outside(case))
