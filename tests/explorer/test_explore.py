@@ -16,9 +16,8 @@ from mxeon.errors import MISUSE, NotRun
 from mxeon.errors import PASSED as PASSED_STATUS
 from mxeon.explorer import PARAGRAPH, TEXTS, documents, page, page_data
 from mxeon.explorer.data import Models
-from mxeon.explorer.diagnosis import measured_models
 from mxeon.explorer.documents import document_sources
-from mxeon.explorer.sources import RENDERERS
+from mxeon.explorer.sources import RENDERERS, measured_models
 from mxeon.hosts.gl import Host
 from mxeon.hosts.textures import read_texture
 from mxeon.io.images import write_image
@@ -307,7 +306,7 @@ def test_without_the_host_no_material_is_called_a_model(monkeypatch):
     def missing(name):
         raise NotRun("no driver")
 
-    monkeypatch.setattr("mxeon.explorer.diagnosis.open_host", missing)
+    monkeypatch.setattr("mxeon.explorer.sources.open_host", missing)
     measured_models.cache_clear()
     try:
         data = page_data()

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from mxeon.explorer.lobes import MATERIALS
+from mxeon.explorer.sources import MATERIALS
 from mxeon.models.hair import DEFAULTS, chiang_hair_bcsdf
 from mxeon.shaders.generation import generate
 from tests.explorer.stage import frame, opened_stage, side, towards, view

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from mxeon.explorer import page, page_data
-from mxeon.explorer.lobes import MATERIALS
+from mxeon.explorer.sources import MATERIALS
 from mxeon.io.files import write_text
 from tests.explorer.browser import DRAWN, opened, show, until
 

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from mxeon.explorer.documents import document_sources
-from mxeon.explorer.lobes import MATERIALS
 from mxeon.explorer.references import SEEN, WI, WO, pairs, reference_of, views
+from mxeon.explorer.sources import MATERIALS
 from mxeon.models import eon_brdf
 from mxeon.models.diffuse.albedo import eon_albedo_dir
 from mxeon.shaders.document.notes import DocumentWarning

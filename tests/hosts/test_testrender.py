@@ -17,8 +17,8 @@ from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import make_plan
 from mxeon.errors import InputError, NotRun, ShaderError
 from mxeon.hosts.base import RendererWarning
-from mxeon.hosts.testrender import programs
-from mxeon.hosts.testrender.renderer import Host
+from mxeon.hosts.osl import engines as programs
+from mxeon.hosts.testrender import Host
 from mxeon.models import eon_brdf
 from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.nodes import document_text, input_text, node_text

@@ -68,7 +68,7 @@ from mxeon.hosts import front_lit_only, host_row
 from mxeon.hosts.base import Host
 from mxeon.hosts.calls import LIT
 from mxeon.hosts.pairs import DISTANCE, JITTER, LEAST_SINE, PIXEL, perpendicular, visible
-from mxeon.hosts.testrender.scenes import EYE, NEAREST
+from mxeon.hosts.testrender_scene import EYE, NEAREST
 from mxeon.models.nodes.bsdl import BSDL_VARIANTS
 from mxeon.models.nodes.cycles import CYCLES_VARIANTS
 from mxeon.models.nodes.node import Scattering, Variant

@@ -16,11 +16,9 @@ import MaterialX as mx
 import mxeon
 from mxeon.conformance.results import Result
 from mxeon.explorer.data import PageData, ShaderSource
-from mxeon.explorer.diagnosis import measured_models
 from mxeon.explorer.documents import MEANT, document_sources
 from mxeon.explorer.references import pairs, views
-from mxeon.explorer.sources import model_sources, node_sources, run_sources
-from mxeon.explorer.stills import stills
+from mxeon.explorer.sources import measured_models, model_sources, node_sources, run_sources, stills
 from mxeon.shaders.functions import source
 
 __all__ = ["document_sources", "page", "page_data"]

@@ -1,19 +1,199 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The materials of every page: the models, the renderers' variants, and lobes of both libraries."""
+"""What every page has: the models, the renderers' variants, lobes of both libraries, and stills."""
 
-from collections.abc import Iterable
-from dataclasses import replace
+from base64 import b64encode
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from itertools import chain
+from pathlib import Path
+from typing import TypeAlias
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mxeon.conformance.backends import Evaluating
+from mxeon.conformance.case import Case, make_case
+from mxeon.conformance.diagnosis.candidates import INEXACT
+from mxeon.conformance.diagnosis.comparisons import ALBEDO, VALUE
 from mxeon.conformance.results import FAILED, Result
-from mxeon.explorer.data import ModelSource, ShaderSource
+from mxeon.conformance.results.known_issues import ISSUES
+from mxeon.conformance.specs.diffuse import DIFFUSE
+from mxeon.conformance.specs.diffuse import VALUE as VALUE_ERROR
+from mxeon.errors import NotRun
+from mxeon.explorer.data import Models, ModelSource, ShaderSource, Still
 from mxeon.explorer.documents import LIBRARIES, shader_source
-from mxeon.explorer.lobes import MATERIALS, ComparedMaterial
 from mxeon.explorer.references import reference_of
+from mxeon.hosts import open_host
+from mxeon.io.images import write_png
+from mxeon.jobs.signals import temporary_folder
 from mxeon.models.table import KNOWN_DEFECTS, MODELS, model
 from mxeon.shaders.generation import generate
-from mxeon.shaders.nodes import FLAG
+from mxeon.shaders.nodes import (
+    FLAG,
+    OREN_NAYAR,
+    document_text,
+    input_types,
+    material_text,
+    node_text,
+)
+from mxeon.shaders.scene import VIEW, local_directions, sphere
+
+Inputs: TypeAlias = Mapping[str, ArrayLike]
+
+ROUGH: Inputs = {"roughness": (0.5, 0.5)}
+FILM: Inputs = {"thinfilm_thickness": 420.0, "thinfilm_ior": 1.4}
+COPPER: Inputs = {"ior": (0.216, 0.905, 1.137), "extinction": (3.67, 2.59, 2.43), **ROUGH}
+BRONZE: Inputs = {"color0": (0.85, 0.55, 0.25), "color82": (0.9, 0.8, 0.7), **ROUGH}
+GLASS: Inputs = {"ior": 1.5, "scatter_mode": "R", **ROUGH}
+VELVET: Inputs = {"color": (0.75, 0.12, 0.2), "roughness": 0.4}
+LACQUER = """    <input name="base_color" type="color3" value="0.55, 0.12, 0.08" />
+    <input name="base_diffuse_roughness" type="float" value="0.8" />
+    <input name="specular_roughness" type="float" value="0.5" />
+    <input name="coat_weight" type="float" value="0.5" />
+    <input name="coat_roughness" type="float" value="0.3" />
+    <input name="fuzz_weight" type="float" value="0.4" />
+    <input name="fuzz_color" type="color3" value="0.9, 0.75, 0.6" />
+"""
+
+
+@dataclass(frozen=True)
+class ComparedMaterial:
+    """A material that both libraries have."""
+
+    key: str  # its name in addresses
+    title: str
+    text: str
+    subjects: tuple[str, ...] = field(default=())  # what checks call its nodes
+
+    @property
+    def pages(self) -> tuple[str, ...]:
+        """Names of the pages on what MaterialX's own GLSL does wrong with it."""
+        pages = [
+            issue.page
+            for issue in ISSUES
+            if "webgl" in (issue.host, *issue.also)
+            and issue.library == "stock"
+            and {subject for _, subject in (*issue.rows, *issue.implied)} & set(self.subjects)
+        ]
+        return tuple(dict.fromkeys(pages))
+
+
+def _lobe(key: str, title: str, category: str, inputs: Inputs, *subjects: str) -> ComparedMaterial:
+    """A material that is one BSDF node."""
+    return ComparedMaterial(
+        key, title, material_text(category, inputs, types=input_types(category)), subjects
+    )
+
+
+MATERIALS = (
+    _lobe(
+        "shader",
+        "Rough diffuse",
+        OREN_NAYAR,
+        {"color": (0.8, 0.4, 0.1), "roughness": 1.0, FLAG: True},
+        f"{OREN_NAYAR}, {FLAG} true",
+        f"{OREN_NAYAR}, {FLAG} false",
+    ),
+    _lobe(
+        "lobe/sheen",
+        "Sheen, Conty-Kulla",
+        "sheen_bsdf",
+        {**VELVET, "mode": "conty_kulla"},
+        "sheen_bsdf, mode conty_kulla",
+    ),
+    _lobe(
+        "lobe/sheen_zeltner",
+        "Sheen, Zeltner",
+        "sheen_bsdf",
+        {**VELVET, "mode": "zeltner"},
+        "sheen_bsdf, mode zeltner",
+    ),
+    _lobe(
+        "lobe/dielectric",
+        "Dielectric",
+        "dielectric_bsdf",
+        GLASS,
+        "dielectric_bsdf, scatter_mode R",
+    ),
+    _lobe("lobe/conductor", "Conductor", "conductor_bsdf", COPPER, "conductor_bsdf"),
+    _lobe(
+        "lobe/schlick",
+        "Schlick",
+        "generalized_schlick_bsdf",
+        {**BRONZE, "scatter_mode": "R"},
+        "generalized_schlick_bsdf, scatter_mode R",
+    ),
+    _lobe(
+        "lobe/film_dielectric",
+        "Film on dielectric",
+        "dielectric_bsdf",
+        {**GLASS, **FILM},
+        "dielectric_bsdf, thin film",
+    ),
+    _lobe(
+        "lobe/film_conductor",
+        "Film on conductor",
+        "conductor_bsdf",
+        {**COPPER, **FILM},
+        "conductor_bsdf, thin film",
+    ),
+    _lobe(
+        "lobe/film_schlick",
+        "Film on Schlick",
+        "generalized_schlick_bsdf",
+        {**BRONZE, **FILM, "scatter_mode": "R"},
+        "generalized_schlick_bsdf, thin film",
+    ),
+    _lobe(
+        "lobe/hair",
+        "Hair",
+        "chiang_hair_bsdf",
+        {
+            "absorption_coefficient": (0.25, 0.6, 1.4),
+            **dict.fromkeys(("roughness_R", "roughness_TT", "roughness_TRT"), (0.1, 0.3)),
+        },
+        "chiang_hair_bsdf",
+    ),
+    ComparedMaterial(
+        "lobe/openpbr",
+        "OpenPBR",
+        document_text(node_text("open_pbr_surface", "surfaceshader", "shading", LACQUER)),
+        ("open_pbr_surface, every lobe",),
+    ),
+)
+
+
+@lru_cache
+def measured_models(library: str, node: str) -> Models | None:
+    """The models that a node is with each state of its flag, as the gl host evaluates it.
+
+    None where gl does not run here, or no known model is near.
+    """
+    try:
+        with open_host("gl") as host:
+            names = [
+                _nearest(make_case(Evaluating, host, spec, library))
+                for spec in DIFFUSE
+                if spec.node == node
+            ]
+    except NotRun:
+        return None
+    return Models(names[0], names[-1]) if all(names) else None
+
+
+def _nearest(case: Case) -> str:
+    """Name of the model nearest to a case's values, told by its albedo from others of its BRDF."""
+    rows = {row.title: row for row in KNOWN_DEFECTS + MODELS}
+    value, albedo = (
+        min(diagnosis.distances.items(), key=lambda item: item[1], default=("", float("inf")))
+        for diagnosis in (VALUE.diagnose(case), ALBEDO.diagnose(case))
+    )
+    if value[1] > INEXACT * VALUE_ERROR.value:
+        return ""
+    same = albedo[0] and rows[albedo[0]].brdf is rows[value[0]].brdf
+    return rows[albedo[0] if same else value[0]].name
+
 
 NODES = "Generated shaders"
 FAMILY = "Models, eonlib's functions"
@@ -111,3 +291,37 @@ def _meant(subject: str, name: str) -> str:
     if FLAG in subject:
         return "eon" if f"{FLAG} true" in subject else "qon"
     return {"eon_clamped": "eon", "eon_rho_cubed": "eon", "fon_white_lobe": "eon"}.get(name, name)
+
+
+SIZE = 176
+LIGHT = (0.0, 0.8, -0.6)  # from above and behind
+COLOR = (0.8, 0.4, 0.1)
+STILLS = ("eon", "eon_clamped", "qon", "lambert")
+
+
+def stills() -> tuple[Still, ...]:
+    """A sphere of the color (0.8, 0.4, 0.1) and roughness 1, lit from behind."""
+    return tuple(Still(model(name).title, _address(picture(name))) for name in STILLS)
+
+
+def picture(name: str) -> NDArray[np.float64]:
+    """Radiance of a sphere of one model, (SIZE, SIZE, 3): pi f cos(theta_i)."""
+    points = sphere(SIZE)
+    normals = points.normal[points.mask]
+    wo, wi = (local_directions(normals, each) for each in (VIEW, LIGHT))
+    lit = wi[:, 2] > 0.0
+    row = model(name)
+    parameter = [1.0] if row.parameter else []
+    values = np.zeros((len(normals), 3))
+    values[lit] = np.pi * row.brdf(wo[lit], wi[lit], COLOR, *parameter) * wi[lit, 2:]
+    image = np.zeros((SIZE, SIZE, 3))
+    image[points.mask] = values
+    return image
+
+
+def _address(image: NDArray[np.float64]) -> str:
+    """An image as a PNG in a data: address."""
+    with temporary_folder("mxeon-still-") as folder:
+        path = Path(folder, "still.png")
+        write_png(path, image.astype(np.float32), {})
+        return f"data:image/png;base64,{b64encode(path.read_bytes()).decode()}"

@@ -53,7 +53,7 @@ HOSTS = (
     ),
     # Its environment has noise. No closure of Cycles is QON for s < 0.
     Row("cycles", "osl", "mxeon.hosts.cycles", "pictures", scenes=(SIDE, BACK), front_lit=("qon",)),
-    Row("testrender", "osl", "mxeon.hosts.testrender.renderer", "rendered", surfaces=True),
+    Row("testrender", "osl", "mxeon.hosts.testrender", "rendered", surfaces=True),
     Row("msl", "msl", needs="Metal, which macOS alone has"),
     Row("mdl", "mdl", needs="a renderer that compiles MDL"),
 )

@@ -4,13 +4,16 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Generator, Iterable, Iterator
+from collections import deque
+from collections.abc import Callable, Generator, Iterable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import closing, contextmanager
 from dataclasses import replace
 from functools import partial
+from itertools import islice
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -21,7 +24,6 @@ from mxeon.errors import PackageError, install
 from mxeon.io.files import below, replacing, write_text
 from mxeon.io.images import without_threads, write_exr, write_png
 from mxeon.report.junit import to_junit
-from mxeon.report.threads import in_threads
 
 PAGES = "upstream"  # folder beside the report with the pages on defects
 
@@ -198,3 +200,35 @@ def _subject(picture: Picture) -> tuple[str, ...]:
     """What pictures with one reference share; the points of a portrait are those of its host."""
     points = picture.metadata.get("points", "")
     return picture.document, picture.element, picture.library, picture.scene, points
+
+
+# --- threads: what encodes pictures runs without the interpreter's lock ----------------------------
+
+THREADS = 4  # each holds a picture or two, and often waits for a disk
+
+T = TypeVar("T")
+R = TypeVar("R")
+
+
+@contextmanager
+def in_threads(work: Callable[[T], R], items: Iterable[T]) -> Iterator[Iterator[R]]:
+    """Results of `work` on every item, in their order; a few items ahead of the caller are begun.
+
+    The first error ends the work, and is raised. The threads end with the block: if garbage collection
+    ended them, it might run in one of them, which would then wait for itself.
+    """
+    begun = deque[Future[R]]()
+    with ThreadPoolExecutor(THREADS) as pool:
+        try:
+            yield _results((pool.submit(work, item) for item in items), begun)
+        finally:
+            for future in begun:
+                future.cancel()
+
+
+def _results(futures: Iterator[Future[R]], begun: deque[Future[R]]) -> Iterator[R]:
+    """Results of futures, which begin when they are taken, some ahead of the caller."""
+    begun.extend(islice(futures, 2 * THREADS))
+    while begun:
+        yield begun.popleft().result()
+        begun.extend(islice(futures, 1))

@@ -29,6 +29,7 @@ from mxeon.conformance.results import (
 )
 from mxeon.io.images import difference_scale
 from mxeon.io.srgb import srgb_encoded
+from mxeon.report import in_threads
 from mxeon.report.formats import (
     linked,
     nearest,
@@ -43,7 +44,6 @@ from mxeon.report.plots import (
     generate_page,
     picture_uri,
 )
-from mxeon.report.threads import in_threads
 
 # Markers of hosts in plots, in order: matplotlib's name, and the character that looks like it.
 MARKERS = (("o", "○"), ("s", "□"), ("^", "△"), ("D", "◇"))

@@ -13,9 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
-from mxeon.hosts.testrender import scenes
-from mxeon.hosts.testrender.programs import VARIABLES, find_program
-from mxeon.hosts.testrender.renderer import Host
+from mxeon.hosts import testrender_scene as scenes
+from mxeon.hosts.osl.engines import VARIABLES, find_program
+from mxeon.hosts.testrender import Host
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 

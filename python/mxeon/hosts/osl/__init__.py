@@ -23,7 +23,7 @@ from mxeon.errors import InputError, NotRun
 from mxeon.hosts import base
 from mxeon.hosts.base import Array, Identity, Inputs
 from mxeon.hosts.osl.carriers import prelude
-from mxeon.hosts.osl.engines import Blender, Testshade
+from mxeon.hosts.osl.engines import VARIABLES, Blender, Testshade
 from mxeon.hosts.osl.points import (
     IMAGE,
     Column,
@@ -35,7 +35,6 @@ from mxeon.hosts.osl.points import (
     with_variables,
 )
 from mxeon.hosts.osl.trees import KeptTrees, TreeRows, keys_of, read_trees, whole_label, with_roots
-from mxeon.hosts.testrender.programs import VARIABLES
 from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 

@@ -1,19 +1,84 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The OSL inside Blender: it compiles a shader and runs it once for each pixel of a plane."""
+"""What runs OSL: the one inside Blender, once for each pixel of a plane, and the programs of OSL itself."""
 
 from __future__ import annotations
 
+import os
+import re
+import shutil
+import subprocess
+import warnings
+from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from mxeon.errors import ShaderError
+from mxeon.errors import MxeonError, NotRun, ShaderError
+from mxeon.hosts.base import RendererWarning
 from mxeon.hosts.cycles import process
 from mxeon.hosts.cycles.process import interpreter
 from mxeon.hosts.osl.carriers import DEBUG, HOLDOUT
 from mxeon.hosts.osl.points import side
 from mxeon.hosts.process import Worker
-from mxeon.hosts.testrender.programs import find_program, output, version
 from mxeon.shaders.scene import Scene
+
+VARIABLES = {"oslc": "MXEON_OSLC", "testrender": "MXEON_TESTRENDER", "testshade": "MXEON_TESTSHADE"}
+TIMEOUT = 300.0  # seconds for one of them
+LINES = 4  # last ones of a program's output in a message
+# The first line of the help: oslc has no option for its version.
+TITLE = re.compile(r"^oslc -- (Open Shading Language) compiler (\S+)", re.MULTILINE)
+
+
+def find_program(name: str, host: str = "testrender") -> str:
+    """Path of a program that a host needs, named by its variable or on PATH."""
+    variable = VARIABLES[name]
+    program = os.environ.get(variable) or name
+    path = shutil.which(program)
+    if path is None:
+        raise NotRun(
+            f"{host}: no program {program!r}; build Open Shading Language, as tools/build_testrender.sh "
+            f"does on Debian 12, and name it in {variable}"
+        )
+    return os.path.abspath(path)
+
+
+def version(oslc: str) -> str:
+    """Name and version of the language that an oslc compiles, as its help states them."""
+    title = TITLE.search(output([oslc, "--help"]))
+    if title is None:
+        raise NotRun(f"testrender: {oslc} must be OSL's compiler; its help names no version")
+    return f"{title[1]} {title[2]}"
+
+
+def output(
+    command: Sequence[str],
+    folder: Path | None = None,
+    failure: type[MxeonError] = NotRun,
+    host: str = "testrender",
+) -> str:
+    """Standard output of a program; its warnings are passed on as `RendererWarning`.
+
+    `failure` is raised with the last lines of a program that fails, ShaderError for an error reported by
+    one that ends well: testrender goes on without the lobes that it has no room for.
+    """
+    try:
+        process = subprocess.run(
+            command, cwd=folder, capture_output=True, text=True, timeout=TIMEOUT, errors="replace"
+        )
+    except (OSError, subprocess.TimeoutExpired) as error:
+        raise NotRun(f"{host}: {error}") from None
+    lines = (process.stdout + process.stderr).strip().splitlines()
+    program = Path(command[0]).name
+    if process.returncode:
+        last = " | ".join(lines[-LINES:])
+        raise failure(f"{host}: {program}: exit status {process.returncode}; last output: {last}")
+    for line in lines:
+        if line.startswith("ERROR") or "Assertion" in line:
+            raise ShaderError(f"{host}: {program}: {line}")
+    for line in dict.fromkeys(lines):
+        if line.startswith("WARNING"):
+            warnings.warn(f"{program}: {line}", RendererWarning, stacklevel=2)
+    return process.stdout
+
 
 DARK = Scene("dark")
 SECONDS = 300.0  # for one run

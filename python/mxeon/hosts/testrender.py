@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """OSL's own programs: generated OSL compiled by oslc and rendered by testrender.
 
-Each pixel of a picture shows its own pair of directions; see `scenes`. testshade evaluates functions.
+Each pixel of a picture shows its own pair of directions; see `testrender_scene`. testshade evaluates functions.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import fragment
+from mxeon.hosts import testrender_scene as scenes
 from mxeon.hosts.base import Array, Identity, Inputs
+from mxeon.hosts.osl.engines import find_program, output, version
 from mxeon.hosts.osl.points import IMAGE, columns_of, side, statements, with_header, with_variables
 from mxeon.hosts.pairs import LAMP, SKY, PairHost
-from mxeon.hosts.testrender import scenes
-from mxeon.hosts.testrender.programs import find_program, output, version
 from mxeon.io.images import read_image, write_image
 from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
@@ -39,7 +39,7 @@ SCALARS = ("float", "int")
 
 
 class Host(PairHost):
-    """oslc, testrender and testshade, on PATH or named by variables; see `programs.VARIABLES`."""
+    """oslc, testrender and testshade, on PATH or named by variables; see `mxeon.hosts.osl.engines.VARIABLES`."""
 
     name = "testrender"
 
