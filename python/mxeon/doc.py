@@ -16,7 +16,7 @@ GROUP = "pbr"  # nodegroup of the specification's nodes; others of a category ar
 FLOATS = ("float", "vector2", "vector3", "vector4", "color3", "color4")
 MARKER = re.compile(r"@MX_TABLE_(\w+)@")
 COLUMNS = ("Port", "Description", "Type", "Default", "Accepted Values")
-NONE = ("", "__zero__", "__empty__")  # defaults that are no value
+NONE = ("", "__zero__", "__empty__")  # defaults that are not values
 
 
 @dataclass(frozen=True)

@@ -74,7 +74,7 @@ class ReferenceBounds:
 
 @dataclass(frozen=True)
 class ShaderForm:
-    """Another function that a shader may have in place of a model."""
+    """Another function that a shader may have instead of a model."""
 
     title: str
     permitted: bool

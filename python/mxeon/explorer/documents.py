@@ -213,7 +213,7 @@ def _by_effect(ports: tuple[ShaderInput, ...], document: mx.Document) -> tuple[S
 def _numbers(
     name: str, kind: str, value: Plain, document: mx.Document
 ) -> Iterator[tuple[str, str, Plain]]:
-    """Name, type and value of an input, or of the members of a structure, that is no text."""
+    """Name, type and value of an input, or of the members of a structure, unless it is text."""
     if parts := members(kind, document):
         values = value if isinstance(value, tuple) else ()
         for (part, inner), member in zip(parts, values, strict=False):

@@ -12,7 +12,7 @@ Floats = NDArray[np.float64]
 Codes = NDArray[np.uint8]
 
 SLOPE = 2.4 / 1.055  # of the decoding, at 1, where it is steepest
-STEPS = 2**13  # of [0, 1], in each of which two codes of sRGB meet at most
+STEPS = 2**13  # of [0, 1]; at most two codes of sRGB meet in each
 NOT_FINITE = (255, 0, 255)  # code values of a pixel that is not a finite number
 
 

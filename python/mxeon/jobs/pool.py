@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A pool of worker processes, any of which may crash, hang or be killed."""
+"""A pool of worker processes, which may crash, hang or be killed."""
 
 import logging
 import multiprocessing

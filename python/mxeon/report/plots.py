@@ -28,7 +28,7 @@ SHOWN_SIZE = 256
 DIFFERENCE_COLORS = matplotlib.colormaps["inferno"]
 DIFFERENCE_CODES = DIFFERENCE_COLORS(np.arange(DIFFERENCE_COLORS.N), bytes=True)[:, :3]
 NOT_JUDGED = (96, 99, 104)
-# Stands for the page's text color until the plot is part of the page.
+# A placeholder for the page's text color until the plot is part of the page.
 TEXT_COLOR = "#010203"
 # Without these, matplotlib adds a description of itself, with addresses, to each plot.
 NO_METADATA = dict.fromkeys(("Creator", "Date", "Format", "Type"))

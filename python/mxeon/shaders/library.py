@@ -144,8 +144,8 @@ def own_folders(library: str) -> list[str]:
 def library_name(library: str | os.PathLike[str]) -> str:
     """Name of a data library, or absolute path of the folder that is loaded as one.
 
-    InputError for a folder that cannot be combined with MaterialX's files, or holds one that is no text
-    in UTF-8.
+    InputError for a folder that cannot be combined with MaterialX's files, or contains one that is not
+    UTF-8 text.
     """
     if library in LIBRARIES:
         return str(library)

@@ -69,7 +69,7 @@ FACETS = sum_of(
     unit="pi f cos",
     metric=absolute,
 )
-# EEVEE keeps light in 32 bits for three channels, of which blue has the fewest.
+# EEVEE keeps light in 32 bits for three channels; blue has the fewest.
 COARSE_FACETS = sum_of(
     Term(2.0**-6, "five bits below the leading one, cut off"),
     Term(2.4e-3, "packed normals, measured"),
@@ -142,7 +142,7 @@ class Native(CyclesPictures):
 
 
 class FormSamples(PictureSamples):
-    """Pictures of several materials, one light of which is enough for a control."""
+    """Pictures of several materials; one light is enough for a control."""
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:

@@ -40,7 +40,7 @@ class Host(DocumentHost):
     def _needs_blocks(self, shader: Shader) -> bool:
         """Whether it has textures: next to a triangle, llvmpipe reads Storm's buffers as 0.
 
-        The derivative of a texture coordinate is then wrong, and so is the size of the texture.
+        The derivative of a texture coordinate is then wrong, and the texture is read at the wrong size.
         """
         return any(each.type == "filename" and each.value for each in shader.inputs)
 

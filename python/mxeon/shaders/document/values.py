@@ -51,7 +51,7 @@ def plain(value: object, document: mx.Document) -> Plain:
 
 
 def members(kind: str, document: mx.Document) -> tuple[tuple[str, str], ...]:
-    """Names and types of a structure's members; none for a type that is no structure."""
+    """Names and types of a structure's members; none if the type is not a structure."""
     definition = document.getTypeDef(kind)
     parts = definition.getMembers() if definition else ()
     return tuple((each.getName(), each.getType()) for each in parts)

@@ -19,7 +19,7 @@ ASSETS = {
     )
 }
 
-# Material, its diffuse model in Babylon.js, of which OpenPBRMaterial has no choice; ours, its inputs and forms.
+# Material, its diffuse model in Babylon.js (OpenPBRMaterial has only one); ours, its inputs and forms.
 MATERIALS = (
     ("PBRMaterial E_OREN_NAYAR", "E_OREN_NAYAR", "eon", BOTH, PUBLISHED),
     ("OpenPBRMaterial", "", "eon", BOTH, PUBLISHED),
