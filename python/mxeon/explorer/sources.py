@@ -2,15 +2,14 @@
 """What every page has: the models, the renderers' variants, lobes of both libraries, and stills."""
 
 from base64 import b64encode
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from itertools import chain
 from pathlib import Path
-from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from mxeon.conformance.backends import Evaluating
 from mxeon.conformance.case import Case, make_case
@@ -25,6 +24,7 @@ from mxeon.explorer.data import Models, ModelSource, ShaderSource, Still
 from mxeon.explorer.documents import LIBRARIES, shader_source
 from mxeon.explorer.references import reference_of
 from mxeon.hosts import open_host
+from mxeon.hosts.base import Inputs
 from mxeon.io.images import write_png
 from mxeon.jobs.signals import temporary_folder
 from mxeon.models.table import KNOWN_DEFECTS, MODELS, model
@@ -38,8 +38,6 @@ from mxeon.shaders.nodes import (
     node_text,
 )
 from mxeon.shaders.scene import VIEW, local_directions, sphere
-
-Inputs: TypeAlias = Mapping[str, ArrayLike]
 
 ROUGH: Inputs = {"roughness": (0.5, 0.5)}
 FILM: Inputs = {"thinfilm_thickness": 420.0, "thinfilm_ior": 1.4}

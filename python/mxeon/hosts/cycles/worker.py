@@ -25,7 +25,7 @@ import numpy as np  # noqa: E402
 from mathutils import Vector  # noqa: E402
 
 Blender: TypeAlias = Any  # an object of bpy, which has no types
-Values: TypeAlias = dict[str, Any]  # by name, of a request in JSON
+JsonObject: TypeAlias = dict[str, Any]  # of a request
 
 # Script nodes read their sockets with `oslquery` from Blender's own Python folder.
 BUNDLED = Path(bpy.utils.resource_path("LOCAL"), "python", "lib")
@@ -152,7 +152,7 @@ def script_material(shader: str) -> Blender:
     return material
 
 
-def native_material(kind: str, inputs: Values) -> Blender:
+def native_material(kind: str, inputs: JsonObject) -> Blender:
     material, node = surface_material(kind)
     for name, value in inputs.items():
         node.inputs[name].default_value = value
@@ -201,7 +201,7 @@ def render(
     environment: float | None,
     body: str,
     shader: str | None = None,
-    native: Values | None = None,
+    native: JsonObject | None = None,
     width: float = 2.0,
     triangles: str | None = None,
     lamp: float | None = None,
@@ -231,7 +231,7 @@ def render(
 
 def draw(
     output: str,
-    material: Values,
+    material: JsonObject,
     mesh: str,
     size: int,
     light: tuple[float, float, float] | None,

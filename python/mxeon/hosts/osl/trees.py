@@ -16,8 +16,8 @@ from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts.osl.carriers import CLOSURES, MIX, MULTIPLE, OPERATIONS
 from mxeon.hosts.osl.points import Column
 
-Values: TypeAlias = NDArray[np.float64]
-Argument: TypeAlias = "Values | str | ClosureTree | None"  # None is the closure without light
+Array: TypeAlias = NDArray[np.float64]
+Argument: TypeAlias = "Array | str | ClosureTree | None"  # None is the closure without light
 
 DEEPEST = 200  # closures inside each other
 LONGEST = 1 << 20  # characters of a label with all that it names
@@ -33,7 +33,7 @@ class ClosureTree:
     name: str  # in CLOSURES or in OPERATIONS
     parts: tuple[ClosureTree | None, ...] = ()  # what an operation combines
     # By name, (N,) or (N, 3); of an operation its `factor` alone.
-    arguments: Mapping[str, Values | str] = field(default_factory=dict)
+    arguments: Mapping[str, Array | str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -82,12 +82,12 @@ def with_roots(tree: ClosureTree | None) -> ClosureTree | None:
     return ClosureTree(tree.name, tuple(map(with_roots, tree.parts)), arguments)
 
 
-def _exact(numbers: Sequence[Sequence[str]]) -> Values:
+def _exact(numbers: Sequence[Sequence[str]]) -> Array:
     """Float32 numbers from nine digits, as float64, (N, numbers)."""
     return np.array(numbers, np.float32).astype(np.float64)
 
 
-def _tree(shape: str, numbers: Values) -> ClosureTree | None:
+def _tree(shape: str, numbers: Array) -> ClosureTree | None:
     """Tree of a label with placeholders for the numbers, which differ from point to point."""
     columns = iter(range(numbers.shape[1])) if numbers.size else count()
     stack: list[tuple[str, list[Argument]]] = [("", [])]
@@ -126,7 +126,7 @@ def _tree(shape: str, numbers: Values) -> ClosureTree | None:
     return root
 
 
-def _rows(numbers: Values, columns: Iterator[int], width: int) -> Values:
+def _rows(numbers: Array, columns: Iterator[int], width: int) -> Array:
     """The next numbers of every point, (N,) or (N, width)."""
     rows = numbers[:, [next(columns) for _ in range(width)]]
     return rows[:, 0] if width == 1 else rows

@@ -17,7 +17,7 @@ import numpy as np  # noqa: E402
 import pyluxcore  # noqa: E402
 
 LuxCore: TypeAlias = Any  # an object of pyluxcore, which has no types
-Values: TypeAlias = dict[str, Any]  # by name, of a request in JSON
+JsonObject: TypeAlias = dict[str, Any]  # of a request
 
 # A thread of its own and a fixed seed: pictures are always the same.
 RENDERER = {
@@ -37,14 +37,14 @@ RENDERER = {
 }
 
 
-def properties(values: Values) -> LuxCore:
+def properties(values: JsonObject) -> LuxCore:
     result = pyluxcore.Properties()
     for name, value in values.items():
         result.Set(pyluxcore.Property(name, value))
     return result
 
 
-def camera(size: int) -> Values:
+def camera(size: int) -> JsonObject:
     """The square [-1, 1]^2 seen orthographically along -z.
 
     LuxCore counts rows from below and begins one row too high: its window is a pixel lower.
@@ -60,12 +60,12 @@ def camera(size: int) -> Values:
     }
 
 
-def define(kind: str, values: Values) -> LuxCore:
+def define(kind: str, values: JsonObject) -> LuxCore:
     return properties({f"scene.{kind}.{name}": value for name, value in values.items()})
 
 
 def build(
-    material: Values, mesh: str, size: int, light: list[float] | None, environment: float | None
+    material: JsonObject, mesh: str, size: int, light: list[float] | None, environment: float | None
 ) -> LuxCore:
     data, scene = np.load(mesh), pyluxcore.Scene()
     vertices = [tuple(each) for each in data["vertices"].tolist()]

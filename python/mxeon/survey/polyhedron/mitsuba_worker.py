@@ -16,7 +16,7 @@ os.dup2(2, 1)
 import numpy as np  # noqa: E402
 
 Mitsuba: TypeAlias = Any  # an object of Mitsuba, whose types are those of another variant
-Values: TypeAlias = dict[str, Any]  # by name, of a request in JSON
+JsonObject: TypeAlias = dict[str, Any]  # of a request
 
 PLUGINS = ("eon", "fon", "qon", "dielectric_over_eon", "openpbr_base")  # of `mxeon.mitsuba`
 
@@ -28,14 +28,14 @@ mi.set_variant(OWN)
 mi.set_log_level(mi.LogLevel.Warn)
 
 
-def set_variant(material: Values) -> None:
+def set_variant(material: JsonObject) -> None:
     """Set the variant of a material, with the plugins of mxeon if it is one of these."""
     mi.set_variant(COMPILED if material["type"] in PLUGINS else OWN)
     if material["type"] in PLUGINS:
         import_module("mxeon.mitsuba").register()
 
 
-def bsdf(material: Values, **inputs: object) -> Values:
+def bsdf(material: JsonObject, **inputs: object) -> JsonObject:
     """A material's properties in Mitsuba's form; text in braces stands for one of the inputs."""
     values = {name: inputs.get(str(value).strip("{}"), value) for name, value in material.items()}
     return {
@@ -44,7 +44,7 @@ def bsdf(material: Values, **inputs: object) -> Values:
     }
 
 
-def evaluate(material: Values, pairs: str) -> Mitsuba:
+def evaluate(material: JsonObject, pairs: str) -> Mitsuba:
     """f cos(theta_i) of a BSDF for the pairs in a file, (N, 3)."""
     # Evaluate all at once where that can be compiled.
     columns = np.load(pairs)
@@ -61,7 +61,7 @@ def evaluate(material: Values, pairs: str) -> Mitsuba:
     return np.array(rows)
 
 
-def evaluate_at_once(material: Values, columns: Values) -> Mitsuba:
+def evaluate_at_once(material: JsonObject, columns: JsonObject) -> Mitsuba:
     """The same for all pairs together, with inputs as texels."""
     inputs = {
         name: {
@@ -83,7 +83,7 @@ def evaluate_at_once(material: Values, columns: Values) -> Mitsuba:
 
 
 def render(
-    material: Values,
+    material: JsonObject,
     mesh: str,
     size: int,
     light: list[float] | None,
@@ -111,7 +111,7 @@ def render(
     return np.array(mi.render(mi.load_dict(scene), seed=1))[:, :, :3]
 
 
-def integrator(distant: bool) -> Values:
+def integrator(distant: bool) -> JsonObject:
     """One bounce: the light is sampled where it is distant, else the BSDF."""
     samples = {"emitter_samples": 1, "bsdf_samples": 0}
     if not distant:
@@ -119,7 +119,7 @@ def integrator(distant: bool) -> Values:
     return {"type": "direct", "hide_emitters": True, **samples}
 
 
-def sensor(size: int, samples: int) -> Values:
+def sensor(size: int, samples: int) -> JsonObject:
     """The square [-1, 1]^2 seen orthographically along -z; the film is linear float32."""
     look = mi.ScalarTransform4f().look_at(
         origin=[0.0, 0.0, 2.0], target=[0.0, 0.0, 0.0], up=[0.0, 1.0, 0.0]
@@ -139,7 +139,7 @@ def sensor(size: int, samples: int) -> Values:
     }
 
 
-def polyhedron(path: str, material: Values) -> Mitsuba:
+def polyhedron(path: str, material: JsonObject) -> Mitsuba:
     """The mesh in a file with a BSDF on it, without vertex normals."""
     data = np.load(path)
     properties = mi.Properties()
