@@ -1,22 +1,30 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Albedo of EON below an interface, of both models and of light that walks: python -m tools.fits.varnish_walk.
+"""EON below an interface, by both models and by light that walks: python -m tools.fits.varnish_walk.
 
 `dielectric_over_eon` is a `layer`: EON gets what the dielectric does not reflect, and what EON returns
 passes freely. `varnished` has exits and internal reflections in closed form. Here light walks between EON and
-GGX facets, and among the facets as in [Heitz2016], so that the interface loses nothing.
+GGX facets, and among the facets as in [Heitz2016], so that the interface loses nothing. Printed for each rho:
+the quotients of both albedos and the walk's, the largest error of the second, and the quotients of what EON
+returns into twelfths of the hemisphere.
 """
 
 from itertools import product
 
 import numpy as np
 
-from mxeon.models import dielectric_over_eon_albedo_dir, eon_brdf, varnished_albedo_dir
+from mxeon.models import (
+    dielectric_over_eon_albedo_dir,
+    eon_brdf,
+    varnished_albedo_dir,
+    varnished_brdf,
+)
 from mxeon.models.microfacet.fresnel_formulas import dielectric
 from mxeon.sampling import eon_sample
 
 SEED, PATHS = 1, 1 << 18
 FAINT = 1e-5  # weight at which a path ends
-RHO = np.array([0.2, 0.5, 0.8, 1.0])
+RHO = np.array([0.0, 0.2, 0.5, 0.8, 1.0])
+BINS, NODES = (4, 3), 8  # of the squared cosine and the azimuth on one side; nodes of each
 COSINES, ROUGHNESSES = (1.0, 0.5, 0.15, 0.05), (0.0, 1.0)
 ALPHAS, INDICES = (0.05, 0.1, 0.2, 0.4, 0.7), (1.1, 1.3, 1.5, 2.0)
 
@@ -60,47 +68,79 @@ def interface(w, alpha, ior, rng):
     return out, passed
 
 
-def walk(mu, roughness, alpha, ior, paths=PATHS, seed=SEED):
-    """Light that leaves along each path, (paths, 4), for each of RHO."""
-    rng = np.random.default_rng(seed)
-    w = np.tile([np.sqrt(1.0 - mu * mu), 0.0, mu], (paths, 1))
-    w, inside = interface(w, alpha, ior, rng)
-    total, paths_left, weight = (
-        np.where(inside, 0.0, 1.0)[:, np.newaxis] + 0.0 * RHO,
-        np.flatnonzero(inside),
-        1.0,
-    )
-    w = w[inside]
-    while len(w):
+def walk(mu, roughness, alpha, ior, paths=PATHS):
+    """Light that leaves along each path, (paths, 5), for each of RHO, and where to, (paths, 3)."""
+    rng = np.random.default_rng(SEED)
+    out, inside = interface(np.tile(view(mu), (paths, 1)), alpha, ior, rng)
+    total, weight = np.where(inside, 0.0, 1.0)[:, np.newaxis] + 0.0 * RHO, 1.0
+    left, w = np.flatnonzero(inside), out[inside]
+    while left.size:
         # Neither layer has a grain, so that the side of a direction does not matter.
-        wi, pdf = eon_sample(w, rng.random((len(w), 2)), roughness, rho=1.0)
-        value = eon_brdf(w, wi, np.broadcast_to(RHO, (len(w), 4)), roughness)
+        wi, pdf = eon_sample(w, rng.random((left.size, 2)), roughness, rho=1.0)
+        value = eon_brdf(w, wi, np.broadcast_to(RHO, (left.size, RHO.size)), roughness)
         weight = weight * value * (wi[:, 2] / pdf)[:, np.newaxis]
         w, leaves = interface(wi, alpha, 1.0 / ior, rng)
-        total[paths_left[leaves]] = weight[leaves]
+        total[left[leaves]], out[left[leaves]] = weight[leaves], w[leaves]
         stays = ~leaves & (weight[:, -1] > FAINT)
-        w, weight, paths_left = w[stays], weight[stays], paths_left[stays]
-    return total
+        w, weight, left = w[stays], weight[stays], left[stays]
+    return total, out
+
+
+def view(mu):
+    """Direction to a viewer."""
+    return np.array([np.sqrt(1.0 - mu * mu), 0.0, mu])
+
+
+def walked_bins(total, out):
+    """Light that EON returns into each bin, (12, 4)."""
+    azimuth = np.abs(np.arctan2(out[:, 1], out[:, 0])) / np.pi
+    row, column = (
+        np.minimum((x * n).astype(int), n - 1)
+        for x, n in zip((out[:, 2] ** 2, azimuth), BINS, strict=True)
+    )
+    which = row * BINS[1] + column
+    own = total[:, 1:] - total[:, :1]
+    return np.stack([np.bincount(which, each, np.prod(BINS)) for each in own.T], axis=1) / len(own)
+
+
+def model_bins(mu, *inputs):
+    """The same of `varnished`."""
+    x, weight = (each / 2.0 for each in np.polynomial.legendre.leggauss(NODES))
+    square, azimuth = ((np.arange(n)[:, np.newaxis] + 0.5 + x) / n for n in BINS)
+    square, azimuth = square[:, np.newaxis, :, np.newaxis], np.pi * azimuth[:, np.newaxis]
+    S = np.sqrt(1.0 - square)
+    parts = S * np.cos(azimuth), S * np.sin(azimuth), np.sqrt(square)
+    value = varnished_brdf(view(mu), np.stack(np.broadcast_arrays(*parts), axis=-1), RHO, *inputs)
+    bins = np.einsum("abijc,i,j->abc", value, weight, weight) * np.pi / np.prod(BINS)
+    return bins.reshape(-1, RHO.size)[:, 1:] - bins.reshape(-1, RHO.size)[:, :1]
 
 
 def rows(paths=PATHS):
-    """Albedos by the layer, varnished and the walk, for each of RHO: (cases, 3, 4)."""
-    return np.array([
-        [
-            dielectric_over_eon_albedo_dir(mu, RHO, roughness, alpha, ior),
-            varnished_albedo_dir(mu, RHO, roughness, alpha, ior),
-            walk(mu, roughness, alpha, ior, paths).mean(axis=0),
-        ]
-        for ior, alpha, roughness, mu in product(INDICES, ALPHAS, ROUGHNESSES, COSINES)
-    ])  # fmt: skip
+    """For each case the albedos by the layer, varnished and the walk, (3, 5), and quotients of bins, (12, 4)."""
+    for ior, alpha, roughness, mu in product(INDICES, ALPHAS, ROUGHNESSES, COSINES):
+        inputs = roughness, alpha, ior
+        walked = walk(mu, *inputs, paths)
+        models = (
+            function(mu, RHO, *inputs)
+            for function in (dielectric_over_eon_albedo_dir, varnished_albedo_dir)
+        )
+        yield (
+            np.stack([*models, walked[0].mean(axis=0)]),
+            model_bins(mu, *inputs) / walked_bins(*walked),
+        )
+
+
+def span(values):
+    """Least and largest value, as printed."""
+    return f"{values.min():.2f} to {values.max():.2f}"
 
 
 if __name__ == "__main__":
-    layer, varnished, walked = rows().transpose(1, 0, 2)
+    albedos, bins = map(np.array, zip(*rows(), strict=True))
+    layer, varnished, walked = albedos.transpose(1, 2, 0)
     for k, rho in enumerate(RHO):
-        spans = [
-            f"{q.min():.2f} to {q.max():.2f}"
-            for q in ((layer / walked)[:, k], (varnished / walked)[:, k])
-        ]
-        off = np.abs(varnished - walked)[:, k].max()
-        print(f"| {rho} | {' | '.join(spans)} | {off:.3f} |")
+        spans = span(layer[k] / walked[k]), span(varnished[k] / walked[k])
+        parts = span(bins[..., k - 1]) if k else ""
+        print(
+            f"| {rho} | {' | '.join(spans)} | {np.abs(varnished - walked)[k].max():.3f} | {parts} |"
+        )
