@@ -14,60 +14,38 @@ import json
 import re
 import subprocess
 import sys
+from itertools import product
 from pathlib import Path
 
-HOSTS = [
-    "gl",
-    "webgl",
-    "vulkan",
-    "wgsl",
-    "slang",
-    "osl",
-    "materialx",
-    "storm",
-    "cycles",
-    "cycles-native",
-    "mitsuba",
-    "three",
-    "babylon",
-    "three-gpu-pathtracer",
-    "msl",
-    "mdl",
-]
+from mxeon.hosts import host_rows
+
 LIBRARIES = ("eonlib", "stock", "diffuse")
 PLACE = ("host", "library", "subject", "check")
 SAME = ("verdict", "tolerance", "caught", "diagnosis", "pages", "reason")
+NUMBER = re.compile(r"\d+(\.\d+)?(e[-+]?\d+)?")
 Line = dict[str, object]
 
 
 def lines(host: str, library: str) -> list[Line]:
     """The results of all nodes and the bundled examples on a host."""
-    command = ["mxeon", "check", "--host", host, "--library", library, "--node", "all", "--json"]
-    run = subprocess.run(command, capture_output=True, text=True, check=False)
-    if not run.stdout.startswith("{"):  # a renderer with materials of its own takes no --node
-        run = subprocess.run([*command[:6], "--json"], capture_output=True, text=True, check=False)
-    if not run.stdout.startswith("{"):
-        place = dict(zip(PLACE, (host, library, "", ""), strict=True))
-        return [{**place, "reason": run.stderr.strip()}]
-    return [line(each) for each in json.loads(run.stdout)["results"]]
+    command = ["mxeon", "check", "--host", host, "--library", library, "--json"]
+    for nodes in (["--node", "all"], []):  # a renderer with materials of its own takes no --node
+        run = subprocess.run([*command, *nodes], capture_output=True, text=True, check=False)
+        if run.stdout.startswith("{"):
+            return [line(each) for each in json.loads(run.stdout)["results"]]
+    place = dict(zip(PLACE, (host, library, "", ""), strict=True))
+    return [{**place, "reason": run.stderr.strip()}]
 
 
 def line(result: Line) -> Line:
-    control = result["control"]
-    tolerance = result["tolerance"]
+    control, tolerance = result["control"], result["tolerance"]
+    diagnosis = NUMBER.sub(lambda found: f"{float(found[0]):.2g}", str(result["diagnosis"]))
     return {
-        **{key: result[key] for key in PLACE},
-        "verdict": result["verdict"],
+        **{key: result[key] for key in (*PLACE, "verdict", "pages", "reason")},
         "tolerance": None if tolerance is None else float(f"{tolerance:.3g}"),
         "caught": control["caught"] if isinstance(control, dict) else None,
-        "diagnosis": re.sub(r"\d+(\.\d+)?(e[-+]?\d+)?", rounded, str(result["diagnosis"])),
-        "pages": result["pages"],
-        "reason": result["reason"],
+        "diagnosis": diagnosis,
     }
-
-
-def rounded(number: re.Match[str]) -> str:
-    return f"{float(number[0]):.2g}"
 
 
 def compare(before: Path, after: Path) -> int:
@@ -79,15 +57,10 @@ def compare(before: Path, after: Path) -> int:
     count = 0
     for place in dict.fromkeys((*old, *new)):
         was, now = old.get(place), new.get(place)
-        rows = (
-            [
-                f"{key}: {was.get(key)!r} -> {now.get(key)!r}"
-                for key in SAME
-                if was.get(key) != now.get(key)
-            ]
-            if was and now
-            else ["gone" if was else "new"]
-        )
+        rows = ["gone" if was else "new"]
+        if was and now:
+            changed = [key for key in SAME if was.get(key) != now.get(key)]
+            rows = [f"{key}: {was.get(key)!r} -> {now.get(key)!r}" for key in changed]
         for row in rows:
             print(*place, row, sep=" | ")
         count += bool(rows)
@@ -99,10 +72,11 @@ def main() -> int:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawTextHelpFormatter
     )
+    hosts = [row.name for row in host_rows()]
     jobs = parser.add_subparsers(dest="job", required=True)
     write = jobs.add_parser("write")
     write.add_argument("file", type=Path)
-    write.add_argument("--host", action="append", choices=HOSTS)
+    write.add_argument("--host", action="append", choices=hosts)
     both = jobs.add_parser("compare")
     both.add_argument("before", type=Path)
     both.add_argument("after", type=Path)
@@ -111,12 +85,11 @@ def main() -> int:
         return int(compare(options.before, options.after) > 0)
     options.file.parent.mkdir(parents=True, exist_ok=True)
     with options.file.open("w", encoding="utf-8") as file:
-        for host in options.host or HOSTS:
-            for library in LIBRARIES:
-                results = lines(host, library)
-                print(f"{host} {library}: {len(results)}", file=sys.stderr)
-                file.writelines(json.dumps(each, sort_keys=True) + "\n" for each in results)
-                file.flush()
+        for host, library in product(options.host or hosts, LIBRARIES):
+            results = lines(host, library)
+            print(f"{host} {library}: {len(results)}", file=sys.stderr)
+            file.writelines(json.dumps(each, sort_keys=True) + "\n" for each in results)
+            file.flush()
     return 0
 
 

@@ -1,5 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What makes the pages of docs/: `python -m tools.site` writes all that need no engine."""
+"""What makes the pages of docs/. What is measured has a command of its own.
+
+| command | what it writes |
+|---|---|
+| `python -m tools.site` | OSL twins, explorer, ledger, and tables of pages that need no engine; a minute |
+| `... specification [HOST ...]` | tables of specification.md and results.md, and out/specification.json |
+| `... documents run FOLDER DIR`, `... page DIR` | tables of documents.md; four minutes |
+| `... field` | field.html, from every host that runs here |
+| `... versions` | versions.md and the ledger's lines on versions; a quarter of an hour |
+| `... gallery`, `... explorer`, `... note` | pictures of these pages |
+| `... ledger`, `... ledger.measure [HOST ...]`, `... ledger.pictures` | docs/upstream; its tables; its pictures |
+"""
 
 import re
 from pathlib import Path

@@ -27,6 +27,7 @@ from tools.fits import fon_loss as loss_fit
 from tools.fits import ggx_albedo as albedo_fit
 from tools.fits import ggx_cosine as cosine_fit
 from tools.fits.minimax import shipped
+from tools.paper.claims.models import listing_1_albedo
 from tools.paper.sheet import METADATA, styled
 from tools.paper.weights import EXACT_VARIANCE, moments
 from tools.site import DOCS, with_block
@@ -44,16 +45,6 @@ VIEWS = np.linspace(0.02, 1.0, 50)
 def cosines():
     """Cosines in float32, from 1e-6 to 1."""
     return np.unique(np.geomspace(1e-6, 1.0, 4001).astype(np.float32))
-
-
-def printed_loss(mu):
-    """1 - E at roughness 1 by Listing 1 of [Portsmouth2025], operation by operation."""
-    one, third = np.float32(1.0), np.float32(2.0 / 3.0)
-    S = np.sqrt(one - mu * mu)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        G = S * (np.arccos(mu) - S * mu) + third * ((S / mu) * (one - S * S * S) - S)
-    A = one / (one + np.float32(C1))
-    return one - (A + A * G / np.float32(np.pi))
 
 
 def quartic_loss(mu):
@@ -81,7 +72,7 @@ def fitted_loss(mu):
 
 
 LOSSES = {
-    "Listing 1": printed_loss,
+    "Listing 1": lambda mu: np.float32(1.0) - listing_1_albedo(mu),
     "quartic, Eq. (14)": quartic_loss,
     "H, closed form": closed_loss,
     "H, polynomials": fitted_loss,

@@ -1,7 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The trial of a mutant: `mxeon check` of a copy of eonlib that holds it, cheapest tasks first."""
+"""The trial of a mutant: `mxeon check` of a copy of eonlib that holds it, cheapest tasks first.
 
+A wrong node of pbrlib is judged by the checks of the nodes whose implementation it changes, other sources by
+those of a library, the text first, and a wrong reference by the tests of the models on a copy of mxeon.
+"""
+
+import os
+import re
 import shutil
+import subprocess
+import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
@@ -10,19 +18,20 @@ from itertools import islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
+from xml.etree import ElementTree
 
 from mxeon.conformance.results import PASSED, SOURCE, Result
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import CURVE, PICTURE, Task, make_plan
+from mxeon.conformance.specs import PBRLIB
+from mxeon.conformance.specs.combinations import COMBINED_SPECS
 from mxeon.errors import MxeonError
 from mxeon.shaders import generators, library
 from tools.benchmarks.mutants.mutant import FOLDERS, ROOT, Mutant
-from tools.benchmarks.mutants.nodes import changed_nodes, node_tasks
-from tools.benchmarks.mutants.reference import TESTS, trial_of_reference, trial_of_tests
 
 KILLED, SURVIVED = "killed", "survived"
 CRASHED = "crashed"  # a traceback in place of a verdict
-TEXT = "text"
+TEXT, TESTS = "text", "tests"  # in the place of a host
 
 # What Cycles cannot show exactly or at all, tests run in Blender's OSL.
 PROFILE, PROFILE_TESTS = "genosl/cycles/", ("tests/hosts/test_osl.py",)
@@ -36,16 +45,12 @@ TEXT_FIRST = ("libraries/diffuse/eonlib_defs.mtlx",)  # other checks fail for wh
 def trial(mutant: Mutant, judge: Judge, every: bool = False) -> dict[str, Any]:
     """Verdict on a mutant, and the failures that it caused on the first host that saw any."""
     if mutant.tests:
-        return _by_tests(trial_of_reference(mutant))
+        named = tuple(f"{MODEL_TESTS}/{name}" for name in mutant.tests)
+        return by_tests(mutant, (named,) if mutant.equivalent else (named, (MODEL_TESTS,)))
     found = _on_hosts(mutant, judge, every)
     if found["verdict"] == SURVIVED and mutant.file.startswith(PROFILE):
-        return _by_tests(trial_of_tests(mutant, (PROFILE_TESTS,)))
+        return by_tests(mutant, (PROFILE_TESTS,))
     return found
-
-
-def _by_tests(failure: dict[str, Any] | None) -> dict[str, Any]:
-    found = {"host": TESTS, "failures": [failure]} if failure else {}
-    return {"verdict": KILLED if failure else SURVIVED} | found
 
 
 def _on_hosts(mutant: Mutant, judge: Judge, every: bool) -> dict[str, Any]:
@@ -67,50 +72,24 @@ def _on_hosts(mutant: Mutant, judge: Judge, every: bool) -> dict[str, Any]:
         return {"verdict": SURVIVED}
 
 
+def write_wrong(mutant: Mutant, base: str, *folders: str) -> None:
+    """Copy folders of the repository, with the mutant's files in the place of the right ones."""
+    for name in folders:
+        shutil.copytree(ROOT / name, Path(base, name))
+    for file, text in mutant.texts().items():
+        Path(base, file).write_text(text, encoding="utf-8")
+
+
 @contextmanager
 def wrong_library(mutant: Mutant) -> Iterator[str]:
     """Path of a library that is eonlib with one change, in a folder that no cache knows."""
     with TemporaryDirectory(prefix="mxeon-mutant-") as base:
-        for name in FOLDERS:
-            shutil.copytree(ROOT / name, Path(base, name))
-        for file, text in mutant.texts().items():
-            Path(base, file).write_text(text, encoding="utf-8")
+        write_wrong(mutant, base, *FOLDERS)
         try:
             yield str(Path(base, "libraries"))
         finally:
             library.read_library.cache_clear()
             generators._library_generator.cache_clear()
-
-
-def tasks_on_gl(path: str) -> list[Task]:
-    """Tasks of `mxeon check --library` that judge something, on the first host."""
-    return [task for task in make_plan((), ["gl"], [path]).tasks if task.check != CURVE]
-
-
-def stages(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
-    """Hosts and tasks that can see a mutant, the cheapest first.
-
-    The text and the nodes come first, then surface shaders, then pictures of documents one by one.
-    """
-    tasks = tasks_on_gl(path)
-    if mutant.file.startswith(NOT_ON_GL):
-        yield TEXT, [task for task in tasks if task.host == SOURCE]
-    else:
-        nodes = [task for task in tasks if task.check not in ("lobe", PICTURE)]
-        text_first = mutant.file in TEXT_FIRST
-        yield "gl", sorted(nodes, key=lambda task: (task.host == SOURCE) != text_first)
-        yield "gl", [task for task in tasks if task.check == "lobe"]
-        yield from (("gl", [task]) for task in tasks if task.check == PICTURE)
-    if mutant.file.startswith(ON_CYCLES):
-        yield from _on_cycles(path)
-
-
-def _on_cycles(path: str) -> Iterator[tuple[str, list[Task]]]:
-    """Tasks on Cycles, one by one."""
-    planned = make_plan((), ["cycles"], [path]).tasks
-    tasks = [task for task in planned if task.host == "cycles" and task.check != PICTURE]
-    for task in sorted(tasks, key=lambda task: task.check in NOISY):
-        yield "cycles", [task]
 
 
 def failures_of(
@@ -139,7 +118,13 @@ def _clean_failures(task: Task, judge: Judge) -> frozenset[tuple[str, str]]:
 
 
 def ordered(failures: list[Result]) -> list[dict[str, str]]:
-    """Failures as plain data, those with the largest error in tolerances first."""
+    """Failures as plain data, those with the largest error in tolerances first, and before all what does not compile."""
+
+    def ratio(result: Result) -> float:
+        if result.error is None:
+            return float("inf")
+        return result.error / max(result.tolerance or 0.0, 1e-9)
+
     return [
         {
             "check": each.check,
@@ -148,17 +133,186 @@ def ordered(failures: list[Result]) -> list[dict[str, str]]:
             "excess": each.excess,
             "diagnosis": first_line(each.diagnosis or f"not run: {each.reason}"),
         }
-        for each in sorted(failures, key=_ratio, reverse=True)
+        for each in sorted(failures, key=ratio, reverse=True)
     ]
-
-
-def _ratio(result: Result) -> float:
-    """Error in tolerances; infinite where a shader does not compile."""
-    if result.error is None:
-        return float("inf")
-    return result.error / max(result.tolerance or 0.0, 1e-9)
 
 
 def first_line(text: str) -> str:
     """The first line of a text, where compilers print many."""
     return text.strip().splitlines()[0] if text.strip() else ""
+
+
+# --- tasks of a library ---------------------------------------------------------------------------
+
+
+def tasks_on_gl(path: str) -> list[Task]:
+    """Tasks of `mxeon check --library` that judge something, on the first host."""
+    return [task for task in make_plan((), ["gl"], [path]).tasks if task.check != CURVE]
+
+
+def stages(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
+    """Hosts and tasks that can see a mutant, the cheapest first.
+
+    The text and the nodes come first, then surface shaders, then pictures of documents one by one; then
+    Cycles, one by one.
+    """
+    tasks = tasks_on_gl(path)
+    if mutant.file.startswith(NOT_ON_GL):
+        yield TEXT, [task for task in tasks if task.host == SOURCE]
+    else:
+        nodes = [task for task in tasks if task.check not in ("lobe", PICTURE)]
+        text_first = mutant.file in TEXT_FIRST
+        yield "gl", sorted(nodes, key=lambda task: (task.host == SOURCE) != text_first)
+        yield "gl", [task for task in tasks if task.check == "lobe"]
+        yield from (("gl", [task]) for task in tasks if task.check == PICTURE)
+    if mutant.file.startswith(ON_CYCLES):
+        planned = make_plan((), ["cycles"], [path]).tasks
+        chosen = [task for task in planned if task.host == "cycles" and task.check != PICTURE]
+        for task in sorted(chosen, key=lambda task: task.check in NOISY):
+            yield "cycles", [task]
+
+
+# --- tasks of nodes of pbrlib ---------------------------------------------------------------------
+
+DOCUMENTS = (
+    "libraries/diffuse/eonlib_genglsl_impl.mtlx",
+    "libraries/pbrlib/eonlib_pbrlib_genglsl_impl.mtlx",
+    "libraries/pbrlib/eonlib_pbrlib_genosl_impl.mtlx",
+    "genosl/cycles/eonlib_cycles_impl.xml",
+)
+INCLUDE = re.compile(r'^#include "([\w./]+)"$', re.MULTILINE)
+# Targets, and hosts that run their text, cheap hosts first.
+HOSTS = (("genglsl", "gl"), ("genosl", "osl"), ("genosl", "cycles"))
+# Checks that take longest.
+LATE = ("inputs", "transmitted_inputs", "integral", "energy")
+
+
+def changed_nodes(mutant: Mutant) -> set[tuple[str, str]]:
+    """Target and title of each subject whose implementation a mutant changes."""
+    texts = mutant.texts()
+    entries: set[tuple[str, ...]] = set()
+    for document in DOCUMENTS:
+        before = _entries(document, (ROOT / document).read_text(encoding="utf-8"))
+        after = _entries(document, texts[document]) if document in texts else before
+        entries |= before ^ after
+        if mutant.control and document in texts:
+            entries |= before
+        entries |= {entry for entry in before if not texts.keys().isdisjoint(_sources(entry[2]))}
+    return {(target, title) for nodedef, target, *_ in entries for title in _titles(nodedef)}
+
+
+def node_tasks(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
+    """Hosts and tasks that judge the subjects that a mutant changes, cheap hosts first."""
+    changed = changed_nodes(mutant)
+    for target, host in HOSTS:
+        titles = {title for each, title in changed if each == target}
+        tasks = [task for task in _tasks(host) if task.subject in titles and task.host == host]
+        yield host, [replace(task, library=path) for task in tasks]
+
+
+@cache
+def _tasks(host: str) -> tuple[Task, ...]:
+    """All tasks of a host with eonlib: subject by subject, since each has a shader to compile.
+
+    The last subjects come first, those of transmission, which need most of a source; films, whose failures take
+    longest to diagnose, come last.
+    """
+    places = {spec.title: -place for place, spec in enumerate(PBRLIB)}
+    tasks = make_plan((), [host], ["eonlib"], nodes=["all"]).tasks
+    late = {task: (task.check in LATE, "film" in task.subject) for task in tasks}
+    return tuple(sorted(tasks, key=lambda task: (late[task], places.get(task.subject, 0))))
+
+
+@cache
+def _titles(nodedef: str) -> frozenset[str]:
+    """Subjects that are nodes of a definition: of its category, and of its type."""
+    definition = library.load_library("eonlib").getNodeDef(nodedef)
+    if not definition:
+        return frozenset()
+    kind, node = definition.getType(), definition.getNodeString()
+    return frozenset(
+        spec.title
+        for spec in PBRLIB
+        if (
+            spec.node == node
+            and all((word == kind) == (word in spec.title.upper()) for word in ("EDF", "VDF"))
+        )
+        or (kind == "BSDF" and spec in COMBINED_SPECS and f"<{node} " in spec.document())
+    )
+
+
+@cache
+def _sources(file: str) -> frozenset[str]:
+    """Paths of a source and of all that it includes, from the root."""
+    path = ROOT / file
+    if not path.is_file():
+        return frozenset()
+    included = INCLUDE.findall(path.read_text(encoding="utf-8"))
+    folder = Path(file).parent
+    return frozenset(
+        {file}.union(*(_sources(os.path.normpath(folder / each)) for each in included))
+    )
+
+
+def _entries(document: str, text: str) -> set[tuple[str, ...]]:
+    """Definition, target, file, function, name and text of implementations; none where unreadable."""
+    try:
+        elements = ElementTree.fromstring(text).iter("implementation")
+    except ElementTree.ParseError:
+        return set()
+    return {
+        (
+            each.get("nodedef", ""),
+            each.get("target", ""),
+            os.path.normpath(Path(document).parent / each.get("file", "")),
+            each.get("function", ""),
+            each.get("name", ""),
+            each.get("sourcecode", ""),
+        )
+        for each in elements
+    }
+
+
+# --- tests that judge a reference -----------------------------------------------------------------
+
+MODEL_TESTS = "tests/models"
+OPTIONS = ("-x", "-q", "--tb=line", "-rfE", "-p", "no:cacheprovider", "--no-header")
+FAILED = re.compile(r"^(?:FAILED|ERROR) \S*?(\w+\.py)(?:::(\w+))?.*?(?: - (.*))?$", re.MULTILINE)
+WIDTH = {"COLUMNS": "200"}  # of pytest's lines, lest it cut the messages
+BLENDER = {"MXEON_CYCLES_PYTHON": f"{ROOT}/.venv-cycles/bin/python"}  # which a copy does not have
+GOOD, NO_TEST = 0, 5  # exit statuses of pytest
+
+
+def by_tests(mutant: Mutant, steps: Sequence[tuple[str, ...]]) -> dict[str, Any]:
+    """Verdict of tests on a copy of mxeon and of eonlib, and the first that fails."""
+    with TemporaryDirectory(prefix="mxeon-mutant-") as base:
+        write_wrong(mutant, base, "python", *FOLDERS)
+        for tests in steps:
+            if failure := _first_failure(str(ROOT / "python"), tests):
+                raise RuntimeError(f"a test fails without any change: {failure}")
+            if failure := _failure(str(Path(base, "python")), tests):
+                return {"verdict": KILLED, "host": TESTS, "failures": [failure]}
+    return {"verdict": SURVIVED}
+
+
+def _failure(package: str, tests: Sequence[str]) -> dict[str, str] | None:
+    """The first of some tests that fails with the package of a folder, or None."""
+    ended = subprocess.run(
+        [sys.executable, "-m", "pytest", *OPTIONS, *tests],
+        cwd=ROOT,
+        env=BLENDER | os.environ | WIDTH | {"PYTHONPATH": package},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    if ended.returncode == GOOD:
+        return None
+    match = FAILED.search(ended.stdout)
+    if ended.returncode == NO_TEST or match is None:
+        raise RuntimeError(f"no test ran: {ended.stdout[-400:]}{ended.stderr[-400:]}")
+    file, test, message = match.groups()
+    diagnosis = f"{file}: {message}" if message else file
+    return {"check": test or "import", "excess": "", "host": TESTS, "diagnosis": diagnosis}
+
+
+_first_failure = cache(_failure)  # of the package without any change

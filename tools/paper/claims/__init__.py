@@ -45,14 +45,12 @@ class Claim:
         """Measure the claim; its row of the page, in the order of COLUMNS."""
         sentence, values = self.measure()
         decided = verdict(values, self.least, self.most)
-        return self.where, self.text, sentence, f"{self.required} {self._bound()}", decided
-
-    def _bound(self) -> str:
+        limit = f"in [{self.least:.3g}, {self.most:.3g}]"
         if not np.isfinite(self.most):
-            return f"≥ {self.least:.3g}"
-        if not np.isfinite(self.least):
-            return f"≤ {self.most:.3g}"
-        return f"in [{self.least:.3g}, {self.most:.3g}]"
+            limit = f"≥ {self.least:.3g}"
+        elif not np.isfinite(self.least):
+            limit = f"≤ {self.most:.3g}"
+        return self.where, self.text, sentence, f"{self.required} {limit}", decided
 
 
 @dataclass
@@ -100,9 +98,9 @@ def verdict(values: ArrayLike, least: float, most: float) -> str:
 
 def page(sections: Sequence[Section]) -> str:
     """The page as Markdown; measures every claim."""
-    tables = [[claim.row() for claim in section.claims] for section in sections]
     parts = [HEAD]
-    for section, rows in zip(sections, tables, strict=True):
+    for section in sections:
+        rows = [claim.row() for claim in section.claims]
         verdicts = [row[-1] for row in rows]
         tally = TALLY.format(
             count=len(verdicts),
@@ -110,11 +108,8 @@ def page(sections: Sequence[Section]) -> str:
             part=verdicts.count(IN_PART),
             fails=verdicts.count(FAILS),
         )
-        lines = [_line(COLUMNS), "|---" * len(COLUMNS) + "|", *map(_line, rows), ""]
+        lines = [f"| {' | '.join(cells)} |" for cells in (COLUMNS, *rows)]
+        lines.insert(1, "|---" * len(COLUMNS) + "|")
         remark = [section.remark, ""] if section.remark else []
-        parts.append("\n".join([f"## {section.heading}", "", tally, "", *lines, *remark]))
+        parts.append("\n".join([f"## {section.heading}", "", tally, "", *lines, "", *remark]))
     return "\n".join(parts)
-
-
-def _line(cells: Sequence[str]) -> str:
-    return f"| {' | '.join(cells)} |"

@@ -65,6 +65,13 @@ def pages(known: dict[str, Entry] | None = None) -> dict[Path, str]:
         If the group of an entry is none of the index.
     """
     known, found = known or entries(), measured()
+    groups: dict[str, list[Entry]] = {name: [] for name in GROUPS}
+    for name, entry in known.items():
+        if entry.group not in groups:
+            raise ValueError(
+                f"group of {name} must be one of {', '.join(GROUPS)}; got {entry.group}"
+            )
+        groups[entry.group].append(entry)
     versions = json.loads(VERSIONS.read_text(encoding="utf-8"))
     page, index = TEMPLATES.get_template("page.md.jinja"), TEMPLATES.get_template("index.md.jinja")
     numbers = {name: path.name[:4] for name, path in patches("materialx").items()}
@@ -82,28 +89,10 @@ def pages(known: dict[str, Entry] | None = None) -> dict[Path, str]:
     }
     projects = [path.name for path in PATCHES.iterdir() if path.is_dir()]
     text = index.render(
-        groups={GROUPS[name]: each for name, each in groups(known).items()},
+        groups={GROUPS[name]: each for name, each in groups.items()},
         tables={each: table(each, known, found) for each in projects},
     )
     return texts | {INDEX: text}
-
-
-def groups(known: dict[str, Entry]) -> dict[str, list[Entry]]:
-    """The entries by the parts of the index, in their order.
-
-    Raises
-    ------
-    ValueError
-        If the group of an entry is none of them.
-    """
-    found: dict[str, list[Entry]] = {name: [] for name in GROUPS}
-    for page, entry in known.items():
-        if entry.group not in found:
-            raise ValueError(
-                f"group of {page} must be one of {', '.join(GROUPS)}; got {entry.group}"
-            )
-        found[entry.group].append(entry)
-    return found
 
 
 def short_diff(entry: Entry) -> tuple[str, int]:
@@ -126,20 +115,15 @@ def short_diff(entry: Entry) -> tuple[str, int]:
         inside = changed
     shown: list[str] = []
     left = 0
-    for number, (file, lines) in enumerate(_from_a_short_one(changes)):
+    if changes and len(changes[0][1]) >= SHOWN:  # then a short one comes first
+        changes.sort(key=lambda change: len(change[1]))
+    for number, (file, lines) in enumerate(changes):
         head = f"--- {file}" if f"--- {file}" not in shown else "@@"
         if number == 0 or len(shown) + len(lines) < SHOWN:
             shown += [head, *lines]
         else:
             left += len(lines)
     return "\n".join(shown), left
-
-
-def _from_a_short_one(changes: list[tuple[str, list[str]]]) -> list[tuple[str, list[str]]]:
-    """The changes, the shortest one first where the first is too long to show."""
-    if not changes or len(changes[0][1]) < SHOWN:
-        return changes
-    return sorted(changes, key=lambda change: len(change[1]))
 
 
 def outcome(entry: Entry, numbers: dict[str, str]) -> str:
@@ -187,13 +171,21 @@ def table(project: str, known: dict[str, Entry], found: dict[str, Any]) -> list[
         entry = known[page]
         text = " ".join(path.read_text(encoding="utf-8").split("\n\n", 1)[0].split())
         picture = found.get(page, {}).get("picture")
+        # The figure of the first row that the patch repairs.
+        repaired = [entry.repaired, *entry.remains.values()]
+        measures = found.get(page, {}).get("rows", [])
+        chosen = [row for row in measures if any(row[1] in e.get(row[0], []) for e in repaired)]
+        figures = [
+            f"{figure} {unit}, tolerance {tolerance}"
+            for _, _, figure, tolerance, unit in (*chosen, *measures)
+        ]
         needs = ", ".join(sorted(files[each].name[:4] for each in entry.needs if each in files))
         rows.append(
             (
                 path.name[:4],
                 f"[{text.split('[PATCH] ')[1]}]({page}.md)",
                 f"in main, #{entry.pull}" if entry.pull else entry.kind,
-                _measured(entry, found),
+                figures[0] if figures else "",
                 f"{picture['mean']} of {picture['of']}; {picture['most']} at most"
                 if picture
                 else "",
@@ -201,17 +193,6 @@ def table(project: str, known: dict[str, Entry], found: dict[str, Any]) -> list[
             )
         )
     return rows
-
-
-def _measured(entry: Entry, found: dict[str, Any]) -> str:
-    """The figure of the first row that the patch repairs."""
-    rows = found.get(entry.page, {}).get("rows")
-    if not rows:
-        return ""
-    repaired = [entry.repaired, *entry.remains.values()]
-    chosen = (row for row in rows if any(row[1] in each.get(row[0], []) for each in repaired))
-    _, _, figure, tolerance, unit = next(chosen, rows[0])
-    return f"{figure} {unit}, tolerance {tolerance}"
 
 
 def main() -> None:
