@@ -16,17 +16,13 @@ from tempfile import NamedTemporaryFile, TemporaryDirectory
 
 import numpy as np
 
-from mxeon.conformance.specs.diffuse import DIFFUSE as DIFFUSE_SPECS
-from mxeon.conformance.specs.diffuse import SURFACE_LOBES
 from mxeon.hosts import HOSTS
-from mxeon.shaders.library import examples_folder
 from mxeon.survey import ROWS
 from tools.benchmarks.rounds import Check, Group, figure
+from tools.site.field import DIFFUSE, EXAMPLE
 
 BOTH = ("--library", "eonlib", "--library", "stock")
 # The field as tools/site/field.py asks it: the diffuse nodes on hosts, and all common ones of renderers' own.
-EXAMPLE = str(examples_folder() / "clay.mtlx")
-DIFFUSE = tuple(dict.fromkeys(row.node for row in (*DIFFUSE_SPECS, *SURFACE_LOBES)))
 FIELD = {
     "hosts": ([row.name for row in HOSTS if row.module], DIFFUSE),
     "renderers": ([row.name for row in ROWS], ("common",)),
@@ -149,7 +145,7 @@ def parts(rounds, files, whole, cache):
     jobs = []
     for hosts, nodes in FIELD.values():
         asked = [*(f"--host={host}" for host in hosts), *(f"--node={node}" for node in nodes)]
-        last = (*asked, *BOTH, "--workers", "2", EXAMPLE)
+        last = (*asked, *BOTH, "--workers", "2", str(EXAMPLE))
         jobs.append(job(*last, cache=cache, longest=LONGEST))
     figures = [
         figure(f"field, {name}{', stopped' if each.stopped else ''}", "s", [each.seconds])

@@ -78,16 +78,10 @@ def extrema(count):
 
 @dataclass(frozen=True)
 class Form:
-    """Monomials of a rational function, as tuples of exponents.
+    """Monomials of a rational function, as tuples of exponents."""
 
-    Attributes
-    ----------
-    above, below : tuple of tuple of int
-        Monomials of the numerator and of the denominator, whose constant 1 is left out.
-    """
-
-    above: tuple
-    below: tuple
+    above: tuple  # of the numerator
+    below: tuple  # of the denominator, whose constant 1 is left out
 
     def value(self, variables, coefficients):
         """Values at arrays of variables, numerator's coefficients first."""

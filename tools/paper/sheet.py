@@ -49,25 +49,13 @@ def styled() -> AbstractContextManager[None]:
 
 @dataclass(frozen=True)
 class Sheet:
-    """A folder for figures, and the resolution and samples of each.
-
-    Attributes
-    ----------
-    folder : Path
-        Folder of the files.
-    host : mxeon.hosts.gl.Host
-        Host that traces the pictures.
-    size, samples : int
-        Pixels on a side and paths per pixel of a traced picture.
-    draws : int
-        Random directions for each point of a statistic.
-    """
+    """A folder for figures, and the resolution and samples of each."""
 
     folder: Path
-    host: Host
-    size: int = 256
-    samples: int = 128
-    draws: int = 1_000_000
+    host: Host  # traces the pictures
+    size: int = 256  # pixels on a side of a traced picture
+    samples: int = 128  # paths per pixel
+    draws: int = 1_000_000  # random directions for each point of a statistic
 
     def axes(
         self, rows: int, columns: int, width: float, height: float, **options: Any

@@ -6,7 +6,7 @@ Beside them, for each file a change of its first comment: a negative control, wh
 
 import re
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from hashlib import sha256
 from pathlib import Path
 
@@ -84,20 +84,18 @@ def read_table() -> tuple[Mutant, ...]:
         for key in ("mutants", "survivors", "equivalents")
         for name, old, new, reason in part.get(key, ())
     ]
-    asked = {mutant.file: mutant.tests for mutant in table}
     controls = (
-        Mutant(
-            f"control: {file}",
-            CONTROLS,
-            file,
-            COMMENT,
-            COMMENT.lower(),
-            "Only a comment changes.",
-            "",
-            True,
-            True,
-            tests,
+        replace(
+            mutant,
+            name=f"control: {file}",
+            group=CONTROLS,
+            old=COMMENT,
+            new=COMMENT.lower(),
+            reason="Only a comment changes.",
+            host="",
+            equivalent=True,
+            survives=True,
         )
-        for file, tests in asked.items()
+        for file, mutant in {mutant.file: mutant for mutant in table}.items()
     )
     return (*table, *controls)
