@@ -64,24 +64,15 @@ def run(folder, command):
 
 
 @pytest.fixture(scope="module")
-def names():
-    """NAMES and those of what is installed, which is slow to find out."""
-    return sorted(name for name in NAMES.union(packages_distributions()) if name.isidentifier())
-
-
-@pytest.fixture
-def hostile(tmp_path, names):
-    """A working folder, and folders for documents and results in it, with all these modules."""
-    for folder in (tmp_path, tmp_path / "in", tmp_path / "out"):
-        plant(folder, names, PLANT.format(str(tmp_path / "RAN")))
-    return tmp_path
-
-
-@pytest.fixture(scope="module")
-def report(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("report")
-    assert run(folder, COMMANDS["check"]).returncode == 3
-    return folder / "out"
+def hostile(tmp_path_factory):
+    """A working folder, and folders for documents and results in it, with all these modules; and a report."""
+    report, hostile = (tmp_path_factory.mktemp(name) for name in ("report", "hostile"))
+    assert run(report, COMMANDS["check"]).returncode == 3
+    (hostile / "report").symlink_to(report / "out")
+    names = [name for name in NAMES.union(packages_distributions()) if name.isidentifier()]
+    for folder in (hostile, hostile / "in", hostile / "out"):
+        plant(folder, names, PLANT.format(str(hostile / "RAN")))
+    return hostile
 
 
 def need(command):
@@ -93,9 +84,8 @@ def need(command):
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_no_command_imports_from_the_folders_it_works_in(hostile, report, command):
+def test_no_command_imports_from_the_folders_it_works_in(hostile, command):
     need(command)
-    (hostile / "report").symlink_to(report)
     if command == "kit check":
         run(hostile, COMMANDS["kit export"])
     ended = run(hostile, COMMANDS[command])
