@@ -78,7 +78,7 @@ def state(page):
 def shows(page, **fields):
     """Require that the page shows a view with these fields, soon."""
     try:
-        until(page, HAS, fields, seconds=5)
+        until(page, HAS, fields)
     except AssertionError:
         view = state(page)
         raise AssertionError(f"{ {name: view[name] for name in fields} }, not {fields}") from None
