@@ -6,8 +6,10 @@ import pytest
 
 from mxeon.conformance.specs import PBRLIB
 from mxeon.conformance.specs.lobes import PbrSpec
+from mxeon.conformance.specs.surface_shaders import FREE_PATHS, SurfaceShaderSpec
 from mxeon.shaders.library import load_library
 
+SHADERS = [spec for spec in PBRLIB if isinstance(spec, SurfaceShaderSpec)]
 LOBES = [spec for spec in PBRLIB if isinstance(spec, PbrSpec)]
 # Why an input has no values outside its range: of a category, or of a type.
 REASONS = {
@@ -33,3 +35,11 @@ def test_every_input_is_asked_below_and_above_its_range_up_to_where_it_ends(spec
             continue  # of lobes that are judged alone
         assert max(each.beyond) > high, each.name
         assert min(each.beyond) < low or low == 0.0, each.name
+
+
+@pytest.mark.parametrize("spec", SHADERS, ids=lambda spec: spec.title)
+def test_every_input_of_a_surface_shader_is_changed_or_has_a_reason(spec):
+    definitions = load_library("stock").getMatchingNodeDefs(spec.node)
+    newest = max(definitions, key=lambda each: each.getVersionString())
+    names = {each.getName() for each in newest.getActiveInputs()}
+    assert names == {*spec.names, *spec.table.unseen} | (names & {*FREE_PATHS})

@@ -4,7 +4,7 @@
 import pytest
 
 from mxeon.conformance.results import FAILED
-from tests.support.wrong_libraries import wrong_library
+from tests.support.wrong_libraries import copy_of_stock, replace_text, wrong_library
 
 # Files of eonlib have their path; those of MaterialX, their name alone.
 LOBE, FACETS = "genglsl/lib/oren_nayar_lobe.glsl", "genglsl/lib/microfacet_lobe.glsl"
@@ -73,6 +73,8 @@ WRONG = {
          "fault: the color channels are exchanged: they arrive as blue, green, red (rms "),
     ),
     "subsurface_bsdf": (
+        ("genglsl/subsurface_bsdf.glsl", "fwidth(", "dFdx(", "cylinder",
+         "the curvature depends on the direction in which a surface bends"),
         ("genglsl/subsurface_bsdf.glsl", "curvature * max(radius, vec3(0.0))",
          "curvature * vec3(0.5) * step(0.0, radius.x + 1.0)", "sphere",
          "best match: the profile of a mean free path of 0.5, whatever the radius"),
@@ -121,6 +123,8 @@ WRONG = {
          "NaN or infinity with the viewer on the horizon"),
     ),
     "conductor_bsdf": (
+        (FACETS, "lobe.closure != CLOSURE_TYPE_TRANSMISSION", "lobe.closure == CLOSURE_TYPE_REFLECTION", "sky",
+         "retroreflective is ignored or wrong in an environment"),
         ("genglsl/conductor_bsdf.glsl", "MicrofacetLobe lobe = microfacet_lobe(", "extinction = min(extinction, vec3(6.0));\n        OLD",
          "domain", "the value is wrong with extinction 10, 100"),
         (FACETS, "vec3 X = normalize(lobe.X - dot(lobe.X, lobe.N) * lobe.N);\n    vec3 Y",
@@ -324,6 +328,9 @@ WRONG = {
          "differs"),
         ("genglsl/multiply_bsdf_float.glsl", "response * weight", "response", "combination", ""),
     ),
+    "open_pbr_surface, every lobe": (
+        (FILM, "film.twice = 2.0e-9", "film.twice = 2.0e-10", "lobes_film", "thin_film_thickness counts 0.1 times"),
+    ),
     "UsdPreviewSurface, every lobe": (
         (FACETS, "bsdf.throughput = max(1.0 - lobe.albedo", "bsdf.throughput = max(1.002 - lobe.albedo", "lobes_mean",
          ""),
@@ -348,6 +355,14 @@ def test_a_wrong_line_fails_the_check_meant_for_it_and_is_named(judged, tmp_path
     )
     assert result.verdict == (verdict or [FAILED])[0] and result.control.caught
     assert words in result.diagnosis
+
+
+def test_an_emission_that_a_surface_shader_drops_is_named(judged, tmp_path):
+    graph = "bxdf/open_pbr_surface.mtlx"
+    old = 'interfacename="emission_color"'
+    replace_text(copy_of_stock(tmp_path, graph), old, 'value="1.0, 1.0, 1.0"', graph)
+    result = judged("reach", "open_pbr_surface, every lobe", library=str(tmp_path))
+    assert result.verdict == FAILED and result.diagnosis == "emission_color changes nothing"
 
 
 def test_every_check_of_a_node_has_a_shader_that_it_fails(stock, run):

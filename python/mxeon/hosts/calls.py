@@ -125,6 +125,8 @@ def bsdf_call(
     start, statements, result, names = _find_calls(text, called, shader.element)
     arguments: Arguments = {"V": ("vector3", wo), "L": ("vector3", wi), "N": ("vector3", NORMAL)}
     arguments["occlusion"] = ("float", inputs.get("occlusion", 1.0))
+    if "position" in inputs:
+        arguments["P"] = ("vector3", inputs["position"])
     if not emitted:
         arguments[ASKED] = ("boolean", output == "throughput")
     statements = statements.replace(called, closure)

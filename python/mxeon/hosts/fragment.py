@@ -112,9 +112,9 @@ def bsdf_evaluation(
     dialect = DIALECTS[shader.target]
     call = bsdf_call(shader, wo, wi, inputs, branch, output)
     version, text = shader.stages["pixel"].split("\n", 1)
-    # Subsurface scattering divides by what P changes from pixel to pixel: here it is that of a plane.
+    # Subsurface scattering divides by what P changes from pixel to pixel: that of a plane unless it is given.
     body = [
-        "vec3 P = vec3(gl_FragCoord.xy, 0.0);",
+        *(() if "P" in call.arguments else ("vec3 P = vec3(gl_FragCoord.xy, 0.0);",)),
         call.statements,
         f"{_output(text)} = vec4({call.value}, 1.0);",
     ]

@@ -287,6 +287,29 @@ def spheres(case: Case) -> Iterator[Compared]:
         yield Compared(batch, case.measured(picture, batch), spread(batch))
 
 
+@check(
+    "cylinder",
+    "On a cylinder, light spreads alike, whichever way the axis runs on the screen.",
+    of_family(SubsurfaceSpec),
+    with_inputs("the mean free path is 0", radius=(0.0, 0.0, 0.0)),
+    "frame",
+    pairs=True,
+    lit=True,
+    diagnose=lambda case: Diagnosis(
+        "the curvature depends on the direction in which a surface bends"
+    ),
+)
+def cylinders(case: Case) -> Compared:
+    """Values of pixels in squares of 2 x 2 that bend along the columns, against the same along the rows."""
+    batch = case.samples.take(case.of(SubsurfaceSpec).cylinder)
+    quarter = len(batch.wo) // 4
+    turned = np.arange(len(batch.wo)).reshape(2, quarter, 2).transpose(2, 1, 0).ravel()
+    there = case.evaluating.direct(batch.where(turned))
+    back = np.empty_like(there)
+    back[turned] = there
+    return Compared(batch, case.direct(batch), back)
+
+
 def opaque_values(case: Case, branch: str) -> Iterator[Compared]:
     for batch in case.few:
         yield Compared(batch, case.throughput(batch, branch), np.zeros((len(batch.wo), 3)))

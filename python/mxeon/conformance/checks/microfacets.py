@@ -13,7 +13,7 @@ from mxeon.conformance.checks.energy import summed
 from mxeon.conformance.checks.lobes import is_plain, shows_exactly
 from mxeon.conformance.diagnosis import inputs as input_diagnosis
 from mxeon.conformance.diagnosis.candidates import Diagnosis
-from mxeon.conformance.samples import LEAST_COLOR82, Array, Batch, rounded
+from mxeon.conformance.samples import LEAST_COLOR82, Array, Batch, rounded, sky, sky_map
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs.lobes import PbrSpec
 from mxeon.conformance.specs.microfacets import LEAST_TANGENT_ALPHA, LEAST_TANGENT_COSINE, FacetSpec
@@ -21,6 +21,7 @@ from mxeon.conformance.tolerance import Compared
 
 FEW = 1 << 12
 LEAST_DIVIDED = 1.2  # index of a dielectric whose values are divided
+SKIES = 16  # lobes that are asked for the mean of an uneven sky
 LEAST_VALUE = 1e-3  # pi f cos of values whose ratio is asked
 
 
@@ -139,6 +140,40 @@ def _turned_back(w: Array, tangent: Array) -> Array:
     along = w[:, 0] * tangent[:, 0] + w[:, 1] * tangent[:, 1]
     across = w[:, 1] * tangent[:, 0] - w[:, 0] * tangent[:, 1]
     return rounded([along, across, w[:, 2]])
+
+
+@check(
+    "sky",
+    "An uneven environment is reflected as the values integrate over it, retroreflected, too.",
+    is_facets,
+    with_inputs("the flag is dropped", retroreflective=False),
+    pairs=True,
+    lit=True,
+    diagnose=lambda case: diagnose_sky(case),
+)
+def reflected_sky(case: Case) -> Iterator[Compared]:
+    """Means of the sky under each lobe, which one for a mirrored view has by retroreflection; factors cancel."""
+    batch, weights = case.samples.integrated
+    count, nodes = min(SKIES, len(weights)), weights.shape[1]
+    part = batch.first(count * nodes)
+    values = case.lobe.value(part).reshape(count, nodes, 3) * weights[:count, :, np.newaxis]
+    albedo = values.sum(axis=1)
+    bright = albedo.min(axis=1) > LEAST_VALUE
+    seen = (values * sky(part.wi).reshape(count, nodes, 3)).sum(axis=1)
+    views, mean = part.where(np.flatnonzero(bright) * nodes), seen[bright] / albedo[bright]
+    mirrored = replace(views, wo=views.wo * [-1.0, -1.0, 1.0])
+    for each in (views, mirrored.altered(retroreflective=True)):
+        yield Compared(each, case.albedo(each, sky_map()) / case.albedo(each), mean)
+
+
+def diagnose_sky(case: Case) -> Diagnosis:
+    """Whether the mirror lobe is wrong, or the retroreflective one alone."""
+    tolerance = case.tolerance("sky")
+    assert tolerance is not None, f"{case.spec.title} has no sky"
+    first = next(reflected_sky(case))
+    if tolerance.metric(*first[1:]).max() > tolerance.value:
+        return Diagnosis("the environment is looked up in other directions, or with other weights")
+    return Diagnosis("retroreflective is ignored or wrong in an environment")
 
 
 def diagnose_stretched(case: Case) -> Diagnosis:

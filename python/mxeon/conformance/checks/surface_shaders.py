@@ -3,6 +3,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
 from mxeon.conformance.tolerance import Compared, Measurement, count_named, count_of, scaled
 
 WORST = 32  # pairs that are looked at
+FACTORS = (0.0, 1e-3, 0.1, 10.0, 1e3)  # by which an input of a film may be wrong
 # Inputs that take a lobe away, by its name.
 LOBE_INPUTS = {
     "coat": ("coat", "coat_weight", "clearcoat"),
@@ -54,6 +56,33 @@ check(
     shifted,
     diagnose=diagnose_lobes,
 )(VALUE)
+
+
+@check(
+    "lobes_film",
+    "Under a thin film, too, the material is the sum of its lobes.",
+    lambda spec: isinstance(spec, SurfaceShaderSpec) and bool(spec.table.films),
+    shifted,
+    lit=True,
+    diagnose=lambda case: diagnose_films(case),
+)
+def films(case: Case) -> Compared:
+    batch = case.samples.take(case.of(SurfaceShaderSpec).films)
+    return Compared(batch, case.direct(batch), case.expected(batch))
+
+
+def diagnose_films(case: Case) -> Diagnosis:
+    """The input of the film with which a wrong value explains all, or that the lobes are right without one."""
+    tolerance, batch = case.tolerance("lobes_film"), films(case).batch
+    assert tolerance is not None, f"{case.spec.title} has no films"
+    measured = case.direct(batch)
+    for each in case.of(SurfaceShaderSpec).table.films:
+        for factor in FACTORS if "thickness" in each.name else ():
+            other = batch.altered(**{each.name: factor * np.asarray(batch.inputs[each.name])})
+            if tolerance.metric(measured, case.expected(other)).max() <= tolerance.value:
+                return Diagnosis(f"{each.name} counts {factor:g} times")
+    return Diagnosis("the lobes under the film are not those of the material")
+
 
 check(
     "lobes_albedo",
@@ -113,13 +142,14 @@ def misplaced(case: Case) -> list[str]:
 
 
 def without_effect(case: Case) -> list[str]:
-    """Inputs that change no value in any branch."""
+    """Inputs that change no value in any branch, and no emission."""
     spec, evaluating = case.of(SurfaceShaderSpec), case.evaluating
     ports = {port.path.rsplit("/", 1)[-1]: port.value for port in evaluating.shader.inputs}
     batch = spec.changed(case.samples.batches[0], ports)
     effective = np.zeros(len(spec.names), bool)
-    for branch in SCATTERING:
-        found = case.measured(lambda each, branch=branch: evaluating.evaluate(each, branch), batch)  # type: ignore[misc]
+    for branch, output in (*((each, "response") for each in SCATTERING), ("emission", "radiance")):
+        ask = partial(evaluating.evaluate, branch=branch, output=output)
+        found = case.measured(ask, batch)
         pairs = found.reshape(len(spec.names), 2, -1)
         effective |= (pairs[:, 0] != pairs[:, 1]).any(axis=1)
     return [name for name, each in zip(spec.names, effective, strict=True) if not each]

@@ -12,6 +12,8 @@ from mxeon.conformance.samples import (
     LEAST_COLOR82,
     LEAST_TURNED,
     SEED,
+    SKY_ROWS,
+    SLOPE,
     TURNED,
     Array,
     Batch,
@@ -235,7 +237,16 @@ WHITE_FURNACE = given(
 
 def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
     own = lobe_errors(VALUE, ENVIRONMENT, FRAME, 6e-4, throughput, WHITE_FURNACE, MEAN)
-    return {**ERRORS, **own, "lossless": own["integral"]}
+    seen = sum_of(
+        Term(2.0 * 6e-4, "the quadrature on the equations, of a value and of its share of the sky"),
+        sum_over(1024),
+        Term(
+            SLOPE * math.sqrt(2.0) * math.pi / (2 * SKY_ROWS), "the nearest texel, half of one away"
+        ),
+        unit="irradiance",
+        metric=absolute,
+    )
+    return {**ERRORS, **own, "lossless": own["integral"], "sky": seen}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -22,6 +22,7 @@ from mxeon.conformance.samples import (
 from mxeon.conformance.spec import CHANGED_COLOR, Input, LobeSpec, color, draw
 from mxeon.conformance.specs.lobes import LEAST_VIEW
 from mxeon.conformance.specs.microfacets import reflected, sum_over
+from mxeon.conformance.specs.thin_films import ERRORS as FILM_ERRORS
 from mxeon.conformance.tolerance import Term, absolute, mean_scaled, roundings, sum_of
 from mxeon.errors import NotRun
 from mxeon.hosts.calls import NORMAL, TANGENT
@@ -44,6 +45,8 @@ RANGES = {
 }
 # The mean free path below the surface, which shows on a curved one: an evaluation has a plane.
 FREE_PATHS = ("subsurface_radius", "subsurface_scale", "subsurface_radius_scale")
+BLENDED = "opacity blends what lies behind with the whole surface, not with a lobe"
+SHADED = "an occlusion is what an evaluation sets itself"
 TURNED_FRAME = {"normal": (0.0, 0.6, 0.8), "tangent": (0.6, 0.8, 0.0)}
 
 
@@ -70,6 +73,15 @@ class Lobes:
     needs: Mapping[str, Values] = field(default_factory=dict)
     # Inputs of `changed` that a curved surface alone has to show; that of pairs is a plane.
     curved: tuple[str, ...] = ()
+    # Inputs that are asked of no value, and why.
+    unseen: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def films(self) -> tuple[Input, ...]:
+        """The inputs of a thin film."""
+        return tuple(
+            each for each in self.others if each.name.startswith(("thin_film", "iridescence"))
+        )
 
     @cached_property
     def changed(self) -> Values:
@@ -111,6 +123,8 @@ STANDARD = Lobes(
         transmission_scatter_anisotropy=0.5,
         transmission_dispersion=20.0,
         subsurface_anisotropy=0.5,
+        emission=0.5,
+        emission_color=CHANGED_COLOR,
         thin_walled=True,
         coat_normal=TURNED_FRAME["normal"],
         **TURNED_FRAME,
@@ -123,6 +137,8 @@ STANDARD = Lobes(
         "subsurface_anisotropy",
     ),
     curved=("subsurface_radius", "subsurface_scale"),
+    needs={"emission_color": {"emission": 1.0}},
+    unseen={"opacity": BLENDED},
     white={
         "base": 1.0,
         "base_color": (1.0, 1.0, 1.0),
@@ -166,6 +182,8 @@ OPEN_PBR = Lobes(
         transmission_dispersion_scale=0.5,
         transmission_dispersion_abbe_number=40.0,
         subsurface_scatter_anisotropy=0.5,
+        emission_luminance=500.0,
+        emission_color=CHANGED_COLOR,
         geometry_thin_walled=True,
         geometry_normal=TURNED_FRAME["normal"],
         geometry_tangent=TURNED_FRAME["tangent"],
@@ -180,7 +198,11 @@ OPEN_PBR = Lobes(
         "subsurface_scatter_anisotropy",
     ),
     curved=("subsurface_radius", "subsurface_radius_scale"),
-    needs={"subsurface_weight": {"subsurface_color": CHANGED_COLOR}},  # on a plane, its base else
+    needs={
+        "subsurface_weight": {"subsurface_color": CHANGED_COLOR},  # on a plane, its base else
+        "emission_color": {"emission_luminance": 1000.0},
+    },
+    unseen={"geometry_opacity": BLENDED},
     white={
         "base_weight": 1.0,
         "base_color": (1.0, 1.0, 1.0),
@@ -218,10 +240,17 @@ GLTF = Lobes(
         attenuation_distance=2.0,
         attenuation_color=CHANGED_COLOR,
         dispersion=0.5,
+        emissive=CHANGED_COLOR,
+        emissive_strength=2.0,
         clearcoat_normal=TURNED_FRAME["normal"],
         **TURNED_FRAME,
     ),
     without_effect=("thickness", "attenuation_distance", "attenuation_color", "dispersion"),
+    needs={"emissive_strength": {"emissive": CHANGED_COLOR}},
+    unseen={
+        "occlusion": SHADED,
+        **dict.fromkeys(("alpha", "alpha_mode", "alpha_cutoff"), BLENDED),
+    },
     white={
         "base_color": (1.0, 1.0, 1.0),
         "metallic": 0.0,
@@ -248,10 +277,12 @@ PREVIEW = Lobes(
         opacityThreshold=0.5,
         normal=(0.6, 0.0, 0.8),
         displacement=0.5,
+        emissiveColor=CHANGED_COLOR,
     ),
     without_effect=("displacement",),
     white={"diffuseColor": (1.0, 1.0, 1.0), "clearcoat": 1.0, "clearcoatRoughness": 0.4},
     needs={"specularColor": {"useSpecularWorkflow": 1}},
+    unseen={"occlusion": SHADED},
 )
 
 
@@ -275,6 +306,7 @@ MEAN = sum_of(
     unit="pi f cos, relative above 1, or albedo, mean",
     metric=mean_scaled,
 )
+FILM = sum_of(VALUE.term("all lobes of a material"), FILM_ERRORS["value"].term("a film"))
 STATES = sum_of(roundings(32, "of the same parts in two programs"))
 
 
@@ -352,6 +384,11 @@ class SurfaceShaderSpec(LobeSpec):
         wo = _views(rng, count)
         return _isotropic(Batch(wo, wo, self.special_inputs(rng, count)))
 
+    def films(self, counts: Counts) -> Batch:
+        """Some of the pairs, under random films."""
+        batch = self.batches(counts)[0].first(counts.albedos)
+        return batch.altered(**draw(np.random.default_rng(SEED), len(batch.wo), self.table.films))
+
     def changed(self, batch: Batch, ports: Mapping[str, Plain]) -> Batch:
         """A few views for each input: of the material with every lobe, then with a change of it.
 
@@ -402,7 +439,13 @@ def _spec(node: str, table: Lobes) -> SurfaceShaderSpec:
         node=node,
         model=node,
         table=table,
-        errors={"value": VALUE, "albedo": ALBEDO, "lobes_mean": MEAN, "states": STATES},
+        errors={
+            "value": VALUE,
+            "albedo": ALBEDO,
+            "lobes_mean": MEAN,
+            "states": STATES,
+            "lobes_film": FILM,
+        },
         counts=Counts(256, albedos=64, materials=1 << 11),  # a material a pair
     )
 
