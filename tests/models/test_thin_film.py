@@ -115,13 +115,11 @@ def test_the_airy_terms_of_one_wavelength_are_the_transfer_matrix():
     for index, extinction in ((1.5, 0.0), (1.1, 0.0), (0.2, 3.4), (2.9, 3.1)):
         arrays = [np.full_like(MU, value) for value in (1.4, index, extinction)]
         opd, total = formulas.path_difference(MU, 350.0, arrays[0]), 0.0
-        for first, second, phase in formulas.over_index(MU, *arrays):
-            passed = 1.0 - first
-            dc = first + passed**2 * second / (1.0 - first * second)
-            x = 2.0 * np.pi * opd / 550e-9 + phase
-            r = np.sqrt(first * second)
-            series = r * (np.cos(x) - r) / (1.0 - 2.0 * r * np.cos(x) + r * r)
-            total = total + 0.5 * (dc + 2.0 * (dc - first - passed) * series)
+        for first, (real, imaginary), R23 in formulas.over_index(MU, *arrays):
+            R12 = first**2
+            rest = (1.0 - R12) ** 2 * R23 / (1.0 - R12 * R23)
+            w = first * (real + 1j * imaginary) * np.exp(2j * np.pi * opd / 550e-9)
+            total = total + 0.5 * (R12 + rest + 2.0 * (rest - (1.0 - R12)) * (w / (1.0 - w)).real)
         expected = film_spectrum(550.0, MU, 350.0, 1.4, index, extinction)
         np.testing.assert_allclose(total, expected, atol=1e-12)
 
@@ -147,7 +145,8 @@ def test_the_text_takes_phases_of_the_right_sign():
     exact = film_spectrum_xyz(mu, thickness, *rest)
     arrays = mu, *(np.array(each) for each in rest)
     opd = formulas.path_difference(mu, thickness, rest[0])
-    flipped = [each._replace(phase=-each.phase) for each in formulas.over_index(*arrays)]
+    interfaces = formulas.over_index(*arrays)
+    flipped = [each._replace(second=(each.second[0], -each.second[1])) for each in interfaces]
     xyz = 0.5 * sum(formulas.tristimulus(each, opd) for each in flipped)
     assert np.abs(np.moveaxis(xyz, 0, -1) - exact).max() > 0.1
 

@@ -57,7 +57,7 @@ def shader_curve(category, material, mu, width=0.0):
     spread = (2.0 * film.METERS * thickness) ** 2 * width * mu / np.maximum(opd, LEAST_PATH)
     interfaces = SUBSTRATES[category](mu, n, TEXT, **substrate(material))
     # Their mean over all phases, and the weight of orders and the amplitude of the first.
-    pairs = [np.broadcast_arrays(first, second) for first, second, _ in interfaces]
+    pairs = [np.broadcast_arrays(r12**2, R23) for r12, _, R23 in interfaces]
     lost = [np.maximum(1.0 - first * second, LEAST_LOST) for first, second in pairs]
     means = [R + (1.0 - R) ** 2 * S / each for (R, S), each in zip(pairs, lost, strict=True)]
     weights = [(1.0 - R) * (1.0 - S) / each for (R, S), each in zip(pairs, lost, strict=True)]
@@ -67,8 +67,8 @@ def shader_curve(category, material, mu, width=0.0):
     least = np.maximum(VALUE_ORDER * bright, MEAN_ORDER * np.power(width, 3))
     count = order_count(np.stack(weights), np.stack(sizes), opd, spread, least)
     xyz = sum(
-        mean - 2.0 * weight * counted_orders(r * np.exp(1j * each.phase), opd, spread, count)
-        for mean, weight, r, each in zip(means, weights, sizes, interfaces, strict=True)
+        mean - 2.0 * weight * counted_orders(r12 * (x + 1j * y), opd, spread, count)
+        for mean, weight, (r12, (x, y), _) in zip(means, weights, interfaces, strict=True)
     )
     return np.clip(curve._to_rgb(0.5 * xyz, TEXT), 0.0, 1.0)
 
@@ -141,14 +141,15 @@ def wave_slopes(category, material, _, mu):
     opd = film.path_difference(mu, thickness, index)
     slopes = 0.0
     for interface in SUBSTRATES[category](mu, index, TEXT, **substrate(material)):
-        first, second, phase = interface
-        passed = 1.0 - first
-        amplitude = passed**2 * second / np.maximum(1.0 - first * second, LEAST_LOST) - passed
+        r12, (x, y), R23 = interface
+        R12 = r12**2
+        passed = 1.0 - R12
+        amplitude = passed**2 * R23 / np.maximum(1.0 - R12 * R23, LEAST_LOST) - passed
         for k, v, position, var in film.GAUSSIANS:
             height = (
                 np.abs(np.array(TEXT.matrix)[:, k]) * v * np.sqrt(2.0 * np.pi * var) / film.NORMAL
             )
-            wave = np.sqrt(first * second) * np.exp(1j * (2.0 * np.pi * position * opd + phase))
+            wave = r12 * (x + 1j * y) * np.exp(2j * np.pi * position * opd)
             decay = var * (2.0 * np.pi * opd) ** 2
             orders = sum(m * wave**m * np.exp(-decay * m * m) for m in range(1, 30))
             slopes = slopes + height[:, np.newaxis] * np.abs(amplitude * orders)

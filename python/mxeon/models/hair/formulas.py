@@ -64,10 +64,12 @@ def _bessel_powers(small: Array, large: Array) -> Iterator[Array]:
 def longitudinal(sin_i: Array, cos_i: Array, sin_o: Array, cos_o: Array, v: Array) -> Array:
     """M_p: Longitudinal Scattering, in a form that neither overflows nor cancels.
 
-        M = exp(-d^2 / (2 v)) (exp(-x) I_0(x)) / (v (1 - exp(-2 / v))),  x = |cos_i| cos_o / v
+    Printed, with x = cos_i cos_o / v: M = exp(-sin_i sin_o / v) I_0(x) / (2 v sinh(1 / v)). I_0 is even, so that
+    |cos_i| serves for a tilted inclination beyond [-pi/2, pi/2]. Take e^x out of I_0 and e^(1/v) out of 2 sinh:
 
-    d is the distance of the points (|cos_i|, sin_i) and (cos_o, -sin_o) of the unit circle. A tilted
-    inclination may leave [-pi/2, pi/2]; I_0 is even, so the sign of its cosine has no effect.
+        M = exp(-(1 + sin_i sin_o - |cos_i| cos_o) / v) (exp(-x) I_0(x)) / (v (1 - exp(-2 / v)))
+
+    The bracket is d^2 / 2, d the distance of the points (|cos_i|, sin_i) and (cos_o, -sin_o) of the unit circle.
     """
     xp = array_namespace(sin_i, sin_o, v)
     cos_i = xp.abs(cos_i)
@@ -77,7 +79,12 @@ def longitudinal(sin_i: Array, cos_i: Array, sin_o: Array, cos_o: Array, v: Arra
 
 
 def azimuthal(phi: Array, s: Array) -> Array:
-    """N_p of an angle phi - Phi_p, which is wrapped into [-pi, pi]: Azimuthal Scattering."""
+    """N_p of an angle x = phi - Phi_p, which is wrapped into [-pi, pi]: Azimuthal Scattering.
+
+    Printed: l(x, s) / (L(pi, s) - L(-pi, s)) of the logistic density l and its integral L = 1 / (1 + e^(-x/s)), s
+    scaled by sqrt(pi / 8). l is even, so that with f = e^(-|x|/s) it is f / (s (1 + f)^2) and never overflows;
+    L(pi) - L(-pi) = (1 - e^(-pi/s)) / (1 + e^(-pi/s)) = tanh(pi / (2 s)).
+    """
     xp, scale = array_namespace(phi, s), SCALE * s
     wrapped = xp.remainder(phi + np.pi, 2.0 * np.pi) - np.pi
     fall = xp.exp(-xp.abs(wrapped) / scale)

@@ -20,7 +20,8 @@ LEAST = 1e-140
 def ndf(wh: Array, roughness: Array) -> Array:
     """D: GGX Normal Distribution Function; no division by alpha; 0 where an alpha is 0.
 
-    D = a^3 / (pi ((alpha_y h_x)^2 + (alpha_x h_y)^2 + (a h_z)^2)^2),  a = alpha_x alpha_y
+    Printed, with a = alpha_x alpha_y and B = (h_x / alpha_x)^2 + (h_y / alpha_y)^2 + h_z^2: D = 1 / (pi a B^2).
+    a^2 B = (alpha_y h_x)^2 + (alpha_x h_y)^2 + (a h_z)^2 has no quotient, and D = a^3 / (pi (a^2 B)^2).
     """
     xp = array_namespace(wh, roughness)
     (alpha_x, alpha_y), (x, y, z) = roughness, wh
@@ -43,7 +44,10 @@ def mean_alpha(roughness: Array) -> Array:
 
 
 def visibility(mu_o: Array, mu_i: Array, alpha: Array) -> Array:
-    """G2 / (4 mu_o mu_i); no limit where both directions graze, and 0 there."""
+    """G2 / (4 mu_o mu_i) = 1 / (2 (lambda_o mu_i + lambda_i mu_o)), since G2 = 2 mu_o mu_i over that bracket.
+
+    There is no limit where both directions graze: 0 there.
+    """
     return reciprocal(2.0 * (smith_lambda(mu_o, alpha) * mu_i + smith_lambda(mu_i, alpha) * mu_o))
 
 

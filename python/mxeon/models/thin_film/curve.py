@@ -22,15 +22,12 @@ from mxeon.models.core.edges import within
 from mxeon.models.core.namespaces import NUMPY, array_namespace, like
 from mxeon.models.microfacet import fresnel_formulas as fresnel
 from mxeon.models.microfacet.lobe import CONDUCTOR, DIELECTRIC, SCHLICK, Curve
-from mxeon.models.thin_film import amplitudes
 from mxeon.models.thin_film import formulas as film
 
 # Gauss-Legendre in the cosine: nodes of the curve, and of the polynomial through it, which is clamped.
 NODES, FINE = 14, 200
 
-Polarizations: TypeAlias = (
-    tuple[film.Interface, film.Interface] | tuple[amplitudes.Amplitudes, amplitudes.Amplitudes]
-)
+Polarizations: TypeAlias = tuple[film.Interface, film.Interface]
 
 
 @dataclass(frozen=True)
@@ -83,17 +80,11 @@ def film_curve(category: str, form: Form = TEXT) -> Curve:
     # Average it over the cosine: the clamp has kinks, which a polynomial through the curve has not.
     def average(*, thinfilm_thickness: Array, thinfilm_ior: Array, **material: Array) -> Array:
         def coated() -> Array:
-            free, film = without_clamp(form), (thinfilm_thickness, thinfilm_ior)
-            cosines, between, shares = _rule()
-            xp = array_namespace(*film, *material.values())
-            if xp is NUMPY:
-                nodes = [_airy(category, free, np.asarray(mu), *film, material) for mu in cosines]
-                curve = np.tensordot(between, np.stack(nodes), 1)
-            else:
-                curve = _fine(category, free, like(cosines, film[1]), film, material)
+            film = thinfilm_thickness, thinfilm_ior
+            curve = _fine(category, without_clamp(form), film, material)
             # Clamp it there, and sum.
             kept = within(curve) if form.clamped else curve
-            return xp.tensordot(like(shares, curve), kept, axes=1)
+            return array_namespace(curve).tensordot(like(_rule()[2], curve), kept, axes=1)
 
         return _where_coated(thinfilm_thickness, coated, bare.average(**material))
 
@@ -109,15 +100,16 @@ def _where_coated(thickness: Array, coated: Callable[[], Array], plain: Array) -
 
 
 def _fine(
-    category: str, form: Form, mu: Array, film: tuple[Array, Array], material: dict[str, Array]
+    category: str, form: Form, film: tuple[Array, Array], material: dict[str, Array]
 ) -> Array:
     """The curve at the cosines of a fine rule from those of nodes, shape (FINE, 3, ...), all at once."""
+    mu, between, _ = (like(each, film[1]) for each in _rule())
     channels = {k for k, v in material.items() if k in COLORS[category]}
     axes = max((v.ndim - 1 for k, v in material.items() if k in channels), default=film[0].ndim)
     spread = {k: v[:, np.newaxis] if k in channels else v for k, v in material.items()}
     nodes = array_namespace(mu).reshape(mu, (-1, *(1,) * max(axes, film[0].ndim, film[1].ndim)))
     curve = _airy(category, form, nodes, *film, spread)
-    return array_namespace(curve).tensordot(like(_rule()[1], curve), curve, axes=((1,), (1,)))
+    return array_namespace(curve).tensordot(between, curve, axes=((1,), (1,)))
 
 
 @cache
@@ -146,11 +138,9 @@ def _airy(
 ) -> Array:
     """F_airy in linear RGB, shape (3, ...)."""
     inputs = {k: v for k, v in material.items() if k != "tint"}
-    if array_namespace(mu, thickness, film_ior, *inputs.values()) is NUMPY:
-        mu, thickness, film_ior = np.broadcast_arrays(mu, thickness, film_ior)
     opd = film.path_difference(mu, thickness, film_ior)
     p, s = SUBSTRATES[category](mu, film_ior, form, **inputs)
-    xyz = p.tristimulus(opd, form.orders) + s.tristimulus(opd, form.orders)
+    xyz = film.tristimulus(p, opd, form.orders) + film.tristimulus(s, opd, form.orders)
     rgb = _to_rgb(0.5 * xyz, form)
     return within(rgb) if form.clamped else rgb
 
@@ -159,35 +149,20 @@ def _to_rgb(xyz: Array, form: Form) -> Array:
     """RGB, shape (3, ...), of XYZ of the substrate of each channel, shape (3, channels, ...)."""
     xp, matrix = array_namespace(xyz), np.array(form.matrix)
     xyz = xp.broadcast_to(xyz, (3, 3, *xyz.shape[2:]))
-    if xp is not NUMPY:
-        if form.mixed:
-            diagonal = xp.stack([xyz[k, k, ...] for k in range(3)])
-            return xp.tensordot(like(matrix, xyz), diagonal, axes=1)
-        weights = like(matrix.T.reshape(3, 3, *(1,) * (xyz.ndim - 2)), xyz)
-        return xp.sum(weights * xyz, axis=0)
     if form.mixed:
-        mixed: Array = np.einsum("jk,k...->j...", matrix, np.einsum("kk...->k...", xyz))
-        return mixed
-    rgb: Array = np.einsum("jk,kj...->j...", matrix, xyz)
-    return rgb
+        diagonal = xp.stack([xyz[k, k, ...] for k in range(3)])
+        return xp.tensordot(like(matrix, xyz), diagonal, axes=1)
+    weights = like(matrix.T.reshape(3, 3, *(1,) * (xyz.ndim - 2)), xyz)
+    return xp.sum(weights * xyz, axis=0)
 
 
 def _dielectric(mu: Array, film_ior: Array, _: Form, ior: Array) -> Polarizations:
-    return _over_index(
-        mu[np.newaxis], film_ior[np.newaxis], ior[np.newaxis], like(np.zeros(1), ior)
-    )
+    none = like(np.zeros(1), ior)
+    return film.over_index(mu[np.newaxis], film_ior[np.newaxis], ior[np.newaxis], none)
 
 
 def _conductor(mu: Array, film_ior: Array, _: Form, ior: Array, extinction: Array) -> Polarizations:
-    return _over_index(mu[np.newaxis], film_ior[np.newaxis], ior, extinction)
-
-
-def _over_index(mu: Array, film_ior: Array, ior: Array, extinction: Array) -> Polarizations:
-    """Film over a dielectric or a conductor, by amplitudes for arrays of other libraries than NumPy."""
-    values = mu, film_ior, ior, extinction
-    if array_namespace(*values) is NUMPY:
-        return film.over_index(*values)
-    return amplitudes.over_index(*values)
+    return film.over_index(mu[np.newaxis], film_ior[np.newaxis], ior, extinction)
 
 
 def _schlick(
@@ -201,11 +176,8 @@ def _schlick(
 ) -> Polarizations:
     mu_t = film.refracted(mu, film_ior)
     F = form.share * fresnel.schlick(mu_t, color0, color82, color90, exponent)
-    mu, film_ior, xp = mu[np.newaxis], film_ior[np.newaxis], array_namespace(mu, film_ior, F)
-    base = xp.maximum(color0, form.least)
-    if xp is NUMPY:
-        return film.over_schlick(mu, film_ior, F, base)
-    return amplitudes.over_schlick(mu, film_ior, F, base)
+    base = array_namespace(color0).maximum(color0, form.least)
+    return film.over_schlick(mu[np.newaxis], film_ior[np.newaxis], F, base)
 
 
 CURVES = {

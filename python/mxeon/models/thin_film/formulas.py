@@ -1,20 +1,30 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Airy reflectance of a thin film on valid float64 arrays, which broadcast.
+"""Airy reflectance of a thin film by complex amplitudes, on valid float64 arrays, which broadcast.
 
-Sections are those of [MaterialX2026], appendix Thin-Film Iridescence Model. Each function is of one
-polarization unless it returns both, p before s. The film is at least as dense as the vacuum above it.
+Sections are those of [MaterialX2026], appendix Thin-Film Iridescence Model. The film is at least as dense as the vacuum
+above it, so that the amplitude r12 of its upper interface is real; that of the lower one is r23 = sqrt(R23) e^(i phi_23).
+The text prints reflectances and phases, R12, R23 and phi = phi_21 + phi_23, and sums
+
+    I = C_0 + 2 sum of C_m S(m D, m phi),  C_0 = R12 + R_s,  R_s = T121^2 R23 / (1 - R12 R23),
+    C_m = (R_s - T121) sqrt(R12 R23)^m,  T121 = 1 - R12
+
+With z = r21 r23 = -r12 r23, whose length is sqrt(R12 R23) and whose
+angle is phi, the m-th term is the real part of z^m. Roots and phases have no derivative where a reflectance is 0: for a
+film of index 1, at Brewster's angle, over a substrate of its own index. z^m has.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
 from mxeon.models.core.arrays import Array
-from mxeon.models.core.edges import root
-from mxeon.models.core.namespaces import NUMPY, array_namespace
+from mxeon.models.core.edges import at_least_0, guarded, magnitude, root
+from mxeon.models.core.namespaces import NUMPY, array_namespace, like
 from mxeon.models.microfacet import fresnel_formulas as fresnel
+
+Complex: TypeAlias = tuple[Array, Array]  # real and imaginary part
 
 # Gaussians of the sensitivities: tristimulus, v in m, mu in 1/m, sigma^2 in 1/m^2.
 GAUSSIANS = (
@@ -25,6 +35,11 @@ GAUSSIANS = (
 )
 NORMAL = 1.0685e-7
 METERS = 1e-9  # in a nanometer
+# Their centers, standard deviations, and weights in XYZ, (3, 4).
+CENTERS = np.array([mu for _, _, mu, _ in GAUSSIANS])
+SPREADS = np.sqrt([variance for *_, variance in GAUSSIANS])
+AREAS = [v * np.sqrt(2.0 * np.pi * variance) / NORMAL for _, v, _, variance in GAUSSIANS]
+WEIGHTS = np.eye(3)[:, [row for row, *_ in GAUSSIANS]] * AREAS
 
 # All orders are summed one by one where THIN_SPREAD <= 2 pi OPD sigma: what follows DAMPED_ORDERS of
 # them is below exp(-(30 * 0.2)^2) = 3e-16. Thinner films are integrated over wavenumbers, by the
@@ -35,19 +50,15 @@ SAME = 2.0**-20  # relative distance of indices that are roundings of the same n
 # Weights of its nodes from the center on, and of all of them.
 HEIGHTS = STEP * np.exp(-0.5 * (STEP * np.arange(STEPS + 1)) ** 2) / np.sqrt(2.0 * np.pi)
 HEIGHT = 2.0 * float(HEIGHTS.sum()) - float(HEIGHTS[0])
-BLOCK = 2**12  # elements at once, of which a dozen arrays stay in a cache
+BLOCK = 2**13  # elements at once
 
 
 class Interface(NamedTuple):
-    """Reflectances R12 and R23 of both interfaces, and phi_21 + phi_23, in radian."""
+    """Amplitudes r12 and -r23 of one polarization, seen from the film, and R23."""
 
     first: Array
-    second: Array
-    phase: Array
-
-    def tristimulus(self, opd: Array, orders: int | None = None) -> Array:
-        """Reflected intensity in CIE XYZ, shape (3, ...): `tristimulus`."""
-        return tristimulus(self, opd, orders)
+    second: Complex
+    reflectance: Array
 
 
 def refracted(mu: Array, film_ior: Array) -> Array:
@@ -66,17 +77,28 @@ def path_difference(mu: Array, thickness: Array, film_ior: Array) -> Array:
 def over_index(
     mu: Array, film_ior: Array, ior: Array, extinction: Array
 ) -> tuple[Interface, Interface]:
-    """Film over a dielectric or a conductor, for both polarizations."""
-    mu_t = refracted(mu, film_ior)
-    first = fresnel.polarized(mu, film_ior, np.zeros_like(film_ior))
-    second = fresnel.polarized(mu_t, ior / film_ior, extinction / film_ior)
-    below = second_phases(mu_t, film_ior, ior, extinction)
-    phases = zip(first_phases(mu, film_ior), below, strict=True)
-    p, s = (
-        Interface(R12, R23, phi_21 + phi_23)
-        for R12, R23, (phi_21, phi_23) in zip(first, second, phases, strict=True)
-    )
-    return p, s
+    """Film over a dielectric or a conductor, for both polarizations, p before s.
+
+    Printed, with c = film_ior cos theta_t, n = ior + i extinction and W = n cos theta_3 = sqrt(n^2 - sin^2 theta):
+
+        r_s = (c - W) / (c + W),  r_p = (n^2 c - film_ior^2 W) / (n^2 c + film_ior^2 W)
+
+    W^2 - c^2 = n^2 - film_ior^2, so that -r_s = (n^2 - film_ior^2) / (W + c)^2: no difference of roots. And
+    n^2 = W^2 + sin^2, film_ior^2 = c^2 + sin^2 make n^2 c -+ film_ior^2 W = (W -+ c) (c W -+ sin^2), so that
+    r_p = -r_s (c W - sin^2) / (c W + sin^2).
+    """
+    xp = array_namespace(mu, film_ior, ior, extinction)
+    c, S2 = film_ior * refracted(mu, film_ior), (1.0 - mu) * (1.0 + mu)
+    # W = U + iV, of which U V = ior extinction gives the smaller part without a cancellation.
+    Q, A = ior * extinction, (ior - extinction) * (ior + extinction) - S2
+    larger = root(0.5 * (fresnel.modulus(A, 2.0 * Q) + magnitude(A)))
+    smaller = Q / xp.where(larger > 0.0, larger, 1.0)
+    U, V = xp.where(A >= 0.0, larger, smaller), xp.where(A >= 0.0, smaller, larger)
+    gap = (ior - film_ior) * (ior + film_ior) - extinction * extinction, 2.0 * Q
+    s = _quotient(gap, ((U + c) ** 2 - V * V, 2.0 * (U + c) * V), 0.0)
+    p = _product(s, _quotient((c * U - S2, c * V), (c * U + S2, c * V), 1.0))
+    first_p, first_s = first_amplitudes(mu, film_ior)
+    return Interface(first_p, p, _squared(p)), Interface(first_s, s, _squared(s))
 
 
 def over_schlick(
@@ -87,16 +109,10 @@ def over_schlick(
     Where a dip turns F negative there is no amplitude, and F counts as 0. The phase jumps where both indices
     are the same: within SAME they count as that, since color0 0.04 below a film of 1.5 is 2e-8 off in float32.
     """
-    F = np.maximum(F, 0.0)
-    phi_23 = np.where(index_of(color0) < film_ior * (1.0 - SAME), np.pi, 0.0)
-    p, s = (
-        Interface(R12, F, phi_21 + phi_23)
-        for R12, phi_21 in zip(
-            fresnel.polarized(mu, film_ior, np.zeros_like(film_ior)),
-            first_phases(mu, film_ior),
-            strict=True,
-        )
-    )
+    xp = array_namespace(mu, film_ior, F)
+    F = at_least_0(F)
+    second = xp.where(index_of(color0) < film_ior * (1.0 - SAME), -1.0, 1.0) * root(F)
+    p, s = (Interface(r, (second, 0.0 * second), F) for r in first_amplitudes(mu, film_ior))
     return p, s
 
 
@@ -107,33 +123,13 @@ def index_of(color0: Array) -> Array:
     return (1.0 + amplitude) / least
 
 
-def first_phases(mu: Array, film_ior: Array) -> tuple[Array, Array]:
-    """phi_21 of both polarizations: First Interface Phase.
-
-    The angle is below arctan(film_ior) where mu sqrt(1 + film_ior^2) > 1.
-    """
-    steep = mu * np.hypot(1.0, film_ior) > 1.0
-    return np.where(steep, np.pi, 0.0), np.full_like(mu, np.pi)
-
-
-def second_phases(
-    mu_t: Array, film_ior: Array, ior: Array, extinction: Array
-) -> tuple[Array, Array]:
-    """phi_23 of both polarizations: Second Interface Phase (Dielectric and Conductor Substrates).
-
-    With n = ior + i extinction, n^2 = P + 2 i Q and |n|^2 = N: ior^2 (1 - k^2) = P, ior^2 k = Q, so that
-    nothing is divided by the index, and U V = Q, so that the smaller one does not cancel.
-    """
-    c = film_ior * mu_t
-    P, Q, N = ior**2 - extinction**2, ior * extinction, ior**2 + extinction**2
-    A = P - film_ior**2 * (1.0 - mu_t) * (1.0 + mu_t)
-    B = fresnel.modulus(A, 2.0 * Q)
-    larger = np.sqrt(0.5 * (B + np.abs(A)))
-    smaller = Q / np.where(larger > 0.0, larger, 1.0)
-    U, V = np.where(A >= 0.0, larger, smaller), np.where(A >= 0.0, smaller, larger)
-    phi_s = np.arctan2(2.0 * c * V, B - c * c)
-    phi_p = np.arctan2(2.0 * c * (2.0 * Q * U - P * V), (N * mu_t) ** 2 - film_ior**2 * B)
-    return phi_p, phi_s
+def first_amplitudes(mu: Array, film_ior: Array) -> tuple[Array, Array]:
+    """r12 of both polarizations, by the forms of `over_index`; its sign is the phase phi_12, 0 or pi."""
+    xp = array_namespace(mu, film_ior)
+    c, S2 = film_ior * refracted(mu, film_ior), (1.0 - mu) * (1.0 + mu)
+    total = xp.where(c + mu > 0.0, c + mu, 1.0)
+    s = -(film_ior - 1.0) * (film_ior + 1.0) / (total * total)
+    return s * (mu * c - S2) / (mu * c + S2), s
 
 
 def tristimulus(interface: Interface, opd: Array, orders: int | None = None) -> Array:
@@ -141,103 +137,105 @@ def tristimulus(interface: Interface, opd: Array, orders: int | None = None) -> 
 
     `orders` is M; None sums all of them.
     """
-    first, second, phase = interface
-    passed = 1.0 - first
-    lost = 1.0 - first * second  # 0 only where nothing passes
-    dc = first + passed**2 * second / np.where(lost > 0.0, lost, 1.0)
-    amplitude = dc - first - passed
-    r = np.sqrt(first * second)
-    series = _all_orders if orders is None else _orders
-    return np.asarray(dc + 2.0 * amplitude * series(r, phase, opd, orders or 0))
+    (first, (real, imaginary), R23), xp = interface, array_namespace(*interface[::2], opd)
+    R12 = first * first
+    passed, lost = 1.0 - R12, 1.0 - R12 * R23  # nothing is lost only where nothing passes
+    dc = R12 + passed**2 * R23 / xp.where(lost > 0.0, lost, 1.0)
+    values = first * real, first * imaginary, 2.0 * np.pi * opd
+    shape = np.broadcast_shapes(*(tuple(each.shape) for each in values))
+    x, y, phi = (xp.broadcast_to(each, shape) for each in values)
+    if xp is NUMPY:
+        sums = np.empty((len(GAUSSIANS), x.size))
+        for start in range(0, x.size, BLOCK):
+            rows = slice(start, start + BLOCK)
+            _fill(sums[:, rows], x.ravel()[rows], y.ravel()[rows], phi.ravel()[rows], orders)
+        sums = sums.reshape(-1, *shape)
+    else:
+        sums = _orders(x, y, phi, orders or DAMPED_ORDERS)
+        if orders is None:
+            thick = phi * float(SPREADS.min()) >= THIN_SPREAD
+            sums = xp.where(thick, sums, _integrated(x, y, guarded(phi, ~thick, 0.0)))
+    return dc + 2.0 * (dc - R12 - passed) * xp.tensordot(like(WEIGHTS, sums), sums, axes=1)
 
 
-def _orders(r: Array, phase: Array, opd: Array, orders: int) -> Array:
-    """Sum of r^m S(m opd, m phase) for m from 1 to `orders`, shape (3, ...)."""
-    r, phase, opd = np.broadcast_arrays(r, phase, opd)
-    total = np.zeros((3, r.size))
-    for start in range(0, r.size, BLOCK):
-        rows = slice(start, start + BLOCK)
-        block = r.ravel()[rows], phase.ravel()[rows], opd.ravel()[rows]
-        total[:, rows] = damped_orders(*block, orders)
-    return total.reshape(3, *r.shape)
+def _fill(sums: Array, x: Array, y: Array, phi: Array, orders: int | None) -> None:
+    """Fill the sums of a block with those of thick films and of thin ones."""
+    thick = phi * SPREADS.min() >= THIN_SPREAD if orders is None else np.full(len(phi), True)
+    if thick.all():
+        sums[:] = _orders(x, y, phi, orders or DAMPED_ORDERS)
+        return
+    sums[:, thick] = _orders(x[thick], y[thick], phi[thick], DAMPED_ORDERS)
+    sums[:, ~thick] = _integrated(x[~thick], y[~thick], phi[~thick])
 
 
-def damped_orders(r: Array, phase: Array, opd: Array, orders: int) -> Array:
-    """Sum of r^m S(m opd, m phase) for m from 1 to `orders` of arrays (N,), shape (3, N).
+def _column(values: Array, array: Array) -> Array:
+    """Numbers of the Gaussians along a first axis before those of an array, in its library."""
+    return like(values.reshape(-1, *(1,) * array.ndim), array)
 
-    S is the normalized sensitivity, which a sum over Gaussians gives with phi = 2 pi opd:
 
-        v sqrt(2 pi sigma^2) cos(mu phi + phase) exp(-sigma^2 phi^2)
+def _orders(x: Array, y: Array, phi: Array, orders: int) -> Array:
+    """Real part of the sum of z^m S(m phi) for m from 1 to `orders`, z = x + i y, of each Gaussian, (4, ...).
 
-    Each order is made of the one before it, by the cosine of a multiple angle.
+        S(phi) = exp(i mu phi - sigma^2 phi^2)
+
+    With w = z exp(i mu phi) the real part of w^m is 2 Re(w) that of w^(m-1) less |w|^2 that of w^(m-2).
     """
-    phi = 2.0 * np.pi * opd
-    total = np.zeros((3, len(r)))
-    for k, v, mu, var in GAUSSIANS:
-        damping = np.exp(-var * phi * phi)
-        height, twice = r * damping, damping * damping
-        growth = height * twice
-        cosine = np.cos(mu * phi + phase)
-        double, before = 2.0 * cosine, np.ones_like(cosine)
-        summed = height * cosine
-        for _ in range(1, orders):
-            before, cosine = cosine, double * cosine - before
-            height = height * growth
-            growth = growth * twice
-            summed += height * cosine
-        total[k] += v * np.sqrt(2.0 * np.pi * var) / NORMAL * summed
+    xp, angle = array_namespace(phi), _column(CENTERS, phi) * phi
+    damping = xp.exp(-((_column(SPREADS, phi) * phi) ** 2))
+    twice = damping * damping
+    growth = damping * twice
+    power, size = x * xp.cos(angle) - y * xp.sin(angle), x * x + y * y
+    before, double, total = 0.0 * size + 1.0, 2.0 * power, damping * power
+    for _ in range(1, orders):
+        before, power = power, double * power - size * before
+        damping = damping * growth
+        growth = growth * twice
+        total += damping * power
     return total
 
 
-def _all_orders(r: Array, phase: Array, opd: Array, _: int) -> Array:
-    """Sum of r^m S(m opd, m phase) for all m from 1 on, shape (3, ...).
+def _integrated(x: Array, y: Array, phi: Array) -> Array:
+    """`_orders` of all orders by an integral over wavenumbers.
 
-    S is the mean of cos(m (2 pi opd nu + phase)) over Gaussians of wavenumbers nu, and the sum of
-    r^m cos(m x) is (r cos x - r^2) / (1 - 2 r cos x + r^2).
+    The sum of all w^m is ((1 - |w|^2) / |1 - w|^2 - 1) / 2 in its real part. A node of a Gaussian turns w by a
+    multiple of one step: no node takes a sine of its own.
     """
-    r, phase, opd = np.broadcast_arrays(r, phase, opd)
-    total = np.zeros((3, *r.shape))
-    least = min(variance for *_, variance in GAUSSIANS)
-    thick = 2.0 * np.pi * opd * np.sqrt(least) >= THIN_SPREAD
-    total[:, thick] = _orders(r[thick], phase[thick], opd[thick], DAMPED_ORDERS)
-    total[:, ~thick] = _integrated(r[~thick], phase[~thick], opd[~thick])
-    return total
-
-
-def _integrated(r: Array, phase: Array, opd: Array) -> Array:
-    """The sum of all orders by an integral over wavenumbers, shape (3, N).
-
-    The sum of r^m cos(m x) is ((1 - r^2) / (1 - 2 r cos x + r^2) - 1) / 2, and the angle of a node is
-    that of a Gaussian's center plus or minus a multiple of one step: no node takes a sine of its own.
-    """
-    total = np.zeros((3, len(r)))
-    for start in range(0, len(r), BLOCK):
-        rows = slice(start, start + BLOCK)
-        for k, v, mu, var in GAUSSIANS:
-            x = 2.0 * np.pi * mu * opd[rows] + phase[rows]
-            step = 2.0 * np.pi * np.sqrt(2.0 * var) * STEP * opd[rows]
-            kernel = _mean_inverse(r[rows], 0.5 * x, 0.5 * step)
-            weight = v * np.sqrt(2.0 * np.pi * var) / NORMAL
-            total[k, rows] += 0.5 * weight * ((1.0 - r[rows]) * (1.0 + r[rows]) * kernel - HEIGHT)
-    return total
-
-
-def _mean_inverse(r: Array, half: Array, step: Array) -> Array:
-    """Mean of 1 / ((1 - r)^2 + 4 r sin(half + k step)^2) over the nodes k of a Gaussian.
-
-    It is large but finite where r is 1, where nothing passes and no order counts.
-    """
-    # The node at the center.
-    sine, cosine = np.sin(half), np.cos(half)
-    turn_s, turn_c = np.sin(step), np.cos(step)
-    square, quadruple = np.maximum((1.0 - r) ** 2, 1e-300), 4.0 * r
-    total = HEIGHTS[0] / (square + quadruple * sine * sine)
-    s, c = turn_s, turn_c
-    for height in HEIGHTS[1:]:
+    xp, angle = array_namespace(phi), _column(CENTERS, phi) * phi
+    step = _column(np.sqrt(2.0) * STEP * SPREADS, phi) * phi
+    real = x * xp.cos(angle) - y * xp.sin(angle)
+    imaginary = x * xp.sin(angle) + y * xp.cos(angle)
+    turn_c, turn_s = xp.cos(step), xp.sin(step)
+    kernel = float(HEIGHTS[0]) / _distance(real, imaginary)
+    c, s = turn_c, turn_s
+    for height in HEIGHTS[1:].tolist():
         # The nodes on both sides of the center, and the angle of the next ones.
-        forth, back = sine * c, cosine * s
-        above, below = forth + back, forth - back
-        total += height / (square + quadruple * above * above)
-        total += height / (square + quadruple * below * below)
-        s, c = s * turn_c + c * turn_s, c * turn_c - s * turn_s
-    return np.asarray(total)
+        a, b, d, e = real * c, imaginary * s, imaginary * c, real * s
+        kernel += height / _distance(a - b, d + e)
+        kernel += height / _distance(a + b, d - e)
+        c, s = c * turn_c - s * turn_s, s * turn_c + c * turn_s
+    return 0.5 * ((1.0 - x * x - y * y) * kernel - HEIGHT)
+
+
+def _distance(real: Array, imaginary: Array) -> Array:
+    """|1 - w|^2, 0 only where nothing passes and no order counts: it is 1 there."""
+    size = (1.0 - real) ** 2 + imaginary * imaginary
+    return array_namespace(size).where(size > 0.0, size, 1.0)
+
+
+def _product(a: Complex, b: Complex) -> Complex:
+    """a b."""
+    return a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]
+
+
+def _squared(a: Complex) -> Array:
+    """|a|^2."""
+    return a[0] * a[0] + a[1] * a[1]
+
+
+def _quotient(a: Complex, b: Complex, otherwise: float) -> Complex:
+    """a / b, and a real number where b is 0."""
+    squared = _squared(b)
+    xp, valid = array_namespace(squared), squared > 0.0
+    size = xp.where(valid, squared, 1.0)
+    real, imaginary = _product(a, (b[0] / size, -b[1] / size))
+    return xp.where(valid, real, otherwise), imaginary

@@ -17,10 +17,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.polynomial import chebyshev
 
 from mxeon.models.core.arguments import checked, checked_choice, checked_directions, checked_rgb
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
+from mxeon.models.core.chebyshev import chebyshev_coefficients, chebyshev_nodes, chebyshev_sum
 from mxeon.models.core.edges import within
 from mxeon.models.core.namespaces import NUMPY, any_array, array_namespace, like
 from mxeon.models.microfacet.albedo import lobe_albedo
@@ -129,27 +129,11 @@ class PolynomialCurve:
         film, xp = material["thinfilm_thickness"] > 0.0, array_namespace(mu)
         if xp is NUMPY and not film.any():
             return self._bare(mu, **bare)
-        x = np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
-        cosines = (0.5 * (1.0 + x)).reshape(-1, 1, *(1,) * (mu.ndim - 2))
+        cosines = chebyshev_nodes(DEGREE + 1).reshape(-1, 1, *(1,) * (mu.ndim - 2))
         sampled = self._curve(like(cosines, mu), **material)
-        series = xp.tensordot(like(_transform(x), mu), sampled, axes=((1,), (1,)))
-        F = within(_clenshaw(series[:, :, np.newaxis, ...], 2.0 * mu - 1.0))
+        matrix = like(chebyshev_coefficients(np.eye(DEGREE + 1)), mu)
+        series = xp.tensordot(matrix, sampled, axes=((1,), (1,)))
+        F = within(chebyshev_sum(series[:, :, np.newaxis, ...], mu))
         if xp is NUMPY and film.all():
             return F
         return xp.where(film, F, self._bare(mu, **bare))
-
-
-def _transform(x: Array) -> Array:
-    """Chebyshev coefficients from values at the roots."""
-    matrix = 2.0 / len(x) * np.asarray(chebyshev.chebvander(x, DEGREE), np.float64).T
-    matrix[0] *= 0.5
-    return np.asarray(matrix)
-
-
-def _clenshaw(series: Array, x: Array) -> Array:
-    """Chebyshev series, coefficients along the first axis."""
-    last = before = like(np.zeros(1), x)
-    for k in range(len(series) - 1, 0, -1):
-        last, before = series[k] + 2.0 * x * last - before, last
-    total: Array = series[0] + x * last - before
-    return total
