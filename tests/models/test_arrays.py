@@ -7,7 +7,6 @@ same function in NumPy, where these can be relied on.
 
 import inspect
 import re
-import sys
 from contextlib import nullcontext
 from functools import lru_cache, partial, wraps
 from types import SimpleNamespace
@@ -17,7 +16,7 @@ import pytest
 
 import mxeon
 from mxeon.albedo import fon_albedo_dir, fon_loss
-from mxeon.models import eon_brdf, lambert_brdf, smith_g1, unchecked
+from mxeon.models import eon_brdf, lambert_brdf, smith_g1
 from mxeon.models.core import edges
 from mxeon.models.core.namespaces import NUMPY, array_namespace
 from mxeon.models.core.ranges import RANGES
@@ -26,9 +25,15 @@ from tests.fuzz import arguments
 from tests.support.tracing import untraced
 from tools.site import arrays as table
 
-TINTS = ("rho", "color", "tint", "radiance", "base", "absorption_coefficient")
+TINTS = ("rho", "color", "tint", "radiance", "base", "absorption", "scattering")
+TINTS += ("emission", "scattered", "behind")
 COLORS = {"rho", "color", "color0", "color82", "color90", "tint", "ior", "extinction"} | set(TINTS)
-PAIRS = ("microfacet", "ggx_", "btdf")  # in the names of functions whose roughness is a pair
+PAIRS = (
+    "microfacet",
+    "ggx_",
+    "btdf",
+    "transmittance_dir",
+)  # in the names of functions whose roughness is a pair
 INTERFACES = "dielectric_over_eon", "varnished"
 # What JAX compiles for seconds; their factors have functions of their own.
 COATS = ("brdf", "albedo_dir", "sample", "pdf")
@@ -42,15 +47,17 @@ LONG += ("film_albedo_dir", "dielectric_albedo_dir")
 ROWS, FEW = 48, 8
 # Thousands of nodes a row.
 FACETS = ("dielectric_albedo_dir", "conductor_albedo_dir", "schlick_albedo_dir")
-QUADRATURES = (*FACETS, "film_albedo_dir", "ggx_albedo_dir_anisotropic")
+QUADRATURES = (*FACETS, "film_albedo_dir", "transmittance_dir", "ggx_albedo_dir_anisotropic")
 SEED = 11
 GRADIENT = 1e-7  # of the larger of 1 and the gradient: the truncation of differences in float64
 WIDTH = 1e-4  # of a step of differences
 OFFSETS = (-6, -4, -3, -2, -1, 0, 1, 2, 3, 4, 6)  # up to three steps, of one width and of two
 RELIABLE = 2e-8  # two steps of differences that agree so far are taken for the derivative
 COMPARED = 0.6  # least share of partial derivatives that differences can judge
-CUT = {"film_albedo_dir": 0.3}  # of a curve that is cut between thousands of nodes
-STEP, SLOPE = 1e-4, 3e-5  # of central differences of models by name, and their truncation
+# Of a curve that is cut between thousands of nodes; of roots of differences, which are noise.
+CUT = {"film_albedo_dir": 0.3, "diffusion_blur": 0.0, "planck_radiance": 0.4}
+CUT |= {"dielectric_transmittance_dir": 0.4}  # of nodes whose light does not pass
+NOISE = {"diffusion_blur": 2e-8}  # of the root of a difference, whose digits are 2^-53
 VALUE = 1e-12  # of the larger of 1 and the value: another library's last digits of sines and powers
 
 
@@ -77,12 +84,23 @@ def named(function):
 PORTABLE = {
     name: named(function)
     for name, function in arguments.functions().items()
+    # Wrong variants are tried by name with the catalog, a quadrature of any function as one of theirs.
     if inspect.unwrap(function) is not function
+    and not name.partition("models.")[2].startswith(("diffuse.known", "core.quadrature"))
 }
 COMPENSATED = ("dielectric_brdf", "conductor_brdf", "generalized_schlick_brdf")
-OTHERS = sorted(set(arguments.functions()) - set(PORTABLE))
-# Ends for tests, where a range has none.
+# Ends for tests, where a range has none, or one at which slopes grow beyond bounds.
+LOW = (
+    dict.fromkeys(("eumelanin_color", "pheomelanin_color", "hair_color"), 0.05)
+    | dict.fromkeys(("separation", "radius", "reach"), 0.2)
+    | {"temperature": 500.0, "wavelength": 300.0, "melanin_concentration": 0.0}
+)
 HIGH = (
+    {"temperature": 9000.0, "wavelength": 900.0, "melanin_concentration": 0.9, "u": 0.99}
+    | dict.fromkeys(("emission", "scattered", "behind", "intensity", "exposure", "albedo"), 3.0)
+    | dict.fromkeys(("separation", "radius", "reach", "scale_tt", "scale_trt"), 2.0)
+    | dict.fromkeys(("single_scatter", "scatter_anisotropy"), 0.95)
+) | (
     {"exponent": 8.0, "ior": 3.0, "g": 0.99, "reflectivity": 0.99}
     | dict.fromkeys(("extinction", "radiance", "base", "absorption", "scattering", "distance"), 4.0)
     | dict.fromkeys(("absorption_coefficient", "phi"), 3.0)
@@ -169,7 +187,11 @@ def sampled(function):
         names = [*names, *values["inputs"]]
         values |= values.pop("inputs")
     for name, value in values.items():
-        if not isinstance(value, float | tuple | np.ndarray) or name not in names:
+        if (
+            not isinstance(value, float | tuple | np.ndarray)
+            or name not in names
+            or name == "light"
+        ):
             switches[name] = value  # one for all rows
         elif np.shape(value) == (3,) and name[0] in "wn":
             arrays[name] = directions(rng, value[2] < 0.0, rows)
@@ -178,7 +200,7 @@ def sampled(function):
             place = f"{function.__module__}.{function.__name__}"
             pairs = name == "roughness" and any(each in place for each in PAIRS)
             pairs &= "anisotropy" not in place
-            low = max(low, -HIGH.get(name, np.inf))
+            low = LOW.get(name, max(low, -HIGH.get(name, np.inf)))
             high, shape = HIGH.get(name, high), (rows, 2) if pairs else (rows, *np.shape(value))
             inside = low + (high - low) * rng.uniform(0.2, 0.95, shape)
             ends = rng.choice([low, min(1.0, high), high], shape)
@@ -198,19 +220,18 @@ def whole(value):
     """An array: of a sampler the components of the direction, and the density; of a pair both."""
     if not isinstance(value, tuple):
         return value
-    w, pdf = value
+    w, pdf, *others = value
     if w.ndim == pdf.ndim:
-        return array_namespace(w).stack([w, pdf], axis=-1)
+        return array_namespace(w).stack([w, pdf, *others], axis=-1)
     return array_namespace(w).stack(
         [w[..., 0], w[..., 1], w[..., 2], pdf + 0.0 * w[..., 0]], axis=-1
     )
 
 
-def scalar(value):
+def scalar(value, axes=1):
     """One number per row: the first channel, or all that a sampler returns together."""
-    if isinstance(value, tuple):
-        return whole(value).sum(-1)
-    while value.ndim > 1:
+    value = whole(value).sum(-1) if isinstance(value, tuple) else value
+    while value.ndim > axes:
         value = value[..., 0]
     return value
 
@@ -227,8 +248,12 @@ def moved(function, arrays, switches, name):
         for each, value in arrays.items()
     }
     values[name] = several.reshape(values[name].shape)
-    with unchecked(), np.errstate(all="ignore"):
-        found = scalar(function(**values, **switches))
+    # Map it over the rows: a value that is traced may leave its range, and a direction the sphere.
+    torch = pytest.importorskip("torch")
+    row = torch.func.vmap(
+        lambda *a: scalar(function(**dict(zip(values, a, strict=True)), **switches), 0)
+    )
+    found = row(*map(torch.tensor, values.values())).numpy()
     return [dict(zip(OFFSETS, each, strict=True)) for each in found.reshape(size, -1, rows)]
 
 
@@ -294,7 +319,7 @@ def assert_gradients(library, name, compensate):
     function = PORTABLE[name]
     arrays, switches, expected_value, slopes = reference(name, compensate)
     value, found = library.gradients(partial(function, **switches), arrays)
-    assert_values(value, expected_value)
+    assert_values(value, expected_value, NOISE.get(function.__name__, VALUE))
     for argument, gradient in found.items():
         assert np.isfinite(gradient).all(), argument
         kink = np.zeros(count(function), bool)
@@ -302,6 +327,8 @@ def assert_gradients(library, name, compensate):
             kink = arrays["wo"][:, 2] == 1.0  # whose azimuth turns with it
         if function.__name__.endswith("_anisotropy"):  # the larger alpha is 1, and no more
             kink = (function(**arrays)[:, 0] == 1.0) & (arrays["anisotropy"] == 0.0)
+        if function.__name__.endswith("transmittance_dir"):  # a mirror, whose slope counts as 0
+            kink = (arrays["roughness"] == 0.0).any(axis=1)
         if function.__name__ == "film_schlick":  # a curve that begins to be cut at 0
             kink = (arrays["color0"] * arrays["color90"] == 0.0)[:, 0]
         columns, judged = gradient.reshape(count(function), -1).T, 0
@@ -311,7 +338,7 @@ def assert_gradients(library, name, compensate):
             error = np.abs(column - expected) / np.maximum(1.0, np.abs(expected))
             worst = np.where(reliable, error, 0.0).argmax()
             row = {each: value[worst] for each, value in arrays.items()}
-            assert error[reliable].max() <= GRADIENT, (
+            assert error[reliable].max(initial=0.0) <= GRADIENT, (
                 argument,
                 k,
                 column[worst],
@@ -322,11 +349,11 @@ def assert_gradients(library, name, compensate):
         assert judged >= CUT.get(function.__name__, COMPARED) * columns.size, argument
 
 
-def assert_values(value, expected):
+def assert_values(value, expected, allowed=VALUE):
     """Compare values with those of the same function in NumPy."""
     assert value.shape == expected.shape
     error = np.abs(value - expected) / np.maximum(1.0, np.abs(expected))
-    assert (error <= VALUE).all()
+    assert (error <= allowed).all()
 
 
 @pytest.mark.parametrize("name", COMPENSATED)
@@ -357,18 +384,6 @@ def test_numpy_gets_its_own_functions_to_the_last_bit():
     assert NUMPY.sqrt is np.sqrt and NUMPY.atan is np.arctan and NUMPY.atan2 is np.arctan2
 
 
-@pytest.mark.parametrize("name", OTHERS)
-def test_other_functions_say_that_they_take_numpy_alone(name):
-    torch = pytest.importorskip("torch")
-    function = arguments.functions()[name]
-    values = arguments.base(function)
-    argument = next(iter(arguments.tried(function, arrays=True)))
-    status, why = arguments.answer(function, values | {argument: torch.tensor(values[argument])})
-    assert (status, why) == (arguments.REFUSED, "")
-    with pytest.raises(ValueError, match=f"^{argument} must be an array of NumPy, not of torch"):
-        arguments.call(function, values | {argument: torch.tensor(values[argument])})
-
-
 def test_transformations_of_jax_and_torch(library):
     rng = np.random.default_rng(SEED)
     wo, wi = directions(rng, False), directions(rng, False)
@@ -379,14 +394,6 @@ def test_transformations_of_jax_and_torch(library):
         np.testing.assert_allclose(library.numpy(values), expected, VALUE, VALUE)
 
 
-@pytest.mark.parametrize("name", ["lambert", "fon", "qon", "eon", "burley"])
-def test_models_are_differentiated_by_transformations_as_they_stand(name, library):
-    row, wo, wi = mxeon.model(name), [0.6, 0.0, 0.8], [0.0, 0.6, 0.8]
-    ends = [row.brdf(wo, wi, 0.5 + h) for h in (STEP, -STEP)]
-    slope = library.grad(lambda rho: row.brdf(wo, wi, rho))(library.array(np.array(0.5)))
-    assert float(slope) == pytest.approx((ends[0] - ends[1]) / (2.0 * STEP), rel=SLOPE)
-
-
 def test_values_are_checked_wherever_there_are_any(library):
     up, rho = library.array([0.0, 0.0, 1.0]), library.array([0.5])
     with pytest.raises(ValueError, match=r"^rho must lie in \[0, 1\]; got 1.5 at index \(0,\)"):
@@ -395,8 +402,6 @@ def test_values_are_checked_wherever_there_are_any(library):
         lambert_brdf(up, -up, rho)
     with pytest.raises(ValueError, match="^roughness must be real numbers"):
         eon_brdf(up, up, rho, "rough")
-    with unchecked():
-        assert library.numpy(lambert_brdf(up, -up, 2.0 * rho)) == 1.0 / np.pi
 
 
 def test_a_number_for_the_roughness_stands_for_both(library):
@@ -452,14 +457,7 @@ def test_arrays_of_jax_without_numbers_are_refused():
             eon_brdf(array, [0.0, 0.6, 0.8], 0.5, 0.5)
 
 
-def test_torch_asks_for_the_package_that_gives_it_the_standard(monkeypatch):
-    torch = pytest.importorskip("torch")
-    monkeypatch.setitem(sys.modules, "array_api_compat.torch", None)
-    with pytest.raises(ImportError, match=r"pip install '\.\[arrays\]'"):
-        fon_loss(torch.ones(1))
-
-
-@pytest.mark.parametrize("name", ("torch", "jax", "drjit"))
+@pytest.mark.parametrize("name", ("torch", "jax"))
 def test_the_examples_of_the_page_run(name):
     pytest.importorskip(name)
     blocks = re.findall(r"```python\n(.*?)```", table.PAGE.read_text(encoding="utf-8"), re.DOTALL)
@@ -469,48 +467,9 @@ def test_the_examples_of_the_page_run(name):
         exec(block, {})
 
 
-BY_NAME = {
-    pytorch: (*("eon", "eon_squared", "oren_nayar", "burley", "translucent", "subsurface"),
-              *("zeltner", "conty_kulla", "dielectric", "conductor", "schlick", "hair", "dielectric_rt"),
-              *("schlick_t", "dielectric_film", "conductor_film", "schlick_film")),
-    jax: ("eon",),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize(
-    ("make", "name"), [(make, n) for make, names in BY_NAME.items() for n in names]
-)
-def test_models_by_name_have_the_values_of_numpy_and_gradients_of_differences(make, name):
-    # Take inputs inside of their ranges, and a weight.
-    library, row, rng = make(), mxeon.model(name), np.random.default_rng(SEED)
-    wo, wi = directions(rng, False), directions(rng, row.lights == "back")
-    inputs = {each.name: np.array(each.default) * 0.9 + 0.05 for each in row.parameters}
-    inputs |= {"weight": np.array(0.7)} if "weight" in row.by_name else {}
-    expected = row.bsdf(wo, wi, **inputs)
-    value, found = library.gradients(partial(row.bsdf, wo, wi), inputs)
-    np.testing.assert_allclose(value, expected, VALUE, VALUE)
-
-    def total(moved):
-        return row.bsdf(wo, wi, **inputs | moved)[..., 0].sum()
-
-    for key, array in inputs.items():
-        for k in range(array.size):
-            step = np.zeros(array.size)
-            step[k] = STEP
-            step = step.reshape(array.shape)
-            slope = (total({key: array + step}) - total({key: array - step})) / (2.0 * STEP)
-            assert found[key].ravel()[k] == pytest.approx(slope, rel=SLOPE, abs=SLOPE), (key, k)
-
-
 def test_models_by_name_run_under_jit_and_in_a_frame():
     library, row = jax(), mxeon.model("eon")
     wo, wi, normal = np.array([0.6, 0.0, 0.8]), np.array([0.0, 0.6, 0.8]), np.array([0.6, 0.0, 0.8])
     traced = library.transforms[0](lambda rough: row.brdf(wo, wi, 0.5, rough, normal=normal))
     value = library.numpy(traced(0.4))
     assert value == pytest.approx(row.brdf(wo, wi, 0.5, 0.4, normal=normal))
-
-
-def test_models_by_name_refuse_what_their_functions_do_not_take():
-    torch = pytest.importorskip("torch")
-    with pytest.raises(ValueError, match=r"must be an array of NumPy, not of torch"):
-        mxeon.model("eon_clamped").bsdf(torch.tensor([0.0, 0.6, 0.8]), [0.0, 0.6, 0.8])

@@ -300,14 +300,6 @@ MITSUBA_COAT = 24 * 2.0**-24
 # the curve and 2e-7 from 3 roundings, over that albedo; 1.5e-7 measured.
 MITSUBA_DENSITY = 4e-7
 
-# Models with arrays of Dr.Jit, of the larger of 1 and the value: some 30 roundings of 2^-24, of which those of
-# sums of cosines near grazing count more; 7.5e-7 measured.
-DRJIT_VALUE = 2e-6
-# Light that facets miss, up to 2.3, at an alpha that is a plain number: 1e-8 of the cubics, and two roundings of
-# 2^-24; 1.8e-7 measured. Its slope over the logarithm of the cosine: cubics of a sixteenth of an octave; 5e-6 measured.
-DRJIT_MISSING = 3e-7
-DRJIT_SLOPE = 1e-5
-
 # Curves of a dielectric over EON, as their docstring promises: 9e-8 measured, at alpha 0.01 and index 1.02.
 COAT = 2e-7
 # Integral of its value at alpha 0.5 by 256 x 256 nodes, of which the specular lobe at mu 0.1 needs the most.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The NumPy models on one thread: values a second beside Mitsuba's LLVM variant, and EON's time and memory per pair.
 
-Mitsuba computes in float32, the models in float64 with NumPy and in float32 with Dr.Jit. Mitsuba's
+Mitsuba computes in float32, the models in float64 with NumPy and in float32 under `jax.jit`. Mitsuba's
 `eon` is the plugin of `mxeon.mitsuba`; it has no lobe of Schlick's curve or of sheen alone, but `principled` has
 both in one. Times of values a second are processor time.
 
@@ -25,7 +25,6 @@ from mxeon.models import (
     fresnel_conductor_avg,
     generalized_schlick_brdf,
     threads,
-    unchecked,
     zeltner_brdf,
 )
 from tools.benchmarks.rounds import (
@@ -44,7 +43,7 @@ GOLD = (0.183, 0.421, 1.373), (3.424, 2.346, 1.770)
 COMPENSATION = 1e-10  # of the table of E_ss
 PLUGIN = 3e-6  # of pi f cos in float32
 ONE, OWN = "one material", "a material each"
-LLVM, DRJIT = "Mitsuba, llvm", "arrays of Dr.Jit, llvm"
+LLVM, JIT = "Mitsuba, llvm", "jax.jit, float32"
 SECONDS = {ONE: 0.5, OWN: 3.0}  # goals of a million pairs of microfacets
 BARE = "Schlick without compensation"  # which Mitsuba has not; its rival is Schlick
 # Models, and Mitsuba's nodes beside them.
@@ -56,7 +55,7 @@ NODES = {
     "dielectric": {"type": "roughdielectric", "distribution": "ggx", "alpha": 0.3},
 }  # fmt: skip
 RIVALED = ("EON", "Schlick", "sheen")  # whose goal is to be as fast
-GOALS = {(name, ONE) for name in RIVALED} | {(name, DRJIT) for name in (*RIVALED, BARE)}
+GOALS = {(name, ONE) for name in RIVALED}
 
 C1 = 0.5 - 2.0 / (3.0 * np.pi)
 C2 = 2.0 / 3.0 - 28.0 / (15.0 * np.pi)
@@ -101,7 +100,7 @@ def models(wo, wi, material):
 
 
 def compiled(wo, wi):
-    """Mitsuba's nodes over these pairs in one call, and the models over the same arrays, on one thread."""
+    """Mitsuba's nodes over these pairs in one call, on one thread."""
     try:
         import mitsuba as mi
     except ImportError:
@@ -120,8 +119,7 @@ def compiled(wo, wi):
 
     def evaluated(way):
         """Values in memory."""
-        with unchecked():
-            found = way()
+        found = way()
         dr.eval(found)
         dr.sync_thread()
         return found
@@ -130,16 +128,30 @@ def compiled(wo, wi):
         (name, LLVM): partial(mi.load_dict(node).eval, context, si, light)
         for name, node in NODES.items()
     }
-    colors, alpha = COLORS.tolist(), [0.3, 0.3]
-    schlick = partial(generalized_schlick_brdf, view, light, colors, 1.0, 1.0, alpha, 5.0)
-    ways |= {
-        ("EON", DRJIT): partial(eon_brdf, view, light, colors, R),
-        ("Schlick", DRJIT): schlick,
-        (BARE, DRJIT): partial(schlick, compensate=False),
-        ("sheen", DRJIT): partial(zeltner_brdf, view, light, colors, R),
-        ("dielectric", DRJIT): partial(dielectric_brdf, view, light, colors, alpha, 1.5),
-    }
     return {name: partial(evaluated, way) for name, way in ways.items()}
+
+
+def traced(wo, wi):
+    """The models over these pairs with one material, compiled by JAX."""
+    try:
+        import jax
+    except ImportError:
+        raise PackageError("JAX is not installed: pip install jax") from None
+    view, light = (jax.numpy.asarray(w, jax.numpy.float32) for w in (wo, wi))
+    schlick = partial(generalized_schlick_brdf, color0=COLORS, color82=1.0, color90=1.0)
+    schlick = partial(schlick, roughness=0.3, exponent=5.0)
+    functions = {
+        "EON": partial(eon_brdf, rho=COLORS, roughness=R),
+        "Schlick": schlick,
+        BARE: partial(schlick, compensate=False),
+        "sheen": partial(zeltner_brdf, color=COLORS, roughness=R),
+    }
+
+    def evaluated(function):
+        """Values in memory."""
+        return function(view, light).block_until_ready()
+
+    return {(name, JIT): partial(evaluated, jax.jit(each)) for name, each in functions.items()}
 
 
 def values(rounds, pairs):
@@ -148,17 +160,18 @@ def values(rounds, pairs):
     rivals = {
         (name, each): way for each in (ONE, OWN) for name, way in models(wo, wi, each).items()
     }
-    try:
-        rivals |= compiled(wo, wi)
-    except (NotRun, PackageError) as reason:
-        print(f"benchmarks: Mitsuba left out: {reason}", file=sys.stderr)
+    for others in (compiled, traced):
+        try:
+            rivals |= others(wo, wi)
+        except (NotRun, PackageError) as reason:
+            print(f"benchmarks: left out: {reason}", file=sys.stderr)
     seconds = interleave(rivals, rounds, time.process_time)
     figures = []
     for (name, way), times in seconds.items():
         node = f" ({NODES[name]['type']}, {version_of('mitsuba')})" if way == LLVM else ""
         figures.append(figure(f"{name}, {way}{node}", "million values/s", 1e-6 * pairs / times))
         theirs = seconds.get(("Schlick" if name == BARE else name, LLVM))
-        if theirs is not None and way in (ONE, DRJIT):
+        if theirs is not None and way in (ONE, JIT):
             goal = 1.0 if (name, way) in GOALS else None
             figures.append(figure(f"{name}, {way} / {LLVM}", "x", theirs / times, goal, True))
     for name in ("conductor", "dielectric"):
@@ -174,9 +187,10 @@ def values(rounds, pairs):
     error = float(np.abs(value / (bare * factor) - 1.0).max())
     checks = [Check("conductor", error, COMPENSATION)]
     exact = np.pi * eon_brdf(wo, wi, COLORS, R) * wi[:, 2:]
-    for way, cosine in ((LLVM, 1.0), (DRJIT, wi[:, 2:])):
+    for way in (LLVM, JIT):
         if ("EON", way) in rivals:
-            theirs = np.pi * np.array(rivals["EON", way]()).T * cosine
+            found = np.array(rivals["EON", way]())
+            theirs = np.pi * (found.T if way == LLVM else found * wi[:, 2:])
             checks.append(Check(f"EON, {way}", float(np.abs(theirs - exact).max()), PLUGIN))
     return figures, checks
 

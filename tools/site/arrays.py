@@ -33,24 +33,15 @@ def takes_any(function):
     return inspect.unwrap(function) is not function
 
 
-def takes_drjit(function):
-    """Whether a function takes arrays of Dr.Jit."""
-    return getattr(function, "takes_drjit", False)
-
-
 def page(text):
-    """The page with its table, and its lists of the other functions, as they are now."""
+    """The page with its table, and its list of the other functions, as they are now."""
     lines = ["| function | arrays, and gradients by |", "|---|---|"]
-    compiled, others = [], []
+    others = []
     for name, function in public().items():
-        short = f"`{name.rpartition('.')[2]}`"
-        if takes_drjit(function):
-            compiled.append(short)
         if takes_any(function):
             taken = ", ".join(f"`{each}`" for each in arrays(function))
             lines.append(f"| `{name.removeprefix('mxeon.')}` | {taken} |")
         else:
-            others.append(short)
-    lines += ["", f"These {len(compiled)} take arrays of Dr.Jit too: {', '.join(compiled)}."]
-    lines += ["", f"These {len(others)} take arrays of NumPy alone: {', '.join(others)}.", ""]
+            others.append(f"`{name.rpartition('.')[2]}`")
+    lines += ["", f"{' and '.join(others)} take lobes, whose arrays may be of any library.", ""]
     return with_block(text, "functions", "\n".join(lines))

@@ -15,10 +15,10 @@ from typing import Any, ClassVar
 import numpy as np
 
 from mxeon.mitsuba.diffuse import EonPlugin, Mitsuba, RoughDiffusePlugin
+from mxeon.mitsuba.octaves import gather_cubic, octave_cells, octave_cubics
 from mxeon.models.coat import openpbr
 from mxeon.models.coat.curves import Coat, constant_coat
 from mxeon.models.core.arrays import Array
-from mxeon.models.core.octaves import gather_cubic, octave_cells, octave_cubics
 from mxeon.models.core.ranges import RANGES
 from mxeon.models.diffuse.albedo import eon_albedo
 from mxeon.models.diffuse.formulas import fon_loss
@@ -258,7 +258,7 @@ class VarnishPlugin(CoatPlugin):
         return [self.dr.gather(self.mi.Float, self.table, start + k) for k in range(4)]
 
 
-EDGE: Mitsuba = openpbr.EDGE
+EDGE: Mitsuba = (*openpbr.EDGE[:2], 5)  # a whole exponent is a product, not a logarithm
 
 
 class OpenPbrBasePlugin(CoatPlugin):

@@ -13,6 +13,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from mxeon.errors import NotRun, PackageError, install
+from mxeon.mitsuba.arrays import register_functions
 from mxeon.models.diffuse import formulas
 from mxeon.models.sampling import eon as sampling
 
@@ -38,6 +39,7 @@ def mitsuba() -> Mitsuba:
     variant = mi.variant()
     if not variant:
         raise NotRun("mitsuba: no variant is set; call mitsuba.set_variant('llvm_ad_rgb') first")
+    register_functions()
     version = import_module("drjit").detail.llvm_version() if "llvm" in variant else OLDEST_LLVM
     if version < OLDEST_LLVM:
         raise NotRun(

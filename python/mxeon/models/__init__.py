@@ -20,7 +20,6 @@ from mxeon.models.core.layering import layer as layer
 from mxeon.models.core.layering import mix as mix
 from mxeon.models.core.layering import multiply as multiply
 from mxeon.models.core.layering import throughput as throughput
-from mxeon.models.core.namespaces import unchecked as unchecked
 from mxeon.models.core.quadrature import albedo_dir_quadrature as albedo_dir_quadrature
 from mxeon.models.diffuse.albedo import eon_albedo_avg as eon_albedo_avg
 from mxeon.models.diffuse.albedo import eon_albedo_dir as eon_albedo_dir

@@ -184,7 +184,8 @@ def _of_transmission(row: PbrNode) -> ShadingModel:
 
     # A BTDF of radiance integrates to the transmitted share over the squared index.
     def albedo(wo: Array, inputs: Inputs) -> Array:
-        ior = np.maximum(passing.ior(inputs), LEAST)[:, np.newaxis]
+        ior = passing.ior(inputs)[:, np.newaxis]
+        ior = array_namespace(ior).maximum(ior, LEAST)
         passed: Array = passing.passed(wo, inputs, True) / ior**2
         return passed if mode == "T" else passed + reflected(wo, inputs)
 

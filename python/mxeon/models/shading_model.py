@@ -172,7 +172,7 @@ class ShadingModel(NodeModel):
     def albedo_avg(self, *inputs: ArrayLike, **named: ArrayLike) -> Array:
         """Average albedo, of light from all sides alike, where a closed form is known."""
         self._need("albedo_avg")
-        assert self.average
+        assert self.average is not None
         call = self._rows({}, inputs, named)
         return call.colors(self.average(call.inputs))
 
@@ -185,7 +185,7 @@ class ShadingModel(NodeModel):
         the channels.
         """
         self._need("sample")
-        assert self.sampler
+        assert self.sampler is not None
         call = self._rows({"wo": wo, "u": u}, inputs, named)
         wi, pdf = self.sampler.sample(call.vectors[0], call.vectors[1], call.inputs)
         wi = call.shaped(wi, (3,))
@@ -195,7 +195,7 @@ class ShadingModel(NodeModel):
     def pdf(self, wo: ArrayLike, wi: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
         """Density of `sample` at any wi, in 1/sr, shape (...); inputs as those of `brdf`."""
         self._need("pdf")
-        assert self.sampler
+        assert self.sampler is not None
         call = self._rows({"wo": wo, "wi": wi}, inputs, named)
         return call.shaped(_on_side(self.sampler.side, self.sampler.pdf, call))
 

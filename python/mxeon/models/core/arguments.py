@@ -12,13 +12,7 @@ from typing import NoReturn, cast
 import numpy as np
 
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
-from mxeon.models.core.namespaces import (
-    accept,
-    array_namespace,
-    checking,
-    host_values,
-    library,
-)
+from mxeon.models.core.namespaces import array_namespace, host_values, library
 from mxeon.models.core.ranges import CLOSED, RANGES
 from mxeon.models.core.shapes import broadcastable, channel_count, spread_pair, with_axis
 from mxeon.models.core.tiling import blocks, channels_first
@@ -47,11 +41,16 @@ def checked(name: str, value: ArrayLike, quantity: str = "") -> Numbers:
         beyond = ROUNDING if interval in CLOSED else 0.0
         wide = np.asarray(array, np.float64)
         valid = (wide >= low - beyond) & (wide <= high + beyond)
-        if checking() and not valid.all():
+        if not valid.all():
             _refuse(f"{name} must lie in {interval}", array, valid)
         return np.where(valid, np.clip(array, low, high), array)
 
     return _array(name, value, in_range)
+
+
+def checked_real(name: str, value: ArrayLike) -> Numbers:
+    """Argument as an array of any real numbers."""
+    return _array(name, value, lambda array: array)
 
 
 def checked_numbers(**values: ArrayLike) -> list[Array]:
@@ -120,7 +119,7 @@ def checked_directions(name: str, value: ArrayLike) -> Numbers:
         valid = all(
             are_directions(channels_first(array[block])) for block in blocks(array.shape[:-1])
         )
-        if checking() and not valid:
+        if not valid:
             refuse_direction(name, array)
         return on_horizon(array, -1)
 
@@ -132,7 +131,7 @@ def checked_transmitted(name: str, value: ArrayLike) -> Numbers:
 
     def below(array: Numbers) -> Numbers:
         z = array[..., 2]
-        if checking() and (z > ROUNDING).any():
+        if (z > ROUNDING).any():
             _refuse(f"{name} must not point above the horizon (z <= 0)", z, ~(z > ROUNDING), "z = ")
         return -on_horizon(-checked_sphere(name, array), -1)
 
@@ -151,7 +150,7 @@ def checked_sphere(name: str, value: ArrayLike) -> Numbers:
 
 def checked_triples(name: str, value: ArrayLike) -> Numbers:
     """Argument as an array of shape (..., 3), whose lengths are not looked at."""
-    array = _array(name, value, lambda array: array)
+    array = checked_real(name, value)
     if array.shape[-1:] != (3,):
         raise ValueError(f"{name} must have shape (..., 3); got shape {tuple(array.shape)}")
     return array
@@ -206,8 +205,7 @@ def _array(name: str, value: ArrayLike, check: Callable[[Numbers], Numbers]) -> 
     """Argument as a float64 array that a check returns; another library's as it came."""
     if not library(value):
         return np.asarray(check(_real(name, value)), np.float64)
-    accept(name, value)
-    if checking() and (values := host_values(value)) is not None:
+    if (values := host_values(value)) is not None:
         check(_real(name, values))
     return cast(Numbers, value)
 

@@ -9,12 +9,12 @@ its value at the edge from a branch of its own, and its derivative there is the 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import cast
 
 import numpy as np
 
 from mxeon.models.core.arrays import Array, Numbers
-from mxeon.models.core.drjit_arrays import constant
-from mxeon.models.core.namespaces import NUMPY, array_namespace, library
+from mxeon.models.core.namespaces import NUMPY, array_namespace
 
 INSIDE = 0.5  # an argument at which every formula of a cosine is smooth
 
@@ -32,16 +32,17 @@ def cosine(z: Array) -> Array:
 
 def least_normal(x: Array) -> float:
     """Smallest positive number that has all its digits in the precision of x."""
-    if library(x) == "drjit":  # whose arrays have no such attribute
-        return float(np.finfo(np.float32).tiny)
-    return float(array_namespace(x).finfo(x.dtype).tiny)
+    return float(_precision(x).tiny)
 
 
 def largest(x: Array) -> float:
     """Largest number of the precision of x."""
-    if library(x) == "drjit":
-        return float(np.finfo(np.float32).max)
-    return float(array_namespace(x).finfo(x.dtype).max)
+    return float(_precision(x).max)
+
+
+def _precision(x: Array) -> np.finfo[np.float64]:
+    """Limits of the numbers of an array; those that do not say theirs are of float32."""
+    return cast("np.finfo[np.float64]", array_namespace(x).finfo(getattr(x, "dtype", np.float32)))
 
 
 def at_most(x: Array, high: float) -> Array:
@@ -133,10 +134,6 @@ def power(base: Array, exponent: Array) -> Array:
     xp = array_namespace(base, exponent)
     if xp is NUMPY:
         return base**exponent
-    if library(base) == "drjit":
-        number = constant(exponent)
-        if number and number > 0.0 and number.is_integer():
-            return base ** int(number)  # by products, not by a logarithm
     steep = (base == 0.0) & (exponent < 1.0)
     flat = xp.where(exponent == 0.0, 1.0, 0.0)
     return xp.where(steep, flat, xp.where(steep, 1.0, base) ** exponent)
@@ -158,7 +155,7 @@ def fractional_power(x: Array, exponent: float) -> Array:
 
 def below_1(x: Array) -> float:
     """Largest number below 1 in the precision of x."""
-    return 1.0 - 0.5 * float(array_namespace(x).finfo(x.dtype).eps)
+    return 1.0 - 0.5 * float(_precision(x).eps)
 
 
 def guarded(x: Array, valid: Numbers, inside: float) -> Array:

@@ -20,8 +20,7 @@ from mxeon.models.core.arguments import (
     refuse_direction,
 )
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
-from mxeon.models.core.drjit_arrays import is_drjit, vector
-from mxeon.models.core.namespaces import NUMPY, array_namespace, checking
+from mxeon.models.core.namespaces import NUMPY, array_namespace
 from mxeon.models.core.shapes import lead_shape, refuse_ambiguous
 from mxeon.models.core.tiling import BLOCK, blocks, tile, with_axes
 
@@ -87,7 +86,7 @@ def evaluate(
     def fill(block: tuple[slice, ...]) -> None:
         parts = {name: tile(array, block) for name, array in arrays.items()}
         for name in ("wo", "wi"):
-            if not are_directions(parts[name]) and checking():
+            if not are_directions(parts[name]):
                 refuse_direction(name, arguments[name])
             parts[name] = on_horizon(parts[name])
         wo, wi, rho, *rest = parts.values()
@@ -103,8 +102,6 @@ def _evaluate_whole(
     formula: Callable[..., Array], vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]
 ) -> Array:
     """`evaluate` for arrays of another library, all at once."""
-    if is_drjit(vectors["wo"]):
-        return formula(vectors["wo"], vectors["wi"], vector([*vectors["rho"]]), *numbers.values())
     wo, wi = (checked_directions(name, vectors[name]) for name in ("wo", "wi"))
     shape, rho = lead_shape(vectors, numbers), vectors["rho"]
     value = formula(wo, wi, _leading_channels(rho, len(shape)), *numbers.values())
@@ -143,9 +140,6 @@ def evaluate_material(
     Result (..., channels).
     """
     shape = lead_shape(vectors, numbers)
-    # Evaluate another library's arrays at once.
-    if any(map(is_drjit, vectors.values())):
-        return formula(**{name: vector([*each]) for name, each in vectors.items()}, **numbers)
     if array_namespace(*vectors.values(), *numbers.values()) is not NUMPY:
         parts = {name: _leading_channels(array, len(shape)) for name, array in vectors.items()}
         return _trailing_channels(formula(**parts, **numbers), channels, shape)

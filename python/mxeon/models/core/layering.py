@@ -11,10 +11,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from mxeon.models.core.arguments import checked
 from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.edges import at_least_0
+from mxeon.models.core.namespaces import any_array, library, like
 
 
 @dataclass(frozen=True)
@@ -30,6 +30,7 @@ class Bsdf:
     throughput: Array
 
 
+@any_array
 def throughput(albedo: ArrayLike) -> Array:
     """Throughput of a lobe with the directional albedo `albedo`.
 
@@ -61,8 +62,8 @@ def layer(top: Bsdf, base: Bsdf) -> Bsdf:
         >>> float(both.value), float(both.throughput)
         (0.25, 0.0)
     """
-    passed = np.maximum(top.throughput, 0.0)
-    left = np.minimum(top.throughput, 0.0) + passed * base.throughput
+    passed = at_least_0(top.throughput)
+    left = passed * base.throughput - at_least_0(-top.throughput)
     return Bsdf(top.value + passed * base.value, left)
 
 
@@ -79,7 +80,7 @@ def mix(fg: Bsdf, bg: Bsdf, amount: ArrayLike) -> Bsdf:
         >>> float(both.value), float(both.throughput)
         (0.25, 0.75)
     """
-    w = checked("amount", amount)
+    w = _beside(fg.value, checked("amount", amount))
     return Bsdf((1.0 - w) * bg.value + w * fg.value, (1.0 - w) * bg.throughput + w * fg.throughput)
 
 
@@ -112,5 +113,10 @@ def multiply(in1: Bsdf, weight: ArrayLike) -> Bsdf:
         >>> float(scaled.value), float(scaled.throughput)
         (0.5, 0.75)
     """
-    s = checked("weight", weight)
+    s = _beside(in1.value, checked("weight", weight))
     return Bsdf(s * in1.value, 1.0 - s * (1.0 - in1.throughput))
+
+
+def _beside(value: Array, number: Array) -> Array:
+    """Number in the library of a lobe's value."""
+    return number if library(number) else like(number, value)

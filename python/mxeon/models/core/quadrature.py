@@ -3,16 +3,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import lru_cache
+from typing import cast
 
 import numpy as np
 
-from mxeon.models.core.arguments import checked, checked_count
+from mxeon.models.core.arguments import checked, checked_count, checked_real, checked_vector
 from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.edges import arccosine, root
+from mxeon.models.core.namespaces import NUMPY, any_array, array_namespace, library, like
 from mxeon.models.core.shapes import lead_shape
 
 
+@any_array
 def albedo_dir_quadrature(
     brdf: Callable[..., Array],
     mu: ArrayLike,
@@ -42,33 +46,47 @@ def albedo_dir_quadrature(
         array([0.47804055, 1.        ])
     """
     checked_count("nodes", nodes)
-    mu, rho = checked("mu", mu), np.atleast_1d(checked("rho", rho))
-    parameters = [np.asarray(value) for value in parameter]
+    mu, rho = checked("mu", mu), checked_vector("rho", rho)
+    parameters = [checked_real(f"parameter {k}", value) for k, value in enumerate(parameter)]
     numbers = {"mu": mu} | {f"parameter {k}": value for k, value in enumerate(parameters)}
-    lead = lead_shape({"rho": rho}, numbers)
-    mu, rho = np.broadcast_to(mu, lead), np.broadcast_to(rho, lead + rho.shape[-1:])
-    parameters = [np.broadcast_to(value, lead) for value in parameters]
+    lead, xp = lead_shape({"rho": rho}, numbers), array_namespace(mu, rho, *parameters)
+    mu, *parameters = (xp.broadcast_to(value, lead) for value in (mu, *parameters))
+    rho = xp.broadcast_to(rho, (*lead, rho.shape[-1]))
+    if xp is not NUMPY:
+        return _integral(brdf, mu, rho, parameters, nodes)
     albedo = np.empty(rho.shape)
     for index in np.ndindex(lead):
-        wo, wi, weights = hemisphere_nodes(float(mu[index]), nodes)
-        albedo[index] = weights @ brdf(wo, wi, rho[index], *(value[index] for value in parameters))
+        row = (value[index] for value in parameters)
+        albedo[index] = _integral(brdf, mu[index], rho[index], row, nodes)
     return albedo
 
 
-def hemisphere_nodes(mu: float, nodes: int) -> tuple[Array, Array, Array]:
-    """wo at azimuth 0, wi in half the hemisphere, and their weights, which sum to pi."""
-    x, weight = unit_rule(nodes)
-    theta_o = np.arccos(mu)
-    rest = np.pi / 2.0 - theta_o
-    theta = np.concatenate([theta_o * (1.0 - x**5), theta_o + rest * x])
-    d_theta = np.concatenate([theta_o * 5.0 * x**4 * weight, rest * weight])
-    phi = np.pi / 2.0 * np.concatenate([x, 1.0 + x])
-    d_phi = np.pi / 2.0 * np.concatenate([weight, weight])
-    sine, cosine = np.sin(theta)[:, np.newaxis], np.cos(theta)[:, np.newaxis]
-    parts = np.broadcast_arrays(sine * np.cos(phi), sine * np.sin(phi), cosine)
-    wo = np.array([np.sqrt((1.0 - mu) * (1.0 + mu)), 0.0, mu])
-    weights = 2.0 * np.outer(d_theta, d_phi) * sine * cosine
-    return wo, np.stack(parts, axis=-1).reshape(-1, 3), weights.ravel()
+def _integral(
+    brdf: Callable[..., Array], mu: Array, rho: Array, parameters: Iterable[Array], nodes: int
+) -> Array:
+    """The albedo of arguments that have one shape."""
+    wo, wi, weights = hemisphere_nodes(mu, nodes)
+    rows = (value[..., np.newaxis] for value in parameters)
+    values = brdf(wo[..., np.newaxis, :], wi, rho[..., np.newaxis, :], *rows)
+    return array_namespace(values).matmul(weights[..., np.newaxis, :], values)[..., 0, :]
+
+
+def hemisphere_nodes(mu: Array | float, nodes: int) -> tuple[Array, Array, Array]:
+    """wo at azimuth 0, wi in half the hemisphere (..., N, 3), and their weights, which sum to pi."""
+    mu = cast(Array, mu) if library(mu) else np.asarray(mu, np.float64)
+    xp, (x, weight) = array_namespace(mu), (like(each, mu) for each in unit_rule(nodes))
+    theta_o = arccosine(mu)[..., np.newaxis]
+    rest = 0.5 * np.pi - theta_o
+    theta = xp.concat([theta_o * (1.0 - x**5), theta_o + rest * x], axis=-1)
+    d_theta = xp.concat([theta_o * 5.0 * x**4 * weight, rest * weight], axis=-1)
+    phi = 0.5 * np.pi * xp.concat([x, 1.0 + x])
+    d_phi = 0.5 * np.pi * xp.concat([weight, weight])
+    sine, cosine = xp.sin(theta)[..., np.newaxis], xp.cos(theta)[..., np.newaxis]
+    parts = sine * xp.cos(phi), sine * xp.sin(phi), cosine + 0.0 * phi
+    wo = xp.stack([root((1.0 - mu) * (1.0 + mu)), 0.0 * mu, mu], axis=-1)
+    weights = 2.0 * d_theta[..., np.newaxis] * d_phi * sine * cosine
+    flat = (*mu.shape, 4 * nodes * nodes)
+    return wo, xp.reshape(xp.stack(parts, axis=-1), (*flat, 3)), xp.reshape(weights, flat)
 
 
 @lru_cache(maxsize=8)  # the rule takes longer than what it is used for

@@ -4,20 +4,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import cast
 
 import numpy as np
 
 from mxeon.models.core.arrays import Array, Numbers
-from mxeon.models.core.drjit_arrays import Columns, is_drjit
 from mxeon.models.core.namespaces import array_namespace
 
 
 def spread_pair(name: str, array: Numbers) -> Numbers:
     """Array of pairs, shape (..., 2), of which a number, or a last axis of 1, counts for both."""
     array = with_axis(array)
-    if isinstance(array, Columns) and len(array.parts) == 1:
-        return cast(Numbers, Columns(2 * array.parts))
     if array.shape[-1] == 1:
         return array_namespace(array).broadcast_to(array, (*array.shape[:-1], 2))
     if array.shape[-1] != 2:
@@ -29,9 +25,7 @@ def spread_pair(name: str, array: Numbers) -> Numbers:
 
 
 def with_axis(array: Numbers) -> Numbers:
-    """Array with at least one axis, which a number of Dr.Jit has not."""
-    if is_drjit(array):
-        return array if isinstance(array, Columns) else cast(Numbers, Columns((array,)))
+    """Array with at least one axis."""
     return array if array.ndim else array[np.newaxis]
 
 

@@ -21,11 +21,11 @@ from __future__ import annotations
 
 from mxeon.models.core.arrays import Array, ArrayLike
 from mxeon.models.core.evaluation import evaluate
-from mxeon.models.core.namespaces import any_array_or_drjit
+from mxeon.models.core.namespaces import any_array
 from mxeon.models.diffuse import formulas
 
 
-@any_array_or_drjit
+@any_array
 def lambert_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike) -> Array:
     """BRDF of a smooth diffuse surface, Lambert's.
 
@@ -40,7 +40,7 @@ def lambert_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike) -> Array:
     return evaluate(formulas.lambert_brdf, wo, wi, rho)
 
 
-@any_array_or_drjit
+@any_array
 def oren_nayar_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
     """BRDF of the full Oren-Nayar model, interreflection included.
 
@@ -63,7 +63,7 @@ def oren_nayar_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLi
     return evaluate(formulas.oren_nayar_brdf, wo, wi, rho, sigma=sigma)
 
 
-@any_array_or_drjit
+@any_array
 def qon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
     """BRDF of the qualitative Oren-Nayar model.
 
@@ -77,7 +77,7 @@ def qon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> 
     return evaluate(formulas.qon_brdf, wo, wi, rho, sigma=sigma)
 
 
-@any_array_or_drjit
+@any_array
 def qon_footnote_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
     """BRDF of QON with 0.57 instead of 0.33 in A, which approximates interreflection.
 
@@ -91,7 +91,7 @@ def qon_footnote_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: Array
     return evaluate(formulas.qon_footnote_brdf, wo, wi, rho, sigma=sigma)
 
 
-@any_array_or_drjit
+@any_array
 def qon_fujii_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
     """BRDF of QON with coefficients that match the full model, and with a tinted A.
 
@@ -106,7 +106,7 @@ def qon_fujii_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLik
     return evaluate(formulas.qon_fujii_brdf, wo, wi, rho, sigma=sigma)
 
 
-@any_array_or_drjit
+@any_array
 def fon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """BRDF of the Fujii Oren-Nayar model.
 
@@ -120,7 +120,7 @@ def fon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike)
     return evaluate(formulas.fon_brdf, wo, wi, rho, roughness=roughness)
 
 
-@any_array_or_drjit
+@any_array
 def eon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """BRDF of the energy-preserving Oren-Nayar model.
 
@@ -136,7 +136,7 @@ def eon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike)
     return evaluate(formulas.eon_brdf, wo, wi, rho, roughness=roughness)
 
 
-@any_array_or_drjit
+@any_array
 def eon_brdf_approx(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """BRDF of EON with the quartic for the albedo of FON.
 

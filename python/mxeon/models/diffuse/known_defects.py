@@ -8,15 +8,17 @@ import numpy as np
 from mxeon.models.core.arguments import checked, checked_triples
 from mxeon.models.core.arrays import Array, ArrayLike
 from mxeon.models.core.evaluation import evaluate
-from mxeon.models.core.namespaces import any_array
+from mxeon.models.core.namespaces import any_array, array_namespace
 from mxeon.models.diffuse import formulas
 from mxeon.models.diffuse.brdf import qon_brdf
 from mxeon.models.diffuse.burley import burley_brdf
 from mxeon.models.diffuse.formulas import C1, C2, cosines
 
+DEGREE = 180.0 / np.pi
 FLOOR = 0.1  # least reflectance that Babylon.js passes to EON
 
 
+@any_array
 def eon_clamped_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """Reflection of EON with dot(wo, wi) kept above 1e-8 before s is formed.
 
@@ -40,6 +42,7 @@ def burley_cosine_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: 
     return value * checked_triples("wi", wi)[..., 2:]
 
 
+@any_array
 def burley_schlick_brdf(
     wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike
 ) -> Array:
@@ -54,6 +57,7 @@ def burley_schlick_brdf(
     return evaluate(_burley_schlick, wo, wi, rho, roughness=roughness)
 
 
+@any_array
 def eon_rho_cubed_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """Reflection of EON whose multiple-scattering lobe carries rho^3 for rho^2.
 
@@ -63,6 +67,7 @@ def eon_rho_cubed_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: 
     return evaluate(_eon_rho_cubed, wo, wi, rho, roughness=roughness)
 
 
+@any_array
 def fon_white_lobe_brdf(
     wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike
 ) -> Array:
@@ -74,6 +79,7 @@ def fon_white_lobe_brdf(
     return evaluate(_fon_white_lobe, wo, wi, rho, roughness=roughness)
 
 
+@any_array
 def eon_floor_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """Reflection of EON whose shape is that of a reflectance of at least 0.1.
 
@@ -96,6 +102,7 @@ def qon_tinted_twice_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: A
     return value
 
 
+@any_array
 def qon_degrees_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
     """Reflection of QON that takes the number of degrees for radians.
 
@@ -107,7 +114,7 @@ def qon_degrees_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayL
 
 def _eon_clamped(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
     mu_o, mu_i, s = cosines(wo, wi)
-    s = np.maximum(s + mu_o * mu_i, 1e-8) - mu_o * mu_i
+    s = array_namespace(s).maximum(s + mu_o * mu_i, 1e-8) - mu_o * mu_i
     return formulas.eon_brdf_mu(mu_o, mu_i, s, rho, roughness)
 
 
@@ -120,7 +127,7 @@ def _eon_rho_cubed(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
 
 
 def _eon_floor(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
-    floor = np.maximum(rho, FLOOR)
+    floor = array_namespace(rho).maximum(rho, FLOOR)
     return rho / floor * formulas.eon_brdf_approx(wo, wi, floor, roughness)
 
 
@@ -133,7 +140,7 @@ def _burley_schlick(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array
 
 
 def _qon_degrees(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:
-    return formulas.qon_brdf(wo, wi, rho, np.degrees(sigma))
+    return formulas.qon_brdf(wo, wi, rho, DEGREE * sigma)
 
 
 def _fon_white_lobe(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:

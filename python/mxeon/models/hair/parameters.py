@@ -11,6 +11,7 @@ import numpy as np
 
 from mxeon.models.core.arguments import checked, checked_triples
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
+from mxeon.models.core.namespaces import any_array, array_namespace
 from mxeon.models.core.shapes import lead_shape
 
 # Absorption of the pigments in red, green and blue, per radius of the fiber.
@@ -18,6 +19,7 @@ EUMELANIN = (0.419, 0.697, 1.37)
 PHEOMELANIN = (0.187, 0.4, 1.05)
 
 
+@any_array
 def chiang_hair_roughness(
     longitudinal: ArrayLike,
     azimuthal: ArrayLike,
@@ -47,16 +49,15 @@ def chiang_hair_roughness(
         "scale_trt": scale_trt,
     }
     numbers = {name: checked(name, value) for name, value in values.items()}
-    shape = lead_shape({}, numbers)
-    long, azim, *scales = (
-        np.broadcast_to(value, shape).astype(np.float64) for value in numbers.values()
-    )
-    v = np.square(0.726 * long + 0.812 * long**2 + 3.7 * long**20)
+    shape, xp = lead_shape({}, numbers), array_namespace(*numbers.values())
+    long, azim, *scales = (xp.broadcast_to(value, shape) for value in numbers.values())
+    v = xp.square(0.726 * long + 0.812 * long**2 + 3.7 * long**20)
     s = 0.265 * azim + 1.194 * azim**2 + 5.372 * azim**22
-    pairs = [np.stack([scale * scale * v, s], axis=-1) for scale in (np.ones(shape), *scales)]
-    return pairs[0], pairs[1], pairs[2]
+    tt, trt = (xp.stack([scale * scale * v, s], axis=-1) for scale in scales)
+    return xp.stack([v, s], axis=-1), tt, trt
 
 
+@any_array
 def deon_hair_absorption_from_melanin(
     melanin_concentration: ArrayLike,
     melanin_redness: ArrayLike,
@@ -89,14 +90,14 @@ def deon_hair_absorption_from_melanin(
     numbers = {name: checked(name, value) for name, value in values.items()}
     vectors = {name: _color(name, value) for name, value in colors.items()}
     lead_shape(vectors, numbers)
-    concentration, redness = (
-        np.asarray(value, np.float64)[..., np.newaxis] for value in numbers.values()
-    )
-    eumelanin, pheomelanin = (-np.log(value, dtype=np.float64) for value in vectors.values())
+    concentration, redness = (value[..., np.newaxis] for value in numbers.values())
+    xp = array_namespace(concentration, redness)
+    eumelanin, pheomelanin = (-xp.log(value) for value in vectors.values())
     mix = (1.0 - redness) * eumelanin + redness * pheomelanin
-    return np.asarray(-np.log1p(-concentration) * mix)
+    return -xp.log1p(-concentration) * mix
 
 
+@any_array
 def chiang_hair_absorption_from_color(
     hair_color: ArrayLike, azimuthal_roughness: ArrayLike
 ) -> Array:
@@ -115,9 +116,9 @@ def chiang_hair_absorption_from_color(
     color = _color("hair_color", hair_color)
     roughness = checked("azimuthal_roughness", azimuthal_roughness)
     lead_shape({"hair_color": color}, {"azimuthal_roughness": roughness})
-    b = np.asarray(roughness, np.float64)[..., np.newaxis]
+    xp, b = array_namespace(color), roughness[..., np.newaxis]
     fit = 5.969 - b * (0.215 - b * (2.532 - b * (10.73 - b * (5.574 + b * 0.245))))
-    return np.asarray(np.square(np.log(color, dtype=np.float64) / fit))
+    return xp.square(xp.log(color) / fit)
 
 
 def _color(name: str, value: ArrayLike) -> Numbers:

@@ -14,6 +14,7 @@ import numpy as np
 from mxeon.models.core.arguments import checked_numbers
 from mxeon.models.core.arrays import Array, ArrayLike
 from mxeon.models.core.colorimetry import CIE_1931, WAVELENGTHS, XYZ_TO_REC709
+from mxeon.models.core.namespaces import any_array, array_namespace, like
 
 # Constants of radiation of the SI of 2019, which are exact: c1 = 2 h c^2 and c2 = h c / k_B.
 PLANCK, LIGHT, BOLTZMANN = 6.62607015e-34, 299792458.0, 1.380649e-23  # J s, m/s, J/K
@@ -35,6 +36,7 @@ KANG_Y = (
 )
 
 
+@any_array
 def planck_radiance(wavelength: ArrayLike, temperature: ArrayLike) -> Array:
     """Spectral radiance of a black body.
 
@@ -48,11 +50,12 @@ def planck_radiance(wavelength: ArrayLike, temperature: ArrayLike) -> Array:
         46224.39
     """
     length, kelvin = checked_numbers(wavelength=wavelength, temperature=temperature)
-    length = NANOMETER * length
-    with np.errstate(over="ignore"):
-        return np.asarray(FIRST * NANOMETER / (length**5 * np.expm1(SECOND / (length * kelvin))))
+    xp, length = array_namespace(length, kelvin), NANOMETER * length
+    x = SECOND / (length * kelvin)
+    return FIRST * NANOMETER / length**5 * xp.exp(-x) / -xp.expm1(-x)  # which does not overflow
 
 
+@any_array
 def blackbody_xyz(temperature: ArrayLike) -> Array:
     """CIE 1931 XYZ of a black body, with Y = 1.
 
@@ -64,14 +67,16 @@ def blackbody_xyz(temperature: ArrayLike) -> Array:
         array([0.9688, 1.    , 1.1218])
     """
     kelvin = checked_numbers(temperature=temperature)[0][..., np.newaxis]
-    exponent = SECOND / (NANOMETER * WAVELENGTHS * kelvin)
+    xp = array_namespace(kelvin)
+    exponent = SECOND / (like(NANOMETER * WAVELENGTHS, kelvin) * kelvin)
     least = exponent[..., -1:]  # of the longest wavelength
     # exp(x) - 1 over exp(least), which never overflows for the terms that count
-    growth = np.exp(np.minimum(exponent - least, 700.0)) * -np.expm1(-exponent)
-    xyz = (WAVELENGTHS**-5.0 / growth) @ CIE_1931
-    return np.asarray(xyz / xyz[..., 1:2])
+    growth = xp.exp(xp.minimum(exponent - least, 700.0)) * -xp.expm1(-exponent)
+    xyz = xp.tensordot(like(WAVELENGTHS**-5.0, kelvin) / growth, like(CIE_1931, kelvin), axes=1)
+    return xyz / xyz[..., 1:2]
 
 
+@any_array
 def blackbody(temperature: ArrayLike) -> Array:
     """Color of a black body in linear Rec. 709, with luminance 1.
 
@@ -84,7 +89,8 @@ def blackbody(temperature: ArrayLike) -> Array:
         array([[2.52 , 0.647, 0.02 ],
                [1.043, 0.984, 1.036]])
     """
-    return np.asarray(blackbody_xyz(temperature) @ XYZ_TO_REC709.T)
+    xyz = blackbody_xyz(temperature)
+    return array_namespace(xyz).tensordot(xyz, like(XYZ_TO_REC709.T, xyz), axes=1)
 
 
 def kang_xyz(temperature: ArrayLike) -> Array:

@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from mxeon.models.core.arguments import checked_colors
 from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.namespaces import any_array, array_namespace
 
 
+@any_array
 def light_radiance(emission: ArrayLike, intensity: ArrayLike, exposure: ArrayLike) -> Array:
     """Radiance of a light source: that of its EDF, scaled in linear units and in stops.
 
@@ -26,9 +26,10 @@ def light_radiance(emission: ArrayLike, intensity: ArrayLike, exposure: ArrayLik
     """
     numbers = {"intensity": intensity, "exposure": exposure}
     (c,), (scale, stops) = checked_colors({"emission": emission}, **numbers)
-    return np.asarray(c * (scale * np.exp2(stops)))
+    return c * (scale * 2.0**stops)
 
 
+@any_array
 def surface_radiance(emission: ArrayLike, scattered: ArrayLike, opacity: ArrayLike) -> Array:
     """Radiance of a surface: what it emits and what it scatters, times its opacity.
 
@@ -47,9 +48,10 @@ def surface_radiance(emission: ArrayLike, scattered: ArrayLike, opacity: ArrayLi
     """
     colors = {"emission": emission, "scattered": scattered}
     (emitted, light), (covered,) = checked_colors(colors, opacity=opacity)
-    return np.asarray(covered * (emitted + light))
+    return covered * (emitted + light)
 
 
+@any_array
 def volume_radiance(
     behind: ArrayLike,
     emission: ArrayLike,
@@ -79,5 +81,6 @@ def volume_radiance(
         {"behind": behind, "emission": emission} | media, distance=distance
     )
     depth = (sigma_a + sigma_s) * t
-    share = np.where(depth > 0.0, -np.expm1(-depth) / np.where(depth > 0.0, depth, 1.0), 1.0)
-    return np.asarray(light * np.exp(-depth) + emitted * t * share)
+    xp = array_namespace(depth)
+    share = xp.where(depth > 0.0, -xp.expm1(-depth) / xp.where(depth > 0.0, depth, 1.0), 1.0)
+    return light * xp.exp(-depth) + emitted * t * share

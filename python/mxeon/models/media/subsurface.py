@@ -20,6 +20,8 @@ import numpy as np
 
 from mxeon.models.core.arguments import checked, checked_numbers
 from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.edges import arccosine, at_least_0, root
+from mxeon.models.core.namespaces import any_array, array_namespace, like
 from mxeon.models.core.quadrature import unit_rule
 from mxeon.models.core.shapes import broadcastable
 
@@ -31,6 +33,7 @@ LOSS, GAIN = 0.139, 1.17  # of van de Hulst's fit
 FAR = 3.0  # length of the profile's second exponential over that of the first
 
 
+@any_array
 def subsurface_albedo(rho: ArrayLike, scatter_anisotropy: ArrayLike = 0.0) -> Array:
     """Single-scattering albedo of a medium that has a diffuse reflectance.
 
@@ -51,11 +54,12 @@ def subsurface_albedo(rho: ArrayLike, scatter_anisotropy: ArrayLike = 0.0) -> Ar
 def _single_scatter(color: Array, g: Array) -> Array:
     """`subsurface_albedo` on valid arrays."""
     polynomial = SQUARED[0] + SQUARED[1] * color + SQUARED[2] * color**2
-    d = LINEAR[0] + LINEAR[1] * color - np.sqrt(polynomial)
+    d = LINEAR[0] + LINEAR[1] * color - array_namespace(color).sqrt(polynomial)
     isotropic = 1.0 - d * d
-    return np.asarray(isotropic / (1.0 - g * d * d))
+    return isotropic / (1.0 - g * d * d)
 
 
+@any_array
 def subsurface_reflectance(single_scatter: ArrayLike, scatter_anisotropy: ArrayLike = 0.0) -> Array:
     """Diffuse reflectance of a half space, by van de Hulst's fit.
 
@@ -72,11 +76,12 @@ def subsurface_reflectance(single_scatter: ArrayLike, scatter_anisotropy: ArrayL
         0.5
     """
     w, g = checked_numbers(single_scatter=single_scatter, scatter_anisotropy=scatter_anisotropy)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        s = np.sqrt(np.where(w == 1.0, 0.0, (1.0 - w) / (1.0 - g * w)))
-    return np.asarray((1.0 - s) * (1.0 - LOSS * s) / (1.0 + GAIN * s))
+    xp, lost = array_namespace(w, g), w < 1.0
+    s = root(xp.where(lost, (1.0 - w) / xp.where(lost, 1.0 - g * w, 1.0), 0.0))
+    return (1.0 - s) * (1.0 - LOSS * s) / (1.0 + GAIN * s)
 
 
+@any_array
 def subsurface_coefficients(
     rho: ArrayLike, radius: ArrayLike, scatter_anisotropy: ArrayLike = 0.0
 ) -> tuple[Array, Array]:
@@ -95,9 +100,10 @@ def subsurface_coefficients(
     values = {"rho": rho, "radius": radius, "scatter_anisotropy": scatter_anisotropy}
     color, length, g = checked_numbers(**values)
     albedo = _single_scatter(color, g)
-    return np.asarray(albedo / length), np.asarray((1.0 - albedo) / length)
+    return albedo / length, (1.0 - albedo) / length
 
 
+@any_array
 def diffusion_profile(separation: ArrayLike, radius: ArrayLike) -> Array:
     """Share of the light that leaves at a distance from where it enters, per area.
 
@@ -110,10 +116,11 @@ def diffusion_profile(separation: ArrayLike, radius: ArrayLike) -> Array:
         0.043147
     """
     r, length = checked_numbers(separation=separation, radius=radius)
-    shares = np.exp(-r / length) + np.exp(-r / (3.0 * length))
-    return np.asarray(shares / (8.0 * np.pi * length * r))
+    exp = array_namespace(r, length).exp
+    return (exp(-r / length) + exp(-r / (3.0 * length))) / (8.0 * np.pi * length * r)
 
 
+@any_array
 def diffusion_cdf(separation: ArrayLike, radius: ArrayLike) -> Array:
     """Share of the light that leaves a plane within a distance of where it enters.
 
@@ -125,10 +132,11 @@ def diffusion_cdf(separation: ArrayLike, radius: ArrayLike) -> Array:
         0.65353
     """
     r, length = checked_numbers(separation=separation, radius=radius)
-    x = r / length
-    return np.asarray(-0.25 * np.expm1(-x) - 0.75 * np.expm1(-x / 3.0))
+    expm1, x = array_namespace(r, length).expm1, r / length
+    return -0.25 * expm1(-x) - 0.75 * expm1(-x / 3.0)
 
 
+@any_array
 def diffusion_sample(u: ArrayLike, radius: ArrayLike) -> Array:
     """Distance within which the share u of the light leaves: the inverse of `diffusion_cdf`.
 
@@ -142,10 +150,12 @@ def diffusion_sample(u: ArrayLike, radius: ArrayLike) -> Array:
         2.5
     """
     share, length = checked_numbers(u=u, radius=radius)
-    logarithm = np.log(2.0 * np.sinh(np.arcsinh(2.0 * (1.0 - share)) / 3.0))
-    return np.asarray(-3.0 * length * np.minimum(logarithm, 0.0))
+    xp = array_namespace(share, length)
+    logarithm = xp.log(2.0 * xp.sinh(xp.asinh(2.0 * (1.0 - share)) / 3.0))
+    return 3.0 * length * at_least_0(-logarithm)
 
 
+@any_array
 def diffusion_blur(mu: ArrayLike, reach: ArrayLike) -> Array:
     """Cosine of a distant light, blurred over a unit sphere by the normalized diffusion profile.
 
@@ -170,17 +180,17 @@ def diffusion_blur(mu: ArrayLike, reach: ArrayLike) -> Array:
 def blur_to(mu: Array, reach: Array, far: float) -> Array:
     """`diffusion_blur` of valid arrays, whose second exponential is so many times as long as the first."""
     reach = reach[..., np.newaxis]
-    parts = [(0.25, _exponential(mu, reach)), (0.75, _exponential(mu, far * reach))]
-    total = sum(weight * share for weight, (_, share) in parts)
-    return np.asarray(sum(weight * share * mean for weight, (mean, share) in parts) / total)
+    (near, share), (rest, other) = _exponential(mu, reach), _exponential(mu, far * reach)
+    total = 0.25 * share + 0.75 * other
+    return (0.25 * share * near + 0.75 * other * rest) / total
 
 
 def _exponential(mu: Array, reach: Array) -> tuple[Array, Array]:
     """Mean over the circles of one exponential of the profile, and its share on the sphere."""
-    u, weights = _rule()
-    share = -np.expm1(-2.0 / reach)
-    distance = np.minimum(-reach * np.log1p(-u * share), 2.0)
-    return (weights * _circle(mu[..., np.newaxis], distance)).sum(axis=-1), share[..., 0]
+    xp, (u, weights) = array_namespace(mu, reach), (like(each, reach) for each in _rule())
+    share = -xp.expm1(-2.0 / reach)
+    distance = xp.minimum(-reach * xp.log1p(-u * share), 2.0)
+    return xp.sum(weights * _circle(mu[..., np.newaxis], distance), axis=-1), share[..., 0]
 
 
 @cache
@@ -195,6 +205,6 @@ def _circle(mu: Array, distance: Array) -> Array:
     """Mean of max(cos(theta), 0) over the circle at a distance from a point of the unit sphere."""
     squared = distance * distance
     along = mu * (1.0 - 0.5 * squared)
-    across = np.sqrt(np.maximum((1.0 - mu * mu) * squared * (1.0 - 0.25 * squared), 0.0))
-    lit = np.arccos(np.clip(-along / np.maximum(across, 1e-300), -1.0, 1.0))
-    return (along * lit + np.sqrt(np.maximum(across**2 - along**2, 0.0))) / np.pi
+    across = root(at_least_0((1.0 - mu * mu) * squared * (1.0 - 0.25 * squared)))
+    lit = arccosine(-along / array_namespace(across).maximum(across, 1e-300))
+    return (along * lit + root(at_least_0(across**2 - along**2))) / np.pi

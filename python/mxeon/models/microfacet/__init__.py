@@ -24,7 +24,7 @@ from __future__ import annotations
 
 from mxeon.models.core.arguments import checked, checked_switch, checked_vector
 from mxeon.models.core.arrays import Array, ArrayLike
-from mxeon.models.core.namespaces import any_array_or_drjit
+from mxeon.models.core.namespaces import any_array
 from mxeon.models.microfacet.lobe import (
     CONDUCTOR,
     DIELECTRIC,
@@ -35,7 +35,7 @@ from mxeon.models.microfacet.lobe import (
 )
 
 
-@any_array_or_drjit
+@any_array
 def dielectric_brdf(
     wo: ArrayLike,
     wi: ArrayLike,
@@ -69,7 +69,7 @@ def dielectric_brdf(
     )
 
 
-@any_array_or_drjit
+@any_array
 def conductor_brdf(
     wo: ArrayLike,
     wi: ArrayLike,
@@ -102,7 +102,7 @@ def conductor_brdf(
     )
 
 
-@any_array_or_drjit
+@any_array
 def generalized_schlick_brdf(
     wo: ArrayLike,
     wi: ArrayLike,

@@ -11,7 +11,6 @@ from functools import lru_cache
 import numpy as np
 
 from mxeon.models.core.arrays import Array
-from mxeon.models.core.drjit_arrays import is_drjit
 from mxeon.models.core.edges import at_most, hypot, magnitude, power, root, trimmed
 from mxeon.models.core.namespaces import NUMPY, array_namespace, like
 
@@ -34,8 +33,12 @@ NODES, ELLIPSE = 28, 1.7
 def dielectric(mu: Array, ior: Array) -> Array:
     """F: [MaterialX2026], Dielectric Fresnel Equations, without a cancellation.
 
-    g - c = (ior^2 - 1) / (g + c), and g^2 is a sum of terms >= 0 for ior >= 1. Without an interface
-    (ior 1) F is 0 at grazing too, where 0 / 0 stands.
+    Printed, with c = mu and g^2 = ior^2 + c^2 - 1:
+
+        F = 1/2 ((g - c) / (g + c))^2 (1 + ((c (g + c) - 1) / (c (g - c) + 1))^2)
+
+    (g - c) (g + c) = ior^2 - 1 takes g - c to (ior^2 - 1) / (g + c), and c (g +- c) -+ 1 is
+    c g -+ (1 - c^2). Without an interface (ior 1) F is 0 at grazing too, where 0 / 0 stands.
     """
     xp = array_namespace(mu, ior)
     gap = (ior - 1.0) * (ior + 1.0)
@@ -58,8 +61,16 @@ def conductor(mu: Array, ior: Array, extinction: Array) -> Array:
 def polarized(mu: Array, ior: Array, extinction: Array) -> tuple[Array, Array]:
     """R_p and R_s: [MaterialX2026], Conductor Fresnel Equations, without a cancellation.
 
-    w = a + i b = sqrt(n^2 - sin^2), n = ior + i extinction;  R_s = |n^2 - 1|^2 / |w + c|^4.
-    No interface (n = 1) reflects nothing, at grazing too; n = 0 reflects all, along the normal too.
+    Printed, with c = mu, S2 = sin^2, n = ior + i extinction and w = a + i b = sqrt(n^2 - S2):
+
+        R_s = (a^2 + b^2 - 2 a c + c^2) / (a^2 + b^2 + 2 a c + c^2)  = |w - c|^2 / |w + c|^2
+        R_p / R_s = (c^2 (a^2 + b^2) - 2 a c S2 + S2^2) / (... + 2 a c S2 + ...)
+                  = |c w - S2|^2 / |c w + S2|^2
+
+    (w - c) (w + c) = n^2 - S2 - c^2 = n^2 - 1, so that R_s = |n^2 - 1|^2 / |w + c|^4. The root: with
+    Re = ior^2 - extinction^2 - S2 = a^2 - b^2, the larger of a and b is sqrt((|w^2| + |Re|) / 2), and
+    a b = ior extinction gives the smaller. No interface (n = 1) reflects nothing, at grazing too; n = 0
+    reflects all, along the normal too.
     """
     return _polarized(mu, ior, extinction, _gap(ior, extinction))
 
@@ -81,7 +92,6 @@ def _polarized(mu: Array, ior: Array, extinction: Array, gap: Array) -> tuple[Ar
     S2 = (1.0 - mu) * (1.0 + mu)
     real = (ior - 1.0) * (ior + 1.0) + mu * mu - extinction * extinction
     size = modulus(real, 2.0 * ior * extinction)
-    # The larger part of the root by a sum, the smaller one from their product.
     larger = root(0.5 * (size + magnitude(real)))
     smaller = ior * extinction / xp.where(larger > 0.0, larger, 1.0)
     a, b = xp.where(real >= 0.0, larger, smaller), xp.where(real >= 0.0, smaller, larger)
@@ -196,10 +206,6 @@ def _split_avg_of_arrays(ior: Array, extinction: Array) -> Array:
 
     The critical angle counts as a constant of the integral, which does not depend on where it is split.
     """
-    if is_drjit(ior):
-        raise ValueError(
-            "arrays of Dr.Jit need compensate=False: the average of a metal is a quadrature"
-        )
     # Find the critical angle, the real part of sqrt(1 - n^2).
     xp = array_namespace(ior, extinction)
     real = extinction * extinction - (ior - 1.0) * (ior + 1.0)

@@ -10,7 +10,6 @@ import numpy as np
 
 from mxeon.models.core.arguments import checked_directions, checked_roughness, checked_switch
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
-from mxeon.models.core.drjit_arrays import is_drjit
 from mxeon.models.core.evaluation import evaluate_material
 from mxeon.models.core.namespaces import array_namespace
 from mxeon.models.core.shapes import channel_count, lead_shape, refuse_ambiguous
@@ -32,15 +31,10 @@ class Curve:
     critical: Callable[..., Array] = lambda **material: np.zeros(1)
 
 
-def _one_channel(value: Array) -> Array:
-    """Value as that of a channel, which a number of Dr.Jit is."""
-    return value if is_drjit(value) else value[np.newaxis]
-
-
 # `material` may hold a tint, which F leaves alone.
 DIELECTRIC = Curve(
-    lambda c, ior, tint: _one_channel(fresnel.dielectric(c, ior)),
-    lambda ior, tint: _one_channel(fresnel.dielectric_avg(ior)),
+    lambda c, ior, tint: fresnel.dielectric(c, ior)[np.newaxis],
+    lambda ior, tint: fresnel.dielectric_avg(ior)[np.newaxis],
     lambda ior, tint: (1.0 - ior) * (1.0 + ior),
 )
 CONDUCTOR = Curve(fresnel.conductor, fresnel.conductor_avg)

@@ -20,19 +20,14 @@ from mxeon.models.core.chebyshev import (
     chebyshev_polynomials,
     chebyshev_sum,
 )
-from mxeon.models.core.drjit_arrays import Number, constant, is_drjit
-from mxeon.models.core.edges import at_least_0, at_most, cube_root, root
+from mxeon.models.core.edges import at_most, cube_root, root
 from mxeon.models.core.evaluation import evaluate_material
 from mxeon.models.core.namespaces import NUMPY, array_namespace, like
-from mxeon.models.core.octaves import gather_cubic, octave_cells, octave_cubics
 from mxeon.models.microfacet.ggx_albedo import quadrature
 
 # Nodes in the cube root of s and in the square root of alpha, panels for one of the quadrature that
 # fills the table, and elements at once.
 NODES_S, NODES_ALPHA, REFINED, BLOCK = 80, 28, 2, 2**12
-
-# The polynomials that float32 can tell from the others, whose sum is below 2e-8.
-SINGLE = slice(38), slice(19)
 
 # Cosines of one alpha from which on cubics take the place of the polynomials, the number of their cells,
 # and the alphas that are kept. The cubics are within 3e-14 of the polynomials.
@@ -44,14 +39,10 @@ def missing_light(mu: Array, alpha: Array) -> Array:
 
     Accuracy: absolute error below 1e-10 for every mu and alpha in [0, 1], against the quadrature of
     `mxeon.albedo.ggx_albedo_dir` with twice its panels. One alpha for all cosines costs the least:
-    many of them share cubics in its place. Numbers of Dr.Jit have an error below 3e-7 where alpha
-    is a plain number, and below 2e-6 elsewhere: the roundings of float32, and 2e-8.
+    many of them share cubics in its place.
     """
     if array_namespace(mu, alpha) is NUMPY and alpha.size == 1 and mu.size >= MANY:
         return _of_one_alpha(mu, float(alpha.item()))
-    if is_drjit(mu):
-        number = constant(alpha)
-        return _interpolated(mu, alpha) if number is None else _of_one_number(mu, number)
     numbers = {"mu": mu, "alpha": alpha}
     return evaluate_material(
         lambda mu, alpha: _interpolated(mu, alpha)[np.newaxis], {}, numbers, 1, BLOCK
@@ -61,7 +52,7 @@ def missing_light(mu: Array, alpha: Array) -> Array:
 def _interpolated(mu: Array, alpha: Array) -> Array:
     """Sum of the table's polynomials, those of alpha first."""
     xp = array_namespace(mu, alpha)
-    table = _table()[SINGLE] if is_drjit(mu) else _table()
+    table = _table()
     powers = chebyshev_polynomials(root(alpha), table.shape[1])
     if xp is NUMPY:
         rows = np.einsum("ij,j...->i...", table, powers)
@@ -80,8 +71,7 @@ def _of_one_alpha(mu: Array, alpha: float) -> Array:
     s = np.minimum(mu * (1.0 + alpha) / (mu + alpha), 1.0)
     place = np.cbrt(s)
     place *= CELLS
-    with np.errstate(invalid="ignore"):  # NaN, where values are not checked
-        cell = place.astype(np.int32)
+    cell = place.astype(np.int32)
     place -= cell
     *lower, highest = _cubics(alpha)
     value: Array = highest.take(cell, mode="clip")
@@ -89,19 +79,6 @@ def _of_one_alpha(mu: Array, alpha: float) -> Array:
         value *= place
         value += coefficients.take(cell, mode="clip")
     return np.maximum(value, 0.0, out=value)
-
-
-def _of_one_number(mu: Number, alpha: float) -> Number:
-    """`missing_light` of numbers of Dr.Jit at one alpha, by a cubic in each part of an octave."""
-    if alpha <= 0.0:
-        return 0.0 * mu  # a mirror misses nothing
-    return at_least_0(gather_cubic(type(mu)(_octave_cubics(alpha)), *octave_cells(mu)))
-
-
-@lru_cache(maxsize=KEPT)
-def _octave_cubics(alpha: float) -> Array:
-    """Coefficients of those cubics, cell by cell."""
-    return octave_cubics(lambda mu: _interpolated(mu, np.asarray(alpha))).ravel()
 
 
 @lru_cache(maxsize=KEPT)

@@ -17,7 +17,16 @@ from itertools import pairwise
 import numpy as np
 
 from mxeon.models.core.arrays import Array
-from mxeon.models.core.edges import angle, arccosine, at_least_0, at_most, hypot, root
+from mxeon.models.core.edges import (
+    angle,
+    arccosine,
+    at_least_0,
+    at_most,
+    guarded,
+    hypot,
+    root,
+    within,
+)
 from mxeon.models.core.namespaces import NUMPY, array_namespace, like
 from mxeon.models.core.quadrature import unit_rule
 from mxeon.models.microfacet.ggx_formulas import mean_alpha, smith_lambda
@@ -152,17 +161,19 @@ def refracting_nodes(wo: Array, roughness: Array, squared: Array) -> tuple[Array
     B, g, _ = slopes.rays(omega)
     # Begin where wi leaves the horizon, end where light is reflected totally.
     low, high = _transmitting(mu_o, B, g, squared)
-    high = np.minimum(high, FARTHEST_R)
+    xp = array_namespace(mu_o, high)
+    high = xp.minimum(high, FARTHEST_R)
     beyond = squared - mu_o * mu_o
-    ahead = mu_o * (B + np.sqrt(np.maximum(B * B - g * beyond, 0.0)))
-    horizon = beyond / np.where(ahead > 0.0, ahead, 1.0)
-    low = np.where((beyond > 0.0) & (B > 0.0), np.maximum(low, horizon), low)
-    r, weight = _between(slopes.scale, np.minimum(low, high), high)
-    lean, stretch = np.maximum(B * r + mu_o, 0.0), 1.0 + g * r * r
-    cosine = np.minimum(lean / np.sqrt(stretch), 1.0)
-    length = squared / (cosine + np.sqrt(np.maximum(cosine * cosine - squared, 0.0)))
-    mu_i = np.clip((mu_o - length / np.sqrt(stretch)) / np.sqrt(1.0 - squared), 0.0, 1.0)
-    seen = 2.0 * lean / (mu_o + np.hypot(mu_o, slopes.steepness))
+    ahead = mu_o * (B + root(at_least_0(B * B - g * beyond)))
+    horizon = beyond / xp.where(ahead > 0.0, ahead, 1.0)
+    low = xp.where((beyond > 0.0) & (B > 0.0), xp.maximum(low, horizon), low)
+    r, weight = _between(slopes.scale, xp.minimum(low, high), high)
+    lean, stretch = at_least_0(B * r + mu_o), 1.0 + g * r * r
+    cosine = at_most(lean / xp.sqrt(stretch), 1.0)
+    total = cosine + root(at_least_0(cosine * cosine - squared))
+    length = squared / guarded(total, total > 0.0, 1.0)
+    mu_i = within((mu_o - length / xp.sqrt(stretch)) / xp.sqrt(1.0 - squared))
+    seen = 2.0 * lean / (mu_o + hypot(mu_o, slopes.steepness))
     return cosine, mu_i, weight * weight_omega * _density(r) * seen
 
 

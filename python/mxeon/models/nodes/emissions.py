@@ -47,7 +47,7 @@ def front_only(value: Value) -> Value:
 
 def _radiance(inputs: Inputs) -> Array:
     """Radiance that a Schlick curve scales, whichever way it comes."""
-    return np.asarray(inputs["base"] if "base" in inputs else inputs[BASE])
+    return inputs["base"] if "base" in inputs else inputs[BASE]
 
 
 def _schlick(wo: Array, inputs: Inputs) -> Array:

@@ -7,7 +7,7 @@ import numpy as np
 
 from mxeon.models.core.arguments import checked_sphere, checked_triples
 from mxeon.models.core.arrays import Array, ArrayLike
-from mxeon.models.core.namespaces import any_array, array_namespace, checking, host_values, library
+from mxeon.models.core.namespaces import any_array, array_namespace, host_values, library
 
 UP, ALONG = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)  # MaterialX's defaults on a surface
 PARALLEL = 1e-6  # length that is left of a tangent without the part along the normal
@@ -44,7 +44,7 @@ def _axes(normal: ArrayLike, tangent: ArrayLike) -> tuple[Array, Array, Array]:
     x = along - xp.sum(along * z, axis=-1)[..., np.newaxis] * z
     length = xp.sqrt(xp.sum(x * x, axis=-1))[..., np.newaxis]
     shortest = host_values(length) if library(length) else length
-    if checking() and shortest is not None and not np.all(shortest > PARALLEL):
+    if shortest is not None and not np.all(shortest > PARALLEL):
         raise ValueError("tangent must not be parallel to the normal; name another one")
     # The bitangent is the cross product, which the array standard has in an extension alone.
     x = x / length

@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from mxeon.models.core.arrays import Array
+from mxeon.models.core.namespaces import array_namespace
 from mxeon.models.hair import (
     DEFAULTS,
     ROUGHNESSES,
@@ -34,8 +35,8 @@ def _value(form: HairForm = TEXT) -> Callable[[Array, Array, Inputs], Array]:
 def _albedo(wo: Array, inputs: Inputs) -> Array:
     """Integral of the values over all lights, for a cuticle without tilt: sum of t_p A_p, over pi."""
     factors = chiang_hair_attenuation(wo, inputs["ior"], inputs["absorption_coefficient"])
-    tints = np.stack([inputs[name] for name in (*TINTS, TINTS[-1])], axis=-1)
-    return np.asarray((factors * tints).sum(axis=-1) / np.pi)
+    tints = array_namespace(factors).stack([inputs[n] for n in (*TINTS, TINTS[-1])], axis=-1)
+    return array_namespace(factors).sum(factors * tints, axis=-1) / np.pi
 
 
 def _whole(wo: Array, inputs: Inputs) -> Array:

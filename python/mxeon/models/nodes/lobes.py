@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from mxeon.models.core.arrays import Array
-from mxeon.models.core.edges import cosine
+from mxeon.models.core.edges import at_most, cosine
 from mxeon.models.core.namespaces import array_namespace
 from mxeon.models.diffuse.burley import burley_albedo_dir, burley_brdf
 from mxeon.models.diffuse.translucent import translucent_btdf
@@ -24,7 +24,7 @@ from mxeon.models.sheen import (
 
 def _bounded(albedo: Callable[[Array, Array], Array]) -> Callable[[Array, Array], Array]:
     """An albedo that counts as 1 where it exceeds 1; the text is silent on it."""
-    return lambda mu, roughness: np.minimum(albedo(mu, roughness), 1.0)
+    return lambda mu, roughness: at_most(albedo(mu, roughness), 1.0)
 
 
 def _tinted(

@@ -55,9 +55,9 @@ TRANSMISSIONS = {
             wo, i["tint"], i["roughness"], i["ior"], shadow
         ),
         lambda wo, i: DIELECTRIC.albedo(wo, _white(i)),
-        lambda i: np.asarray(i["tint"]),
+        lambda i: i["tint"],
         DIELECTRIC.fresnel,
-        lambda i: np.asarray(i["ior"]),
+        lambda i: i["ior"],
     ),
     SCHLICK.category: Transmission(
         lambda wo, wi, i: generalized_schlick_btdf(
@@ -73,7 +73,7 @@ TRANSMISSIONS = {
             shadow=shadow,
         ),
         SCHLICK.albedo,
-        lambda i: np.ones_like(i["color0"]),
+        lambda i: 0.0 * i["color0"] + 1.0,
         SCHLICK.fresnel,
         lambda i: schlick_ior(i["color0"])[..., 0],
     ),

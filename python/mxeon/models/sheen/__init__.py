@@ -21,7 +21,7 @@ from mxeon.models.core.arguments import checked, checked_numbers, checked_triple
 from mxeon.models.core.arrays import Array, ArrayLike
 from mxeon.models.core.edges import at_most, guarded, largest, least_normal, root
 from mxeon.models.core.evaluation import evaluate
-from mxeon.models.core.namespaces import NUMPY, any_array, any_array_or_drjit, array_namespace
+from mxeon.models.core.namespaces import NUMPY, any_array, array_namespace
 from mxeon.models.core.shapes import lead_shape
 from mxeon.models.diffuse.formulas import cosines
 from mxeon.models.sheen.conty_kulla import conty_kulla_albedo_dir
@@ -41,7 +41,7 @@ ZELTNER_LEAST_ROUGHNESS = 0.01
 LEAST = 1e-300
 
 
-@any_array_or_drjit
+@any_array
 def conty_kulla_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: ArrayLike) -> Array:
     """BRDF of the sheen of Conty and Kulla.
 
@@ -62,7 +62,7 @@ def conty_kulla_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: 
     return _tinted(_conty_kulla_formula, wo, wi, color, roughness)
 
 
-@any_array_or_drjit
+@any_array
 def zeltner_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: ArrayLike) -> Array:
     """BRDF of the sheen of Zeltner, Burley and Chiang. It is not reciprocal.
 

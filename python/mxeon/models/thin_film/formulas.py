@@ -149,7 +149,7 @@ def tristimulus(interface: Interface, opd: Array, orders: int | None = None) -> 
         for start in range(0, x.size, BLOCK):
             rows = slice(start, start + BLOCK)
             _fill(sums[:, rows], x.ravel()[rows], y.ravel()[rows], phi.ravel()[rows], orders)
-        sums = sums.reshape(-1, *shape)
+        sums = sums.reshape(len(GAUSSIANS), *shape)
     else:
         sums = _orders(x, y, phi, orders or DAMPED_ORDERS)
         if orders is None:

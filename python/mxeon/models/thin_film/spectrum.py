@@ -20,11 +20,14 @@ import numpy as np
 from mxeon.models.core.arguments import checked, checked_numbers
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
 from mxeon.models.core.colorimetry import matching_functions
+from mxeon.models.core.namespaces import any_array, array_namespace, library, like
+from mxeon.models.thin_film.formulas import refracted
 
 STEP = 1.0  # nm
 VISIBLE = np.arange(360.0, 830.0 + STEP, STEP)
 
 
+@any_array
 def film_spectrum(
     wavelength: ArrayLike,
     mu: ArrayLike,
@@ -51,18 +54,20 @@ def _spectrum(
     wavelength: Array, mu: Array, thickness: Array, n2: Array, n: Array, k: Array
 ) -> Array:
     """`film_spectrum` on valid arrays."""
-    n3 = n + 1j * k
+    xp, n3 = array_namespace(n, k), n + 1j * k
     sin2 = (1.0 - mu) * (1.0 + mu)
-    c2 = np.sqrt(1.0 - sin2 / n2**2)
-    w3 = np.sqrt(n3**2 - sin2 + 0j)  # n3 times the cosine in the substrate
+    c2 = refracted(mu, n2)
+    w3 = xp.sqrt(n3**2 - sin2 + 0j)  # n3 times the cosine in the substrate
     path = 4.0 * np.pi * n2 * c2 * thickness
-    turn = np.exp(1j * path / wavelength)
+    turn = xp.exp(1j * path / wavelength)
     s = _amplitude(mu, n2 * c2), _amplitude(n2 * c2, w3)
     p = _amplitude(n2 * mu, c2), _amplitude(n3**2 * c2, n2 * w3)
     both = [(upper + lower * turn) / (1.0 + upper * lower * turn) for upper, lower in (s, p)]
-    return np.asarray(0.5 * sum(np.abs(each) ** 2 for each in both))
+    Rs, Rp = (xp.real(each) ** 2 + xp.imag(each) ** 2 for each in both)
+    return 0.5 * (Rs + Rp)
 
 
+@any_array
 def film_spectrum_xyz(
     mu: ArrayLike,
     thickness: ArrayLike,
@@ -83,14 +88,15 @@ def film_spectrum_xyz(
     film = {"mu": mu, "thickness": thickness, "film_ior": film_ior}
     material = checked_numbers(**film, ior=ior, extinction=extinction)
     power = checked("light", light)
-    if power.shape not in ((), VISIBLE.shape) or not power.any():
+    if power.shape not in ((), VISIBLE.shape) or not (library(power) or power.any()):
         raise ValueError(f"light must be {len(VISIBLE)} powers, not all 0; got {light!r}")
-    R = _spectrum(VISIBLE, *(each[..., np.newaxis] for each in material))
-    weights = matching_functions(VISIBLE) * np.reshape(power / power.max(), (-1, 1))
-    return np.asarray(R @ (weights / weights.sum(axis=0)))
+    R = _spectrum(like(VISIBLE, material[0]), *(each[..., np.newaxis] for each in material))
+    xp = array_namespace(R)
+    weights = like(matching_functions(VISIBLE), R) * xp.reshape(power / xp.max(power), (-1, 1))
+    return xp.tensordot(R, weights / xp.sum(weights, axis=0), axes=1)
 
 
 def _amplitude(above: Numbers, below: Numbers) -> Numbers:
     """(a - b) / (a + b): reflected amplitude by the admittances of both sides; no step reflects none."""
     total = above + below
-    return np.asarray((above - below) / np.where(total == 0.0, 1.0, total))
+    return (above - below) / array_namespace(total).where(total == 0.0, 1.0, total)

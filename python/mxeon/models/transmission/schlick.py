@@ -22,8 +22,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-
 from mxeon.models.core.arguments import (
     checked,
     checked_choice,
@@ -180,6 +178,7 @@ def generalized_schlick_btdf(
     return array_namespace(*channels).concat(channels, axis=-1)
 
 
+@any_array
 def generalized_schlick_transmittance_dir(
     wo: ArrayLike,
     color0: ArrayLike,
@@ -221,7 +220,7 @@ def generalized_schlick_transmittance_dir(
         )
         for index, colors in parts
     ]
-    return np.concatenate(np.broadcast_arrays(*channels), axis=-1)
+    return array_namespace(*channels).concat(channels, axis=-1)
 
 
 def _parts(

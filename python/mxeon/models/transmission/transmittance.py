@@ -18,9 +18,12 @@ from mxeon.models.core.arguments import (
     checked_directions,
     checked_roughness,
     checked_switch,
+    checked_vector,
 )
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
+from mxeon.models.core.edges import within
 from mxeon.models.core.evaluation import evaluate_material
+from mxeon.models.core.namespaces import any_array, array_namespace, library, like
 from mxeon.models.core.shapes import channel_count
 from mxeon.models.microfacet import ggx_formulas as ggx
 from mxeon.models.microfacet.lobe import DIELECTRIC
@@ -34,6 +37,7 @@ MOST_SQUARED = 1.0 - 1e-15  # of a sine: below an index of 3e-8 next to nothing 
 Nodes: TypeAlias = tuple[Array, Array, Array]  # cosines wo . h and of wi, and weights
 
 
+@any_array
 def dielectric_transmittance_dir(
     wo: ArrayLike,
     tint: ArrayLike,
@@ -65,7 +69,7 @@ def dielectric_transmittance_dir(
         array([[0.939],
                [0.732]])
     """
-    vectors = {"tint": np.atleast_1d(checked("tint", tint))}
+    vectors = {"tint": checked_vector("tint", tint)}
     numbers = {"ior": checked("ior", ior)}
 
     return evaluate_transmittance(DIELECTRIC.at, wo, roughness, vectors, numbers, shadow)
@@ -93,17 +97,17 @@ def evaluate_transmittance(
         passed = (1.0 - at(cosine, **spread)) * weight
         if shadow:
             passed = passed * _shadow(wo, mu_i, roughness)
-        T: Array = np.sum(passed, axis=tuple(range(1, 1 + axes)))
+        T: Array = array_namespace(passed).sum(passed, axis=tuple(range(1, 1 + axes)))
         return T
 
     def value(wo: Array, roughness: Array, **material: Array) -> Array:
         wo, roughness = wo + 0.0 * roughness[:1], roughness + 0.0 * wo[:1]
         ior = material["ior"]
         T = total(wo, roughness, material, _visible(wo, roughness, ior), 1)
-        if np.any(ior < 1.0):
-            squared = np.clip((1.0 - ior) * (1.0 + ior), 0.0, MOST_SQUARED)
+        if library(ior) or np.any(ior < 1.0):
+            squared = within((1.0 - ior) * (1.0 + ior), 0.0, MOST_SQUARED)
             split = refracting_nodes(wo, roughness, squared)
-            T = np.where(ior < 1.0, total(wo, roughness, material, split, 2), T)
+            T = array_namespace(T).where(ior < 1.0, total(wo, roughness, material, split, 2), T)
         return T * material["tint"] if "tint" in material else T
 
     arguments = {**directions, **pairs, **vectors}
@@ -113,27 +117,26 @@ def evaluate_transmittance(
 def _shadow(wo: Array, mu_i: Array, roughness: Array) -> Array:
     """G2 / G1(wo), whose limits at grazing are finite; 1 at alpha 0."""
     length = ggx.stretched_length(wo, roughness)
-    visibility = ggx.visibility(wo[2], np.clip(mu_i, 0.0, 1.0), ggx.mean_alpha(roughness))
+    visibility = ggx.visibility(wo[2], within(mu_i), ggx.mean_alpha(roughness))
     share: Array = 2.0 * mu_i * visibility * (wo[2] + length)
     return share
 
 
 def _visible(wo: Array, roughness: Array, ior: Array) -> Nodes:
     """Nodes of visible facets, drawn; those whose light does not reach the far side weigh nothing."""
-    nodes, weight = _nodes(wo.ndim)
+    xp, (height, turn, weight) = array_namespace(wo), (like(each, wo) for each in _nodes(wo.ndim))
     view = wo[:, np.newaxis]
-    wh = visible_normal(view, *nodes, roughness[:, np.newaxis])
-    cosine = np.clip(np.sum(view * wh, axis=0), 0.0, 1.0)
+    wh = visible_normal(view, height, turn, roughness[:, np.newaxis])
     mu_i = -refracted(view, wh, ior)[2]
-    return cosine, mu_i, weight * np.where(mu_i > 0.0, 1.0, 0.0)
+    return within(xp.sum(view * wh, axis=0)), mu_i, weight * xp.where(mu_i > 0.0, 1.0, 0.0)
 
 
 @lru_cache(maxsize=2)
-def _nodes(axes: int) -> tuple[tuple[Array, Array], Array]:
+def _nodes(axes: int) -> Nodes:
     """Random numbers of the visible normals, and weights, along an axis before those of the views."""
     x, w = np.polynomial.legendre.leggauss(NODES)
     around = (np.arange(NODES) + 0.5) / NODES
     height, turn = np.meshgrid(0.5 * (x + 1.0), around, indexing="ij")
     weight = np.repeat(0.5 * w / NODES, NODES)
     shape = (-1, *(1,) * (axes - 1))
-    return (height.reshape(shape), turn.reshape(shape)), weight.reshape(shape)
+    return height.reshape(shape), turn.reshape(shape), weight.reshape(shape)

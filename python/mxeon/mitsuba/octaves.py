@@ -13,16 +13,16 @@ from typing import cast
 
 import numpy as np
 
+from mxeon.mitsuba.arrays import vector
 from mxeon.models.core.arrays import Array
 from mxeon.models.core.chebyshev import chebyshev_nodes
-from mxeon.models.core.drjit_arrays import Number, vector
 
 OCTAVES, PARTS = 126, 16  # down to the smallest normal float32; parts of each
 LOWER_BITS = 19  # of a float32, below those that tell octave and part
 MIDDLE = 1.5  # of an octave that starts at 1
 
 
-def octave_cells(x: Number) -> tuple[Number, Number]:
+def octave_cells(x: Array) -> tuple[Array, Array]:
     """Part of a number, counted from the smallest, and its distance from the octave's middle, over the octave."""
     drjit = import_module("drjit")
     integer, single = drjit.uint32_array_t(type(x)), drjit.float32_array_t(type(x))
@@ -42,8 +42,8 @@ def octave_cubics(curve: Callable[[Array], Array]) -> Array:
     return np.asarray(np.einsum("pij,opj->opi", powers, curve(octaves * places)).reshape(-1, 4))
 
 
-def gather_cubic(table: Number, cell: Number, x: Number) -> Number:
+def gather_cubic(table: Array, cell: Array, x: Array) -> Array:
     """Sum of the cubic of a cell, whose four coefficients are rows of a table."""
     drjit = import_module("drjit")
     c = drjit.gather(type(vector([x] * 4)), table, cell)
-    return cast(Number, drjit.fma(drjit.fma(drjit.fma(c.w, x, c.z), x, c.y), x, c.x))
+    return cast(Array, drjit.fma(drjit.fma(drjit.fma(c.w, x, c.z), x, c.y), x, c.x))

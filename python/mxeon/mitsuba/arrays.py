@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Functions of Dr.Jit by the names of the array API standard, for the formulas of `mxeon.models`.
+
+A number of Dr.Jit stands for many; a direction is an `Array3f` of three, and its first axis is that of components.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from importlib import import_module
+from types import SimpleNamespace
+from typing import cast
+
+import numpy as np
+
+from mxeon.models.core.arrays import Array
+from mxeon.models.core.namespaces import FUNCTIONS, OTHERS, Namespace
+
+
+def register_functions() -> None:
+    """Make the formulas take numbers of Dr.Jit."""
+    drjit = import_module("drjit")
+
+    def log1p(x: Array) -> Array:
+        u = 1.0 + x  # whose rounding the quotient undoes
+        rounded = drjit.log(u) * (x / drjit.select(u == 1.0, 1.0, u - 1.0))
+        return cast(Array, drjit.select(u == 1.0, x, rounded))
+
+    others = {"stack": vector, "where": drjit.select, "log1p": log1p, "finfo": np.finfo}
+    FUNCTIONS["drjit"] = cast(Namespace, SimpleNamespace(**vars(drjit) | others))
+    OTHERS["drjit"] = drjit.ArrayBase
+
+
+def vector(parts: Sequence[Array]) -> Array:
+    """`Array2f`, `Array3f` or `Array4f` of numbers of Dr.Jit."""
+    kind = type(parts[0])
+    name = f"Array{len(parts)}f{'64' * kind.__name__.endswith('64')}"
+    return cast(Array, getattr(import_module(kind.__module__), name)(*parts))

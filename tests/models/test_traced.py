@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Transformations of PyTorch and JAX over the functions of every model, as they stand.
+
+A row of the catalog is tried with each of its functions: gradients are finite at every end of every input, and equal to
+differences of NumPy inside; `vmap`, `jit` and `compile` return NumPy's values.
+"""
+
+from functools import partial
+
+import numpy as np
+import pytest
+
+import mxeon
+from mxeon.models import model_names
+from mxeon.models.core.ranges import RANGES
+
+SEED, ROWS = 5, 3
+STEP, SLOPE = 1e-4, 3e-5  # of central differences, and their truncation
+VALUE = 1e-11  # of the larger of 1 and the value
+# Where inputs lie, by quantity, and their ends; others lie in [0.3, 0.7] and end at 0 and 1.
+INSIDE = {"ior": (1.2, 2.0), "extinction": (1.0, 3.0), "thinfilm_thickness": (200.0, 900.0)}
+INSIDE |= {
+    "thinfilm_ior": (1.2, 1.9),
+    "exponent": (2.0, 6.0),
+    "coat_ior": (1.2, 2.0),
+    "specular_ior": (1.2, 2.0),
+}
+INSIDE |= dict.fromkeys(("inner_angle", "outer_angle"), (20.0, 160.0))
+INSIDE |= dict.fromkeys(("roughness_R", "roughness_TT", "roughness_TRT"), (0.1, 0.6))
+ENDS = {"ior": (1.0, 2.0), "extinction": (0.0, 3.0), "exponent": (1.0, 5.0)}
+ENDS |= {"thinfilm_thickness": (1.0, 900.0)}  # a film of thickness 0 is another formula
+FUNCTIONS = [
+    (name, function)
+    for name in model_names()
+    for function in mxeon.model(name).functions
+    if function not in ("plot", "brdf")  # of which bsdf is the other name
+]
+# What JAX compiles in a second; the others are sums over many nodes, or polynomials.
+COMPILED = ("lambert", "oren_nayar", "qon", "fon", "eon", "burley", "translucent", "subsurface")
+COMPILED += ("zeltner", "conty_kulla", "uniform_edf", "conical_edf", "anisotropic_vdf")
+LONG = ("oren_nayar", "conty_kulla")  # whose albedo is such a sum
+
+
+def vectors(row, function, ends=False):
+    """Arguments before the inputs, a row each: along the normal, at the horizon and between, or inside."""
+    rng, mu = np.random.default_rng(SEED), np.array([1.0, 0.0, 0.6] if ends else [0.7, 0.3, 0.9])
+    phi, S = np.array([0.0, 0.3, 2.0]), np.sqrt(1.0 - mu * mu)
+    wo = np.stack([S * np.cos(phi), S * np.sin(phi), mu], axis=-1)
+    wi = np.roll(wo, 1, axis=0) * (-1.0, 1.0, 1.0)
+    wi[:, 2] *= -1.0 if getattr(row, "lights", "") == "back" else 1.0
+    u = rng.uniform(0.2, 0.8, (ROWS, 2))
+    given = {"bsdf": (wo, wi), "pdf": (wo, wi), "sample": (wo, u), "edf": (wo,)}
+    return given.get(function, () if function in ("albedo_avg", "exitance") else (mu,))
+
+
+def one_for_all(parameter):
+    """Whether an input is one number for all pairs."""
+    return parameter.quantity.startswith(("coat_", "specular_"))
+
+
+def inside(row):
+    """Inputs of a row each, away from the ends of their ranges."""
+    rng, inputs = np.random.default_rng(SEED), {}
+    for each in row.parameters:
+        shape = (*(ROWS,) * (not one_for_all(each)), *(each.channels,) * bool(each.channels))
+        inputs[each.name] = rng.uniform(*INSIDE.get(each.quantity, (0.3, 0.7)), shape)
+    return inputs
+
+
+def at_ends(row):
+    """Inputs of which one is at an end of its range, or all are."""
+    middle, ends = inside(row), {}
+    for each in row.parameters:
+        low, high, _ = RANGES[each.quantity]
+        low, high = ENDS.get(each.quantity, (max(low, -1.0), min(high, 1.0)))
+        ends[each.name] = [np.full_like(middle[each.name], end) for end in (low, high)]
+    for k in range(2):
+        moved = {name: pair[k] for name, pair in ends.items()}
+        yield moved
+        yield from (middle | {name: value} for name, value in moved.items())
+
+
+def numbers(result):
+    """One array of a result: the density of a sample."""
+    return result[1] if isinstance(result, tuple) else result
+
+
+def assert_slopes(function, inputs, found):
+    """Compare gradients of the sum with differences by each component, of all rows at once."""
+    for name, gradient in found.items():
+        array, rowwise = inputs[name], len(np.shape(inputs[name])) > 0
+        for index in np.ndindex(array.shape[1:] if rowwise else ()):
+            place, ends = (slice(None), *index) if rowwise else (), []
+            for step in (STEP, -STEP):
+                moved = np.array(array)
+                moved[place] += step
+                value = numbers(function(**inputs | {name: moved}))
+                ends.append(value.reshape(ROWS, -1).sum(axis=1) if rowwise else value.sum())
+            slope = (ends[0] - ends[1]) / (2.0 * STEP)
+            np.testing.assert_allclose(gradient[place], slope, SLOPE, SLOPE, err_msg=name)
+
+
+@pytest.mark.parametrize(("name", "function"), FUNCTIONS)
+def test_torch_differentiates_and_maps_every_function_of_every_model(name, function):
+    torch = pytest.importorskip("torch")
+    row = mxeon.model(name)
+    model = getattr(row, function)
+
+    def gradients(given, inputs):
+        tensors = {key: torch.tensor(each, requires_grad=True) for key, each in inputs.items()}
+        value = numbers(model(*map(torch.tensor, given), **tensors))
+        if value.requires_grad:
+            value.sum().backward()
+        none = {key: np.zeros(np.shape(each)) for key, each in inputs.items()}
+        found = {k: none[k] if t.grad is None else t.grad.numpy() for k, t in tensors.items()}
+        return value.detach().numpy(), found
+
+    # Inside: values and slopes of NumPy.
+    given, inputs = vectors(row, function), inside(row)
+    value, found = gradients(given, inputs)
+    np.testing.assert_allclose(value, numbers(model(*given, **inputs)), VALUE, VALUE)
+    assert_slopes(partial(model, *given), inputs, found)
+    # At the ends: finite.
+    for ends in at_ends(row):
+        found = gradients(vectors(row, function, ends=True), ends)
+        assert all(np.isfinite(each).all() for each in (found[0], *found[1].values())), ends
+    # A row at a time.
+    if given and not any(map(one_for_all, row.parameters)):
+        arrays = [torch.tensor(each) for each in (*given, *inputs.values())]
+        count = len(given)
+        mapped = torch.func.vmap(lambda *a: numbers(model(*a[:count], *a[count:])))(*arrays)
+        np.testing.assert_allclose(mapped.numpy(), value, VALUE, VALUE)
+
+
+@pytest.mark.parametrize("name", COMPILED)
+def test_jax_compiles_gradients_of_a_model(name):
+    jax = pytest.importorskip("jax")
+    jax.config.update("jax_enable_x64", True)
+    jax.config.update("jax_disable_most_optimizations", True)
+    row, inputs = mxeon.model(name), inside(mxeon.model(name))
+    for function in (each for owner, each in FUNCTIONS if owner == name):
+        if function == "albedo_dir" and name in LONG:
+            continue
+        model = partial(getattr(row, function), *vectors(row, function))
+        total = jax.value_and_grad(lambda inputs, model=model: numbers(model(**inputs)).sum())
+        value, found = jax.jit(total)(inputs)
+        assert value == pytest.approx(numbers(model(**inputs)).sum(), rel=VALUE)
+        assert_slopes(model, inputs, {key: np.asarray(each) for key, each in found.items()})
+
+
+def test_a_gradient_of_jax_needs_no_array_and_no_context():
+    jax = pytest.importorskip("jax")
+    row, pair = mxeon.model("eon"), ([0.6, 0.0, 0.8], [0.0, 0.6, 0.8])
+    slope = jax.grad(lambda r: row.brdf(*pair, [0.7, 0.35, 0.12], r).sum())(0.5)
+    ends = [row.brdf(*pair, [0.7, 0.35, 0.12], 0.5 + h).sum() for h in (STEP, -STEP)]
+    assert float(slope) == pytest.approx((ends[0] - ends[1]) / (2.0 * STEP), rel=1e-3)
+
+
+@pytest.mark.filterwarnings("ignore::UserWarning", "ignore::DeprecationWarning")
+def test_torch_compiles_a_model():
+    torch = pytest.importorskip("torch")
+    row = mxeon.model("eon")
+    wo, wi = map(torch.tensor, vectors(row, "bsdf"))
+    compiled = torch.compile(lambda r: row.brdf(wo, wi, 0.5, r), backend="eager")
+    r = torch.tensor(0.4, dtype=torch.float64)
+    assert torch.allclose(compiled(r), row.brdf(wo, wi, 0.5, r))
