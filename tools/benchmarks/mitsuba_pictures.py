@@ -114,7 +114,7 @@ def time_table(mi):
     import_module("drjit").set_thread_count(1)
     scenes = {name: mi.load_dict(ball(mi, {"type": name} | row)) for name, row in BSDFS.items()}
     times = {n: min(seconds) for n, (_, seconds) in rendered(mi, scenes, 5, 64).items()}
-    yield f"| BSDF, Mitsuba {version_of('mitsuba')} | seconds | of `diffuse` |\n|---|---|---|\n"
+    yield f"| BSDF, Mitsuba {version_of('mitsuba')} | seconds | relative to `diffuse` |\n|---|---|---|\n"
     for name, each in times.items():
         yield f"| `{name}` | {each:.2f} | {each / times['diffuse']:.2f} |\n"
 
