@@ -28,9 +28,9 @@ from tests.support.tolerances import MICROFACET_VALUE
 A = f'<{EON} name="a" type="BSDF"><input name="color" type="color3" value="0.8, 0.4, 0.1"/></{EON}>'
 B = f'<{EON} name="b" type="BSDF"><input name="color" type="color3" value="0.1, 0.2, 0.6"/></{EON}>'
 OUTSIDE = (
-    ({"color": "0.5, 1.5, 0.5"}, "rho must lie in [0, 1]; got 1.5"),
+    ({"color": "0.5, 1.5, 0.5"}, "color must lie in [0, 1]; got 1.5"),
     ({"weight": "1.5"}, "weight must lie in [0, 1]; got 1.5"),
-    ({"roughness": "1.6"}, "sigma must lie in [0, pi/2]; got 1.6"),
+    ({"roughness": "1.6"}, "roughness must lie in [0, pi/2]; got 1.6"),
 )
 CENTER = np.s_[15:17, 15:17]
 SMALL = Scene("front", light=(0.0, 0.0, 1.0), size=32)

@@ -88,7 +88,7 @@ def node_lobe(
     try:
         values = lobe(row, arguments, layered)
     except ValueError as error:
-        words = str(error).replace("rho must", "color must")  # as MaterialX calls it
+        words = str(error).replace("rho must", "color must").replace("sigma must", "roughness must")
         raise OutsideModel(f"{name}: {words}") from None
     # What hides its base does so at any weight.
     left = 1.0 - weight * (1.0 - values.throughput) if row.layerable else values.throughput
