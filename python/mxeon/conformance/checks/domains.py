@@ -18,7 +18,7 @@ from mxeon.conformance.specs.microfacets import TransmissionSpec
 from mxeon.conformance.tolerance import Compared, Tolerance, absolute, given, scaled
 from mxeon.errors import NotRun
 
-PAIRS = 24  # of each value
+PAIRS = 16  # of each value
 TOLERANCES = given(1.0, "tolerances", "the tolerance of each quantity")
 
 

@@ -21,7 +21,7 @@ from mxeon.conformance.tolerance import Compared
 
 FEW = 1 << 12
 LEAST_DIVIDED = 1.2  # index of a dielectric whose values are divided
-SKIES = 16  # lobes that are asked for the mean of an uneven sky
+SKIES = 8  # lobes that are asked for the mean of an uneven sky
 LEAST_VALUE = 1e-3  # pi f cos of values whose ratio is asked
 
 

@@ -167,15 +167,16 @@ def covering(axes: tuple[tuple[str, ...], ...]) -> tuple[tuple[str, ...], ...]:
     """Combinations of a state of each axis, in which every two states of different axes meet.
 
     >>> covering((("a", "b"), ("x", "y"), ("1",)))
-    (('a', 'x', '1'), ('a', 'y', '1'), ('b', 'x', '1'), ('b', 'y', '1'))
+    (('a', 'x', '1'), ('b', 'y', '1'), ('a', 'y', '1'), ('b', 'x', '1'))
     """
-    waiting = {pair for one, other in combinations(axes, 2) for pair in product(one, other)}
-    rows = {row: set(combinations(row, 2)) for row in product(*axes)}
-    found = []
+    pairs = [pair for one, other in combinations(axes, 2) for pair in product(one, other)]
+    bits = {pair: 1 << number for number, pair in enumerate(pairs)}
+    rows = {row: sum(bits[pair] for pair in combinations(row, 2)) for row in product(*axes)}
+    waiting, found = sum(bits.values()), []
     while waiting:
-        best = max(rows, key=lambda row: len(rows[row] & waiting))
+        best = max(rows, key=lambda row: (rows[row] & waiting).bit_count())
         found.append(best)
-        waiting -= rows[best]
+        waiting &= ~rows[best]
     return tuple(found)
 
 
