@@ -35,7 +35,7 @@ def takes_any(function):
 
 def page(text):
     """The page with its table, and its list of the other functions, as they are now."""
-    lines = ["| function | arrays, and gradients by |", "|---|---|"]
+    lines = ["| function | array arguments, each differentiable |", "|---|---|"]
     others = []
     for name, function in public().items():
         if takes_any(function):
