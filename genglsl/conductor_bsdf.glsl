@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Entry point of the node conductor_bsdf, which lets nothing through.
 
-#include "lib/microfacet_lobe.glsl"
+#include "lib/microfacet_film.glsl"
 #include "lib/fresnel_conductor.glsl"
 
 void conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 extinction,
@@ -17,7 +17,7 @@ void conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 extinc
         F.value = mx_fresnel_conductor(lobe.mu_h, ior, extinction);
         F.average = fresnel_conductor_avg(ior, extinction);
         F.visible = vec3(1.0);  // without a film the environment's sum has the curve
-        microfacet_add_film(lobe, fd, F);
+        microfacet_film(lobe, fd, F);
         microfacet_bsdf(closureData, lobe, fd, F, vec3(1.0), weight, distribution, 0, bsdf);
     }
     bsdf.throughput = vec3(0.0);

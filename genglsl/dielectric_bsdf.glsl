@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Entry point of the node dielectric_bsdf. With ior 0 it reflects everything.
 
-#include "lib/microfacet_lobe.glsl"
+#include "lib/microfacet_film.glsl"
 #include "lib/fresnel_dielectric.glsl"
 
 void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior, vec2 roughness,
@@ -23,7 +23,7 @@ void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior
     {
         F.visible = vec3(fresnel_dielectric_inside(lobe.mu_o, lobe.alpha, ior));
     }
-    microfacet_add_film(lobe, fd, F);
+    microfacet_film(lobe, fd, F);
     microfacet_bsdf(closureData, lobe, fd, F, max(tint, 0.0), weight, distribution, scatter_mode,
                     bsdf);
 }

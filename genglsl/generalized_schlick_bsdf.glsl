@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Entry point of the node generalized_schlick_bsdf.
 
-#include "lib/microfacet_lobe.glsl"
+#include "lib/microfacet_film.glsl"
 #include "lib/fresnel_schlick.glsl"
 
 // Average of the Fresnel curve over the visible facets; a color82 of 1 has no dip.
@@ -31,7 +31,7 @@ void generalized_schlick_bsdf(ClosureData closureData, float weight, vec3 color0
     F.value = mx_fresnel_hoffman_schlick(lobe.mu_h, fd);
     F.average = fresnel_schlick_avg(fd.F0, fd.F90, exponent, dip);
     F.visible = generalized_schlick_visible(lobe, fd, dip);
-    microfacet_add_film(lobe, fd, F);
+    microfacet_film(lobe, fd, F);
     microfacet_bsdf(closureData, lobe, fd, F, vec3(1.0), weight, distribution, scatter_mode, bsdf);
 }
 

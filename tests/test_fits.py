@@ -171,26 +171,20 @@ def test_the_colors_of_a_black_body_have_the_errors_that_stand_beside_them():
 
 def test_the_shader_has_the_nodes_of_a_film():
     text = "".join(
-        source_file("glsl", each).read_text() for each in ("thin_film", "microfacet_lobe")
+        source_file("glsl", each).read_text() for each in ("thin_film", "microfacet_film")
     )
 
-    def macros(pattern):
-        found = re.findall(rf"#define (?:THIN_FILM|MICROFACET)_{pattern} (.*)", text)
-        return [float(digits) for each in found for digits in re.findall(r"-?\d+\.\d+", each)]
+    def rows(pattern):
+        found = re.findall(rf"#define \w+_FILM_{pattern} (.*)", text)
+        return [
+            list(map(float, re.findall(r"-?\d[\d.e-]*", each.removeprefix("vec3"))))
+            for each in found
+        ]
 
-    cosines, weights, width = thin_film.PAIR
-    assert macros(r"PAIR\d") == [cosines[0], weights[0], cosines[1], weights[1]]
-    assert macros("PAIR_WIDTH") == [width]
-    assert macros("WIDTH") == [thin_film.WIDTH] and macros("ALIKE") == [thin_film.ALIKE]
-    assert macros("SHARE") == [thin_film.SHARE]
-    limits = re.findall(r"define THIN_FILM_ORDER_\w+ (\S+)", text)
-    orders = [thin_film.VALUE_ORDER, thin_film.MEAN_ORDER, thin_film.ORDER_RATIO]
-    assert list(map(float, limits)) == orders
-    columns = np.transpose(thin_film.FACETS).ravel()
-    assert macros(r"FACETS_\d\d") == list(columns)
-    np.testing.assert_allclose(
-        np.reshape(macros(r"GAUSS\d"), (-1, 2)).T, thin_film.gauss(5), atol=1e-8
-    )
+    np.testing.assert_array_equal(np.transpose(rows(r"AVERAGE_\d")), thin_film.NODES)
+    np.testing.assert_array_equal(np.transpose(rows(r"FACETS_\d\d")), thin_film.FACETS)
+    orders = [thin_film.VALUE_ORDER, thin_film.WIDTH_ORDER, thin_film.ORDER_RATIO]
+    assert [each for [each] in rows(r"ORDER_\w+")] == orders
 
 
 def test_facets_pass_as_much_light_out_as_in():

@@ -9,6 +9,7 @@ from tests.support.wrong_libraries import copy_of_stock, replace_text, wrong_lib
 # Files of eonlib have their path; those of MaterialX, their name alone.
 LOBE, FACETS = "genglsl/lib/oren_nayar_lobe.glsl", "genglsl/lib/microfacet_lobe.glsl"
 HAIR, FILM = "genglsl/chiang_hair_bsdf.glsl", "genglsl/lib/thin_film.glsl"
+FILMED = "genglsl/lib/microfacet_film.glsl"
 
 # By title: file, a text, the text in its place, where OLD stands for the first, the check that notices it, words of
 # its diagnosis, and the verdict where it is not "failed".
@@ -188,22 +189,23 @@ WRONG = {
          "the environment is looked up on the other side of the surface"),
     ),
     "conductor_bsdf, thin film": (
-        (FACETS, "F.average += i < facets || i == last ? vec3(0.0) : share;",
-         "F.average = thin_film_fresnel(2.0 / 3.0, 0.0, film, fd);", "film_average", "F at the cosine 2/3"),
-        (FILM, "-r_s * im_s,", "r_s * im_s,", "film", ""),
+        (FILMED, "F.average += node.weights.y * reflected;", "F.average = thin_film_fresnel(2.0 / 3.0, 0.0, fd);",
+         "film_average", "F at the cosine 2/3"),
+        (FILM, "r21 * r23.im)", "-r21 * r23.im)", "film", ""),
         (FILM, "4.3278e9, 4.5282e9", "4.3728e9, 4.5282e9", "film_curve", ""),
         (FILM, "THIN_FILM_ORDER_RATIO 0.6", "THIN_FILM_ORDER_RATIO 0.006", "film_orders", ""),
-        (FILM, "clamp(0.5 * mean - orders, 0.0, 1.0)", "1.1 + 0.0 * mean", "film_energy", ""),
-        (FACETS, "int i = is_known ? last : 0;", "facets = 1; int i = 0;", "film_environment", ""),
-        (FILM, "vec2(0.785, 0.725)", "vec2(0.785, 0.625)", "film_smooth", ""),
-        (FACETS, "vec4 curve = vec4(F.average, float(fd.model));", "vec4 curve = vec4(1.0);", "states",
-         "all with two lobes that differ in extinction or two lobes that differ in ior"),
+        (FILM, "return clamp(0.5 * mean +", "return 1.1 + clamp(0.5 * mean +", "film_energy", ""),
+        (FILMED, "F.visible += node", "F.visible += 0.5 * node", "film_environment", ""),
+        (FILMED, "0.43884,", "0.33884,", "film_smooth", ""),
+        (FILMED, "void microfacet_film(MicrofacetLobe lobe, FresnelData fd, inout MicrofacetFresnel F)\n{",
+         "vec3 kept = vec3(-1.0);\nOLD\n    kept = kept.x < 0.0 ? fd.ior : kept;\n    fd.ior = kept;", "states",
+         "two lobes that differ in ior"),
     ),
     "dielectric_bsdf, thin film": (
-        (FILM, "2.0e-9 * fd.tf_thickness", "2.0e-9 * min(fd.tf_thickness, 2000.0)", "domain",
+        (FILM, "M_PI * fd.tf_thickness", "M_PI * min(fd.tf_thickness, 2000.0)", "domain",
          "the value is wrong with thinfilm_thickness 2500, 3000, 6000, 100000"),
-        (FILM, "orders = vec3(0.0)", "orders = vec3(0.01)", "film_limit", ""),
-        (FILM, "clamp(0.5 * mean - orders, 0.0, 1.0)", "mean / step(1.0, fd.tf_ior)", "film_finite", ""),
+        (FILM, "vec3 sum = vec3(0.0)", "vec3 sum = vec3(0.01)", "film_limit", ""),
+        (FILM, "return clamp(0.5 * mean +", "return mean / step(1.0, fd.tf_ior) + clamp(0.5 * mean +", "film_finite", ""),
     ),
     "uniform_edf": (
         ("mx_uniform_edf.glsl", "result = color;", "result = color * 0.31830989;", "radiance",

@@ -15,13 +15,16 @@ from mxeon.errors import DocumentError
 from mxeon.hosts.cycles.process import interpreter
 from mxeon.shaders.document.reading import read_document
 from mxeon.shaders.generation import TARGETS, ApproximationWarning, Input, generate
-from mxeon.shaders.library import examples_folder, load_library
+from mxeon.shaders.library import examples_folder, load_library, source_folder
 from mxeon.shaders.nodes import EON, OREN_NAYAR
 from tests.support.availability import available
 from tests.support.documents import COMPENSATED, lobe, material
 
 EXAMPLES = sorted(examples_folder().glob("*.mtlx"))
 RASTERISED = ("glsl", "essl", "vulkan", "wgsl", "msl", "slang")
+SOURCES = sorted((source_folder("eonlib") / "genglsl").rglob("*.glsl"))
+LIBRARIES = ("eonlib", "stock")
+CONSTANT = {"const", "uniform", "struct", "in", "constant", "precision"}
 VALIDATED = {"glsl": (), "essl": (), "vulkan": ("-V",)}
 SURFACES = ("open_pbr_surface", "standard_surface", "gltf_pbr", "UsdPreviewSurface")
 
@@ -74,6 +77,24 @@ def pixel(text, target, **options):
 def statements(source):
     """The lines of a shader that compute or take the lobe."""
     return "\n".join(line for line in source.splitlines() if "lobe_out" in line)
+
+
+def kept(source):
+    """Variables of a shader outside of its functions, of MSL outside of its context's, that are not constant."""
+    text = re.sub(
+        r"//.*|/\*[\s\S]*?\*/|^ *#.*(\\\n.*)*|struct GlobalContext\s*{",
+        "",
+        source,
+        flags=re.MULTILINE,
+    )
+    while "{" in text and (bare := re.sub(r"{[^{}]*}", ";", text)) != text:
+        text = bare
+    declarations = (each.split("=")[0].split("[")[0].split() for each in text.split(";"))
+    return {
+        " ".join(words)
+        for words in declarations
+        if len(words) > 1 and "(" not in "".join(words) and not {*words} & CONSTANT
+    }
 
 
 def validate(shader, target, folder):
@@ -165,6 +186,24 @@ def test_our_nodes_compile_together_with_every_bsdf_node_of_pbrlib(target, tmp_p
     [shader] = generate(text, target, lights=True)
     validate(shader, target, tmp_path)
     assert all(f"{name}_lobe_" in shader.stages["pixel"] for name in names)
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.stem)
+def test_a_source_keeps_no_state(path):
+    text = path.read_text(encoding="utf-8")
+    assert kept(text) == set() and not re.search(r"\bstatic\b", text)
+    assert kept(text + "vec3 last = vec3(0.0);\nfloat value;") == {"vec3 last", "float value"}
+
+
+@pytest.mark.parametrize("target", RASTERISED)
+def test_a_generated_shader_keeps_no_state_beside_that_of_materialx(target):
+    text, _ = every_lobe()
+    both = [pixel(text.replace(EON, OREN_NAYAR), target, library=each) for each in LIBRARIES]
+    eonlib, stock = map(kept, both)
+    assert eonlib <= stock
+    assert {each.split()[-1] for each in kept(both[0] + "vec3 last;")} >= {"last"}
+    statics = [re.findall(r"\bstatic\b(?! const)", each) for each in both]
+    assert len(statics[0]) <= len(statics[1])
 
 
 @of_each_example

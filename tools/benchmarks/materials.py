@@ -73,7 +73,7 @@ NODES = DIFFUSE | BARE | FILMED | OTHERS
 TIMES = (
     dict.fromkeys(DIFFUSE, 1.0)
     | dict.fromkeys(BARE, 1.03)
-    | dict.fromkeys(FILMED, 1.5)
+    | dict.fromkeys(FILMED, 1.8)
     | dict.fromkeys(OTHERS, 1.1)
 )
 TEXTS = dict.fromkeys(DIFFUSE, 1.0) | dict.fromkeys(BARE, 1.1)

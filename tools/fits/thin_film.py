@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Errors of `genglsl/lib/thin_film.glsl` against all orders and whole averages: python -m tools.fits.thin_film.
 
-The shader sums orders while they count, averages over the hemisphere in five cosines, or in two, and
-over the visible facets in four, or in two. Each of these cosines stands for those
-around it, whose fringes damp each other. This measures what each costs at most, over films of up to 1000
-nm on each kind of substrate, for cosines from 0.1 on. `thin_film_search.py` searches for the largest.
+The shader sums orders while they count, and averages over the hemisphere and over the visible facets in
+three cosines each. Each of these cosines stands for those around it, whose fringes damp each other. This
+measures what each costs at most, over films of up to 1000 nm on each kind of substrate, for cosines from
+0.1 on. `thin_film_search.py` searches for the largest.
 """
 
 import numpy as np
@@ -27,23 +27,24 @@ CLEAR = {
 }
 DARK = 1e-3  # reflectance below which errors are no longer relative
 STEP = 1e-6  # of a thickness, relative, by which the slope of a curve is measured
-# Of the shader, chosen by `thin_film_nodes.py`: the width of five cosines; two cosines, their weights and
-# their width; for visible facets, polynomials of the mean of their cosines, of the reach of two or four
-# nodes around it and of their bend; the width of all together, as a part of the reach.
-WIDTH = 0.07
-PAIR = ((0.294, 0.785), (0.275, 0.725), 0.165)
+# Of the shader, chosen by `thin_film_nodes.py`: three nodes for F_ss, their cosines, weights and widths; for
+# visible facets, polynomials of the mean of their cosines, of the reach of three nodes around it and of their
+# bend.
+NODES = (
+    (0.18007, 0.55789, 0.88374),
+    (0.11003, 0.43884, 0.45114),
+    (0.1992, 0.13803, 0.088381),
+)
 STEEP = 0.2
 FACETS = (
-    (3.4303, -1.7007, -3.1011, 1.3698, 0.046978, 2.3613, -2.8816, -7.968, 8.4497, 0.062022),
-    (-0.000094979, 4.6952, -6.0773, 1.3104, 3.7667, -7.8535, 3.6722, -2.5177, 3.4417, -0.39209),
-    (0.44939, -0.93653, 0.78291, -0.55497, 0.66991, -0.19493, -0.84088, -1.7317, 2.096, -0.02136),
+    (3.2739, -1.0485, -3.9422, 1.6943, -0.10219, 2.4881, -2.8084, -7.7466, 8.2377, 0.018445),
+    (0.21155, 3.7698, -4.8277, 0.78139, 3.7484, -7.6828, 3.4317, -2.6436, 3.5978, -0.3586),
+    (0.39911, -1.0011, 1.2036, -0.88274, 0.42655, -0.10374, -0.6846, -1.2458, 1.73, -0.12605),
 )  # fmt: skip
-SHARE = 0.97
-ALIKE = 0.09  # reach below which two nodes serve
 # Orders are summed while the square of one exceeds a limit, of a value this times the square of both
-# polarizations' mean reflectances in all channels, of a node of a rule this times the cube of its width if
+# polarizations' mean reflectances in all channels, of a node of a rule this times the square of its width if
 # that is more; each counts as smaller than the one before it by a factor at least.
-VALUE_ORDER, MEAN_ORDER, ORDER_RATIO = 2e-14, 2e-4, 0.6
+VALUE_ORDER, WIDTH_ORDER, ORDER_RATIO = 2e-14, 1e-3, 0.6
 NARROWEST = min(film.GAUSSIANS, key=lambda gaussian: gaussian[3])  # of the sensitivities
 LEAST_PATH, LEAST_LOST = 1e-21, 1e-12  # of a path difference in m, and of light that is not trapped
 
@@ -64,7 +65,7 @@ def shader_curve(category, material, mu, width=0.0):
     sizes = [np.sqrt(R * S) for R, S in pairs]
     # As many orders as count of both polarizations and all channels.
     bright = 3.0 * (sum(means) ** 2).mean(axis=0)
-    least = np.maximum(VALUE_ORDER * bright, MEAN_ORDER * np.power(width, 3))
+    least = np.maximum(VALUE_ORDER * bright, WIDTH_ORDER * np.square(width))
     count = order_count(np.stack(weights), np.stack(sizes), opd, spread, least)
     xyz = sum(
         mean - 2.0 * weight * counted_orders(r12 * (x + 1j * y), opd, spread, count)
@@ -162,40 +163,22 @@ def kept(category, material, _, mu):
     return (airy.at(mu, **material) * (1.0 - airy.average(**material))).max(axis=0)
 
 
-def average_errors(category, material, *_, rule=None):
-    """Errors of F_ss in five cosines, or by another rule."""
+def average_errors(category, material, *_):
+    """Errors of F_ss in three cosines."""
     exact = film_curve(category).average(**material)
-    found = average(category, material, rule or (*gauss(5), WIDTH))
-    return np.abs(found - exact).max(axis=0)
+    return np.abs(average(category, material) - exact).max(axis=0)
 
 
-def average(category, material, rule):
-    """F_ss by a rule: cosines, weights and their width."""
-    *rule, width = rule
+def average(category, material, nodes=NODES):
+    """F_ss in nodes: cosines, weights and widths."""
     return sum(
         weight * shader_curve(category, material, np.asarray(mu), width)
-        for mu, weight in zip(*rule, strict=True)
+        for mu, weight, width in zip(*nodes, strict=True)
     )
 
 
-def pair_errors(category, material, *_):
-    """Errors of F_ss in two cosines."""
-    return average_errors(category, material, rule=PAIR)
-
-
-def gauss(count):
-    """Gauss's rule for 2 F(mu) mu dmu on [0, 1], from the moments 2 / (k + 2)."""
-    # Golub and Welsch, for the Jacobi weight 1 + x on [-1, 1].
-    k = np.arange(count)
-    diagonal = 1.0 / ((2.0 * k + 1.0) * (2.0 * k + 3.0))
-    j = np.arange(1, count)
-    side = np.sqrt(j * (j + 1.0)) / (2.0 * j + 1.0)
-    nodes, vectors = np.linalg.eigh(np.diag(diagonal) + np.diag(side, 1) + np.diag(side, -1))
-    return 0.5 * (1.0 + nodes), vectors[0] ** 2
-
-
 def visible_errors(category, material, alpha, mu):
-    """Errors of the average over the visible facets in four cosines, or in two."""
+    """Errors of the average over the visible facets in three cosines."""
     exact = visible_average(category, material, alpha, mu)
     return np.abs(visible_mean(category, material, alpha, mu) - exact).max(axis=0)
 
@@ -218,16 +201,18 @@ def visible_average(category, material, alpha, mu):
     return (film / mirror).T
 
 
-def visible_mean(category, material, alpha, mu, coefficients=FACETS, count=4, share=SHARE):
-    """The same in the shader's cosines, or by other coefficients, or in another number of cosines."""
-    many, few = (
-        sum(
-            weight * shader_curve(category, material, cosine, width)
-            for cosine, weight, width in _nodes(mu, alpha, coefficients, number, share)
-        )
-        for number in (count, min(count, 2))
-    )
-    return np.where(facets(mu, alpha, coefficients)[1] < ALIKE, few, many)
+def visible_mean(category, material, alpha, mu, coefficients=FACETS):
+    """The same in the shader's cosines, or by other coefficients.
+
+    These are Gauss's nodes for a semicircle, which has fewer facets at its ends than in its middle.
+    """
+    mean, reach, bend = facets(mu, alpha, coefficients)
+    total = 0.0
+    for x in (-np.sqrt(0.5), 0.0, np.sqrt(0.5)):
+        cosine = np.clip(mean + reach * (x + bend * (4.0 * x * x - 1.0)), 0.0, 1.0)
+        curve = shader_curve(category, material, cosine, reach / 3.0)
+        total = total + (0.5 - 0.5 * x * x) * curve
+    return total
 
 
 MIRRORS = {
@@ -235,18 +220,6 @@ MIRRORS = {
     "conductor_bsdf": {"ior": np.zeros((1, 3))},
     "generalized_schlick_bsdf": dict.fromkeys(("color0", *WHITE), np.ones((1, 3))),
 }
-
-
-def _nodes(mu, alpha, coefficients, count, share):
-    """Cosines that stand for the visible facets, their weights and widths.
-
-    These are Gauss's nodes for a semicircle, which has fewer facets at its ends than in its middle.
-    """
-    mean, reach, bend = facets(mu, alpha, coefficients)
-    for angle in np.pi * np.arange(1, count + 1) / (count + 1):
-        node, weight = np.cos(angle), 2.0 * np.sin(angle) ** 2 / (count + 1)
-        offset = reach * (node + bend * (4.0 * node * node - 1.0))
-        yield np.clip(mean + offset, 0.0, 1.0), weight, share / count * reach
 
 
 def facets(mu, alpha, coefficients):
@@ -271,7 +244,10 @@ MEASURED = {
     "waves of curves": (wave_slopes, CLEAR),
     "E_ss in curves": (kept, CLEAR, COLORED),
     "F_ss": (average_errors, FILMS, COLORED),
-    "F_ss in two cosines": (pair_errors, FILMS),
+    "F_ss without a film": (
+        average_errors,
+        {**FILMS, "thickness": (0.0, 0.0), "index": (1.0, 1.0)},
+    ),
     "visible facets": (visible_errors, FILMS),
     "albedo": (albedo_errors, FILMS),
     "albedo from an index on": (albedo_errors, {**FILMS, "index": (LEAST_FILM, 2.5)}),

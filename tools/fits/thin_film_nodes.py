@@ -1,118 +1,78 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Choice of the nodes in which `genglsl/lib/thin_film.glsl` averages a film.
+"""Choice of the nodes in which `genglsl/lib/microfacet_film.glsl` averages a film.
 
-Over random films of up to 1000 nm on each kind of substrate, of which no check asks, the mean fourth power
-of the errors is least: the largest count most. Found by steps along one number at a time. What another
-number of nodes costs is measured too.
+Over random films of up to 1000 nm on each kind of substrate, of which no check asks, what is least is the
+mean fourth power of the errors of F_ss, so that the largest count most, and the mean square of those of the
+mean over visible facets.
 
     python -m tools.fits.thin_film_nodes
 """
 
-from collections.abc import Callable
-
 import numpy as np
+from scipy.optimize import least_squares
 
 from mxeon.models.microfacet.ggx_formulas import smith_lambda
 from mxeon.models.thin_film.curve import film_curve
 from tools.fits import thin_film as fit
 from tools.fits.thin_film_search import NUMBERS, filmed
 
-SEED, COUNT = 24, 1 << 8  # of the films
+SEED, COUNT = 24, 400  # of the films
+BARE, HEAVY = 100, 8.0  # substrates without a film, whose F_ss is to change least, and their weight
+START = ((0.2, 0.6, 0.9), (0.15, 0.4, 0.45), (0.15, 0.12, 0.09))  # cosines, weights and widths
 FACETS = 384  # films that coefficients for visible facets are fitted to
 GRID = 16  # views and roughness along a side, at which coefficients are tied to moments of facets
 TIE = 2e-2  # by which they are, relative to an error of a film
 BEND = 0.33  # of nodes, for a skewness of 1: those of a semicircle, a t + b (t^2 - 1), bent by b
 NEAR = 1e-5  # the difference of a coefficient that measures a slope
-STEPS = (0.1, 0.03, 0.01)  # the last one is the digit that ships
-FINER = (*STEPS, 3e-3, 1e-3)  # of two cosines
+SCALE = 1e3  # makes squares of errors about 1
 
 
-def random_films(count=COUNT):
+def random_films(count, ranges=fit.FILMS, seed=SEED):
     """Categories, materials, roughness and views."""
-    rng = np.random.default_rng(SEED)
+    rng = np.random.default_rng(seed)
     for category in fit.MIRRORS:
         unit = rng.random((NUMBERS, count))
-        yield category, *filmed(category, fit.FILMS, unit)
+        yield category, *filmed(category, ranges, unit)
 
 
-def chosen(error: Callable[..., float], start: tuple[float, ...], steps: tuple[float, ...]):
-    """Numbers of the least error that steps along one of them at a time find."""
-    best, least = start, error(*start)
-    for step in steps:
-        better = True
-        while better:
-            better = False
-            for tried in [
-                tuple(np.round(np.array(best) + sign * step * axis, 6))
-                for axis in np.eye(len(start))
-                for sign in (-1.0, 1.0)
-            ]:
-                if (found := error(*tried)) < least:
-                    best, least, better = tried, found, True
-    return tuple(map(float, best))
-
-
-def _power(errors):
-    """Mean fourth power of errors of each kind of substrate, the largest of channels."""
-    return float(np.mean([np.abs(each).max(axis=0) ** 4 for each in errors]))
-
-
-def width():
-    """Width of five cosines."""
+def hemisphere():
+    """Cosines, weights and widths of three nodes for F_ss."""
+    bare = {**fit.FILMS, "thickness": (0.0, 0.0), "index": (1.0, 1.0)}
     films = [
-        (category, material, film_curve(category).average(**material))
-        for category, material, *_ in random_films()
-    ]
-    rule = fit.gauss(5)
-    return chosen(
-        lambda width: _power(fit.average(*film, (*rule, width)) - exact for *film, exact in films),
-        (0.05,),
-        STEPS,
-    )
-
-
-def pair():
-    """Two cosines, the weight of the first, and their width."""
-    films = [
-        (category, material, film_curve(category).average(**material))
-        for category, material, *_ in random_films()
-    ]
-
-    def error(low, high, weight, width):
-        rule = (low, high), (weight, 1.0 - weight), width
-        return _power(fit.average(*film, rule) - exact for *film, exact in films)
-
-    return chosen(error, (0.3, 0.8, 0.3, 0.1), FINER)
-
-
-def facets(start=1.0, steps=STEPS):
-    """Width of all nodes for visible facets, relative to their reach, and its coefficients."""
-    films = [(film, fit.visible_average(*film)) for film in random_films(FACETS)]
-
-    def error(share):
-        coefficients = _coefficients(films, share)
-        return _power(
-            fit.visible_mean(*film, coefficients, share=share) - exact for film, exact in films
+        (weight, category, material, film_curve(category).average(**material))
+        for weight, drawn in (
+            (1.0, random_films(COUNT)),
+            (HEAVY, random_films(BARE, bare, SEED + 1)),
         )
+        for category, material, *_ in drawn
+    ]
 
-    [share] = chosen(error, (start,), steps)
-    return share, _coefficients(films, share)
+    def nodes(numbers):
+        (*cosines, low, middle), widths = numbers[:5], numbers[5:]
+        return cosines, (low, middle, 1.0 - low - middle), widths
+
+    def squares(numbers):
+        errors = np.concatenate(
+            [
+                weight * (fit.average(*film, nodes(numbers)) - exact).ravel()
+                for weight, *film, exact in films
+            ]
+        )
+        return SCALE * errors * np.abs(errors)
+
+    start = np.concatenate([START[0], START[1][:2], START[2]])
+    found = least_squares(squares, start, x_scale=0.1, diff_step=NEAR).x
+    return tuple(tuple(float(f"{each:.5g}") for each in row) for row in nodes(found))
 
 
-def _coefficients(films, share):
-    """Coefficients for visible facets, by a step of Gauss and Newton from the moments of their cosines.
-
-    A second step takes a hundredth from the mean square of these errors, and adds a tenth to the largest
-    ones of other films.
-    """
+def facets():
+    """Coefficients for visible facets, by a step of Gauss and Newton from the moments of their cosines."""
+    films = [(film, fit.visible_average(*film)) for film in random_films(FACETS)]
     start = _moments()
 
     def errors(coefficients):
         return np.concatenate(
-            [
-                (fit.visible_mean(*film, coefficients, share=share) - exact).ravel()
-                for film, exact in films
-            ]
+            [(fit.visible_mean(*film, coefficients) - exact).ravel() for film, exact in films]
         )
 
     left = errors(start)
@@ -189,35 +149,6 @@ def _facets(mu, alpha):
             yield c, height * 2.0 * mu_i * wo[:, 2] / smith
 
 
-def costs():
-    """Root mean square errors of F_ss and of the mean over visible facets, by their number of nodes."""
-    films = [
-        (film, film_curve(film[0]).average(**film[1]), fit.visible_average(*film))
-        for film in random_films()
-    ]
-    return {
-        count: (
-            _root(
-                fit.average(*film[:2], (*fit.gauss(count), 5.0 * fit.WIDTH / count)) - average
-                for film, average, _ in films
-            ),
-            _root(
-                fit.visible_mean(*film, fit.FACETS, count) - visible for film, _, visible in films
-            ),
-        )
-        for count in (3, 4, 5, 6, 8)
-    }
-
-
-def _root(errors):
-    """Root of their mean square, of the largest of channels."""
-    return float(np.sqrt(np.mean([np.abs(each).max(axis=0) ** 2 for each in errors])))
-
-
 if __name__ == "__main__":
-    print(f"width of five cosines: {width()}")
-    print(f"two cosines, the first weight, their width: {pair()}")
-    share, coefficients = facets()
-    print(f"width of nodes for visible facets: {share}, coefficients: {coefficients}")
-    for count, (average, visible) in costs().items():
-        print(f"{count} nodes: F_ss {average:.2g}, visible facets {visible:.2g}")
+    print(f"cosines, weights and widths for F_ss: {hemisphere()}")
+    print(f"coefficients for visible facets: {facets()}")

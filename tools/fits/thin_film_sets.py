@@ -25,17 +25,17 @@ SETS = 64
 
 
 def smooth_errors(category, material, _, mu):
-    """Errors of a smooth lobe's value by F_ss in two cosines: it is F (1 + F_ss (1 - E_ss) / E_ss)."""
+    """Errors of a smooth lobe's value by F_ss: it is F (1 + F_ss (1 - E_ss) / E_ss)."""
     E_ss = ggx_albedo_dir(mu, SMOOTH[0])
     F = fit.film_curve(category).at(mu, **material).max(axis=0)
-    return fit.pair_errors(category, material) * F * (1.0 - E_ss) / E_ss
+    return fit.average_errors(category, material) * F * (1.0 - E_ss) / E_ss
 
 
 # What is measured, by name: errors, and a set of films.
 MEASURED = {
     "all orders": (fit.curve_errors, ORDERED),
     "F_ss": (fit.average_errors, FRINGED),
-    "compensation in two cosines": (smooth_errors, FRINGED),
+    "compensation of smooth lobes": (smooth_errors, FRINGED),
     "visible facets": (fit.visible_errors, STEEP),
     "visible facets that are much alike": (fit.visible_errors, GLOSSY),
 }

@@ -44,9 +44,9 @@ from mxeon.models.nodes.thin_films import FILM_NODES
 # Largest errors of the shader's thin film, for cosines from 0.1 on and up to 1000 nm: tools/fits/thin_film.py
 # searches for each.
 FILM_SEEN = (
-    6.1e-2  # mean over the visible facets in four cosines and F_ss in five, times the light lost
+    7.8e-2  # mean over the visible facets in three cosines and F_ss in three, times the light lost
 )
-FILM_OILED = 3.7e-2  # the same of films of index 1.25 or more
+FILM_OILED = 6e-2  # the same of films of index 1.25 or more
 FILM_WAVES = 2.0  # slope of curves of films from 200 nm in the cosines and sines of their phases
 FILM_PHASE = 71.0  # largest phase of a first order, in radian: 1000 nm of index 2.5
 CURVE_ROUNDINGS = (
@@ -54,7 +54,7 @@ CURVE_ROUNDINGS = (
 )  # ten in a phase, times the slope of a curve in its logarithm, and 16
 
 FILM_ALBEDO = sum_of(
-    Term(FILM_OILED, "the mean over visible facets in four cosines, and F_ss in five"),
+    Term(FILM_OILED, "the mean over visible facets and F_ss, in three cosines each"),
     Term(ESS_FIT, "the fit of E_ss"),
     unit="albedo",
     metric=absolute,
@@ -72,7 +72,7 @@ ERRORS = {
     # Few films come near to it: thin metals at grazing have the first, indices far apart the second.
     "value": sum_of(
         Term(ESS_FIT * SEEN_ESS, "the fit of E_ss, times 1.58 at most"),
-        Term(1.9e-2 * (SEEN_ESS - 1.0), "F_ss in five cosines, times 0.58"),
+        Term(3.5e-2 * (SEEN_ESS - 1.0), "F_ss in three cosines, times 0.58"),
         Term(8e-4, "orders that are not summed"),
     ),
     "albedo": FILM_ALBEDO,
@@ -91,13 +91,13 @@ ERRORS = {
         metric=root_mean_square,
     ),
     # F_ss under a film that changes nothing, against the fit of it without one.
-    "film_limit": sum_of(Term(6.4e-4 * (SEEN_ESS - 1.0), "F_ss in five cosines, times 0.58")),
+    "film_limit": sum_of(Term(4.4e-3 * (SEEN_ESS - 1.0), "F_ss in three cosines, times 0.58")),
     # Of the compensation a mirror has another share than a film.
     "film_energy": FACET_VALUE,
-    "film_average": _mean(2e-3, "F_ss in five cosines of films of 50 to 1000 nm"),
-    "film_smooth": _mean(2e-5, "F_ss in two cosines, times what a lobe of alpha 0.04 loses"),
-    "film_visible": _mean(3.7e-4, "visible facets in four cosines, films of 50 to 100 nm"),
-    "film_glossy": _mean(7.4e-4, "visible facets in two or four cosines, alpha 0.03 to 0.1"),
+    "film_average": _mean(7e-3, "F_ss in three cosines of films of 50 to 1000 nm"),
+    "film_smooth": _mean(1e-5, "F_ss in three cosines, times what a lobe of alpha 0.04 loses"),
+    "film_visible": _mean(1.9e-3, "visible facets in three cosines, films of 50 to 100 nm"),
+    "film_glossy": _mean(1.1e-3, "visible facets in three cosines, alpha 0.03 to 0.1"),
     "frame": sum_of(
         *FRAME.terms, roundings(2 * CURVE_ROUNDINGS, "of two values, phases times 9.5")
     ),
