@@ -57,7 +57,7 @@ SUMMARY = (
     (
         "layer",
         "generalized_schlick_bsdf, scatter_mode R",
-        "one without exponent, of the mean color",
+        "a throughput without the exponent, of the mean color",
     ),
     ("output", "blackbody", "a fit beyond its range"),
 )
