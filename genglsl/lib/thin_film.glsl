@@ -78,8 +78,8 @@ void thin_film_substrate(float n, float mu_t, float sin2, FresnelData fd, out Th
     {
         // The phase is pi below a denser film. A negative curve has no amplitude.
         vec3 r = sqrt(max(mx_fresnel_hoffman_schlick(mu_t, fd), 0.0));
-        float least = (n - 1.0) / (n + 1.0);
-        p = ThinFilmComplex(r * (2.0 * step(vec3(least * least), fd.F0) - 1.0), zero);
+        vec3 least = vec3((n - 1.0) / (n + 1.0)); // as a root: its square rounds above an F0 of the same index
+        p = ThinFilmComplex(r * (2.0 * step(least, sqrt(max(fd.F0, 0.0))) - 1.0), zero);
         s = ThinFilmComplex(-p.re, zero);
     }
     else

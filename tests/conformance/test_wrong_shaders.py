@@ -331,7 +331,7 @@ WRONG = {
         ("genglsl/multiply_bsdf_float.glsl", "response * weight", "response", "combination", ""),
     ),
     "open_pbr_surface, every lobe": (
-        (FILM, "film.twice = 2.0e-9", "film.twice = 2.0e-10", "lobes_film", "thin_film_thickness counts 0.1 times"),
+        (FILM, "4.0e-9 * M_PI", "4.0e-10 * M_PI", "lobes_film", "thin_film_thickness counts 0.1 times"),
     ),
     "UsdPreviewSurface, every lobe": (
         (FACETS, "bsdf.throughput = max(1.0 - lobe.albedo", "bsdf.throughput = max(1.002 - lobe.albedo", "lobes_mean",

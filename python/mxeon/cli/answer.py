@@ -16,6 +16,7 @@ from mxeon.conformance.results import (
     FAILED,
     NOT_RUN,
     PASSED,
+    WRONG_INSIDE,
     Result,
     Run,
     counted,
@@ -284,7 +285,9 @@ def _cell(run: Run, results: Sequence[Result]) -> str:
 def _not_run(run: Run) -> Iterator[str]:
     """Each reason that kept checks from running, with their number."""
     reasons = Counter(
-        (each.location, each.reason) for each in run.results if each.verdict == NOT_RUN
+        (each.location, each.reason)
+        for each in run.results
+        if each.verdict == NOT_RUN and not each.reason.endswith(WRONG_INSIDE)
     )
     for (where, reason), count in list(reasons.items())[:FEWEST]:
         yield f"not run: {where}, {counted(count, 'check')}: {reason}"
