@@ -214,6 +214,9 @@ ERRORS = {
         )
         for index in (4, 10, 100)
     },
+    "throughput with ior 0.2": given(
+        0.05, "albedo", "the fit from inside, which ends at index 0.33"
+    ),
     **{
         f"throughput with exponent {exponent}": given(
             0.16, "albedo", "the fit of a cosine, which ends at exponent 10"
