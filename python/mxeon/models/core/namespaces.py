@@ -96,7 +96,11 @@ def _converter(others: Sequence[object]) -> Callable[[object], object]:
     """What brings an argument to the library, the precision and the device of these arrays."""
     xp, arrays = _others_namespace(others), cast("Sequence[Array]", others)
     for each in arrays:
-        if not xp.isdtype(each.dtype, ("bool", "integral", "real floating")):
+        try:
+            real = bool(xp.isdtype(each.dtype, ("bool", "integral", "real floating")))
+        except TypeError:  # of JAX, whose random keys have a type that NumPy does not know
+            real = False
+        if not real:
             raise ValueError(f"arrays must be of real numbers; got one of {each.dtype}")
     floating = [each.dtype for each in arrays if xp.isdtype(each.dtype, "real floating")]
     dtype = floating[0] if floating else xp.asarray(0.5).dtype

@@ -71,7 +71,7 @@ def _of_one_alpha(mu: Array, alpha: float) -> Array:
     s = np.minimum(mu * (1.0 + alpha) / (mu + alpha), 1.0)
     place = np.cbrt(s)
     place *= CELLS
-    cell = place.astype(np.int32)
+    cell = np.fmin(place, CELLS).astype(np.int32)  # any cell for NaN, whose place keeps it
     place -= cell
     *lower, highest = _cubics(alpha)
     value: Array = highest.take(cell, mode="clip")
