@@ -86,7 +86,7 @@ def answer(run: Run, full: bool = False) -> list[str]:
     rows = {} if many else _rows(run)
     remedy, failures = list(_remedy(run)), list(_failures(run))
     notes = [f"note: {note}" for note in new_notes(run)]
-    first = list(map(one_line, [*run.origins, *_not_run(run)]))
+    first = list(map(one_line, [*run.origins, *_not_run(run, full)]))
     # The verdict comes first if there are no documents, or something was not judged.
     begins = run.refused or run.summary.verdict == NOT_RUN or not run.contents
     alone = len(run.contents) == 1
@@ -282,17 +282,18 @@ def _cell(run: Run, results: Sequence[Result]) -> str:
     return f"{words}, error {shown.error:.2g}, tolerance {shown.tolerance:.2g}"
 
 
-def _not_run(run: Run) -> Iterator[str]:
-    """Each reason that kept checks from running, with their number."""
+def _not_run(run: Run, full: bool) -> Iterator[str]:
+    """The first reasons that kept checks from running, or all, with their number."""
     reasons = Counter(
         (each.location, each.reason)
         for each in run.results
         if each.verdict == NOT_RUN and not each.reason.endswith(WRONG_INSIDE)
     )
-    for (where, reason), count in list(reasons.items())[:FEWEST]:
+    shown = len(reasons) if full else FEWEST
+    for (where, reason), count in list(reasons.items())[:shown]:
         yield f"not run: {where}, {counted(count, 'check')}: {reason}"
-    if len(reasons) > FEWEST:
-        yield f"not run for {counted(len(reasons) - FEWEST, 'other reason')}; --full"
+    if len(reasons) > shown:
+        yield f"not run for {counted(len(reasons) - shown, 'other reason')}; --full"
 
 
 def _remedy(run: Run) -> Iterator[str]:

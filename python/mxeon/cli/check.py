@@ -52,8 +52,8 @@ def add_parser(commands: arguments.Commands) -> None:
         "--node",
         action="append",
         metavar="NAME",
-        help="check nodes of this category, such as sheen_bsdf, 'common' or 'all', whether the "
-        "documents use them or not; repeatable",
+        help="check the nodes of this category (such as sheen_bsdf), or 'common' or 'all' nodes, "
+        "even if no document uses them; repeatable",
     )
     arguments.add_report(command)
     command.add_argument(

@@ -22,7 +22,7 @@ def add_parser(commands: arguments.Commands) -> None:
     make.add_argument("report", metavar="DIR", help="the folder of the run")
     arguments.add_full(make)
     arguments.add_json(make)
-    summary = "list what changed between two runs"
+    summary = "list what changed between two runs; the exit status is 1 if something got worse"
     diff = arguments.add_command(actions, "diff", summary, run_diff, examples[1])
     diff.add_argument("before", metavar="BEFORE", help="folder of a report, or its results.json")
     diff.add_argument("after", metavar="AFTER", help="the same of a later run")

@@ -727,8 +727,8 @@ HALF_CUT = Term(2.0**-10, "half floats, cut off")  # as llvmpipe does
 LOBE_SLOPE = 2.0 / 0.4 + 3.0
 # In each of two cosines of at least 0.05 five roundings, times 20 by s / t, and times 2 by s and the cosine.
 EXACT = sum_of(
-    roundings(28, "of numbers up to 2, 14 of each"),
-    roundings(2 * 5 * (1.0 / RIM + 2.0), "of two cosines, five each, times 22"),
+    roundings(28, "(14, of numbers up to 2)"),
+    roundings(2 * 5 * (1.0 / RIM + 2.0), "(five in each of two cosines, times 22)"),
     unit="pi f cos",
     metric=absolute,
 )

@@ -23,7 +23,7 @@ LOOKS = {
 UNITS = {
     "pi f cos": "1 is a white, matte surface that faces the light",
     "relative above 1": "errors of values above 1 are divided by the value",
-    "times cos(theta_o)": "less weight toward the rim: times the cosine of the viewing angle",
+    "times cos(theta_o)": "weighted by the cosine of the viewing angle, so the rim counts less",
     "albedo": "an albedo of 1 returns all light",
     "irradiance": "1 is a white environment",
     "throughput": "a throughput of 1 passes all light",

@@ -276,7 +276,9 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, 
     nodes = sum(map(is_portrait, shown[len(at_once) :]))
     others = len(shown) - len(at_once) - nodes
     folded = [counted(others, "more material")] * bool(others)
-    folded += [f"{counted(nodes, 'node')} rendered without a document"] * bool(nodes)
+    folded += [f"{counted(nodes, 'node')} rendered without a document, as pictures only"] * bool(
+        nodes
+    )
     filters: dict[str, Callable[..., Any]] = {"vector": vector, "linked": linked, "tally": tally}
     filters |= {"nearest": nearest, "of_white": of_white, "meaning": unit_meaning}
     filters |= {"title": title_of, "worst": worst}

@@ -61,7 +61,7 @@ def outside(case: Case) -> Iterator[Beyond]:
         if scaled(measured, expected).max() > _tolerance(case, name).value
     }
     if len(wrong) == 2 + is_layer(spec):
-        raise NotRun(f"{case.host.name}: {spec.title} {WRONG_INSIDE}")
+        raise NotRun(f"{case.host.name}: not measured, since {spec.title} {WRONG_INSIDE}")
     batch = views.first(PAIRS)
     for each in spec.bounded:
         for value in each.beyond:

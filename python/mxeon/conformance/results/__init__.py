@@ -26,7 +26,9 @@ PORTRAIT = "portrait"
 SOURCE = "source"  # in the place of a host, for what none has to run
 SHADER_FUNCTIONS = "shader twins"  # in the place of a node, for the functions of a library
 COUNTS = ("inputs", "values", "faults", "differences", "nodes")  # units of checks that count
-WRONG_INSIDE = "is wrong inside its inputs' usual ranges"  # a reason that follows from a failure
+WRONG_INSIDE = (
+    "already fails inside its inputs' usual ranges"  # a reason that follows from a failure
+)
 NAMED = 3  # names in a list, before the number of the others
 LIGHTS = {
     "side": "light from the side",

@@ -41,7 +41,7 @@ UNIT = "pi f cos"
 LOSS_FIT = 2.7e-7  # relative error of the fit of FON's loss H: tools/fits
 
 VALUE = sum_of(
-    roundings(28, "of numbers up to 2, 14 of each"),
+    roundings(28, "(14, of numbers up to 2)"),
     Term(LOSS_FIT, "two fits of H, times a multiple-scattering part of at most 1/2"),
     unit=UNIT,
     metric=absolute,
@@ -55,7 +55,7 @@ ENVIRONMENT = sum_of(
 # In each of two cosines of at least 1/4 five, times 4 by s / t, 3 by a sine, and 2 by s and the cosine.
 FRAME = sum_of(
     roundings(2 * 28, "of two values"),
-    roundings(2 * 5 * (1.0 / TURNED[0] + 5.0), "of two cosines, five each, times 9"),
+    roundings(2 * 5 * (1.0 / TURNED[0] + 5.0), "(five in each of two cosines, times 9)"),
     unit="pi f cos or albedo",
     metric=absolute,
 )

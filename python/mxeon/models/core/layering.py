@@ -58,6 +58,7 @@ def layer(top: Bsdf, base: Bsdf) -> Bsdf:
     Result: 1 - T is E_top + (1 - E_top) E_base, the albedo of f; and E_top where that exceeds 1.
     [MaterialX2026], section `layer`.
 
+        >>> import numpy as np
         >>> both = layer(Bsdf(np.array(0.1), np.array(0.75)), Bsdf(np.array(0.2), np.array(0.0)))
         >>> float(both.value), float(both.throughput)
         (0.25, 0.0)
@@ -76,6 +77,7 @@ def mix(fg: Bsdf, bg: Bsdf, amount: ArrayLike) -> Bsdf:
 
     Result: at 0 `bg` and at 1 `fg`, to the last bit. [MaterialX2026], section `mix`.
 
+        >>> import numpy as np
         >>> both = mix(Bsdf(np.array(1.0), np.array(0.0)), Bsdf(np.array(0.0), np.array(1.0)), 0.25)
         >>> float(both.value), float(both.throughput)
         (0.25, 0.75)
@@ -91,6 +93,7 @@ def add(in1: Bsdf, in2: Bsdf) -> Bsdf:
 
     [MaterialX2026], section `add`.
 
+        >>> import numpy as np
         >>> both = add(Bsdf(np.array(0.5), np.array(0.75)), Bsdf(np.array(0.25), np.array(0.5)))
         >>> float(both.value), float(both.throughput)
         (0.75, 0.25)
@@ -109,6 +112,7 @@ def multiply(in1: Bsdf, weight: ArrayLike) -> Bsdf:
     below; and they clamp s to [0, 1]. The text has neither: s f_1 has the albedo s E_1. Raises
     `ValueError` if `weight` is negative or NaN. [MaterialX2026], section `multiply`.
 
+        >>> import numpy as np
         >>> scaled = multiply(Bsdf(np.array(1.0), np.array(0.5)), 0.5)
         >>> float(scaled.value), float(scaled.throughput)
         (0.5, 0.75)

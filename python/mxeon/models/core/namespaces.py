@@ -142,9 +142,8 @@ def host_values(value: object) -> Numbers | None:
             return np.asarray(value)
         import torch
 
-        if torch.compiler.is_compiling():
-            return None
-        return np.asarray(cast(torch.Tensor, value).detach().cpu())
+        compiles = torch.compiler.is_compiling()
+        return None if compiles else np.asarray(cast(torch.Tensor, value).detach().cpu())
     except (TypeError, RuntimeError) as error:  # of JAX, of torch
         if "deleted" in str(error):
             raise ValueError("arrays must have values; got one that was deleted") from None

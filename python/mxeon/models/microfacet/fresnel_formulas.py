@@ -58,8 +58,19 @@ def conductor(mu: Array, ior: Array, extinction: Array) -> Array:
     return _conductor(mu, ior, extinction, _gap(ior, extinction))
 
 
-def polarized(mu: Array, ior: Array, extinction: Array) -> tuple[Array, Array]:
-    """R_p and R_s: [MaterialX2026], Conductor Fresnel Equations, without a cancellation.
+def _gap(ior: Array, extinction: Array) -> Array:
+    """|n^2 - 1|, which does not depend on the direction."""
+    return hypot(ior - 1.0, extinction) * hypot(ior + 1.0, extinction)
+
+
+def _conductor(mu: Array, ior: Array, extinction: Array, gap: Array) -> Array:
+    """`conductor` from |n^2 - 1|."""
+    Rp, Rs = polarized(mu, ior, extinction, gap)
+    return trimmed(0.5 * (Rs + Rp), 1.0)
+
+
+def polarized(mu: Array, ior: Array, extinction: Array, gap: Array) -> tuple[Array, Array]:
+    """R_p and R_s: [MaterialX2026], Conductor Fresnel Equations, without a cancellation; gap is |n^2 - 1|.
 
     Printed, with c = mu, S2 = sin^2, n = ior + i extinction and w = a + i b = sqrt(n^2 - S2):
 
@@ -72,22 +83,6 @@ def polarized(mu: Array, ior: Array, extinction: Array) -> tuple[Array, Array]:
     a b = ior extinction gives the smaller. No interface (n = 1) reflects nothing, at grazing too; n = 0
     reflects all, along the normal too.
     """
-    return _polarized(mu, ior, extinction, _gap(ior, extinction))
-
-
-def _gap(ior: Array, extinction: Array) -> Array:
-    """|n^2 - 1|, which does not depend on the direction."""
-    return hypot(ior - 1.0, extinction) * hypot(ior + 1.0, extinction)
-
-
-def _conductor(mu: Array, ior: Array, extinction: Array, gap: Array) -> Array:
-    """`conductor` from |n^2 - 1|."""
-    Rp, Rs = _polarized(mu, ior, extinction, gap)
-    return trimmed(0.5 * (Rs + Rp), 1.0)
-
-
-def _polarized(mu: Array, ior: Array, extinction: Array, gap: Array) -> tuple[Array, Array]:
-    """`polarized` from |n^2 - 1|."""
     xp = array_namespace(mu, ior, extinction)
     S2 = (1.0 - mu) * (1.0 + mu)
     real = (ior - 1.0) * (ior + 1.0) + mu * mu - extinction * extinction
