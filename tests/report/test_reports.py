@@ -83,6 +83,15 @@ def test_the_loss_of_a_failed_check_is_no_worse():
     assert [(each.kind, each.after) for each in changed] == [(OTHER, "none")]
 
 
+def test_a_document_that_was_removed_takes_its_checks_with_it():
+    before = replace(made_run(), documents=(Path("a.mtlx"), Path("b.mtlx")))
+    after = replace(before, documents=before.documents[:1], results=())
+    changed = changes(before, after)
+    assert Change(OTHER, "b.mtlx", "checked", "removed") in changed
+    assert {each.kind for each in changed} == {OTHER}
+    assert changes(before, replace(before, results=()))[0].kind == WORSE
+
+
 def test_a_document_that_is_refused_now_is_worse():
     good, refused = made_run(), replace(made_run(), refused={"clay.mtlx": ("no such node",)})
     assert changes(good, refused) == (Change(WORSE, "clay.mtlx", "not refused", "refused"),)

@@ -29,7 +29,7 @@ class Change:
     """One difference between two reports, with their values; "none" where one has no such entry.
 
     WORSE are a worse verdict, a new check that fails, a document that is refused now, and the loss of
-    a check that did not fail. A figure alone is OTHER.
+    a check that did not fail, unless documents were removed. A figure alone is OTHER.
     """
 
     kind: str  # WORSE, BETTER or OTHER
@@ -121,8 +121,10 @@ def read_results(folder: str | PathLike[str]) -> Report:
 def compare(before: Report, after: Report) -> tuple[Change, ...]:
     """Changes from one report to another, those for the worse first."""
     before = _renamed(before, _moved(list(before.libraries), list(after.libraries)))
+    removed = {*before.documents} - {*after.documents, *after.refused}
     changes = [
-        *_results(_by(PLACE, before.results), _by(PLACE, after.results)),
+        *_removed(removed),
+        *_results(_by(PLACE, before.results), _by(PLACE, after.results), bool(removed)),
         *_pictures(_by(SHOWN, before.pictures), _by(SHOWN, after.pictures)),
         *_refusals(set(before.refused), set(after.refused)),
         *_facts(before, after),
@@ -172,8 +174,11 @@ def _by(names: tuple[str, ...], records: Iterable[Any]) -> dict[tuple[str, ...],
 
 
 def _results(
-    before: Mapping[tuple[str, ...], Result], after: Mapping[tuple[str, ...], Result]
+    before: Mapping[tuple[str, ...], Result],
+    after: Mapping[tuple[str, ...], Result],
+    fewer: bool,
 ) -> Iterator[Change]:
+    """Changes of verdicts and errors; a loss is no worse where there are fewer documents."""
     for key in dict.fromkeys((*before, *after)):
         place, old, new = ", ".join(key), before.get(key), after.get(key)
         if old and new:
@@ -183,7 +188,8 @@ def _results(
             elif _apart(old.error, new.error):
                 yield Change(OTHER, place, _with_error(old), _with_error(new))
         elif old:
-            yield Change(OTHER if old.verdict == FAILED else WORSE, place, old.verdict, "none")
+            lost = OTHER if fewer or old.verdict == FAILED else WORSE
+            yield Change(lost, place, old.verdict, "none")
         elif new:
             kind = WORSE if new.verdict == FAILED else OTHER
             yield Change(kind, place, "none", _with_error(new))
@@ -197,6 +203,10 @@ def _pictures(
         if _apart(old, new):
             place = f"{', '.join(key)}, largest difference"
             yield Change(OTHER, place, _number(old), _number(new))
+
+
+def _removed(documents: Set[str]) -> Iterator[Change]:
+    return (Change(OTHER, document, "checked", "removed") for document in sorted(documents))
 
 
 def _refusals(before: Set[str], after: Set[str]) -> Iterator[Change]:
