@@ -26,7 +26,8 @@ def coefficients(terms, top):
 def largest_error(series, top, count=2000):
     """Largest relative error of the polynomial itself, without the roundings of its evaluation."""
     points = [top * k / count for k in range(1, count + 1)]
-    values = [mp.polyval(series[::-1], t * t) * t / mp.atan(t) for t in points]
+    sums = [mp.fsum(each * t ** (2 * k) for k, each in enumerate(series)) for t in points]
+    values = [each * t / mp.atan(t) for each, t in zip(sums, points, strict=True)]
     return float(max(abs(value - 1) for value in values))
 
 

@@ -59,7 +59,7 @@ def dielectric_fit():
             rows.append(factors + [-goal * each for each in factors[1 : 1 + len(FORM.below)]])
             right.append(goal * factors[0])
         found, _ = least_largest(rows, right)
-        D = [mp.polyval([*found[: above - 1 : -1], 1], x) for x in t]
+        D = [1 + mp.fsum(each * x**k for k, each in enumerate(found[above:], 1)) for x in t]
     return tuple(float(mp.nstr(x, DIGITS)) for x in found)
 
 
