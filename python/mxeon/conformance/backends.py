@@ -175,9 +175,8 @@ class Backend(ABC):
 
     families: ClassVar[tuple[type[Spec], ...]] = ()  # of nodes of which it has values
     others: ClassVar[tuple[type[Spec], ...]] = ()  # of these, families of which it has none
-    plain: ClassVar[
-        tuple[str, ...]
-    ] = ()  # axes of `checks.states` of which it has the first state alone
+    # Axes of `checks.states` of which it has the first state alone.
+    plain: ClassVar[tuple[str, ...]] = ()
 
     def __init__(self, host: Host, spec: Spec, library: str) -> None:
         self.host, self.spec, self.library = host, spec, library
