@@ -7,63 +7,27 @@ from pathlib import Path
 
 import pytest
 
-from mxeon import cli, explorer
+from mxeon import cli
 from mxeon.jobs import pool
-from tests.fuzz import opens, pages
+from tests.fuzz import opens
 from tests.fuzz.cases import OUT, Case
 from tests.fuzz.families import FAMILIES, cases
 from tests.fuzz.trial import trial
 from tests.fuzz.words import CANARY, POISON
-from tests.support.sharing import shared
 
 LIMIT = 60.0  # seconds for one case
-IN_BROWSER = ("explorer documents", "explorer addresses", "unescaped")
-# Cases of each family: few of those that take a second each, and none of one that takes minutes.
-COUNTS = dict.fromkeys(FAMILIES, 12) | {"found": None, "mutated": 50, "images": 0}
-COUNTS |= {"hosts": 3, "explorer documents": 3}
-SLICED = [name for name, count in COUNTS.items() if count != 0]
+# Cases of each family: few of those that take a second each. tests/models tries every argument.
+COUNTS = dict.fromkeys(FAMILIES, 12) | {"found": None, "mutated": 50}
+del COUNTS["arguments"]
 
 
-def unescaped(text):
-    """The outcome of a page in which text of a document stands as it is."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(explorer, "ESCAPES", {})
-        return pages.shown(text)
-
-
-def tried(row):
-    """The outcome of an item of a slice, by its function."""
-    work, item = row
-    return work(item)
-
-
-@pytest.fixture(scope="module")
-def outcomes(tmp_path_factory):
-    """Items and outcomes by name: one process tries all pages, without a limit, and one all else."""
-    rows = [
-        (name, FAMILIES[name].trial, item) for name in SLICED for item in cases(name, COUNTS[name])
-    ]
-    rows += [("unescaped", unescaped, pages.to_document(None, ("uiname", pages.SCRIPTS[0])))]
-
-    def make():
-        found = {name: [] for name, *_ in rows}
-        for in_browser in (True, False):
-            some = [row for row in rows if (row[0] in IN_BROWSER) is in_browser]
-            for place, outcome in pool.run(tried, [each for _, *each in some], 1, LIMIT):
-                name, _, item = some[place]
-                found[name].append((item, outcome))
-        return found
-
-    return shared(tmp_path_factory, "fuzz", make)
-
-
-@pytest.mark.parametrize("family", SLICED)
-def test_a_slice_of_each_family_ends_without_fault(outcomes, family):
-    if family in IN_BROWSER:
-        pytest.importorskip("playwright")
-    assert len(outcomes[family]) >= 3
-    said = [(item, each.failure or each.value[1]) for item, each in outcomes[family]]
-    assert [(item, fault) for item, fault in said if fault] == []
+@pytest.mark.parametrize("family", COUNTS)
+def test_a_slice_of_each_family_ends_without_fault(family):
+    tried = cases(family, COUNTS[family])
+    outcomes = [each for _, each in pool.run(FAMILIES[family].trial, tried, 1, LIMIT)]
+    assert len(outcomes) == len(tried) >= 12
+    faults = (each.failure or each.value[1] for each in outcomes)
+    assert [fault for fault in faults if fault] == []
 
 
 needs_strace = pytest.mark.skipif(
@@ -111,11 +75,3 @@ WRONG = {
 def test_a_trial_notices(monkeypatch, does, fault):
     monkeypatch.setattr(cli, "main", does)
     assert fault in trial(Case("control", (("base.mtlx", b""),), ("generate", OUT)))[1]
-
-
-def test_a_script_that_a_page_lets_in_is_a_fault(outcomes):
-    pytest.importorskip("playwright")
-    status, fault = outcomes["unescaped"][0][1].value
-    if status == pages.NOT_RUN:
-        pytest.skip("Chromium does not run here")
-    assert fault

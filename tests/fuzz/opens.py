@@ -93,6 +93,7 @@ def _run(count, audit, bare):
     if bare:
         generation.copied_sources = _uncopied
     tried = selected(count, bare)
+    trial(tried[0])  # loads what the command needs once
     sys.addaudithook(lambda event, seen: event == "open" and paths.append(seen[0]))
     with contextlib.suppress(OSError):
         os.open(START, os.O_RDONLY)

@@ -99,12 +99,6 @@ def test_a_constant_input_that_a_document_does_not_have_is_not_reached(index, re
     assert "with weight 0" in regions and "with an occlusion other than 1" not in regions
 
 
-def test_combinations_are_judged_in_the_structure_that_they_have(tmp_path):
-    text = (examples_folder() / "mixed_lobes.mtlx").read_text()
-    found = titles(text, tmp_path)
-    assert {"mix", "add"} <= set(found) and "mix, of a layer under a sum" not in found
-
-
 def test_what_one_library_lacks_is_told_with_its_name(tmp_path):
     file = tmp_path / "eon.mtlx"
     file.write_text(material('<eon_diffuse_bsdf name="lobe" type="BSDF"/>'))

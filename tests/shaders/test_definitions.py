@@ -97,14 +97,3 @@ def test_definitions_replace_nothing_of_the_library(text, tmp_path):
     (tmp_path / "mine.mtlx").write_text(f'<materialx version="1.39">{text}</materialx>')
     with pytest.raises(InputError, match=r"mine.mtlx: \w+ must not redefine a name of the library"):
         load_library("eonlib", None, (str(tmp_path),))
-
-
-def test_a_folder_without_definitions_is_refused(tmp_path):
-    with pytest.raises(InputError, match="must hold MaterialX documents"):
-        load_library("eonlib", None, (str(tmp_path),))
-
-
-def test_a_folder_that_does_not_exist_is_misuse(tmp_path, capsys):
-    arguments = ["generate", "x", "--target", "osl", "--outputPath", str(tmp_path)]
-    assert main([*arguments, "--definitions", str(tmp_path / "nowhere")]) == 2
-    assert "must name a folder that exists" in one_line(capsys.readouterr().err)

@@ -11,9 +11,7 @@ from dataclasses import replace
 import MaterialX as mx
 import pytest
 
-from mxeon.errors import DocumentError
 from mxeon.hosts.cycles.process import interpreter
-from mxeon.shaders.document.reading import read_document
 from mxeon.shaders.generation import TARGETS, ApproximationWarning, Input, generate
 from mxeon.shaders.library import examples_folder, load_library, source_folder
 from mxeon.shaders.nodes import EON, OREN_NAYAR
@@ -128,25 +126,10 @@ def test_every_example_becomes_shaders_on_every_target(path, target):
         assert all(shader.stages.values())
 
 
-@of_each_example
-@on_each_target
-def test_stock_makes_every_example_but_those_with_our_node(path, target):
-    if EON in path.read_text():
-        with pytest.raises(DocumentError, match="must have a definition; got eon_"):
-            generate(path, target, library="stock")
-    else:
-        assert generate(path, target, library="stock")
-
-
 @pytest.mark.parametrize("surface", SURFACES)
 @on_each_target
 def test_the_surfaces_of_materialx_are_made_on_every_target(surface, target):
     assert pixel(SURFACE.format(surface), target)
-
-
-@on_each_target
-def test_lama_diffuse_is_made_on_every_target(target):
-    assert pixel(material('<LamaDiffuse name="lobe" type="BSDF"/>'), target)
 
 
 @of_each_node
@@ -156,18 +139,6 @@ def test_every_input_of_the_nodedef_is_used(node, inputs, target):
     ports = load_library().getNodeDef(f"ND_{node}").getInputs()
     assert {port.getName() for port in ports} == set(inputs)
     assert [name for name in inputs if not re.search(rf"\blobe_{name}\b", used)] == []
-
-
-@of_each_node
-def test_every_input_is_used_with_the_profile(node, inputs):
-    second = {name: VALUES[name][1] for name in inputs}
-    used = statements(pixel(material(lobe(node, **second)), "osl", profile="cycles"))
-    assert [name for name in inputs if not re.search(rf"\blobe_{name}\b", used)] == []
-
-
-def test_stock_osl_does_not_use_the_flag():
-    used = statements(pixel(material(lobe(**FIRST)), "osl", library="stock"))
-    assert [name for name in FIRST if f"lobe_{name}" not in used] == ["energy_compensation"]
 
 
 @of_each_node
@@ -255,40 +226,6 @@ def test_elements_have_names_of_their_own():
     assert sorted(shader.name for shader in shaders) == ["a_b", "a_b2"]
 
 
-def test_one_element_is_made_by_its_name_or_path():
-    by_name = {each.element: each.name for each in generate(GRAPH, "osl")}
-    for element in by_name:
-        [shader] = generate(GRAPH, "osl", element)
-        assert (shader.element, shader.name) == (element, by_name[element])
-
-
-@pytest.mark.parametrize(
-    "options, message",
-    [
-        ({"target": "hlsl"}, f"target must be one of {', '.join(TARGETS)}; got 'hlsl'"),
-        ({"element": "none"}, "element must be one of look; got 'none'"),
-        (
-            {"library": "none"},
-            "library must be one of eonlib, diffuse, stock, or a folder that holds MaterialX documents; got 'none'",
-        ),
-        ({"profile": "none"}, "profile must be one of cycles; got 'none'"),
-    ],
-)
-def test_an_unknown_name_lists_the_known(options, message):
-    with pytest.raises(ValueError, match=f"^{message}"):
-        generate(material(lobe()), **{"target": "glsl"} | options)
-
-
-def test_a_file_a_text_and_a_document_give_the_same(tmp_path, monkeypatch):
-    text = material(lobe(**FIRST))
-    (tmp_path / "look.mtlx").write_text(text)
-    document = mx.createDocument()
-    mx.readFromXmlString(document, text)
-    monkeypatch.chdir(tmp_path)
-    sources = tmp_path / "look.mtlx", "look.mtlx", text, document, read_document(text).content
-    assert len({pixel(source, "glsl") for source in sources}) == 1
-
-
 def test_generation_leaves_a_document_as_it_is():
     document = mx.createDocument()
     mx.readFromXmlString(document, material(lobe()))
@@ -308,13 +245,6 @@ def test_a_type_stays_in_the_document_that_defines_it(target):
     assert pixel(plain, target) == before
 
 
-@of_each_example
-def test_a_file_gives_the_same_from_every_working_folder(path, tmp_path, monkeypatch):
-    here = [shader.inputs for shader in generate(path.resolve(), "glsl")]
-    monkeypatch.chdir(tmp_path)
-    assert [shader.inputs for shader in generate(path.resolve(), "glsl")] == here
-
-
 @on_each_target
 def test_inputs_say_name_type_value_and_place(target):
     [shader] = generate(material(lobe(**COMPENSATED, color="0.8, 0.4, 0.1")), target)
@@ -332,14 +262,3 @@ def test_the_profile_warns_of_qon_alone(flag):
     with warnings.catch_warnings(record=True, action="always") as caught:
         generate(text, "osl", profile="cycles")
     assert [each.category for each in caught] == [ApproximationWarning] * (flag == "false")
-
-
-def test_the_profile_warns_of_qon_inside_a_surface():
-    with pytest.warns(ApproximationWarning, match="^look: Cycles has no closure for qualitative"):
-        generate(SURFACE.format("standard_surface"), "osl", profile="cycles")
-
-
-def test_the_profile_has_nothing_to_warn_of_elsewhere():
-    generate(material(lobe(EON)), "osl", profile="cycles")
-    generate(material(lobe()), "osl")
-    generate(material(lobe()), "glsl", profile="cycles")

@@ -38,18 +38,6 @@ def test_an_environment_without_colors_is_refused(tmp_path):
         read_latlong(path)
 
 
-def test_an_environment_is_an_image_or_uniform_or_nothing(picture):
-    assert read_latlong(picture).shape == (2, 4, 3)
-    assert read_latlong(0.5).tolist() == [[[0.5, 0.5, 0.5]]]
-    assert read_latlong(None).tolist() == [[[0.0, 0.0, 0.0]]]
-
-
-def test_the_irradiance_of_a_uniform_environment_is_its_radiance():
-    assert irradiance(read_latlong(0.7)).tolist() == read_latlong(0.7).tolist()
-    spread = irradiance(np.full((100, 200, 3), 0.7, dtype=np.float32))
-    np.testing.assert_allclose(spread, 0.7, rtol=1e-6)
-
-
 @pytest.mark.parametrize("shape", [(64, 128), (128, 256), (640, 5), (3, 700)])
 def test_a_sky_over_a_black_ground_lights_what_faces_it(shape):
     rows, columns = shape

@@ -14,7 +14,7 @@ from mxeon.hosts.cycles import process
 from mxeon.shaders.generation import generate
 from mxeon.shaders.inner_lobes import inner_lobes
 from mxeon.shaders.nodes import document_text
-from mxeon.shaders.scene import FURNACE, MOST_SAMPLES, SIDE, Paths
+from mxeon.shaders.scene import SIDE, Paths
 from tests.support.availability import available
 from tests.support.documents import material
 
@@ -81,20 +81,6 @@ def test_the_lobes_below_the_surface_are_those_that_have_an_effect(text, kinds):
     assert inner_lobes(generate(text, "glsl")[0]) == kinds
 
 
-def test_a_weight_that_a_graph_computes_counts_as_any():
-    number_node = '<multiply name="half" type="float">' + number("in1", 0.0) + "</multiply>"
-    weight = '<input name="mix" type="float" nodename="half"/>'
-    text = mixed(weight).replace(OPAQUE, OPAQUE + number_node)
-    assert inner_lobes(generate(text, "glsl")[0]) == ("subsurface",)
-
-
-@pytest.mark.parametrize("scene, samples", [(SIDE, 1), (FURNACE, process.ENVIRONMENT_SAMPLES)])
-def test_without_such_lobes_cycles_samples_as_before(scene, samples):
-    request = process.request(scene, ())
-    assert (request["samples"], request["bounces"], request["body"]) == (samples, 1, "points")
-    assert not process.approximations(replace(scene, paths=Paths(1, 1)), ())
-
-
 @pytest.mark.parametrize(
     "lobes, paths, words",
     [
@@ -119,13 +105,6 @@ def test_a_rasterized_picture_says_what_it_has_in_place_of_a_lobe(tmp_path):
         [reason] = host.approximations(shader, SIDE)
     assert notes == ((reason, "wax.mtlx: look"),) and "subsurface_bsdf is rasterized" in reason
     assert str(LobeWarning("look", reason)) == f"look: {reason}"
-
-
-@pytest.mark.parametrize("paths", [{"samples": 0}, {"bounces": 0}, {"samples": MOST_SAMPLES + 1}])
-def test_paths_out_of_range_are_refused(paths):
-    [(name, value)] = paths.items()
-    with pytest.raises(InputError, match=rf"^{name} must lie in \[1, \d+\]; got {value}$"):
-        Paths(**paths)
 
 
 def test_a_host_without_paths_refuses_them():

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The data library eonlib: what MaterialX finds with it, in every order, mode and client."""
 
-import math
 import re
 import subprocess
 import sys
@@ -13,14 +12,12 @@ import pytest
 
 from mxeon.errors import InputError
 from mxeon.hosts.cycles.process import interpreter
-from mxeon.models.diffuse.albedo import fon_albedo_avg
 from mxeon.shaders import library, library_tree
 from mxeon.shaders.generation import TARGETS, generate
 from mxeon.shaders.library_export import export_library
 from mxeon.shaders.nodes import EON, NODEDEFS, OREN_NAYAR
 from tests.support.availability import available
 from tests.support.documents import connected, lobe, material
-from tests.support.tolerances import MDL_TINT
 
 SCRIPTS = Path(mx.__file__).parent / "_scripts"
 STOCK = mx.getDefaultDataLibraryFolders()
@@ -46,7 +43,6 @@ CALLS = {
 }
 
 ORDERS = {"ours first": [OURS, *STOCK], "stock first": [*STOCK, OURS]}
-in_each_order = pytest.mark.parametrize("folders", ORDERS.values(), ids=ORDERS)
 on_each_target = pytest.mark.parametrize("target", library.TARGETS)
 of_each_node = pytest.mark.parametrize("node", NODEDEFS)
 
@@ -71,45 +67,12 @@ def loaded(folders):
     return document
 
 
-def attached(mode, data):
-    """A material document whose library is attached in a mode."""
-    document = mx.createDocument()
-    mx.readFromXmlString(document, material(lobe(EON)))
-    getattr(document, mode)(data)
-    return document
-
-
 def run(*arguments, **options):
     """The output of a Python script, which has to succeed."""
     command = [sys.executable, *map(str, arguments)]
     done = subprocess.run(command, capture_output=True, text=True, check=False, **options)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
-
-
-@of_each_node
-@on_each_target
-@pytest.mark.parametrize("profile", [None, *library.PROFILES])
-def test_every_target_finds_eonlibs_implementation(node, target, profile):
-    found = library.implementations(library.load_library(profile=profile))
-    assert [each.ours for each in found if (each.node, each.target) == (node, target)] == [True]
-
-
-@on_each_target
-def test_stock_finds_its_own_implementation(target):
-    stock = library.load_library("stock")
-    found = {each.node: each for each in library.implementations(stock) if each.target == target}
-    assert found["ND_oren_nayar_diffuse_bsdf"].name.startswith("IM_oren_nayar_diffuse_bsdf_gen")
-    assert not found["ND_oren_nayar_diffuse_bsdf"].ours
-    assert found["ND_eon_diffuse_bsdf"].name == ""
-
-
-@pytest.mark.parametrize("profile, folder", [(None, "diffuse"), ("cycles", "cycles")])
-def test_the_profile_takes_the_place_of_the_osl_implementations(profile, folder):
-    found = library.implementations(library.load_library(profile=profile))
-    ours = (each for each in found if each.target == "genosl" and each.node in NODEDEFS)
-    folders = {Path(each.document).parent.name for each in ours}
-    assert folders == {folder}
 
 
 def written(folders):
@@ -168,21 +131,6 @@ def parents(element):
     return Path(element.getSourceUri()).resolve().parents
 
 
-@pytest.mark.parametrize(
-    "arguments, message",
-    [
-        (
-            ("mine",),
-            "library must be one of eonlib, diffuse, stock, or a folder that holds MaterialX documents; got 'mine'",
-        ),
-        (("eonlib", "arnold"), "profile must be one of cycles; got 'arnold'"),
-    ],
-)
-def test_an_unknown_name_lists_the_known(arguments, message):
-    with pytest.raises(ValueError, match=f"^{message}$"):
-        library.load_library(*arguments)
-
-
 def test_the_wrong_order_raises_with_node_target_and_remedy():
     with pytest.raises(library.LibraryError) as raised:
         library.assert_ours(loaded([*STOCK, OURS]))
@@ -199,15 +147,6 @@ def test_the_microfacet_nodes_are_eonlibs_unless_the_diffuse_part_alone_is_loade
             definition = library.load_library(name).getNodeDef(f"ND_{node}_bsdf")
             found = Path(definition.getImplementation("genglsl").getActiveSourceUri())
             assert (library.documents_folder() / "pbrlib" in found.parents) == ours
-
-
-@in_each_order
-@pytest.mark.parametrize("mode", ["setDataLibrary", "importLibrary"])
-@on_each_target
-def test_the_node_of_our_own_works_in_every_order_and_mode(folders, mode, target):
-    document = attached(mode, loaded(folders))
-    found = document.getNode("lobe").getImplementation(target)
-    assert library.data_folder() in Path(found.getActiveSourceUri()).resolve().parents
 
 
 @of_each_node
@@ -230,44 +169,10 @@ def test_the_interface_of_oren_nayar_is_the_standard_one():
     assert interface("eonlib") == interface("stock")
 
 
-@of_each_node
-@pytest.mark.parametrize("rho", [0.0, 0.2, 0.5, 1.0])
-@pytest.mark.parametrize("r", [0.0, 0.3, 1.0])
-def test_the_mdl_tint_is_the_multiple_scattering_of_eon(node, rho, r):
-    source = library.load_library().getNodeDef(node).getImplementation("genmdl")
-    _, _, expression = source.getAttribute("sourcecode").partition("multiscatter_tint: ")
-    expression = expression.removesuffix("))))")
-    expression = re.sub(r"{{energy_compensation}} \? (.*) : color\(0.0\)", r"\1", expression)
-    expression = re.sub(r"{{(\w+)}}", r"\1", expression.replace("math::PI", "PI"))
-    tint = eval(expression, {"PI": math.pi}, {"color": Rho(rho), "roughness": r})
-    average = fon_albedo_avg(r)
-    expected = rho**2 * average / (1.0 - rho * (1.0 - average))
-    assert float(tint) == pytest.approx(expected, rel=MDL_TINT, abs=0.0)
-
-
-class Rho(float):
-    """A reflectance that can also be called, since MDL's type is called color too."""
-
-    __call__ = staticmethod(float)
-
-
 FLAG = {
     "genmdl": (r"{{energy_compensation}} \? (.*) : color\(0\.0\)", r"\1"),
     "genosl": ("{{energy_compensation}}", "1"),
 }
-
-
-@pytest.mark.parametrize("target", FLAG)
-def test_the_source_of_eon_is_that_of_oren_nayar_with_the_flag_set(target):
-    nodes = [library.load_library().getNodeDef(f"ND_{name}") for name in (OREN_NAYAR, EON)]
-    oren_nayar, eon = (node.getImplementation(target).getAttribute("sourcecode") for node in nodes)
-    flag, replacement = FLAG[target]
-    assert re.subn(flag, replacement, oren_nayar) == (eon, 1)
-
-
-def test_without_the_flag_the_mdl_tint_is_black():
-    source = library.load_library().getNodeDef(NODEDEFS[0]).getImplementation("genmdl")
-    assert source.getAttribute("sourcecode").endswith(" : color(0.0)))))")
 
 
 @pytest.mark.parametrize("target", TARGETS)
@@ -340,12 +245,6 @@ def test_a_relative_folder_is_that_of_the_working_folder(tmp_path, monkeypatch):
         )
         monkeypatch.chdir(folder.parent)
         assert library.load_library("library").getNodeGraph(name) is not None
-
-
-def test_the_folder_of_eonlib_is_eonlib():
-    assert library.implementations(library.load_library(OURS), "diffuse") == (
-        library.implementations(library.load_library("diffuse"), "diffuse")
-    )
 
 
 @pytest.mark.parametrize("text", ["<materialx", '<materialx version="1.39">text</materialx>'])

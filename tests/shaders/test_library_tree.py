@@ -16,7 +16,6 @@ from mxeon.cli import main
 from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.library_export import export_library
 from mxeon.shaders.library_tree import OVERLAY, PART, tree
-from tests.support.availability import available
 from tests.support.documents import material
 from tests.support.wheels import wheel
 from tests.support.wrong_libraries import GLSL, STOCK, copy_of_stock, replace_text
@@ -61,16 +60,6 @@ def test_an_export_of_eonlib_has_its_verdicts(gl, tmp_path, part, name):
     eonlib, export = findings([name, str(copy)], ["surface", "measured_edf", "eon_diffuse_bsdf"])
     assert eonlib and export == eonlib
     assert tree(str(copy)).kind == OVERLAY
-
-
-def test_an_export_of_eonlib_has_the_profile_of_cycles(tmp_path):
-    copy = str(export_library(tmp_path / "export"))
-    with available("cycles"):
-        eonlib, export = findings(["eonlib", copy], ["eon_diffuse_bsdf"], ["cycles"])
-    assert eonlib and export == eonlib
-    data = mx.createDocument()
-    mx.loadLibraries([copy], mx.FileSearchPath(), data)  # which does not reach it
-    assert not any("/cycles/" in each.getSourceUri() for each in data.getChildren())
 
 
 # A fault in a copy: the file, a text, the text in its place, the node, the first check that fails for it, words.
@@ -194,22 +183,6 @@ BOTH = """<own name="a" type="BSDF"/><sheen_bsdf name="b" type="BSDF"/>
 CODE = replace(DEFAULT, code=True)
 
 
-def test_code_of_a_document_includes_the_files_of_a_copy_once(tmp_path):
-    copy = copy_of_stock(tmp_path / "copy")
-    replace_text(
-        copy, "float mx_imageworks_sheen_NDF(", "// own\nfloat mx_imageworks_sheen_NDF(", LIB
-    )
-    (tmp_path / "own.glsl").write_text(
-        f'#include "libraries/{LIB}"\nvoid own(ClosureData data, inout BSDF bsdf) {{}}\n'
-    )
-    (tmp_path / "code.mtlx").write_text(
-        material(BOTH).replace("</materialx>", f"{OWN}</materialx>")
-    )
-    with pytest.warns(match="code"):
-        [shader] = mxeon.generate(tmp_path / "code.mtlx", "glsl", library=str(copy), policy=CODE)
-    assert shader.stages["pixel"].count("// own\nfloat mx_imageworks_sheen_NDF(") == 1
-
-
 def test_generate_takes_a_copy_in_worker_processes_and_leaves_no_file(tmp_path):
     copy = copy_of_stock(tmp_path / "copy", LIB)
     replace_text(
@@ -267,11 +240,3 @@ def test_what_is_no_build_of_materialx_is_refused(tmp_path, capsys, make, words)
     arguments = ["--library", "stock", "--materialx", str(tmp_path)]
     assert main(["check", *arguments]) == 2
     assert words in capsys.readouterr().err
-
-
-def test_a_build_is_named_before_materialx_is_imported(tmp_path, capsys):
-    (tmp_path / "MaterialX").mkdir()
-    (tmp_path / "MaterialX" / "__init__.py").touch()
-    assert main(["check", "--materialx", str(tmp_path)]) == 2
-    assert "the first that a process imports; it has imported" in capsys.readouterr().err
-    assert str(tmp_path) not in sys.path

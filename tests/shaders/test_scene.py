@@ -4,26 +4,8 @@
 import numpy as np
 import pytest
 
-from mxeon.shaders.scene import LARGEST, Scene, scene, sphere
+from mxeon.shaders.scene import sphere
 from mxeon.shaders.shader_ball import CENTER, CLOSE, OBJECT, RADIUS, STEP, distance, shader_ball
-
-
-def test_an_unknown_scene_lists_the_known_ones():
-    with pytest.raises(
-        ValueError, match="scene must be one of front, side, back, furnace, studio; got 'top'"
-    ):
-        scene("top")
-
-
-@pytest.mark.parametrize("size", [0, -1, LARGEST + 1])
-def test_a_size_outside_its_range_is_refused(size):
-    with pytest.raises(ValueError, match=rf"size must lie in \[1, {LARGEST}\]; got {size}"):
-        Scene("a", light=(0.0, 0.0, 1.0), size=size)
-
-
-def test_an_unknown_shape_lists_the_known_ones():
-    with pytest.raises(ValueError, match="shape must be one of sphere, ball; got 'cube'"):
-        Scene("a", environment=1.0, shape="cube")
 
 
 def test_points_of_the_shader_ball_lie_on_it_with_their_normals():

@@ -63,19 +63,6 @@ def test_an_image_is_looked_for_on_the_path_and_may_lie_there(home):
         assert generate(path, "osl")
 
 
-def test_the_folder_of_the_document_comes_first(home):
-    picture(home / "maps/a.exr")
-    path = written(home, textured("maps/a.exr"))
-    image = read_document(path, policy=searched(home)).content.getDescendant("image/file")
-    assert image.getValueString() == str(home / "maps/a.exr")
-
-
-def test_a_prefix_is_part_of_the_name(home):
-    path = written(home, textured("a.exr").replace("<image ", '<image fileprefix="maps/" '))
-    image = read_document(path, policy=searched(home)).content.getDescendant("image/file")
-    assert image.getValueString() == str(home.parent / "shared/maps/a.exr")
-
-
 def test_a_name_that_leads_out_of_the_path_is_refused(home):
     path = written(home, textured("../private/b.exr"))
     with pytest.raises(DocumentError, match="on the search path or in the libraries"):
@@ -87,14 +74,6 @@ def test_an_include_is_looked_for_on_the_path(home):
     assert read_document(path, policy=searched(home)).content.getNode("lobe")
     with pytest.raises(DocumentError, match="include must name a file that exists; got part.mtlx"):
         read_document(path)
-
-
-def test_an_include_of_an_include_is_looked_for_where_the_document_is(home):
-    (home / "parts").mkdir()
-    (home / "parts/first.mtlx").write_text(INCLUDE.format('<xi:include href="second.mtlx"/>'))
-    (home / "second.mtlx").write_text(material(lobe()))
-    path = written(home, INCLUDE.format('<xi:include href="parts/first.mtlx"/>'))
-    assert read_document(path).content.getNode("lobe")
 
 
 def test_a_source_is_looked_for_on_the_path(home):
@@ -151,12 +130,6 @@ def test_a_set_of_textures_is_shown_as_its_first_tile(home, host, name):
     assert expected.any() and np.array_equal(shown, expected)
 
 
-def test_a_set_of_textures_without_a_file_is_missing(home):
-    path = written(home, textured("none.<UDIM>.exr"))
-    with pytest.warns(MissingFileWarning, match="got none.<UDIM>.exr"):
-        assert generate(path, "glsl")
-
-
 @pytest.mark.parametrize("host", ["gl", "reference"])
 def test_a_texture_of_five_channels_is_refused_by_its_name(home, host):
     picture(home / "five.exr", (0.1, 0.2, 0.3, 0.4, 0.5))
@@ -171,10 +144,3 @@ def test_a_texture_of_two_channels_is_taken_from_the_host(home):
     [result], _, _ = judge_document(path, open_host("gl"), Reference(), "eonlib")
     assert (result.check, result.verdict) == ("picture", "passed")
     assert len(result.measured) == 1
-
-
-def test_a_texture_of_one_channel_is_gray(home):
-    picture(home / "one.exr", (0.5,))
-    path = written(home, textured("one.exr"))
-    [result], _, _ = judge_document(path, open_host("gl"), Reference(), "eonlib")
-    assert (result.check, result.verdict) == ("picture", "passed")

@@ -5,14 +5,11 @@ import os
 import warnings
 from pathlib import Path
 
-import MaterialX as mx
 import pytest
 
-from mxeon import cli
-from mxeon.errors import MISUSE, DocumentError, InputError
-from mxeon.shaders.document.policy import DEFAULT, Policy
+from mxeon.errors import DocumentError, InputError
+from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.generation import TARGETS, generate
-from mxeon.shaders.generators import context_of, generator_of
 from mxeon.shaders.library import load_library
 from tests.support.documents import connected, material
 
@@ -81,40 +78,12 @@ def test_a_source_includes_others_of_its_folder_and_of_the_libraries(home, targe
     assert "mx_ggx_dir_albedo(" in text
 
 
-def test_a_file_of_the_libraries_is_written_once_whoever_includes_it(home):
-    including(home, "libraries/stdlib/genglsl/lib/mx_math.glsl", "other.glsl")
-    assert code(home).count("float mx_square(float x)") == 1
-
-
 def test_the_names_that_a_generator_has_for_files_are_its_own(home):
     including(home, "libraries/stdlib/genglsl/lib/$fileTransformUv")
     assert "vec2 mx_transform_uv(" in code(home)
     (home / "lib" / "mx_transform_uv.glsl").write_text("float of_the_document;\n")
     including(home, "lib/$fileTransformUv")
     assert "float of_the_document;" in code(home)
-
-
-def test_the_generated_text_is_the_one_that_materialx_makes(home):
-    including(home, "other.glsl", "libraries/pbrlib/genglsl/lib/mx_microfacet.glsl")
-    document = mx.createDocument()
-    mx.readFromXmlFile(document, str(home / "look.mtlx"))
-    document.setDataLibrary(load_library())
-    generator = generator_of(document, "glsl", "eonlib", None)
-    context = context_of(document, "glsl", generator, "eonlib", False, ())
-    expected = generator.generate("look", document.getDescendant("look"), context)
-    assert code(home) == expected.getSourceCode("pixel")
-
-
-def test_an_expression_in_a_file_is_no_function_and_includes_nothing(home):
-    write(home, "own.glsl")
-    (home / "own.glsl").write_text('vec3(0.123) /* #include "../secret.glsl" */\n')
-    assert "vec3(0.123) /* #include" in code(home)
-
-
-def test_the_document_names_its_files_again_when_shaders_are_made(home):
-    including(home, "other.glsl")
-    document = generate(home / "look.mtlx", "glsl", policy=CODE)[0].document
-    assert document.getImplementation("IM_own").getFile() == "own.glsl"
 
 
 def test_code_for_other_targets_is_not_read(home):
@@ -187,30 +156,6 @@ def test_a_source_is_a_regular_file_of_text(home, kind, included):
     )
 
 
-def test_the_command_says_which_source_is_no_text(home, capsys):
-    (home / "own.glsl").write_bytes(b"// caf\xe9\n")
-    arguments = ["generate", str(home / "look.mtlx"), "--target", "glsl", "--outputPath", "out"]
-    assert cli.main(arguments) == MISUSE
-    output = capsys.readouterr()
-    assert output.out == ""
-    assert f"source {home / 'own.glsl'}: must be text in UTF-8; byte 6 is not" in output.err
-
-
-def test_a_missing_file_is_told_by_the_name_that_the_document_has(home):
-    message = refusal(home)
-    assert "Failed to get source code from file 'own.glsl' used by implementation" in message
-    including(home, "missing.glsl")
-    assert refusal(home).endswith("Could not find include file: 'missing.glsl'")
-
-
-def test_sources_that_include_each_other_end(home):
-    (home / "a.glsl").write_text('#include "b.glsl"\nfloat a;\n')
-    (home / "b.glsl").write_text('#include "a.glsl"\nfloat b;\n')
-    including(home, "a.glsl")
-    text = code(home)
-    assert text.count("float a;") == text.count("float b;") == 1
-
-
 # --- limits -------------------------------------------------------------------------------------
 
 
@@ -257,21 +202,6 @@ def test_text_in_all_shaders_is_limited(home):
     assert "--maxText" in refusal(home, Policy(code=True, text=least - 1))
 
 
-def test_an_expression_counts_for_each_node(home):
-    inline = NODEDEF + '<implementation name="IM_own" nodedef="ND_own" sourcecode="vec3(0.5)"/>'
-    (home / "look.mtlx").write_text(material(inline + USE))
-    nodes = 4  # the expression's, the lobe, the surface and the material
-    least = nodes * len("vec3(0.5)")
-    assert code(home, policy=Policy(code=True, text=least))
-    assert "--maxText" in refusal(home, Policy(code=True, text=least - 1))
-
-
-def test_documents_without_code_are_not_concerned(home):
-    (home / "look.mtlx").write_text(material(connected()))
-    assert code(home, policy=Policy(text=0))
-    assert DEFAULT.text > 0
-
-
 # --- libraries ----------------------------------------------------------------------------------
 
 
@@ -310,14 +240,6 @@ def test_every_file_of_a_library_is_a_regular_one_of_text(folder, kind, name):
         os.mkfifo(path) if kind == "pipe" else path.symlink_to("/dev/zero")
     with pytest.raises(InputError, match=f"{name}: must be (readable; not a |text in UTF-8; by)"):
         generate(material(USE), "glsl", library=str(folder))
-
-
-def test_documents_of_a_library_that_include_each_other_are_refused(folder):
-    xinclude = 'xmlns:xi="http://www.w3.org/2001/XInclude"><xi:include href="own.mtlx"/>'
-    text = (folder / "own.mtlx").read_text().replace('"1.39">', f'"1.39" {xinclude}')
-    (folder / "own.mtlx").write_text(text)
-    with pytest.raises(InputError, match="^library .*: XInclude cycle"):
-        load_library(str(folder))
 
 
 def test_files_of_a_library_are_limited_in_size(folder):

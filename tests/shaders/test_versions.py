@@ -14,7 +14,6 @@ from mxeon.errors import InterfaceError, NotRun
 from mxeon.hosts import open_host
 from mxeon.shaders import closure_calls, generation, generators, library
 from mxeon.shaders.library import UntestedVersionWarning, load_library
-from mxeon.shaders.nodes import EON, OREN_NAYAR
 from tests.support.documents import lobe, material
 from tests.support.plans import keep_checks
 
@@ -26,8 +25,6 @@ CACHES = (
     closure_calls._signatures,
     closure_calls._call,
 )
-# Functions that eonlib had for a target when this was written; it may have more.
-LEAST_FUNCTIONS = dict.fromkeys(generation.TARGETS, 20) | {"osl": 4, "mdl": 0}
 
 
 @pytest.fixture
@@ -69,12 +66,6 @@ def test_the_report_of_an_untested_version_says_so(monkeypatch):
     assert any(note.startswith("MaterialX 1.40.0 has not been tested with") for note in run.notes)
 
 
-def test_the_installed_version_needs_no_warning(fresh):
-    assert library.untested(mx.getVersionString()) == ""
-    with warnings.catch_warnings(action="error"):
-        load_library("stock")
-
-
 def test_a_version_that_lacks_a_method_is_refused_in_one_line(fresh, monkeypatch, capsys):
     monkeypatch.setattr(library, "REQUIRED", ((mx.Document, "setOtherLibrary"),))
     assert main(["check", EXAMPLE]) == 2
@@ -99,43 +90,6 @@ def test_checks_of_another_closure_interface_are_not_run(other_interface, monkey
     }
     assert verdicts["oren_nayar_diffuse_bsdf, energy_compensation true"] == NOT_RUN
     assert verdicts["eon_diffuse_bsdf"] == PASSED
-
-
-@pytest.mark.parametrize("target", generation.TARGETS)
-@pytest.mark.parametrize("profile", [None, *library.PROFILES])
-def test_a_generator_calls_every_function_of_eonlib_as_it_is_defined(target, profile):
-    ours = [each for each in functions(target, profile) if parameters(each)]
-    calls = [closure_calls._call(target, "eonlib", profile, node, name) for _, node, name in ours]
-    assert list(map(len, calls)) == list(map(len, map(parameters, ours)))
-    assert len(ours) == len(functions(target, profile)) >= LEAST_FUNCTIONS[target]
-
-
-def functions(target, profile):
-    """Sources, nodedefs and functions by which eonlib implements nodes for a target."""
-    data = load_library(profile=profile)
-    name = generation.GENERATORS[target].create().getTarget()
-    return [
-        (file, nodedef, function)
-        for file, rows in closure_calls._functions("eonlib", profile).items()
-        for nodedef, function in rows
-        if (found := data.getNodeDef(nodedef).getImplementation(name))
-        and found.getAttribute("function") == function
-        and file.endswith(".osl") == (target == "osl")
-    ]
-
-
-def parameters(row):
-    return next(iter(closure_calls._signatures(row[0], row[2])), [])
-
-
-@pytest.mark.parametrize("target", generation.TARGETS)
-def test_nodes_that_bear_the_names_of_functions_are_no_calls(target):
-    names = {OREN_NAYAR: EON, EON: OREN_NAYAR, "dielectric_bsdf": "dielectric_bsdf"}
-    nodes = "".join(f'<{each} name="{name}" type="BSDF"/>' for each, name in names.items())
-    add = '<add name="{}" type="BSDF"><input name="in1" type="BSDF" nodename="{}"/>'
-    add += '<input name="in2" type="BSDF" nodename="{}"/></add>'
-    first = add.format("both", OREN_NAYAR, EON) + add.format("lobe", "both", "dielectric_bsdf")
-    assert generation.generate(material(nodes + first), target)
 
 
 def test_a_host_whose_target_this_version_lacks_is_not_run(monkeypatch):

@@ -11,7 +11,7 @@ from mxeon.shaders import generation
 from mxeon.shaders.document import words
 from mxeon.shaders.document.reading import read_document
 from tests.fuzz import reach
-from tests.support.documents import connected, lobe, material
+from tests.support.documents import lobe, material
 from tests.support.sharing import shared
 
 SOME = ("glsl", "osl", "mdl")  # one of each family of generators
@@ -112,14 +112,6 @@ def test_more_than_words_is_refused_in_one_line(nodes, reason):
         read_document(material(nodes + lobe()))
     message = str(refused.value)
     assert message.startswith("document text: ") and reason in message and message.isprintable()
-
-
-def test_a_choice_is_one_word_through_an_interface_too():
-    graph = '<nodegraph name="g"><input name="wrap" type="string" value="a, b"/>'
-    image = IMAGE.replace("value", "interfacename").format("uaddressmode", "string", "wrap")
-    output = '<output name="o" type="color3" nodename="image"/></nodegraph>'
-    with pytest.raises(DocumentError, match="'value' must be one word"):
-        read_document(material(graph + image + output + connected(color='nodegraph="g"')))
 
 
 ACCEPTED = {

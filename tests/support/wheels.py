@@ -9,6 +9,7 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 from hashlib import sha256
 from pathlib import Path
 from tempfile import mkdtemp
@@ -16,11 +17,12 @@ from tempfile import mkdtemp
 import MaterialX as mx
 import pytest
 
-from tests.reliability.versions import ROOT, install, run
 from tests.support.availability import required
 from tools.site.ledger import linked
 
+ROOT = Path(__file__).resolve().parents[2]
 KEPT = ROOT / "out" / "materialx"
+DOWNLOAD = 300.0  # seconds, of 25 MB
 # What the data of MaterialX's main branch has over those of the release.
 MAIN = ROOT / "tests" / "materialx_main" / "libraries.patch"
 
@@ -79,6 +81,26 @@ def git(folder, *arguments):
         text=True,
         env=os.environ | alone,
     ).stdout
+
+
+def install(version, folder):
+    """Install a version of MaterialX, and nothing else, into a new folder."""
+    command = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--target", folder]
+    command += ["--timeout", "30", f"materialx=={version}"]
+    subprocess.run(command, check=True, capture_output=True, timeout=DOWNLOAD)
+
+
+def run(folder, *arguments, module="mxeon"):
+    """A module run as a command with the MaterialX of a folder: the finished process."""
+    paths = [str(folder), *map(str, (ROOT, ROOT / "python"))]
+    if os.environ.get("PYTHONPATH"):
+        paths.append(os.environ["PYTHONPATH"])
+    return subprocess.run(
+        [sys.executable, "-P", "-m", module, *arguments],
+        env=os.environ | {"PYTHONPATH": os.pathsep.join(paths)},
+        capture_output=True,
+        text=True,
+    )
 
 
 def run_with(version, module, *arguments):

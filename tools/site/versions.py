@@ -11,8 +11,7 @@ from collections import Counter, defaultdict
 from mxeon.conformance.results import PASSED
 from mxeon.io.files import write_text
 from mxeon.shaders.library import TESTED
-from tests.reliability.versions import run
-from tests.support.wheels import MAIN, wheel
+from tests.support.wheels import MAIN, run, wheel
 from tools.site import DOCS, with_block
 from tools.site.ledger import dumped, entries, pages, pairs
 

@@ -21,7 +21,7 @@ from mxeon.hosts.points import visible
 from mxeon.io.srgb import srgb_encoded
 from mxeon.shaders.nodes import SURFACE, document_text, input_text, lobe_text, node_text
 from mxeon.shaders.scene import SCENES
-from tests.reliability.versions import run
+from tests.support.wheels import run
 from tools.site.ledger import (
     FOLDER,
     apply,
