@@ -9,7 +9,6 @@ import matplotlib
 import numpy as np
 import pytest
 
-from mxeon.albedo import dielectric_albedo_dir
 from mxeon.errors import InputError, PackageError
 from mxeon.fit import (
     FIT_MODELS,
@@ -19,10 +18,7 @@ from mxeon.fit import (
     read_merl,
 )
 from mxeon.fit.measured import MERL_CELLS, MERL_SCALES
-from mxeon.models import dielectric_brdf, eon_brdf, generalized_schlick_brdf
-from mxeon.models.coat import dielectric_over_eon_brdf
-from mxeon.models.coat.openpbr import openpbr_base_brdf
-from mxeon.models.core.layering import Bsdf, layer, throughput
+from mxeon.models import eon_brdf
 from tests.support.availability import available
 from tools.site import research
 
@@ -89,54 +85,6 @@ def test_the_parameters_of_lobes_over_eon_lie_within_their_errors(model, paramet
     )
 
 
-def test_a_base_that_is_all_metal_is_the_metal():
-    rng = np.random.default_rng(SEED)
-    wo, wi, pair = directions(rng, 20), directions(rng, 20), [0.25, 0.25]
-    expected = generalized_schlick_brdf(wo, wi, CLAY["rho"], 1.0, 1.0, pair, 5.0)
-    metal = openpbr_base_brdf(wo, wi, CLAY["rho"], 0.5, 0.5, 1.5, 1.0)
-    assert np.abs(metal - expected).max() < CURVES
-
-
-def test_the_layers_are_those_of_the_specification():
-    rng = np.random.default_rng(SEED)
-    wo, wi = directions(rng, 40), directions(rng, 40)
-    for alpha in (0.05, 0.3, 1.0):
-        for ior in (1.1, 2.5):
-            top = dielectric_brdf(wo, wi, 1.0, [alpha, alpha], ior)
-            E = dielectric_albedo_dir(wo, 1.0, [alpha, alpha], ior)
-            base = Bsdf(eon_brdf(wo, wi, [0.7], 0.5), np.zeros(1))
-            expected = layer(Bsdf(top, throughput(E)), base).value
-            error = np.abs(dielectric_over_eon_brdf(wo, wi, [0.7], 0.5, alpha, ior) - expected)
-            assert (error / np.maximum(1.0, expected)).max() < CURVES
-
-
-@pytest.mark.parametrize(
-    "model, parameters", [(dielectric_over_eon_brdf, COATED), (openpbr_base_brdf, BASE)]
-)
-def test_lobes_over_eon_have_gradients_by_their_parameters(model, parameters):
-    # Differentiate the sum of the values.
-    torch, rng = pytest.importorskip("torch"), np.random.default_rng(SEED)
-    wo, wi = directions(rng, 20), directions(rng, 20)
-    given = {
-        k: torch.tensor(v, dtype=torch.float64, requires_grad=True) for k, v in parameters.items()
-    }
-    value = model(wo, wi, **given)
-    value.sum().backward()
-    assert np.allclose(value.detach().numpy(), model(wo, wi, **parameters), CURVES, CURVES)
-
-    # Compare it with differences.
-    def total(name, step):
-        return model(wo, wi, **parameters | {name: parameters[name] + step}).sum()
-
-    for name, tensor in given.items():
-        for k in range(tensor.numel()):
-            step = np.zeros(tensor.numel())
-            step[k] = 1e-4
-            step = step.reshape(tensor.shape)
-            slope = (total(name, step) - total(name, -step)) / 2e-4
-            assert tensor.grad.ravel()[k].item() == pytest.approx(slope, rel=1e-5, abs=1e-5)
-
-
 def test_a_fit_says_its_parameters_and_evaluates_its_model():
     data = noisy(np.random.default_rng(SEED), "eon", CLAY)
     fit = fit_brdf(data)
@@ -174,17 +122,6 @@ def test_a_file_of_merl_is_read_and_fitted(tmp_path):
     assert fit.values["roughness"] == pytest.approx(CLAY["roughness"], abs=1e-6)
 
 
-def test_the_angles_of_merl_are_those_of_the_half_vector():
-    rng = np.random.default_rng(SEED)
-    angles = rng.uniform(0.05, 1.5, (3, 50))
-    wo, wi = merl_directions(*angles)
-    half = (wo + wi) / np.linalg.norm(wo + wi, axis=1, keepdims=True)
-    assert half[:, 1] == pytest.approx(np.zeros(50), abs=1e-12)
-    assert np.arccos(half[:, 2]) == pytest.approx(angles[0], abs=1e-7)
-    assert np.arccos(np.sum(half * wi, axis=1)) == pytest.approx(angles[1], abs=1e-7)
-    assert wi[:, 1] == pytest.approx(np.sin(angles[1]) * np.sin(angles[2]), abs=1e-12)
-
-
 @pytest.mark.parametrize("content", (b"", b"MERL", np.array([1, 1, 1, 0], "<i4").tobytes()))
 def test_another_file_is_refused(tmp_path, content):
     path = tmp_path / "none.binary"
@@ -219,13 +156,6 @@ def test_an_unknown_model_is_answered_with_the_known_ones():
         match="model must be one of eon, dielectric_over_eon, varnished, openpbr_base; got 'ggx'",
     ):
         fit_brdf(MeasuredBrdf(UP, UP, np.array([[0.1]])), "ggx")
-
-
-def test_a_parameter_that_the_data_do_not_determine_has_no_number():
-    rng = np.random.default_rng(5)
-    black = noisy(rng, "eon", {"rho": np.zeros(1), "roughness": 0.5}, known=False)
-    rho, roughness = str(fit_brdf(black)).splitlines()[1:]
-    assert "+-" in rho and roughness.split(maxsplit=1)[1] == "not determined by the data"
 
 
 def test_scipy_is_named_where_it_is_missing(monkeypatch):

@@ -26,9 +26,8 @@ from tools.fits import (
     ggx_cosine,
     ggx_inside,
     thin_film,
-    varnish_walk,
 )
-from tools.fits.minimax import defines, least_largest, mp, roots
+from tools.fits.minimax import defines, mp, roots
 from tools.fits.minimax import shipped as shipped_coefficients
 
 by_language = pytest.mark.parametrize("language", twins.LANGUAGES)
@@ -37,12 +36,6 @@ by_language = pytest.mark.parametrize("language", twins.LANGUAGES)
 def numbers(pattern, text):
     """Numbers of the macros whose names match a pattern."""
     return [float(each) for each in re.findall(rf"#define EON_{pattern} (\S+)", text)]
-
-
-def test_least_largest_finds_the_line_nearest_to_a_parabola():
-    points = [mp.mpf(k) / 100 for k in range(101)]
-    x, residual = least_largest([[mp.one, t] for t in points], [t * t for t in points])
-    np.testing.assert_array_equal(np.float64([*x, residual]), [-0.125, 1.0, 0.125])
 
 
 @by_language
@@ -56,11 +49,6 @@ def test_coefficients_of_the_loss_have_the_error_that_stands_beside_them(languag
     p, q = (numbers(rf"{name}\d", twins.source(language)) for name in "PQ")
     double, single = fon_loss.largest_errors(np.float64(p), np.float64(q))
     assert double <= tolerances.FIT_LOSS and single <= tolerances.FIT_LOSS_32
-
-
-def test_a_wrong_digit_in_a_coefficient_of_the_loss_shows_in_its_error():
-    p, q = fon_loss.fit()
-    assert fon_loss.largest_errors(p + np.eye(5)[1] * 1e-6, q)[0] > tolerances.FIT_LOSS
 
 
 def test_the_root_of_the_sampling_twins_has_the_error_that_stands_beside_it():
@@ -185,14 +173,3 @@ def test_the_shader_has_the_nodes_of_a_film():
     np.testing.assert_array_equal(np.transpose(rows(r"FACETS_\d\d")), thin_film.FACETS)
     orders = [thin_film.VALUE_ORDER, thin_film.WIDTH_ORDER, thin_film.ORDER_RATIO]
     assert [each for [each] in rows(r"ORDER_\w+")] == orders
-
-
-def test_facets_pass_as_much_light_out_as_in():
-    """The light that is diffuse inside and passes is what passes inwards over the index's square."""
-    rng, count, ior = np.random.default_rng(1), 1 << 16, 1.5
-    mu = np.sqrt(rng.random(count))
-    w = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=1)
-    inwards, outwards = (
-        varnish_walk.interface(w, 0.5, each, rng)[1].mean() for each in (ior, 1.0 / ior)
-    )
-    assert abs(outwards - inwards / ior**2) < 4.0 * 0.5 / np.sqrt(count)

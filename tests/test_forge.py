@@ -114,7 +114,3 @@ def test_the_action_judges_documents_without_a_library_as_the_command_does(tmp_p
     done = ended("", tmp_path, options, documents=str(ROOT / "examples" / "plaster.mtlx"))
     assert done.returncode == 0, done.stdout + done.stderr
     assert "with stock MaterialX" in done.stdout.splitlines()[0]
-
-
-def test_the_action_fails_where_a_quote_has_no_end(tmp_path):
-    assert ended("library", tmp_path, "--node 'a\n--full").returncode != 0

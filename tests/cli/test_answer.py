@@ -13,7 +13,7 @@ import pytest
 from mxeon.cli import main
 from mxeon.cli.answer import LINES, answer
 from mxeon.cli.output import Progress, warn
-from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Result, Run
+from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Result, Run
 from mxeon.conformance.run import check
 from mxeon.errors import MISUSE
 from mxeon.errors import NOT_RUN as DID_NOT_RUN
@@ -75,18 +75,6 @@ def test_ten_lines_on_one_document_count_what_they_leave_out():
 
 
 @pytest.mark.parametrize(
-    ("diagnosis", "place"),
-    [
-        ("correct except for 1 of 9 pairs, all with roughness 0", "with roughness 0"),
-        ("no known model matches", "at a view cosine of 0.25"),
-    ],
-)
-def test_an_error_without_bound_is_words_and_a_place(diagnosis, place):
-    huge = replace(made(FAILED), error=4.9e15, worst={"wo": [0, 0, 0.25]}, diagnosis=diagnosis)
-    assert any(line.endswith(f"wrong, unbounded {place}") for line in answer(made_run(huge)))
-
-
-@pytest.mark.parametrize(
     ("fields", "words"),
     [
         ({"verdict": NOT_RUN, "reason": "gl: no", "error": None}, "not judged: gl: no"),
@@ -138,11 +126,6 @@ def test_what_fails_for_other_inputs_than_the_documents_comes_last():
     assert [each in line for each, line in zip(expected, causes, strict=True)] == [True] * 3
 
 
-def test_a_failure_without_a_page_is_explained_by_its_diagnosis():
-    lines = answer(made_run(made(FAILED, diagnosis="best match: Lambert")))
-    assert any("0.37 > 2e-06; best match: Lambert" in line for line in lines)
-
-
 def test_every_document_appears_those_that_look_wrong_first():
     documents = [f"{number}.mtlx" for number in range(20)]
     pictures = [replace(PICTURE, subject=f"{each}: look{each[0]}") for each in documents[:-1]]
@@ -153,40 +136,10 @@ def test_every_document_appears_those_that_look_wrong_first():
     assert all(any(each in line for line in lines) for each in documents)
 
 
-def test_a_name_of_a_file_is_one_line_and_steers_no_terminal():
-    name = "a\n\x1b[31mb.mtlx"
-    lines = answer(made_run(made(library="my\nlibrary"), documents=(name,)))
-    assert not any(set(line) & {"\n", "\x1b"} for line in lines)
-
-
 def test_what_did_not_run_is_said_with_its_number():
     lines = answer(made_run(made(NOT_RUN, reason="gl: nowhere")))
     assert lines[0].startswith("No check ran.")
     assert lines[1] == "not run: gl with eonlib, 1 check: gl: nowhere"
-
-
-def test_a_note_that_a_diagnosis_repeats_is_left_out():
-    wrong = made(FAILED, diagnosis="best match: Lambert")
-    notes = (f"{EON}: best match: Lambert", "another")
-    assert [each for each in answer(made_run(wrong, notes=notes)) if "note" in each] == [
-        "note: another"
-    ]
-
-
-@pytest.mark.parametrize(
-    ("results", "sentence"),
-    [
-        ([made()], "The check passed on gl with eonlib."),
-        ([made(FAILED)], "1 of 1 check failed: 1 on gl with eonlib."),
-        ([made(), made(NOT_RUN)], "Nothing failed, but 1 of 2 checks did not run."),
-        (
-            [made(), made(DIFFERS)],
-            "1 of 2 checks passed on gl with eonlib; 1 differs where the specification leaves it open.",
-        ),
-    ],
-)
-def test_one_check_is_no_checks(results, sentence):
-    assert made_run(*results).summary.sentence == sentence
 
 
 # --- what is judged -------------------------------------------------------------------------------
@@ -305,12 +258,6 @@ def test_a_terminal_shows_one_line_that_messages_replace(monkeypatch):
     assert last == "mxeon check: 3 of 3, about 0 s left: three"
 
 
-def test_nothing_is_shown_where_there_is_no_terminal(capsys):
-    progress = Progress("mxeon check", str)
-    progress.show("reads the documents")
-    assert list(progress(["one"], 1)) == ["one"] and capsys.readouterr().err == ""
-
-
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
@@ -346,8 +293,3 @@ def test_without_a_command_there_is_help(arguments, capsys):
     program = " ".join(["mxeon", *arguments])
     assert f"\nusage: {program} [options] " in printed.out
     assert printed.err == f"{program}: must be followed by one of the commands above; got none\n"
-
-
-def test_what_follows_two_dashes_is_no_option(capsys):
-    assert main(["check", "--", "--libary"]) == MISUSE
-    assert "must be a readable file; got '--libary'" in capsys.readouterr().err

@@ -20,7 +20,7 @@ from mxeon.shaders.document.policy import LIMITS
 from mxeon.shaders.generation import TARGETS
 from mxeon.shaders.library import eonlib_folder
 from mxeon.shaders.scene import SCENES
-from tests.support.command import CLAY, PLASTER, one_line, run
+from tests.support.command import CLAY, PLASTER, one_line
 from tests.support.documents import material
 from tests.support.plans import keep_checks
 
@@ -80,26 +80,11 @@ def test_check_of_stock_fails_and_names_the_defects(capsys, monkeypatch):
     assert "EON with clamped dot(wo, wi)" in capsys.readouterr().out
 
 
-def test_check_takes_a_folder_as_library_and_prints_json_for_machines(capsys, monkeypatch):
-    keep_checks(monkeypatch, "definition", "value")
-    folder = str(eonlib_folder())
-    assert main(["check", PLASTER, "--library", folder, "--json", "--workers", "0"]) == PASSED
-    results = json.loads(capsys.readouterr().out)["results"]
-    assert folder in {each["library"] for each in results}
-
-
 def test_check_on_a_host_that_is_missing_did_not_run(monkeypatch, capsys):
     keep_checks(monkeypatch, "value", "picture")
     monkeypatch.setenv("MXEON_CYCLES_PYTHON", "/nowhere/python")
     assert main(["check", PLASTER, "--host", "cycles", "--workers", "0"]) == NOT_RUN
     assert "not run: cycles" in capsys.readouterr().out
-
-
-def test_render_on_a_host_that_is_missing_did_not_run(monkeypatch, capsys, tmp_path):
-    monkeypatch.setenv("MXEON_CYCLES_PYTHON", "/nowhere/python")
-    output = tmp_path / "out.exr"
-    assert main(["render", PLASTER, "--host", "cycles", "--output", str(output)]) == NOT_RUN
-    assert "MXEON_CYCLES_PYTHON" in capsys.readouterr().err and not output.exists()
 
 
 @pytest.mark.parametrize(
@@ -141,15 +126,6 @@ def test_generate_writes_a_file_for_each_stage_and_material(tmp_path, capsys):
         "clay.terracotta.osl",
     } <= names
     assert set(capsys.readouterr().out.split()) == {str(tmp_path / name) for name in names}
-
-
-def test_generate_for_cycles_warns_of_what_it_approximates(tmp_path):
-    document = tmp_path / "qon.mtlx"
-    document.write_text(material('<oren_nayar_diffuse_bsdf name="lobe" type="BSDF"/>'))
-    options = ["--target", "osl", "--profile", "cycles", "--outputPath", tmp_path]
-    ended = run("generate", document, *options)
-    assert ended.returncode == PASSED
-    assert "look: Cycles has no closure for qualitative Oren-Nayar" in one_line(ended.stderr)
 
 
 @pytest.mark.parametrize("host", ["gl", "reference"])

@@ -3,7 +3,6 @@
 
 import json
 import os
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -13,7 +12,7 @@ import pytest
 from mxeon.cli import generate, library, main
 from mxeon.cli.batch import BatchResult, WorkerCrashed
 from mxeon.errors import FAILED, MISUSE, NOT_RUN, PASSED, InputError, NotRun, ShaderError
-from tests.support.command import CLAY, PLASTER, one_line, run
+from tests.support.command import CLAY, PLASTER, one_line
 from tests.support.documents import connected, material
 from tests.support.plans import keep_checks
 
@@ -53,22 +52,6 @@ def test_a_bug_shows_its_traceback_and_is_no_failed_check(monkeypatch, capsys, e
     assert printed.startswith("Traceback") and printed.endswith(f"{error}\n")
 
 
-def test_a_working_folder_that_may_not_be_entered_changes_nothing(tmp_path):
-    folder, drop = tmp_path / "closed", "-dac_override,-dac_read_search"
-    folder.mkdir()
-    drops = ["setpriv", f"--bounding-set={drop}", f"--inh-caps={drop}"] if os.geteuid() == 0 else []
-    ended = subprocess.run(
-        [*drops, "sh", "-c", 'chmod 0 . && exec "$@"', "sh", sys.executable, "-P", "-m", "mxeon"]
-        + ["generate", CLAY, "--target", "osl", "--workers", "1", "--outputPath", tmp_path / "out"],
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    folder.chmod(0o700)
-    assert (ended.returncode, ended.stderr) == (PASSED, "") and ended.stdout
-
-
 @pytest.mark.parametrize("arguments", (["check", "--host", "msl"], ["generate", "--target", "osl"]))
 def test_a_name_that_the_terminal_cannot_encode_loses_nothing(tmp_path, arguments):
     file = tmp_path / "t\xf6ne.mtlx"
@@ -106,21 +89,6 @@ def test_too_little_memory_for_numpy_is_one_line():
     )
 
 
-@pytest.mark.parametrize("count", [6, 8, 10, 12])
-def test_too_few_open_files_are_one_line(tmp_path, count):
-    command = [sys.executable, "-m", "mxeon", "generate", CLAY, "--target", "osl"]
-    ended = subprocess.run(
-        ["prlimit", f"--nofile={count}", *command, "--outputPath", tmp_path, "--workers", "1"],
-        env=os.environ | {"TMPDIR": str(tmp_path)},  # a folder cannot be removed without a file
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    if ended.returncode != PASSED:  # how many are needed is Python's business
-        assert ended.returncode in (MISUSE, NOT_RUN)
-        assert ended.stderr.count("\n") == 1 and "Too many open files" in ended.stderr
-
-
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -134,11 +102,6 @@ def test_a_file_name_that_is_no_text_is_one_line(arguments, capsys):
     assert main(arguments) == MISUSE
     rule = "mxeon: arguments must be UTF-8, file names too; got "
     assert one_line(capsys.readouterr().err).startswith(rule)
-
-
-def test_a_limit_beyond_all_memory_is_no_limit(tmp_path):
-    options = ["--target", "osl", "--outputPath", str(tmp_path), "--maxSize", "9" * 24]
-    assert main(["generate", PLASTER, *options]) == PASSED
 
 
 @pytest.mark.parametrize("buffered", ["", "1"], ids=["buffered", "unbuffered"])
@@ -237,29 +200,6 @@ def test_two_documents_of_one_name_do_not_overwrite_each_other(tmp_path, capsys)
     assert main(arguments) == MISUSE
     assert "must not overwrite" in one_line(capsys.readouterr().err)
     assert "color(0.1" in (out / "a.look.osl").read_text()
-
-
-def test_a_file_that_is_no_image_is_one_line(tmp_path):
-    (tmp_path / "sky.exr").write_text("no image")
-    output = tmp_path / "out.exr"
-    ended = run("render", PLASTER, "--environment", tmp_path / "sky.exr", "--output", output)
-    assert ended.returncode == MISUSE and not output.exists()
-    assert "must be an image that OpenImageIO reads" in one_line(ended.stderr)
-
-
-def test_a_folder_that_cannot_be_written_is_one_line(tmp_path):
-    (tmp_path / "file").write_text("")
-    folder = tmp_path / "file" / "out"
-    ended = run("generate", PLASTER, "--target", "osl", "--outputPath", folder)
-    assert ended.returncode == MISUSE and "must be accessible" in one_line(ended.stderr)
-
-
-def test_a_closed_output_is_no_obstacle(tmp_path):
-    command = f'exec "{sys.executable}" -m mxeon generate "{PLASTER}" --target osl --outputPath out'
-    for closed in (">&-", "<&- >&- 2>&-"):
-        ended = subprocess.run(["sh", "-c", f"{command} {closed}"], cwd=tmp_path, check=False)
-        assert ended.returncode == PASSED and list((tmp_path / "out").glob("*.osl"))
-        shutil.rmtree(tmp_path / "out")
 
 
 def test_in_a_batch_the_other_files_are_done(tmp_path, capsys):

@@ -108,17 +108,6 @@ def test_a_blocked_signal_comes_afterwards(number):
     assert ended.value.status == 128 + number and steps == ["whole"]
 
 
-def test_a_timer_of_the_caller_stays_the_callers():
-    heard = []
-    before = signal.signal(signal.SIGALRM, lambda *_: heard.append("caller"))
-    try:
-        with raise_signals():
-            signal.raise_signal(signal.SIGALRM)
-    finally:
-        signal.signal(signal.SIGALRM, before)
-    assert heard == ["caller"]
-
-
 def test_handlers_are_as_before_afterwards():
     before = [signal.getsignal(each) for each in ENDING]
     with raise_signals():
@@ -137,18 +126,3 @@ m.main()"""
     process = start(tmp_path, code=code)
     _, errors = process.communicate(timeout=DEADLINE)
     assert (process.returncode, errors) == (-signal.SIGINT, "")
-
-
-# Python's module of processes, whose import is interrupted, since mxeon's first import is of it.
-INTERRUPTED = """
-import os, runpy, signal, sys, types
-module = types.ModuleType("mxeon.jobs.processes")
-module.__getattr__ = lambda name: os.kill(os.getpid(), signal.SIGINT)
-sys.modules[module.__name__] = module
-runpy.run_module("mxeon", run_name="__main__")
-"""
-
-
-def test_an_interrupt_during_the_first_import_shows_no_traceback():
-    done = subprocess.run([sys.executable, "-P", "-c", INTERRUPTED], capture_output=True, text=True)
-    assert (done.returncode, done.stderr) == (-signal.SIGINT, "")

@@ -79,45 +79,6 @@ def test_the_policy_says_which_files_count(tmp_path):
     assert seen(file, outside=True) == {"b.png"}
 
 
-def test_every_attribute_is_read_as_xml_has_it(tmp_path):
-    hidden = """<a doc="value='" file="grid&amp;co.png"/>"""
-    text = f'<materialx version="1.39">{hidden}{FILE.format("grid.png")}</materialx>'
-    file = tmp_path / "a.mtlx"
-    file.write_bytes(text.encode("utf-16"))
-    texture(tmp_path / "grid.png")
-    texture(tmp_path / "grid&co.png")
-    assert seen(file) == {"grid.png", "grid&co.png"}
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        b"", b"<", b"\0", b"\xff\xfe", b'<?xml version="1.0" encoding="ebcdic"?><a value="x"/>',
-        b'<!DOCTYPE a [<!ENTITY b "c">]><a value="&b;"/>', b'<a value="' + b"x/" * 30_000 + b'"/>',
-    ],
-)  # fmt: skip
-def test_a_document_that_is_none_is_a_dependency_itself(tmp_path, text):
-    file = tmp_path / "a.mtlx"
-    file.write_bytes(text)
-    assert digests([file], Policy())[str(file)] != "" and seen(file) == set()
-
-
-def test_a_pipe_or_a_folder_has_no_digest(tmp_path):
-    os.mkfifo(tmp_path / "pipe.mtlx")
-    (tmp_path / "folder").mkdir()
-    found = digests([tmp_path / "pipe.mtlx", tmp_path / "folder"], Policy())
-    assert [found[str(tmp_path / name)] for name in ("pipe.mtlx", "folder")] == ["", ""]
-
-
-def test_the_code_and_the_libraries_are_dependencies():
-    found = digests([], Policy())
-    names = ["mxeon/jobs/pool.py", "eonlib/diffuse/eonlib_defs.mtlx"]
-    names += ["eonlib/genglsl/lib/eon.glsl", "eonlib/genosl/lib/eon.osl"]
-    names += ["MaterialX/libraries/pbrlib/pbrlib_defs.mtlx"]
-    assert all(len(found[name]) == 64 for name in names)
-    assert any(name.startswith("eonlib/genosl/cycles/") for name in found)
-
-
 @pytest.fixture
 def run(tmp_path, monkeypatch):
     """A folder with a short run on the gl host, and its document."""

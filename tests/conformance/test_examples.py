@@ -9,7 +9,6 @@ import OpenImageIO as oiio
 import pytest
 
 from mxeon.shaders.document.reading import read_document
-from mxeon.shaders.generation import generate
 from mxeon.shaders.library import examples_folder
 
 DOCUMENTS = sorted(examples_folder().glob("*.mtlx"))
@@ -33,13 +32,6 @@ def test_every_document_renders_all_its_materials_and_nothing_else(path):
     found = mx_gen.findRenderableElements(document)
     assert found
     assert found == document.getMaterialNodes()
-
-
-@every_document
-@pytest.mark.parametrize("target", ["glsl", "osl"])
-def test_every_material_becomes_a_shader(path, target):
-    materials = read_document(path).content.getMaterialNodes()
-    assert len(generate(path, target)) == len(materials)
 
 
 @pytest.fixture(scope="module")

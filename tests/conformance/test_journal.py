@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The journal of a run: nothing finished is lost or done twice, and nothing else counts as done."""
 
-import errno
 import json
 import os
 import resource
@@ -11,14 +10,13 @@ import sys
 import time
 from dataclasses import replace
 from io import BytesIO
-from multiprocessing import active_children
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from mxeon.conformance.run import check, read_run, to_run
-from mxeon.conformance.run.journal import JOURNAL, LOCK, PREVIOUS, Journal, read_journal
+from mxeon.conformance.run.journal import JOURNAL, LOCK, PREVIOUS, read_journal
 from mxeon.shaders.library import examples_folder
 from tests.support.journals import FILES, FINDINGS, PIXELS, PLAN, TASKS, journal
 from tests.support.plans import keep_checks
@@ -89,15 +87,6 @@ def refused(folder):
     return str(error.value)
 
 
-@pytest.mark.parametrize(
-    "line", [b"", b"\0" * 9, b"[" * 100_000, b"1" * 5000, b"\xff", b'{"task": 0}']
-)
-def test_a_line_that_is_no_record_is_refused(tmp_path, line):
-    with kept(tmp_path, 1).open("ab") as file:
-        file.write(line + b"\n")
-    assert "line 3 is of another" in refused(tmp_path)
-
-
 @pytest.mark.parametrize("text", ["", "{}\n", "[]\n", '{"format": 0}\n', "\0\n", '{"format": 6}\n'])
 def test_what_is_no_journal_is_refused(tmp_path, text):
     (tmp_path / JOURNAL).parent.mkdir()
@@ -127,19 +116,6 @@ def test_a_line_that_mxeon_does_not_write_is_refused(tmp_path, change):
     change(record)
     path.write_bytes(header + json.dumps(record).encode() + b"\n")
     assert "line 2" in refused(tmp_path)
-
-
-@pytest.mark.parametrize("name", ["../a.npy", "\0", ""])
-def test_a_picture_elsewhere_does_not_count(tmp_path, name):
-    path = kept(tmp_path, 1)
-    header, line = path.read_bytes().splitlines(keepends=True)
-    record = json.loads(line)
-    record["findings"]["pictures"][0]["image"] = name
-    path.write_bytes(header + json.dumps(record).encode() + b"\n")
-    try:
-        assert read_journal(tmp_path)[1] == {}
-    except ValueError as error:
-        assert "line 2 is of another" in str(error)
 
 
 @pytest.mark.parametrize(
@@ -190,31 +166,6 @@ def test_one_folder_has_one_writer(tmp_path):
         journal(tmp_path).__enter__()
 
 
-@pytest.mark.parametrize("name", [JOURNAL, "journal/*.npy"])
-def test_a_pipe_in_place_of_a_file_of_the_journal_blocks_nobody(tmp_path, name):
-    kept(tmp_path, 0)
-    (path,) = tmp_path.glob(name)
-    path.unlink()
-    os.mkfifo(path)
-    if name == JOURNAL:
-        with pytest.raises(OSError, match="not a regular file"):
-            read_journal(tmp_path)
-    else:
-        assert read_journal(tmp_path)[1] == {}
-
-
-def test_pictures_are_on_disk_before_the_line_that_names_them(tmp_path, monkeypatch):
-    synced, fsync = [], os.fsync
-    monkeypatch.setattr(
-        os, "fsync", lambda file: synced.append(os.readlink(f"/proc/self/fd/{file}")) or fsync(file)
-    )
-    with journal(tmp_path) as written:
-        synced.clear()
-        written.add(0, FINDINGS)
-    suffixes = [Path(path).suffix for path in synced]
-    assert suffixes == [".npy", "", ".jsonl"]  # the picture, its name, the line
-
-
 def test_a_full_disk_loses_nothing_that_was_finished(tmp_path):
     with journal(tmp_path) as written:
         written.add(0, FINDINGS)
@@ -232,16 +183,6 @@ def test_a_full_disk_loses_nothing_that_was_finished(tmp_path):
         assert (tmp_path / JOURNAL).stat().st_size == size
         written.add(1, FINDINGS)
     assert list(read_journal(tmp_path)[1]) == [0, 1]
-
-
-def test_processes_end_with_a_run_that_cannot_be_kept(tmp_path, monkeypatch):
-    keep_checks(monkeypatch, "value")
-    monkeypatch.setattr(Journal, "add", lambda *_: Path("/dev/full").write_text("."))
-    before = set(active_children())
-    with pytest.raises(OSError) as error:
-        check([EXAMPLE], ["gl"], workers=1, folder=tmp_path, nodes=["common"])
-    assert set(active_children()) <= before  # while the error still holds what was under way
-    assert error.value.errno == errno.ENOSPC
 
 
 KEPT = ("value", "reciprocity", "curve", "picture")

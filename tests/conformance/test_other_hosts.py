@@ -59,10 +59,3 @@ def test_a_host_has_the_verdict_that_is_known(judged, host, library, check, titl
     result = judged(check, title, host, library)
     assert result.verdict == verdict and words in result.diagnosis + result.reason
     assert verdict == NOT_RUN or not result.control or result.control.caught
-
-
-def test_cycles_names_the_closures_that_it_lacks(hosts):
-    answers = hosts("cycles").closures()
-    assert [name for name, reason in answers.items() if reason] == [
-        *("translucent_bsdf", "chiang_hair_bsdf")
-    ]

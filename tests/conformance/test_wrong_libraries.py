@@ -68,18 +68,6 @@ def test_a_wrong_definition_is_told_from_the_specification(judged, copy, old, ne
     assert found.verdict == FAILED and words in found.diagnosis
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "words"),
-    [
-        (f'node="{EON}" bsdf="R"', f'node="{EON}" bsdf="RT"', "bsdf is RT; mxeon says R"),
-        (f'node="{EON}"', 'node="eon"', f"the category is eon; mxeon says {EON}"),
-    ],
-)  # fmt: skip
-def test_a_definition_of_another_category_or_lobe_is_named(judged, copy, old, new, words):
-    results = judged.texts("definition", copy(DEFINITIONS, old, new))
-    assert results[f"{EON}, definition"].diagnosis == words
-
-
 def test_an_input_of_another_type_is_not_run_and_says_so(judged, copy):
     narrow = 'name="weight" type="float" value="1.0" uimin="0.0" uimax="1.0"'
     wide = narrow.replace("float", "color3").replace('.0"', '.0, 0.0, 0.0"')
@@ -87,12 +75,6 @@ def test_an_input_of_another_type_is_not_run_and_says_so(judged, copy):
     found = judged("value", EON, "gl", library)
     assert found.verdict == NOT_RUN
     assert "input weight must have the type float" in found.reason
-
-
-def test_a_range_that_pbrlib_does_not_state_may_be_missing_in_its_node_alone(judged, copy):
-    results = judged.texts("definition", copy(DEFINITIONS, ' uimin="0.0" uimax="1.0"', ""))
-    wrong = {title for title, each in results.items() if each.verdict == FAILED}
-    assert wrong == {"eon_diffuse_bsdf, definition"}
 
 
 # --- closures -----------------------------------------------------------------------------------
@@ -138,21 +120,6 @@ def test_a_wrong_closure_is_told_by_its_argument(judged, copy, file, old, new, t
     assert words in wrong[f"{ON}, {title}"]
 
 
-@pytest.mark.parametrize(
-    "subject, file, old, new, title",
-    [
-        (OFF, MDL, "color(0.0)", "color(1.0)", "mdl"),
-        (OFF, MDL, FLAG + " ?", "!" + FLAG + " ?", "mdl"),
-        (EON, OSL, KEYWORD + ", 1", KEYWORD + ", 0", "osl"),
-        (EON, MDL, "28.0", "27.0", "mdl"),
-    ],
-)
-def test_the_closures_of_every_subject_are_read(judged, copy, subject, file, old, new, title):
-    results = judged.texts("closure", copy(file, old, new)).items()
-    wrong = {each for each, result in results if result.verdict == FAILED}
-    assert {each for each in wrong if each.startswith(subject)} == {f"{subject}, {title}"}
-
-
 def test_a_closure_that_is_defined_elsewhere_is_not_run(judged, copy):
     library = copy(MDL, "df::weighted_layer", "mine::layered")
     result = judged.texts("closure", library)[f"{EON}, mdl"]
@@ -187,13 +154,6 @@ def test_the_expression_of_a_lobe_is_bounded_and_is_never_executed(
 ):
     result = judged.texts("closure", copy(MDL, old, new))[f"{EON}, mdl"]
     assert result.verdict == verdict and words in (result.reason or result.diagnosis)
-
-
-def test_a_sum_of_closures_and_a_function_of_a_library_are_not_run(judged, copy):
-    closure = "oren_nayar_diffuse_bsdf({{normal}}, {{color}}, {{roughness}})"
-    library = copy(OSL, "{{weight}} * ", f"{closure} + {{{{weight}}}} * ")
-    result = judged.texts("closure", library)[f"{EON}, osl"]
-    assert result.reason == "a sum of closures is not supported"
 
 
 # --- shader functions ---------------------------------------------------------------------------
@@ -246,21 +206,6 @@ def test_functions_that_differ_in_osl_are_named(judged, copy, file, old, new, wo
     assert result.verdict == FAILED and result.diagnosis == f"{words} is different in OSL"
 
 
-def test_a_comment_may_differ_between_the_languages(judged, copy):
-    library = copy("genosl/lib/eon.osl", "// A_F of", "// Albedo's A of")
-    (result,) = judged.texts("languages", library).values()
-    assert result.verdict == PASSED
-
-
-def test_the_functions_of_a_library_are_its_own(copy):
-    def libraries(*chosen):
-        tasks = make_plan([], ["gl"], chosen).tasks
-        return [task.library for task in tasks if task.check == "twins"]
-
-    assert libraries("stock") == []
-    assert libraries("eonlib", copy()) == ["eonlib", copy()]
-
-
 # --- inversion nodes ----------------------------------------------------------------------------
 
 
@@ -282,16 +227,6 @@ def test_a_wrong_inversion_node_fails_there_and_back(judged, copy, node, old, ne
     assert {result.verdict for result in found} == {FAILED}
     expected = "NaN or infinity" if "invert" in old else f"the equations of {node}"
     assert all(expected in result.diagnosis for result in found)
-
-
-def test_an_inversion_node_that_is_the_other_is_called_so(judged, copy):
-    library = copy(GRAPHS, 'nodedef="ND_eon_rho_from_albedo_avg"', 'nodedef=""')
-    library = copy(
-        GRAPHS, 'nodedef="ND_eon_rho_from_albedo_normal"', 'nodedef="ND_eon_rho_from_albedo_avg"'
-    )
-    result = judged("output", INVERSIONS[1], library=library)
-    assert result.verdict == FAILED
-    assert result.diagnosis.startswith("best match: eon_rho_from_albedo_normal (rms ")
 
 
 # --- documents on hosts without pictures --------------------------------------------------------

@@ -41,11 +41,6 @@ def test_a_template_is_filled_and_nothing_else_changes(tables):
     assert "|`scatter_mode`      |           |string |R            |R, T, RT       |" in text
 
 
-def test_the_definitions_of_eonlib_have_descriptions():
-    table = library_tables("eonlib")["oren_nayar_diffuse_bsdf"]
-    assert all(port.description for port in table if port.name != "out")
-
-
 def test_an_unknown_node_is_named_with_its_line(tables):
     with pytest.raises(DocumentError, match="line 2: @MX_TABLE_no_such_node@ must name a node"):
         fill("text\n@MX_TABLE_no_such_node@\n", tables)
@@ -63,10 +58,6 @@ def test_a_node_of_several_types_refers_to_the_first_port(tables):
     assert compare(read_tables(f"# `mix`\n\n{text}\n"), tables) == ()
 
 
-def test_the_same_in_other_words_is_no_difference(tables):
-    assert differences(SHEEN, tables) == {}
-
-
 @pytest.mark.parametrize(
     "old, new, port, subject",
     [
@@ -82,13 +73,6 @@ def test_the_same_in_other_words_is_no_difference(tables):
 def test_a_difference_is_noticed(tables, old, new, port, subject):
     assert old in SHEEN
     assert differences(SHEEN.replace(old, new), tables)[port] == subject
-
-
-def test_a_node_that_the_library_lacks_is_a_difference(tables):
-    text = SHEEN.replace("sheen_bsdf", "velvet_bsdf")
-    assert [str(each) for each in compare(read_tables(text), tables)] == [
-        "velvet_bsdf: only the specification has this node"
-    ]
 
 
 @pytest.mark.parametrize("text", ["no table", "|Channel|\n|-|\n|X|\n", SHEEN + SHEEN, SHEEN[18:]])

@@ -45,14 +45,6 @@ def test_a_view_of_other_values_everywhere_comes_back(page):
     assert again == CHANGED
 
 
-def test_a_color_that_is_kept_follows_from_the_one_that_is_wanted(page):
-    view = page.evaluate("mxeon.from_address('keep=1&roughness=0.5&wanted=0.8,0.4,0.1')")
-    color = page.evaluate(
-        "[0.8, 0.4, 0.1].map(c => mxeon.models.eon_rho_from_albedo_normal(c, 0.5))"
-    )
-    assert view["keep"] and view["color"] == color
-
-
 @pytest.mark.parametrize(
     "part",
     [

@@ -14,18 +14,16 @@ from mxeon.cli.explore import MATERIALS
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Result
 from mxeon.errors import MISUSE, NotRun
 from mxeon.errors import PASSED as PASSED_STATUS
-from mxeon.explorer import PARAGRAPH, TEXTS, documents, page, page_data
+from mxeon.explorer import PARAGRAPH, TEXTS, page, page_data
 from mxeon.explorer.data import Models
 from mxeon.explorer.documents import document_sources
-from mxeon.explorer.sources import RENDERERS, measured_models
+from mxeon.explorer.sources import measured_models
 from mxeon.hosts.gl import Host
-from mxeon.hosts.textures import read_texture
 from mxeon.io.images import write_image
-from mxeon.models.table import KNOWN_DEFECTS, MODELS, model
+from mxeon.models.table import model
 from mxeon.shaders.library import examples_folder
-from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, material_text
+from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 from tests.explorer.browser import judged, opened, until
-from tests.support.documents import material
 
 LARGEST = 2 * 2**20  # bytes of the page without documents
 CLAY = str(examples_folder() / "clay.mtlx")
@@ -53,15 +51,6 @@ def test_the_page_is_one_small_file_that_names_no_other():
     assert "default-src 'none'" in text and "%" not in text.split("<style>")[0]
 
 
-def test_the_page_offers_every_model_and_every_defect():
-    sources = page_data().sources
-    models = {source.model for source in sources if source.kind == "model"}
-    defects = {row.name for row in KNOWN_DEFECTS}
-    assert models == {row.name for row in MODELS} | defects
-    assert {name for _, name, _, _ in RENDERERS} >= defects
-    assert len({source.id for source in sources}) == len(sources)
-
-
 def test_the_command_writes_documents_of_both_libraries(tmp_path, capsys):
     out = tmp_path / "new" / "page.html"
     assert main(["explore", CLAY, "--output", str(out)]) == PASSED_STATUS
@@ -74,29 +63,6 @@ def test_the_command_writes_documents_of_both_libraries(tmp_path, capsys):
     ]
     for source in sources:
         assert source["actual"]["on"] == ("eon" if "eonlib" in source["id"] else "eon_clamped")
-
-
-def test_inputs_have_the_ranges_of_their_definitions():
-    (source, *_) = document_sources(str(examples_folder() / "standard_surface_rough_base.mtlx"))
-    ports = {port.path.rpartition("/")[2]: port for port in source.inputs}
-    assert (ports["base"].min, ports["base"].max, ports["base"].label) == (0.0, 1.0, "Base")
-    assert (ports["specular_IOR"].min, ports["specular_IOR"].max) == (0.0, 3.0)  # uimin, uisoftmax
-    assert ports["base_color"].value == (0.5, 0.24, 0.13)
-    assert source.meant is None and source.controls.color == ""
-
-
-@pytest.mark.parametrize("inputs", [{"normal": (0.0, 0.0, 1.0)}, {"weight": 0.5}], ids=str)
-def test_a_node_with_more_than_color_and_roughness_is_not_one_model(inputs):
-    [plain], [source] = (document_sources_of(material_text(EON, each)) for each in ({}, inputs))
-    assert plain.meant is not None and source.meant is None
-
-
-def document_sources_of(text):
-    from mxeon.explorer.documents import shader_source
-    from mxeon.shaders.generation import generate
-
-    shaders = generate(text, "essl", lights=True)
-    return [shader_source(each, text, "x", "x", "x", "eonlib") for each in shaders]
 
 
 @pytest.mark.parametrize(
@@ -225,27 +191,6 @@ def test_a_textured_document_is_judged_as_check_does(browser, tmp_path):
         judged(page, "right", "wrong")
 
 
-@pytest.mark.parametrize(
-    "lobe, kind, words",
-    [
-        ('<subsurface_bsdf name="lobe" type="BSDF"/>', "correct", "Within "),
-        (
-            '<noise2d name="n" type="float"/><sheen_bsdf name="lobe" type="BSDF">'
-            '<input name="roughness" type="float" nodename="n"/></sheen_bsdf>',
-            "unknown",
-            "No reference: node 'lobe': roughness must lie in [0, 1]",
-        ),
-    ],
-    ids=["integral", "outside"],
-)
-def test_a_document_without_a_table_says_what_check_says(lobe, kind, words, tmp_path):
-    file = tmp_path / "a.mtlx"
-    file.write_text(material(lobe))
-    (source, _) = document_sources(str(file))
-    assert source.reference is None and source.checked.kind == kind
-    assert source.checked.text.startswith(words)
-
-
 def test_more_materials_than_a_page_may_hold_are_refused(tmp_path, capsys):
     arguments = ["explore", CLAY, "--workers", "0", "--output", str(tmp_path / "out.html")]
     assert main([*arguments, "--maxShaders", "0"]) == MISUSE
@@ -279,17 +224,6 @@ def textured(folder, sizes, uses=1):
     return str(path)
 
 
-def test_images_are_read_once_and_smaller_the_more_a_page_has_of_them(tmp_path, monkeypatch):
-    reads = []
-    monkeypatch.setattr(documents, "ALL_IMAGES", 4 * 32**2)
-    monkeypatch.setattr(
-        documents, "read_texture", lambda path: reads.append(path) or read_texture(path)
-    )
-    sources = document_sources(textured(tmp_path, (64, 8, 64, 64), 3))
-    sides = sorted({(port.image.width) for each in sources for port in each.inputs if port.image})
-    assert sides == [8, 32] and len(reads) == 4
-
-
 def test_what_a_node_is_comes_from_its_values(monkeypatch):
     assert measured_models("stock", OREN_NAYAR) == Models("eon_clamped", "qon_fitted")
     assert page_data().judged
@@ -315,3 +249,12 @@ def test_without_the_host_no_material_is_called_a_model(monkeypatch):
         assert not data.judged
     finally:
         measured_models.cache_clear()
+
+
+def test_inputs_have_the_ranges_of_their_definitions():
+    (source, *_) = document_sources(str(examples_folder() / "standard_surface_rough_base.mtlx"))
+    ports = {port.path.rpartition("/")[2]: port for port in source.inputs}
+    assert (ports["base"].min, ports["base"].max, ports["base"].label) == (0.0, 1.0, "Base")
+    assert (ports["specular_IOR"].min, ports["specular_IOR"].max) == (0.0, 3.0)  # uimin, uisoftmax
+    assert ports["base_color"].value == (0.5, 0.24, 0.13)
+    assert source.meant is None and source.controls.color == ""

@@ -52,18 +52,6 @@ def test_every_lobe_is_judged_by_its_values(page, key):
     assert kinds(page) == ["correct", STOCK[key]]
 
 
-def test_a_verdict_names_what_the_other_one_is(page):
-    choose(page, "lobe/conductor")
-    until(page, JUDGED)
-    text = page.locator(".side.right .verdict").inner_text()
-    assert "F at the half vector" in text and "leaves this open" in text
-    choose(page, "lobe/film_schlick")
-    until(page, JUDGED)
-    assert (
-        "half of the substrate's reflectance" in page.locator(".side.right .verdict").inner_text()
-    )
-
-
 @pytest.fixture(scope="module")
 def mistaken(tmp_path_factory):
     """Address of a page whose reference of sheen is a hundredth too bright."""

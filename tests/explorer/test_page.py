@@ -123,17 +123,6 @@ def test_a_reader_learns_which_is_eon_and_by_how_much_the_other_is_wrong(page):
     assert error == f"+{here:g} too bright" and here < anywhere < 0.4
 
 
-def test_a_reader_learns_which_color_to_enter(page):
-    answer = page.locator(".answer output")
-    assert answer.inner_text() == "(0.836, 0.460, 0.125)"
-    choose(page, "Seen", "on average")
-    shows(page, average=True)
-    assert answer.inner_text() == "(0.828, 0.445, 0.118)"
-    fill(page, "To look like, red", 0.5)
-    shows(page, wanted=[0.5, 0.4, 0.1])
-    assert answer.inner_text() == "(0.546, 0.445, 0.118)"
-
-
 def test_paths_have_samplers_and_count_their_samples(page):
     page.get_by_label("Path tracing, with light between surfaces").check()
     fill(page, "Samples per pixel, number", 2)
@@ -144,27 +133,6 @@ def test_paths_have_samplers_and_count_their_samples(page):
         page, "document.querySelector('.picture .status').textContent.startsWith('2 of 2 samples')"
     )
     assert "noise" not in page.locator(".picture .status").inner_text()  # of 16 samples or more
-
-
-def test_the_scale_of_a_difference_is_written_and_drawn(page):
-    choose(page, "Compare", "Difference")
-    with recolored(page):
-        fill(page, "Scale, number", -2)
-    shows(page, scale=0.01)
-    assert "−0.01, B brighter" in page.locator(".legend").inner_text()
-
-
-def test_keys_choose_the_comparison_and_show_the_other_material(page):
-    page.locator("h1").click()
-    page.keyboard.press("d")
-    shows(page, comparison="difference")
-    page.keyboard.press("f")
-    shows(page, comparison="flicker", shown="right")
-    with redrawn(page):
-        page.get_by_role("button", name="Show A").click()
-    shows(page, shown="left")
-    page.keyboard.press("w")
-    shows(page, comparison="wipe")
 
 
 def in_sight(page):
@@ -185,14 +153,6 @@ def drag(page, start, end):
     page.mouse.move((x0 + x1) / 2, (y0 + y1) / 2)
     page.mouse.move(x1, y1)
     page.mouse.up()
-
-
-def test_the_line_is_dragged_and_moved_by_keys(page):
-    with redrawn(page):
-        drag(page, (0.5, 0.2), (0.25, 0.2))
-    assert abs(state(page)["wipe"] - 0.25) < 0.01
-    page.get_by_role("slider", name="Wipe between A and B").press("ArrowRight")
-    assert abs(state(page)["wipe"] - 0.27) < 0.01
 
 
 def test_the_light_is_dragged_and_moved_by_keys(page):
@@ -272,11 +232,6 @@ CHANGED = """async () => {
 }"""
 
 
-def test_a_value_of_another_view_is_never_shown(page):
-    values_read(page)
-    assert page.evaluate(CHANGED) == ["measuring…", "measuring…"]
-
-
 def test_the_copied_document_is_the_material_in_sight(page):
     show(page, roughness=0.25, color=[0.5, 0.25, 0.125])
     page.locator(".side.left").get_by_label("energy_compensation").uncheck()
@@ -284,6 +239,38 @@ def test_the_copied_document_is_the_material_in_sight(page):
     values = {port.name: port.value for port in mxeon.generate(text, "essl")[0].inputs}
     assert values["lobe_color"] == (0.5, 0.25, 0.125) and values["lobe_roughness"] == 0.25
     assert values["lobe_energy_compensation"] is False
+
+
+def test_a_reader_learns_which_color_to_enter(page):
+    answer = page.locator(".answer output")
+    assert answer.inner_text() == "(0.836, 0.460, 0.125)"
+    choose(page, "Seen", "on average")
+    shows(page, average=True)
+    assert answer.inner_text() == "(0.828, 0.445, 0.118)"
+    fill(page, "To look like, red", 0.5)
+    shows(page, wanted=[0.5, 0.4, 0.1])
+    assert answer.inner_text() == "(0.546, 0.445, 0.118)"
+
+
+def test_keys_choose_the_comparison_and_show_the_other_material(page):
+    page.locator("h1").click()
+    page.keyboard.press("d")
+    shows(page, comparison="difference")
+    page.keyboard.press("f")
+    shows(page, comparison="flicker", shown="right")
+    with redrawn(page):
+        page.get_by_role("button", name="Show A").click()
+    shows(page, shown="left")
+    page.keyboard.press("w")
+    shows(page, comparison="wipe")
+
+
+def test_the_line_is_dragged_and_moved_by_keys(page):
+    with redrawn(page):
+        drag(page, (0.5, 0.2), (0.25, 0.2))
+    assert abs(state(page)["wipe"] - 0.25) < 0.01
+    page.get_by_role("slider", name="Wipe between A and B").press("ArrowRight")
+    assert abs(state(page)["wipe"] - 0.27) < 0.01
 
 
 def test_the_link_is_the_address_of_the_view(page):

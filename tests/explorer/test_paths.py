@@ -81,16 +81,6 @@ def test_means_of_paths_are_albedos(stage, sources, name, sampler):
     assert np.abs(off + 0.05).max() > error
 
 
-def test_exact_sampling_has_less_noise_than_cltc_and_cosine(stage, sources):
-    uniform = {"light": None, "surroundings": "uniform"}
-    noise = {}
-    for sampler in ("exact", "cltc", "cosine"):
-        status = traced(stage, side(sources["eon"], sampler=sampler), **uniform)["samples"]
-        noise[sampler] = status["noise"]["left"]
-        assert status["noise"]["right"] == noise[sampler]  # of the same paths
-    assert 5.0 * noise["exact"] < noise["cltc"] < noise["cosine"]
-
-
 def test_what_has_no_model_says_that_it_cannot_be_traced(stage):
     brick = stage.evaluate("mxeon.data.sources.find(each => each.id.includes('brick')).id")
     status = traced(stage, side(brick), samples=1)

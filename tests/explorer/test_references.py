@@ -4,14 +4,11 @@
 import numpy as np
 import pytest
 
-from mxeon.explorer.documents import document_sources
 from mxeon.explorer.references import SEEN, WI, WO, pairs, reference_of, views
 from mxeon.explorer.sources import MATERIALS
 from mxeon.models import eon_brdf
 from mxeon.models.diffuse.albedo import eon_albedo_dir
-from mxeon.shaders.document.notes import DocumentWarning
 from mxeon.shaders.generation import generate
-from mxeon.shaders.library import examples_folder
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 
 # What is wrong with them shows under other lobes, or with a normal that leans.
@@ -54,18 +51,3 @@ def test_the_values_are_those_of_the_model():
     white = eon_albedo_dir(SEEN[:, 2], COLOR, 0.7)
     assert np.allclose(np.reshape(reference.white, (-1, 3)), white, rtol=5e-7)
     assert len(pairs()) == len(WO) and len(views()) == len(SEEN)
-
-
-@pytest.mark.parametrize(
-    ("name", "known"), [("openpbr_rough_base", True), ("velvet", True), ("brick", False)]
-)
-def test_a_document_has_a_reference_where_models_cover_it(name, known):
-    for source in document_sources(str(examples_folder() / f"{name}.mtlx")):
-        assert (source.reference is not None) == known
-
-
-def test_a_value_outside_of_a_models_domain_has_no_reference():
-    text = material_text(OREN_NAYAR, {"color": (2.0, 0.0, 0.0)})
-    with pytest.warns(DocumentWarning, match="must lie in"):
-        shader = generate(text, "essl", lights=True)[0]
-    assert reference_of(shader) is None

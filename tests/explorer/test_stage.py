@@ -4,17 +4,14 @@
 import numpy as np
 import pytest
 
-from mxeon.conformance.pictures.tolerances import PLAIN, TEXTURED
+from mxeon.conformance.pictures.tolerances import PLAIN
 from mxeon.explorer import documents
 from mxeon.models.core.quadrature import albedo_dir_quadrature
 from mxeon.models.table import KNOWN_DEFECTS, MODELS, model
-from mxeon.shaders.library import examples_folder
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 from mxeon.shaders.scene import VIEW, Scene, local_directions, sphere
-from tests.explorer.browser import until
 from tests.explorer.stage import (
     LIGHTS,
-    LIMIT,
     RHO,
     ROUGHNESS,
     model_sources,
@@ -139,22 +136,6 @@ def test_the_flag_and_the_inputs_of_a_document_reach_its_shader(stage):
     assert np.abs(picture(stage) - 2.0 * half).max() < TWIN_VALUE < half.max()
 
 
-@pytest.mark.parametrize(("name", "library"), [("brick", "eonlib"), ("mixed_lobes", "stock")])
-def test_pixels_of_documents_are_those_of_the_gl_host(stage, gl, name, library):
-    shader = gl.compile(str(examples_folder() / f"{name}.mtlx"), library=library)[0]
-    find = "([name, library]) => mxeon.data.sources.find(each => each.kind === 'shader' && "
-    find += "each.group.startsWith(name) && each.library === library)"
-    source = stage.evaluate(find, [name, library])
-    inputs = {port["name"]: port["value"] for port in source["inputs"] if port["value"] is not None}
-    view(stage, side(source["id"]), inputs={source["id"]: inputs})
-    measured = picture(stage)
-    scene = Scene("side", light=towards("side"), size=len(measured))
-    expected = gl.picture(shader, scene)
-    tolerance = TEXTURED if name == "brick" else PLAIN
-    assert error(measured, expected) < tolerance.value
-    assert error(measured, 1.1 * expected) > tolerance.value
-
-
 @pytest.mark.parametrize("name", ["studio", "sky", "window"])
 def test_surroundings_are_an_irradiance_times_the_albedo(stage, sources, name):
     view(stage, side(sources["lambert"]), light=None, surroundings=name, color=[1, 1, 1])
@@ -168,38 +149,3 @@ def test_surroundings_are_an_irradiance_times_the_albedo(stage, sources, name):
         # Both look the map up with the same expressions.
         assert np.abs(measured - expected).max() < TWIN_VALUE * irradiance.max()
         assert np.abs(measured - irradiance[points.mask]).max() > 0.05
-
-
-@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.name)
-def test_single_values_are_those_of_numpy(stage, sources, row):
-    patch = {"left": side(sources[row.name]), "right": side("shader/eonlib")}
-    patch |= {"color": list(RHO), "roughness": ROUGHNESS}
-    random = np.random.default_rng(7)
-    vectors = random.normal(size=(2, 12, 3))
-    wo, wi = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
-    wo[:, 2], wi[:, 2] = abs(wo[:, 2]), abs(wi[:, 2])
-    wo[0] = 0.0, 0.0, 1.0
-    pairs = [{"wo": list(o), "wi": list(i)} for o, i in zip(wo, wi, strict=True)]
-    until(stage, f"{EVALUATE}.every(each => each)", [patch, pairs], seconds=LIMIT)
-    answers = stage.evaluate(EVALUATE, [patch, pairs])
-    for name, compared in (("left", row), ("right", model("eon"))):
-        measured = np.array([answer[name] for answer in answers])
-        expected = np.pi * wi[:, 2:] * compared.brdf(wo, wi, RHO, *parameter_of(compared))
-        assert np.abs(measured - expected).max() < TWIN_VALUE
-        assert np.abs(measured - expected[::-1]).max() > TWIN_VALUE
-
-
-def test_a_pick_has_the_directions_of_its_point(stage):
-    view(stage, side("shader/eonlib"))
-    size, diameter = stage.evaluate("[mxeon.stage.size(), mxeon.stage.diameter()]")
-    x, y = 0.5 + 0.3 * diameter / size["width"], 0.5 - 0.2 * diameter / size["height"]
-    pick = stage.evaluate("([x, y]) => mxeon.stage.pick(x, y, mxeon.state())", [x, y])
-    normal = np.array(pick["normal"])
-    assert np.abs(normal[:2] - (0.6, 0.4)).max() < 1.5 / diameter
-    wo = local_directions(normal[None], VIEW)[0]
-    wi = local_directions(normal[None], towards("side"))[0]
-    assert abs(pick["wo"][2] - wo[2]) < 1e-6
-    assert abs(pick["wi"][2] - wi[2]) < 1e-6
-    assert abs(np.dot(pick["wo"], pick["wi"]) - np.dot(wo, wi)) < 1e-6
-    assert abs(pick["wo"][1]) < 1e-15
-    assert stage.evaluate("mxeon.stage.pick(0.01, 0.01, mxeon.state())") is None

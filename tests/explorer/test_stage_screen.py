@@ -78,19 +78,6 @@ def test_the_screen_shows_the_radiance_with_its_exposure(stage, sources, tmp_pat
     assert np.abs(shown - expected[:, ::-1])[kept].max() > STEPS
 
 
-def test_flicker_shows_one_side_and_the_wipe_splits_them(stage, sources):
-    black = {"light": None, "surroundings": "uniform", "comparison": "flicker"}
-    for shown in ("left", "right"):
-        view(stage, side(sources["fon_white_lobe"]), side(sources["qon"]), shown=shown, **black)
-        assert (frame(stage) == frame(stage, shown)).all()
-    view(stage, side(sources["fon_white_lobe"]), side(sources["qon"]), wipe=0.25)
-    whole, left, right = frame(stage), frame(stage, "left"), frame(stage, "right")
-    edge = whole.shape[1] // 4
-    assert (whole[:, : edge - 1] == left[:, : edge - 1]).all()
-    assert (whole[:, edge + 1 :] == right[:, edge + 1 :]).all()
-    assert (left != right).any()
-
-
 def test_a_lost_context_is_restored_with_the_same_picture(browser, address):
     with opened_stage(browser, address, allowed=("[.WebGL",)) as page:
         page.evaluate(LISTEN)

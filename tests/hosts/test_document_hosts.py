@@ -96,13 +96,6 @@ def test_an_enumerated_input_is_said_not_to_be_read(on_storm, gl):
     assert gl.unread(shader) == ""
 
 
-def test_a_document_with_such_an_input_has_to_be_finite(on_storm, reference):
-    velvet = examples_folder() / "velvet.mtlx"
-    results, _, notes = judge_document(velvet, on_storm, reference, "eonlib")
-    assert {(each.check, each.verdict) for each in results} == {("finite", PASSED)}
-    assert any("takes the default of an enumerated input" in text for text, _ in notes)
-
-
 def test_a_shader_without_a_material_is_shown_by_materialx_alone(hosts):
     graph = node_text("UsdPreviewSurface", "surfaceshader", "shading", "")
     text = f'<materialx version="1.39">{graph}<output name="out" type="surfaceshader" nodename="shading"/></materialx>'
@@ -114,12 +107,6 @@ def test_a_shader_without_a_material_is_shown_by_materialx_alone(hosts):
         else:
             with pytest.raises(NotRun, match="^storm: element 'out' must be a material, as USD"):
                 host.picture(shader, SMALL)
-
-
-def test_an_image_around_the_sphere_is_refused(host, tmp_path):
-    [shader, *_] = host.compile(DOCUMENT)
-    with pytest.raises(NotRun, match="environment must be uniform; got an image"):
-        host.picture(shader, replace(FURNACE, environment=tmp_path / "sky.exr"))
 
 
 def test_stock_is_wrong_from_behind(host, judged):

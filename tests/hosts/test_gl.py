@@ -9,18 +9,16 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
-from mxeon.conformance.reference import Host as Reference
 from mxeon.errors import NotRun
 from mxeon.hosts import fragment, open_host
 from mxeon.hosts.textures import irradiance, read_latlong
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.generation import generate
-from mxeon.shaders.nodes import EON, OREN_NAYAR, document_text, material_text
+from mxeon.shaders.nodes import EON, OREN_NAYAR, material_text
 from mxeon.shaders.scene import FRONT, FURNACE, SCENES, Scene, sphere
 from mxeon.shaders.shader_ball import shader_ball
-from tests.support.cases import directions_32
 from tests.support.documents import material
-from tests.support.tolerances import MICROFACET_VALUE, PICTURE
+from tests.support.tolerances import PICTURE
 
 SIZE = 96
 ROUGH = '<input name="roughness" type="float" value="0.9"/>'
@@ -75,14 +73,6 @@ def test_a_closed_host_takes_no_program_from_the_next():
     assert np.array_equal(before, after)
 
 
-def test_light_from_the_right_lights_the_right_and_from_above_the_top(gl):
-    right = picture(gl, LOBES["eon"], Scene("right", light=(1.0, 0.0, 0.0)))
-    above = picture(gl, LOBES["eon"], Scene("above", light=(0.0, 1.0, 0.0)))
-    half = SIZE // 2
-    assert right[:, half:].any() and not right[:, :half].any()
-    assert above[:half].any() and not above[half:].any()
-
-
 def test_a_texture_stands_upright(gl, reference, tmp_path):
     texels = np.zeros((8, 16, 3), dtype=np.float32)
     texels[:4, :, 0], texels[4:, :, 2] = 0.9, 0.6  # red above, blue below
@@ -109,69 +99,7 @@ def test_an_environment_image_lights_by_its_irradiance(gl, tmp_path):
     assert irradiance(read_latlong(0.5)).max() == 0.5
 
 
-def test_a_normal_that_faces_away_is_turned_and_light_below_the_horizon_gives_nothing(gl):
-    wo, wi = np.array([[0.6, 0.0, 0.8]]), np.array([[0.0, 0.8, 0.6], [0.0, 0.8, -0.6]])
-    wo = np.repeat(wo, 2, axis=0)
-    inputs = {"color": (0.5, 0.5, 0.5), "roughness": 1.0, "energy_compensation": True}
-    up, down = (
-        gl.evaluate(shader(LOBES["eon"]), wo, wi, {**inputs, "normal": (0.0, 0.0, z)}, "direct")
-        for z in (1.0, -1.0)
-    )
-    assert np.array_equal(up, down) and up[0].min() > 0.0 and not up[1].any()
-
-
-@pytest.mark.parametrize("branch", ["direct", "environment"])
-@pytest.mark.parametrize("flag", [True, False])
-def test_inputs_outside_their_ranges_give_finite_numbers(gl, flag, branch):
-    rng = np.random.default_rng(1)
-    wo, wi = directions_32(rng, 4096), directions_32(rng, 4096)
-    inputs = {
-        "color": rng.uniform(-1.0, 1.0, (4096, 3)),
-        "roughness": rng.uniform(-1.0, 10.0, 4096),
-        "weight": rng.uniform(-1.0, 2.0, 4096),
-        "energy_compensation": flag,
-    }
-    values = gl.evaluate(shader(LOBES["eon"]), wo, wi, inputs, branch)
-    assert np.isfinite(values).all()
-    assert not values[inputs["weight"] < 0.0].any()
-
-
-def test_nodes_are_evaluated_together_with_inputs_by_their_paths(gl):
-    nodes = f"""<{EON} name="a" type="BSDF"/><{EON} name="b" type="BSDF"/>
-      <add name="lobe" type="BSDF">
-        <input name="in1" type="BSDF" nodename="a"/><input name="in2" type="BSDF" nodename="b"/>
-      </add>"""
-    wo, wi = np.array([[0.0, 0.6, 0.8]]), np.array([[0.0, -0.8, 0.6]])
-    colors = {"a/color": (0.1, 0.2, 0.3), "b/color": (0.3, 0.2, 0.1)}
-    both = gl.evaluate(shader(nodes), wo, wi, colors, "direct")
-    one, other = (
-        gl.evaluate(shader(LOBES["eon"]), wo, wi, {"color": color, "roughness": 0.0}, "direct")
-        for color in colors.values()
-    )
-    assert np.allclose(both, one + other, rtol=1e-6)
-
-
 SHADERS = ("standard_surface", "UsdPreviewSurface")
-
-
-@pytest.mark.parametrize("category", SHADERS)
-def test_it_evaluates_a_surface_shader_with_inputs_of_each_pair(gl, category):
-    shader = gl.compile(document_text(f'<{category} name="shading" type="surfaceshader"/>'))[0]
-    wo, wi = np.array([[0.6, 0.0, 0.8]] * 2), np.array([[0.0, -0.8, 0.6]] * 2)
-    color = "diffuseColor" if category == "UsdPreviewSurface" else "base_color"
-    inputs = {color: np.array([[0.8, 0.4, 0.1], [0.1, 0.2, 0.6]]), "metallic": 0.0}
-    values = np.pi * gl.evaluate(shader, wo, wi, inputs, "direct")
-    expected = np.pi * Reference().evaluate(shader, wo, wi, inputs, "direct")
-    assert np.abs(values - expected).max() < MICROFACET_VALUE
-    assert np.abs(values[0] - values[1]).max() > 0.05
-
-
-@pytest.mark.parametrize("branch, words", [("direct", "BSDF"), ("graph", "uniform EDF")])
-def test_a_material_without_the_closure_cannot_be_evaluated(gl, branch, words):
-    text = document_text('<surface_unlit name="shading" type="surfaceshader"/>')
-    wo = np.array([[0.0, 0.0, 1.0]])
-    with pytest.raises(ValueError, match=f"element 'look' must call an? {words}"):
-        gl.evaluate(gl.compile(text)[0], wo, wo, {}, branch)
 
 
 def test_a_machine_without_egl_did_not_run(monkeypatch):
@@ -188,13 +116,6 @@ def test_another_context_of_the_process_is_not_in_the_way(gl):
     other = moderngl.create_standalone_context(require=430, backend="egl")
     other.release()
     np.testing.assert_array_equal(gl.call("fon_a", np.array([0.5])), before)
-
-
-def test_a_picture_of_odd_size_is_the_models(gl, reference):
-    odd = replace(SCENES[1], size=SIZE + 1)
-    image, expected = (host.picture(shader(LOBES["eon"]), odd) for host in (gl, reference))
-    error = np.abs(image - expected).max(axis=2) * sphere(odd.size).normal[..., 2]
-    assert expected.any() and error.max() <= PICTURE
 
 
 def test_a_long_evaluation_is_that_of_its_parts(gl):

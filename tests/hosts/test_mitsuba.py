@@ -138,17 +138,6 @@ def test_gradients_are_those_of_the_model(mi, name):
     assert np.array(dr.grad(parameters[color])).min() > 0.0
 
 
-def test_a_coat_takes_new_numbers_and_those_beyond_the_range_count_as_its_end(mi):
-    made = mi.load_dict(bsdf(COAT))
-    parameters = mi.traverse(made)
-    parameters["ior"] = mi.Float(5.0)
-    parameters.update()
-    value = made.eval(mi.BSDFContext(), surface(mi, VIEW), mi.Vector3f(LIGHT.T))
-    assert np.array(value).sum() == pytest.approx(
-        expected(COAT, VIEW, LIGHT, ior=4.0).sum(), rel=1e-5
-    )
-
-
 @pytest.mark.parametrize(
     "name, inputs, message",
     [
@@ -182,15 +171,6 @@ def test_mitsubas_chi_square_test_accepts_the_sampling(mi, name, inputs, angle):
     assert test.run(test_count=len(SAMPLED), quiet=True), test.messages
 
 
-@pytest.mark.parametrize("name, key, other", [("eon", "roughness", 1.0), (COAT, "alpha", 0.6)])
-def test_mitsubas_chi_square_test_refuses_another_density(mi, name, key, other):
-    def mismatched(adapter):
-        pairs = (adapter(name, bsdf(name, (0.5,) * 3, **more)) for more in ({key: other}, {}))
-        return next(pairs)[0], next(pairs)[1]
-
-    assert not chi_square(mi, 0.8, mismatched).run(test_count=len(SAMPLED), quiet=True)
-
-
 @pytest.mark.parametrize("amount", (0.0, 0.5, 1.0))
 def test_every_sample_of_a_white_surface_has_the_weight_1(mi, amount):
     rng = np.random.default_rng(SEED)
@@ -215,23 +195,6 @@ def test_a_white_furnace_keeps_the_energy_of_facets_in_the_mean(mi, name, inputs
     picture = furnace(mi, bsdf(name, (1.0,) * 3, **inputs), 64)[..., 0]
     assert 1e-3 < picture.std() < 0.1
     assert abs(picture.mean() - 1.0) < DEVIATE * picture.std() / np.sqrt(picture.size)
-
-
-@pytest.mark.parametrize("name", (COAT, VARNISH))
-def test_a_coat_has_two_lobes_that_are_evaluated_alone(mi, name):
-    made, light = mi.load_dict(bsdf(name)), mi.Vector3f(-0.48, 0.0, 0.877)
-    context, point = mi.BSDFContext(), surface(mi, VIEW)
-    whole, parts = np.array(made.eval(context, point, light)), []
-    for component, kind in enumerate(("GlossyReflection", "DiffuseReflection")):
-        context.component = component
-        parts.append(np.array(made.eval(context, point, light)))
-        record, weight = made.sample(context, point, 0.5, mi.Point2f(0.25, 0.75))
-        value = np.array(made.eval(context, point, record.wo))
-        assert np.array(record.sampled_type)[0] == int(getattr(mi.BSDFFlags, kind))
-        assert np.array(weight) * np.array(record.pdf) == pytest.approx(value, rel=1e-5)
-    assert sum(parts) == pytest.approx(whole, rel=1e-6) and min(map(np.min, parts)) > 0.0
-    context.type_mask = int(mi.BSDFFlags.Null)
-    assert not np.array(made.eval(context, point, light)).any()
 
 
 def test_an_llvm_that_ends_the_process_is_refused_before(mi, monkeypatch):

@@ -11,7 +11,7 @@ from mxeon.errors import ShaderError
 from mxeon.models.diffuse import formulas
 from mxeon.models.media.emission import conical_edf
 from mxeon.shaders.generation import generate
-from mxeon.shaders.nodes import connection_text, document_text, lobe_text, material_text, node_text
+from mxeon.shaders.nodes import connection_text, document_text, material_text, node_text
 
 WO = np.tile([0.6, 0.0, 0.8], (5, 1))
 COLORS = np.linspace(0.0, 1.0, 15).reshape(5, 3).astype(np.float32).astype(np.float64)
@@ -65,53 +65,10 @@ def test_the_arguments_of_a_closure_are_those_of_the_document_to_the_last_bit(ho
     assert np.array_equal(weighed.parts[0].arguments["roughness"], np.full(5, np.float32(0.1)))
 
 
-def test_a_function_of_the_shader_reads_the_frame_of_each_point(host):
-    # UsdPreviewSurface maps its normal, whose name is that of the surface's, in a function.
-    [made] = generate(
-        document_text(node_text("UsdPreviewSurface", "surfaceshader", "shading")), "osl"
-    )
-    normals = np.array([[0.6, 0.0, 0.8], [-0.6, 0.0, 0.8], [0.0, 0.0, 1.0]])
-    tangents = np.array([[0.8, 0.0, -0.6], [0.0, 1.0, 0.0], [0.0, 1.0, 0.0]])
-    bitangents = np.cross(normals, tangents)
-    inputs = {"normal": normals, "tangent": tangents, "bitangent": bitangents}
-    [points] = host.trees(made, WO[:3], inputs)
-    found = [each.arguments["normal"] for each in leaves(points.tree) if "normal" in each.arguments]
-    mapped = np.stack([tangents, bitangents, normals], axis=2) @ normals[:, :, np.newaxis]
-    assert len(found) > 1 and np.allclose(found, mapped[:, :, 0], atol=1e-6)
-
-
 def test_points_whose_closures_differ_have_trees_of_their_own(host):
     many = host.trees(shader("dielectric_bsdf"), WO, {"ior": np.array([0.0, 1.5, 1.5, 0.0, 1.5])})
     rows = {names(points.tree)[4]: points.rows.tolist() for points in many}
     assert rows == {"generalized_schlick_bsdf": [0, 3], "dielectric_bsdf": [1, 2, 4]}
-
-
-def test_a_shader_may_call_its_output_as_it_likes(host):
-    made = shader()
-    named = altered(
-        altered(made, "MATERIAL out = 0", "MATERIAL look = 0"), "    out = ", "    look = "
-    )
-    [points] = host.trees(named, WO, {})
-    assert "burley_diffuse_bsdf" in names(points.tree)
-
-
-def test_a_tree_of_any_size_is_told(host):
-    lobes = lobe_text("sheen_bsdf", {}, "lobe0")
-    port = '    <input name="{}" type="{}" {} />\n'.format
-    for n in range(40):
-        ports = port("in1", "BSDF", f'nodename="lobe{n}"') + port("in2", "float", 'value="0.9"')
-        lobes += node_text("multiply", "BSDF", f"lobe{n + 1}", ports)
-    bsdf = port("bsdf", "BSDF", 'nodename="lobe40"')
-    surface = node_text("surface", "surfaceshader", "shading", bsdf)
-    [made] = generate(document_text(lobes + surface), "osl")
-    [points] = host.trees(made, WO, {})
-    assert names(points.tree).count("mul") == 43
-
-
-def test_a_function_is_called_with_every_kind_of_argument(host):
-    source = "color f(color c, float x, int n)\n{\n    return n * c + x;\n}\n"
-    values = host.execute(source, "f", COLORS, np.arange(5.0), 2)
-    assert np.allclose(values, 2.0 * COLORS + np.arange(5.0)[:, np.newaxis], rtol=1e-6)
 
 
 FILM = "keyword of burley_diffuse_bsdf must be one of label; got 'film'"
@@ -125,36 +82,6 @@ OTHER = r"closure must be one of .*; got '\(1, 1, 1\) \* diffuse"
 def test_what_no_closure_takes_fails_with_its_words(host, new, message):
     with pytest.raises(ShaderError, match=message):
         host.trees(altered(shader(), "lobe_roughness)", f"lobe_roughness{new}"), WO, {})
-
-
-def test_what_the_engine_says_of_a_text_fails(host):
-    wrong = altered(shader(), "BSDF lobe_out", 'error("out of range"); BSDF lobe_out')
-    with pytest.raises(ShaderError, match="osl: .*ERROR: .*out of range"):
-        host.trees(wrong, WO, {})
-
-
-@pytest.fixture
-def runs(host, monkeypatch):
-    """Points of each run of the engine."""
-    counts, printed = [], host._engine.printed
-
-    def count(folder, text, points):
-        counts.append(points)
-        return printed(folder, text, points)
-
-    monkeypatch.setattr(host._engine, "printed", count)
-    return counts
-
-
-def test_points_that_were_told_are_not_run_again(host, runs):
-    made = shader("burley_diffuse_bsdf", weight=0.7)
-    host.trees(made, WO, {"color": COLORS})
-    [again] = host.trees(made, WO[:3, ::-1], {"color": COLORS[[4, 1, 1]]})
-    assert runs == [5]
-    assert np.array_equal(leaf(again.tree).arguments["color"], COLORS[[4, 1, 1]])
-    [others] = host.trees(made, WO[:3], {"color": [*COLORS[:2], [0.5, 0.5, 0.25]]})
-    assert runs == [5, 1]
-    assert np.array_equal(leaf(others.tree).arguments["color"][1], COLORS[1])
 
 
 # --- what the profile for Cycles calls, in Cycles' meaning -----------------------------------------

@@ -16,7 +16,6 @@ from mxeon.survey.polyhedron import eevee, luxcore, mitsuba
 from tests.support.availability import available, required
 from tests.support.plans import keep_host
 from tests.support.sharing import shared
-from tests.support.verdicts import Verdicts
 
 EXAMPLE = examples_folder() / "plaster.mtlx"
 MODULES = {"mitsuba": mitsuba, "luxcore": luxcore}
@@ -66,14 +65,6 @@ def test_mitsuba_has_the_models_that_it_documents(of_mitsuba):
     assert all(each.control.caught for each in of_mitsuba.values())
 
 
-def test_a_base_with_another_metalness_fails(monkeypatch):
-    monkeypatch.setitem(mitsuba.BASE, "base_metalness", 0.49)
-    title = "openpbr_base of mxeon.mitsuba"
-    with available("mitsuba"), mitsuba.Host() as host:
-        result = Verdicts(lambda name: host)("value", title, "mitsuba", RENDERER_NODES)
-    assert result.verdict == FAILED and result.control.caught
-
-
 def test_luxcore_has_qon_with_sigma_in_radian(of_luxcore):
     failed = {key for key, each in of_luxcore.items() if each.verdict == FAILED}
     assert ("value", "roughmatte") not in failed and ("environment", "roughmatte") not in failed
@@ -113,19 +104,3 @@ def test_pictures_are_linear_and_have_float_precision(host, scene):
     expected = wi[mask][:, 2:] * np.array([1.0, 0.02, 1e-4])
     relative = np.abs(picture[mask] / expected - 1.0) * wi[mask][:, 2:]
     assert relative.max() <= FACETS
-
-
-def test_a_surface_in_no_light_is_black(host):
-    dark = replace(SMALL, light=(0.0, 0.0, -1.0))
-    assert host.node(MODULES[host.name].NODES[0].made(COLOR, 0.0), dark).max() == 0.0
-
-
-def test_a_picture_agrees_with_the_values_of_mitsubas_own_function():
-    with available("mitsuba"), mitsuba.Host() as host:
-        node = mitsuba.NODES[1]
-        picture = host.node(node.made(COLOR, 0.7), SMALL)[facet_points(64).mask]
-        wo, wi, mask = facet_pairs(SMALL)
-        count = np.count_nonzero(mask)
-        color, roughness = np.broadcast_to(COLOR, (count, 3)), np.full(count, 0.7)
-        values = np.pi * host.pairs(node.material, wo[mask], wi[mask], color, roughness)
-    assert np.abs(picture[mask] - values).max() <= FACETS + FACET_PAIRS

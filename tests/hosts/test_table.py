@@ -16,7 +16,6 @@ from mxeon.models import table
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.nodes import EON
 from mxeon.shaders.scene import SIDE
-from mxeon.shaders.targets import CLASSES
 from tests.support.plans import keep_checks
 
 VERBS = {
@@ -73,18 +72,6 @@ def test_a_verb_that_a_host_lacks_is_unsupported(verb):
         getattr(host, verb)(*VERBS[verb])
 
 
-def test_a_renderer_executes_no_shaders(monkeypatch):
-    class Renderer(base.Engine):
-        name = "renderer"
-        identity = Host.identity
-
-    monkeypatch.setattr(hosts, "HOSTS", (hosts.Row("renderer", "", __name__, "native"),))
-    monkeypatch.setitem(globals(), "Host", Renderer)
-    assert isinstance(hosts.open_engine("renderer"), Renderer)
-    with pytest.raises(Unsupported, match="^renderer: this renderer only has its own materials"):
-        hosts.open_host("renderer")
-
-
 def test_a_document_is_not_run_on_a_renderer():
     with pytest.raises(NotRun, match="^mitsuba: this renderer .*; it reads no documents$"):
         generate_document(examples_folder() / "clay.mtlx", "mitsuba", "eonlib")
@@ -95,8 +82,3 @@ def test_a_row_is_that_of_its_module(row):
     host = import_module(row.module).Host
     assert issubclass(host, base.Engine) and issubclass(host, base.Host) == bool(row.target)
     assert (host.name, getattr(host, "target", "")) == (row.name, row.target)
-
-
-def test_a_row_has_a_module_or_says_what_running_it_needs():
-    assert all(bool(row.module) == bool(row.way) != bool(row.needs) for row in hosts.host_rows())
-    assert {row.target for row in hosts.HOSTS if row.target} == set(CLASSES)

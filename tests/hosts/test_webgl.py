@@ -46,14 +46,6 @@ def test_an_environment_image_is_turned_as_on_gl(gl, hosts, tmp_path):
     assert images[0].max() > 0.1 and np.ptp(images[0][16, 8:24]) > 0.02
 
 
-def test_two_browsers_work_side_by_side(hosts):
-    first, second = hosts("webgl"), started()
-    values = [each.call("fon_a", MU) for each in (first, second, first)]
-    second.close()
-    np.testing.assert_array_equal(values[0], values[1])
-    np.testing.assert_array_equal(values[0], values[2])
-
-
 def test_no_name_resolves_in_the_browser(hosts):
     script = """async () => {
         const found = await fetch("https://example.org/").then(() => "found", () => "nothing");

@@ -5,15 +5,13 @@ import os
 import stat
 import subprocess
 import sys
-from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
 import pytest
 
 from mxeon.io.files import replacing, write_text
-from mxeon.io.images import without_threads, write_image, write_picture
+from mxeon.io.images import write_image
 from mxeon.shaders.library import examples_folder
 from tests.support.faults import room_for
 
@@ -74,32 +72,6 @@ def test_an_image_is_kept_as_it_is(tmp_path, ending):
     assert image.spec().get_string_attribute("mxeon:host") == "gl"
 
 
-@pytest.mark.parametrize("ending", IMAGES)
-def test_half_a_character_of_the_metadata_is_replaced(tmp_path, ending):
-    path = tmp_path / f"a{ending}"
-    write_picture(path, NOISE, {"document": "half \ud83d.mtlx"})
-    spec = oiio.ImageInput.open(str(path)).spec()
-    assert spec.get_string_attribute("mxeon:document") == "half \ufffd.mtlx"
-
-
-@pytest.mark.parametrize("ending", IMAGES)
-def test_an_image_is_the_same_without_threads_which_are_there_again(tmp_path, ending):
-    before = [oiio.get_int_attribute(name) for name in ("threads", "exr_threads")]
-    with without_threads():
-        write_image(tmp_path / f"one{ending}", IMAGES[ending], {})
-        assert oiio.get_int_attribute("threads") == 1
-    assert before == [oiio.get_int_attribute(name) for name in ("threads", "exr_threads")]
-    pixels = oiio.ImageInput.open(str(tmp_path / f"one{ending}")).read_image(oiio.UNKNOWN)
-    assert pixels.tobytes() == IMAGES[ending].tobytes()
-
-
-@pytest.mark.parametrize("ending", IMAGES)
-def test_an_image_whose_name_is_no_text_is_an_error(tmp_path, ending):
-    with pytest.raises(OSError, match="the name must be UTF-8"):
-        write_image(tmp_path / f"\udcff{ending}", IMAGES[ending], {})
-    assert not files(tmp_path)
-
-
 def test_text_that_finds_no_room_leaves_the_old_file(tmp_path):
     write_text(tmp_path / "a", "old")
     with room_for(100), pytest.raises(OSError, match="File too large"):
@@ -138,22 +110,6 @@ def test_render_on_a_full_disk_is_one_line(tmp_path, name):
     assert not files(tmp_path)
 
 
-def test_generate_on_a_full_disk_is_one_line(tmp_path):
-    ended = run(
-        300, "generate", PLASTER, "--target", "osl", "--workers", "0", "--outputPath", tmp_path
-    )
-    assert ended.returncode == 2 and ended.stderr.count("\n") == 1
-    assert "must be accessible; File too large" in ended.stderr and not files(tmp_path)
-
-
-def test_a_kit_on_a_full_disk_is_one_line(tmp_path):
-    ended = run(1000, "kit", "export", tmp_path)
-    assert ended.returncode == 2 and ended.stderr.count("\n") == 1
-    assert "must be accessible; File too large" in ended.stderr
-    assert all(Path(tmp_path, name).stat().st_size <= 1000 for name in files(tmp_path))
-    assert not list(tmp_path.rglob(".mxeon*"))
-
-
 def test_a_pipe_is_not_replaced(tmp_path):
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
@@ -167,24 +123,6 @@ def test_the_file_that_a_link_leads_to_is_replaced(tmp_path):
     link.symlink_to(tmp_path / "file.txt")
     write_text(link, "text")
     assert link.is_symlink() and (tmp_path / "file.txt").read_text() == "text"
-
-
-def test_an_empty_name_is_no_file():
-    with pytest.raises(OSError, match="not the name of a file"):
-        write_text("", "text")
-
-
-def test_writers_of_one_name_in_many_threads_and_readers_meet_whole_files(tmp_path):
-    texts = {letter * 40_000 for letter in "abcdefgh"}
-    write_text(tmp_path / "a", min(texts))
-
-    def write_and_read(text):
-        write_text(tmp_path / "a", text)
-        return (tmp_path / "a").read_text()
-
-    with ThreadPoolExecutor(8) as pool:
-        assert texts.issuperset(pool.map(write_and_read, sorted(texts) * 20))
-    assert files(tmp_path) == ["a"]
 
 
 @pytest.mark.parametrize("planted", ["link", "file"])

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A Dask cluster as a farm: real schedulers and worker processes on this machine."""
 
-import logging
 import os
 import socket
 import subprocess
@@ -98,15 +97,6 @@ def test_a_worker_killed_with_its_result_costs_nothing(tmp_path, monkeypatch):
 
 
 @pytest.mark.whole
-def test_an_item_that_hangs_ends_its_workers_and_is_given_up():
-    import dask
-
-    with dask.config.set({"distributed.scheduler.allowed-failures": 0}), farm({}) as address:
-        (outcome,) = run(_sleep, [60.0], address, timeout=1.0).values()
-    assert outcome.value is None and outcome.failure.startswith("KilledWorker: ")
-
-
-@pytest.mark.whole
 def test_workers_that_do_not_fit_get_no_work_and_are_named(tmp_path):
     preload = tmp_path / "preload.py"
     preload.write_text(OTHER_VERSION)
@@ -140,13 +130,6 @@ class Client:
         return dict.fromkeys(workers, mxeon.__version__)
 
 
-def test_workers_that_all_restart_are_waited_for(monkeypatch):
-    monkeypatch.setattr(dask, "POLL", 0.0)
-    workers = dask.Workers(Client(NOBODY, NOBODY, SOMEBODY, NOBODY, NOBODY, SOMEBODY), 60.0)
-    workers.await_compatible()
-    assert workers.compatible() == {"tcp://a"}
-
-
 WAITED = "no compatible Dask worker was available within 0.01 s; raise it with --waitForWorkers"
 ONE = f"must have a worker with mxeon {mxeon.__version__} and --nthreads 1; got 1 others"
 
@@ -168,14 +151,6 @@ def test_a_cluster_that_cannot_go_on_is_one_line(answers, wait, submitted, error
     client.submit = Mock(side_effect=submitted)
     with pytest.raises(error, match=words):
         list(dask.run(square, [1], dask.Workers(client, wait), 1.0, NotRun))
-
-
-def test_what_dask_tells_by_itself_is_silent():
-    with pytest.raises(ValueError, match="scheduler must"):
-        run(square, [1], "nowhere")
-    loggers = [logging.getLogger(name) for name in logging.root.manager.loggerDict]
-    dask = [each for each in loggers if each.name.startswith("distributed")]
-    assert dask and not any(each.isEnabledFor(logging.CRITICAL) for each in dask)
 
 
 @pytest.mark.parametrize(
@@ -201,6 +176,15 @@ def test_a_farm_finds_what_one_machine_finds(pair, tmp_path, monkeypatch):
     keep_checks(monkeypatch, "value", "reciprocity", "curve", "picture")
     found = check([EXAMPLE], scheduler=pair, folder=tmp_path)
     assert found.results == check([EXAMPLE]).results and not found.missing
+
+
+@pytest.mark.whole
+def test_an_item_that_hangs_ends_its_workers_and_is_given_up():
+    import dask
+
+    with dask.config.set({"distributed.scheduler.allowed-failures": 0}), farm({}) as address:
+        (outcome,) = run(_sleep, [60.0], address, timeout=1.0).values()
+    assert outcome.value is None and outcome.failure.startswith("KilledWorker: ")
 
 
 def _sleep(seconds):

@@ -12,25 +12,10 @@ import pytest
 
 from mxeon.cli.batch import BatchResult, WorkerCrashed, run_batch
 from mxeon.errors import DocumentError
-from mxeon.jobs import pool
-from mxeon.jobs.pool import ATTEMPTS, Attempt, Outcome, Queue, in_order, run
-from tests.support.faults import Tar, misbehave, need, once, square
+from mxeon.jobs.pool import ATTEMPTS, Outcome, run
+from tests.support.faults import misbehave, once, square
 
 NUMBERS = [1, 2, 3, 4]
-
-
-def test_every_item_is_worked_on_once():
-    found = dict(run(square, range(20), 2, 60.0))
-    assert found == {item: Outcome(item * item) for item in range(20)}
-
-
-def test_items_of_one_group_have_one_worker_as_long_as_there_are_groups_for_all():
-    queue = Queue([Attempt(index, index, index % 3) for index in range(12)])
-    taken = [[queue.take(worker).index for worker in (0, 1)] for _ in range(4)]
-    assert taken == [[0, 1], [3, 4], [6, 7], [9, 10]]
-    assert queue.take(0).index == 2  # the group that nobody works on
-    assert queue.take(1).index == 5  # help with the longest, as there is no other
-    assert [attempt.index for attempt in queue] == [8, 11] and len(queue) == 2
 
 
 @pytest.mark.parametrize(
@@ -57,17 +42,6 @@ def test_a_bug_in_a_worker_shows_its_traceback_once(caplog):
     assert [record.message for record in caplog.records] == ["bug in a worker process"]
 
 
-def test_an_error_with_words_for_the_user_is_no_bug(caplog):
-    outcomes = dict(run(need, ["MOON"], 1, 60.0))
-    assert outcomes[0].failure.startswith("NotRun: MOON: missing") and not caplog.records
-
-
-def test_processes_that_hang_before_they_begin_are_given_up(monkeypatch):
-    monkeypatch.setattr(pool, "START", 0.5)
-    (outcome,) = dict(pool.run(square, [Tar()], 1, 1.0)).values()
-    assert outcome == Outcome(None, "timed out after 1 s; last output: none", ATTEMPTS)
-
-
 def test_an_item_whose_worker_was_killed_is_tried_again(tmp_path):
     items = [str(tmp_path / name) for name in "ab"]
     found = dict(run(once, items, 2, 60.0))
@@ -77,10 +51,6 @@ def test_an_item_whose_worker_was_killed_is_tried_again(tmp_path):
 def test_workers_never_hear_of_ctrl_c():
     (outcome,) = dict(run(_deaf, [0], 1, 60.0)).values()
     assert outcome.value and not _deaf(0)
-
-
-def test_outcomes_are_put_in_order():
-    assert list(in_order([(1, "b"), (2, "c"), (0, "a"), (3, "d")])) == ["a", "b", "c", "d"]
 
 
 def test_what_workers_print_stays_out_of_ours(capfd):
@@ -97,17 +67,6 @@ def test_no_temporary_file_outlives_the_pool(tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_pool_that_breaks_again_and_again_is_given_up(monkeypatch):
-    monkeypatch.setattr(pool, "_serve", lambda *_: iter(()))
-    (outcome,) = dict(run(square, [3], 1, 1.0)).values()
-    assert outcome.failure == "worker processes end before they begin to work"
-
-
-def test_what_the_work_raises_is_no_time_out_of_ours():
-    (outcome,) = dict(run(_late, [0], 1, 60.0)).values()
-    assert outcome.failure.startswith("TimeoutError: mine; last output:")
-
-
 @pytest.mark.parametrize(
     "options, words",
     [
@@ -119,10 +78,6 @@ def test_what_the_work_raises_is_no_time_out_of_ours():
 def test_an_impossible_pool_is_one_line(options, words):
     with pytest.raises(ValueError, match=f"^{words}$"):
         list(run(square, [1], *options))
-
-
-def _late(_):
-    raise TimeoutError("mine")
 
 
 def _deaf(_):
@@ -151,11 +106,6 @@ def test_values_warnings_and_errors_come_in_order(workers):
     assert (bad.value, bad.warnings) == (None, ("bad is odd",))
     assert isinstance(bad.error, DocumentError) and str(bad.error) == "bad: must be good"
     assert two == BatchResult("TWO", ("two is odd",))
-
-
-def test_no_workers_means_this_process():
-    assert [each.value for each in run_batch(process, [0], 0, 60.0)] == [os.getpid()]
-    assert [each.value for each in run_batch(process, [0], 1, 60.0)] != [os.getpid()]
 
 
 def test_a_process_that_crashes_costs_its_document_alone():

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Nobody's folder runs code: a Python file beside a document is never imported."""
 
-import os
 import subprocess
 import sys
 from importlib.metadata import packages_distributions
@@ -12,7 +11,6 @@ from mxeon.errors import NotRun
 from mxeon.hosts.cycles.process import interpreter
 from mxeon.jobs import pool
 from mxeon.jobs.pool import Outcome
-from mxeon.jobs.processes import HOME
 from mxeon.shaders.library import examples_folder
 from tests.support.faults import square
 
@@ -93,25 +91,12 @@ def test_no_command_imports_from_the_folders_it_works_in(hostile, command):
     assert ended.returncode == STATUS.get(command, 0), ended.stderr
 
 
-@pytest.mark.parametrize("name", ["socket", "signal", "pickle"])
-def test_a_file_that_happens_to_have_the_name_of_a_module_is_no_obstacle(tmp_path, name):
-    plant(tmp_path, [name], "x = 1\n")
-    ended = run(tmp_path, COMMANDS["generate"])
-    assert (ended.returncode, ended.stderr) == (0, "") and list((tmp_path / "out").glob("*.osl"))
-
-
 def test_workers_of_an_interactive_parent_do_not_import_from_its_folder(hostile, monkeypatch):
     monkeypatch.chdir(hostile)
     monkeypatch.setattr("multiprocessing.process.ORIGINAL_DIR", str(hostile))
     monkeypatch.syspath_prepend("")
     assert dict(pool.run(square, [3], 1, 60.0)) == {0: Outcome(9)}
     assert not (hostile / "RAN").exists()
-
-
-def test_workers_find_mxeon_where_the_parent_does(monkeypatch):
-    monkeypatch.setattr(sys, "path", ["" if each == HOME else each for each in sys.path])
-    monkeypatch.chdir(HOME)
-    assert dict(pool.run(square, [3], 1, 60.0)) == {0: Outcome(9)}
 
 
 @pytest.mark.parametrize("way", [["-E", "bin/command"], ["-m", "mxeon"]], ids=" ".join)
@@ -121,11 +106,3 @@ def test_the_working_folder_is_off_the_path_whatever_starts_the_command(tmp_path
     command = [sys.executable, *way, *COMMANDS["generate"].split()]
     subprocess.run(command, cwd=tmp_path, check=True, capture_output=True)
     assert not (tmp_path / "RAN").exists()
-
-
-def test_starting_workers_changes_nothing_for_other_processes():
-    before = dict(os.environ), list(sys.path)
-    list(pool.run(square, [3], 1, 60.0))
-    command = [sys.executable, "-c", "import sys; print(sys.flags.safe_path)"]
-    ended = subprocess.run(command, capture_output=True, text=True, check=True)
-    assert ended.stdout == f"{sys.flags.safe_path}\n" and (dict(os.environ), sys.path) == before

@@ -30,11 +30,6 @@ def test_white_eon_returns_the_light_of_a_furnace(gl, sampler):
     assert abs(value - 1.0) <= STANDARD_ERRORS * error + TWIN_WEIGHT
 
 
-def test_exact_sampling_leaves_no_noise_in_a_furnace(gl):
-    image = trace(gl, replace(FURNACE, sampler="eon"))
-    assert np.abs(image - 1.0).max() <= TWIN_WEIGHT
-
-
 def test_white_open_ball_returns_all_light_once_paths_may_be_long(gl):
     image = trace(gl, replace(FURNACE, sampler="eon", opened=True, bounces=300))
     assert np.abs(image - 1.0).max() <= FURNACE_OPENED

@@ -76,15 +76,6 @@ def test_a_failure_leads_to_the_page_on_its_defect(browser, address):
     assert file.read_text(encoding="utf-8").startswith("# ")
 
 
-def test_the_slider_draws_the_reference_over_the_picture(browser, address):
-    with opened(browser, address) as page:
-        figure = page.locator(".panels.referenced .image").first
-        assert "inset(0px 100% 0px 0px)" in figure.locator(".over").get_attribute("style")
-        figure.locator("input").fill("40")
-        assert "inset(0px 60% 0px 0px)" in figure.locator(".over").get_attribute("style")
-        assert figure.locator(".over").get_attribute("src").startswith("data:image/png")
-
-
 def test_without_a_script_all_tables_are_there(browser, address):
     with opened(browser, address, java_script_enabled=False) as page:
         assert visible(page, "input") == 0
@@ -125,11 +116,3 @@ def test_nothing_of_the_field_is_cut(browser, width):
         assert page.evaluate(CUT) == 0
         page.add_style_tag(content=".field { min-width: 1300px }")
         assert page.evaluate(CUT) == 1
-
-
-def test_the_driver_of_a_renderer_waits_for_a_click(browser):
-    with opened(browser, FIELD.as_uri()) as page:
-        renderer = page.locator("tbody th", has_text="driver").first
-        assert len(renderer.inner_text()) < 100
-        renderer.locator("summary").click()
-        assert len(renderer.inner_text()) > 120
