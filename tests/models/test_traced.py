@@ -67,17 +67,23 @@ def inside(row):
     return inputs
 
 
-def at_ends(row):
-    """Inputs of which one is at an end of its range, or all are."""
+def at_ends(row, function):
+    """Arguments of which one input is at an end of its range, or all are: all rows of one call.
+
+    Where an input is one number for all pairs, calls in which all are at an end.
+    """
     middle, ends = inside(row), {}
     for each in row.parameters:
         low, high, _ = RANGES[each.quantity]
         low, high = ENDS.get(each.quantity, (max(low, -1.0), min(high, 1.0)))
         ends[each.name] = [np.full_like(middle[each.name], end) for end in (low, high)]
-    for k in range(2):
-        moved = {name: pair[k] for name, pair in ends.items()}
-        yield moved
-        yield from (middle | {name: value} for name, value in moved.items())
+    given = vectors(row, function, ends=True)
+    corners = [{name: pair[k] for name, pair in ends.items()} for k in range(2)]
+    if any(map(one_for_all, row.parameters)):
+        return [(given, corner) for corner in corners]
+    cases = [*corners, *(middle | {name: c[name]} for c in corners for name in c)]
+    tiled = [np.tile(each, (len(cases), *(1,) * (each.ndim - 1))) for each in given]
+    return [(tiled, {name: np.concatenate([each[name] for each in cases]) for name in middle})]
 
 
 def numbers(result):
@@ -121,9 +127,9 @@ def test_torch_differentiates_and_maps_every_function_of_every_model(name, funct
     np.testing.assert_allclose(value, numbers(model(*given, **inputs)), VALUE, VALUE)
     assert_slopes(partial(model, *given), inputs, found)
     # At the ends: finite.
-    for ends in at_ends(row):
-        found = gradients(vectors(row, function, ends=True), ends)
-        assert all(np.isfinite(each).all() for each in (found[0], *found[1].values())), ends
+    for arguments in at_ends(row, function):
+        value_there, slopes = gradients(*arguments)
+        assert all(np.isfinite(each).all() for each in (value_there, *slopes.values())), arguments
     # A row at a time.
     if given and not any(map(one_for_all, row.parameters)):
         arrays = [torch.tensor(each) for each in (*given, *inputs.values())]

@@ -30,13 +30,6 @@ def misbehave(item):
     os.kill(os.getpid(), getattr(signal, item))
 
 
-class Tar:
-    """An item that a process never comes to: it hangs while it takes it."""
-
-    def __reduce__(self):
-        return time.sleep, (60.0,)
-
-
 def once(item):
     """Die at the first attempt: the item is a file that the first attempt leaves behind."""
     path = Path(item)

@@ -79,13 +79,8 @@ FIT_ANGLE = 2.5e-8
 
 # --- shader twins, float32 against float64 ---------------------------------------------------
 
-# Relative error of H, the fit's 2.7e-7 and 12 roundings of 2^-24; albedos up to 1.02, 16 roundings and 0.29 of the
-# fit; pi f cos up to 2, 14 roundings and both fits at half of the lobe. Rounded up.
-TWIN_LOSS = 1e-6
 TWIN_ALBEDO = 1e-6
 TWIN_VALUE = 2e-6
-# pi f cos of a microfacet lobe: the fit of its E_ss, and the roundings of D.
-MICROFACET_VALUE = 1e-3
 
 # Cycles, float32. A point of the sphere is a ray's origin plus its length, both at most 2: three
 # roundings of 2^-23 together, and of a ray that grazes, with error e / mu, the test takes e.
@@ -107,23 +102,6 @@ CYCLES_FURNACE_MEAN = 2e-4
 # times the pixels the color is missed by up to 0.011, since Cycles inverts albedos by a fit of its own;
 # a pixel's deviation is 0.05 there, so the mean's is 0.0035, and twice that is added.
 CYCLES_SUBSURFACE = 0.018
-
-# --- sampling twins, float32 against float64 ---------------------------------------------------
-
-# A component of a direction has 16 roundings or fewer on its way, 1e-6. Stretching a random number
-# over a part of length l divides its rounding by l, and a root near the pole takes it to its half
-# power: where that exceeds a factor of 10 lies a thousandth of the samples (measured, 6e-4 to
-# 1.05e-3 with the approximate powers of OSL). Of 20,000 samples 20 are expected there; more than 50
-# are so with a probability of 1e-8.
-TWIN_DIRECTION = 1e-5
-TWIN_DIRECTION_SHARE = 50 / 20_000
-
-# Squared length of a sample: cosine and sine of drivers are off by 4e-7 (measured) each, and what
-# is turned is multiplied by another such pair.
-TWIN_LENGTH = 2e-6
-
-# pi times a density, at most 10: |M^-1 wi|^-4 takes the 8 roundings of an entry of M four times.
-TWIN_PDF = 2e-5
 
 # --- sampling and inversion, float64 ---------------------------------------------------------
 
@@ -177,12 +155,6 @@ ROUND_TRIP = 1e-14
 # roundings each, 1.7e-6.
 TWIN_WEIGHT = 2e-6
 
-# --- shader sources ----------------------------------------------------------------------------
-
-# The tint of MDL against rho_ms, relative: 12 roundings in one form and 10 in the other, of which
-# none is magnified: both denominators are at least 0.78 of their larger term.
-MDL_TINT = 32.0 * ROUNDING
-
 # --- path tracer -------------------------------------------------------------------------------
 
 # Mean of a picture of the unit sphere: 64 x 64 pixels with 64 random points each, against a grid of
@@ -201,12 +173,6 @@ FURNACE_OPENED = 20 * TWIN_WEIGHT
 # Error times cos(theta_o): 16 roundings in the position of a pixel's point, 32 in the value.
 PICTURE = 48 * 2.0**-24
 
-# --- Albedo inversion as nodes -----------------------------------------------------------------
-
-# A dozen roundings of float32 in the graph and as many in the picture, of numbers up to 1, with the
-# constants rounded to float32 and, by MaterialX, to six digits: 1e-6 each in five of them.
-INVERSION_NODE = 1e-5
-
 # --- kit ---------------------------------------------------------------------------------------
 
 # How far the kit's mesh lies below the sphere: its longest edge is 2.4 degrees = 0.042, the circle
@@ -217,9 +183,6 @@ KIT_DEPTH = 3e-4
 # with a probability of 1.1e-3.
 KIT_FALSE_ALARMS = 2
 
-# A component of a vertex is printed with 9 digits after the point, half a unit off at most; of its
-# length three are.
-KIT_PRINTED = 1.5e-9
 
 # --- microfacet and sheen nodes ------------------------------------------------------------------
 
@@ -284,10 +247,6 @@ SUBSURFACE_FIT = 0.0021
 # The similarity relation adds its own error: walks of 100,000 paths miss by 0.009 at most, at g = -0.5.
 SUBSURFACE_SIMILARITY = 0.009
 
-# The six circles of GLSL's blur, against the integral: 0.0093 measured, at a reach of 0.15.
-SUBSURFACE_RINGS = 0.01
-# Energy of a sphere: the quadrature's error on the kink at the horizon, 2e-5, and float32's.
-SUBSURFACE_SPHERE = 1e-4
 
 # EON, FON and QON in Mitsuba, in float32: value times cosine, at most 1/pi times some 15 roundings of 2^-24,
 # 1.1e-7 measured; and the weight of a sample, a quotient of two such values, 3.6e-7 measured.

@@ -64,8 +64,3 @@ def wrong_library(folder, file, old, new):
 def place_of(name, language="glsl"):
     """Path of a source of eonlib, by its stem, in a copy."""
     return source_file(language, name).relative_to(data_folder())
-
-
-def wrong_eonlib_node(folder, name, old, new):
-    """Path of a copy of eonlib with another text in the GLSL of one of its nodes."""
-    return wrong_copy(folder, old, new, place_of(name))
