@@ -13,7 +13,7 @@ import pytest
 from mxeon.cli import main
 from mxeon.cli.answer import LINES, answer
 from mxeon.cli.output import Progress, warn
-from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Result, Run
+from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Result, Run
 from mxeon.conformance.run import check
 from mxeon.errors import MISUSE
 from mxeon.errors import NOT_RUN as DID_NOT_RUN
@@ -140,6 +140,23 @@ def test_what_did_not_run_is_said_with_its_number():
     lines = answer(made_run(made(NOT_RUN, reason="gl: nowhere")))
     assert lines[0].startswith("No check ran.")
     assert lines[1] == "not run: gl with eonlib, 1 check: gl: nowhere"
+
+
+@pytest.mark.parametrize(
+    ("results", "sentence"),
+    [
+        ([made()], "The check passed on gl with eonlib."),
+        (
+            [made(FAILED), made(FAILED, host="osl"), made(DIFFERS)],
+            "2 of 3 checks failed: 1 on gl with eonlib, 1 on osl with eonlib; "
+            "1 differs where the specification leaves it open.",
+        ),
+        ([made(FAILED), made()], "1 of 2 checks failed on gl with eonlib."),
+        ([made(), made(NOT_RUN)], "Nothing failed, but 1 of 2 checks did not run."),
+    ],
+)
+def test_the_verdict_counts_what_failed_and_what_differs(results, sentence):
+    assert made_run(*results).summary.sentence == sentence
 
 
 # --- what is judged -------------------------------------------------------------------------------

@@ -116,7 +116,7 @@ def _faults(root, named, before, status, out, err):
     texts = b"\n".join(written.values())
     if CANARY in out or CANARY.encode() in texts:
         yield "gave away a file from outside"
-    if POISON.encode() in texts and "brings code of its own" not in err:
+    if POISON.encode() in texts and "contains its own code" not in err:
         yield "let a word into a shader as code"
 
 

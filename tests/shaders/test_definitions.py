@@ -12,7 +12,7 @@ from mxeon.shaders.library import load_library
 from mxeon.shaders.nodes import document_text
 from tests.support.command import one_line
 
-# A surface shader whose lobe is eonlib's, and a color of shader code of its own.
+# A surface shader whose lobe is eonlib's, and a color with its own shader code.
 DEFINITIONS = """<materialx version="1.39">
   <nodedef name="ND_studio_cloth" node="studio_cloth">
     <input name="dye" type="color3" value="0.3, 0.1, 0.1" />

@@ -100,7 +100,7 @@ NODES = {
     "no implementation": (DEFINED.format("a") + A, "Could not find a matching implementation"),
     "no source file": (
         DEFINED.format("a") + '<implementation name="IM_a" nodedef="ND_a" file="none.glsl"/>' + A,
-        'implementation "IM_a" must not bring code of its own; got file "none.glsl"',
+        'implementation "IM_a" must not contain its own code; got file "none.glsl"',
     ),
     "circle": (CYCLE + connected(color='nodename="a"'), 'node "a" must not be upstream of itself'),
     "circle of lobes": (

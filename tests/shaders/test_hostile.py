@@ -122,8 +122,8 @@ def test_files_inside_and_in_the_libraries_need_no_permission(home):
 def test_code_of_its_own_needs_permission_and_is_reported(home, how):
     (home / "own.glsl").write_text(SOURCE)
     path = written(home, material(BROUGHT.format(how)))
-    assert 'implementation "IM_a" must not bring code of its own' in refusal(path)
-    with pytest.warns(CodeWarning, match=r"look.mtlx: brings code of its own: IM_a"):
+    assert 'implementation "IM_a" must not contain its own code' in refusal(path)
+    with pytest.warns(CodeWarning, match=r"look.mtlx: contains its own code: IM_a"):
         assert generate(path, "glsl", policy=Policy(code=True))
 
 

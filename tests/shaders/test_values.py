@@ -68,7 +68,7 @@ MATRICES = {
     for size in (3, 4)
 }
 TRUSTED = Policy(code=True)
-pytestmark = pytest.mark.filterwarnings("ignore:.*brings code of its own")
+pytestmark = pytest.mark.filterwarnings("ignore:.*contains its own code")
 
 
 @pytest.mark.parametrize("kind", VALUES)

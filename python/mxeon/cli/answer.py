@@ -342,8 +342,7 @@ def _sentence(results: Sequence[Result]) -> str:
     keys = ", ".join(_unique(each.check for each in results))
     about = f"{subjects[0] if len(subjects) == 1 else listed(nodes)} ({keys})"
     if issues := issues_of(results[0]):
-        links = ", ".join(map(link, issues))
-        return f"{about}: {'; '.join(issue.title for issue in issues)}: {links}"
+        return f"{about}: {'; '.join(f'{issue.title}: {link(issue)}' for issue in issues)}"
     return f"{about}: {results[0].explanation}"
 
 

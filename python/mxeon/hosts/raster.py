@@ -82,7 +82,7 @@ def inputs(shader: Shader) -> Uniforms:
     """Values of the uniforms for a shader's inputs, except images.
 
     A matrix is a flat tuple, whose rows are the columns of the uniform; each member of a structure
-    is a uniform of its own.
+    is a separate uniform.
     """
     ports: list[tuple[str, str, Plain]] = [
         (port.name, port.type, port.value) for port in shader.inputs

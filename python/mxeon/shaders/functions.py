@@ -26,7 +26,7 @@ def source(language: str, stem: str = ALL, library: str = "eonlib") -> str:
 
 
 def has_functions(library: str, language: str = "glsl") -> bool:
-    """Whether a library brings shader functions of its own: eonlib, or a folder beside them."""
+    """Whether a library has its own shader functions: eonlib, or a folder next to them."""
     return kind_of(library) != "stock" and source_file(language, ALL, library).is_file()
 
 

@@ -133,7 +133,7 @@ def generate(
     another way than eonlib's sources define them.
 
     Warns ApproximationWarning if the profile cannot express a model that the document asks for;
-    CodeWarning if the document brings shader code of its own, which the policy has to permit;
+    CodeWarning if the document contains its own shader code, which the policy has to permit;
     MissingFileWarning if a file that a shader names does not exist, whose name stays as it is;
     DocumentWarning as `mxeon.shaders.document.reading.read_document` does, and if nodes take the
     values of another.

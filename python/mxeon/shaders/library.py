@@ -125,7 +125,7 @@ def profile_documents(library: str, profile: str) -> list[Path]:
 
 
 def has_profile(library: str, profile: str) -> bool:
-    """Whether a library has implementations of its own for a profile."""
+    """Whether a library has its own implementations for a profile."""
     return bool(profile_documents(library, profile))
 
 

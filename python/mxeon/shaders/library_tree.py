@@ -9,7 +9,7 @@ part
     It has files at the same relative paths as MaterialX's libraries, or as one folder in them: pbrlib/,
     or a node's source with its lib/. They replace those files.
 overlay
-    It has names of its own, as eonlib does, and is loaded before MaterialX's libraries.
+    Like eonlib it has its own names, and is loaded before MaterialX's libraries.
 
 MaterialX looks for a node's source next to its document, for included files next to that, and for the
 generator's includes on a search path. So a whole or a part becomes one tree of links, `libraries`, with both

@@ -128,7 +128,7 @@ def lobe_text(
 ) -> str:
     """XML of a BSDF node; `types` of its inputs for one that is not known.
 
-    MaterialX ignores a normal or a tangent that is not connected: it comes from a node of its own.
+    MaterialX ignores a normal or a tangent that is not connected: it comes from a separate node.
     """
     kinds = input_types(category) if types is None else types
     text = constants = ""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes that a renderer has of its own, and how it is asked about them: by pictures, or for pairs."""
+"""A renderer's own nodes, and how they are measured: by pictures, or for pairs."""
 
 from __future__ import annotations
 
@@ -109,7 +109,7 @@ class Renderer(Protocol):
 
 
 class Native(CyclesPictures):
-    """A node that a renderer has of its own, on a sphere."""
+    """A renderer's own node, on a sphere."""
 
     @classmethod
     def supports(cls, spec: Spec) -> bool:

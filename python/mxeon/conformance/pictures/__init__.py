@@ -177,13 +177,13 @@ def _picture(
 
 
 def _assert_judged(shader: Shader, host: Host) -> None:
-    """Raise NotRun where the host shows another material, or closures of its own, judged by themselves."""
+    """Raise NotRun where the host shows another material, or its own closures, which are judged by themselves."""
     if reason := host.unread(shader):
         raise NotRun(f"{host.name}: {reason}: the picture is shown and only has to be finite")
     own = sorted(categories(inner_nodes(shader)) & set(BSDF_NODES))
     if own and host.language == "osl":
         raise NotRun(
-            f"{host.name} has closures of its own for {', '.join(own)}: their picture is shown and "
+            f"{host.name} has its own closures for {', '.join(own)}: their picture is shown and "
             "only has to be finite"
         )
 

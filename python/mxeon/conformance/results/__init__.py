@@ -291,22 +291,23 @@ def _summarize_results(results: Sequence[Result]) -> Summary:
     def summary(verdict: str, sentence: str) -> Summary:
         return Summary(verdict, counts, sentence)
 
+    differ = ""
+    if counts[DIFFERS]:
+        verb = "differs" if counts[DIFFERS] == 1 else "differ"
+        differ = f"; {counts[DIFFERS]} {verb} where the specification leaves it open"
     if counts[FAILED]:
         failed = Counter(result.location for result in results if result.verdict == FAILED)
-        places = "; ".join(f"{count} on {location}" for location, count in failed.items())
-        return summary(FAILED, f"{counts[FAILED]} of {total} failed: {places}.")
+        places = [f"{count} on {location}" for location, count in failed.items()]
+        where = f": {', '.join(places)}" if len(failed) > 1 else f" on {next(iter(failed))}"
+        return summary(FAILED, f"{counts[FAILED]} of {total} failed{where}{differ}.")
     if not counts[PASSED] + counts[DIFFERS]:
         return summary(NOT_RUN, "No check ran.")
     if counts[NOT_RUN]:
-        return summary(NOT_RUN, f"Nothing failed, but {counts[NOT_RUN]} of {total} did not run.")
+        sentence = f"Nothing failed, but {counts[NOT_RUN]} of {total} did not run{differ}."
+        return summary(NOT_RUN, sentence)
     hosts = " and ".join(dict.fromkeys(result.location for result in results))
-    if counts[DIFFERS]:
-        differ = "differs" if counts[DIFFERS] == 1 else "differ"
-        return summary(
-            PASSED,
-            f"{counts[PASSED]} of {total} passed on {hosts}; {counts[DIFFERS]} {differ} where the "
-            "specification leaves it open.",
-        )
+    if differ:
+        return summary(PASSED, f"{counts[PASSED]} of {total} passed on {hosts}{differ}.")
     passed = "The check" if len(results) == 1 else f"All {len(results)} checks"
     return summary(PASSED, f"{passed} passed on {hosts}.")
 

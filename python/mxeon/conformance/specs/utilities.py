@@ -116,7 +116,7 @@ ERRORS: Mapping[str, dict[str, Tolerance]] = {
         "value in OSL": given(
             4e-3,
             UNIT,
-            "OSL's blackbody() has an observer from 380 nm to 780 nm, a table and primaries of its own",
+            "OSL's blackbody() has an observer from 380 nm to 780 nm, its own table and primaries",
             scaled,
         ),
     },

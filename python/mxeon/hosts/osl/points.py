@@ -122,7 +122,7 @@ def columns_of(shader: Shader, inputs: Inputs) -> Mapping[str, Column]:
 def with_variables(shader: Shader, block: Iterable[str], last: Callable[[str], str]) -> str:
     """Text of a shader whose body has statements before it, and one more at its end.
 
-    `block` is a scope of its own, so that what it declares hides the inputs; `last` takes the name of
+    `block` is a nested scope, so its declarations hide the inputs; `last` takes the name of
     the shader's output.
     """
     head, brace, body = shader.stages["pixel"].rpartition("\n)\n{\n")

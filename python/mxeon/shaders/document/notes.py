@@ -48,7 +48,7 @@ def warn_of_elements(document: mx.Document, elements: Iterable[mx.Element]) -> N
         _warn(DocumentWarning, [text for text in map(note, values) if text])
     _warn(DocumentWarning, [text for text in map(_unconnected, elements) if text])
     if names := ", ".join(each.getName() for each in foreign_code(document)):
-        _warn(CodeWarning, [f"{label(document)}: brings code of its own: {names}"])
+        _warn(CodeWarning, [f"{label(document)}: contains its own code: {names}"])
 
 
 def warn_of_files(inputs: Iterable[tuple[str, str]], document: mx.Document) -> None:

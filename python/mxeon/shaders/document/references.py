@@ -96,7 +96,7 @@ def code_faults(document: mx.Document, policy: Policy) -> Iterator[str]:
             name = next(filter(element.hasAttribute, CODE))
             got = f'{name} "{element.getAttribute(name)}"'
             remedy = "pass --allowCode to permit it"
-            yield f"{prefix} must not bring code of its own; got {got}: {remedy}"
+            yield f"{prefix} must not contain its own code; got {got}: {remedy}"
             continue
         try:
             for path in _sources(element, home, policy.path):

@@ -95,7 +95,7 @@ LEGACY = {
     "gamma24": "rec709_display",
     "lin_ap1": "acescg",
 }
-# Those of the Color Interop Forum, from the version on that knows them.
+# Those of the Color Interop Forum, since the version that knows them.
 INTEROP_VERSION = (1, 39, 4)
 INTEROP = {
     "lin_ap1_scene": "acescg",

@@ -19,7 +19,7 @@ import pyluxcore  # noqa: E402
 LuxCore: TypeAlias = Any  # an object of pyluxcore, which has no types
 JsonObject: TypeAlias = dict[str, Any]  # of a request
 
-# A thread of its own and a fixed seed: pictures are always the same.
+# One thread and a fixed seed make pictures repeatable.
 RENDERER = {
     "renderengine.type": "PATHCPU",
     "renderengine.seed": 1,
