@@ -11,10 +11,19 @@ from mxeon.conformance.case import SCATTERING, Case, albedos, values
 from mxeon.conformance.check import check, control, of_family, scale, shifted
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.diagnosis.comparisons import ALBEDO, VALUE
+from mxeon.conformance.specs.surface_shaders import GRAPHS, SurfaceShaderSpec
 from mxeon.conformance.specs.surface_shaders import VALUE as VALUE_ERROR
-from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
-from mxeon.conformance.tolerance import Compared, Measurement, count_named, count_of, scaled
+from mxeon.conformance.tolerance import (
+    Compared,
+    Measurement,
+    count_named,
+    count_of,
+    roundings,
+    scaled,
+    sum_of,
+)
 
+FEW = 4  # pairs of a control
 WORST = 32  # pairs that are looked at
 FACTORS = (0.0, 1e-3, 0.1, 10.0, 1e3)  # by which an input of a film may be wrong
 # Inputs that take a lobe away, by its name.
@@ -132,6 +141,31 @@ def furnace(case: Case) -> Compared:
 def energy(case: Case) -> Compared:
     batch = case.samples.take(case.of(SurfaceShaderSpec).materials)
     return Compared(batch, np.maximum(case.albedo(batch), 1.0), np.ones((1, 3)))
+
+
+@check(
+    "graph",
+    "The graph has the values of the one that MaterialX released, for every input and every default.",
+    is_shader,
+    shifted,
+    tolerance=sum_of(roundings(16, "of the numbers in a graph")),
+    open=True,
+    diagnose=lambda case: diagnose_graph(case),
+)
+def graph(case: Case) -> Iterator[Compared]:
+    spec = case.of(SurfaceShaderSpec)
+    graphs, few = spec.graphs, spec.graphs.same or case.control
+    batch = case.samples.take(spec.drawn).first(FEW if few else GRAPHS)
+    for behind in (False,) if few else (False, True):
+        expected = graphs.values(batch, behind, right=True)
+        ask = partial(graphs.values, behind=behind)
+        known = graphs.same and not case.control
+        yield Compared(batch, expected if known else case.measured(ask, batch), expected)
+
+
+def diagnose_graph(case: Case) -> Diagnosis:
+    text, permitted = case.of(SurfaceShaderSpec).graphs.difference
+    return Diagnosis(text, permitted=permitted)
 
 
 def misplaced(case: Case) -> list[str]:

@@ -29,6 +29,7 @@ from mxeon.hosts.calls import NORMAL, TANGENT
 from mxeon.shaders.nodes import document_text, node_text
 
 if TYPE_CHECKING:  # which load MaterialX
+    from mxeon.conformance.reference.releases import Graphs
     from mxeon.shaders.document.values import Plain
     from mxeon.shaders.generation import Shader
 
@@ -286,6 +287,9 @@ PREVIEW = Lobes(
 )
 
 
+GRAPHS = 32  # pairs by which a graph is compared with another
+LEAST, LARGEST = 0.05, 2.0  # of their inputs: no transmittance is 0, and no emission hides the rest
+OFTEN, SELDOM = 0.75, 0.5  # shares of them that set an input, and one of `more`
 CHANGED = 8  # pairs that a change of an input has to show in
 SPREAD = 0.3  # alpha of the lobe in which half of the lights lie about the mirror direction
 STRETCHED = "anisotropy"  # in the names of inputs: an environment is summed too coarsely for them
@@ -344,6 +348,12 @@ class SurfaceShaderSpec(LobeSpec):
         [shader] = generate(self.document(), "glsl", library=self.library)
         return shader
 
+    @cached_property
+    def graphs(self) -> Graphs:
+        from mxeon.conformance.reference.releases import Graphs
+
+        return Graphs(self._shader.document, self.document())
+
     def _reference(self, batch: Batch, branch: str) -> Array:
         from mxeon.conformance.reference import Host as Reference
 
@@ -383,6 +393,25 @@ class SurfaceShaderSpec(LobeSpec):
         rng, count = np.random.default_rng(SEED), counts.materials
         wo = _views(rng, count)
         return _isotropic(Batch(wo, wo, self.special_inputs(rng, count)))
+
+    def drawn(self, counts: Counts) -> Batch:
+        """Pairs with every input of the node, a quarter lit from below; NaN stands for a default."""
+        rng, pairs = np.random.default_rng(SEED), self.batches(counts)[0].first(GRAPHS)
+        count = len(pairs.wo)
+        inputs = {**pairs.inputs, **draw(rng, count, self.table.others)}
+        inputs = {name: np.maximum(each, LEAST) for name, each in inputs.items()}
+        for name, value in self.table.more.items():
+            values = np.repeat(np.minimum(np.asarray([value], float), LARGEST), count, 0)
+            colored = value == CHANGED_COLOR
+            inputs[name] = np.maximum(rng.random((count, 3)), LEAST) if colored else values
+        for name in self.table.unseen:
+            share = rng.random(count)
+            inputs[name] = np.floor(3.0 * share) if name == "alpha_mode" else share
+        for name, values in inputs.items():
+            values[rng.random(count) > (SELDOM if name in self.table.more else OFTEN)] = np.nan
+        wi = np.array(pairs.wi)
+        wi[1::4, 2] *= -1.0
+        return replace(pairs, wi=wi, inputs=inputs)
 
     def films(self, counts: Counts) -> Batch:
         """Some of the pairs, under random films."""

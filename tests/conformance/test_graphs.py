@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Surface shaders with one error in their graph or definition: the check `graph` names the part."""
+
+import pytest
+
+from mxeon.conformance.reference import releases
+from mxeon.conformance.results import DIFFERS, FAILED, PASSED
+from mxeon.conformance.specs.surface_shaders import SURFACE_SHADERS
+from tests.support.wrong_libraries import copy_of_stock, replace_text
+
+FILES = {
+    "open_pbr_surface": "bxdf/open_pbr_surface.mtlx",
+    "standard_surface": "bxdf/standard_surface.mtlx",
+    "gltf_pbr": "bxdf/gltf_pbr.mtlx",
+    "UsdPreviewSurface": "bxdf/usd_preview_surface.mtlx",
+}
+# By category: a text, the one in its place, and words of the diagnosis.
+WRONG = {
+    "open_pbr_surface": (
+        ('value="1000.0" />', 'value="100.0" />', "in2 of thin_film_thickness_nm is 100 instead of 1000"),
+        ('<generalized_schlick_bsdf name="metal_bsdf_tf" type="BSDF">\n      <input name="weight" type="float" interfacename="specular_weight" />',
+         '<generalized_schlick_bsdf name="metal_bsdf_tf" type="BSDF">',
+         "weight of metal_bsdf_tf is missing instead of the input specular_weight"),
+        ('<input name="in1" type="color3" interfacename="emission_color" />', '<input name="in1" type="color3" value="1, 1, 1" />',
+         "in1 of emission_weight is 1, 1, 1 instead of the input emission_color"),
+        ('nodename="fuzz_bsdf" />\n      <input name="base" type="BSDF" nodename="coat_layer" />',
+         'nodename="coat_layer" />\n      <input name="base" type="BSDF" nodename="fuzz_bsdf" />',
+         "top of fuzz_layer is coat_layer instead of fuzz_bsdf, base of fuzz_layer is fuzz_bsdf instead of coat_layer"),
+        ('name="coat_roughness" type="float" value="0.0"', 'name="coat_roughness" type="float" value="0.1"',
+         "the default of coat_roughness is 0.1 instead of 0"),
+        ('nodename="alpha_x" />\n      <input name="in2" type="float" nodename="alpha_y" />',
+         'nodename="alpha_y" />\n      <input name="in2" type="float" nodename="alpha_x" />',
+         "in1 of result is alpha_y instead of alpha_x"),
+        ('nodename="absorption_coeff_min_x_y"', 'nodename="absorption_coeff_x"',
+         "in1 of absorption_coeff_min is absorption_coeff_x instead of absorption_coeff_min_x_y"),
+    ),
+    "standard_surface": (
+        ('interfacename="coat_rotation"', 'interfacename="specular_rotation"',
+         "in1 of coat_tangent_rotate_degree is the input specular_rotation instead of the input coat_rotation"),
+        ('<input name="in1" type="float" nodename="coat_affect_roughness_multiply1" />', "",
+         "in1 of coat_affect_roughness_multiply2 is missing instead of coat_affect_roughness_multiply1"),
+        ('interfacename="opacity" />', 'value="1, 1, 1" />', "in of opacity_luminance is 1, 1, 1 instead of the input opacity"),
+    ),
+    "gltf_pbr": (
+        ('<input name="bg" type="BSDF" nodename="reflection_bsdf" />\n      <input name="fg" type="BSDF" nodename="tf_reflection_bsdf" />',
+         '<input name="fg" type="BSDF" nodename="reflection_bsdf" />\n      <input name="bg" type="BSDF" nodename="tf_reflection_bsdf" />',
+         "bg of mix_iridescent_dielectric_reflection is tf_reflection_bsdf instead of reflection_bsdf"),
+        ('value="-57.295780" />', 'value="57.295780" />', "in2 of rad_2_deg is 57.29578 instead of -57.29578"),
+        ('interfacename="alpha_cutoff"', 'value="0.5"', "value2 of opacity_mask_cutoff is 0.5 instead of the input alpha_cutoff"),
+    ),
+    "UsdPreviewSurface": (
+        ('<input name="mix" type="float" nodename="use_specular_workflow_float" />', '<input name="mix" type="float" value="1.0" />',
+         "mix of diffuse_bsdf_weight is 1 instead of use_specular_workflow_float"),
+        ('<input name="color90" type="color3" nodename="specular_color_metallic" />', '<input name="color90" type="color3" value="1, 1, 1" />',
+         "color90 of specular_bsdf2 is 1, 1, 1 instead of specular_color_metallic"),
+    ),
+}  # fmt: skip
+ROWS = [
+    pytest.param(node, *row, id=f"{node}, {row[2]}", marks=[pytest.mark.whole] * (number > 0))
+    for node, rows in WRONG.items()
+    for number, row in enumerate(rows)
+]
+
+
+def changed(folder, node, *changes):
+    """Path of a part of MaterialX's libraries, in which texts of the surface shader are replaced."""
+    copy_of_stock(folder, FILES[node])
+    for old, new in changes:
+        replace_text(folder, old, new, FILES[node])
+    return str(folder)
+
+
+@pytest.mark.parametrize(("node", "old", "new", "words"), ROWS)
+def test_a_wrong_part_of_a_graph_is_named(judged, tmp_path, node, old, new, words):
+    result = judged("graph", f"{node}, every lobe", library=changed(tmp_path, node, (old, new)))
+    assert result.verdict == FAILED and result.control.caught
+    assert words in result.diagnosis
+
+
+def test_a_graph_that_is_written_differently_passes(judged, tmp_path):
+    inputs = (f'<input name="{port}" type="float" nodename="R" />\n' for port in ("in1", "in2"))
+    product = '<multiply name="R_sq" type="float">\n      {}      {}    </multiply>'.format(*inputs)
+    power = (
+        '<power name="R_sq" type="float"><input name="in1" type="float" nodename="size" />'
+        '<input name="in2" type="float" value="2.0" /></power>'
+        '<absval name="size" type="float"><input name="in" type="float" nodename="R" /></absval>'
+    )
+    library = changed(tmp_path, "UsdPreviewSurface", (product, power))
+    assert judged("graph", "UsdPreviewSurface, every lobe", library=library).verdict == PASSED
+
+
+def test_another_version_of_a_node_differs_with_its_size(judged, tmp_path):
+    changes = (('version="1.1.1"', 'version="1.2"'), ('value="1000.0" />', 'value="100.0" />'))
+    library = changed(tmp_path, "open_pbr_surface", *changes)
+    result = judged("graph", "open_pbr_surface, every lobe", library=library)
+    assert result.verdict == DIFFERS and result.error > 0.01
+    assert result.diagnosis.startswith("the graph of version 1.2 of the node; it differs from ")
+
+
+def test_the_graph_of_another_release_is_recognized(judged, tmp_path, monkeypatch):
+    library = changed(tmp_path, "open_pbr_surface", ('value="1000.0" />', 'value="100.0" />'))
+    monkeypatch.setattr(releases, "digest", lambda parts: "1ccbee1d778c54c1")
+    result = judged("graph", "open_pbr_surface, every lobe", library=library)
+    assert result.verdict == DIFFERS
+    assert result.diagnosis.startswith("the graph of MaterialX 1.39.3; it differs from the graph ")
+
+
+@pytest.mark.parametrize("spec", SURFACE_SHADERS, ids=lambda spec: spec.node)
+def test_the_graphs_of_the_installed_release_are_known(spec):
+    graphs = spec.within("stock").graphs
+    assert graphs.same and graphs.right is graphs.own
