@@ -5,6 +5,7 @@ import atexit
 import gc
 import os
 import signal
+import tempfile
 from contextlib import nullcontext
 from importlib import import_module
 from pkgutil import walk_packages
@@ -73,6 +74,17 @@ def one_worker():
     """Commands in this process start one worker: other tests run on the other processors."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("os.cpu_count", lambda: 1)
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def temporary(tmp_path_factory):
+    """What processes leave behind, Blender's and killed ones, goes with the folders of the tests."""
+    folder = tmp_path_factory.getbasetemp() / "t"  # short, for the sockets of a browser
+    folder.mkdir()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("TMPDIR", str(folder))
+        patch.setattr(tempfile, "tempdir", str(folder))
         yield
 
 

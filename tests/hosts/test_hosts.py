@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Hosts that evaluate pairs: each is the model, on every host alike, says who it is, and runs the text unchanged."""
 
+import os
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from mxeon.errors import ShaderError
-from mxeon.hosts import calls, fragment
+from mxeon.hosts import calls, fragment, open_host
+from mxeon.jobs import pool
 from mxeon.models import table as reference
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, material_text
@@ -128,3 +131,20 @@ def test_an_integer_of_the_text_is_the_boolean_that_it_was(hosts):
         for flag in (True, False)
     )
     assert (on > off + 0.01).all()
+
+
+def kernels(_):
+    """Files of the kernels of Slang that this process has opened, and keeps open."""
+    kept.append(open_host("slang"))
+    kept[-1].call("fon_a", np.array([0.5]))
+    maps = Path("/proc/self/maps").read_text().split()
+    return {word for word in maps if "slang-generated" in word}
+
+
+kept = []
+
+
+def test_a_worker_that_is_ended_leaves_no_file_of_slang(hosts):
+    hosts("slang")
+    [(_, outcome)] = pool.run(kernels, [0], 1, 300.0)
+    assert outcome.value and not any(map(os.path.exists, outcome.value))

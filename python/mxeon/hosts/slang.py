@@ -7,7 +7,10 @@ the text calls its BSDF. Arguments arrive in buffers, one row per thread.
 
 from __future__ import annotations
 
+import atexit
 import itertools
+import multiprocessing
+import signal
 import sys
 from collections.abc import Mapping, Sequence
 from typing import Any, TypeAlias, cast
@@ -113,11 +116,18 @@ class Host(base.Host):
             try:
                 self._device = slangpy.Device(type=slangpy.DeviceType[device])
                 self._white = self._texture(np.ones((1, 1, 3)))
+                self._release_at_exit()
                 return
             except RuntimeError as error:
                 lines = [line.strip() for line in str(error).splitlines() if "error" in line]
         remedy = "without a GPU it needs a C++ compiler: on Debian: apt-get install g++"
         raise NotRun(f"slang: no kernel for the CPU; {'; '.join([*lines, remedy])}")
+
+    def _release_at_exit(self) -> None:
+        """Slang removes the files of the kernels that are released; a worker is ended by SIGTERM."""
+        atexit.register(self._kernels.clear)
+        if multiprocessing.parent_process():
+            signal.signal(signal.SIGTERM, lambda *_: sys.exit())
 
     def identity(self) -> Identity:
         info = self._device.info
