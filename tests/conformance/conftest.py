@@ -1,17 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every node and two documents on gl with each library, judged once for all tests that read the results."""
+"""What each library does on gl."""
 
 import pytest
 
-import mxeon
-from mxeon.shaders.library import examples_folder
-from tests.support.sharing import shared
-
-EXAMPLES = [examples_folder() / name for name in ("plaster.mtlx", "openpbr_rough_base.mtlx")]
-
-
-def every_node(factory, library):
-    return shared(factory, library, lambda: mxeon.check(EXAMPLES, ["gl"], [library], nodes=["all"]))
+from tests.support.sharing import every_node
 
 
 @pytest.fixture(scope="session")

@@ -11,8 +11,8 @@ from mxeon.hosts import HOSTS
 from mxeon.jobs import dask
 from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.nodes import INVERSIONS, connection_text, document_text, node_text
-from tests.conformance.conftest import EXAMPLES
 from tests.support.plans import keep_checks
+from tests.support.sharing import EXAMPLES
 
 
 def test_a_named_node_is_judged_alone():

@@ -6,6 +6,11 @@ import pickle
 
 from filelock import FileLock
 
+import mxeon
+from mxeon.shaders.library import examples_folder
+
+EXAMPLES = [examples_folder() / name for name in ("plaster.mtlx", "openpbr_rough_base.mtlx")]
+
 
 def shared(factory, name, make):
     """The value of `make`; where several processes test, that of the first of them to ask."""
@@ -16,3 +21,8 @@ def shared(factory, name, make):
         if not path.exists():
             path.write_bytes(pickle.dumps(make()))
         return pickle.loads(path.read_bytes())
+
+
+def every_node(factory, library):
+    """Every node and two documents on gl with a library, judged once for all tests that read the results."""
+    return shared(factory, library, lambda: mxeon.check(EXAMPLES, ["gl"], [library], nodes=["all"]))
