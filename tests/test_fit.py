@@ -32,7 +32,6 @@ NOISE = 0.05
 # Of 4 or 6 normal deviates of 24 fits, one is beyond 4.5 once in 1200 runs. The spread of 96 deviates is
 # off by more than 30 % once in 10,000 runs.
 LARGEST_DEVIATE, FITS, SPREAD = 4.5, 24, (0.7, 1.3)
-CURVES = 4e-7  # of the larger of 1 and the value: E_r and the compensation have an error below 2e-7
 
 
 def directions(rng, count):

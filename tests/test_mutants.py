@@ -50,8 +50,10 @@ def test_every_mutant_changes_the_sources():
     assert [name for name, file, text in texts if text == read(file)] == []
 
 
-def test_names_are_unique():
+def test_names_are_unique_and_the_tests_that_rows_name_exist():
     assert len(NAMED) == len(TABLE)
+    named = {f"{trial.MODEL_TESTS}/{name}" for mutant in TABLE for name in mutant.tests}
+    assert [name for name in {*named, *trial.PROFILE_TESTS} if not (trial.ROOT / name).is_file()] == []
 
 
 def test_every_source_and_every_document_of_implementations_has_mutants():

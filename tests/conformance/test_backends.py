@@ -5,12 +5,9 @@ import pytest
 
 from mxeon.conformance import specs
 from mxeon.conformance.backends import backend_of
-from mxeon.conformance.specs.diffuse import DIFFUSE
 from mxeon.hosts import HOSTS
 
 SPECS = {spec.title: spec for spec in specs.ALL}
-DIELECTRIC = SPECS["dielectric_bsdf, scatter_mode R"]
-EON, QON, _ = DIFFUSE
 
 
 # By host: nodes of which it has no values, and one of a kind that it has.

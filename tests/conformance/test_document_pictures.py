@@ -1,19 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pictures of documents: what their bounds carry, and what a failure says."""
 
-import numpy as np
 import pytest
 
 from mxeon.conformance.pictures import judge_document
-from mxeon.conformance.pictures.tolerances import ENCODED, FITTED, TEXTURED, tolerance_of
 from mxeon.conformance.reference import Host as Reference
-from mxeon.conformance.reference.nodes import ShownLobe
 from mxeon.hosts import open_host
-from mxeon.shaders.generation import generate
-from mxeon.shaders.library import examples_folder
 from mxeon.shaders.nodes import SURFACE, document_text
-
-IMAGE = examples_folder() / "textures" / "brick_color.png"
 
 FILM = """<generalized_schlick_bsdf name="lobe" type="BSDF">
   <input name="color0" type="color3" value="0.04, 0.04, 0.04"/>
@@ -70,39 +63,6 @@ def test_a_film_of_the_index_of_its_schlick_substrate_has_one_phase(host, tmp_pa
     assert result.error < 1e-4  # the phase of a denser film is off by 0.17
 
 
-def tolerance(text, **inputs):
-    [shader] = generate(document_text(text + SURFACE), "glsl")
-    kind = text.split()[0].removeprefix("<")
-    return tolerance_of(shader, [ShownLobe(kind, {k: np.array(v) for k, v in inputs.items()})])
-
-
-@pytest.mark.parametrize(
-    "inputs, more",
-    [
-        ({"ior": [1.5]}, 0.0),
-        ({"ior": [1.5, 0.9]}, 0.03),
-        ({"thinfilm_thickness": [0.0, 300.0]}, 0.07),
-        ({"thinfilm_ior": [1.2, 1.5]}, 0.018),
-    ],
-)
-def test_inputs_of_lobes_add_what_their_checks_allow(inputs, more):
-    lobe = tolerance('<dielectric_bsdf name="lobe" type="BSDF"/>', **inputs)
-    assert lobe.value == pytest.approx(FITTED.value + more)
-
-
-@pytest.mark.parametrize(
-    ("space", "expected"), [('colorspace="srgb_texture"', ENCODED), ("", TEXTURED)]
-)
-def test_the_decoding_of_an_image_steepens_the_errors_of_its_filter(space, expected):
-    text = (
-        f'<image name="rho" type="color3"><input name="file" type="filename" value="{IMAGE}" {space}/>'
-        '</image><oren_nayar_diffuse_bsdf name="lobe" type="BSDF">'
-        '<input name="color" type="color3" nodename="rho"/></oren_nayar_diffuse_bsdf>'
-    )
-    [shader] = generate(document_text(text + SURFACE), "glsl")
-    assert tolerance_of(shader, []) == expected
-
-
 def test_a_truth_value_is_drawn_white_or_black(host, tmp_path):
     text = """<materialx version="1.39"><nodegraph name="logic">
       <and name="both" type="boolean">
@@ -117,26 +77,3 @@ def test_nodes_of_one_name_in_two_nodegraphs_are_named(host, tmp_path):
     assert result.verdict == "failed"
     assert 'nodes "red/tint" and "green/tint" have the values of one' in result.diagnosis
     assert any("must have different names" in text for text, _ in notes)
-
-
-# A material by a definition.
-MATERIAL = """<materialx version="1.39">
-  <nodedef name="ND_clay" node="clay"><output name="out" type="material"/></nodedef>
-  <nodegraph name="NG_clay" nodedef="ND_clay">
-    <oren_nayar_diffuse_bsdf name="lobe" type="BSDF"/>
-    <surface name="shading" type="surfaceshader">
-      <input name="bsdf" type="BSDF" nodename="lobe"/>
-    </surface>
-    <surfacematerial name="look" type="material">
-      <input name="surfaceshader" type="surfaceshader" nodename="shading"/>
-    </surfacematerial>
-    <output name="out" type="material" nodename="look"/>
-  </nodegraph>
-  <clay name="clay1" type="material"/>
-</materialx>"""
-
-
-def test_a_material_that_a_nodegraph_defines_is_named(host, tmp_path):
-    result, _ = judged(host, tmp_path, MATERIAL)
-    assert result.verdict == "failed"
-    assert "a material that a nodegraph defines is not generated" in result.diagnosis

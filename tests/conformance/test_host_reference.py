@@ -9,7 +9,6 @@ from mxeon.conformance.reference import Host as Reference
 from mxeon.errors import NotRun
 from mxeon.hosts import open_host
 from mxeon.models.diffuse.brdf import eon_brdf
-from mxeon.models.microfacet import generalized_schlick_brdf
 from mxeon.models.sheen import (
     conty_kulla_albedo_dir,
     conty_kulla_brdf,
@@ -18,7 +17,7 @@ from mxeon.models.sheen import (
 )
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import EON, document_text
-from mxeon.shaders.scene import FRONT, SIDE, VIEW, Scene, sphere
+from mxeon.shaders.scene import FRONT, Scene
 from tests.support.documents import lobe, material
 
 A = f'<{EON} name="a" type="BSDF"><input name="color" type="color3" value="0.8, 0.4, 0.1"/></{EON}>'
@@ -229,19 +228,3 @@ def test_a_layer_darkens_its_base_by_its_albedo(mode, brdf, albedo):
     assert np.allclose(values, expected, rtol=1e-9)
     # The tint is part of the albedo, so what it does not reflect reaches the base.
     assert np.allclose(Reference().evaluate(shader, wo, wi, {}, "environment"), 1.0, rtol=1e-12)
-
-
-def test_brushed_metal_is_turned_with_the_tangent_of_the_sphere():
-    text = material("""<generalized_schlick_bsdf name="lobe" type="BSDF">
-      <input name="color0" type="color3" value="0.9, 0.6, 0.3"/>
-      <input name="color82" type="color3" value="0.5, 0.7, 0.9"/>
-      <input name="roughness" type="vector2" value="0.3, 0.1"/></generalized_schlick_bsdf>""")
-    shader, scene = generate(text, "glsl")[0], Scene("side", light=SIDE.light, size=9)
-    image = Reference().picture(shader, scene)
-    normal = sphere(9).normal[2, 6]
-    x = np.array([normal[2], 0.0, -normal[0]]) / np.hypot(normal[0], normal[2])
-    frame = np.stack([x, np.cross(normal, x), normal])
-    wo, wi = frame @ VIEW, frame @ SIDE.light
-    colors = [0.9, 0.6, 0.3], [0.5, 0.7, 0.9], [1.0, 1.0, 1.0]
-    value = generalized_schlick_brdf(wo, wi, *colors, [0.3, 0.1], 5.0)
-    assert np.allclose(image[2, 6], np.pi * value * wi[2], rtol=1e-6)

@@ -28,34 +28,6 @@ TILED = """<tiledimage name="pattern" type="color3">
   <input name="file" type="filename" value="checks.exr"/>
   <input name="uvtiling" type="vector2" value="3, 2"/>
 </tiledimage>"""
-# A surface shader of the document's own, with a pattern inside and one outside.
-INSIDE = """<nodedef name="ND_speckled" node="speckled">
-  <input name="color" type="color3" value="1, 1, 1"/>
-  <input name="scale" type="float" value="1"/>
-  <output name="out" type="surfaceshader"/>
-</nodedef>
-<nodegraph name="NG_speckled" nodedef="ND_speckled">
-  <cellnoise3d name="speckles" type="float"/>
-  <multiply name="scaled" type="float">
-    <input name="in1" type="float" nodename="speckles"/>
-    <input name="in2" type="float" interfacename="scale"/>
-  </multiply>
-  <oren_nayar_diffuse_bsdf name="lobe" type="BSDF">
-    <input name="weight" type="float" nodename="scaled"/>
-    <input name="color" type="color3" interfacename="color"/>
-  </oren_nayar_diffuse_bsdf>
-  <surface name="shading" type="surfaceshader">
-    <input name="bsdf" type="BSDF" nodename="lobe"/>
-  </surface>
-  <output name="out" type="surfaceshader" nodename="shading"/>
-</nodegraph>
-<speckled name="speckled1" type="surfaceshader">
-  <input name="color" type="color3" nodename="pattern"/>
-  <input name="scale" type="float" value="0.5"/>
-</speckled>
-<surfacematerial name="look" type="material">
-  <input name="surfaceshader" type="surfaceshader" nodename="speckled1"/>
-</surfacematerial>"""
 
 
 @pytest.fixture(scope="module")
@@ -89,12 +61,6 @@ def test_an_image_with_a_transform_comes_from_the_host(host, tmp_path):
     write_exr(tmp_path / "checks.exr", checks.astype(np.float32), {})
     [result], _, _ = judged(host, tmp_path, document_text(TILED + LOBE + SURFACE))
     assert (result.check, result.verdict, result.measured) == ("picture", "passed", ("lobe.color",))
-
-
-def test_patterns_inside_of_a_nodes_graph_and_around_it_are_measured(host, tmp_path):
-    [result], _, _ = judged(host, tmp_path, document_text(NOISE + INSIDE))
-    assert (result.check, result.verdict) == ("picture", "passed")
-    assert set(result.measured) == {"lobe.weight", "speckled1.color"}
 
 
 def test_a_pattern_alone_is_what_a_surface_emits_of_it(host, tmp_path):

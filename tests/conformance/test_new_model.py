@@ -5,11 +5,9 @@ import numpy as np
 import pytest
 
 import mxeon
-from mxeon.conformance.shader_functions import FunctionProbe, judge_functions
 from mxeon.models import table
 from mxeon.models.diffuse.brdf import eon_brdf, lambert_brdf
 from mxeon.models.table import Model
-from mxeon.shaders.functions import names
 
 
 def toy_brdf(wo, wi, rho, roughness):
@@ -34,13 +32,3 @@ def test_a_diagnosis_names_it():
         result for result in mxeon.check_brdf(toy_brdf, "eon").results if result.check == "value"
     ]
     assert value.diagnosis.startswith("best match: a toy model (rms ")
-
-
-def test_the_checks_of_shader_functions_leave_it_out(hosts):
-    results = judge_functions(FunctionProbe(hosts("gl"), "eonlib"))
-    assert {result.verdict for result in results} == {"passed"}
-
-
-def test_the_shader_functions_hold_all_models_of_the_table_that_ships():
-    shipped = [row.brdf.__name__ for row in table.MODELS if row.name != "toy"]
-    assert set(shipped) <= set(names("glsl")) & set(names("osl"))

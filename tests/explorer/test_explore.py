@@ -5,21 +5,16 @@ import json
 import re
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
 
 from mxeon import check
 from mxeon.cli import main
 from mxeon.cli.explore import MATERIALS
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Result
-from mxeon.errors import MISUSE, NotRun
+from mxeon.errors import MISUSE
 from mxeon.errors import PASSED as PASSED_STATUS
 from mxeon.explorer import PARAGRAPH, TEXTS, page, page_data
-from mxeon.explorer.data import Models
 from mxeon.explorer.documents import document_sources
-from mxeon.explorer.sources import measured_models
-from mxeon.hosts.gl import Host
-from mxeon.io.images import write_image
 from mxeon.models.table import model
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
@@ -199,56 +194,6 @@ def test_more_materials_than_a_page_may_hold_are_refused(tmp_path, capsys):
     assert f"renderable elements (default: {MATERIALS})" in " ".join(
         capsys.readouterr().out.split()
     )
-
-
-def textured(folder, sizes, uses=1):
-    """A document in a folder with gray images of these sides, each used so often in every material."""
-    nodes = []
-    for name, side in enumerate(sizes):
-        codes = np.random.default_rng(name).integers(0, 256, (side, side, 1), np.uint8)
-        write_image(folder / f"{name}.png", codes, {})
-        for use in range(uses):
-            file = f'<input name="file" type="filename" value="{name}.png"/>'
-            color = f'<input name="color" type="color3" nodename="i{name}_{use}"/>'
-            nodes.append(
-                f'<image name="i{name}_{use}" type="color3">{file}</image>'
-                f'<eon_diffuse_bsdf name="d{name}_{use}" type="BSDF">{color}</eon_diffuse_bsdf>'
-                f'<surface name="s{name}_{use}" type="surfaceshader">'
-                f'<input name="bsdf" type="BSDF" nodename="d{name}_{use}"/></surface>'
-                f'<surfacematerial name="m{name}_{use}" type="material">'
-                f'<input name="surfaceshader" type="surfaceshader" nodename="s{name}_{use}"/>'
-                "</surfacematerial>"
-            )
-    path = folder / "textured.mtlx"
-    path.write_text(f'<materialx version="1.39">{"".join(nodes)}</materialx>')
-    return str(path)
-
-
-def test_what_a_node_is_comes_from_its_values(monkeypatch):
-    assert measured_models("stock", OREN_NAYAR) == Models("eon_clamped", "qon_fitted")
-    assert page_data().judged
-    evaluate = Host.evaluate
-    monkeypatch.setattr(Host, "evaluate", lambda *args, **options: 0.5 * evaluate(*args, **options))
-    measured_models.cache_clear()
-    try:
-        assert measured_models("stock", OREN_NAYAR) is None
-    finally:
-        measured_models.cache_clear()
-
-
-def test_without_the_host_no_material_is_called_a_model(monkeypatch):
-    def missing(name):
-        raise NotRun("no driver")
-
-    monkeypatch.setattr("mxeon.explorer.sources.open_host", missing)
-    measured_models.cache_clear()
-    try:
-        data = page_data()
-        shaders = [each for each in data.sources if each.kind == "shader" and each.meant]
-        assert shaders and all(each.actual is None for each in shaders)
-        assert not data.judged
-    finally:
-        measured_models.cache_clear()
 
 
 def test_inputs_have_the_ranges_of_their_definitions():

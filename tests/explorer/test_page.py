@@ -225,13 +225,6 @@ def test_the_python_line_runs_and_gives_the_value(page):
         assert np.allclose(found, numbers(rows[0][column]), atol=SHADER)
 
 
-CHANGED = """async () => {
-    mxeon.show({...mxeon.state(), roughness: 0.3});
-    await null;  // the page is drawn anew by then
-    return [...document.querySelectorAll('.values tbody tr:first-child td')].map(e => e.innerText);
-}"""
-
-
 def test_the_copied_document_is_the_material_in_sight(page):
     show(page, roughness=0.25, color=[0.5, 0.25, 0.125])
     page.locator(".side.left").get_by_label("energy_compensation").uncheck()

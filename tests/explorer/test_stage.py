@@ -42,10 +42,6 @@ def sources(stage):
     return model_sources(stage)
 
 
-EVALUATE = """([patch, pairs]) =>
-    pairs.map(pair => mxeon.stage.evaluate(pair, {...mxeon.state(), ...patch}))"""
-
-
 def parameter_of(row):
     return () if row.parameter is None else (ROUGHNESS,)
 

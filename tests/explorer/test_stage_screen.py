@@ -5,8 +5,6 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
-from mxeon.explorer import page, page_data
-from mxeon.io.files import write_text
 from mxeon.io.srgb import srgb_encoded
 from tests.explorer.browser import until
 from tests.explorer.stage import (
@@ -91,19 +89,3 @@ def test_a_lost_context_is_restored_with_the_same_picture(browser, address):
         settle(page)
         assert (picture(page) == before).all()
         assert before.max() > 0.1
-
-
-def test_a_shader_that_does_not_compile_is_named_and_the_other_side_stays(browser, tmp_path):
-    data = page_data()
-    sources = [vars(each) for each in data.sources]
-    first = type(data.sources[0])(**(sources[0] | {"pixel": sources[0]["pixel"] + "oops"}))
-    file = tmp_path / "broken.html"
-    write_text(file, page(type(data)(**(vars(data) | {"sources": (first, *data.sources[1:])}))))
-    with opened_stage(browser, file.as_uri() + "#a=model/eon&b=model/eon") as shown:
-        shown.evaluate(LISTEN)
-        view(shown, side(sources[0]["id"]), side(sources[1]["id"]))
-        said = shown.evaluate("said.filter(each => each.kind === 'error')")
-        assert said[0]["source"] == sources[0]["id"]
-        assert "syntax error" in said[0]["message"]
-        assert frame(shown, "left").max() == 0.0
-        assert frame(shown, "right").max() == 1.0

@@ -16,8 +16,8 @@ from mxeon.conformance.results.known_issues import RENDERER_NODES
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import cycles
 from mxeon.hosts.cycles import process as cycles_process
-from mxeon.shaders.generation import ApproximationWarning, generate
-from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, material_text
+from mxeon.shaders.generation import generate
+from mxeon.shaders.nodes import EON, material_text
 from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, Paths, sphere
 from mxeon.survey.cycles_native import NODES
 from tests.support.availability import available
@@ -34,10 +34,6 @@ from tests.support.tolerances import (
 EMIT = "shader emit\n(\n    output closure color out = 0\n)\n{{\n    {}\n}}\n"
 SMALL = replace(FRONT, size=64)
 LIGHTS = [replace(scene, size=64) for scene in (FRONT, SIDE, BACK)]
-
-
-def oren_nayar(flag, color=(0.8, 0.4, 0.1), roughness=1.0):
-    return material_text(OREN_NAYAR, {"color": color, "roughness": roughness, FLAG: flag})
 
 
 def eon(color, roughness):
@@ -123,18 +119,6 @@ def test_eon_with_the_profile_is_exact(host, scene, color, roughness):
     assert np.all(error[pixels] <= bound[pixels])
 
 
-@pytest.mark.parametrize("scene", LIGHTS, ids=lambda scene: scene.name)
-def test_qon_with_the_profile_is_exact_in_front_and_darker_behind(host, scene):
-    with pytest.warns(ApproximationWarning):
-        shader = osl(oren_nayar("false"), profile="cycles")
-    expected = Reference().picture(shader, scene)
-    error = host.picture(shader, scene) - expected
-    pixels, behind = lit(scene)
-    front, back = pixels & ~behind, pixels & behind
-    assert np.all(np.abs(error[front]) <= CYCLES_EON_RELATIVE * expected[front])
-    assert np.all(error[back] <= CYCLES_EON_RELATIVE * expected[back])
-
-
 def test_a_white_furnace_returns_all_light(host):
     scene = replace(FURNACE, size=64)
     shader = osl(eon("1.0, 1.0, 1.0", 1.0), profile="cycles")
@@ -172,15 +156,6 @@ def test_nothing_is_left_behind(sources, host):
     with pytest.raises(ProcessLookupError):
         os.kill(pid, 0)
     assert not log.exists()
-
-
-def test_nothing_of_an_earlier_picture_stays_in_the_scene(host):
-    shader = osl(eon((0.5, 0.5, 0.5), 0.5))
-    alone = host.picture(shader, SMALL)
-    host.picture(shader, replace(FURNACE, size=16))
-    host.picture(shader, LIGHTS[1])
-    host.forget()
-    assert np.array_equal(host.picture(shader, SMALL), alone)
 
 
 def test_subsurface_keeps_its_color(host):

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """OpenGL pictures: exact points, the right way up, and light as it is asked for."""
 
-import gc
 from dataclasses import replace
 
 import moderngl
@@ -10,12 +9,12 @@ import OpenImageIO as oiio
 import pytest
 
 from mxeon.errors import NotRun
-from mxeon.hosts import fragment, open_host
+from mxeon.hosts import open_host
 from mxeon.hosts.textures import irradiance, read_latlong
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.generation import generate
-from mxeon.shaders.nodes import EON, OREN_NAYAR, material_text
-from mxeon.shaders.scene import FRONT, FURNACE, SCENES, Scene, sphere
+from mxeon.shaders.nodes import EON, OREN_NAYAR
+from mxeon.shaders.scene import FRONT, SCENES, Scene, sphere
 from mxeon.shaders.shader_ball import shader_ball
 from tests.support.documents import material
 from tests.support.tolerances import PICTURE
@@ -58,21 +57,6 @@ def test_the_shader_ball_is_drawn_at_its_points(gl):
     assert np.abs(image - cosine * [0.8, 0.4, 0.1]).max() <= PICTURE
 
 
-def test_a_closed_host_takes_no_program_from_the_next():
-    closed = open_host("gl")
-    for name in LOBES:
-        picture(closed, LOBES[name], FURNACE)
-    closed.close()
-    following = open_host("gl")
-    before = [picture(following, LOBES[name], FURNACE) for name in LOBES]
-    del closed
-    with following._context:
-        gc.collect()
-    after = [picture(following, LOBES[name], FURNACE) for name in LOBES]
-    following.close()
-    assert np.array_equal(before, after)
-
-
 def test_a_texture_stands_upright(gl, reference, tmp_path):
     texels = np.zeros((8, 16, 3), dtype=np.float32)
     texels[:4, :, 0], texels[4:, :, 2] = 0.9, 0.6  # red above, blue below
@@ -99,9 +83,6 @@ def test_an_environment_image_lights_by_its_irradiance(gl, tmp_path):
     assert irradiance(read_latlong(0.5)).max() == 0.5
 
 
-SHADERS = ("standard_surface", "UsdPreviewSurface")
-
-
 def test_a_machine_without_egl_did_not_run(monkeypatch):
     def missing(**options):
         raise Exception("libEGL.so not loaded")
@@ -116,14 +97,3 @@ def test_another_context_of_the_process_is_not_in_the_way(gl):
     other = moderngl.create_standalone_context(require=430, backend="egl")
     other.release()
     np.testing.assert_array_equal(gl.call("fon_a", np.array([0.5])), before)
-
-
-def test_a_long_evaluation_is_that_of_its_parts(gl):
-    [shader] = generate(material_text("conductor_bsdf", {}), "glsl")
-    count = fragment.PART + 7
-    wo, wi = (np.tile(each, (count, 1)) for each in ([0.6, 0.0, 0.8], [-0.28, 0.0, 0.96]))
-    rough = np.linspace(0.1, 0.9, 2 * count).reshape(count, 2)
-    values = gl.evaluate(shader, wo, wi, {"roughness": rough}, "direct")
-    last = gl.evaluate(shader, wo[-7:], wi[-7:], {"roughness": rough[-7:]}, "direct")
-    assert len(values) == count
-    np.testing.assert_array_equal(values[-7:], last)

@@ -107,13 +107,6 @@ def test_a_lobe_of_microfacets_sums_as_many_directions_on_every_host(host, gl):
 
 
 BEHIND = np.array([[-0.6, 0.0, 0.8]])
-BLOCK = """
-    mat4 u_envMatrix;
-    bool flag;
-    vec3 view;
-    float u_envLightIntensity;
-    structure last;
-"""
 
 
 def test_the_text_is_evaluated_as_it_was_generated():

@@ -2,7 +2,6 @@
 """An engine that is not there, or cannot run, is not run: one line names what to install."""
 
 import os
-import subprocess
 import sys
 
 import pytest
@@ -78,25 +77,3 @@ def test_a_missing_driver_is_named_with_its_remedy(hosts, monkeypatch):
     hosts("storm")
     monkeypatch.setenv("__EGL_VENDOR_LIBRARY_FILENAMES", os.devnull)
     assert_not_run("storm", "no OpenGL 4.5 through EGL .*; on Debian: apt-get")
-
-
-OPEN = """
-import sys
-from mxeon.errors import NotRun
-from mxeon.hosts.slang import Host
-try:
-    Host()
-except NotRun as reason:
-    print(reason)
-print("torch" in sys.modules)
-"""
-
-
-def test_a_missing_compiler_of_slangpy_is_named_with_its_remedy(tmp_path):
-    pytest.importorskip("slangpy")
-    done = subprocess.run(
-        [sys.executable, "-c", OPEN], env={"PATH": str(tmp_path)}, capture_output=True, text=True
-    )
-    assert done.stdout.startswith("slang: no kernel for the CPU; ")
-    assert "apt-get install g++" in done.stdout
-    assert done.stdout.endswith("\nFalse\n")  # slangpy would import PyTorch, in two seconds

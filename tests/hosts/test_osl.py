@@ -39,11 +39,6 @@ def leaf(tree):
     return leaf(tree.parts[0]) if tree.parts else tree
 
 
-def leaves(tree):
-    """All closures of a tree."""
-    return [each for part in tree.parts for each in leaves(part)] if tree.parts else [tree]
-
-
 @pytest.fixture
 def host(hosts):
     return hosts("osl")

@@ -6,21 +6,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mxeon.conformance.results import FAILED, PASSED
+from mxeon.conformance.results import PASSED
 from mxeon.conformance.results.known_issues import RENDERER_NODES
 from mxeon.conformance.run import check
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.scene import BACK, FRONT, SIDE, VIEW, local_directions
 from mxeon.survey.facets import facet_points
-from mxeon.survey.polyhedron import eevee, luxcore, mitsuba
-from tests.support.availability import available, required
+from mxeon.survey.polyhedron import luxcore, mitsuba
+from tests.support.availability import available
 from tests.support.plans import keep_host
 from tests.support.sharing import shared
 
 EXAMPLE = examples_folder() / "plaster.mtlx"
 MODULES = {"mitsuba": mitsuba, "luxcore": luxcore}
-SMALL = replace(SIDE, size=64)
-COLOR = (0.8, 0.4, 0.1)
 # Errors of pictures of facets, times the light's cosine; of EEVEE's, in half floats; and of values of pairs.
 FACETS, COARSE_FACETS, FACET_PAIRS = 7e-5, 0.02, 6e-6
 
@@ -54,44 +52,10 @@ def of_mitsuba(tmp_path_factory):
     return judged_all("mitsuba", tmp_path_factory)
 
 
-@pytest.fixture(scope="module")
-def of_luxcore(tmp_path_factory):
-    return judged_all("luxcore", tmp_path_factory)
-
-
 def test_mitsuba_has_the_models_that_it_documents(of_mitsuba):
     assert {subject for _, subject in of_mitsuba} == {each.title for each in mitsuba.NODES}
     assert {each.verdict for each in of_mitsuba.values()} == {PASSED}
     assert all(each.control.caught for each in of_mitsuba.values())
-
-
-def test_luxcore_has_qon_with_sigma_in_radian(of_luxcore):
-    failed = {key for key, each in of_luxcore.items() if each.verdict == FAILED}
-    assert ("value", "roughmatte") not in failed and ("environment", "roughmatte") not in failed
-    result = of_luxcore["value", "roughmatte, sigma in degrees"]
-    assert "best match: QON that takes degrees for radians" in result.diagnosis
-    assert result.distances["QON that takes degrees for radians"] < 1e-6
-    assert all(each.control.caught for each in of_luxcore.values())
-
-
-def test_luxcores_disney_squares_the_roughness_and_applies_the_cosine_twice(of_luxcore):
-    result = of_luxcore["value", "disney"]
-    name = "Burley with squared roughness, times the cosine once more"
-    assert f"best match: {name}" in result.diagnosis and result.distances[name] < 1e-6
-    assert "luxcore_disney_cosine" in result.pages
-    assert ("black", "disney") not in of_luxcore  # what is left of another lobe is taken off
-
-
-def test_eevee_is_lambert_whatever_the_roughness():
-    if "eevee" not in required():
-        pytest.skip("a minute on a software driver: MXEON_REQUIRE=eevee runs it")
-    _, wi, mask = facet_pairs(SMALL)
-    with eevee.Host(limit=300.0) as host:
-        for node in eevee.NODES:
-            pictures = [host.node(node.made(COLOR, roughness), SMALL) for roughness in (0.0, 1.0)]
-            np.testing.assert_array_equal(*pictures)
-            values = pictures[0][facet_points(SMALL.size).mask][mask]
-            assert np.abs(values - wi[mask][:, 2:] * COLOR).max() <= COARSE_FACETS
 
 
 @pytest.mark.parametrize("scene", [FRONT, SIDE, BACK], ids=lambda each: each.name)

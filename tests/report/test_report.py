@@ -239,16 +239,6 @@ def test_a_run_with_refused_documents_says_so_everywhere(run):
     assert first.startswith("a.mtlx: <script>") and second == "a.mtlx: 2"
 
 
-def test_pictures_beyond_the_first_materials_are_links_to_their_files(run, tmp_path, monkeypatch):
-    monkeypatch.setattr("mxeon.report.page.SHOWN_MATERIALS", 1)
-    many = replace(run, pictures=tuple(made_picture(name) for name in ("clay", "slate", "dust")))
-    write(many, tmp_path)
-    page = Page((tmp_path / "report.html").read_text(encoding="utf-8"))
-    links = [link for link in page.values("href") if not link.startswith("#")]
-    assert len(links) == 2 and all((tmp_path / link).is_file() for link in links)
-    assert "2 further materials, as files beside this page" in page.text
-
-
 EXACT = made_picture("clay").reference
 
 
@@ -361,14 +351,6 @@ def test_pictures_are_float_exr_and_eight_bit_png_that_say_what_made_them(run, f
         assert exr.spec()[f"mxeon:{key}"] == png.spec()[f"mxeon:{key}"] == value
     assert exr.spec()["oiio:ColorSpace"] == "lin_rec709_scene"
     assert png.spec()["oiio:ColorSpace"] == "srgb_rec709_scene"
-
-
-def test_files_are_replaced_whole_and_nothing_else_stays_behind(run, folder):
-    (folder / "report.html").write_text("old")
-    before = sorted(folder.rglob("*"))
-    write(run, folder)
-    assert sorted(folder.rglob("*")) == before
-    assert (folder / "report.html").read_text(encoding="utf-8") == page_of(run)
 
 
 @pytest.mark.parametrize("name", ["results.json", "pictures", "report.html"])

@@ -168,14 +168,6 @@ of_each_key = pytest.mark.parametrize("key", list(json.loads(REPORT)))
 
 
 @of_each_key
-@pytest.mark.parametrize("value", [None, -1, "x", {"x": 1}, [1], [[]], 10**400])
-def test_a_key_of_another_type_is_one_line(tmp_path, capsys, key, value):
-    edit(tmp_path, lambda content: content.update({key: value}))
-    if key != "curves" and (key, value) not in [("sentence", "x"), ("version", "x")]:
-        refusal_of(tmp_path, capsys)
-
-
-@of_each_key
 def test_a_report_without_a_key_is_one_line(tmp_path, capsys, key):
     """But for those that earlier reports lack."""
     edit(tmp_path, lambda content: content.pop(key))
@@ -227,7 +219,6 @@ def test_a_library_that_lies_elsewhere_is_the_same_one(before, after):
     assert (change.kind, change.place) == (WORSE, expected)
 
 
-FIELD = Path(__file__).parents[2] / "docs" / "field.html"
 EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
 TITLE = reference.model("eon").title
 HOSTILE = "<script>alert(1)</script>"
@@ -296,14 +287,6 @@ def test_a_host_that_did_not_run_is_not_passed(tmp_path):
     missing = replace(made("value", 0.0), verdict=NOT_RUN, error=None, reason="gl: nowhere")
     entry = of_node(written(tmp_path, results=(missing,), hosts=()))
     assert (entry.verdict, entry.found, entry.version) == (NOT_RUN, "not run", "")
-
-
-def test_reports_of_a_folder_stand_together_and_the_later_one_counts(tmp_path):
-    written(tmp_path / "1")
-    written(tmp_path / "2", results=(made("value", 1e-7),))
-    written(tmp_path / "3", hosts=(Identity("gl", "OpenGL 4.6", "llvmpipe"),))
-    found = [(entry.version, entry.found) for entry in read_field([tmp_path])]
-    assert found == [("OpenGL 4.5", TITLE), ("OpenGL 4.6", "QON")]
 
 
 class Page(HTMLParser):

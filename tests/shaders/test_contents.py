@@ -4,9 +4,7 @@
 import pytest
 
 from mxeon.conformance.run.documents import survey_documents
-from mxeon.errors import InputError
 from mxeon.shaders.document.policy import DEFAULT
-from mxeon.shaders.library import examples_folder
 from mxeon.shaders.nodes import document_text, node_text
 from tests.support.documents import lobe, material
 
@@ -113,11 +111,3 @@ def test_what_one_library_lacks_is_told_with_its_name(tmp_path):
     )
     assert undefined.endswith("by --definitions FOLDER (with stock)")
     assert missing == f"document must be a readable file; got {files[1]!r}"
-
-
-def test_a_library_that_cannot_be_used_is_no_matter_of_the_document(tmp_path):
-    (tmp_path / "lib").mkdir()
-    (tmp_path / "lib" / "broken.mtlx").write_text("<materialx")
-    file = str(examples_folder() / "clay.mtlx")
-    with pytest.raises(InputError, match="^library "):
-        survey_documents([file], [str(tmp_path / "lib")], DEFAULT, 0, 1.0)

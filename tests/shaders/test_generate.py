@@ -226,25 +226,6 @@ def test_elements_have_names_of_their_own():
     assert sorted(shader.name for shader in shaders) == ["a_b", "a_b2"]
 
 
-def test_generation_leaves_a_document_as_it_is():
-    document = mx.createDocument()
-    mx.readFromXmlString(document, material(lobe()))
-    before = mx.writeToXmlString(document)
-    generate(document, "glsl")
-    assert mx.writeToXmlString(document) == before
-
-
-@on_each_target
-def test_a_type_stays_in_the_document_that_defines_it(target):
-    plain, grain = (
-        material(lobe()),
-        '<typedef name="grain"><member name="size" type="float"/></typedef>',
-    )
-    before = pixel(plain, target)
-    assert "grain" in pixel(material(grain + lobe()), target)
-    assert pixel(plain, target) == before
-
-
 @on_each_target
 def test_inputs_say_name_type_value_and_place(target):
     [shader] = generate(material(lobe(**COMPENSATED, color="0.8, 0.4, 0.1")), target)

@@ -3,20 +3,16 @@
 
 import warnings
 from dataclasses import replace
-from itertools import product
 from pathlib import Path
 
 import MaterialX as mx
-import numpy as np
 import pytest
 
 from mxeon import cli
-from mxeon.conformance.reference import Host as Reference
 from mxeon.errors import MISUSE, PASSED, DocumentError
 from mxeon.shaders.document.policy import DEFAULT, LIMITS, Policy
 from mxeon.shaders.document.reading import read_document
 from mxeon.shaders.generation import CodeWarning, generate
-from mxeon.shaders.scene import FURNACE
 from tests.fuzz.found import doubled, row
 from tests.support.documents import connected, lobe, material
 
@@ -182,16 +178,6 @@ def test_a_limit_is_kept_and_names_its_option(name, text, least):
     assert f"raise it with --max{name.capitalize()}" in message
 
 
-def test_names_that_differ_in_punctuation_alone_are_told_apart_in_linear_time(monkeypatch):
-    steps, increment = [], mx.incrementName
-    monkeypatch.setattr(mx, "incrementName", lambda name: steps.append(name) or increment(name))
-    marks = ["".join(each) for each in product("_:", repeat=8)]
-    look = SMALL[SMALL.index("<surfacematerial") : SMALL.index("</materialx>")]
-    looks = [look.replace('"look"', f'"a{each}b"') for each in marks]
-    shaders = generate(SMALL.replace(look, "".join(looks)), "osl")
-    assert len({shader.name for shader in shaders}) == len(marks) > len(steps)
-
-
 def test_includes_in_a_row_are_limited(tmp_path):
     for number in range(4):
         (tmp_path / f"{number}.mtlx").write_text(INCLUDE.format(f"{number + 1}.mtlx"))
@@ -240,14 +226,6 @@ def test_a_token_that_would_end_the_process_is_refused(kind, outer):
     )
 
 
-def test_a_type_of_the_libraries_gets_no_members():
-    members = '<typedef name="float"><member name="a" type="float"/></typedef>'
-    assert refusal(SMALL.replace("</materialx>", members + "</materialx>")) == (
-        'document text: typedef "float" must have no members, as a type of the libraries; got a: '
-        "rename the type"
-    )
-
-
 @pytest.mark.parametrize("character", ["\x7f", "\x85", "\u202e"])
 def test_control_characters_are_refused(character):
     text = SMALL.replace("look", f"lo{character}ok")
@@ -273,13 +251,6 @@ def test_the_name_of_a_file_steers_no_terminal(tmp_path, capsys):
 
 
 # --- depth --------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("names", [("in1",), ("in1", "in2")], ids=["in a row", "each used twice"])
-def test_the_reference_evaluates_long_graphs(names):
-    shader = generate(material(row(900, names)), "glsl")[0]
-    image = Reference().picture(shader, replace(FURNACE, size=4))
-    assert np.isfinite(image).all()
 
 
 def test_many_uses_of_a_nodegraph_are_one_of_many_nodes():

@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Copies of eonlib: they hold all that they need, and every version of MaterialX can use them."""
 
-import re
 import subprocess
 import zipfile
 from pathlib import Path
 
-import MaterialX as mx
 import pytest
 
 import mxeon
@@ -15,9 +13,6 @@ from mxeon.conformance.results import PASSED
 from mxeon.shaders.library import SOURCE_FOLDERS, TESTED, data_folder
 from mxeon.shaders.library_export import export_library, recipes
 from tests.support.wheels import run_with, verdicts_with
-
-NAMED = re.compile(r'(?:file="|#include ")([^"]+)"')
-STANDARD = Path(mx.getDefaultDataSearchPath().find("libraries").asString()).parent
 
 
 @pytest.fixture(scope="module")

@@ -6,17 +6,14 @@ import os
 import shutil
 import subprocess
 import sys
-from dataclasses import replace
 
 import MaterialX as mx
 import pytest
 
 import mxeon
 from mxeon.cli import main
-from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.library_export import export_library
 from mxeon.shaders.library_tree import OVERLAY, PART, tree
-from tests.support.documents import material
 from tests.support.wheels import wheel
 from tests.support.wrong_libraries import GLSL, STOCK, copy_of_stock, replace_text
 
@@ -171,40 +168,6 @@ def test_what_cannot_be_combined_is_refused_in_one_sentence(tmp_path, capsys, ma
     out, error = capsys.readouterr()
     assert out == "" and error.count("\n") == 1
     assert error.startswith(f"mxeon: library {tmp_path}: ") and words in error
-
-
-OWN = """<nodedef name="ND_own" node="own"><output name="out" type="BSDF"/></nodedef>
-<implementation name="IM_own" nodedef="ND_own" file="own.glsl" function="own" target="genglsl"/>"""
-BOTH = """<own name="a" type="BSDF"/><sheen_bsdf name="b" type="BSDF"/>
-<add name="lobe" type="BSDF"><input name="in1" type="BSDF" nodename="a"/>
-<input name="in2" type="BSDF" nodename="b"/></add>"""
-
-
-CODE = replace(DEFAULT, code=True)
-
-
-def test_generate_takes_a_copy_in_worker_processes_and_leaves_no_file(tmp_path):
-    copy = copy_of_stock(tmp_path / "copy", LIB)
-    replace_text(
-        copy, "float mx_imageworks_sheen_NDF(", "// own\nfloat mx_imageworks_sheen_NDF(", LIB
-    )
-    for name in ("temporary", "out"):
-        (tmp_path / name).mkdir()
-    (tmp_path / "a.mtlx").write_text(material('<sheen_bsdf name="lobe" type="BSDF"/>'))
-    for workers in "01":
-        options = ["--target", "glsl", "--outputPath", tmp_path / "out", "--workers", workers]
-        mxeon_run(
-            "generate",
-            tmp_path / "a.mtlx",
-            "--library",
-            copy,
-            *options,
-            TMPDIR=tmp_path / "temporary",
-        )
-        [text] = (tmp_path / "out").glob("*.frag")
-        assert "// own" in text.read_text()
-        text.unlink()
-    assert list((tmp_path / "temporary").iterdir()) == []
 
 
 def mxeon_run(*arguments, **variables):

@@ -136,11 +136,3 @@ def test_a_texture_of_five_channels_is_refused_by_its_name(home, host):
     path = str(written(home, textured("five.exr")))
     with pytest.raises(ImageError, match="five.exr: must have at most 4 channels; got 5"):
         batch.picture(path, host, "front", None, 16, "sphere", None, "eonlib", Policy(), Paths())
-
-
-def test_a_texture_of_two_channels_is_taken_from_the_host(home):
-    picture(home / "two.exr", (0.1, 0.2))
-    path = written(home, textured("two.exr"))
-    [result], _, _ = judge_document(path, open_host("gl"), Reference(), "eonlib")
-    assert (result.check, result.verdict) == ("picture", "passed")
-    assert len(result.measured) == 1

@@ -78,30 +78,6 @@ def test_a_source_includes_others_of_its_folder_and_of_the_libraries(home, targe
     assert "mx_ggx_dir_albedo(" in text
 
 
-def test_the_names_that_a_generator_has_for_files_are_its_own(home):
-    including(home, "libraries/stdlib/genglsl/lib/$fileTransformUv")
-    assert "vec2 mx_transform_uv(" in code(home)
-    (home / "lib" / "mx_transform_uv.glsl").write_text("float of_the_document;\n")
-    including(home, "lib/$fileTransformUv")
-    assert "float of_the_document;" in code(home)
-
-
-def test_code_for_other_targets_is_not_read(home):
-    more = IMPLEMENTATION.format("2", "bad.osl", 'function="own" target="genosl"')
-    write(home, "own.glsl", 'function="own" target="genglsl"', more)
-    including(home)
-    (home / "bad.osl").write_bytes(b"\xff")
-    assert "0.123" in code(home)
-    with pytest.raises(DocumentError, match="bad.osl: must be text in UTF-8; byte 0 is not"):
-        code(home, "osl")
-
-
-def test_modules_of_mdl_are_names_and_not_read(home):
-    write(home, "own.mdl", 'function="own"')
-    os.mkfifo(home / "own.mdl")
-    assert "import ::own::own;" in code(home, "mdl") or "::own" in code(home, "mdl")
-
-
 # --- what it may not include --------------------------------------------------------------------
 
 

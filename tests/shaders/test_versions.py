@@ -8,7 +8,7 @@ import MaterialX as mx
 import pytest
 
 from mxeon.cli import main
-from mxeon.conformance.results import NOT_RUN, PASSED
+from mxeon.conformance.results import PASSED
 from mxeon.conformance.run import check
 from mxeon.errors import InterfaceError, NotRun
 from mxeon.hosts import open_host
@@ -81,15 +81,6 @@ def test_another_closure_interface_is_refused_for_its_node_and_target(other_inte
         generation.generate(material(lobe()), "glsl")
     assert generation.generate(material(lobe()), "osl")
     assert generation.generate(material('<eon_diffuse_bsdf name="lobe" type="BSDF"/>'), "glsl")
-
-
-def test_checks_of_another_closure_interface_are_not_run(other_interface, monkeypatch):
-    keep_checks(monkeypatch, "value")
-    verdicts = {
-        result.subject: result.verdict for result in check([EXAMPLE], nodes=["common"]).results
-    }
-    assert verdicts["oren_nayar_diffuse_bsdf, energy_compensation true"] == NOT_RUN
-    assert verdicts["eon_diffuse_bsdf"] == PASSED
 
 
 def test_a_host_whose_target_this_version_lacks_is_not_run(monkeypatch):

@@ -12,10 +12,15 @@ from mxeon.shaders.library import examples_folder
 EXAMPLES = [examples_folder() / name for name in ("plaster.mtlx", "openpbr_rough_base.mtlx")]
 
 
+_MADE = {}  # by name, where one process tests
+
+
 def shared(factory, name, make):
     """The value of `make`; where several processes test, that of the first of them to ask."""
     if "PYTEST_XDIST_WORKER" not in os.environ:
-        return make()
+        if name not in _MADE:
+            _MADE[name] = make()
+        return _MADE[name]
     path = factory.getbasetemp().parent / f"{name}.pickle"  # a folder of this session alone
     with FileLock(f"{path}.lock"):
         if not path.exists():

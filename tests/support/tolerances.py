@@ -151,22 +151,9 @@ FIGURE = 0.02
 RHO = 11.0 * ROUNDING
 ROUND_TRIP = 1e-14
 
-# Value times cosine over density: two sums of the same positive parts by different roads, of 14
-# roundings each, 1.7e-6.
-TWIN_WEIGHT = 2e-6
 
 # --- path tracer -------------------------------------------------------------------------------
 
-# Mean of a picture of the unit sphere: 64 x 64 pixels with 64 random points each, against a grid of
-# 512 x 512. The disk's rim is off by at most its 3200 cells, half of them on average and with both
-# signs, times a value of 1: 56 cells in 2^18, 2.2e-4. The random points, stratified in pixels, leave
-# the noise of the 200 pixels on the rim, 0.3 / 8 x sqrt(200) / 4096 = 1.3e-4. Four standard errors
-# of both: four times the root of the sum of their squares.
-TRACER_GRID = 4.0 * (2.2e-4**2 + 1.3e-4**2) ** 0.5
-
-# A pixel of the opened ball in a white furnace: the product of the weights of a path, which has 20
-# reflections on average in the hollow (measured), each within TWIN_WEIGHT of 1.
-FURNACE_OPENED = 20 * TWIN_WEIGHT
 
 # --- Pictures on OpenGL ----------------------------------------------------------------------
 
