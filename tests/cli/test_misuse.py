@@ -80,16 +80,10 @@ OSL = ("generate", "--target", "osl", "--outputPath", "out")
     [
         ([*OSL, "--element", "loam", CLAY], "element must be one of"),
         ([*OSL, "nowhere.mtlx"], "must be a readable file"),
-        (
-            ["generate", "--target", "hlsl", "--outputPath", "out", CLAY],
-            "target must be one of glsl",
-        ),
-        ([*OSL, "--library", "mine", CLAY], "library must be one of"),
         ([*OSL, "--profile", "arnold", CLAY], "profile must be one of"),
         (["generate", CLAY, "--outputPath", "out"], "required: --target"),
         (["check", PLASTER, "--host", "abacus"], "host must be one of gl"),
         (["check", PLASTER, "--library", "mine"], "library must be one of eonlib, diffuse, stock"),
-        (["check", "nowhere.mtlx", "--host", "msl"], "must be a readable file"),
         (["render", CLAY, "--output", "out.exr"], "--element must name one of"),
         (["render", PLASTER, "--output", "out.gif"], "output must end in .exr or .png"),
         (
@@ -101,10 +95,6 @@ OSL = ("generate", "--target", "osl", "--outputPath", "out")
         (["render", PLASTER, "--output", "out.exr", "--size", "0"], "size must lie in [1, 8192]"),
         (["render", PLASTER, "--output", "out.exr", "--samples", "0"], "samples must lie in [1, "),
         (
-            ["render", PLASTER, "--output", "out.exr", "--shape", "cube"],
-            "shape must be one of sphere,",
-        ),
-        (
             ["render", PLASTER, "--output", "out.exr", "--shape", "ball", "--host", "reference"],
             "reference: shape must be sphere; got ball, which gl and webgl draw",
         ),
@@ -115,7 +105,6 @@ OSL = ("generate", "--target", "osl", "--outputPath", "out")
         ),
         (["invert", "0.5", "0.5", "--roughness", "1"], "required: B"),
         (["invert", "1.2", "0", "0", "--roughness", "1"], "color must lie in [0, 1]"),
-        (["invert", "1", "0", "0", "--roughness", "nan"], "roughness must lie in [0, 1]"),
         ([*OSL, "--outputPath", "\0", CLAY], "no null character"),
         (["frobnicate"], "command must be one of check, generate"),
     ],

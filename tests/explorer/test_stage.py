@@ -86,8 +86,9 @@ def white(row, mu):
     return np.stack([np.interp(mu, angles, table[:, k]) for k in range(3)], axis=-1)
 
 
-@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.name)
-def test_in_uniform_surroundings_pixels_are_the_albedo(stage, sources, row):
+@pytest.mark.parametrize("name", ["eon", "qon", "fon_white_lobe", "eon_clamped"])
+def test_in_uniform_surroundings_pixels_are_the_albedo(stage, sources, name):
+    row = model(name)
     view(stage, side(sources[row.name]), light=None, surroundings="uniform")
     measured = picture(stage)
     points = sphere(len(measured))

@@ -109,10 +109,9 @@ def test_a_shader_reads_the_texture_coordinates_of_the_sphere(host):
 
 
 @pytest.mark.parametrize("scene", LIGHTS, ids=lambda scene: scene.name)
-@pytest.mark.parametrize("roughness", [0.0, 1e-6, 2e-5, 0.3, 1.0])
-@pytest.mark.parametrize("color", ["0.8, 0.4, 0.1", "1.0, 0.5, 0.0"])
-def test_eon_with_the_profile_is_exact(host, scene, color, roughness):
-    shader = osl(eon(color, roughness), profile="cycles")
+@pytest.mark.parametrize("roughness", [0.0, 2e-5, 1.0])
+def test_eon_with_the_profile_is_exact(host, scene, roughness):
+    shader = osl(eon("1.0, 0.4, 0.0", roughness), profile="cycles")
     error = np.abs(host.picture(shader, scene) - Reference().picture(shader, scene))
     pixels, _ = lit(scene)
     bound = CYCLES_EON_RELATIVE * Reference().picture(shader, scene)
@@ -175,21 +174,14 @@ def test_subsurface_keeps_its_color(host):
     assert np.abs(means[1] - 1.0).max() < CYCLES_SUBSURFACE  # stock loses it: every color is white
 
 
-@pytest.mark.parametrize(
-    ("title", "others"),
-    [
-        (NODES[0].title, ("furnace", "black", "lambert", "inputs")),
-        *((each.title, ("black",)) for each in NODES[1:]),
-    ],
-)
-def test_blender_has_one_power_of_the_color_too_many(judged, title, others):
-    value, environment, *passed = (
-        judged(key, title, "cycles-native", RENDERER_NODES)
-        for key in ("value", "environment", *others)
+@pytest.mark.parametrize("node", NODES, ids=lambda node: node.title)
+def test_blender_has_one_power_of_the_color_too_many(judged, node):
+    value, environment, black = (
+        judged(key, node.title, "cycles-native", RENDERER_NODES)
+        for key in ("value", "environment", "black")
     )
-    assert (value.verdict, environment.verdict) == (FAILED, FAILED)
-    assert {each.verdict for each in passed} == {PASSED}
-    assert all(each.control.caught for each in (value, environment, *passed))
+    assert (value.verdict, environment.verdict, black.verdict) == (FAILED, FAILED, PASSED)
+    assert all(each.control.caught for each in (value, environment, black))
     assert "best match: EON with rho^3" in value.diagnosis
     assert value.distances["EON with rho^3"] < 1e-6
     assert environment.error > 100.0 * environment.tolerance

@@ -103,7 +103,6 @@ FALSE = ("lambert", "oren_nayar", "qon", "qon_footnote", "qon_fujii")
 @pytest.mark.parametrize(
     "flag, name, noise",
     [
-        ("true", "eon", 0.0),
         *(("true", name, 0.02) for name in TRUE),
         *(("false", name, 0.02) for name in FALSE),
     ],

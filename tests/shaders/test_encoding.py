@@ -25,26 +25,7 @@ READ = {
     "Windows, but ASCII": ("windows-1252", "ascii", "look"),
     "ASCII": ("us-ascii", "ascii", "look"),
 }
-REFUSED = [
-    "ebcdic",
-    "UCS-4",
-    "hex",
-    "zlib",
-    "base64",
-    "rot13",
-    "bz2",
-    "uu",
-    "mbcs",
-    "oem",
-    "locale",
-    "idna",
-    "unicode_escape",
-    "punycode",
-    "utf-7",
-    "cp037",
-    "hz",
-    "undefined",
-]
+REFUSED = ["ebcdic", "UCS-4", "zlib", "rot13", "unicode_escape", "utf-7", "cp037"]
 
 # What XML does not allow and MaterialX reads.
 LAX = {

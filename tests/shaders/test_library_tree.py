@@ -70,14 +70,6 @@ FAULTS = {
         "value",
         "the factor 1/pi is missing",
     ),
-    "a turned frame": (
-        f"{GLSL}/mx_conductor_bsdf.glsl",
-        "vec3 Ht = vec3(dot(H, X), dot(H, Y), dot(H, N));",
-        "vec3 Ht = vec3(dot(H, Y), dot(H, X), dot(H, N));",
-        "conductor_bsdf",
-        "value",
-        "tangent and bitangent are exchanged",
-    ),
     "an implementation": (
         IMPLEMENTATIONS,
         'file="mx_layer_bsdf.glsl" function="mx_layer_bsdf"',
