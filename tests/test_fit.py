@@ -149,14 +149,6 @@ def test_a_measurement_that_does_not_fit_together_is_refused(arguments, message)
         MeasuredBrdf(*arguments)
 
 
-def test_an_unknown_model_is_answered_with_the_known_ones():
-    with pytest.raises(
-        InputError,
-        match="model must be one of eon, dielectric_over_eon, varnished, openpbr_base; got 'ggx'",
-    ):
-        fit_brdf(MeasuredBrdf(UP, UP, np.array([[0.1]])), "ggx")
-
-
 def test_scipy_is_named_where_it_is_missing(monkeypatch):
     monkeypatch.setitem(sys.modules, "scipy.optimize", None)
     with pytest.raises(PackageError, match=r"pip install '\.\[fit\]'"):

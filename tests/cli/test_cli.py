@@ -14,12 +14,9 @@ import pytest
 
 from mxeon.cli import main, parser
 from mxeon.errors import FAILED, NOT_RUN, PASSED
-from mxeon.hosts import host_names
 from mxeon.models.diffuse.inversion import eon_rho_from_albedo_avg, eon_rho_from_albedo_normal
 from mxeon.shaders.document.policy import LIMITS
-from mxeon.shaders.generation import TARGETS
 from mxeon.shaders.library import eonlib_folder
-from mxeon.shaders.scene import SCENES
 from tests.support.command import CLAY, PLASTER, one_line
 from tests.support.documents import material
 from tests.support.plans import keep_checks
@@ -172,18 +169,6 @@ def test_invert_prints_rho(option, function, capsys):
     assert main(["invert", "0.8", "0.4", "0.1", "--roughness", "0.7", *option]) == PASSED
     printed = np.array(capsys.readouterr().out.split(), dtype=float)
     assert np.abs(printed - function([0.8, 0.4, 0.1], 0.7)).max() <= 5e-10  # nine digits printed
-
-
-def test_help_names_every_choice(capsys):
-    for command, choices in {
-        "check": host_names(),
-        "generate": TARGETS,
-        "render": [scene.name for scene in SCENES],
-    }.items():
-        with pytest.raises(SystemExit):
-            parser().parse_args([command, "--help"])
-        words = set(re.findall(r"[\w-]+", capsys.readouterr().out))
-        assert set(choices) <= words
 
 
 COMMANDS = ("check", "generate", "render", "explore", "library", "invert", "figures", "doc")

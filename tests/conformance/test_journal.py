@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The journal of a run: nothing finished is lost or done twice, and nothing else counts as done."""
 
-import json
 import os
 import resource
 import signal
@@ -92,30 +91,6 @@ def test_what_is_no_journal_is_refused(tmp_path, text):
     (tmp_path / JOURNAL).parent.mkdir()
     (tmp_path / JOURNAL).write_text(text)
     assert "its first line is of another" in refused(tmp_path)
-
-
-def changed_result(**values):
-    return lambda record: record["findings"]["results"][0].update(values)
-
-
-FORGED = [
-    *(lambda record, task=task: record.update(task=task) for task in ("x", None, -1, 9, True, [])),
-    *(lambda record, part=part: record.update(findings=part) for part in ({}, None, {"more": 1})),
-    *(changed_result(verdict=verdict) for verdict in ("maybe", None, [])),
-    *(changed_result(worst=worst) for worst in ({"a": None}, {"a": "b"}, 5)),
-    *(changed_result(figure=figure) for figure in (-1.0, "x", 10**400, True)),
-    *(changed_result(**{name: "x"}) for name in ("host", "library", "control", "distances")),
-]
-
-
-@pytest.mark.parametrize("change", FORGED)
-def test_a_line_that_mxeon_does_not_write_is_refused(tmp_path, change):
-    path = kept(tmp_path, 1, findings=PLAIN)
-    header, line = path.read_bytes().splitlines(keepends=True)
-    record = json.loads(line)
-    change(record)
-    path.write_bytes(header + json.dumps(record).encode() + b"\n")
-    assert "line 2" in refused(tmp_path)
 
 
 @pytest.mark.parametrize(

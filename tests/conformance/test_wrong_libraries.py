@@ -19,7 +19,6 @@ MDL, OSL = "libraries/diffuse/eonlib_genmdl_impl.mtlx", "libraries/diffuse/eonli
 DEFINITIONS, GRAPHS = "libraries/diffuse/eonlib_defs.mtlx", "libraries/diffuse/eonlib_ng.mtlx"
 FLAG = "{{energy_compensation}}"
 KEYWORD = "&quot;energy_compensation&quot;"
-MDL_NORMAL = "normal: {{normal}}, "
 
 
 @pytest.fixture
@@ -48,15 +47,8 @@ def failed(results):
     [
         ('roughness" type="float" value="0.0"', 'roughness" type="float" value="0.3"',
          "default of roughness is 0.3; pbrlib says 0.0"),
-        ('value="0.18, 0.18, 0.18"', 'value="0.8, 0.8, 0.8"',
-         "default of color is 0.8, 0.8, 0.8; pbrlib says 0.18, 0.18, 0.18"),
-        ('weight" type="float" value="1.0"', 'weight" type="float" value="0.5"',
-         "default of weight is 0.5; pbrlib says 1.0"),
         ('boolean" value="false"', 'boolean" value="true"',
          "default of energy_compensation is true; pbrlib says false"),
-        ('uniform="true"', "", "uniform of energy_compensation is missing; pbrlib says true"),
-        ('defaultgeomprop="Nworld"', 'defaultgeomprop="Tworld"',
-         "defaultgeomprop of normal is Tworld; pbrlib says Nworld"),
         ('value="0.0" uimin="0.0" uimax="1.0"', 'value="0.0" uimin="0.0" uimax="2.0"',
          "upper end of the range of roughness is 2.0; pbrlib says 1.0"),
         ('<input name="roughness"', '<input name="sigma"', "the list of inputs is weight, color, sigma, normal, energy_compensation; pbrlib says weight, color, r"),
@@ -84,29 +76,16 @@ def test_an_input_of_another_type_is_not_run_and_says_so(judged, copy):
     "file, old, new, title, words",
     [
         (MDL, "28.0", "27.0", "mdl", "multiscatter_tint is not that of EON, rho^2 <E> / (1 - rho (1 - <E>)): off by up to"),
-        (MDL, "{{color}} * {{color}} *", "{{color}} *", "mdl", "multiscatter_tint is not that of EON"),
-        (MDL, FLAG + " ?", "!" + FLAG + " ?", "mdl", "(1 - rho (1 - <E>)), but 0: off by"),
         (MDL, FLAG + " ?", "false ?", "mdl", "rho^2 <E> / (1 - rho (1 - <E>)), but 0: off by up to"),
         (MDL, "roughness: {{roughness}}", "roughness: 0.5", "mdl",
          "roughness is not the node's roughness, but 0.5"),
-        (MDL, "weight: {{weight}}", "weight: 1.0 + 0.0 * {{weight}}", "mdl",
-         "weight is not the node's weight, but 1: off"),
-        (MDL, MDL_NORMAL, "", "mdl", "normal is not passed"),
-        (MDL, "tint: {{color}}, r", "tint: {{color}} * {{color}}, r", "mdl",
-         "color is not the node's"),
         (MDL, "df::diffuse_reflection_bsdf", "df::difuse_reflection_bsdf", "mdl",
          "function df::difuse_reflection_bsdf is unknown; known are color, float3, "),
-        (MDL, "multiscatter_tint:", "multiscatter_color:", "mdl",
-         "got an unexpected keyword argument 'multiscatter_color'"),
         (OSL, KEYWORD, "&quot;energy_compensaton&quot;", "osl",
          'keyword "energy_compensaton" is not known to OSL'),
         (OSL, "{{normal}}, {{color}}", "{{color}}, {{normal}}", "osl", "normal is not the node's normal"),
-        (OSL, "{{color}}, {{roughness}}", "{{roughness}}, {{color}}", "osl",
-         "roughness is a float but receives a color or vector"),
-        (OSL, "{{roughness}},", "{{weight}} * {{roughness}},", "osl", "roughness is not the node's"),
         (OSL, FLAG, "0", "osl", "energy_compensation is not the node's energy_compensation, but 0"),
         (OSL, "{{weight}} * ", "", "osl", "weight is not the node's weight, but 1: off"),
-        (OSL, "{{weight}} * ", "{{weight}} * {{weight}} * ", "osl", "weight is not the node's"),
     ],
 )  # fmt: skip
 def test_a_wrong_closure_is_told_by_its_argument(judged, copy, file, old, new, title, words):
@@ -132,20 +111,9 @@ def test_a_closure_that_is_defined_elsewhere_is_not_run(judged, copy):
     [
         ("{{color}} *", "{{color}}.__class__ *", NOT_RUN, "Attribute in an expression is not supported"),
         ("28.0", "2.0 ** 9999.0", NOT_RUN, "'**' in an expression is not supported"),
-        ("28.0", "[x for x in y]", NOT_RUN, "'[' in an expression is not supported"),
         ("28.0", "9" * 20_000, NOT_RUN, "an expression must have at most 10000 characters; got"),
-        ("28.0", "-" * 8_000 + "28.0", NOT_RUN, "an expression must be nested less deeply"),
-        ("28.0", "1.0 + " * 1_500 + "28.0", NOT_RUN, "an expression must be nested less deeply"),
-        ("28.0", "(" * 400 + "28.0" + ")" * 400, FAILED, "the expression of the lobe is wrong: too many nested"),
-        ("28.0", "(28.0", FAILED, "the expression of the lobe is wrong: "),
         ("28.0", "math::exec(28.0)", NOT_RUN, "function math::exec is not supported"),
-        ("28.0", "1e999", FAILED, "multiscatter_tint is not that of EON"),
-        ("28.0", "'a' * 999999999", NOT_RUN, "\"'\" in an expression is not supported"),
-        ("28.0", "&quot;a&quot; * 999999999", FAILED, "the expression of the lobe is wrong: "),
-        ("28.0", "lobe_sigma", FAILED, "lobe_sigma is not defined"),
-        ("28.0", "28 / 15 * 15.0", FAILED, "multiscatter_tint is not that of EON"),  # ints
         ("28.0", "(1 &lt; 2 ? 28.0 : 27.0)", PASSED, ""),
-        ("28.0", "28.0f", PASSED, ""),
         ("28.0", "28.0 /* a comment */", PASSED, ""),
     ],
 )  # fmt: skip
@@ -164,15 +132,10 @@ def test_the_expression_of_a_lobe_is_bounded_and_is_never_executed(
     [
         ("ltc_sampling", "0.303392", "0.303695",
          {"samples": "ltc_a is off by", "densities": "with it ltc_density, ltc0_pdf, ltc_pdf"}),
-        ("ltc_sampling", "(1.0 - P_u) * cltc_pdf", "cltc_pdf", {"densities": "eon_cltc_pdf is off by"}),
-        ("ltc_sampling", "d > 0.0 ? x : -x", "d > 0.0 ? -x : x", {"samples": "cltc_clipped is off"}),
         ("eon_sampling", "return mu_i * parts", "return parts", {"densities": "eon_pdf is off by"}),
-        ("eon_sampling", "eon_rotate_z(wi, turn.x, turn.y)", "eon_rotate_z(wi, turn.x, -turn.y)",
-         {"samples": "eon_sample is off by"}),
         ("eon_sampling", "* (1.0 / upper)", "* upper", {"samples": "eon_draw is off by"}),
         ("oren_nayar_family", "0.0571085289", "0.0571656374",
          {"twins": "fon_loss_approx is off by", "parts": "fon_loss_approx is off by"}),
-        ("oren_nayar_family", "0.57)", "0.33)", {"twins": "qon_footnote_brdf is off by"}),
         ("eon", "EON_P0 0.318309971", "EON_P0 0.318628281",
          {"twins": "fon_loss is off by", "loss": "fon_loss is off by",
           "densities": "fon_loss is off by", "samples": "fon_loss is off by"}),
@@ -213,8 +176,6 @@ def test_functions_that_differ_in_osl_are_named(judged, copy, file, old, new, wo
     "node, old, new",
     [
         (INVERSIONS[0], "0.2877934092108062", "0.2880812026"),
-        (INVERSIONS[0], "0.21530519675388227", "0.2155205019"),
-        (INVERSIONS[0], "0.28995284982769576", "0.2902428027"),
         (INVERSIONS[1], "0.07248821245692394", "0.0725607007"),
         (INVERSIONS[1], '<invert name="dark"', '<absval name="dark"'),
     ],

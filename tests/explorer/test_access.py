@@ -67,17 +67,6 @@ def phone(browser, documents):
         yield page
 
 
-@pytest.mark.parametrize("name", VIEWS)
-def test_a_phone_shows_all_without_scrolling_sideways(phone, name):
-    show(phone, **VIEWS[name])
-    assert phone.evaluate("document.documentElement.scrollWidth") == 390
-    wide = phone.evaluate(
-        "[...document.querySelectorAll('main *')].filter(each => !each.closest('.hidden, svg')"
-        " && each.getBoundingClientRect().right > 391).map(each => each.outerHTML)"
-    )
-    assert wide == []
-
-
 def test_without_webgl2_there_are_pictures_and_all_numbers(browser, documents):
     with (
         started(browser.browser_type, NO_GRAPHICS) as other,

@@ -2,16 +2,14 @@
 """The plugins of Mitsuba: values, sampling, energy and gradients, which are those of the models."""
 
 import re
-import sys
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from mxeon import mitsuba as plugins
 from mxeon import models
-from mxeon.errors import NotRun, PackageError
+from mxeon.errors import NotRun
 from tests.support.bsdfs import (
     COLOR,
     PAIRS,
@@ -200,23 +198,6 @@ def test_a_white_furnace_keeps_the_energy_of_facets_in_the_mean(mi, name, inputs
 def test_an_llvm_that_ends_the_process_is_refused_before(mi, monkeypatch):
     monkeypatch.setattr("drjit.detail.llvm_version", lambda: (15, 0, 6))
     with pytest.raises(NotRun, match="found LLVM 15, .* libllvm19.* DRJIT_LIBLLVM_PATH"):
-        plugins.register()
-
-
-@pytest.mark.parametrize(
-    "module, error, message",
-    [
-        (
-            SimpleNamespace(variant=lambda: None),
-            NotRun,
-            r"mitsuba.set_variant\('llvm_ad_rgb'\) first",
-        ),
-        (None, PackageError, r"pip install '\.\[mitsuba\]'"),
-    ],
-)
-def test_mitsuba_and_a_variant_have_to_be_there(monkeypatch, module, error, message):
-    monkeypatch.setitem(sys.modules, "mitsuba", module)
-    with pytest.raises(error, match=message):
         plugins.register()
 
 

@@ -2,7 +2,6 @@
 """Files that appear whole or not at all, on disks that are full: no file may exceed some bytes."""
 
 import os
-import stat
 import subprocess
 import sys
 
@@ -10,7 +9,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
-from mxeon.io.files import replacing, write_text
+from mxeon.io.files import write_text
 from mxeon.io.images import write_image
 from mxeon.shaders.library import examples_folder
 from tests.support.faults import room_for
@@ -79,17 +78,6 @@ def test_text_that_finds_no_room_leaves_the_old_file(tmp_path):
     assert (tmp_path / "a").read_text() == "old" and files(tmp_path) == ["a"]
 
 
-def test_a_file_is_on_disk_before_it_takes_its_name(tmp_path, monkeypatch):
-    def full(_):
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr("os.fsync", full)
-    rule = "No space left on device: '.*/a'"
-    with pytest.raises(OSError, match=rule), replacing(tmp_path / "a") as beside:
-        beside.touch()
-    assert not files(tmp_path)
-
-
 @pytest.mark.parametrize("name", ["a.png", "a.exr"])
 def test_render_on_a_full_disk_is_one_line(tmp_path, name):
     options = [
@@ -108,21 +96,6 @@ def test_render_on_a_full_disk_is_one_line(tmp_path, name):
     assert ended.returncode == 2 and ended.stderr.count("\n") == 1
     assert ended.stderr.startswith(f"mxeon: {tmp_path / name}: must be accessible; ")
     assert not files(tmp_path)
-
-
-def test_a_pipe_is_not_replaced(tmp_path):
-    pipe = tmp_path / "pipe"
-    os.mkfifo(pipe)
-    with pytest.raises(OSError, match="not a regular file"):
-        write_text(pipe, "text")
-    assert stat.S_ISFIFO(pipe.stat().st_mode)
-
-
-def test_the_file_that_a_link_leads_to_is_replaced(tmp_path):
-    link = tmp_path / "link.txt"
-    link.symlink_to(tmp_path / "file.txt")
-    write_text(link, "text")
-    assert link.is_symlink() and (tmp_path / "file.txt").read_text() == "text"
 
 
 @pytest.mark.parametrize("planted", ["link", "file"])

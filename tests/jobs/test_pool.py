@@ -36,12 +36,6 @@ def test_a_fault_costs_its_item_alone_and_is_named(fault, end):
     assert sorted(outcome.value for outcome in found.values()) == [1, 4, 9, 16]
 
 
-def test_a_bug_in_a_worker_shows_its_traceback_once(caplog):
-    list(run(misbehave, ["raise"], 1, 60.0))
-    assert caplog.text.count("Traceback") > 0 and "in misbehave" in caplog.text
-    assert [record.message for record in caplog.records] == ["bug in a worker process"]
-
-
 def test_an_item_whose_worker_was_killed_is_tried_again(tmp_path):
     items = [str(tmp_path / name) for name in "ab"]
     found = dict(run(once, items, 2, 60.0))
@@ -51,11 +45,6 @@ def test_an_item_whose_worker_was_killed_is_tried_again(tmp_path):
 def test_workers_never_hear_of_ctrl_c():
     (outcome,) = dict(run(_deaf, [0], 1, 60.0)).values()
     assert outcome.value and not _deaf(0)
-
-
-def test_what_workers_print_stays_out_of_ours(capfd):
-    list(run(misbehave, ["exit"], 1, 60.0))
-    assert capfd.readouterr() == ("", "")
 
 
 def test_no_temporary_file_outlives_the_pool(tmp_path, monkeypatch):

@@ -171,15 +171,11 @@ FAULTS = {
     "tone-mapped by x / (1 + x)": lambda image: image / (1.0 + image),
     "upside down": lambda image: image[::-1],
     "mirrored left to right": lambda image: image[:, ::-1],
-    "rotated by 180 degrees": lambda image: image[::-1, ::-1],
     "clipped": lambda image: np.minimum(image, 0.35),
     "pi times as bright": lambda image: np.pi * image,
-    "1/pi times as bright": lambda image: image / np.pi,
     "100 times as bright": lambda image: 100.0 * image,
-    "1e+03 times as bright": lambda image: 1e3 * image,
     "black": np.zeros_like,
     "1.23 times as bright": lambda image: 1.23 * image,
-    "sRGB-encoded and 2 times as bright": lambda image: srgb(image * 2.0),
     "not Lambert's cosine in any known encoding: tone-mapped, or lit otherwise": lambda image: (
         np.tanh(4.0 * image) ** 0.5
     ),
@@ -425,16 +421,9 @@ def test_what_the_check_lacks_is_said_with_the_export_and_before_the_pictures(
     "key, value, words",
     [
         ("format", True, "format must be 1; got True"),
-        ("format", 1.0, "format must be 1; got 1.0"),
-        ("size", None, "size must be a whole number; got None"),
-        ("size", 64.0, "size must be a whole number; got 64.0"),
-        ("size", True, "size must be a whole number; got True"),
         ("size", 10**400, r"size must lie in \[64, 2048\]"),
-        ("size", -1, r"size must lie in \[64, 2048\]"),
         ("camera", {}, "camera must be as kit export writes it: export it again"),
-        ("sphere", None, "sphere must be as kit export writes it"),
         ("materials", {"clay": 1}, "materials must be as kit export writes it"),
-        ("pictures", [3], "pictures must be as kit export writes it"),
     ],
 )
 def test_an_edited_description_is_refused(tmp_path, capsys, key, value, words):

@@ -114,12 +114,8 @@ def test_the_exit_status_says_whether_anything_got_worse(tmp_path, capsys, verdi
     "text, words",
     [
         ("[", "must be the results.json of a report; "),
-        ("[]", "must be the results.json of a report; "),
-        ("[" * 100_000, "must be the results.json of a report; "),
-        ("1" * 5000, "must be the results.json of a report; "),
         ("{}", "must be the results.json of a report; lacks 'format'"),
         ('{"format": 1}', "must be the results.json of a report; lacks "),
-        ('{"format": 1, "results": 3, "pictures": []}', "must be the results.json of a report; "),
         ('{"format": 0}', "format must be 1; got 0; write the report again"),
     ],
 )
@@ -141,20 +137,13 @@ def refusal_of(folder, capsys):
     [
         ("figure", 10**400, "must be a number below 1.8e308; got one of 401 digits"),
         ("figure", "1e-7", "must be a number; got '1e-7'"),
-        ("figure", True, "must be a number; got True"),
         ("tolerance", None, "an error must have a tolerance; got 1e-07 and none"),
         ("figure", -1.0, "error and tolerance must be at least 0; got -1.0 and 1e-06"),
-        ("figure", "-Infinity", "error and tolerance must be at least 0; got -inf"),
         (
             "verdict",
             "maybe",
             "verdict must be one of passed, differs, failed, not run; got 'maybe'",
         ),
-        ("verdict", None, "must be a text; got None @ $.results[0].verdict"),
-        ("verdict", [], "must be a text; got [] @ $.results[0].verdict"),
-        ("worst", {"a": None}, "$.results[0].worst"),
-        ("host", 3, "must be a text; got 3 @ $.results[0].host"),
-        ("control", "x", "$.results[0].control"),
         ("more", 1, "more"),
     ],
 )

@@ -5,8 +5,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
-from mxeon.hosts.textures import irradiance, read_latlong, read_texture
-from mxeon.io.images import read_image
+from mxeon.hosts.textures import irradiance, read_latlong
 
 # Sums over a map of 64 x 128 pixels miss the integral of a cosine by the square of a pixel's angle,
 # (pi / 64)^2, a twelfth of it for the middle of an interval; ten times that.
@@ -20,16 +19,6 @@ def write(path, pixels):
     image.write_image(pixels.astype(np.float32))
     image.close()
     return path
-
-
-@pytest.fixture
-def picture(tmp_path):
-    return write(tmp_path / "a.exr", np.arange(24.0).reshape(2, 4, 3))
-
-
-def test_row_0_is_at_the_top_of_an_image_and_at_the_bottom_of_a_texture(picture):
-    assert read_image(picture)[0, 0].tolist() == [0.0, 1.0, 2.0]
-    assert read_texture(picture)[0, 0].tolist() == [12.0, 13.0, 14.0]
 
 
 def test_an_environment_without_colors_is_refused(tmp_path):

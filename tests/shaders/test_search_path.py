@@ -10,7 +10,7 @@ import pytest
 from mxeon.cli import batch, main
 from mxeon.conformance.pictures import judge_document
 from mxeon.conformance.reference import Host as Reference
-from mxeon.errors import DocumentError, ImageError
+from mxeon.errors import DocumentError
 from mxeon.hosts import open_host
 from mxeon.shaders.document.notes import MissingFileWarning
 from mxeon.shaders.document.policy import Policy
@@ -128,11 +128,3 @@ def test_a_set_of_textures_is_shown_as_its_first_tile(home, host, name):
         for each in (name, "maps/a.exr")
     )
     assert expected.any() and np.array_equal(shown, expected)
-
-
-@pytest.mark.parametrize("host", ["gl", "reference"])
-def test_a_texture_of_five_channels_is_refused_by_its_name(home, host):
-    picture(home / "five.exr", (0.1, 0.2, 0.3, 0.4, 0.5))
-    path = str(written(home, textured("five.exr")))
-    with pytest.raises(ImageError, match="five.exr: must have at most 4 channels; got 5"):
-        batch.picture(path, host, "front", None, 16, "sphere", None, "eonlib", Policy(), Paths())

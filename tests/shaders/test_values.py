@@ -3,37 +3,16 @@
 
 from dataclasses import replace
 
-import MaterialX as mx
 import numpy as np
 import pytest
 
 from mxeon.errors import NotRun
 from mxeon.hosts import open_host
 from mxeon.shaders.document.policy import Policy
-from mxeon.shaders.document.values import plain
 from mxeon.shaders.generation import TARGETS, generate
 from mxeon.shaders.scene import FURNACE
 from tests.support.documents import material
 
-NINE, SIXTEEN = (tuple(map(float, range(count))) for count in (9, 16))
-VALUES = {
-    "boolean": ("true", True),
-    "integer": ("3", 3),
-    "float": ("0.5", 0.5),
-    "color3": ("0, 0.5, 1", (0.0, 0.5, 1.0)),
-    "color4": ("0, 0.5, 1, 2", (0.0, 0.5, 1.0, 2.0)),
-    "vector2": ("0, 0.5", (0.0, 0.5)),
-    "vector3": ("0, 0.5, 1", (0.0, 0.5, 1.0)),
-    "vector4": ("0, 0.5, 1, 2", (0.0, 0.5, 1.0, 2.0)),
-    "matrix33": (str(NINE)[1:-1], NINE),
-    "matrix44": (str(SIXTEEN)[1:-1], SIXTEEN),
-    "string": ("a b", "a b"),
-    "filename": ("a/b.png", "a/b.png"),
-    "geomname": ("/a", "/a"),
-    "integerarray": ("1, 2", (1, 2)),
-    "floatarray": ("0.5, 1", (0.5, 1.0)),
-    "stringarray": ("a, b c", ("a", "b c")),
-}
 STRUCTURES = """<typedef name="pair"><member name="x" type="float" value="0.5"/>
     <member name="y" type="float" value="0.25"/></typedef>
   <typedef name="nest"><member name="p" type="pair" value="{0.5;0.5}"/>
@@ -69,13 +48,6 @@ MATRICES = {
 }
 TRUSTED = Policy(code=True)
 pytestmark = pytest.mark.filterwarnings("ignore:.*contains its own code")
-
-
-@pytest.mark.parametrize("kind", VALUES)
-def test_a_value_of_every_type_is_plain(kind):
-    text, value = VALUES[kind]
-    found = plain(mx.Value.createValueFromStrings(text, kind), mx.createDocument())
-    assert found == value and type(found) is type(value)
 
 
 @pytest.mark.parametrize("target", TARGETS)

@@ -9,7 +9,9 @@ from filelock import FileLock
 import mxeon
 from mxeon.shaders.library import examples_folder
 
+# Documents that are judged with each library: eonlib has to show all examples right.
 EXAMPLES = [examples_folder() / name for name in ("plaster.mtlx", "openpbr_rough_base.mtlx")]
+DOCUMENTS = {"eonlib": sorted(examples_folder().glob("*.mtlx")), "stock": EXAMPLES}
 
 
 _MADE = {}  # by name, where one process tests
@@ -29,5 +31,6 @@ def shared(factory, name, make):
 
 
 def every_node(factory, library):
-    """Every node and two documents on gl with a library, judged once for all tests that read the results."""
-    return shared(factory, library, lambda: mxeon.check(EXAMPLES, ["gl"], [library], nodes=["all"]))
+    """Every node and some documents on gl with a library, judged once for all tests that read the results."""
+    documents = DOCUMENTS[library]
+    return shared(factory, library, lambda: mxeon.check(documents, ["gl"], [library], nodes=["all"]))
