@@ -7,7 +7,6 @@ import re
 import subprocess
 import sys
 from functools import cache, partial
-from importlib.util import find_spec
 from pathlib import Path
 
 import MaterialX as mx
@@ -16,7 +15,6 @@ import pytest
 from mxeon.conformance.results import FAILED, PASSED, SOURCE
 from mxeon.conformance.results.known_issues import ISSUES, STOCK
 from mxeon.conformance.run.plan import ALL, make_plan
-from mxeon.errors import NotRun
 from tests.support.availability import available
 from tests.support.sharing import shared
 from tests.support.wheels import MAIN, wheel
@@ -25,8 +23,6 @@ from tools.site.ledger import pages
 
 pytestmark = pytest.mark.whole
 
-# Slang compiles the repaired node; what is left is its fit.
-OF_SLANG = ("output", "blackbody", "slang")
 # Whatever the release fails, or differs in.
 ON_GL = {
     (each.check, each.subject) for each in make_plan((), ("gl",), (STOCK,), nodes=(ALL,)).tasks
@@ -38,7 +34,7 @@ FAILING = [
     for row in (*issue.rows, *issue.implied)
     if row in (ON_GL if issue.host == "gl" else issue.rows)
 ]
-OTHERS = {"release": [*FAILING, *([OF_SLANG] if find_spec("slangpy") else [])], "main": []}
+OTHERS = {"release": FAILING, "main": []}
 # Judges rows of stock MaterialX, and prints what it found.
 JUDGE = """
 import json, sys
@@ -149,10 +145,3 @@ def test_the_page_of_patches_lists_what_still_fails_with_them(judged):
     ]
     failed = {row[:2] for row in FAILING if judged("release")[row][0] == FAILED}
     assert sorted(listed) == sorted(failed)
-
-
-def test_slang_compiles_the_black_body_that_is_repaired(judged):
-    with available("slang"):
-        if OF_SLANG not in OTHERS["release"]:
-            raise NotRun("slangpy is not installed")
-    assert judged("release")[OF_SLANG][1].startswith("best match: Kang's cubic")

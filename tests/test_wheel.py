@@ -104,13 +104,6 @@ def test_the_wheel_holds_the_package_with_the_data_of_the_checkout_and_nothing_e
     assert {name.split("/")[0] for name in data} == folders
 
 
-def test_the_wheel_writes_a_copy_of_eonlib_for_others(environment, tmp_path):
-    run([environment / "bin" / "mxeon", "library", "--export", tmp_path / "copy"], tmp_path)
-    files = {path.relative_to(tmp_path / "copy").as_posix() for path in tmp_path.rglob("*.*")}
-    assert {"genglsl/lib/eon.glsl", "README.txt"} <= files
-    assert (tmp_path / "copy" / "LICENSE").read_bytes() == (CHECKOUT / "LICENSE").read_bytes()
-
-
 def test_the_sdist_holds_what_the_tests_need_and_nothing_made(built):
     [path] = built.glob("*.tar.gz")
     with tarfile.open(path) as archive:

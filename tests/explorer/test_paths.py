@@ -79,12 +79,3 @@ def test_means_of_paths_are_albedos(stage, sources, name, sampler):
     error = 6.0 * status["samples"]["noise"]["left"] / np.sqrt(len(measured)) + 1e-3
     assert np.abs(off / RHO).max() < error
     assert np.abs(off + 0.05).max() > error
-
-
-def test_what_has_no_model_says_that_it_cannot_be_traced(stage):
-    brick = stage.evaluate("mxeon.data.sources.find(each => each.id.includes('brick')).id")
-    status = traced(stage, side(brick), samples=1)
-    assert status["error"]["source"] == brick
-    assert "needs a material that is one diffuse node" in status["error"]["message"]
-    size = status["drawn"]["width"], status["drawn"]["height"]
-    assert frame(stage, "left", size).max() == 0.0

@@ -13,7 +13,7 @@ from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import host_row, materialx, storm
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.library_export import export_library
-from mxeon.shaders.nodes import OREN_NAYAR, material_text, node_text
+from mxeon.shaders.nodes import OREN_NAYAR, material_text
 from mxeon.shaders.scene import FRONT, FURNACE, SIDE, sphere
 from tests.support.documents import lobe, material
 
@@ -94,19 +94,6 @@ def test_an_enumerated_input_is_said_not_to_be_read(on_storm, gl):
     other = on_storm.compile(material(lobe("sheen_bsdf", mode="conty_kulla")))[0]
     np.testing.assert_array_equal(*(on_storm.picture(each, SMALL) for each in (shader, other)))
     assert gl.unread(shader) == ""
-
-
-def test_a_shader_without_a_material_is_shown_by_materialx_alone(hosts):
-    graph = node_text("UsdPreviewSurface", "surfaceshader", "shading", "")
-    text = f'<materialx version="1.39">{graph}<output name="out" type="surfaceshader" nodename="shading"/></materialx>'
-    for name, engine in HOSTS.items():
-        host = hosts(name)
-        [shader] = host.compile(text)
-        if engine is materialx.Host:
-            assert host.picture(shader, SMALL).any()
-        else:
-            with pytest.raises(NotRun, match="^storm: element 'out' must be a material, as USD"):
-                host.picture(shader, SMALL)
 
 
 def test_stock_is_wrong_from_behind(host, judged):

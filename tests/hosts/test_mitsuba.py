@@ -12,7 +12,6 @@ from mxeon import models
 from mxeon.errors import NotRun
 from tests.support.bsdfs import (
     COLOR,
-    PAIRS,
     PARAMETERS,
     SEED,
     chi_square,
@@ -167,16 +166,6 @@ def test_mitsubas_chi_square_test_accepts_the_sampling(mi, name, inputs, angle):
     color = (0.5,) * 3 if name == "eon" else COLOR
     test = chi_square(mi, angle, lambda adapter: adapter(name, bsdf(name, color, **inputs)))
     assert test.run(test_count=len(SAMPLED), quiet=True), test.messages
-
-
-@pytest.mark.parametrize("amount", (0.0, 0.5, 1.0))
-def test_every_sample_of_a_white_surface_has_the_weight_1(mi, amount):
-    rng = np.random.default_rng(SEED)
-    made = mi.load_dict(material("eon", amount, (1.0,) * 3))
-    u = mi.Float(rng.random(PAIRS)), mi.Point2f(rng.random((2, PAIRS)))
-    record, weight = made.sample(mi.BSDFContext(), surface(mi, directions(rng)), *u)
-    assert np.abs(np.array(weight) - 1.0).max() <= MITSUBA_WEIGHT
-    assert np.array(record.pdf).min() > 0.0
 
 
 @pytest.mark.parametrize(("name", "lossless"), (("eon", True), ("fon", False)))

@@ -5,7 +5,6 @@ import json
 import math
 import re
 import sys
-import threading
 from base64 import b64encode
 from dataclasses import replace
 from hashlib import sha256
@@ -35,7 +34,6 @@ from mxeon.io.srgb import srgb_encoded
 from mxeon.models import eon_brdf
 from mxeon.report import html, to_json, to_junit, write
 from mxeon.shaders.scene import sphere
-from tests.support.faults import room_for
 
 HOSTILE = "<script>alert('\x08')</script>\"><img src=x onerror=y>&{{ 7 * 7 }}$"
 SIZE = 16
@@ -267,30 +265,6 @@ def test_a_sentence_says_how_a_material_looks(run, result, picture, words):
     assert words in Page(page_of(one)).text
 
 
-def test_what_the_specification_leaves_open_stands_apart_from_failures(run):
-    results = FAILURE, made_result(DIFFERS, check="flag", diagnosis="the form of the paper")
-    page = page_of(replace(run, results=results, pictures=()))
-    failed, left_open = page.split("<h2 id=")[1:3]
-    assert failed.startswith('"failed"') and left_open.startswith('"open"')
-    assert "the form of the paper" in left_open and 'class="mark failed"' not in left_open
-    colors = dict(re.findall(r"--(failed|differs): (#\w+)", page))
-    assert colors["failed"] != colors["differs"]
-
-
-def test_a_difference_is_shown_and_counted_where_it_was_judged(run):
-    picture, judged = made_picture("clay"), np.zeros((SIZE, SIZE, 1), np.float32)
-    judged[4::8, 4::8] = 1.0
-    reference = np.where(judged > 0.0, picture.image, picture.image + np.float32(0.97))
-    mosaic = replace(picture, reference=reference, judged=judged)
-    one = replace(run, results=(), pictures=(mosaic,))
-    assert "Difference, eonlib up to 0.001 % of white at the 4 pixels that were compared" in (
-        Page(page_of(one)).text
-    )
-    assert json.loads(to_json(one))["pictures"][0]["largest_difference"] == 0.0
-    whole = replace(one, pictures=(replace(mosaic, judged=None),))
-    assert "Difference, eonlib up to 97 % of white" in Page(page_of(whole)).text
-
-
 def test_the_examples_of_the_page_on_checking_run(tmp_path, monkeypatch):
     my_renderer = SimpleNamespace(my_brdf=eon_brdf)
     monkeypatch.setitem(sys.modules, "my_renderer", my_renderer)
@@ -351,22 +325,6 @@ def test_pictures_are_float_exr_and_eight_bit_png_that_say_what_made_them(run, f
         assert exr.spec()[f"mxeon:{key}"] == png.spec()[f"mxeon:{key}"] == value
     assert exr.spec()["oiio:ColorSpace"] == "lin_rec709_scene"
     assert png.spec()["oiio:ColorSpace"] == "srgb_rec709_scene"
-
-
-@pytest.mark.parametrize("name", ["results.json", "pictures", "report.html"])
-def test_on_a_full_disk_each_file_is_whole_or_missing_and_said_so(run, tmp_path, name):
-    write(run, tmp_path / "whole")
-    sizes = {file.name: file.stat().st_size for file in (tmp_path / "whole").rglob("*.*")}
-    room = max(
-        file.stat().st_size for file in (tmp_path / "whole").rglob("*.*") if name in str(file)
-    )
-    before = set(threading.enumerate())
-    with room_for(room - 1), pytest.raises(OSError) as error:
-        write(run, tmp_path / "part")
-    assert set(threading.enumerate()) <= before  # while the error still holds what was under way
-    assert not Path(error.value.filename).exists()
-    for file in (tmp_path / "part").rglob("*.*"):
-        assert file.stat().st_size == sizes[file.name]
 
 
 @pytest.mark.parametrize("library", ["jinja2", "matplotlib"])

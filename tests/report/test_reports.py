@@ -28,7 +28,7 @@ from mxeon.hosts.base import Identity
 from mxeon.models import table as reference
 from mxeon.report import to_json, write
 from mxeon.report.diff import BETTER, OTHER, WORSE, Change, Report, compare, read_results
-from mxeon.survey.field import CHECKS, read_field, write_field
+from mxeon.survey.field import read_field, write_field
 
 PLACE = "gl, eonlib, value, clay"
 
@@ -272,12 +272,6 @@ def test_a_portrait_in_light_from_behind_tells_of_back_lit_pairs(tmp_path, error
     assert cell.verdict == verdict and cell.error == pytest.approx(error, rel=0.2)
 
 
-def test_a_host_that_did_not_run_is_not_passed(tmp_path):
-    missing = replace(made("value", 0.0), verdict=NOT_RUN, error=None, reason="gl: nowhere")
-    entry = of_node(written(tmp_path, results=(missing,), hosts=()))
-    assert (entry.verdict, entry.found, entry.version) == (NOT_RUN, "not run", "")
-
-
 class Page(HTMLParser):
     """Start tags of a page."""
 
@@ -308,28 +302,9 @@ def test_the_page_loads_nothing_and_runs_its_own_script_alone(text):
     assert HOSTILE not in text and "&lt;script&gt;" in text
 
 
-def test_the_page_has_a_cell_for_every_column_and_a_picture_with_its_difference(text):
-    tags = Page(text).tags
-    cells = [given["data-label"] for tag, given in tags if tag == "td"]
-    assert len(cells) == len(CHECKS) + 3
-    assert [given["href"] for tag, given in tags if tag == "a"][:2] == ["up/a.html", "up/b.html"]
-    pictures = [given["alt"] for tag, given in tags if tag == "img"]
-    assert len(pictures) == 4 and all(pictures)
-    assert "0.875" in text and "(0.2, 0.5, 0.8)" in text  # where the error occurs
-
-
 def test_the_command_writes_the_page_of_reports(tmp_path, capsys):
     page = tmp_path / "page.html"
     written(tmp_path / "gl")
     assert main(["report", "field", str(tmp_path), "--output", str(page)]) == 0
     assert capsys.readouterr().out == f"field: {page}, 1 rows\n"
     assert "docs/upstream/a.md" in page.read_text()
-
-
-@pytest.mark.parametrize("results", [None, (made("value", 0.0, subject="a.mtlx, look"),)])
-def test_what_has_no_renderer_is_refused_in_one_line(tmp_path, capsys, results):
-    if results:
-        written(tmp_path, results=results)
-    assert main(["report", "field", str(tmp_path), "--output", str(tmp_path / "a.html")]) == 2
-    error = capsys.readouterr().err
-    assert "must " in error and error.count("\n") == 1 and not (tmp_path / "a.html").exists()

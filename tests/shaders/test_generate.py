@@ -47,12 +47,6 @@ SURFACE = """<materialx version="1.39">
 SUM = '<add name="{}" type="BSDF"><input name="in1" type="BSDF" nodename="{}"/>' + (
     '<input name="in2" type="BSDF" nodename="{}"/></add>'
 )
-GRAPH = """<materialx version="1.39">
-  <nodegraph name="a"><surface_unlit name="shading" type="surfaceshader"/>
-    <output name="b" type="surfaceshader" nodename="shading"/></nodegraph>
-  <surface_unlit name="shading" type="surfaceshader"/>
-  <output name="a_b" type="surfaceshader" nodename="shading"/>
-</materialx>"""
 
 COMPILE = """
 import json, sys
@@ -218,12 +212,6 @@ def test_names_that_osl_does_not_take_are_replaced():
         [shader] = generate(material(lobe()).replace('"look"', f'"{name}"'), "osl")
         assert (shader.name, shader.element) == (expected, name)
         assert f"\nshader {expected}\n" in shader.stages["pixel"]
-
-
-def test_elements_have_names_of_their_own():
-    shaders = generate(GRAPH, "osl")
-    assert sorted(shader.element for shader in shaders) == ["a/b", "a_b"]
-    assert sorted(shader.name for shader in shaders) == ["a_b", "a_b2"]
 
 
 @on_each_target

@@ -100,11 +100,6 @@ def test_a_source_outside_needs_permission(home, name):
         assert generate(path, "glsl", policy=TRUSTED)
 
 
-def test_a_set_of_textures_inside_needs_no_permission(home):
-    (home / "bark.1001.png").touch()
-    assert read_document(written(home, textured("bark.&lt;UDIM&gt;.png")))
-
-
 def test_files_inside_and_in_the_libraries_need_no_permission(home):
     library = f"{mx.getDefaultDataSearchPath().asString()}/libraries/targets/genglsl.mtlx"
     for name in ("inside.png", "link/documents/inside.png", library):
@@ -248,11 +243,3 @@ def test_the_name_of_a_file_steers_no_terminal(tmp_path, capsys):
     path.write_text("")
     cli.main(["generate", str(path), *options])
     assert capsys.readouterr().err.rstrip("\n").isprintable()
-
-
-# --- depth --------------------------------------------------------------------------------------
-
-
-def test_many_uses_of_a_nodegraph_are_one_of_many_nodes():
-    assert generate(material(doubled(12)), "osl")
-    assert "--maxNodes" in refusal(material(doubled(40)))
