@@ -33,4 +33,6 @@ def shared(factory, name, make):
 def every_node(factory, library):
     """Every node and some documents on gl with a library, judged once for all tests that read the results."""
     documents = DOCUMENTS[library]
-    return shared(factory, library, lambda: mxeon.check(documents, ["gl"], [library], nodes=["all"]))
+    return shared(
+        factory, library, lambda: mxeon.check(documents, ["gl"], [library], nodes=["all"])
+    )

@@ -1,0 +1,248 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures of documents: what the reference knows, what it takes from the host, and what a failure says."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mxeon.conformance.pictures import judge_document
+from mxeon.errors import NotRun
+from mxeon.io.images import write_exr
+from mxeon.shaders.generation import generate
+from mxeon.shaders.nodes import EON, SURFACE, document_text
+from mxeon.shaders.scene import FRONT, FURNACE, SIDE, Scene, sphere
+from tests.support.documents import lobe, material
+
+
+@pytest.fixture
+def shown(gl, reference, tmp_path):
+    """A function that judges a document of one material: its result, its pictures and the notes."""
+
+    def judged(text, library="eonlib"):
+        path = tmp_path / "shown.mtlx"
+        path.write_text(text)
+        [result], pictures, notes = judge_document(path, gl, reference, library)
+        return result, pictures, notes
+
+    return judged
+
+
+FILM = """<generalized_schlick_bsdf name="lobe" type="BSDF">
+  <input name="color0" type="color3" value="0.04, 0.04, 0.04"/>
+  <input name="roughness" type="vector2" value="0, 0"/>
+  <input name="thinfilm_thickness" type="float" value="550"/>
+  <input name="thinfilm_ior" type="float" value="1.5"/>
+</generalized_schlick_bsdf>"""
+# A nodegraph with a color, by its own name and the name of its node.
+COLOR = """<nodegraph name="{graph}">
+  <multiply name="{node}" type="color3">
+    <input name="in1" type="color3" value="{color}"/>
+    <input name="in2" type="float" value="0.5"/>
+  </multiply>
+  <output name="out" type="color3" nodename="{node}"/>
+</nodegraph>"""
+SUM = """<oren_nayar_diffuse_bsdf name="lobe1" type="BSDF">
+  <input name="weight" type="float" value="0.5"/>
+  <input name="color" type="color3" nodegraph="red" output="out"/>
+</oren_nayar_diffuse_bsdf>
+<oren_nayar_diffuse_bsdf name="lobe2" type="BSDF">
+  <input name="weight" type="float" value="0.5"/>
+  <input name="color" type="color3" nodegraph="green" output="out"/>
+</oren_nayar_diffuse_bsdf>
+<add name="lobe" type="BSDF">
+  <input name="in1" type="BSDF" nodename="lobe1"/>
+  <input name="in2" type="BSDF" nodename="lobe2"/>
+</add>"""
+
+
+def colors(first, second):
+    """Two lobes with colors from two nodegraphs, whose nodes have these names."""
+    red = COLOR.format(graph="red", node=first, color="1, 0, 0")
+    green = COLOR.format(graph="green", node=second, color="0, 1, 0")
+    return document_text(red + green + SUM + SURFACE)
+
+
+def test_a_film_of_the_index_of_its_schlick_substrate_has_one_phase(shown):
+    result, *_ = shown(document_text(FILM + SURFACE))
+    assert result.verdict == "passed"
+    assert result.error < 1e-4  # the phase of a denser film is off by 0.17
+
+
+def test_a_truth_value_is_drawn_white_or_black(shown):
+    text = """<materialx version="1.39"><nodegraph name="logic">
+      <and name="both" type="boolean">
+        <input name="in1" type="boolean" value="true"/><input name="in2" type="boolean" value="true"/>
+      </and><output name="shown" type="boolean" nodename="both"/></nodegraph></materialx>"""
+    result, *_ = shown(text)
+    assert (result.check, result.verdict, result.measured) == ("picture", "passed", ("shown",))
+
+
+def test_nodes_of_one_name_in_two_nodegraphs_are_named(shown):
+    result, _, notes = shown(colors("tint", "tint"))
+    assert result.verdict == "failed"
+    assert 'nodes "red/tint" and "green/tint" have the values of one' in result.diagnosis
+    assert any("must have different names" in text for text, _ in notes)
+
+
+# --- patterns that the reference does not know: the host's own values feed its lobes ------------
+
+LOBE = """<oren_nayar_diffuse_bsdf name="lobe" type="BSDF">
+  <input name="color" type="color3" nodename="pattern"/>
+  <input name="roughness" type="float" value="1"/>
+  <input name="energy_compensation" type="boolean" value="true"/>
+</oren_nayar_diffuse_bsdf>"""
+NOISE = """<cellnoise2d name="noise" type="float">
+  <input name="texcoord" type="vector2" nodename="placed"/>
+</cellnoise2d>
+<place2d name="placed" type="vector2">
+  <input name="texcoord" type="vector2" nodename="where"/>
+  <input name="scale" type="vector2" value="0.1, 0.1"/>
+</place2d>
+<texcoord name="where" type="vector2"/>
+<convert name="pattern" type="color3"><input name="in" type="float" nodename="noise"/></convert>"""
+TILED = """<tiledimage name="pattern" type="color3">
+  <input name="file" type="filename" value="checks.exr"/>
+  <input name="uvtiling" type="vector2" value="3, 2"/>
+</tiledimage>"""
+
+
+def test_the_color_of_a_noise_comes_from_the_host(shown):
+    result, pictures, _ = shown(document_text(NOISE + LOBE + SURFACE))
+    assert (result.check, result.verdict) == ("picture", "passed")
+    assert result.measured == ("lobe.color",)
+    assert {picture.metadata["from the host"] for picture in pictures} == {"lobe.color"}
+    assert np.ptp(pictures[0].reference[128]) > 0.5  # the pattern is there
+
+
+def test_a_wrong_lobe_behind_a_measured_input_is_found(shown):
+    result, *_ = shown(document_text(NOISE + LOBE + SURFACE), "stock")
+    assert (result.check, result.verdict, result.measured) == ("picture", "failed", ("lobe.color",))
+    assert result.error > 100 * result.tolerance
+
+
+def test_an_image_with_a_transform_comes_from_the_host(shown, tmp_path):
+    checks = np.indices((8, 8)).sum(axis=0)[..., np.newaxis] % 2 * np.array([0.8, 0.4, 0.2])
+    write_exr(tmp_path / "checks.exr", checks.astype(np.float32), {})
+    result, *_ = shown(document_text(TILED + LOBE + SURFACE))
+    assert (result.check, result.verdict, result.measured) == ("picture", "passed", ("lobe.color",))
+
+
+def test_a_pattern_alone_is_what_a_surface_emits_of_it(shown):
+    output = '<output name="shown" type="float" nodename="noise"/>'
+    text = f'<materialx version="1.39">{NOISE}{output}</materialx>'
+    result, *_ = shown(text)
+    assert (result.check, result.verdict, result.measured) == ("picture", "passed", ("shown",))
+
+
+def test_materials_that_vary_are_judged_and_compared_at_some_of_the_pixels(shown):
+    lobe = """<conductor_bsdf name="lobe" type="BSDF">
+      <input name="roughness" type="vector2" nodename="rough"/>
+    </conductor_bsdf>
+    <convert name="rough" type="vector2"><input name="in" type="float" nodename="noise"/></convert>"""
+    result, pictures, _ = shown(document_text(NOISE + lobe + SURFACE))
+    furnace = pictures[-1]
+    assert 700 < furnace.judged.sum() < 900
+    # The others are like their neighbors: they have the neighbors' difference, not their own.
+    assert np.abs(furnace.image - furnace.reference).max() > 10.0 * result.tolerance
+    assert np.nanmax(furnace.difference()) < 3.0 * result.tolerance
+
+
+# --- light that passes a surface: transmission, volumes and lobes below it -----------------------
+
+GLASS = """<dielectric_bsdf name="{name}" type="BSDF"><input name="tint" type="color3"
+  value="0.2, 0.5, 0.9"/><input name="scatter_mode" type="string" value="{mode}"/></dielectric_bsdf>"""
+FOG = """<anisotropic_vdf name="fog" type="VDF"><input name="scattering" type="vector3"
+  value="0, 1, 0"/></anisotropic_vdf>"""
+HAZE = """<layer name="lobe" type="BSDF"><input name="top" type="BSDF" nodename="glass"/>
+  <input name="base" type="VDF" nodename="fog"/></layer>"""
+
+
+@pytest.fixture
+def lit(reference):
+    """A function that draws a material in a scene by the reference."""
+    return lambda text, scene: reference.picture(
+        generate(material(text), "glsl")[0], replace(scene, size=32)
+    )
+
+
+def test_what_is_transmitted_of_a_furnace_is_what_is_not_reflected(lit):
+    whole = GLASS.replace("0.2, 0.5, 0.9", "1, 1, 1").format(name="lobe", mode="RT")
+    assert np.allclose(lit(whole, FURNACE)[sphere(32).mask], 1.0, atol=1e-9)
+    assert not lit(GLASS.format(name="lobe", mode="T"), SIDE).any()
+
+
+def test_a_volume_dims_what_is_transmitted_and_not_what_is_reflected(lit):
+    clear = lit(GLASS.format(name="lobe", mode="T"), FURNACE)
+    foggy = lit(GLASS.format(name="glass", mode="T") + FOG + HAZE, FURNACE)
+    assert np.allclose(foggy, clear * [1.0, np.exp(-1.0), 1.0], atol=1e-12)
+    reflected = lit(GLASS.format(name="glass", mode="R") + FOG + HAZE, FURNACE)
+    assert np.allclose(reflected, lit(GLASS.format(name="lobe", mode="R"), FURNACE))
+
+
+@pytest.mark.parametrize(
+    "node",
+    [
+        GLASS.format(name="lobe", mode="RT"),
+        """<subsurface_bsdf name="lobe" type="BSDF"><input name="radius" type="color3"
+        value="0.5, 0.2, 0.05"/></subsurface_bsdf>""",
+        """<chiang_hair_bsdf name="lobe" type="BSDF"/>""",
+    ],
+    ids=["transmission", "subsurface", "hair"],
+)
+def test_lobes_below_the_surface_have_a_picture_like_gl(shown, node):
+    result, *_ = shown(material(node))
+    assert (result.check, result.verdict) == ("picture", "passed")
+
+
+@pytest.mark.parametrize("node", ["subsurface_bsdf", "dielectric_bsdf"])
+def test_a_wrong_lobe_below_the_surface_is_found(shown, node):
+    rough = '<input name="roughness" type="vector2" value="0.8, 0.8"/></dielectric_bsdf>'
+    glass = GLASS.format(name="lobe", mode="T").replace("</dielectric_bsdf>", rough)
+    lobes = {"dielectric_bsdf": glass, "subsurface_bsdf": f'<{node} name="lobe" type="BSDF"/>'}
+    result, *_ = shown(material(lobes[node]), "stock")
+    assert (result.check, result.verdict) == ("picture", "failed")
+
+
+# --- what the models do not cover --------------------------------------------------------------
+
+A = f'<{EON} name="a" type="BSDF"><input name="color" type="color3" value="0.8, 0.4, 0.1"/></{EON}>'
+OUTSIDE = (
+    ({"color": "0.5, 1.5, 0.5"}, "color must lie in [0, 1]; got 1.5"),
+    ({"weight": "1.5"}, "weight must lie in [0, 1]; got 1.5"),
+    ({"roughness": "1.6"}, "roughness must lie in [0, pi/2]; got 1.6"),
+)
+
+
+@pytest.mark.parametrize(
+    "nodes, scene, words",
+    [
+        (
+            f"""<noise2d name="bump" type="vector3"/><{EON} name="lobe" type="BSDF">
+            <input name="normal" type="vector3" nodename="bump"/></{EON}>""",
+            FRONT,
+            "no model for node 'noise2d'",
+        ),
+        (
+            f"""<{EON} name="lobe" type="BSDF"><input name="color" type="color3"
+            value="0.5, 0.5, 0.5" colorspace="acescg"/></{EON}>""",
+            FRONT,
+            "no transform from color space acescg to lin_rec709",
+        ),
+        (A.replace('"a"', '"lobe"'), Scene("sky", environment="sky.exr"), "must be uniform"),
+    ],
+    ids=["noise", "color space", "image of an environment"],
+)
+def test_what_the_models_do_not_cover_did_not_run(reference, nodes, scene, words):
+    managed = material(nodes).replace("<materialx ", '<materialx colorspace="lin_rec709" ')
+    shader = generate(managed, "glsl")[0]
+    with pytest.raises(NotRun, match=words):
+        reference.picture(shader, scene)
+
+
+@pytest.mark.parametrize("inputs, rule", OUTSIDE, ids=str)
+def test_a_value_outside_its_model_is_not_judged(shown, inputs, rule):
+    result, pictures, notes = shown(material(lobe(**inputs)))
+    assert result.verdict == "not run" and not pictures
+    assert f"reference: node 'lobe': {rule}" in result.reason
+    assert "where its model is defined" in notes[0][0]
