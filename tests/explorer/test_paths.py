@@ -4,11 +4,8 @@
 import numpy as np
 import pytest
 
-from mxeon.models.table import model
 from tests.explorer.stage import (
     CLOCK,
-    RHO,
-    ROUGHNESS,
     frame,
     model_sources,
     opened_stage,
@@ -64,18 +61,3 @@ def test_a_white_furnace_keeps_every_exact_path(stage, sources):
     measured, _ = whole(stage, "left")
     assert np.abs(measured - 1.0).max() < EON_WEIGHT
     assert whole(stage, "right")[0].mean() < 0.95
-
-
-@pytest.mark.parametrize(
-    ("name", "sampler"), [("eon", "exact"), ("qon", "cltc"), ("fon_white_lobe", "cosine")]
-)
-def test_means_of_paths_are_albedos(stage, sources, name, sampler):
-    uniform = {"light": None, "surroundings": "uniform"}
-    status = traced(stage, side(sources[name], sampler=sampler), **uniform)
-    measured, mu = whole(stage, "left")
-    off = measured.mean(axis=0) - model(name).albedo_dir(mu, RHO, ROUGHNESS).mean(axis=0)
-    # Six standard errors of a mean of this many pixels, each with the error that the stage states.
-    # A pixel spans a range of angles; its mean is off from the center's by less than a thousandth.
-    error = 6.0 * status["samples"]["noise"]["left"] / np.sqrt(len(measured)) + 1e-3
-    assert np.abs(off / RHO).max() < error
-    assert np.abs(off + 0.05).max() > error

@@ -131,18 +131,3 @@ def test_the_flag_and_the_inputs_of_a_document_reach_its_shader(stage):
     half = picture(stage)
     view(stage, side(source))
     assert np.abs(picture(stage) - 2.0 * half).max() < TWIN_VALUE < half.max()
-
-
-@pytest.mark.parametrize("name", ["studio", "sky", "window"])
-def test_surroundings_are_an_irradiance_times_the_albedo(stage, sources, name):
-    view(stage, side(sources["lambert"]), light=None, surroundings=name, color=[1, 1, 1])
-    irradiance = picture(stage)
-    assert irradiance.max() > 2.0 * irradiance[sphere(len(irradiance)).mask].min() > 0.0
-    view(stage, side("shader/eonlib"), side(sources["eon"]), light=None, surroundings=name)
-    points = sphere(len(irradiance))
-    expected = irradiance[points.mask] * white(model("eon"), points.normal[points.mask][:, 2])
-    for each in ("left", "right"):
-        measured = picture(stage, each)[points.mask]
-        # Both look the map up with the same expressions.
-        assert np.abs(measured - expected).max() < TWIN_VALUE * irradiance.max()
-        assert np.abs(measured - irradiance[points.mask]).max() > 0.05

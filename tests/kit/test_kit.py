@@ -21,7 +21,6 @@ from mxeon.kit.check import check_kit
 from mxeon.kit.encoding import fault
 from mxeon.kit.expected import expected, judged
 from mxeon.kit.export import export_kit
-from mxeon.kit.mesh import unit_sphere
 from mxeon.kit.noise import ratio, tiles
 from mxeon.kit.views import MATERIALS, SETUP
 from mxeon.models import table as reference
@@ -40,19 +39,9 @@ from tests.kit.conftest import (
     write_pictures,
 )
 from tests.support.availability import available
-from tests.support.tolerances import KIT_DEPTH, KIT_FALSE_ALARMS
+from tests.support.tolerances import KIT_FALSE_ALARMS
 
 EXTERNAL_RENDERER = Path(__file__).parents[1] / "support" / "external_renderer.py"
-
-
-def test_the_mesh_lies_on_the_sphere_closed_and_turned_outwards():
-    mesh = unit_sphere()
-    assert np.abs(np.linalg.norm(mesh.vertices, axis=1) - 1.0).max() < 1e-15
-    assert mesh.depth < KIT_DEPTH
-    a, b, c = np.moveaxis(mesh.vertices[mesh.triangles], 1, 0)
-    assert (np.linalg.det(np.stack([a, b, c], axis=1)) > 0.0).all()
-    edges = np.sort(mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-    assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
 
 
 @pytest.fixture(scope="module")
@@ -371,52 +360,6 @@ def test_each_unusable_picture_costs_itself_alone_and_is_diagnosed(kit):
     assert result_of(run, "setup", "lambert").verdict == "passed"
 
 
-def as_csv(kit, name):
-    image = read(render(kit, name))
-    rows = [",".join(map(str, (*place, *image[place]))) for place in np.ndindex(SIZE, SIZE)]
-    render(kit, name).unlink()
-    path = kit / "renders" / f"{name}.csv"
-    path.write_text("\n".join(["row,column,red,green,blue", *rows]) + "\n")
-    return path
-
-
-WRONG_CSV = {  # picture: the lines that begin so, what they become, and the diagnosis
-    "true_front": ("row,column", "x,y", "must begin with row,column,red,green,blue; got x,y"),
-    "true_side": ("5,5,", "64,5,", "must hold row and column of a pixel, of 64 x 64"),
-    "true_back": ("5,5,", "-59,5,", "must hold row and column of a pixel, of 64 x 64"),
-    "true_furnace": ("5,5,", "5,5,none,", "and three numbers"),
-    "half_side": ("32,32,", "31,32,", "that no line before it has"),
-    "false_front": ("32,32,.*\n", "", "must be finite numbers"),
-    "false_side": ("5,5,", f"5,5,{'9' * 200_000},", "must be CSV in UTF-8; field larger"),
-}
-NO_CSV = {"false_back": b"", "false_furnace": b"row\xff", "black_side": "row".encode("utf-16")}
-
-
-def test_each_wrong_csv_costs_its_picture_alone_and_is_diagnosed(kit):
-    for name, (old, new, _) in WRONG_CSV.items():
-        path = as_csv(kit, name)
-        path.write_text(re.sub(f"(?m)^{old}", new, path.read_text(), count=1))
-    for name, data in NO_CSV.items():
-        as_csv(kit, name).write_bytes(data)
-    run = check_kit(kit)
-    for name, (_, _, words) in WRONG_CSV.items():
-        assert words in result_of(run, "file", name).diagnosis
-    for name in NO_CSV:
-        assert f"{name}.csv: must be" in result_of(run, "file", name).diagnosis
-    assert result_of(run, "setup", "lambert").verdict == "passed"
-
-
-def test_what_the_check_lacks_is_said_with_the_export_and_before_the_pictures(
-    tmp_path, monkeypatch, capsys
-):
-    monkeypatch.setitem(sys.modules, "scipy.special", None)
-    said = "kit check needs scipy: pip install '.[kit]' in a checkout of mxeon\n"
-    assert main(["kit", "export", str(tmp_path), "--size", "64"]) == PASSED
-    assert capsys.readouterr().err == f"mxeon: warning: {said}"
-    assert main(["kit", "check", str(tmp_path)]) == MISUSE
-    assert capsys.readouterr().err == f"mxeon: {said}"
-
-
 @pytest.mark.parametrize(
     "key, value, words",
     [
@@ -433,3 +376,14 @@ def test_an_edited_description_is_refused(tmp_path, capsys, key, value, words):
     assert main(["kit", "check", str(tmp_path)]) == 2
     error = capsys.readouterr().err
     assert re.search(f"kit.json: {words}", error) and error.count("\n") == 1
+
+
+def test_what_the_check_lacks_is_said_with_the_export_and_before_the_pictures(
+    tmp_path, monkeypatch, capsys
+):
+    monkeypatch.setitem(sys.modules, "scipy.special", None)
+    said = "kit check needs scipy: pip install '.[kit]' in a checkout of mxeon\n"
+    assert main(["kit", "export", str(tmp_path), "--size", "64"]) == PASSED
+    assert capsys.readouterr().err == f"mxeon: warning: {said}"
+    assert main(["kit", "check", str(tmp_path)]) == MISUSE
+    assert capsys.readouterr().err == f"mxeon: {said}"

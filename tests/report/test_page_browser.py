@@ -100,19 +100,3 @@ def test_a_screenshot_shows_verdict_colours_and_spheres(browser, address, tmp_pa
     failed, stage = np.array([0xBF, 0x2F, 0x45]), np.array([0x26, 0x28, 0x2C])
     for color in (failed, stage):
         assert (pixels == color).all(axis=-1).sum() > 1000
-
-
-FIELD = Path(__file__).parents[2] / "docs" / "field.html"
-CUT = """() => [...document.querySelectorAll(".scroll, .strip figure")].filter(
-    each => each.scrollWidth > each.clientWidth).length"""
-
-
-@pytest.mark.parametrize("width", [1280, 390])
-def test_nothing_of_the_field_is_cut(browser, width):
-    with opened(browser, FIELD.as_uri(), viewport={"width": width, "height": 800}) as page:
-        assert page.evaluate(CUT) == 0
-        page.locator(".field summary", has_text="where").first.click()
-        assert page.locator(".field details[open] dl").bounding_box()["width"] > 180
-        assert page.evaluate(CUT) == 0
-        page.add_style_tag(content=".field { min-width: 1300px }")
-        assert page.evaluate(CUT) == 1

@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bad documents: each ends in one line that names the place, the rule and the value."""
 
-from math import pi
-
 import pytest
 
-from mxeon.errors import LONGEST, DocumentError
+from mxeon.errors import DocumentError
 from mxeon.shaders.document.notes import MissingFileWarning
 from mxeon.shaders.document.reading import DocumentWarning, read_document
 from mxeon.shaders.document.values import INTEROP, LEGACY
@@ -16,8 +14,6 @@ INCLUDE = '<materialx version="1.39" xmlns:xi="http://www.w3.org/2001/XInclude">
 DEFINED = '<nodedef name="ND_{0}" node="{0}"><output name="out" type="BSDF"/></nodedef>'
 INNER = '<{} name="inner" type="BSDF"/><output name="out" type="BSDF" nodename="inner"/>'
 INSIDE = '<nodegraph name="NG_{}" nodedef="ND_{}">' + INNER + "</nodegraph>"
-LINKED = f"""<nodegraph name="NG_a">{INNER.format("a")}</nodegraph>
-    <implementation name="IM_a" nodedef="ND_a" nodegraph="NG_a"/>"""
 CYCLE = (
     '<add name="a" type="color3"><input name="in1" type="color3" nodename="b"/></add>'
     '<add name="b" type="color3"><input name="in1" type="color3" nodename="a"/></add>'
@@ -31,27 +27,20 @@ FILES = {
     "prose": ("hello\n", "must be a MaterialX document; XML parse error"),
     "binary": ("".join(map(chr, range(256))), "must be a MaterialX document in UTF-8; invalid"),
     "cut short": (material(lobe())[:150], "must be a MaterialX document; XML parse error"),
-    "html": ("<html><body/></html>", "must be a MaterialX document; No root MaterialX element"),
     "too deep": (
         material("<a>" * 1000 + "</a>" * 1000),
         "must have at most 64 elements within each other; got 65",
     ),
     "future": ('<materialx version="1.99"/>', "MaterialX upgrades to 1.39; got '1.99'"),
-    "next": ('<materialx version="2"/>', "MaterialX upgrades to 1.39; got '2'"),
     "no version": ('<materialx version="x"/>', "MaterialX upgrades to 1.39; got 'x'"),
     "no include": (INCLUDE.format('<xi:include href="none.mtlx"/>'), "none.mtlx"),
     "own include": (
         INCLUDE.format('<xi:include href="bad.mtlx"/>'),
         "must not lead back to the same document",
     ),
-    "lobe alone": (f'<materialx version="1.39">{lobe()}</materialx>', "must contain a renderable"),
     "nothing": ('<materialx version="1.39"/>', "must contain a renderable element"),
     "look alone": (
         '<materialx version="1.39"><surfacematerial name="look" type="material"/></materialx>',
-        "must contain a renderable element",
-    ),
-    "idle output": (
-        '<materialx version="1.39"><output name="out" type="surfaceshader"/></materialx>',
         "must contain a renderable element",
     ),
 }
@@ -61,9 +50,7 @@ VALUES = (
     ({"color": "nan, 1, 1"}, 'input "lobe/color" must be a valid color3 of finite numbers; got n'),
     ({"color": "red"}, 'input "lobe/color" must be a valid color3 of finite numbers; got red'),
     ({"color": "1, 1"}, 'input "lobe/color" must be a valid color3 of finite numbers; got 1, 1'),
-    ({"color": "1, 1, 1, 1"}, 'input "lobe/color" must be a valid color3 of finite numbers; got 1'),
     ({"roughness": "inf"}, 'input "lobe/roughness" must be a valid float of finite numbers; got'),
-    ({"roughness": "1e999"}, 'input "lobe/roughness" must be a valid float of finite numbers; got'),
     ({"energy_compensation": "x"}, 'Invalid value: <input name="energy_compensation"'),
 )
 
@@ -71,10 +58,8 @@ VALUES = (
 MODEL = "where its model is defined; got"
 OUTSIDE = (
     ({"color": "0.5, -0.1, 0.5"}, f'input "lobe/color" must lie in [0, 1], {MODEL} 0.5, -0.1, 0.5'),
-    ({"color": "0.5, 1.1, 0.5"}, f'input "lobe/color" must lie in [0, 1], {MODEL} 0.5, 1.1, 0.5'),
     ({"color": "0,&#10;2,&#10;0"}, f'input "lobe/color" must lie in [0, 1], {MODEL} 0, 2, 0'),
     ({"weight": "-1"}, f'input "lobe/weight" must lie in [0, 1], {MODEL} -1'),
-    ({"roughness": "-0.1"}, f'input "lobe/roughness" must lie in [0, 1.5708], {MODEL} -0.1'),
     ({"roughness": "1.6"}, f'input "lobe/roughness" must lie in [0, 1.5708], {MODEL} 1.6'),
     ({"roughness": "1.2"} | COMPENSATED, f'input "lobe/roughness" must lie in [0, 1], {MODEL} 1.2'),
 )
@@ -82,11 +67,9 @@ OUTSIDE = (
 # Texts of a float, and what MaterialX reads of them.
 READ = {"0.5f": 0.5, "0x10": 0, "1d5": 1, "1/2": 1, "50%": 50, "0.5;0.5": 0.5, "0.5.0": 0.5}
 READ |= {"1.#INF": 1, "1_0": 1, "0.5, 0.6": 0.5, "1e5f": 100000, "0 5": 0}
-INTEGERS = {"1.5": 1, "9e9": 9, "0x7f": 0, "1,2": 1}
 CONSTANT = (
     '<constant name="c" type="float"><input name="value" type="float" value="{}"/></constant>'
 )
-SWITCH = '<switch name="s" type="float"><input name="which" type="integer" value="{}"/></switch>'
 
 # Nodes around the lobe, and what is said of them.
 NODES = {
@@ -95,15 +78,7 @@ NODES = {
         'node "lobe" must have a definition; got nosuch_bsdf of type BSDF: load further definitions',
     ),
     "no implementation": (DEFINED.format("a") + A, "Could not find a matching implementation"),
-    "no source file": (
-        DEFINED.format("a") + '<implementation name="IM_a" nodedef="ND_a" file="none.glsl"/>' + A,
-        'implementation "IM_a" must not contain its own code; got file "none.glsl"',
-    ),
     "circle": (CYCLE + connected(color='nodename="a"'), 'node "a" must not be upstream of itself'),
-    "circle of lobes": (
-        '<add name="lobe" type="BSDF"><input name="in1" type="BSDF" nodename="lobe"/></add>',
-        'node "lobe" must not be upstream of itself',
-    ),
     "circle of inheritance": (
         DEFINED.format("a").replace("node=", 'inherit="ND_a" node=') + A,
         'definition "ND_a" must not inherit itself',
@@ -112,24 +87,11 @@ NODES = {
         DEFINED.format("a") + INSIDE.format("a", "a", "a") + A,
         'nodedef "ND_a" must not contain itself',
     ),
-    "own part, linked": (DEFINED.format("a") + LINKED + A, "must not contain itself"),
-    "parts of each other": (
-        "".join(map(DEFINED.format, "ab")) + "".join(map(INSIDE.format, "ab", "ab", "ba")) + A,
-        'nodedef "ND_a" must not contain itself',
-    ),
     "folder for a texture": (
         IMAGE.format("/") + connected(color='nodename="image"'),
         'input "image/file" must name a file in ',
     ),
     "unconnected node": (connected(color='nodename="none"'), "Invalid port connection: <input"),
-    "unconnected graph": (
-        connected(color='nodegraph="none" output="out"'),
-        'Invalid port connection: <input name="color"',
-    ),
-    "unconnected interface": (
-        connected(color='interfacename="none"'),
-        'Interface name not found in referenced declaration: <input name="color"',
-    ),
     "another type": (
         '<constant name="a" type="float"/>' + connected(color='nodename="a"'),
         'Mismatched types in port connection: <input name="color"',
@@ -141,12 +103,6 @@ NODES = {
     "odd name": (
         lobe(name="l o;b"),
         "'name' must be a name of letters, digits, _ and :; got 'l o;b'",
-    ),
-    "node without name": (lobe(name=""), 'Invalid port connection: <input name="bsdf"'),
-    "name of a type": (
-        lobe(name="float") + '<add name="lobe" type="BSDF">'
-        '<input name="in1" type="BSDF" nodename="float"/></add>',
-        'Invalid port connection: <input name="in1"',
     ),
 }
 
@@ -184,15 +140,6 @@ def test_bad_nodes_are_refused_with_their_names(nodes, rule):
     assert rule in refusal(material(nodes))
 
 
-@pytest.mark.parametrize(
-    "inputs",
-    [{"roughness": str(pi / 2)}, {"roughness": "1"} | COMPENSATED, {"color": "0, 1, 0"}],
-    ids=str,
-)
-def test_the_ends_of_a_range_are_accepted(inputs):
-    assert generate(material(lobe(**inputs)), "glsl")
-
-
 def warned(text, **options):
     """What is said of a document for which shaders are written."""
     with pytest.warns(DocumentWarning) as caught:
@@ -211,24 +158,6 @@ def test_a_number_of_which_a_part_is_read_is_named(text, read):
     said = f"must be a valid float; got {text}, which MaterialX reads as {read:g}"
     message = warned(material(CONSTANT.format(text) + lobe()))
     assert message == f'document text: input "c/value" {said}'
-
-
-@pytest.mark.parametrize("text, read", INTEGERS.items())
-def test_an_integer_of_which_a_part_is_read_is_named(text, read):
-    said = f'input "s/which" must be a valid integer; got {text}, which MaterialX reads as {read}'
-    assert said in warned(material(SWITCH.format(text) + lobe()))
-
-
-@pytest.mark.parametrize("text", ["1 1,1", "1 1 1", "1,1,1", " 1 , 1,  1 ", "1e0 +1. .1e1"])
-@pytest.mark.filterwarnings("error")
-def test_numbers_are_separated_by_commas_and_spaces(text):
-    [shader] = generate(material(lobe(color=text)), "glsl")
-    assert {each.name: each.value for each in shader.inputs}["lobe_color"] == (1.0, 1.0, 1.0)
-
-
-def test_what_is_alike_is_said_once():
-    message = warned(material(lobe(color="2, 2, 2", weight="2") + lobe(name="other", weight="2")))
-    assert 'input "lobe/color"' in message and message.endswith("; 2 more like it")
 
 
 def test_a_color_space_without_a_transform_is_named():
@@ -252,10 +181,6 @@ def test_a_nodegraph_that_is_connected_as_a_node_is_named():
     graph += '<output name="out" type="color3" nodename="c"/></nodegraph>'
     said = "must be connected to a node; got nodename 'ng', which MaterialX ignores"
     assert said in warned(material(graph + connected(color='nodename="ng"')))
-
-
-def test_a_message_quotes_no_more_than_a_screenful():
-    assert len(refusal(material(lobe(color=", ".join("1" * 5000))))) <= LONGEST
 
 
 @pytest.mark.parametrize("name", ["none.png", "n" * 5000, "[token].png", "&lt;a>&lt;a>.png"])

@@ -144,15 +144,7 @@ def other_generator(folder):
     return "has no mx_matrix_mul, which glsl calls: name its build with --materialx"
 
 
-def two_parts(folder):
-    (folder / "genglsl").mkdir()
-    for each in ("nprlib", "pbrlib"):
-        file = f"{each}/{each}_ng.mtlx"
-        shutil.copy(STOCK / file, folder / f"{each}_ng.mtlx")
-    return "its files match several parts of MaterialX's libraries: nprlib/ or pbrlib/"
-
-
-@pytest.mark.parametrize("make", [elsewhere, package, other_generator, two_parts])
+@pytest.mark.parametrize("make", [elsewhere, package, other_generator])
 def test_what_cannot_be_combined_is_refused_in_one_sentence(tmp_path, capsys, make):
     words = make(tmp_path)
     arguments = ["--library", str(tmp_path), "--node", "sheen_bsdf", "--workers", "0"]

@@ -162,9 +162,6 @@ PICTURE = 48 * 2.0**-24
 
 # --- kit ---------------------------------------------------------------------------------------
 
-# How far the kit's mesh lies below the sphere: its longest edge is 2.4 degrees = 0.042, the circle
-# around its triangle has a radius of 0.042 / sqrt(3), half the square of which is 2.9e-4.
-KIT_DEPTH = 3e-4
 
 # Pictures of pure noise, 200 of them at a false rate of 1e-3 each: more than 2 are called biased
 # with a probability of 1.1e-3.
