@@ -9,7 +9,7 @@ import matplotlib
 import numpy as np
 import pytest
 
-from mxeon.errors import InputError, PackageError
+from mxeon.errors import PackageError
 from mxeon.fit import (
     FIT_MODELS,
     MeasuredBrdf,
@@ -121,32 +121,9 @@ def test_a_file_of_merl_is_read_and_fitted(tmp_path):
     assert fit.values["roughness"] == pytest.approx(CLAY["roughness"], abs=1e-6)
 
 
-@pytest.mark.parametrize("content", (b"", b"MERL", np.array([1, 1, 1, 0], "<i4").tobytes()))
-def test_another_file_is_refused(tmp_path, content):
-    path = tmp_path / "none.binary"
-    path.write_bytes(content)
-    with pytest.raises(InputError, match="none.binary: must be a MERL file of 90 x 90 x 180 cells"):
-        read_merl(path)
-
-
 # --- what is refused -------------------------------------------------------------------------
 
 UP = np.array([[0.0, 0.0, 1.0]])
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    (
-        ((UP, UP[0], [[0.5]]), r"wo, wi must have shape \(N, 3\); got \(1, 3\), \(3,\)"),
-        ((UP, UP, [0.5]), r"value must be finite, of shape \(1, C\); got \(1,\)"),
-        ((UP, UP, [[np.nan]]), "value must be finite"),
-        ((UP, UP, [[0.5]], [[0.0]]), "error must be above 0"),
-        ((UP, UP, [[0.5]], [[0.1, 0.1]]), "error must .* have the shape of value"),
-    ),
-)
-def test_a_measurement_that_does_not_fit_together_is_refused(arguments, message):
-    with pytest.raises(InputError, match=message):
-        MeasuredBrdf(*arguments)
 
 
 def test_scipy_is_named_where_it_is_missing(monkeypatch):

@@ -109,14 +109,6 @@ def test_a_patch_applies_alone(materialx, page):
     applied(materialx, tag, *(each for each in MATERIALX if each in names))
 
 
-def test_a_patch_of_what_main_has_repaired_is_refused_there(materialx):
-    repaired = [page for page in MATERIALX if ENTRIES[page].pull]
-    assert repaired
-    for page in repaired:
-        with pytest.raises(subprocess.CalledProcessError):
-            applied(materialx, "main", page)
-
-
 KNOWN = json.loads(versions.RECORD.read_text())
 OURS = {page: each for page, each in entries().items() if page in KNOWN["pages"]}
 

@@ -4,7 +4,6 @@
 import os
 import subprocess
 import sys
-import tarfile
 import zipfile
 from pathlib import Path
 
@@ -102,20 +101,6 @@ def test_the_wheel_holds_the_package_with_the_data_of_the_checkout_and_nothing_e
     assert {Path(name).suffix for name in pages} == {".md"}
     folders = {"eonlib", "examples", "renderers", "upstream", "LICENSE"}
     assert {name.split("/")[0] for name in data} == folders
-
-
-def test_the_sdist_holds_what_the_tests_need_and_nothing_made(built):
-    [path] = built.glob("*.tar.gz")
-    with tarfile.open(path) as archive:
-        names = [name.partition("/")[2] for name in archive.getnames()]
-    assert {"run", "pyproject.toml", "LICENSE", "README.md", "tests/test_wheel.py"} <= set(names)
-    hidden = (".venv", ".venv-cycles", ".git", "out", "dist", "build")
-    assert "explorer/package-lock.json" in names
-    assert [
-        name
-        for name in names
-        if name.split("/")[0] in hidden or {"__pycache__", "node_modules"} & {*name.split("/")}
-    ] == []
 
 
 def test_the_installed_package_loads_and_generates_outside_the_checkout(environment, tmp_path):

@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The short answer of a run, and what is said while it works."""
 
-import io
 import json
 import shutil
-import sys
 from dataclasses import replace
 from xml.etree import ElementTree
 
@@ -12,7 +10,7 @@ import pytest
 
 from mxeon.cli import main
 from mxeon.cli.answer import LINES, answer
-from mxeon.cli.output import Progress, warn
+from mxeon.cli.output import Progress
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Result, Run
 from mxeon.conformance.run import check
 from mxeon.errors import MISUSE
@@ -254,25 +252,6 @@ def test_a_host_of_which_the_text_alone_is_made_did_not_run(capsys):
 
 
 # --- progress and names ---------------------------------------------------------------------------
-
-
-class Terminal(io.StringIO):
-    def isatty(self):
-        return True
-
-
-def test_a_terminal_shows_one_line_that_messages_replace(monkeypatch):
-    monkeypatch.setattr(sys, "stderr", Terminal())
-    progress = Progress("mxeon check", str)
-    progress.show("reads the documents")
-    for step in progress(["one", "two", "three"], 3):
-        if step == "two":
-            warn("something")
-    lines = sys.stderr.getvalue().split("\r\033[K")
-    assert lines[:2] == ["mxeon check: reads the documents", "mxeon check: 0 of 3"]
-    warning, last = lines[-2].split("\n")
-    assert warning == "mxeon: warning: something" and lines[-1] == ""
-    assert last == "mxeon check: 3 of 3, about 0 s left: three"
 
 
 @pytest.mark.parametrize(

@@ -48,15 +48,6 @@ def test_a_bug_shows_its_traceback_and_is_no_failed_check(monkeypatch, capsys, e
     assert printed.startswith("Traceback") and printed.endswith(f"{error}\n")
 
 
-def test_a_deleted_working_folder_is_one_line(tmp_path, monkeypatch, capsys):
-    (tmp_path / "gone").mkdir()
-    monkeypatch.chdir(tmp_path / "gone")
-    (tmp_path / "gone").rmdir()
-    options = ["--target", "osl", "--outputPath", str(tmp_path), "--workers", "1"]
-    assert main(["generate", CLAY, *options]) == NOT_RUN
-    assert one_line(capsys.readouterr().err).startswith("mxeon: working folder must exist, as ")
-
-
 @pytest.mark.parametrize(
     "arguments",
     [

@@ -4,7 +4,6 @@
 import pytest
 
 from mxeon.cli import main
-from mxeon.doc import PortRow, read_tables, table_text
 from mxeon.errors import MISUSE
 from tests.support.documents import lobe, material
 
@@ -20,14 +19,6 @@ def test_an_output_that_is_the_input_is_refused(arguments, output, tmp_path, cap
     assert main([*arguments, str(file), "--output", str(tmp_path / f"{output}.exr")]) == MISUSE
     assert "output must be another file" in capsys.readouterr().err
     assert file.read_text() == "text"
-
-
-def test_a_page_of_the_field_is_not_written_through_a_link(tmp_path, capsys):
-    other, link = tmp_path / "other", tmp_path / "field.html"
-    other.write_text("mine")
-    link.symlink_to(other)
-    assert main(["report", "field", str(tmp_path), "--output", str(link)]) == MISUSE
-    assert "output must not be a link" in capsys.readouterr().err and other.read_text() == "mine"
 
 
 def test_a_kit_is_written_over_a_kit_alone(tmp_path, monkeypatch, capsys):
@@ -97,11 +88,3 @@ def test_a_folder_that_is_a_link_is_written_to(tmp_path):
     (tmp_path / "there").mkdir()
     (tmp_path / "out").symlink_to("there")
     assert generated(tmp_path / "out") == 0 and (tmp_path / "there" / "a.look.osl").exists()
-
-
-def test_a_description_breaks_no_table_and_steers_no_terminal():
-    text = "two\nlines | a bar \x1b[31m"
-    table = table_text((PortRow("in", text, ("float",)),))
-    assert len(table.splitlines()) == 3 and "\x1b" not in table
-    [port] = read_tables(f"# node\n\n{table}\n")["node"]
-    assert port.description == "two lines | a bar \ufffd[31m"

@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a run depends on: a run is resumed with the same files, options and drivers only."""
 
-import os
-from pathlib import Path
-
 import pytest
 
 from mxeon.cli import main
@@ -33,12 +30,6 @@ def texture(path):
     return path
 
 
-def seen(file, **policy):
-    """Names of the files in the folder of a document that its findings depend on."""
-    found = digests([file], Policy(**policy))
-    return {os.path.basename(path) for path in found if Path(path).is_absolute()} - {file.name}
-
-
 @pytest.mark.parametrize(
     "parts, root, name",
     [
@@ -58,25 +49,6 @@ def test_what_a_document_names_is_a_dependency(tmp_path, parts, root, name):
     texture(tmp_path / name)
     after = digests([file], Policy())
     assert {path for path, _ in before.items() ^ after.items()} == {str(tmp_path / name)}
-
-
-def test_what_an_included_document_names_is_a_dependency(tmp_path):
-    file = document(tmp_path / "a.mtlx", INCLUDE.format("parts/b.mtlx"))
-    document(tmp_path / "parts" / "b.mtlx", INCLUDE.format("c.mtlx"), INCLUDE.format("../a.mtlx"))
-    document(tmp_path / "parts" / "c.mtlx", FILE.format("grid.png"))
-    texture(tmp_path / "parts" / "grid.png")
-    assert seen(file) == {"b.mtlx", "c.mtlx", "grid.png"}
-
-
-def test_the_policy_says_which_files_count(tmp_path):
-    file = document(
-        tmp_path / "home" / "a.mtlx", FILE.format("images/a.png"), FILE.format("../b.png")
-    )
-    texture(tmp_path / "shared" / "images" / "a.png")
-    texture(tmp_path / "b.png")
-    assert seen(file) == set()
-    assert seen(file, path=(str(tmp_path / "shared"),)) == {"a.png"}
-    assert seen(file, outside=True) == {"b.png"}
 
 
 @pytest.fixture

@@ -163,18 +163,6 @@ def _copy(rng, root):
         _element(rng, root).append(copied)
 
 
-def _move(rng, root):
-    parent = _element(rng, root)
-    if len(parent):
-        child = rng.choice(list(parent))
-        parent.remove(child)
-        root.append(child)
-
-
-def _category(rng, root):
-    _element(rng, root).tag = rng.choice(CATEGORIES)
-
-
 def _add(rng, root):
     attributes = {"name": f"new{rng.randrange(1000)}", "type": rng.choice(TYPES)}
     child = ElementTree.SubElement(_element(rng, root), rng.choice(CATEGORIES), attributes)
@@ -188,18 +176,6 @@ def _snippet(rng, root):
         root.insert(0, child)
 
 
-def _use(rng, root):
-    """Let a lobe be the node that a snippet defines."""
-    lobes = [each for each in root.iter() if each.get("type") == "BSDF"]
-    rng.choice(lobes or [root]).tag = "x"
-
-
-def _deep(rng, root):
-    element = _element(rng, root)
-    for depth in range(rng.choice((5, 70, 300))):
-        element = ElementTree.SubElement(element, "nodegraph", {"name": f"d{depth}"})
-
-
 TEXTS = (
     ("geompropvalue", "geomprop"),
     ("image", "uaddressmode"),
@@ -207,8 +183,8 @@ TEXTS = (
     ("tiledimage", "frameendaction"),
 )
 TREE = (_number,) * 6 + (_connect,) * 4 + (_text,) * 2
-TREE += (_change,) * 8 + (_set,) * 4 + (_add, _category, _copy, _drop, _move, _path, _remove) * 2
-TREE += (_snippet, _snippet, _use, _deep)
+TREE += (_change,) * 8 + (_set,) * 4 + (_add, _copy, _drop, _path, _remove) * 2
+TREE += (_snippet, _snippet)
 
 
 def _flip(rng, data):

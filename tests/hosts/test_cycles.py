@@ -28,7 +28,6 @@ from tests.support.tolerances import (
     CYCLES_NORMAL,
     CYCLES_RIM,
     CYCLES_SUBSURFACE,
-    CYCLES_TEXCOORD,
 )
 
 EMIT = "shader emit\n(\n    output closure color out = 0\n)\n{{\n    {}\n}}\n"
@@ -99,13 +98,6 @@ def test_a_pixel_is_its_point_of_the_sphere(host):
     assert np.abs(error[..., :2]).max() <= CYCLES_NORMAL
     assert np.abs(error[..., 2] * points.normal[..., 2]).max() <= CYCLES_NORMAL
     assert np.array_equal(picture.any(axis=-1), points.mask)
-
-
-def test_a_shader_reads_the_texture_coordinates_of_the_sphere(host):
-    points = sphere(SMALL.size)
-    picture = host.picture(emit("out = color(u, v, 0.0) * emission();"), SMALL)
-    error = picture[..., :2] - points.texcoord
-    assert np.abs(error[points.mask]).max() < CYCLES_TEXCOORD
 
 
 @pytest.mark.parametrize("scene", LIGHTS, ids=lambda scene: scene.name)

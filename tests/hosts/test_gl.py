@@ -3,13 +3,10 @@
 
 from dataclasses import replace
 
-import moderngl
 import numpy as np
 import OpenImageIO as oiio
 import pytest
 
-from mxeon.errors import NotRun
-from mxeon.hosts import open_host
 from mxeon.hosts.textures import irradiance, read_latlong
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.generation import generate
@@ -81,19 +78,3 @@ def test_an_environment_image_lights_by_its_irradiance(gl, tmp_path):
     top, bottom = image[1, SIZE // 2], image[-2, SIZE // 2]
     assert np.allclose(top, [0.2, 0.4, 1.0], atol=0.02) and bottom.max() < 0.02
     assert irradiance(read_latlong(0.5)).max() == 0.5
-
-
-def test_a_machine_without_egl_did_not_run(monkeypatch):
-    def missing(**options):
-        raise Exception("libEGL.so not loaded")
-
-    monkeypatch.setattr(moderngl, "create_context", missing)
-    with pytest.raises(NotRun, match="libEGL.so not loaded.*apt-get install libegl1"):
-        open_host("gl")
-
-
-def test_another_context_of_the_process_is_not_in_the_way(gl):
-    before = gl.call("fon_a", np.array([0.5]))
-    other = moderngl.create_standalone_context(require=430, backend="egl")
-    other.release()
-    np.testing.assert_array_equal(gl.call("fon_a", np.array([0.5])), before)

@@ -10,19 +10,13 @@ from mxeon import hosts
 from mxeon.conformance.pictures import generate_document
 from mxeon.conformance.results import SHADER_FUNCTIONS
 from mxeon.conformance.run import check
-from mxeon.errors import NotRun, Unsupported
+from mxeon.errors import NotRun
 from mxeon.hosts import base
 from mxeon.models import table
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.nodes import EON
-from mxeon.shaders.scene import SIDE
 from tests.support.plans import keep_checks
 
-VERBS = {
-    "picture": (None, SIDE),
-    "evaluate": (None, None, None, {}, "direct"),
-    "call": ("eon_brdf",),
-}
 ENGINES = [row for row in hosts.host_rows() if row.module]
 
 
@@ -57,19 +51,6 @@ def test_a_new_host_is_one_module_and_one_row(toy, monkeypatch):
     assert results["value", EON].verdict == "passed"
     reason = results["twins", SHADER_FUNCTIONS].reason
     assert reason == "toy: this host has no calls of a shader function; use gl"
-
-
-@pytest.mark.parametrize("verb", VERBS)
-def test_a_verb_that_a_host_lacks_is_unsupported(verb):
-    class Silent(base.Host):
-        name, target = "silent", "glsl"
-        identity = Host.identity
-
-    with (
-        Silent() as host,
-        pytest.raises(Unsupported, match="^silent: this host has no .*; use [a-z-]+$"),
-    ):
-        getattr(host, verb)(*VERBS[verb])
 
 
 def test_a_document_is_not_run_on_a_renderer():

@@ -4,7 +4,6 @@
 from dataclasses import replace
 
 import numpy as np
-import OpenImageIO as oiio
 import pytest
 
 from mxeon.conformance import reference
@@ -12,7 +11,7 @@ from mxeon.errors import NotRun
 from mxeon.hosts import webgl
 from mxeon.shaders.generation import generate
 from mxeon.shaders.library import examples_folder
-from mxeon.shaders.scene import BACK, FURNACE, SIDE, Scene
+from mxeon.shaders.scene import BACK, FURNACE, SIDE
 from tests.support.availability import available
 
 MU = np.array([0.5])
@@ -31,19 +30,6 @@ def test_a_browser_that_hangs_is_not_run_and_the_next_one_works():
     host._limit *= 300.0
     assert host.call("fon_albedo_dir", MU, np.array([0.0])).tolist() == [[1.0, 1.0, 1.0]]
     host.close()
-
-
-def test_an_environment_image_is_turned_as_on_gl(gl, hosts, tmp_path):
-    sky = np.zeros((32, 64, 3), dtype=np.float32)
-    sky[:, 32:48] = 1.0  # to one side of the middle
-    oiio.ImageBuf(sky).write(str(tmp_path / "sky.exr"))
-    scene = Scene("sky", environment=tmp_path / "sky.exr", size=32)
-    images = []
-    for host in (gl, hosts("webgl")):
-        shader = host.compile(examples_folder() / "plaster.mtlx")[0]
-        images.append(host.picture(shader, scene))
-    np.testing.assert_allclose(*images, rtol=0.0, atol=2.0**-8)  # filter weights
-    assert images[0].max() > 0.1 and np.ptp(images[0][16, 8:24]) > 0.02
 
 
 def test_no_name_resolves_in_the_browser(hosts):

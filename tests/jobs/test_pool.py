@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from mxeon.cli.batch import BatchResult, WorkerCrashed, run_batch
+from mxeon.cli.batch import BatchResult, run_batch
 from mxeon.errors import DocumentError
 from mxeon.jobs.pool import ATTEMPTS, Outcome, run
 from tests.support.faults import misbehave, once, square
@@ -56,19 +56,6 @@ def test_no_temporary_file_outlives_the_pool(tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize(
-    "options, words",
-    [
-        ((0, 1.0), "workers must be at least 1; got 0"),
-        ((1, 0.0), "timeout must be positive and at most 1e.06 s; got 0"),
-        ((1, float("inf")), "timeout must be positive and at most 1e.06 s; got inf"),
-    ],
-)
-def test_an_impossible_pool_is_one_line(options, words):
-    with pytest.raises(ValueError, match=f"^{words}$"):
-        list(run(square, [1], *options))
-
-
 def _deaf(_):
     """Whether this process has had SIGINT blocked since it was started."""
     return signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, ())
@@ -95,14 +82,6 @@ def test_values_warnings_and_errors_come_in_order(workers):
     assert (bad.value, bad.warnings) == (None, ("bad is odd",))
     assert isinstance(bad.error, DocumentError) and str(bad.error) == "bad: must be good"
     assert two == BatchResult("TWO", ("two is odd",))
-
-
-def test_a_process_that_crashes_costs_its_document_alone():
-    first, crashed, last = run_batch(misbehave, [2, "SIGSEGV", 3], 1, 60.0)
-    assert (first, last) == (BatchResult(4), BatchResult(9))
-    assert isinstance(crashed.error, WorkerCrashed) and str(crashed.error) == (
-        "SIGSEGV: worker process crashed (SIGSEGV); last output: about to SIGSEGV"
-    )
 
 
 def test_a_bug_in_a_worker_prints_its_traceback():

@@ -31,14 +31,10 @@ COMMANDS = {
     "render": f"{RENDER} --output out/a.png",
     "cycles": f"{RENDER} --output out/a.exr --host cycles",
     "check": "check in/plaster.mtlx --host msl --workers 1 --report out",
-    "report make": "report make report",
-    "report diff": "report diff report report",
-    "library": "library --verify",
     "kit export": "kit export out/kit --size 64",
     "kit check": "kit check out/kit",
-    "invert": "invert 0.5 0.5 0.5 --roughness 1",
 }
-STATUS = {"check": 3, "report make": 3, "kit check": 3}  # msl and an empty kit do not run
+STATUS = {"check": 3, "kit check": 3}  # msl and an empty kit do not run
 
 
 def plant(folder, names, text):

@@ -2,11 +2,7 @@
 """Reports of several runs: what got worse, by the exit status too, and the page of the field."""
 
 import json
-import re
-from base64 import b64encode
 from dataclasses import replace
-from hashlib import sha256
-from html.parser import HTMLParser
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +13,6 @@ from mxeon.conformance.results import (
     FAILED,
     NOT_RUN,
     PASSED,
-    PORTRAIT,
     Control,
     Picture,
     Result,
@@ -28,7 +23,7 @@ from mxeon.hosts.base import Identity
 from mxeon.models import table as reference
 from mxeon.report import to_json, write
 from mxeon.report.diff import BETTER, OTHER, WORSE, Change, Report, compare, read_results
-from mxeon.survey.field import read_field, write_field
+from mxeon.survey.field import read_field
 
 PLACE = "gl, eonlib, value, clay"
 
@@ -210,7 +205,6 @@ def test_a_library_that_lies_elsewhere_is_the_same_one(before, after):
 
 EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
 TITLE = reference.model("eon").title
-HOSTILE = "<script>alert(1)</script>"
 TOLERANCE = 1e-6
 
 
@@ -222,14 +216,6 @@ def made(check, error, **changes):
         worst={"roughness": [0.875], "color": [0.2, 0.5, 0.8]}, control=Control("wrong", 1.0, True),
     )  # fmt: skip
     return replace(result, **changes)
-
-
-def portrait(scene, offset, host="gl"):
-    """A portrait that is brighter than its reference by an offset."""
-    model = np.full((8, 8, 3), 0.25, dtype=np.float32)
-    metadata = {"host": host, "points": host}
-    names = (PORTRAIT, EON, host, "stock", scene)
-    return Picture(*names, model + np.float32(offset), model, metadata)
 
 
 WRONG = (
@@ -263,43 +249,6 @@ def test_a_row_has_the_claimed_model_the_model_that_is_there_and_the_pages(tmp_p
     assert errors == {
         "direct": 0.4, "surroundings": 1e-7, "energy": 1e-7, "color": 0.3, "black": 0.0, "flag": 0.2
     }  # fmt: skip
-
-
-@pytest.mark.parametrize("error, verdict", [(1e-7, PASSED), (0.5, FAILED)])
-def test_a_portrait_in_light_from_behind_tells_of_back_lit_pairs(tmp_path, error, verdict):
-    pictures = portrait("side", 0.5), portrait("back", error)
-    cell = of_node(written(tmp_path, pictures=pictures)).cells["back"]
-    assert cell.verdict == verdict and cell.error == pytest.approx(error, rel=0.2)
-
-
-class Page(HTMLParser):
-    """Start tags of a page."""
-
-    def __init__(self, text):
-        super().__init__()
-        self.tags = []
-        self.feed(text)
-
-    def handle_starttag(self, tag, attributes):
-        self.tags.append((tag, dict(attributes)))
-
-
-@pytest.fixture(scope="module")
-def text(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("field")
-    hosts = (Identity("gl", HOSTILE, HOSTILE),)
-    written(folder, hosts=hosts, pictures=(portrait("side", 0.5), portrait("back", 1e-7)))
-    return write_field(read_field([folder]), folder / "field.html", "up/{}.html").read_text()
-
-
-def test_the_page_loads_nothing_and_runs_its_own_script_alone(text):
-    tags = Page(text).tags
-    loaded = [given.get(name, "") for _, given in tags for name in ("src", "href") if name in given]
-    assert all(each.startswith(("data:image/png;base64,", "#row-", "up/")) for each in loaded)
-    (script,) = re.findall(r"<script>(.*?)</script>", text, re.DOTALL)
-    policy = next(given["content"] for tag, given in tags if given.get("http-equiv"))
-    assert b64encode(sha256(script.encode()).digest()).decode() in policy
-    assert HOSTILE not in text and "&lt;script&gt;" in text
 
 
 def test_the_command_writes_the_page_of_reports(tmp_path, capsys):

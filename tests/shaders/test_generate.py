@@ -12,7 +12,7 @@ import MaterialX as mx
 import pytest
 
 from mxeon.hosts.cycles.process import interpreter
-from mxeon.shaders.generation import TARGETS, ApproximationWarning, Input, generate
+from mxeon.shaders.generation import TARGETS, ApproximationWarning, generate
 from mxeon.shaders.library import examples_folder, load_library, source_folder
 from mxeon.shaders.nodes import EON, OREN_NAYAR
 from tests.support.availability import available
@@ -205,24 +205,6 @@ def test_generated_osl_compiles(tmp_path):
     command = [python, "-c", COMPILE, *written, wrong]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     assert json.loads(done.stdout.splitlines()[-1]) == [str(wrong)], done.stdout
-
-
-def test_names_that_osl_does_not_take_are_replaced():
-    for name, expected in (("3d", "shader_3d"), ("color", "shader_color"), ("a:b", "a_b")):
-        [shader] = generate(material(lobe()).replace('"look"', f'"{name}"'), "osl")
-        assert (shader.name, shader.element) == (expected, name)
-        assert f"\nshader {expected}\n" in shader.stages["pixel"]
-
-
-@on_each_target
-def test_inputs_say_name_type_value_and_place(target):
-    [shader] = generate(material(lobe(**COMPENSATED, color="0.8, 0.4, 0.1")), target)
-    found = {each.path: each for each in shader.inputs}
-    color = tuple(map(pytest.approx, (0.8, 0.4, 0.1)))
-    assert found["lobe/color"] == Input("lobe_color", "color3", color, "lobe/color")
-    flag = found["lobe/energy_compensation"]
-    assert (flag.name, flag.value) == ("lobe_energy_compensation", True)
-    assert flag.type == ("integer" if target == "wgsl" else "boolean")
 
 
 @pytest.mark.parametrize("flag", ["false", "true"])

@@ -131,14 +131,6 @@ def test_the_wrong_order_raises_with_node_target_and_remedy():
     assert message.endswith(f"load {OURS} before the standard libraries")
 
 
-def test_the_microfacet_nodes_are_eonlibs_unless_the_diffuse_part_alone_is_loaded():
-    for name, ours in (("eonlib", True), ("diffuse", False), ("stock", False)):
-        for node in ("dielectric", "conductor", "generalized_schlick", "sheen"):
-            definition = library.load_library(name).getNodeDef(f"ND_{node}_bsdf")
-            found = Path(definition.getImplementation("genglsl").getActiveSourceUri())
-            assert (library.documents_folder() / "pbrlib" in found.parents) == ours
-
-
 @pytest.mark.parametrize("target", CALLS)
 def test_generateshader_finds_the_library_by_its_absolute_folder(tmp_path, target):
     file = tmp_path / "both.mtlx"

@@ -33,11 +33,3 @@ def test_points_lie_on_the_sphere_under_the_pixel_centres(size):
     np.testing.assert_array_equal(points.normal[points.mask], points.position[points.mask])
     assert (z[~points.mask] == 0.0).all()
     np.testing.assert_allclose(np.linalg.norm(points.normal, axis=-1), 1.0, atol=1e-15)
-
-
-def test_texture_coordinates_face_the_viewer_in_the_middle():
-    points = sphere(65)
-    np.testing.assert_allclose(points.texcoord[32, 32], 0.5, atol=1e-15)
-    assert points.texcoord[32, 40, 0] > 0.5 and points.texcoord[20, 32, 1] > 0.5
-    inside = points.texcoord[points.mask]
-    assert inside.min() >= 0.0 and inside.max() <= 1.0

@@ -15,7 +15,7 @@ from mxeon.hosts import open_host
 from mxeon.shaders.document.notes import MissingFileWarning
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.reading import read_document
-from mxeon.shaders.generation import CodeWarning, generate
+from mxeon.shaders.generation import generate
 from mxeon.shaders.scene import Paths
 from tests.support.documents import connected, lobe, material
 
@@ -74,17 +74,6 @@ def test_an_include_is_looked_for_on_the_path(home):
     assert read_document(path, policy=searched(home)).content.getNode("lobe")
     with pytest.raises(DocumentError, match="include must name a file that exists; got part.mtlx"):
         read_document(path)
-
-
-def test_a_source_is_looked_for_on_the_path(home):
-    (home.parent / "shared/own.glsl").write_text("void own(ClosureData c, inout BSDF b) {}\n")
-    text = '<nodedef name="ND_a" node="a"><output name="out" type="BSDF"/></nodedef>'
-    text += '<implementation name="IM_a" nodedef="ND_a" file="own.glsl" function="own"/>'
-    path = written(home, material(text + '<a name="lobe" type="BSDF"/>'))
-    policy = Policy(code=True, path=(str(home.parent / "shared"),))
-    with pytest.warns(CodeWarning):
-        [shader] = generate(path, "glsl", policy=policy)
-    assert "void own(" in shader.stages["pixel"]
 
 
 def test_the_environment_names_folders_too(home, monkeypatch):

@@ -86,8 +86,6 @@ TWIN_VALUE = 2e-6
 # roundings of 2^-23 together, and of a ray that grazes, with error e / mu, the test takes e.
 CYCLES_NORMAL = 3 * 2.0**-23
 
-# OSL's atan2 is a polynomial: 1.2e-5 rad off (measured), 4e-6 after division by pi.
-CYCLES_TEXCOORD = 5e-6
 
 # A picture of EON, relative, where both cosines exceed CYCLES_RIM.
 CYCLES_RIM = 0.1

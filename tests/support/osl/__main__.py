@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Record the facts about OSL's programs again."""
+"""Record the picture of OSL's programs again."""
 
 from tests.support.osl import record
 
