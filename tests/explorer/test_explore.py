@@ -5,6 +5,7 @@ import json
 import re
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from mxeon import check
@@ -13,12 +14,15 @@ from mxeon.cli.explore import MATERIALS
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Result
 from mxeon.errors import MISUSE
 from mxeon.errors import PASSED as PASSED_STATUS
-from mxeon.explorer import PARAGRAPH, TEXTS, page, page_data
+from mxeon.explorer import PARAGRAPH, TEXTS, documents, page, page_data
 from mxeon.explorer.documents import document_sources
+from mxeon.hosts.textures import read_texture
+from mxeon.io.images import write_image
 from mxeon.models.table import model
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 from tests.explorer.browser import judged, opened, until
+from tests.support.documents import textured
 
 LARGEST = 2 * 2**20  # bytes of the page without documents
 CLAY = str(examples_folder() / "clay.mtlx")
@@ -203,3 +207,16 @@ def test_inputs_have_the_ranges_of_their_definitions():
     assert (ports["specular_IOR"].min, ports["specular_IOR"].max) == (0.0, 3.0)  # uimin, uisoftmax
     assert ports["base_color"].value == (0.5, 0.24, 0.13)
     assert source.meant is None and source.controls.color == ""
+
+
+def test_images_are_read_once_and_smaller_the_more_a_page_has_of_them(tmp_path, monkeypatch):
+    reads, names = [], [f"{number}.png" for number in range(4)]
+    for name, side in zip(names, (64, 8, 64, 64), strict=True):
+        write_image(tmp_path / name, np.full((side, side, 1), side, np.uint8), {})
+    (tmp_path / "a.mtlx").write_text(textured(names * 3))
+    monkeypatch.setattr(documents, "ALL_IMAGES", 4 * 32**2)
+    monkeypatch.setattr(
+        documents, "read_texture", lambda path: reads.append(path) or read_texture(path)
+    )
+    [source, _] = document_sources(str(tmp_path / "a.mtlx"))
+    assert {port.image.width for port in source.inputs if port.image} == {8, 32} and len(reads) == 4

@@ -5,11 +5,13 @@ import os
 import warnings
 from pathlib import Path
 
+import MaterialX as mx
 import pytest
 
 from mxeon.errors import DocumentError, InputError
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.generation import TARGETS, generate
+from mxeon.shaders.generators import context_of, generator_of
 from mxeon.shaders.library import load_library
 from tests.support.documents import connected, material
 
@@ -223,3 +225,14 @@ def test_files_of_a_library_are_limited_in_size(folder):
         file.truncate(17 * 2**20)
     with pytest.raises(InputError, match="own.glsl: must have at most 16777216 bytes"):
         load_library(str(folder))
+
+
+def test_the_generated_text_is_the_one_that_materialx_makes(home):
+    including(home, "other.glsl", "libraries/pbrlib/genglsl/lib/mx_microfacet.glsl")
+    document = mx.createDocument()
+    mx.readFromXmlFile(document, str(home / "look.mtlx"))
+    document.setDataLibrary(load_library())
+    generator = generator_of(document, "glsl", "eonlib", None)
+    context = context_of(document, "glsl", generator, "eonlib", False, ())
+    expected = generator.generate("look", document.getDescendant("look"), context)
+    assert code(home) == expected.getSourceCode("pixel")
