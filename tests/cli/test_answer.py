@@ -41,9 +41,6 @@ def made_run(*results, documents=("a/clay.mtlx",), **fields):
 PICTURE = made(key="picture", subject="clay.mtlx: terracotta")
 
 
-# --- the answer -----------------------------------------------------------------------------------
-
-
 def stock(verdict=FAILED, **fields):
     return made(verdict, library="stock", **fields)
 
@@ -258,15 +255,8 @@ def test_a_host_of_which_the_text_alone_is_made_did_not_run(capsys):
     ("arguments", "words"),
     [
         (["check", CLAY, "--host", "cycels"], "got 'cycels': did you mean cycles?"),
-        (
-            ["check", CLAY, "--node", "shen_bsdf"],
-            "names; got 'shen_bsdf': did you mean sheen_bsdf?",
-        ),
+        (["check", CLAY, "--node", "shen_bsdf"], "got 'shen_bsdf': did you mean sheen_bsdf?"),
         (["check", CLAY, "--library", "eonlb"], "got 'eonlb': did you mean eonlib?"),
-        (
-            ["generate", CLAY, "--target", "glls", "--outputPath", "x", "--workers", "0"],
-            "got 'glls': did you mean glsl?",
-        ),
         (["chek", CLAY], "got 'chek': did you mean check?"),
         (["check", CLAY, "--libary", "stock"], "got '--libary': did you mean --library?"),
     ],

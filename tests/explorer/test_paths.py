@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Path tracing on the stage: means are exact albedos, and exact sampling has the least noise."""
+"""Path tracing on the stage: a white furnace shows every pixel white."""
 
 import numpy as np
 import pytest

@@ -1,20 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Files that appear whole or not at all, on disks that are full: no file may exceed some bytes."""
 
-import os
-import subprocess
-import sys
-
 import numpy as np
 import OpenImageIO as oiio
 import pytest
 
 from mxeon.io.files import write_text
 from mxeon.io.images import write_image
-from mxeon.shaders.library import examples_folder
 from tests.support.faults import room_for
 
-PLASTER = str(examples_folder() / "plaster.mtlx")
 NOISE = np.random.default_rng(1).random((33, 33, 3))
 IMAGES = {".exr": np.float32(NOISE), ".png": np.uint8(255.0 * NOISE)}
 # Room for nothing, for less than a header, for some rows, for all but the last bytes.
@@ -26,18 +20,6 @@ ROOM = {
 }
 
 with_room = pytest.mark.parametrize("room", ROOM.values(), ids=ROOM)
-
-
-def run(room, *arguments):
-    """The command, its output read to the end, where no file may exceed `room` bytes."""
-    return subprocess.run(
-        ["prlimit", f"--fsize={room}", sys.executable, "-m", "mxeon", *map(str, arguments)],
-        # Python would leave the compiled modules that find no room behind, cut short.
-        env=os.environ | {"PYTHONDONTWRITEBYTECODE": "1"},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
 
 
 def files(folder):
@@ -76,26 +58,6 @@ def test_text_that_finds_no_room_leaves_the_old_file(tmp_path):
     with room_for(100), pytest.raises(OSError, match="File too large"):
         write_text(tmp_path / "a", "new" * 100)
     assert (tmp_path / "a").read_text() == "old" and files(tmp_path) == ["a"]
-
-
-@pytest.mark.parametrize("name", ["a.png", "a.exr"])
-def test_render_on_a_full_disk_is_one_line(tmp_path, name):
-    options = [
-        "--host",
-        "reference",
-        "--workers",
-        "0",
-        "--size",
-        "16",
-        "--element",
-        "ochre_plaster",
-        "--scene",
-        "side",
-    ]
-    ended = run(300, "render", PLASTER, *options, "--output", tmp_path / name)
-    assert ended.returncode == 2 and ended.stderr.count("\n") == 1
-    assert ended.stderr.startswith(f"mxeon: {tmp_path / name}: must be accessible; ")
-    assert not files(tmp_path)
 
 
 @pytest.mark.parametrize("planted", ["link", "file"])

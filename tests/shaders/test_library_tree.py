@@ -109,16 +109,8 @@ def test_a_fault_in_a_copy_is_found_and_told_first(gl, tmp_path, capsys, name, p
 
 def test_json_lists_the_files_of_the_folder_and_of_the_package(gl, tmp_path, capsys):
     copy, report = copy_of_stock(tmp_path / "copy", SHEEN, LIB), tmp_path / "report"
-    options = [
-        "--node",
-        "glossiness_anisotropy",
-        "--workers",
-        "0",
-        "--json",
-        "--report",
-        str(report),
-    ]
-    assert main(["check", "--library", str(copy), *options]) == 0
+    options = ["--library", str(copy), "--node", "glossiness_anisotropy", "--workers", "0"]
+    assert main(["check", *options, "--json", "--report", str(report)]) == 0
     [(folder, files)] = json.loads(capsys.readouterr().out)["libraries"].items()
     assert folder == str(copy) and sorted(files["folder"]) == sorted([SHEEN, LIB])
     assert set(files["folder"] + files["MaterialX"]) == set(tree(str(STOCK)).own)
