@@ -124,10 +124,17 @@ class Host(base.Host):
         raise NotRun(f"slang: no kernel for the CPU; {'; '.join([*lines, remedy])}")
 
     def _release_at_exit(self) -> None:
-        """Slang removes the files of the kernels that are released; a worker is ended by SIGTERM."""
+        """Slang removes the files of the kernels that are released.
+
+        A worker is ended by SIGTERM and, soon after, killed: it releases them before all else.
+        """
         atexit.register(self._kernels.clear)
         if multiprocessing.parent_process():
-            signal.signal(signal.SIGTERM, lambda *_: sys.exit())
+            signal.signal(signal.SIGTERM, self._end)
+
+    def _end(self, *_: object) -> None:
+        self._kernels.clear()
+        sys.exit()
 
     def identity(self) -> Identity:
         info = self._device.info
