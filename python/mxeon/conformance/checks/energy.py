@@ -30,7 +30,7 @@ def reads(name: str) -> Callable[[Spec], bool]:
 
 check(
     "layering",
-    "The throughput of a layer is 1 - E for light from above, for every weight.",
+    "The throughput of a layer of albedo E is 1 - E for light from above, for every weight.",
     is_layer,
     pass_all,
 )(THROUGHPUT)

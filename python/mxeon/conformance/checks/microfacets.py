@@ -63,7 +63,7 @@ def lossless(case: Case) -> Compared:
 
 @check(
     "shape",
-    "For one view, the values for two lights have the ratio of D F G2.",
+    "For one view, the values for two lights have the same ratio as the products D F G2.",
     is_facets,
     rougher,
     pairs=True,

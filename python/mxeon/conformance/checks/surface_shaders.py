@@ -145,7 +145,7 @@ def energy(case: Case) -> Compared:
 
 @check(
     "graph",
-    "The graph has the values of the one that MaterialX released, for every input and every default.",
+    "The graph gives the same values as the graph that MaterialX released, for every input and default.",
     is_shader,
     shifted,
     tolerance=sum_of(roundings(16, "of the numbers in a graph")),
@@ -212,7 +212,7 @@ def diagnose_reach(case: Case) -> Diagnosis:
 
 @check(
     "reach",
-    "Every input changes a value unless its page says otherwise.",
+    "Every input changes a value, except those that are known to change nothing.",
     is_shader,
     ignore_changes,
     tolerance=count_of("inputs"),
