@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from mxeon.conformance.specs import microfacets
-from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
+from mxeon.models.microfacet.ggx import ggx_albedo_dir
 from mxeon.models.sheen import conty_kulla_albedo_dir
 from mxeon.shaders import functions as twins
 from mxeon.shaders.functions import source_file

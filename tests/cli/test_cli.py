@@ -14,7 +14,7 @@ import pytest
 
 from mxeon.cli import main, parser
 from mxeon.errors import FAILED, NOT_RUN, PASSED
-from mxeon.models.diffuse.inversion import eon_rho_from_albedo_avg, eon_rho_from_albedo_normal
+from mxeon.models.diffuse import eon_rho_from_albedo_avg, eon_rho_from_albedo_normal
 from mxeon.shaders.document.policy import LIMITS
 from mxeon.shaders.library import eonlib_folder
 from tests.support.command import CLAY, PLASTER, one_line

@@ -8,7 +8,7 @@ import pytest
 
 import mxeon
 from mxeon.models import table as reference
-from mxeon.models.diffuse.brdf import eon_brdf
+from mxeon.models.diffuse import eon_brdf
 
 PARAMETRIC = [row for row in reference.MODELS if row.parameter and row.name != "eon_approx"]
 SEES_ONLY = {"eon_clamped": {"value", "albedo"}, "eon_rho_cubed": {"value", "albedo"}}

@@ -6,7 +6,7 @@ import pytest
 
 import mxeon
 from mxeon.models import table
-from mxeon.models.diffuse.brdf import eon_brdf, lambert_brdf
+from mxeon.models.diffuse import eon_brdf, lambert_brdf
 from mxeon.models.table import Model
 
 

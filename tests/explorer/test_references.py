@@ -7,7 +7,7 @@ import pytest
 from mxeon.explorer.references import SEEN, WI, WO, pairs, reference_of, views
 from mxeon.explorer.sources import MATERIALS
 from mxeon.models import eon_brdf
-from mxeon.models.diffuse.albedo import eon_albedo_dir
+from mxeon.models.diffuse import eon_albedo_dir
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from mxeon.models.core.quadrature import albedo_dir_quadrature
-from mxeon.models.diffuse.inversion import eon_rho_from_albedo_avg, eon_rho_from_albedo_normal
+from mxeon.models.diffuse import eon_rho_from_albedo_avg, eon_rho_from_albedo_normal
 from mxeon.models.sampling import uniform_sample
 from mxeon.models.table import KNOWN_DEFECTS, MODELS
 from tests.explorer.browser import opened

@@ -19,11 +19,11 @@ from types import SimpleNamespace
 import numpy as np
 
 import mxeon.models
+from mxeon.models.core.arguments import RANGES
 from mxeon.models.core.arrays import ArrayLike
 from mxeon.models.core.layering import Bsdf
-from mxeon.models.core.ranges import RANGES
-from mxeon.models.microfacet.fresnel_formulas import schlick
-from mxeon.models.microfacet.lobe import SCHLICK, Lobe, uncompensated
+from mxeon.models.microfacet import SCHLICK, Lobe, uncompensated
+from mxeon.models.microfacet.fresnel import schlick
 from mxeon.models.thin_film import PRINTED
 
 UP, LOW = (0.0, 0.6, 0.8), (0.0, 0.6, -0.8)
@@ -60,14 +60,14 @@ VALID = {
 CHECKS = ("_", "checked", "unpack")  # of functions that check arguments for others
 PLUMBING = (
     "mxeon.models.core.arguments",
-    "mxeon.models.core.shapes",
+    "mxeon.models.core.arguments",
     "mxeon.models.catalog",
-    "mxeon.models.coat.mixture",
+    "mxeon.models.coat",
     "mxeon.models.core.evaluation",
     "mxeon.models.lobe_plot",
-    "mxeon.models.media_model",
-    "mxeon.models.nodes.frames",
-    "mxeon.models.nodes.inputs",
+    "mxeon.models.shading_model",
+    "mxeon.models.shading_model",
+    "mxeon.models.shading_model",
     "mxeon.models.shading_model",
 )  # which has no arguments of its own
 TAKEN = (bool, str, float, int)  # kinds of arguments, besides arrays, that are tried

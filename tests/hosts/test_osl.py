@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from mxeon.errors import ShaderError
-from mxeon.models.diffuse import formulas
-from mxeon.models.media.emission import conical_edf
+from mxeon.models import diffuse as formulas
+from mxeon.models.media import conical_edf
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import connection_text, document_text, material_text, node_text
 
@@ -115,9 +115,9 @@ def for_cycles(host, node, wo, inputs, old="", new=""):
 @pytest.mark.parametrize(
     ("node", "flag", "model", "largest"),
     [
-        ("eon_diffuse_bsdf", None, formulas.eon_brdf, 1.0),
-        ("oren_nayar_diffuse_bsdf", 1, formulas.eon_brdf, 1.0),
-        ("oren_nayar_diffuse_bsdf", 0, formulas.qon_brdf, 0.5 * np.pi),
+        ("eon_diffuse_bsdf", None, formulas.eon_formula, 1.0),
+        ("oren_nayar_diffuse_bsdf", 1, formulas.eon_formula, 1.0),
+        ("oren_nayar_diffuse_bsdf", 0, formulas.qon_formula, 0.5 * np.pi),
     ],
 )
 def test_the_closures_for_cycles_are_the_model_to_the_roundings(host, node, flag, model, largest):
@@ -135,7 +135,7 @@ def test_the_closures_for_cycles_are_the_model_to_the_roundings(host, node, flag
         color, rough = closure.arguments["color"].T, closure.arguments["roughness"]
         fon, eon = (
             each(wo[rows], wi[rows], color, rough)
-            for each in (formulas.fon_brdf, formulas.eon_brdf)
+            for each in (formulas.fon_formula, formulas.eon_formula)
         )
         total[rows] += factor * (fon + color * (eon - fon)).T
     expected = inputs["weight"] * model(wo, wi, inputs["color"].T, inputs["roughness"])

@@ -6,17 +6,18 @@ import numpy as np
 import pytest
 
 from mxeon.models.core.quadrature import albedo_dir_quadrature
-from mxeon.models.diffuse.albedo import (
+from mxeon.models.diffuse import (
     eon_albedo_avg,
     eon_albedo_dir,
     eon_albedo_dir_approx,
+    eon_brdf,
     fon_albedo_avg,
     fon_albedo_dir,
     fon_albedo_dir_approx,
     fon_loss,
+    qon_albedo_avg,
+    qon_albedo_dir,
 )
-from mxeon.models.diffuse.brdf import eon_brdf
-from mxeon.models.diffuse.qon_albedo import qon_albedo_avg, qon_albedo_dir
 from mxeon.models.table import KNOWN_DEFECTS, MODELS, model
 from tests.support import oracle, tolerances
 from tests.support.cases import parameter

@@ -12,9 +12,9 @@ from pkgutil import resolve_name
 import numpy as np
 import pytest
 
-from mxeon.models.microfacet.artistic_ior import artistic_ior, artistic_parameters
-from mxeon.models.sheen.conty_kulla import conty_kulla_albedo_dir
-from mxeon.models.transmission.refraction import refraction_direction
+from mxeon.models.microfacet.fresnel import artistic_ior, artistic_parameters
+from mxeon.models.sheen import conty_kulla_albedo_dir
+from mxeon.models.transmission import refraction_direction
 from tests.fuzz import arguments
 
 PAGES = Path(__file__).resolve().parents[2] / "docs" / "api"

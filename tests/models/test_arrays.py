@@ -17,9 +17,9 @@ import pytest
 import mxeon
 from mxeon.albedo import fon_albedo_dir, fon_loss
 from mxeon.models import eon_brdf, lambert_brdf, smith_g1
-from mxeon.models.core import edges
-from mxeon.models.core.namespaces import NUMPY, array_namespace
-from mxeon.models.core.ranges import RANGES
+from mxeon.models.core import arrays as edges
+from mxeon.models.core.arguments import RANGES
+from mxeon.models.core.arrays import NUMPY, array_namespace
 from mxeon.sampling import eon_sample
 from tests.fuzz import arguments
 from tests.support.tracing import untraced

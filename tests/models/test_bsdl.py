@@ -4,9 +4,9 @@
 import numpy as np
 import pytest
 
-from mxeon.models.microfacet.materialx_fits import conty_kulla_albedo
-from mxeon.models.nodes.bsdl import BSDL_VARIANTS
+from mxeon.models.microfacet.defects import conty_kulla_albedo
 from mxeon.models.nodes.microfacets import DIELECTRIC
+from mxeon.models.nodes.renderers import BSDL_VARIANTS
 
 WO, WI = np.array([[0.6, 0.0, 0.8]] * 3), np.array([[-0.6, 0.0, 0.8]] * 3)
 ALPHAS = np.array([[0.3, 0.3], [0.2, 0.4], [0.3, 0.3]])

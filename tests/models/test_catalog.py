@@ -16,7 +16,7 @@ import mxeon
 from mxeon import models
 from mxeon.models.catalog import MODELS, model_names
 from mxeon.models.nodes import NODES
-from mxeon.models.nodes.parameters import DEFAULTS
+from mxeon.models.nodes.node import DEFAULTS
 from mxeon.models.shading_model import ShadingModel
 from mxeon.shaders.library import load_library
 from tests.support import tolerances

@@ -25,9 +25,9 @@ from mxeon.models import (
     openpbr_base_albedo_dir,
     openpbr_base_brdf,
 )
-from mxeon.models.coat.curves import constant_coat
+from mxeon.models.coat import constant_coat
 from mxeon.models.microfacet import slopes
-from mxeon.models.microfacet.fresnel_formulas import dielectric
+from mxeon.models.microfacet.fresnel import dielectric
 from tests.support.hemispheres import gauss_legendre, hemisphere, probability, uniforms, view
 from tests.support.tolerances import COAT, COAT_INTEGRAL
 

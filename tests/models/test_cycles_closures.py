@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from mxeon.models.nodes.cycles import CYCLES_VARIANTS
+from mxeon.models.nodes.renderers import CYCLES_VARIANTS
 from mxeon.models.sheen import zeltner_albedo_dir
 
 WO, WI = np.array([[0.6, 0.0, 0.8]] * 3), np.array([[-0.6, 0.0, 0.8]] * 3)

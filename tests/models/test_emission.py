@@ -6,7 +6,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from mxeon.models.media import emission, shading
+from mxeon.models import media as emission
+from mxeon.models import media as shading
 from mxeon.models.nodes.emissions import COMBINED_EMISSIONS, EMISSIONS
 
 UP, SLANTED = [0.0, 0.0, 1.0], [0.6, 0.0, 0.8]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mxeon import albedo
-from mxeon.models.diffuse.brdf import eon_brdf, lambert_brdf, qon_brdf
+from mxeon.models.diffuse import eon_brdf, lambert_brdf, qon_brdf
 from mxeon.models.table import KNOWN_DEFECTS, MODELS, OTHERS, PARAMETRIZATIONS, model
 
 ALL = (*MODELS, *KNOWN_DEFECTS, *OTHERS, *PARAMETRIZATIONS)

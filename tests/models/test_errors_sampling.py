@@ -6,8 +6,8 @@ import re
 import numpy as np
 import pytest
 
+from mxeon.models import diffuse as inversion
 from mxeon.models import sampling
-from mxeon.models.diffuse import inversion
 
 UP = [0.0, 0.0, 1.0]
 BELOW = [[0.0, 0.0, 1.0], [0.6, 0.0, -0.8]]

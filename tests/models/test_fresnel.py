@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from mxeon.models.microfacet import fresnel_formulas
+from mxeon.models.microfacet import fresnel as fresnel_formulas
 from mxeon.models.microfacet.fresnel import (
     fresnel_conductor,
     fresnel_conductor_avg,

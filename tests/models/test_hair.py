@@ -6,13 +6,15 @@ import numpy as np
 import pytest
 
 from mxeon.models.hair import (
+    TEXT,
+    bessel_scaled,
     chiang_hair_attenuation,
     chiang_hair_bcsdf,
     hair_azimuthal,
     hair_longitudinal,
+    longitudinal,
 )
-from mxeon.models.hair.defects import FORMS, READINGS, TILTED, materialx_longitudinal
-from mxeon.models.hair.formulas import TEXT, bessel_scaled, longitudinal
+from mxeon.models.nodes.lobes import FORMS, READINGS, TILTED, materialx_longitudinal
 
 ROUND = 1e-14  # 45 roundings of float64
 PICK = {"roughness_R": (0.5, 0.6), "roughness_TT": (0.3, 0.4), "roughness_TRT": (0.8, 0.9)}

@@ -5,13 +5,8 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from mxeon.models.diffuse import inversion
-from mxeon.models.diffuse.albedo import (
-    eon_albedo_avg,
-    eon_albedo_dir,
-    fon_albedo_avg,
-    fon_albedo_dir,
-)
+from mxeon.models import diffuse as inversion
+from mxeon.models.diffuse import eon_albedo_avg, eon_albedo_dir, fon_albedo_avg, fon_albedo_dir
 from tests.support import tolerances
 
 # Colors and roughness on [0, 1], and at all magnitudes beside 0 and 1.

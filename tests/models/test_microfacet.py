@@ -18,7 +18,7 @@ from mxeon.models import (
     smith_g2_anisotropic,
 )
 from mxeon.models.microfacet.defects import MICROFACET_DEFECTS, NODES, averaged_channels
-from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
+from mxeon.models.microfacet.ggx import ggx_albedo_dir
 from mxeon.models.nodes.microfacets import MICROFACET_NODES
 from tests.support import tolerances
 from tests.support.hemispheres import hemisphere

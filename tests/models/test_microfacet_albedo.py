@@ -20,8 +20,10 @@ from mxeon.models import (
     fresnel_dielectric,
     generalized_schlick_brdf,
 )
-from mxeon.models.microfacet import ggx_albedo, missing, slopes
-from mxeon.models.microfacet.missing import missing_light
+from mxeon.models.microfacet import ggx as ggx_albedo
+from mxeon.models.microfacet import ggx as missing
+from mxeon.models.microfacet import slopes
+from mxeon.models.microfacet.ggx import missing_light
 from tests.support import tolerances
 from tests.support.hemispheres import hemisphere
 

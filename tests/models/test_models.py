@@ -8,9 +8,16 @@ import numpy as np
 import pytest
 
 from mxeon.models import threads
-from mxeon.models.core import evaluation, tiling
-from mxeon.models.diffuse.albedo import fon_albedo_avg, fon_albedo_dir_approx
-from mxeon.models.diffuse.brdf import eon_brdf, fon_brdf, lambert_brdf, oren_nayar_brdf
+from mxeon.models.core import arguments as tiling
+from mxeon.models.core import evaluation
+from mxeon.models.diffuse import (
+    eon_brdf,
+    fon_albedo_avg,
+    fon_albedo_dir_approx,
+    fon_brdf,
+    lambert_brdf,
+    oren_nayar_brdf,
+)
 from mxeon.models.table import KNOWN_DEFECTS, MODELS, model
 from tests.support import oracle, tolerances
 from tests.support.cases import direction, pairs, parameter

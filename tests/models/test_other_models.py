@@ -5,10 +5,12 @@ import numpy as np
 import pytest
 
 from mxeon.models.core.quadrature import albedo_dir_quadrature
-from mxeon.models.diffuse.brdf import lambert_brdf, qon_brdf
-from mxeon.models.diffuse.burley import burley_brdf
-from mxeon.models.diffuse.known_defect_albedos import qon_degrees_albedo_dir
-from mxeon.models.diffuse.known_defects import burley_cosine_brdf, qon_degrees_brdf
+from mxeon.models.diffuse import burley_brdf, lambert_brdf, qon_brdf
+from mxeon.models.diffuse.defects import (
+    burley_cosine_brdf,
+    qon_degrees_albedo_dir,
+    qon_degrees_brdf,
+)
 from mxeon.models.table import OTHERS, PARAMETRIZATIONS, model
 from tests.support import tolerances
 

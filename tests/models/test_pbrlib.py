@@ -6,7 +6,7 @@ import pytest
 
 from mxeon.models.core.layering import Bsdf, layer
 from mxeon.models.core.quadrature import hemisphere_nodes
-from mxeon.models.microfacet import materialx_fits
+from mxeon.models.microfacet import defects as materialx_fits
 from mxeon.models.nodes import NODES, node
 from mxeon.models.nodes.combinations import COMBINATIONS, NESTED, ROUGHNESS
 from mxeon.models.nodes.microfacets import MICROFACET_NODES

@@ -5,12 +5,9 @@ import numpy as np
 import pytest
 
 from mxeon.models.hair import DEFAULTS
-from mxeon.models.microfacet.albedo import dielectric_albedo_dir
-from mxeon.models.nodes.hair import HAIR_NODE
-from mxeon.models.nodes.microfacets import CONDUCTOR, DIELECTRIC
-from mxeon.models.nodes.subsurface import circle_blur
-from mxeon.models.nodes.thin_films import FILM_NODES
-from mxeon.models.nodes.transmissions import TRANSMISSIONS
+from mxeon.models.microfacet import dielectric_albedo_dir
+from mxeon.models.nodes.lobes import HAIR_NODE, circle_blur
+from mxeon.models.nodes.microfacets import CONDUCTOR, DIELECTRIC, FILM_NODES, TRANSMISSIONS
 
 WO = np.array([[0.3, -0.4, np.sqrt(0.75)], [0.0, 0.6, 0.8]])
 WIDE = {name: (0.6, 0.8) for name in ("roughness_R", "roughness_TT", "roughness_TRT")}

@@ -4,19 +4,11 @@
 import numpy as np
 import pytest
 
-from mxeon.models.diffuse.albedo import eon_albedo_dir
-from mxeon.models.diffuse.brdf import eon_brdf, fon_brdf
-from mxeon.models.diffuse.formulas import C1
-from mxeon.models.sampling import (
-    SAMPLERS,
-    cltc,
-    cosine_pdf,
-    eon_cltc_sample,
-    eon_pdf,
-    eon_sample,
-    ltc,
-)
-from mxeon.models.sampling import eon as eon_sampling
+from mxeon.models import sampling as cltc
+from mxeon.models import sampling as eon_sampling
+from mxeon.models import sampling as ltc
+from mxeon.models.diffuse import C1, eon_albedo_dir, eon_brdf, fon_brdf
+from mxeon.models.sampling import SAMPLERS, cosine_pdf, eon_cltc_sample, eon_pdf, eon_sample
 from tests.support import tolerances
 from tests.support.hemispheres import (
     BY_NAME,

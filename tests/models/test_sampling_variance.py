@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 
-from mxeon.models.diffuse.brdf import eon_brdf
-from mxeon.models.diffuse.formulas import C1, C2, fon_loss, fon_quotient
-from mxeon.models.sampling import eon as eon_sampling
+from mxeon.models import sampling as eon_sampling
+from mxeon.models.diffuse import C1, C2, eon_brdf, fon_quotient
+from mxeon.models.diffuse import fon_loss_mu as fon_loss
 from mxeon.models.sampling import eon_pdf
 from tests.support import tolerances
 from tests.support.hemispheres import BY_NAME, every_scene, hemisphere, view

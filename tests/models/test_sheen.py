@@ -6,10 +6,14 @@ import numpy as np
 import pytest
 
 from mxeon.models.core.quadrature import albedo_dir_quadrature, hemisphere_nodes
-from mxeon.models.diffuse.burley import burley_albedo_dir, burley_brdf
-from mxeon.models.diffuse.translucent import translucent_btdf
-from mxeon.models.sheen import conty_kulla_brdf, zeltner_albedo_dir, zeltner_brdf
-from mxeon.models.sheen.conty_kulla import _rule, conty_kulla_albedo_dir
+from mxeon.models.diffuse import burley_albedo_dir, burley_brdf, translucent_btdf
+from mxeon.models.sheen import (
+    _rule,
+    conty_kulla_albedo_dir,
+    conty_kulla_brdf,
+    zeltner_albedo_dir,
+    zeltner_brdf,
+)
 from tests.support import tolerances
 
 BRDFS = (conty_kulla_brdf, zeltner_brdf, burley_brdf)

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from mxeon.models.media.subsurface import (
+from mxeon.models.media import (
     GAIN,
     LINEAR,
     LOSS,

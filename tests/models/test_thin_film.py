@@ -5,21 +5,25 @@ import numpy as np
 import pytest
 import tmm
 
+from mxeon.models import thin_film as formulas
 from mxeon.models.core.colorimetry import XYZ_TO_REC709, XYZ_TO_REC709_E
 from mxeon.models.microfacet.fresnel import fresnel_conductor, fresnel_dielectric, fresnel_schlick
-from mxeon.models.nodes.thin_films import FILM_NODES
+from mxeon.models.nodes.microfacets import FILM_NODES
 from mxeon.models.thin_film import (
     MATERIALX,
     TEXT,
     Form,
+    PolynomialCurve,
+    film_albedo_dir,
+    film_brdf,
     film_conductor,
+    film_curve,
     film_dielectric,
     film_schlick,
+    film_spectrum,
+    film_spectrum_xyz,
+    without_clamp,
 )
-from mxeon.models.thin_film import formulas as formulas
-from mxeon.models.thin_film.curve import film_curve, without_clamp
-from mxeon.models.thin_film.lobe import PolynomialCurve, film_albedo_dir, film_brdf
-from mxeon.models.thin_film.spectrum import film_spectrum, film_spectrum_xyz
 from tests.models.test_pbrlib import directions, inputs
 
 MU = np.linspace(0.05, 1.0, 40)

@@ -12,7 +12,7 @@ import pytest
 
 import mxeon
 from mxeon.models import model_names
-from mxeon.models.core.ranges import RANGES
+from mxeon.models.core.arguments import RANGES
 
 SEED, ROWS = 5, 3
 STEP, SLOPE = 1e-4, 3e-5  # of central differences, and their truncation

@@ -5,21 +5,23 @@ import numpy as np
 import pytest
 
 from mxeon.models import fresnel_dielectric, smith_g1, smith_g2
-from mxeon.models.microfacet.albedo import dielectric_albedo_dir, generalized_schlick_albedo_dir
-from mxeon.models.microfacet.lobe import DIELECTRIC
-from mxeon.models.transmission.btdf import dielectric_btdf, evaluate_btdf
-from mxeon.models.transmission.refraction import (
-    Facet,
-    refraction_direction,
-    transmission_half_vector,
+from mxeon.models.microfacet import (
+    DIELECTRIC,
+    dielectric_albedo_dir,
+    generalized_schlick_albedo_dir,
 )
-from mxeon.models.transmission.schlick import (
+from mxeon.models.transmission import (
     READINGS,
+    Facet,
+    dielectric_btdf,
+    dielectric_transmittance_dir,
+    evaluate_btdf,
     generalized_schlick_btdf,
     generalized_schlick_transmittance_dir,
+    refraction_direction,
     schlick_ior,
+    transmission_half_vector,
 )
-from mxeon.models.transmission.transmittance import dielectric_transmittance_dir
 from tests.support import tolerances
 from tests.support.availability import available
 from tests.support.hemispheres import view

@@ -4,25 +4,21 @@
 import numpy as np
 import pytest
 
-from mxeon.models.hair.parameters import (
+from mxeon.models.hair import (
     EUMELANIN,
     PHEOMELANIN,
     chiang_hair_absorption_from_color,
     chiang_hair_roughness,
     deon_hair_absorption_from_melanin,
 )
-from mxeon.models.media.blackbody import blackbody, blackbody_xyz, planck_radiance
-from mxeon.models.microfacet.artistic_ior import (
+from mxeon.models.media import blackbody, blackbody_xyz, planck_radiance
+from mxeon.models.microfacet.fresnel import (
     artistic_ior,
     artistic_parameters,
+    fresnel_conductor,
     normal_reflectance,
 )
-from mxeon.models.microfacet.fresnel import fresnel_conductor
-from mxeon.models.microfacet.roughness import (
-    glossiness_anisotropy,
-    roughness_anisotropy,
-    roughness_dual,
-)
+from mxeon.models.microfacet.ggx import glossiness_anisotropy, roughness_anisotropy, roughness_dual
 from mxeon.models.nodes.utilities import UTILITIES, node
 from mxeon.shaders.library import load_library
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy import special
 
-from mxeon.models.media import volume
+from mxeon.models import media as volume
 from mxeon.models.nodes.media import (
     AMOUNT,
     COMBINED_MEDIA,

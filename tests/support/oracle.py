@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The models in 50 digits, from the equations as printed, and independent of `mxeon.models.diffuse.formulas`.
+"""The models in 50 digits, from the equations as printed, and independent of `mxeon.models.diffuse`.
 
 One pair, one channel; arguments and results are mpmath numbers, directions triples of them.
 """

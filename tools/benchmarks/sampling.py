@@ -23,7 +23,7 @@ from scipy import stats
 
 from mxeon.hosts import gl
 from mxeon.models.core.quadrature import hemisphere_nodes
-from mxeon.models.diffuse.brdf import eon_brdf
+from mxeon.models.diffuse import eon_brdf
 from mxeon.models.sampling import cosine_pdf, eon_cltc_pdf, eon_pdf, eon_sample
 from tools.benchmarks.rounds import Group, clock_of, figure, interleave
 from tools.paper.renders import CLAY, FRONT, STAGE

@@ -18,7 +18,7 @@ import moderngl
 import numpy as np
 
 from mxeon.conformance.specs import diffuse
-from mxeon.models.diffuse.brdf import eon_brdf
+from mxeon.models.diffuse import eon_brdf
 from mxeon.models.sampling import SAMPLERS
 from mxeon.shaders import functions as twins
 from tools.benchmarks.rounds import Check, Group, clock_of, figure, interleave

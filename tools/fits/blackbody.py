@@ -9,7 +9,7 @@ With t = 1000 K / T, X and Z are quotients N / D of polynomials in t, from 800 K
 import numpy as np
 
 from mxeon.models.core.colorimetry import CIE_1931, WAVELENGTHS
-from mxeon.models.media.blackbody import BOLTZMANN, LIGHT, PLANCK
+from mxeon.models.media import BOLTZMANN, LIGHT, PLANCK
 from tools.fits.minimax import Form, defines, mp, refined, roots
 
 COLDEST, HOTTEST = 800, 25000  # K

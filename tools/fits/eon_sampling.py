@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fits of `mxeon.models.sampling.eon` and of the shaders; prints coefficients and errors.
+"""Fits of `mxeon.models.sampling` and of the shaders; prints coefficients and errors.
 
     python -m tools.fits.eon_sampling
 

@@ -13,7 +13,7 @@ least, from the closed form alone.
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 
-from mxeon.models.diffuse import formulas
+from mxeon.models import diffuse as formulas
 from tools.fits.minimax import extrema, least_largest, mp
 
 # One degree less in either costs a factor above ten; the table that this script prints says so.
@@ -60,7 +60,7 @@ def fit(degree_p=DEGREE_P, degree_q=DEGREE_Q):
 
 def largest_errors(p, q):
     """Largest relative error of H over `CHECKED` in float64, and in simulated float32."""
-    exact = formulas.fon_loss(np.float64(CHECKED))
+    exact = formulas.fon_loss_mu(np.float64(CHECKED))
     double = fitted(np.float64(CHECKED), p, q)
     single = fitted(CHECKED, np.float32(p), np.float32(q))
     return tuple(float(np.max(np.abs(each / exact - 1.0))) for each in (double, single))

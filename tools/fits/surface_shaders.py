@@ -17,8 +17,8 @@ from mxeon.conformance.samples import SEED
 from mxeon.conformance.specs import surface_shaders as specs
 from mxeon.conformance.tolerance import mean_scaled, scaled
 from mxeon.errors import OutsideModel
-from mxeon.models.microfacet import fresnel_formulas as fresnel
-from mxeon.models.microfacet import lobe as microfacets
+from mxeon.models import microfacet as microfacets
+from mxeon.models.microfacet import fresnel
 from tools.fits import conty_kulla_albedo, fresnel_average, ggx_albedo, ggx_cosine
 from tools.fits.minimax import shipped
 

@@ -10,11 +10,10 @@ measures what each costs at most, over films of up to 1000 nm on each kind of su
 import numpy as np
 
 from mxeon.conformance.specs.thin_films import LEAST_FILM, LEAST_OIL, SHARP
-from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
-from mxeon.models.thin_film import curve
-from mxeon.models.thin_film import formulas as film
-from mxeon.models.thin_film.curve import SUBSTRATES, TEXT, film_curve
-from mxeon.models.thin_film.lobe import film_albedo_dir
+from mxeon.models import thin_film as curve
+from mxeon.models import thin_film as film
+from mxeon.models.microfacet.ggx import ggx_albedo_dir
+from mxeon.models.thin_film import SUBSTRATES, TEXT, film_albedo_dir, film_curve
 from tools.fits.thin_film_search import COLORED, WHITE, largest
 
 # Each in a range: roughness, cosine of the view, thickness in nm, index.

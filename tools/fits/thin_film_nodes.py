@@ -11,8 +11,8 @@ mean over visible facets.
 import numpy as np
 from scipy.optimize import least_squares
 
-from mxeon.models.microfacet.ggx_formulas import smith_lambda
-from mxeon.models.thin_film.curve import film_curve
+from mxeon.models.microfacet.ggx import smith_lambda
+from mxeon.models.thin_film import film_curve
 from tools.fits import thin_film as fit
 from tools.fits.thin_film_search import NUMBERS, filmed
 

@@ -18,7 +18,7 @@ from mxeon.conformance.specs.thin_films import (
     STEEP,
     film_views,
 )
-from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
+from mxeon.models.microfacet.ggx import ggx_albedo_dir
 from tools.fits import thin_film as fit
 
 SETS = 64

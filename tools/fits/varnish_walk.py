@@ -18,7 +18,7 @@ from mxeon.models import (
     varnished_albedo_dir,
     varnished_brdf,
 )
-from mxeon.models.microfacet.fresnel_formulas import dielectric
+from mxeon.models.microfacet.fresnel import dielectric
 from mxeon.sampling import eon_sample
 
 SEED, PATHS = 1, 1 << 18

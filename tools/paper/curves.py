@@ -7,15 +7,17 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike, NDArray
 
+from mxeon.models import diffuse as inversion
 from mxeon.models.core.quadrature import albedo_dir_quadrature
-from mxeon.models.diffuse import inversion
-from mxeon.models.diffuse.albedo import (
+from mxeon.models.diffuse import (
     fon_albedo_avg,
     fon_albedo_dir,
     fon_albedo_dir_approx,
+    fon_brdf,
+    qon_albedo_avg,
+    qon_albedo_dir,
+    qon_brdf,
 )
-from mxeon.models.diffuse.brdf import fon_brdf, qon_brdf
-from mxeon.models.diffuse.qon_albedo import qon_albedo_avg, qon_albedo_dir
 from mxeon.models.table import MODELS, model
 from tools.paper.sheet import Sheet
 

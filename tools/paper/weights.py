@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.models.core.quadrature import hemisphere_nodes
-from mxeon.models.diffuse.brdf import eon_brdf
+from mxeon.models.diffuse import eon_brdf
 from mxeon.models.sampling import SAMPLERS
 from tools.paper.curves import directions
 from tools.paper.sheet import Sheet

@@ -16,13 +16,11 @@ from mxeon.models import (
     ggx_albedo_dir_anisotropic,
 )
 from mxeon.models.core.quadrature import albedo_dir_quadrature
-from mxeon.models.diffuse.brdf import oren_nayar_brdf
-from mxeon.models.diffuse.formulas import C1, FON_G, fon_loss
-from mxeon.models.diffuse.qon_albedo import qon_albedo_dir
-from mxeon.models.microfacet.albedo import dielectric_albedo_dir
+from mxeon.models.diffuse import C1, FON_G, oren_nayar_brdf, qon_albedo_dir
+from mxeon.models.diffuse import fon_loss_mu as fon_loss
+from mxeon.models.microfacet import dielectric_albedo_dir
 from mxeon.models.microfacet.defects import fitted_albedo
-from mxeon.models.transmission.schlick import READINGS
-from mxeon.models.transmission.transmittance import dielectric_transmittance_dir
+from mxeon.models.transmission import READINGS, dielectric_transmittance_dir
 from tools.fits import fon_loss as loss_fit
 from tools.fits import ggx_albedo as albedo_fit
 from tools.fits import ggx_cosine as cosine_fit

@@ -69,9 +69,8 @@ from mxeon.hosts.base import Host
 from mxeon.hosts.calls import LIT
 from mxeon.hosts.pairs import DISTANCE, JITTER, LEAST_SINE, PIXEL, perpendicular, visible
 from mxeon.hosts.testrender_scene import EYE, NEAREST
-from mxeon.models.nodes.bsdl import BSDL_VARIANTS
-from mxeon.models.nodes.cycles import CYCLES_VARIANTS
 from mxeon.models.nodes.node import Scattering, Variant
+from mxeon.models.nodes.renderers import BSDL_VARIANTS, CYCLES_VARIANTS
 from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, VIEW, Scene, local_directions, sphere
 
 if TYPE_CHECKING:

@@ -32,9 +32,14 @@ from mxeon.conformance.tolerance import (
 )
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts.base import Host
+from mxeon.models import diffuse as albedo
+from mxeon.models import diffuse as formulas
+from mxeon.models import diffuse as qon_albedo
 from mxeon.models import sampling
-from mxeon.models.diffuse import albedo, formulas, qon_albedo
-from mxeon.models.sampling import cltc, eon, hemisphere, ltc
+from mxeon.models import sampling as cltc
+from mxeon.models import sampling as eon
+from mxeon.models import sampling as hemisphere
+from mxeon.models import sampling as ltc
 from mxeon.shaders import functions
 
 KINDS = ("pairs", "pictures", "rendered")  # of probes whose hosts evaluate functions

@@ -24,7 +24,7 @@ from mxeon.conformance.specs.diffuse import DiffuseSpec
 from mxeon.conformance.specs.lobes import PbrSpec
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import HOSTS
-from mxeon.models.diffuse import formulas
+from mxeon.models import diffuse as formulas
 from mxeon.shaders.closure_calls import COMMENT
 from mxeon.shaders.functions import LANGUAGES, SIGNATURE, has_functions, twins
 from mxeon.shaders.generation import TARGETS, ApproximationWarning, generate

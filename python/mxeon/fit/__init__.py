@@ -15,8 +15,7 @@ import numpy as np
 from mxeon.errors import PackageError, assert_known, install
 from mxeon.fit.measured import MeasuredBrdf, merl_directions, read_merl
 from mxeon.models import eon_brdf, varnished_brdf
-from mxeon.models.coat import dielectric_over_eon_brdf
-from mxeon.models.coat.openpbr import openpbr_base_brdf
+from mxeon.models.coat import dielectric_over_eon_brdf, openpbr_base_brdf
 from mxeon.models.core.arrays import Array, ArrayLike
 
 LEAST_ALPHA = 0.02  # below, a lobe is narrower than what is measured

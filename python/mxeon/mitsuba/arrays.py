@@ -13,8 +13,7 @@ from typing import cast
 
 import numpy as np
 
-from mxeon.models.core.arrays import Array
-from mxeon.models.core.namespaces import FUNCTIONS, OTHERS, Namespace
+from mxeon.models.core.arrays import FUNCTIONS, OTHERS, Array, Namespace
 
 
 def register_functions() -> None:

@@ -16,20 +16,15 @@ import numpy as np
 
 from mxeon.mitsuba.diffuse import EonPlugin, Mitsuba, RoughDiffusePlugin
 from mxeon.mitsuba.octaves import gather_cubic, octave_cells, octave_cubics
-from mxeon.models.coat import openpbr
-from mxeon.models.coat.curves import Coat, constant_coat
+from mxeon.models import coat as openpbr
+from mxeon.models.coat import Coat, constant_coat
+from mxeon.models.core.arguments import RANGES
 from mxeon.models.core.arrays import Array
-from mxeon.models.core.ranges import RANGES
-from mxeon.models.diffuse.albedo import eon_albedo
-from mxeon.models.diffuse.formulas import fon_loss
-from mxeon.models.microfacet import ggx_formulas as ggx
-from mxeon.models.microfacet.fresnel_formulas import (
-    dielectric,
-    dielectric_avg,
-    schlick,
-    schlick_avg,
-)
-from mxeon.models.sampling.visible_normals import visible_density, visible_normal
+from mxeon.models.diffuse import eon_albedo
+from mxeon.models.diffuse import fon_loss_mu as fon_loss
+from mxeon.models.microfacet import ggx
+from mxeon.models.microfacet.fresnel import dielectric, dielectric_avg, schlick, schlick_avg
+from mxeon.models.sampling import visible_density, visible_normal
 from mxeon.models.varnished import Varnish, albedo, constant_varnish, cut, nonzero, under
 
 ALPHAS, IORS = (RANGES[name][:2] for name in ("coat_alpha", "coat_ior"))

@@ -14,8 +14,8 @@ import numpy as np
 
 from mxeon.errors import NotRun, PackageError, install
 from mxeon.mitsuba.arrays import register_functions
-from mxeon.models.diffuse import formulas
-from mxeon.models.sampling import eon as sampling
+from mxeon.models import diffuse as formulas
+from mxeon.models import sampling
 
 # Objects of Mitsuba and Dr.Jit, whose types are those of the variant.
 Mitsuba: TypeAlias = Any
@@ -177,7 +177,7 @@ class QonPlugin(RoughDiffusePlugin):
 
 
 class EonPlugin(RoughDiffusePlugin):
-    """EON, sampled exactly; see `mxeon.models.sampling.eon`."""
+    """EON, sampled exactly; see `mxeon.models.sampling`."""
 
     brdf = staticmethod(formulas.eon_brdf_mu)
 

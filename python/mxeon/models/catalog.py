@@ -12,26 +12,26 @@ from typing import Any, Literal, TypeAlias, cast, overload
 import numpy as np
 
 from mxeon.models import coat, sampling, table, varnished
-from mxeon.models.coat import openpbr
-from mxeon.models.coat import sampling as coat_sampling
+from mxeon.models import coat as coat_sampling
+from mxeon.models import coat as openpbr
 from mxeon.models.core.arguments import checked_choice, checked_directions
-from mxeon.models.core.arrays import Array
-from mxeon.models.core.edges import cosine
-from mxeon.models.core.namespaces import any_array, array_namespace, library
+from mxeon.models.core.arrays import Array, any_array, array_namespace, cosine, library
 from mxeon.models.core.quadrature import albedo_dir_quadrature
-from mxeon.models.media.volume import hg_pdf, hg_sample
-from mxeon.models.media_model import EmissionModel, MediumModel
+from mxeon.models.media import hg_pdf, hg_sample
 from mxeon.models.nodes import NODES
 from mxeon.models.nodes.emissions import EMISSIONS, Emission
-from mxeon.models.nodes.hair import HAIR_NODE
+from mxeon.models.nodes.lobes import HAIR_NODE, SUBSURFACE_NODE
 from mxeon.models.nodes.media import MEDIA, Medium
-from mxeon.models.nodes.node import Inputs, PbrNode
-from mxeon.models.nodes.parameters import BY_NAME, DEFAULTS, FRAME, Parameter, parameter
-from mxeon.models.nodes.subsurface import SUBSURFACE_NODE
-from mxeon.models.nodes.thin_films import FILM_NODES
-from mxeon.models.nodes.transmissions import TRANSMISSION_NODES, TRANSMISSIONS
-from mxeon.models.shading_model import ModelSampler, NodeModel, ShadingModel
-from mxeon.models.transmission.refraction import LEAST
+from mxeon.models.nodes.microfacets import FILM_NODES, TRANSMISSION_NODES, TRANSMISSIONS
+from mxeon.models.nodes.node import BY_NAME, DEFAULTS, FRAME, Inputs, Parameter, PbrNode, parameter
+from mxeon.models.shading_model import (
+    EmissionModel,
+    MediumModel,
+    ModelSampler,
+    NodeModel,
+    ShadingModel,
+)
+from mxeon.models.transmission import LEAST
 
 
 def _cosine_sample(wo: Array, u: Array, inputs: Inputs) -> tuple[Array, Array]:

@@ -1,26 +1,202 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A model as one object: value, albedos, samples, density, inputs, and a plot."""
+"""Directions in the frame of a normal and a tangent.
+
+
+Inputs of a model in a call: bound to its parameters, checked, and laid out in rows of pairs.
+
+
+A model as one object: value, albedos, samples, density, inputs, and a plot.
+
+
+An emission or a medium as one object: its functions by MaterialX's inputs.
+"""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
 from mxeon.models import lobe_plot
-from mxeon.models.core.arguments import ROUNDING, checked_switch
-from mxeon.models.core.arrays import Array, ArrayLike
-from mxeon.models.core.namespaces import array_namespace
-from mxeon.models.nodes.frames import ALONG, UP, into_frame, out_of_frame
-from mxeon.models.nodes.inputs import Rows, bound_inputs, rows, views
-from mxeon.models.nodes.node import Inputs
-from mxeon.models.nodes.parameters import WEIGHT, Parameter
+from mxeon.models.core.arguments import (
+    ROUNDING,
+    checked,
+    checked_sphere,
+    checked_switch,
+    checked_triples,
+    refuse_ambiguous,
+    spread_pair,
+)
+from mxeon.models.core.arrays import (
+    Array,
+    ArrayLike,
+    any_array,
+    array_namespace,
+    host_values,
+    library,
+    root,
+)
+from mxeon.models.media import hg_pdf, hg_phase, hg_sample, transmittance
+from mxeon.models.nodes.node import WEIGHT, Inputs, Parameter
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+
+UP, ALONG = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)  # MaterialX's defaults on a surface
+PARALLEL = 1e-6  # length that is left of a tangent without the part along the normal
+
+
+@any_array
+def into_frame(w: ArrayLike, normal: ArrayLike, tangent: ArrayLike) -> Array:
+    """Components of vectors along the tangent, the bitangent and the normal.
+
+    The tangent is any vector not parallel to the normal; its part along the normal is taken away.
+    """
+    vectors, axes = _vectors(w), _axes(normal, tangent)
+    xp = array_namespace(vectors)
+    return xp.stack([xp.sum(vectors * axis, axis=-1) for axis in axes], axis=-1) + 0.0
+
+
+@any_array
+def out_of_frame(w: ArrayLike, normal: ArrayLike, tangent: ArrayLike) -> Array:
+    """Vectors with these components along the tangent, the bitangent and the normal."""
+    vectors, (x, y, z) = _vectors(w), _axes(normal, tangent)
+    turned: Array = vectors[..., :1] * x + vectors[..., 1:2] * y + vectors[..., 2:] * z
+    return turned + 0.0
+
+
+def _vectors(w: ArrayLike) -> Array:
+    array = checked_triples("w", w)
+    return array if library(array) else np.asarray(array, np.float64)
+
+
+def _axes(normal: ArrayLike, tangent: ArrayLike) -> tuple[Array, Array, Array]:
+    """Tangent, bitangent and normal, of length 1 and perpendicular to each other."""
+    z, along = checked_sphere("normal", normal), checked_triples("tangent", tangent)
+    xp = array_namespace(z, along)
+    x = along - xp.sum(along * z, axis=-1)[..., np.newaxis] * z
+    length = xp.sqrt(xp.sum(x * x, axis=-1))[..., np.newaxis]
+    shortest = host_values(length) if library(length) else length
+    if shortest is not None and not np.all(shortest > PARALLEL):
+        raise ValueError("tangent must not be parallel to the normal; name another one")
+    # The bitangent is the cross product, which the array standard has in an extension alone.
+    x = x / length
+    turned = [(1, 2), (2, 0), (0, 1)]
+    y = xp.stack([z[..., i] * x[..., j] - z[..., j] * x[..., i] for i, j in turned], axis=-1)
+    return x, y, z
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Vectors and inputs of a call in rows.
+
+    - `inputs`: (N,), (N, 2) or (N, C) by parameter; 1 instead of N where all pairs have the same.
+    """
+
+    lead: tuple[int, ...]  # shape of the pairs
+    vectors: list[Array]  # directions or random numbers
+    inputs: dict[str, Array]
+    colored: bool  # whether a color has an axis of channels
+    weight: Array | None = None  # of the lobe, where the call has one
+
+    def shaped(self, values: Array, last: tuple[int, ...] = ()) -> Array:
+        """Values of the rows, (N, *last) or fewer, in the shape of the pairs."""
+        xp, count = array_namespace(values), int(np.prod(self.lead))
+        return xp.reshape(xp.broadcast_to(values, (count, *last)), (*self.lead, *last))[()]
+
+    def colors(self, values: Array) -> Array:
+        """Values of the rows, (N, C), times the weight; without channels where no color has any."""
+        if self.weight is not None:
+            values = values * self.weight[:, np.newaxis]
+        values = self.shaped(values, tuple(values.shape[-1:]))
+        return values if self.colored or values.shape[-1] != 1 else values[..., 0]
+
+
+def bound_inputs(
+    parameters: Sequence[Parameter], inputs: Sequence[ArrayLike], named: Mapping[str, ArrayLike]
+) -> dict[str, ArrayLike]:
+    """A value for each parameter, by name: one of the call's, or its default."""
+    names = [each.name for each in parameters]
+    others = {each.quantity: each.name for each in parameters}
+    known = f"inputs are {', '.join(names)}"
+    if len(inputs) > len(names):
+        raise TypeError(f"{known}; got {len(inputs)} of them")
+    values = dict(zip(names, inputs, strict=False))
+    for word, value in named.items():
+        name = others.get(word, word)
+        if name not in names or name in values:
+            raise TypeError(f"{known}; got {word!r}{' twice' if name in names else ''}")
+        values[name] = value
+    return {each.name: values.get(each.name, each.default) for each in parameters}
+
+
+@any_array
+def rows(
+    parameters: Sequence[Parameter], vectors: Collection[str], /, **arguments: ArrayLike
+) -> Rows:
+    """Vectors (..., K) and a value for each parameter in rows, all by their names."""
+    directions = {name: _floats(arguments[name]) for name in vectors}
+    lead = _lead(directions, {})
+    arrays, colored = {}, False
+    for each in parameters:
+        array = _floats(checked(each.name, arguments[each.name], each.quantity))
+        if each.channels == 3:
+            refuse_ambiguous(each.name, array, lead)
+            colored = colored or array.ndim > 0
+            array = array if array.ndim else array[np.newaxis]
+        arrays[each.name] = spread_pair(each.name, array) if each.channels == 2 else array
+    # Lay out all pairs in one row; what is the same for all of them stays one.
+    channels = {each.name: each.channels for each in parameters}
+    lead = _lead(directions, {n: (a, channels[n]) for n, a in arrays.items()})
+    laid = {name: _laid(a, lead, bool(channels[name])) for name, a in arrays.items()}
+    weight = laid.pop(WEIGHT.name, None)
+    found = [_laid(v, lead, True, whole=True) for v in directions.values()]
+    return Rows(lead, found, laid, colored, weight)
+
+
+@any_array
+def views(mu: ArrayLike, azimuth: ArrayLike) -> Array:
+    """Directions with these cosines and azimuths, shape (..., 3)."""
+    cosine, phi = _floats(checked("mu", mu)), _floats(checked("phi", azimuth))
+    xp = array_namespace(cosine, phi)
+    sine = root((1.0 - cosine) * (1.0 + cosine))
+    x, y = sine * xp.cos(phi), sine * xp.sin(phi)
+    return xp.stack([x, y, xp.broadcast_to(cosine, x.shape)], axis=-1)
+
+
+def _floats(value: ArrayLike) -> Array:
+    """Numbers in float64; another library's array as it is."""
+    return cast(Array, value) if library(value) else np.asarray(value, np.float64)
+
+
+def _lead(
+    directions: Mapping[str, Array], arrays: Mapping[str, tuple[Array, int]]
+) -> tuple[int, ...]:
+    """Shape to which all broadcast but their last axes."""
+    shapes = {name: tuple(array.shape[:-1]) for name, array in directions.items()}
+    shapes |= {
+        n: tuple(a.shape[:-1] if channels else a.shape) for n, (a, channels) in arrays.items()
+    }
+    try:
+        return np.broadcast_shapes(*shapes.values())
+    except ValueError:
+        listed = ", ".join(f"{name} {shape}" for name, shape in shapes.items() if shape)
+        raise ValueError(f"shapes must broadcast, last axes apart; got {listed}") from None
+
+
+def _laid(array: Array, lead: tuple[int, ...], last: bool, whole: bool = False) -> Array:
+    """An array as (N, last) or (N,), or as (1, last) or (1,) where it is one for all pairs."""
+    xp = array_namespace(array)
+    tail = tuple(array.shape[-1:]) if last else ()
+    own = array.shape[:-1] if last else array.shape
+    if not whole and int(np.prod(own)) == 1:
+        return xp.reshape(array, (1, *tail))
+    return xp.reshape(xp.broadcast_to(array, (*lead, *tail)), (-1, *tail))
+
 
 # Functions of models, and why a model may lack them.
 LACKS = {
@@ -245,3 +421,83 @@ def _on_side(
     mirrored = xp.stack([wi[:, 0], wi[:, 1], side * xp.where(other, -z, z)], axis=-1)
     values = function(wo, mirrored, call.inputs)
     return xp.where(other[:, np.newaxis] if values.ndim > 1 else other, 0.0, values)
+
+
+DISTANCE = Parameter("distance", 1.0, "distance")
+COSINE = Parameter("cos_theta", 1.0, "cos_theta")
+
+
+@dataclass(frozen=True, repr=False)
+class EmissionModel(NodeModel):
+    """An EDF node by its name.
+
+    Inputs and their shapes are those of `ShadingModel`.
+
+        >>> import mxeon
+        >>> mxeon.model("conical_edf").edf([0.6, 0.0, 0.8], color=2.0, outer_angle=90.0).round(6)
+        np.float64(1.251183)
+    """
+
+    value: Callable[[Array, Inputs], Array]  # of wo, (N, C)
+    power: Callable[[Inputs], Array]  # (N, C)
+
+    @property
+    def functions(self) -> tuple[str, ...]:
+        """Names of the functions that it has."""
+        return ("edf", "exitance")
+
+    def edf(self, wo: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
+        """Radiance towards `wo`, shape (..., C) or (...); below the horizon that of the back."""
+        call = self._bound({"wo": wo}, inputs, named)
+        return call.colors(self.value(call.vectors[0], call.inputs))
+
+    def exitance(self, *inputs: ArrayLike, **named: ArrayLike) -> Array:
+        """Integral of the radiance times the cosine over the hemisphere."""
+        call = self._bound({}, inputs, named)
+        return call.colors(self.power(call.inputs))
+
+
+@dataclass(frozen=True, repr=False)
+class MediumModel(NodeModel):
+    """A VDF node by its name.
+
+    Inputs and their shapes are those of `ShadingModel`.
+
+        >>> import mxeon
+        >>> mxeon.model("absorption_vdf").transmittance(2.0, [0.5, 1.0, 0.0]).round(6)
+        array([0.367879, 0.135335, 1.      ])
+    """
+
+    @property
+    def functions(self) -> tuple[str, ...]:
+        """Names of the functions that it has."""
+        scatters = len(self.parameters) > 1
+        return ("transmittance", *(("phase", "sample", "pdf") if scatters else ()))
+
+    def transmittance(self, distance: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
+        """Share of the radiance that passes a distance in m, shape (..., C) or (...)."""
+        call = self._bound({}, inputs, {**named, "distance": distance}, DISTANCE)
+        scattering = call.inputs.get("scattering", 0.0)
+        length = call.inputs["distance"][..., None]
+        return call.colors(transmittance(call.inputs["absorption"], scattering, length))
+
+    def phase(self, cos_theta: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
+        """Phase function at the cosine of a deflection, 1/sr, shape (...)."""
+        self._need("phase")
+        call = self._bound({}, inputs, {**named, "cos_theta": cos_theta}, COSINE)
+        return call.shaped(hg_phase(call.inputs["cos_theta"], call.inputs["anisotropy"]))
+
+    def sample(
+        self, wo: ArrayLike, u: ArrayLike, *inputs: ArrayLike, **named: ArrayLike
+    ) -> tuple[Array, Array]:
+        """Directions drawn by the phase function, shape (..., 3), and their density, shape (...)."""
+        self._need("sample")
+        call = self._bound({"wo": wo, "u": u}, inputs, named)
+        wi, pdf = hg_sample(call.vectors[0], call.vectors[1], call.inputs["anisotropy"])
+        return call.shaped(wi, (3,)), call.shaped(pdf)
+
+    def pdf(self, wo: ArrayLike, wi: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
+        """Density of `sample` at wi, 1/sr, shape (...)."""
+        self._need("pdf")
+        call = self._bound({"wo": wo, "wi": wi}, inputs, named)
+        return call.shaped(hg_pdf(call.vectors[0], call.vectors[1], call.inputs["anisotropy"]))

@@ -10,14 +10,15 @@ from functools import partial
 import numpy as np
 
 from mxeon.models import coat
-from mxeon.models.coat import openpbr
-from mxeon.models.core.arguments import checked, checked_choice, checked_colors
-from mxeon.models.core.arrays import Array, ArrayLike, Numbers
-from mxeon.models.core.namespaces import any_array
-from mxeon.models.core.ranges import RANGES
-from mxeon.models.diffuse import albedo, known_defect_albedos, known_defects, qon_albedo
-from mxeon.models.diffuse import brdf as models
-from mxeon.models.diffuse.burley import burley_albedo_dir, burley_brdf
+from mxeon.models import coat as openpbr
+from mxeon.models import diffuse as albedo
+from mxeon.models import diffuse as models
+from mxeon.models import diffuse as qon_albedo
+from mxeon.models.core.arguments import RANGES, checked, checked_choice, checked_colors
+from mxeon.models.core.arrays import Array, ArrayLike, Numbers, any_array
+from mxeon.models.diffuse import burley_albedo_dir, burley_brdf
+from mxeon.models.diffuse import defects as known_defect_albedos
+from mxeon.models.diffuse import defects as known_defects
 
 
 @dataclass(frozen=True)

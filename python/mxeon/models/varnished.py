@@ -49,20 +49,36 @@ from typing import cast
 import numpy as np
 from numpy.polynomial.chebyshev import chebint, chebval
 
-from mxeon.models.coat.curves import coat_of, of_one_coat, place, unpack_cosine
-from mxeon.models.coat.mixture import checked_draws, checked_mean, mixed_pdf, mixed_sample
+from mxeon.models import diffuse as formulas
+from mxeon.models.coat import (
+    checked_draws,
+    checked_mean,
+    coat_of,
+    mixed_pdf,
+    mixed_sample,
+    of_one_coat,
+    place,
+    unpack_cosine,
+)
 from mxeon.models.core.arguments import checked_colors
-from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.arrays import (
+    Array,
+    ArrayLike,
+    any_array,
+    array_namespace,
+    at_least_0,
+    at_most,
+    library,
+    like,
+    root,
+)
 from mxeon.models.core.chebyshev import chebyshev_coefficients, chebyshev_nodes, chebyshev_sum
-from mxeon.models.core.edges import at_least_0, at_most, root
 from mxeon.models.core.evaluation import evaluate
-from mxeon.models.core.namespaces import any_array, array_namespace, library, like
 from mxeon.models.core.quadrature import unit_rule
-from mxeon.models.diffuse import formulas
-from mxeon.models.diffuse.albedo import eon_albedo
-from mxeon.models.diffuse.formulas import C1, C2, fon_loss
+from mxeon.models.diffuse import C1, C2, eon_albedo
+from mxeon.models.diffuse import fon_loss_mu as fon_loss
 from mxeon.models.microfacet import dielectric_brdf
-from mxeon.models.sampling.hemisphere import around, cosine_pdf, unpack_uniforms
+from mxeon.models.sampling import around, cosine_pdf, unpack_uniforms
 
 NODES, SMOOTH = 24, 16  # coefficients of E_single and of the other curves, over `place`
 FINE, BELOW = 48, 24  # nodes of integrals over what E_r returns, and beyond the critical angle

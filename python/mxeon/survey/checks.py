@@ -12,7 +12,7 @@ from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.samples import SEED, Array, Batch
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.tolerance import Compared, Measurement, given, roundings, sum_of
-from mxeon.models.sampling.cltc import eon_cltc_pdf
+from mxeon.models.sampling import eon_cltc_pdf
 from mxeon.survey.backends import Renderer
 from mxeon.survey.specs import RendererSpec
 

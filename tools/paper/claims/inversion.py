@@ -5,9 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from mxeon.models.diffuse import inversion
-from mxeon.models.diffuse.albedo import eon_albedo_avg, eon_albedo_dir
-from mxeon.models.diffuse.formulas import C1, C2
+from mxeon.models import diffuse as inversion
+from mxeon.models.diffuse import C1, C2, eon_albedo_avg, eon_albedo_dir
 from tools.paper.claims import Measured, Section
 
 COLORS = np.linspace(0.0, 1.0, 401)

@@ -8,15 +8,22 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mxeon.models.core.quadrature import albedo_dir_quadrature
-from mxeon.models.diffuse.albedo import (
+from mxeon.models.diffuse import (
+    C1,
     eon_albedo_dir,
+    eon_brdf,
     fon_albedo_avg,
     fon_albedo_dir,
     fon_albedo_dir_approx,
+    fon_brdf,
+    oren_nayar_brdf,
+    qon_a,
+    qon_albedo_avg,
+    qon_albedo_dir,
+    qon_b,
+    qon_brdf,
+    qon_fujii_brdf,
 )
-from mxeon.models.diffuse.brdf import eon_brdf, fon_brdf, oren_nayar_brdf, qon_brdf, qon_fujii_brdf
-from mxeon.models.diffuse.formulas import C1, qon_a, qon_b
-from mxeon.models.diffuse.qon_albedo import qon_albedo_avg, qon_albedo_dir
 from tools.paper.claims import ROUNDING, Measured, Section
 
 MU = np.array([0.0, 1e-3, 0.03, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0])

@@ -3,8 +3,9 @@
 
 import numpy as np
 
+from mxeon.models import sampling as cltc
+from mxeon.models import sampling as ltc
 from mxeon.models.core.quadrature import hemisphere_nodes
-from mxeon.models.sampling import cltc, ltc
 from tools.paper.claims import ROUNDING, Measured, Section
 from tools.paper.weights import BY_NAME, moments
 

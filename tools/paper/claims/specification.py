@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from mxeon.models.diffuse.formulas import qon_a
+from mxeon.models.diffuse import qon_a
 from tools.paper.claims import Measured, Section
 from tools.paper.curves import directions
 

@@ -11,7 +11,7 @@ from mxeon.conformance.diagnosis.candidates import Diagnosis, explain
 from mxeon.conformance.diagnosis.faults import DIRECT_FAULTS
 from mxeon.conformance.specs.hair import REGION, REGIONS, HairSpec
 from mxeon.conformance.tolerance import Compared, Term, scaled
-from mxeon.models.hair.defects import FORMS, TILTED
+from mxeon.models.nodes.lobes import FORMS, TILTED
 
 TURN_FIBER = with_inputs(
     "the normal is turned about the fiber by a tenth", normal=(0.0, 0.1, 0.995)

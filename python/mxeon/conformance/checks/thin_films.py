@@ -34,7 +34,7 @@ from mxeon.conformance.specs.thin_films import (
     film_views,
 )
 from mxeon.conformance.tolerance import Compared, count_of
-from mxeon.models.microfacet.ggx_formulas import smith_lambda
+from mxeon.models.microfacet.ggx import smith_lambda
 
 Function = Callable[[Batch], Array]
 MIRRORED = (-1.0, -1.0, 1.0)

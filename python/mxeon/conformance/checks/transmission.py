@@ -29,7 +29,7 @@ from mxeon.conformance.tolerance import (
     count_of,
 )
 from mxeon.models.microfacet.ggx import smith_g1
-from mxeon.models.transmission.refraction import refraction_direction
+from mxeon.models.transmission import refraction_direction
 
 SEEN = "the mean of 1 - F over the visible normals"
 SUMMED = 1e-3  # rms by which a sum over the normals of an engine differs from it

@@ -12,7 +12,7 @@ from mxeon.conformance.diagnosis.faults import normal_ignored
 from mxeon.conformance.diagnosis.regions import smallest
 from mxeon.conformance.samples import Array, Batch, sky, sky_behind
 from mxeon.conformance.tolerance import Compared, absolute
-from mxeon.models.nodes.frames import UP
+from mxeon.models.shading_model import UP
 
 UNKNOWN = "the cause is unknown"
 

@@ -23,14 +23,13 @@ from mxeon.models import table
 from mxeon.models.core import layering
 from mxeon.models.core.layering import Bsdf
 from mxeon.models.hair import ROUGHNESSES
-from mxeon.models.media.volume import transmittance
+from mxeon.models.media import transmittance
 from mxeon.models.nodes import node
-from mxeon.models.nodes.frames import ALONG, UP
-from mxeon.models.nodes.hair import HAIR_NODE
+from mxeon.models.nodes.lobes import HAIR_NODE, SUBSURFACE_NODE
 from mxeon.models.nodes.media import METER
+from mxeon.models.nodes.microfacets import TRANSMISSIONS
 from mxeon.models.nodes.node import PbrNode
-from mxeon.models.nodes.subsurface import SUBSURFACE_NODE
-from mxeon.models.nodes.transmissions import TRANSMISSIONS
+from mxeon.models.shading_model import ALONG, UP
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR

@@ -17,12 +17,10 @@ from mxeon.conformance.samples import Array
 from mxeon.errors import NotRun, OutsideModel
 from mxeon.models import table
 from mxeon.models.core.layering import Bsdf, throughput
-from mxeon.models.media.subsurface import diffusion_blur
-from mxeon.models.nodes.hair import HAIR_NODE
-from mxeon.models.nodes.microfacets import isotropic
+from mxeon.models.media import diffusion_blur
+from mxeon.models.nodes.lobes import HAIR_NODE, SUBSURFACE_NODE
+from mxeon.models.nodes.microfacets import TRANSMISSION_NODES, TRANSMISSIONS, isotropic
 from mxeon.models.nodes.node import Inputs, PbrNode
-from mxeon.models.nodes.subsurface import SUBSURFACE_NODE
-from mxeon.models.nodes.transmissions import TRANSMISSION_NODES, TRANSMISSIONS
 
 Albedo: TypeAlias = Callable[[Array, Inputs], Array]
 Material: TypeAlias = tuple[

@@ -23,11 +23,11 @@ from mxeon.conformance.samples import Array
 from mxeon.errors import NotRun, OutsideModel
 from mxeon.models.core import layering
 from mxeon.models.core.layering import Bsdf
-from mxeon.models.media.volume import transmittance
+from mxeon.models.media import transmittance
 from mxeon.models.nodes import NODES
 from mxeon.models.nodes.media import METER
 from mxeon.models.nodes.node import PbrNode
-from mxeon.models.thin_film.lobe import FILM
+from mxeon.models.thin_film import FILM
 from mxeon.shaders.document.values import Plain
 from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG, OREN_NAYAR, value_text
 

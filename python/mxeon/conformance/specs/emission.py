@@ -35,8 +35,7 @@ from mxeon.conformance.spec import (
 )
 from mxeon.conformance.tolerance import Term, Tolerance, roundings, sum_of
 from mxeon.hosts.base import Host
-from mxeon.models.media.emission import cone_cosine, cone_width
-from mxeon.models.media.shading import surface_radiance
+from mxeon.models.media import cone_cosine, cone_width, surface_radiance
 from mxeon.models.nodes.emissions import (
     AMOUNT,
     BASE,

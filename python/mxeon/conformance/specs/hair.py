@@ -21,10 +21,8 @@ from mxeon.conformance.samples import (
 from mxeon.conformance.spec import Input, broadcast_inputs, color
 from mxeon.conformance.specs.lobes import NORMAL, PbrSpec, lobe_errors
 from mxeon.conformance.tolerance import Term, absolute, roundings, sum_of
-from mxeon.models.hair import ROUGHNESSES, TINTS, chiang_hair_attenuation
-from mxeon.models.hair.defects import BESSEL, CLAMPED, UNIFORM
-from mxeon.models.hair.formulas import SCALE, section
-from mxeon.models.nodes.hair import HAIR_NODE
+from mxeon.models.hair import ROUGHNESSES, SCALE, TINTS, chiang_hair_attenuation, section
+from mxeon.models.nodes.lobes import BESSEL, CLAMPED, HAIR_NODE, UNIFORM
 from mxeon.models.nodes.node import Scattering
 
 COUNTS = replace(PbrSpec.counts, diagnosed=1 << 9)

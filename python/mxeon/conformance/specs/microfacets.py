@@ -36,9 +36,13 @@ from mxeon.conformance.tolerance import (
     scaled,
     sum_of,
 )
-from mxeon.models.nodes.microfacets import MICROFACET_NODES
-from mxeon.models.nodes.transmissions import TRANSMISSION_NODES, TRANSMISSIONS, Transmission
-from mxeon.models.sampling.visible_normals import ggx_pdf, ggx_sample
+from mxeon.models.nodes.microfacets import (
+    MICROFACET_NODES,
+    TRANSMISSION_NODES,
+    TRANSMISSIONS,
+    Transmission,
+)
+from mxeon.models.sampling import ggx_pdf, ggx_sample
 
 COUNTS = replace(PbrSpec.counts, diagnosed=1 << 8)  # references take long
 LEAST_ALPHA = 1e-3  # of random pairs
@@ -380,7 +384,7 @@ def transmission_errors(passed: Tolerance) -> dict[str, Tolerance]:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class TransmissionSpec(FacetSpec):
-    """A node of `mxeon.models.nodes.transmissions`."""
+    """A node of `mxeon.models.nodes.microfacets`."""
 
     # In another frame a rounding decides about what total reflection takes from a sum of refractions.
     plain = ("frame",)

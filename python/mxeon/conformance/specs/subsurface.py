@@ -20,8 +20,8 @@ from mxeon.conformance.samples import (
 from mxeon.conformance.spec import ZERO, Input, broadcast_inputs
 from mxeon.conformance.specs.lobes import COLOR, FLAT_ERRORS, NORMAL, WEIGHT, FlatSpec
 from mxeon.conformance.tolerance import given, mean_error
-from mxeon.models.media.subsurface import FAR, blur_to
-from mxeon.models.nodes.subsurface import SUBSURFACE_NODE, circle_blur
+from mxeon.models.media import FAR, blur_to
+from mxeon.models.nodes.lobes import SUBSURFACE_NODE, circle_blur
 from mxeon.shaders.scene import BACK, SIDE, VIEW, Scene, local_directions, sphere
 
 LEAST_COSINE = 1e-6  # M_FLOAT_EPS of MaterialX

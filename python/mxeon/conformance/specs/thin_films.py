@@ -39,7 +39,7 @@ from mxeon.conformance.tolerance import (
     sum_of,
 )
 from mxeon.hosts.base import Host
-from mxeon.models.nodes.thin_films import FILM_NODES
+from mxeon.models.nodes.microfacets import FILM_NODES
 
 # Largest errors of the shader's thin film, for cosines from 0.1 on and up to 1000 nm: tools/fits/thin_film.py
 # searches for each.

@@ -14,6 +14,7 @@ from functools import lru_cache, partial
 import numpy as np
 from numpy.typing import ArrayLike
 
+from mxeon import inversion
 from mxeon.conformance.engine import LOGARITHM, POWER
 from mxeon.conformance.samples import (
     SEED,
@@ -28,9 +29,8 @@ from mxeon.conformance.spec import COMPONENTS, Input, RowSpec, draw, draw_edges
 from mxeon.conformance.tolerance import Term, Tolerance, absolute, given, roundings, scaled, sum_of
 from mxeon.hosts.base import Host
 from mxeon.hosts.calls import GRAPH
-from mxeon.models.diffuse import inversion
-from mxeon.models.diffuse.albedo import eon_albedo_avg, eon_albedo_dir
-from mxeon.models.microfacet.artistic_ior import normal_reflectance
+from mxeon.models.diffuse import eon_albedo_avg, eon_albedo_dir
+from mxeon.models.microfacet.fresnel import normal_reflectance
 from mxeon.models.nodes.node import Variant
 from mxeon.models.nodes.utilities import LARGEST_REFLECTIVITY, UTILITIES, UtilityNode
 from mxeon.models.nodes.utilities import Values as Outputs
@@ -326,7 +326,7 @@ def _inversion(node: str) -> UtilityNode:
         return lambda inputs: {"out": function(inputs["color"], inputs["roughness"])}
 
     variants = [Variant("the color itself", lambda inputs: {"out": inputs["color"]})]
-    variants += [Variant(name, output(name)) for name in inversion.__all__ if name != node]
+    variants += [Variant(name, output(name)) for name in dir(inversion) if name.startswith("eon_") and name != node]
     inputs: dict[str, float | tuple[float, ...]]
     inputs = {"color": (0.18, 0.18, 0.18), "roughness": 0.0}
     return UtilityNode(node, inputs, {"out": "color3"}, output(node), tuple(variants))

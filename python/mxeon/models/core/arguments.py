@@ -1,22 +1,197 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Validation of arguments: ranges, directions, switches and choices; `shapes` has their shapes.
+"""Ranges of the arguments of the models, by name.
+
+
+Shapes of checked arguments: what broadcasts, which last axis is meant, and what is ambiguous.
+
+
+Tiling of large arrays into blocks that fit a cache.
+
+
+Validation of arguments: ranges, directions, switches and choices; `shapes` has their shapes.
 
 Directions leave the surface, in a local frame with the normal +z.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import NoReturn, cast
 
 import numpy as np
 
-from mxeon.models.core.arrays import Array, ArrayLike, Numbers
-from mxeon.models.core.namespaces import array_namespace, host_values, library
-from mxeon.models.core.ranges import CLOSED, RANGES
-from mxeon.models.core.shapes import broadcastable, channel_count, spread_pair, with_axis
-from mxeon.models.core.tiling import blocks, channels_first
+from mxeon.models.core.arrays import (
+    Array,
+    ArrayLike,
+    Numbers,
+    array_namespace,
+    host_values,
+    library,
+)
 from mxeon.names import NONE, unknown
+
+_LARGEST = float(np.finfo(np.float64).max)
+
+# Ends of closed ranges, and as they are printed.
+_BELOW_ONE, _ABOVE_ZERO = float(np.nextafter(1.0, 0.0)), float(np.nextafter(0.0, 1.0))
+_SHARE = (0.0, 1.0, "[0, 1]")
+_POSITIVE = (0.0, 1e50, "[0, 1e50]")  # where a fourth power still fits
+_WIDTH = (1e-12, 1e12, "[1e-12, 1e12]")  # where exponents and squares still fit
+_LENGTH = (1e-150, 1e150, "[1e-150, 1e150]")  # whose products and quotients fit
+
+
+def _each(names: str, ends: tuple[float, float, str]) -> dict[str, tuple[float, float, str]]:
+    """The range of each of these names."""
+    return dict.fromkeys(names.split(), ends)
+
+
+# Ranges at whose ends rounding may step over them.
+CLOSED = ("[0, 1]", "[0.01, 1]", "[0.1, 1]", "[1, 4]", "[-1, 1]", "[0, pi/2]", "[-pi/2, pi/2]")
+
+# Ranges of the quantities, by name.
+RANGES = {
+    **_each("mu mu_o mu_i", _SHARE),
+    **_each("rho color color0 color82 color90 tint tint_R tint_TT tint_TRT edge_color", _SHARE),
+    **_each("roughness alpha anisotropy glossiness longitudinal azimuthal", _SHARE),
+    **_each("azimuthal_roughness cuticle_angle amount opacity melanin_redness", _SHARE),
+    **_each("reflectance transmittance single_scatter lobe_weight metalness", _SHARE),
+    **_each("u reflectivity melanin_concentration", (0.0, _BELOW_ONE, "[0, 1)")),
+    **_each("eumelanin_color pheomelanin_color hair_color", (_ABOVE_ZERO, 1.0, "(0, 1]")),
+    **_each("exponent ior extinction absorption scattering absorption_coefficient", _POSITIVE),
+    **_each("radiance base emission scattered behind light intensity distance", _POSITIVE),
+    **_each("scale_tt scale_trt", _POSITIVE),
+    **_each("coat_alpha", (0.01, 1.0, "[0.01, 1]")),
+    **_each("specular_roughness", (0.1, 1.0, "[0.1, 1]")),  # whose square is that alpha
+    **_each("coat_ior specular_ior", (1.0, 4.0, "[1, 4]")),
+    **_each("thinfilm_ior film_ior", (1.0, 1e50, "[1, 1e50]")),
+    **_each("thinfilm_thickness thickness", (0.0, 1e9, "[0, 1e9]")),  # nm
+    **_each("temperature wavelength", (1.0, 1e9, "[1, 1e9]")),
+    **_each("variance scale roughness_R roughness_TT roughness_TRT", _WIDTH),
+    **_each("separation radius reach", _LENGTH),
+    **_each("weight x", (0.0, _LARGEST, "[0, inf)")),
+    **_each("albedo phi", (-_LARGEST, _LARGEST, "(-inf, inf)")),
+    **_each("cos_theta scatter_anisotropy", (-1.0, 1.0, "[-1, 1]")),
+    **_each("g", (-_BELOW_ONE, _BELOW_ONE, "(-1, 1)")),
+    **_each("inner_angle outer_angle", (0.0, 360.0, "[0, 360]")),
+    **_each("theta_i theta_o", (-0.5 * np.pi, 0.5 * np.pi, "[-pi/2, pi/2]")),
+    **_each("sigma", (0.0, 0.5 * np.pi, "[0, pi/2]")),
+    **_each("exposure", (-1000.0, 1000.0, "[-1000, 1000]")),
+}
+
+
+def spread_pair(name: str, array: Numbers) -> Numbers:
+    """Array of pairs, shape (..., 2), of which a number, or a last axis of 1, counts for both."""
+    array = with_axis(array)
+    if array.shape[-1] == 1:
+        return array_namespace(array).broadcast_to(array, (*array.shape[:-1], 2))
+    if array.shape[-1] != 2:
+        raise ValueError(
+            f"{name} must be a number or have shape (..., 2); got shape {tuple(array.shape)}: "
+            f"write {name}[..., np.newaxis] for a number for each direction"
+        )
+    return array
+
+
+def with_axis(array: Numbers) -> Numbers:
+    """Array with at least one axis."""
+    return array if array.ndim else array[np.newaxis]
+
+
+def refuse_ambiguous(name: str, color: Numbers, lead: tuple[int, ...]) -> None:
+    """Raise ValueError for a list of N numbers beside N directions, unless it is red, green and blue."""
+    if color.shape == lead and color.ndim == 1 and color.shape[0] not in (1, 3):
+        count = color.shape[0]
+        raise ValueError(
+            f"{name} of shape ({count},) beside {count} directions has two meanings: write "
+            f"{name}[:, np.newaxis] for a number for each direction, {name}[np.newaxis] for a "
+            f"color of {count} channels"
+        )
+
+
+def lead_shape(vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]) -> tuple[int, ...]:
+    """Shape to which arguments broadcast, the last axis of `vectors` apart.
+
+    - `vectors`: Directions, random numbers or colors by name: shapes (..., C).
+    - `numbers`: The others: shapes (...).
+    """
+    arrays = [*vectors.values(), *numbers.values()]
+    leads = [tuple(array.shape[:-1]) for array in vectors.values()]
+    leads += [tuple(array.shape) for array in numbers.values()]
+    try:
+        return np.broadcast_shapes(*leads)
+    except ValueError:
+        names = ", ".join([*vectors, *numbers])
+        apart = f" (last axis of {', '.join(vectors)} apart)" if vectors else ""
+        shapes = ", ".join(str(tuple(array.shape)) for array in arrays)
+        raise ValueError(f"{names} must broadcast{apart}; got shapes {shapes}") from None
+
+
+def broadcastable(vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]) -> list[Array]:
+    """Checked vectors and numbers, in this order, whose shapes broadcast."""
+    lead_shape(vectors, numbers)
+    return [*vectors.values(), *numbers.values()]
+
+
+def channel_count(colors: Mapping[str, Numbers]) -> int:
+    """Number of channels to which colors of shape (..., C) broadcast."""
+    counts = [int(color.shape[-1]) for color in colors.values()]
+    largest = max(counts)
+    if any(count not in (1, largest) for count in counts):
+        raise ValueError(
+            f"{', '.join(colors)} must have equal numbers of channels; got {', '.join(map(str, counts))}"
+        )
+    return largest
+
+
+# Pairs per block: an array of them takes 256 KiB and stays in a second-level cache.
+BLOCK = 2**15
+
+
+def blocks(shape: tuple[int, ...], size: int = BLOCK) -> Iterator[tuple[slice, ...]]:
+    """Indices that tile an array, each selecting at most about `size` elements.
+
+    - `shape`: Shape of the array.
+    - `size`: Elements per block.
+    """
+    # Take as many inner axes as fit into a block.
+    axis, inner = len(shape), 1
+    while axis > 0 and inner * shape[axis - 1] <= size:
+        axis -= 1
+        inner *= shape[axis]
+    whole = (slice(None),) * (len(shape) - axis)
+    if axis == 0:
+        yield whole
+        return
+    step = max(1, size // inner)
+    for outer in np.ndindex(shape[: axis - 1]):
+        for start in range(0, shape[axis - 1], step):
+            yield (*(slice(i, i + 1) for i in outer), slice(start, start + step), *whole)
+
+
+def tile(array: Numbers, block: tuple[slice, ...]) -> Array:
+    """Part of `array` that a block of its leading axes selects, with the last axis first.
+
+    `block` has one slice per axis but the last. An axis of length 1, which broadcasts, stays whole.
+    """
+    axes = zip(block, array.shape[:-1], strict=True)
+    part = array[tuple(index if length > 1 else slice(None) for index, length in axes)]
+    return channels_first(part)
+
+
+def channels_first(array: Numbers) -> Array:
+    """Array with its last axis first, float64 and contiguous."""
+    return np.ascontiguousarray(np.moveaxis(array, -1, 0), dtype=np.float64)
+
+
+def with_axes(array: Numbers, ndim: int) -> Numbers:
+    """Array with leading axes of length 1, `ndim` axes in all.
+
+    An axis but the last along which it was broadcast has length 1 again.
+    """
+    *strides, _ = array.strides
+    narrow = array[tuple(slice(None if stride else 1) for stride in strides)]
+    return narrow.reshape((1,) * (ndim - array.ndim) + narrow.shape)
+
 
 # Largest error of the squared length of a direction: directions rounded to float32 pass.
 UNIT_TOLERANCE = 1e-6

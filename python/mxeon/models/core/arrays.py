@@ -1,9 +1,28 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Types of arrays in the signatures of the models."""
+"""Types of arrays in the signatures of the models.
+
+
+Arrays of any library that follows the array API standard: its functions, and what brings arguments to it.
+
+A formula takes its functions from its arguments, by the names of the standard. `any_array` marks what users call: with
+arrays of PyTorch or JAX it brings all arguments to that library, its precision and its device. A value that a
+transformation traces has no numbers yet, and is not checked.
+
+
+Operations whose derivatives are finite at the edges of a domain.
+
+Libraries that differentiate multiply the derivatives of single steps: where a root begins, infinity
+times 0. Each function below is the plain operation of NumPy, to the last bit. For other arrays it takes
+its value at the edge from a branch of its own, and its derivative there is the one of its docstring.
+"""
 
 from __future__ import annotations
 
-from typing import Any, TypeAlias, TypeVar
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import wraps
+from importlib import import_module
+from inspect import signature
+from typing import Any, ParamSpec, Protocol, TypeAlias, TypeVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,3 +37,283 @@ Number = TypeVar("Number", Array, float)
 
 # Arguments after validation, in the precision in which they came.
 Numbers: TypeAlias = NDArray[Any]
+
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+class Namespace(Protocol):
+    """Functions of the array API standard."""
+
+    def __getattr__(self, name: str) -> Callable[..., Array]: ...
+
+
+PLAIN = np.ndarray, np.generic, float, int, list, tuple  # what is NumPy's, or becomes it
+# NumPy below 2 has other names for some functions.
+NUMPY = cast(Namespace, np if hasattr(np, "atan") else import_module("array_api_compat.numpy"))
+# Types of numbers that are no arrays of the standard, and functions that were found, by library.
+OTHERS: dict[str, type] = {}
+FUNCTIONS: dict[str, Namespace] = {}
+
+
+def library(value: object) -> str:
+    """Name of the library other than NumPy whose array this is; "" for everything else."""
+    if isinstance(value, PLAIN):
+        return ""
+    name = type(value).__module__.partition(".")[0]
+    if hasattr(value, "dtype") if name == "torch" else hasattr(value, "__array_namespace__"):
+        return name.removesuffix("lib")
+    return next((name for name, kind in OTHERS.items() if isinstance(value, kind)), "")
+
+
+def array_namespace(*arrays: object) -> Namespace:
+    """Functions for these arrays: NumPy itself, unless one of them is another library's."""
+    others = [each for each in arrays if library(each)]
+    return _others_namespace(others) if others else NUMPY
+
+
+def _others_namespace(others: Sequence[object]) -> Namespace:
+    """Functions of the one library whose arrays these are."""
+    names = sorted({library(each) for each in others})
+    if len(names) > 1:
+        raise ValueError(f"arrays must be of one library; got {' and '.join(names)}")
+    if names[0] not in FUNCTIONS:
+        found = import_module("array_api_compat").array_namespace(others[0])
+        FUNCTIONS[names[0]] = cast(Namespace, found)
+    return FUNCTIONS[names[0]]
+
+
+def any_array(function: Callable[P, R]) -> Callable[P, R]:
+    """Function that takes arrays of any library, and returns arrays of that library.
+
+    Without such arrays it is the function itself, to the last bit. With them numbers, lists and arrays
+    of NumPy are brought to their library, precision and device.
+    """
+    parameters = signature(function).parameters.values()
+    names = [each.name for each in parameters]
+    numbers = {each.name: each.default for each in parameters if type(each.default) is float}
+
+    @wraps(function)
+    def wrapper(*args: P.args, **kwargs: P.kwargs) -> R:
+        others = [each for each in _values((*args, *kwargs.values())) if library(each)]
+        if not others:
+            return function(*args, **kwargs)
+        convert = _converter(others)
+        left = {name: numbers[name] for name in names[len(args) :] if name in numbers} | kwargs
+        named = {name: convert(each) for name, each in left.items()}
+        return cast(Callable[..., R], function)(*map(convert, args), **named)
+
+    return wrapper
+
+
+def _values(arguments: Iterable[object]) -> Iterator[object]:
+    """Arguments, of a mapping by names what it holds."""
+    for each in arguments:
+        yield from each.values() if isinstance(each, Mapping) else (each,)
+
+
+def _converter(others: Sequence[object]) -> Callable[[object], object]:
+    """What brings an argument to the library, the precision and the device of these arrays."""
+    xp, arrays = _others_namespace(others), cast("Sequence[Array]", others)
+    for each in arrays:
+        try:
+            real = bool(xp.isdtype(each.dtype, ("bool", "integral", "real floating")))
+        except TypeError:  # of JAX, whose random keys have a type that NumPy does not know
+            real = False
+        if not real:
+            raise ValueError(f"arrays must be of real numbers; got one of {each.dtype}")
+    floating = [each.dtype for each in arrays if xp.isdtype(each.dtype, "real floating")]
+    dtype = floating[0] if floating else xp.asarray(0.5).dtype
+    place = _place(arrays[0])
+
+    def convert(value: object) -> object:
+        if isinstance(value, Mapping):
+            return {name: convert(each) for name, each in value.items()}
+        if library(value):
+            array = cast(Array, value)
+            return array if xp.isdtype(array.dtype, "real floating") else xp.astype(array, dtype)
+        if isinstance(value, bool) or not isinstance(value, PLAIN):
+            return value
+        if isinstance(value, float | int):  # which a compiler need not trace through NumPy
+            return xp.asarray(value, dtype=dtype, **place)
+        found = np.asarray(value)
+        return xp.asarray(found, dtype=dtype, **place) if found.dtype.kind in "iuf" else value
+
+    return convert
+
+
+def _place(array: object) -> dict[str, object]:
+    """The device of an array, where a library has arrays on several at once."""
+    return {"device": cast(Array, array).device} if library(array) == "torch" else {}
+
+
+def like(values: Numbers, array: Array) -> Array:
+    """Values of NumPy as an array of another's library, precision and device."""
+    xp = array_namespace(array)
+    if xp is NUMPY:
+        return np.asarray(values, np.float64)
+    return xp.asarray(values, dtype=array.dtype, **_place(array))
+
+
+def host_values(value: object) -> Numbers | None:
+    """Values of another library's array in NumPy; None where a transformation traces it."""
+    try:
+        if library(value) != "torch":
+            return np.asarray(value)
+        import torch
+
+        compiles = torch.compiler.is_compiling()
+        return None if compiles else np.asarray(cast(torch.Tensor, value).detach().cpu())
+    except (TypeError, RuntimeError) as error:  # of JAX, of torch
+        if "deleted" in str(error):
+            raise ValueError("arrays must have values; got one that was deleted") from None
+        return None
+
+
+INSIDE = 0.5  # an argument at which every formula of a cosine is smooth
+
+
+def cosine(z: Array) -> Array:
+    """Cosine of a direction with this height: 1 where rounding made it larger, 0 where smaller.
+
+    At 1 and at 0 its derivative is that of the height.
+    """
+    xp = array_namespace(z)
+    if xp is NUMPY:
+        return xp.minimum(z, 1.0)  # what is negative was refused, or counted as 0
+    return xp.where(z > 1.0, 1.0, xp.where(z < 0.0, 0.0, z))
+
+
+def least_normal(x: Array) -> float:
+    """Smallest positive number that has all its digits in the precision of x."""
+    return float(_precision(x).tiny)
+
+
+def largest(x: Array) -> float:
+    """Largest number of the precision of x."""
+    return float(_precision(x).max)
+
+
+def _precision(x: Array) -> np.finfo[np.float64]:
+    """Limits of the numbers of an array; those that do not say theirs are of float32."""
+    return cast("np.finfo[np.float64]", array_namespace(x).finfo(getattr(x, "dtype", np.float32)))
+
+
+def at_most(x: Array, high: float) -> Array:
+    """The smaller of x and a number; where they are equal the derivative is that of x."""
+    xp = array_namespace(x)
+    return xp.minimum(x, high) if xp is NUMPY else xp.where(x > high, high, x)
+
+
+def trimmed(x: Array, high: float) -> Array:
+    """x, which rounding alone makes larger than a number: cut there, but for the sake of derivatives."""
+    xp = array_namespace(x)
+    return xp.minimum(x, high) if xp is NUMPY else x
+
+
+def at_least_0(x: Array) -> Array:
+    """The larger of x and 0; where they are equal the derivative is that of x."""
+    xp = array_namespace(x)
+    return xp.maximum(x, 0.0) if xp is NUMPY else xp.where(x < 0.0, 0.0, x)
+
+
+def magnitude(x: Array) -> Array:
+    """|x|; where x is 0 the derivative is that of x."""
+    xp = array_namespace(x)
+    return xp.abs(x) if xp is NUMPY else xp.where(x < 0.0, -x, x)
+
+
+def within(x: Array, low: float = 0.0, high: float = 1.0) -> Array:
+    """x kept between two numbers; at either the derivative is that of x."""
+    xp = array_namespace(x)
+    return np.clip(x, low, high) if xp is NUMPY else xp.where(x < low, low, at_most(x, high))
+
+
+def root(x: Array) -> Array:
+    """Square root; where x is 0 its derivative counts as 0."""
+    xp = array_namespace(x)
+    if xp is NUMPY:
+        return xp.sqrt(x)
+    positive = x > 0.0
+    return xp.where(positive, xp.sqrt(xp.where(positive, x, 1.0)), 0.0)
+
+
+def hypot(x: Array, y: Array) -> Array:
+    """Length of (x, y); where it is 0 its derivative counts as 0."""
+    xp = array_namespace(x, y)
+    if xp is NUMPY:
+        return xp.hypot(x, y)
+    zero = (x == 0.0) & (y == 0.0)
+    return xp.where(zero, 0.0, xp.hypot(xp.where(zero, 1.0, x), y))
+
+
+def arcsine(x: Array) -> Array:
+    """Arc sine of x kept in [-1, 1]; where x is at an end or beyond its derivative counts as 0."""
+    xp = array_namespace(x)
+    if xp is NUMPY:
+        return xp.asin(xp.minimum(xp.maximum(x, -1.0), 1.0))
+    inside = xp.abs(x) < 1.0
+    end = xp.where(x < 0.0, -0.5 * np.pi, 0.5 * np.pi)
+    return xp.where(inside, xp.asin(xp.where(inside, x, 0.0)), end)
+
+
+def arccosine(x: Array) -> Array:
+    """Arc cosine of x kept in [-1, 1]; where x is at an end or beyond its derivative counts as 0."""
+    xp = array_namespace(x)
+    if xp is NUMPY:
+        return xp.acos(xp.minimum(xp.maximum(x, -1.0), 1.0))
+    return 0.5 * np.pi - arcsine(x)
+
+
+def angle(y: Array, x: Array) -> Array:
+    """Angle of the point (x, y); at the origin it is that of the x axis, and its derivative counts as 0."""
+    xp = array_namespace(x, y)
+    if xp is NUMPY:
+        return xp.atan2(y, x)
+    origin = (x == 0.0) & (y == 0.0)
+    return xp.atan2(y, xp.where(origin, 1.0, x))
+
+
+def except_at_1(formula: Callable[[Array], Array], x: Array, value: float) -> Array:
+    """formula(x), and `value` with derivative 0 where x is 1 or a rounding more."""
+    xp = array_namespace(x)
+    if xp is NUMPY:
+        return formula(x)
+    edge = x >= 1.0
+    return xp.where(edge, value, formula(xp.where(edge, INSIDE, x)))
+
+
+def power(base: Array, exponent: Array) -> Array:
+    """base^exponent; where it has an infinite derivative at base 0, that counts as 0."""
+    xp = array_namespace(base, exponent)
+    if xp is NUMPY:
+        return base**exponent
+    steep = (base == 0.0) & (exponent < 1.0)
+    flat = xp.where(exponent == 0.0, 1.0, 0.0)
+    return xp.where(steep, flat, xp.where(steep, 1.0, base) ** exponent)
+
+
+def cube_root(x: Array) -> Array:
+    """Cube root; where x is 0 its derivative counts as 0."""
+    return fractional_power(x, 1.0 / 3.0)
+
+
+def fractional_power(x: Array, exponent: float) -> Array:
+    """x^exponent with an exponent in (0, 1); where x is 0 its derivative counts as 0."""
+    xp = array_namespace(x)
+    if xp is NUMPY:
+        return x**exponent
+    positive = x > 0.0
+    return xp.where(positive, xp.where(positive, x, 1.0) ** exponent, 0.0)
+
+
+def below_1(x: Array) -> float:
+    """Largest number below 1 in the precision of x."""
+    return 1.0 - 0.5 * float(_precision(x).eps)
+
+
+def guarded(x: Array, valid: Numbers, inside: float) -> Array:
+    """x, and a number where it is not valid and what follows counts for nothing."""
+    xp = array_namespace(x, valid)
+    return x if xp is NUMPY else xp.where(valid, x, inside)

@@ -7,8 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from mxeon.models.core.arrays import Array
-from mxeon.models.core.namespaces import array_namespace
+from mxeon.models.core.arrays import Array, array_namespace
 
 
 def chebyshev_nodes(count: int) -> Array:

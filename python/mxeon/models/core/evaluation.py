@@ -11,18 +11,21 @@ from contextvars import ContextVar
 import numpy as np
 
 from mxeon.models.core.arguments import (
+    BLOCK,
     are_directions,
+    blocks,
     checked,
     checked_directions,
     checked_triples,
     checked_vector,
+    lead_shape,
     on_horizon,
+    refuse_ambiguous,
     refuse_direction,
+    tile,
+    with_axes,
 )
-from mxeon.models.core.arrays import Array, ArrayLike, Numbers
-from mxeon.models.core.namespaces import NUMPY, array_namespace
-from mxeon.models.core.shapes import lead_shape, refuse_ambiguous
-from mxeon.models.core.tiling import BLOCK, blocks, tile, with_axes
+from mxeon.models.core.arrays import NUMPY, Array, ArrayLike, Numbers, array_namespace
 
 _threads: ContextVar[int] = ContextVar("threads", default=1)
 

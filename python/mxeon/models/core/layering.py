@@ -12,9 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from mxeon.models.core.arguments import checked
-from mxeon.models.core.arrays import Array, ArrayLike
-from mxeon.models.core.edges import at_least_0
-from mxeon.models.core.namespaces import any_array, library, like
+from mxeon.models.core.arrays import Array, ArrayLike, any_array, at_least_0, library, like
 
 
 @dataclass(frozen=True)

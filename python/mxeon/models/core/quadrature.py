@@ -9,11 +9,24 @@ from typing import cast
 
 import numpy as np
 
-from mxeon.models.core.arguments import checked, checked_count, checked_real, checked_vector
-from mxeon.models.core.arrays import Array, ArrayLike
-from mxeon.models.core.edges import arccosine, root
-from mxeon.models.core.namespaces import NUMPY, any_array, array_namespace, library, like
-from mxeon.models.core.shapes import lead_shape
+from mxeon.models.core.arguments import (
+    checked,
+    checked_count,
+    checked_real,
+    checked_vector,
+    lead_shape,
+)
+from mxeon.models.core.arrays import (
+    NUMPY,
+    Array,
+    ArrayLike,
+    any_array,
+    arccosine,
+    array_namespace,
+    library,
+    like,
+    root,
+)
 
 
 @any_array

@@ -1,2 +1,779 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rough diffuse reflection: the Oren-Nayar family, Burley, and diffuse transmission."""
+"""Formulas of the Oren-Nayar family on valid float64 arrays, term by term as in the paper.
+
+Names and arguments are those of the shader functions in `genglsl/lib/eon.glsl` and
+`genglsl/sampling/oren_nayar_family.glsl`. Directions are (..., 3), everything else (...), but `rho` has its
+channels on the first axis, so that it broadcasts against the rest.
+
+
+BRDF of Lambert and of the Oren-Nayar family, in 1/sr and without the cosine.
+
+All functions broadcast, are reciprocal, work on the closed domain, and evaluate in blocks, so that
+memory beyond arguments and result does not grow. They use the caller's thread alone; `threads` lets
+several share a large call. Where both directions graze the surface and s > 0,
+s / max(mu_o, mu_i) has no limit and counts as 0; value times cosine is 0 there for any choice.
+
+- `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
+- `rho` (..., C): Reflectance per channel, in [0, 1]; a number is one channel.
+- `sigma` (...): Deviation of the facets' slope angle, in radian, in [0, pi/2].
+- `roughness` (...): In [0, 1].
+
+Result (..., C): BRDF in 1/sr, at least 0, unbounded at grazing. Accuracy: error below 1e-14 / pi,
+or below 1e-14 of the largest value that |s / t| takes at these cosines where that is larger. Raises
+`ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
+not broadcast.
+
+
+Burley's diffuse model, as in [MaterialX2026], section `burley_diffuse_bsdf`.
+
+- `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
+- `mu` (...): Cosine of the polar angle of wo, in [0, 1].
+- `rho` (..., C): Reflectance per channel, in [0, 1]; a number is one channel.
+- `roughness` (...): In [0, 1]: sigma of the text.
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
+
+
+Diffuse transmission, as in [MaterialX2026], section `translucent_bsdf`.
+
+
+Directional and average albedos of the Oren-Nayar family, in closed form and by quadrature.
+
+Those of QON are in `qon_albedo`. The albedos of FON are those at unit reflectance: multiply by rho. All functions broadcast
+and work on the closed domain; of numbers alone, those without channels return a number. H is
+`fon_loss`.
+
+- `mu` (...): Cosine of the polar angle, in [0, 1].
+- `roughness` (...): In [0, 1].
+- `rho` (..., C): Reflectance per channel, in [0, 1]; a number is one channel.
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
+
+
+Albedos of QON at unit reflectance, in closed form: multiply by rho.
+
+- `mu` (...): Cosine of the polar angle, in [0, 1].
+- `sigma` (...): Deviation of the facets' slope angle, in radian, in [0, pi/2].
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
+
+
+Reflectance `rho` with which EON has a wanted albedo: the inverse of the albedos in closed form.
+
+Every color in [0, 1] is reached, by one rho in [0, 1], at every roughness; no other color is.
+
+- `roughness` (...): In [0, 1].
+- `color` (..., C): Wanted albedo, directional at normal incidence or average, in [0, 1].
+
+Result (..., C): in [0, 1]. Raises `ValueError`, which names the first bad element, if an argument
+leaves its range or the shapes do not broadcast.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mxeon.models.core.arguments import (
+    checked_colors,
+    checked_numbers,
+    checked_transmitted,
+    checked_triples,
+)
+from mxeon.models.core.arrays import (
+    Array,
+    ArrayLike,
+    Number,
+    any_array,
+    array_namespace,
+    at_least_0,
+    cosine,
+    except_at_1,
+    hypot,
+    least_normal,
+    root,
+    trimmed,
+)
+from mxeon.models.core.evaluation import evaluate
+
+# FON loses r c1 / (1 + c1 r) at normal incidence and r (c1 - c2) / (1 + c1 r) on average:
+# [Portsmouth2025], Eqs. (10), (15), (29).
+C1 = 0.5 - 2.0 / (3.0 * np.pi)
+C2 = 2.0 / 3.0 - 28.0 / (15.0 * np.pi)
+
+# G_F / pi in powers of 1 - mu, mu in [0, 1]: [Portsmouth2025], Eq. (14); largest error 6.0e-4.
+FON_G = (0.0571085289, 0.491881867, -0.332181442, 0.0714429953)
+
+
+def cosines(wo: Array, wi: Array) -> tuple[Array, Array, Array]:
+    """Cosines with the normal, and the part of the pair's cosine that lies in the surface.
+
+        s = dot(wo, wi) - mu_o mu_i = wo.x wi.x + wo.y wi.y
+
+    - `wo`, `wi` (..., 3): Unit vectors on or above the horizon.
+
+    `mu_o`, `mu_i` (...): Cosines, in [0, 1]: z, but 1 where a rounded direction has z > 1. `s`
+    (...): In [-1, 1] up to rounding; signed, never clamped. [Portsmouth2025], below Eq. (3).
+    """
+    s = wo[..., 0] * wi[..., 0] + wo[..., 1] * wi[..., 1]
+    return cosine(wo[..., 2]), cosine(wi[..., 2]), s
+
+
+def fon_loss_mu(mu: Array) -> Array:
+    """H(mu) = c1 - G_F(mu) / pi: [Portsmouth2025], Eq. (13); FON loses r A_F H(mu).
+
+        H = mu t (c1 - S t (2 + S) / (3 pi)) + (2 / pi) S atan(t)
+        S = sqrt(1 - mu^2),  t = mu / (1 + S)
+
+    With theta_o = pi / 2 - 2 atan(t) and 1 - S = mu t nothing divides by mu and nothing cancels.
+    Near the normal H is c1 + O(S^3).
+    """
+    return except_at_1(_fon_loss, mu, C1)
+
+
+def _fon_loss(mu: Array) -> Array:
+    """H(mu), whose steps have no derivative at mu = 1."""
+    xp = array_namespace(mu)
+    S = xp.sqrt((1.0 - mu) * (1.0 + mu))
+    t = mu / (1.0 + S)
+    return mu * t * (C1 - S * t * (2.0 + S) / (3.0 * np.pi)) + (2.0 / np.pi) * S * xp.atan(t)
+
+
+def fon_loss_approx(mu: Array) -> Array:
+    """H(mu) with the quartic of [Portsmouth2025], Eq. (14): below 0 where mu < 0.0014."""
+    m = 1.0 - mu
+    g1, g2, g3, g4 = FON_G
+    return C1 - m * (g1 + m * (g2 + m * (g3 + m * g4)))
+
+
+def fon_a(roughness: Array) -> Array:
+    """A_F: [Portsmouth2025], below Eq. (11)."""
+    return 1.0 / (1.0 + C1 * roughness)
+
+
+def fon_scale(rho: Array, roughness: Array) -> Array:
+    """rho A_F / pi: [Portsmouth2025], Eq. (10)."""
+    return rho / np.pi * fon_a(roughness)
+
+
+def qon_a(sigma: Number, constant: float = 0.33) -> Number:
+    """A_q: [Portsmouth2025], below Eq. (1)."""
+    return 1.0 - 0.5 * sigma**2 / (sigma**2 + constant)
+
+
+def qon_b(sigma: Number) -> Number:
+    """B_q: [Portsmouth2025], below Eq. (1)."""
+    return 0.45 * sigma**2 / (sigma**2 + 0.09)
+
+
+def eon_denominator(rho: Array, roughness: Array) -> Array:
+    """D = (1 + c1 r) (1 - rho (1 - <E_FON>)), in [1, 1 + c1]: from [Portsmouth2025], Eq. (18)."""
+    return 1.0 + C1 * roughness - rho * (roughness * (C1 - C2))
+
+
+def eon_multiple_weight(rho: Array, roughness: Array) -> Array:
+    """Weight of H(mu_o) H(mu_i) beside FON's 1 + r s / t_F: Eq. (19) over Eq. (10).
+
+        rho r (1 + c2 r) / ((c1 - c2) D)
+
+    The powers of r that vanish with the roughness are cancelled: no division by 1 - <E_FON>.
+    """
+    weight = roughness * (1.0 + C2 * roughness) / (C1 - C2)
+    return rho * weight / eon_denominator(rho, roughness)
+
+
+def oren_nayar_quotient(value: Array, divisor: Array) -> Array:
+    """`value / divisor`, and 0 where a divisor >= 0 vanishes: this family has no limit there.
+
+    A divisor below the smallest normal number counts as 0, for the quotient might overflow.
+    """
+    xp = array_namespace(value, divisor)
+    return value / xp.where(divisor < least_normal(divisor), np.inf, divisor)
+
+
+def qon_quotient(mu_o: Array, mu_i: Array, s: Array) -> Array:
+    """s / t_q: [Portsmouth2025], Eq. (4)."""
+    xp = array_namespace(mu_o, mu_i, s)
+    return oren_nayar_quotient(xp.maximum(s, 0.0), xp.maximum(mu_o, mu_i))
+
+
+def fon_quotient(mu_o: Array, mu_i: Array, s: Array) -> Array:
+    """s / t_F: [Portsmouth2025], Eq. (11)."""
+    xp = array_namespace(mu_o, mu_i, s)
+    return qon_quotient(mu_o, mu_i, s) + xp.minimum(s, 0.0)
+
+
+def qon_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, sigma: Array) -> Array:
+    """rho / pi (A_q + B_q s / t_q): [Portsmouth2025], Eqs. (1), (3)."""
+    return rho / np.pi * (qon_a(sigma) + qon_b(sigma) * qon_quotient(mu_o, mu_i, s))
+
+
+def fon_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
+    """rho / pi A_F (1 + r s / t_F): [Portsmouth2025], Eq. (10)."""
+    return fon_scale(rho, roughness) * (1.0 + roughness * fon_quotient(mu_o, mu_i, s))
+
+
+def eon_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
+    """rho / pi A_F (1 + r s / t_F + weight H(mu_o) H(mu_i)): [Portsmouth2025], Eq. (16)."""
+    single_scatter = 1.0 + roughness * fon_quotient(mu_o, mu_i, s)
+    multi_scatter = eon_multiple_weight(rho, roughness) * (fon_loss_mu(mu_o) * fon_loss_mu(mu_i))
+    return fon_scale(rho, roughness) * (single_scatter + multi_scatter)
+
+
+def lambert_formula(wo: Array, wi: Array, rho: Array) -> Array:
+    """rho / pi."""
+    return rho / np.pi
+
+
+def oren_nayar_angle(y: Array, x: Array) -> Array:
+    """Angle whose sine is y and whose cosine is x, as a fraction of a right angle."""
+    xp = array_namespace(y, x)
+    return (2.0 / np.pi) * xp.atan2(y, x)
+
+
+def oren_nayar_behind_slope(mu_o: Array, mu_i: Array, S_o: Array, S_i: Array) -> Array:
+    """(sin(alpha) - (2 beta / pi)^3) / cos(beta), and its limit 6 / pi where both directions graze.
+
+    With q = 1 - 2 beta / pi the cube is 1 - q (3 - 3 q + q^2), and 1 - sin(alpha) is
+    cos(alpha)^2 / (1 + sin(alpha)): the ones cancel, not the digits.
+    """
+    xp = array_namespace(mu_o, mu_i, S_o, S_i)
+    high, low = xp.maximum(mu_o, mu_i), xp.minimum(mu_o, mu_i)
+    q = oren_nayar_angle(high, xp.minimum(S_o, S_i))
+    rise = q * (3.0 - 3.0 * q + q**2) - low**2 / (1.0 + xp.maximum(S_o, S_i))
+    slope = oren_nayar_quotient(rise, high)
+    return xp.where(high < least_normal(high), 6.0 / np.pi, slope)
+
+
+def oren_nayar_interreflection(rho: Array, sigma: Array) -> Array:
+    """Term that interreflection adds to A: [OrenNayar1994], [Fujii2013]."""
+    return 0.17 * rho * (sigma**2 / (sigma**2 + 0.13))
+
+
+def oren_nayar_formula(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:
+    """The functional approximation of [OrenNayar1994] for Gaussian slopes, with interreflection.
+
+        f = rho / pi [C1 + C2 cos(phi) tan(beta) + C3 (1 - |cos(phi)|) tan((alpha + beta) / 2)]
+            + 0.17 rho^2 / pi sigma^2 / (sigma^2 + 0.13) (1 - (2 beta / pi)^2 cos(phi))
+        C1 = A_q,  C2 = B_q (sin(alpha) - (2 beta / pi)^3 where cos(phi) < 0),
+        C3 = 0.125 sigma^2 / (sigma^2 + 0.09) (4 alpha beta / pi^2)^2
+
+    alpha is the larger polar angle, beta the smaller; both as fractions of a right angle below.
+    """
+    xp = array_namespace(wo, wi)
+    mu_o, mu_i, s = cosines(wo, wi)
+    S_o, S_i = hypot(wo[..., 0], wo[..., 1]), hypot(wi[..., 0], wi[..., 1])
+    elevation_o, elevation_i = oren_nayar_angle(mu_o, S_o), oren_nayar_angle(mu_i, S_i)
+    alpha = 1.0 - xp.minimum(elevation_o, elevation_i)
+    beta = 1.0 - xp.maximum(elevation_o, elevation_i)
+    cos_phi = oren_nayar_quotient(s, S_o * S_i)
+    # C2 cos(phi) tan(beta), where sin(beta) cos(phi) is s / sin(alpha).
+    behind = oren_nayar_quotient(xp.minimum(s, 0.0), xp.maximum(S_o, S_i))
+    behind = behind * oren_nayar_behind_slope(mu_o, mu_i, S_o, S_i)
+    # C3 and what follows it, where 1 - cos(phi)^2 is (cross / (S_o S_i))^2.
+    cross = wo[..., 0] * wi[..., 1] - wo[..., 1] * wi[..., 0]
+    aside = oren_nayar_quotient(cross, S_o * S_i) ** 2 / (1.0 + xp.abs(cos_phi))
+    aside = aside * oren_nayar_quotient(S_o + S_i, mu_o + mu_i)
+    C3 = 0.125 / 0.45 * qon_b(sigma) * (alpha * beta) ** 2
+    single_scatter = qon_a(sigma) + qon_b(sigma) * (qon_quotient(mu_o, mu_i, s) + behind)
+    interreflection = oren_nayar_interreflection(rho, sigma) * (1.0 - beta**2 * cos_phi)
+    return rho / np.pi * (single_scatter + C3 * aside + interreflection)
+
+
+def qon_formula(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:
+    """[Portsmouth2025], Eqs. (1), (3), (4)."""
+    return qon_brdf_mu(*cosines(wo, wi), rho, sigma)
+
+
+def qon_footnote_formula(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:
+    """QON with 0.57 for 0.33 in A_q: [Portsmouth2025], footnote 1."""
+    return rho / np.pi * (qon_a(sigma, 0.57) + qon_b(sigma) * qon_quotient(*cosines(wo, wi)))
+
+
+def qon_fujii_formula(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:
+    """rho / pi (A_q + 0.17 rho k + B_q s / t_F), k = sigma^2 / (sigma^2 + 0.13): [Fujii2013]."""
+    a = qon_a(sigma) + oren_nayar_interreflection(rho, sigma)
+    return rho / np.pi * (a + qon_b(sigma) * fon_quotient(*cosines(wo, wi)))
+
+
+def fon_formula(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
+    """[Portsmouth2025], Eqs. (10), (11)."""
+    return fon_brdf_mu(*cosines(wo, wi), rho, roughness)
+
+
+def eon_formula(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
+    """[Portsmouth2025], Eqs. (16), (19)."""
+    return eon_brdf_mu(*cosines(wo, wi), rho, roughness)
+
+
+def eon_formula_approx(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
+    """EON with the quartic for H, which is kept from falling below 0 where mu < 0.0014."""
+    mu_o, mu_i, s = cosines(wo, wi)
+    losses = at_least_0(fon_loss_approx(mu_o)) * at_least_0(fon_loss_approx(mu_i))
+    single_scatter = 1.0 + roughness * fon_quotient(mu_o, mu_i, s)
+    multi_scatter = eon_multiple_weight(rho, roughness) * losses
+    return fon_scale(rho, roughness) * (single_scatter + multi_scatter)
+
+
+@any_array
+def lambert_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike) -> Array:
+    """BRDF of a smooth diffuse surface, Lambert's.
+
+        f = rho / pi
+
+    Result (..., C): BRDF in 1/sr, in [0, 1/pi]. [Portsmouth2025], section 2.1, the limit
+    sigma -> 0.
+
+        >>> lambert_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8]).round(6)
+        array([0.063662, 0.254648])
+    """
+    return evaluate(lambert_formula, wo, wi, rho)
+
+
+@any_array
+def oren_nayar_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
+    """BRDF of the full Oren-Nayar model, interreflection included.
+
+        f = rho / pi [C1 + C2 cos(phi) tan(beta) + C3 (1 - |cos(phi)|) tan((alpha + beta) / 2)
+                      + 0.17 rho sigma^2 / (sigma^2 + 0.13) (1 - cos(phi) (2 beta / pi)^2)],
+        C1 = 1 - 0.5 sigma^2 / (sigma^2 + 0.33),  k = sigma^2 / (sigma^2 + 0.09),
+        C2 = 0.45 k (sin(alpha) - (2 beta / pi)^3 where cos(phi) < 0),
+        C3 = 0.125 k (4 alpha beta / pi^2)^2
+
+    Result (..., C): BRDF in 1/sr, unbounded at grazing. alpha and beta are the larger and the
+    smaller polar angle, phi is the azimuth between both. The authors' fit falls below 0, to -0.27
+    rho / pi, for rough dark surfaces where both directions graze from opposite sides. It stays as
+    they printed it. At grazing, (sin(alpha) - (2 beta / pi)^3) tan(beta) has its limit 6 / pi; the
+    tangent after C3 has none and counts as 0. [OrenNayar1994], functional approximation for
+    Gaussian slopes, and interreflection.
+
+        >>> oren_nayar_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
+        array([0.063766, 0.269282])
+    """
+    return evaluate(oren_nayar_formula, wo, wi, rho, sigma=sigma)
+
+
+@any_array
+def qon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
+    """BRDF of the qualitative Oren-Nayar model.
+
+        f = rho / pi (A + B s / t),  1/t = 0 where s <= 0, else 1 / max(mu_o, mu_i)
+
+    [Portsmouth2025], Eqs. (1)-(4).
+
+        >>> qon_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
+        array([0.06258 , 0.250322])
+    """
+    return evaluate(qon_formula, wo, wi, rho, sigma=sigma)
+
+
+@any_array
+def qon_footnote_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
+    """BRDF of QON with 0.57 instead of 0.33 in A, which approximates interreflection.
+
+        f = rho / pi (A + B s / t),  A = 1 - 0.5 sigma^2 / (sigma^2 + 0.57)
+
+    [Portsmouth2025], footnote 1; [OrenNayar1994], qualitative model.
+
+        >>> qon_footnote_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
+        array([0.066596, 0.266385])
+    """
+    return evaluate(qon_footnote_formula, wo, wi, rho, sigma=sigma)
+
+
+@any_array
+def qon_fujii_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
+    """BRDF of QON with coefficients that match the full model, and with a tinted A.
+
+        f = rho / pi (A + 0.17 rho sigma^2 / (sigma^2 + 0.13) + B s / t),
+        1/t = 1 where s <= 0, else 1 / max(mu_o, mu_i)
+
+    [Fujii2013], first proposed formula.
+
+        >>> qon_fujii_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
+        array([0.064005, 0.273106])
+    """
+    return evaluate(qon_fujii_formula, wo, wi, rho, sigma=sigma)
+
+
+@any_array
+def fon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
+    """BRDF of the Fujii Oren-Nayar model.
+
+        f = rho / pi A (1 + roughness s / t),  1/t = 1 where s <= 0, else 1 / max(mu_o, mu_i)
+
+    [Portsmouth2025], Eqs. (10), (11).
+
+        >>> fon_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
+        array([0.07235 , 0.289399])
+    """
+    return evaluate(fon_formula, wo, wi, rho, roughness=roughness)
+
+
+@any_array
+def eon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
+    """BRDF of the energy-preserving Oren-Nayar model.
+
+        f = rho / pi A (1 + r s / t + rho r (1 + c2 r) / ((c1 - c2) D) H(mu_o) H(mu_i)),
+        D = 1 + c1 r - rho r (c1 - c2),  H = c1 - G_F / pi
+
+    Form: Eq. (19) with 1 - E_FON = r A H; the powers of r that vanish with roughness are cancelled,
+    so that roughness 0 is Lambert exactly. [Portsmouth2025], Eqs. (16)-(19).
+
+        >>> eon_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
+        array([0.073621, 0.310981])
+    """
+    return evaluate(eon_formula, wo, wi, rho, roughness=roughness)
+
+
+@any_array
+def eon_brdf_approx(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
+    """BRDF of EON with the quartic for the albedo of FON.
+
+        f as in `eon_brdf`,  G_F / pi = g1 m + g2 m^2 + g3 m^3 + g4 m^4,  m = 1 - mu
+
+    Accuracy: within 1.25e-3 / pi of `eon_brdf`. Below mu = 0.0014 the quartic loses less than
+    nothing, and H counts as 0. Listing 1 of the paper keeps 1 - E_FON above 1e-7 instead. That
+    differs by less than 1.4e-7 / pi for roughness > 1e-5, and is not Lambert at roughness 0.
+    [Portsmouth2025], Eqs. (14), (16)-(19).
+
+        >>> eon_brdf_approx([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
+        array([0.073622, 0.311002])
+    """
+    return evaluate(eon_formula_approx, wo, wi, rho, roughness=roughness)
+
+
+@any_array
+def burley_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
+    """BRDF of Burley's diffuse model.
+
+        f = rho / pi (1 + k (1 - mu_o)^5) (1 + k (1 - mu_i)^5),
+        k = F_D90 - 1 = 2 roughness (wi . wh)^2 - 1 / 2
+
+    Result (..., C): BRDF in 1/sr, in [0, 25/4 / pi]. With (wi . wh)^2 = (1 + wo . wi) / 2 there is
+    no half vector to normalize, and opposite directions at grazing need no case of their own.
+    Accuracy: error below 66 / roughness times 2^-53 of f + 1 / pi. [MaterialX2026], section
+    `burley_diffuse_bsdf`; [Burley2012], section 5.3.
+
+        >>> burley_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
+        array([0.063985, 0.255939])
+    """
+    return evaluate(_formula, wo, wi, rho, roughness=roughness)
+
+
+@any_array
+def burley_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
+    """Directional albedo of Burley's diffuse model, in closed form.
+
+        E(mu) = rho (1 + n (h + 2 r mu / 3) + h / 21 + r mu / 84 + n Q),
+        n = (1 - mu)^5,  h = r - 1/2,
+        Q = (h^2 + r^2 (1 - mu^2) / 2) / 21 + h r mu / 42 + r^2 (3 mu^2 - 1) / 504
+
+    Result (..., C): It exceeds rho where the surface is rough: up to 1.558 rho at grazing. Form: f
+    is a polynomial in mu_i and cos(phi). The integrals are 2 n! 5! / (n + 6)! for mu_i^n
+    (1 - mu_i)^5: 1/21, 1/84, 1/252. Accuracy: absolute error below 1e-12. [MaterialX2026], sections
+    `burley_diffuse_bsdf` and Directional Albedo.
+
+        >>> burley_albedo_dir(0.0, 1.0, 1.0).round(6)
+        array([1.55754])
+    """
+    (rho,), (m, r) = checked_colors({"rho": rho}, mu=mu, roughness=roughness)
+    h, n = r - 0.5, (1.0 - m) ** 5
+    both = (h**2 + 0.5 * r**2 * (1.0 - m) * (1.0 + m)) / 21.0
+    both = both + h * r * m / 42.0 + r**2 * (3.0 * m**2 - 1.0) / 504.0
+    unit = 1.0 + n * (h + 2.0 / 3.0 * r * m) + h / 21.0 + r * m / 84.0 + n * both
+    return rho * unit
+
+
+def _formula(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
+    """f on valid arrays, channels first."""
+    mu_o, mu_i, s = cosines(wo, wi)
+    k = roughness * (1.0 + mu_o * mu_i + s) - 0.5
+    return rho / np.pi * (1.0 + k * (1.0 - mu_o) ** 5) * (1.0 + k * (1.0 - mu_i) ** 5)
+
+
+@any_array
+def translucent_btdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike) -> Array:
+    """BTDF of Lambert's transmission.
+
+        f = rho / pi
+
+    - `wo` (..., 3): Direction to the viewer, unit vector to 1e-6, normal +z, z >= 0.
+    - `wi` (..., 3): Direction to the light, unit vector to 1e-6, z <= 0.
+    - `rho` (..., C): Diffuse transmittance per channel, in [0, 1]; a number is one channel.
+
+    Result (..., C): BTDF in 1/sr. Its integral over the lower hemisphere times |mu_i| is rho.
+    Raises `ValueError` if an argument leaves its range. [MaterialX2026], section
+    `translucent_bsdf`, Lambertian transmittance equation.
+
+        >>> translucent_btdf([0.6, 0.0, 0.8], [0.8, 0.0, -0.6], [0.2, 0.8]).round(6)
+        array([0.063662, 0.254648])
+    """
+    light = checked_transmitted("wi", checked_triples("wi", wi))
+    xp = array_namespace(light)
+    mirrored = xp.stack([light[..., 0], light[..., 1], -light[..., 2]], axis=-1)
+    return evaluate(lambert_formula, wo, mirrored, rho)
+
+
+@any_array
+def fon_loss(mu: ArrayLike) -> Array:
+    """Energy that FON loses at unit reflectance, divided by roughness and by the factor A.
+
+        H(mu) = c1 - G_F(mu) / pi,  1 - E_FON = roughness A H
+
+    Result (...): in [0, c1]: 0 at grazing, c1 = 1/2 - 2 / (3 pi) at normal incidence. Accuracy:
+    relative error below 2e-15 on all of [0, 1]. [Portsmouth2025], Eqs. (12), (13).
+
+        >>> fon_loss([0.0, 0.5, 1.0]).round(6)
+        array([0.      , 0.173441, 0.287793])
+    """
+    (mu,) = checked_numbers(mu=mu)
+    return fon_loss_mu(mu)
+
+
+@any_array
+def fon_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
+    """Directional albedo of FON at unit reflectance.
+
+        E(mu) = 1 - roughness A H(mu),  A = 1 / (1 + c1 roughness)
+
+    Result (...): in (0, 1]. Accuracy: relative error below 1e-15. [Portsmouth2025], Eqs. (12),
+    (13).
+
+        >>> fon_albedo_dir([0.0, 1.0], 1.0).round(6)
+        array([1.      , 0.776522])
+    """
+    mu, r = checked_numbers(mu=mu, roughness=roughness)
+    return 1.0 - r * fon_loss_mu(mu) * fon_a(r)
+
+
+@any_array
+def fon_albedo_dir_approx(mu: ArrayLike, roughness: ArrayLike) -> Array:
+    """Directional albedo of FON at unit reflectance, with a quartic.
+
+        E(mu) ~ (1 + roughness (g1 m + g2 m^2 + g3 m^3 + g4 m^4)) A,  m = 1 - mu
+
+    Result (...): positive; above 1, by up to 3.6e-4, for mu < 0.0014. Accuracy: absolute error
+    below 6.1e-4. [Portsmouth2025], Eq. (14).
+
+        >>> fon_albedo_dir_approx([0.0, 1.0], 1.0).round(6)
+        array([1.000356, 0.776522])
+    """
+    mu, r = checked_numbers(mu=mu, roughness=roughness)
+    return 1.0 - r * fon_loss_approx(mu) * fon_a(r)
+
+
+@any_array
+def fon_albedo_avg(roughness: ArrayLike) -> Array:
+    """Average albedo of FON at unit reflectance.
+
+        <E> = (1 + c2 roughness) / (1 + c1 roughness),  c2 = 2/3 - 28 / (15 pi)
+
+    Result (...): in (0, 1]. [Portsmouth2025], Eqs. (15), (29).
+
+        >>> fon_albedo_avg([0.0, 1.0]).round(6)
+        array([1.      , 0.832811])
+    """
+    (r,) = checked_numbers(roughness=roughness)
+    return (1.0 + C2 * r) * fon_a(r)
+
+
+@any_array
+def eon_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
+    """Directional albedo of EON.
+
+        E(mu) = rho (1 - (1 - rho) roughness H(mu) / D),
+        D = 1 + c1 roughness - rho roughness (c1 - c2)
+
+    Result (..., C): in [0, rho]; exactly 1 where rho is 1. Accuracy: relative error below 1e-15.
+    The form is Eq. (28) with 1 - E_FON = roughness A H. [Portsmouth2025], Eq. (28).
+
+        >>> eon_albedo_dir([0.0, 1.0], [0.5, 1.0], 1.0).round(6)
+        array([[0.5     , 1.      ],
+               [0.439034, 1.      ]])
+    """
+    (rho,), (r, mu) = checked_colors({"rho": rho}, roughness=roughness, mu=mu)
+    return eon_albedo(fon_loss_mu(mu), rho, r)
+
+
+@any_array
+def eon_albedo_dir_approx(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
+    """Directional albedo of EON, with the quartic for the albedo of FON.
+
+        E(mu) as in `eon_albedo_dir`,  H = c1 - (g1 m + g2 m^2 + g3 m^3 + g4 m^4),  m = 1 - mu
+
+    Result (..., C): in [0, 1]; above rho, by up to 1e-4, for mu < 0.0014. Accuracy: absolute error
+    below 1.7e-4. [Portsmouth2025], Eqs. (14), (28).
+
+        >>> eon_albedo_dir_approx([0.0, 1.0], [0.5, 1.0], 1.0).round(6)
+        array([[0.500097, 1.      ],
+               [0.439034, 1.      ]])
+    """
+    (rho,), (r, mu) = checked_colors({"rho": rho}, roughness=roughness, mu=mu)
+    return eon_albedo(fon_loss_approx(mu), rho, r)
+
+
+@any_array
+def eon_albedo_avg(rho: ArrayLike, roughness: ArrayLike) -> Array:
+    """Average albedo of EON.
+
+        <E> = rho (1 + c2 roughness) / D = rho <E_FON> / (1 - rho (1 - <E_FON>)),
+        D = 1 + c1 roughness - rho roughness (c1 - c2)
+
+    Result (..., C): in [0, rho]. [Portsmouth2025], Eqs. (15), (28), averaged; inverse of Eq. (33).
+
+        >>> eon_albedo_avg([0.5, 1.0], 1.0).round(6)
+        array([0.45439, 1.     ])
+    """
+    (rho,), (r,) = checked_colors({"rho": rho}, roughness=roughness)
+    return eon_albedo(C1 - C2, rho, r)
+
+
+def eon_albedo(loss: Array | float, rho: Array, r: Array) -> Array:
+    """Albedo of EON where FON loses r A loss."""
+    return rho * (1.0 - (1.0 - rho) * r * loss / eon_denominator(rho, r))
+
+
+@any_array
+def qon_albedo_dir(mu: ArrayLike, sigma: ArrayLike) -> Array:
+    """Directional albedo of QON at unit reflectance.
+
+        E(mu) = A + B G(mu) / pi,  G = pi (c1 - H(mu)) + 2/3 sqrt(1 - mu^2)
+
+    Result (...): positive; above 1, to 1.02, near grazing for sigma < 0.6. Accuracy: relative error
+    below 1e-15. [Portsmouth2025], Eqs. (5), (8).
+
+        >>> qon_albedo_dir([0.0, 1.0], 0.5).round(6)
+        array([0.949924, 0.784483])
+    """
+    mu, sigma = checked_numbers(mu=mu, sigma=sigma)
+    g_over_pi = C1 - fon_loss_mu(mu) + 2.0 / (3.0 * np.pi) * root((1.0 - mu) * (1.0 + mu))
+    return qon_a(sigma) + qon_b(sigma) * g_over_pi
+
+
+@any_array
+def qon_albedo_avg(sigma: ArrayLike) -> Array:
+    """Average albedo of QON at unit reflectance.
+
+        <E> = A + (2/3 - 64 / (45 pi)) B
+
+    Result (...): in (0, 1]. [Portsmouth2025], Eq. (9).
+
+        >>> qon_albedo_avg(0.5).round(6)
+        np.float64(0.855278)
+    """
+    (sigma,) = checked_numbers(sigma=sigma)
+    return qon_a(sigma) + (2.0 / 3.0 - 64.0 / (45.0 * np.pi)) * qon_b(sigma)
+
+
+# [Portsmouth2025], Eqs. (32) and (34); color and roughness in [0, 1]; largest error of rho 4.41e-3,
+# where the paper states less than 0.3 %, and 2.84e-3.
+NORMAL = (0.258831, 0.98995)
+AVERAGE = 0.189468
+
+# Our fits to the same forms, tools/fits/eon_inversion.py; largest error of rho 2.96e-3 and 1.86e-3.
+NORMAL_REFIT = (0.2531091, 0.9883170)
+AVERAGE_REFIT = 0.1843278
+
+
+@any_array
+def eon_rho_from_albedo_normal(color: ArrayLike, roughness: ArrayLike) -> Array:
+    """Reflectance rho that gives EON this directional albedo at normal incidence.
+
+        rho = 2 C d / (b + sqrt(b^2 + 4 c2 r d C)),  b = 1 + (c1 - c2) r C,  d = 1 + c1 r
+
+    Accuracy: relative error below 1e-15. Form: the root of [Portsmouth2025], Eq. (30), with the
+    difference in its numerator multiplied out, times 1 + c1 r. Nothing cancels or vanishes at low
+    roughness, so that no series is needed. [Portsmouth2025], Eqs. (28) to (31).
+
+        >>> eon_rho_from_albedo_normal([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
+        array([0.      , 0.219784, 0.835673, 1.      ])
+    """
+    color, r = _checked(color, roughness)
+    b, d = 1.0 + (C1 - C2) * r * color, 1.0 + C1 * r
+    sqrt = array_namespace(color, r).sqrt
+    rho = 2.0 * color * d / (b + sqrt(b * b + 4.0 * C2 * r * d * color))
+    # A color of 1 may be rounded to 1 + 2^-52, which no model takes.
+    return trimmed(rho, 1.0)
+
+
+@any_array
+def eon_rho_from_albedo_avg(color: ArrayLike, roughness: ArrayLike) -> Array:
+    """Reflectance rho that gives EON this average albedo.
+
+        rho = C d / (C d + (1 + c2 r)(1 - C)),  d = 1 + c1 r
+
+    Accuracy: relative error below 1e-15. [Portsmouth2025], Eqs. (29) and (33).
+
+        >>> eon_rho_from_albedo_avg([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
+        array([0.      , 0.208598, 0.827676, 1.      ])
+    """
+    color, r = _checked(color, roughness)
+    scaled = color * (1.0 + C1 * r)
+    return scaled / (scaled + (1.0 + C2 * r) * (1.0 - color))
+
+
+@any_array
+def eon_rho_from_albedo_normal_approx(color: ArrayLike, roughness: ArrayLike) -> Array:
+    """`eon_rho_from_albedo_normal` by the paper's polynomial.
+
+    Accuracy: error at most 4.41e-3, at roughness 1 and color 0.69. The paper states less than
+    0.3 %, which holds up to roughness 0.89. A color of 1 gives 1 - 0.0026 r. [Portsmouth2025],
+    Eq. (32).
+
+        >>> eon_rho_from_albedo_normal_approx([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
+        array([0.      , 0.217735, 0.839332, 0.997399])
+    """
+    return _polynomial(color, roughness, *NORMAL)
+
+
+@any_array
+def eon_rho_from_albedo_normal_refit_approx(color: ArrayLike, roughness: ArrayLike) -> Array:
+    """`eon_rho_from_albedo_normal` by a polynomial of the paper's form with new coefficients.
+
+    Accuracy: error at most 2.96e-3, the least that this form can have. A color of 1 gives
+    1 - 0.00296 r. tools/fits/eon_inversion.py; the form is [Portsmouth2025], Eq. (32).
+
+        >>> eon_rho_from_albedo_normal_refit_approx([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
+        array([0.      , 0.216827, 0.838132, 0.997043])
+    """
+    return _polynomial(color, roughness, *NORMAL_REFIT)
+
+
+@any_array
+def eon_rho_from_albedo_avg_approx(color: ArrayLike, roughness: ArrayLike) -> Array:
+    """`eon_rho_from_albedo_avg` by the paper's polynomial.
+
+    Accuracy: error at most 2.84e-3; 0 at colors 0 and 1. [Portsmouth2025], Eq. (34).
+
+        >>> eon_rho_from_albedo_avg_approx([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
+        array([0.      , 0.207965, 0.830315, 1.      ])
+    """
+    return _polynomial(color, roughness, AVERAGE, 1.0)
+
+
+@any_array
+def eon_rho_from_albedo_avg_refit_approx(color: ArrayLike, roughness: ArrayLike) -> Array:
+    """`eon_rho_from_albedo_avg` by a polynomial of the paper's form with a new coefficient.
+
+    Accuracy: error at most 1.86e-3, the least that this form can have; 0 at colors 0 and 1.
+    tools/fits/eon_inversion.py; the form is [Portsmouth2025], Eq. (34).
+
+        >>> eon_rho_from_albedo_avg_refit_approx([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
+        array([0.      , 0.207207, 0.829492, 1.      ])
+    """
+    return _polynomial(color, roughness, AVERAGE_REFIT, 1.0)
+
+
+def _checked(color: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
+    """Checked arguments as float64 arrays: colors (..., C), roughness (..., 1)."""
+    (color,), (roughness,) = checked_colors({"color": color}, roughness=roughness)
+    return color, roughness
+
+
+def _polynomial(color: ArrayLike, roughness: ArrayLike, slope: float, zero: float) -> Array:
+    """C + slope (zero - C) C r: [Portsmouth2025], Eqs. (32) and (34)."""
+    color, r = _checked(color, roughness)
+    return color + slope * (zero - color) * color * r

@@ -16,20 +16,22 @@ from itertools import pairwise
 
 import numpy as np
 
-from mxeon.models.core.arrays import Array
-from mxeon.models.core.edges import (
+from mxeon.models.core.arrays import (
+    NUMPY,
+    Array,
     angle,
     arccosine,
+    array_namespace,
     at_least_0,
     at_most,
     guarded,
     hypot,
+    like,
     root,
     within,
 )
-from mxeon.models.core.namespaces import NUMPY, array_namespace, like
 from mxeon.models.core.quadrature import unit_rule
-from mxeon.models.microfacet.ggx_formulas import mean_alpha, smith_lambda
+from mxeon.models.microfacet.ggx import mean_alpha, smith_lambda
 
 # Gauss-Legendre nodes in r per panel, panels, and nodes per quadrant of phi.
 NODES, PANELS, QUADRANT = 20, 3, 20

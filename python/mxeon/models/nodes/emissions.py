@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mxeon.models.core.arrays import Array
-from mxeon.models.media.emission import (
+from mxeon.models.media import (
     conical_edf,
     conical_exitance,
     generalized_schlick_edf,

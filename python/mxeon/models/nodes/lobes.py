@@ -1,18 +1,39 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rows of pbrlib's sheens and diffuse nodes but the rough ones."""
+"""Forms of the hair model that shaders have instead of the text's.
+
+
+Rows of pbrlib's sheens and diffuse nodes but the rough ones.
+
+
+Row of pbrlib's hair node. Its inputs have the names of `mxeon.models.hair.chiang_hair_bcsdf`.
+
+
+The row of subsurface scattering, as it is seen on a plane under a distant light.
+
+There every point has the same light, so that the profile, whose integral is 1, changes nothing: the
+node is Lambert of its color, whatever its radius and its anisotropy.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
-from mxeon.models.core.arrays import Array
-from mxeon.models.core.edges import at_most, cosine
-from mxeon.models.core.namespaces import array_namespace
-from mxeon.models.diffuse.burley import burley_albedo_dir, burley_brdf
-from mxeon.models.diffuse.translucent import translucent_btdf
-from mxeon.models.microfacet import materialx_fits
+from mxeon.models.core.arrays import Array, array_namespace, at_most, cosine
+from mxeon.models.diffuse import burley_albedo_dir, burley_brdf, lambert_brdf, translucent_btdf
+from mxeon.models.hair import (
+    DEFAULTS,
+    ROUGHNESSES,
+    TEXT,
+    TINTS,
+    HairForm,
+    chiang_hair_attenuation,
+    chiang_hair_bcsdf,
+)
+from mxeon.models.microfacet import defects as materialx_fits
+from mxeon.models.microfacet import dielectric_albedo_dir
 from mxeon.models.nodes.node import Inputs, PbrNode, Variant
 from mxeon.models.sheen import (
     conty_kulla_albedo_dir,
@@ -20,6 +41,61 @@ from mxeon.models.sheen import (
     zeltner_albedo_dir,
     zeltner_brdf,
 )
+
+# The series of I_0 has so many terms, and above the limit a logarithm takes its place.
+TERMS, LIMIT, NARROW = 10, 12.0, 0.1
+LIMITS = (0.001, 1.0)  # of every roughness
+
+
+def materialx_longitudinal(
+    sin_i: Array, cos_i: Array, sin_o: Array, cos_o: Array, v: Array
+) -> Array:
+    """M_p of MaterialX's GLSL, mx_chiang_hair_bsdf.glsl, after an older implementation.
+
+    The series of I_0 stops after ten terms. Above 12 its logarithm has half of the term 1 / (8 x).
+    A tilted cosine keeps its sign, so that the series serves arguments below -12. ln 2 is 0.6931.
+    """
+    a, b = cos_i * cos_o / v, sin_i * sin_o / v
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        log_series = np.log(_series(np.minimum(a, LIMIT)))
+        x = np.maximum(a, LIMIT)
+        log_large = x + 0.5 * (1.0 / (8.0 * x) - np.log(2.0 * np.pi * x))
+        logarithm = np.where(a > LIMIT, log_large, log_series)
+        narrow = np.exp(logarithm - b - 1.0 / v + 0.6931 + np.log(0.5 / v))
+        wide = np.exp(-b) * _series(a) / (2.0 * v * np.sinh(1.0 / np.maximum(v, NARROW)))
+    return np.where(v < NARROW, narrow, wide)
+
+
+def _series(x: Array) -> Array:
+    """TERMS terms of the power series of I_0."""
+    value = term = np.ones_like(x)
+    for k in range(1, TERMS):
+        term = term * np.square(0.5 * x / k)
+        value = value + term
+    return value
+
+
+UNIFORM, BESSEL, CLAMPED, TILTED = (
+    "N of TRRT+ pi/2 instead of 1/(2 pi)",
+    "I_0 from ten terms, and half a term of its logarithm",
+    "roughness clamped to [0.001, 1]",
+    "the viewer's inclination tilted instead of the light's",
+)
+FORMS: dict[str, HairForm] = {
+    UNIFORM: replace(TEXT, uniform=0.5 * np.pi),
+    BESSEL: replace(TEXT, longitudinal=materialx_longitudinal),
+    CLAMPED: replace(TEXT, limits=LIMITS),
+    TILTED: replace(TEXT, tilts_light=False),
+    f"MaterialX's GLSL: {UNIFORM}; {BESSEL}; {CLAMPED}": replace(
+        TEXT, uniform=0.5 * np.pi, longitudinal=materialx_longitudinal, limits=LIMITS
+    ),
+}
+
+# Readings that the text leaves open, or that its later versions have.
+READINGS: dict[str, HairForm] = {
+    "F of the effective index": replace(TEXT, effective=True),
+    "no factor 1/pi, as in later versions of the text": replace(TEXT, factor=1.0),
+}
 
 
 def _bounded(albedo: Callable[[Array, Array], Array]) -> Callable[[Array, Array], Array]:
@@ -135,4 +211,85 @@ LOBE_NODES = (
             Variant("its albedo without the color", albedo=untinted(zeltner_albedo_dir)),
         ),
     ),
+)
+
+
+def _value(form: HairForm = TEXT) -> Callable[[Array, Array, Inputs], Array]:
+    """Values in a form of the model."""
+
+    def value(wo: Array, wi: Array, inputs: Inputs) -> Array:
+        named = {name: inputs[name] for name in DEFAULTS if name in inputs}
+        return chiang_hair_bcsdf(wo, wi, **named, form=form)
+
+    return value
+
+
+def _albedo(wo: Array, inputs: Inputs) -> Array:
+    """Integral of the values over all lights, for a cuticle without tilt: sum of t_p A_p, over pi."""
+    factors = chiang_hair_attenuation(wo, inputs["ior"], inputs["absorption_coefficient"])
+    tints = array_namespace(factors).stack([inputs[n] for n in (*TINTS, TINTS[-1])], axis=-1)
+    return array_namespace(factors).sum(factors * tints, axis=-1) / np.pi
+
+
+def _whole(wo: Array, inputs: Inputs) -> Array:
+    """The albedo without the factor 1/pi."""
+    return np.pi * _albedo(wo, inputs)
+
+
+def _ggx(wo: Array, inputs: Inputs) -> Array:
+    """Albedo of a GGX lobe of the mean roughness and tint: the environment of MaterialX's GLSL."""
+    alpha = np.mean([inputs[name] for name in ROUGHNESSES], axis=0)
+    alpha = np.sqrt(np.clip(alpha, 1e-6, 1.0).prod(axis=-1, keepdims=True))
+    tint = np.mean([inputs[name] for name in TINTS], axis=0)
+    albedo = dielectric_albedo_dir(wo, 1.0, np.repeat(alpha, 2, axis=-1), inputs["ior"])
+    return np.asarray(tint * albedo)
+
+
+HAIR_NODE = PbrNode(
+    "hair",
+    "Chiang hair",
+    "chiang_hair_bsdf",
+    tuple(DEFAULTS),
+    _value(),
+    _albedo,
+    reciprocal=False,
+    variants=(
+        *(Variant(title, _value(form)) for title, form in FORMS.items()),
+        *(Variant(title, _value(form), permitted=True) for title, form in READINGS.items()),
+        Variant("a GGX lobe of the mean roughness and tint, without absorption", albedo=_ggx),
+        Variant("no factor 1/pi, as in later versions of the text", albedo=_whole, permitted=True),
+    ),
+)
+
+
+STEPS = 32  # of the circle in MaterialX
+FLATTEST = 100.0  # radius of it
+LEAST_RADIUS = 0.1  # of the profile
+
+
+def circle_blur(mu: Array, radius: Array, body: float = FLATTEST) -> Array:
+    """Cosine of a light as MaterialX blurs it, along a circle through the light.
+
+    `mu` (N,), `radius` (N, 3): mean free path. MaterialX takes `body`, the circle's radius, from the
+    curvature, and at most 100.
+    """
+    theta = np.arccos(np.clip(mu, -1.0, 1.0))[:, np.newaxis]
+    shape = 1.0 / np.maximum(radius, LEAST_RADIUS)
+    turns = -np.pi + (np.arange(STEPS) + 0.5) * 2.0 * np.pi / STEPS
+    light, total = np.zeros(radius.shape), np.zeros(radius.shape)
+    for turn in turns:
+        distance = body * abs(2.0 * np.sin(0.5 * turn))
+        profile = (np.exp(-shape * distance) + np.exp(-shape * distance / 3.0)) / distance
+        light += profile * np.maximum(np.cos(theta + turn), 0.0)
+        total += profile
+    return light / total
+
+
+SUBSURFACE_NODE = PbrNode(
+    "subsurface",
+    "Subsurface scattering, which is Lambert on a plane",
+    "subsurface_bsdf",
+    ("color", "radius"),
+    lambda wo, wi, inputs: lambert_brdf(wo, wi, inputs["color"]),
+    lambda wo, inputs: array_namespace(wo).broadcast_to(inputs["color"], wo.shape),
 )

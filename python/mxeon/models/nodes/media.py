@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mxeon.models.core.arrays import Array
-from mxeon.models.media.volume import transmittance
+from mxeon.models.media import transmittance
 from mxeon.models.nodes.node import Inputs, Node, Variant
 
 FIRST, SECOND = "first/absorption", "second/absorption"  # of two media that absorb

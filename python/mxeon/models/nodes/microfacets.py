@@ -2,34 +2,67 @@
 """Rows of pbrlib's microfacet nodes, scatter mode R.
 
 Their functions have a thin film where the inputs have `thinfilm_thickness` and `thinfilm_ior`.
+
+
+Rows of pbrlib's microfacet nodes under a thin film, scatter mode R.
+
+
+Rows of pbrlib's nodes that transmit through microfacets: scatter modes T and RT.
+
+A rasterizer has no light behind the surface. It looks up an environment instead, so that what can be
+promised of it is the share of the light that passes, and where from.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
-from mxeon.models.core.arrays import Array
-from mxeon.models.core.namespaces import library
-from mxeon.models.microfacet import conductor_brdf, dielectric_brdf, generalized_schlick_brdf
-from mxeon.models.microfacet.albedo import (
+from mxeon.models.core.arrays import Array, library
+from mxeon.models.core.colorimetry import XYZ_TO_REC709
+from mxeon.models.microfacet import (
+    Lobe,
     conductor_albedo_dir,
+    conductor_brdf,
     dielectric_albedo_dir,
+    dielectric_brdf,
     generalized_schlick_albedo_dir,
+    generalized_schlick_brdf,
 )
 from mxeon.models.microfacet.defects import (
     FITTED_DEFECTS,
     MICROFACET_DEFECTS,
     averaged_channels,
+    averaged_fitted,
+    fitted_half,
+    layer_albedo,
     schlick_average,
 )
+from mxeon.models.microfacet.defects import fitted_compensation as compensation
 from mxeon.models.microfacet.fresnel import fresnel_conductor, fresnel_dielectric, fresnel_schlick
-from mxeon.models.microfacet.materialx_fits import compensation, layer_albedo
 from mxeon.models.nodes.node import Inputs, PbrNode, Scattering, Variant
-from mxeon.models.thin_film.lobe import film_albedo_dir, film_brdf
+from mxeon.models.thin_film import (
+    CIE_RGB,
+    FILM,
+    MATERIALX,
+    TEXT,
+    Form,
+    film_albedo_dir,
+    film_brdf,
+    film_conductor,
+    film_dielectric,
+    film_schlick,
+)
+from mxeon.models.transmission import (
+    dielectric_btdf,
+    dielectric_transmittance_dir,
+    generalized_schlick_btdf,
+    generalized_schlick_transmittance_dir,
+    schlick_ior,
+)
 
 # Forms of the energy compensation, which the text leaves open.
 OPEN = (
@@ -258,4 +291,190 @@ MICROFACET_NODES = (
             ),
         ),
     ),
+)
+
+
+FITTED = Lobe(fitted_half)  # MaterialX's compensation
+AVERAGED = Lobe(averaged_fitted)  # that of MaterialX after 1.39.5
+OWN_MATRIX = Form(tuple(map(tuple, XYZ_TO_REC709.tolist())))
+STOCK = Form(
+    CIE_RGB, 2, True, 1.0, 0.01
+)  # MaterialX's choices, with all of a Schlick substrate's reflectance
+MIXED = Form(mixed=True)
+# Title, form, and whether the text leaves it open.
+FORMS = (
+    ("MaterialX's matrix, orders and mixed channels", STOCK, True),
+    ("half of the substrate's reflectance, and MaterialX's choices", MATERIALX, False),
+    ("MaterialX's matrix, of CIE RGB", Form(CIE_RGB), True),
+    ("the text's matrix, without an adaptation to white", OWN_MATRIX, True),
+    ("two orders", Form(orders=2), True),
+    ("the index of RGB channel k in XYZ value k", MIXED, True),
+)
+
+
+def _value(
+    category: str, form: Form, lobe: Lobe | None, wo: Array, wi: Array, inputs: Inputs
+) -> Array:
+    return film_brdf(category, wo, wi, inputs, form, lobe)
+
+
+def _bare(inputs: Inputs) -> dict[str, Array]:
+    """Inputs with a film of thickness 0."""
+    return {**inputs, FILM[0]: np.zeros_like(inputs[FILM[0]])}
+
+
+def _reflectance(category: str, form: Form, wo: Array, inputs: Inputs) -> Array:
+    """F of a film at the view direction, (N, 3)."""
+    mu = np.minimum(wo[:, 2], 1.0)
+    thickness, index = (inputs[name] for name in FILM)
+    if category == "dielectric_bsdf":
+        return film_dielectric(mu, thickness, index, inputs["ior"], form)
+    if category == "conductor_bsdf":
+        return film_conductor(mu, thickness, index, inputs["ior"], inputs["extinction"], form)
+    color0, color82, color90 = (inputs[name] for name in ("color0", "color82", "color90"))
+    return film_schlick(mu, thickness, index, color0, color82, color90, inputs["exponent"], form)
+
+
+def _environment(category: str, form: Form, wo: Array, inputs: Inputs) -> Array:
+    """Albedo of MaterialX's environment branch: F of the film at the view in the compensation."""
+    F = _reflectance(category, form, wo, inputs)
+    single = film_albedo_dir(category, wo, isotropic(inputs), form, compensate=False)
+    return np.asarray(single * compensation(wo, inputs, F))
+
+
+def _fitted(lobe: BareLobe, form: Form, wo: Array, inputs: Inputs) -> Array:
+    """Albedo of MaterialX's throughput: the bare lobe's fit, with F of the film at the view."""
+    F0 = lobe.fresnel(np.ones(len(wo)), inputs)
+    F90 = inputs[lobe.edge] if lobe.edge else 1.0
+    albedo = layer_albedo(wo, inputs, F0, F90, _reflectance(lobe.category, form, wo, inputs))
+    return averaged_channels(albedo) if lobe.edge else albedo
+
+
+def _film_variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
+    """Other films that a shader may have, each with either compensation."""
+    variants: list[Variant[Scattering]] = [
+        Variant("no film", lambda wo, wi, inputs: row.value(wo, wi, _bare(inputs))),
+        Variant(
+            "its albedo without the film", albedo=lambda wo, inputs: row.albedo(wo, _bare(inputs))
+        ),
+        Variant(
+            "MaterialX's compensation",
+            partial(_value, row.category, TEXT, FITTED),
+            permitted=True,
+        ),
+    ]
+    lobe = {each.category: each for each in (DIELECTRIC, CONDUCTOR, SCHLICK)}[row.category]
+    schlick = lobe is SCHLICK
+    for title, form, permitted in FORMS[: 2 if schlick else 1]:
+        albedo = partial(_environment, row.category, form)
+        variants.append(Variant(f"{title}, under an environment", None, albedo, permitted))
+        fitted = partial(_fitted, lobe, form)
+        words = "the bare lobe's fit, and the film in the compensation"
+        variants.append(Variant(f"{title}: {words}", albedo=fitted))
+    for title, form, permitted in FORMS:
+        one = form == MIXED and row.category == "dielectric_bsdf"  # index of all channels
+        if one or (form.share != 1.0 and not schlick):
+            continue
+        later = ((", and F averaged from F0 and F90", AVERAGED),) if form == STOCK else ()
+        for words, terms in (("", None), (", and its compensation", FITTED), *later):
+            value = partial(_value, row.category, form, terms)
+            variants.append(Variant(f"{title}{words}", value, permitted=permitted))
+    return tuple(variants)
+
+
+def _filmed(row: PbrNode) -> PbrNode:
+    """A row under a film."""
+
+    def albedo(wo: Array, inputs: Inputs) -> Array:
+        return film_albedo_dir(row.category, wo, isotropic(inputs))
+
+    def integral(wo: Array, inputs: Inputs) -> Array:
+        return film_albedo_dir(row.category, wo, inputs)
+
+    return PbrNode(
+        f"{row.name}_film",
+        f"{row.title} under a thin film",
+        row.category,
+        (*row.inputs, *FILM),
+        partial(_value, row.category, TEXT, None),
+        albedo,
+        integral,
+        fixed=row.fixed,
+        layerable=row.layerable,
+        reciprocal=False,
+        mirror=row.mirror,
+        variants=_film_variants(row),
+    )
+
+
+FILM_NODES = tuple(map(_filmed, MICROFACET_NODES))
+
+
+MODES = ("T", "RT")
+
+
+@dataclass(frozen=True)
+class Transmission:
+    """Functions of a node that transmits, by its inputs.
+
+    - `passed`: Share of the light from wo that the BTDF transmits, with its tint; without `shadow`,
+      the mean of 1 - F over the facets that wo sees.
+    - `reflected`: Directional albedo of the reflection with its energy compensation, without a
+      tint.
+    """
+
+    value: Callable[[Array, Array, Inputs], Array]  # BTDF of radiance, with its tint
+    passed: Callable[[Array, Inputs, bool], Array]
+    reflected: Callable[[Array, Inputs], Array]
+    tint: Callable[[Inputs], Array]
+    fresnel: Callable[[Array, Inputs], Array]
+    ior: Callable[[Inputs], Array]  # index of refraction that refracts the view
+
+
+def _white(inputs: Inputs) -> dict[str, Array]:
+    return {**inputs, "tint": np.ones(3)}
+
+
+TRANSMISSIONS = {
+    DIELECTRIC.category: Transmission(
+        lambda wo, wi, i: dielectric_btdf(wo, wi, i["tint"], i["roughness"], i["ior"]),
+        lambda wo, i, shadow: dielectric_transmittance_dir(
+            wo, i["tint"], i["roughness"], i["ior"], shadow
+        ),
+        lambda wo, i: DIELECTRIC.albedo(wo, _white(i)),
+        lambda i: i["tint"],
+        DIELECTRIC.fresnel,
+        lambda i: i["ior"],
+    ),
+    SCHLICK.category: Transmission(
+        lambda wo, wi, i: generalized_schlick_btdf(
+            wo, wi, i["color0"], i["color82"], i["color90"], i["roughness"], i["exponent"]
+        ),
+        lambda wo, i, shadow: generalized_schlick_transmittance_dir(
+            wo,
+            i["color0"],
+            i["color82"],
+            i["color90"],
+            i["roughness"],
+            i["exponent"],
+            shadow=shadow,
+        ),
+        SCHLICK.albedo,
+        lambda i: 0.0 * i["color0"] + 1.0,
+        SCHLICK.fresnel,
+        lambda i: schlick_ior(i["color0"])[..., 0],
+    ),
+}
+
+
+def _transmitting(row: PbrNode, mode: str) -> PbrNode:
+    """A row of a node in another scatter mode."""
+    return replace(row, name=f"{row.name}_{mode.lower()}", fixed={"scatter_mode": mode})
+
+
+TRANSMISSION_NODES = tuple(
+    _transmitting(row, mode)
+    for row in MICROFACET_NODES
+    if row.category in TRANSMISSIONS
+    for mode in MODES
 )

@@ -15,20 +15,16 @@ import numpy as np
 
 from mxeon.models.core.arrays import Array
 from mxeon.models.core.colorimetry import XYZ_TO_REC709
-from mxeon.models.hair.parameters import (
+from mxeon.models.hair import (
     EUMELANIN,
     PHEOMELANIN,
     chiang_hair_absorption_from_color,
     chiang_hair_roughness,
     deon_hair_absorption_from_melanin,
 )
-from mxeon.models.media.blackbody import LUMINANCE, blackbody, kang_xyz
-from mxeon.models.microfacet.artistic_ior import artistic_ior
-from mxeon.models.microfacet.roughness import (
-    glossiness_anisotropy,
-    roughness_anisotropy,
-    roughness_dual,
-)
+from mxeon.models.media import LUMINANCE, blackbody, kang_xyz
+from mxeon.models.microfacet.fresnel import artistic_ior
+from mxeon.models.microfacet.ggx import glossiness_anisotropy, roughness_anisotropy, roughness_dual
 from mxeon.models.nodes.node import Inputs, Variant
 
 LARGEST_REFLECTIVITY = 0.99  # of artistic_ior; its n is infinite at 1

@@ -1,18 +1,28 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Wrong variants of models that renderers in the field implement, to recognize them by."""
+"""Wrong variants of models that renderers in the field implement, to recognize them by.
+
+
+Directional albedos of the wrong variants of models, and wrong albedos of right ones.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
-from mxeon.models.core.arguments import checked, checked_triples
-from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models import diffuse as formulas
+from mxeon.models.core.arguments import checked, checked_colors, checked_triples
+from mxeon.models.core.arrays import Array, ArrayLike, any_array, array_namespace, at_most
 from mxeon.models.core.evaluation import evaluate
-from mxeon.models.core.namespaces import any_array, array_namespace
-from mxeon.models.diffuse import formulas
-from mxeon.models.diffuse.brdf import qon_brdf
-from mxeon.models.diffuse.burley import burley_brdf
-from mxeon.models.diffuse.formulas import C1, C2, cosines
+from mxeon.models.diffuse import (
+    C1,
+    C2,
+    burley_brdf,
+    cosines,
+    eon_albedo_dir,
+    fon_albedo_dir,
+    qon_albedo_dir,
+    qon_brdf,
+)
 
 DEGREE = 180.0 / np.pi
 FLOOR = 0.1  # least reflectance that Babylon.js passes to EON
@@ -122,13 +132,13 @@ def _eon_rho_cubed(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
     mu_o, mu_i, s = cosines(wo, wi)
     single_scatter = 1.0 + roughness * formulas.fon_quotient(mu_o, mu_i, s)
     weight = rho * formulas.eon_multiple_weight(rho, roughness)
-    multi_scatter = weight * (formulas.fon_loss(mu_o) * formulas.fon_loss(mu_i))
+    multi_scatter = weight * (formulas.fon_loss_mu(mu_o) * formulas.fon_loss_mu(mu_i))
     return formulas.fon_scale(rho, roughness) * (single_scatter + multi_scatter)
 
 
 def _eon_floor(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
     floor = array_namespace(rho).maximum(rho, FLOOR)
-    return rho / floor * formulas.eon_brdf_approx(wo, wi, floor, roughness)
+    return rho / floor * formulas.eon_formula_approx(wo, wi, floor, roughness)
 
 
 def _burley_schlick(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
@@ -140,11 +150,63 @@ def _burley_schlick(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array
 
 
 def _qon_degrees(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:
-    return formulas.qon_brdf(wo, wi, rho, DEGREE * sigma)
+    return formulas.qon_formula(wo, wi, rho, DEGREE * sigma)
 
 
 def _fon_white_lobe(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
     mu_o, mu_i, _ = cosines(wo, wi)
-    losses = formulas.fon_loss(mu_o) * formulas.fon_loss(mu_i)
+    losses = formulas.fon_loss_mu(mu_o) * formulas.fon_loss_mu(mu_i)
     white = roughness * formulas.fon_a(roughness) / (np.pi * (C1 - C2)) * losses
-    return formulas.fon_brdf(wo, wi, rho, roughness) + white
+    return formulas.fon_formula(wo, wi, rho, roughness) + white
+
+
+@any_array
+def qon_tinted_twice_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
+    """Directional albedo of `qon_tinted_twice_brdf`."""
+    (color,), (m, s) = checked_colors({"rho": rho}, mu=mu, sigma=sigma)
+    return color * color * qon_albedo_dir(m, s)
+
+
+@any_array
+def qon_degrees_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
+    """Directional albedo of `qon_degrees_brdf`."""
+    (color,), (m, s) = checked_colors({"rho": rho}, mu=mu, sigma=sigma)
+    rough = 0.5 * np.pi
+    lobe = (qon_albedo_dir(m, rough) - formulas.qon_a(rough)) / formulas.qon_b(rough)
+    degrees = 180.0 / np.pi * s
+    return (formulas.qon_a(degrees) + formulas.qon_b(degrees) * lobe) * color
+
+
+@any_array
+def eon_rho_cubed_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
+    """Directional albedo of `eon_rho_cubed_brdf`.
+
+    E = rho (E_EON + (1 - rho) E_FON)
+    """
+    (color,), (m, r) = checked_colors({"rho": rho}, mu=mu, roughness=roughness)
+    return color * (eon_albedo_dir(mu, rho, roughness) + (1.0 - color) * fon_albedo_dir(m, r))
+
+
+@any_array
+def fon_white_lobe_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
+    """Directional albedo of `fon_white_lobe_brdf`.
+
+        E = 1 - (1 - rho) E_FON
+
+    Result (..., C): in [0, 1]; not 0 where rho is 0.
+    """
+    (color,), (m, r) = checked_colors({"rho": rho}, mu=mu, roughness=roughness)
+    return 1.0 - (1.0 - color) * fon_albedo_dir(m, r)
+
+
+@any_array
+def qon_fitted_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
+    """Directional albedo of QON as MaterialX fits it: a quotient of polynomials.
+
+    It is off by up to 0.068 at rho 1. Coefficients of MaterialX 1.39.5,
+    `mx_microfacet_diffuse.glsl`, which clamps the quotient to 1.
+    """
+    (color,), (m, s) = checked_colors({"rho": rho}, mu=mu, sigma=sigma)
+    over = 1.0 - 0.4297 * s - 0.7632 * m * s + 1.4385 * s**2
+    under = 1.0 - 0.6076 * s - 0.4993 * m * s + 2.0315 * s**2
+    return at_most(over / under, 1.0) * color

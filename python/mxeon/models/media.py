@@ -1,0 +1,764 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Emission of surfaces: the EDF nodes of [MaterialX2026], and the power that they emit.
+
+A radiance is per channel, in any unit; the exitance is its integral over the hemisphere times the
+cosine, pi times that unit. Directions leave the surface, normal +z; one below the horizon sees the
+back of the surface. `measured_edf` has no function here: its values are those of a file.
+
+- `wo` (..., 3): Direction to the viewer, unit vector to 1e-6, normal +z; z may be negative.
+- `radiance` (..., C): c per channel, that inside the cone for a conical emitter, in [0, 1e50].
+- `inner_angle`, `outer_angle` (...): Full angles of the cones where the falloff starts and where it
+  ends, degrees, in [0, 360].
+- `color0`, `color90` (..., C): Factors along the normal and at grazing, in [0, 1].
+- `exponent` (...): q, in [0, 1e50]; with 0 the factor is `color90` everywhere.
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
+
+
+Participating media: the VDF nodes of [MaterialX2026].
+
+Coefficients are per channel, in 1/m. Directions point away from the position where light is
+scattered, so that light that goes straight on has wi = -wo.
+
+- `absorption`, `scattering`: Coefficients in 1/m, in [0, 1e50].
+- `g`: Mean cosine of the deflection, in (-1, 1); at either end all light goes one way, and the
+  function has no value.
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
+
+
+Radiance of surfaces, lights and media by the shader nodes of [MaterialX2026].
+
+
+Subsurface scattering, as in [MaterialX2026], section `subsurface_bsdf` and its appendix.
+
+The albedo inversion is that of van de Hulst's fit for a half space: `subsurface_reflectance`.
+
+- `rho`: Diffuse reflectance, in [0, 1]: the node's color.
+- `scatter_anisotropy`: Mean cosine g of a scattering, in [-1, 1].
+- `separation`: Distance r, a length, in [1e-150, 1e150].
+- `radius`: Mean free path l, a length, in [1e-150, 1e150].
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
+
+
+Color of a black body: Planck's law seen by the CIE 1931 observer, in linear Rec. 709.
+
+- `temperature` (...): In kelvin, in [1, 1e9].
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cache
+
+import numpy as np
+
+from mxeon.models.core.arguments import (
+    broadcastable,
+    checked,
+    checked_colors,
+    checked_numbers,
+    checked_pairs,
+    checked_sphere,
+    lead_shape,
+)
+from mxeon.models.core.arrays import (
+    Array,
+    ArrayLike,
+    any_array,
+    arccosine,
+    array_namespace,
+    at_least_0,
+    at_most,
+    like,
+    power,
+    root,
+)
+from mxeon.models.core.colorimetry import CIE_1931, WAVELENGTHS, XYZ_TO_REC709
+from mxeon.models.core.quadrature import unit_rule
+
+HALF_TURN = np.pi / 360.0  # radians of half of a full cone angle in degrees
+
+
+@any_array
+def uniform_edf(wo: ArrayLike, radiance: ArrayLike) -> Array:
+    """Radiance of a surface that emits the same in all directions.
+
+        L_e = c
+
+    Result (..., C): in the unit of `radiance`. The equation has no side, so that the back emits as
+    much. [MaterialX2026], section `uniform_edf`, Uniform Emission Equation.
+
+        >>> uniform_edf([0.6, 0.0, 0.8], [0.5, 2.0])
+        array([0.5, 2. ])
+    """
+    mu, (c,), _ = _checked(wo, {"radiance": radiance})
+    return c + 0.0 * mu[..., np.newaxis]
+
+
+@any_array
+def uniform_exitance(radiance: ArrayLike) -> Array:
+    """Radiant exitance of a uniform emitter, pi c.
+
+    Result: pi times the unit of `radiance`. [MaterialX2026], section `uniform_edf`.
+
+        >>> round(float(uniform_exitance(2.0)), 6)
+        6.283185
+    """
+    (c,) = checked_numbers(radiance=radiance)
+    return (np.pi * c)[()]
+
+
+@any_array
+def conical_edf(
+    wo: ArrayLike, radiance: ArrayLike, inner_angle: ArrayLike, outer_angle: ArrayLike
+) -> Array:
+    """Radiance of a surface that emits inside a cone around its normal.
+
+        L_e = c smoothstep(c_out, c_in, cos)    if outer_angle > inner_angle
+        L_e = c if cos >= c_in, else 0          otherwise
+
+    Result (..., C): in the unit of `radiance`. Below the horizon the cosine counts as 0, as the
+    text has it. [MaterialX2026], section `conical_edf`, Conical Falloff Equations.
+
+        >>> conical_edf([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8]], [2.0], 60.0, 90.0).round(6)
+        array([[2.      ],
+               [1.251183]])
+    """
+    angles = {"inner_angle": inner_angle, "outer_angle": outer_angle}
+    mu, (c,), (inner, outer) = _checked(wo, {"radiance": radiance}, **angles)
+    falloff = conical_falloff(at_least_0(mu)[..., np.newaxis], inner, outer)
+    return c * falloff
+
+
+def conical_falloff(mu: Array, inner: Array, outer: Array) -> Array:
+    """Share of the radiance at cosines `mu`, without checks; 1 in the cone, 0 outside."""
+    xp = array_namespace(mu, inner, outer)
+    soft = outer > inner
+    width = xp.where(soft, cone_width(inner, outer), 1.0)
+    t = at_most(at_least_0((mu - cone_cosine(outer)) / width), 1.0)
+    return xp.where(soft, t * t * (3.0 - 2.0 * t), xp.where(mu >= cone_cosine(inner), 1.0, 0.0))
+
+
+@any_array
+def conical_exitance(radiance: ArrayLike, inner_angle: ArrayLike, outer_angle: ArrayLike) -> Array:
+    """Radiant exitance of a conical emitter, in closed form.
+
+    With a = c_out, b = c_in and h = b - a, the falloff has the integral
+
+        int t^2 (3 - 2 t) mu dmu = h [a (t^3 - t^4 / 2) + h (3 t^4 / 4 - 2 t^5 / 5)],
+
+    between mu = max(a, 0) and b, where mu = a + h t; inside the cone it is (1 - b^2) / 2. The
+    exitance is 2 pi c times both, and pi c where the inner cone holds the hemisphere.
+
+    Result (..., C): pi times the unit of `radiance`. h is a product of two sines, so that a narrow
+    falloff does not cancel. The integral is our own. [MaterialX2026], section `conical_edf`.
+
+        >>> conical_exitance([1.0], 90.0, 0.0).round(6)  # pi sin^2 of 45 degrees
+        array([1.570796])
+    """
+    angles = {"inner_angle": inner_angle, "outer_angle": outer_angle}
+    (c,), (inner, outer) = checked_colors({"radiance": radiance}, **angles)
+    a, b = cone_cosine(outer), cone_cosine(inner)
+    xp = array_namespace(inner, outer)
+    h = xp.where(outer > inner, cone_width(inner, outer), 0.0)
+    start = xp.where(h > 0.0, -a / xp.where(h > 0.0, h, 1.0), 1.0)
+    start = at_most(at_least_0(start), 1.0)
+
+    def antiderivative(t: Array | float) -> Array:
+        return h * (a * t**3 * (1.0 - 0.5 * t) + h * t**4 * (0.75 - 0.4 * t))
+
+    ramp = antiderivative(1.0) - antiderivative(start)
+    cone = 0.5 * xp.sin(HALF_TURN * inner) ** 2
+    share = xp.where(b <= 0.0, 0.5, cone + ramp)
+    return 2.0 * np.pi * c * share
+
+
+@any_array
+def generalized_schlick_edf(
+    wo: ArrayLike, base: ArrayLike, color0: ArrayLike, color90: ArrayLike, exponent: ArrayLike
+) -> Array:
+    """Radiance of another emission, scaled by a Schlick curve.
+
+        L_e = (r_0 + (r_90 - r_0) (1 - cos)^q) L_base
+
+    - `base` (..., C): Radiance of the scaled emission towards `wo`, per channel, in [0, 1e50].
+
+    Result (..., C): in the unit of `base`. The back is seen at |cos|: with a negative cosine the
+    curve of the text would leave the range between both factors. [MaterialX2026], section
+    `generalized_schlick_edf`, Generalized Schlick Emission Equations.
+
+        >>> generalized_schlick_edf([0.6, 0.0, 0.8], [2.0], [1.0], [0.0], 1.0).round(6)
+        array([1.6])
+    """
+    colors = {"base": base, "color0": color0, "color90": color90}
+    mu, (c, r0, r90), (q,) = _checked(wo, colors, exponent=exponent)
+    mu = mu[..., np.newaxis]
+    height = array_namespace(mu).where(mu < 0.0, -mu, mu)
+    return c * (r0 + (r90 - r0) * power(at_least_0(1.0 - height), q))
+
+
+@any_array
+def generalized_schlick_exitance(
+    radiance: ArrayLike, color0: ArrayLike, color90: ArrayLike, exponent: ArrayLike
+) -> Array:
+    """Radiant exitance of a uniform emitter that is scaled by a Schlick curve.
+
+        M = pi c (r_0 + (r_90 - r_0) 2 / ((q + 1) (q + 2)))
+
+    Result (..., C): pi times the unit of `radiance`. [MaterialX2026], section
+    `generalized_schlick_edf`; the integral is our own.
+
+        >>> generalized_schlick_exitance([1.0], [0.0], [1.0], 0.0).round(6)
+        array([3.141593])
+    """
+    colors = {"radiance": radiance, "color0": color0, "color90": color90}
+    (c, r0, r90), (q,) = checked_colors(colors, exponent=exponent)
+    share = 2.0 / ((q + 1.0) * (q + 2.0))
+    return np.pi * c * (r0 + (r90 - r0) * share)
+
+
+def cone_cosine(angle: Array) -> Array:
+    """Cosine of half of a full angle in degrees, exactly 0 at 180."""
+    return array_namespace(angle).sin(HALF_TURN * (180.0 - angle))
+
+
+def cone_width(inner: Array, outer: Array) -> Array:
+    """c_in - c_out by a product of sines."""
+    half = 0.5 * HALF_TURN
+    sin = array_namespace(inner, outer).sin
+    return 2.0 * sin(half * (outer + inner)) * sin(half * (outer - inner))
+
+
+def _checked(
+    wo: ArrayLike, colors: Mapping[str, ArrayLike], **numbers: ArrayLike
+) -> tuple[Array, list[Array], list[Array]]:
+    """Cosines of the view, and what `checked_colors` returns, all of which broadcast."""
+    directions = checked_sphere("wo", wo)
+    vectors, values = checked_colors(colors, **numbers)
+    parts = dict(zip(colors, vectors, strict=True))
+    plain = {name: value[..., 0] for name, value in zip(numbers, values, strict=True)}
+    broadcastable({"wo": directions} | parts, plain)
+    (mu,) = broadcastable({}, {"mu": directions[..., 2]})
+    return -at_most(-at_most(mu, 1.0), 1.0), vectors, values
+
+
+@any_array
+def extinction(absorption: ArrayLike, scattering: ArrayLike) -> Array:
+    """Extinction coefficient, sigma_t = sigma_a + sigma_s.
+
+    Result: in 1/m. [MaterialX2026], section `anisotropic_vdf`, Extinction.
+
+        >>> float(extinction(0.5, 1.5))
+        2.0
+    """
+    sigma_a, sigma_s = checked_numbers(absorption=absorption, scattering=scattering)
+    return (sigma_a + sigma_s)[()]
+
+
+@any_array
+def transmittance(absorption: ArrayLike, scattering: ArrayLike, distance: ArrayLike) -> Array:
+    """Share of the radiance that passes a homogeneous medium, T = exp(-sigma_t t).
+
+    - `absorption`, `scattering`: Coefficients in 1/m, in [0, 1e50]. `absorption_vdf` has a
+      scattering of 0.
+    - `distance`: t in m, in [0, 1e50].
+
+    Result: in [0, 1]. Light that is scattered into the ray is left out. [MaterialX2026], sections
+    `absorption_vdf`, Beer-Lambert Absorption, and `anisotropic_vdf`, Extinction.
+
+        >>> round(float(transmittance(0.5, 0.5, 2.0)), 6)
+        0.135335
+    """
+    values = {"absorption": absorption, "scattering": scattering, "distance": distance}
+    sigma_a, sigma_s, t = checked_numbers(**values)
+    xp = array_namespace(sigma_a, sigma_s, t)
+    return xp.exp(-(sigma_a + sigma_s) * t)[()]
+
+
+@any_array
+def single_scattering_albedo(absorption: ArrayLike, scattering: ArrayLike) -> Array:
+    """Share of the light that leaves a ray by being scattered, sigma_s / sigma_t.
+
+    Result: in [0, 1]; 0 where no light leaves the ray. [MaterialX2026], section `anisotropic_vdf`,
+    Extinction.
+
+        >>> float(single_scattering_albedo(0.5, 1.5))
+        0.75
+    """
+    sigma_a, sigma_s = checked_numbers(absorption=absorption, scattering=scattering)
+    sigma_t = sigma_a + sigma_s
+    xp = array_namespace(sigma_t)
+    return (sigma_s / xp.where(sigma_t > 0.0, sigma_t, 1.0))[()]
+
+
+@any_array
+def hg_phase(cos_theta: ArrayLike, g: ArrayLike) -> Array:
+    """Phase function of Henyey and Greenstein.
+
+        f_p = (1 - g^2) / (4 pi (1 + g^2 - 2 g cos)^(3/2))
+
+    - `cos_theta`: Cosine of the angle of deflection, in [-1, 1]: 1 is straight on.
+
+    Result: density in solid angle, 1/sr. Its integral over all directions is 1. The denominator is
+    (1 - |g|)^2 + 2 |g| (1 - cos), with the sign of g on the cosine, and 1 - g^2 a product: neither
+    cancels near g = 1 or -1. [MaterialX2026], section `anisotropic_vdf`, Henyey-Greenstein Phase
+    Function.
+
+        >>> hg_phase([1.0, -1.0], 0.5).round(6)
+        array([0.477465, 0.017684])
+    """
+    cosine, mean = checked_numbers(cos_theta=cos_theta, g=g)
+    xp = array_namespace(cosine, mean)
+    return _phase(1.0 - xp.where(mean < 0.0, -cosine, cosine), mean)[()]
+
+
+@any_array
+def hg_sample(wo: ArrayLike, u: ArrayLike, g: ArrayLike) -> tuple[Array, Array]:
+    """Direction sampled by the phase function of Henyey and Greenstein, and its density.
+
+    With x = 2 u_1 - 1, the inverse of its distribution is written
+
+        1 - cos = (1 - g)^2 (1 - x) (2 + g (1 + x)) / (2 (1 + g x)^2),
+
+    which is 1 - x at g = 0 and does not cancel for any g.
+
+    - `wo` (..., 3): Direction from which the light leaves, any unit vector to 1e-6.
+    - `u` (..., 2): Independent uniform random numbers, in [0, 1).
+
+    `wi` (..., 3): Unit vectors towards the light. `pdf` (...): Density at `wi`, `hg_pdf`, in 1/sr.
+    [MaterialX2026], section `anisotropic_vdf`; the form of the inverse is our own.
+
+        >>> wi, pdf = hg_sample([0.0, 0.0, 1.0], [0.5, 0.0], 0.0)
+        >>> wi.round(12) + 0.0, round(float(pdf), 6)
+        (array([0., 1., 0.]), 0.079577)
+    """
+    views, pairs, (mean,) = checked_sphere("wo", wo), checked_pairs("u", u), checked_numbers(g=g)
+    shape = lead_shape({"wo": views, "u": pairs}, {"g": mean})
+    views, pairs, mean = broadcastable({"wo": views, "u": pairs}, {"g": mean})
+    xp = array_namespace(views, pairs, mean)
+    x, azimuth = 2.0 * pairs[..., 0] - 1.0, 2.0 * np.pi * pairs[..., 1]
+    # Invert the distribution, as 1 - cos and 1 + cos, which do not cancel.
+    square = 2.0 * (1.0 + mean * x) ** 2
+    less = (1.0 - mean) ** 2 * (1.0 - x) * (2.0 + mean * (1.0 + x)) / square  # 1 - cos
+    more = (1.0 + mean) ** 2 * (1.0 + x) * (2.0 - mean * (1.0 - x)) / square  # 1 + cos
+    sine = root(at_least_0(less * more))
+    local = sine * xp.cos(azimuth), sine * xp.sin(azimuth), 0.5 * (more - less)
+    parts = _around([-views[..., k] for k in range(3)], local)
+    wi = xp.stack([xp.broadcast_to(each, shape) for each in parts], axis=-1)
+    density = _phase(xp.where(mean < 0.0, more, less), mean)
+    return wi, (0.0 * wi[..., 0] + density)[()]
+
+
+@any_array
+def hg_pdf(wo: ArrayLike, wi: ArrayLike, g: ArrayLike) -> Array:
+    """Density of `hg_sample` at `wi`, in solid angle: the phase function itself.
+
+    - `wo`, `wi` (..., 3): Directions away from the position, unit vectors to 1e-6; cos =
+      -dot(wo, wi).
+
+    Result (...): in 1/sr. [MaterialX2026], section `anisotropic_vdf`, Henyey-Greenstein Phase
+    Function.
+
+        >>> round(float(hg_pdf([0.0, 0.0, 1.0], [0.0, 0.0, -1.0], 0.5)), 6)
+        0.477465
+    """
+    views, lights, (mean,) = (
+        checked_sphere("wo", wo),
+        checked_sphere("wi", wi),
+        checked_numbers(g=g),
+    )
+    lead_shape({"wo": views, "wi": lights}, {"g": mean})
+    xp = array_namespace(views, lights, mean)
+    side = xp.where(mean < 0.0, -1.0, 1.0)[..., np.newaxis]
+    difference = 1.0 * views + side * lights  # 0 where the deflection is likeliest
+    return _phase(0.5 * xp.sum(difference**2, axis=-1), mean)[()]
+
+
+def _around(axis: Sequence[Array], local: Sequence[Array]) -> list[Array]:
+    """Components of directions, of a frame with the normal +z, in one with the normal `axis`."""
+    where, aside = array_namespace(*axis).where, abs(axis[0]) < 0.5
+    tangent = _unit(_cross((where(aside, 1.0, 0.0), where(aside, 0.0, 1.0), 0.0 * axis[2]), axis))
+    frame = tangent, _cross(axis, tangent), axis
+    x, y, z = local
+    return _unit([x * t + y * b + z * n for t, b, n in zip(*frame, strict=True)])
+
+
+def _cross(a: Sequence[Array], b: Sequence[Array]) -> list[Array]:
+    """Cross product of components."""
+    return [a[k - 2] * b[k - 1] - a[k - 1] * b[k - 2] for k in range(3)]
+
+
+def _unit(w: Sequence[Array]) -> list[Array]:
+    """Components of a vector over its length."""
+    length = root(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
+    return [each / length for each in w]
+
+
+def _phase(less: Array, g: Array) -> Array:
+    """The phase function at 1 - cos for g >= 0, and at 1 + cos for g < 0."""
+    xp = array_namespace(less, g)
+    size = xp.abs(g)
+    square = (1.0 - size) ** 2 + 2.0 * size * less
+    return (1.0 - size) * (1.0 + size) / (4.0 * np.pi * square * xp.sqrt(square))
+
+
+@any_array
+def light_radiance(emission: ArrayLike, intensity: ArrayLike, exposure: ArrayLike) -> Array:
+    """Radiance of a light source: that of its EDF, scaled in linear units and in stops.
+
+        L_e = I 2^E L_edf
+
+    - `emission` (..., C): Radiance of the EDF per channel, in [0, 1e50].
+    - `intensity` (...): I, in [0, 1e50].
+    - `exposure` (...): E, in stops, in [-1000, 1000].
+
+    Result (..., C): in the unit of `emission`. [MaterialX2026], section `light`, Light Emission
+    Equation.
+
+        >>> light_radiance([0.5, 1.0], 3.0, 2.0)
+        array([ 6., 12.])
+    """
+    numbers = {"intensity": intensity, "exposure": exposure}
+    (c,), (scale, stops) = checked_colors({"emission": emission}, **numbers)
+    return c * (scale * 2.0**stops)
+
+
+@any_array
+def surface_radiance(emission: ArrayLike, scattered: ArrayLike, opacity: ArrayLike) -> Array:
+    """Radiance of a surface: what it emits and what it scatters, times its opacity.
+
+        L_o = O (L_e + L_s)
+
+    - `emission`, `scattered` (..., C): L_e of its EDF, and L_s, the integral of its BSDF over the
+      light, per channel, in [0, 1e50].
+    - `opacity` (...): O, the share of the footprint that the material covers, in [0, 1].
+
+    Result (..., C): Without the light from behind, of which 1 - O passes. [MaterialX2026], section
+    `surface`, Surface Shading Equation; its integral is that of section The Light Transport
+    Equation.
+
+        >>> surface_radiance([1.0], [0.5], 0.5)
+        array([0.75])
+    """
+    colors = {"emission": emission, "scattered": scattered}
+    (emitted, light), (covered,) = checked_colors(colors, opacity=opacity)
+    return covered * (emitted + light)
+
+
+@any_array
+def volume_radiance(
+    behind: ArrayLike,
+    emission: ArrayLike,
+    absorption: ArrayLike,
+    scattering: ArrayLike,
+    distance: ArrayLike,
+) -> Array:
+    """Radiance of a ray through a homogeneous medium, without the light that is scattered into it.
+
+        L = L_0 T + L_e t (1 - T) / (sigma_t t)
+
+    - `behind` (..., C): L_0, the radiance that enters the medium, per channel, in [0, 1e50].
+    - `emission` (..., C): L_e, radiance per meter that the medium emits, the same in all
+      directions, in [0, 1e50].
+    - `absorption`, `scattering` (..., C): Coefficients in 1/m, in [0, 1e50].
+    - `distance` (...): t in m, in [0, 1e50].
+
+    Result (..., C): The solution of the equation of transfer whose integral over directions is left
+    out: that needs a renderer. [MaterialX2026], section `volume`, and section The Equation of
+    Transfer.
+
+        >>> volume_radiance([1.0], [3.0], [0.0], [0.0], 2.0)
+        array([7.])
+    """
+    media = {"absorption": absorption, "scattering": scattering}
+    (light, emitted, sigma_a, sigma_s), (t,) = checked_colors(
+        {"behind": behind, "emission": emission} | media, distance=distance
+    )
+    depth = (sigma_a + sigma_s) * t
+    xp = array_namespace(depth)
+    share = xp.where(depth > 0.0, -xp.expm1(-depth) / xp.where(depth > 0.0, depth, 1.0), 1.0)
+    return light * xp.exp(-depth) + emitted * t * share
+
+
+# Of the text's inversion, with its digits: the quotients of van de Hulst's fit, rounded.
+LINEAR = (4.09712, 4.20863)
+SQUARED = (9.59217, 41.6808, 17.7126)
+NODES, PANELS = 50, 40  # of the quadrature of the blur, whose integrand has a kink
+LOSS, GAIN = 0.139, 1.17  # of van de Hulst's fit
+FAR = 3.0  # length of the profile's second exponential over that of the first
+
+
+@any_array
+def subsurface_albedo(rho: ArrayLike, scatter_anisotropy: ArrayLike = 0.0) -> Array:
+    """Single-scattering albedo of a medium that has a diffuse reflectance.
+
+        d = 4.09712 + 4.20863 rho - sqrt(9.59217 + 41.6808 rho + 17.7126 rho^2)
+        w0 = 1 - d^2,  w = w0 / (1 - g (1 - w0))
+
+    Result: in (0, 1]. It rises with rho but for the last 1.2e-5 of its range. The printed digits
+    leave d = -5e-6 at rho = 1, and 0 at rho = 1 - 1.2e-5; w is 1 - 3e-11 at 1. At rho = 0 they
+    leave w0 = 6e-6 instead of 0. Accuracy: a half space of this albedo reflects rho within 0.0021
+    for g = 0, by its H function. [MaterialX2026], Subsurface Scattering Model, Albedo Inversion.
+
+        >>> subsurface_albedo([0.2, 0.5, 0.8]).round(6)
+        array([0.613357, 0.911709, 0.990589])
+    """
+    return _single_scatter(*checked_numbers(rho=rho, scatter_anisotropy=scatter_anisotropy))
+
+
+def _single_scatter(color: Array, g: Array) -> Array:
+    """`subsurface_albedo` on valid arrays."""
+    polynomial = SQUARED[0] + SQUARED[1] * color + SQUARED[2] * color**2
+    d = LINEAR[0] + LINEAR[1] * color - array_namespace(color).sqrt(polynomial)
+    isotropic = 1.0 - d * d
+    return isotropic / (1.0 - g * d * d)
+
+
+@any_array
+def subsurface_reflectance(single_scatter: ArrayLike, scatter_anisotropy: ArrayLike = 0.0) -> Array:
+    """Diffuse reflectance of a half space, by van de Hulst's fit.
+
+        s^2 = (1 - w) / (1 - g w),  rho = (1 - s) (1 - 0.139 s) / (1 + 1.17 s)
+
+    - `single_scatter`: Single-scattering albedo w, in [0, 1].
+    - `scatter_anisotropy`: Mean cosine g of a scattering, in [-1, 1).
+
+    Result: in [0, 1]. The half space has no surface, and is lit by a uniform sky. Accuracy: within
+    0.0021 of the exact reflectance for g = 0. The inverse of `subsurface_albedo` within 1.3e-5.
+    [vandeHulst1974].
+
+        >>> subsurface_reflectance(0.911709).round(4).item()
+        0.5
+    """
+    w, g = checked_numbers(single_scatter=single_scatter, scatter_anisotropy=scatter_anisotropy)
+    xp, lost = array_namespace(w, g), w < 1.0
+    s = root(xp.where(lost, (1.0 - w) / xp.where(lost, 1.0 - g * w, 1.0), 0.0))
+    return (1.0 - s) * (1.0 - LOSS * s) / (1.0 + GAIN * s)
+
+
+@any_array
+def subsurface_coefficients(
+    rho: ArrayLike, radius: ArrayLike, scatter_anisotropy: ArrayLike = 0.0
+) -> tuple[Array, Array]:
+    """Coefficients of scattering and of absorption, each over a length.
+
+        sigma_s = w / l,  sigma_a = (1 - w) / l
+
+    - `radius`: Mean free path l, a length, in [1e-150, 1e150].
+
+    Result: per unit of length. Their sum is 1 / l. [MaterialX2026], Subsurface Scattering Model,
+    Albedo Inversion.
+
+        >>> [round(float(each), 4) for each in subsurface_coefficients(0.5, 0.1)]
+        [9.1171, 0.8829]
+    """
+    values = {"rho": rho, "radius": radius, "scatter_anisotropy": scatter_anisotropy}
+    color, length, g = checked_numbers(**values)
+    albedo = _single_scatter(color, g)
+    return albedo / length, (1.0 - albedo) / length
+
+
+@any_array
+def diffusion_profile(separation: ArrayLike, radius: ArrayLike) -> Array:
+    """Share of the light that leaves at a distance from where it enters, per area.
+
+        R(r) = (exp(-r / l) + exp(-r / (3 l))) / (8 pi l r)
+
+    Result: per unit of area. Its integral over a plane is 1; the mean distance is 5 l / 2.
+    [MaterialX2026], Normalized Diffusion Profile; [Christensen2015], where l is divided by s(rho).
+
+        >>> diffusion_profile(1.0, 1.0).round(6).item()
+        0.043147
+    """
+    r, length = checked_numbers(separation=separation, radius=radius)
+    exp = array_namespace(r, length).exp
+    return (exp(-r / length) + exp(-r / (3.0 * length))) / (8.0 * np.pi * length * r)
+
+
+@any_array
+def diffusion_cdf(separation: ArrayLike, radius: ArrayLike) -> Array:
+    """Share of the light that leaves a plane within a distance of where it enters.
+
+        C(r) = 1 - exp(-r / l) / 4 - 3 exp(-r / (3 l)) / 4
+
+    Result: in (0, 1].
+
+        >>> diffusion_cdf(2.5, 1.0).round(6).item()
+        0.65353
+    """
+    r, length = checked_numbers(separation=separation, radius=radius)
+    expm1, x = array_namespace(r, length).expm1, r / length
+    return -0.25 * expm1(-x) - 0.75 * expm1(-x / 3.0)
+
+
+@any_array
+def diffusion_sample(u: ArrayLike, radius: ArrayLike) -> Array:
+    """Distance within which the share u of the light leaves: the inverse of `diffusion_cdf`.
+
+    - `u`: In [0, 1).
+    - `radius`: Mean free path l, a length, in [1e-150, 1e150].
+
+    Result: A length. Form: t = exp(-r / (3 l)) solves t^3 + 3 t = 4 (1 - u), so t = 2 sinh(asinh(2
+    (1 - u)) / 3).
+
+        >>> diffusion_sample(0.65353, 1.0).round(4).item()
+        2.5
+    """
+    share, length = checked_numbers(u=u, radius=radius)
+    xp = array_namespace(share, length)
+    logarithm = xp.log(2.0 * xp.sinh(xp.asinh(2.0 * (1.0 - share)) / 3.0))
+    return 3.0 * length * at_least_0(-logarithm)
+
+
+@any_array
+def diffusion_blur(mu: ArrayLike, reach: ArrayLike) -> Array:
+    """Cosine of a distant light, blurred over a unit sphere by the normalized diffusion profile.
+
+        W(mu) = int C'(r) c(mu, r) dr / C(2),  c = mean of max(cos(theta), 0) at the distance r
+
+    - `mu`: Cosine of the light with the normal, in [-1, 1].
+    - `reach`: Mean free path over the radius of the sphere, in [1e-150, 1e150]; its limit 0 is
+      max(mu, 0).
+
+    Result: in [0, 1]. Its mean over the sphere is 1/4, that of max(mu, 0). Distances are those of
+    the text, through the body; light whose distance has no point on the sphere leaves as the rest
+    does, since a body of no absorption keeps none. Accuracy: absolute error below 1e-6.
+
+        >>> diffusion_blur([-0.5, 0.0, 1.0], 0.1).round(4)
+        array([0.0097, 0.074 , 0.9344])
+    """
+    numbers = {"mu": checked("mu", mu, "cos_theta"), "reach": checked("reach", reach)}
+    cosine, length = broadcastable({}, numbers)
+    return blur_to(cosine, length, FAR)
+
+
+def blur_to(mu: Array, reach: Array, far: float) -> Array:
+    """`diffusion_blur` of valid arrays, whose second exponential is so many times as long as the first."""
+    reach = reach[..., np.newaxis]
+    (near, share), (rest, other) = _exponential(mu, reach), _exponential(mu, far * reach)
+    total = 0.25 * share + 0.75 * other
+    return (0.25 * share * near + 0.75 * other * rest) / total
+
+
+def _exponential(mu: Array, reach: Array) -> tuple[Array, Array]:
+    """Mean over the circles of one exponential of the profile, and its share on the sphere."""
+    xp, (u, weights) = array_namespace(mu, reach), (like(each, reach) for each in _rule())
+    share = -xp.expm1(-2.0 / reach)
+    distance = xp.minimum(-reach * xp.log1p(-u * share), 2.0)
+    return xp.sum(weights * _circle(mu[..., np.newaxis], distance), axis=-1), share[..., 0]
+
+
+@cache
+def _rule() -> tuple[Array, Array]:
+    """Nodes in [0, 1] and weights of Gauss-Legendre in PANELS of equal width."""
+    x, w = unit_rule(NODES)
+    u = (np.arange(PANELS)[:, np.newaxis] + x).ravel() / PANELS
+    return u, np.tile(w / PANELS, PANELS)
+
+
+def _circle(mu: Array, distance: Array) -> Array:
+    """Mean of max(cos(theta), 0) over the circle at a distance from a point of the unit sphere."""
+    squared = distance * distance
+    along = mu * (1.0 - 0.5 * squared)
+    across = root(at_least_0((1.0 - mu * mu) * squared * (1.0 - 0.25 * squared)))
+    lit = arccosine(-along / array_namespace(across).maximum(across, 1e-300))
+    return (along * lit + root(at_least_0(across**2 - along**2))) / np.pi
+
+
+# Constants of radiation of the SI of 2019, which are exact: c1 = 2 h c^2 and c2 = h c / k_B.
+PLANCK, LIGHT, BOLTZMANN = 6.62607015e-34, 299792458.0, 1.380649e-23  # J s, m/s, J/K
+FIRST = 2.0 * PLANCK * LIGHT**2  # W m^2 / sr
+SECOND = PLANCK * LIGHT / BOLTZMANN  # m K
+NANOMETER = 1e-9  # m
+LUMINANCE = np.linalg.inv(XYZ_TO_REC709)[1]  # Y of linear Rec. 709
+
+# Cubic fits of the black bodies' chromaticity, 1667 K to 25000 K: x in 1000 K / T below and above 4000 K,
+# and y in x below 2222 K, below 4000 K and above, coefficients from the highest power.
+KANG_X = (
+    (-0.2661239, -0.2343589, 0.8776956, 0.179910),
+    (-3.0258469, 2.1070379, 0.2226347, 0.240390),
+)
+KANG_Y = (
+    (-1.1063814, -1.34811020, 2.18555832, -0.20219683),
+    (-0.9549476, -1.37418593, 2.09137015, -0.16748867),
+    (3.0817580, -5.87338670, 3.75112997, -0.37001483),
+)
+
+
+@any_array
+def planck_radiance(wavelength: ArrayLike, temperature: ArrayLike) -> Array:
+    """Spectral radiance of a black body.
+
+        L = c1 / (lambda^5 (exp(c2 / (lambda T)) - 1))
+
+    - `wavelength`: In nm, in [1, 1e9]; broadcasts with the temperature.
+
+    Result: in W / (m^2 sr nm); 0 where it is less than float64 holds. [Planck1901].
+
+        >>> round(float(planck_radiance(500.0, 6504.0)), 2)
+        46224.39
+    """
+    length, kelvin = checked_numbers(wavelength=wavelength, temperature=temperature)
+    xp, length = array_namespace(length, kelvin), NANOMETER * length
+    x = SECOND / (length * kelvin)
+    return FIRST * NANOMETER / length**5 * xp.exp(-x) / -xp.expm1(-x)  # which does not overflow
+
+
+@any_array
+def blackbody_xyz(temperature: ArrayLike) -> Array:
+    """CIE 1931 XYZ of a black body, with Y = 1.
+
+    Result (..., 3). Sums over the observer's table, of 5 nm, which are within 5e-5 of those over 1
+    nm. Spectra are scaled by their largest exponential, so that cold bodies, of which no light is
+    left in float64, keep their color. [Planck1901]; ISO/CIE 11664-1.
+
+        >>> blackbody_xyz(6504.0).round(4)
+        array([0.9688, 1.    , 1.1218])
+    """
+    kelvin = checked_numbers(temperature=temperature)[0][..., np.newaxis]
+    xp = array_namespace(kelvin)
+    exponent = SECOND / (like(NANOMETER * WAVELENGTHS, kelvin) * kelvin)
+    least = exponent[..., -1:]  # of the longest wavelength
+    # exp(x) - 1 over exp(least), which never overflows for the terms that count
+    growth = xp.exp(xp.minimum(exponent - least, 700.0)) * -xp.expm1(-exponent)
+    xyz = xp.tensordot(like(WAVELENGTHS**-5.0, kelvin) / growth, like(CIE_1931, kelvin), axes=1)
+    return xyz / xyz[..., 1:2]
+
+
+@any_array
+def blackbody(temperature: ArrayLike) -> Array:
+    """Color of a black body in linear Rec. 709, with luminance 1.
+
+    Result (..., 3): Channels are negative outside Rec. 709's gamut: blue below 1900 K, green below
+    964 K. The specification says "radiant emittance", in words alone. The true one grows with the
+    fourth power of the temperature; implementations give the color with luminance 1, as here.
+    [MaterialX2026], blackbody; [Planck1901]; ISO/CIE 11664-1.
+
+        >>> blackbody([2000.0, 6504.0]).round(3)
+        array([[2.52 , 0.647, 0.02 ],
+               [1.043, 0.984, 1.036]])
+    """
+    xyz = blackbody_xyz(temperature)
+    return array_namespace(xyz).tensordot(xyz, like(XYZ_TO_REC709.T, xyz), axes=1)
+
+
+def kang_xyz(temperature: ArrayLike) -> Array:
+    """CIE 1931 XYZ of a black body by cubic fits, with Y = 1.
+
+    The fits are of 1667 K to 25000 K, where x and y are within 6e-4. Below, as GLSL takes them,
+    they turn back: at 800 K the color is paler than at 1667 K. [Kang2002].
+    """
+    (kelvin,) = checked_numbers(temperature=temperature)
+    warm, hot = (np.polyval(fit, 1000.0 / kelvin) for fit in KANG_X)
+    x = np.where(kelvin < 4000.0, warm, hot)
+    cold, warm, hot = (np.polyval(fit, x) for fit in KANG_Y)
+    y = np.where(kelvin < 2222.0, cold, np.where(kelvin < 4000.0, warm, hot))
+    return np.asarray(np.stack([x / y, np.ones_like(x), (1.0 - x - y) / y], axis=-1))

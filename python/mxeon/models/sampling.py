@@ -1,0 +1,888 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Sampling of the hemisphere independent of the material, and the frame of wo.
+
+Directions leave the surface, local frame with the normal +z. Random numbers `u` lie in [0, 1).
+
+- `u` (..., 2): Independent uniform random numbers, in [0, 1).
+- `wi` (..., 3): Unit vectors on or above the horizon.
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
+
+
+Exact importance sampling of EON: two random numbers, no table, no iteration.
+
+On the unit disk below the hemisphere, with `wo` turned to azimuth 0, S = sqrt(1 - mu^2) and
+q = r S_o, the value of EON at unit reflectance is A / pi times the sum of four parts, none of
+which is ever negative:
+
+| part     | value                                   | integral over the disk, over pi            |
+|----------|-----------------------------------------|--------------------------------------------|
+| lower    | q x+ (1 / mu_o - 1), where mu_i < mu_o  | (2 / (3 pi)) q (1 - mu_o) (1 - S_o^3)/mu_o |
+| upper    | q x+ (1 / mu_i - 1), where mu_i >= mu_o | (2 / pi) q K(theta_o)                      |
+| multiple | r H(mu_i) H(mu_o) / (c1 - c2)           | r H(mu_o)                                  |
+| flat     | 1 + q x                                 | 1                                          |
+
+with K(theta) = (theta - sin(theta) cos(theta))/2 - sin^3(theta)/3. The integrals sum to 1 + c1 r,
+which is 1 / A: docs/sampling.md has the proof.
+
+Each part is drawn by its inverse distribution. Those of `flat` and `lower` are closed forms; those
+of `multiple` and `upper` depend on no parameter, and are fitted. The density returned is that of
+the four parts. Directions follow it with a relative error of at most 1.3e-5 of the part: a mean of
+the parts' errors under non-negative weights, so that the sum has no larger error anywhere.
+
+- `wo`, `wi` (..., 3): Unit vectors on or above the horizon.
+- `u` (..., 2): Independent uniform random numbers, in [0, 1).
+- `roughness` (...): In [0, 1].
+- `rho` (...): Gray reflectance for which the sampling is exact, in [0, 1]: one number for each
+  direction. Three of them for three samples of one `wo` might be a color, and are refused.
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
+
+
+Linearly transformed cosines fitted to EON, without and with the coefficient d.
+
+The surface is rotated about the normal until `wo` has azimuth 0. A direction `wh` drawn
+under a clamped cosine is mapped by M = [[a, 0, b], [0, c, 0], [d, 0, 1]]:
+
+    wi = M wh / |M wh|,      p(wi) = p(wh) |M wh|^3 / det M.
+
+- `wo`, `wi` (..., 3): Unit vectors on or above the horizon.
+- `u` (..., 2): Independent uniform random numbers, in [0, 1).
+- `roughness` (...): In [0, 1].
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
+
+
+Clipped linearly transformed cosines, and the paper's importance sampling of EON with them.
+
+Of the clamped cosine, CLTC keeps only what its matrix maps above the horizon, d x + z >= 0. The
+rest has the shape of a lune. See `mxeon.models.sampling.ltc` for the matrix and its density.
+
+- `wo`, `wi` (..., 3): Unit vectors on or above the horizon.
+- `u` (..., 2): Independent uniform random numbers, in [0, 1).
+- `roughness` (...): In [0, 1].
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
+
+
+Importance sampling of GGX reflection by visible normals.
+
+The surface is stretched until its microfacets are a hemisphere; their visible normals are then
+half vectors of the stretched `wo` and a direction drawn uniformly on a spherical cap.
+
+- `wo`, `wi` (..., 3): Unit vectors, wo on or above the horizon.
+- `u` (..., 2): Independent uniform random numbers, in [0, 1).
+- `roughness` (..., 2) or (): alpha along tangent and bitangent, in [0, 1]; a number is isotropic.
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
+
+
+Importance sampling of the Zeltner sheen, whose lobe is a linearly transformed cosine.
+
+A direction `wh` drawn under a clamped cosine, in the frame where wo has azimuth 0, is mapped by
+M = [[1/a, 0, -b/a], [0, 1/a, 0], [0, 0, 1]]: wi = M wh / |M wh|. M keeps z, so no sample is wasted,
+and the value times the cosine over the density is color E(mu_o) for every sample.
+
+- `wo`, `wi` (..., 3): Unit vectors on or above the horizon.
+- `u` (..., 2): Independent uniform random numbers, in [0, 1).
+- `roughness` (...): In [0, 1]; below 0.01 it counts as 0.01.
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
+
+
+Importance sampling: a sampler is a pair, x_sample(...) -> wi, pdf and x_pdf(...).
+
+Argument order `wo`, `wi`, `u`, `roughness`, without those that a sampler does not depend on; `rho`,
+which only the exact sampler of EON takes, is a keyword. Random numbers `u` have shape (..., 2) and
+lie in [0, 1). Densities are in solid angle, 1/sr.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from mxeon.models.core.arguments import (
+    broadcastable,
+    checked,
+    checked_directions,
+    checked_pairs,
+    checked_roughness,
+    checked_sphere,
+    lead_shape,
+)
+from mxeon.models.core.arrays import (
+    Array,
+    ArrayLike,
+    Numbers,
+    any_array,
+    array_namespace,
+    at_least_0,
+    at_most,
+    below_1,
+    cube_root,
+    fractional_power,
+    hypot,
+    root,
+)
+from mxeon.models.diffuse import C1, C2, cosines, eon_multiple_weight, fon_quotient
+from mxeon.models.diffuse import fon_loss_mu as fon_loss
+from mxeon.models.microfacet import ggx
+from mxeon.models.sheen import zeltner_matrix
+
+
+@any_array
+def uniform_sample(u: ArrayLike) -> tuple[Array, Array]:
+    """Direction sampled uniformly on the hemisphere, and its density.
+
+    `wi` (..., 3): Unit vectors, z = u[..., 0]. `pdf` (...): 1/(2 pi), in 1/sr. [Portsmouth2025],
+    Listing 4.
+
+        >>> wi, pdf = uniform_sample([0.8, 0.0])
+        >>> wi.round(12), round(float(pdf), 6)
+        (array([0.6, 0. , 0.8]), 0.159155)
+    """
+    u1, u2 = unpack_uniforms(u)
+    wi = uniform_direction(u1, 1.0 - u1, u2)
+    return wi, _uniform_density(wi)
+
+
+@any_array
+def uniform_pdf(wi: ArrayLike) -> Array:
+    """Density of `uniform_sample` at `wi`, in solid angle.
+
+    Result (...): 1/(2 pi), in 1/sr.
+
+        >>> round(float(uniform_pdf([0.0, 0.6, 0.8])), 6)
+        0.159155
+    """
+    return _uniform_density(checked_directions("wi", wi))
+
+
+@any_array
+def cosine_sample(u: ArrayLike) -> tuple[Array, Array]:
+    """Direction sampled proportionally to its cosine with the normal, and its density.
+
+    `wi` (..., 3): Unit vectors, z > 0. `pdf` (...): z / pi, in 1/sr. [Portsmouth2025], Eq. (21).
+
+        >>> wi, pdf = cosine_sample([0.36, 0.0])
+        >>> wi.round(12), round(float(pdf), 6)
+        (array([0.6, 0. , 0.8]), 0.254648)
+    """
+    u1, u2 = unpack_uniforms(u)
+    wi = around(root(1.0 - u1), root(u1), u2)
+    return wi, wi[..., 2] / np.pi
+
+
+@any_array
+def cosine_pdf(wi: ArrayLike) -> Array:
+    """Density of `cosine_sample` at `wi`, in solid angle.
+
+    Result (...): z / pi, in 1/sr.
+
+        >>> round(float(cosine_pdf([0.6, 0.0, 0.8])), 6)
+        0.254648
+    """
+    (w,) = broadcastable({"wi": checked_directions("wi", wi)}, {})
+    return w[..., 2] / np.pi
+
+
+def checked_draw(wo: ArrayLike, u: ArrayLike, **numbers: ArrayLike) -> list[Array]:
+    """Checked arguments of a sampler, in this order, as float64 arrays whose shapes broadcast."""
+    return _broadcastable({"wo": checked_directions("wo", wo), "u": _checked_pairs(u)}, numbers)
+
+
+def checked_pdf(wo: ArrayLike, wi: ArrayLike, **numbers: ArrayLike) -> list[Array]:
+    """Checked arguments of a density, in this order, as float64 arrays whose shapes broadcast."""
+    vectors = {"wo": checked_directions("wo", wo), "wi": checked_directions("wi", wi)}
+    return _broadcastable(vectors, numbers)
+
+
+def unpack_uniforms(u: ArrayLike) -> tuple[Array, Array]:
+    """The two random numbers of each pair, checked, as float64 arrays of shape (...)."""
+    u = _checked_pairs(u)
+    return u[..., 0], u[..., 1]
+
+
+def uniform_direction(u1: Array, rest: Array, u2: Array) -> Array:
+    """Direction of `uniform_sample`; `rest` is 1 - u1."""
+    return around(u1, root(rest * (1.0 + u1)), u2)
+
+
+def around(mu: Array, S: Array, u2: Array) -> Array:
+    """Direction with cosine `mu` and sine `S` at the azimuth 2 pi u2."""
+    xp, phi = array_namespace(u2), 2.0 * np.pi * u2
+    return stack_xyz(S * xp.cos(phi), S * xp.sin(phi), mu)
+
+
+def stack_xyz(x: Array, y: Array, z: Array) -> Array:
+    """Components, broadcast against each other, as vectors along a last axis."""
+    xp = array_namespace(x, y, z)
+    shape = np.broadcast_shapes(*(tuple(each.shape) for each in (x, y, z)))
+    return xp.stack([xp.broadcast_to(each, shape) for each in (x, y, z)], axis=-1)
+
+
+def azimuth_frame(wo: Array) -> tuple[Array, Array, Array]:
+    """Cosine and sine of the azimuth of `wo`, and the sine of its polar angle.
+
+    The azimuth of a `wo` along the normal counts as 0.
+    """
+    xp, sine = array_namespace(wo), hypot(wo[..., 0], wo[..., 1])
+    tilted = sine > 0.0
+    length = xp.where(tilted, sine, 1.0)
+    return xp.where(tilted, wo[..., 0] / length, 1.0), wo[..., 1] / length, sine
+
+
+def rotate_z(w: Array, cosine: Array, sine: Array) -> Array:
+    """Vectors rotated about the normal by the angle that has this cosine and sine."""
+    x, y = w[..., 0], w[..., 1]
+    return stack_xyz(cosine * x - sine * y, sine * x + cosine * y, w[..., 2])
+
+
+def _broadcastable(vectors: dict[str, Numbers], numbers: dict[str, ArrayLike]) -> list[Array]:
+    """Vectors and checked numbers as float64 arrays; raise if their shapes do not broadcast."""
+    return broadcastable(vectors, {name: checked(name, value) for name, value in numbers.items()})
+
+
+def _checked_pairs(u: ArrayLike) -> Array:
+    """Checked random numbers of shape (..., 2), as a float64 array."""
+    return broadcastable({"u": checked_pairs("u", u)}, {})[0]
+
+
+def _uniform_density(wi: Numbers) -> Array:
+    """1/(2 pi) in the shape of `wi` without its last axis."""
+    return (0.0 * wi[..., 2] + 0.5 / np.pi)[()]
+
+
+LEAST_COSINE = 2.0**-53  # of a sample
+
+# Our fits, tools/fits/eon_sampling.py. Random number and fitted root of it in [0, 1]; largest relative
+# error of the density 1.27e-5 and 5.7e-6.
+MULTIPLE = (
+    -0.1221923217,
+    0.3674909842,
+    -0.5228247070,
+    0.4013565309,
+    -0.1292139302,
+    0.0102229681,
+)
+UPPER = (
+    -0.0857788216,
+    -0.0262131579,
+    -0.0086607754,
+    -0.0096479330,
+    0.0067351199,
+    -0.0065900984,
+)
+
+
+@any_array
+def eon_sample(
+    wo: ArrayLike, u: ArrayLike, roughness: ArrayLike, *, rho: ArrayLike = 1.0
+) -> tuple[Array, Array]:
+    """Direction sampled proportionally to EON times its cosine, and its density.
+
+    `wi` (..., 3): Unit vectors, z >= 2^-53. `pdf` (...): `eon_pdf` of `wi`, in 1/sr. Accuracy: `wi`
+    follows `pdf` with a relative error below 1.3e-5 everywhere. The weight over the density that
+    `wi` really has is thus within 1.3e-5 of the albedo, relatively, and its relative variance is
+    below 1.7e-10. docs/sampling.md; the model is [Portsmouth2025], Eqs. (16) and (19).
+
+        >>> wi, pdf = eon_sample([0.6, 0.0, 0.8], [0.5, 0.25], 0.0)
+        >>> wi.round(6), round(float(pdf), 6)
+        (array([0.      , 0.707107, 0.707107]), 0.225079)
+    """
+    wo, u, roughness, rho = checked_draw(wo, u, roughness=roughness, rho=rho)
+    if wo.ndim == 1 and tuple(u.shape) == (3, 2) and tuple(rho.shape) == (3,):
+        raise ValueError(
+            "rho of shape (3,) beside 3 samples has two meanings: write rho.mean() for a color, or "
+            "repeat wo for a number for each sample"
+        )
+    u1, u2 = unpack_uniforms(u)
+    cosine, sine, S_o = azimuth_frame(wo)
+    mu_o, S_o = at_most(wo[..., 2], 1.0), at_most(S_o, 1.0)
+    wi = rotate_z(eon_draw(mu_o, S_o, u1, u2, rho, roughness), cosine, sine)
+    # The end of a part may reach the horizon, where the density is 0 and a weight 0/0.
+    wi = stack_xyz(wi[..., 0], wi[..., 1], array_namespace(wi).maximum(wi[..., 2], LEAST_COSINE))
+    return wi, _density(wo, wi, rho, roughness)
+
+
+@any_array
+def eon_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike, *, rho: ArrayLike = 1.0) -> Array:
+    """Density of `eon_sample` at `wi`: EON times the cosine, divided by its integral.
+
+    Result (...): 1/sr. At rho = 1 it is `eon_brdf` at reflectance 1, times the cosine of `wi`.
+    Accuracy: relative error below 1e-14 of the quotient f cos(theta_i) / E(theta_o). It has a limit
+    at rho = 0, where both f and E vanish; that limit is FON's. [Portsmouth2025], Eqs. (16), (19)
+    and (28).
+
+        >>> round(float(eon_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 1.0)), 6)
+        0.332784
+    """
+    wo, wi, roughness, rho = checked_pdf(wo, wi, roughness=roughness, rho=rho)
+    return _density(wo, wi, rho, roughness)
+
+
+def _density(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
+    """The four parts together, with the weight of `multiple` for `rho`, over their integral."""
+    return eon_density_mu(*cosines(wo, wi), rho, roughness)
+
+
+def eon_density_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
+    """Density from the cosines, and from s of `cosines`."""
+    weight, loss_o = eon_multiple_weight(rho, roughness), fon_loss(mu_o)
+    parts = 1.0 + roughness * fon_quotient(mu_o, mu_i, s) + weight * loss_o * fon_loss(mu_i)
+    total = 1.0 + C1 * roughness + (weight * (C1 - C2) - roughness) * loss_o
+    return mu_i * parts / (np.pi * total)
+
+
+def eon_draw(mu_o: Array, S_o: Array, u1: Array, u2: Array, rho: Array, roughness: Array) -> Array:
+    """Direction drawn from one of the four parts; `wo` has azimuth 0."""
+    # Choose a part by u1, and stretch what is left of u1 over [0, 1).
+    parts = eon_integrals(mu_o, S_o, rho, roughness)
+    xp = array_namespace(*parts)
+    ends = [parts[0]]
+    for part in parts[1:]:
+        ends.append(ends[-1] + part)
+    ends = [end / ends[-1] for end in ends]
+    starts = [0.0 * ends[0], *ends[:-1]]
+    v = [stretched(u1, start, end) for start, end in zip(starts, ends, strict=True)]
+    rest = xp.minimum(1.0 - u1, 1.0 - starts[3]) / (1.0 - starts[3])  # 1 - v of the flat part
+    # Draw a cosine from each part, and keep the one chosen; the flat part has no cosine first.
+    x = v[0] * mu_o * eon_cube_gap(mu_o, S_o)
+    lower = eon_lower_cosine(x, cube_root(1.0 - x))
+    upper = eon_upper_cosine(fractional_power(v[1], 0.4), mu_o, eon_upper_limit(mu_o, S_o))
+    multiple = eon_multiple_cosine(cube_root(v[2]))
+    mu = xp.where(u1 < ends[0], lower, xp.where(u1 < ends[1], upper, multiple))
+    S = root((1.0 - mu) * (1.0 + mu))
+    is_towards, is_flat = (u1 < ends[1])[..., np.newaxis], (u1 >= ends[2])[..., np.newaxis]
+    wi = xp.where(is_towards, eon_towards(mu, S, u2), around(mu, S, u2))
+    return xp.where(is_flat, eon_flat_draw(v[3], u2, roughness * S_o, rest), wi)
+
+
+def eon_integrals(
+    mu_o: Array, S_o: Array, rho: Array, roughness: Array
+) -> tuple[Array, Array, Array, float]:
+    """Integrals over the disk of lower, upper, multiple and flat, over pi."""
+    towards = (2.0 / np.pi) * roughness * S_o
+    lower = towards * (1.0 - mu_o) * eon_cube_gap(mu_o, S_o) / 3.0
+    upper = towards * eon_segment(mu_o, S_o)
+    multiple = (C1 - C2) * eon_multiple_weight(rho, roughness) * fon_loss(mu_o)
+    return lower, upper, multiple, 1.0
+
+
+def eon_cube_gap(mu: Array, S: Array) -> Array:
+    """(1 - S^3) / mu, with neither a division by mu nor a cancellation."""
+    return mu * (1.0 + S + S * S) / (1.0 + S)
+
+
+def eon_segment(mu: Array, S: Array) -> Array:
+    """K(theta), integral of sin^2 (1 - cos); near the normal its terms cancel, perhaps below 0."""
+    xp = array_namespace(mu, S)
+    return xp.maximum(0.5 * (xp.atan2(S, mu) - S * mu) - S**3 / 3.0, 0.0)
+
+
+def stretched(u: Array, start: Array, end: Array) -> Array:
+    """`u` mapped from [start, end) to [0, 1); what lies outside goes to the nearer end.
+
+    It goes there before the division, which would overflow for the shortest intervals.
+    """
+    xp = array_namespace(u, start, end)
+    length = xp.where(end > start, end - start, 1.0)
+    inside = xp.minimum(xp.maximum(u, start), end)
+    return xp.minimum((inside - start) / length, below_1(length))
+
+
+def eon_towards(mu: Array, S: Array, u2: Array) -> Array:
+    """Direction with cosine `mu` and sine `S` at an azimuth whose sine is uniform, towards wo."""
+    return stack_xyz(2.0 * S * root(u2 * (1.0 - u2)), S * (2.0 * u2 - 1.0), mu)
+
+
+def eon_lower_cosine(x: Array, S: Array) -> Array:
+    """Cosine drawn in proportion to S mu below mu_o: x = 1 - S^3 is uniform."""
+    return root(x * (1.0 + S) / (1.0 + S + S * S))
+
+
+def eon_upper_limit(mu: Array, S: Array) -> Array:
+    """y = (K / K(pi / 2))^(2/5) of the angle with this cosine and sine."""
+    return fractional_power(eon_segment(mu, S) / (0.25 * np.pi - 1.0 / 3.0), 0.4)
+
+
+def eon_upper_quotient(y: Array) -> Array:
+    """Q(y) of `eon_upper_cosine`, 1 at y = 1."""
+    a, b, c, d, e, f = UPPER
+    y2 = y * y
+    even, odd = a + y2 * (c + y2 * e), b + y2 * (d + y2 * f)
+    return 1.0 + (1.0 - y) * (even + y * odd)
+
+
+def eon_upper_cosine(y: Array, mu_o: Array, y_o: Array) -> Array:
+    """Cosine drawn in proportion to S (1 - mu) / mu above mu_o: K is uniform, y = v^(2/5).
+
+        1 - mu = m(v K_o) (1 - mu_o) / m(K_o),  m(K) = y Q(y)
+
+    The quotient, instead of m(v K_o) alone, keeps every sample above mu_o.
+    """
+    m = (1.0 - mu_o) / eon_upper_quotient(y_o) * (y * eon_upper_quotient(y_o * y))
+    return 1.0 - m
+
+
+def eon_multiple_cosine(t: Array) -> Array:
+    """Cosine drawn in proportion to H(mu) mu, a function of t = v^(1/3)."""
+    a, b, c, d, e, f = MULTIPLE
+    m = 1.0 - t
+    w = root(m)
+    even, odd = a + m * (b + m * d), c + m * (e + m * m * f)
+    return t * (1.0 + m * (even + m * w * odd))
+
+
+def eon_flat_draw(v: Array, u2: Array, q: Array, rest: Array | None = None) -> Array:
+    """Direction drawn in proportion to (1 + q x) on the disk; `rest` is 1 - v, where it has more digits.
+
+    Along each chord of the disk, x is drawn by its inverse distribution from the uniform point
+    (x, y). z is the square root of 1 - x^2 - y^2 without a cancellation.
+    """
+    rest = 1.0 - v if rest is None else rest
+    wh = around(root(rest), root(v), u2)
+    return stack_xyz(*eon_flat_direction(v, wh[..., 0], wh[..., 1], q, rest))
+
+
+def eon_flat_direction(
+    v: Array, x: Array, y: Array, q: Array, rest: Array | None = None
+) -> tuple[Array, Array, Array]:
+    """Components of the direction that `eon_flat_draw` makes of a point of the disk, v = x^2 + y^2."""
+    rest = 1.0 - v if rest is None else rest
+    ahead = 1.0 + q * x
+    length = root(ahead * ahead + q * q * rest)
+    z = root(2.0 * rest / (ahead + length))
+    return (q * (1.0 - y * y) + 2.0 * x) / (1.0 + length), y, z
+
+
+@any_array
+def ltc0_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
+    """Direction sampled by the transformed cosine without the coefficient d, and its density.
+
+    `wi` (..., 3): Unit vectors above the horizon. `pdf` (...): 1/sr. The paper fits a, b and c
+    again for d = 0 and prints no result. Here they are those of the general fit. [Portsmouth2025],
+    Section 4, Eqs. (22) to (25), Listing 2.
+
+        >>> wi, pdf = ltc0_sample([0.6, 0.0, 0.8], [0.25, 0.5], 1.0)
+        >>> wi.round(6), round(float(pdf), 6)
+        (array([-0.310077,  0.      ,  0.950711]), 0.227343)
+    """
+    wo, u, roughness = checked_draw(wo, u, roughness=roughness)
+    return ltc_transformed(wo, cosine_sample(u)[0], roughness, 0.0)
+
+
+@any_array
+def ltc0_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
+    """Density of `ltc0_sample` at `wi`, in solid angle.
+
+    Result (...): 1/sr. [Portsmouth2025], Eqs. (23) and (24).
+
+        >>> round(float(ltc0_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 0.0)), 6)
+        0.31831
+    """
+    wo, wi, roughness = checked_pdf(wo, wi, roughness=roughness)
+    return ltc_density(wo, wi, roughness, 0.0)
+
+
+@any_array
+def ltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
+    """Direction sampled by the transformed cosine, may be below the horizon; and its density.
+
+    `wi` (..., 3): Unit vectors; those with z < 0 are wasted, their weight is 0. `pdf` (...): 1/sr.
+    A sample is wasted with probability (1 - 1/sqrt(1 + d^2))/2: at roughness 1 that is 0.0534 at
+    grazing, and less everywhere else. [Portsmouth2025], Section 4, Eqs. (22) to (25), Listing 2.
+
+        >>> wi, pdf = ltc_sample([1.0, 0.0, 0.0], [0.95, 0.0], 1.0)
+        >>> float(wi[2]) < 0.0
+        True
+    """
+    wo, u, roughness = checked_draw(wo, u, roughness=roughness)
+    return ltc_transformed(wo, cosine_sample(u)[0], roughness, ltc_d(wo[..., 2], roughness))
+
+
+@any_array
+def ltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
+    """Density of `ltc_sample` at `wi`, above the horizon, in solid angle.
+
+    Result (...): 1/sr; its integral over the hemisphere is the probability that no sample is
+    wasted. [Portsmouth2025], Eqs. (23) and (24).
+
+        >>> round(float(ltc_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 0.0)), 6)
+        0.31831
+    """
+    wo, wi, roughness = checked_pdf(wo, wi, roughness=roughness)
+    return ltc_density(wo, wi, roughness, ltc_d(wo[..., 2], roughness))
+
+
+# Entries of the matrix: [Portsmouth2025], Listing 2; mu, the cosine of wo, and roughness in [0, 1];
+# the paper states no error.
+def ltc_a(mu: Array, roughness: Array) -> Array:
+    """Entry a of M."""
+    a = 0.303392 + (-0.518982 + 0.111709 * mu) * mu + (-0.276266 + 0.335918 * mu) * roughness
+    return 1.0 + roughness * a
+
+
+def ltc_b(mu: Array, roughness: Array) -> Array:
+    """Entry b of M."""
+    b = -1.16407 + 1.15859 * mu + (0.150815 - 0.150105 * mu) * roughness
+    return roughness * b / (mu**3 - 1.43545)
+
+
+def ltc_c(mu: Array, roughness: Array) -> Array:
+    """Entry c of M."""
+    return 1.0 + roughness * (0.20013 + (-0.506373 + 0.261777 * mu) * mu)
+
+
+def ltc_d(mu: Array, roughness: Array | float) -> Array:
+    """Entry d of M."""
+    d = 0.540852 + (-1.01625 + 0.475392 * mu) * mu
+    return roughness * d / (-1.0743 + (0.0725628 + mu) * mu)
+
+
+def ltc_transformed(
+    wo: Array, wh: Array, roughness: Array, d: Array | float
+) -> tuple[Array, Array]:
+    """Unit M wh in the local frame of the surface, and its density under the clamped cosine."""
+    a, b, c = (entry(wo[..., 2], roughness) for entry in (ltc_a, ltc_b, ltc_c))
+    x, y, z = wh[..., 0], wh[..., 1], wh[..., 2]
+    wi = stack_xyz(a * x + b * z, c * y, d * x + z)
+    length = root(array_namespace(wi).sum(wi * wi, axis=-1))
+    cosine, sine, _ = azimuth_frame(wo)
+    pdf = z / np.pi * length**3 / (c * (a - b * d))
+    return rotate_z(wi / length[..., np.newaxis], cosine, sine), pdf
+
+
+def ltc_density(wo: Array, wi: Array, roughness: Array, d: Array | float) -> Array:
+    """Density at `wi` of M wh / |M wh| for `wh` under the clamped cosine."""
+    a, b, c = (entry(wo[..., 2], roughness) for entry in (ltc_a, ltc_b, ltc_c))
+    cosine, sine, _ = azimuth_frame(wo)
+    wi = rotate_z(wi, cosine, -sine)
+    x, y, z = wi[..., 0], wi[..., 1], wi[..., 2]
+    det = c * (a - b * d)
+    # The adjugate of M times wi: wh up to its length.
+    wh_z = c * (a * z - d * x)
+    squared = (c * (x - b * z)) ** 2 + ((a - b * d) * y) ** 2 + wh_z**2
+    return (det / squared) ** 2 * at_least_0(wh_z) / np.pi
+
+
+@any_array
+def cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
+    """Direction sampled by the clipped transformed cosine, and its density.
+
+    `wi` (..., 3): Unit vectors on or above the horizon. `pdf` (...): 1/sr. As a sampler of EON it
+    is biased: `wh` is cut at its own horizon, so directions remain that it never draws and that EON
+    reflects into. Side of the cut: the lune d x + z < 0 lies at x > 0 where d < 0, as in Listing 3,
+    and at x < 0 where d > 0. The fitted d is positive for mu_o > 0.99991, and there the listing
+    keeps the wrong side; this function keeps the right one. [Portsmouth2025], Eqs. (26) and (27),
+    Listing 3.
+
+        >>> wi, pdf = cltc_sample([0.6, 0.0, 0.8], [0.25, 0.5], 1.0)
+        >>> bool(np.isclose(pdf, cltc_pdf([0.6, 0.0, 0.8], wi, 1.0), rtol=1e-14))
+        True
+    """
+    wo, u, roughness = checked_draw(wo, u, roughness=roughness)
+    u1, u2 = unpack_uniforms(u)
+    return _draw(wo, u1, 1.0 - u1, u2, roughness)
+
+
+@any_array
+def cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
+    """Density of `cltc_sample` at `wi`, in solid angle.
+
+    Result (...): 1/sr; 0 for the directions that it never draws. [Portsmouth2025], Eqs. (23), (24)
+    and (27), Listing 3.
+
+        >>> round(float(cltc_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 0.0)), 6)
+        0.31831
+    """
+    wo, wi, roughness = checked_pdf(wo, wi, roughness=roughness)
+    d = ltc_d(wo[..., 2], roughness)
+    return ltc_density(wo, wi, roughness, d) / cltc_kept_fraction(d)
+
+
+@any_array
+def eon_cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
+    """Direction sampled by the paper's mixture of `cltc` and `uniform`, and its density.
+
+    `wi` (..., 3): Unit vectors on or above the horizon. `pdf` (...): Of the mixture, in 1/sr.
+    Listing 4 takes the uniform lobe for u1 <= P_u and divides u1 by P_u: 0/0 at roughness 0 and
+    u1 = 0. Here the uniform lobe has u1 < P_u, which a zero P_u never meets. [Portsmouth2025],
+    Section 4, Listing 4.
+
+        >>> wi, pdf = eon_cltc_sample([0.0, 0.0, 1.0], [0.0, 0.0], 0.0)
+        >>> wi, round(float(pdf), 6)
+        (array([0., 0., 1.]), 0.31831)
+    """
+    wo, u, roughness = checked_draw(wo, u, roughness=roughness)
+    u1, u2 = unpack_uniforms(u)
+    P_u = eon_cltc_probability(wo[..., 2], roughness)
+    is_uniform = u1 < P_u
+    # Stretch each side of P_u over [0, 1); rounding may reach 1, which is not in there.
+    xp = array_namespace(u1, P_u)
+    length = xp.where(is_uniform, P_u, 1.0 - P_u)
+    v = xp.where(is_uniform, u1, u1 - P_u) / length
+    rest = xp.where(is_uniform, P_u - u1, 1.0 - u1) / length
+    v = xp.minimum(v, below_1(v))
+    clipped, _ = _draw(wo, v, rest, u2, roughness)
+    wi = xp.where(is_uniform[..., np.newaxis], uniform_direction(v, rest, u2), clipped)
+    return wi, eon_cltc_pdf(wo, wi, roughness)
+
+
+@any_array
+def eon_cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
+    """Density of `eon_cltc_sample` at `wi`, in solid angle.
+
+    Result (...): 1/sr. [Portsmouth2025], Section 4, Listing 4.
+
+        >>> round(float(eon_cltc_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 0.0)), 6)
+        0.31831
+    """
+    wo, wi, roughness = checked_pdf(wo, wi, roughness=roughness)
+    P_u = eon_cltc_probability(wo[..., 2], roughness)
+    return P_u * (0.5 / np.pi) + (1.0 - P_u) * cltc_pdf(wo, wi, roughness)
+
+
+# [Portsmouth2025], Listing 4: mu and roughness in [0, 1]; the paper states no error.
+def eon_cltc_probability(mu: Array, roughness: Array) -> Array:
+    """Probability P_u of the uniform lobe."""
+    P_u = 0.162925 + (-0.372058 + (0.538233 - 0.290822 * mu) * mu) * mu
+    return fractional_power(roughness, 0.1) * P_u
+
+
+def cltc_kept_fraction(d: Array) -> Array:
+    """Fraction of the clamped cosine above d x + z = 0: [Portsmouth2025], below Eq. (26)."""
+    return 0.5 * (1.0 + 1.0 / root(1.0 + d * d))
+
+
+def _cut_fraction(d: Array) -> Array:
+    """1 - `cltc_kept_fraction`, which is small."""
+    length = root(1.0 + d * d)
+    return 0.5 * d * d / (length * (1.0 + length))
+
+
+def cltc_clipped(u1: Array, u2: Array, d: Array) -> Array:
+    """Direction under the clamped cosine with d x + z >= 0: [Portsmouth2025], Listing 3."""
+    return _clipped(u1, 1.0 - u1, u2, d)
+
+
+def _draw(wo: Array, u1: Array, rest: Array, u2: Array, roughness: Array) -> tuple[Array, Array]:
+    """`cltc_sample` of two random numbers; `rest` is 1 - u1, to all of its digits."""
+    d = ltc_d(wo[..., 2], roughness)
+    wi, pdf = ltc_transformed(wo, _clipped(u1, rest, u2, d), roughness, d)
+    # On the edge of the lune d x + z is zero up to rounding, of either sign.
+    wi = stack_xyz(wi[..., 0], wi[..., 1], at_least_0(wi[..., 2]))
+    return wi, pdf / cltc_kept_fraction(d)
+
+
+def _clipped(u1: Array, rest: Array, u2: Array, d: Array) -> Array:
+    """`cltc_clipped` where `rest` is 1 - u1.
+
+    The chord at y has the half length c, c^2 = 1 - u1 + x^2, and x becomes c (1 - k) + k x. Then
+
+        z^2 = 1 - x'^2 - y^2 = k (c - x) (2 c (1 - k) + k (c + x)),
+
+    where of c - x and c + x the smaller one is (1 - u1) over the other: nothing cancels on the rim.
+    """
+    wh = around(root(rest), root(u1), u2)
+    x, y = wh[..., 0], wh[..., 1]
+    xp, kept, cut = array_namespace(x, d), cltc_kept_fraction(d), _cut_fraction(d)
+    half = root(rest + x * x)
+    behind = x < 0.0
+    far = half + xp.where(behind, -x, x)
+    near = rest / far
+    ahead, back = xp.where(behind, far, near), xp.where(behind, near, far)
+    z = root(kept * ahead * (2.0 * half * cut + kept * back))
+    x = half * cut + x * kept
+    return stack_xyz(xp.where(d > 0.0, x, -x), y, z)
+
+
+UP = 0.0, 0.0, 1.0
+
+
+@any_array
+def ggx_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
+    """Direction reflected by a visible GGX normal, may be below the horizon; and its density.
+
+    `wi` (..., 3): Unit vectors; those with z < 0 are wasted, their weight is 0. `pdf` (...): 1/sr.
+    Where an alpha is 0 there is no density, and it counts as 0. Value times cosine over density is
+    F G2 / G1(wo). [Dupuy2023], Section 3; [Heitz2014], Eq. (16).
+
+        >>> wi, pdf = ggx_sample([0.6, 0.0, 0.8], [0.25, 0.5], [0.5, 0.25])
+        >>> wi.round(6), round(float(pdf), 6)
+        (array([-0.835004,  0.      ,  0.550244]), 0.649904)
+    """
+    u1, u2 = unpack_uniforms(u)
+    stacked = array_namespace(u1).stack([u1, u2], axis=-1)
+    vectors = {"wo": checked_directions("wo", wo), "u": stacked}
+    view, (u1, u2), alpha = _components(vectors | {"roughness": checked_roughness(roughness)})
+    wh = visible_normal(view, u1, u2, alpha)
+    wi = stack_xyz(*(2.0 * array_namespace(wh).sum(view * wh, axis=0) * wh - view))
+    return wi, visible_density(view, wh, alpha)
+
+
+@any_array
+def ggx_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
+    """Density of `ggx_sample` at `wi`, on the whole sphere, in solid angle.
+
+        pdf = G1(wo) D(wh) / (4 mu_o), and 0 where wh is below the horizon
+
+    Result (...): 1/sr; its integral over the upper hemisphere is the probability that no sample is
+    wasted. [Heitz2014], Eqs. (16), (43).
+
+        >>> round(float(ggx_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], [0.5, 0.25])), 6)
+        0.455389
+    """
+    vectors = {"wo": checked_directions("wo", wo), "wi": checked_sphere("wi", wi)}
+    vectors["roughness"] = checked_roughness(roughness)
+    view, light, alpha = _components(vectors)
+    wh, cosine = ggx.half_vector(view, light)
+    below = (wh[2] < 0.0) | ((cosine == 0.0) & (light[2] < 0.0))
+    return array_namespace(wh).where(below, 0.0, visible_density(view, wh, alpha))[()]
+
+
+def _components(vectors: dict[str, Numbers]) -> list[Array]:
+    """Vectors, broadcast against each other, as float64 arrays with the components first."""
+    lead = lead_shape(vectors, {})
+    arrays = broadcastable(vectors, {})
+    xp, order = array_namespace(*arrays), (len(lead), *range(len(lead)))
+    spread = [xp.broadcast_to(v, (*lead, *v.shape[-1:])) for v in arrays]
+    return [xp.permute_dims(vector, order) for vector in spread]
+
+
+def visible_density(wo: Array, wh: Array, roughness: Array) -> Array:
+    """G1(wo) D(wh) / (4 mu_o), components first; G1 / mu_o is finite at grazing."""
+    masking = 0.5 * ggx.reciprocal(wo[2] + ggx.stretched_length(wo, roughness))
+    density: Array = masking * ggx.ndf(wh, roughness)
+    return density
+
+
+def visible_normal(wo: Array, u1: Array, u2: Array, roughness: Array) -> Array:
+    """Visible normal for two random numbers, components first: [Dupuy2023], Listing 3."""
+    xp = array_namespace(wo, u1, roughness)
+    stretched = xp.stack([roughness[0] * wo[0], roughness[1] * wo[1], wo[2]])
+    length = root(xp.sum(stretched * stretched, axis=0))
+    # A smooth surface seen at grazing has a length of 0 and one normal, whatever is drawn.
+    stretched = stretched / xp.where(length > 0.0, length, 1.0)
+    # A point of the cap above -z of the stretched view.
+    down = (1.0 + stretched[2]) * u1
+    z, phi = 1.0 - down, 2.0 * np.pi * u2
+    S = root(down * (1.0 + z))
+    x, y, z = S * xp.cos(phi) + stretched[0], S * xp.sin(phi) + stretched[1], z + stretched[2]
+    normal = [roughness[0] * x, roughness[1] * y, at_least_0(z)]
+    length = root(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2])
+    seen = length > 0.0
+    size = xp.where(seen, length, 1.0)
+    return xp.stack([xp.where(seen, each / size, up) for each, up in zip(normal, UP, strict=True)])
+
+
+@any_array
+def zeltner_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
+    """Direction sampled proportionally to the Zeltner lobe times the cosine, and its density.
+
+    `wi` (..., 3): Unit vectors above the horizon. `pdf` (...): 1/sr. [MaterialX2026], Zeltner Sheen
+    Model, LTC Inverse Matrix.
+
+        >>> wi, pdf = zeltner_sample([0.6, 0.0, 0.8], [0.25, 0.5], 1.0)
+        >>> wi.round(6), round(float(pdf), 6)
+        (array([-0.550347,  0.      ,  0.834936]), 0.236007)
+    """
+    wo, u, roughness = checked_draw(wo, u, roughness=roughness)
+    wh = cosine_sample(u)[0]
+    a, b = zeltner_matrix(at_most(wo[..., 2], 1.0), roughness)
+    x, y, z = (wh[..., 0] - b * wh[..., 2]) / a, wh[..., 1] / a, wh[..., 2]
+    wi = stack_xyz(x, y, z)
+    length = root(array_namespace(wi).sum(wi * wi, axis=-1))
+    cosine, sine, _ = azimuth_frame(wo)
+    pdf = z / np.pi * length**3 * (a * a)
+    return rotate_z(wi / length[..., np.newaxis], cosine, sine), pdf
+
+
+@any_array
+def zeltner_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
+    """Density of `zeltner_sample` at `wi`, in solid angle.
+
+    Result (...): 1/sr. [MaterialX2026], Zeltner Sheen Model, Cosine-Weighted BRDF.
+
+        >>> round(float(zeltner_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 1.0)), 6)
+        0.24421
+    """
+    wo, wi, roughness = checked_pdf(wo, wi, roughness=roughness)
+    a, b = zeltner_matrix(at_most(wo[..., 2], 1.0), roughness)
+    cosine, sine, _ = azimuth_frame(wo)
+    wi = rotate_z(wi, cosine, -sine)
+    x, y, z = wi[..., 0], wi[..., 1], wi[..., 2]
+    square = array_namespace(a, x).square
+    squared = square(a * x + b * z) + square(a * y) + square(z)
+    pdf: Array = z / np.pi * square(a / squared)
+    return pdf
+
+
+__all__ = [
+    "SAMPLERS",
+    "Sampler",
+    "cltc_pdf",
+    "cltc_sample",
+    "cosine_pdf",
+    "cosine_sample",
+    "eon_cltc_pdf",
+    "eon_cltc_sample",
+    "eon_pdf",
+    "eon_sample",
+    "ggx_pdf",
+    "ggx_sample",
+    "ltc0_pdf",
+    "ltc0_sample",
+    "ltc_pdf",
+    "ltc_sample",
+    "uniform_pdf",
+    "uniform_sample",
+    "zeltner_pdf",
+    "zeltner_sample",
+]
+
+
+@dataclass(frozen=True)
+class Sampler:
+    """A sampler and its density, under one signature.
+
+    - `name`: The x of x_sample and x_pdf.
+    - `sample`: sample(wo, u, roughness) -> wi, pdf.
+    - `pdf`: pdf(wo, wi, roughness).
+    - `title`: For plots and tables.
+    """
+
+    name: str
+    sample: Callable[..., tuple[Array, Array]]
+    pdf: Callable[..., Array]
+    title: str
+
+
+SAMPLERS = (
+    Sampler(
+        "uniform",
+        lambda wo, u, roughness: uniform_sample(u),
+        lambda wo, wi, roughness: uniform_pdf(wi),
+        "uniform",
+    ),
+    Sampler(
+        "cosine",
+        lambda wo, u, roughness: cosine_sample(u),
+        lambda wo, wi, roughness: cosine_pdf(wi),
+        "cosine",
+    ),
+    Sampler("ltc0", ltc0_sample, ltc0_pdf, "LTC, d = 0"),
+    Sampler("ltc", ltc_sample, ltc_pdf, "LTC"),
+    Sampler("cltc", cltc_sample, cltc_pdf, "CLTC"),
+    Sampler("eon_cltc", eon_cltc_sample, eon_cltc_pdf, "CLTC + uniform"),
+    Sampler("eon", eon_sample, eon_pdf, "exact"),
+)
