@@ -1,60 +1,30 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a dielectric reflects, over the viewer's cosine: one integral at some cosines, interpolated.
-
-Where there is one dielectric, its albedo and energy compensation depend on the viewer's cosine alone.
-
-
-EON under the reflection of a dielectric, isotropic: value and albedos.
+"""A dielectric over EON, and OpenPBR's base: a metal and such a dielectric, mixed, with one roughness of facets.
 
 The dielectric reflects E_r of the light, and EON gets the rest, as `layer` of the specification says:
 
     f = f_r + (1 - E_r(mu_o)) f_EON,  E = E_r + (1 - E_r) E_EON
 
-E_r, with the energy compensation, is at most the albedo of facets that reflect everything, and so at
-most 1. This is no varnish: what EON returns passes freely, while below an interface light is reflected
-and refracted on its way out. The albedo is up to 2.2 times that of light that walks below the same
-interface, and 1.04 to 1.84 times at index 1.5 and rho 0.2: tools/fits/varnish_walk.py. `varnished` has
-both in closed form.
+E_r, with the energy compensation, is at most the albedo of facets that reflect everything, and so at most 1. This is
+no varnish: what EON returns passes freely, while below an interface light is reflected and refracted on its way out.
+The albedo is up to 2.2 times that of light that walks below the same interface, and 1.04 to 1.84 times at index 1.5 and
+rho 0.2: tools/fits/varnish_walk.py. `mxeon.models.varnished` has both in closed form.
 
 - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
-- `mu` (...): Cosine of the viewer's polar angle, in [0, 1].
-- `rho` (..., C): Reflectance of EON per channel, in [0, 1]; a number is one channel.
-- `roughness` (...): That of EON, in [0, 1].
-- `alpha`: GGX roughness of the dielectric, in [0.01, 1]: one number for all pairs.
-- `ior`: Its index of refraction, in [1, 4]: one number for all pairs.
-
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
-shapes do not broadcast.
-
-
-OpenPBR's base: a metal and a dielectric over EON, mixed, whose facets have one roughness.
-
-- `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
-- `mu` (...): Cosine of the viewer's polar angle, in [0, 1].
-- `rho` (..., C): `base_color` per channel, of the metal too, in [0, 1]; a number is one channel.
-- `roughness` (...): `base_diffuse_roughness`, that of EON, in [0, 1].
-- `specular_roughness`: Root of alpha of all facets, in [0.1, 1]: one number for all pairs.
-- `specular_ior`: That of the dielectric, in [1, 4]: one number for all pairs.
-- `metalness` (...): `base_metalness`, m above, in [0, 1].
-
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
-shapes do not broadcast.
-
-
-Samples of an interface and what lies below it: one of both lobes, by a given probability.
-
-
-Samples of a dielectric over EON: one of both lobes, by their albedos.
-
-- `wo`, `wi` (..., 3): Unit vectors, wo on or above the horizon.
 - `u` (..., 2): Independent uniform random numbers, in [0, 1). The first one chooses the lobe as well.
-- `rho` (..., C): Reflectance of EON per channel, in [0, 1]; a number is one channel.
+- `mu` (...): Cosine of the viewer's polar angle, in [0, 1].
+- `rho` (..., C): Reflectance of EON per channel, of the metal too, in [0, 1]; a number is one channel.
 - `roughness` (...): That of EON, in [0, 1].
-- `alpha`: GGX roughness of the dielectric, in [0.01, 1]: one number for all pairs.
-- `ior`: Its index of refraction, in [1, 4]: one number for all pairs.
+- `alpha`, `ior`: GGX roughness of the dielectric, in [0.01, 1], and its index of refraction, in [1, 4]: one number
+  each for all pairs.
+- `specular_roughness`, `specular_ior`: The same of OpenPBR, root of alpha in [0.1, 1].
+- `metalness` (...): `base_metalness`, m below, in [0, 1].
 
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
-shapes do not broadcast.
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
+not broadcast.
+
+Where there is one dielectric, its albedo and energy compensation depend on the viewer's cosine alone: one integral at
+some cosines, interpolated.
 """
 
 from __future__ import annotations

@@ -1,56 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Emission of surfaces: the EDF nodes of [MaterialX2026], and the power that they emit.
+"""Emission, media, subsurface scattering, the shader nodes, and black bodies of [MaterialX2026].
 
-A radiance is per channel, in any unit; the exitance is its integral over the hemisphere times the
-cosine, pi times that unit. Directions leave the surface, normal +z; one below the horizon sees the
-back of the surface. `measured_edf` has no function here: its values are those of a file.
+A radiance is per channel, in any unit; the exitance is its integral over the hemisphere times the cosine, pi times
+that unit. Directions leave the surface, normal +z, or the position where light is scattered, so that light that goes
+straight on has wi = -wo; one below the horizon sees the back of the surface. `measured_edf` has no function here: its
+values are those of a file. The albedo inversion is that of van de Hulst's fit for a half space.
 
-- `wo` (..., 3): Direction to the viewer, unit vector to 1e-6, normal +z; z may be negative.
+- `wo`, `wi` (..., 3): Unit vectors to 1e-6; z may be negative.
 - `radiance` (..., C): c per channel, that inside the cone for a conical emitter, in [0, 1e50].
-- `inner_angle`, `outer_angle` (...): Full angles of the cones where the falloff starts and where it
-  ends, degrees, in [0, 360].
+- `inner_angle`, `outer_angle` (...): Full angles of the cones where the falloff starts and where it ends, degrees,
+  in [0, 360].
 - `color0`, `color90` (..., C): Factors along the normal and at grazing, in [0, 1].
 - `exponent` (...): q, in [0, 1e50]; with 0 the factor is `color90` everywhere.
-
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
-shapes do not broadcast.
-
-
-Participating media: the VDF nodes of [MaterialX2026].
-
-Coefficients are per channel, in 1/m. Directions point away from the position where light is
-scattered, so that light that goes straight on has wi = -wo.
-
-- `absorption`, `scattering`: Coefficients in 1/m, in [0, 1e50].
-- `g`: Mean cosine of the deflection, in (-1, 1); at either end all light goes one way, and the
-  function has no value.
-
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
-shapes do not broadcast.
-
-
-Radiance of surfaces, lights and media by the shader nodes of [MaterialX2026].
-
-
-Subsurface scattering, as in [MaterialX2026], section `subsurface_bsdf` and its appendix.
-
-The albedo inversion is that of van de Hulst's fit for a half space: `subsurface_reflectance`.
-
+- `absorption`, `scattering`: Coefficients per channel in 1/m, in [0, 1e50].
+- `g`: Mean cosine of the deflection, in (-1, 1); at either end all light goes one way, and the function has no value.
 - `rho`: Diffuse reflectance, in [0, 1]: the node's color.
 - `scatter_anisotropy`: Mean cosine g of a scattering, in [-1, 1].
-- `separation`: Distance r, a length, in [1e-150, 1e150].
-- `radius`: Mean free path l, a length, in [1e-150, 1e150].
-
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
-shapes do not broadcast.
-
-
-Color of a black body: Planck's law seen by the CIE 1931 observer, in linear Rec. 709.
-
+- `separation`, `radius`: Distance r and mean free path l, lengths, in [1e-150, 1e150].
 - `temperature` (...): In kelvin, in [1, 1e9].
 
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
-shapes do not broadcast.
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
+not broadcast.
 """
 
 from __future__ import annotations

@@ -1,20 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sampling of the hemisphere independent of the material, and the frame of wo.
+"""Importance sampling: a sampler is a pair, x_sample(...) -> wi, pdf and x_pdf(...).
 
-Directions leave the surface, local frame with the normal +z. Random numbers `u` lie in [0, 1).
+Argument order `wo`, `wi`, `u`, `roughness`, without those that a sampler does not depend on.
 
+- `wo` (..., 3): Direction to the viewer, unit vector to 1e-6, normal +z, z >= 0.
+- `wi` (..., 3): Direction to the light, a unit vector; of samples that may lie below the horizon those with z < 0
+  are wasted, their weight is 0.
 - `u` (..., 2): Independent uniform random numbers, in [0, 1).
-- `wi` (..., 3): Unit vectors on or above the horizon.
+- `roughness` (...): In [0, 1]; of Zeltner's sheen at least 0.01. For GGX (..., 2) or (): alpha along tangent +x
+  and bitangent.
+- `rho` (...): Gray reflectance for which the sampling of EON is exact, in [0, 1]: one number for each direction.
+  Three of them for three samples of one `wo` might be a color, and are refused.
+- `pdf` (...): Density in solid angle, 1/sr.
 
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
-shapes do not broadcast.
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
+not broadcast.
 
-
-Exact importance sampling of EON: two random numbers, no table, no iteration.
-
-On the unit disk below the hemisphere, with `wo` turned to azimuth 0, S = sqrt(1 - mu^2) and
-q = r S_o, the value of EON at unit reflectance is A / pi times the sum of four parts, none of
-which is ever negative:
+**EON**, exactly: two random numbers, no table, no iteration. On the unit disk below the hemisphere, with `wo`
+turned to azimuth 0, S = sqrt(1 - mu^2) and q = r S_o, the value of EON at unit reflectance is A / pi times the
+sum of four parts, none of which is ever negative:
 
 | part     | value                                   | integral over the disk, over pi            |
 |----------|-----------------------------------------|--------------------------------------------|
@@ -23,84 +27,23 @@ which is ever negative:
 | multiple | r H(mu_i) H(mu_o) / (c1 - c2)           | r H(mu_o)                                  |
 | flat     | 1 + q x                                 | 1                                          |
 
-with K(theta) = (theta - sin(theta) cos(theta))/2 - sin^3(theta)/3. The integrals sum to 1 + c1 r,
-which is 1 / A: docs/sampling.md has the proof.
+with K(theta) = (theta - sin(theta) cos(theta))/2 - sin^3(theta)/3. The integrals sum to 1 + c1 r, which is 1 / A:
+docs/sampling.md has the proof. Each part is drawn by its inverse distribution. Those of `flat` and `lower` are
+closed forms; those of `multiple` and `upper` depend on no parameter, and are fitted. The density returned is that
+of the four parts. Directions follow it with a relative error of at most 1.3e-5 of the part: a mean of the parts'
+errors under non-negative weights, so that the sum has no larger error anywhere.
 
-Each part is drawn by its inverse distribution. Those of `flat` and `lower` are closed forms; those
-of `multiple` and `upper` depend on no parameter, and are fitted. The density returned is that of
-the four parts. Directions follow it with a relative error of at most 1.3e-5 of the part: a mean of
-the parts' errors under non-negative weights, so that the sum has no larger error anywhere.
+**Linearly transformed cosines** fitted to EON. With `wo` turned to azimuth 0, a direction `wh` drawn under a
+clamped cosine is mapped by M = [[a, 0, b], [0, c, 0], [d, 0, 1]]:
 
-- `wo`, `wi` (..., 3): Unit vectors on or above the horizon.
-- `u` (..., 2): Independent uniform random numbers, in [0, 1).
-- `roughness` (...): In [0, 1].
-- `rho` (...): Gray reflectance for which the sampling is exact, in [0, 1]: one number for each
-  direction. Three of them for three samples of one `wo` might be a color, and are refused.
+    wi = M wh / |M wh|,      p(wi) = p(wh) |M wh|^3 / det M
 
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
-shapes do not broadcast.
-
-
-Linearly transformed cosines fitted to EON, without and with the coefficient d.
-
-The surface is rotated about the normal until `wo` has azimuth 0. A direction `wh` drawn
-under a clamped cosine is mapped by M = [[a, 0, b], [0, c, 0], [d, 0, 1]]:
-
-    wi = M wh / |M wh|,      p(wi) = p(wh) |M wh|^3 / det M.
-
-- `wo`, `wi` (..., 3): Unit vectors on or above the horizon.
-- `u` (..., 2): Independent uniform random numbers, in [0, 1).
-- `roughness` (...): In [0, 1].
-
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
-shapes do not broadcast.
-
-
-Clipped linearly transformed cosines, and the paper's importance sampling of EON with them.
-
-Of the clamped cosine, CLTC keeps only what its matrix maps above the horizon, d x + z >= 0. The
-rest has the shape of a lune. See `mxeon.models.sampling.ltc` for the matrix and its density.
-
-- `wo`, `wi` (..., 3): Unit vectors on or above the horizon.
-- `u` (..., 2): Independent uniform random numbers, in [0, 1).
-- `roughness` (...): In [0, 1].
-
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
-shapes do not broadcast.
-
-
-Importance sampling of GGX reflection by visible normals.
-
-The surface is stretched until its microfacets are a hemisphere; their visible normals are then
-half vectors of the stretched `wo` and a direction drawn uniformly on a spherical cap.
-
-- `wo`, `wi` (..., 3): Unit vectors, wo on or above the horizon.
-- `u` (..., 2): Independent uniform random numbers, in [0, 1).
-- `roughness` (..., 2) or (): alpha along tangent and bitangent, in [0, 1]; a number is isotropic.
-
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
-shapes do not broadcast.
-
-
-Importance sampling of the Zeltner sheen, whose lobe is a linearly transformed cosine.
-
-A direction `wh` drawn under a clamped cosine, in the frame where wo has azimuth 0, is mapped by
-M = [[1/a, 0, -b/a], [0, 1/a, 0], [0, 0, 1]]: wi = M wh / |M wh|. M keeps z, so no sample is wasted,
+CLTC keeps of the cosine only what M maps above the horizon, d x + z >= 0; the rest has the shape of a lune.
+Zeltner's sheen is such a lobe itself, M = [[1/a, 0, -b/a], [0, 1/a, 0], [0, 0, 1]]: M keeps z, no sample is wasted,
 and the value times the cosine over the density is color E(mu_o) for every sample.
 
-- `wo`, `wi` (..., 3): Unit vectors on or above the horizon.
-- `u` (..., 2): Independent uniform random numbers, in [0, 1).
-- `roughness` (...): In [0, 1]; below 0.01 it counts as 0.01.
-
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
-shapes do not broadcast.
-
-
-Importance sampling: a sampler is a pair, x_sample(...) -> wi, pdf and x_pdf(...).
-
-Argument order `wo`, `wi`, `u`, `roughness`, without those that a sampler does not depend on; `rho`,
-which only the exact sampler of EON takes, is a keyword. Random numbers `u` have shape (..., 2) and
-lie in [0, 1). Densities are in solid angle, 1/sr.
+**GGX** by visible normals: stretched until the microfacets are a hemisphere, they are half vectors of the stretched
+`wo` and a direction drawn uniformly on a spherical cap.
 """
 
 from __future__ import annotations

@@ -1,14 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Directions in the frame of a normal and a tangent.
+"""A model as one object: value, albedos, samples, density, inputs, and a plot; an emission; a medium.
 
-
-Inputs of a model in a call: bound to its parameters, checked, and laid out in rows of pairs.
-
-
-A model as one object: value, albedos, samples, density, inputs, and a plot.
-
-
-An emission or a medium as one object: its functions by MaterialX's inputs.
+Inputs of a call are bound to the model's parameters, checked, and laid out in rows of pairs.
 """
 
 from __future__ import annotations

@@ -1,26 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sheen of [MaterialX2026], section `sheen_bsdf`: values in 1/sr and without the cosine.
+"""Sheen of [MaterialX2026], section `sheen_bsdf`: values in 1/sr and without the cosine, and albedos.
 
 The node's input `color` is a tint that scales the lobe; its albedos are those at unit color.
 
 - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
+- `mu` (...): Cosine of the polar angle of wo, in [0, 1].
 - `color` (..., C): Tint per channel, in [0, 1]; a number is one channel.
 - `roughness` (...): In [0, 1]; that of Zeltner's sheen counts as 0.01 below 0.01.
 
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
-shapes do not broadcast.
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
+not broadcast.
 
-
-Directional albedo of the Conty-Kulla sheen: one integral in closed form, one by quadrature.
-
-Over the half vector, at latitude l above the surface and azimuth phi from wo, the albedo is
+The directional albedo of the Conty-Kulla sheen is an integral over the half vector, at latitude l above the surface and
+azimuth phi from wo, one in closed form, one by quadrature:
 
     E = integral of D(l) w mu_i / (mu_i + mu_o - mu_i mu_o) cos(l) dphi dl,
-    w = wo . wh = mu_o sin(l) + s_o cos(l) cos(phi),  mu_i = 2 w sin(l) - mu_o,
+    w = wo . wh = mu_o sin(l) + s_o cos(l) cos(phi),  mu_i = 2 w sin(l) - mu_o
 
-which has no kink where wh is the normal. With sin(2 delta) = mu_o, the light is above the horizon
-for all phi where l >= pi/2 - delta, and for tan(phi / 2)^2 <= sin(2 (l - delta)) / sin(2 (l + delta))
-where delta <= l <= pi/2 - delta.
+It has no kink where wh is the normal. With sin(2 delta) = mu_o, the light is above the horizon for all phi where
+l >= pi/2 - delta, and for tan(phi / 2)^2 <= sin(2 (l - delta)) / sin(2 (l + delta)) where delta <= l <= pi/2 - delta.
 """
 
 from __future__ import annotations

@@ -1,65 +1,36 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Airy reflectance of a thin film by complex amplitudes, on valid float64 arrays, which broadcast.
+"""Thin films on the microfacet nodes of pbrlib: reflectances, lobes, albedos, and spectra to compare with.
 
-Sections are those of [MaterialX2026], appendix Thin-Film Iridescence Model. The film is at least as dense as the vacuum
-above it, so that the amplitude r12 of its upper interface is real; that of the lower one is r23 = sqrt(R23) e^(i phi_23).
-The text prints reflectances and phases, R12, R23 and phi = phi_21 + phi_23, and sums
+Sections are those of [MaterialX2026], appendix Thin-Film Iridescence Model, after [Belcour2017]. A film of thickness
+0 is the node's own Fresnel curve.
+
+- `mu` (...): Cosine between direction and microfacet normal, in [0, 1].
+- `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x, z >= 0.
+- `thickness` (...): Of the film, in nm, in [0, 1e9].
+- `film_ior` (...): Index of the film, in [1, 1e50].
+- `ior`, `extinction` (...): Complex index of the substrate, in [0, 1e50], without channels but where a function
+  says so.
+- `category`, `inputs`: Category of the node, and its inputs by the names of its ports, colors with three channels;
+  `thinfilm_thickness` in nm, and `thinfilm_ior`.
+- `form`: What the text leaves open: the matrix to RGB, the number of orders, what becomes of an index for each
+  channel in a sum over CIE XYZ, and of values outside [0, 1], which it clamps at the very end.
+
+Result (..., 3): linear RGB, in [0, 1]. Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
+not broadcast.
+
+The film is at least as dense as the vacuum above it, so that the amplitude r12 of its upper interface is real; that of
+the lower one is r23 = sqrt(R23) e^(i phi_23). The text prints reflectances and phases, R12, R23 and
+phi = phi_21 + phi_23, and sums
 
     I = C_0 + 2 sum of C_m S(m D, m phi),  C_0 = R12 + R_s,  R_s = T121^2 R23 / (1 - R12 R23),
     C_m = (R_s - T121) sqrt(R12 R23)^m,  T121 = 1 - R12
 
-With z = r21 r23 = -r12 r23, whose length is sqrt(R12 R23) and whose
-angle is phi, the m-th term is the real part of z^m. Roots and phases have no derivative where a reflectance is 0: for a
-film of index 1, at Brewster's angle, over a substrate of its own index. z^m has.
+With z = r21 r23 = -r12 r23, whose length is sqrt(R12 R23) and whose angle is phi, the m-th term is the real part of
+z^m. Roots and phases have no derivative where a reflectance is 0: for a film of index 1, at Brewster's angle, over a
+substrate of its own index. z^m has.
 
-
-Fresnel curves of the microfacet nodes under a thin film, in linear RGB, and their averages.
-
-The specification leaves four things open, which a Form says: the matrix to RGB, the number of orders,
-what becomes of an index for each color channel in a sum over CIE XYZ, and of values outside [0, 1],
-which it clamps at the very end.
-
-
-Airy reflectances of the microfacet nodes of pbrlib under a thin film, in linear RGB.
-
-A film of thickness 0 is the node's own Fresnel curve. `Form` says what the specification leaves open.
-
-- `mu` (...): Cosine between direction and microfacet normal, in [0, 1].
-- `thickness` (...): Of the film, in nm, in [0, 1e9].
-- `film_ior` (...): Index of the film, in [1, 1e50].
-- `ior` (...): Index of the dielectric, in [0, 1e50]; of a conductor see its function.
-- `form`: Choices that the specification leaves open.
-
-Result (..., 3): linear RGB, in [0, 1]. Raises `ValueError`, which names the first bad element, if
-an argument leaves its range or the shapes do not broadcast. [MaterialX2026], Thin-Film Iridescence
-Model; [Belcour2017].
-
-
-Values and albedos of the microfacet nodes of pbrlib under a thin film, by the names of their ports.
-
-- `category`: Category of the node.
-- `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent
-  +x, z >= 0.
-- `inputs`: The node's inputs by the names of its ports, colors with three channels;
-  `thinfilm_thickness` in nm, 0 for no film, and `thinfilm_ior`, at least 1.
-- `form`: Choices that the specification leaves open.
-
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
-shapes do not broadcast.
-
-
-Reflectance of a thin film wavelength by wavelength, and its color under the CIE 1931 observer.
-
-It is what the specification approximates by Gaussians and a few orders: the amplitudes of both
-interfaces and the phase of one passage give the sum of all reflections in closed form.
-
-- `mu` (...): Cosine between direction and normal, in [0, 1].
-- `thickness` (...): Of the film, in nm, in [0, 1e9].
-- `film_ior` (...): Index of the film, in [1, 1e50].
-- `ior`, `extinction` (...): Complex index of the substrate, in [0, 1e50], without channels.
-
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
-shapes do not broadcast.
+`film_spectrum` is what the text approximates by Gaussians and a few orders: the amplitudes of both interfaces and the
+phase of one passage give the sum of all reflections in closed form.
 """
 
 from __future__ import annotations

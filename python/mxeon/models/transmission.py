@@ -1,41 +1,27 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Geometry of refraction at a surface or a microfacet.
+"""Light through microfacets: refraction, the BTDF, the share that passes, and the readings of Schlick.
 
-An index of refraction is that of the far side relative to the side of the first direction.
+BTDFs are in 1/sr and without the cosine. Indices of refraction are those of the side of wi relative to those of wo: a
+view from inside a solid has the inverse of the node's index. alpha 0 is a delta function, which has no value; it
+counts as 0, and so does an index of 1, which bends nothing. Radiance is scaled by the square of the index as light
+enters another medium; light that is counted in energy, or paths that are traced from the view, are not. Shares that
+pass are the mean of (1 - F) G2 / G1(wo) over the normals as they are seen; the text has no compensation for what
+transmission loses between facets.
 
-
-BTDF of the microfacet nodes of pbrlib, in 1/sr and without the cosine.
-
-wo lies above the surface and wi below it. Indices of refraction are those below relative to those
-above: a view from inside a solid has the inverse of the node's index. alpha 0 is a delta function,
-which has no value; it counts as 0, and so does an index of 1, which bends nothing.
-
-Two forms differ by the square of the index. Radiance is scaled as light enters another medium; light
-that is counted in energy, or paths that are traced from the view, are not.
-
-
-Share of the light that microfacets transmit, by quadrature over the normals that are seen.
-
-With the normals drawn as they are seen, the transmitted share of the light from wo is the mean of
-(1 - F) G2 / G1(wo). The specification has no compensation for what transmission loses between facets.
-
-
-Transmission of `generalized_schlick_bsdf`, in the readings that the specification leaves open.
-
-Its BTDF needs an index of refraction, which the node does not have, and 1 - F of a curve that may leave
-[0, 1]. A Reading says what takes their place.
-
-- `reading`: A key of READINGS.
-- `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent
-  +x; wo has z >= 0, wi has z <= 0.
+- `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x; wo has
+  z >= 0, wi has z <= 0.
+- `tint` (..., C): Color per channel, in [0, 1]; a number is one channel.
 - `roughness` (..., 2) or (): alpha along tangent and bitangent, in [0, 1]; a number is isotropic.
-- `color0`, `color82`, `color90` (..., C): Reflectance along the normal, multiplier at acos(1/7),
-  and reflectance at grazing, per channel, in [0, 1]; a number is one channel.
+- `ior` (...): Index of refraction of the far side relative to that of wo, in [0, 1e50].
+- `color0`, `color82`, `color90` (..., C): Reflectance along the normal, multiplier at acos(1/7), and reflectance at
+  grazing, per channel, in [0, 1]; a number is one channel.
 - `exponent` (...): Exponent of the Schlick curve, in [0, 1e50].
+- `reading`: A key of READINGS: what takes the place of the index that `generalized_schlick_bsdf` does not have, and
+  of 1 - F of a curve that may leave [0, 1].
 - `inside`: Whether wo lies inside of the solid, where light is totally reflected beyond an angle.
 
-Raises `ValueError`, which names the first bad element or lists the readings, if an argument leaves
-its range, the shapes do not broadcast or the reading is unknown.
+Raises `ValueError`, which names the first bad element or lists the readings, if an argument leaves its range, the
+shapes do not broadcast or the reading is unknown.
 """
 
 from __future__ import annotations

@@ -326,7 +326,11 @@ def _inversion(node: str) -> UtilityNode:
         return lambda inputs: {"out": function(inputs["color"], inputs["roughness"])}
 
     variants = [Variant("the color itself", lambda inputs: {"out": inputs["color"]})]
-    variants += [Variant(name, output(name)) for name in dir(inversion) if name.startswith("eon_") and name != node]
+    variants += [
+        Variant(name, output(name))
+        for name in dir(inversion)
+        if name.startswith("eon_") and name != node
+    ]
     inputs: dict[str, float | tuple[float, ...]]
     inputs = {"color": (0.18, 0.18, 0.18), "roughness": 0.0}
     return UtilityNode(node, inputs, {"out": "color3"}, output(node), tuple(variants))

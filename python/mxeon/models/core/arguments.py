@@ -1,14 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Ranges of the arguments of the models, by name.
-
-
-Shapes of checked arguments: what broadcasts, which last axis is meant, and what is ambiguous.
-
-
-Tiling of large arrays into blocks that fit a cache.
-
-
-Validation of arguments: ranges, directions, switches and choices; `shapes` has their shapes.
+"""Validation of arguments: ranges by name, shapes that broadcast, directions, switches and choices; blocks.
 
 Directions leave the surface, in a local frame with the normal +z.
 """

@@ -1,75 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Formulas of the Oren-Nayar family on valid float64 arrays, term by term as in the paper.
+"""Lambert, the Oren-Nayar family, Burley's model and diffuse transmission: BRDFs, albedos, inversion.
 
-Names and arguments are those of the shader functions in `genglsl/lib/eon.glsl` and
-`genglsl/sampling/oren_nayar_family.glsl`. Directions are (..., 3), everything else (...), but `rho` has its
-channels on the first axis, so that it broadcasts against the rest.
-
-
-BRDF of Lambert and of the Oren-Nayar family, in 1/sr and without the cosine.
-
-All functions broadcast, are reciprocal, work on the closed domain, and evaluate in blocks, so that
-memory beyond arguments and result does not grow. They use the caller's thread alone; `threads` lets
-several share a large call. Where both directions graze the surface and s > 0,
+BRDFs are in 1/sr and without the cosine. All functions broadcast, work on the closed domain, and evaluate
+in blocks on the caller's thread, so that memory beyond arguments and result does not grow; `threads` lets
+several share a large call. BRDFs are reciprocal. Where both directions graze the surface and s > 0,
 s / max(mu_o, mu_i) has no limit and counts as 0; value times cosine is 0 there for any choice.
 
 - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
+- `mu` (...): Cosine of the viewer's polar angle, in [0, 1].
 - `rho` (..., C): Reflectance per channel, in [0, 1]; a number is one channel.
 - `sigma` (...): Deviation of the facets' slope angle, in radian, in [0, pi/2].
 - `roughness` (...): In [0, 1].
+- `color` (..., C): Albedo that is wanted, in [0, 1].
 
-Result (..., C): BRDF in 1/sr, at least 0, unbounded at grazing. Accuracy: error below 1e-14 / pi,
-or below 1e-14 of the largest value that |s / t| takes at these cosines where that is larger. Raises
-`ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
+Result (..., C): BRDF in 1/sr, at least 0, unbounded at grazing, with an error below 1e-14 / pi, or below 1e-14
+of the largest value that |s / t| takes at these cosines where that is larger. Albedos of FON and QON (...) are
+those at unit reflectance: multiply by rho. Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
 not broadcast.
 
-
-Burley's diffuse model, as in [MaterialX2026], section `burley_diffuse_bsdf`.
-
-- `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
-- `mu` (...): Cosine of the polar angle of wo, in [0, 1].
-- `rho` (..., C): Reflectance per channel, in [0, 1]; a number is one channel.
-- `roughness` (...): In [0, 1]: sigma of the text.
-
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
-shapes do not broadcast.
-
-
-Diffuse transmission, as in [MaterialX2026], section `translucent_bsdf`.
-
-
-Directional and average albedos of the Oren-Nayar family, in closed form and by quadrature.
-
-Those of QON are in `qon_albedo`. The albedos of FON are those at unit reflectance: multiply by rho. All functions broadcast
-and work on the closed domain; of numbers alone, those without channels return a number. H is
-`fon_loss`.
-
-- `mu` (...): Cosine of the polar angle, in [0, 1].
-- `roughness` (...): In [0, 1].
-- `rho` (..., C): Reflectance per channel, in [0, 1]; a number is one channel.
-
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
-shapes do not broadcast.
-
-
-Albedos of QON at unit reflectance, in closed form: multiply by rho.
-
-- `mu` (...): Cosine of the polar angle, in [0, 1].
-- `sigma` (...): Deviation of the facets' slope angle, in radian, in [0, pi/2].
-
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
-shapes do not broadcast.
-
-
-Reflectance `rho` with which EON has a wanted albedo: the inverse of the albedos in closed form.
-
-Every color in [0, 1] is reached, by one rho in [0, 1], at every roughness; no other color is.
-
-- `roughness` (...): In [0, 1].
-- `color` (..., C): Wanted albedo, directional at normal incidence or average, in [0, 1].
-
-Result (..., C): in [0, 1]. Raises `ValueError`, which names the first bad element, if an argument
-leaves its range or the shapes do not broadcast.
+The formulas below have names and arguments of the shader functions in `genglsl/lib/eon.glsl` and
+`genglsl/sampling/oren_nayar_family.glsl`; `rho` has its channels on the first axis there.
 """
 
 from __future__ import annotations

@@ -1,9 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Wrong variants of models that renderers in the field implement, to recognize them by.
-
-
-Directional albedos of the wrong variants of models, and wrong albedos of right ones.
-"""
+"""Wrong variants of diffuse models that renderers implement, and their albedos, to recognize them by."""
 
 from __future__ import annotations
 

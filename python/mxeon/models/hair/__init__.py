@@ -1,25 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Formulas of the hair model on valid float64 arrays, which broadcast; directions (3, ...).
+"""The hair model of [MaterialX2026], section `chiang_hair_bsdf`, after [Chiang2016] and [dEon2011].
 
-Sections are those of [MaterialX2026], Chiang Hair Model. The fiber is +x, and the normal +z is turned
-to the viewer. A direction has the inclination theta, sin(theta) = x, and an azimuth about the fiber.
-
-
-The hair model of [MaterialX2026], section `chiang_hair_bsdf`, after [Chiang2016] and [dEon2011].
-
-The fiber is +x, and the normal +z is turned to the viewer. Light comes from the whole sphere.
+The fiber is +x, and the normal +z is turned to the viewer. Light comes from the whole sphere. A direction has the
+inclination theta, sin(theta) = x, and an azimuth about the fiber. Roughnesses and absorption, per radius of the fiber,
+follow from what an artist sets.
 
 - `wo` (..., 3): Direction to the viewer, unit vector to 1e-6, fiber +x, normal +z, z >= 0.
 - `wi` (..., 3): Direction to the light, unit vector to 1e-6, on either side.
 
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
-shapes do not broadcast.
-
-
-Roughnesses and absorption of hair from what an artist sets.
-
-Result (..., 3): per radius of the fiber, in [0, inf). Raises `ValueError`, which names the first
-bad element, if an argument leaves its range or the shapes do not broadcast.
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
+not broadcast. Formulas have the components of directions, (3, ...), on the first axis.
 """
 
 from __future__ import annotations

@@ -1,40 +1,27 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A microfacet lobe put together from its terms, and its evaluation over arguments.
+"""BRDFs of the microfacet nodes of pbrlib, in 1/sr and without the cosine, and their albedos.
 
+All functions broadcast, work on the closed domain and evaluate in blocks. alpha 0 is a mirror: a delta function, which
+has no value; it counts as 0, and its albedo is F(mu_o). Where both directions graze the surface the value grows beyond
+bounds and counts as 0; value times cosine is 0 there for any finite choice. The compensation takes (1 - E_ss) / E_ss
+from a table that the first call computes, to 1e-10; the exact quadrature is `mxeon.albedo.ggx_albedo_dir`. Albedos are
+quadratures over slopes; their accuracy is that of `ggx_albedo_dir_anisotropic`. In retroreflective mode wo is replaced
+by its mirror image about the normal; the albedo is the same, since half a turn keeps the surface.
 
-BRDF of the microfacet nodes of pbrlib, in 1/sr and without the cosine.
-
-All functions broadcast, work on the closed domain and evaluate in blocks. alpha 0 is a mirror: a
-delta function, which has no value; it counts as 0. Where both directions graze the surface the
-value grows beyond bounds and counts as 0; value times cosine is 0 there for any finite choice.
-The compensation takes (1 - E_ss) / E_ss from a table that the first call computes, to 1e-10; the exact
-quadrature is `mxeon.albedo.ggx_albedo_dir`.
-
-In retroreflective mode wo is replaced by its mirror image about the normal.
-
-- `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent
-  +x, z >= 0.
+- `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x, z >= 0.
+- `tint` (..., C): Color per channel, in [0, 1]; a number is one channel.
 - `roughness` (..., 2) or (): alpha along tangent and bitangent, in [0, 1]; a number is isotropic.
+- `ior`, `extinction` (..., C): Index of refraction relative to the exterior medium, in [0, 1e50]; per channel for a
+  conductor, without channels (...) for a dielectric, where 0 disables the Fresnel curve.
+- `color0`, `color82`, `color90` (..., C): Reflectance along the normal, multiplier at acos(1/7), and reflectance at
+  grazing, per channel, in [0, 1]; a number is one channel.
+- `exponent` (...): Exponent of the Schlick curve, in [0, 1e50].
 - `retroreflective`: Whether light returns towards where it comes from.
 - `compensate`: Whether the energy compensation enters; without it the value is reciprocal.
 
-Result (..., C): BRDF in 1/sr, at least 0, unbounded at grazing and as alpha vanishes. Raises
-`ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
+Result (..., C): BRDF in 1/sr, at least 0, unbounded at grazing and as alpha vanishes; or an albedo.
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
 not broadcast.
-
-
-Directional albedos of the BRDFs of `mxeon.models.microfacet`, by quadrature over slopes.
-
-An albedo in retroreflective mode is the same: a surface turned by half a turn is the same surface.
-
-- `wo` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x,
-  z >= 0.
-- `roughness` (..., 2) or (): alpha along tangent and bitangent, in [0, 1]; a number is isotropic.
-- `compensate`: Whether the energy compensation enters.
-
-Result (..., C). Accuracy: see `ggx_albedo_dir_anisotropic`. At alpha 0 it is that of the mirror,
-F(mu_o). Raises `ValueError`, which names the first bad element, if an argument leaves its range or
-the shapes do not broadcast.
 """
 
 from __future__ import annotations

@@ -1,9 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Wrong variants of the microfacet nodes that renderers implement, to recognize them by.
-
-
-Albedos as MaterialX 1.39 fits them, in its GLSL library of pbrlib, to recognize them by.
-"""
+"""Wrong variants of the microfacet nodes that renderers implement, and MaterialX's fitted albedos, to recognize them by."""
 
 from __future__ import annotations
 

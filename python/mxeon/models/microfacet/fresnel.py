@@ -1,24 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fresnel reflectances and their averages on valid float64 arrays, which broadcast.
+"""Fresnel reflectances of the microfacet nodes of pbrlib, their averages, and an index from two colors.
 
-Sections are those of [MaterialX2026].
-
-
-Fresnel reflectances of the microfacet nodes of pbrlib, and their hemispherical averages.
-
-F_ss, the cosine-weighted average over the hemisphere, is 2 times the integral of F(mu) mu.
+F_ss, the cosine-weighted average over the hemisphere, is 2 times the integral of F(mu) mu. Sections are those of
+[MaterialX2026].
 
 - `mu` (...): Cosine between direction and microfacet normal, in [0, 1].
-- `ior`, `extinction` (..., C): Complex index of refraction per channel, in [0, 1e50]; a number is
-  one channel.
-- `color0`, `color82`, `color90` (..., C): Reflectance r0 along the normal, multiplier at acos(1/7),
-  and reflectance r90 at grazing, per channel, in [0, 1]; a number is one channel.
+- `ior`, `extinction` (..., C): Complex index of refraction per channel, in [0, 1e50]; a number is one channel.
+- `color0`, `color82`, `color90` (..., C): Reflectance r0 along the normal, multiplier at acos(1/7), and reflectance r90
+  at grazing, per channel, in [0, 1]; a number is one channel.
 
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
-shapes do not broadcast.
-
-
-Complex index of refraction of a metal from two colors, and back.
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
+not broadcast.
 """
 
 from __future__ import annotations

@@ -1,36 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""GGX microfacets on valid float64 arrays: distribution, masking and shadowing.
+"""GGX microfacets: distribution, masking and shadowing, roughness, and the albedo E_ss of facets that lose nothing.
 
-Directions and pairs have their components on the first axis; sections are those of
-[MaterialX2026], Microfacet Model.
+Sections are those of [MaterialX2026], Microfacet Model. Formulas have components on the first axis.
 
+- `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x, z >= 0; `wh` is
+  the normal of a microfacet.
+- `roughness` (..., 2) or (): alpha along tangent and bitangent, in [0, 1]; a number is isotropic. What an artist sets
+  instead, `roughness`, `anisotropy`, `glossiness` (...): in [0, 1].
 
-Terms of the microfacet nodes of pbrlib: distribution, masking and shadowing.
+Accuracy: relative error below 2e-14. Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
+not broadcast.
 
-- `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x,
-  z >= 0; `wh` is the normal of a microfacet.
-- `roughness` (..., 2) or (): alpha along tangent and bitangent, in [0, 1]; a number is isotropic.
-
-Accuracy: relative error below 2e-14. Raises `ValueError`, which names the first bad element, if an
-argument leaves its range or the shapes do not broadcast.
-
-
-Roughness of microfacets, alpha along tangent and bitangent, from what an artist sets.
-
-- `roughness`, `anisotropy`, `glossiness` (...): In [0, 1].
-
-Result (..., 2): in [0, 1]. Raises `ValueError`, which names the first bad element, if an argument
-leaves its range or the shapes do not broadcast.
-
-
-Directional albedo of GGX microfacets that reflect everything: E_ss of the specification.
-
-
-Light that the facets' own lobe misses, (1 - E_ss) / E_ss, from a table that is computed once.
-
-E_ss changes on the scale mu = alpha. In s = mu (1 + alpha) / (mu + alpha), which is in [0, 1], it is
-smooth but for terms like s log(s), and in sqrt(alpha) throughout; a cube root spreads the former over
-the nodes of Chebyshev polynomials.
+(1 - E_ss) / E_ss, the light that the facets' own lobe misses, comes from a table that is computed once. E_ss changes on
+the scale mu = alpha. In s = mu (1 + alpha) / (mu + alpha), which is in [0, 1], it is smooth but for terms like s log(s),
+and in sqrt(alpha) throughout; a cube root spreads the former over the nodes of Chebyshev polynomials.
 """
 
 from __future__ import annotations

@@ -1,17 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Forms of the hair model that shaders have instead of the text's.
+"""Rows of pbrlib's sheens, of its diffuse nodes but the rough ones, of hair and of subsurface scattering.
 
-
-Rows of pbrlib's sheens and diffuse nodes but the rough ones.
-
-
-Row of pbrlib's hair node. Its inputs have the names of `mxeon.models.hair.chiang_hair_bcsdf`.
-
-
-The row of subsurface scattering, as it is seen on a plane under a distant light.
-
-There every point has the same light, so that the profile, whose integral is 1, changes nothing: the
-node is Lambert of its color, whatever its radius and its anisotropy.
+Inputs of hair have the names of `mxeon.models.hair.chiang_hair_bcsdf`. Subsurface scattering is seen on a plane under a
+distant light: every point has the same light, so that the profile, whose integral is 1, changes nothing, and the node is
+Lambert of its color, whatever its radius and its anisotropy.
 """
 
 from __future__ import annotations

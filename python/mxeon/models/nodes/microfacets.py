@@ -1,16 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rows of pbrlib's microfacet nodes, scatter mode R.
+"""Rows of pbrlib's microfacet nodes: reflection, R, also under a thin film, and transmission, T and RT.
 
-Their functions have a thin film where the inputs have `thinfilm_thickness` and `thinfilm_ior`.
-
-
-Rows of pbrlib's microfacet nodes under a thin film, scatter mode R.
-
-
-Rows of pbrlib's nodes that transmit through microfacets: scatter modes T and RT.
-
-A rasterizer has no light behind the surface. It looks up an environment instead, so that what can be
-promised of it is the share of the light that passes, and where from.
+A rasterizer has no light behind the surface. It looks up an environment instead, so that what can be promised of a node
+that transmits is the share of the light that passes, and where from.
 """
 
 from __future__ import annotations

@@ -1,11 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Inputs of the BSDF nodes: default, range and unit, in MaterialX's names and order.
+"""Rows of pbrlib's nodes: their inputs, with defaults, ranges and units, and their functions.
 
-
-Types of the rows of pbrlib's nodes, and of other functions that shaders have in their place.
-
-Inputs come as a mapping by the names of the node's ports, each (N,) or (N, components). The node's
-`weight` is left to the caller, since every node has it.
+Inputs come as a mapping by the names of the node's ports, in MaterialX's order, each (N,) or (N, components). The
+node's `weight` is left to the caller, since every node has it.
 """
 
 from __future__ import annotations

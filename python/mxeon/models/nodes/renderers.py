@@ -1,9 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Functions of OSL's library BSDL, as variants of the nodes whose closures OSL's renderer makes of them.
-
-
-Functions of Blender's Cycles, as variants of the nodes whose closures it makes of them.
-"""
+"""Functions of OSL's library BSDL and of Blender's Cycles, as variants of the nodes whose closures they make of them."""
 
 from __future__ import annotations
 
