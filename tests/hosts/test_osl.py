@@ -115,9 +115,9 @@ def for_cycles(host, node, wo, inputs, old="", new=""):
 @pytest.mark.parametrize(
     ("node", "flag", "model", "largest"),
     [
-        ("eon_diffuse_bsdf", None, formulas.eon_formula, 1.0),
-        ("oren_nayar_diffuse_bsdf", 1, formulas.eon_formula, 1.0),
-        ("oren_nayar_diffuse_bsdf", 0, formulas.qon_formula, 0.5 * np.pi),
+        ("eon_diffuse_bsdf", None, models.eon_brdf, 1.0),
+        ("oren_nayar_diffuse_bsdf", 1, models.eon_brdf, 1.0),
+        ("oren_nayar_diffuse_bsdf", 0, models.qon_brdf, 0.5 * np.pi),
     ],
 )
 def test_the_closures_for_cycles_are_the_model_to_the_roundings(host, node, flag, model, largest):
@@ -132,14 +132,13 @@ def test_the_closures_for_cycles_are_the_model_to_the_roundings(host, node, flag
         inputs["energy_compensation"] = np.full(COUNT, flag)
     total = np.zeros((COUNT, 3))
     for rows, factor, closure in for_cycles(host, node, wo, inputs):
-        color, rough = closure.arguments["color"].T, closure.arguments["roughness"]
+        color, rough = closure.arguments["color"], closure.arguments["roughness"]
         fon, eon = (
-            each(wo[rows], wi[rows], color, rough)
-            for each in (formulas.fon_formula, formulas.eon_formula)
+            each(wo[rows], wi[rows], color, rough) for each in (models.fon_brdf, models.eon_brdf)
         )
-        total[rows] += factor * (fon + color * (eon - fon)).T
-    expected = inputs["weight"] * model(wo, wi, inputs["color"].T, inputs["roughness"])
-    error = np.pi * wi[:, 2] * np.abs(total.T - expected)
+        total[rows] += factor * (fon + color * (eon - fon))
+    expected = inputs["weight"] * model(wo, wi, inputs["color"], inputs["roughness"])
+    error = np.pi * wi[:, 2:] * np.abs(total - expected)
     assert error.max() <= 4 * 2.0**-24
 
 

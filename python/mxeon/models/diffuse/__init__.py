@@ -24,6 +24,8 @@ The formulas below have names and arguments of the shader functions in `genglsl/
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from mxeon.models.core.arguments import (
@@ -69,6 +71,11 @@ def cosines(wo: Array, wi: Array) -> tuple[Array, Array, Array]:
     """
     s = wo[..., 0] * wi[..., 0] + wo[..., 1] * wi[..., 1]
     return cosine(wo[..., 2]), cosine(wi[..., 2]), s
+
+
+def of_cosines(formula: Callable[..., Array]) -> Callable[..., Array]:
+    """A formula of mu_o, mu_i and s, with directions in front of its other arguments."""
+    return lambda wo, wi, *material: formula(*cosines(wo, wi), *material)
 
 
 def fon_loss_mu(mu: Array) -> Array:
@@ -155,6 +162,17 @@ def fon_quotient(mu_o: Array, mu_i: Array, s: Array) -> Array:
     return qon_quotient(mu_o, mu_i, s) + xp.minimum(s, 0.0)
 
 
+def qon_footnote_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, sigma: Array) -> Array:
+    """QON with 0.57 for 0.33 in A_q: [Portsmouth2025], footnote 1."""
+    return rho / np.pi * (qon_a(sigma, 0.57) + qon_b(sigma) * qon_quotient(mu_o, mu_i, s))
+
+
+def qon_fujii_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, sigma: Array) -> Array:
+    """rho / pi (A_q + 0.17 rho k + B_q s / t_F), k = sigma^2 / (sigma^2 + 0.13): [Fujii2013]."""
+    a = qon_a(sigma) + oren_nayar_interreflection(rho, sigma)
+    return rho / np.pi * (a + qon_b(sigma) * fon_quotient(mu_o, mu_i, s))
+
+
 def qon_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, sigma: Array) -> Array:
     """rho / pi (A_q + B_q s / t_q): [Portsmouth2025], Eqs. (1), (3)."""
     return rho / np.pi * (qon_a(sigma) + qon_b(sigma) * qon_quotient(mu_o, mu_i, s))
@@ -170,11 +188,6 @@ def eon_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array
     single_scatter = 1.0 + roughness * fon_quotient(mu_o, mu_i, s)
     multi_scatter = eon_multiple_weight(rho, roughness) * (fon_loss_mu(mu_o) * fon_loss_mu(mu_i))
     return fon_scale(rho, roughness) * (single_scatter + multi_scatter)
-
-
-def lambert_formula(wo: Array, wi: Array, rho: Array) -> Array:
-    """rho / pi."""
-    return rho / np.pi
 
 
 def oren_nayar_angle(y: Array, x: Array) -> Array:
@@ -203,15 +216,7 @@ def oren_nayar_interreflection(rho: Array, sigma: Array) -> Array:
 
 
 def oren_nayar_formula(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:
-    """The functional approximation of [OrenNayar1994] for Gaussian slopes, with interreflection.
-
-        f = rho / pi [C1 + C2 cos(phi) tan(beta) + C3 (1 - |cos(phi)|) tan((alpha + beta) / 2)]
-            + 0.17 rho^2 / pi sigma^2 / (sigma^2 + 0.13) (1 - (2 beta / pi)^2 cos(phi))
-        C1 = A_q,  C2 = B_q (sin(alpha) - (2 beta / pi)^3 where cos(phi) < 0),
-        C3 = 0.125 sigma^2 / (sigma^2 + 0.09) (4 alpha beta / pi^2)^2
-
-    alpha is the larger polar angle, beta the smaller; both as fractions of a right angle below.
-    """
+    """The equation of `oren_nayar_brdf`, with alpha and beta as fractions of a right angle."""
     xp = array_namespace(wo, wi)
     mu_o, mu_i, s = cosines(wo, wi)
     S_o, S_i = hypot(wo[..., 0], wo[..., 1]), hypot(wi[..., 0], wi[..., 1])
@@ -232,35 +237,8 @@ def oren_nayar_formula(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:
     return rho / np.pi * (single_scatter + C3 * aside + interreflection)
 
 
-def qon_formula(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:
-    """[Portsmouth2025], Eqs. (1), (3), (4)."""
-    return qon_brdf_mu(*cosines(wo, wi), rho, sigma)
-
-
-def qon_footnote_formula(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:
-    """QON with 0.57 for 0.33 in A_q: [Portsmouth2025], footnote 1."""
-    return rho / np.pi * (qon_a(sigma, 0.57) + qon_b(sigma) * qon_quotient(*cosines(wo, wi)))
-
-
-def qon_fujii_formula(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:
-    """rho / pi (A_q + 0.17 rho k + B_q s / t_F), k = sigma^2 / (sigma^2 + 0.13): [Fujii2013]."""
-    a = qon_a(sigma) + oren_nayar_interreflection(rho, sigma)
-    return rho / np.pi * (a + qon_b(sigma) * fon_quotient(*cosines(wo, wi)))
-
-
-def fon_formula(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
-    """[Portsmouth2025], Eqs. (10), (11)."""
-    return fon_brdf_mu(*cosines(wo, wi), rho, roughness)
-
-
-def eon_formula(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
-    """[Portsmouth2025], Eqs. (16), (19)."""
-    return eon_brdf_mu(*cosines(wo, wi), rho, roughness)
-
-
-def eon_formula_approx(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
+def eon_brdf_approx_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
     """EON with the quartic for H, which is kept from falling below 0 where mu < 0.0014."""
-    mu_o, mu_i, s = cosines(wo, wi)
     losses = at_least_0(fon_loss_approx(mu_o)) * at_least_0(fon_loss_approx(mu_i))
     single_scatter = 1.0 + roughness * fon_quotient(mu_o, mu_i, s)
     multi_scatter = eon_multiple_weight(rho, roughness) * losses
@@ -279,7 +257,7 @@ def lambert_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike) -> Array:
         >>> lambert_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8]).round(6)
         array([0.063662, 0.254648])
     """
-    return evaluate(lambert_formula, wo, wi, rho)
+    return evaluate(lambda wo, wi, rho: rho / np.pi, wo, wi, rho)
 
 
 @any_array
@@ -316,7 +294,7 @@ def qon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> 
         >>> qon_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.06258 , 0.250322])
     """
-    return evaluate(qon_formula, wo, wi, rho, sigma=sigma)
+    return evaluate(of_cosines(qon_brdf_mu), wo, wi, rho, sigma=sigma)
 
 
 @any_array
@@ -330,7 +308,7 @@ def qon_footnote_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: Array
         >>> qon_footnote_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.066596, 0.266385])
     """
-    return evaluate(qon_footnote_formula, wo, wi, rho, sigma=sigma)
+    return evaluate(of_cosines(qon_footnote_brdf_mu), wo, wi, rho, sigma=sigma)
 
 
 @any_array
@@ -345,7 +323,7 @@ def qon_fujii_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLik
         >>> qon_fujii_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.064005, 0.273106])
     """
-    return evaluate(qon_fujii_formula, wo, wi, rho, sigma=sigma)
+    return evaluate(of_cosines(qon_fujii_brdf_mu), wo, wi, rho, sigma=sigma)
 
 
 @any_array
@@ -359,7 +337,7 @@ def fon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike)
         >>> fon_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.07235 , 0.289399])
     """
-    return evaluate(fon_formula, wo, wi, rho, roughness=roughness)
+    return evaluate(of_cosines(fon_brdf_mu), wo, wi, rho, roughness=roughness)
 
 
 @any_array
@@ -375,7 +353,7 @@ def eon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike)
         >>> eon_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.073621, 0.310981])
     """
-    return evaluate(eon_formula, wo, wi, rho, roughness=roughness)
+    return evaluate(of_cosines(eon_brdf_mu), wo, wi, rho, roughness=roughness)
 
 
 @any_array
@@ -392,7 +370,7 @@ def eon_brdf_approx(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: Arr
         >>> eon_brdf_approx([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.073622, 0.311002])
     """
-    return evaluate(eon_formula_approx, wo, wi, rho, roughness=roughness)
+    return evaluate(of_cosines(eon_brdf_approx_mu), wo, wi, rho, roughness=roughness)
 
 
 @any_array
@@ -410,7 +388,12 @@ def burley_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLi
         >>> burley_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.063985, 0.255939])
     """
-    return evaluate(_formula, wo, wi, rho, roughness=roughness)
+
+    def formula(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
+        k = roughness * (1.0 + mu_o * mu_i + s) - 0.5
+        return rho / np.pi * (1.0 + k * (1.0 - mu_o) ** 5) * (1.0 + k * (1.0 - mu_i) ** 5)
+
+    return evaluate(of_cosines(formula), wo, wi, rho, roughness=roughness)
 
 
 @any_array
@@ -437,13 +420,6 @@ def burley_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Ar
     return rho * unit
 
 
-def _formula(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
-    """f on valid arrays, channels first."""
-    mu_o, mu_i, s = cosines(wo, wi)
-    k = roughness * (1.0 + mu_o * mu_i + s) - 0.5
-    return rho / np.pi * (1.0 + k * (1.0 - mu_o) ** 5) * (1.0 + k * (1.0 - mu_i) ** 5)
-
-
 @any_array
 def translucent_btdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike) -> Array:
     """BTDF of Lambert's transmission.
@@ -464,7 +440,7 @@ def translucent_btdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike) -> Array:
     light = checked_transmitted("wi", checked_triples("wi", wi))
     xp = array_namespace(light)
     mirrored = xp.stack([light[..., 0], light[..., 1], -light[..., 2]], axis=-1)
-    return evaluate(lambert_formula, wo, mirrored, rho)
+    return evaluate(lambda wo, wi, rho: rho / np.pi, wo, mirrored, rho)
 
 
 @any_array
@@ -641,7 +617,7 @@ def eon_rho_from_albedo_normal(color: ArrayLike, roughness: ArrayLike) -> Array:
         >>> eon_rho_from_albedo_normal([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
         array([0.      , 0.219784, 0.835673, 1.      ])
     """
-    color, r = _checked(color, roughness)
+    (color,), (r,) = checked_colors({"color": color}, roughness=roughness)
     b, d = 1.0 + (C1 - C2) * r * color, 1.0 + C1 * r
     sqrt = array_namespace(color, r).sqrt
     rho = 2.0 * color * d / (b + sqrt(b * b + 4.0 * C2 * r * d * color))
@@ -660,7 +636,7 @@ def eon_rho_from_albedo_avg(color: ArrayLike, roughness: ArrayLike) -> Array:
         >>> eon_rho_from_albedo_avg([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
         array([0.      , 0.208598, 0.827676, 1.      ])
     """
-    color, r = _checked(color, roughness)
+    (color,), (r,) = checked_colors({"color": color}, roughness=roughness)
     scaled = color * (1.0 + C1 * r)
     return scaled / (scaled + (1.0 + C2 * r) * (1.0 - color))
 
@@ -717,13 +693,7 @@ def eon_rho_from_albedo_avg_refit_approx(color: ArrayLike, roughness: ArrayLike)
     return _polynomial(color, roughness, AVERAGE_REFIT, 1.0)
 
 
-def _checked(color: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
-    """Checked arguments as float64 arrays: colors (..., C), roughness (..., 1)."""
-    (color,), (roughness,) = checked_colors({"color": color}, roughness=roughness)
-    return color, roughness
-
-
 def _polynomial(color: ArrayLike, roughness: ArrayLike, slope: float, zero: float) -> Array:
     """C + slope (zero - C) C r: [Portsmouth2025], Eqs. (32) and (34)."""
-    color, r = _checked(color, roughness)
+    (color,), (r,) = checked_colors({"color": color}, roughness=roughness)
     return color + slope * (zero - color) * color * r

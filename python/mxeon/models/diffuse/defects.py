@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from mxeon.models import diffuse as formulas
 from mxeon.models.core.arguments import checked, checked_colors, checked_triples
 from mxeon.models.core.arrays import Array, ArrayLike, any_array, array_namespace, at_most
 from mxeon.models.core.evaluation import evaluate
@@ -13,11 +12,22 @@ from mxeon.models.diffuse import (
     C1,
     C2,
     burley_brdf,
-    cosines,
     eon_albedo_dir,
+    eon_brdf_approx_mu,
+    eon_brdf_mu,
+    eon_multiple_weight,
+    fon_a,
     fon_albedo_dir,
+    fon_brdf_mu,
+    fon_loss_mu,
+    fon_quotient,
+    fon_scale,
+    of_cosines,
+    qon_a,
     qon_albedo_dir,
+    qon_b,
     qon_brdf,
+    qon_brdf_mu,
 )
 
 DEGREE = 180.0 / np.pi
@@ -33,7 +43,12 @@ def eon_clamped_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: Ar
     Result (..., C): in 1/sr; too bright where dot(wo, wi) < 0, and correct elsewhere. MaterialX's
     GLSL node clamps the product, for the needs of other nodes, and passes it on.
     """
-    return evaluate(_eon_clamped, wo, wi, rho, roughness=roughness)
+
+    def formula(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
+        s = array_namespace(s).maximum(s + mu_o * mu_i, 1e-8) - mu_o * mu_i
+        return eon_brdf_mu(mu_o, mu_i, s, rho, roughness)
+
+    return evaluate(of_cosines(formula), wo, wi, rho, roughness=roughness)
 
 
 @any_array
@@ -60,7 +75,14 @@ def burley_schlick_brdf(
     Result (..., C): in 1/sr; not reciprocal. It is Lambert at roughness 0, and Burley where mu_o
     and mu_i are 1. The GLSL of three-gpu-pathtracer. Burley's R is 2 roughness (wi . wh)^2.
     """
-    return evaluate(_burley_schlick, wo, wi, rho, roughness=roughness)
+
+    def formula(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
+        F_o, F_i = (1.0 - mu_o) ** 5, (1.0 - mu_i) ** 5
+        smooth = (1.0 - 0.5 * F_o) * (1.0 - 0.5 * F_i)
+        R = 0.5 + 2.0 * roughness * F_i**2
+        return rho / np.pi * (smooth + R * (F_o + F_i + F_o * F_i * (R - 1.0)))
+
+    return evaluate(of_cosines(formula), wo, wi, rho, roughness=roughness)
 
 
 @any_array
@@ -70,7 +92,14 @@ def eon_rho_cubed_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: 
     Result (..., C): in 1/sr; too dark, and correct where rho is 0 or 1. The OSL closure of
     Blender's Cycles applies its albedo weight to the lobe once too often.
     """
-    return evaluate(_eon_rho_cubed, wo, wi, rho, roughness=roughness)
+
+    def formula(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
+        single_scatter = 1.0 + roughness * fon_quotient(mu_o, mu_i, s)
+        weight = rho * eon_multiple_weight(rho, roughness)
+        multi_scatter = weight * (fon_loss_mu(mu_o) * fon_loss_mu(mu_i))
+        return fon_scale(rho, roughness) * (single_scatter + multi_scatter)
+
+    return evaluate(of_cosines(formula), wo, wi, rho, roughness=roughness)
 
 
 @any_array
@@ -82,7 +111,13 @@ def fon_white_lobe_brdf(
     Result (..., C): in 1/sr; too bright, and correct where rho is 1. The MDL target forgets to tint
     the lobe: a black surface reflects 0.22 at roughness 1.
     """
-    return evaluate(_fon_white_lobe, wo, wi, rho, roughness=roughness)
+
+    def formula(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
+        losses = fon_loss_mu(mu_o) * fon_loss_mu(mu_i)
+        white = roughness * fon_a(roughness) / (np.pi * (C1 - C2)) * losses
+        return fon_brdf_mu(mu_o, mu_i, s, rho, roughness) + white
+
+    return evaluate(of_cosines(formula), wo, wi, rho, roughness=roughness)
 
 
 @any_array
@@ -95,7 +130,12 @@ def eon_floor_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: Arra
     Babylon.js 9.34.0 divides EON by the reflectance, which it keeps above 0.1; its albedo is the
     paper's quartic.
     """
-    return evaluate(_eon_floor, wo, wi, rho, roughness=roughness)
+
+    def formula(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
+        floor = array_namespace(rho).maximum(rho, FLOOR)
+        return rho / floor * eon_brdf_approx_mu(mu_o, mu_i, s, floor, roughness)
+
+    return evaluate(of_cosines(formula), wo, wi, rho, roughness=roughness)
 
 
 @any_array
@@ -115,45 +155,11 @@ def qon_degrees_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayL
     `sigma` is in radian, and 180 sigma / pi enters. From a few degrees on it is the limit of large sigma, and correct at
     0. LuxCoreRender's roughmatte: its manual has degrees, its code radians.
     """
-    return evaluate(_qon_degrees, wo, wi, rho, sigma=sigma)
 
+    def formula(mu_o: Array, mu_i: Array, s: Array, rho: Array, sigma: Array) -> Array:
+        return qon_brdf_mu(mu_o, mu_i, s, rho, DEGREE * sigma)
 
-def _eon_clamped(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
-    mu_o, mu_i, s = cosines(wo, wi)
-    s = array_namespace(s).maximum(s + mu_o * mu_i, 1e-8) - mu_o * mu_i
-    return formulas.eon_brdf_mu(mu_o, mu_i, s, rho, roughness)
-
-
-def _eon_rho_cubed(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
-    mu_o, mu_i, s = cosines(wo, wi)
-    single_scatter = 1.0 + roughness * formulas.fon_quotient(mu_o, mu_i, s)
-    weight = rho * formulas.eon_multiple_weight(rho, roughness)
-    multi_scatter = weight * (formulas.fon_loss_mu(mu_o) * formulas.fon_loss_mu(mu_i))
-    return formulas.fon_scale(rho, roughness) * (single_scatter + multi_scatter)
-
-
-def _eon_floor(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
-    floor = array_namespace(rho).maximum(rho, FLOOR)
-    return rho / floor * formulas.eon_formula_approx(wo, wi, floor, roughness)
-
-
-def _burley_schlick(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
-    mu_o, mu_i, _ = cosines(wo, wi)
-    F_o, F_i = (1.0 - mu_o) ** 5, (1.0 - mu_i) ** 5
-    smooth = (1.0 - 0.5 * F_o) * (1.0 - 0.5 * F_i)
-    R = 0.5 + 2.0 * roughness * F_i**2
-    return rho / np.pi * (smooth + R * (F_o + F_i + F_o * F_i * (R - 1.0)))
-
-
-def _qon_degrees(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:
-    return formulas.qon_formula(wo, wi, rho, DEGREE * sigma)
-
-
-def _fon_white_lobe(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
-    mu_o, mu_i, _ = cosines(wo, wi)
-    losses = formulas.fon_loss_mu(mu_o) * formulas.fon_loss_mu(mu_i)
-    white = roughness * formulas.fon_a(roughness) / (np.pi * (C1 - C2)) * losses
-    return formulas.fon_formula(wo, wi, rho, roughness) + white
+    return evaluate(of_cosines(formula), wo, wi, rho, sigma=sigma)
 
 
 @any_array
@@ -168,9 +174,8 @@ def qon_degrees_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> A
     """Directional albedo of `qon_degrees_brdf`."""
     (color,), (m, s) = checked_colors({"rho": rho}, mu=mu, sigma=sigma)
     rough = 0.5 * np.pi
-    lobe = (qon_albedo_dir(m, rough) - formulas.qon_a(rough)) / formulas.qon_b(rough)
-    degrees = 180.0 / np.pi * s
-    return (formulas.qon_a(degrees) + formulas.qon_b(degrees) * lobe) * color
+    lobe = (qon_albedo_dir(m, rough) - qon_a(rough)) / qon_b(rough)
+    return (qon_a(DEGREE * s) + qon_b(DEGREE * s) * lobe) * color
 
 
 @any_array
