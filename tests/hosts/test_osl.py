@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mxeon import models
 from mxeon.errors import ShaderError
-from mxeon.models import diffuse as formulas
 from mxeon.models.media import conical_edf
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import connection_text, document_text, material_text, node_text

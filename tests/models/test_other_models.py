@@ -5,9 +5,11 @@ import numpy as np
 import pytest
 
 from mxeon.models.core.quadrature import albedo_dir_quadrature
-from mxeon.models.diffuse import burley_brdf, lambert_brdf, qon_brdf
-from mxeon.models.diffuse.defects import (
+from mxeon.models.diffuse import (
+    burley_brdf,
     burley_cosine_brdf,
+    lambert_brdf,
+    qon_brdf,
     qon_degrees_albedo_dir,
     qon_degrees_brdf,
 )

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directional and average albedos: the twin of python/mxeon/models/diffuse/__init__.py, and of quadrature.py
+// Directional and average albedos: the twin of python/mxeon/models/diffuse.py, and of quadrature.py
 // for models without a closed form.
 
 import type { Triple } from "../data";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // BRDFs of Lambert and of the Oren-Nayar family, in 1/sr and without the cosine: the twin of
-// python/mxeon/models/diffuse/__init__.py.
+// python/mxeon/models/diffuse.py.
 
 import type { Vec3 } from "../data";
 import {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Formulas of the Oren-Nayar family in float64: the twin of python/mxeon/models/diffuse/__init__.py.
+// Formulas of the Oren-Nayar family in float64: the twin of python/mxeon/models/diffuse.py.
 //
 // Names, arguments and order of operations are those of the NumPy version; one channel at a time.
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Color to enter for a wanted albedo: the twin of python/mxeon/models/diffuse/__init__.py for EON, and
+// Color to enter for a wanted albedo: the twin of python/mxeon/models/diffuse.py for EON, and
 // bisection for the other models.
 
 import { C1, C2 } from "./formulas";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Wrong variants of EON and QON that renderers implement: the twin of
-// python/mxeon/models/diffuse/defects.py.
+// python/mxeon/models/diffuse.py.
 
 import { eon_albedo_dir, fon_albedo_dir, qon_albedo_dir, type AlbedoDir } from "./albedo";
 import { fon_brdf, qon_brdf, type Brdf } from "./brdf";

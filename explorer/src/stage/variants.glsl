@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The wrong variants of python/mxeon/models/diffuse/defects.py, for texts behind the twins.
+// The wrong variants of python/mxeon/models/diffuse.py, for texts behind the twins.
 //
 // Arguments are those of the twins: wo and wi in the local frame, a rho per channel, and the
 // roughness or the sigma of the model.

@@ -126,12 +126,10 @@ def model(name: str) -> ShadingModel: ...
 def model(name: str) -> NodeModel:
     """The model with this name: of rough diffuse nodes, a known variant of them, or a node of pbrlib.
 
-    - `name`: One of `model_names()`, such as "eon", "qon", "dielectric" or "zeltner", or the
-      category of a node, such as "conductor_bsdf" or "uniform_edf", which is the model of its
-      default mode.
+    - `name`: One of `model_names()`, such as "eon", "dielectric" or "zeltner", or the category of a node, such
+      as "conductor_bsdf" or "uniform_edf", which is the model of its default mode.
 
-    Result: What reflects or transmits; an EDF; a VDF. Raises `ValueError` if there is none; lists
-    the names, or those that may be meant.
+    Raises `ValueError` if there is none, with the names that may be meant.
 
         >>> gold = model("conductor")
         >>> gold

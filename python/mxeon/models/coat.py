@@ -60,6 +60,7 @@ from mxeon.models.core.arrays import (
     like,
     magnitude,
     root,
+    with_arguments,
 )
 from mxeon.models.core.chebyshev import chebyshev_coefficients, chebyshev_nodes, chebyshev_sum
 from mxeon.models.core.quadrature import unit_rule
@@ -189,6 +190,7 @@ def of_one_coat(function: Callable[P, R]) -> Callable[P, R]:
         brought = dict(zip(call, _brought(*call.values()), strict=True))
         return cast(Callable[..., R], function)(**brought, **plain)
 
+    wrapper.__doc__ = with_arguments(function.__doc__, function.__module__, list(types))
     return wrapper
 
 
@@ -214,11 +216,9 @@ def dielectric_over_eon_brdf(
 
         f = f_r + (1 - E_r(mu_o)) f_EON
 
-    Result (..., C): 1/sr. Accuracy: E_r and the energy compensation, which the first call for a
-    dielectric tabulates, have an error below 2e-7. The value is not reciprocal, as neither of both
-    is. A layer is no varnish: EON's light is not reflected on its way out, and at index 1.5 the
-    albedo is up to 1.8 times that of `varnished_brdf` (docs/research.md). [MaterialX2026],
-    sections `layer` and Energy Compensation; [Portsmouth2025], Eq. (19).
+    Result (..., C): 1/sr; not reciprocal, as neither of both is. Accuracy: E_r and the energy compensation,
+    which the first call for a dielectric tabulates, have an error below 2e-7. [MaterialX2026], sections
+    `layer` and Energy Compensation; [Portsmouth2025], Eq. (19).
 
         >>> wo, wi = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
         >>> dielectric_over_eon_brdf(wo, wi, [0.7, 0.1], 0.5, 0.3, 1.5).round(5)
@@ -295,10 +295,8 @@ def openpbr_base_brdf(
 
         f = (1 - m) f_dielectric_over_eon + m f_metal
 
-    Result (..., C): 1/sr. The weights and `specular_color` are 1, and nothing is anisotropic,
-    transmits or scatters below the surface. The metal's curve is Schlick's. Accuracy: that of
-    `dielectric_over_eon_brdf`. [MaterialX2026], sections `layer`, `mix` and Energy Compensation;
-    [Portsmouth2025], Eq. (19).
+    Result (..., C): 1/sr. The weights and `specular_color` are 1, and nothing is anisotropic, transmits or
+    scatters below the surface. The metal's curve is Schlick's. [MaterialX2026], section `mix`.
 
         >>> wo, wi = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
         >>> openpbr_base_brdf(wo, wi, [0.7, 0.1], 0.5, 0.5, 1.5, 0.25).round(5)

@@ -123,13 +123,11 @@ def conical_exitance(radiance: ArrayLike, inner_angle: ArrayLike, outer_angle: A
 
     With a = c_out, b = c_in and h = b - a, the falloff has the integral
 
-        int t^2 (3 - 2 t) mu dmu = h [a (t^3 - t^4 / 2) + h (3 t^4 / 4 - 2 t^5 / 5)],
+        int t^2 (3 - 2 t) mu dmu = h [a (t^3 - t^4 / 2) + h (3 t^4 / 4 - 2 t^5 / 5)]
 
-    between mu = max(a, 0) and b, where mu = a + h t; inside the cone it is (1 - b^2) / 2. The
-    exitance is 2 pi c times both, and pi c where the inner cone holds the hemisphere.
-
-    Result (..., C): pi times the unit of `radiance`. h is a product of two sines, so that a narrow
-    falloff does not cancel. The integral is our own. [MaterialX2026], section `conical_edf`.
+    between mu = max(a, 0) and b, where mu = a + h t; inside the cone it is (1 - b^2) / 2. The exitance is 2 pi c
+    times both, and pi c where the inner cone holds the hemisphere. h is a product of two sines, so that a narrow
+    falloff does not cancel. The integral is our own.
 
         >>> conical_exitance([1.0], 90.0, 0.0).round(6)  # pi sin^2 of 45 degrees
         array([1.570796])
@@ -271,16 +269,14 @@ def single_scattering_albedo(absorption: ArrayLike, scattering: ArrayLike) -> Ar
 
 @any_array
 def hg_phase(cos_theta: ArrayLike, g: ArrayLike) -> Array:
-    """Phase function of Henyey and Greenstein.
+    """Phase function of Henyey and Greenstein, a density in solid angle, 1/sr.
 
         f_p = (1 - g^2) / (4 pi (1 + g^2 - 2 g cos)^(3/2))
 
     - `cos_theta`: Cosine of the angle of deflection, in [-1, 1]: 1 is straight on.
 
-    Result: density in solid angle, 1/sr. Its integral over all directions is 1. The denominator is
-    (1 - |g|)^2 + 2 |g| (1 - cos), with the sign of g on the cosine, and 1 - g^2 a product: neither
-    cancels near g = 1 or -1. [MaterialX2026], section `anisotropic_vdf`, Henyey-Greenstein Phase
-    Function.
+    The denominator is (1 - |g|)^2 + 2 |g| (1 - cos), with the sign of g on the cosine, and 1 - g^2 a product: neither
+    cancels near g = 1 or -1. [MaterialX2026], section `anisotropic_vdf`, Henyey-Greenstein Phase Function.
 
         >>> hg_phase([1.0, -1.0], 0.5).round(6)
         array([0.477465, 0.017684])
@@ -292,19 +288,14 @@ def hg_phase(cos_theta: ArrayLike, g: ArrayLike) -> Array:
 
 @any_array
 def hg_sample(wo: ArrayLike, u: ArrayLike, g: ArrayLike) -> tuple[Array, Array]:
-    """Direction sampled by the phase function of Henyey and Greenstein, and its density.
+    """Direction sampled by the phase function of Henyey and Greenstein, and its density `hg_pdf`.
 
-    With x = 2 u_1 - 1, the inverse of its distribution is written
+        1 - cos = (1 - g)^2 (1 - x) (2 + g (1 + x)) / (2 (1 + g x)^2),  x = 2 u_1 - 1
 
-        1 - cos = (1 - g)^2 (1 - x) (2 + g (1 + x)) / (2 (1 + g x)^2),
-
-    which is 1 - x at g = 0 and does not cancel for any g.
+    The inverse of its distribution, in a form of our own that is 1 - x at g = 0 and does not cancel for any g.
 
     - `wo` (..., 3): Direction from which the light leaves, any unit vector to 1e-6.
     - `u` (..., 2): Independent uniform random numbers, in [0, 1).
-
-    `wi` (..., 3): Unit vectors towards the light. `pdf` (...): Density at `wi`, `hg_pdf`, in 1/sr.
-    [MaterialX2026], section `anisotropic_vdf`; the form of the inverse is our own.
 
         >>> wi, pdf = hg_sample([0.0, 0.0, 1.0], [0.5, 0.0], 0.0)
         >>> wi.round(12) + 0.0, round(float(pdf), 6)
@@ -387,11 +378,9 @@ def light_radiance(emission: ArrayLike, intensity: ArrayLike, exposure: ArrayLik
         L_e = I 2^E L_edf
 
     - `emission` (..., C): Radiance of the EDF per channel, in [0, 1e50].
-    - `intensity` (...): I, in [0, 1e50].
-    - `exposure` (...): E, in stops, in [-1000, 1000].
+    - `intensity`, `exposure` (...): I, in [0, 1e50], and E, in stops, in [-1000, 1000].
 
-    Result (..., C): in the unit of `emission`. [MaterialX2026], section `light`, Light Emission
-    Equation.
+    [MaterialX2026], section `light`, Light Emission Equation.
 
         >>> light_radiance([0.5, 1.0], 3.0, 2.0)
         array([ 6., 12.])
@@ -403,17 +392,13 @@ def light_radiance(emission: ArrayLike, intensity: ArrayLike, exposure: ArrayLik
 
 @any_array
 def surface_radiance(emission: ArrayLike, scattered: ArrayLike, opacity: ArrayLike) -> Array:
-    """Radiance of a surface: what it emits and what it scatters, times its opacity.
-
-        L_o = O (L_e + L_s)
+    """Radiance O (L_e + L_s) of a surface, without the light from behind, of which 1 - O passes.
 
     - `emission`, `scattered` (..., C): L_e of its EDF, and L_s, the integral of its BSDF over the
       light, per channel, in [0, 1e50].
     - `opacity` (...): O, the share of the footprint that the material covers, in [0, 1].
 
-    Result (..., C): Without the light from behind, of which 1 - O passes. [MaterialX2026], section
-    `surface`, Surface Shading Equation; its integral is that of section The Light Transport
-    Equation.
+    [MaterialX2026], section `surface`, Surface Shading Equation.
 
         >>> surface_radiance([1.0], [0.5], 0.5)
         array([0.75])
@@ -436,14 +421,10 @@ def volume_radiance(
         L = L_0 T + L_e t (1 - T) / (sigma_t t)
 
     - `behind` (..., C): L_0, the radiance that enters the medium, per channel, in [0, 1e50].
-    - `emission` (..., C): L_e, radiance per meter that the medium emits, the same in all
-      directions, in [0, 1e50].
-    - `absorption`, `scattering` (..., C): Coefficients in 1/m, in [0, 1e50].
+    - `emission` (..., C): L_e, radiance per meter that the medium emits in all directions, in [0, 1e50].
     - `distance` (...): t in m, in [0, 1e50].
 
-    Result (..., C): The solution of the equation of transfer whose integral over directions is left
-    out: that needs a renderer. [MaterialX2026], section `volume`, and section The Equation of
-    Transfer.
+    [MaterialX2026], section `volume`, and section The Equation of Transfer, whose integral is left out.
 
         >>> volume_radiance([1.0], [3.0], [0.0], [0.0], 2.0)
         array([7.])
@@ -494,16 +475,14 @@ def _single_scatter(color: Array, g: Array) -> Array:
 
 @any_array
 def subsurface_reflectance(single_scatter: ArrayLike, scatter_anisotropy: ArrayLike = 0.0) -> Array:
-    """Diffuse reflectance of a half space, by van de Hulst's fit.
+    """Diffuse reflectance of a half space without a surface under a uniform sky, by van de Hulst's fit.
 
         s^2 = (1 - w) / (1 - g w),  rho = (1 - s) (1 - 0.139 s) / (1 + 1.17 s)
 
     - `single_scatter`: Single-scattering albedo w, in [0, 1].
     - `scatter_anisotropy`: Mean cosine g of a scattering, in [-1, 1).
 
-    Result: in [0, 1]. The half space has no surface, and is lit by a uniform sky. Accuracy: within
-    0.0021 of the exact reflectance for g = 0. The inverse of `subsurface_albedo` within 1.3e-5.
-    [vandeHulst1974].
+    Accuracy: within 0.0021 for g = 0. Inverse of `subsurface_albedo` within 1.3e-5. [vandeHulst1974].
 
         >>> subsurface_reflectance(0.911709).round(4).item()
         0.5
@@ -521,8 +500,6 @@ def subsurface_coefficients(
     """Coefficients of scattering and of absorption, each over a length.
 
         sigma_s = w / l,  sigma_a = (1 - w) / l
-
-    - `radius`: Mean free path l, a length, in [1e-150, 1e150].
 
     Result: per unit of length. Their sum is 1 / l. [MaterialX2026], Subsurface Scattering Model,
     Albedo Inversion.
@@ -574,7 +551,6 @@ def diffusion_sample(u: ArrayLike, radius: ArrayLike) -> Array:
     """Distance within which the share u of the light leaves: the inverse of `diffusion_cdf`.
 
     - `u`: In [0, 1).
-    - `radius`: Mean free path l, a length, in [1e-150, 1e150].
 
     Result: A length. Form: t = exp(-r / (3 l)) solves t^3 + 3 t = 4 (1 - u), so t = 2 sinh(asinh(2
     (1 - u)) / 3).
@@ -595,12 +571,10 @@ def diffusion_blur(mu: ArrayLike, reach: ArrayLike) -> Array:
         W(mu) = int C'(r) c(mu, r) dr / C(2),  c = mean of max(cos(theta), 0) at the distance r
 
     - `mu`: Cosine of the light with the normal, in [-1, 1].
-    - `reach`: Mean free path over the radius of the sphere, in [1e-150, 1e150]; its limit 0 is
-      max(mu, 0).
+    - `reach`: Mean free path over the radius of the sphere, in [1e-150, 1e150]; its limit 0 is max(mu, 0).
 
-    Result: in [0, 1]. Its mean over the sphere is 1/4, that of max(mu, 0). Distances are those of
-    the text, through the body; light whose distance has no point on the sphere leaves as the rest
-    does, since a body of no absorption keeps none. Accuracy: absolute error below 1e-6.
+    Its mean over the sphere is 1/4, that of max(mu, 0). Distances are those of the text, through the body; light whose
+    distance has no point on the sphere leaves as the rest does. Accuracy: absolute error below 1e-6.
 
         >>> diffusion_blur([-0.5, 0.0, 1.0], 0.1).round(4)
         array([0.0097, 0.074 , 0.9344])

@@ -522,12 +522,10 @@ def ltc_density(wo: Array, wi: Array, roughness: Array, d: Array | float) -> Arr
 def cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled by the clipped transformed cosine, and its density.
 
-    `wi` (..., 3): Unit vectors on or above the horizon. `pdf` (...): 1/sr. As a sampler of EON it
-    is biased: `wh` is cut at its own horizon, so directions remain that it never draws and that EON
-    reflects into. Side of the cut: the lune d x + z < 0 lies at x > 0 where d < 0, as in Listing 3,
-    and at x < 0 where d > 0. The fitted d is positive for mu_o > 0.99991, and there the listing
-    keeps the wrong side; this function keeps the right one. [Portsmouth2025], Eqs. (26) and (27),
-    Listing 3.
+    As a sampler of EON it is biased: `wh` is cut at its own horizon, so directions remain that it never draws and that
+    EON reflects into. The lune d x + z < 0 lies at x > 0 where d < 0, as in Listing 3, and at x < 0 where d > 0. The
+    fitted d is positive for mu_o > 0.99991, and there the listing keeps the wrong side; this function keeps the right
+    one. [Portsmouth2025], Eqs. (26) and (27), Listing 3.
 
         >>> wi, pdf = cltc_sample([0.6, 0.0, 0.8], [0.25, 0.5], 1.0)
         >>> bool(np.isclose(pdf, cltc_pdf([0.6, 0.0, 0.8], wi, 1.0), rtol=1e-14))

@@ -76,13 +76,11 @@ def conty_kulla_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: 
         f = color D / (4 (mu_o + mu_i - mu_o mu_i)),
         D = (2 + 1 / roughness) sin(theta_h)^(1 / roughness) / (2 pi)
 
-    Result (..., C): BRDF in 1/sr, at least 0, finite, unbounded at grazing. Roughness 0 has the
-    limit of every pair that does not graze on both sides: 0. So has the half vector along the
-    normal, at every roughness. Where both directions graze (mu_o + mu_i below 1e-300) there is no
-    limit, and f counts as 0. Values beyond float64, which need roughness below 1e-8 or so and such
-    a pair, stop at its largest. The text clamps nothing. MaterialX keeps roughness above 0.005 and
-    cosines above 1e-6. Accuracy: error below 66 / roughness times 2^-53 of f + 1 / pi.
-    [MaterialX2026], section `sheen_bsdf`, Conty-Kulla sheen equations; [ContyKulla2017], Eq. (2).
+    Roughness 0 has the limit of every pair that does not graze on both sides: 0. So has the half vector along the
+    normal, at every roughness. Where both directions graze (mu_o + mu_i below 1e-300) there is no limit, and f counts
+    as 0. Values beyond float64 stop at its largest. The text clamps nothing; MaterialX keeps roughness above 0.005 and
+    cosines above 1e-6. Accuracy: error below 66 / roughness times 2^-53 of f + 1 / pi. [MaterialX2026], Conty-Kulla
+    sheen equations; [ContyKulla2017], Eq. (2).
 
         >>> conty_kulla_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.017299, 0.069198])
@@ -110,16 +108,13 @@ def zeltner_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: Arra
 
 @any_array
 def zeltner_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
-    """Directional albedo of the Zeltner sheen at unit color: E of the text, which is exact.
+    """Directional albedo of the Zeltner sheen at unit color: E of the text, which is exact; in [-2.2e-5, 0.745].
 
         E = exp(-((mu - m) / s)^2 / 2) / (s sqrt(2 pi)) + o
 
-    - `mu`: Cosine of the polar angle of wo, in [0, 1].
-
-    Result: in [-2.2e-5, 0.745]. The fit falls below 0 for roughness in [0.03, 0.132] away from
-    grazing; text and shaders leave it so. This is the integral of `zeltner_brdf` times the cosine,
-    not a fit of it: M keeps the sign of z, so the transformed cosine has its whole mass above the
-    horizon. [MaterialX2026], Zeltner Sheen Model, Directional Albedo.
+    The fit falls below 0 for roughness in [0.03, 0.132] away from grazing; text and shaders leave it so. M keeps the
+    sign of z, so the transformed cosine has its whole mass above the horizon, and this is the integral of
+    `zeltner_brdf` times the cosine. [MaterialX2026], Zeltner Sheen Model, Directional Albedo.
 
         >>> round(float(zeltner_albedo_dir(0.3, 0.5)), 6)
         0.315212
@@ -218,16 +213,10 @@ def conty_kulla_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
 
         E(mu) = integral of D / (4 (mu + mu_i - mu mu_i)) mu_i over the hemisphere of wi
 
-    - `mu`: Cosine of the polar angle of wo, in [0, 1].
-    - `roughness`: In [0, 1].
-
-    Result: at least 0. It exceeds 1 at grazing below a roughness of 0.2099 and has no bound: about
-    sqrt(1 / (2 pi roughness)) at mu = 0. Shaders clamp it to 1; the text is silent. Roughness 0 has
-    the albedo of its BRDF, 0, also at mu = 0, where the limit is infinite. Accuracy: relative error
-    below 1e-11 at mu = 0, absolute below 1e-11 elsewhere, for roughness >= 1e-4. Form: see the
-    module. At mu = 1 it is 2^-p / (2 (p + 2)), p = 1 / (2 roughness). Raises `ValueError` if an
-    argument leaves its range. [MaterialX2026], sections `sheen_bsdf` and Directional Albedo and
-    Energy Conservation.
+    It exceeds 1 at grazing below a roughness of 0.2099 and has no bound: about sqrt(1 / (2 pi roughness)) at mu = 0.
+    Shaders clamp it to 1; the text is silent. Roughness 0 has the albedo of its BRDF, 0, also at mu = 0, where the
+    limit is infinite. Accuracy: relative error below 1e-11 at mu = 0, absolute below 1e-11 elsewhere, for roughness
+    >= 1e-4. At mu = 1 it is 2^-p / (2 (p + 2)), p = 1 / (2 roughness). [MaterialX2026], Directional Albedo.
 
         >>> round(float(conty_kulla_albedo_dir(1.0, 0.5)), 12)
         0.083333333333

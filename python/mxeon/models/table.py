@@ -9,16 +9,9 @@ from functools import partial
 
 import numpy as np
 
-from mxeon.models import coat
-from mxeon.models import coat as openpbr
-from mxeon.models import diffuse as albedo
-from mxeon.models import diffuse as models
-from mxeon.models import diffuse as qon_albedo
+from mxeon.models import coat, diffuse
 from mxeon.models.core.arguments import RANGES, checked, checked_choice, checked_colors
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers, any_array
-from mxeon.models.diffuse import burley_albedo_dir, burley_brdf
-from mxeon.models.diffuse import defects as known_defect_albedos
-from mxeon.models.diffuse import defects as known_defects
 
 
 @dataclass(frozen=True)
@@ -97,69 +90,67 @@ def _tinted(white: Callable[..., Array]) -> Callable[..., Array]:
 
 MODELS = (
     Model(
-        "lambert", "Lambert", models.lambert_brdf, None, _lambert_albedo_dir, _lambert_albedo_avg
+        "lambert", "Lambert", diffuse.lambert_brdf, None, _lambert_albedo_dir, _lambert_albedo_avg
     ),
-    Model("oren_nayar", "full Oren-Nayar", models.oren_nayar_brdf, "sigma"),
+    Model("oren_nayar", "full Oren-Nayar", diffuse.oren_nayar_brdf, "sigma"),
     Model(
         "qon",
         "qualitative Oren-Nayar (QON)",
-        models.qon_brdf,
+        diffuse.qon_brdf,
         "sigma",
-        _tinted(qon_albedo.qon_albedo_dir),
-        _tinted(qon_albedo.qon_albedo_avg),
+        _tinted(diffuse.qon_albedo_dir),
+        _tinted(diffuse.qon_albedo_avg),
     ),
-    Model("qon_footnote", "QON with the footnote's constant", models.qon_footnote_brdf, "sigma"),
-    Model("qon_fujii", "QON with Fujii's coefficients", models.qon_fujii_brdf, "sigma"),
+    Model("qon_footnote", "QON with the footnote's constant", diffuse.qon_footnote_brdf, "sigma"),
+    Model("qon_fujii", "QON with Fujii's coefficients", diffuse.qon_fujii_brdf, "sigma"),
     Model(
         "fon",
         "Fujii Oren-Nayar (FON)",
-        models.fon_brdf,
+        diffuse.fon_brdf,
         "roughness",
-        _tinted(albedo.fon_albedo_dir),
-        _tinted(albedo.fon_albedo_avg),
+        _tinted(diffuse.fon_albedo_dir),
+        _tinted(diffuse.fon_albedo_avg),
     ),
     Model(
         "eon",
         "energy-preserving Oren-Nayar (EON)",
-        models.eon_brdf,
+        diffuse.eon_brdf,
         "roughness",
-        albedo.eon_albedo_dir,
-        albedo.eon_albedo_avg,
+        diffuse.eon_albedo_dir,
+        diffuse.eon_albedo_avg,
     ),
-    Model("eon_approx", "EON with the paper's quartic", models.eon_brdf_approx, "roughness"),
+    Model("eon_approx", "EON with the paper's quartic", diffuse.eon_brdf_approx, "roughness"),
 )
 
 KNOWN_DEFECTS = (
-    Model(
-        "eon_clamped", "EON with clamped dot(wo, wi)", known_defects.eon_clamped_brdf, "roughness"
-    ),
+    Model("eon_clamped", "EON with clamped dot(wo, wi)", diffuse.eon_clamped_brdf, "roughness"),
     Model(
         "eon_rho_cubed",
         "EON with rho^3",
-        known_defects.eon_rho_cubed_brdf,
+        diffuse.eon_rho_cubed_brdf,
         "roughness",
-        known_defect_albedos.eon_rho_cubed_albedo_dir,
+        diffuse.eon_rho_cubed_albedo_dir,
     ),
     Model(
         "fon_white_lobe",
         "FON + white lobe",
-        known_defects.fon_white_lobe_brdf,
+        diffuse.fon_white_lobe_brdf,
         "roughness",
-        known_defect_albedos.fon_white_lobe_albedo_dir,
+        diffuse.fon_white_lobe_albedo_dir,
     ),
     Model(
         "qon_fitted",
         "QON with MaterialX's fit of its albedo",
-        models.qon_brdf,
+        diffuse.qon_brdf,
         "sigma",
-        known_defect_albedos.qon_fitted_albedo_dir,
+        diffuse.qon_fitted_albedo_dir,
     ),
     Model(
         "qon_tinted_twice",
         "QON tinted twice",
-        known_defects.qon_tinted_twice_brdf,
+        diffuse.qon_tinted_twice_brdf,
         "sigma",
-        known_defect_albedos.qon_tinted_twice_albedo_dir,
+        diffuse.qon_tinted_twice_albedo_dir,
     ),
 )
 
@@ -174,34 +165,40 @@ OTHERS = (
     Model(
         "eon_fitted",
         "EON with the paper's quartic",
-        models.eon_brdf_approx,
+        diffuse.eon_brdf_approx,
         "roughness",
-        albedo.eon_albedo_dir_approx,
+        diffuse.eon_albedo_dir_approx,
     ),
     Model(
         "eon_floor",
         "EON with a reflectance of at least 0.1",
-        known_defects.eon_floor_brdf,
+        diffuse.eon_floor_brdf,
         "roughness",
     ),
-    Model("burley", "Burley's diffuse model", burley_brdf, "roughness", burley_albedo_dir),
+    Model(
+        "burley",
+        "Burley's diffuse model",
+        diffuse.burley_brdf,
+        "roughness",
+        diffuse.burley_albedo_dir,
+    ),
     Model(
         "burley_lambert",
         "Burley's diffuse model with Lambert in surroundings",
-        burley_brdf,
+        diffuse.burley_brdf,
         "roughness",
         lambda mu, rho, roughness: _lambert_albedo_dir(mu, rho),
     ),
     Model(
         "burley_cosine",
         "Burley with squared roughness, times the cosine once more",
-        known_defects.burley_cosine_brdf,
+        diffuse.burley_cosine_brdf,
         "roughness",
     ),
     Model(
         "burley_schlick",
         "Burley with Schlick's weight for the cosine of retro-reflection",
-        known_defects.burley_schlick_brdf,
+        diffuse.burley_schlick_brdf,
         "roughness",
     ),
     Model(
@@ -215,16 +212,16 @@ OTHERS = (
     Model(
         "openpbr_half_metal",
         "OpenPBR's base, half of it metal, of specular roughness 0.75 and index 1.5",
-        partial(openpbr.openpbr_base_brdf, **HALF_METAL),
+        partial(coat.openpbr_base_brdf, **HALF_METAL),
         "roughness",
-        partial(openpbr.openpbr_base_albedo_dir, **HALF_METAL),
+        partial(coat.openpbr_base_albedo_dir, **HALF_METAL),
     ),
     Model(
         "qon_degrees",
         "QON that takes degrees for radians",
-        known_defects.qon_degrees_brdf,
+        diffuse.qon_degrees_brdf,
         "sigma",
-        known_defect_albedos.qon_degrees_albedo_dir,
+        diffuse.qon_degrees_albedo_dir,
     ),
 )
 

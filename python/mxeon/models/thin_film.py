@@ -15,7 +15,9 @@ Sections are those of [MaterialX2026], appendix Thin-Film Iridescence Model, aft
 - `form`: What the text leaves open: the matrix to RGB, the number of orders, what becomes of an index for each
   channel in a sum over CIE XYZ, and of values outside [0, 1], which it clamps at the very end.
 
-Result (..., 3): linear RGB, in [0, 1]. Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
+Result (..., 3): linear RGB, in [0, 1].
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
 not broadcast.
 
 The film is at least as dense as the vacuum above it, so that the amplitude r12 of its upper interface is real; that of
@@ -554,9 +556,8 @@ def film_schlick(
       acos(1/7), and reflectance r90 at grazing, per channel, in [0, 1]; a number is one channel.
     - `exponent` (...): q, in [0, 1e50].
 
-    Result (..., 3): linear RGB, in [0, 1] where the thickness is above 0. The curve stands for the
-    film's lower interface at the refracted angle, so that the value jumps where the thickness
-    leaves 0. A curve below 0 counts as 0, for it has no amplitude.
+    The curve stands for the film's lower interface at the refracted angle, so that the value jumps where the
+    thickness leaves 0. A curve below 0 counts as 0, for it has no amplitude.
 
         >>> film_schlick(0.5, [0.0, 300.0], 1.5, [1.0, 0.8, 0.1], np.ones(3), np.ones(3), 5.0).round(4)
         array([[1.    , 0.8062, 0.1281],

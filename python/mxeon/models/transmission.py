@@ -18,6 +18,10 @@ transmission loses between facets.
 - `exponent` (...): Exponent of the Schlick curve, in [0, 1e50].
 - `reading`: A key of READINGS: what takes the place of the index that `generalized_schlick_bsdf` does not have, and
   of 1 - F of a curve that may leave [0, 1].
+- `radiance`: Whether the value is of radiance from wi to wo, as the specification has it; else it is times ior^2,
+  the form that is integrated over wi to the transmitted share of the light from wo.
+- `shadow`: Whether light is lost to other facets on the far side, as in the BTDF; without, the share is the mean of
+  1 - F over the normals that wo sees.
 - `inside`: Whether wo lies inside of the solid, where light is totally reflected beyond an angle.
 
 Raises `ValueError`, which names the first bad element or lists the readings, if an argument leaves its range, the
@@ -74,12 +78,10 @@ def refraction_direction(wo: ArrayLike, normal: ArrayLike, ior: ArrayLike) -> Ar
 
         cos_t = sqrt(1 - (1 - cos_o^2) / ior^2),  wi = -wo / ior + (cos_o / ior - cos_t) normal
 
-    - `wo` (..., 3): Direction that leaves the surface, unit vector to 1e-6, normal +z, z >= 0.
     - `normal` (..., 3): Normal of the surface or microfacet, unit vector to 1e-6, z >= 0.
-    - `ior` (...): Index of the far side relative to that of wo, in [0, 1e50].
 
-    Result (..., 3): Unit vectors; (0, 0, 0) at total internal reflection, and where wo lies behind
-    the normal. [MaterialX2026], Reflection and Transmission; [Walter2007], Eq. (40).
+    Result (..., 3): (0, 0, 0) at total internal reflection, and where wo lies behind the normal. [MaterialX2026],
+    Reflection and Transmission; [Walter2007], Eq. (40).
 
         >>> refraction_direction([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], [1.5, 0.5]).round(6)
         array([[-0.4     , -0.      , -0.916515],
@@ -95,13 +97,8 @@ def transmission_half_vector(wo: ArrayLike, wi: ArrayLike, ior: ArrayLike) -> Ar
 
         wh = +-(wo + ior wi) / |wo + ior wi|, on the side of wo
 
-    - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z; wo
-      has z >= 0, wi z <= 0.
-    - `ior` (...): Index of the side of wi relative to that of wo, in [0, 1e50].
-
-    Result (..., 3): Unit vectors; (0, 0, 0) where no microfacet refracts one into the other. The
-    sign of the specification's vector points into the side of the smaller index, which no term of
-    its BTDF tells apart. Where both directions lie on one side of the vector no facet joins them.
+    Result (..., 3): (0, 0, 0) where both directions lie on one side of the vector: no facet joins them. The
+    specification's vector points into the side of the smaller index, which no term of its BTDF tells apart.
     [MaterialX2026], Microfacet BTDF; [Walter2007], Eq. (16).
 
         >>> wi = refraction_direction([0.6, 0.0, 0.8], [0.0, 0.6, 0.8], 1.5)
@@ -168,23 +165,10 @@ def dielectric_btdf(
 
         f = tint |wo . wh| |wi . wh| (1 - F) D G2 / (mu_o |mu_i| (wo . wh + ior wi . wh)^2)
 
-    - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z,
-      tangent +x; wo has z >= 0, wi has z <= 0.
-    - `tint` (..., C): Color per channel, in [0, 1]; a number is one channel.
-    - `roughness` (..., 2) or (): alpha along tangent and bitangent, in [0, 1]; a number is
-      isotropic.
-    - `ior` (...): Index of refraction of the side of wi relative to that of wo, in [0, 1e50].
-    - `radiance`: Whether the value is of radiance from wi to wo, as the specification has it; else
-      it is times ior^2, the form that is integrated over wi to the transmitted share of the light
-      from wo.
+    `ior` 0 disables the Fresnel curve: F is 1, and nothing passes. The specification does not say that the two
+    directions lie on either side of the microfacet, [Walter2007] does; without that condition light passes between
+    directions that no facet joins. [MaterialX2026], Microfacet BTDF; dielectric_bsdf; [Walter2007], Eq. (21).
 
-    Result (..., C): BTDF in 1/sr, at least 0, unbounded at grazing and as alpha vanishes. `ior` 0
-    disables the Fresnel curve: F is 1, and nothing passes. The specification does not say that the
-    two directions lie on either side of the microfacet, [Walter2007] does; without that condition
-    light passes between directions that no facet joins. Raises `ValueError` if an argument leaves
-    its range. [MaterialX2026], Microfacet BTDF; dielectric_bsdf; [Walter2007], Eq. (21).
-
-        >>> from mxeon.models.transmission.refraction import refraction_direction
         >>> wo = [0.6, 0.0, 0.8]
         >>> wi = refraction_direction(wo, [0.0, 0.0, 1.0], 1.5)
         >>> dielectric_btdf(wo, wi, 1.0, [0.3, 0.3], 1.5).round(6)
@@ -253,21 +237,10 @@ def dielectric_transmittance_dir(
 
         T(wo) = ior^2 integral of dielectric_btdf |mu_i| over the hemisphere of wi
 
-    - `wo` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x;
-      wo has z >= 0, wi has z <= 0.
-    - `tint` (..., C): Color per channel, in [0, 1]; a number is one channel.
-    - `roughness` (..., 2) or (): alpha along tangent and bitangent, in [0, 1]; a number is
-      isotropic.
-    - `ior` (...): Index of refraction of the side of wi relative to that of wo, in [0, 1e50].
-    - `shadow`: Whether light is lost to other facets on the far side, as in the BTDF; without, it
-      is the mean of 1 - F over the normals that wo sees.
-
-    Result (..., C): in [0, 1] where alpha_x and alpha_y are the same. Accuracy: absolute error
-    below 2e-4 for `ior` >= 1; for less below 1e-8, since the quadrature is split at the critical
-    angle, where F has an infinite slope. At alpha 0 it is that of a plane, tint (1 - F(mu_o)). The
-    albedo over all lights of one view, of the radiance, is this divided by ior^2. Raises
-    `ValueError` if an argument leaves its range. [MaterialX2026], Directional Albedo and Energy
-    Conservation; [Walter2007], Eq. (21).
+    Result (..., C): in [0, 1] where alpha_x and alpha_y are the same. Accuracy: absolute error below 2e-4 for `ior`
+    >= 1; for less below 1e-8, since the quadrature is split at the critical angle, where F has an infinite slope. At
+    alpha 0 it is that of a plane, tint (1 - F(mu_o)). The albedo over all lights of one view, of the radiance, is this
+    divided by ior^2. [MaterialX2026], Directional Albedo and Energy Conservation; [Walter2007], Eq. (21).
 
         >>> dielectric_transmittance_dir([0.6, 0.0, 0.8], 1.0, [0.3, 0.3], [1.5, 0.75]).round(3)
         array([[0.939],
@@ -403,14 +376,11 @@ READINGS = {
 
 @any_array
 def schlick_ior(color0: ArrayLike, reading: str = "text") -> Array:
-    """Index of refraction of a reflectance along the normal.
+    """Index of refraction of a reflectance along the normal: one for each channel (..., C), or one for all (..., 1).
 
         ior = (1 + sqrt(r)) / (1 - sqrt(r)),  r in [0.01, 0.99]
 
-    - `color0` (..., C): Reflectance along the normal, in [0, 1]; a number is one channel.
-
-    Result (..., C) or (..., 1): One index for each channel, or one for all. The bounds are those of
-    stock MaterialX: the index lies in [1.22, 399], so that a reflectance of 0 still refracts.
+    The bounds are those of stock MaterialX: the index lies in [1.22, 399], so that a reflectance of 0 still refracts.
     [MaterialX2026], Generalized Schlick Equations, Thin-Film Iridescence.
 
         >>> schlick_ior([0.04, 0.25]).round(4), schlick_ior([0.04, 0.25], "channel").round(4)
@@ -448,15 +418,9 @@ def generalized_schlick_btdf(
 ) -> Array:
     """Transmission of `generalized_schlick_bsdf`, scatter modes T and RT.
 
-    - `radiance`: Whether the value is of radiance from wi to wo, as the specification has it; else
-      it is times ior^2, the form that is integrated over wi to the transmitted share of the light
-      from wo.
-
-    Result (..., C): BTDF in 1/sr, unbounded at grazing and as alpha vanishes. F is taken at the
-    angle on the outside, whichever side the light comes from, as renderers take it. Then the value
-    over the squared index is reciprocal. The letter of the specification, the angle of the incident
-    light, would have another F for each direction of one path. [MaterialX2026],
-    Microfacet BTDF; generalized_schlick_bsdf.
+    F is taken at the angle on the outside, whichever side the light comes from, as renderers take it. Then the value
+    over the squared index is reciprocal. The letter of the specification, the angle of the incident light, would have
+    another F for each direction of one path. [MaterialX2026], Microfacet BTDF; generalized_schlick_bsdf.
 
         >>> pair = [0.6, 0.0, 0.8], [-0.4, 0.0, -0.916515]
         >>> generalized_schlick_btdf(*pair, 0.04, 1.0, 1.0, [0.3, 0.3], 5.0).round(4)
@@ -499,11 +463,8 @@ def generalized_schlick_transmittance_dir(
 ) -> Array:
     """Transmitted share of the light from `wo`, by quadrature.
 
-    - `shadow`: Whether light is lost to other facets on the far side, as in the BTDF; without, it
-      is the mean of 1 - F over the normals that wo sees.
-
-    Result (..., C). Accuracy: absolute error below 2e-4 from outside for exponents >= 1, and below
-    1e-8 from inside. [MaterialX2026], Directional Albedo and Energy Conservation.
+    Accuracy: absolute error below 2e-4 from outside for exponents >= 1, and below 1e-8 from inside. [MaterialX2026],
+    Directional Albedo and Energy Conservation.
 
         >>> wo, alpha = [0.6, 0.0, 0.8], [0.3, 0.3]
         >>> generalized_schlick_transmittance_dir(wo, [0.04, 0.25], 1.0, 1.0, alpha, 5.0).round(3)

@@ -32,14 +32,10 @@ _threads: ContextVar[int] = ContextVar("threads", default=1)
 
 @contextmanager
 def threads(count: int) -> Iterator[None]:
-    """Context in which the functions of `mxeon.models` evaluate on `count` threads.
-
-    - `count`: Number of threads, at least 1. Outside such a context a call uses the caller's thread
-      alone.
+    """Context in which the functions of `mxeon.models` evaluate on `count` threads; outside on the caller's alone.
 
     A thread takes a block of 32768 pairs at a time, so that calls with fewer pairs use one. Values
     do not depend on the number. The setting belongs to the thread or task that enters the context.
-    Raises `ValueError` if `count` is not a positive integer.
 
         >>> from mxeon.models import lambert_brdf
         >>> with threads(2):
@@ -62,18 +58,13 @@ def evaluate(
     rho: ArrayLike,
     **parameter: ArrayLike,
 ) -> Array:
-    """Values of a reflection formula over broadcast arguments, block by block.
+    """Values (..., C) of a reflection formula over broadcast arguments, block by block.
 
-    - `formula`: `formula(wo, wi, rho, *parameter)` for one block: directions (..., 3) with
-      contiguous components, `rho` (C, ...), the parameter (...), all float64; returns (C, ...).
-      Axes of length 1 stay so, and with them everything that depends on the material alone stays
-      small.
-    - `wo`, `wi` (..., 3): Directions, unit vectors on or above the horizon.
-    - `rho` (..., C): Reflectance per channel, in [0, 1]; a number is one channel. A list of N
-      numbers beside N directions is refused, unless it is red, green and blue.
+    - `formula`: `formula(wo, wi, rho, *parameter)` for one block: directions (..., 3) with contiguous
+      components, `rho` (C, ...), the parameter (...), all float64; returns (C, ...). Axes of length 1 stay
+      so, and with them everything that depends on the material alone stays small.
+    - `rho` (..., C): A list of N numbers beside N directions is refused, unless it is red, green and blue.
     - `**parameter` (...): At most one, under a name of `RANGES`.
-
-    Result (..., C): Beyond it and the arguments, memory does not grow with the number of pairs.
     """
     arguments = {"wo": checked_triples("wo", wo), "wi": checked_triples("wi", wi)}
     arguments["rho"] = checked_vector("rho", rho)

@@ -30,17 +30,12 @@ class Bsdf:
 
 @any_array
 def throughput(albedo: ArrayLike) -> Array:
-    """Throughput of a lobe with the directional albedo `albedo`.
+    """Throughput T = 1 - E of a lobe with the directional albedo E (..., C), of its tint and weight too.
 
-        T = 1 - E
-
-    - `albedo` (..., C): Directional albedo of the lobe with its tint and weight.
-
-    Result (..., C): negative where the albedo exceeds 1. It exceeds 1 where the albedo is negative,
-    as Zeltner's fit is, by 2.2e-5. The text defines E of the whole lobe, color included, so a
-    tinted sheen lets through more than a white one. Shaders of MaterialX leave the color of
-    `sheen_bsdf` out of E. Raises `ValueError` if an albedo is infinite or NaN. [MaterialX2026],
-    section `layer`.
+    Negative where the albedo exceeds 1, and above 1 where it is negative, as Zeltner's fit is, by 2.2e-5. The
+    text defines E of the whole lobe, color included, so a tinted sheen lets through more than a white one.
+    Shaders of MaterialX leave the color of `sheen_bsdf` out of E. Raises `ValueError` if an albedo is infinite
+    or NaN. [MaterialX2026], section `layer`.
 
         >>> throughput([0.25, 1.5])
         array([ 0.75, -0.5 ])
@@ -67,13 +62,11 @@ def layer(top: Bsdf, base: Bsdf) -> Bsdf:
 
 
 def mix(fg: Bsdf, bg: Bsdf, amount: ArrayLike) -> Bsdf:
-    """Two lobes side by side.
+    """Two lobes side by side; `amount` is the share w of `fg`, in [0, 1].
 
         f = (1 - w) f_bg + w f_fg,  T = (1 - w) T_bg + w T_fg
 
-    - `amount`: Share w of `fg`, in [0, 1]; broadcasts against values and throughputs.
-
-    Result: at 0 `bg` and at 1 `fg`, to the last bit. [MaterialX2026], section `mix`.
+    At 0 it is `bg` and at 1 `fg`, to the last bit. [MaterialX2026], section `mix`.
 
         >>> import numpy as np
         >>> both = mix(Bsdf(np.array(1.0), np.array(0.0)), Bsdf(np.array(0.0), np.array(1.0)), 0.25)
@@ -100,15 +93,12 @@ def add(in1: Bsdf, in2: Bsdf) -> Bsdf:
 
 
 def multiply(in1: Bsdf, weight: ArrayLike) -> Bsdf:
-    """A lobe scaled.
+    """A lobe scaled by `weight` s, one or per channel, at least 0.
 
         f = s f_1,  T = 1 - s E_1 = 1 - s (1 - T_1)
 
-    - `weight`: Factor s, one or per channel, at least 0.
-
     The shaders of MaterialX keep T_1, so a lobe that is scaled to nothing still darkens what lies
-    below; and they clamp s to [0, 1]. The text has neither: s f_1 has the albedo s E_1. Raises
-    `ValueError` if `weight` is negative or NaN. [MaterialX2026], section `multiply`.
+    below; and they clamp s to [0, 1]. The text has neither. [MaterialX2026], section `multiply`.
 
         >>> import numpy as np
         >>> scaled = multiply(Bsdf(np.array(1.0), np.array(0.5)), 0.5)

@@ -42,17 +42,12 @@ def albedo_dir_quadrature(
         E(mu) = integral of brdf(wo, wi, rho) cos(theta_i) over the hemisphere of wi
 
     - `brdf`: `brdf(wo, wi, rho, *parameter)` in 1/sr; any function of `mxeon.models`.
-    - `mu` (...): Cosine of the polar angle of wo, in [0, 1].
-    - `rho` (..., C): Reflectance per channel, in [0, 1]; a number is one channel.
-    - `*parameter` (...): Argument of `brdf` after rho, if it has one: sigma or roughness.
-    - `nodes`: Gauss-Legendre nodes for each of two intervals of both angles; the time grows as its
-      square.
+    - `mu` (...), `rho` (..., C): Cosine of the polar angle of wo, and reflectance per channel, in [0, 1].
+    - `nodes`: Gauss-Legendre nodes for each of two intervals of both angles; the time grows as its square.
 
-    Result (..., C). Accuracy: absolute error below 1e-12 for the models of this package. Their
-    kinks, at theta_i = theta_o and cos(phi) = 0, bound the intervals, and the nodes crowd below
-    theta_o, where the full Oren-Nayar model has a layer as thin as mu. A kink elsewhere converges
-    slowly: 2e-10 for `eon_brdf_approx`, whose quartic is clamped at mu = 0.0014. Raises
-    `ValueError` if an argument leaves its range.
+    Accuracy: absolute error below 1e-12 for the models of this package. Their kinks, at theta_i = theta_o and
+    cos(phi) = 0, bound the intervals, and the nodes crowd below theta_o, where the full Oren-Nayar model has a
+    layer as thin as mu. A kink elsewhere converges slowly: 2e-10 for `eon_brdf_approx`, clamped at mu = 0.0014.
 
         >>> from mxeon.models import eon_brdf
         >>> albedo_dir_quadrature(eon_brdf, 0.3, [0.5, 1.0], 1.0).round(12)

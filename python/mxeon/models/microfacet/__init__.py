@@ -176,9 +176,6 @@ def dielectric_brdf(
 
         f = tint D F G2 / (4 mu_o mu_i) (1 + F_ss (1 - E_ss) / E_ss)
 
-    - `tint` (..., C): Color per channel, in [0, 1]; a number is one channel.
-    - `ior` (...): Index of refraction relative to the exterior medium, in [0, 1e50].
-
     `ior` 0 disables the Fresnel curve, F = 1, which is what the equations give in its limit. Below
     1 light comes from the denser side and F is 1 beyond the critical angle. Of negative numbers the
     specification says nothing, stock MaterialX squares them; here they are refused. Accuracy:
@@ -209,9 +206,6 @@ def conductor_brdf(
     """Reflection of `conductor_bsdf` with its energy compensation.
 
         f = D F G2 / (4 mu_o mu_i) (1 + F_ss (1 - E_ss) / E_ss)
-
-    - `ior`, `extinction` (..., C): Complex index of refraction per channel, in [0, 1e50]; a number
-      is one channel.
 
     [MaterialX2026], Microfacet BRDF; Energy Compensation; conductor_bsdf.
 
@@ -245,14 +239,8 @@ def generalized_schlick_brdf(
 
         f = D F G2 / (4 mu_o mu_i) (1 + F_ss (1 - E_ss) / E_ss)
 
-    - `color0`, `color82`, `color90` (..., C): Reflectance along the normal, multiplier at
-      acos(1/7), and reflectance at grazing, per channel, in [0, 1]; a number is one channel.
-    - `exponent` (...): Exponent of the Schlick curve, in [0, 1e50].
-
-    Result (..., C): BRDF in 1/sr, unbounded at grazing and as alpha vanishes; below 0 where the
-    curve is. The specification does not clamp the Fresnel curve, and neither does this function:
-    see `mxeon.models.fresnel_schlick`. [MaterialX2026], Microfacet BRDF; Energy Compensation;
-    generalized_schlick_bsdf.
+    Below 0 where the curve is: the specification does not clamp it, and neither does this function; see
+    `mxeon.models.fresnel_schlick`. [MaterialX2026], Microfacet BRDF; generalized_schlick_bsdf.
 
         >>> wo, wi = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
         >>> generalized_schlick_brdf(wo, wi, [0.9, 0.2], 0.5, 1.0, [0.3, 0.3], 5.0).round(6)
@@ -281,9 +269,6 @@ def dielectric_albedo_dir(
 ) -> Array:
     """Directional albedo of `dielectric_brdf`, by quadrature.
 
-    - `tint` (..., C): Color per channel, in [0, 1]; a number is one channel.
-    - `ior` (...): Index of refraction relative to the exterior medium, in [0, 1e50].
-
     For `ior` below 1, where F has an infinite slope at
     the critical angle, the quadrature is split there, and the error of isotropic lobes is below
     1e-10. At alpha 0 it is that of the mirror, tint F(mu_o). [MaterialX2026], Directional Albedo
@@ -307,9 +292,6 @@ def conductor_albedo_dir(
     compensate: bool = True,
 ) -> Array:
     """Directional albedo of `conductor_brdf`, by quadrature.
-
-    - `ior`, `extinction` (..., C): Complex index of refraction per channel, in [0, 1e50]; a number
-      is one channel.
 
     [MaterialX2026], Directional Albedo and Energy Conservation.
 
@@ -335,10 +317,6 @@ def generalized_schlick_albedo_dir(
     compensate: bool = True,
 ) -> Array:
     """Directional albedo of `generalized_schlick_brdf`, by quadrature.
-
-    - `color0`, `color82`, `color90` (..., C): Reflectance along the normal, multiplier at
-      acos(1/7), and reflectance at grazing, per channel, in [0, 1]; a number is one channel.
-    - `exponent` (...): Exponent of the Schlick curve, in [0, 1e50].
 
     [MaterialX2026], Directional Albedo and Energy Conservation.
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Wrong variants of the microfacet nodes that renderers implement, and MaterialX's fitted albedos, to recognize them by."""
+"""Wrong variants of the microfacet nodes that renderers implement, and MaterialX's fitted albedos."""
 
 from __future__ import annotations
 

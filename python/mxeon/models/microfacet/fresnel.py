@@ -312,12 +312,10 @@ def fresnel_dielectric(mu: ArrayLike, ior: ArrayLike) -> Array:
 
     - `ior`: Index of refraction relative to the exterior medium, in [0, 1e50].
 
-    Result: in [0, 1]. `ior` 0 disables the Fresnel curve: F is 1, as the equations give it. Below 1
-    the light comes from the denser side, and F is 1 from the critical angle on. At 1 there is no
-    interface, and F is 0 at grazing too. Of negative numbers the specification says nothing; here
-    they are refused. Accuracy: relative error below 2.2e-14 for `ior` >= 1. Below, F has an
-    infinite slope at the critical angle: there the result belongs to arguments that differ by a
-    rounding. [MaterialX2026], Dielectric Fresnel Equations; dielectric_bsdf.
+    `ior` 0 disables the Fresnel curve: F is 1, as the equations give it. Below 1 the light comes from the denser
+    side, and F is 1 from the critical angle on. At 1 there is no interface, and F is 0 at grazing too. Accuracy:
+    relative error below 2.2e-14 for `ior` >= 1; below, F has an infinite slope at the critical angle, and belongs
+    to arguments that differ by a rounding. [MaterialX2026], Dielectric Fresnel Equations; dielectric_bsdf.
 
         >>> fresnel_dielectric([1.0, 0.5, 0.0], 1.5).round(6)
         array([0.04    , 0.089187, 1.      ])
@@ -455,14 +453,10 @@ def artistic_ior(reflectivity: ArrayLike, edge_color: ArrayLike) -> tuple[Array,
         k^2 = (n_max - n) (n - 1 / n_max)
 
     - `reflectivity` (...): Reflectance at normal incidence r, per channel, in [0, 1).
-    - `edge_color` (...): Per channel, in [0, 1]: 0 has the largest n, and no extinction; 1 the
-      least n.
+    - `edge_color` (...): Per channel, in [0, 1]: 0 has the largest n, and no extinction; 1 the least n.
 
-    `ior`, `extinction` (...): n in (0, inf) and k in [0, inf). Form: the paper's k^2 is (r
-    (n + 1)^2 - (n - 1)^2) / (1 - r), a difference of large numbers. Its roots in n are n_max and
-    1 / n_max, and k^2 is their product here. The reflectance of n and k is r to within a few
-    roundings: `artistic_parameters` takes both back. [Gulbrandsen2014]; [MaterialX2026],
-    artistic_ior.
+    The paper's k^2 is (r (n + 1)^2 - (n - 1)^2) / (1 - r), a difference of large numbers. Its roots in n are n_max and
+    1 / n_max, and k^2 is their product here. [Gulbrandsen2014]; [MaterialX2026], artistic_ior.
 
         >>> ior, extinction = artistic_ior(0.944, 0.998)
         >>> round(float(ior), 4), round(float(extinction), 4)
@@ -480,8 +474,6 @@ def artistic_parameters(ior: ArrayLike, extinction: ArrayLike) -> tuple[Array, A
     """Reflectivity and edge color of a complex index of refraction.
 
         r = ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2),  g = (n_max - n) / (n_max - n_min)
-
-    - `ior`, `extinction` (...): n and k per channel, in [0, 1e50].
 
     `reflectivity`, `edge_color` (...): r in [0, 1]. The edge color lies in [0, 1] for metals that
     the parameterization reaches, those with n >= (1 - r) / (1 + r); it is above 1 for others, and 0

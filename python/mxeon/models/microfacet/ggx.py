@@ -8,12 +8,14 @@ Sections are those of [MaterialX2026], Microfacet Model. Formulas have component
 - `roughness` (..., 2) or (): alpha along tangent and bitangent, in [0, 1]; a number is isotropic. What an artist sets
   instead, `roughness`, `anisotropy`, `glossiness` (...): in [0, 1].
 
-Accuracy: relative error below 2e-14. Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
+Accuracy: relative error below 2e-14.
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
 not broadcast.
 
 (1 - E_ss) / E_ss, the light that the facets' own lobe misses, comes from a table that is computed once. E_ss changes on
-the scale mu = alpha. In s = mu (1 + alpha) / (mu + alpha), which is in [0, 1], it is smooth but for terms like s log(s),
-and in sqrt(alpha) throughout; a cube root spreads the former over the nodes of Chebyshev polynomials.
+the scale mu = alpha. In s = mu (1 + alpha) / (mu + alpha), which is in [0, 1], it is smooth but for terms like
+s log(s), and in sqrt(alpha) throughout; a cube root spreads the former over the nodes of Chebyshev polynomials.
 """
 
 from __future__ import annotations
@@ -168,16 +170,14 @@ def smith_g1(wo: ArrayLike, roughness: ArrayLike) -> Array:
 
 @any_array
 def smith_g2(mu_o: ArrayLike, mu_i: ArrayLike, alpha: ArrayLike) -> Array:
-    """Masking and shadowing G2 of the specification, height-correlated Smith.
+    """Masking and shadowing G2 of the specification, height-correlated Smith; 0 where a direction grazes.
 
         G2 = 2 mu_o mu_i / (lambda_o mu_i + lambda_i mu_o),
         lambda = sqrt(alpha^2 + (1 - alpha^2) mu^2)
 
-    - `mu_o`, `mu_i`: Cosines of the polar angles, in [0, 1].
-    - `alpha`: In [0, 1]; of anisotropic roughness sqrt(alpha_x alpha_y).
+    - `mu_o`, `mu_i`, `alpha`: Cosines of the polar angles, in [0, 1]; of anisotropic roughness sqrt(alpha_x alpha_y).
 
-    Result: in [0, 1]; 0 where a direction grazes. [MaterialX2026], Height-Correlated Smith
-    Masking-Shadowing.
+    [MaterialX2026], Height-Correlated Smith Masking-Shadowing.
 
         >>> smith_g2(0.8, [0.6, 0.0], 0.5).round(6)
         array([0.881115, 0.      ])
@@ -226,15 +226,13 @@ LARGEST_ANISOTROPY = 0.98  # beyond it alpha along the tangent would soon divide
 
 @any_array
 def roughness_anisotropy(roughness: ArrayLike, anisotropy: ArrayLike) -> Array:
-    """Pair of alphas of a roughness that is stretched along the tangent.
+    """Pair of alphas (..., 2) of a roughness that is stretched along the tangent.
 
         alpha_x = min(roughness^2 / aspect, 1),  alpha_y = roughness^2 aspect,
         aspect = sqrt(1 - min(anisotropy, 0.98))
 
-    Result (..., 2): alpha along the tangent and along the bitangent, in [0, 1]. The specification
-    has the square, the direction, and that anisotropy 0 is isotropic; it has no equation. The
-    aspect is that of its implementations: Burley's with the factor 1 instead of 0.9.
-    [MaterialX2026], roughness_anisotropy; [Burley2012], Section 5.4.
+    The specification has no equation; the aspect is that of its implementations: Burley's with the factor 1
+    instead of 0.9. [MaterialX2026], roughness_anisotropy; [Burley2012], Section 5.4.
 
         >>> roughness_anisotropy(0.5, [0.0, 0.75])
         array([[0.25 , 0.25 ],
@@ -301,17 +299,13 @@ def ggx_albedo_dir(mu: ArrayLike, alpha: ArrayLike) -> Array:
 
         E_ss(mu) = integral of D G2 / (4 mu mu_i) mu_i over the hemisphere of wi
 
-    - `mu`: Cosine of the polar angle, in [0, 1].
-    - `alpha`: GGX roughness, in [0, 1]: the input `roughness` of the nodes, of
-      anisotropic ones sqrt(alpha_x alpha_y).
+    - `mu`, `alpha`: Cosine of the polar angle and GGX roughness, in [0, 1]; of anisotropic nodes sqrt(alpha_x alpha_y).
 
-    Result: in [1 - log(2), 1] up to 1e-10. Accuracy: absolute error below 1e-10 for alpha >= 1e-4
-    and every mu, 2e-8 below. At alpha 0, the mirror, it is 1, the limit at every mu > 0. Form: with
-    u = |wo + wi|^2 = a + b cos(phi) and h_z^2 = (mu + mu_i)^2 / u, the azimuth integral of (u /
-    (u - k))^2, k = (1 - alpha^2) (mu + mu_i)^2, is elementary. In half sums and half differences of
-    the elevations all its terms are products of sums of positive numbers. The integral over the
-    elevation of wi is split at wo and graded by hyperbolic sines. Raises `ValueError` if an
-    argument leaves its range. [MaterialX2026], Energy Compensation.
+    Accuracy: absolute error below 1e-10 for alpha >= 1e-4 and every mu, 2e-8 below; 1 for the mirror, the limit at
+    every mu > 0. With u = |wo + wi|^2 = a + b cos(phi) and h_z^2 = (mu + mu_i)^2 / u, the azimuth integral of
+    (u / (u - k))^2, k = (1 - alpha^2) (mu + mu_i)^2, is elementary. In half sums and half differences of the elevations
+    all its terms are products of sums of positive numbers. The integral over the elevation of wi is split at wo and
+    graded by hyperbolic sines. [MaterialX2026], Energy Compensation.
 
         >>> ggx_albedo_dir([1.0, 0.1], [1.0, 0.01]).round(9)
         array([0.30685282, 0.99412395])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Functions of OSL's library BSDL and of Blender's Cycles, as variants of the nodes whose closures they make of them."""
+"""Functions of OSL's library BSDL and of Blender's Cycles, as variants of the nodes that they implement."""
 
 from __future__ import annotations
 

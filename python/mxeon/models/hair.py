@@ -252,19 +252,15 @@ def chiang_hair_bcsdf(wo: ArrayLike, wi: ArrayLike, **inputs: Any) -> Array:
 
         f = 1/pi (t_R A_R M_R N_R + t_TT A_TT M_TT N_TT + t_TRT (A_TRT M_TRT N_TRT + A_TRRT+ M_TRT / 2pi))
 
-    - `**inputs`: Values of the node's ports, which have its defaults; form is a
-      `mxeon.models.hair.formulas.HairForm`: `tint_R`, `tint_TT`, `tint_TRT`, shape (..., C),
-      in [0, 1]; `ior`, shape (...), in [0, 1e50]; `roughness_R`, `roughness_TT`, `roughness_TRT`,
-      shape (..., 2), longitudinal variance in square radian and azimuthal scale in radian,
-      in [1e-12, 1e12]; `cuticle_angle`, shape (...), in [0, 1]; `absorption_coefficient`, shape
-      (..., C), per radius of the fiber, in [0, 1e50].
+    - `**inputs`: Values of the node's ports, which have its defaults: `tint_R`, `tint_TT`, `tint_TRT` (..., C), in
+      [0, 1]; `ior` (...), in [0, 1e50]; `roughness_R`, `roughness_TT`, `roughness_TRT` (..., 2), longitudinal
+      variance in square radian and azimuthal scale in radian, in [1e-12, 1e12]; `cuticle_angle` (...), in [0, 1];
+      `absorption_coefficient` (..., C), per radius of the fiber, in [0, 1e50]. `form` is a `HairForm`.
 
-    Result (..., C): in 1/sr, at least 0. As the text has it, it takes no cosine of the light: its
-    integral over all lights is 1/pi where nothing is absorbed and the cuticle has no tilt. The text
-    has roughness (0, 0), a pure mirror: no function has its value, and it is refused. F has the
-    index `ior`, as in [Chiang2016]; that the text means the effective index is another reading.
-    Accuracy: relative error below 1e-13 / min(sqrt(v), s) of the value, or 1e-300. [MaterialX2026],
-    Chiang Hair Scattering Equations and Chiang Hair Model; [Chiang2016].
+    Result (..., C): in 1/sr. As the text has it, it takes no cosine of the light: its integral over all lights is
+    1/pi where nothing is absorbed and the cuticle has no tilt. Roughness (0, 0), a pure mirror, is refused: no
+    function has its value. F has the index `ior`, as in [Chiang2016]; the effective index is another reading.
+    Accuracy: relative error below 1e-13 / min(sqrt(v), s) of the value, or 1e-300. [MaterialX2026].
 
         >>> chiang_hair_bcsdf([0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]).round(6)
         array([0.137704, 0.137704, 0.137704])
@@ -316,15 +312,13 @@ def chiang_hair_attenuation(
 
 @any_array
 def hair_longitudinal(theta_i: ArrayLike, theta_o: ArrayLike, variance: ArrayLike) -> Array:
-    """Longitudinal scattering function M.
+    """Longitudinal scattering function M, whose integral over theta_i times cos(theta_i) is 1.
 
         M = exp(-sin(theta_i) sin(theta_o) / v) I_0(cos(theta_i) cos(theta_o) / v) / (2 v sinh(1 / v))
 
-    - `theta_i`, `theta_o`: Inclinations from the plane across the fiber, in radian,
-      in [-pi/2, pi/2].
+    - `theta_i`, `theta_o`: Inclinations from the plane across the fiber, in radian, in [-pi/2, pi/2].
     - `variance`: v, in square radian, in [1e-12, 1e12].
 
-    Result: above 0 up to underflow. Its integral over theta_i times cos(theta_i) is 1.
     [MaterialX2026], Chiang Hair Model, Longitudinal Scattering; [dEon2011], Eq. (7).
 
         >>> round(float(hair_longitudinal(0.3, -0.3, 0.01)), 6)
@@ -404,7 +398,7 @@ def chiang_hair_roughness(
     scale_tt: ArrayLike = 0.5,
     scale_trt: ArrayLike = 2.0,
 ) -> tuple[Array, Array, Array]:
-    """Longitudinal variance and azimuthal scale of the lobes R, TT and TRT.
+    """Longitudinal variance and azimuthal scale of the lobes R, TT and TRT, before the model's sqrt(pi / 8).
 
         v = (0.726 l + 0.812 l^2 + 3.7 l^20)^2,  s = 0.265 a + 1.194 a^2 + 5.372 a^22;
         R (v, s), TT (scale_tt^2 v, s), TRT (scale_trt^2 v, s)
@@ -412,9 +406,7 @@ def chiang_hair_roughness(
     - `longitudinal`, `azimuthal` (...): Roughnesses l and a, in [0, 1].
     - `scale_tt`, `scale_trt` (...): In [0, 1e50].
 
-    `r`, `tt`, `trt` (..., 2): Variance v and logistic scale s of each lobe, before the factor
-    sqrt(pi / 8) of the model. [MaterialX2026], Hair Roughness Conversion Equations; [Chiang2016],
-    the fits of both roughnesses.
+    [MaterialX2026], Hair Roughness Conversion Equations; [Chiang2016], the fits of both roughnesses.
 
         >>> r, tt, trt = chiang_hair_roughness(0.1, 0.2)
         >>> r.round(6), tt.round(6), trt.round(6)
@@ -448,13 +440,10 @@ def deon_hair_absorption_from_melanin(
         m = -log(1 - concentration)
 
     - `melanin_concentration`, `melanin_redness` (...): In [0, 1) and in [0, 1].
-    - `eumelanin_color`, `pheomelanin_color` (..., 3): Share of light that a fiber's radius of the
-      pigment leaves, in (0, 1].
+    - `eumelanin_color`, `pheomelanin_color` (..., 3): What a fiber's radius of the pigment leaves, in (0, 1].
 
-    The paper has the sum of both pigments, each with its own amount. How a concentration in [0, 1]
-    and a redness make these amounts, the specification does not say: the equation is that of its
-    implementations. [dEon2011], the absorption of the pigments; [MaterialX2026],
-    deon_hair_absorption_from_melanin.
+    The sum is that of [dEon2011]; how a concentration and a redness make its amounts the specification does not
+    say: the equation is that of its implementations. [MaterialX2026], deon_hair_absorption_from_melanin.
 
         >>> colors = np.exp(-np.array(EUMELANIN)), np.exp(-np.array(PHEOMELANIN))
         >>> deon_hair_absorption_from_melanin(0.25, 0.5, *colors).round(6)

@@ -15,7 +15,9 @@ s / max(mu_o, mu_i) has no limit and counts as 0; value times cosine is 0 there 
 
 Result (..., C): BRDF in 1/sr, at least 0, unbounded at grazing, with an error below 1e-14 / pi, or below 1e-14
 of the largest value that |s / t| takes at these cosines where that is larger. Albedos of FON and QON (...) are
-those at unit reflectance: multiply by rho. Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
+those at unit reflectance: multiply by rho.
+
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
 not broadcast.
 
 The formulas below have names and arguments of the shader functions in `genglsl/lib/eon.glsl` and
@@ -29,6 +31,7 @@ from collections.abc import Callable
 import numpy as np
 
 from mxeon.models.core.arguments import (
+    checked,
     checked_colors,
     checked_numbers,
     checked_transmitted,
@@ -41,6 +44,7 @@ from mxeon.models.core.arrays import (
     any_array,
     array_namespace,
     at_least_0,
+    at_most,
     cosine,
     except_at_1,
     hypot,
@@ -63,8 +67,6 @@ def cosines(wo: Array, wi: Array) -> tuple[Array, Array, Array]:
     """Cosines with the normal, and the part of the pair's cosine that lies in the surface.
 
         s = dot(wo, wi) - mu_o mu_i = wo.x wi.x + wo.y wi.y
-
-    - `wo`, `wi` (..., 3): Unit vectors on or above the horizon.
 
     `mu_o`, `mu_i` (...): Cosines, in [0, 1]: z, but 1 where a rounded direction has z > 1. `s`
     (...): In [-1, 1] up to rounding; signed, never clamped. [Portsmouth2025], below Eq. (3).
@@ -247,7 +249,7 @@ def eon_brdf_approx_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness
 
 @any_array
 def lambert_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike) -> Array:
-    """BRDF of a smooth diffuse surface, Lambert's.
+    """BRDF of a smooth diffuse surface, Lambert's, in 1/sr.
 
         f = rho / pi
 
@@ -262,7 +264,7 @@ def lambert_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike) -> Array:
 
 @any_array
 def oren_nayar_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
-    """BRDF of the full Oren-Nayar model, interreflection included.
+    """BRDF of the full Oren-Nayar model, interreflection included, in 1/sr.
 
         f = rho / pi [C1 + C2 cos(phi) tan(beta) + C3 (1 - |cos(phi)|) tan((alpha + beta) / 2)
                       + 0.17 rho sigma^2 / (sigma^2 + 0.13) (1 - cos(phi) (2 beta / pi)^2)],
@@ -270,12 +272,10 @@ def oren_nayar_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLi
         C2 = 0.45 k (sin(alpha) - (2 beta / pi)^3 where cos(phi) < 0),
         C3 = 0.125 k (4 alpha beta / pi^2)^2
 
-    Result (..., C): BRDF in 1/sr, unbounded at grazing. alpha and beta are the larger and the
-    smaller polar angle, phi is the azimuth between both. The authors' fit falls below 0, to -0.27
-    rho / pi, for rough dark surfaces where both directions graze from opposite sides. It stays as
-    they printed it. At grazing, (sin(alpha) - (2 beta / pi)^3) tan(beta) has its limit 6 / pi; the
-    tangent after C3 has none and counts as 0. [OrenNayar1994], functional approximation for
-    Gaussian slopes, and interreflection.
+    alpha and beta are the larger and the smaller polar angle, phi is the azimuth between both. As printed, the
+    fit falls below 0, to -0.27 rho / pi, for rough dark surfaces where both directions graze from opposite
+    sides. At grazing, (sin(alpha) - (2 beta / pi)^3) tan(beta) has its limit 6 / pi; the tangent after C3 has
+    none and counts as 0. [OrenNayar1994], functional approximation for Gaussian slopes.
 
         >>> oren_nayar_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.063766, 0.269282])
@@ -285,7 +285,7 @@ def oren_nayar_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLi
 
 @any_array
 def qon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
-    """BRDF of the qualitative Oren-Nayar model.
+    """BRDF of the qualitative Oren-Nayar model, in 1/sr.
 
         f = rho / pi (A + B s / t),  1/t = 0 where s <= 0, else 1 / max(mu_o, mu_i)
 
@@ -299,7 +299,7 @@ def qon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> 
 
 @any_array
 def qon_footnote_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
-    """BRDF of QON with 0.57 instead of 0.33 in A, which approximates interreflection.
+    """BRDF of QON with 0.57 instead of 0.33 in A, which approximates interreflection, in 1/sr.
 
         f = rho / pi (A + B s / t),  A = 1 - 0.5 sigma^2 / (sigma^2 + 0.57)
 
@@ -313,7 +313,7 @@ def qon_footnote_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: Array
 
 @any_array
 def qon_fujii_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
-    """BRDF of QON with coefficients that match the full model, and with a tinted A.
+    """BRDF of QON with coefficients that match the full model, and with a tinted A, in 1/sr.
 
         f = rho / pi (A + 0.17 rho sigma^2 / (sigma^2 + 0.13) + B s / t),
         1/t = 1 where s <= 0, else 1 / max(mu_o, mu_i)
@@ -328,7 +328,7 @@ def qon_fujii_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLik
 
 @any_array
 def fon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-    """BRDF of the Fujii Oren-Nayar model.
+    """BRDF of the Fujii Oren-Nayar model, in 1/sr.
 
         f = rho / pi A (1 + roughness s / t),  1/t = 1 where s <= 0, else 1 / max(mu_o, mu_i)
 
@@ -342,7 +342,7 @@ def fon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike)
 
 @any_array
 def eon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-    """BRDF of the energy-preserving Oren-Nayar model.
+    """BRDF of the energy-preserving Oren-Nayar model, in 1/sr.
 
         f = rho / pi A (1 + r s / t + rho r (1 + c2 r) / ((c1 - c2) D) H(mu_o) H(mu_i)),
         D = 1 + c1 r - rho r (c1 - c2),  H = c1 - G_F / pi
@@ -358,13 +358,12 @@ def eon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike)
 
 @any_array
 def eon_brdf_approx(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-    """BRDF of EON with the quartic for the albedo of FON.
+    """BRDF of EON with the quartic for the albedo of FON, in 1/sr.
 
         f as in `eon_brdf`,  G_F / pi = g1 m + g2 m^2 + g3 m^3 + g4 m^4,  m = 1 - mu
 
-    Accuracy: within 1.25e-3 / pi of `eon_brdf`. Below mu = 0.0014 the quartic loses less than
-    nothing, and H counts as 0. Listing 1 of the paper keeps 1 - E_FON above 1e-7 instead. That
-    differs by less than 1.4e-7 / pi for roughness > 1e-5, and is not Lambert at roughness 0.
+    Accuracy: within 1.25e-3 / pi of `eon_brdf`. H counts as 0 where it would fall below, for mu < 0.0014. Listing
+    1 keeps 1 - E_FON above 1e-7 instead: less than 1.4e-7 / pi away for roughness > 1e-5, and not Lambert at 0.
     [Portsmouth2025], Eqs. (14), (16)-(19).
 
         >>> eon_brdf_approx([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
@@ -375,15 +374,13 @@ def eon_brdf_approx(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: Arr
 
 @any_array
 def burley_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-    """BRDF of Burley's diffuse model.
+    """BRDF of Burley's diffuse model, in 1/sr.
 
         f = rho / pi (1 + k (1 - mu_o)^5) (1 + k (1 - mu_i)^5),
-        k = F_D90 - 1 = 2 roughness (wi . wh)^2 - 1 / 2
+        k = F_D90 - 1 = 2 roughness (wi . wh)^2 - 1 / 2,  (wi . wh)^2 = (1 + wo . wi) / 2
 
-    Result (..., C): BRDF in 1/sr, in [0, 25/4 / pi]. With (wi . wh)^2 = (1 + wo . wi) / 2 there is
-    no half vector to normalize, and opposite directions at grazing need no case of their own.
-    Accuracy: error below 66 / roughness times 2^-53 of f + 1 / pi. [MaterialX2026], section
-    `burley_diffuse_bsdf`; [Burley2012], section 5.3.
+    Result (..., C): 1/sr, in [0, 25/4 / pi]. Accuracy: error below 66 / roughness times 2^-53 of f + 1 / pi.
+    [MaterialX2026], section `burley_diffuse_bsdf`, whose sigma is the roughness; [Burley2012], section 5.3.
 
         >>> burley_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.063985, 0.255939])
@@ -398,16 +395,14 @@ def burley_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLi
 
 @any_array
 def burley_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-    """Directional albedo of Burley's diffuse model, in closed form.
+    """Directional albedo of Burley's diffuse model, in closed form; up to 1.558 rho at grazing.
 
         E(mu) = rho (1 + n (h + 2 r mu / 3) + h / 21 + r mu / 84 + n Q),
         n = (1 - mu)^5,  h = r - 1/2,
         Q = (h^2 + r^2 (1 - mu^2) / 2) / 21 + h r mu / 42 + r^2 (3 mu^2 - 1) / 504
 
-    Result (..., C): It exceeds rho where the surface is rough: up to 1.558 rho at grazing. Form: f
-    is a polynomial in mu_i and cos(phi). The integrals are 2 n! 5! / (n + 6)! for mu_i^n
-    (1 - mu_i)^5: 1/21, 1/84, 1/252. Accuracy: absolute error below 1e-12. [MaterialX2026], sections
-    `burley_diffuse_bsdf` and Directional Albedo.
+    f is a polynomial in mu_i and cos(phi). The integrals are 2 n! 5! / (n + 6)! for mu_i^n (1 - mu_i)^5: 1/21,
+    1/84, 1/252. Accuracy: absolute error below 1e-12. [MaterialX2026], Directional Albedo.
 
         >>> burley_albedo_dir(0.0, 1.0, 1.0).round(6)
         array([1.55754])
@@ -422,17 +417,12 @@ def burley_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Ar
 
 @any_array
 def translucent_btdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike) -> Array:
-    """BTDF of Lambert's transmission.
+    """BTDF of Lambert's transmission, f = rho / pi in 1/sr, whose integral times |mu_i| is rho.
 
-        f = rho / pi
-
-    - `wo` (..., 3): Direction to the viewer, unit vector to 1e-6, normal +z, z >= 0.
     - `wi` (..., 3): Direction to the light, unit vector to 1e-6, z <= 0.
     - `rho` (..., C): Diffuse transmittance per channel, in [0, 1]; a number is one channel.
 
-    Result (..., C): BTDF in 1/sr. Its integral over the lower hemisphere times |mu_i| is rho.
-    Raises `ValueError` if an argument leaves its range. [MaterialX2026], section
-    `translucent_bsdf`, Lambertian transmittance equation.
+    [MaterialX2026], section `translucent_bsdf`, Lambertian transmittance equation.
 
         >>> translucent_btdf([0.6, 0.0, 0.8], [0.8, 0.0, -0.6], [0.2, 0.8]).round(6)
         array([0.063662, 0.254648])
@@ -697,3 +687,187 @@ def _polynomial(color: ArrayLike, roughness: ArrayLike, slope: float, zero: floa
     """C + slope (zero - C) C r: [Portsmouth2025], Eqs. (32) and (34)."""
     (color,), (r,) = checked_colors({"color": color}, roughness=roughness)
     return color + slope * (zero - color) * color * r
+
+
+# Wrong variants that renderers implement, to recognize them by.
+DEGREE = 180.0 / np.pi
+FLOOR = 0.1  # least reflectance that Babylon.js passes to EON
+
+
+@any_array
+def eon_clamped_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
+    """Reflection of EON with dot(wo, wi) kept above 1e-8 before s is formed.
+
+        s = max(dot(wo, wi), 1e-8) - mu_o mu_i
+
+    Result (..., C): in 1/sr; too bright where dot(wo, wi) < 0, and correct elsewhere. MaterialX's
+    GLSL node clamps the product, for the needs of other nodes, and passes it on.
+    """
+
+    def formula(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
+        s = array_namespace(s).maximum(s + mu_o * mu_i, 1e-8) - mu_o * mu_i
+        return eon_brdf_mu(mu_o, mu_i, s, rho, roughness)
+
+    return evaluate(of_cosines(formula), wo, wi, rho, roughness=roughness)
+
+
+@any_array
+def burley_cosine_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
+    """Reflection of Burley's diffuse model at roughness^2, multiplied by mu_i.
+
+    Result (..., C): in 1/sr; not reciprocal, and a white surface reflects two thirds of the light.
+    LuxCoreRender's disney: `DisneyDiffuse` squares the roughness, and both `Evaluate` and
+    `DisneyEvaluate` multiply by the cosine of the light.
+    """
+    value = burley_brdf(wo, wi, rho, checked("roughness", roughness) ** 2)
+    return value * checked_triples("wi", wi)[..., 2:]
+
+
+@any_array
+def burley_schlick_brdf(
+    wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike
+) -> Array:
+    """Reflection of Burley's diffuse model with wrong retro-reflection.
+
+        f = rho / pi ((1 - F_o / 2) (1 - F_i / 2) + R (F_o + F_i + F_o F_i (R - 1))),
+        R = 1/2 + 2 roughness F_i^2,  F = (1 - mu)^5
+
+    Result (..., C): in 1/sr; not reciprocal. It is Lambert at roughness 0, and Burley where mu_o
+    and mu_i are 1. The GLSL of three-gpu-pathtracer. Burley's R is 2 roughness (wi . wh)^2.
+    """
+
+    def formula(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
+        F_o, F_i = (1.0 - mu_o) ** 5, (1.0 - mu_i) ** 5
+        smooth = (1.0 - 0.5 * F_o) * (1.0 - 0.5 * F_i)
+        R = 0.5 + 2.0 * roughness * F_i**2
+        return rho / np.pi * (smooth + R * (F_o + F_i + F_o * F_i * (R - 1.0)))
+
+    return evaluate(of_cosines(formula), wo, wi, rho, roughness=roughness)
+
+
+@any_array
+def eon_rho_cubed_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
+    """Reflection of EON whose multiple-scattering lobe carries rho^3 for rho^2.
+
+    Result (..., C): in 1/sr; too dark, and correct where rho is 0 or 1. The OSL closure of
+    Blender's Cycles applies its albedo weight to the lobe once too often.
+    """
+
+    def formula(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
+        single_scatter = 1.0 + roughness * fon_quotient(mu_o, mu_i, s)
+        weight = rho * eon_multiple_weight(rho, roughness)
+        multi_scatter = weight * (fon_loss_mu(mu_o) * fon_loss_mu(mu_i))
+        return fon_scale(rho, roughness) * (single_scatter + multi_scatter)
+
+    return evaluate(of_cosines(formula), wo, wi, rho, roughness=roughness)
+
+
+@any_array
+def fon_white_lobe_brdf(
+    wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike
+) -> Array:
+    """Reflection of FON plus the multiple-scattering lobe of a white surface.
+
+    Result (..., C): in 1/sr; too bright, and correct where rho is 1. The MDL target forgets to tint
+    the lobe: a black surface reflects 0.22 at roughness 1.
+    """
+
+    def formula(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
+        losses = fon_loss_mu(mu_o) * fon_loss_mu(mu_i)
+        white = roughness * fon_a(roughness) / (np.pi * (C1 - C2)) * losses
+        return fon_brdf_mu(mu_o, mu_i, s, rho, roughness) + white
+
+    return evaluate(of_cosines(formula), wo, wi, rho, roughness=roughness)
+
+
+@any_array
+def eon_floor_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
+    """Reflection of EON whose shape is that of a reflectance of at least 0.1.
+
+        f = rho f_EON(max(rho, 0.1)) / max(rho, 0.1)
+
+    Result (..., C): in 1/sr; too bright where rho lies between 0 and 0.1, and correct elsewhere.
+    Babylon.js 9.34.0 divides EON by the reflectance, which it keeps above 0.1; its albedo is the
+    paper's quartic.
+    """
+
+    def formula(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
+        floor = array_namespace(rho).maximum(rho, FLOOR)
+        return rho / floor * eon_brdf_approx_mu(mu_o, mu_i, s, floor, roughness)
+
+    return evaluate(of_cosines(formula), wo, wi, rho, roughness=roughness)
+
+
+@any_array
+def qon_tinted_twice_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
+    """Reflection of QON that is multiplied by its own color once more.
+
+    OpenPBR's thin-walled lobe in MaterialX 1.39.5, issue 3027 of MaterialX.
+    """
+    value: Array = checked("rho", rho) * qon_brdf(wo, wi, rho, sigma)
+    return value
+
+
+@any_array
+def qon_degrees_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
+    """Reflection of QON that takes the number of degrees for radians.
+
+    `sigma` is in radian, and 180 sigma / pi enters. From a few degrees on it is the limit of large sigma, and correct at
+    0. LuxCoreRender's roughmatte: its manual has degrees, its code radians.
+    """
+
+    def formula(mu_o: Array, mu_i: Array, s: Array, rho: Array, sigma: Array) -> Array:
+        return qon_brdf_mu(mu_o, mu_i, s, rho, DEGREE * sigma)
+
+    return evaluate(of_cosines(formula), wo, wi, rho, sigma=sigma)
+
+
+@any_array
+def qon_tinted_twice_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
+    """Directional albedo of `qon_tinted_twice_brdf`."""
+    (color,), (m, s) = checked_colors({"rho": rho}, mu=mu, sigma=sigma)
+    return color * color * qon_albedo_dir(m, s)
+
+
+@any_array
+def qon_degrees_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
+    """Directional albedo of `qon_degrees_brdf`."""
+    (color,), (m, s) = checked_colors({"rho": rho}, mu=mu, sigma=sigma)
+    rough = 0.5 * np.pi
+    lobe = (qon_albedo_dir(m, rough) - qon_a(rough)) / qon_b(rough)
+    return (qon_a(DEGREE * s) + qon_b(DEGREE * s) * lobe) * color
+
+
+@any_array
+def eon_rho_cubed_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
+    """Directional albedo of `eon_rho_cubed_brdf`.
+
+    E = rho (E_EON + (1 - rho) E_FON)
+    """
+    (color,), (m, r) = checked_colors({"rho": rho}, mu=mu, roughness=roughness)
+    return color * (eon_albedo_dir(mu, rho, roughness) + (1.0 - color) * fon_albedo_dir(m, r))
+
+
+@any_array
+def fon_white_lobe_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
+    """Directional albedo of `fon_white_lobe_brdf`.
+
+        E = 1 - (1 - rho) E_FON
+
+    Result (..., C): in [0, 1]; not 0 where rho is 0.
+    """
+    (color,), (m, r) = checked_colors({"rho": rho}, mu=mu, roughness=roughness)
+    return 1.0 - (1.0 - color) * fon_albedo_dir(m, r)
+
+
+@any_array
+def qon_fitted_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
+    """Directional albedo of QON as MaterialX fits it: a quotient of polynomials.
+
+    It is off by up to 0.068 at rho 1. Coefficients of MaterialX 1.39.5,
+    `mx_microfacet_diffuse.glsl`, which clamps the quotient to 1.
+    """
+    (color,), (m, s) = checked_colors({"rho": rho}, mu=mu, sigma=sigma)
+    over = 1.0 - 0.4297 * s - 0.7632 * m * s + 1.4385 * s**2
+    under = 1.0 - 0.6076 * s - 0.4993 * m * s + 2.0315 * s**2
+    return at_most(over / under, 1.0) * color
