@@ -74,6 +74,7 @@ from mxeon.models.core.evaluation import evaluate_material
 from mxeon.models.microfacet import (
     CONDUCTOR,
     DIELECTRIC,
+    NODES,
     SCHLICK,
     Curve,
     Lobe,
@@ -300,7 +301,7 @@ def _quotient(a: Complex, b: Complex, otherwise: float) -> Complex:
 
 
 # Gauss-Legendre in the cosine: nodes of the curve, and of the polynomial through it, which is clamped.
-NODES, FINE = 14, 200
+POINTS, FINE = 14, 200
 
 Polarizations: TypeAlias = tuple[Interface, Interface]
 
@@ -390,11 +391,11 @@ def _fine(
 @cache
 def _rule() -> tuple[Array, Array, Array]:
     """Cosines of nodes, the matrix from values there to those of a fine rule, and its shares."""
-    x, w = legendre.leggauss(NODES)
+    x, w = legendre.leggauss(POINTS)
     fine, weight = legendre.leggauss(FINE)
-    degree = np.arange(NODES)
-    moments = (degree + 0.5)[:, np.newaxis] * legendre.legvander(x, NODES - 1).T * w
-    between = legendre.legvander(fine, NODES - 1) @ moments
+    degree = np.arange(POINTS)
+    moments = (degree + 0.5)[:, np.newaxis] * legendre.legvander(x, POINTS - 1).T * w
+    between = legendre.legvander(fine, POINTS - 1) @ moments
     return 0.5 * (1.0 + x), between, 0.5 * weight * (1.0 + fine)
 
 
@@ -589,12 +590,6 @@ def _reflectance(
 
 
 FILM = ("thinfilm_thickness", "thinfilm_ior")
-# Inputs of each node with channels, and those without.
-INPUTS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
-    "dielectric_bsdf": (("tint",), ("ior",)),
-    "conductor_bsdf": (("ior", "extinction"), ()),
-    "generalized_schlick_bsdf": (("color0", "color82", "color90"), ("exponent",)),
-}
 DEGREE = 48  # of a film's curve in the cosine where an albedo is integrated
 
 
@@ -654,7 +649,7 @@ def _material(
     category: str, inputs: Mapping[str, ArrayLike], wo: ArrayLike
 ) -> tuple[dict[str, Numbers], dict[str, Numbers]]:
     """Checked inputs with channels and without."""
-    colors, numbers = INPUTS[checked_choice("category", category, INPUTS)]
+    _, colors, numbers = NODES[checked_choice("category", category, NODES)]
     if not isinstance(inputs, Mapping):
         raise ValueError(f"inputs must be a mapping of names to values; got {inputs!r}")
     if missing := {"roughness", *colors, *numbers, *FILM} - set(inputs):

@@ -32,8 +32,7 @@ from mxeon.hosts.calls import GRAPH
 from mxeon.models.diffuse import eon_albedo_avg, eon_albedo_dir
 from mxeon.models.microfacet.fresnel import normal_reflectance
 from mxeon.models.nodes.node import Variant
-from mxeon.models.nodes.utilities import LARGEST_REFLECTIVITY, UTILITIES, UtilityNode
-from mxeon.models.nodes.utilities import Values as Outputs
+from mxeon.models.nodes.utilities import LARGEST_REFLECTIVITY, UTILITIES, Outputs, UtilityNode
 from mxeon.shaders.nodes import INVERSIONS, connection_text, document_text, input_text, node_text
 
 NAME, COLOR = "value", "color"  # of the node in its document, and of its conversion to a color

@@ -162,6 +162,48 @@ def evaluate_lobe(
     )
 
 
+# Of each node: its Fresnel curve, its inputs with channels, and those without.
+NODES: dict[str, tuple[Curve, tuple[str, ...], tuple[str, ...]]] = {
+    "dielectric_bsdf": (DIELECTRIC, ("tint",), ("ior",)),
+    "conductor_bsdf": (CONDUCTOR, ("ior", "extinction"), ()),
+    "generalized_schlick_bsdf": (SCHLICK, ("color0", "color82", "color90"), ("exponent",)),
+}
+
+
+def _material(
+    category: str, inputs: Mapping[str, ArrayLike]
+) -> tuple[Curve, dict[str, Numbers], dict[str, Numbers]]:
+    """Curve of a node, and its checked inputs with channels and without."""
+    curve, colors, numbers = NODES[category]
+    vectors = {name: checked_vector(name, inputs[name]) for name in colors}
+    return curve, vectors, {name: checked(name, inputs[name]) for name in numbers}
+
+
+@any_array
+def node_brdf(
+    category: str,
+    wo: ArrayLike,
+    wi: ArrayLike,
+    inputs: Mapping[str, ArrayLike],
+    lobe: Lobe | None = None,
+    retroreflective: bool = False,
+) -> Array:
+    """BRDF of a node, a key of NODES, by its inputs; others are ignored."""
+    material = _material(category, inputs)
+    return evaluate_lobe(
+        lobe or Lobe(), material[0], wo, wi, inputs["roughness"], *material[1:], retroreflective
+    )
+
+
+@any_array
+def node_albedo(
+    category: str, wo: ArrayLike, inputs: Mapping[str, ArrayLike], compensate: bool = True
+) -> Array:
+    """Directional albedo of `node_brdf`."""
+    curve, vectors, numbers = _material(category, inputs)
+    return lobe_albedo(curve, wo, inputs["roughness"], vectors, numbers, compensate)
+
+
 @any_array
 def dielectric_brdf(
     wo: ArrayLike,
@@ -185,12 +227,8 @@ def dielectric_brdf(
         >>> dielectric_brdf([0.6, 0.0, 0.8], [-0.6, 0.0, 0.8], 1.0, [0.3, 0.3], 1.5).round(6)
         array([0.060074])
     """
-    vectors = {"tint": checked_vector("tint", tint)}
-    numbers = {"ior": checked("ior", ior)}
-
-    return evaluate_lobe(
-        _lobe(compensate), DIELECTRIC, wo, wi, roughness, vectors, numbers, retroreflective
-    )
+    inputs = {"tint": tint, "ior": ior, "roughness": roughness}
+    return node_brdf("dielectric_bsdf", wo, wi, inputs, _lobe(compensate), retroreflective)
 
 
 @any_array
@@ -213,14 +251,8 @@ def conductor_brdf(
         >>> conductor_brdf(wo, wi, [0.3, 0.3], *gold).round(6)
         array([1.472308, 0.543655])
     """
-    vectors = {
-        "ior": checked_vector("ior", ior),
-        "extinction": checked_vector("extinction", extinction),
-    }
-
-    return evaluate_lobe(
-        _lobe(compensate), CONDUCTOR, wo, wi, roughness, vectors, {}, retroreflective
-    )
+    inputs = {"ior": ior, "extinction": extinction, "roughness": roughness}
+    return node_brdf("conductor_bsdf", wo, wi, inputs, _lobe(compensate), retroreflective)
 
 
 @any_array
@@ -246,13 +278,9 @@ def generalized_schlick_brdf(
         >>> generalized_schlick_brdf(wo, wi, [0.9, 0.2], 0.5, 1.0, [0.3, 0.3], 5.0).round(6)
         array([1.382929, 0.278522])
     """
-    colors = {"color0": color0, "color82": color82, "color90": color90}
-    vectors = {name: checked_vector(name, value) for name, value in colors.items()}
-    numbers = {"exponent": checked("exponent", exponent)}
-
-    return evaluate_lobe(
-        _lobe(compensate), SCHLICK, wo, wi, roughness, vectors, numbers, retroreflective
-    )
+    inputs = {"color0": color0, "color82": color82, "color90": color90}
+    inputs |= {"roughness": roughness, "exponent": exponent}
+    return node_brdf("generalized_schlick_bsdf", wo, wi, inputs, _lobe(compensate), retroreflective)
 
 
 def _lobe(compensate: bool) -> Lobe:
@@ -277,10 +305,8 @@ def dielectric_albedo_dir(
         >>> dielectric_albedo_dir([0.6, 0.0, 0.8], 1.0, [0.3, 0.3], 1.5).round(6)
         array([0.040169])
     """
-    vectors = {"tint": checked_vector("tint", tint)}
-
-    numbers = {"ior": checked("ior", ior)}
-    return lobe_albedo(DIELECTRIC, wo, roughness, vectors, numbers, compensate)
+    inputs = {"tint": tint, "ior": ior, "roughness": roughness}
+    return node_albedo("dielectric_bsdf", wo, inputs, compensate)
 
 
 @any_array
@@ -299,11 +325,8 @@ def conductor_albedo_dir(
         >>> conductor_albedo_dir([0.6, 0.0, 0.8], [0.3, 0.3], *gold).round(6)
         array([0.935317, 0.347053])
     """
-    vectors = {
-        "ior": checked_vector("ior", ior),
-        "extinction": checked_vector("extinction", extinction),
-    }
-    return lobe_albedo(CONDUCTOR, wo, roughness, vectors, {}, compensate)
+    inputs = {"ior": ior, "extinction": extinction, "roughness": roughness}
+    return node_albedo("conductor_bsdf", wo, inputs, compensate)
 
 
 @any_array
@@ -324,10 +347,9 @@ def generalized_schlick_albedo_dir(
         >>> generalized_schlick_albedo_dir(wo, [1.0, 0.2], 1.0, 1.0, roughness, 5.0).round(6)
         array([1.      , 0.179402])
     """
-    colors = {"color0": color0, "color82": color82, "color90": color90}
-    vectors = {name: checked_vector(name, value) for name, value in colors.items()}
-    numbers = {"exponent": checked("exponent", exponent)}
-    return lobe_albedo(SCHLICK, wo, roughness, vectors, numbers, compensate)
+    inputs = {"color0": color0, "color82": color82, "color90": color90}
+    inputs |= {"roughness": roughness, "exponent": exponent}
+    return node_albedo("generalized_schlick_bsdf", wo, inputs, compensate)
 
 
 @any_array

@@ -8,30 +8,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mxeon.models.core.arguments import checked
-from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.arrays import Array
 from mxeon.models.microfacet import (
-    CONDUCTOR,
-    DIELECTRIC,
-    SCHLICK,
-    Curve,
     Lobe,
     Pair,
     compensation,
-    evaluate_lobe,
     ggx,
     missing,
     uncompensated,
 )
 from mxeon.models.microfacet.ggx import missing_light
-
-# Fresnel curve of each node, its inputs with channels, and those without.
-NODES: dict[str, tuple[Curve, tuple[str, ...], tuple[str, ...]]] = {
-    "dielectric_bsdf": (DIELECTRIC, ("tint",), ("ior",)),
-    "conductor_bsdf": (CONDUCTOR, ("ior", "extinction"), ()),
-    "generalized_schlick_bsdf": (SCHLICK, ("color0", "color82", "color90"), ("exponent",)),
-}
-
 
 # MaterialX 1.39.5, rational fit of the GGX albedo A F0 + B F90 in x = mu, y = alpha; up to 0.14 off
 # in [1e-3, 1]^2. Rows: coefficients of 1, x, y, x y, x^2, y^2, x^2 y, x y^2, x^2 y^2; columns:
@@ -58,27 +44,6 @@ class MicrofacetDefect:
     name: str
     title: str
     lobe: Lobe
-
-    def value(
-        self,
-        node: str,
-        wo: ArrayLike,
-        wi: ArrayLike,
-        inputs: Mapping[str, ArrayLike],
-        retroreflective: bool = False,
-    ) -> Array:
-        """Values of the variant, (..., C) in 1/sr; `node` is a key of NODES, other inputs are ignored."""
-        curve, colors, numbers = NODES[node]
-        return evaluate_lobe(
-            self.lobe,
-            curve,
-            wo,
-            wi,
-            inputs["roughness"],
-            {name: np.atleast_1d(checked(name, inputs[name])) for name in colors},
-            {name: checked(name, inputs[name]) for name in numbers},
-            retroreflective,
-        )
 
 
 def averaged_channels(albedo: Array) -> Array:

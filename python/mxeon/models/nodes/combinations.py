@@ -17,7 +17,7 @@ import numpy as np
 from mxeon.models.core import layering
 from mxeon.models.core.arrays import Array
 from mxeon.models.core.layering import Bsdf
-from mxeon.models.nodes.node import Inputs, PbrNode, Scattering, Variant
+from mxeon.models.nodes.node import Inputs, PbrNode, Scattering, Variant, column
 from mxeon.models.sheen import (
     conty_kulla_albedo_dir,
     conty_kulla_brdf,
@@ -45,11 +45,6 @@ def _conty_kulla(wo: Array, wi: Array, roughness: Array, color: Array) -> Bsdf:
     """A Conty-Kulla sheen, whose albedo counts as 1 where it exceeds 1."""
     albedo = np.minimum(conty_kulla_albedo_dir(np.minimum(wo[:, 2], 1.0), roughness), 1.0)
     return Bsdf(conty_kulla_brdf(wo, wi, color, roughness), 1.0 - albedo[:, np.newaxis] * color)
-
-
-def _column(inputs: Inputs, name: str) -> Array:
-    """A number or a color of each pair, (N, 1 or 3)."""
-    return np.reshape(inputs[name], (len(inputs[name]), -1))
 
 
 def _values(
@@ -103,21 +98,21 @@ def _ended(lobe: Bsdf) -> Bsdf:
 
 
 def _scaled(top: Bsdf, base: Bsdf, inputs: Inputs) -> Bsdf:
-    return layering.multiply(top, _column(inputs, FACTOR))
+    return layering.multiply(top, column(inputs, FACTOR))
 
 
 def _sum_mixed(top: Bsdf, base: Bsdf, inputs: Inputs, finish: Finish = lambda lobe: lobe) -> Bsdf:
-    return layering.mix(finish(layering.add(top, base)), top, _column(inputs, AMOUNT))
+    return layering.mix(finish(layering.add(top, base)), top, column(inputs, AMOUNT))
 
 
 def _sum_layered(top: Bsdf, base: Bsdf, inputs: Inputs, finish: Finish = lambda lobe: lobe) -> Bsdf:
-    mixed = layering.mix(finish(layering.add(top, base)), top, _column(inputs, AMOUNT_ABOVE))
+    mixed = layering.mix(finish(layering.add(top, base)), top, column(inputs, AMOUNT_ABOVE))
     return layering.layer(mixed, base)
 
 
 def _layer_mixed(top: Bsdf, base: Bsdf, inputs: Inputs, finish: Finish = lambda lobe: lobe) -> Bsdf:
     layered = layering.layer(finish(layering.add(top, base)), base)
-    return layering.mix(layered, top, _column(inputs, AMOUNT))
+    return layering.mix(layered, top, column(inputs, AMOUNT))
 
 
 def _unscaled(combine: Combine) -> tuple[Variant[Scattering], ...]:
@@ -138,7 +133,7 @@ COMBINATIONS = (
         "mix",
         "a mix",
         "mix",
-        lambda top, base, i: layering.mix(top, base, _column(i, AMOUNT)),
+        lambda top, base, i: layering.mix(top, base, column(i, AMOUNT)),
         (AMOUNT,),
     ),
     _combined("add", "a sum", "add", lambda top, base, i: layering.add(top, base)),

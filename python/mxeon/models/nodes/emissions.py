@@ -22,7 +22,7 @@ from mxeon.models.media import (
     uniform_edf,
     uniform_exitance,
 )
-from mxeon.models.nodes.node import Inputs, Node, Variant
+from mxeon.models.nodes.node import Inputs, Node, Variant, combinations
 
 BASE = "base/color"  # of the uniform emission below a Schlick curve
 FIRST, SECOND = "first/color", "second/color"  # of two uniform emissions
@@ -75,34 +75,6 @@ def _whole(wo: Array, inputs: Inputs) -> Array:
     return np.where(wo[:, 2:] < 0.0, 0.0, inputs["color"])
 
 
-def _column(inputs: Inputs, name: str) -> Array:
-    """A number or a color of each view, (N, 1 or 3)."""
-    return np.reshape(inputs[name], (len(inputs[name]), -1))
-
-
-def _mix(inputs: Inputs) -> Array:
-    share = _column(inputs, AMOUNT)
-    return np.asarray((1.0 - share) * inputs[SECOND] + share * inputs[FIRST])
-
-
-def _scaled(inputs: Inputs) -> Array:
-    return np.asarray(inputs[FIRST] * _column(inputs, FACTOR))
-
-
-def _combined(
-    name: str, title: str, category: str, inputs: tuple[str, ...], color: Callable[[Inputs], Array]
-) -> Emission:
-    """Row of a node that combines uniform emissions, whose result is one of another color."""
-    return Emission(
-        name,
-        title,
-        category,
-        inputs,
-        lambda wo, inputs: uniform_edf(wo, color(inputs)),
-        lambda inputs: uniform_exitance(color(inputs)),
-    )
-
-
 ONE_SIDE = "emission from the front alone"
 EMISSIONS = (
     Emission(
@@ -150,21 +122,29 @@ EMISSIONS = (
         ),
     ),
 )
-COMBINED_EMISSIONS = (
-    _combined("emission_mix", "a mix of emissions", "mix", (FIRST, SECOND, AMOUNT), _mix),
-    _combined(
-        "emission_add",
+
+
+def _combined(
+    name: str, title: str, category: str, inputs: tuple[str, ...], color: Callable[[Inputs], Array]
+) -> Emission:
+    """Row of a node that combines uniform emissions, whose result is one of another color."""
+    return Emission(
+        name,
+        title,
+        category,
+        inputs,
+        lambda wo, inputs: uniform_edf(wo, color(inputs)),
+        lambda inputs: uniform_exitance(color(inputs)),
+    )
+
+
+COMBINED_EMISSIONS = tuple(
+    _combined(*each)
+    for each in combinations(
+        "emission",
+        "an emission",
+        "emissions",
         "a sum of emissions",
-        "add",
-        (FIRST, SECOND),
-        lambda inputs: np.asarray(inputs[FIRST] + inputs[SECOND]),
-    ),
-    _combined("emission_multiply_float", "a scaled emission", "multiply", (FIRST, FACTOR), _scaled),
-    _combined(
-        "emission_multiply_color3",
-        "an emission scaled by a color",
-        "multiply",
-        (FIRST, FACTOR),
-        _scaled,
-    ),
+        (FIRST, SECOND, AMOUNT, FACTOR),
+    )
 )

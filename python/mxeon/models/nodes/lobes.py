@@ -24,8 +24,7 @@ from mxeon.models.hair import (
     chiang_hair_attenuation,
     chiang_hair_bcsdf,
 )
-from mxeon.models.microfacet import defects as materialx_fits
-from mxeon.models.microfacet import dielectric_albedo_dir
+from mxeon.models.microfacet import defects, dielectric_albedo_dir
 from mxeon.models.nodes.node import Inputs, PbrNode, Variant
 from mxeon.models.sheen import (
     conty_kulla_albedo_dir,
@@ -95,34 +94,18 @@ def _bounded(albedo: Callable[[Array, Array], Array]) -> Callable[[Array, Array]
     return lambda mu, roughness: at_most(albedo(mu, roughness), 1.0)
 
 
-def _tinted(
-    albedo: Callable[[Array, Array], Array],
-) -> Callable[[Array, Inputs], Array]:
+def _tinted(albedo: Callable[[Array, Array], Array]) -> Callable[[Array, Inputs], Array]:
     """Albedo of a lobe of one roughness times its color."""
-
-    def tinted(wo: Array, inputs: Inputs) -> Array:
-        white = albedo(cosine(wo[:, 2]), inputs["roughness"])
-        tinted: Array = white[..., np.newaxis] * inputs["color"]
-        return tinted
-
-    return tinted
+    return lambda wo, i: albedo(cosine(wo[:, 2]), i["roughness"])[..., np.newaxis] * i["color"]
 
 
-def untinted(
-    albedo: Callable[[Array, Array], Array],
-) -> Callable[[Array, Inputs], Array]:
+def untinted(albedo: Callable[[Array, Array], Array]) -> Callable[[Array, Inputs], Array]:
     """Albedo of a lobe of one roughness without its color."""
-
-    def untinted(wo: Array, inputs: Inputs) -> Array:
-        white = albedo(cosine(wo[:, 2]), inputs["roughness"])
-        return np.repeat(white[..., np.newaxis], 3, axis=-1)
-
-    return untinted
+    white = _tinted(albedo)
+    return lambda wo, inputs: white(wo, {**inputs, "color": np.ones(3)})
 
 
-def _sheen(
-    brdf: Callable[..., Array],
-) -> Callable[[Array, Array, Inputs], Array]:
+def _sheen(brdf: Callable[..., Array]) -> Callable[[Array, Array, Inputs], Array]:
     """Values of a lobe of a color and a roughness."""
     return lambda wo, wi, inputs: brdf(wo, wi, inputs["color"], inputs["roughness"])
 
@@ -139,7 +122,7 @@ LOBE_NODES = (
             cosine(wo[:, 2]), inputs["color"], inputs["roughness"]
         ),
         variants=(
-            Variant("MaterialX's fit of its albedo", albedo=materialx_fits.burley_albedo),
+            Variant("MaterialX's fit of its albedo", albedo=defects.burley_albedo),
             Variant(
                 "Burley diffuse of roughness 0, without retro-reflection",
                 lambda wo, wi, inputs: burley_brdf(wo, wi, inputs["color"], np.zeros(len(wo))),
@@ -175,12 +158,12 @@ LOBE_NODES = (
             Variant(
                 "MaterialX's fit of its albedo",
                 albedo=lambda wo, inputs: np.asarray(
-                    materialx_fits.conty_kulla_albedo(wo, inputs) * inputs["color"]
+                    defects.conty_kulla_albedo(wo, inputs) * inputs["color"]
                 ),
             ),
             Variant(
                 "MaterialX's fit of its albedo without the color",
-                albedo=materialx_fits.conty_kulla_albedo,
+                albedo=defects.conty_kulla_albedo,
             ),
         ),
     ),
@@ -223,11 +206,6 @@ def _albedo(wo: Array, inputs: Inputs) -> Array:
     return array_namespace(factors).sum(factors * tints, axis=-1) / np.pi
 
 
-def _whole(wo: Array, inputs: Inputs) -> Array:
-    """The albedo without the factor 1/pi."""
-    return np.pi * _albedo(wo, inputs)
-
-
 def _ggx(wo: Array, inputs: Inputs) -> Array:
     """Albedo of a GGX lobe of the mean roughness and tint: the environment of MaterialX's GLSL."""
     alpha = np.mean([inputs[name] for name in ROUGHNESSES], axis=0)
@@ -249,7 +227,11 @@ HAIR_NODE = PbrNode(
         *(Variant(title, _value(form)) for title, form in FORMS.items()),
         *(Variant(title, _value(form), permitted=True) for title, form in READINGS.items()),
         Variant("a GGX lobe of the mean roughness and tint, without absorption", albedo=_ggx),
-        Variant("no factor 1/pi, as in later versions of the text", albedo=_whole, permitted=True),
+        Variant(
+            "no factor 1/pi, as in later versions of the text",
+            albedo=lambda wo, i: np.pi * _albedo(wo, i),
+            permitted=True,
+        ),
     ),
 )
 

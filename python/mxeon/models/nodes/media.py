@@ -15,7 +15,7 @@ import numpy as np
 
 from mxeon.models.core.arrays import Array
 from mxeon.models.media import transmittance
-from mxeon.models.nodes.node import Inputs, Node, Variant
+from mxeon.models.nodes.node import Inputs, Node, Variant, column, combinations
 
 FIRST, SECOND = "first/absorption", "second/absorption"  # of two media that absorb
 AMOUNT, FACTOR = "medium/mix", "medium/in2"  # share of the first, and factor of it
@@ -59,67 +59,32 @@ MEDIA = (
 )
 
 
-def _column(inputs: Inputs, name: str) -> Array:
-    """A number or a color of each view, (N, 1 or 3)."""
-    return np.reshape(inputs[name], (len(inputs[name]), -1))
-
-
-def _first(inputs: Inputs) -> Array:
-    """Transmittance of the first medium."""
-    return transmittance(inputs[FIRST], 0.0, METER)
-
-
-def _linear(inputs: Inputs) -> Array:
-    """A mix of transmittances."""
-    share, second = _column(inputs, AMOUNT), transmittance(inputs[SECOND], 0.0, METER)
-    return np.asarray(share * _first(inputs) + (1.0 - share) * second)
-
-
 def _combined(
-    name: str,
-    title: str,
-    category: str,
-    inputs: tuple[str, ...],
-    coefficient: Value,
-    *others: Variant[Value],
+    name: str, title: str, category: str, inputs: tuple[str, ...], coefficient: Value
 ) -> Medium:
     """Row of a node that combines media, whose result absorbs with other coefficients."""
 
-    def value(inputs: Inputs) -> Array:
-        return transmittance(coefficient(inputs), 0.0, METER)
+    def first(i: Inputs) -> Array:
+        return transmittance(i[FIRST], 0.0, METER)
 
-    first = Variant("the first medium alone", _first)
-    return Medium(name, title, category, inputs, value, variants=(*others, first))
+    def linear(i: Inputs) -> Array:
+        share, second = column(i, AMOUNT), transmittance(i[SECOND], 0.0, METER)
+        return np.asarray(share * first(i) + (1.0 - share) * second)
+
+    mixed = (Variant("a mix of transmittances", linear),) if category == "mix" else ()
+    return Medium(
+        name,
+        title,
+        category,
+        inputs,
+        lambda i: transmittance(coefficient(i), 0.0, METER),
+        variants=(*mixed, Variant("the first medium alone", first)),
+    )
 
 
-def _multiple(inputs: Inputs) -> Array:
-    return np.asarray(inputs[FIRST] * _column(inputs, FACTOR))
-
-
-COMBINED_MEDIA = (
-    _combined(
-        "medium_mix",
-        "a mix of media",
-        "mix",
-        (FIRST, SECOND, AMOUNT),
-        lambda i: np.asarray(
-            _column(i, AMOUNT) * i[FIRST] + (1.0 - _column(i, AMOUNT)) * i[SECOND]
-        ),
-        Variant("a mix of transmittances", _linear),
-    ),
-    _combined(
-        "medium_add",
-        "two media",
-        "add",
-        (FIRST, SECOND),
-        lambda i: np.asarray(i[FIRST] + i[SECOND]),
-    ),
-    _combined("medium_multiply_float", "a scaled medium", "multiply", (FIRST, FACTOR), _multiple),
-    _combined(
-        "medium_multiply_color3",
-        "a medium scaled by a color",
-        "multiply",
-        (FIRST, FACTOR),
-        _multiple,
-    ),
+COMBINED_MEDIA = tuple(
+    _combined(*each)
+    for each in combinations(
+        "medium", "a medium", "media", "two media", (FIRST, SECOND, AMOUNT, FACTOR)
+    )
 )

@@ -7,33 +7,26 @@ that transmits is the share of the light that passes, and where from.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from mxeon.models.core.arrays import Array, library
 from mxeon.models.core.colorimetry import XYZ_TO_REC709
-from mxeon.models.microfacet import (
-    Lobe,
-    conductor_albedo_dir,
-    conductor_brdf,
-    dielectric_albedo_dir,
-    dielectric_brdf,
-    generalized_schlick_albedo_dir,
-    generalized_schlick_brdf,
-)
+from mxeon.models.microfacet import NODES, Lobe, node_albedo, node_brdf
 from mxeon.models.microfacet.defects import (
     FITTED_DEFECTS,
     MICROFACET_DEFECTS,
     averaged_channels,
     averaged_fitted,
+    fitted_compensation,
     fitted_half,
     layer_albedo,
     schlick_average,
 )
-from mxeon.models.microfacet.defects import fitted_compensation as compensation
 from mxeon.models.microfacet.fresnel import fresnel_conductor, fresnel_dielectric, fresnel_schlick
 from mxeon.models.nodes.node import Inputs, PbrNode, Scattering, Variant
 from mxeon.models.thin_film import (
@@ -66,17 +59,29 @@ OPEN = (
     "compensation_average_fitted",
 )
 WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
+REFLECTION, NONE = {"scatter_mode": "R"}, dict[str, str]()
 
 
 @dataclass(frozen=True)
-class BareLobe:
-    """Functions of a microfacet node by its inputs."""
+class MicrofacetLobe:
+    """Functions of a microfacet node by its inputs, under a thin film where they have one."""
 
     category: str
-    value: Callable[[Array, Array, Inputs], Array]
-    albedo: Callable[..., Array]
     fresnel: Callable[[Array, Inputs], Array]  # its curve F
     edge: str = ""  # name of the input that is F at grazing; "" where F is 1 there
+
+    def value(self, wo: Array, wi: Array, inputs: Inputs, terms: Lobe | None = None) -> Array:
+        """With other terms than the specification's there is no film."""
+        if terms is None and _has_film(inputs):
+            return film_brdf(self.category, wo, wi, inputs)
+        return node_brdf(self.category, wo, wi, inputs, terms)
+
+    def albedo(self, wo: Array, inputs: Inputs, compensate: bool = True) -> Array:
+        function = film_albedo_dir if _has_film(inputs) else node_albedo
+        return function(self.category, wo, inputs, compensate=compensate)
+
+    def isotropic_albedo(self, wo: Array, inputs: Inputs) -> Array:
+        return self.albedo(wo, isotropic(inputs))
 
     def fitted(self, wo: Array, inputs: Inputs) -> Array:
         """Albedo as MaterialX's throughput takes it, per channel and without a tint."""
@@ -96,7 +101,7 @@ class BareLobe:
 
     def _compensated(self, wo: Array, inputs: Inputs, F: Array) -> Array:
         single = self.albedo(wo, isotropic(inputs), compensate=False)
-        return np.asarray(single * compensation(wo, inputs, F))
+        return np.asarray(single * fitted_compensation(wo, inputs, F))
 
     def _at_view(self, wo: Array, inputs: Inputs) -> Array:
         return self.fresnel(np.minimum(wo[:, 2], 1.0), inputs)
@@ -127,161 +132,99 @@ def _has_film(inputs: Inputs) -> bool:
     return bool(library(thickness) or np.any(thickness))
 
 
-def _filmed_value(
-    category: str, bare: Callable[[Array, Array, Inputs], Array]
-) -> Callable[[Array, Array, Inputs], Array]:
-    """Values of a node, under a thin film where its inputs have one."""
-
-    def value(wo: Array, wi: Array, inputs: Inputs) -> Array:
-        film = _has_film(inputs)
-        return film_brdf(category, wo, wi, inputs) if film else bare(wo, wi, inputs)
-
-    return value
-
-
-def _filmed_albedo(category: str, bare: Callable[..., Array]) -> Callable[..., Array]:
-    """Albedo of a node, under a thin film where its inputs have one."""
-
-    def albedo(wo: Array, inputs: Inputs, compensate: bool = True) -> Array:
-        if _has_film(inputs):
-            return film_albedo_dir(category, wo, inputs, compensate=compensate)
-        return bare(wo, inputs, compensate=compensate)
-
-    return albedo
-
-
-DIELECTRIC = BareLobe(
-    "dielectric_bsdf",
-    _filmed_value(
-        "dielectric_bsdf",
-        lambda wo, wi, i: dielectric_brdf(wo, wi, i["tint"], i["roughness"], i["ior"]),
-    ),
-    _filmed_albedo(
-        "dielectric_bsdf",
-        lambda wo, i, **how: dielectric_albedo_dir(wo, i["tint"], i["roughness"], i["ior"], **how),
-    ),
-    lambda mu, i: fresnel_dielectric(mu, i["ior"])[:, np.newaxis],
+DIELECTRIC = MicrofacetLobe(
+    "dielectric_bsdf", lambda mu, i: fresnel_dielectric(mu, i["ior"])[:, np.newaxis]
 )
-CONDUCTOR = BareLobe(
-    "conductor_bsdf",
-    _filmed_value(
-        "conductor_bsdf",
-        lambda wo, wi, i: conductor_brdf(wo, wi, i["roughness"], i["ior"], i["extinction"]),
-    ),
-    _filmed_albedo(
-        "conductor_bsdf",
-        lambda wo, i, **how: conductor_albedo_dir(
-            wo, i["roughness"], i["ior"], i["extinction"], **how
-        ),
-    ),
-    lambda mu, i: fresnel_conductor(mu, i["ior"], i["extinction"]),
+CONDUCTOR = MicrofacetLobe(
+    "conductor_bsdf", lambda mu, i: fresnel_conductor(mu, i["ior"], i["extinction"])
 )
-SCHLICK = BareLobe(
+SCHLICK = MicrofacetLobe(
     "generalized_schlick_bsdf",
-    _filmed_value(
-        "generalized_schlick_bsdf",
-        lambda wo, wi, i: generalized_schlick_brdf(
-            wo, wi, *_schlick(i), i["roughness"], i["exponent"]
-        ),
-    ),
-    _filmed_albedo(
-        "generalized_schlick_bsdf",
-        lambda wo, i, **how: generalized_schlick_albedo_dir(
-            wo, *_schlick(i), i["roughness"], i["exponent"], **how
-        ),
-    ),
     lambda mu, i: fresnel_schlick(mu, *_schlick(i), i["exponent"]),
     edge="color90",
 )
 
 
-def _variants(lobe: BareLobe) -> tuple[Variant[Scattering], ...]:
-    """Functions that a shader may have instead of a microfacet node's own."""
-    values = (
+def _row(
+    name: str,
+    title: str,
+    lobe: MicrofacetLobe,
+    *variants: Variant[Scattering],
+    fixed: Mapping[str, str] = NONE,
+    mirror: dict[str, ArrayLike],
+) -> PbrNode:
+    """Row of a node, which lets light through to what lies below if it has scatter modes."""
+    _, colors, numbers = NODES[lobe.category]
+    known = (
         Variant(
             each.title,
-            partial(each.value, lobe.category),
+            partial(lobe.value, terms=each.lobe),
             permitted=each.name in OPEN,
         )
         for each in (*MICROFACET_DEFECTS, *FITTED_DEFECTS)
     )
-    return (
-        *values,
-        Variant(
-            "compensation with F at the view direction and MaterialX's fit of E_ss",
-            albedo=lobe.indirect,
-            permitted=True,
+    return PbrNode(
+        name,
+        title,
+        lobe.category,
+        (*colors, *numbers, "roughness"),
+        lobe.value,
+        lobe.isotropic_albedo,
+        lobe.albedo,
+        fixed=fixed,
+        layerable=bool(fixed),
+        reciprocal=False,
+        mirror=mirror,
+        variants=(
+            *known,
+            Variant(
+                "compensation with F at the view direction and MaterialX's fit of E_ss",
+                albedo=lobe.indirect,
+                permitted=True,
+            ),
+            Variant(
+                "compensation with the average F0 + (F90 - F0) / 21 and MaterialX's fit of E_ss",
+                albedo=lobe.averaged,
+                permitted=True,
+            ),
+            Variant("MaterialX's fit of its albedo without a tint", albedo=lobe.fitted),
+            *variants,
         ),
-        Variant(
-            "compensation with the average F0 + (F90 - F0) / 21 and MaterialX's fit of E_ss",
-            albedo=lobe.averaged,
-            permitted=True,
-        ),
-        Variant("MaterialX's fit of its albedo without a tint", albedo=lobe.fitted),
     )
 
 
 MICROFACET_NODES = (
-    PbrNode(
+    _row(
         "dielectric",
         "dielectric microfacets",
-        DIELECTRIC.category,
-        ("tint", "ior", "roughness"),
-        DIELECTRIC.value,
-        lambda wo, inputs: DIELECTRIC.albedo(wo, isotropic(inputs)),
-        DIELECTRIC.albedo,
-        fixed={"scatter_mode": "R"},
-        layerable=True,
-        reciprocal=False,
-        mirror={"ior": 0.0, "tint": WHITE},
-        variants=(
-            *_variants(DIELECTRIC),
-            Variant(
-                "its albedo without the tint",
-                albedo=lambda wo, inputs: DIELECTRIC.albedo(wo, isotropic(white(inputs))),
-            ),
+        DIELECTRIC,
+        Variant(
+            "its albedo without the tint",
+            albedo=lambda wo, inputs: DIELECTRIC.isotropic_albedo(wo, white(inputs)),
         ),
+        fixed=REFLECTION,
+        mirror={"ior": 0.0, "tint": WHITE},
     ),
-    PbrNode(
-        "conductor",
-        "conductor microfacets",
-        CONDUCTOR.category,
-        ("ior", "extinction", "roughness"),
-        CONDUCTOR.value,
-        lambda wo, inputs: CONDUCTOR.albedo(wo, isotropic(inputs)),
-        CONDUCTOR.albedo,
-        reciprocal=False,
-        mirror={"ior": BLACK},
-        variants=_variants(CONDUCTOR),
-    ),
-    PbrNode(
+    _row("conductor", "conductor microfacets", CONDUCTOR, mirror={"ior": BLACK}),
+    _row(
         "schlick",
         "generalized Schlick microfacets",
-        SCHLICK.category,
-        ("color0", "color82", "color90", "exponent", "roughness"),
-        SCHLICK.value,
-        lambda wo, inputs: SCHLICK.albedo(wo, isotropic(inputs)),
-        SCHLICK.albedo,
-        fixed={"scatter_mode": "R"},
-        layerable=True,
-        reciprocal=False,
-        mirror=dict.fromkeys(("color0", "color82", "color90"), WHITE),
-        variants=(
-            *_variants(SCHLICK),
-            Variant(
-                "color82 counts as 1",
-                lambda wo, wi, inputs: SCHLICK.value(wo, wi, undipped(inputs)),
-                lambda wo, inputs: SCHLICK.albedo(wo, isotropic(undipped(inputs))),
-            ),
-            Variant(
-                "its albedo, averaged over the channels",
-                albedo=lambda wo, inputs: averaged_channels(SCHLICK.albedo(wo, isotropic(inputs))),
-            ),
-            Variant(
-                "MaterialX's fit of its albedo, averaged over the channels",
-                albedo=lambda wo, inputs: averaged_channels(SCHLICK.fitted(wo, inputs)),
-            ),
+        SCHLICK,
+        Variant(
+            "color82 counts as 1",
+            lambda wo, wi, inputs: SCHLICK.value(wo, wi, undipped(inputs)),
+            lambda wo, inputs: SCHLICK.isotropic_albedo(wo, undipped(inputs)),
         ),
+        Variant(
+            "its albedo, averaged over the channels",
+            albedo=lambda wo, inputs: averaged_channels(SCHLICK.isotropic_albedo(wo, inputs)),
+        ),
+        Variant(
+            "MaterialX's fit of its albedo, averaged over the channels",
+            albedo=lambda wo, inputs: averaged_channels(SCHLICK.fitted(wo, inputs)),
+        ),
+        fixed=REFLECTION,
+        mirror=dict.fromkeys(("color0", "color82", "color90"), WHITE),
     ),
 )
 
@@ -323,18 +266,17 @@ def _reflectance(category: str, form: Form, wo: Array, inputs: Inputs) -> Array:
         return film_dielectric(mu, thickness, index, inputs["ior"], form)
     if category == "conductor_bsdf":
         return film_conductor(mu, thickness, index, inputs["ior"], inputs["extinction"], form)
-    color0, color82, color90 = (inputs[name] for name in ("color0", "color82", "color90"))
-    return film_schlick(mu, thickness, index, color0, color82, color90, inputs["exponent"], form)
+    return film_schlick(mu, thickness, index, *_schlick(inputs), inputs["exponent"], form)
 
 
 def _environment(category: str, form: Form, wo: Array, inputs: Inputs) -> Array:
     """Albedo of MaterialX's environment branch: F of the film at the view in the compensation."""
     F = _reflectance(category, form, wo, inputs)
     single = film_albedo_dir(category, wo, isotropic(inputs), form, compensate=False)
-    return np.asarray(single * compensation(wo, inputs, F))
+    return np.asarray(single * fitted_compensation(wo, inputs, F))
 
 
-def _fitted(lobe: BareLobe, form: Form, wo: Array, inputs: Inputs) -> Array:
+def _fitted(lobe: MicrofacetLobe, form: Form, wo: Array, inputs: Inputs) -> Array:
     """Albedo of MaterialX's throughput: the bare lobe's fit, with F of the film at the view."""
     F0 = lobe.fresnel(np.ones(len(wo)), inputs)
     F90 = inputs[lobe.edge] if lobe.edge else 1.0
@@ -376,25 +318,14 @@ def _film_variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
 
 def _filmed(row: PbrNode) -> PbrNode:
     """A row under a film."""
-
-    def albedo(wo: Array, inputs: Inputs) -> Array:
-        return film_albedo_dir(row.category, wo, isotropic(inputs))
-
-    def integral(wo: Array, inputs: Inputs) -> Array:
-        return film_albedo_dir(row.category, wo, inputs)
-
-    return PbrNode(
-        f"{row.name}_film",
-        f"{row.title} under a thin film",
-        row.category,
-        (*row.inputs, *FILM),
-        partial(_value, row.category, TEXT, None),
-        albedo,
-        integral,
-        fixed=row.fixed,
-        layerable=row.layerable,
-        reciprocal=False,
-        mirror=row.mirror,
+    return replace(
+        row,
+        name=f"{row.name}_film",
+        title=f"{row.title} under a thin film",
+        inputs=(*row.inputs, *FILM),
+        value=partial(_value, row.category, TEXT, None),
+        albedo=lambda wo, inputs: film_albedo_dir(row.category, wo, isotropic(inputs)),
+        integral=partial(film_albedo_dir, row.category),
         variants=_film_variants(row),
     )
 
@@ -423,33 +354,23 @@ class Transmission:
     ior: Callable[[Inputs], Array]  # index of refraction that refracts the view
 
 
-def _white(inputs: Inputs) -> dict[str, Array]:
-    return {**inputs, "tint": np.ones(3)}
-
-
 TRANSMISSIONS = {
     DIELECTRIC.category: Transmission(
         lambda wo, wi, i: dielectric_btdf(wo, wi, i["tint"], i["roughness"], i["ior"]),
         lambda wo, i, shadow: dielectric_transmittance_dir(
             wo, i["tint"], i["roughness"], i["ior"], shadow
         ),
-        lambda wo, i: DIELECTRIC.albedo(wo, _white(i)),
+        lambda wo, i: DIELECTRIC.albedo(wo, white(i)),
         lambda i: i["tint"],
         DIELECTRIC.fresnel,
         lambda i: i["ior"],
     ),
     SCHLICK.category: Transmission(
         lambda wo, wi, i: generalized_schlick_btdf(
-            wo, wi, i["color0"], i["color82"], i["color90"], i["roughness"], i["exponent"]
+            wo, wi, *_schlick(i), i["roughness"], i["exponent"]
         ),
         lambda wo, i, shadow: generalized_schlick_transmittance_dir(
-            wo,
-            i["color0"],
-            i["color82"],
-            i["color90"],
-            i["roughness"],
-            i["exponent"],
-            shadow=shadow,
+            wo, *_schlick(i), i["roughness"], i["exponent"], shadow=shadow
         ),
         SCHLICK.albedo,
         lambda i: 0.0 * i["color0"] + 1.0,
@@ -459,13 +380,8 @@ TRANSMISSIONS = {
 }
 
 
-def _transmitting(row: PbrNode, mode: str) -> PbrNode:
-    """A row of a node in another scatter mode."""
-    return replace(row, name=f"{row.name}_{mode.lower()}", fixed={"scatter_mode": mode})
-
-
 TRANSMISSION_NODES = tuple(
-    _transmitting(row, mode)
+    replace(row, name=f"{row.name}_{mode.lower()}", fixed={"scatter_mode": mode})
     for row in MICROFACET_NODES
     if row.category in TRANSMISSIONS
     for mode in MODES

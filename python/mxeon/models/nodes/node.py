@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Generic, TypeAlias, TypeVar
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from mxeon.models.core.arguments import RANGES
@@ -168,3 +169,40 @@ class PbrNode(Node[Scattering]):
     fitted: bool = False  # whether a shader needs a fit for its albedo
     reciprocal: bool = True  # whether exchanging the directions does not change the value
     mirror: Mapping[str, ArrayLike] = field(default_factory=dict, hash=False)
+
+
+def column(inputs: Inputs, name: str) -> Array:
+    """A number or a color of each evaluation, (N, 1 or 3)."""
+    return np.reshape(inputs[name], (len(inputs[name]), -1))
+
+
+Combined: TypeAlias = tuple[str, str, str, tuple[str, ...], Callable[[Inputs], Array]]
+
+
+def combinations(
+    kind: str, one: str, several: str, total: str, paths: tuple[str, str, str, str]
+) -> tuple[Combined, ...]:
+    """Name, title, category, inputs and combined color of the nodes that mix, add and scale emissions or media.
+
+    - `paths`: Inputs: the color of the first and of the second, the share of the first, and a factor of it.
+    """
+    first, second, share, factor = paths
+
+    def mixed(i: Inputs) -> Array:
+        return np.asarray(column(i, share) * i[first] + (1.0 - column(i, share)) * i[second])
+
+    def scaled(i: Inputs) -> Array:
+        return np.asarray(i[first] * column(i, factor))
+
+    return (
+        (f"{kind}_mix", f"a mix of {several}", "mix", (first, second, share), mixed),
+        (f"{kind}_add", total, "add", (first, second), lambda i: np.asarray(i[first] + i[second])),
+        (f"{kind}_multiply_float", f"a scaled {kind}", "multiply", (first, factor), scaled),
+        (
+            f"{kind}_multiply_color3",
+            f"{one} scaled by a color",
+            "multiply",
+            (first, factor),
+            scaled,
+        ),
+    )

@@ -33,7 +33,7 @@ LARGEST_MELANIN = 1.0 - 1e-4  # concentration; at 1 the absorption is infinite
 LEAST_PIGMENT = 1e-30  # color of a pigment, whose logarithm is finite
 TEMPERATURES = (800.0, 25000.0)  # K, from about where a body glows to the end of the fits in use
 
-Values = Callable[[Inputs], dict[str, Array]]
+Outputs = Callable[[Inputs], dict[str, Array]]
 
 
 @dataclass(frozen=True)
@@ -46,8 +46,8 @@ class UtilityNode:
     category: str
     inputs: Mapping[str, float | tuple[float, ...]] = field(hash=False)
     outputs: Mapping[str, str] = field(hash=False)  # the type of each output, by name
-    value: Values  # every output by name; needs all inputs
-    variants: tuple[Variant[Values], ...] = ()
+    value: Outputs  # every output by name; needs all inputs
+    variants: tuple[Variant[Outputs], ...] = ()
 
     @property
     def name(self) -> str:
@@ -171,7 +171,7 @@ def _hair_color(inputs: Inputs) -> dict[str, Array]:
     return {"absorption": chiang_hair_absorption_from_color(color, roughness)}
 
 
-def constant(category: str, value: float) -> Variant[Values]:
+def constant(category: str, value: float) -> Variant[Outputs]:
     """A variant whose outputs are all one number, whatever the inputs are."""
 
     def values(inputs: Inputs) -> dict[str, Array]:
