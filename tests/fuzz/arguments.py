@@ -60,16 +60,13 @@ VALID = {
 CHECKS = ("_", "checked", "unpack")  # of functions that check arguments for others
 PLUMBING = (
     "mxeon.models.core.arguments",
-    "mxeon.models.core.arguments",
     "mxeon.models.catalog",
-    "mxeon.models.coat",
+    *(f"mxeon.models.coat.{name}" for name in ("coat_of", "checked_", "mixed_", "unpack_")),
     "mxeon.models.core.evaluation",
     "mxeon.models.lobe_plot",
+    "mxeon.models.microfacet.node_",
     "mxeon.models.shading_model",
-    "mxeon.models.shading_model",
-    "mxeon.models.shading_model",
-    "mxeon.models.shading_model",
-)  # which has no arguments of its own
+)  # beginnings of names of functions that have no arguments of their own
 TAKEN = (bool, str, float, int)  # kinds of arguments, besides arrays, that are tried
 
 ACCEPTED, REFUSED = 0, 2
@@ -90,8 +87,8 @@ def functions():
     return {
         f"{module.__name__}.{name}": each
         for module in modules()
-        if module.__name__ not in PLUMBING
         for name, each in vars(module).items()
+        if not f"{module.__name__}.{name}".startswith(PLUMBING)
         if inspect.isfunction(each) and each.__module__ == module.__name__
         if not name.startswith(CHECKS) and any(map(_is_array, _parameters(each).values()))
     }
