@@ -137,7 +137,7 @@ def test_the_closures_for_cycles_are_the_model_to_the_roundings(host, node, flag
             each(wo[rows], wi[rows], color, rough) for each in (models.fon_brdf, models.eon_brdf)
         )
         total[rows] += factor * (fon + color * (eon - fon))
-    expected = inputs["weight"] * model(wo, wi, inputs["color"], inputs["roughness"])
+    expected = inputs["weight"][:, np.newaxis] * model(wo, wi, inputs["color"], inputs["roughness"])
     error = np.pi * wi[:, 2:] * np.abs(total - expected)
     assert error.max() <= 4 * 2.0**-24
 
