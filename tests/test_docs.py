@@ -44,7 +44,7 @@ def prose():
 def build(configuration, site):
     command = [sys.executable, "-m", "mkdocs", "build", "--config-file"]
     command += [str(configuration), "--site-dir", str(site)]
-    return subprocess.run(command, capture_output=True, text=True, env=QUIET, timeout=300)
+    return subprocess.run(command, capture_output=True, text=True, env=QUIET)
 
 
 @pytest.fixture(scope="module")
@@ -114,7 +114,7 @@ def test_the_python_example_of_the_readme_runs(tmp_path):
     [example] = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
     (tmp_path / "example.py").write_text(example)
     command = [sys.executable, str(tmp_path / "example.py")]
-    run = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, timeout=300)
+    run = subprocess.run(command, capture_output=True, text=True, cwd=ROOT)
     assert run.returncode == 0, run.stderr
     [stated] = re.findall(r"# weight: \[(.*?)\]", example)
     np.testing.assert_allclose(

@@ -38,7 +38,7 @@ STIFF = {
 @pytest.mark.parametrize("tool", ["lint", "format", pytest.param("types", marks=pytest.mark.whole)])
 def test_the_code_passes(tool):
     command = [sys.executable, "-m", *TOOLS[tool]]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=550)
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
 
 

@@ -58,7 +58,7 @@ def opened(browser, address, allowed=(), drawn=True, **options):
     assert not complaints, f"messages: {complaints}"
 
 
-def until(page, expression, argument=None, seconds=120):
+def until(page, expression, argument=None, seconds=600):
     """Wait until an expression is true, and give its value.
 
     Playwright's own way needs what the page's policy forbids.

@@ -31,7 +31,7 @@ def recolored(page):
     canvas = page.locator("canvas")
     before, radiance = canvas.screenshot(), page.evaluate(PIXELS)
     yield
-    for _ in range(1200):
+    for _ in range(6000):
         if canvas.screenshot() != before:
             break
         page.wait_for_timeout(100)

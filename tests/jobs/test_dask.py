@@ -30,7 +30,7 @@ pytestmark = [
 EXAMPLE = examples_folder() / "plaster.mtlx"
 
 
-def run(work, items, address, timeout=60.0):
+def run(work, items, address, timeout=600.0):
     with dask.connect(address) as workers:
         return dict(dask.run(work, items, workers, timeout, NotRun))
 

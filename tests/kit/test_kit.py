@@ -223,7 +223,7 @@ def external_run(kit, library, profile=None):
     export_kit(kit, SIZE)
     sources = write_osl(kit, library, profile)
     command = [python, "-I", "-W", "ignore", EXTERNAL_RENDERER, kit, sources, "256"]
-    subprocess.run(command, capture_output=True, check=True, timeout=300)
+    subprocess.run(command, capture_output=True, check=True)
     return check_kit(kit, "Cycles")
 
 
