@@ -42,6 +42,7 @@ def opened(browser, address, allowed=(), drawn=True, **options):
     asked, said = [], []
     context = browser.new_context(**(SMALL | options))
     page = context.new_page()
+    page.set_default_timeout(600_000.0)  # of a busy machine
     if not drawn:
         page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
     page.on("request", lambda request: asked.append(request.url))

@@ -15,7 +15,6 @@ RHO = (0.8, 0.4, 0.1)
 ROUGHNESS = 0.9
 LIGHTS = {"side": (60.0, 20.0), "back": (125.0, 10.0)}  # azimuth and elevation
 VIEWPORT = {"width": 200, "height": 170}
-LIMIT = 120  # seconds for a picture, on a busy machine
 # Makes the page's clock so many times as fast: at 0 no device is slow, and pictures are never coarse.
 CLOCK = """speed => {
     globalThis.clock ??= performance.now.bind(performance);
@@ -72,7 +71,7 @@ def view(stage, left, right=None, light="side", **patch):
 
 def settle(stage):
     """Wait until the picture is final."""
-    until(stage, "mxeon.stage.isSettled(mxeon.state())", seconds=LIMIT)
+    until(stage, "mxeon.stage.isSettled(mxeon.state())")
 
 
 def frame(stage, name=None, size=None):

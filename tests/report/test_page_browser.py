@@ -45,6 +45,7 @@ def opened(browser, address, **options):
     """The page in the browser; whatever it asks for or complains of fails the test."""
     asked, said = [], []
     page = browser.new_page(**options)
+    page.set_default_timeout(600_000.0)  # of a busy machine
     page.on("request", lambda request: asked.append(request.url))
     page.on("console", lambda message: said.append(message.text))
     page.on("pageerror", lambda error: said.append(str(error)))
