@@ -44,11 +44,12 @@ LONG = (
     "openpbr_base_albedo_dir",
     *(f"{name}_{each}" for name in INTERFACES for each in COATS),
 )
-LONG += ("film_albedo_dir", "dielectric_albedo_dir")
+LONG += ("film_albedo_dir", "dielectric_albedo_dir", "conty_kulla_albedo_dir", "transmittance_dir")
 ROWS, FEW = 48, 8
 # Thousands of nodes a row.
 FACETS = ("dielectric_albedo_dir", "conductor_albedo_dir", "schlick_albedo_dir")
 QUADRATURES = (*FACETS, "film_albedo_dir", "transmittance_dir", "ggx_albedo_dir_anisotropic")
+QUADRATURES += ("conty_kulla_albedo_dir",)
 SEED = 11
 GRADIENT = 1e-7  # of the larger of 1 and the gradient: the truncation of differences in float64
 WIDTH = 1e-4  # of a step of differences
