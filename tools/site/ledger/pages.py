@@ -139,7 +139,7 @@ def outcome(entry: Entry, numbers: dict[str, str]) -> str:
         return ""
     parts = [
         f"{_joined(checks)} of {subject} "
-        + (f'keep{s} the diagnosis "{words}"' if words else f"pass{'e' * bool(s)}{s}")
+        + (f'still fail{s}, with the diagnosis "{words}"' if words else f"pass{'e' * bool(s)}{s}")
         for (subject, words), checks in subjects.items()
         for s in ["" if checks[1:] else "s"]
     ]
