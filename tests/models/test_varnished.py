@@ -134,14 +134,6 @@ def test_the_mean_weight_is_the_albedo(mu, alpha, ior):
     assert (error < deviate * weight.std(axis=0) / np.sqrt(len(wi))).all()
 
 
-def torch_gradients(function, inputs):
-    """Derivatives of the sum of a function's values by its inputs."""
-    torch = pytest.importorskip("torch")
-    given = {k: torch.tensor(v, dtype=torch.float64, requires_grad=True) for k, v in inputs.items()}
-    function(**given).sum().backward()
-    return {k: t.grad.numpy() for k, t in given.items()}
-
-
 FUNCTIONS = (
     lambda **inputs: varnished_brdf(view(0.6), view(0.3, 1.0), **inputs),
     lambda **inputs: varnished_albedo_dir(0.6, **inputs),
@@ -151,16 +143,8 @@ FUNCTIONS = (
 
 
 @pytest.mark.parametrize("function", FUNCTIONS)
-def test_gradients_are_those_of_differences_and_finite_at_the_edges(function):
-    for name, found in torch_gradients(function, CLAY | VARNISH).items():
-        ends = [
-            function(**CLAY | VARNISH | {name: (CLAY | VARNISH)[name] + h}).sum()
-            for h in (1e-4, -1e-4)
-        ]
-        assert found.sum() == pytest.approx((ends[0] - ends[1]) / 2e-4, rel=1e-3, abs=1e-5)
-    for edge in EDGES:
-        assert all(np.isfinite(each).all() for each in torch_gradients(function, edge).values())
-        assert np.isfinite(function(**edge)).all()
+def test_values_are_finite_at_the_edges(function):
+    assert all(np.isfinite(function(**edge)).all() for edge in EDGES)
 
 
 def test_a_fit_finds_the_pigment_where_the_layer_finds_another():
