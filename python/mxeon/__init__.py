@@ -8,20 +8,20 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:  # for type checkers and the API reference, which run no code
-    from mxeon.conformance.callables import brdf_test, check_brdf
     from mxeon.conformance.run import check
     from mxeon.models.catalog import model
     from mxeon.shaders.generation import Shader, generate
     from mxeon.shaders.library import load_library
+    from mxeon.survey.callables import brdf_test, check_brdf
 
 __version__ = "0.1.0"
 
 # Public name -> the module that defines it.
 _HOMES = {
     "Shader": "mxeon.shaders.generation",
-    "brdf_test": "mxeon.conformance.callables",
+    "brdf_test": "mxeon.survey.callables",
     "check": "mxeon.conformance.run",
-    "check_brdf": "mxeon.conformance.callables",
+    "check_brdf": "mxeon.survey.callables",
     "generate": "mxeon.shaders.generation",
     "load_library": "mxeon.shaders.library",
     "model": "mxeon.models.catalog",

@@ -5,7 +5,7 @@ import pytest
 
 from mxeon.conformance.results import NOT_RUN, PASSED, SHADER_FUNCTIONS
 from mxeon.conformance.run import check, judge, plan
-from mxeon.conformance.run.documents import survey_documents
+from mxeon.conformance.run.plan import survey_documents
 from mxeon.errors import InputError, NotRun
 from mxeon.hosts import HOSTS
 from mxeon.jobs import dask

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from mxeon.conformance.pictures.tolerances import PLAIN
+from mxeon.conformance.pictures import PLAIN
 from mxeon.explorer import documents
 from mxeon.models.core.quadrature import albedo_dir_quadrature
 from mxeon.models.table import KNOWN_DEFECTS, MODELS, model

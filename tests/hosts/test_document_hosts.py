@@ -6,8 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mxeon.conformance.pictures import judge_document
-from mxeon.conformance.pictures.tolerances import TEXTURED
+from mxeon.conformance.pictures import TEXTURED, judge_document
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import host_row, materialx, storm

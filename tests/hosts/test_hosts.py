@@ -10,6 +10,7 @@ import pytest
 
 from mxeon.errors import ShaderError
 from mxeon.hosts import calls, fragment, open_host
+from mxeon.hosts.base import Query
 from mxeon.jobs import pool
 from mxeon.models import table as reference
 from mxeon.shaders.generation import generate
@@ -111,7 +112,7 @@ BEHIND = np.array([[-0.6, 0.0, 0.8]])
 
 def test_the_text_is_evaluated_as_it_was_generated():
     shader = generate(material_text(OREN_NAYAR, {FLAG: True}), "wgsl")[0]
-    text, _ = fragment.bsdf_evaluation(shader, PAIR, PAIR, {}, "direct")
+    text, _ = fragment.bsdf_evaluation(Query(shader, PAIR, PAIR, {}, "direct", "response", None))
     head, body = shader.stages["pixel"].split("\n", 1)
     assert text.startswith(head) and body in text
 

@@ -3,7 +3,7 @@
 
 import pytest
 
-from mxeon.conformance.run.documents import survey_documents
+from mxeon.conformance.run.plan import survey_documents
 from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.nodes import document_text, node_text
 from tests.support.documents import lobe, material

@@ -12,7 +12,7 @@ from unittest.mock import patch
 
 import numpy as np
 
-from mxeon.conformance.reference import lobes
+from mxeon.conformance.reference import nodes
 from mxeon.conformance.samples import SEED
 from mxeon.conformance.specs import surface_shaders as specs
 from mxeon.conformance.tolerance import mean_scaled, scaled
@@ -24,7 +24,7 @@ from tools.fits.minimax import shipped
 
 SETS = 32
 LEAST = 1e-6  # cosine and roughness from which on shaders take their fits
-EXACT = lobes._albedo
+EXACT = nodes._albedo
 
 GGX = shipped("ggx_albedo", "GGX_ALBEDO")
 DIELECTRIC = shipped("fresnel_dielectric", "GGX_DIELECTRIC")
@@ -64,7 +64,7 @@ def fitted_albedo(exact, node, wo, inputs, points, most):
     fit = LAYERED.get(node.name)
     if fit is None or exact is not node.albedo:
         return EXACT(exact, node, wo, inputs, points, most)
-    return np.broadcast_to(fit(wo[:, 2], lobes._at(inputs, points)), (len(wo), 3))
+    return np.broadcast_to(fit(wo[:, 2], nodes._at(inputs, points)), (len(wo), 3))
 
 
 def _microfacets(mu, inputs, curve):
@@ -114,7 +114,7 @@ def fits():
     curve = microfacets.CONDUCTOR
     exact = curve.average
     with ExitStack() as stack:
-        stack.enter_context(patch.object(lobes, "_albedo", fitted_albedo))
+        stack.enter_context(patch.object(nodes, "_albedo", fitted_albedo))
         stack.enter_context(patch.object(microfacets, "missing_light", missing_light))
         stack.enter_context(patch.object(fresnel, "dielectric_avg", dielectric_average))
         stack.callback(object.__setattr__, curve, "average", exact)  # of a frozen class

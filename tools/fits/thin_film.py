@@ -9,7 +9,7 @@ measures what each costs at most, over films of up to 1000 nm on each kind of su
 
 import numpy as np
 
-from mxeon.conformance.specs.thin_films import LEAST_FILM, LEAST_OIL, SHARP
+from mxeon.conformance.specs.microfacets import LEAST_FILM, LEAST_OIL, SHARP
 from mxeon.models import thin_film as curve
 from mxeon.models import thin_film as film
 from mxeon.models.microfacet.ggx import ggx_albedo_dir

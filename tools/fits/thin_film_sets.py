@@ -8,9 +8,9 @@ wrong digit, which is wrong for all films, shows where a bound on the largest er
 
 import numpy as np
 
-from mxeon.conformance.checks.thin_films import SMOOTH
+from mxeon.conformance.checks.microfacets import SMOOTH
 from mxeon.conformance.samples import SEED
-from mxeon.conformance.specs.thin_films import (
+from mxeon.conformance.specs.microfacets import (
     FILM_SPECS,
     FRINGED,
     GLOSSY,

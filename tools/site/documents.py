@@ -20,7 +20,7 @@ from pathlib import Path
 
 from mxeon.conformance.results import PASSED, Run
 from mxeon.conformance.run import read_run
-from mxeon.conformance.run.documents import DocumentVerdict, causes, document_verdicts
+from mxeon.conformance.run.plan import DocumentVerdict, causes, document_verdicts
 from mxeon.io.files import write_text
 from tools.benchmarks.rounds import machine
 from tools.site import DOCS, with_block

@@ -4,12 +4,15 @@
 from __future__ import annotations
 
 import argparse
+import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 from mxeon import errors
 from mxeon.cli.output import fail
+from mxeon.conformance.pictures import DOCUMENT_KEY
 from mxeon.conformance.results import (
     DIFFERS,
     DIRECT,
@@ -22,16 +25,11 @@ from mxeon.conformance.results import (
     counted,
     listed,
 )
-from mxeon.conformance.results.known_issues import issues_of, link
-from mxeon.conformance.run.documents import (
-    KEYS,
-    REFUSED,
-    causes,
-    document_verdicts,
-    is_refused,
-    model_of,
-)
+from mxeon.conformance.results.known_issues import issues_of
+from mxeon.conformance.spec import ValueSpec
+from mxeon.conformance.specs import ALL
 from mxeon.errors import as_output, one_line, printable
+from mxeon.report.formats import link
 from mxeon.shaders.library import eonlib_folder
 from mxeon.shaders.library_export import CLIENTS
 
@@ -42,6 +40,14 @@ FEWEST = 3  # nodes and causes on several documents, and reasons why checks did 
 UNBOUNDED = 1e3  # larger errors are described in words
 AS_SPECIFIED = "looks as specified"
 STATUSES = {PASSED: errors.PASSED, FAILED: errors.FAILED, NOT_RUN: errors.NOT_RUN}
+LETTERS = re.compile(r"\(([A-Z]+)\)$")  # of a model, behind its name
+REFUSED = "refused"
+NO_REFERENCE = "no reference"  # whose pixels are numbers
+# The first decides about a document.
+STATES = (FAILED, NOT_RUN, REFUSED, DIFFERS, NO_REFERENCE, PASSED)
+QUOTED = re.compile(r"'[^']*/[^']*'|\"[^\"]*\"")  # names of one document in a reason
+SHARE = re.compile(r"(up to|less than) [\d.,]+ % of white ")  # which no two documents share
+KEYS = ("picture", "finite", DOCUMENT_KEY)
 
 
 def show_run(run: Run, options: argparse.Namespace, said: Collection[str] = ()) -> int:
@@ -109,21 +115,86 @@ def answer(run: Run, full: bool = False) -> list[str]:
     return lines
 
 
+class DocumentVerdict(NamedTuple):
+    """What a run says of one document."""
+
+    document: str  # its path
+    library: str
+    verdict: str  # one of STATES
+    cause: str  # why, in words that documents share
+    referenced: bool  # whether all of its pictures have a reference
+
+
 def summary_by_cause(run: Run) -> list[str]:
-    """A line for each cause of a verdict: the number of documents, and the first one."""
-    verdicts = document_verdicts(run)
+    """A line for each cause of a verdict: the number of documents, and the first one.
+
+    The worst verdicts come first, then the causes of most documents.
+    """
+    verdicts = [*_document_verdicts(run), *(_refused(*each) for each in run.refused.items())]
     every = {each.document for each in verdicts}
     referenced = len(every - {each.document for each in verdicts if not each.referenced})
     lines = [f"{counted(len(every), 'document')}, {referenced} with reference pictures throughout"]
-    libraries = sorted({each.library for each in verdicts}, key=lambda name: name in run.compared)
+    libraries = sorted(
+        {each.library for each in verdicts}, key=lambda each: (each in run.compared, each)
+    )
     for library in libraries:
         place = f" with {library}" if library and len(set(libraries) - {""}) > 1 else ""
-        found = causes([each for each in verdicts if each.library == library])
-        for (verdict, cause), documents in found.items():
-            more = f" and {len(documents) - 1} more" if len(documents) > 1 else ""
-            words = f"{verdict}{place}: {cause} ({documents[0]}{more})"
-            lines.append(f"  {len(documents):4} {one_line(words)}")
+        groups: dict[tuple[str, str], list[str]] = {}
+        for each in verdicts:
+            if each.library == library:
+                groups.setdefault((each.verdict, each.cause), []).append(each.document)
+        for key in sorted(groups, key=lambda key: (STATES.index(key[0]), -len(groups[key]))):
+            (verdict, cause), (first, *others) = key, groups[key]
+            more = f" and {len(others)} more" if others else ""
+            words = f"{verdict}{place}: {cause} ({first}{more})"
+            lines.append(f"  {1 + len(others):4} {one_line(words)}")
     return lines
+
+
+def _document_verdicts(run: Run) -> Iterator[DocumentVerdict]:
+    """The verdict on each document on each host with each library, by the worst result of its pictures."""
+    for document in run.contents:
+        groups: dict[tuple[str, str], list[Result]] = {}
+        for each in run.results:
+            if _is_picture(each, document) and not is_refused(run, document, each.library):
+                groups.setdefault((each.host, each.library), []).append(each)
+        for (_, library), results in groups.items():
+            worst = min(
+                results, key=lambda each: (STATES.index(each.verdict), each.check != "finite")
+            )
+            finite = worst.check == "finite" and worst.verdict == PASSED
+            yield DocumentVerdict(
+                document,
+                library,
+                NO_REFERENCE if finite else worst.verdict,
+                _cause(worst, any(each.measured for each in results)),
+                all(each.check == "picture" and each.error is not None for each in results),
+            )
+
+
+def _cause(result: Result, measured: bool) -> str:
+    """Why a document has its verdict, by the result that decides."""
+    if result.verdict == PASSED and result.check == "picture":
+        return f"as the reference's{', with inputs that the host computed' * measured}"
+    if result.verdict == PASSED and result.check == DOCUMENT_KEY:
+        return "shaders are generated"
+    reason = (result.reason or result.diagnosis).split("; last output:")[0]
+    reason = SHARE.sub("", reason.removeprefix("reference: "))
+    return QUOTED.sub("...", reason) or result.excess
+
+
+def _refused(document: str, lines: Sequence[str]) -> DocumentVerdict:
+    """The verdict on a document that could not be used, by the first line that says so."""
+    known = lines[0].startswith(f"{document}: ")
+    name = document if known else document.rpartition(" with ")[0]
+    reason = lines[0].removeprefix(f"{name}: ")
+    reason += f"; {counted(len(lines) - 1, 'more fault')}" if len(lines) > 1 else ""
+    return DocumentVerdict(document, "", REFUSED, QUOTED.sub("...", reason), False)
+
+
+def is_refused(run: Run, document: str, library: str) -> bool:
+    """Whether a document was refused, with a library at least."""
+    return not run.refused.keys().isdisjoint((document, f"{document} with {library}"))
 
 
 def new_notes(run: Run) -> list[str]:
@@ -280,6 +351,15 @@ def _cell(run: Run, results: Sequence[Result]) -> str:
         view = f"at a view cosine of {shown.worst['wo'][2]:.2g}" if "wo" in shown.worst else ""
         return f"{words}, unbounded {shown.diagnosis.partition(', all ')[2] or view}".rstrip()
     return f"{words}, error {shown.error:.2g}, tolerance {shown.tolerance:.2g}"
+
+
+def model_of(title: str) -> str:
+    """Name of the model that a node has to be, by its title; its letters where it has some."""
+    spec = next(row for row in ALL if row.title == title)
+    own = spec.value_candidates if isinstance(spec, ValueSpec) else ()
+    name = own[0].title if own else "as specified"
+    letters = LETTERS.search(name)
+    return letters[1] if letters else name
 
 
 def _not_run(run: Run, full: bool) -> Iterator[str]:

@@ -14,7 +14,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, lru_cache
 from importlib import import_module
-from typing import TYPE_CHECKING, ClassVar, TypeAlias, TypeVar, cast
+from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,7 +33,7 @@ from mxeon.conformance.samples import (
     directions,
     rounded,
 )
-from mxeon.conformance.spec import LobeSpec, Spec, ValueSpec
+from mxeon.conformance.spec import LobeSpec, Spec
 from mxeon.conformance.specs.combinations import CombinedSpec
 from mxeon.conformance.specs.diffuse import (
     LOBE_VALUE,
@@ -41,16 +41,13 @@ from mxeon.conformance.specs.diffuse import (
     DiffuseSpec,
     SurfaceLobe,
     difference_of,
-    random_inputs,
 )
-from mxeon.conformance.specs.emission import AbsentSpec, EmissionSpec, EmittingSurface
+from mxeon.conformance.specs.emission import AbsentSpec, EmissionSpec, EmittingSurface, MediumSpec
 from mxeon.conformance.specs.hair import HairSpec
 from mxeon.conformance.specs.lobes import PbrSpec
-from mxeon.conformance.specs.media import MediumSpec
-from mxeon.conformance.specs.microfacets import FacetSpec, TransmissionSpec
+from mxeon.conformance.specs.microfacets import FacetSpec, FilmSpec, TransmissionSpec
 from mxeon.conformance.specs.subsurface import SubsurfaceSpec
 from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
-from mxeon.conformance.specs.thin_films import FilmSpec
 from mxeon.conformance.specs.utilities import UtilitySpec
 from mxeon.conformance.tolerance import (
     Term,
@@ -61,6 +58,7 @@ from mxeon.conformance.tolerance import (
     mean_error,
     relative,
     roundings,
+    sum_in,
     sum_of,
 )
 from mxeon.errors import DocumentError, NotRun
@@ -82,8 +80,8 @@ NO_IMPLEMENTATION = "Could not find a matching implementation"
 Mask: TypeAlias = NDArray[np.bool_]
 Pairs: TypeAlias = tuple[Array, Array, Mask]  # wo, wi, and which of them are judged
 Draw: TypeAlias = Callable[[Counts], "T"]
+Asked: TypeAlias = "tuple[Shader, Array, Array, Values, str]"  # for pairs, in a branch
 T = TypeVar("T")
-F = TypeVar("F", bound=Spec)
 
 
 def implementation(host: Host, text: str, library: str) -> Shader | None:
@@ -99,8 +97,11 @@ def implementation(host: Host, text: str, library: str) -> Shader | None:
 class Samples:
     """The samples of a spec that a backend takes, each drawn once."""
 
-    def __init__(self, spec: Spec, counts: Counts) -> None:
-        self.spec, self.counts = spec, counts
+    def __init__(self, backend: Backend) -> None:
+        self.backend: Any = backend
+        self.spec: Any = backend.spec  # of a family that has what is taken of it
+        counts = backend.fewer or self.spec.counts, self.spec.counts
+        self.counts: Counts = min(counts, key=lambda each: each.pairs)
         self._drawn: dict[str, object] = {}
 
     def take(self, draw: Draw[T]) -> T:
@@ -109,55 +110,44 @@ class Samples:
             self._drawn[draw.__qualname__] = draw(self.counts)
         return cast(T, self._drawn[draw.__qualname__])
 
-    def of(self, family: type[F]) -> F:
-        """The spec, of which a backend asks what one family alone has."""
-        assert isinstance(self.spec, family), f"{self.spec.title} is no {family.__name__}"
-        return self.spec
-
-    @property
-    def lobe(self) -> LobeSpec:
-        return self.of(LobeSpec)  # type: ignore[type-abstract]
-
-    @property
-    def valued(self) -> ValueSpec:
-        return self.of(ValueSpec)  # type: ignore[type-abstract]
-
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
         """All samples, those near the mirror direction of microfacets among them."""
-        return (*self.valued.batches(self.counts), *self._peaks)
+        return (*self.spec.batches(self.counts), *self._peaks)
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
         """Some of them, for what takes long and for controls."""
         peaks = (each.first(self.counts.few) for each in self._peaks)
-        return (*self.valued.few(self.batches, self.counts), *peaks)
+        return (*self.spec.few(self.batches, self.counts), *peaks)
 
     @cached_property
     def views(self) -> tuple[Batch, ...]:
-        return self.lobe.views(self.batches, self.few, self.counts)
+        views: tuple[Batch, ...] = self.spec.views(self.batches, self.counts)
+        return views
 
     @cached_property
     def edges(self) -> Batch:
-        return self.lobe.edges(self.counts)
+        return cast(Batch, self.spec.edges(self.counts))
 
     @cached_property
     def turned(self) -> Batch:
-        return self.lobe.turned(self.counts)
+        return cast(Batch, self.spec.turned(self.counts))
 
     @cached_property
     def mirrored(self) -> tuple[Batch, Batch]:
-        return self.of(FacetSpec).mirrored(self.counts)
+        return cast(tuple[Batch, Batch], self.spec.mirrored(self.counts))
 
     @cached_property
     def integrated(self) -> tuple[Batch, Array]:
-        return self.of(PbrSpec).integrated(self.counts, self.taken)
+        return cast(tuple[Batch, Array], self.spec.integrated(self.counts, self.taken))
 
     @cached_property
     def integrals(self) -> Array:
         """Integrals of the values of the integrated materials, by the equations, (N, 3)."""
         batch, weights = self.integrated
-        return self.of(PbrSpec).integral(batch.where(np.arange(len(weights)) * weights.shape[1]))
+        views = batch.where(np.arange(len(weights)) * weights.shape[1])
+        return cast(Array, self.spec.integral(views))
 
     def taken(self, inputs: Mapping[str, Array]) -> dict[str, Array]:
         """Inputs that the backend takes."""
@@ -176,6 +166,9 @@ class Backend(ABC):
     others: ClassVar[tuple[type[Spec], ...]] = ()  # of these, families of which it has none
     # Axes of `checks.states` of which it has the first state alone.
     plain: ClassVar[tuple[str, ...]] = ()
+    any_pairs: ClassVar[bool] = True  # those at the edges of the domain, too
+    sampled: ClassVar[type[Samples]] = Samples
+    fewer: ClassVar[Counts | None] = None  # counts of samples where a spec has more
 
     def __init__(self, host: Host, spec: Spec, library: str) -> None:
         self.host, self.spec, self.library = host, spec, library
@@ -192,7 +185,7 @@ class Backend(ABC):
         return spec
 
     def samples(self) -> Samples:
-        return Samples(self.spec, self.spec.counts)
+        return self.sampled(self)
 
     @classmethod
     def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
@@ -200,17 +193,14 @@ class Backend(ABC):
         return spec.errors.get(quantity)
 
     @classmethod
-    def any_pairs(cls, spec: Spec) -> bool:
-        """Whether it takes any pairs of directions, those at the edges of the domain too."""
-        return True
-
-    @classmethod
     def lit(cls, spec: Spec) -> bool:
         """Whether the host itself finds light and lets it pass."""
         return True
 
     def implemented(self, text: str) -> Shader:
-        """Shader of a document; NotRun where the target has no implementation of its node."""
+        """Shader of a document; NotRun where the target has no implementation of an optional node."""
+        if not self.spec.optional:
+            return self.host.compile(text, library=self.library)[0]
         shader = implementation(self.host, text, self.library)
         if shader is None:
             raise NotRun(f"{self.host.target}: no implementation of {self.spec.node}")
@@ -259,8 +249,6 @@ class Evaluating(Backend):
 
     @classmethod
     def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
-        if quantity == "difference" and "value" in spec.errors:
-            return difference_of(spec.errors["value"])
         if quantity == "states" and "frame" in spec.errors:
             return sum_of(
                 spec.errors["frame"].term("a part in another frame"), roundings(12, "of six parts")
@@ -272,9 +260,6 @@ class Evaluating(Backend):
 
     @cached_property
     def shader(self) -> Shader:
-        """The shader of the node; NotRun if the target has no implementation of an optional one."""
-        if not self.spec.optional:
-            return self.host.compile(self.spec.document(), library=self.library)[0]
         return self.implemented(self.spec.document())
 
     def direct(self, batch: Batch) -> Array:
@@ -303,6 +288,10 @@ class Evaluating(Backend):
         shader = self.two if two else self.shader
         return self.evaluate(batch, LIT, irradiance=irradiance, shader=shader)
 
+    def asked(self, asked: Asked, output: str, irradiance: NDArray[np.float32] | None) -> Array:
+        """The host's values for a shader, directions, inputs and a branch."""
+        return self.host.evaluate(*asked, output=output, irradiance=irradiance)
+
     def evaluate(
         self,
         batch: Batch,
@@ -314,10 +303,8 @@ class Evaluating(Backend):
         def evaluated() -> Array:
             inputs = {**self.spec.fixed, **batch.inputs}
             wo, wi = batch.world(batch.wo), batch.world(batch.wi)
-            values = self.host.evaluate(
-                shader or self.shader, wo, wi, inputs, branch, output=output, irradiance=irradiance
-            )
-            return values.astype(np.float64)
+            asked = shader or self.shader, wo, wi, inputs, branch
+            return self.asked(asked, output, irradiance).astype(np.float64)
 
         key = branch, output, irradiance, shader and shader.element
         return self._evaluations.values(batch, key, evaluated)
@@ -406,15 +393,13 @@ class Closures(Evaluating):
     """A host that returns closures; arguments have no errors, and no closure finds light."""
 
     plain = ("lights", "environment", "inputs")
+    sampled, fewer = ClosureSamples, FEW_CLOSURES
 
-    def __init__(self, host: Host, spec: Spec, library: str) -> None:
-        from mxeon.conformance.reference.closures import evaluated
+    def asked(self, asked: Asked, output: str, irradiance: NDArray[np.float32] | None) -> Array:
+        from mxeon.conformance.reference.closures import evaluate
 
-        super().__init__(evaluated(host), spec, library)
-
-    def samples(self) -> Samples:
-        few = self.spec.counts.pairs < FEW_CLOSURES.pairs
-        return ClosureSamples(self.spec, self.spec.counts if few else FEW_CLOSURES)
+        assert irradiance is None, "closures look no environment up"
+        return evaluate(self.host, *asked, output)
 
     @classmethod
     def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
@@ -475,44 +460,35 @@ FLAT_SLOPE = 8.0  # largest of the diffuse models
 SHARP_SLOPE = (
     2.0 / LEAST_TURNED + 3.0
 )  # twice over the least alpha, and 3 for Fresnel and shadowing
-FLAT = sum_of(roundings(FLAT_SLOPE * POINT, "of a point, times the slope 8"), FAST_ARC_COSINE)
-SHARP = sum_of(roundings(SHARP_SLOPE * POINT, "of a point, times the slope 23"), FAST_ARC_COSINE)
+FLAT, SHARP = (
+    sum_of(roundings(each * POINT, f"of a point, times the slope {each:g}"), FAST_ARC_COSINE)
+    for each in (FLAT_SLOPE, SHARP_SLOPE)
+)
 # A light seen from a point of a triangle that is steep.
 TURN = JITTER * PIXEL / (RIM * DISTANCE)
-TRACED_FLAT = sum_of(
-    Term(FLAT_SLOPE * TURN, "a point up to 0.007 pixels beside the middle, at cosine 0.05, times 8")
-)
-TRACED_SHARP = sum_of(
-    Term(
-        SHARP_SLOPE * TURN, "a point up to 0.007 pixels beside the middle, at cosine 0.05, times 23"
-    )
+BESIDE = "a point up to 0.007 pixels beside the middle, at cosine 0.05"
+TRACED_FLAT, TRACED_SHARP = (
+    sum_of(Term(each * TURN, f"{BESIDE}, times {each:g}")) for each in (FLAT_SLOPE, SHARP_SLOPE)
 )
 BELOW = sum_of(
     roundings(4.0 * 16.0 * POINT, "of a point, times 16 by the lobes above, in four values"),
     FAST_ARC_COSINE,
 )
 VIEWS, PIXELS = 8, 1 << 12  # of a case, and of a picture of them
-NOISE = sum_of(
+NOISE = sum_in(
+    "albedo",
     Term(
         5.0 * 0.01 / math.sqrt(PIXELS / VIEWS),
         "five standard errors of the mean of 512 pixels of 64 paths, each off by 0.01 rms",
     ),
-    unit="albedo",
-    metric=absolute,
 )
 PASSED = given(2e-3, "albedo", "testrender's tables of albedos, off by 1e-3 for a white dielectric")
-INTEGRAL = sum_of(
+INTEGRAL = sum_in(
+    "albedo",
     SHARP.term("an average of values"),
     Term(1.2e-3, "32 x 32 nodes, those next to the view moved by up to 0.08"),
-    unit="albedo",
-    metric=absolute,
 )
-LIGHT = sum_of(
-    INTEGRAL.term("an integral of values"),
-    PASSED.term("a throughput"),
-    unit="light",
-    metric=absolute,
-)
+LIGHT = sum_in("light", INTEGRAL.term("an integral of values"), PASSED.term("a throughput"))
 
 
 class RenderedSamples(Samples):
@@ -570,9 +546,8 @@ class RenderedLobeSamples(RenderedSamples):
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        assert isinstance(self.spec, SurfaceLobe)
         rng, count = np.random.default_rng(SEED), self.counts.few
-        inputs = self.taken(random_inputs(rng, count, self.spec.row))
+        inputs = self.taken(self.spec.random_inputs(rng, count))
         batch = Batch(directions(rng, count), directions(rng, count), inputs)
         return (batch.where(_is_shown(batch, LOBE_RIM)),)
 
@@ -584,6 +559,7 @@ class RenderedLobeSamples(RenderedSamples):
 class Rendered(Evaluating):
     """OSL's testrender, whose own closures light a point."""
 
+    sampled, fewer = RenderedSamples, FEW_RENDERED
     variants: ClassVar[Mapping[str, tuple[Variant[Scattering], ...]]] = BSDL_VARIANTS
     flat: ClassVar[Tolerance] = FLAT
     sharp: ClassVar[Tolerance] = SHARP
@@ -595,9 +571,6 @@ class Rendered(Evaluating):
     @classmethod
     def prepared(cls, spec: Spec) -> Spec:
         return _with_variants(cls, spec)
-
-    def samples(self) -> Samples:
-        return RenderedSamples(self.spec, FEW_RENDERED)
 
     @classmethod
     def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
@@ -645,36 +618,34 @@ class Traced(Rendered):
 class RenderedLobes(Rendered):
     """The diffuse lobe of a surface shader, told apart from what lies over it; see SurfaceLobe."""
 
+    sampled, any_pairs = RenderedLobeSamples, False
+
     @classmethod
     def supports(cls, spec: Spec) -> bool:
         return isinstance(spec, SurfaceLobe)
-
-    def samples(self) -> Samples:
-        return RenderedLobeSamples(self.spec, FEW_RENDERED)
 
     @classmethod
     def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
         return BELOW if quantity == "value" else None
 
-    @classmethod
-    def any_pairs(cls, spec: Spec) -> bool:
-        return False
-
     def direct(self, batch: Batch) -> Array:
-        others = self._lit(batch.altered(color=BLACK))
-        lambert = self._lit(batch.altered(color=WHITE, roughness=0.0)) - others
-        with np.errstate(
-            divide="ignore", invalid="ignore"
-        ):  # a shader that stays black has no value
-            values: Array = (self._lit(batch) - others) / lambert * batch.wi[:, 2:]
-        return values
+        return diffuse_alone(self._lit, batch)
 
     def _lit(self, batch: Batch) -> Array:
         assert isinstance(self.spec, SurfaceLobe)
-        ports = {"color": self.spec.color, "roughness": self.spec.roughness}
-        inputs: Values = {port: batch.inputs[name] for name, port in ports.items() if port}
+        inputs: Values = {
+            port: batch.inputs[name] for name, port in self.spec.ports.items() if port
+        }
         values = self.host.evaluate(self.shader, batch.wo, batch.wi, inputs, "direct")
         return values.astype(np.float64)
+
+
+def diffuse_alone(show: Callable[[Batch], Array], batch: Batch) -> Array:
+    """Values of the diffuse lobe of what is shown, without those over it; see SurfaceLobe."""
+    others = show(batch.altered(color=BLACK))
+    lambert = show(batch.altered(color=WHITE, roughness=0.0)) - others
+    with np.errstate(divide="ignore", invalid="ignore"):  # a shader that stays black has no value
+        return (show(batch) - others) / lambert * batch.wi[:, 2:]
 
 
 def _is_plain(spec: Spec) -> bool:
@@ -724,13 +695,12 @@ HALF_CUT = Term(2.0**-10, "half floats, cut off")  # as llvmpipe does
 # twice 1 / alpha of a distribution, whose alpha is at least 0.4, and 3 for Fresnel, shadowing and the cosine.
 LOBE_SLOPE = 2.0 / 0.4 + 3.0
 # In each of two cosines of at least 0.05 five roundings, times 20 by s / t, and times 2 by s and the cosine.
-EXACT = sum_of(
+EXACT = sum_in(
+    "pi f cos",
     roundings(28, "(14, of numbers up to 2)"),
     roundings(2 * 5 * (1.0 / RIM + 2.0), "(five in each of two cosines, times 22)"),
-    unit="pi f cos",
-    metric=absolute,
 )
-EXACT_ALBEDO = sum_of(roundings(21 * 1.02, "of numbers up to 1.02"), unit="albedo", metric=absolute)
+EXACT_ALBEDO = sum_in("albedo", roundings(21 * 1.02, "of numbers up to 1.02"))
 HALF = Tolerance((HALF_CUT, *EXACT.terms), "relative", relative, exact=True)
 HALF_ALBEDO = Tolerance(
     (
@@ -780,13 +750,9 @@ CYCLES_NOISE = sum_of(
 class PictureSamples(Samples):
     """The lit points of a sphere away from rim and terminator, for each light and material."""
 
-    def __init__(self, pictures: Pictures) -> None:
-        super().__init__(pictures.spec, pictures.spec.counts)
-        self._pictures = pictures
-
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        pictures = self._pictures
+        pictures = self.backend
         batches = (
             pictures.batch(replace(scene, size=pictures.size), inputs)
             for scene in pictures.scenes
@@ -801,21 +767,31 @@ class PictureSamples(Samples):
     @cached_property
     def views(self) -> tuple[Batch, ...]:
         """The points in a white environment."""
-        scene = replace(FURNACE, size=self._pictures.size)
-        return tuple(self._pictures.batch(scene, inputs) for inputs in self._pictures.materials)
+        scene = replace(FURNACE, size=self.backend.size)
+        return tuple(self.backend.batch(scene, inputs) for inputs in self.backend.materials)
+
+
+def errors_of(value: Tolerance, albedo: Tolerance) -> Mapping[str, Tolerance]:
+    """Errors of pictures of a rough diffuse node."""
+    return {
+        "value": value,
+        "albedo": albedo,
+        "lambert": value,
+        "difference": difference_of(value),
+    }
 
 
 class Pictures(Backend):
     """A host that renders pictures of a sphere."""
 
+    errors: ClassVar[Mapping[str, Tolerance]] = {}  # instead of those of the spec, if there are any
     scenes: ClassVar[tuple[Scene, ...]] = (SIDE, FRONT, BACK)
-
-    def samples(self) -> Samples:
-        return PictureSamples(self)
+    sampled: ClassVar[type[Samples]] = PictureSamples
+    any_pairs = False
 
     @classmethod
-    def any_pairs(cls, spec: Spec) -> bool:
-        return False
+    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
+        return (cls.errors or spec.errors).get(quantity)
 
     @property
     def size(self) -> int:
@@ -825,7 +801,7 @@ class Pictures(Backend):
 
     @property
     def materials(self) -> Sequence[Values]:
-        if isinstance(self.spec, PbrSpec):
+        if isinstance(self.spec, (PbrSpec, EmissionSpec)):
             return self.spec.materials
         names = {"color", "roughness", *self.spec.names}
         return [
@@ -850,11 +826,8 @@ class Pictures(Backend):
         return *self.points(scene), sphere(scene.size).mask
 
     def direct(self, batch: Batch) -> Array:
-        if not isinstance(self.spec, SurfaceLobe):
-            return self.picture(batch)
-        others = self.picture(batch.altered(color=BLACK))
-        lambert = self.picture(batch.altered(color=WHITE, roughness=0.0)) - others
-        return (self.picture(batch) - others) / lambert * batch.wi[:, 2:]
+        alone = isinstance(self.spec, SurfaceLobe)
+        return diffuse_alone(self.picture, batch) if alone else self.picture(batch)
 
     def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
         """Values in the batch's own environment."""
@@ -900,18 +873,8 @@ def lit_pairs(normal: Array, scene: Scene) -> Pairs:
 class CyclesPictures(Pictures):
     """Cycles's pictures of a rough diffuse node, whose closure is its own."""
 
-    errors: ClassVar[Mapping[str, Tolerance]] = {
-        "value": CYCLES_RAY,
-        "albedo": CYCLES_NOISE,
-        "lambert": CYCLES_RAY,
-    }
+    errors = errors_of(CYCLES_RAY, CYCLES_NOISE)
     families = (DiffuseSpec,)
-
-    @classmethod
-    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
-        if quantity == "difference":
-            return difference_of(cls.errors["value"])
-        return cls.errors.get(quantity)
 
     def points(self, scene: Scene) -> Pairs:
         """The points for which the host has a closure that can be the model."""
@@ -930,7 +893,7 @@ class LobePictures(Pictures):
         """One shader for all inputs: long as it is, it is compiled once."""
         assert isinstance(self.spec, SurfaceLobe)
         shader = super().shader_of(PICTURE_INPUTS[0])
-        values = {self.spec.color: inputs["color"], self.spec.roughness: inputs["roughness"]}
+        values = {port: inputs[name] for name, port in self.spec.ports.items()}
         ports = (
             replace(port, value=cast("Plain", values.get(port.path.rsplit("/", 1)[-1], port.value)))
             for port in shader.inputs
@@ -941,11 +904,7 @@ class LobePictures(Pictures):
 class Drawn(Pictures):
     """Pictures of a sphere whose points and light have no error but rounding."""
 
-    diffuse: ClassVar[Mapping[str, Tolerance]] = {
-        "value": EXACT,
-        "albedo": EXACT_ALBEDO,
-        "lambert": EXACT,
-    }
+    errors = errors_of(EXACT, EXACT_ALBEDO)
     lobe: ClassVar[Tolerance] = LOBE_VALUE
 
     @classmethod
@@ -955,10 +914,8 @@ class Drawn(Pictures):
 
     @classmethod
     def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
-        if quantity == "difference":
-            return difference_of(cls.diffuse["value"])
         if isinstance(spec, DiffuseModelSpec):
-            own = {"value": cls.lobe} if isinstance(spec, SurfaceLobe) else cls.diffuse
+            own = {"value": cls.lobe} if isinstance(spec, SurfaceLobe) else cls.errors
             return own.get(quantity)
         if quantity == "value":
             return cls.drawn(spec.errors["value"])
@@ -976,11 +933,7 @@ class Drawn(Pictures):
 class Half(Drawn):
     """The same on a host that keeps colors as half floats: Storm, whose modes are the default ones."""
 
-    diffuse: ClassVar[Mapping[str, Tolerance]] = {
-        "value": HALF,
-        "albedo": HALF_ALBEDO,
-        "lambert": HALF,
-    }
+    errors = errors_of(HALF, HALF_ALBEDO)
     lobe: ClassVar[Tolerance] = HALF_LOBE
 
     @classmethod
@@ -1016,10 +969,7 @@ PICTURE_RADIANCE = sum_of(
 class DarkPictures(Pictures):
     """An emitting surface in the dark, one picture for each material of its samples."""
 
-    families: ClassVar[tuple[type[Spec], ...]] = (EmittingSurface,)
-
-    def samples(self) -> Samples:
-        return Samples(self.spec, self.spec.counts)
+    families, sampled = (EmittingSurface,), Samples
 
     def picture(self, batch: Batch) -> Array:
         scene = scene_of(batch)
@@ -1027,33 +977,18 @@ class DarkPictures(Pictures):
         return self.host.picture(shader, scene)[sphere(scene.size).mask].astype(np.float64)
 
 
-class EmissionPictures(DarkPictures):
+class EmissionPictures(Pictures):
     """An EDF node on a sphere in the dark."""
 
-    scenes = (DARK,)
-
-    families = (EmissionSpec,)
-
-    def samples(self) -> Samples:
-        return PictureSamples(self)
-
-    @classmethod
-    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
-        return PICTURE_RADIANCE if quantity == "value" else None
+    scenes, families = (DARK,), (EmissionSpec,)
+    errors: ClassVar[Mapping[str, Tolerance]] = {"value": PICTURE_RADIANCE}
 
     @property
     def size(self) -> int:
         return DARK.size
 
-    @property
-    def materials(self) -> Sequence[Values]:
-        assert isinstance(self.spec, EmissionSpec)
-        return self.spec.materials
-
-    def picture(self, batch: Batch) -> Array:
-        shader = self.implemented(self.spec.document(batch.inputs))
-        image = self.host.picture(shader, DARK)[sphere(DARK.size).mask]
-        return np.asarray(image[self.points(DARK)[2]], np.float64)
+    def shader_of(self, inputs: Values) -> Shader:
+        return self.implemented(self.spec.document(inputs))
 
 
 class UtilitySamples(Samples):
@@ -1071,18 +1006,11 @@ class UtilitySamples(Samples):
 class UtilityOsl(Evaluating):
     """Outputs of a utility node on a renderer with OSL, which has mathematics of its own."""
 
-    def samples(self) -> Samples:
-        return UtilitySamples(self.spec, self.spec.counts)
-
-    families = (UtilitySpec,)
+    families, sampled, any_pairs = (UtilitySpec,), UtilitySamples, False
 
     @classmethod
     def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
         return spec.errors.get(f"{quantity} in OSL", spec.errors.get(quantity))
-
-    @classmethod
-    def any_pairs(cls, spec: Spec) -> bool:
-        return False
 
 
 # By the word of a host's row for how it is asked; the first that supports a spec asks for it. `mxeon.survey`

@@ -26,14 +26,9 @@ Change = Callable[[Batch, Array], Array]  # of values of a batch
 KEPT_SPECS = 2  # whose expected values are kept: that of a case, and another that it asks
 
 
-@lru_cache(maxsize=KEPT_SPECS)
-def value_of(spec: ValueSpec) -> Remembered:
-    return Remembered(spec.value)
-
-
-@lru_cache(maxsize=KEPT_SPECS)
-def albedo_of(spec: LobeSpec) -> Remembered:
-    return Remembered(spec.albedo)
+@lru_cache(maxsize=2 * KEPT_SPECS)
+def remembered(spec: Spec, quantity: str) -> Remembered:
+    return Remembered(getattr(spec, quantity))
 
 
 @lru_cache(maxsize=KEPT_SPECS)
@@ -126,10 +121,10 @@ class Case:
     # Values that are expected, and how wrong they may be.
 
     def expected(self, batch: Batch) -> Array:
-        return value_of(self.valued)(batch)
+        return remembered(self.valued, "value")(batch)
 
     def expected_albedo(self, batch: Batch) -> Array:
-        return albedo_of(self.lobe)(batch)
+        return remembered(self.lobe, "albedo")(batch)
 
     @property
     def changes(self) -> Mapping[str, Changes]:
@@ -145,10 +140,12 @@ class Case:
     def albedo_candidates(self) -> tuple[Candidate, ...]:
         return albedo_candidates(self.lobe)
 
-    def tolerance(self, quantity: str) -> Tolerance | None:
-        """The error of the spec in a quantity, and what the engine adds."""
-        error = self.backend.error(self.spec, quantity)
-        return error and error.plus(*self.backend.precision(quantity))
+    def tolerance(self, *quantities: str) -> Tolerance:
+        """The error in the first of these quantities that the spec has, and what the engine adds."""
+        for quantity in quantities:
+            if error := self.backend.error(self.spec, quantity):
+                return error.plus(*self.backend.precision(quantity))
+        raise LookupError(f"{self.spec.title} has no {quantities[-1]}")
 
 
 def make_case(backend: type[Backend], host: Engine, spec: Spec, library: str) -> Case:

@@ -11,7 +11,7 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from typing import TypeAlias, TypedDict, TypeVar, Unpack
+from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -43,15 +43,6 @@ class Control:
 
     def of(self, case: Case) -> Case:
         return replace(self.make(case), control=True)
-
-
-class Options(TypedDict, total=False):
-    """What a check may say beside its claim; see Check."""
-
-    pairs: bool
-    lit: bool
-    open: bool
-    hosts: Callable[[Spec, str], bool]
 
 
 @dataclass(frozen=True)
@@ -86,14 +77,9 @@ class Check:
         """Whether it is asked about a node on a host, by one of its backends."""
         if not (self.applies(spec) and self.hosts(spec, host)):
             return False
-        if (self.pairs and not backend.any_pairs(spec)) or (self.lit and not backend.lit(spec)):
+        if (self.pairs and not backend.any_pairs) or (self.lit and not backend.lit(spec)):
             return False
         return (self.tolerance or backend.error(spec, self.quantity)) is not None
-
-    def tolerance_of(self, case: Case) -> Tolerance:
-        tolerance = self.tolerance or case.tolerance(self.quantity)
-        assert tolerance is not None, f"{self.key} is not asked about {case.spec.title}"
-        return tolerance
 
     def judge(self, case: Case) -> Result:
         """The result for a case, with its control and, on failure, a diagnosis."""
@@ -105,7 +91,7 @@ class Check:
             library=case.library,
             **case.backend.claims,
         )
-        tolerance = self.tolerance_of(case)
+        tolerance = self.tolerance or case.tolerance(self.quantity)
 
         def diagnose() -> Diagnosis:
             diagnosis = self.diagnose(case)  # a permitted function excuses an open check alone
@@ -182,26 +168,38 @@ def of_family(*kinds: type[Spec]) -> Callable[[Spec], bool]:
 CHECKS: list[Check] = []  # in the order in which they are defined
 
 
-def check(
+def add_check(
+    measure: Measure,
     key: str,
     claim: str,
     applies: Callable[[Spec], bool],
     control: Control,
     quantity: str = "",
-    tolerance: Tolerance | None = None,
-    *,
     diagnose: Callable[[Case], Diagnosis] | None = None,
-    **rest: Unpack[Options],
+    **rest: Any,
+) -> None:
+    """Add a check, with the fields of one; its quantity is that of a comparison, or its key, unless given."""
+    own = measure if isinstance(measure, Comparison) else None
+    quantity = quantity or (own.quantity if own else key)
+    explain = diagnose or (own or VALUE).diagnose
+    CHECKS.append(Check(key, claim, applies, measure, control, quantity, explain, **rest))
+
+
+def check(
+    applies: Callable[[Spec], bool],
+    control: Control,
+    quantity: str = "",
+    key: str = "",
+    **rest: Any,
 ) -> Callable[[M], M]:
-    """Make a function that measures a case a check; its quantity is its key unless given."""
+    """Make a function that measures a case a check: its name is the key, its first line the claim."""
 
     def add(measure: M) -> M:
-        own = measure if isinstance(measure, Comparison) else None
-        found = quantity or (own.quantity if own else key)
-        explain = diagnose or (own or VALUE).diagnose
-        CHECKS.append(
-            Check(key, claim, applies, measure, control, found, explain, tolerance, **rest)
+        name, claim = (
+            key or getattr(measure, "__name__", ""),
+            (measure.__doc__ or "").split("\n")[0],
         )
+        add_check(measure, name, claim, applies, control, quantity, **rest)
         return measure
 
     return add
@@ -214,9 +212,13 @@ def control(words: str) -> Callable[[Callable[[Case], Case]], Control]:
     return lambda make: Control(words, make)
 
 
+def with_batch(words: str, change: Callable[[Batch], Batch]) -> Control:
+    """The engine gets another batch than the one that is asked."""
+    return Control(words, lambda case: replace(case, inputs=change))
+
+
 def with_inputs(words: str, **inputs: ArrayLike) -> Control:
-    """The engine gets these inputs instead of the batch's."""
-    return Control(words, lambda case: replace(case, inputs=lambda batch: batch.altered(**inputs)))
+    return with_batch(words, lambda batch: batch.altered(**inputs))
 
 
 def with_values(words: str, change: Callable[[Batch, Array], Array]) -> Control:
@@ -255,23 +257,17 @@ drop_changes = Control(
 )
 
 
-@control("every channel gets the mean color")
-def gray(case: Case) -> Case:
-    def mean_color(batch: Batch) -> Batch:
-        colors = {
-            name: np.repeat(np.mean(values, axis=-1, keepdims=True), 3, axis=-1)
-            for name, values in batch.inputs.items()
-            if name != "normal" and np.shape(values)[-1:] == (3,)
-        }
-        return batch.altered(**colors)
-
-    return replace(case, inputs=mean_color)
+def _mean_colors(batch: Batch) -> Batch:
+    colors = {
+        name: np.repeat(np.mean(values, axis=-1, keepdims=True), 3, axis=-1)
+        for name, values in batch.inputs.items()
+        if name != "normal" and np.shape(values)[-1:] == (3,)
+    }
+    return batch.altered(**colors)
 
 
-@control("each row uses the inputs of another row")
-def shifted(case: Case) -> Case:
-    def inputs(batch: Batch) -> Batch:
-        rolled = {name: np.roll(values, 1, axis=0) for name, values in batch.inputs.items()}
-        return batch.altered(**rolled)
-
-    return replace(case, inputs=inputs)
+gray = with_batch("every channel gets the mean color", _mean_colors)
+shifted = with_batch(
+    "each row uses the inputs of another row",
+    lambda batch: batch.altered(**{k: np.roll(v, 1, axis=0) for k, v in batch.inputs.items()}),
+)

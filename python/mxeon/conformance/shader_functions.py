@@ -16,30 +16,25 @@ import numpy as np
 
 from mxeon.conformance.check import judge, not_measured
 from mxeon.conformance.diagnosis.candidates import Diagnosis
-from mxeon.conformance.engine import TURN
 from mxeon.conformance.results import SHADER_FUNCTIONS, Place, Result
 from mxeon.conformance.samples import GRAZING, SEED, Array, directions, float32
+from mxeon.conformance.spec import TURN
 from mxeon.conformance.specs.diffuse import LOSS_FIT
 from mxeon.conformance.specs.diffuse import VALUE as MODEL_VALUE
 from mxeon.conformance.tolerance import (
     Measurement,
+    Metric,
     Term,
     Tolerance,
     absolute,
     relative,
     roundings,
+    sum_in,
     sum_of,
 )
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts.base import Host
-from mxeon.models import diffuse as albedo
-from mxeon.models import diffuse as formulas
-from mxeon.models import diffuse as qon_albedo
-from mxeon.models import sampling
-from mxeon.models import sampling as cltc
-from mxeon.models import sampling as eon
-from mxeon.models import sampling as hemisphere
-from mxeon.models import sampling as ltc
+from mxeon.models import diffuse, sampling
 from mxeon.shaders import functions
 
 KINDS = ("pairs", "pictures", "rendered")  # of probes whose hosts evaluate functions
@@ -50,189 +45,9 @@ STEP = 2.0**-22  # of the arguments by which a function's condition is measured
 
 CONDITIONED = "over 1, the value, and its change with each argument"
 LOSS = sum_of(Term(LOSS_FIT, "the fit of H"), roundings(12), unit="relative", metric=relative)
-PART = sum_of(roundings(16), unit=CONDITIONED, metric=absolute)
+PART = sum_in(CONDITIONED, roundings(16))
 # An inverse fourth power takes the 8 of an entry of a matrix four times, and 16 beside them.
-DENSITY = sum_of(
-    roundings(48, "four times the 8 of a matrix entry, and 16"), unit=CONDITIONED, metric=absolute
-)
-
-
-def _direction(sine_error: float) -> Tolerance:
-    """Tolerance of sampled directions on an engine whose own sine is off by so much."""
-    turned = Term(4.0 * sine_error, "the engine's sine and cosine, which turn a direction twice")
-    return sum_of(roundings(16), turned, unit=CONDITIONED, metric=absolute)
-
-
-@dataclass(frozen=True)
-class FunctionProbe:
-    """The shader functions of a library, which brings such functions, on a host."""
-
-    host: Host
-    library: str
-
-    @cached_property
-    def text(self) -> str:
-        return functions.source(self.host.language, library=self.library)
-
-    @cached_property
-    def missing_functions(self) -> tuple[str, ...]:
-        """Functions of eonlib that the library lacks, or has with other parameters."""
-        own = functions.signatures(self.text)
-        ours = functions.signatures(functions.source(self.host.language))
-        return tuple(name for name in ours if own.get(name) != ours[name])
-
-    @cached_property
-    def values(self) -> Mapping[str, Array]:
-        """Values of every function of eonlib that the library has."""
-        return self.scaled_values(1.0)
-
-    @cached_property
-    def wrong_values(self) -> Mapping[str, Array]:
-        return self.scaled_values(0.95)
-
-    @cached_property
-    def sine_error(self) -> float:
-        """Error of the engine's own cosine and sine over a turn, of which samples are made."""
-        return float(TURN.errors(self.host, random_columns()["u2"]).max())
-
-    def scaled_values(self, scale: float) -> Mapping[str, Array]:
-        """Values of the functions whose last argument is scaled, in one call; each has POINTS rows."""
-        language, columns = self.host.language, random_columns()
-        names = [name for name in functions.names(language) if name not in self.missing_functions]
-        text = functions.dispatched(self.text, names, language)
-        slots = functions.parameters(text, functions.EACH)
-        rows = {
-            name: np.zeros((len(names), POINTS, 1 if kind == "float" else 3))
-            for kind, name in slots
-        }
-        for number, name in enumerate(names):
-            rows["which"][number] = number
-            own = functions.slot_names([kind for kind, _ in functions.signature(language, name)])
-            *others, last = (columns[each] for each in argument_names(name))
-            for slot, values in zip(own, [*others, scale * last], strict=True):
-                rows[slot][number] = values.reshape(POINTS, -1)
-        given = [
-            rows[name].reshape(-1, 3) if kind != "float" else rows[name].ravel()
-            for kind, name in slots
-        ]
-        values = self.host.execute(text, functions.EACH, *given).astype(np.float64)
-        return dict(zip(names, np.split(values, len(names)), strict=True))
-
-
-@dataclass(frozen=True)
-class FunctionCheck:
-    """A row of the table: what is asked of some of the shader functions."""
-
-    key: str  # one word, and a sentence
-    claim: str
-    holds: Callable[[str], bool]  # whether it asks a function; the first row that does takes it
-    error: Callable[[str, Array], float]  # largest error of a function's values
-    tolerance: Callable[[FunctionProbe], Tolerance]
-
-
-def value_error(function: str, values: Array) -> float:
-    """Largest error of a model, in pi f cos, or of an albedo."""
-    columns = random_columns()
-    scale = np.pi * columns["mu_i"][:, None] if "_brdf" in function else 1.0
-    return float(absolute(scale * (values - _expected(function)), 0.0).max())
-
-
-def loss_error(function: str, values: Array) -> float:
-    """Largest relative error."""
-    return float(relative(values, _expected(function)).max())
-
-
-def part_error(function: str, values: Array) -> float:
-    """Largest error, over 1, the value, and the change that a change of an argument makes."""
-    error = absolute(values - _expected(function), 0.0)
-    return float((error / _condition(function)).max())
-
-
-FUNCTION_CHECKS = (
-    FunctionCheck(
-        "twins",
-        "The shader functions of models and albedos match the NumPy models.",
-        lambda name: "_brdf" in name or "_albedo_" in name,
-        value_error,
-        lambda probe: MODEL_VALUE,
-    ),
-    FunctionCheck(
-        "loss",
-        "1 - E keeps its relative accuracy down to a cosine of 1e-6.",
-        lambda name: name == "fon_loss",
-        loss_error,
-        lambda probe: LOSS,
-    ),
-    FunctionCheck(
-        "samples",
-        "The sampling functions return the same directions as NumPy's.",
-        lambda name: bool(SAMPLES.fullmatch(name)),
-        part_error,
-        lambda probe: _direction(probe.sine_error),
-    ),
-    FunctionCheck(
-        "densities",
-        "The sampling densities and the matrix of linearly transformed cosines match NumPy's.",
-        lambda name: bool(DENSITIES.fullmatch(name)),
-        part_error,
-        lambda probe: DENSITY,
-    ),
-    FunctionCheck(
-        "parts",
-        "The functions that models and sampling are built from match NumPy's.",
-        lambda name: True,
-        part_error,
-        lambda probe: PART,
-    ),
-)
-VARIANT = "the last argument is 5 % off"
-
-
-def row_of(function: str) -> FunctionCheck:
-    return next(row for row in FUNCTION_CHECKS if row.holds(function))
-
-
-def judge_functions(probe: FunctionProbe) -> tuple[Result, ...]:
-    return tuple(_judged(check, probe) for check in FUNCTION_CHECKS)
-
-
-def _judged(check: FunctionCheck, probe: FunctionProbe) -> Result:
-    host, library = probe.host.name, probe.library
-    place = Place(
-        check=check.key, claim=check.claim, subject=SHADER_FUNCTIONS, host=host, library=library
-    )
-    try:
-        tolerance = check.tolerance(probe)
-    except (NotRun, ShaderError) as error:
-        return not_measured(place, error)
-
-    def measure(wrong: bool) -> Measurement:
-        """The function of the row that is furthest from its NumPy version."""
-        values = probe.wrong_values if wrong else probe.values
-        errors = {
-            name: check.error(name, each) for name, each in values.items() if row_of(name) is check
-        }
-        errors |= {name: np.inf for name in probe.missing_functions if row_of(name) is check}
-        name = max(errors, key=lambda function: errors[function])
-        return Measurement(errors[name], {name: [errors[name]]})
-
-    return judge(place, tolerance, measure, VARIANT, lambda: Diagnosis(_causes(check, probe)))
-
-
-def _causes(check: FunctionCheck, probe: FunctionProbe) -> str:
-    """The functions that are wrong by themselves, and those of the row that use them."""
-    errors = {name: row_of(name).error(name, values) for name, values in probe.values.items()}
-    wrong = [name for name in errors if errors[name] > row_of(name).tolerance(probe).value]
-    uses = functions.uses(probe.text)
-    causes = [name for name in wrong if not any(other in wrong for other in uses[name])]
-    affected = [name for name in wrong if row_of(name) is check]
-    reached = {*affected}.union(*(uses[each] for each in affected))
-    own = [name for name in causes if name in reached]
-    users = [name for name in affected if name not in own]
-    parts = [f"{name} is not defined as eonlib has it" for name in probe.missing_functions]
-    parts += [f"{name} is off by {errors[name]:.2g}" for name in own]
-    parts += [f"with it {', '.join(users)}"] if users else []
-    return "; ".join(parts)
+DENSITY = sum_in(CONDITIONED, roundings(48, "four times the 8 of a matrix entry, and 16"))
 
 
 @cache
@@ -266,20 +81,18 @@ AXES = (
 Columns = Mapping[str, Array]
 
 
-def _upper_root(m: Array) -> Array:
-    """y of the angle whose cosine is 1 - m, by the integral of which the shader has a fit."""
-    return eon.eon_upper_limit(1.0 - m, np.sqrt(m * (2.0 - m)))
-
-
 # Functions that have another name in NumPy, or other parameters.
 NAMED: Mapping[str, Callable[..., Array]] = {
-    "eon_around": hemisphere.around,
-    "eon_azimuth_frame": lambda wo: hemisphere.stack_xyz(*hemisphere.azimuth_frame(wo)),
-    "eon_gray_weight": lambda gray, roughness: formulas.eon_multiple_weight(gray, roughness),
-    "eon_rotate_z": lambda wi, cosine, sine: hemisphere.rotate_z(wi, cosine, sine),
-    "eon_upper_root": _upper_root,
-    "ltc_transformed": lambda wo, wh, roughness, d: ltc.ltc_transformed(wo, wh, roughness, d)[0],
-    "oren_nayar_s": lambda wo, wi: formulas.cosines(wo, wi)[2],
+    "eon_around": sampling.around,
+    "eon_azimuth_frame": lambda wo: sampling.stack_xyz(*sampling.azimuth_frame(wo)),
+    "eon_gray_weight": lambda gray, roughness: diffuse.eon_multiple_weight(gray, roughness),
+    "eon_rotate_z": lambda wi, cosine, sine: sampling.rotate_z(wi, cosine, sine),
+    # y of the angle whose cosine is 1 - m, by the integral of which the shader has a fit.
+    "eon_upper_root": lambda m: sampling.eon_upper_limit(1.0 - m, np.sqrt(m * (2.0 - m))),
+    "ltc_transformed": lambda wo, wh, roughness, d: sampling.ltc_transformed(wo, wh, roughness, d)[
+        0
+    ],
+    "oren_nayar_s": lambda wo, wi: diffuse.cosines(wo, wi)[2],
 }
 
 
@@ -298,12 +111,6 @@ def expected(function: str, columns: Columns) -> Array:
     if channels_first and values.ndim == 2 and "rho" in arguments:
         values = values.T
     return values.reshape(len(columns["mu"]), -1)
-
-
-def argument_names(function: str) -> list[str]:
-    """Names of the columns of a function's parameters, in their order."""
-    names = [name for _, name in functions.signature("glsl", function)]
-    return ["gray" if name == "rho" and _takes_gray(function) else name for name in names]
 
 
 def numbers(function: str) -> list[str]:
@@ -337,10 +144,12 @@ def _version(function: str) -> tuple[Callable[..., Array], bool]:
     """NumPy's version of a shader function, and whether colors have their channels first."""
     if function in NAMED:
         return NAMED[function], False
-    for module in (sampling, albedo, qon_albedo, formulas, eon, ltc, cltc):
-        if hasattr(module, function):
-            return getattr(module, function), module is formulas
-    raise LookupError(f"the shader function {function} has no version in NumPy")
+    version = getattr(sampling, function, None) or getattr(diffuse, function)
+    rho = inspect.signature(version).parameters.get("rho")
+    # Public functions take rows of colors.
+    return version, bool(
+        rho and rho.annotation == "Array"
+    ) and version.__module__ == diffuse.__name__
 
 
 @cache
@@ -355,39 +164,35 @@ def random_columns() -> Columns:
     }
     azimuth, elevation = 2.0 * np.pi * rng.random(POINTS), 0.5 * np.pi * _unit(rng)
     mu, roughness = np.clip(wo[:, 2], GRAZING, 1.0), unit["roughness"]
+    rho, value = np.stack([_unit(rng) for _ in range(3)], axis=-1), 2.0 * _unit(rng) - 1.0
+    divisors = _unit(rng)  # a quarter log-uniform down to 1e-36: a shader takes 1e-37 for 0
+    divisors[CORNERS : POINTS // 4] = 10.0 ** (-36.0 * divisors[CORNERS : POINTS // 4])
     return {
         name: float32(values)
         for name, values in {
             **unit,
             "wo": wo,
             "wi": wi,
-            "wh": hemisphere.around(np.sqrt(1.0 - unit["u1"]), np.sqrt(unit["u1"]), unit["u2"]),
+            "wh": sampling.around(np.sqrt(1.0 - unit["u1"]), np.sqrt(unit["u1"]), unit["u2"]),
             "u": np.stack([unit["u1"], unit["u2"]], axis=-1),
-            "rho": np.stack([_unit(rng) for _ in range(3)], axis=-1),
+            "rho": rho,
             "sigma": 1.5707963 * roughness,
             "mu": mu,
             "mu_o": np.minimum(wo[:, 2], 1.0),
             "mu_i": np.minimum(wi[:, 2], 1.0),
-            "s": formulas.cosines(wo, wi)[2],
+            "s": diffuse.cosines(wo, wi)[2],
             "S": np.sqrt((1.0 - mu) * (1.0 + mu)),
             "S_o": np.hypot(wo[:, 0], wo[:, 1]),
             "S_i": np.hypot(wi[:, 0], wi[:, 1]),
-            "d": ltc.ltc_d(mu, roughness),
+            "d": sampling.ltc_d(mu, roughness),
             "cosine": np.cos(azimuth),
             "sine": np.sin(azimuth),
             "x": np.cos(elevation),
             "y": np.sin(elevation),
-            "value": 2.0 * _unit(rng) - 1.0,
-            "divisor": _divisors(rng),
+            "value": value,
+            "divisor": divisors,
         }.items()
     }
-
-
-def _divisors(rng: np.random.Generator) -> Array:
-    """Numbers in [0, 1), a quarter of them log-uniform down to 1e-36: a shader takes 1e-37 for 0."""
-    divisors = _unit(rng)
-    divisors[CORNERS : POINTS // 4] = 10.0 ** (-36.0 * divisors[CORNERS : POINTS // 4])
-    return divisors
 
 
 def _unit(rng: np.random.Generator) -> Array:
@@ -395,3 +200,167 @@ def _unit(rng: np.random.Generator) -> Array:
     numbers = rng.integers(0, 1 << 24, POINTS).astype(np.float64)
     numbers[:CORNERS] = (numbers[:CORNERS] % 2.0) * (2.0**24 - 1.0)
     return numbers * 2.0**-24
+
+
+@dataclass(frozen=True)
+class FunctionProbe:
+    """The shader functions of a library, which brings such functions, on a host."""
+
+    host: Host
+    library: str
+
+    @cached_property
+    def text(self) -> str:
+        return functions.source(self.host.language, library=self.library)
+
+    @cached_property
+    def missing_functions(self) -> tuple[str, ...]:
+        """Functions of eonlib that the library lacks, or has with other parameters."""
+        own = functions.signatures(self.text)
+        ours = functions.signatures(functions.source(self.host.language))
+        return tuple(name for name in ours if own.get(name) != ours[name])
+
+    @cached_property
+    def values(self) -> Mapping[str, Array]:
+        return self.scaled_values(1.0)
+
+    @cached_property
+    def wrong_values(self) -> Mapping[str, Array]:
+        return self.scaled_values(0.95)
+
+    @cached_property
+    def sine_error(self) -> float:
+        """Error of the engine's own cosine and sine over a turn, of which samples are made."""
+        return float(TURN.errors(self.host, random_columns()["u2"]).max())
+
+    def scaled_values(self, scale: float) -> Mapping[str, Array]:
+        """Values of every function of eonlib that the library has, with its last argument scaled, in one call."""
+        language, columns = self.host.language, random_columns()
+        names = [name for name in functions.names(language) if name not in self.missing_functions]
+        text = functions.dispatched(self.text, names, language)
+        slots = functions.parameters(text, functions.EACH)
+        rows = {
+            name: np.zeros((len(names), POINTS, 1 if kind == "float" else 3))
+            for kind, name in slots
+        }
+        for number, name in enumerate(names):
+            rows["which"][number] = number
+            own = functions.slot_names([kind for kind, _ in functions.signature(language, name)])
+            gray = {"rho": "gray"} if _takes_gray(name) else {}
+            arguments = (each for _, each in functions.signature("glsl", name))
+            *others, last = (columns[gray.get(each, each)] for each in arguments)
+            for slot, values in zip(own, [*others, scale * last], strict=True):
+                rows[slot][number] = values.reshape(POINTS, -1)
+        given = [
+            rows[name].reshape(-1, 3) if kind != "float" else rows[name].ravel()
+            for kind, name in slots
+        ]
+        values = self.host.execute(text, functions.EACH, *given).astype(np.float64)
+        return dict(zip(names, np.split(values, len(names)), strict=True))
+
+
+@dataclass(frozen=True)
+class FunctionCheck:
+    """A row of the table: what is asked of some of the shader functions."""
+
+    key: str  # one word, and a sentence
+    claim: str
+    holds: Callable[[str], bool]  # whether it asks a function; the first row that does takes it
+    tolerance: Callable[[FunctionProbe], Tolerance]
+    # Factor of a function's values, (N, 1): they count relative to what they are sensitive to.
+    scale: Callable[[str], Array | float] = lambda name: 1.0 / _condition(name)[:, np.newaxis]
+    metric: Metric = absolute
+
+    def error(self, function: str, values: Array) -> float:
+        scale = self.scale(function)
+        return float(self.metric(scale * values, scale * _expected(function)).max())
+
+
+FUNCTION_CHECKS = (
+    FunctionCheck(
+        "twins",
+        "The shader functions of models and albedos match the NumPy models.",
+        lambda name: "_brdf" in name or "_albedo_" in name,
+        lambda probe: MODEL_VALUE,
+        lambda name: np.pi * random_columns()["mu_i"][:, None] if "_brdf" in name else 1.0,
+    ),
+    FunctionCheck(
+        "loss",
+        "1 - E keeps its relative accuracy down to a cosine of 1e-6.",
+        lambda name: name == "fon_loss",
+        lambda probe: LOSS,
+        lambda name: 1.0,
+        relative,
+    ),
+    FunctionCheck(
+        "samples",
+        "The sampling functions return the same directions as NumPy's.",
+        lambda name: bool(SAMPLES.fullmatch(name)),
+        lambda probe: PART.plus(
+            Term(
+                4.0 * probe.sine_error, "the engine's sine and cosine, which turn a direction twice"
+            )
+        ),
+    ),
+    FunctionCheck(
+        "densities",
+        "The sampling densities and the matrix of linearly transformed cosines match NumPy's.",
+        lambda name: bool(DENSITIES.fullmatch(name)),
+        lambda probe: DENSITY,
+    ),
+    FunctionCheck(
+        "parts",
+        "The functions that models and sampling are built from match NumPy's.",
+        lambda name: True,
+        lambda probe: PART,
+    ),
+)
+
+
+def row_of(function: str) -> FunctionCheck:
+    return next(row for row in FUNCTION_CHECKS if row.holds(function))
+
+
+def judge_functions(host: Host, library: str) -> tuple[Result, ...]:
+    probe = FunctionProbe(host, library)
+    return tuple(_judged(check, probe) for check in FUNCTION_CHECKS)
+
+
+def _judged(check: FunctionCheck, probe: FunctionProbe) -> Result:
+    host, library = probe.host.name, probe.library
+    place = Place(
+        check=check.key, claim=check.claim, subject=SHADER_FUNCTIONS, host=host, library=library
+    )
+    try:
+        tolerance = check.tolerance(probe)
+    except (NotRun, ShaderError) as error:
+        return not_measured(place, error)
+
+    def measure(wrong: bool) -> Measurement:
+        """The function of the row that is furthest from its NumPy version."""
+        values = probe.wrong_values if wrong else probe.values
+        errors = {
+            name: check.error(name, each) for name, each in values.items() if row_of(name) is check
+        }
+        errors |= {name: np.inf for name in probe.missing_functions if row_of(name) is check}
+        name = max(errors, key=lambda function: errors[function])
+        return Measurement(errors[name], {name: [errors[name]]})
+
+    words = "the last argument is 5 % off"
+    return judge(place, tolerance, measure, words, lambda: Diagnosis(_causes(check, probe)))
+
+
+def _causes(check: FunctionCheck, probe: FunctionProbe) -> str:
+    """The functions that are wrong by themselves, and those of the row that use them."""
+    errors = {name: row_of(name).error(name, values) for name, values in probe.values.items()}
+    wrong = [name for name in errors if errors[name] > row_of(name).tolerance(probe).value]
+    uses = functions.uses(probe.text)
+    causes = [name for name in wrong if not any(other in wrong for other in uses[name])]
+    affected = [name for name in wrong if row_of(name) is check]
+    reached = {*affected}.union(*(uses[each] for each in affected))
+    own = [name for name in causes if name in reached]
+    users = [name for name in affected if name not in own]
+    parts = [f"{name} is not defined as eonlib has it" for name in probe.missing_functions]
+    parts += [f"{name} is off by {errors[name]:.2g}" for name in own]
+    parts += [f"with it {', '.join(users)}"] if users else []
+    return "; ".join(parts)

@@ -34,7 +34,7 @@ from mxeon.conformance.samples import (
     turned_frames,
     with_edges,
 )
-from mxeon.conformance.tolerance import Term, Tolerance
+from mxeon.conformance.tolerance import ROUNDING, Term, Tolerance
 from mxeon.hosts.base import Host
 from mxeon.shaders.nodes import (
     SURFACE,
@@ -194,7 +194,7 @@ class ValueSpec(Spec):
 
     def few(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
         """Some of them, for controls and for what takes long."""
-        return batches
+        return tuple(batch.first(counts.few) for batch in batches)
 
     def condition(self, batch: Batch) -> Array:
         """What errors of values are divided by, (N, 3), (N, 1) or one number."""
@@ -269,11 +269,9 @@ class LobeSpec(ValueSpec):
         """Few of the random pairs, and the special ones; none of them is outside."""
         return batches[0].first(counts.few), batches[1]
 
-    def views(
-        self, batches: tuple[Batch, ...], few: tuple[Batch, ...], counts: Counts
-    ) -> tuple[Batch, ...]:
+    def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
         """Views for the environment branch, which does not depend on `wi`."""
-        return (*few, batches[-1])
+        return (*self.few(batches, counts), batches[-1])
 
     def turned(self, counts: Counts) -> Batch:
         """Pairs in frames of their own.
@@ -310,6 +308,12 @@ class RowSpec(ValueSpec):
 
     row: Any
 
+    @property
+    def drawn(self) -> tuple[Input, ...]:
+        """The inputs that its functions read."""
+        inputs = {each.name: each for each in self.inputs}
+        return tuple(inputs[name] for name in self.row.inputs)
+
     @abstractmethod
     def values(self, function: Any, batch: Batch) -> Array:
         """Values of a function of the row, (N, 3)."""
@@ -332,3 +336,39 @@ class RowSpec(ValueSpec):
             if each.value
         )
         return (own, *variants, *self.others)
+
+
+ARGUMENTS = 1 << 14  # arguments
+
+
+@dataclass(frozen=True)
+class EngineFunction:
+    """A function that engines have themselves."""
+
+    name: str  # in GLSL, of x or of x and y
+    expression: str
+    exact: Callable[..., Array]  # the same in NumPy
+
+    def errors(self, host: Host, *arguments: Array) -> Array:
+        """Errors of a host's values of arguments that are float32 numbers, (N,)."""
+        function = f"mxeon_{self.name}"
+        parameters = ", ".join(f"float {name}" for name in "xy"[: len(arguments)])
+        text = f"float {function}({parameters})\n{{\n    return {self.expression};\n}}\n"
+        values = host.execute(text, function, *arguments)[:, 0]
+        return np.abs(values - self.exact(*arguments))
+
+
+POWER = EngineFunction("power", "pow(x, y)", np.power)
+EXPONENTIAL = EngineFunction("exponential", "exp(-x)", lambda x: np.exp(-x))
+LOGARITHM = EngineFunction("logarithm", "log(x)", np.log)
+WAVE = EngineFunction("wave", "max(cos(x), sin(x))", lambda x: np.maximum(np.cos(x), np.sin(x)))
+TURN = EngineFunction(
+    "turn",
+    "max(abs(cos(6.28318530718 * x)), abs(sin(6.28318530718 * x)))",
+    lambda x: np.maximum(np.abs(np.cos(2.0 * np.pi * x)), np.abs(np.sin(2.0 * np.pi * x))),
+)
+
+
+def beside_rounding(errors: Array, allowed: float = 1.0) -> float:
+    """The largest error beyond so many roundings of 1."""
+    return max(float(errors.max()) - allowed * ROUNDING, 0.0)

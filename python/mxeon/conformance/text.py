@@ -17,11 +17,14 @@ import MaterialX as mx
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, SOURCE, Control, Result
+from mxeon.conformance.check import judge, not_measured
+from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.results import SOURCE, Place, Result
 from mxeon.conformance.samples import SEED
 from mxeon.conformance.specs import PLAIN_LOBES
 from mxeon.conformance.specs.diffuse import DiffuseSpec
 from mxeon.conformance.specs.lobes import PbrSpec
+from mxeon.conformance.tolerance import Measurement, count_of
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import HOSTS
 from mxeon.models import diffuse as formulas
@@ -204,24 +207,18 @@ def check_texts(subjects: Iterable[DiffuseSpec], library: str) -> tuple[Result, 
 def _judged(check: str, subject: str, library: str, faults: Faults, *of: Any) -> Result:
     """Result of the faults of something."""
     claim, unit, variant = CLAIMS[check]
-    place = (check, claim, subject, SOURCE, library)
+    place = Place(check=check, claim=claim, subject=subject, host=SOURCE, library=library)
     try:
         found, control = faults(*of)
     except NotRun as error:
-        return Result(*place, verdict=NOT_RUN, reason=str(error))
+        return not_measured(place, error)
     except ShaderError as error:
-        return Result(*place, verdict=FAILED, diagnosis=f"{subject.rpartition(', ')[2]}: {error}")
-    caught = control > 0 and control >= len(found)
-    return Result(
-        *place,
-        verdict=FAILED if found or not caught else PASSED,
-        error=len(found),
-        unit=unit,
-        tolerance=0,
-        derivation="a count",
-        diagnosis="; ".join(found),
-        control=Control(variant, control, caught),
-    )
+        return not_measured(place, ShaderError(f"{subject.rpartition(', ')[2]}: {error}"))
+
+    def measure(wrong: bool) -> Measurement:
+        return Measurement(control if wrong else len(found), {})
+
+    return judge(place, count_of(unit), measure, variant, lambda: Diagnosis("; ".join(found)))
 
 
 # --- definitions ----------------------------------------------------------------------------------

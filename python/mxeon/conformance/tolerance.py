@@ -165,6 +165,11 @@ def sum_of(*terms: Term, unit: str = SCALED, metric: Metric = scaled) -> Toleran
     return Tolerance(terms, unit, metric)
 
 
+def sum_in(unit: str, *terms: Term) -> Tolerance:
+    """A tolerance of absolute errors."""
+    return Tolerance(terms, unit, absolute)
+
+
 def given(value: float, unit: str, words: str, metric: Metric = absolute) -> Tolerance:
     """A tolerance of one term, taken as it is."""
     return Tolerance((Term(value, words),), unit, metric, exact=True)

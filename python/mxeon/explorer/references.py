@@ -18,8 +18,8 @@ from mxeon.conformance.specs import PLAIN_LOBES
 from mxeon.conformance.specs.diffuse import DIFFUSE
 from mxeon.conformance.specs.hair import HAIR
 from mxeon.conformance.specs.lobes import PbrSpec
+from mxeon.conformance.specs.microfacets import FILM_SPECS
 from mxeon.conformance.specs.surface_shaders import SURFACE_SHADERS
-from mxeon.conformance.specs.thin_films import FILM_SPECS
 from mxeon.conformance.tolerance import Tolerance
 from mxeon.errors import NotRun
 from mxeon.explorer.data import Direction, ReferenceBounds, ReferenceTable, ShaderForm

@@ -6,7 +6,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -80,6 +80,18 @@ class Engine(ABC):
             raise InputError(
                 f"{self.name}: shape must be sphere; got {scene.shape}, which gl and webgl draw"
             )
+
+
+class Query(NamedTuple):
+    """The arguments of `Host.evaluate`."""
+
+    shader: Shader
+    wo: Array
+    wi: Array
+    inputs: Inputs
+    branch: str
+    output: str
+    irradiance: Array | None
 
 
 class Host(Engine):
@@ -165,6 +177,9 @@ class Host(Engine):
 
         Raises ValueError if the shader calls no BSDF, or branch or output is unknown.
         """
+        return self._values(Query(shader, wo, wi, inputs, branch, output, irradiance))
+
+    def _values(self, query: Query) -> Array:
         raise self._unsupported("values for pairs of directions", "gl")
 
     def trees(self, shader: Shader, wo: Array, inputs: Inputs) -> tuple[TreeRows, ...]:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, TypeAlias, cast
 from numpy.typing import ArrayLike
 
 from mxeon.errors import InputError, InterfaceError
-from mxeon.hosts.base import Inputs
+from mxeon.hosts.base import Inputs, Query
 from mxeon.shaders.nodes import types_of
 
 if TYPE_CHECKING:  # which loads MaterialX
@@ -101,18 +101,12 @@ class BsdfCall:
     arguments: Arguments  # types and values of what both read, but P
 
 
-def bsdf_call(
-    shader: Shader,
-    wo: ArrayLike,
-    wi: ArrayLike,
-    inputs: Inputs,
-    branch: str,
-    output: str = OUTPUTS[0],
-) -> BsdfCall:
-    """Call of a rasterized shader's BSDF with the arguments of `Host.evaluate`.
+def bsdf_call(query: Query) -> BsdfCall:
+    """Call of a rasterized shader's BSDF.
 
     InputError if it calls no BSDF or, for GRAPH, no uniform EDF, or branch or output is unknown.
     """
+    shader, wo, wi, inputs, branch, output, _ = query
     branches = (GRAPH, LIT, *CLOSURES)
     for rule, word, known in (("branch", branch, branches), ("output", output, OUTPUTS)):
         if word not in known:

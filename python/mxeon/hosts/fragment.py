@@ -17,9 +17,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.hosts.base import Array, Inputs
-from mxeon.hosts.calls import OUTPUTS, booleans, bsdf_call
-from mxeon.shaders.generation import Shader
+from mxeon.hosts.base import Array, Query
+from mxeon.hosts.calls import booleans, bsdf_call
 
 TEXEL = "texelFetch(mxeon_{}, mxeon_pixel, 0)"
 FETCH = {
@@ -100,17 +99,10 @@ DIALECTS = {
 DIALECTS["wgsl"] = replace(DIALECTS["vulkan"], prelude="")  # its textures are separate already
 
 
-def bsdf_evaluation(
-    shader: Shader,
-    wo: ArrayLike,
-    wi: ArrayLike,
-    inputs: Inputs,
-    branch: str,
-    output: str = OUTPUTS[0],
-) -> tuple[str, Columns]:
+def bsdf_evaluation(query: Query) -> tuple[str, Columns]:
     """A pixel stage that evaluates a shader's BSDF, and its texels (N, 1 to 3) by sampler."""
-    dialect = DIALECTS[shader.target]
-    call = bsdf_call(shader, wo, wi, inputs, branch, output)
+    shader = query.shader
+    dialect, call = DIALECTS[shader.target], bsdf_call(query)
     version, text = shader.stages["pixel"].split("\n", 1)
     # Subsurface scattering divides by what P changes from pixel to pixel: that of a plane unless it is given.
     body = [

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from mxeon.errors import InputError
 from mxeon.hosts import base
-from mxeon.hosts.base import Array, Inputs
+from mxeon.hosts.base import Array, Inputs, Query
 
 if TYPE_CHECKING:
     from mxeon.shaders.generation import Shader
@@ -29,23 +29,14 @@ class PairHost(base.Host):
     target = "osl"
     language = "osl"
 
-    def evaluate(
-        self,
-        shader: Shader,
-        wo: Array,
-        wi: Array,
-        inputs: Inputs,
-        branch: str,
-        *,
-        output: str = "response",
-        irradiance: Array | None = None,
-    ) -> Array:
+    def _values(self, query: Query) -> Array:
         """The values of a shader's closures in a renderer; see `mxeon.hosts.base.Host`.
 
         The throughput is the visible part of a white emission below. The environment is sampled, so it
         has noise; what comes through the surface is part of it. InputError if a pair in the light of a
         point is not `mxeon.hosts.pairs.visible`.
         """
+        shader, wo, wi, inputs, branch, output, irradiance = query
         through = output == "throughput"
         if irradiance is not None or (branch == TRANSMITTED and not through):
             raise self._unsupported("uneven environment, and none below alone", "gl")

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mxeon.hosts import base, fragment
-from mxeon.hosts.base import Array, Inputs
+from mxeon.hosts.base import Array, Query
 from mxeon.hosts.image_limit import image_files
 from mxeon.hosts.points import visible
 from mxeon.hosts.textures import irradiance, read_latlong, read_texture
@@ -144,19 +144,9 @@ class FragmentHost(base.Host):
     def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
         return approximations(shader)
 
-    def evaluate(
-        self,
-        shader: Shader,
-        wo: Array,
-        wi: Array,
-        inputs: Inputs,
-        branch: str,
-        *,
-        output: str = "response",
-        irradiance: Array | None = None,
-    ) -> Array:
-        pixel, arguments = fragment.bsdf_evaluation(shader, wo, wi, inputs, branch, output)
-        return self._evaluate(shader.stages["vertex"], pixel, arguments, irradiance)
+    def _values(self, query: Query) -> Array:
+        pixel, arguments = fragment.bsdf_evaluation(query)
+        return self._evaluate(query.shader.stages["vertex"], pixel, arguments, query.irradiance)
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
         parameters = functions.parameters(source, function)

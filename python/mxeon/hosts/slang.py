@@ -20,9 +20,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import NotRun, ShaderError, install
 from mxeon.hosts import base, calls, fragment, raster
-from mxeon.hosts.base import TURN, Array, Identity, Inputs
+from mxeon.hosts.base import TURN, Array, Identity, Query
 from mxeon.shaders import functions
-from mxeon.shaders.generation import Shader
 
 Resource: TypeAlias = Any  # an object of slangpy, whose types are known where it is installed
 
@@ -140,26 +139,17 @@ class Host(base.Host):
         info = self._device.info
         return Identity(self.name, f"slangpy {slangpy.__version__}", info.adapter_name)
 
-    def evaluate(
-        self,
-        shader: Shader,
-        wo: Array,
-        wi: Array,
-        inputs: Inputs,
-        branch: str,
-        *,
-        output: str = "response",
-        irradiance: Array | None = None,
-    ) -> Array:
-        if "subsurface_bsdf(closureData" in shader.stages["pixel"]:
+    def _values(self, query: Query) -> Array:
+        text = query.shader.stages["pixel"]
+        if "subsurface_bsdf(closureData" in text:
             raise NotRun(
                 "slang: subsurface scattering needs derivatives between pixels, which a kernel lacks"
             )
-        call = calls.bsdf_call(shader, wo, wi, inputs, branch, output)
+        call = calls.bsdf_call(query)
         body = ["float3 P = float3(0.0);", call.statements]
         body.append(f"float3 mxeon_value = {call.value};")
-        environment = self._environment(irradiance)
-        return self._evaluate(shader.stages["pixel"], call.arguments, body, environment)
+        environment = self._environment(query.irradiance)
+        return self._evaluate(text, call.arguments, body, environment)
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
         parameters = functions.parameters(source, function)

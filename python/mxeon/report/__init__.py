@@ -18,11 +18,12 @@ from typing import Any, TypeVar
 import numpy as np
 
 from mxeon.conformance.results import Picture, Run, image_names
-from mxeon.conformance.results.known_issues import issues_of, page_file
+from mxeon.conformance.results.known_issues import issues_of
 from mxeon.conformance.results.records import make_converter
 from mxeon.errors import PackageError, install
 from mxeon.io.files import below, replacing, write_text
 from mxeon.io.images import without_threads, write_exr, write_png
+from mxeon.report.formats import page_file
 from mxeon.report.junit import to_junit
 
 PAGES = "upstream"  # folder beside the report with the pages on defects

@@ -4,13 +4,16 @@
 import math
 import re
 from collections.abc import Mapping
+from functools import cache
+from importlib.metadata import PackageNotFoundError, metadata
+from pathlib import Path
 
 import numpy as np
 from markupsafe import Markup
 from numpy.typing import ArrayLike
 
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Result, in_words
-from mxeon.conformance.results.known_issues import Issue, issues_of, link
+from mxeon.conformance.results.known_issues import Issue, issues_of
 
 # CSS class of each verdict, and a sign for readers who cannot see the color.
 LOOKS = {
@@ -74,8 +77,34 @@ def linked(result: Result, excess: str = "") -> Markup:
 
 def page_address(issue: Issue) -> str:
     """Address of the page of an issue from a report: on the site, or beside the report."""
-    found = link(issue)
-    return found if "://" in found else f"upstream/{issue.page}.md"
+    site = _site()
+    return f"{site}/upstream/{issue.page}.html" if site else f"upstream/{issue.page}.md"
+
+
+def link(issue: Issue) -> str:
+    """Address of the page of an issue on the project's site; its file where the site has no address."""
+    if _site():
+        return page_address(issue)
+    file = page_file(issue)
+    return str(file.relative_to(Path.cwd()) if file.is_relative_to(Path.cwd()) else file)
+
+
+def page_file(issue: Issue) -> Path:
+    """File of the page of an issue: inside an installed package, else in the checkout."""
+    package, checkout = (Path(__file__).resolve().parents[level] for level in (1, 3))
+    folder = package / "data" / "upstream"
+    return (folder if folder.is_dir() else checkout / "docs" / "upstream") / f"{issue.page}.md"
+
+
+@cache
+def _site() -> str:
+    """Address of the documentation, from the metadata of the package (`project.urls`); "" for none."""
+    try:
+        urls = metadata("mxeon").get_all("Project-URL") or []
+    except PackageNotFoundError:  # imported from a folder
+        return ""
+    named = dict(each.split(", ", 1) for each in urls)
+    return str(named.get("Documentation", "")).rstrip("/")
 
 
 def vector(values: ArrayLike) -> str:

@@ -22,7 +22,7 @@ from mxeon.conformance.backends import (
     Mask,
     Pairs,
     PictureSamples,
-    Samples,
+    errors_of,
     lit_pairs,
     scene_of,
 )
@@ -42,9 +42,9 @@ from mxeon.conformance.specs.diffuse import model_value
 from mxeon.conformance.tolerance import (
     Term,
     Tolerance,
-    absolute,
     mean_error,
     roundings,
+    sum_in,
     sum_of,
 )
 from mxeon.models import table as reference
@@ -64,17 +64,15 @@ EXACT_INPUTS: tuple[Values, ...] = (  # from dark to white and from rough to smo
     {"color": (0.5, 0.2, 1.0), "roughness": 0.1},
 )
 # The normal of a facet: three float32 vertices, over the narrowest edge, twice for its two ends.
-FACETS = sum_of(
+FACETS = sum_in(
+    "pi f cos",
     roundings(8 * 2.0 * math.sqrt(3.0) / NARROWEST, "of a facet's vertices, times the slope 8"),
-    unit="pi f cos",
-    metric=absolute,
 )
 # EEVEE keeps light in 32 bits for three channels; blue has the fewest.
-COARSE_FACETS = sum_of(
+COARSE_FACETS = sum_in(
+    "pi f cos or albedo",
     Term(2.0**-6, "five bits below the leading one, cut off"),
     Term(2.4e-3, "packed normals, measured"),
-    unit="pi f cos or albedo",
-    metric=absolute,
 )
 FACET_NOISE = sum_of(
     Term(
@@ -85,9 +83,7 @@ FACET_NOISE = sum_of(
     metric=mean_error,
 )
 # Burley's two factors have a product of at most 25/4; the coats and facets that are judged have less.
-FACET_PAIRS = sum_of(
-    roundings(16 * 2.5**2, "of numbers up to 25/4"), unit="pi f cos", metric=absolute
-)
+FACET_PAIRS = sum_in("pi f cos", roundings(16 * 2.5**2, "of numbers up to 25/4"))
 
 
 class Renderer(Protocol):
@@ -152,14 +148,9 @@ class FormSamples(PictureSamples):
 class Exact(Native):
     """A node on a sphere whose points and light have no error but rounding."""
 
-    errors: ClassVar[Mapping[str, Tolerance]] = {
-        "value": EXACT,
-        "albedo": EXACT_ALBEDO,
-        "lambert": EXACT,
-    }
+    errors = errors_of(EXACT, EXACT_ALBEDO)
 
-    def samples(self) -> Samples:
-        return FormSamples(self)
+    sampled = FormSamples
 
     @property
     def size(self) -> int:
@@ -186,10 +177,10 @@ class FacetSamples(FormSamples):
 
     @cached_property
     def views(self) -> tuple[Batch, ...]:
-        scene = replace(FURNACE, size=self._pictures.size)
+        scene = replace(FURNACE, size=self.backend.size)
         names = ("color", "roughness")
         return tuple(
-            self._pictures.batch(scene, {name: inputs[name] for name in names})
+            self.backend.batch(scene, {name: inputs[name] for name in names})
             for inputs in PICTURE_INPUTS
         )
 
@@ -197,14 +188,9 @@ class FacetSamples(FormSamples):
 class Facets(Exact):
     """A node on a polyhedron, with noise under an environment."""
 
-    errors: ClassVar[Mapping[str, Tolerance]] = {
-        "value": FACETS,
-        "albedo": FACET_NOISE,
-        "lambert": FACETS,
-    }
+    errors = errors_of(FACETS, FACET_NOISE)
 
-    def samples(self) -> Samples:
-        return FacetSamples(self)
+    sampled = FacetSamples
 
     @property
     def size(self) -> int:
@@ -238,7 +224,7 @@ class FacetPairSamples(FacetSamples):
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        rng, spec, count = np.random.default_rng(SEED), self.lobe, FEW_CALLS.pairs
+        rng, spec, count = np.random.default_rng(SEED), self.spec, FEW_CALLS.pairs
         random = directions(rng, count), directions(rng, count)
         special = Batch(*special_directions(rng), {})
         half = np.linalg.norm(special.wo + special.wi, axis=1)
@@ -264,8 +250,7 @@ class FacetPairs(Facets):
         "reciprocity": FACET_PAIRS,
     }
 
-    def samples(self) -> Samples:
-        return FacetPairSamples(self)
+    sampled = FacetPairSamples
 
     def portrait(self, scene: Scene) -> tuple[Array, Array, Mask, Mask]:
         return Backend.portrait(self, scene)

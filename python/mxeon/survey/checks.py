@@ -37,15 +37,13 @@ def is_sampled(spec: Spec) -> bool:
 
 
 @check(
-    "density",
-    "The sampling density is the paper's.",
     is_sampled,
     with_inputs("roughness is dropped", roughness=0.0),
     tolerance=OWN_DENSITY,
     diagnose=lambda case: Diagnosis("the density differs from the paper's listings"),
 )
 def density(case: Case) -> Iterator[Compared]:
-    """The renderer's density against that of the paper's sampling."""
+    """The sampling density is the paper's."""
     for batch in case.few:
         batch = batch.where(batch.wi[:, 2] > 0.0)
         expected = eon_cltc_pdf(batch.wo, batch.wi, batch.inputs["roughness"])[:, np.newaxis]
@@ -59,15 +57,15 @@ def _density(case: Case, batch: Batch) -> Array:
 
 
 @check(
-    "samples",
-    "Samples follow the density that is returned with them.",
     is_sampled,
     with_inputs("the density is that of roughness 0", roughness=0.0),
     tolerance=CHI_SQUARE,
     diagnose=lambda case: Diagnosis("the samples do not follow the density"),
 )
 def samples(case: Case) -> Measurement:
-    """Deviation of the chi-square of directions against their own density, in standard deviations.
+    """Samples follow the density that is returned with them.
+
+    Deviation of the chi-square of directions against their own density, in standard deviations.
 
     Drawn for COSINES at ROUGHNESS. The cube root of a chi-square over its degrees of freedom is
     nearly normal, which gives the deviation [WilsonHilferty1931].

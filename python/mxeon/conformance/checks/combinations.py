@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 
 from mxeon.conformance.case import LIGHT, Case, throughputs
-from mxeon.conformance.check import check, of_family, pass_all, shifted, with_values
+from mxeon.conformance.check import add_check, check, of_family, pass_all, shifted, with_values
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.diagnosis.comparisons import ALBEDO, THROUGHPUT, VALUE
 from mxeon.conformance.specs.combinations import SINGLE, CombinedSpec
@@ -17,41 +17,36 @@ from mxeon.models.nodes.combinations import FACTOR
 is_combined = of_family(CombinedSpec)
 
 
-check(
+add_check(
+    VALUE,
     "combination",
     "Two combined lobes have the value that the node's equation gives.",
     is_combined,
     shifted,
     pairs=True,
-)(VALUE)
+)
 
-check(
+add_check(
+    ALBEDO,
     "combined_albedo",
     "The environment branch of two combined lobes returns their albedo.",
     is_combined,
     shifted,
     pairs=True,
-)(ALBEDO)
-
-
-@check(
-    "combined_throughput",
-    "Two combined lobes pass on what they do not scatter, as the layer equation requires.",
-    is_combined,
-    pass_all,
-    "throughput",
-    open=True,
-    diagnose=THROUGHPUT.diagnose,
 )
-def passing(case: Case) -> Iterator[Compared]:
-    """Throughput of a combination against 1 - E; a negative one counts as 0, as `layer` takes it."""
+
+
+@check(is_combined, pass_all, "throughput", open=True, diagnose=THROUGHPUT.diagnose)
+def combined_throughput(case: Case) -> Iterator[Compared]:
+    """Two combined lobes pass on what they do not scatter, as the layer equation requires.
+
+    A negative throughput counts as 0, as `layer` takes it.
+    """
     for compared in throughputs(case, *LIGHT):
         yield compared._replace(measured=np.maximum(compared.measured, 0.0))
 
 
 @check(
-    "factor",
-    "Factors are clamped to [0, 1].",
     lambda spec: spec.model in SINGLE,
     with_values(
         "values are multiplied twice",
@@ -61,7 +56,8 @@ def passing(case: Case) -> Iterator[Compared]:
     open=True,
     diagnose=lambda case: Diagnosis("the factor is not clamped", permitted=True),
 )
-def factors(case: Case) -> Iterator[Compared]:
+def factor(case: Case) -> Iterator[Compared]:
+    """Factors are clamped to [0, 1]."""
     for batch, (factor, end) in product(case.few, ((2.0, 1.0), (-1.0, 0.0))):
         beyond, nearest = (
             batch.altered(**{FACTOR: np.full_like(batch.inputs[FACTOR], number)})

@@ -9,14 +9,14 @@ import numpy as np
 
 from mxeon.conformance.case import Case
 from mxeon.conformance.check import check, scale
-from mxeon.conformance.checks.energy import is_layer
+from mxeon.conformance.checks.lobes import is_layer
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.results import WRONG_INSIDE
 from mxeon.conformance.samples import Batch
 from mxeon.conformance.spec import Input, Spec
 from mxeon.conformance.specs.lobes import PbrSpec
 from mxeon.conformance.specs.microfacets import TransmissionSpec
-from mxeon.conformance.tolerance import Compared, Tolerance, absolute, given, scaled
+from mxeon.conformance.tolerance import Compared, absolute, given, scaled
 from mxeon.errors import NotRun
 
 PAIRS = 16  # of each value
@@ -58,7 +58,7 @@ def outside(case: Case) -> Iterator[Beyond]:
     wrong = {
         name
         for name, (_, measured, expected) in quantities(plain, views, views)
-        if scaled(measured, expected).max() > _tolerance(case, name).value
+        if scaled(measured, expected).max() > case.tolerance(name).value
     }
     if len(wrong) == 2 + is_layer(spec):
         raise NotRun(f"{case.host.name}: not measured, since {spec.title} {WRONG_INSIDE}")
@@ -71,16 +71,10 @@ def outside(case: Case) -> Iterator[Beyond]:
             )
             for name, (_, measured, expected) in quantities(case, lit, right):
                 if name not in wrong:
-                    tolerance = _tolerance(case, name, f" with {each.name} {value:g}")
+                    tolerance = case.tolerance(f"{name} with {each.name} {value:g}", name)
                     scale = tolerance.value * tolerance.scale(expected)
                     compared = Compared(lit, measured / scale, expected / scale)
                     yield Beyond(name, each, value, compared)
-
-
-def _tolerance(case: Case, name: str, place: str = "") -> Tolerance:
-    tolerance = case.tolerance(f"{name}{place}") or case.tolerance(name)
-    assert tolerance is not None, f"{case.spec.title} has no {name}"
-    return tolerance
 
 
 def diagnose(case: Case) -> Diagnosis:
@@ -97,8 +91,6 @@ def diagnose(case: Case) -> Diagnosis:
 
 
 @check(
-    "domain",
-    "Inputs outside their usual range have the value, the albedo and the throughput of the model, too.",
     is_bounded,
     scale("values are 30 % too large", 1.3),
     tolerance=TOLERANCES,
@@ -107,4 +99,5 @@ def diagnose(case: Case) -> Diagnosis:
     diagnose=diagnose,
 )
 def domain(case: Case) -> Iterator[Compared]:
+    """Inputs outside their usual range have the value, the albedo and the throughput of the model, too."""
     return (each.compared for each in outside(case))

@@ -9,6 +9,7 @@ from mxeon.conformance.backends import implementation
 from mxeon.conformance.case import Case, over_condition, values
 from mxeon.conformance.check import (
     Control,
+    add_check,
     check,
     gray,
     of_family,
@@ -17,7 +18,7 @@ from mxeon.conformance.check import (
     shifted,
     with_inputs,
 )
-from mxeon.conformance.checks.energy import summed
+from mxeon.conformance.checks.lobes import summed
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.diagnosis.comparisons import BACK, RADIANCE, TRANSMITTANCE, VALUE
 from mxeon.conformance.specs.emission import (
@@ -26,8 +27,8 @@ from mxeon.conformance.specs.emission import (
     AbsentSpec,
     EmissionSpec,
     EmittingSurface,
+    MediumSpec,
 )
-from mxeon.conformance.specs.media import MediumSpec
 from mxeon.conformance.tolerance import Compared, Measurement, count_of
 
 is_emission = of_family(EmissionSpec)
@@ -39,8 +40,6 @@ unimplemented = Control(
 
 
 @check(
-    "implemented",
-    "The target implements the node.",
     of_family(EmissionSpec, MediumSpec, AbsentSpec),
     unimplemented,
     tolerance=count_of("nodes"),
@@ -49,56 +48,40 @@ unimplemented = Control(
     ),
 )
 def implemented(case: Case) -> Measurement:
+    """The target implements the node."""
     shader = implementation(case.host, case.spec.document(), case.library)
     return Measurement(float(shader is None), {})
 
 
-@check(
-    "radiance",
-    "The radiance matches the node's equation for every view from the front.",
-    is_emission,
-    gray,
-    "value",
-    diagnose=RADIANCE.diagnose,
-)
+@check(is_emission, gray, "value", diagnose=RADIANCE.diagnose)
 def radiance(case: Case) -> Iterator[Compared]:
+    """The radiance matches the node's equation for every view from the front."""
     return (over_condition(case, each) for each in values(case))
 
 
-@check(
-    "back",
-    "The back of the surface emits what the equation gives.",
-    is_emission,
-    offset,
-    "value",
-    pairs=True,
-    open=True,
-    diagnose=BACK.diagnose,
-)
+@check(is_emission, offset, "value", pairs=True, open=True, diagnose=BACK.diagnose)
 def back(case: Case) -> Iterator[Compared]:
+    """The back of the surface emits what the equation gives."""
     return (over_condition(case, each) for each in BACK(case))
 
 
 @check(
-    "exitance",
-    "The radiance integrates to the power that the equation gives.",
-    is_emission,
-    scale("the radiance is 1 % too low", 0.99),
-    "integral",
-    diagnose=RADIANCE.diagnose,
+    is_emission, scale("the radiance is 1 % too low", 0.99), "integral", diagnose=RADIANCE.diagnose
 )
 def exitance(case: Case) -> Compared:
+    """The radiance integrates to the power that the equation gives."""
     spec = case.of(EmissionSpec)
     views, measured = summed(case, *case.samples.take(spec.integrated))
     return Compared(views, measured, spec.exitance(views) / np.pi)
 
 
-check(
+add_check(
+    TRANSMITTANCE,
     "transmittance",
     "Over one meter, a medium transmits what its coefficients give.",
     of_family(MediumSpec),
     shifted,
-)(TRANSMITTANCE)
+)
 
 
 def diagnose_opacity(case: Case) -> Diagnosis:
@@ -110,10 +93,11 @@ def diagnose_opacity(case: Case) -> Diagnosis:
     return Diagnosis("the opacity is ignored" if full <= OPACITY.value else "")
 
 
-check(
+add_check(
+    VALUE,
     "opacity",
     "The light that a surface emits is scaled by its opacity.",
     of_family(EmittingSurface),
     with_inputs("the opacity is 1", opacity=1.0),
     diagnose=diagnose_opacity,
-)(VALUE)
+)

@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import partial
 
 from mxeon.conformance.case import Case, over_condition
-from mxeon.conformance.check import check, with_inputs
+from mxeon.conformance.check import add_check, with_inputs
 from mxeon.conformance.diagnosis.candidates import Diagnosis, explain
 from mxeon.conformance.diagnosis.faults import DIRECT_FAULTS
 from mxeon.conformance.specs.hair import REGION, REGIONS, HairSpec
@@ -41,7 +41,8 @@ def _diagnose(key: str, case: Case) -> Diagnosis:
 
 
 for _key, _region in REGIONS.items():
-    check(
+    add_check(
+        _measure(_key),
         _key,
         _region.claim,
         lambda spec: isinstance(spec, HairSpec),
@@ -49,4 +50,4 @@ for _key, _region in REGIONS.items():
         lit=True,
         open=True,
         diagnose=partial(_diagnose, _key),
-    )(_measure(_key))
+    )

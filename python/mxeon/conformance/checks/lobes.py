@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of a lobe: its values and albedos, its frame, its inputs and its edges."""
+"""Checks of a lobe: its values and albedos, its frame, its inputs, its edges, and its energy."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from itertools import product
 
@@ -12,30 +12,31 @@ from numpy.typing import ArrayLike
 from mxeon.conformance.backends import WHITE, scene_of
 from mxeon.conformance.case import BRANCHES, Case, dead_inputs, edge_values, frames
 from mxeon.conformance.check import (
+    add_check,
     check,
     control,
     drop_changes,
     gray,
     of_family,
     offset,
+    pass_all,
+    scale,
     scale_cosine,
     take_response,
     with_inputs,
 )
 from mxeon.conformance.diagnosis import inputs as input_diagnosis
 from mxeon.conformance.diagnosis.candidates import Diagnosis, explain
-from mxeon.conformance.diagnosis.comparisons import ALBEDO, VALUE
-from mxeon.conformance.samples import SKY_ROWS, SLOPE, Array, Batch, sky_map
+from mxeon.conformance.diagnosis.comparisons import ALBEDO, THROUGHPUT, TRANSMISSION, VALUE
+from mxeon.conformance.samples import LEAST_COLOR82, SKY_ROWS, SLOPE, Array, Batch, Values, sky_map
 from mxeon.conformance.spec import LobeSpec, Spec
 from mxeon.conformance.specs.combinations import CombinedSpec
 from mxeon.conformance.specs.diffuse import DiffuseModelSpec, DiffuseSpec, SurfaceLobe, model_value
-from mxeon.conformance.specs.emission import EmissionSpec
+from mxeon.conformance.specs.emission import EmissionSpec, MediumSpec
 from mxeon.conformance.specs.hair import HairSpec
 from mxeon.conformance.specs.lobes import PbrSpec
-from mxeon.conformance.specs.media import MediumSpec
-from mxeon.conformance.specs.microfacets import FacetSpec, TransmissionSpec
+from mxeon.conformance.specs.microfacets import FacetSpec, FilmSpec, TransmissionSpec
 from mxeon.conformance.specs.subsurface import ON_SPHERES, RINGS, SubsurfaceSpec, inner, spread
-from mxeon.conformance.specs.thin_films import FilmSpec
 from mxeon.conformance.tolerance import (
     Compared,
     Measurement,
@@ -45,7 +46,7 @@ from mxeon.conformance.tolerance import (
     count_not_finite,
     count_of,
     given,
-    sum_of,
+    sum_in,
 )
 from mxeon.hosts import HOSTS, front_lit_only
 from mxeon.models import table as reference
@@ -58,12 +59,11 @@ LEAST_LIGHT = 0.01  # of a uniform environment, where the place of an uneven one
 # Texels are pi / 128 high and wide, their middles are read, and engines keep filters' weights in eight bits.
 TEXEL = math.sqrt(2.0) * math.pi / SKY_ROWS * 2.0**-8
 ARC_SINE = 4e-4  # largest error of an engine's arc sine: llvmpipe's, ten times that of others
-SURROUNDINGS = sum_of(
+SURROUNDINGS = sum_in(
+    "irradiance",
     Term(SLOPE * TEXEL, "2^-8 of a texel, times the slope of the map, 1/2"),
     Term(SLOPE * ARC_SINE, "an engine's arc sine, times the slope"),
     Term(2.0**-11, "half floats"),
-    unit="irradiance",
-    metric=absolute,
 )
 ZERO = given(0.0, "pi f cos", "a product with 0 is 0 in any precision")
 OPAQUE = given(0.0, "throughput", "a constant has no roundings")
@@ -117,39 +117,37 @@ def has_environment(spec: Spec, host: str) -> bool:
     return not front_lit_only(host, spec.model)
 
 
-check(
+add_check(
+    VALUE,
     "value",
     "The value matches the model for every pair of directions, including back-lit and grazing ones.",
     lambda spec: is_node(spec) and (is_lobe(spec) or is_model(spec, *ROUGH, *COATED)),
     gray,
     open=True,
-)(VALUE)
+)
 
-check(
+add_check(
+    VALUE,
     "lobe",
     "The diffuse lobe of the surface shader matches the model.",
     lambda spec: is_model(spec, "lambert") or not is_node(spec),
     gray,
-)(VALUE)
+)
 
-check(
+add_check(
+    ALBEDO,
     "environment",
     "The environment branch returns the directional albedo.",
     lambda spec: is_lobe(spec) or is_model(spec, *ROUGH, "lambert", *COATED),
     gray,
     open=True,
     hosts=has_environment,
-)(ALBEDO)
-
-
-@check(
-    "albedo",
-    "Values integrate to the colored directional albedo.",
-    lambda spec: is_model(spec, *MODES),
-    gray,
-    "integral",
 )
-def quadrature(case: Case) -> list[Compared]:
+
+
+@check(lambda spec: is_model(spec, *MODES), gray, "integral")
+def albedo(case: Case) -> list[Compared]:
+    """Values integrate to the colored directional albedo."""
     rows = list(product((0.1, 0.3, 0.6, 0.95), COLORS, (0.25, 1.0)))
     mu, color, roughness = (np.array(column) for column in zip(*rows, strict=True))
     wo = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=1)
@@ -180,8 +178,6 @@ def integrated(
 
 
 @check(
-    "furnace",
-    "A white surface disappears in a white environment.",
     lambda spec: is_model(spec, *EON, *COATED),
     with_inputs("reflectance is 0.99", color=(0.99, 0.99, 0.99)),
     "albedo",
@@ -189,14 +185,13 @@ def integrated(
     diagnose=ALBEDO.diagnose,
 )
 def furnace(case: Case) -> Iterator[Compared]:
+    """A white surface disappears in a white environment."""
     for batch in case.views:
         white = batch.altered(color=WHITE, weight=1.0)
         yield Compared(white, case.albedo(white), np.ones((1, 3)))
 
 
 @check(
-    "black",
-    "A black surface scatters nothing.",
     lambda spec: (
         (is_plain(spec) and isinstance(spec, LobeSpec) and bool(spec.black))
         or (
@@ -209,19 +204,20 @@ def furnace(case: Case) -> Iterator[Compared]:
     tolerance=ZERO,
 )
 def black(case: Case) -> Iterator[Compared]:
+    """A black surface scatters nothing."""
     for batch in case.few:
         batch = batch.altered(**case.lobe.black)
         yield Compared(batch, case.direct(batch), np.zeros((1, 3)))
 
 
-check(
+add_check(
+    frames,
     "frame",
     "The value follows the surface's frame, with the normal turned toward the viewer.",
-    # The frames turn from pixel to pixel: to subsurface scattering that is a curved surface.
     lambda spec: (is_lobe(spec) and not isinstance(spec, SubsurfaceSpec)) or is_model(spec, *MODES),
     with_inputs("the node's normal is dropped", normal=(0.0, 0.0, 1.0)),
     diagnose=input_diagnosis.diagnose_frame,
-)(frames)
+)
 
 
 def diagnose_surroundings(case: Case) -> Diagnosis:
@@ -229,8 +225,6 @@ def diagnose_surroundings(case: Case) -> Diagnosis:
 
 
 @check(
-    "surroundings",
-    "An uneven environment is looked up along the viewer-facing normal, or along its opposite for translucent nodes.",
     lambda spec: (
         (is_plain(spec) and not isinstance(spec, FacetSpec)) or is_model(spec, *MODES, "burley")
     ),
@@ -241,6 +235,7 @@ def diagnose_surroundings(case: Case) -> Diagnosis:
     diagnose=diagnose_surroundings,
 )
 def surroundings(case: Case) -> Compared:
+    """An uneven environment is looked up along the viewer-facing normal, or along its opposite for translucent nodes."""
     batch = case.samples.turned
     if "color" in batch.inputs:
         batch = batch.altered(color=WHITE)
@@ -254,29 +249,21 @@ def surroundings(case: Case) -> Compared:
 
 
 def diagnose_sphere(case: Case) -> Diagnosis:
-    return explain(case, list(spheres(case)), ON_SPHERES, (), RINGS)
+    return explain(case, list(sphere(case)), ON_SPHERES, (), RINGS)
 
 
 ON_SPHERE = with_inputs("the mean free path is 0.3 in every channel", radius=(0.3, 0.3, 0.3))
 
 
-@check(
-    "sphere_mean",
-    "On average, a sphere reflects the share of light that the profile predicts.",
-    of_family(SubsurfaceSpec),
-    ON_SPHERE,
-    lit=True,
-    diagnose=diagnose_sphere,
-)
-@check(
-    "sphere",
-    "On a sphere, light spreads as the diffusion profile predicts from radius and anisotropy.",
-    of_family(SubsurfaceSpec),
-    ON_SPHERE,
-    lit=True,
-    diagnose=diagnose_sphere,
-)
-def spheres(case: Case) -> Iterator[Compared]:
+@check(of_family(SubsurfaceSpec), ON_SPHERE, lit=True, diagnose=diagnose_sphere)
+def sphere_mean(case: Case) -> Iterator[Compared]:
+    """On average, a sphere reflects the share of light that the profile predicts."""
+    return sphere(case)
+
+
+@check(of_family(SubsurfaceSpec), ON_SPHERE, lit=True, diagnose=diagnose_sphere)
+def sphere(case: Case) -> Iterator[Compared]:
+    """On a sphere, light spreads as the diffusion profile predicts from radius and anisotropy."""
 
     def picture(batch: Batch) -> Array:
         scene = scene_of(batch)
@@ -288,8 +275,6 @@ def spheres(case: Case) -> Iterator[Compared]:
 
 
 @check(
-    "cylinder",
-    "On a cylinder, light spreads alike, whichever way the axis runs on the screen.",
     of_family(SubsurfaceSpec),
     with_inputs("the mean free path is 0", radius=(0.0, 0.0, 0.0)),
     "frame",
@@ -299,8 +284,11 @@ def spheres(case: Case) -> Iterator[Compared]:
         "the curvature depends on the direction in which a surface bends"
     ),
 )
-def cylinders(case: Case) -> Compared:
-    """Values of pixels in squares of 2 x 2 that bend along the columns, against the same along the rows."""
+def cylinder(case: Case) -> Compared:
+    """On a cylinder, light spreads alike, whichever way the axis runs on the screen.
+
+    Pixels in squares of 2 x 2 that bend along the columns, against the same along the rows.
+    """
     batch = case.samples.take(case.of(SubsurfaceSpec).cylinder)
     quarter = len(batch.wo) // 4
     turned = np.arange(len(batch.wo)).reshape(2, quarter, 2).transpose(2, 1, 0).ravel()
@@ -316,8 +304,6 @@ def opaque_values(case: Case, branch: str) -> Iterator[Compared]:
 
 
 @check(
-    "throughput",
-    "No light from below passes: the throughput is 0 in every branch, for every weight.",
     is_opaque,
     take_response,
     tolerance=OPAQUE,
@@ -328,17 +314,16 @@ def opaque_values(case: Case, branch: str) -> Iterator[Compared]:
     ),
 )
 def throughput(case: Case) -> Iterator[Compared]:
+    """No light from below passes: the throughput is 0 in every branch, for every weight."""
     return (each for branch in BRANCHES for each in opaque_values(case, branch))
 
 
-@check(
-    "reciprocity",
-    "Exchanging the two directions does not change the BRDF.",
-    is_reciprocal,
-    scale_cosine("the value has an extra factor cos(theta_o)", 1),
-)
+@check(is_reciprocal, scale_cosine("the value has an extra factor cos(theta_o)", 1))
 def reciprocity(case: Case) -> Iterator[Compared]:
-    """f(wo, wi) against f(wi, wo), both times both cosines."""
+    """Exchanging the two directions does not change the BRDF.
+
+    f(wo, wi) against f(wi, wo), both times both cosines.
+    """
     for batch in case.few:
         side = -1.0 if np.all(batch.wi[:, 2] <= 0.0) else 1.0  # light through the surface
         swapped = replace(batch, wo=side * batch.wi, wi=side * batch.wo)
@@ -348,13 +333,9 @@ def reciprocity(case: Case) -> Iterator[Compared]:
         yield Compared(batch, forward, backward)
 
 
-@check(
-    "lambert",
-    "At roughness 0 the node is Lambert.",
-    lambda spec: is_model(spec, *MODES),
-    with_inputs("roughness is 0.1", roughness=0.1),
-)
+@check(lambda spec: is_model(spec, *MODES), with_inputs("roughness is 0.1", roughness=0.1))
 def lambert(case: Case) -> Iterator[Compared]:
+    """At roughness 0 the node is Lambert."""
     for batch in case.few:
         batch = batch.altered(roughness=0.0)
         yield Compared(batch, case.direct(batch), model_value(batch, "lambert"))
@@ -379,14 +360,15 @@ def take_other_mode(case: Case) -> Case:
 
 
 @check(
-    "flag",
-    "energy_compensation changes the value by the difference between the two models.",
     lambda spec: is_model(spec, *MODES) and isinstance(spec, DiffuseSpec) and FLAG in spec.names,
     take_other_mode,
     "difference",
 )
 def flag(case: Case) -> Measurement:
-    """The part that the case's own mode has in a wrong change by the flag, relative to the models'."""
+    """energy_compensation changes the value by the difference between the two models.
+
+    The part that the case's own mode has in a wrong change by the flag, relative to the models'.
+    """
     error = largest = 0.0
     modes = modes_of(case)
     for batch in case.few:
@@ -406,8 +388,6 @@ def flag(case: Case) -> Measurement:
 
 
 @check(
-    "inputs",
-    "Every input of the node changes the value.",
     lambda spec: (
         (is_node(spec) and (is_lobe(spec) or is_model(spec, *ROUGH, "lambert", *COATED)))
         or isinstance(spec, (CombinedSpec, EmissionSpec, MediumSpec))
@@ -417,12 +397,11 @@ def flag(case: Case) -> Measurement:
     diagnose=input_diagnosis.diagnose_inputs,
 )
 def inputs(case: Case) -> Measurement:
+    """Every input of the node changes the value."""
     return count_named(dead_inputs(case))
 
 
 @check(
-    "finite",
-    "Every value at the edges of the domain is finite.",
     lambda spec: is_lobe(spec) or is_model(spec, *MODES),
     scale_cosine("the value is divided by cos(theta_o)", -1),
     tolerance=count_of("values"),
@@ -431,5 +410,100 @@ def inputs(case: Case) -> Measurement:
     diagnose=input_diagnosis.diagnose_finite,
 )
 def finite(case: Case) -> Measurement:
+    """Every value at the edges of the domain is finite."""
     batch, found, _ = edge_values(case)
     return count_not_finite(batch, found)
+
+
+# --- energy: what a lobe scatters in all, what it lets through, and both of two lobes together ----
+
+ROUNDED = 1e-9  # difference of two albedos that are the same
+
+
+def is_layer(spec: Spec) -> bool:
+    """Whether a node lets 1 - E through to what lies below."""
+    return is_plain(spec) and isinstance(spec, PbrSpec) and spec.row.layerable
+
+
+def reads(name: str) -> Callable[[Spec], bool]:
+    """Whether a layer is one of an input of a name."""
+    return lambda spec: is_layer(spec) and isinstance(spec, PbrSpec) and name in spec.row.inputs
+
+
+add_check(
+    THROUGHPUT,
+    "layering",
+    "The throughput of a layer of albedo E is 1 - E for light from above, for every weight.",
+    is_layer,
+    pass_all,
+)
+
+add_check(
+    TRANSMISSION,
+    "transmission",
+    "The throughput of a layer is 1 - E for light through the base, too.",
+    is_layer,
+    pass_all,
+)
+
+
+@check(reads("color82"), pass_all, pairs=True, lit=True, diagnose=THROUGHPUT.diagnose)
+def dip(case: Case) -> Iterator[Compared]:
+    """Where color82 lowers the reflectance, the layer passes on what it does not reflect."""
+    dipped = (LEAST_COLOR82,) * 3
+    white: Values = {"color0": WHITE, "color90": WHITE, "color82": dipped, "exponent": 5.0}
+    return (_passed(case, batch.altered(**white)) for batch in case.views)
+
+
+@check(reads("tint"), pass_all, pairs=True, lit=True, diagnose=THROUGHPUT.diagnose)
+def denser(case: Case) -> Iterator[Compared]:
+    """For indices below 1, where facets reflect totally, the throughput is 1 - E, too."""
+    for batch in case.views:
+        inverse = batch.altered(ior=1.0 / np.asarray(batch.inputs["ior"]), tint=WHITE)
+        yield _passed(case, inverse)
+
+
+def _passed(case: Case, batch: Batch) -> Compared:
+    """Throughput at full weight against 1 - E."""
+    full = batch.altered(weight=1.0)
+    passed = np.maximum(1.0 - case.expected_albedo(full), 0.0)
+    return Compared(full, case.throughput(full, "direct"), passed)
+
+
+@check(is_layer, pass_all, "light", diagnose=THROUGHPUT.diagnose)
+def layer(case: Case) -> Compared:
+    """A layer over a white base returns all light."""
+    views, albedo = integrals(case)
+    total = albedo + case.throughput(views, "direct")
+    # Where the equations gain energy by themselves, no throughput makes up for it.
+    own = case.lobe.albedo(views)
+    sound = np.asarray((case.samples.integrals <= own + ROUNDED).all(axis=1))
+    return Compared(views.where(sound), total[sound], np.ones((1, 3)))
+
+
+@check(is_lobe, scale("values are 2 % too large", 1.02), open=True)
+def integral(case: Case) -> Compared:
+    """Values integrate to the directional albedo that the equations give."""
+    views, albedo = integrals(case)
+    return Compared(views, albedo, case.samples.integrals)
+
+
+@check(is_lobe, scale("values are 100 times as large", 100.0), "integral")
+def energy(case: Case) -> Compared:
+    """No albedo exceeds 1 or what the equations give."""
+    views, albedo = integrals(case)
+    allowed = np.maximum(1.0, case.samples.integrals)
+    return Compared(views, np.maximum(albedo, allowed), allowed)
+
+
+def integrals(case: Case) -> tuple[Batch, Array]:
+    """Views of the integrated materials, and their albedos from the host's values, (N, 3)."""
+    return summed(case, *case.samples.integrated)
+
+
+def summed(case: Case, batch: Batch, weights: Array) -> tuple[Batch, Array]:
+    """Views of materials in many directions of light, and their albedos, (N, 3)."""
+    count, nodes = weights.shape
+    values = case.direct(batch).reshape(count, nodes, 3)
+    albedo = (weights[..., np.newaxis] * values).sum(axis=1)
+    return batch.where(np.arange(count) * nodes), albedo

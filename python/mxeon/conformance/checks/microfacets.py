@@ -1,25 +1,68 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of lobes of microfacets alone."""
+"""Checks of lobes of microfacets alone, of the light that they transmit, and of those under a thin film."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.conformance.case import Case
-from mxeon.conformance.check import check, control, scale, with_inputs
-from mxeon.conformance.checks.energy import summed
-from mxeon.conformance.checks.lobes import is_plain, shows_exactly
+from mxeon.conformance.backends import WHITE
+from mxeon.conformance.case import SCATTERING, Case
+from mxeon.conformance.check import (
+    add_check,
+    check,
+    drop_changes,
+    of_family,
+    offset,
+    pass_all,
+    scale,
+    scale_cosine,
+    with_batch,
+    with_inputs,
+    with_values,
+)
+from mxeon.conformance.checks.lobes import SURROUNDINGS, finite, is_plain, shows_exactly, summed
 from mxeon.conformance.diagnosis import inputs as input_diagnosis
-from mxeon.conformance.diagnosis.candidates import Diagnosis
-from mxeon.conformance.samples import LEAST_COLOR82, Array, Batch, rounded, sky, sky_map
+from mxeon.conformance.diagnosis.candidates import NEAR, Diagnosis, not_finite
+from mxeon.conformance.diagnosis.comparisons import ALBEDO, THROUGHPUT, VALUE
+from mxeon.conformance.samples import (
+    LEAST_COLOR82,
+    Array,
+    Batch,
+    aimed,
+    rounded,
+    sky,
+    sky_map,
+    texel_middles,
+)
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs.lobes import PbrSpec
-from mxeon.conformance.specs.microfacets import LEAST_TANGENT_ALPHA, LEAST_TANGENT_COSINE, FacetSpec
-from mxeon.conformance.tolerance import Compared
+from mxeon.conformance.specs.microfacets import (
+    FRINGED,
+    GLOSSY,
+    LEAST_INDEX,
+    LEAST_TANGENT_ALPHA,
+    LEAST_TANGENT_COSINE,
+    ORDERED,
+    SHARP,
+    STEEP,
+    FacetSpec,
+    FilmSpec,
+    TransmissionSpec,
+    film_views,
+)
+from mxeon.conformance.tolerance import (
+    Compared,
+    Measurement,
+    count_named,
+    count_not_finite,
+    count_of,
+)
+from mxeon.models.microfacet.ggx import smith_g1, smith_lambda
+from mxeon.models.transmission import refraction_direction
 
-FEW = 1 << 12
+PAIRS = 1 << 12  # near the mirror direction
 LEAST_DIVIDED = 1.2  # index of a dielectric whose values are divided
 SKIES = 8  # lobes that are asked for the mean of an uneven sky
 LEAST_VALUE = 1e-3  # pi f cos of values whose ratio is asked
@@ -29,50 +72,32 @@ def is_facets(spec: Spec) -> bool:
     return is_plain(spec) and isinstance(spec, FacetSpec)
 
 
-@control("the roughness is 10 % larger")
-def rougher(case: Case) -> Case:
-    def inputs(batch: Batch) -> Batch:
-        rough = np.minimum(1.1 * np.asarray(batch.inputs["roughness"]), 1.0)
-        return batch.altered(roughness=rough)
-
-    return replace(case, inputs=inputs)
-
-
-@control("the roughness is the same in both directions")
-def isotropic(case: Case) -> Case:
-    def inputs(batch: Batch) -> Batch:
-        first = np.asarray(batch.inputs["roughness"])[:, :1]
-        return batch.altered(roughness=np.repeat(first, 2, axis=1))
-
-    return replace(case, inputs=inputs)
-
-
-@check(
-    "lossless",
-    "A lossless lobe returns all light at every roughness.",
-    is_facets,
-    scale("values are 2 % too large", 1.02),
-    "integral",
+rougher = with_batch(
+    "the roughness is 10 % larger",
+    lambda batch: batch.altered(roughness=np.minimum(1.1 * batch.inputs["roughness"], 1.0)),
 )
+isotropic = with_batch(
+    "the roughness is the same in both directions",
+    lambda batch: batch.altered(roughness=np.repeat(batch.inputs["roughness"][:, :1], 2, axis=1)),
+)
+
+
+@check(is_facets, scale("values are 2 % too large", 1.02), "integral")
 def lossless(case: Case) -> Compared:
+    """A lossless lobe returns all light at every roughness."""
     batch, weights = case.samples.integrated
     mirror = batch.altered(**case.of(PbrSpec).row.mirror)
     views, albedo = summed(case, mirror, weights)
     return Compared(views, albedo, np.ones_like(albedo))
 
 
-@check(
-    "shape",
-    "For one view, the values for two lights have the same ratio as the products D F G2.",
-    is_facets,
-    rougher,
-    pairs=True,
-    open=True,
-    hosts=shows_exactly,
-)
+@check(is_facets, rougher, pairs=True, open=True, hosts=shows_exactly)
 def shape(case: Case) -> Compared:
-    """Ratio of two values of one view against that of the equations: compensation cancels."""
-    batch, other = (_clear(each.first(FEW)) for each in case.samples.mirrored)
+    """For one view, the values for two lights have the same ratio as the products D F G2.
+
+    Compensation cancels in the ratio.
+    """
+    batch, other = (_clear(each.first(PAIRS)) for each in case.samples.mirrored)
     first, second = case.expected(batch), case.expected(other)
     lit = (np.minimum(first, second) > LEAST_VALUE).any(axis=1)
     least = np.minimum(batch.wo[:, 2], np.minimum(batch.wi[:, 2], other.wi[:, 2]))
@@ -98,14 +123,13 @@ def _clear(batch: Batch) -> Batch:
 
 
 @check(
-    "retroreflection",
-    "The retroreflective lobe equals the mirror lobe for the mirrored view.",
     is_facets,
     with_inputs("the flag is dropped", retroreflective=False),
     pairs=True,
     diagnose=input_diagnosis.ignored("retroreflective"),
 )
 def retroreflection(case: Case) -> Iterator[Compared]:
+    """The retroreflective lobe equals the mirror lobe for the mirrored view."""
     for batch in case.few:
         mirrored = replace(batch, wo=batch.wo * [-1.0, -1.0, 1.0])
         measured = case.direct(batch.altered(retroreflective=True))
@@ -113,15 +137,14 @@ def retroreflection(case: Case) -> Iterator[Compared]:
 
 
 @check(
-    "anisotropy",
-    "The lobe turns with the tangent.",
     is_facets,
     with_inputs("the tangent is dropped", tangent=(1.0, 0.0, 0.0)),
     pairs=True,
     diagnose=input_diagnosis.ignored("tangent"),
 )
 def anisotropy(case: Case) -> Compared:
-    batch = case.samples.mirrored[0].first(FEW)
+    """The lobe turns with the tangent."""
+    batch = case.samples.mirrored[0].first(PAIRS)
     batch = batch.where(np.minimum(batch.wo[:, 2], batch.wi[:, 2]) >= LEAST_TANGENT_COSINE)
     batch = batch.altered(roughness=np.maximum(batch.inputs["roughness"], LEAST_TANGENT_ALPHA))
     angle = np.linspace(0.0, 2.0 * np.pi, len(batch.wo))
@@ -143,16 +166,18 @@ def _turned_back(w: Array, tangent: Array) -> Array:
 
 
 @check(
-    "sky",
-    "An uneven environment is reflected as the values integrate over it, retroreflected, too.",
     is_facets,
     with_inputs("the flag is dropped", retroreflective=False),
     pairs=True,
     lit=True,
     diagnose=lambda case: diagnose_sky(case),
+    key="sky",
 )
 def reflected_sky(case: Case) -> Iterator[Compared]:
-    """Means of the sky under each lobe, which one for a mirrored view has by retroreflection; factors cancel."""
+    """An uneven environment is reflected as the values integrate over it, retroreflected, too.
+
+    Means of the sky under each lobe, which one for a mirrored view has by retroreflection; factors cancel.
+    """
     batch, weights = case.samples.integrated
     count, nodes = min(SKIES, len(weights)), weights.shape[1]
     part = batch.first(count * nodes)
@@ -168,27 +193,489 @@ def reflected_sky(case: Case) -> Iterator[Compared]:
 
 def diagnose_sky(case: Case) -> Diagnosis:
     """Whether the mirror lobe is wrong, or the retroreflective one alone."""
-    tolerance = case.tolerance("sky")
-    assert tolerance is not None, f"{case.spec.title} has no sky"
-    first = next(reflected_sky(case))
+    tolerance, first = case.tolerance("sky"), next(reflected_sky(case))
     if tolerance.metric(*first[1:]).max() > tolerance.value:
         return Diagnosis("the environment is looked up in other directions, or with other weights")
     return Diagnosis("retroreflective is ignored or wrong in an environment")
 
 
 def diagnose_stretched(case: Case) -> Diagnosis:
-    return input_diagnosis.diagnose_stretched(stretched(case))
+    return input_diagnosis.diagnose_stretched(anisotropic_albedo(case))
+
+
+@check(is_facets, isotropic, pairs=True, lit=True, diagnose=diagnose_stretched)
+def anisotropic_albedo(case: Case) -> Compared:
+    """The environment branch of an anisotropic lobe returns the integral of its values."""
+    batch, expected = case.samples.take(case.of(FacetSpec).stretched)
+    return Compared(batch, case.albedo(batch), expected)
+
+
+# --- light that is transmitted, in the branch that looks up an environment ------------------------
+
+SEEN = "the mean of 1 - F over the visible normals"
+SUMMED = 1e-3  # rms by which a sum over the normals of an engine differs from it
+SMOOTH_VIEWS = 1 << 9  # of smooth surfaces
+CHANGED_VIEWS = 1 << 6  # whose inputs are changed
+LEAST_SEEN = 0.05  # cosine of them
+CRITICAL = 0.05  # distance from the critical angle, in its cosine: F has an infinite slope there
+LEAST_PASSED = 0.01  # light of which the place is asked
+NORMAL = (0.0, 0.0, 1.0)
+ONE = np.ones((1, 3))
+
+is_transmitting = of_family(TransmissionSpec)
+
+
+def unknown(case: Case) -> Diagnosis:
+    return Diagnosis(input_diagnosis.UNKNOWN)
+
+
+def diagnose_transmitted(case: Case) -> Diagnosis:
+    """Whether the light is what facets pass, or that over G_1, as MaterialX has it; and where it is NaN."""
+    compared, spec = list(transmitted(case)), case.of(TransmissionSpec)
+
+    def distance(found: Callable[[Compared], Array]) -> float:
+        return float(np.sqrt(np.mean(np.concatenate([_squares(c, found(c)) for c in compared]))))
+
+    distances = {
+        f"{SEEN}, divided by G_1 of the view": distance(lambda c: _seen(spec, c.batch, True)),
+        SEEN: distance(lambda c: _seen(spec, c.batch)),
+    }
+    words = min(distances, key=lambda name: distances[name])
+    known = distances[words] < max(NEAR * distance(lambda c: c.expected), SUMMED)
+    return Diagnosis("; ".join(filter(None, (words if known else "", not_finite(compared)))))
+
+
+def _squares(compared: Compared, expected: Array) -> Array:
+    """Squared errors of the values that are finite."""
+    known = np.isfinite(compared.measured)
+    return np.asarray((compared.measured - expected)[known] ** 2)
+
+
+def _seen(spec: TransmissionSpec, batch: Batch, masked: bool = False) -> Array:
+    """The mean of 1 - F over the normals seen, (N, 3); divided by G_1 of the view, if that is masked."""
+    value: Array = batch.strength * spec.functions.passed(batch.wo, batch.inputs, False)
+    return value / smith_g1(batch.wo, batch.inputs["roughness"])[:, np.newaxis] if masked else value
 
 
 @check(
-    "anisotropic_albedo",
-    "The environment branch of an anisotropic lobe returns the integral of its values.",
-    is_facets,
-    isotropic,
-    pairs=True,
-    lit=True,
-    diagnose=diagnose_stretched,
+    is_transmitting, scale("values are twice as large", 2.0), "value", diagnose=diagnose_transmitted
 )
-def stretched(case: Case) -> Compared:
-    batch, expected = case.samples.take(case.of(FacetSpec).stretched)
-    return Compared(batch, case.albedo(batch), expected)
+def transmitted(case: Case) -> Iterator[Compared]:
+    """In a uniform environment, the light that passes lies between the BTDF's share and all that is not reflected.
+
+    Light of a uniform environment through the surface, against the nearest value inside the limits.
+
+    One is what the BTDF passes, without compensation; the other all that is not reflected, with tint and
+    weight. The first is the larger for some colors of Schlick's curve, of which the text compensates too
+    much; and the most exceeds 1 where the node's own curve is below 0.
+    """
+    functions = case.of(TransmissionSpec).functions
+    for batch in case.views:
+        measured = case.transmitted(batch)
+        rest = functions.tint(batch.inputs) * (1.0 - functions.reflected(batch.wo, batch.inputs))
+        ends = np.maximum(rest, 0.0), functions.passed(batch.wo, batch.inputs, True)
+        least, most = (batch.strength * each for each in (np.minimum(*ends), np.maximum(*ends)))
+        yield Compared(batch, measured, np.clip(measured, least, most))
+
+
+@check(
+    lambda spec: isinstance(spec, TransmissionSpec) and spec.reflects,
+    scale("values are 5 % too large", 1.05),
+    "light",
+    diagnose=diagnose_transmitted,
+)
+def clear(case: Case) -> Iterator[Compared]:
+    """A white lobe that reflects and transmits returns all light of a uniform environment."""
+    for batch in case.views:
+        white = batch.altered(tint=(1.0, 1.0, 1.0), weight=1.0)
+        yield Compared(white, case.albedo(white) + case.transmitted(white), ONE)
+
+
+@check(is_transmitting, offset, diagnose=unknown)
+def kept(case: Case) -> Iterator[Compared]:
+    """Modes R and RT reflect, and pass to their base, the same light; mode T reflects nothing; mode R transmits nothing."""
+    spec = case.of(TransmissionSpec)
+    only = case.another(spec.reflection) if spec.reflects else None
+    none = 0.0 * ONE
+    for batch in case.views:
+        yield Compared(batch, case.direct(batch), only.direct(batch) if only else none)
+        yield Compared(batch, case.albedo(batch), only.albedo(batch) if only else none)
+        for branch in SCATTERING if only else SCATTERING[:2]:
+            expected = only.throughput(batch, branch) if only else ONE
+            yield Compared(batch, case.throughput(batch, branch), expected)
+        if only:
+            yield Compared(batch, only.transmitted(batch), none)
+
+
+DENSER = with_inputs("the index is different", ior=2.5, color0=(0.5, 0.5, 0.5))
+
+
+@check(is_transmitting, DENSER, diagnose=diagnose_transmitted)
+def critical(case: Case) -> Compared:
+    """A smooth surface transmits 1 - F, and nothing beyond the critical angle."""
+    batch = _smooth(case)
+    functions = case.of(TransmissionSpec).functions
+    index, mu = functions.ior(batch.inputs), np.minimum(batch.wo[:, 2], 1.0)
+    away = np.abs(mu - np.sqrt(np.maximum(1.0 - index * index, 0.0))) > CRITICAL
+    batch, mu = batch.where(away), mu[away]
+    passed = functions.tint(batch.inputs) * (1.0 - functions.fresnel(mu, batch.inputs))
+    return Compared(batch, case.transmitted(batch), batch.strength * passed)
+
+
+@check(is_transmitting, DENSER, tolerance=SURROUNDINGS, lit=True, diagnose=unknown)
+def refraction(case: Case) -> Compared:
+    """An uneven environment is looked up along the ray that a solid sphere refracts."""
+    batch, place = _looking(_smooth(case), case.of(TransmissionSpec).functions.ior)
+    level = case.transmitted(batch)
+    bright = level.min(axis=1) > LEAST_PASSED
+    measured = case.transmitted(batch, sky_map()) / np.where(bright[:, np.newaxis], level, 1.0)
+    return Compared(batch.where(bright), measured[bright], sky(place[bright]))
+
+
+def _looking(batch: Batch, ior: Callable[[Mapping[str, Array]], Array]) -> tuple[Batch, Array]:
+    """Views in frames from which a sphere refracts them to middles of texels of the sky, and these."""
+    out = through_sphere(batch.wo, ior(batch.inputs))
+    place = texel_middles(out)
+    frames = aimed(np.broadcast_to(np.eye(3), (len(out), 3, 3)), out, place)
+    axes = {"tangent": rounded(frames[:, :, 0].T), "normal": rounded(frames[:, :, 2].T)}
+    return replace(batch.altered(**axes), frame=frames), place
+
+
+def through_sphere(wo: Array, index: Array) -> Array:
+    """Direction of a view that a solid sphere has refracted twice, (N, 3).
+
+    At the far side the ray meets the surface at the same angle: it turns twice by the same amount.
+    """
+    inner = refraction_direction(wo, NORMAL, index)
+    far = inner * (2.0 * inner[:, 2:]) - np.array(NORMAL)  # towards the inside
+    cosine = -np.sum(inner * far, axis=1, keepdims=True)
+    n = index[:, np.newaxis]
+    out = np.sqrt(np.maximum(1.0 - n * n * (1.0 - cosine * cosine), 0.0))
+    return np.asarray(n * inner + (n * cosine - out) * far)
+
+
+def _smooth(case: Case) -> Batch:
+    """Views of smooth surfaces of all indices, with the node's colors."""
+    batch = case.few[0].first(SMOOTH_VIEWS)
+    batch = batch.where(batch.wo[:, 2] >= LEAST_SEEN)
+    return batch.altered(roughness=(0.0, 0.0))
+
+
+def _edges(case: Case) -> tuple[Batch, Array]:
+    """Light at the edges of the domain, of every fifth pair: each costs a sum over directions."""
+    batch = case.samples.edges
+    batch = batch.where(np.arange(len(batch.wo)) % 5 == 0)
+    return batch, case.transmitted(batch)
+
+
+@check(
+    is_transmitting,
+    with_values("every value is infinite", lambda batch, values: np.full_like(values, np.inf)),
+    tolerance=count_of("values"),
+    diagnose=lambda case: Diagnosis(
+        not_finite([Compared(batch, found, found) for batch, found in [_edges(case)]])
+    ),
+)
+def transmitted_finite(case: Case) -> Measurement:
+    """All light through the surface is finite at the edges of the domain."""
+    return count_not_finite(*_edges(case))
+
+
+@check(
+    is_transmitting,
+    drop_changes,
+    tolerance=count_of("inputs"),
+    lit=True,
+    diagnose=lambda case: Diagnosis(f"no effect, or a wrong one: {', '.join(wrong_inputs(case))}"),
+)
+def transmitted_inputs(case: Case) -> Measurement:
+    """Every input except retroreflective changes the light through the surface."""
+    return count_named(wrong_inputs(case))
+
+
+def wrong_inputs(case: Case) -> list[str]:
+    """Inputs that change no light through the surface, and those that must not.
+
+    The retroreflective mode is of the reflection alone.
+    """
+    batch, wrong = case.few[0].first(CHANGED_VIEWS), []
+    plain = case.transmitted(batch, sky_map())
+    for name, (without, change) in case.changes.items():
+        before = case.transmitted(batch.altered(**without), sky_map()) if without else plain
+        after = case.transmitted(batch.altered(**change), sky_map())
+        if np.array_equal(before, after, equal_nan=True) != (name == "retroreflective"):
+            wrong.append(name)
+    return wrong
+
+
+# --- thin films -----------------------------------------------------------------------------------
+
+Function = Callable[[Batch], Array]
+MIRRORED = (-1.0, -1.0, 1.0)
+ROUGHNESSES = (1.0, 0.3)  # with much and with little compensation
+SMOOTH = (0.04, 0.005)  # with next to none, for whose average a shader may take fewer cosines
+RIGHT = "each value on its own is within tolerance"  # of an explanation that found nothing
+LEAST_F = 0.01  # of a curve by which its averages are divided
+THIN_LIMIT = 1e-3  # thickness in nm of a film that changes nothing
+SLANT = 2.0 / 3.0  # mean cosine of a hemisphere, weighted by the cosine
+RARE = 0.5  # index of a film that MaterialX counts as vacuum
+
+is_film = of_family(FilmSpec)
+
+
+thicker = with_batch(
+    "the film is a quarter thicker",
+    lambda batch: batch.altered(thinfilm_thickness=1.25 * batch.inputs["thinfilm_thickness"]),
+)
+
+
+def brighter(batch: Batch, values: Array) -> Array:
+    return values * np.where(np.any(batch.inputs["thinfilm_thickness"]), 100.0, 1.0)
+
+
+add_check(
+    VALUE,
+    "film",
+    "Under a thin film, the value contains the film's Airy reflectance.",
+    is_film,
+    thicker,
+    open=True,
+)
+
+
+@check(is_film, thicker, lit=True, open=True)
+def film_curve(case: Case) -> Compared:
+    """Under a film, a smooth lobe reflects the Airy reflectance at the cosine of the view.
+
+    The first orders alone count.
+    """
+    return _curves(case, film_views(case.of(FilmSpec), SHARP))
+
+
+@check(is_film, thicker, open=True)
+def film_orders(case: Case) -> Compared:
+    """At grazing angles, a thin film reflects the sum of all orders.
+
+    So they do for thin films, whose orders all count.
+    """
+    return _curves(case, film_views(case.of(FilmSpec), ORDERED))
+
+
+def _curves(case: Case, batch: Batch) -> Compared:
+    """Curves: values in mirrored lights over those of a mirror.
+
+    The lobes are so smooth that their compensation is 1, whatever average it has.
+    """
+    (measured, mirror), (expected, white) = (
+        (direct(batch), direct(_mirror(case, batch))) for direct in _sides(case)
+    )
+    return Compared(batch, measured / mirror, expected / white)
+
+
+@check(
+    is_film, with_inputs("every film has an index of 1.5", thinfilm_ior=1.5), lit=True, open=True
+)
+def film_limit(case: Case) -> list[Compared]:
+    """A film with an index of 1 or less, or with almost no thickness, leaves the lobe unchanged.
+
+    Values under a film of index 1, and under one of THIN_LIMIT, against those without.
+
+    A film of an index below that of vacuum counts as one of index 1, whatever that one does. Under a thin
+    one the sensitivities count, of five digits, whose sum is not 1: as much as in the equations is right.
+    """
+    batch = _compared(case)
+    without = batch.altered(thinfilm_thickness=0.0)
+    bare = case.direct(without)
+    empty, rare = (case.direct(batch.altered(thinfilm_ior=index)) for index in (1.0, RARE))
+    cases = [Compared(batch, empty, bare), Compared(batch, rare, empty)]
+    if "color0" not in batch.inputs:  # whose curve is taken at another angle under a film
+        thin = batch.altered(thinfilm_thickness=THIN_LIMIT)
+        sensed = case.expected(thin) - case.expected(without)
+        cases.append(Compared(batch, case.direct(thin), bare + sensed))
+    return cases
+
+
+def _compared(case: Case) -> Batch:
+    """Random pairs with a film, whose substrate float32 can tell from vacuum.
+
+    Schlick's curve has no dip at 82 degrees: where that is negative, a film's counts as 0.
+    """
+    batch = case.few[0]
+    changes: dict[str, ArrayLike] = {"thinfilm_thickness": 300.0}
+    if "tint" in batch.inputs:
+        changes["ior"] = np.maximum(batch.inputs["ior"], LEAST_INDEX)
+    if "color82" in batch.inputs:
+        changes["color82"] = WHITE
+    return batch.altered(**changes)
+
+
+@check(is_film, with_values("values under a film are 100 times as large", brighter), lit=True)
+def film_energy(case: Case) -> list[Compared]:
+    """No film reflects more than a lobe that reflects everything."""
+    cases = []
+    for batch in case.few[::2]:  # a mirror of index 0 is another check where directions are exact
+        mirror = batch.altered(thinfilm_thickness=0.0, **case.of(FilmSpec).row.mirror)
+        most = case.direct(mirror)
+        cases.append(Compared(batch, np.maximum(case.direct(batch), most), most))
+    return cases
+
+
+add_check(
+    ALBEDO,
+    "film_environment",
+    "The environment branch returns the film's directional albedo.",
+    is_film,
+    thicker,
+    lit=True,
+    open=True,
+)
+
+
+@check(is_film, thicker, lit=True, open=True, diagnose=lambda case: diagnose_average(case))
+def film_average(case: Case) -> Compared:
+    """The compensation uses the film's reflectance averaged over the hemisphere."""
+    return average_case(case, film_views(case.of(FilmSpec), FRINGED))
+
+
+def average_case(case: Case, batch: Batch) -> Compared:
+    """F_ss of films whose curve is not next to 0, of the host and of the equations."""
+    (_, measured), (F, expected) = (_averages(case, each, batch) for each in _sides(case))
+    bright = F.min(axis=1) > LEAST_F
+    return Compared(batch.where(bright), measured[bright], expected[bright])
+
+
+@check(is_film, thicker, lit=True, open=True, diagnose=lambda case: diagnose_average(case))
+def film_smooth(case: Case) -> Compared:
+    """On smooth lobes, too, the compensation uses the film's average.
+
+    Values F (1 + F_ss k) of lobes that lose little, against those of lobes that lose less.
+
+    F and k are the host's, and F_ss that of the equations.
+    """
+    batch = film_views(case.of(FilmSpec), FRINGED)
+    F, F_ss = _averages(case, case.expected, batch)
+    (first, k), (second, other_k) = (
+        _parts(case, case.direct, batch.altered(roughness=(alpha, alpha))) for alpha in SMOOTH
+    )
+    expected = second * (1.0 + F_ss * k) / (1.0 + F_ss * other_k)
+    bright = F.min(axis=1) > LEAST_F
+    return Compared(batch.where(bright), first[bright], expected[bright])
+
+
+@check(is_film, thicker, lit=True, open=True, diagnose=lambda case: diagnose_visible(case))
+def film_visible(case: Case) -> Compared:
+    """The albedo averages the film's reflectance over the visible, lit facets."""
+    return _visible_cases(case, film_views(case.of(FilmSpec), STEEP))
+
+
+@check(is_film, thicker, lit=True, open=True, diagnose=lambda case: diagnose_visible(case))
+def film_glossy(case: Case) -> Compared:
+    """On glossy lobes, too, the albedo averages the film's reflectance over the visible facets."""
+    return _visible_cases(case, film_views(case.of(FilmSpec), GLOSSY))
+
+
+def _visible_cases(case: Case, batch: Batch) -> Compared:
+    """Means over the visible facets of films whose curve is not next to 0."""
+    albedos = (
+        lambda each: case.albedo(each) / case.albedo(_mirror(case, each)),
+        case.expected_albedo,
+    )
+    (_, measured), (F, expected) = (
+        _visible(case, direct, albedo, batch)
+        for direct, albedo in zip(_sides(case), albedos, strict=True)
+    )
+    bright = F.min(axis=1) > LEAST_F
+    return Compared(batch.where(bright), measured[bright], expected[bright])
+
+
+add_check(
+    THROUGHPUT,
+    "film_throughput",
+    "The throughput of a layer under a film is 1 - E of the film.",
+    lambda spec: isinstance(spec, FilmSpec) and spec.row.layerable,
+    pass_all,
+    lit=True,
+)
+
+
+add_check(
+    finite,
+    "film_finite",
+    "Every value under a film is finite at the edges of the domain.",
+    is_film,
+    scale_cosine("the value is divided by cos(theta_o)", -1),
+    tolerance=count_of("values"),
+    lit=True,
+    diagnose=input_diagnosis.diagnose_finite,
+)
+
+
+def diagnose_average(case: Case) -> Diagnosis:
+    """Whether F at one cosine stands in the place of its average."""
+    batch, measured, expected = average_case(case, film_views(case.of(FilmSpec), FRINGED))
+    direct, model = _sides(case)
+    view = np.broadcast_to([np.sqrt(1.0 - SLANT * SLANT), 0.0, SLANT], batch.wo.shape)
+    slanted = replace(batch, wo=view, wi=view * MIRRORED)
+    others = {
+        "at the half vector": _averages(case, direct, batch)[0],
+        "at the cosine 2/3": _averages(case, model, slanted)[0],
+    }
+    errors = {words: np.sqrt(np.mean((measured - each) ** 2)) for words, each in others.items()}
+    words = min(errors, key=errors.__getitem__)
+    if not errors[words] < NEAR * np.sqrt(np.mean((measured - expected) ** 2)):
+        return Diagnosis("the compensation uses a different average of the film's reflectance")
+    text = f"the compensation uses F {words} instead of its average"
+    return Diagnosis(text, permitted=words == "at the half vector")
+
+
+def diagnose_visible(case: Case) -> Diagnosis:
+    """The explanation of a film's albedo, or the weights of the facets where that is right."""
+    explained = ALBEDO.diagnose(case)
+    if RIGHT not in explained.text:
+        return explained
+    return Diagnosis("the visible facets are not weighted by masking and shadowing")
+
+
+def _sides(case: Case) -> tuple[Function, Function]:
+    """Values of the host, and of the equations."""
+    return case.direct, case.expected
+
+
+def _averages(case: Case, direct: Function, batch: Batch) -> tuple[Array, Array]:
+    """F at the half vector of mirrored lights, and F_ss, (N, 3) each, from values at two roughnesses.
+
+    A value over that of facets that reflect everything is F (1 + F_ss k), k = (1 - E_ss) / E_ss, in
+    which a lobe that reflects everything has F = F_ss = 1.
+    """
+    (first, k), (second, other_k) = (
+        _parts(case, direct, batch.altered(roughness=(alpha, alpha))) for alpha in ROUGHNESSES
+    )
+    F = (second * k - first * other_k) / (k - other_k)
+    return F, (first - second) / (k - other_k) / np.maximum(F, 0.5 * LEAST_F)
+
+
+def _parts(case: Case, direct: Function, batch: Batch) -> tuple[Array, Array]:
+    """F (1 + F_ss k) and k of films in mirrored lights, (N, 3) each; k is (1 - E_ss) / E_ss."""
+    facets = _facets(batch)
+    return direct(batch) / facets, direct(_mirror(case, batch)) / facets - 1.0
+
+
+def _facets(batch: Batch) -> Array:
+    """Values of facets that reflect everything, in mirrored lights, (N, 1)."""
+    alpha, mu = np.broadcast_to(batch.inputs["roughness"], (len(batch.wo), 2))[:, 0], batch.wo[:, 2]
+    return np.asarray(0.25 / (alpha * alpha * smith_lambda(mu, alpha))[:, np.newaxis])
+
+
+def _visible(case: Case, direct: Function, albedo: Function, batch: Batch) -> tuple[Array, Array]:
+    """F at the half vector, and F_o of an albedo E_ss F_o (1 + F_ss k), (N, 3) each.
+
+    The albedo is that over the one of a mirror, E_ss (1 + k) = 1.
+    """
+    F, F_ss = _averages(case, direct, batch)
+    _, k = _parts(case, direct, batch)
+    return F, np.asarray(albedo(batch) * (1.0 + k) / (1.0 + F_ss * k))
+
+
+def _mirror(case: Case, batch: Batch) -> Batch:
+    """The same pairs with a lobe that reflects everything."""
+    return batch.altered(thinfilm_thickness=0.0, **case.of(FilmSpec).row.mirror)

@@ -14,7 +14,7 @@ import numpy as np
 
 from mxeon.conformance.backends import joined
 from mxeon.conformance.case import Case
-from mxeon.conformance.check import check, control
+from mxeon.conformance.check import check, with_batch
 from mxeon.conformance.diagnosis.candidates import Diagnosis, not_finite
 from mxeon.conformance.samples import SEED, Array, Batch, Values, rounded, sky_map
 from mxeon.conformance.spec import LobeSpec, broadcast_inputs
@@ -199,23 +199,20 @@ def pixels_of(case: Case) -> list[Pixels]:
     return found
 
 
-@control("each pixel has the view and the light of another")
-def exchanged(case: Case) -> Case:
-    def inputs(batch: Batch) -> Batch:
-        return replace(batch, wo=np.roll(batch.wo, 1, axis=0), wi=np.roll(batch.wi, 1, axis=0))
-
-    return replace(case, inputs=inputs)
+exchanged = with_batch(
+    "each pixel has the view and the light of another",
+    lambda batch: replace(batch, wo=np.roll(batch.wo, 1, axis=0), wi=np.roll(batch.wi, 1, axis=0)),
+)
 
 
 @check(
-    "states",
-    "Lights, environments and lobes add up in a pixel, in every frame, whether inputs vary or not.",
     lambda spec: isinstance(spec, LobeSpec),
     exchanged,
     pairs=True,
     diagnose=lambda case: diagnose(case),
 )
 def states(case: Case) -> Iterator[Compared]:
+    """Lights, environments and lobes add up in a pixel, in every frame, whether inputs vary or not."""
     groups = pixels_of(case)
     drawn: dict[tuple[bool, str, int], list[int]] = {}  # together; constant inputs by themselves
     for number, pixels in enumerate(groups):
@@ -279,9 +276,7 @@ def sums(case: Case, groups: Sequence[Pixels]) -> list[Array]:
 
 def diagnose(case: Case) -> Diagnosis:
     """The states in which all wrong pixels are: one, two that meet in them, or either of two."""
-    tolerance = case.tolerance("states")
-    assert tolerance is not None, f"{case.spec.title} has no states"
-    compared = list(states(case))
+    tolerance, compared = case.tolerance("states"), list(states(case))
     bad = np.concatenate([tolerance.metric(*each[1:]) > tolerance.value for each in compared])
     pixels = [words for each in pixels_of(case) for words in _words(each)]
     names = sorted(set().union(*pixels))

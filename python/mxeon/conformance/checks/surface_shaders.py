@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from mxeon.conformance.case import SCATTERING, Case, albedos, values
-from mxeon.conformance.check import check, control, of_family, scale, shifted
+from mxeon.conformance.check import add_check, check, control, of_family, scale, shifted
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.diagnosis.comparisons import ALBEDO, VALUE
 from mxeon.conformance.specs.surface_shaders import GRAPHS, SurfaceShaderSpec
@@ -23,7 +23,7 @@ from mxeon.conformance.tolerance import (
     sum_of,
 )
 
-FEW = 4  # pairs of a control
+CONTROLLED = 4  # pairs of a control
 WORST = 32  # pairs that are looked at
 FACTORS = (0.0, 1e-3, 0.1, 10.0, 1e3)  # by which an input of a film may be wrong
 # Inputs that take a lobe away, by its name.
@@ -58,32 +58,31 @@ def diagnose_sum(case: Case) -> Diagnosis:
     return Diagnosis("see the checks of each lobe and of `layer`")
 
 
-check(
+add_check(
+    VALUE,
     "lobes",
     "In direct light, the material is the sum of its lobes by the layer equation.",
     is_shader,
     shifted,
     diagnose=diagnose_lobes,
-)(VALUE)
+)
 
 
 @check(
-    "lobes_film",
-    "Under a thin film, too, the material is the sum of its lobes.",
     lambda spec: isinstance(spec, SurfaceShaderSpec) and bool(spec.table.films),
     shifted,
     lit=True,
     diagnose=lambda case: diagnose_films(case),
 )
-def films(case: Case) -> Compared:
+def lobes_film(case: Case) -> Compared:
+    """Under a thin film, too, the material is the sum of its lobes."""
     batch = case.samples.take(case.of(SurfaceShaderSpec).films)
     return Compared(batch, case.direct(batch), case.expected(batch))
 
 
 def diagnose_films(case: Case) -> Diagnosis:
     """The input of the film with which a wrong value explains all, or that the lobes are right without one."""
-    tolerance, batch = case.tolerance("lobes_film"), films(case).batch
-    assert tolerance is not None, f"{case.spec.title} has no films"
+    tolerance, batch = case.tolerance("lobes_film"), lobes_film(case).batch
     measured = case.direct(batch)
     for each in case.of(SurfaceShaderSpec).table.films:
         for factor in FACTORS if "thickness" in each.name else ():
@@ -93,79 +92,63 @@ def diagnose_films(case: Case) -> Diagnosis:
     return Diagnosis("the lobes under the film are not those of the material")
 
 
-check(
+add_check(
+    ALBEDO,
     "lobes_albedo",
     "The environment branch returns the albedo of all lobes by the layer equation.",
     is_shader,
     shifted,
     diagnose=diagnose_sum,
-)(ALBEDO)
-
-
-@check(
-    "lobes_mean",
-    "Averaged over many materials and views, no light is gained or lost.",
-    is_shader,
-    scale("every value is 1 % too low", 0.99),
-    lit=True,
-    diagnose=diagnose_sum,
 )
-def mean(case: Case) -> Iterator[Compared]:
+
+
+@check(is_shader, scale("every value is 1 % too low", 0.99), lit=True, diagnose=diagnose_sum)
+def lobes_mean(case: Case) -> Iterator[Compared]:
+    """Averaged over many materials and views, no light is gained or lost."""
     yield from values(case)
     yield from albedos(case)
 
 
 @check(
-    "lobes_furnace",
-    "A white material with many lobes disappears in a white environment.",
-    is_shader,
-    scale("every value is 10 % too low", 0.9),
-    "albedo",
-    lit=True,
-    diagnose=diagnose_sum,
+    is_shader, scale("every value is 10 % too low", 0.9), "albedo", lit=True, diagnose=diagnose_sum
 )
-def furnace(case: Case) -> Compared:
+def lobes_furnace(case: Case) -> Compared:
+    """A white material with many lobes disappears in a white environment."""
     white = replace(case.samples.views[0], inputs=case.of(SurfaceShaderSpec).table.white)
     return Compared(white, case.albedo(white), np.ones((1, 3)))
 
 
 @check(
-    "lobes_energy",
-    "No material with these lobes reflects and transmits more light than it receives.",
-    is_shader,
-    scale("every value is 50 % too high", 1.5),
-    "albedo",
-    lit=True,
-    diagnose=diagnose_sum,
+    is_shader, scale("every value is 50 % too high", 1.5), "albedo", lit=True, diagnose=diagnose_sum
 )
-def energy(case: Case) -> Compared:
+def lobes_energy(case: Case) -> Compared:
+    """No material with these lobes reflects and transmits more light than it receives."""
     batch = case.samples.take(case.of(SurfaceShaderSpec).materials)
     return Compared(batch, np.maximum(case.albedo(batch), 1.0), np.ones((1, 3)))
-
-
-@check(
-    "graph",
-    "The graph gives the same values as the graph that MaterialX released, for every input and default.",
-    is_shader,
-    shifted,
-    tolerance=sum_of(roundings(16, "of the numbers in a graph")),
-    open=True,
-    diagnose=lambda case: diagnose_graph(case),
-)
-def graph(case: Case) -> Iterator[Compared]:
-    spec = case.of(SurfaceShaderSpec)
-    graphs, few = spec.graphs, spec.graphs.same or case.control
-    batch = case.samples.take(spec.drawn).first(FEW if few else GRAPHS)
-    for behind in (False,) if few else (False, True):
-        expected = graphs.values(batch, behind, right=True)
-        ask = partial(graphs.values, behind=behind)
-        known = graphs.same and not case.control
-        yield Compared(batch, expected if known else case.measured(ask, batch), expected)
 
 
 def diagnose_graph(case: Case) -> Diagnosis:
     text, permitted = case.of(SurfaceShaderSpec).graphs.difference
     return Diagnosis(text, permitted=permitted)
+
+
+@check(
+    is_shader,
+    shifted,
+    tolerance=sum_of(roundings(16, "of the numbers in a graph")),
+    open=True,
+    diagnose=diagnose_graph,
+)
+def graph(case: Case) -> Iterator[Compared]:
+    """The graph gives the same values as the graph that MaterialX released, for every input and default."""
+    spec = case.of(SurfaceShaderSpec)
+    graphs, few = spec.graphs, spec.graphs.same or case.control
+    batch = case.samples.take(spec.drawn).first(CONTROLLED if few else GRAPHS)
+    for behind in (False,) if few else (False, True):
+        expected = graphs.values(batch, behind, right=True)
+        ask = partial(graphs.values, behind=behind)
+        known = graphs.same and not case.control
+        yield Compared(batch, expected if known else case.measured(ask, batch), expected)
 
 
 def misplaced(case: Case) -> list[str]:
@@ -210,13 +193,7 @@ def diagnose_reach(case: Case) -> Diagnosis:
     return Diagnosis("; ".join(texts))
 
 
-@check(
-    "reach",
-    "Every input changes a value, except those that are known to change nothing.",
-    is_shader,
-    ignore_changes,
-    tolerance=count_of("inputs"),
-    diagnose=diagnose_reach,
-)
+@check(is_shader, ignore_changes, tolerance=count_of("inputs"), diagnose=diagnose_reach)
 def reach(case: Case) -> Measurement:
+    """Every input changes a value, except those that are known to change nothing."""
     return count_named(misplaced(case))

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from mxeon.conformance.case import Case
-from mxeon.conformance.check import check, drop_changes, no_number, of_family, shifted
+from mxeon.conformance.check import add_check, check, drop_changes, no_number, of_family, shifted
 from mxeon.conformance.checks.lobes import inputs
 from mxeon.conformance.diagnosis import inputs as input_diagnosis
 from mxeon.conformance.diagnosis.candidates import Diagnosis, explain
@@ -26,7 +26,6 @@ is_utility = of_family(UtilitySpec)
 def explained(case: Case) -> Diagnosis:
     """The explanation of a case's outputs."""
     unit, tolerance = case.of(UtilitySpec).unit, case.tolerance("value")
-    assert tolerance is not None, f"{case.spec.title} has no values"
 
     def in_unit(candidate: Candidate) -> Candidate:
         def values(batch: Batch) -> Array:
@@ -38,30 +37,18 @@ def explained(case: Case) -> Diagnosis:
     return explain(case, list(output(case)), candidates, (), tolerance)
 
 
-@check(
-    "output",
-    "The output of the utility node matches its equations.",
-    is_utility,
-    shifted,
-    "value",
-    open=True,
-    diagnose=explained,
-)
+@check(is_utility, shifted, "value", open=True, diagnose=explained)
 def output(case: Case) -> Iterator[Compared]:
+    """The output of the utility node matches its equations."""
     unit = case.of(UtilitySpec).unit
     for batch in case.batches:
         measured, expected = case.direct(batch), case.expected(batch)
         yield Compared(batch, unit(measured, batch), unit(expected, batch))
 
 
-@check(
-    "round_trip",
-    "The outputs lead back to the reflectivity or the albedo that they were computed from.",
-    lambda spec: "round_trip" in spec.errors,
-    shifted,
-    diagnose=explained,
-)
+@check(lambda spec: "round_trip" in spec.errors, shifted, diagnose=explained)
 def round_trip(case: Case) -> Iterator[Compared]:
+    """The outputs lead back to the reflectivity or the albedo that they were computed from."""
     spec = case.of(UtilitySpec)
     others = {
         name: case.another(replace(spec, output=name))
@@ -73,14 +60,15 @@ def round_trip(case: Case) -> Iterator[Compared]:
         yield Compared(batch, *ROUND_TRIPS[spec.node](outputs, batch))
 
 
-check(
+add_check(
+    inputs,
     "output_inputs",
     "Every input of the utility node changes the outputs that depend on it.",
     is_utility,
     drop_changes,
     tolerance=count_of("inputs"),
     diagnose=input_diagnosis.diagnose_inputs,
-)(inputs)
+)
 
 
 def explained_finite(case: Case) -> Diagnosis:
@@ -101,14 +89,13 @@ def explained_finite(case: Case) -> Diagnosis:
 
 
 @check(
-    "output_finite",
-    "Every output is finite, at the ends of the ranges and beyond.",
-    lambda spec: is_utility(spec) and not spec.libraries,  # eonlib's take what lies in their range
+    lambda spec: is_utility(spec) and not spec.libraries,
     no_number,
     tolerance=count_of("values"),
     pairs=True,
     diagnose=explained_finite,
 )
 def output_finite(case: Case) -> Measurement:
+    """Every output is finite, at the ends of the ranges and beyond."""
     batch = case.samples.take(case.of(UtilitySpec).outside)
     return count_not_finite(batch, case.direct(batch))

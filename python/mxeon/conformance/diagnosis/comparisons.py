@@ -13,8 +13,7 @@ from mxeon.conformance.case import LIGHT, Case, albedos, throughputs, values
 from mxeon.conformance.diagnosis.candidates import Diagnosis, explain
 from mxeon.conformance.diagnosis.faults import DIRECT_FAULTS, ENVIRONMENT_FAULTS, Fault
 from mxeon.conformance.samples import Array, Batch, Candidate
-from mxeon.conformance.specs.emission import EmissionSpec
-from mxeon.conformance.specs.media import MediumSpec
+from mxeon.conformance.specs.emission import EmissionSpec, MediumSpec
 from mxeon.conformance.tolerance import Compared
 
 
@@ -34,8 +33,7 @@ class Comparison:
         """The explanation of a case, made once: several checks of a node fail for one reason."""
         known = DIAGNOSES.setdefault(case, {})
         if self not in known:
-            tolerance = case.tolerance(self.quantity) or case.tolerance("value")
-            assert tolerance is not None, f"{case.spec.title} has no values"
+            tolerance = case.tolerance(self.quantity, "value")
             compared = list(self.compared(case))
             known[self] = explain(case, compared, self.candidates(case), self.faults, tolerance)
         return known[self]

@@ -3,22 +3,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import MaterialX as mx
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from mxeon import hosts
 from mxeon.conformance.reference.graph import Graph
-from mxeon.conformance.reference.lobes import ManyMaterialsError, ShadingPoints
 from mxeon.conformance.reference.measured import LIT, PATTERNS, Elements, HostValues, Measure
-from mxeon.conformance.reference.nodes import ShownLobe
+from mxeon.conformance.reference.nodes import ManyMaterialsError, ShadingPoints, ShownLobe
 from mxeon.errors import NotRun
 from mxeon.hosts import base
-from mxeon.hosts.base import Identity
+from mxeon.hosts.base import Identity, Query
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import TRANSMISSION, inner_lobes
 from mxeon.shaders.scene import VIEW, Scene, sphere, tangents
@@ -96,21 +94,12 @@ class Host(base.Host):
         middle = (np.arange(scene.size) // stride * stride + stride // 2).clip(max=scene.size - 1)
         return ExpectedPicture(image[np.ix_(middle, middle)], chosen, measured, lobes)
 
-    def evaluate(
-        self,
-        shader: Shader,
-        wo: NDArray[np.float64],
-        wi: NDArray[np.float64],
-        inputs: Mapping[str, ArrayLike],
-        branch: str,
-        *,
-        output: str = "response",
-        irradiance: NDArray[np.floating] | None = None,
-    ) -> NDArray[np.float64]:
-        """Array of the document's lobes; see `mxeon.hosts.base.Host`.
+    def _values(self, query: Query) -> NDArray[np.float64]:
+        """Array of the document's lobes; see `mxeon.hosts.base.Host.evaluate`.
 
         Raise NotRun unless the response to a light or to a uniform environment is asked for.
         """
+        shader, wo, wi, inputs, branch, output, irradiance = query
         if (
             output != "response"
             or irradiance is not None

@@ -5,18 +5,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import lru_cache, partial
-from typing import TYPE_CHECKING, TypeAlias
+from functools import partial
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.conformance.reference.lobes import Albedo, ShadingPoints
-from mxeon.conformance.reference.nodes import DIFFUSE, NOTHING
+from mxeon.conformance.reference.nodes import DIFFUSE, NOTHING, Albedo, ShadingPoints
 from mxeon.conformance.samples import Array
 from mxeon.errors import OutsideModel
-from mxeon.hosts import base
-from mxeon.hosts.base import Host, Identity, Inputs
+from mxeon.hosts.base import Host, Inputs
 from mxeon.hosts.osl.carriers import LAYER, MIX, OPERATIONS, SUM
 from mxeon.hosts.osl.trees import ClosureTree
 from mxeon.models import table
@@ -30,14 +28,8 @@ from mxeon.models.nodes.media import METER
 from mxeon.models.nodes.microfacets import TRANSMISSIONS
 from mxeon.models.nodes.node import PbrNode
 from mxeon.models.shading_model import ALONG, UP
-from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR
-
-if TYPE_CHECKING:
-    import MaterialX as mx
-
-    from mxeon.io.files import AnyPath
 
 Arguments: TypeAlias = Mapping[str, Array]
 THROUGH, GRAPH = "transmission", "graph"  # branches of `Host.evaluate`
@@ -242,60 +234,18 @@ def column(values: ArrayLike) -> Array:
     return array if array.ndim == 2 else array.reshape(-1, 1)
 
 
-class Evaluated(Host):
-    """A host that tells closures, with their values by the models."""
-
-    def __init__(self, host: Host) -> None:
-        self.name, self._host = host.name, host
-        self.target, self.profile, self.language = host.target, host.profile, host.language  # type: ignore[misc]
-
-    def identity(self) -> Identity:
-        return self._host.identity()
-
-    def compile(
-        self,
-        document: AnyPath | mx.Document,
-        element: str | None = None,
-        *,
-        library: str = "eonlib",
-        policy: Policy = DEFAULT,
-    ) -> tuple[Shader, ...]:
-        return self._host.compile(document, element, library=library, policy=policy)
-
-    def execute(self, source: str, function: str, *arguments: ArrayLike) -> base.Array:
-        return self._host.execute(source, function, *arguments)
-
-    def evaluate(
-        self,
-        shader: Shader,
-        wo: base.Array,
-        wi: base.Array,
-        inputs: Inputs,
-        branch: str,
-        *,
-        output: str = "response",
-        irradiance: base.Array | None = None,
-    ) -> base.Array:
-        """Array of the closures of a shader; see `mxeon.hosts.base.Host`.
-
-        Raise Unsupported if the environment is not uniform: closures look none up.
-        """
-        if irradiance is not None:
-            raise self._unsupported("uneven environment", "gl")
-        values = np.zeros((len(wo), 3))
-        occlusion = np.broadcast_to(column(inputs.get("occlusion", 1.0)), (len(wo), 1))
-        for points in self._host.trees(shader, wo, inputs):
-            rows = points.rows
-            if output == "radiance" or branch == GRAPH:
-                values[rows] = radiance(points.tree)
-                continue
-            view, light = (np.asarray(each, np.float64)[rows] for each in (wo, wi))
-            views = Views(view, light, occlusion[rows], branch)
-            bsdf = views.bsdf(points.tree, output == "throughput")
-            values[rows] = bsdf.throughput if output == "throughput" else bsdf.value
-        return values
-
-
-@lru_cache(maxsize=4)
-def evaluated(host: Host) -> Evaluated:
-    return host if isinstance(host, Evaluated) else Evaluated(host)
+def evaluate(
+    host: Host, shader: Shader, wo: Array, wi: Array, inputs: Inputs, branch: str, output: str
+) -> Array:
+    """Values of the closures that a host's shader makes, in a uniform environment; see `Host.evaluate`."""
+    values = np.zeros((len(wo), 3))
+    occlusion = np.broadcast_to(column(inputs.get("occlusion", 1.0)), (len(wo), 1))
+    for points in host.trees(shader, wo, inputs):
+        rows = points.rows
+        if output == "radiance" or branch == GRAPH:
+            values[rows] = radiance(points.tree)
+            continue
+        views = Views(wo[rows], wi[rows], occlusion[rows], branch)
+        bsdf = views.bsdf(points.tree, output == "throughput")
+        values[rows] = bsdf.throughput if output == "throughput" else bsdf.value
+    return values

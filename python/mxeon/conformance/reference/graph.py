@@ -21,7 +21,6 @@ import MaterialX as mx
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.conformance.reference.lobes import ShadingPoints
 from mxeon.conformance.reference.measured import CLOSURES, DRAWN, Measure
 from mxeon.conformance.reference.nodes import (
     COMBINATIONS,
@@ -30,6 +29,7 @@ from mxeon.conformance.reference.nodes import (
     OPERATIONS,
     VOLUMES,
     Operation,
+    ShadingPoints,
     ShownLobe,
     Value,
     definition,

@@ -10,26 +10,364 @@ repeated over the components of the node's type, so that a number becomes a colo
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache, partial
 from operator import add, mul, pow, sub, truediv
 from typing import TypeAlias
 
 import MaterialX as mx
 import numpy as np
+from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from mxeon.conformance.reference.lobes import INNER_NODES, ShadingPoints, diffuse
+from mxeon.conformance.cache import Recent, contents
 from mxeon.conformance.samples import Array
 from mxeon.errors import NotRun, OutsideModel
+from mxeon.models import table
 from mxeon.models.core import layering
-from mxeon.models.core.layering import Bsdf
-from mxeon.models.media import transmittance
+from mxeon.models.core.layering import Bsdf, throughput
+from mxeon.models.media import diffusion_blur, transmittance
 from mxeon.models.nodes import NODES
+from mxeon.models.nodes.lobes import HAIR_NODE, SUBSURFACE_NODE
 from mxeon.models.nodes.media import METER
-from mxeon.models.nodes.node import PbrNode
+from mxeon.models.nodes.microfacets import TRANSMISSION_NODES, TRANSMISSIONS, isotropic
+from mxeon.models.nodes.node import Inputs, PbrNode
 from mxeon.models.thin_film import FILM
 from mxeon.shaders.document.values import Plain
 from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG, OREN_NAYAR, value_text
+
+Albedo: TypeAlias = Callable[[Array, Inputs], Array]
+Material: TypeAlias = tuple[
+    tuple[str, tuple[float, ...]], ...
+]  # inputs of one value each, hashable
+
+# A lobe of weight one from its node, its inputs, each one value or one for each point, and whether
+# its throughput is asked for.
+Lobe: TypeAlias = Callable[[PbrNode, Inputs, bool], Bsdf]
+
+# An albedo is interpolated over a picture if its last coefficients are below this, far below a host's
+# rounding: degrees in sqrt(mu) and in cos(2 phi).
+TAIL = 2e-7
+ISOTROPIC = ((32, 0), (64, 0), (128, 0), (256, 0))
+ANISOTROPIC = ((32, 16), (48, 32))
+AT_ONCE = 1 << 12  # arguments of a series at once
+KEPT = 4  # lobes of the pictures of a scene, of up to 2.5 megabytes each
+SEPARATE = 1000  # directions, whose albedos are as soon computed one by one
+
+
+def diffuse(name: str, category: str) -> PbrNode:
+    """A model of the Oren-Nayar family as the row of a node."""
+    model = table.model(name)
+    return PbrNode(
+        name,
+        model.title,
+        category,
+        ("color", "roughness"),
+        lambda wo, wi, inputs: model.brdf(wo, wi, inputs["color"], inputs["roughness"]),
+        lambda wo, inputs: model.closed_albedo_dir(wo[:, 2], inputs["color"], inputs["roughness"]),
+    )
+
+
+class ManyMaterialsError(Exception):
+    """More points with a material of their own than may be integrated one by one."""
+
+
+def lit(wo: Array, wi: Array, irradiance: float, most: float = np.inf) -> Lobe:
+    """Lobe under a distant light: its irradiance times f |cos(theta_i)|, 0 on the dark side.
+
+    Where materials of more than `most` points have albedos without a closed form, it raises
+    ManyMaterialsError.
+    """
+    above = wo[:, 2] > 0.0
+
+    def lobe(node: PbrNode, inputs: Inputs, layered: bool) -> Bsdf:
+        value = np.zeros(wo.shape)
+        if around := AROUND.get(node.category):
+            value[above] = irradiance * around(wo[above], wi[above], _at(inputs, above))
+        else:
+            shown = above & ((wi[:, 2] < 0.0) if node.transmits else (wi[:, 2] > 0.0))
+            f = node.value(wo[shown], wi[shown], _at(inputs, shown))
+            value[shown] = irradiance * f * np.abs(wi[shown, 2:])
+        left = np.zeros(wo.shape)
+        if layered and node.layerable:
+            left[above] = throughput(_albedo(node.albedo, node, wo[above], inputs, above, most))
+        return Bsdf(value, left)
+
+    return lobe
+
+
+def furnace(wo: Array, radiance: float, most: float = np.inf, behind: bool = False) -> Lobe:
+    """Lobe in a uniform environment: its directional albedo, or the share that it transmits.
+
+    `most` is as that of `lit`.
+    """
+
+    def lobe(node: PbrNode, inputs: Inputs, layered: bool) -> Bsdf:
+        every = np.ones(len(wo), bool)
+        value = left = np.zeros(wo.shape)
+        share = LET_THROUGH.get(node.name) if behind else node.integral or node.albedo
+        if share:
+            value = _albedo(share, node, wo, inputs, every, most)
+        if layered and node.layerable:
+            left = throughput(_albedo(node.albedo, node, wo, inputs, every, most))
+        return Bsdf(radiance * value, left)
+
+    return lobe
+
+
+def kept(lobe: Lobe) -> Lobe:
+    """The same lobe, which keeps its values of the last nodes and inputs."""
+    known = Recent[Bsdf](KEPT)
+
+    def values(node: PbrNode, inputs: Inputs, layered: bool) -> Bsdf:
+        key = node, layered, *((name, contents(each)) for name, each in inputs.items())
+        return known.value(key, lambda: lobe(node, inputs, layered))
+
+    return values
+
+
+def _at(inputs: Inputs, points: NDArray[np.bool_]) -> dict[str, Array]:
+    """Inputs at some of the points, each (M,) or (M, components)."""
+    count = int(points.sum())
+    return {
+        name: value[points]
+        if len(value) == len(points)
+        else np.broadcast_to(value, (count, *value.shape[1:]))  # which the models compute once
+        for name, value in inputs.items()
+    }
+
+
+def _albedo(
+    albedo: Albedo,
+    node: PbrNode,
+    wo: Array,
+    inputs: Inputs,
+    points: NDArray[np.bool_],
+    most: float,
+) -> Array:
+    """Albedo at `points`, of which `wo` are the directions."""
+    # What is computed fast, or for other materials at each point, needs no series.
+    closed = not node.fitted and node.integral is None
+    varied = any(len(value) > 1 for value in inputs.values())
+    if varied and not closed and len(wo) > most:
+        raise ManyMaterialsError
+    if closed or varied or len(wo) < SEPARATE:
+        return albedo(wo, _at(inputs, points))
+    material = tuple((name, tuple(value.ravel().tolist())) for name, value in inputs.items())
+    # Whether the lobe stays itself when it is turned about the normal.
+    roughness = inputs.get("roughness", np.zeros(1))
+    turns = roughness.ndim == 1 or bool(np.ptp(roughness[0]) == 0.0)
+    low = float(np.sqrt(wo[:, 2].min()))
+    series = _series(albedo, material, low, ISOTROPIC if turns else ANISOTROPIC)
+    if series is not None:
+        return _interpolated(series, wo, low, turns)
+    if not turns:
+        raise NotRun("reference: the albedo of so anisotropic a lobe takes too long over a picture")
+    # The symmetric points of a sphere have cosines that differ by roundings.
+    rounded = np.asarray(np.round(np.minimum(wo[:, 2], 1.0), 13), np.float64)
+    mu, indices = np.unique(rounded, return_inverse=True)
+    return _albedos(albedo, material, mu.tobytes())[indices]
+
+
+def _directions(mu: Array, phi: Array) -> Array:
+    """Unit vectors with cosine mu at azimuth phi, (N, 3)."""
+    sine = np.sqrt((1.0 - mu) * (1.0 + mu))
+    return np.stack([sine * np.cos(phi), sine * np.sin(phi), mu], axis=1)
+
+
+def _interpolated(series: Array, wo: Array, low: float, turns: bool) -> Array:
+    """Sums of a series (X, Y, 3) in sqrt(mu) from `low` on and cos(2 phi), (N, 3)."""
+    root = np.sqrt(np.minimum(wo[:, 2], 1.0))
+    u = np.clip(2.0 * (root - low) / (1.0 - low) - 1.0, -1.0, 1.0)
+    x, y = np.square(wo[:, 0]), np.square(wo[:, 1])
+    v = np.zeros_like(u) if turns else (x - y) / np.maximum(x + y, 1e-300)
+    # Many directions of a picture are alike.
+    each, indices = np.unique(np.round(u + 1j * v, 13), return_inverse=True)
+    parts = np.array_split(each, 1 + len(each) // AT_ONCE)
+    sums = [chebyshev.chebval2d(part.real, part.imag, series).T for part in parts]
+    return np.asarray(np.concatenate(sums)[indices], np.float64)
+
+
+@lru_cache(maxsize=8)
+def _albedos(albedo: Albedo, material: Material, cosines: bytes) -> Array:
+    """Albedos of an isotropic material, which all scenes of a document ask for."""
+    mu = np.frombuffer(cosines)
+    every = np.ones(len(mu), bool)
+    return albedo(_directions(mu, np.zeros_like(mu)), _at(_inputs(material), every))
+
+
+@lru_cache(maxsize=32)
+def _series(
+    albedo: Albedo, material: Material, low: float, degrees: tuple[tuple[int, int], ...]
+) -> Array | None:
+    """Chebyshev coefficients of an albedo, (., ., 3), or None where they fall too slowly."""
+    inputs = _inputs(material)
+    for degree, turns in degrees:
+        x, y = chebyshev.chebpts1(degree + 1), chebyshev.chebpts1(turns + 1)
+        mu, phi = np.meshgrid(
+            np.square(low + (1.0 - low) * 0.5 * (1.0 + x)), 0.5 * np.arccos(y), indexing="ij"
+        )
+        wo = _directions(mu.ravel(), phi.ravel())
+        values = albedo(wo, _at(inputs, np.ones(len(wo), bool))).reshape(*mu.shape, 3)
+        series = np.einsum("xi,yj,xyc->ijc", _transform(x), _transform(y), values)
+        tails = [series[-degree // 8 :], series[:, -2:] if turns else np.zeros(1)]
+        if max(float(np.abs(tail).max()) for tail in tails) < TAIL:
+            return np.asarray(series, np.float64)
+    return None
+
+
+def _inputs(material: Material) -> dict[str, Array]:
+    return {
+        name: np.array(values) if len(values) == 1 else np.array([values])
+        for name, values in material
+    }
+
+
+def _transform(points: Array) -> Array:
+    """Matrix from the values at Chebyshev points to coefficients, (points, coefficients)."""
+    degree = len(points) - 1
+    scale = np.where(np.arange(degree + 1) == 0, 1.0, 2.0) / (degree + 1)
+    return np.asarray(chebyshev.chebvander(points, degree) * scale, np.float64)
+
+
+COSINES = np.linspace(-1.0, 1.0, 1025)  # of the light, between which its blur is straight
+REACHES = (1e-6, 1e3)  # of mean free paths, over the radius of the sphere
+
+
+def _dark(wo: Array, *_: object) -> Array:
+    return np.zeros(wo.shape)
+
+
+def _not_reflected(category: str, wo: Array, inputs: Inputs) -> Array:
+    """Share of a uniform environment that passes microfacets."""
+    functions = TRANSMISSIONS[category]
+    rest = 1.0 - functions.reflected(wo, isotropic(inputs))
+    return np.asarray(functions.tint(inputs) * np.maximum(rest, 0.0))
+
+
+def _transmitting(row: PbrNode) -> PbrNode:
+    """Row of a node in a scatter mode, of which T reflects nothing."""
+    if row.fixed["scatter_mode"] == "RT":
+        return row
+    return replace(row, value=_dark, albedo=_dark, integral=_dark)
+
+
+def _spread(wo: Array, wi: Array, inputs: Inputs) -> Array:
+    """Radiance of subsurface scattering over the irradiance of a distant light."""
+    # The mean free path of isotropic scattering.
+    count = len(wi)
+    forward = np.broadcast_to(inputs["anisotropy"], (count,))[:, np.newaxis]
+    radius = np.broadcast_to(inputs["radius"], (count, 3))
+    reach = np.clip(radius / np.maximum(1.0 - forward, 1e-3), *REACHES)
+    mu = np.clip(wi[:, 2], -1.0, 1.0)
+    if np.ptp(reach, axis=0).any():
+        light = np.stack([diffusion_blur(mu, each) for each in reach.T], axis=-1)
+    else:
+        light = np.stack([np.interp(mu, COSINES, _blur(each)) for each in reach[0]], axis=-1)
+    return np.asarray(inputs["color"] / np.pi * light)
+
+
+@lru_cache(maxsize=64)
+def _blur(reach: float) -> Array:
+    """The blurred cosine at COSINES."""
+    return diffusion_blur(COSINES, reach)
+
+
+# Share of a uniform environment that is transmitted, by the name of a row.
+LET_THROUGH: dict[str, Callable[[Array, Inputs], Array]] = {
+    row.name: partial(_not_reflected, row.category) for row in TRANSMISSION_NODES
+}
+# Radiance over irradiance of what takes light from all sides, without a cosine.
+AROUND: dict[str, Callable[[Array, Array, Inputs], Array]] = {
+    SUBSURFACE_NODE.category: _spread,
+    HAIR_NODE.category: HAIR_NODE.value,
+}
+INNER_NODES = (
+    *map(_transmitting, TRANSMISSION_NODES),
+    replace(SUBSURFACE_NODE, inputs=("color", "radius", "anisotropy")),
+    HAIR_NODE,
+)
+
+
+UNIT = 1e-3  # by how much the length of a normal may differ from 1
+
+
+@dataclass(frozen=True, eq=False)
+class ShadingPoints:
+    """Where a graph is evaluated, and by which light."""
+
+    wo: Array  # unit vectors to the viewer, in world space
+    wi: Array | None  # unit vectors to a distant light; None in a uniform environment
+    strength: float  # irradiance of the light, or radiance of the environment
+    normal: Array  # of the surface, orthogonal unit vectors in world space
+    tangent: Array
+    texcoord: Array | None = None
+    # Points with materials of their own whose albedos are integrated; see `lobes.lit`.
+    most: float = np.inf
+    round: bool = False  # whether these are points of the unit sphere
+    behind: bool = False  # whether light that is transmitted is asked for, and no other
+
+    def lobe(self, normal: Array, tangent: Array) -> Lobe:
+        """Lobe whose frame has a normal, turned to the viewer, and a tangent.
+
+        Raise OutsideModel if a normal is no unit vector.
+        """
+        own = np.array_equal(normal, self.normal) and np.array_equal(tangent, self.tangent)
+        return self._own if own else self._turned(normal, tangent)
+
+    def geometry(self, name: str) -> Array:
+        """A property of the surface by its name in MaterialX; raises NotRun if it is not known."""
+        known = {
+            "Nworld": self.normal,
+            "Tworld": self.tangent,
+            "Bworld": np.cross(self.normal, self.tangent),
+            "UV0": self.texcoord,
+        }
+        if (value := known.get(name)) is None:
+            raise NotRun(f"reference: the surface has no {name} here")
+        return value
+
+    @cached_property
+    def view(self) -> Array:
+        """Unit vectors to the viewer in the frame of the surface, (N, 3)."""
+        return _within(self._axes(self.normal, self.tangent), self.wo)
+
+    @cached_property
+    def _own(self) -> Lobe:
+        """Lobe in the frame of the surface; the last ones are kept, which another library's document has too."""
+        return kept(self._turned(self.normal, self.tangent))
+
+    def _turned(self, normal: Array, tangent: Array) -> Lobe:
+        wo, wi = self.directions(normal, tangent)
+        if wi is None:
+            return furnace(wo, self.strength, self.most, self.behind)
+        return lit(wo, wi, self.strength, self.most)
+
+    def directions(self, normal: Array, tangent: Array) -> tuple[Array, Array | None]:
+        """Directions to the viewer and to the light in a frame, whose normal is turned to the viewer.
+
+        Raise OutsideModel if a normal is no unit vector.
+        """
+        length = np.linalg.norm(normal, axis=-1)
+        if (wrong := np.ravel(length)[np.ravel(~(np.abs(length - 1.0) <= UNIT))]).size:
+            raise OutsideModel(f"reference: normal must have the length 1; got {wrong[0]:g}")
+        side = np.where((self.wo * normal).sum(axis=-1, keepdims=True) < 0.0, -1.0, 1.0)
+        axes = self._axes(side * normal, tangent)
+        return _within(axes, self.wo), None if self.wi is None else _within(axes, self.wi)
+
+    def _axes(self, z: Array, tangent: Array) -> Array:
+        """Axes of a frame, orthogonal unit vectors, as rows (N, 3, 3)."""
+        x = tangent - (tangent * z).sum(axis=-1, keepdims=True) * z
+        axes = np.stack(np.broadcast_arrays(x, np.cross(z, x), z), axis=1)
+        with np.errstate(invalid="ignore"):  # a tangent along the normal shows in the values
+            return np.asarray(axes / np.linalg.norm(axes, axis=2, keepdims=True))
+
+
+def _within(axes: Array, directions: Array) -> Array:
+    """Directions in a frame, whose axes are the rows, as unit vectors (N, 3)."""
+    local = (axes @ directions[:, :, np.newaxis])[:, :, 0]
+    return np.asarray(local / np.linalg.norm(local, axis=1, keepdims=True), np.float64)
+
 
 MATRICES = (mx.Matrix33, mx.Matrix44)
 DIFFUSE = {False: diffuse("qon", OREN_NAYAR), True: diffuse("eon", EON)}

@@ -14,8 +14,7 @@ import MaterialX as mx
 import numpy as np
 
 from mxeon.conformance.reference.graph import Graph
-from mxeon.conformance.reference.lobes import ShadingPoints
-from mxeon.conformance.reference.nodes import OPERATIONS, plain
+from mxeon.conformance.reference.nodes import OPERATIONS, ShadingPoints, plain
 from mxeon.conformance.samples import Array, Batch
 from mxeon.errors import NotRun, OutsideModel
 from mxeon.hosts.calls import NORMAL, TANGENT

@@ -266,50 +266,40 @@ def summarize(
         >>> summarize((), (), ["clay.mtlx"]).sentence
         'Refused and not judged: clay.mtlx. No check ran.'
     """
-    summary = _summarize_results(results)
+    tally = Counter(result.verdict for result in results)
+    counts = {verdict: tally[verdict] for verdict in VERDICTS}
+    total = counted(len(results), "check")
+    hosts = " and ".join(dict.fromkeys(result.location for result in results))
+    differ = ""
+    if counts[DIFFERS]:
+        verb = "differs" if counts[DIFFERS] == 1 else "differ"
+        differ = f"; {counts[DIFFERS]} {verb} where the specification leaves it open"
+    verdict = PASSED
+    if counts[FAILED]:
+        failed = Counter(result.location for result in results if result.verdict == FAILED)
+        places = [f"{count} on {location}" for location, count in failed.items()]
+        where = f": {', '.join(places)}" if len(failed) > 1 else f" on {next(iter(failed))}"
+        verdict, sentence = FAILED, f"{counts[FAILED]} of {total} failed{where}{differ}."
+    elif not counts[PASSED] + counts[DIFFERS]:
+        verdict, sentence = NOT_RUN, "No check ran."
+    elif counts[NOT_RUN]:
+        verdict = NOT_RUN
+        sentence = f"Nothing failed, but {counts[NOT_RUN]} of {total} did not run{differ}."
+    elif differ:
+        sentence = f"{counts[PASSED]} of {total} passed on {hosts}{differ}."
+    else:
+        passed = "The check" if len(results) == 1 else f"All {len(results)} checks"
+        sentence = f"{passed} passed on {hosts}."
     if elsewhere:
-        words = f" {elsewhere} of them for inputs that no document uses."
-        summary = replace(summary, sentence=summary.sentence + words)
-    if not missing and not refused:
-        return summary
-    # Without what is not there nothing has passed.
-    verdict = FAILED if summary.verdict == FAILED else NOT_RUN
-    sentence = summary.sentence
+        sentence += f" {elsewhere} of them for inputs that no document uses."
     if missing:
         verb = "is" if len(missing) == 1 else "are"
         sentence += f" The run is not finished: {counted(len(missing), 'item')} {verb} missing."
     if refused:
         sentence = f"Refused and not judged: {listed(refused)}. {sentence}"
-    return replace(summary, verdict=verdict, sentence=sentence)
-
-
-def _summarize_results(results: Sequence[Result]) -> Summary:
-    tally = Counter(result.verdict for result in results)
-    counts = {verdict: tally[verdict] for verdict in VERDICTS}
-    total = counted(len(results), "check")
-
-    def summary(verdict: str, sentence: str) -> Summary:
-        return Summary(verdict, counts, sentence)
-
-    differ = ""
-    if counts[DIFFERS]:
-        verb = "differs" if counts[DIFFERS] == 1 else "differ"
-        differ = f"; {counts[DIFFERS]} {verb} where the specification leaves it open"
-    if counts[FAILED]:
-        failed = Counter(result.location for result in results if result.verdict == FAILED)
-        places = [f"{count} on {location}" for location, count in failed.items()]
-        where = f": {', '.join(places)}" if len(failed) > 1 else f" on {next(iter(failed))}"
-        return summary(FAILED, f"{counts[FAILED]} of {total} failed{where}{differ}.")
-    if not counts[PASSED] + counts[DIFFERS]:
-        return summary(NOT_RUN, "No check ran.")
-    if counts[NOT_RUN]:
-        sentence = f"Nothing failed, but {counts[NOT_RUN]} of {total} did not run{differ}."
-        return summary(NOT_RUN, sentence)
-    hosts = " and ".join(dict.fromkeys(result.location for result in results))
-    if differ:
-        return summary(PASSED, f"{counts[PASSED]} of {total} passed on {hosts}{differ}.")
-    passed = "The check" if len(results) == 1 else f"All {len(results)} checks"
-    return summary(PASSED, f"{passed} passed on {hosts}.")
+    if (missing or refused) and verdict != FAILED:
+        verdict = NOT_RUN  # without what is not there nothing has passed
+    return Summary(verdict, counts, sentence)
 
 
 def listed(names: Sequence[str]) -> str:

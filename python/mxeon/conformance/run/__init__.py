@@ -10,10 +10,17 @@ from pathlib import Path
 
 from mxeon.conformance.results import Run
 from mxeon.conformance.results.known_issues import repaired
-from mxeon.conformance.run.documents import documents_in, survey_documents
 from mxeon.conformance.run.journal import Journal, read_journal, refusal
 from mxeon.conformance.run.judge import Judge, not_run
-from mxeon.conformance.run.plan import Findings, Plan, Task, assert_known_names, make_plan
+from mxeon.conformance.run.plan import (
+    Findings,
+    Plan,
+    Task,
+    assert_known_names,
+    documents_in,
+    make_plan,
+    survey_documents,
+)
 from mxeon.errors import InputError, InterfaceError, NotRun
 from mxeon.hosts import HOSTS, host_row
 from mxeon.jobs import TIMEOUT, WAIT, check_timeout, dask, pool

@@ -34,7 +34,7 @@ from mxeon.conformance.run.plan import (
     Task,
     diffuse_specs,
 )
-from mxeon.conformance.shader_functions import FunctionProbe, judge_functions
+from mxeon.conformance.shader_functions import judge_functions
 from mxeon.conformance.specs import ALL
 from mxeon.conformance.text import check_definitions, check_texts
 from mxeon.errors import DocumentError, ImageError, InterfaceError, NotRun, ShaderError
@@ -126,7 +126,7 @@ class Judge:
             if task.check == PICTURE:
                 return self._document(task, host)
             if task.check == FUNCTIONS:
-                return Findings(judge_functions(FunctionProbe(host, task.library)))
+                return Findings(judge_functions(host, task.library))
         case = self._case(host, task.subject, task.library)
         if task.check == CURVE:
             inputs = CURVE_COLOR, CURVE_ROUGHNESS

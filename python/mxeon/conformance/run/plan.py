@@ -4,11 +4,20 @@
 A task is a few words and its findings are plain data, so both travel to other processes and machines.
 """
 
+from __future__ import annotations
+
+import glob
+import hashlib
+import html
 import os
 import platform
+import re
 import sysconfig
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Generator, Iterable, Iterator, Sequence
+from contextlib import closing, suppress
 from dataclasses import dataclass, field
+from functools import cache, partial
+from itertools import islice, product
 from pathlib import Path
 
 import MaterialX as mx
@@ -20,28 +29,142 @@ import mxeon
 from mxeon.conformance import shader_functions as functions
 from mxeon.conformance.backends import Evaluating, backend_of, own_nodes, ways_of
 from mxeon.conformance.checks import CHECKS
+from mxeon.conformance.diagnosis.regions import unreached
 from mxeon.conformance.results import SHADER_FUNCTIONS, SOURCE, AlbedoCurve, Picture, Result
 from mxeon.conformance.results.known_issues import RENDERER_NODES
-from mxeon.conformance.run.dependencies import digests
-from mxeon.conformance.run.documents import Survey
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs import ALL as ALL_SPECS
 from mxeon.conformance.specs import COMMON as COMMON_SPECS
 from mxeon.conformance.specs import PBRLIB
 from mxeon.conformance.specs.diffuse import DIFFUSE, SURFACE_LOBES, DiffuseSpec
-from mxeon.errors import InputError, assert_known
+from mxeon.conformance.specs.emission import EmittingSurface
+from mxeon.conformance.specs.microfacets import FilmSpec
+from mxeon.errors import DocumentError, InputError, MxeonError, assert_known
 from mxeon.hosts import HOSTS, host_names, host_row
 from mxeon.hosts.base import Identity
+from mxeon.io.files import regular
+from mxeon.jobs import pool
+from mxeon.shaders.contents import ShownNode, document_nodes, node_of
 from mxeon.shaders.document.policy import DEFAULT, LIMITS, Policy
+from mxeon.shaders.document.references import inside
+from mxeon.shaders.document.xml import decode, strict
 from mxeon.shaders.functions import has_functions
 from mxeon.shaders.library import (
+    SOURCE_FOLDERS,
     check_version,
+    documents_folder,
     examples_folder,
     kind_of,
+    library_folders,
     library_name,
     load_library,
+    source_folder,
 )
-from mxeon.shaders.library_tree import LIBRARIES, OVERLAY, origins
+from mxeon.shaders.library_tree import LIBRARIES, OVERLAY, origins, standard_folders
+
+Source = tuple[str, str]  # a file, and the library that it is read with
+
+
+@dataclass(frozen=True)
+class Survey:
+    """What the documents of a run contain."""
+
+    # Titles of the nodes of each document, by its path.
+    nodes: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    # For each document, by title of a node, the regions that its inputs are not in.
+    unreached: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
+    # Documents that cannot be read, each with the library that it is read with.
+    unread: frozenset[Source] = frozenset()
+    # As of `mxeon.conformance.results.Run`.
+    refused: dict[str, tuple[str, ...]] = field(default_factory=dict)
+
+
+def survey_documents(
+    files: Sequence[str], libraries: Sequence[str], policy: Policy, workers: int, timeout: float
+) -> Survey:
+    """Read documents with each library, in worker processes unless there are none.
+
+    A document that ends its worker has no nodes; the task that draws it says why.
+
+    Raise MxeonError if a library cannot be used.
+    """
+    sources = [(file, library) for file in dict.fromkeys(files) for library in libraries]
+    titles: dict[str, dict[str, set[str]]] = {file: {} for file in files}
+    faults: dict[Source, tuple[str, ...]] = {}
+    with closing(_answers(sources, policy, workers, timeout)) as answers:
+        for (file, library), answer in zip(sources, answers, strict=True):
+            if isinstance(answer, DocumentError):
+                # An example that cannot be read is the library's fault.
+                if not Path(file).resolve().is_relative_to(examples_folder()):
+                    faults[file, library] = answer.args
+            elif isinstance(answer, MxeonError):
+                raise answer
+            else:
+                for (spec, mode), node in product(_modes(), answer or ()):
+                    if _is(node, spec, mode):
+                        regions = set(unreached(dict(node.values)))
+                        titles[file].setdefault(spec.title, regions).intersection_update(regions)
+    refused: dict[str, tuple[str, ...]] = {}
+    for (file, library), lines in faults.items():
+        if all((file, each) in faults for each in libraries):
+            refused[file] = tuple(dict.fromkeys((*refused.get(file, ()), *lines)))
+        else:  # another library can read it
+            refused[f"{file} with {library}"] = tuple(f"{line} (with {library})" for line in lines)
+    return Survey(
+        {file: tuple(each) for file, each in titles.items()},
+        {
+            file: {title: tuple(sorted(each)) for title, each in found.items() if each}
+            for file, found in titles.items()
+        },
+        frozenset(faults),
+        refused,
+    )
+
+
+def _answers(
+    sources: Sequence[Source], policy: Policy, workers: int, timeout: float
+) -> Generator[tuple[ShownNode, ...] | MxeonError | None, None, None]:
+    """The nodes of each document, or its error; None where reading it ended the process.
+
+    Processes read until it is closed.
+    """
+    work = partial(document_nodes, policy)
+    if not workers:
+        yield from map(work, sources)
+    elif sources:
+        for outcome in pool.in_order(pool.run(work, sources, workers, timeout)):
+            yield outcome.value
+
+
+def _is(node: ShownNode, spec: Spec, mode: ShownNode) -> bool:
+    if isinstance(spec, EmittingSurface) and spec.has_bsdf != ("bsdf" in dict(node.inputs)):
+        return False
+    return node.has(mode) and (node.film or not isinstance(spec, FilmSpec))
+
+
+@cache
+def _modes() -> tuple[tuple[Spec, ShownNode], ...]:
+    """Every node that is judged, in the mode in which it is judged."""
+    return tuple((row, node_of(row.document(), row.node)) for row in ALL_SPECS)
+
+
+def documents_in(files: Iterable[str | os.PathLike[str]]) -> tuple[str, ...]:
+    """Files, and in the place of a folder the documents in it and below it, in order.
+
+    Raise ValueError if a folder holds no document.
+    """
+    documents: list[str] = []
+    for file in files:
+        inside = [os.fspath(file)]
+        if os.path.isdir(file):
+            inside = sorted(map(str, Path(file).rglob("*.mtlx")))
+        if not inside:
+            raise InputError(f"{file}: must hold MaterialX documents (*.mtlx); there is none")
+        documents += inside
+    return tuple(dict.fromkeys(documents))
+
+
+# --- the documents of a run -----------------------------------------------------------------------
 
 HOST, DEFINITION = "host", "definition"
 CURVE, PICTURE = "curve", "picture"
@@ -316,3 +439,82 @@ def _options(policy: Policy) -> dict[str, str]:
         f"--{prefixes[name]}{name.capitalize()}" if name in prefixes else f"--{name}": str(value)
         for name, value in values.items()
     }
+
+
+# --- the files that a run depends on --------------------------------------------------------------
+
+ATTRIBUTE = re.compile(r"""([\w:.-]+)\s*=\s*("[^"]*"|'[^']*')""")
+NAMING = ("value", "file", "href", "fileprefix")
+# A part of a file's name that is filled in later: <UDIM>, [token], {frame}.
+OPEN_PART = re.compile(r"<[^<>]*>|\[[^][]*\]|\{[^{}]*\}")
+
+
+def digests(
+    documents: Iterable[str | os.PathLike[str]], policy: Policy, libraries: Iterable[str] = ()
+) -> dict[str, str]:
+    """SHA-256 of every file that a run depends on; "" for what is no regular file or cannot be read.
+
+    By path: the documents, what they include and name as far as the policy permits, and what lies in
+    folders of libraries. By names that begin with "mxeon", "eonlib" or "MaterialX": code and data here.
+    """
+    paths = {path: path for document in documents for path in _named(str(document), policy)}
+    folders = [
+        (str(folder), folder)
+        for library in set(libraries) - set(LIBRARIES)
+        for folder in library_folders(library)
+    ]
+    folders += [("mxeon", Path(mxeon.__file__).parent), ("eonlib", documents_folder())]
+    folders += [(f"eonlib/{name}", source_folder("eonlib") / name) for name in SOURCE_FOLDERS]
+    folders += [("MaterialX/libraries", folder) for folder in standard_folders()]
+    for name, folder in folders:
+        for path in sorted(folder.rglob("*")):
+            if path.is_file() and path.parent.name != "__pycache__":
+                paths[f"{name}/{path.relative_to(folder)}"] = str(path)
+    return {name: _digest(path) for name, path in paths.items()}
+
+
+def _named(document: str, policy: Policy) -> list[str]:
+    """A document, and the files that it and what it includes name."""
+    home, seen, texts = Path(os.path.realpath(document)).parent, {document: None}, [document]
+    for text in texts:  # which grows by what is included
+        folders = {home, Path(os.path.realpath(text)).parent, Path.cwd(), *map(Path, policy.path)}
+        # A document with more elements than it may have is refused, and its files do not count.
+        for key, name in islice(_names(_text(text, policy)), 6 * policy.elements):
+            for path in _paths(name, folders):
+                if path not in seen and (policy.outside or inside(path, home, policy.path)):
+                    seen[path] = None
+                    if key == "href":
+                        texts.append(path)
+    return list(seen)
+
+
+def _text(path: str, policy: Policy) -> str:
+    """Text of a document, or "" of one that is too large or cannot be read."""
+    with suppress(OSError, DocumentError), open(path, "rb", opener=regular) as file:
+        data = file.read(policy.size + 1)
+        return strict(decode(data, path)) if len(data) <= policy.size else ""
+    return ""
+
+
+def _names(text: str) -> Iterator[tuple[str, str]]:
+    """Attributes of a document that may name files, each with every prefix that the document has."""
+    found = dict.fromkeys(
+        (key, html.unescape(value[1:-1])) for key, value in ATTRIBUTE.findall(text) if key in NAMING
+    )
+    prefixes = ["", *(value for key, value in found if key == "fileprefix")]
+    return ((key, prefix + value) for key, value in found if value for prefix in prefixes)
+
+
+def _paths(name: str, folders: Iterable[Path]) -> Iterator[str]:
+    """The regular files that a name may mean, by their real paths."""
+    for folder in folders:
+        paths = [str(folder / name)]
+        if OPEN_PART.search(name):
+            paths = glob.glob("*".join(map(glob.escape, OPEN_PART.split(paths[0]))))
+        yield from map(os.path.realpath, filter(os.path.isfile, paths))
+
+
+def _digest(path: str) -> str:
+    with suppress(OSError), open(path, "rb", opener=regular) as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+    return ""

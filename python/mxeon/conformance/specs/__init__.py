@@ -4,15 +4,13 @@
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs.combinations import COMBINED_SPECS
 from mxeon.conformance.specs.diffuse import DIFFUSE, SURFACE_LOBES
-from mxeon.conformance.specs.emission import ABSENT, EMISSION_SPECS, EMITTING_SURFACES
+from mxeon.conformance.specs.emission import ABSENT, EMISSION_SPECS, EMITTING_SURFACES, MEDIUM_SPECS
 from mxeon.conformance.specs.hair import HAIR
 from mxeon.conformance.specs.lobes import BURLEY, TRANSLUCENT
-from mxeon.conformance.specs.media import MEDIUM_SPECS
-from mxeon.conformance.specs.microfacets import FACET_SPECS, TRANSMISSION_SPECS
+from mxeon.conformance.specs.microfacets import FACET_SPECS, FILM_SPECS, TRANSMISSION_SPECS
 from mxeon.conformance.specs.sheen import CONTY_KULLA, ZELTNER
 from mxeon.conformance.specs.subsurface import SUBSURFACE
 from mxeon.conformance.specs.surface_shaders import SURFACE_SHADERS
-from mxeon.conformance.specs.thin_films import FILM_SPECS
 from mxeon.conformance.specs.utilities import INVERSION_SPECS, UTILITY_SPECS
 
 PLAIN_LOBES = (BURLEY, TRANSLUCENT, CONTY_KULLA, ZELTNER, *FACET_SPECS)

@@ -22,7 +22,7 @@ from mxeon.conformance.samples import (
     with_edges,
 )
 from mxeon.conformance.spec import CHANGED_COLOR, Input, LobeSpec
-from mxeon.conformance.tolerance import Term, Tolerance, absolute, roundings, sum_of
+from mxeon.conformance.tolerance import Term, Tolerance, absolute, roundings, sum_in
 from mxeon.models import table as reference
 from mxeon.models.table import Model
 from mxeon.shaders.nodes import (
@@ -40,26 +40,22 @@ SMOOTH = (0.0, 1e-6, 1e-3, 1.0)  # edges of the roughness, in units of the large
 UNIT = "pi f cos"
 LOSS_FIT = 2.7e-7  # relative error of the fit of FON's loss H: tools/fits
 
-VALUE = sum_of(
+VALUE = sum_in(
+    UNIT,
     roundings(28, "(14, of numbers up to 2)"),
     Term(LOSS_FIT, "two fits of H, times a multiple-scattering part of at most 1/2"),
-    unit=UNIT,
-    metric=absolute,
 )
 # 12 in the longest chain, two in the cosine, and two for the fit of H, which enters times 0.29.
-ENVIRONMENT = sum_of(
-    roundings(16 * 1.02, "of numbers up to 1.02, the fit of H among them"),
-    unit="albedo",
-    metric=absolute,
+ENVIRONMENT = sum_in(
+    "albedo", roundings(16 * 1.02, "of numbers up to 1.02, the fit of H among them")
 )
 # In each of two cosines of at least 1/4 five, times 4 by s / t, 3 by a sine, and 2 by s and the cosine.
-FRAME = sum_of(
+FRAME = sum_in(
+    "pi f cos or albedo",
     roundings(2 * 28, "of two values"),
     roundings(2 * 5 * (1.0 / TURNED[0] + 5.0), "(five in each of two cosines, times 9)"),
-    unit="pi f cos or albedo",
-    metric=absolute,
 )
-LAMBERT = sum_of(roundings(8), unit=UNIT, metric=absolute)
+LAMBERT = sum_in(UNIT, roundings(8))
 ERRORS = {
     "value": VALUE,
     "albedo": ENVIRONMENT,
@@ -82,11 +78,7 @@ LOBE_VALUE = Tolerance(
 
 def difference_of(value: Tolerance) -> Tolerance:
     """Tolerance of the difference of two values, relative to the largest such difference, 0.4."""
-    return sum_of(
-        value.term("two values, over a difference of 0.4", 2.0 / 0.4),
-        unit="relative",
-        metric=absolute,
-    )
+    return sum_in("relative", value.term("two values, over a difference of 0.4", 2.0 / 0.4))
 
 
 INPUTS = (
@@ -122,44 +114,12 @@ def model_albedo(batch: Batch, model: str) -> Array:
     return batch.strength * row.closed_albedo_dir(mu, batch.inputs["color"], *parameter)
 
 
-def random_inputs(rng: np.random.Generator, count: int, row: Model) -> dict[str, Array]:
-    """Random colors and roughnesses; a tenth of each lies on either end of its range.
-
-    The last colors are gray.
-    """
-    color, roughness = rng.random((count, 3)), rng.random(count)
-    color = np.clip(1.25 * color - 0.125, 0.0, 1.0)
-    color[-(count // 16) :] = color[-(count // 16) :, :1]
-    roughness = row.largest * np.clip(1.25 * roughness - 0.125, 0.0, 1.0)
-    return {"color": rounded(color.T), "roughness": _rounded_roughness(roughness, row)}
-
-
-def special_inputs(rng: np.random.Generator, count: int, row: Model) -> dict[str, Array]:
-    """Colors and roughnesses of a diffuse model, half of them on an edge."""
-    inputs = random_inputs(rng, count, row)
-    inputs["color"] = with_edges(rng, inputs["color"], TINY)
-    roughness = with_edges(rng, inputs["roughness"], [row.largest * x for x in SMOOTH])
-    inputs["roughness"] = _rounded_roughness(roughness, row)
-    return inputs
-
-
 def _rounded_roughness(roughness: Array, row: Model) -> Array:
     """Roughnesses as float32 numbers, none of which exceeds the model's largest by a rounding."""
     largest = np.float32(row.largest)
     if float(largest) > row.largest:
         largest = np.nextafter(largest, np.float32(0.0))
     return np.minimum(roughness.astype(np.float32), largest).astype(np.float64)
-
-
-def diffuse_edges() -> Batch:
-    """Pairs, colors and roughnesses at the edges of the domain of a diffuse node."""
-    cosine = [0.0, 1e-30, 1e-6, 0.5, 1.0]
-    rows = product(cosine, cosine, [0.0, 1.0, 2.0, math.pi], [0.0, 1e-6, 1.0], [0.0, 0.5, 1.0])
-    mu_o, mu_i, azimuth, roughness, color = np.array(list(rows)).T
-    S_o, S_i = np.sqrt(1.0 - mu_o**2), np.sqrt(1.0 - mu_i**2)
-    wo = np.stack([S_o, 0.0 * S_o, mu_o], axis=-1)
-    wi = np.stack([S_i * np.cos(azimuth), S_i * np.sin(azimuth), mu_i], axis=-1)
-    return Batch(wo, wi, {"color": np.stack([color] * 3, axis=-1), "roughness": roughness})
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -209,13 +169,27 @@ class DiffuseModelSpec(LobeSpec):
         return model_albedo(batch, self.model)
 
     def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        return random_inputs(rng, count, self.row)
+        """A tenth of the colors and of the roughnesses lie on either end; the last colors are gray."""
+        color, roughness = rng.random((count, 3)), rng.random(count)
+        color = np.clip(1.25 * color - 0.125, 0.0, 1.0)
+        color[-(count // 16) :] = color[-(count // 16) :, :1]
+        roughness = self.row.largest * np.clip(1.25 * roughness - 0.125, 0.0, 1.0)
+        return {"color": rounded(color.T), "roughness": _rounded_roughness(roughness, self.row)}
 
     def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        return special_inputs(rng, count, self.row)
+        inputs = self.random_inputs(rng, count)
+        color = with_edges(rng, inputs["color"], TINY)
+        roughness = with_edges(rng, inputs["roughness"], [self.row.largest * x for x in SMOOTH])
+        return {"color": color, "roughness": _rounded_roughness(roughness, self.row)}
 
     def edges(self, counts: Counts) -> Batch:
-        return diffuse_edges()
+        cosine = [0.0, 1e-30, 1e-6, 0.5, 1.0]
+        rows = product(cosine, cosine, [0.0, 1.0, 2.0, math.pi], [0.0, 1e-6, 1.0], [0.0, 0.5, 1.0])
+        mu_o, mu_i, azimuth, roughness, color = np.array(list(rows)).T
+        S_o, S_i = np.sqrt(1.0 - mu_o**2), np.sqrt(1.0 - mu_i**2)
+        wo = np.stack([S_o, 0.0 * S_o, mu_o], axis=-1)
+        wi = np.stack([S_i * np.cos(azimuth), S_i * np.sin(azimuth), mu_i], axis=-1)
+        return Batch(wo, wi, {"color": np.stack([color] * 3, axis=-1), "roughness": roughness})
 
 
 def _limited(row: Model, output: Callable[[Batch, str], Array], batch: Batch) -> Array:
@@ -267,12 +241,15 @@ class SurfaceLobe(DiffuseModelSpec):
     roughness: str = ""  # "" for none
     set_inputs: tuple[tuple[str, str, str], ...] = ()  # name, type and value of further inputs
 
+    @property
+    def ports(self) -> dict[str, str]:
+        """The names of its inputs, by those of a rough diffuse node."""
+        return {"color": self.color, "roughness": self.roughness}
+
     def document(self, inputs: Values | None = None) -> str:
-        inputs = inputs or {}
-        lobe = {"color": (self.color, "color3"), "roughness": (self.roughness, "float")}
-        values = [
-            (*port, inputs[name]) for name, port in lobe.items() if name in inputs and port[0]
-        ]
+        types = {"color": "color3", "roughness": "float"}
+        given = {name: port for name, port in self.ports.items() if port and name in (inputs or {})}
+        values = [(port, types[name], (inputs or {})[name]) for name, port in given.items()]
         ports = "".join(input_text(*each) for each in (*values, *self.set_inputs))
         return document_text(node_text(self.node, "surfaceshader", "shading", ports))
 

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The EDF nodes, those that combine EDFs, and surfaces that emit: views from the front and the back."""
+"""The EDF nodes, those that combine EDFs, and surfaces that emit: views from the front and the back; the VDF nodes."""
 
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 
-from mxeon.conformance.engine import COUNT, POWER, beside_rounding
 from mxeon.conformance.samples import (
     GRID,
     SEED,
@@ -22,12 +22,16 @@ from mxeon.conformance.samples import (
     turned_frames,
 )
 from mxeon.conformance.spec import (
+    ARGUMENTS,
     COMPONENTS,
+    EXPONENTIAL,
+    POWER,
     ZERO,
     Input,
     RowSpec,
     Spec,
     ValueSpec,
+    beside_rounding,
     broadcast_inputs,
     color,
     draw,
@@ -47,8 +51,61 @@ from mxeon.models.nodes.emissions import (
     Emission,
     Value,
 )
-from mxeon.shaders.nodes import connection_text, document_text, input_text, node_text, vector_text
+from mxeon.models.nodes.media import AMOUNT as MEDIUM_AMOUNT
+from mxeon.models.nodes.media import COMBINED_MEDIA, MEDIA, Medium
+from mxeon.models.nodes.media import FACTOR as MEDIUM_FACTOR
+from mxeon.models.nodes.media import Value as Transmittance
+from mxeon.shaders.nodes import (
+    SURFACE,
+    connection_text,
+    document_text,
+    input_text,
+    lobe_text,
+    node_text,
+    vector_text,
+)
 from mxeon.shaders.scene import VIEW, Scene, local_directions, sphere
+
+SOURCES = {  # names of the nodes that a node takes, by its port
+    "generalized_schlick_edf": {"base": "base"},
+    "mix": {"fg": "first", "bg": "second"},
+    "add": {"in1": "first", "in2": "second"},
+    "multiply": {"in1": "first"},
+}
+
+
+def network_text(
+    kind: str,
+    category: str,
+    name: str,
+    source: str,
+    inputs: Iterable[Input],
+    values: Values,
+    more: str = "",
+) -> str:
+    """XML of a node, with `more` of its ports, and of the sources that it takes: a value of each input, by path."""
+    sources = SOURCES.get(category, {})
+    ports = dict.fromkeys((*sources.values(), name), "")
+    for each in inputs:
+        node, _, port = each.name.rpartition("/")
+        value = np.broadcast_to(values[each.name], COMPONENTS[each.type])
+        ports[node or name] += input_text(port, each.type, value)
+    ports[name] += more + "".join(
+        connection_text(port, kind, each) for port, each in sources.items()
+    )
+    texts = [node_text(source, kind, each, ports[each]) for each in sources.values()]
+    return "".join(texts) + node_text(category, kind, name, ports[name])
+
+
+def title_of(row: Emission | Medium, kind: str, inputs: Sequence[Input]) -> str:
+    """A node that combines others has its name in common with those of other types."""
+    scaled = f", in2 {inputs[-1].type}" if row.category == "multiply" else ""
+    return (
+        f"{row.category}, {kind}{scaled}"
+        if row in (*COMBINED_EMISSIONS, *COMBINED_MEDIA)
+        else row.category
+    )
+
 
 EMITTED = connection_text("edf", "EDF", "emission")
 EMITTING_TEXT = node_text("surface", "surfaceshader", "shading", EMITTED)
@@ -111,7 +168,7 @@ OPACITY = sum_of(roundings(3), unit=UNIT)
 def power_error(host: Host) -> float:
     """Error of the engine's own power of numbers in [0, 1], beside its rounding."""
     rng = np.random.default_rng(SEED)
-    base, exponent = float32(rng.random(COUNT)), float32(rng.uniform(*EXPONENTS, COUNT))
+    base, exponent = float32(rng.random(ARGUMENTS)), float32(rng.uniform(*EXPONENTS, ARGUMENTS))
     return beside_rounding(POWER.errors(host, base, exponent))
 
 
@@ -120,38 +177,19 @@ class EmissionSpec(RowSpec):
     """A row of `mxeon.models.nodes.emissions`."""
 
     row: Emission
-    drawn: tuple[Input, ...]  # the inputs that its functions read
-    connections: str = ""  # XML of the ports of the node that are connected
-    sources: tuple[str, ...] = ()  # names of the uniform emissions that it takes
 
     @property
     def materials(self) -> tuple[Values, ...]:
         return materials(*self.drawn)
 
     def document(self, inputs: Values | None = None) -> str:
-        return document_text(self.emission_text(inputs) + EMITTING_TEXT, "look")
-
-    def emission_text(self, inputs: Values | None = None) -> str:
-        """XML of the node and of those that it takes, with a value of each input."""
-        types = {each.name: each.type for each in self.inputs}
-        values = {
-            each.name: np.broadcast_to(each.default, COMPONENTS[each.type]) for each in self.drawn
-        } | dict(inputs or {})
-        ports = {name: "" for name in ("emission", *self.sources)}
-        axis = ""
-        for path, value in values.items():
-            node, _, name = path.rpartition("/")
-            if name == "normal":  # of which MaterialX ignores a value
-                axis = vector_text("axis", value)
-                ports["emission"] += connection_text("normal", "vector3", "axis")
-            else:
-                ports[node or "emission"] += input_text(name, types[path], value)
-        nodes = (node_text("uniform_edf", "EDF", name, ports[name]) for name in self.sources)
-        return (
-            axis
-            + "".join(nodes)
-            + node_text(self.node, "EDF", "emission", ports["emission"] + self.connections)
-        )
+        """A material of the node and of those that it takes, with a value of each input."""
+        values = {each.name: each.default for each in self.drawn} | dict(inputs or {})
+        axis = vector_text("axis", values.pop("normal")) if "normal" in values else ""
+        turned = connection_text("normal", "vector3", "axis") if axis else ""  # a value is ignored
+        typed = [each for each in self.drawn if each.name in values]
+        text = network_text("EDF", self.node, "emission", "uniform_edf", typed, values, turned)
+        return document_text(axis + text + EMITTING_TEXT, "look")
 
     def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
         return draw(rng, count, self.drawn)
@@ -356,21 +394,17 @@ EMITTING_SURFACES = tuple(
 )
 
 
-def _spec(row: Emission, connections: str = "", sources: tuple[str, ...] = ()) -> EmissionSpec:
+def _spec(row: Emission) -> EmissionSpec:
     inputs = INPUTS | {FACTOR: FACTORS.get(row.name.rsplit("_", 1)[-1], FACTORS["float"])}
     drawn = tuple(inputs[name] for name in row.inputs)
     cone = row.name == "conical"
-    scaled = f", in2 {drawn[-1].type}" if FACTOR in row.inputs else ""
     powered = {"conical": CONE, "schlick_emission": POWER_ERRORS}
     return (ConeSpec if cone else EmissionSpec)(
-        title=f"{row.category}, EDF{scaled}" if row in COMBINED_EMISSIONS else row.category,
+        title=title_of(row, "EDF", drawn),
         node=row.category,
         model=row.name,
         row=row,
-        drawn=drawn,
         inputs=(*drawn, INPUTS["normal"]) if cone else drawn,
-        connections=connections,
-        sources=sources,
         errors=powered.get(row.name, UNIFORM),
         closure=not cone,
         counts=Counts(1 << 12, 1 << 10, materials=128, nodes=16),
@@ -379,18 +413,103 @@ def _spec(row: Emission, connections: str = "", sources: tuple[str, ...] = ()) -
     )
 
 
-def _connected(**sources: str) -> str:
-    return "".join(connection_text(port, "EDF", node) for port, node in sources.items())
+EMISSION_SPECS = tuple(map(_spec, (*EMISSIONS, *COMBINED_EMISSIONS)))
 
 
-BOTH = ("first", "second")
-_MIX, _ADD, *_SCALED = COMBINED_EMISSIONS
-EMISSION_SPECS = (
-    *(
-        _spec(row, *((_connected(base="base"), ("base",)) if BASE in row.inputs else ()))
-        for row in EMISSIONS
-    ),
-    _spec(_MIX, _connected(fg="first", bg="second"), BOTH),
-    _spec(_ADD, _connected(in1="first", in2="second"), BOTH),
-    *(_spec(row, _connected(in1="first"), BOTH[:1]) for row in _SCALED),
+# --- media: the VDF nodes, below a surface that lets light through --------------------------------
+
+# Of the exponential of a rounded sum, of a product and of the quotient of two such values.
+TRANSMITTANCE = sum_of(roundings(12), unit="transmittance")
+LEAST, LARGEST = 1e-3, 16.0  # coefficients, 1/m: of 1e-3 and 1 - 1e-7 of the light
+LARGEST_FACTOR = 3.0  # of a multiple
+INTERFACE = lobe_text(
+    "dielectric_bsdf",
+    {"weight": 1.0, "scatter_mode": "T"},
+    "top",
+    {"weight": "float", "scatter_mode": "string"},
 )
+PORTS = connection_text("top", "BSDF", "top") + connection_text("base", "VDF", "medium")
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class MediumSpec(RowSpec):
+    """A row of `mxeon.models.nodes.media`."""
+
+    row: Medium
+
+    @property
+    def combined(self) -> bool:
+        return self.row in COMBINED_MEDIA
+
+    def document(self, inputs: Values | None = None) -> str:
+        halves = {each.name: 0.5 for each in self.inputs}
+        media = network_text("VDF", self.node, "medium", "anisotropic_vdf", self.inputs, halves)
+        return document_text(
+            INTERFACE + media + node_text("layer", "BSDF", "lobe", PORTS) + SURFACE
+        )
+
+    def batches(self, counts: Counts) -> tuple[Batch, ...]:
+        """Random views, and random inputs of the node."""
+        rng, count = np.random.default_rng(SEED), counts.pairs
+        wo = directions(rng, count)
+        return (Batch(wo, wo * [1.0, 1.0, -1.0], self.random_inputs(rng, count)),)
+
+    def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
+        """Random coefficients, an eighth of them 0, shares and factors.
+
+        The text gives the anisotropy of a medium no part in what passes.
+        """
+        inputs = draw(rng, count, self.inputs)
+        for each in self.inputs:
+            if each.type == "vector3":
+                inputs[each.name][::8] = 0.0
+        if not self.combined and len(self.inputs) > 1:
+            inputs |= draw(rng, count, [Input("anisotropy", low=-0.9, high=0.9)])
+        return inputs
+
+    def values(self, function: Transmittance, batch: Batch) -> Array:
+        return np.asarray(function(broadcast_inputs(batch)))
+
+    def engine(self, quantity: str, host: Host) -> tuple[Term, ...]:
+        if quantity != "value":
+            return ()
+        error = 2.0 * exponential_error(host) + self.combined * 2.0 * power_error(host)
+        return (Term(error, "the engine's exp() and pow(), twice"),)
+
+
+@lru_cache(maxsize=16)
+def exponential_error(host: Host) -> float:
+    """Error of the engine's own exp(-x) for x in [0, 8], beside its rounding."""
+    return beside_rounding(EXPONENTIAL.errors(host, float32(np.linspace(0.0, 8.0, ARGUMENTS))))
+
+
+def _medium_inputs(row: Medium) -> tuple[Input, ...]:
+    """The inputs that its transmittance depends on, by path."""
+    factor = (
+        replace(color(MEDIUM_FACTOR, edges=()), high=LARGEST_FACTOR)
+        if row.name.endswith("_color3")
+        else Input(MEDIUM_FACTOR, high=LARGEST_FACTOR, change=0.3)
+    )
+    others = {MEDIUM_AMOUNT: Input(MEDIUM_AMOUNT, change=0.3), MEDIUM_FACTOR: factor}
+    # A coefficient: from one that hardly shows to one that hides nearly all.
+    usual = Input("", "vector3", LEAST, LARGEST, change=(0.9, 0.1, 0.6), logarithmic=True)
+    return tuple(others.get(name, replace(usual, name=name)) for name in row.inputs)
+
+
+def _medium_spec(row: Medium) -> MediumSpec:
+    inputs = _medium_inputs(row)
+    return MediumSpec(
+        title=title_of(row, "VDF", inputs),
+        node=row.category,
+        model=row.name,
+        row=row,
+        inputs=inputs,
+        errors={"value": TRANSMITTANCE},
+        counts=Counts(1 << 8),
+        fixed={"top/weight": 0.0},
+        asked=("transmission", "throughput", 1.0),
+        optional=True,
+    )
+
+
+MEDIUM_SPECS = tuple(map(_medium_spec, (*MEDIA, *COMBINED_MEDIA)))

@@ -2,7 +2,8 @@
 """The hair node: pairs of the whole sphere, pairs in its lobes, and regions where shaders differ from it."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
@@ -18,9 +19,9 @@ from mxeon.conformance.samples import (
     sky,
     special_directions,
 )
-from mxeon.conformance.spec import Input, broadcast_inputs, color
+from mxeon.conformance.spec import Input, ValueSpec, broadcast_inputs, color
 from mxeon.conformance.specs.lobes import NORMAL, PbrSpec, lobe_errors
-from mxeon.conformance.tolerance import Term, absolute, roundings, sum_of
+from mxeon.conformance.tolerance import Term, roundings, sum_in, sum_of
 from mxeon.models.hair import ROUGHNESSES, SCALE, TINTS, chiang_hair_attenuation, section
 from mxeon.models.nodes.lobes import BESSEL, CLAMPED, HAIR_NODE, UNIFORM
 from mxeon.models.nodes.node import Scattering
@@ -84,12 +85,11 @@ MEAN = sum_of(
     roundings(CHAIN),
     unit=UNIT,
 )
-ALBEDO = sum_of(roundings(CHAIN, "of numbers up to 1"), unit="albedo", metric=absolute)
-REGION = sum_of(
+ALBEDO = sum_in("albedo", roundings(CHAIN, "of numbers up to 1"))
+REGION = sum_in(
+    "pi f and its slopes",
     Term(5e-7, "the fit of I_0"),  # [AbramowitzStegun1964], 9.8.1 and 9.8.2
     roundings(12 + 4, "of factors and exponents, and of each angle"),
-    unit="pi f and its slopes",
-    metric=absolute,
 )
 
 LOBE_TINTS = {name: tuple(map(float, row)) for name, row in zip(TINTS, np.eye(3), strict=True)}
@@ -103,65 +103,39 @@ class Region:
     """Views and roughnesses of which a check asks."""
 
     claim: str
-    azimuths: tuple[float, float]  # of the views from the normal, in radian
-    variances: tuple[float, float]
-    scales: tuple[float, float]
-    tints: Values  # which lobe is in which channel
+    azimuths: tuple[float, float] = SLANTED  # of the views from the normal, in radian
+    variances: tuple[float, float] = (0.2, 1.0)
+    scales: tuple[float, float] = (0.2, 1.0)
+    tints: Values = field(default_factory=lambda: APART)  # which lobe is in which channel
     tilt: float = 0.05  # largest distance of `cuticle_angle` from 1/2
     ior: tuple[float, float] | None = None  # ends of the index; None for those of any pair
     # Title of the form of the model that shaders have in its place there; "" if there is none.
     form: str = ""
 
 
+NARROW = partial(Region, variances=(1e-3, 0.1), scales=(0.9, 1.0), form=BESSEL)
 # By the key of the check.
 REGIONS = {
     "each_lobe": Region(
         "Each lobe matches the equations: R, TT, and TRT with all higher orders.",
-        SLANTED,
-        (0.2, 1.0),
-        (0.2, 1.0),
-        LOBE_TINTS,
+        tints=LOBE_TINTS,
         form=UNIFORM,
     ),
-    "narrow_lobes": Region(
-        "R and TT match the equations where they are narrow.",
-        SLANTED,
-        (1e-3, 0.1),
-        (0.9, 1.0),
-        APART,
-        tilt=0.0,
-        form=BESSEL,
-    ),
-    "tilted_lobes": Region(
-        "R and TT match the equations for every tilt of the cuticle.",
-        SLANTED,
-        (1e-3, 0.1),
-        (0.9, 1.0),
-        APART,
-        tilt=0.5,
-        form=BESSEL,
-    ),
+    "narrow_lobes": NARROW("R and TT match the equations where they are narrow.", tilt=0.0),
+    "tilted_lobes": NARROW("R and TT match the equations for every tilt of the cuticle.", tilt=0.5),
     "wide_lobes": Region(
         "R and TT match the equations beyond a roughness of 1.",
-        SLANTED,
-        (1.0, 100.0),
-        (1.0, 10.0),
-        APART,
+        variances=(1.0, 100.0),
+        scales=(1.0, 10.0),
         form=CLAMPED,
     ),
     "straight_views": Region(
         "R and TT match the equations for a view along the normal.",
-        (0.0, STRAIGHT),
-        (0.2, 1.0),
-        (0.05, 0.2),
-        APART,
+        azimuths=(0.0, STRAIGHT),
+        scales=(0.05, 0.2),
     ),
     "low_index": Region(
         "R and TT match the equations for an index below 1, including total reflection.",
-        SLANTED,
-        (0.2, 1.0),
-        (0.2, 1.0),
-        APART,
         ior=(0.6, 0.95),
     ),
 }
@@ -217,15 +191,11 @@ class HairSpec(PbrSpec):
         )
 
     def few(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        return tuple(batch.first(counts.few) for batch in batches[:2])
+        return ValueSpec.few(self, batches[:2], counts)
 
-    def views(
-        self, batches: tuple[Batch, ...], few: tuple[Batch, ...], counts: Counts
-    ) -> tuple[Batch, ...]:
+    def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
         """Views of fibers without tilt, whose albedo has a closed form."""
-        return tuple(
-            batch.altered(cuticle_angle=0.5) for batch in super().views(batches, few, counts)
-        )
+        return tuple(batch.altered(cuticle_angle=0.5) for batch in super().views(batches, counts))
 
     def edges(self, counts: Counts) -> Batch:
         """Exact directions, those along the fiber among them, and inputs on their edges."""

@@ -32,7 +32,7 @@ from mxeon.conformance.spec import (
     draw_edges,
     materials,
 )
-from mxeon.conformance.tolerance import Term, Tolerance, absolute, roundings, sum_of
+from mxeon.conformance.tolerance import Term, Tolerance, roundings, sum_in, sum_of
 from mxeon.models.nodes import node
 from mxeon.models.nodes.node import Inputs, PbrNode, Scattering
 from mxeon.shaders.nodes import input_types, material_text
@@ -67,15 +67,12 @@ def lobe_errors(
 ) -> dict[str, Tolerance]:
     """Errors of a lobe: `mean` of values in an integral, whose quadrature errs by so much on the equations."""
     throughput = throughput or albedo
-    integral = sum_of(
+    integral = sum_in(
+        "albedo",
         (mean or value).term("an average of values"),
         Term(quadrature, "the quadrature on the equations"),
-        unit="albedo",
-        metric=absolute,
     )
-    passed = sum_of(
-        integral.term("an albedo"), throughput.term("a throughput"), unit="light", metric=absolute
-    )
+    passed = sum_in("light", integral.term("an albedo"), throughput.term("a throughput"))
     return {
         "value": value,
         "albedo": albedo,
@@ -103,12 +100,6 @@ class PbrSpec(RowSpec, LobeSpec):
         words = [row.category, *(f"{name} {value}" for name, value in row.fixed.items())]
         own = {"title": ", ".join(words), "node": row.category, "model": row.name}
         return cls(row=row, inputs=inputs, errors=errors, **(own | rest))
-
-    @property
-    def drawn(self) -> tuple[Input, ...]:
-        """The inputs that its functions read."""
-        inputs = {each.name: each for each in self.inputs}
-        return tuple(inputs[name] for name in self.row.inputs)
 
     @property
     def bounded(self) -> tuple[Input, ...]:
@@ -194,9 +185,7 @@ class PbrSpec(RowSpec, LobeSpec):
 
     # Its samples.
 
-    def views(
-        self, batches: tuple[Batch, ...], few: tuple[Batch, ...], counts: Counts
-    ) -> tuple[Batch, ...]:
+    def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
         return tuple(
             batch.where(batch.wo[:, 2] >= self.least_cosine).first(counts.albedos)
             for batch in batches[:2]

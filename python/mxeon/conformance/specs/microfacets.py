@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The microfacet nodes: dielectric, conductor and generalized Schlick, in scatter modes R, T and RT."""
+"""The microfacet nodes: dielectric, conductor and generalized Schlick, in scatter modes R, T and RT, and under a film."""
 
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from functools import lru_cache
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -20,23 +21,28 @@ from mxeon.conformance.samples import (
     Counts,
     Values,
     directions,
+    float32,
     rounded,
+    special_directions,
 )
-from mxeon.conformance.spec import Input, color
+from mxeon.conformance.spec import ARGUMENTS, WAVE, Input, ValueSpec, beside_rounding, color
 from mxeon.conformance.specs.lobes import BURLEY_VALUE, NORMAL, WEIGHT, PbrSpec, lobe_errors
 from mxeon.conformance.specs.sheen import FIT_COSINE
 from mxeon.conformance.tolerance import (
     SCALED,
     Term,
     Tolerance,
-    absolute,
     given,
     largest,
+    root_mean_square,
     roundings,
     scaled,
+    sum_in,
     sum_of,
 )
+from mxeon.hosts.base import Host
 from mxeon.models.nodes.microfacets import (
+    FILM_NODES,
     MICROFACET_NODES,
     TRANSMISSION_NODES,
     TRANSMISSIONS,
@@ -170,24 +176,18 @@ VALUE = sum_of(
     Term(ESS_FIT * SEEN_ESS, "the fit of E_ss, times 1.58 at most"),
     Term(FRESNEL_FIT * (SEEN_ESS - 1.0), "the fit of F_ss, times 0.58"),
 )
-MEAN = sum_of(
+MEAN = sum_in(
+    "albedo",
     ESS,
     Term(FRESNEL_FIT * (1.0 - LEAST_ESS) / LEAST_ESS, "the fit of F_ss, times (1 - E_ss) / E_ss"),
-    unit="albedo",
-    metric=absolute,
 )
 # Of lobes that lose little, a sum of directions; of others the fits too, and a sum for alpha from 0.3 on.
 ENVIRONMENT = largest(
-    sum_of(sum_over(1024), unit="albedo", metric=absolute),
-    sum_of(
-        *COMPENSATION,
-        Term(5e-4, "a sum over 1024 directions for alpha from 0.3 on"),
-        unit="albedo",
-        metric=absolute,
-    ),
+    sum_in("albedo", sum_over(1024)),
+    sum_in("albedo", *COMPENSATION, Term(5e-4, "a sum over 1024 directions for alpha from 0.3 on")),
 )
-THROUGHPUT = sum_of(LOBE, ESS, unit="albedo", metric=absolute)
-SCHLICK_THROUGHPUT = sum_of(LOBE, HALF_DIP, ESS, unit="albedo", metric=absolute)
+THROUGHPUT = sum_in("albedo", LOBE, ESS)
+SCHLICK_THROUGHPUT = sum_in("albedo", LOBE, HALF_DIP, ESS)
 # Twice the largest slope of the distribution, q^-4 of q^2 = h_z^2 + (h_x / a_x)^2 + (h_y / a_y)^2.
 FRAME = sum_of(
     roundings(
@@ -199,10 +199,10 @@ BARE = given(
     0.07, "albedo", "F_ss in three cosines, which miss total reflection without extinction"
 )
 ERRORS = {
-    "picture albedo": sum_of(*COMPENSATION, sum_over(256), unit="albedo", metric=absolute),
+    "picture albedo": sum_in("albedo", *COMPENSATION, sum_over(256)),
     "anisotropic_albedo": sum_of(*COMPENSATION, sum_over(1024), unit="albedo"),
     # The half vector of exact directions has no other errors.
-    "shape": sum_of(roundings(2 * 64, "of two values"), unit="relative", metric=absolute),
+    "shape": sum_in("relative", roundings(2 * 64, "of two values")),
     # One function of the same numbers but for signs.
     "retroreflection": BURLEY_VALUE,
     "anisotropy": sum_of(
@@ -234,8 +234,8 @@ ERRORS = {
         0.08, SCALED, "F_ss in three cosines, which miss total reflection", scaled
     ),
     "albedo with extinction 0": BARE,
-    "dip": sum_of(HALF_DIP, unit="albedo", metric=absolute),
-    "denser": sum_of(INSIDE, ESS, unit="albedo", metric=absolute),
+    "dip": sum_in("albedo", HALF_DIP),
+    "denser": sum_in("albedo", INSIDE, ESS),
 }
 WHITE_FURNACE = given(
     4e-3, "light", "what a repaired layer over white may gain or lose, 6e-4 of it by the quadrature"
@@ -244,14 +244,13 @@ WHITE_FURNACE = given(
 
 def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
     own = lobe_errors(VALUE, ENVIRONMENT, FRAME, 6e-4, throughput, WHITE_FURNACE, MEAN)
-    seen = sum_of(
+    seen = sum_in(
+        "irradiance",
         Term(2.0 * 6e-4, "the quadrature on the equations, of a value and of its share of the sky"),
         sum_over(1024),
         Term(
             SLOPE * math.sqrt(2.0) * math.pi / (2 * SKY_ROWS), "the nearest texel, half of one away"
         ),
-        unit="irradiance",
-        metric=absolute,
     )
     return {**ERRORS, **own, "lossless": own["integral"], "sky": seen}
 
@@ -264,12 +263,9 @@ class FacetSpec(PbrSpec):
 
     least_cosine: ClassVar[float] = FIT_COSINE
 
-    def views(
-        self, batches: tuple[Batch, ...], few: tuple[Batch, ...], counts: Counts
-    ) -> tuple[Batch, ...]:
+    def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
         return tuple(
-            replace(batch, inputs=simple(batch.inputs))
-            for batch in super().views(batches, few, counts)
+            replace(batch, inputs=simple(batch.inputs)) for batch in super().views(batches, counts)
         )
 
     def mirrored(self, counts: Counts) -> tuple[Batch, Batch]:
@@ -364,20 +360,16 @@ FRESNEL_SLOPE = 7.3
 def transmission_errors(passed: Tolerance) -> dict[str, Tolerance]:
     return {
         "value": passed,  # light that passes
-        "light": sum_of(
-            ENVIRONMENT.term("a reflected albedo"),
-            passed.term("light that passes"),
-            unit="light",
-            metric=absolute,
+        "light": sum_in(
+            "light", ENVIRONMENT.term("a reflected albedo"), passed.term("light that passes")
         ),
         "kept": BURLEY_VALUE,  # one function of the same numbers
         "states": sum_of(roundings(32, "of the same parts in two programs")),
-        "critical": sum_of(
+        "critical": sum_in(
+            "albedo",
             Term(SMOOTH_ESS_FIT, "the fit of E_ss of smooth lobes"),
             roundings(4 * FRESNEL_SLOPE, "of a cosine, times a Fresnel curve's largest slope, 7.3"),
             roundings(16),
-            unit="albedo",
-            metric=absolute,
         ),
     }
 
@@ -412,4 +404,205 @@ TRANSMISSION_SPECS = tuple(
         transmission_errors(THROUGHPUT if "tint" in row.inputs else SCHLICK_THROUGHPUT),
     )
     for row in TRANSMISSION_NODES
+)
+
+
+# --- thin films -----------------------------------------------------------------------------------
+
+# Largest errors of the shader's thin film, for cosines from 0.1 on and up to 1000 nm: tools/fits/thin_film.py
+# searches for each.
+FILM_SEEN = (
+    7.8e-2  # mean over the visible facets in three cosines and F_ss in three, times the light lost
+)
+FILM_OILED = 6e-2  # the same of films of index 1.25 or more
+FILM_WAVES = 2.0  # slope of curves of films from 200 nm in the cosines and sines of their phases
+FILM_PHASE = 71.0  # largest phase of a first order, in radian: 1000 nm of index 2.5
+CURVE_ROUNDINGS = (
+    10 * 9.5 + 16
+)  # ten in a phase, times the slope of a curve in its logarithm, and 16
+
+FILM_ALBEDO = sum_in(
+    "albedo",
+    Term(FILM_OILED, "the mean over visible facets and F_ss, in three cosines each"),
+    Term(ESS_FIT, "the fit of E_ss"),
+)
+# A metal of a lower index reflects totally below such a film, in fringes that few cosines do not see.
+FILM_TRAPPED = given(FILM_SEEN - FILM_OILED, "albedo", "films of a lower index than 1.25")
+
+
+def _mean(value: float, words: str) -> Tolerance:
+    """The largest error of 64 sets of 64 films, by tools/fits/thin_film_sets.py."""
+    return given(value, "reflectance, rms", words, root_mean_square)
+
+
+FILM_ERRORS = {
+    # Few films come near to it: thin metals at grazing have the first, indices far apart the second.
+    "value": sum_of(
+        Term(ESS_FIT * SEEN_ESS, "the fit of E_ss, times 1.58 at most"),
+        Term(3.5e-2 * (SEEN_ESS - 1.0), "F_ss in three cosines, times 0.58"),
+        Term(8e-4, "orders that are not summed"),
+    ),
+    "albedo": FILM_ALBEDO,
+    "throughput": FILM_ALBEDO,
+    "film_curve": sum_in(
+        "reflectance",
+        Term(2.4e-6, "orders that are not summed, from 200 nm and a cosine of 0.3 on"),
+        Term(0.65 * 2.8e-5, "the fit of E_ss at alpha 1e-3, times F (1 - F_ss)"),
+        roundings(CURVE_ROUNDINGS, "of phases, times the slope 9.5, and 16"),
+    ),
+    "film_orders": sum_of(
+        Term(8.7e-7, "orders that are not summed, rms over 1024 films of 40 to 100 nm"),
+        Term(1.5e-4, "the fit of E_ss at alpha 1e-3 and cosines of 0.1 to 0.2"),
+        unit="reflectance, rms",
+        metric=root_mean_square,
+    ),
+    # F_ss under a film that changes nothing, against the fit of it without one.
+    "film_limit": sum_of(Term(4.4e-3 * (SEEN_ESS - 1.0), "F_ss in three cosines, times 0.58")),
+    # Of the compensation a mirror has another share than a film.
+    "film_energy": VALUE,
+    "film_average": _mean(7e-3, "F_ss in three cosines of films of 50 to 1000 nm"),
+    "film_smooth": _mean(1e-5, "F_ss in three cosines, times what a lobe of alpha 0.04 loses"),
+    "film_visible": _mean(1.9e-3, "visible facets in three cosines, films of 50 to 100 nm"),
+    "film_glossy": _mean(1.1e-3, "visible facets in three cosines, alpha 0.03 to 0.1"),
+    "frame": sum_of(
+        *FRAME.terms, roundings(2 * CURVE_ROUNDINGS, "of two values, phases times 9.5")
+    ),
+}
+
+
+class Films(NamedTuple):
+    """So many lobes under films, in mirrored lights, with a roughness, a cosine and a thickness in ranges."""
+
+    size: int
+    alpha: tuple[float, float]
+    mu: tuple[float, float]
+    thickness: tuple[float, float]  # nm
+
+
+# tools/fits/thin_film_sets.py bounds the mean errors of sets of these sizes.
+# Rough lobes under films of few fringes, where masking takes facets of another curve.
+STEEP = Films(1 << 6, (0.6, 1.0), (0.6, 1.0), (50.0, 100.0))
+FRINGED = STEEP._replace(thickness=(50.0, 1000.0))  # the same under films of up to many fringes
+# Lobes whose visible facets are much alike, so that few cosines stand for them, under few fringes.
+GLOSSY = STEEP._replace(alpha=(0.03, 0.1))
+# Smooth lobes, whose film's curve is seen at one cosine, under films whose first orders count.
+SHARP = Films(1 << 6, (1e-3, 1e-3), (0.3, 1.0), (200.0, 1000.0))
+# Smooth lobes at grazing under films so thin that all orders count.
+ORDERED = Films(1 << 10, (1e-3, 1e-3), (0.1, 0.2), (40.0, 100.0))
+# Each average over a film's curve takes long.
+FILM_COUNTS = Counts(1 << 8, 1 << 6, diagnosed=1 << 5, albedos=24, materials=16)
+LEAST_OIL = 1.2  # index of these films, or there is none to see
+LEAST_FILM = 1.25  # where albedos are compared: below, metals of a lower index reflect totally, in finer fringes
+LEAST_FACET = 0.1  # cosine with the half vector: next to grazing all orders of a film count
+THICK = (0.0, 1.0, 100.0, 1e4)  # thicknesses at the edges of the domain
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class FilmSpec(FacetSpec):
+    """A microfacet node under a thin film."""
+
+    counts: Counts = FILM_COUNTS
+
+    least_cosine: ClassVar[float] = LEAST_FACET
+
+    @property
+    def bounded(self) -> tuple[Input, ...]:
+        return tuple(each for each in super().bounded if each.name.startswith("thinfilm"))
+
+    def engine(self, quantity: str, host: Host) -> tuple[Term, ...]:
+        if quantity != "film_curve":
+            return ()
+        return (Term(FILM_WAVES * wave_error(host), "the engine's own cosine and sine, times 2"),)
+
+    def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
+        return _in_air(super().random_inputs(rng, count))
+
+    def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
+        """Values of which half lie on an edge; a quarter of the films have the substrate's index."""
+        inputs = _in_air(super().special_inputs(rng, count))
+        if "tint" in inputs:
+            same = rng.random(count) < 0.25
+            inputs["thinfilm_ior"] = np.where(same, inputs["ior"], inputs["thinfilm_ior"])
+        return inputs
+
+    def batches(self, counts: Counts) -> tuple[Batch, ...]:
+        """Random pairs and special ones whose facets are not at grazing, and mirrored ones."""
+        rng, count = np.random.default_rng(SEED), counts.pairs
+        special = special_directions(rng)
+        picked = rng.permutation(len(special[0]))[:count]
+        random = directions(rng, count), directions(rng, count)
+        pairs = (
+            self._batch(rng, random, self.random_inputs),
+            self._batch(rng, (special[0][picked], special[1][picked]), self.special_inputs),
+            self.mirrored(counts)[0].first(count),
+        )
+        return tuple(batch.where(_steep(batch)) for batch in pairs)
+
+    few = ValueSpec.few
+
+    def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
+        """Views of the random pairs, and as many where few facets stand for all the least."""
+        batch = batches[0].where(batches[0].wo[:, 2] >= self.least_cosine)
+        easy = batch.first(counts.albedos)
+        easy = replace(easy, inputs=simple(easy.inputs))
+        hard = Films(counts.albedos, (0.08, 0.8), (0.1, 0.35), (200.0, 1000.0))
+        return tuple(
+            batch.altered(thinfilm_ior=np.maximum(batch.inputs["thinfilm_ior"], LEAST_FILM))
+            for batch in (easy, film_views(self, hard))
+        )
+
+    def edges(self, counts: Counts) -> Batch:
+        """Pairs and inputs at the edges of the domain, films next to vacuum and vast ones."""
+        rng = np.random.default_rng(SEED)
+        special = special_directions(rng)
+        picked = rng.permutation(len(special[0]))[: 2 * counts.pairs]
+        wo, wi = (each[picked] for each in special)
+        inputs = self.special_inputs(rng, len(wo))
+        inputs["thinfilm_thickness"] = rng.choice(THICK, len(wo))
+        inputs["thinfilm_ior"][::16] = 0.0
+        return Batch(wo, wi, inputs)
+
+
+def _in_air(inputs: dict[str, Array]) -> dict[str, Array]:
+    """Inputs in which a dielectric below 1 counts as 1, a film in air.
+
+    From below 1 on, total reflection gives the curve a kink, which no short average sees.
+    """
+    return {**inputs, "ior": np.maximum(inputs["ior"], 1.0)} if "tint" in inputs else inputs
+
+
+@lru_cache(maxsize=8)
+def film_views(spec: PbrSpec, films: Films, seed: int = SEED) -> Batch:
+    """Views of films in ranges, and mirrored lights."""
+    rng, (count, *ranges) = np.random.default_rng(seed), films
+    alpha, mu, thickness = (low + (high - low) * rng.random(count) for low, high in ranges)
+    azimuth, radius = 2.0 * np.pi * rng.random(count), np.sqrt(1.0 - mu * mu)
+    wo = rounded([radius * np.cos(azimuth), radius * np.sin(azimuth), mu])
+    inputs = simple(spec.random_inputs(rng, count))
+    inputs["thinfilm_ior"] = np.maximum(inputs["thinfilm_ior"], LEAST_OIL)
+    inputs["roughness"] = rounded([alpha, alpha])
+    inputs["thinfilm_thickness"] = rounded([thickness])[:, 0]
+    if "tint" in inputs:
+        inputs["tint"] = np.ones((count, 3))
+    return Batch(wo, wo * [-1.0, -1.0, 1.0], inputs)
+
+
+def _steep(batch: Batch) -> np.ndarray:
+    """Pairs whose half vector is not at grazing to either."""
+    half = batch.wo + batch.wi
+    length = np.linalg.norm(half, axis=1)
+    cosine = np.abs((half * batch.wo).sum(axis=1)) / np.maximum(length, 1e-12)
+    return np.asarray(cosine >= LEAST_FACET)
+
+
+@lru_cache(maxsize=16)
+def wave_error(host: Host) -> float:
+    """Error of the engine's own cosine and sine of the phases of a film, beyond two roundings."""
+    phases = float32(np.linspace(0.0, FILM_PHASE, ARGUMENTS))
+    return beside_rounding(WAVE.errors(host, phases), 2.0)
+
+
+FILM_SPECS = tuple(
+    FilmSpec.of(row, INPUTS[row.category], FILM_ERRORS, title=f"{row.category}, thin film")
+    for row in FILM_NODES
 )

@@ -7,8 +7,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from mxeon.conformance.engine import COUNT, POWER
 from mxeon.conformance.samples import LEAST_SHEEN, SEED, float32
+from mxeon.conformance.spec import ARGUMENTS, POWER
 from mxeon.conformance.specs.lobes import (
     CLOSED_ALBEDO,
     COLOR,
@@ -69,8 +69,8 @@ def _error(host: Host) -> float:
     The sheen, as pi f cos, is at most (2 + n) / 8 times a sine to the power of n, 1 / roughness.
     """
     rng = np.random.default_rng(SEED)
-    exponent = LEAST_SHEEN ** -rng.random(COUNT)
-    sine = float32(rng.random(COUNT) ** (1.0 / exponent))  # uniform powers
+    exponent = LEAST_SHEEN ** -rng.random(ARGUMENTS)
+    sine = float32(rng.random(ARGUMENTS) ** (1.0 / exponent))  # uniform powers
     exponent = float32(exponent)
     factor = (2.0 + exponent) / 8.0
     scale = np.maximum(1.0, factor * sine**exponent)

@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from mxeon.conformance.samples import (
     SEED,
@@ -21,9 +22,8 @@ from mxeon.conformance.samples import (
 )
 from mxeon.conformance.spec import CHANGED_COLOR, Input, LobeSpec, color, draw
 from mxeon.conformance.specs.lobes import LEAST_VIEW
-from mxeon.conformance.specs.microfacets import reflected, sum_over
-from mxeon.conformance.specs.thin_films import ERRORS as FILM_ERRORS
-from mxeon.conformance.tolerance import Term, absolute, mean_scaled, roundings, sum_of
+from mxeon.conformance.specs.microfacets import FILM_ERRORS, reflected, sum_over
+from mxeon.conformance.tolerance import Term, mean_scaled, roundings, sum_in, sum_of
 from mxeon.errors import NotRun
 from mxeon.hosts.calls import NORMAL, TANGENT
 from mxeon.shaders.nodes import document_text, node_text
@@ -48,7 +48,7 @@ RANGES = {
 FREE_PATHS = ("subsurface_radius", "subsurface_scale", "subsurface_radius_scale")
 BLENDED = "opacity blends what lies behind with the whole surface, not with a lobe"
 SHADED = "an occlusion is what an evaluation sets itself"
-TURNED_FRAME = {"normal": (0.0, 0.6, 0.8), "tangent": (0.6, 0.8, 0.0)}
+TURNED_FRAME = {"normal": (0.48, 0.36, 0.8), "tangent": (0.6, 0.8, 0.0)}
 
 
 def _ports(**names: str) -> tuple[Input, ...]:
@@ -65,14 +65,13 @@ class Lobes:
     judged: tuple[Input, ...]  # those whose values have a reference
     others: tuple[Input, ...]  # those of other lobes and of thin films, which are asked for energy
     seen: Values  # a material in which every lobe takes part
-    more: Values  # further inputs, with values that this material does not have
-    # Inputs of `changed` that change no value of rasterized targets; docs/upstream/
+    # Inputs that change no value of rasterized targets; docs/upstream/
     # surface_inputs.md says why.
     without_effect: tuple[str, ...]
     white: Values  # a material that loses no light, by the layer equation
     # What else the material has where an input is changed.
     needs: Mapping[str, Values] = field(default_factory=dict)
-    # Inputs of `changed` that a curved surface alone has to show; that of pairs is a plane.
+    # Inputs that a curved surface alone has to show; that of pairs is a plane.
     curved: tuple[str, ...] = ()
     # Inputs that are asked of no value, and why.
     unseen: Mapping[str, str] = field(default_factory=dict)
@@ -83,13 +82,6 @@ class Lobes:
         return tuple(
             each for each in self.others if each.name.startswith(("thin_film", "iridescence"))
         )
-
-    @cached_property
-    def changed(self) -> Values:
-        """For each input but FREE_PATHS a value that the material with every lobe does not have."""
-        ports = (each for each in (*self.judged, *self.others) if each.name not in FREE_PATHS)
-        changes = {each.name: each.change for each in ports if each.change is not None}
-        return {**changes, **self.more}
 
 
 STANDARD = Lobes(
@@ -118,18 +110,6 @@ STANDARD = Lobes(
         "subsurface": 0.4,
         "thin_film_thickness": 400.0,
     },
-    more=dict(
-        transmission_depth=2.0,
-        transmission_scatter=CHANGED_COLOR,
-        transmission_scatter_anisotropy=0.5,
-        transmission_dispersion=20.0,
-        subsurface_anisotropy=0.5,
-        emission=0.5,
-        emission_color=CHANGED_COLOR,
-        thin_walled=True,
-        coat_normal=TURNED_FRAME["normal"],
-        **TURNED_FRAME,
-    ),
     without_effect=(
         "transmission_depth",
         "transmission_scatter",
@@ -176,21 +156,6 @@ OPEN_PBR = Lobes(
         "subsurface_weight": 0.4,
         "thin_film_weight": 0.5,
     },
-    more=dict(
-        transmission_depth=2.0,
-        transmission_scatter=CHANGED_COLOR,
-        transmission_scatter_anisotropy=0.5,
-        transmission_dispersion_scale=0.5,
-        transmission_dispersion_abbe_number=40.0,
-        subsurface_scatter_anisotropy=0.5,
-        emission_luminance=500.0,
-        emission_color=CHANGED_COLOR,
-        geometry_thin_walled=True,
-        geometry_normal=TURNED_FRAME["normal"],
-        geometry_tangent=TURNED_FRAME["tangent"],
-        geometry_coat_normal=TURNED_FRAME["normal"],
-        geometry_coat_tangent=TURNED_FRAME["tangent"],
-    ),
     without_effect=(
         "transmission_scatter",
         "transmission_scatter_anisotropy",
@@ -236,16 +201,6 @@ GLTF = Lobes(
         "iridescence": 0.5,
         "iridescence_thickness": 400.0,
     },
-    more=dict(
-        thickness=0.5,
-        attenuation_distance=2.0,
-        attenuation_color=CHANGED_COLOR,
-        dispersion=0.5,
-        emissive=CHANGED_COLOR,
-        emissive_strength=2.0,
-        clearcoat_normal=TURNED_FRAME["normal"],
-        **TURNED_FRAME,
-    ),
     without_effect=("thickness", "attenuation_distance", "attenuation_color", "dispersion"),
     needs={"emissive_strength": {"emissive": CHANGED_COLOR}},
     unseen={
@@ -272,14 +227,6 @@ PREVIEW = Lobes(
     ),
     _ports(share="opacity"),
     seen={"metallic": 0.4, "clearcoat": 0.5, "opacity": 0.6},
-    more=dict(
-        useSpecularWorkflow=1,
-        opacityMode=1,
-        opacityThreshold=0.5,
-        normal=(0.6, 0.0, 0.8),
-        displacement=0.5,
-        emissiveColor=CHANGED_COLOR,
-    ),
     without_effect=("displacement",),
     white={"diffuseColor": (1.0, 1.0, 1.0), "clearcoat": 1.0, "clearcoatRoughness": 0.4},
     needs={"specularColor": {"useSpecularWorkflow": 1}},
@@ -289,7 +236,7 @@ PREVIEW = Lobes(
 
 GRAPHS = 32  # pairs by which a graph is compared with another
 LEAST, LARGEST = 0.05, 2.0  # of their inputs: no transmittance is 0, and no emission hides the rest
-OFTEN, SELDOM = 0.75, 0.5  # shares of them that set an input, and one of `more`
+OFTEN, SELDOM = 0.75, 0.5  # shares of them that set an input, and one of `further`
 CHANGED = 8  # pairs that a change of an input has to show in
 SPREAD = 0.3  # alpha of the lobe in which half of the lights lie about the mirror direction
 STRETCHED = "anisotropy"  # in the names of inputs: an environment is summed too coarsely for them
@@ -297,11 +244,10 @@ STRETCHED = "anisotropy"  # in the names of inputs: an environment is summed too
 # the layer equation in float64: tools/fits/surface_shaders.py. They are a third of the sum of what each lobe's
 # fits change at most, since no material has the worst of all.
 VALUE = sum_of(Term(3.5e-3, "the fits of all lobes of a material, over 32 sets of 256 pairs"))
-ALBEDO = sum_of(
+ALBEDO = sum_in(
+    "albedo",
     Term(2.6e-3, "the fits of all lobes of a material, over 32 sets of 64 views"),
     sum_over(1024),
-    unit="albedo",
-    metric=absolute,
 )
 # The sums of 64 views err independently of each other.
 MEAN = sum_of(
@@ -323,9 +269,35 @@ class SurfaceShaderSpec(LobeSpec):
     table: Lobes
     library: str = "eonlib"  # whose document the reference evaluates
 
+    @cached_property
+    def further(self) -> Values:
+        """Inputs that are not drawn, each with a value that the material with every lobe does not have."""
+        from mxeon.shaders.library import load_library
+
+        table, values = self.table, dict[str, ArrayLike]()
+        known = {*(each.name for each in (*table.judged, *table.others)), *table.unseen}
+        for port in load_library("stock").getMatchingNodeDefs(self.node)[0].getActiveInputs():
+            name, kind, default = port.getName(), port.getType(), port.getValue()
+            if name in known:
+                continue
+            if kind == "vector3":
+                values[name] = TURNED_FRAME["tangent" if "tangent" in name else "normal"]
+            elif kind == "color3":
+                values[name] = CHANGED_COLOR
+            else:
+                values[name] = 0.5 + (default or 0.0) if kind == "float" else not default
+        return values
+
+    @cached_property
+    def changed_inputs(self) -> Values:
+        """The same of each input but FREE_PATHS."""
+        ports = (*self.table.judged, *self.table.others)
+        known = {each.name: each.change for each in ports if each.change is not None}
+        return {**{name: known[name] for name in known if name not in FREE_PATHS}, **self.further}
+
     @property
     def names(self) -> tuple[str, ...]:
-        return tuple(self.table.changed)
+        return tuple(self.changed_inputs)
 
     def within(self, library: str) -> SurfaceShaderSpec:
         return replace(self, library=library)
@@ -383,9 +355,7 @@ class SurfaceShaderSpec(LobeSpec):
     def few(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
         return batches
 
-    def views(
-        self, batches: tuple[Batch, ...], few: tuple[Batch, ...], counts: Counts
-    ) -> tuple[Batch, ...]:
+    def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
         return (_isotropic(batches[0].first(counts.albedos)),)
 
     def materials(self, counts: Counts) -> Batch:
@@ -400,7 +370,7 @@ class SurfaceShaderSpec(LobeSpec):
         count = len(pairs.wo)
         inputs = {**pairs.inputs, **draw(rng, count, self.table.others)}
         inputs = {name: np.maximum(each, LEAST) for name, each in inputs.items()}
-        for name, value in self.table.more.items():
+        for name, value in self.further.items():
             values = np.repeat(np.minimum(np.asarray([value], float), LARGEST), count, 0)
             colored = value == CHANGED_COLOR
             inputs[name] = np.maximum(rng.random((count, 3)), LEAST) if colored else values
@@ -408,7 +378,7 @@ class SurfaceShaderSpec(LobeSpec):
             share = rng.random(count)
             inputs[name] = np.floor(3.0 * share) if name == "alpha_mode" else share
         for name, values in inputs.items():
-            values[rng.random(count) > (SELDOM if name in self.table.more else OFTEN)] = np.nan
+            values[rng.random(count) > (SELDOM if name in self.further else OFTEN)] = np.nan
         wi = np.array(pairs.wi)
         wi[1::4, 2] *= -1.0
         return replace(pairs, wi=wi, inputs=inputs)
@@ -427,7 +397,7 @@ class SurfaceShaderSpec(LobeSpec):
         rows = []
         for name in self.names:
             before = {**table.seen, **table.needs.get(name, {})}
-            rows += [before, {**before, name: table.changed[name]}]
+            rows += [before, {**before, name: self.changed_inputs[name]}]
         few = batch.first(CHANGED)
         vectors = {
             name: TANGENT if "tangent" in name else NORMAL

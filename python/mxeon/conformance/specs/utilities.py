@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mxeon import inversion
-from mxeon.conformance.engine import LOGARITHM, POWER
 from mxeon.conformance.samples import (
     SEED,
     Array,
@@ -25,8 +24,16 @@ from mxeon.conformance.samples import (
     Values,
     float32,
 )
-from mxeon.conformance.spec import COMPONENTS, Input, RowSpec, draw, draw_edges
-from mxeon.conformance.tolerance import Term, Tolerance, absolute, given, roundings, scaled, sum_of
+from mxeon.conformance.spec import COMPONENTS, LOGARITHM, POWER, Input, RowSpec, draw, draw_edges
+from mxeon.conformance.tolerance import (
+    Term,
+    Tolerance,
+    given,
+    roundings,
+    scaled,
+    sum_in,
+    sum_of,
+)
 from mxeon.hosts.base import Host
 from mxeon.hosts.calls import GRAPH
 from mxeon.models.diffuse import eon_albedo_avg, eon_albedo_dir
@@ -65,20 +72,14 @@ INPUTS = {
 
 UNIT = "relative above 1"
 # 0.98 is rounded by half of one, over 2 (1 - 0.98) in the aspect; the least alpha, 1e-8, is less than either.
-ALPHA = sum_of(
-    roundings(12),
-    roundings(0.25 / 0.02, "(half of one of 0.98, over 0.04)"),
-    unit="alpha",
-    metric=absolute,
-)
+ALPHA = sum_in("alpha", roundings(12), roundings(0.25 / 0.02, "(half of one of 0.98, over 0.04)"))
 BLACKBODY = sum_of(
     Term(1.9e-4, "the fits of X and Z: 1.2e-4 in red, 7e-5 in a clipped luminance"), unit=UNIT
 )
-REFLECTANCE = sum_of(
+REFLECTANCE = sum_in(
+    "reflectance",
     Term(3 * 5e-7, "three constants of six decimals"),
     roundings(12, "of numbers up to 1"),
-    unit="reflectance",
-    metric=absolute,
 )
 INVERSION = {
     "value": REFLECTANCE,
@@ -91,23 +92,20 @@ INVERSION = {
 ERRORS: Mapping[str, dict[str, Tolerance]] = {
     **dict.fromkeys(INVERSIONS, INVERSION),
     "roughness_anisotropy": {"value": ALPHA},
-    "roughness_dual": {"value": sum_of(roundings(2), unit="alpha", metric=absolute)},
+    "roughness_dual": {"value": sum_in("alpha", roundings(2))},
     "glossiness_anisotropy": {"value": ALPHA},
     "artistic_ior, ior": {
         # n_max is 1 in this unit at most.
-        "value": sum_of(
-            roundings(16, "four over 1 - sqrt(r), six beside, six in the mix"),
-            unit="n (1 - sqrt(r))^2",
-            metric=absolute,
+        "value": sum_in(
+            "n (1 - sqrt(r))^2", roundings(16, "four over 1 - sqrt(r), six beside, six in the mix")
         ),
         # k^2 makes up for the error of n.
-        "round_trip": sum_of(roundings(16), unit="reflectance", metric=absolute),
+        "round_trip": sum_in("reflectance", roundings(16)),
     },
     "artistic_ior, extinction": {
-        "value": sum_of(
+        "value": sum_in(
+            "k^2 (1 - r) / (n_max + 1)^2",
             roundings(8 + 16 + 4, "8 of the terms of k^2, 16 of n, 4 of 1 - r and the root"),
-            unit="k^2 (1 - r) / (n_max + 1)^2",
-            metric=absolute,
         )
     },
     "blackbody": {
@@ -190,7 +188,7 @@ class UtilitySpec(RowSpec):
     def document(self, inputs: Values | None = None) -> str:
         values = {**self.row.inputs, **(inputs or {})}
         ports = "".join(
-            input_text(name, self._type(name), values[name]) for name in self.row.inputs
+            input_text(name, TYPES[self._shape(name)], values[name]) for name in self.row.inputs
         )
         kind, single = self.row.outputs[self.output], len(self.row.outputs) == 1
         text = node_text(self.node, kind if single else "multioutput", NAME, ports)
@@ -213,9 +211,6 @@ class UtilitySpec(RowSpec):
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         rng, count = np.random.default_rng(SEED), counts.pairs
         return _batch(draw(rng, count, self.inputs)), _batch(draw_edges(rng, count, self.inputs))
-
-    def few(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        return tuple(batch.first(counts.few) for batch in batches)
 
     def outside(self, counts: Counts) -> Batch:
         """Values at the ends of the ranges and beyond them."""
@@ -248,9 +243,6 @@ class UtilitySpec(RowSpec):
             value = np.asarray(batch.inputs.get(name, default), np.float64)
             whole[name] = np.broadcast_to(value, (count, *self._shape(name)))
         return whole
-
-    def _type(self, name: str) -> str:
-        return TYPES[self._shape(name)]
 
     def _shape(self, name: str) -> tuple[int, ...]:
         return np.shape(self.row.inputs[name])

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import ImageError, InputError, NotRun, ShaderError
-from mxeon.hosts.base import Array, Identity, Inputs
+from mxeon.hosts.base import Array, Identity, Inputs, Query
 from mxeon.hosts.calls import GRAPH
 from mxeon.hosts.cycles import process
 from mxeon.hosts.cycles.process import interpreter
@@ -131,23 +131,11 @@ class Host(PairHost):
     def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
         return process.approximations(scene, inner_lobes(shader))
 
-    def evaluate(
-        self,
-        shader: Shader,
-        wo: Array,
-        wi: Array,
-        inputs: Inputs,
-        branch: str,
-        *,
-        output: str = "response",
-        irradiance: Array | None = None,
-    ) -> Array:
-        if branch != GRAPH:
-            return super().evaluate(
-                shader, wo, wi, inputs, branch, output=output, irradiance=irradiance
-            )
-        source, arguments = _graph_function(shader, inputs)
-        return self.execute(with_header(source, shader), GRAPH_FUNCTION, *arguments)
+    def _values(self, query: Query) -> Array:
+        if query.branch != GRAPH:
+            return super()._values(query)
+        source, arguments = _graph_function(query.shader, query.inputs)
+        return self.execute(with_header(source, query.shader), GRAPH_FUNCTION, *arguments)
 
     def _pixels(
         self, shader: Shader, wo: Array, wi: Array, inputs: Inputs, last: str, light: str

@@ -8,7 +8,6 @@ import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
-from importlib.metadata import PackageNotFoundError, metadata
 from pathlib import Path
 from typing import Any
 
@@ -91,32 +90,6 @@ ISSUES = read_issues(
 def issues_of(result: Result) -> tuple[Issue, ...]:
     """The known issues on whose pages the defects are that a result shows."""
     return tuple({issue.page: issue for issue in ISSUES if issue.page in result.pages}.values())
-
-
-def link(issue: Issue) -> str:
-    """Address of the page of an issue on the project's site; its file where the site has no address."""
-    if site := _site():
-        return f"{site}/upstream/{issue.page}.html"
-    file = page_file(issue)
-    return str(file.relative_to(Path.cwd()) if file.is_relative_to(Path.cwd()) else file)
-
-
-def page_file(issue: Issue) -> Path:
-    """File of the page of an issue: inside an installed package, else in the checkout."""
-    package, checkout = (Path(__file__).resolve().parents[level] for level in (3, 5))
-    folder = package / "data" / "upstream"
-    return (folder if folder.is_dir() else checkout / "docs" / "upstream") / f"{issue.page}.md"
-
-
-@cache
-def _site() -> str:
-    """Address of the documentation, from the metadata of the package (`project.urls`); "" for none."""
-    try:
-        urls = metadata("mxeon").get_all("Project-URL") or []
-    except PackageNotFoundError:  # imported from a folder
-        return ""
-    named = dict(each.split(", ", 1) for each in urls)
-    return str(named.get("Documentation", "")).rstrip("/")
 
 
 def with_pages(result: Result, materialx: str = "") -> Result:

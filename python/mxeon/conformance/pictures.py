@@ -2,7 +2,7 @@
 """Materials from documents, beside the reference's pictures pixel by pixel; and one material of each node."""
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TypeAlias
@@ -16,38 +16,173 @@ from mxeon.conformance.backends import Rendered, picture_pairs
 from mxeon.conformance.case import Case
 from mxeon.conformance.check import judge, not_measured
 from mxeon.conformance.diagnosis.candidates import Diagnosis
-from mxeon.conformance.pictures.tolerances import (
-    RELATIVE,
-    categories,
-    inner_nodes,
-    rounded_by,
-    tolerance_of,
-)
 from mxeon.conformance.reference import ExpectedPicture
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.reference.measured import HostValues
+from mxeon.conformance.reference.nodes import ShownLobe
 from mxeon.conformance.results import (
     FAILED,
     LIGHTS,
-    PASSED,
     PORTRAIT,
-    Control,
     Picture,
     Place,
     Result,
     of_white,
 )
 from mxeon.conformance.samples import Batch, Values
+from mxeon.conformance.specs import surface_shaders as surfaces
 from mxeon.conformance.specs.diffuse import DiffuseModelSpec, SurfaceLobe, model_value
-from mxeon.conformance.tolerance import Measurement, Metric, Tolerance, absolute, scaled
+from mxeon.conformance.specs.hair import lobe_terms
+from mxeon.conformance.specs.microfacets import ERRORS as FACET_ERRORS
+from mxeon.conformance.specs.microfacets import (
+    FILM_ALBEDO,
+    FILM_TRAPPED,
+    LEAST_FILM,
+    MEAN,
+    sum_over,
+)
+from mxeon.conformance.specs.subsurface import RINGS
+from mxeon.conformance.specs.utilities import BLACKBODY
+from mxeon.conformance.tolerance import (
+    Measurement,
+    Metric,
+    Term,
+    Tolerance,
+    absolute,
+    count_of,
+    given,
+    roundings,
+    scaled,
+)
 from mxeon.errors import DocumentError, NotRun, OutsideModel, ShaderError
 from mxeon.hosts import host_row
 from mxeon.hosts.base import Host
+from mxeon.io.srgb import SLOPE
+from mxeon.models.hair import ROUGHNESSES
+from mxeon.models.nodes import NODES
+from mxeon.models.sheen import conty_kulla_albedo_dir
 from mxeon.shaders.document.notes import DocumentWarning, MissingFileWarning, same_names
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.generation import TARGETS, ApproximationWarning, CodeWarning, Shader, generate
+from mxeon.shaders.inner_lobes import SUBSURFACE, inner_lobes
 from mxeon.shaders.nodes import BSDF_NODES
 from mxeon.shaders.scene import BACK, SIDE, Scene, sphere
+
+# Nodes whose shaders take an albedo from a fit.
+FITTED_NODES = {row.category for row in NODES if row.fitted or row.mirror}
+HAIR = "chiang_hair_bsdf"
+COSINES = 256  # of views, among which a sheen's albedo is largest
+
+# Errors are taken times cos(theta_o): the normal changes by its inverse from pixel to pixel.
+UNIT = "pi f cos, times cos(theta_o)"
+RELATIVE = "pi f cos, relative above 1, times cos(theta_o)"
+PLAIN = Tolerance(
+    (roundings(16, "of a pixel's point"), roundings(32, "in the value")), UNIT, absolute, exact=True
+)
+# The least OpenGL asks for; texels differ by 1 at most.
+TEXTURED = given(2.0**-8, UNIT, "a filter's weights of 8 bits")
+ENCODED = given(
+    SLOPE * TEXTURED.value, UNIT, f"filtered codes of sRGB, times its slope {SLOPE:.3g}"
+)
+FITTED, SHADED = (
+    Tolerance((each, sum_over(256)), RELATIVE, absolute, exact=True)
+    for each in (
+        MEAN.term("the fits of microfacets"),
+        surfaces.ALBEDO.term("all lobes of a surface shader"),
+    )
+)
+
+
+def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe]) -> Tolerance:
+    """Tolerance of a material's pictures: that of its lobes, with what else may add to it."""
+    rings = RINGS.term("subsurface scattering in six circles")
+    others = [rings] * (SUBSURFACE in inner_lobes(shader))
+    others += BLACKBODY.terms * ("blackbody" in categories(inner_nodes(shader)))
+    others += _others(tuple(lobes))
+    tolerance = _lobes_tolerance(shader)
+    return replace(tolerance.plus(*others), unit=RELATIVE) if others else tolerance
+
+
+def rounded_by(host: Host, tolerance: Tolerance) -> Tolerance:
+    rounding = host_row(host.name).rounding
+    if not rounding:
+        return tolerance
+    return replace(tolerance.plus(Term(rounding, "the pixels' own rounding")), unit=RELATIVE)
+
+
+def categories(elements: Iterable[mx.Element]) -> set[str]:
+    return {each.getCategory() for each in elements}
+
+
+def inner_nodes(shader: Shader) -> Iterator[mx.Element]:
+    """Nodes of a shader's document, and those of the graphs that define them."""
+    waiting, seen = [shader.document], set()
+    while waiting:
+        for each in waiting.pop().traverseTree():
+            yield each
+            graph = each.getImplementation() if each.isA(mx.Node) else None
+            if graph and graph.isA(mx.NodeGraph) and graph.getNamePath() not in seen:
+                seen.add(graph.getNamePath())
+                waiting.append(graph)
+
+
+def _others(lobes: tuple[ShownLobe, ...]) -> list[Term]:
+    """What inputs of lobes add: a film, an index below 1, and narrow lobes of hair and sheen."""
+    film, trapped = FILM_ALBEDO.term("a film"), FILM_TRAPPED.term("a film of an index below 1.25")
+    inside = FACET_ERRORS["denser"].term("the throughput of an index below 1")
+    others = [film] * _any(lobes, "thinfilm_thickness", lambda value: value > 0.0)
+    others += [trapped] * _any(lobes, "thinfilm_ior", lambda value: value < LEAST_FILM)
+    others += [inside] * _any(lobes, "ior", lambda value: value < 1.0, "dielectric_bsdf")
+    hairs = [
+        np.reshape(lobe.inputs[name], (-1, 2)).min(axis=0)
+        for lobe in lobes
+        for name in ROUGHNESSES
+        if lobe.category == HAIR
+    ]
+    if hairs:
+        others += lobe_terms(*np.min(hairs, axis=0))
+    sheens = (lobe for lobe in lobes if lobe.inputs.get("mode") == "conty_kulla")
+    narrow = [np.ravel(lobe.inputs["roughness"]).min() for lobe in sheens]
+    if narrow:
+        mu = np.linspace(1e-3, 1.0, COSINES)
+        excess = float((mu * (conty_kulla_albedo_dir(mu, min(narrow)) - 1.0)).max())
+        if excess > 0.0:
+            others.append(Term(excess, "what a narrow sheen returns beyond all light"))
+    return others
+
+
+def _any(
+    lobes: tuple[ShownLobe, ...],
+    name: str,
+    condition: Callable[[np.ndarray], np.ndarray],
+    category: str = "",
+) -> bool:
+    """Whether an input fulfills a condition anywhere, in lobes of a category or in all."""
+    return any(
+        bool(np.any(condition(lobe.inputs[name])))
+        for lobe in lobes
+        if name in lobe.inputs and category in ("", lobe.category)
+    )
+
+
+def _lobes_tolerance(shader: Shader) -> Tolerance:
+    """Tolerance of lobes without light below the surface: of their fits, or of images.
+
+    An image's filter works on codes, before a decoding.
+    """
+    if categories(shader.document.traverseTree()) & FITTED_NODES:
+        return FITTED
+    if categories(inner_nodes(shader)) & FITTED_NODES:
+        return SHADED
+    if not any(port.type == "filename" and port.value for port in shader.inputs):
+        return PLAIN
+    inputs = (each for each in inner_nodes(shader) if each.isA(mx.Input))
+    encoded = any(
+        each.getType() == "filename" and each.getActiveColorSpace() == "srgb_texture"
+        for each in inputs
+    )
+    return ENCODED if encoded else TEXTURED
+
 
 Pixels: TypeAlias = NDArray[np.floating]
 Shown: TypeAlias = tuple[Scene, Pixels, ExpectedPicture]  # with the host's picture
@@ -58,7 +193,6 @@ SAME_NAMES = "nodes {} have the values of one of them; see docs/upstream/same_na
 DEFINED_MATERIAL = (
     "a material that a nodegraph defines is not generated; see docs/upstream/material_graphs.md"
 )
-FINITE = "Every pixel is finite."
 
 
 def judge_document(
@@ -190,21 +324,16 @@ def _assert_judged(shader: Shader, host: Host) -> None:
 
 def _judge_finite(place: Place, images: Sequence[Pixels], reason: str) -> Result:
     """Result for a material that the models do not cover: its pixels have to be numbers."""
-    control = [np.where(np.arange(3) == 0, np.nan, images[0])]
-    error, wrong = (
-        float(sum((~np.isfinite(image)).any(axis=-1).sum() for image in each))
-        for each in (images, control)
-    )
-    return Result(
-        **(place | {"check": "finite", "claim": FINITE}),
-        verdict=PASSED if error == 0 < wrong else FAILED,
-        error=error,
-        unit="pixels",
-        tolerance=0,
-        derivation="a count",
-        diagnosis=reason,
-        control=Control("one channel is not a number", wrong, wrong > 0),
-    )
+
+    def measure(wrong: bool) -> Measurement:
+        shown = [np.where(np.arange(3) == 0, np.nan, images[0])] if wrong else images
+        return Measurement(
+            float(sum((~np.isfinite(each)).any(axis=-1).sum() for each in shown)), {}
+        )
+
+    place = {**place, "check": "finite", "claim": "Every pixel is finite."}
+    result = judge(place, count_of("pixels"), measure, "one channel is not a number", Diagnosis)
+    return replace(result, diagnosis=reason)
 
 
 def _judge_match(
@@ -313,18 +442,15 @@ def generate_document(
         caught = False
     except DocumentError:
         caught = True
-    result = Result(
-        DOCUMENT_KEY,
-        DOCUMENT_CLAIM,
-        file.name,
-        host,
-        library,
-        PASSED if shaders and caught else FAILED,
-        error=float(not shaders),
-        unit="documents without a shader",
-        tolerance=0,
-        derivation="a count",
-        control=Control("half of the document is cut off", float(caught), caught),
+    place = Place(
+        check=DOCUMENT_KEY, claim=DOCUMENT_CLAIM, subject=file.name, host=host, library=library
+    )
+    result = judge(
+        place,
+        count_of("documents without a shader"),
+        lambda wrong: Measurement(float(caught if wrong else not shaders), {}),
+        "half of the document is cut off",
+        Diagnosis,
     )
     return (result,), notes
 

@@ -35,7 +35,6 @@ from mxeon.conformance.samples import (
 from mxeon.conformance.specs.diffuse import (
     ERRORS,
     DiffuseModelSpec,
-    diffuse_edges,
     inputs_of,
 )
 from mxeon.conformance.tolerance import Compared, absolute, point_of
@@ -84,20 +83,16 @@ class ClaimedModel(DiffuseModelSpec):
 class CallableSamples(Samples):
     """All samples of all checks are at the edges of the domain, where values must be finite."""
 
-    def __init__(self, function: Function) -> None:
-        super().__init__(function.spec, function.spec.counts)
-        self._function = function
-
     @cached_property
     def edges(self) -> Batch:
         """Pairs and inputs at the edges of the domain, then all others for which a check asks."""
-        asked = [diffuse_edges()]
+        asked = [self.spec.edges(self.counts)]
 
         def note(batch: Batch) -> Batch:
             asked.append(batch)
             return batch
 
-        noted = Case(self.spec, self._function, self, inputs=note, control=True)
+        noted = Case(self.spec, self.backend, self, inputs=note, control=True)
         for check in _checks(self.spec.model):
             if check.key != "finite":
                 check.measured(noted, absolute)
@@ -111,10 +106,7 @@ class Function(Backend):
 
     host: CallableHost
 
-    families = (ClaimedModel,)
-
-    def samples(self) -> Samples:
-        return CallableSamples(self)
+    families, sampled = (ClaimedModel,), CallableSamples
 
     def direct(self, batch: Batch) -> Array:
         """pi f cos(theta_i), (N, 3); NaN in every channel where one is not finite."""
