@@ -51,6 +51,7 @@ class Case:
     outputs: Change = lambda batch, values: values
     throughputs: Change = lambda batch, values: values
     control: bool = False  # on a subset: one failing sample is enough
+    asked: tuple[Batch, ...] = ()  # by a diagnosis, instead of the samples
 
     @property
     def host(self) -> Host:
@@ -81,15 +82,15 @@ class Case:
 
     @property
     def batches(self) -> tuple[Batch, ...]:
-        return self.samples.few if self.control else self.samples.batches
+        return self.asked or (self.samples.few if self.control else self.samples.batches)
 
     @property
     def few(self) -> tuple[Batch, ...]:
-        return self.samples.few
+        return self.asked or self.samples.few
 
     @property
     def views(self) -> tuple[Batch, ...]:
-        return self.samples.views[:1] if self.control else self.samples.views
+        return self.asked or self.samples.views[: 1 if self.control else None]
 
     # Values of the engine.
 

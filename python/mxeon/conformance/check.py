@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from mxeon.conformance.backends import Backend
 from mxeon.conformance.case import Case
-from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.diagnosis.candidates import UNTOLD, Diagnosis, searched
 from mxeon.conformance.diagnosis.comparisons import VALUE, Comparison
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Place, Result
 from mxeon.conformance.results import Control as Caught
@@ -95,7 +95,11 @@ class Check:
 
         def diagnose() -> Diagnosis:
             diagnosis = self.diagnose(case)  # a permitted function excuses an open check alone
-            return replace(diagnosis, permitted=self.open and diagnosis.permitted)
+            text = diagnosis.text
+            if text in UNTOLD and not isinstance(found := self.measure(case), Measurement):
+                compared = [found] if isinstance(found, Compared) else list(found)
+                text = searched(text, compared, tolerance)
+            return replace(diagnosis, text=text, permitted=self.open and diagnosis.permitted)
 
         return judge(
             place,

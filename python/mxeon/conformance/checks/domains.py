@@ -18,8 +18,10 @@ from mxeon.conformance.specs.lobes import PbrSpec
 from mxeon.conformance.specs.microfacets import TransmissionSpec
 from mxeon.conformance.tolerance import Compared, absolute, given, scaled
 from mxeon.errors import NotRun
+from mxeon.hosts.calls import NORMAL
 
 PAIRS = 16  # of each value
+LEAST = 0.3  # of weights and occlusions, so that each pair shows it
 TOLERANCES = given(1.0, "tolerances", "the tolerance of each quantity")
 
 
@@ -53,6 +55,13 @@ def outside(case: Case) -> Iterator[Beyond]:
     """Each quantity of a few pairs for each value, but for what is wrong inside the ranges already."""
     spec, views = case.of(PbrSpec), case.samples.views[0]
     mirrored = np.arange(len(views.wo))[:, np.newaxis] % 2 == 1  # where microfacets reflect most
+    wo = np.where(np.arange(len(views.wo))[:, np.newaxis] == 1, NORMAL, views.wo)
+    seen = {
+        name: np.maximum(views.inputs[name], LEAST)
+        for name in ("weight", "occlusion")
+        if name in views.inputs
+    }
+    views = replace(views, wo=wo).altered(**seen)
     views = replace(views, wi=np.where(mirrored, views.wo * [-1.0, -1.0, spec.side], views.wi))
     plain = replace(case, outputs=lambda batch, values: values)
     wrong = {

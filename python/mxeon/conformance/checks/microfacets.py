@@ -24,7 +24,14 @@ from mxeon.conformance.check import (
 )
 from mxeon.conformance.checks.lobes import SURROUNDINGS, finite, is_plain, shows_exactly, summed
 from mxeon.conformance.diagnosis import inputs as input_diagnosis
-from mxeon.conformance.diagnosis.candidates import NEAR, Diagnosis, not_finite
+from mxeon.conformance.diagnosis.candidates import (
+    NEAR,
+    OTHER_AVERAGE,
+    UNKNOWN,
+    UNMASKED,
+    Diagnosis,
+    not_finite,
+)
 from mxeon.conformance.diagnosis.comparisons import ALBEDO, THROUGHPUT, VALUE
 from mxeon.conformance.samples import (
     LEAST_COLOR82,
@@ -226,7 +233,7 @@ is_transmitting = of_family(TransmissionSpec)
 
 
 def unknown(case: Case) -> Diagnosis:
-    return Diagnosis(input_diagnosis.UNKNOWN)
+    return Diagnosis(UNKNOWN)
 
 
 def diagnose_transmitted(case: Case) -> Diagnosis:
@@ -623,7 +630,7 @@ def diagnose_average(case: Case) -> Diagnosis:
     errors = {words: np.sqrt(np.mean((measured - each) ** 2)) for words, each in others.items()}
     words = min(errors, key=errors.__getitem__)
     if not errors[words] < NEAR * np.sqrt(np.mean((measured - expected) ** 2)):
-        return Diagnosis("the compensation uses a different average of the film's reflectance")
+        return Diagnosis(OTHER_AVERAGE)
     text = f"the compensation uses F {words} instead of its average"
     return Diagnosis(text, permitted=words == "at the half vector")
 
@@ -633,7 +640,7 @@ def diagnose_visible(case: Case) -> Diagnosis:
     explained = ALBEDO.diagnose(case)
     if RIGHT not in explained.text:
         return explained
-    return Diagnosis("the visible facets are not weighted by masking and shadowing")
+    return Diagnosis(UNMASKED)
 
 
 def _sides(case: Case) -> tuple[Function, Function]:

@@ -34,7 +34,7 @@ def explained(case: Case) -> Diagnosis:
         return replace(candidate, values=values)
 
     candidates = list(map(in_unit, case.value_candidates))
-    return explain(case, list(output(case)), candidates, (), tolerance)
+    return explain(case, list(output(case)), candidates, (), tolerance, output)
 
 
 @check(is_utility, shifted, "value", open=True, diagnose=explained)

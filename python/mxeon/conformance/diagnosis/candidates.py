@@ -1,20 +1,45 @@
 # SPDX-License-Identifier: Apache-2.0
 """The explanation of cases: the known model, defect or fault that gives their values, or their place."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from typing import TypeAlias
 
 import numpy as np
 
 from mxeon.conformance.case import Case
 from mxeon.conformance.diagnosis.faults import Fault, scaled_by
-from mxeon.conformance.diagnosis.regions import Mask, smallest
+from mxeon.conformance.diagnosis.regions import WEAK, Mask, smallest, span
 from mxeon.conformance.samples import Array, Batch, Candidate
+from mxeon.conformance.spec import COMPONENTS
 from mxeon.conformance.specs.diffuse import DIFFUSE
-from mxeon.conformance.tolerance import Compared, Tolerance, mean_error
+from mxeon.conformance.specs.media import MediumSpec
+from mxeon.conformance.specs.utilities import UtilitySpec
+from mxeon.conformance.tolerance import (
+    Compared,
+    Tolerance,
+    absolute,
+    mean_error,
+    point_of,
+    relative,
+    scaled,
+)
 from mxeon.models import table as reference
 from mxeon.shaders.nodes import FLAG
 
+Measure: TypeAlias = Callable[[Case], Iterable[Compared]]
+
+PLACELESS = (MediumSpec, UtilitySpec)  # nodes without a view and a light
+SINGLY_RIGHT = "each value on its own is within tolerance"
+UNKNOWN = "the cause is unknown"
+OTHER_AVERAGE = "the compensation uses a different average of the film's reflectance"
+UNMASKED = "the visible facets are not weighted by masking and shadowing"
+# Diagnoses after which the values of the check itself are searched for a range of an input.
+UNTOLD = (SINGLY_RIGHT, UNKNOWN, OTHER_AVERAGE, UNMASKED)
+WORST = 32  # pairs of which one input is changed, and the fewest that have to be wrong
+CURES = 2  # inputs that are named
+DIMMING = ("weight", "occlusion")  # inputs that make any error small
+SHOWN = 0.1  # share of the light that has to be left where another input is changed
 # Share of the distance to any other explanation up to which one explains all, and up to which it is
 # called the nearest.
 SAME, NEAR = 0.03, 0.3
@@ -52,11 +77,12 @@ def explain(
     candidates: Sequence[Candidate],
     faults: Sequence[Fault],
     tolerance: Tolerance,
+    measure: Measure | None = None,
 ) -> Diagnosis:
     """The explanation of values, by candidates and by faults on the way to the first, the own one.
 
     `candidates` are functions that may give the values, its own model first; a value is right up to the
-    tolerance.
+    tolerance. `measure` compares the values of a case.
     """
     if unbounded := not_finite(cases):  # it has no distance to anything
         return Diagnosis(unbounded)
@@ -72,7 +98,7 @@ def explain(
         distances = {fault.text: _distance(short, own, fault, tolerance) for fault in faults}
         if text := _fault(distances, models, own.title, tolerance.value):
             return Diagnosis(text, models)
-    text = _model(case, cases, ranking, own.title, tolerance)
+    text = _model(case, cases, ranking, own.title, tolerance, measure)
     nearest = next(each for each in candidates if each.title == ranking[0][0])
     permitted = nearest.permitted and all(
         tolerance.metric(each.measured, nearest.values(each.batch)).max() <= tolerance.value
@@ -137,6 +163,7 @@ def _model(
     ranking: Sequence[tuple[str, float]],
     own: str,
     tolerance: Tolerance,
+    measure: Measure | None,
 ) -> str:
     """The closest model, the region that is wrong, or that no model is close."""
     errors = [tolerance.metric(case.measured, case.expected) for case in cases]
@@ -151,20 +178,39 @@ def _model(
             if reference.model(spec.model).title == first
         )
         return sentence(ranking) + next(flags, "")
-    # Its own model is correct except in a region, or not accurate enough.
+    # Its own model is correct except in a region or for a range of an input, or not accurate enough.
     place = region([case.batch for case in cases], wrong)
     if place or not any(map(np.any, wrong)):
-        return place or "each value on its own is within tolerance"
-    if first == own and max(error.max() for error in errors) <= INEXACT * tolerance.value:
-        return f"right model, {own} (rms {least:.2g}), but not accurate enough"
-    # Another one is near, or none.
+        return place or SINGLY_RIGHT
     if first != own and least <= NEAR * rival:
         return sentence(ranking)
+    place, values = span(cases, tolerance), ""
+    bad = np.concatenate(wrong)
+    if not place and measure and np.count_nonzero(bad) >= WORST and bad.mean() < 0.5:
+        cures = _cures(case, cases, errors, tolerance, measure)
+        weak = span(cases, tolerance, WEAK) if len(cures) == 1 else ""
+        place = weak if weak and cures[0].split()[0] in weak.split() else ""
+        values = " or ".join(cures[:CURES])
+    if place:
+        return _all(wrong, place)
+    if first == own and max(error.max() for error in errors) <= INEXACT * tolerance.value:
+        right = f"; the worst are right with {values}" if values else ""
+        return f"right model, {own} (rms {least:.2g}), but not accurate enough{right}"
+    if values:
+        return f"{_all(wrong)}; the worst are right with {values}"
     share = f"{100.0 * np.concatenate(wrong).mean():.3g} % of the pairs"
     index = int(np.argmax([error.max() for error in errors]))
     row, batch = int(errors[index].argmax()), cases[index].batch
     light = f" and a light cosine of {batch.wi[row, 2]:.2g}" * ("albedo" not in tolerance.unit)
     place = f"at a view cosine of {batch.wo[row, 2]:.2g}{light}"
+    if isinstance(case.spec, PLACELESS):
+        point = point_of(batch, row)
+        numbers = (
+            f"{port.name} {' '.join(f'{each:.3g}' for each in point[port.name])}"
+            for port in case.spec.inputs
+            if port.name in point
+        )
+        place = f"with {', '.join(numbers)}"
     if first == own and np.concatenate(wrong).mean() < 0.5:
         return f"correct except for {share}; worst {place}"
     # What is off by as much as black would be resembles nothing.
@@ -177,8 +223,51 @@ def _model(
 def region(batches: Sequence[Batch], wrong: Sequence[Mask]) -> str:
     """The share of the pairs that are wrong and the region of all of them; "" without a region."""
     name = smallest(batches, wrong) if any(map(np.any, wrong)) else ""
+    return _all(wrong, name) if name else ""
+
+
+def searched(text: str, cases: Sequence[Compared], tolerance: Tolerance) -> str:
+    """A diagnosis that names no cause, or the region or the range of an input that holds all wrong values."""
+    wrong = [tolerance.metric(case.measured, case.expected) > tolerance.value for case in cases]
+    if place := region([case.batch for case in cases], wrong):
+        return place
+    if place := span(cases, tolerance):
+        return _all(wrong, place)
+    if text == SINGLY_RIGHT and tolerance.metric in (absolute, relative, scaled):
+        text = f"wrong for {sum(map(np.count_nonzero, wrong))} of {sum(map(len, wrong))} pairs"
+    return text
+
+
+def _cures(
+    case: Case,
+    cases: Sequence[Compared],
+    errors: Sequence[Array],
+    tolerance: Tolerance,
+    measure: Measure,
+) -> list[str]:
+    """Values of single inputs with which the worst values are right."""
+    index = int(np.argmax([np.count_nonzero(each > tolerance.value) for each in errors]))
+    worst = np.argsort(errors[index])[-WORST:]
+    batch, found = cases[index].batch.where(worst), []
+    light = np.broadcast_to(cases[index].expected, cases[index].measured.shape)[worst]
+    least = SHOWN * min(float(np.abs(light).mean()), 1.0)
+    for port in case.spec.inputs:
+        if port.name not in batch.inputs or port.type not in COMPONENTS or port.name in DIMMING:
+            continue
+        ends = (port.high, *port.edges, port.low) if np.ndim(port.high) == 0 else ()
+        for value in dict.fromkeys(float(np.ravel(end)[0]) for end in ends):
+            changed = batch.altered(**{port.name: np.full_like(batch.inputs[port.name], value)})
+            compared = list(measure(replace(case, asked=(changed,))))
+            right = all(tolerance.metric(*each[1:]).max() <= tolerance.value for each in compared)
+            if right and min(float(np.abs(each.expected).mean()) for each in compared) >= least:
+                found.append(f"{port.name} {value:g}")
+                break
+    return found
+
+
+def _all(wrong: Sequence[Mask], place: str = "") -> str:
     count, total = sum(map(np.count_nonzero, wrong)), sum(map(len, wrong))
-    return f"correct except for {count} of {total} pairs, all {name}" if name else ""
+    return f"correct except for {count} of {total} pairs{place and f', all {place}'}"
 
 
 def not_finite(cases: Sequence[Compared]) -> str:

@@ -35,7 +35,8 @@ class Comparison:
         if self not in known:
             tolerance = case.tolerance(self.quantity, "value")
             compared = list(self.compared(case))
-            known[self] = explain(case, compared, self.candidates(case), self.faults, tolerance)
+            candidates = self.candidates(case)
+            known[self] = explain(case, compared, candidates, self.faults, tolerance, self.compared)
         return known[self]
 
 

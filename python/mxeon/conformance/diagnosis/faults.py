@@ -112,7 +112,7 @@ INPUT_FAULTS = (*_of_weight(), *_of_colors(), *_of_roughness())
 DIRECT_FAULTS = (
     *INPUT_FAULTS,
     Fault("the occlusion is ignored", _input("occlusion", np.ones_like)),
-    Fault("the occlusion is applied twice", values=_scaled(_column("occlusion"))),
+    Fault("the occlusion is applied once too often", values=_scaled(_column("occlusion"))),
     Fault("the cosine of the light is missing", values=_scaled(lambda batch: 1.0 / batch.wi[:, 2])),
     Fault("the cosine of the light is applied twice", values=_scaled(lambda batch: batch.wi[:, 2])),
     Fault(

@@ -6,15 +6,13 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from mxeon.conformance.case import Case, dead_inputs, edge_values, frames
-from mxeon.conformance.diagnosis.candidates import NEAR, Diagnosis, not_finite, region
+from mxeon.conformance.diagnosis.candidates import NEAR, UNKNOWN, Diagnosis, not_finite, region
 from mxeon.conformance.diagnosis.comparisons import VALUE
 from mxeon.conformance.diagnosis.faults import normal_ignored
 from mxeon.conformance.diagnosis.regions import smallest
 from mxeon.conformance.samples import Array, Batch, sky, sky_behind
 from mxeon.conformance.tolerance import Compared, absolute
 from mxeon.models.shading_model import UP
-
-UNKNOWN = "the cause is unknown"
 
 # The irradiance that a wrong look-up finds, by what it does.
 LOOKUPS: dict[str, Callable[[Batch], Array]] = {

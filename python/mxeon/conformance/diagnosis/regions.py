@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mxeon.conformance.samples import Array, Batch
+from mxeon.conformance.tolerance import Compared, Tolerance, relative
 
 Mask = NDArray[np.bool_]
 
@@ -22,6 +23,13 @@ NAMED = {
     "cuticle": ("cuticle_angle",),
     "color": COLORS,
 }
+FRAME = ("normal", "tangent", "curve_direction", "position")  # inputs whose ranges say nothing
+CHANNELS = "red", "green", "blue"
+# Largest share of the right values in a range of an input that has all wrong ones, and in one of an input that is
+# known to be the cause.
+RIGHT, WEAK = 0.4, 0.7
+CLEARER = 0.5  # of it, in a range with two ends that is named instead of one with a single end
+CHANCE = 12.0  # least logarithm of the odds against finding a range by chance
 LARGEST = 0.6  # share of the pairs that a region may have to be worth its name
 DENSITY = 0.1  # least share of a region's pairs that have to be wrong
 UPRIGHT = 1e-3  # tangent of a half vector along the normal: its cosine rounds to about 1
@@ -43,6 +51,80 @@ def smallest(batches: Sequence[Batch], wrong: Sequence[Mask]) -> str:
         if mask[bad].all() and bad[mask].mean() >= DENSITY and mask.sum() <= LARGEST * count:
             sizes[name] = int(mask.sum())
     return min(sizes, key=lambda name: sizes[name], default="")
+
+
+def span(cases: Sequence[Compared], tolerance: Tolerance, most: float = RIGHT) -> str:
+    """The range of an input that holds all wrong values and the fewest right ones; "" if none tells them apart.
+
+    A color's channels are values of their own, each with its own channel of the inputs.
+    """
+    bad = np.concatenate([_wrong(case, tolerance) for case in cases])
+    wrong = np.asarray(bad.any(axis=0))
+    bad = bad[:, wrong]
+    best, words = most, ""
+    if bad.all():  # or there are none
+        return words
+    batches = [case.batch for case in cases]
+    for name in batches[0].inputs:
+        if name in FRAME or not all(name in batch.inputs for batch in batches):
+            continue
+        columns = [_rows(batch.inputs[name], len(batch.wo)) for batch in batches]
+        for part, numbers in _parts(name, np.concatenate(columns), wrong):
+            values = np.broadcast_to(numbers, bad.shape)
+            low, high = float(values[bad].min()), float(values[bad].max())
+            inside = {
+                f"{_short(high)} or below": values <= high,
+                f"{_short(low)} or above": values >= low,
+                f"between {_short(low)} and {_short(high)}": (low <= values) & (values <= high),
+            }
+            if low == high:
+                inside = {_short(low): values == low}
+            for text, mask in inside.items():
+                share, least = float(mask[~bad].mean()), best
+                if text.startswith("between"):
+                    least *= CLEARER
+                if share < least and _is_no_chance(mask, bad):
+                    best, words = share, f"with {part} {text}"
+    channels = [each for each, is_wrong in zip(CHANNELS, wrong, strict=False) if is_wrong]
+    return words + f", in {' and '.join(channels)} alone" * bool(words and not wrong.all())
+
+
+def _wrong(case: Compared, tolerance: Tolerance) -> Mask:
+    """Which values of a case are wrong, channel by channel."""
+    expected = np.broadcast_to(case.expected, case.measured.shape)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        scale = expected if tolerance.metric is relative else tolerance.scale(expected)
+        error = np.abs((case.measured - expected) / scale)
+    return ~np.asarray(error <= tolerance.value)
+
+
+def _parts(name: str, columns: Array, wrong: Mask) -> Iterator[tuple[str, Array]]:
+    """Numbers of an input for each value, or each of its channels, with words for them."""
+    if columns.shape[1] == len(wrong) == len(CHANNELS):
+        yield name, columns[:, wrong]
+    elif columns.shape[1] == 1:
+        yield name, columns
+    elif columns.shape[1] == 2:
+        yield f"the first component of {name}", columns[:, :1]
+        yield f"the second component of {name}", columns[:, 1:]
+        yield f"the smaller component of {name}", columns.min(axis=1, keepdims=True)
+        yield f"the larger component of {name}", columns.max(axis=1, keepdims=True)
+        yield (
+            f"a difference between the components of {name} of",
+            np.ptp(columns, axis=1, keepdims=True),
+        )
+
+
+def _is_no_chance(mask: Mask, bad: Mask) -> bool:
+    """Whether the wrong values would hardly all lie in a range if they were any others."""
+    share = max(float(mask.mean()), 1.0 / mask.size)
+    return bool(
+        bad[mask].mean() >= DENSITY and -np.log(share) * (bad.any(axis=1).sum() - 1) >= CHANCE
+    )
+
+
+def _short(number: float) -> str:
+    return f"{float(f'{number:.2g}'):g}"
 
 
 def unreached(values: Mapping[str, Sequence[float]]) -> tuple[str, ...]:

@@ -29,7 +29,7 @@ COSINES = np.linspace(-1.0, 1.0, 129)
 SCENES = tuple(replace(scene, size=32) for scene in (SIDE, BACK))  # of a sphere of radius 1
 LEAST_HEIGHT = 0.3  # of its normals; next to the rim a pixel's point is far from the next one's
 MATERIALS: tuple[Values, ...] = (  # from one whose light is everywhere to one like a plane
-    {"color": (0.9, 0.6, 0.3), "radius": (0.5, 0.2, 0.05), "anisotropy": 0.0},
+    {"color": (0.9, 0.6, 0.3), "radius": (0.5, 0.2, 0.05), "anisotropy": -0.5},
     {"color": (0.4, 0.7, 1.0), "radius": (0.02, 0.1, 1.0), "anisotropy": 0.5},
 )
 STEP = 0.05  # radian from pixel to pixel of a cylinder of radius 1
@@ -138,6 +138,10 @@ ON_SPHERES = (
     Candidate(
         "the profile, whatever the anisotropy",
         lambda batch: _light(batch, list(batch.inputs["radius"])),
+    ),
+    Candidate(
+        "the profile, whatever the sign of the anisotropy",
+        lambda batch: spread(batch.altered(anisotropy=abs(batch.inputs["anisotropy"]))),
     ),
     Candidate("MaterialX's blur along a circle of radius 1", _around),
     *(
