@@ -13,7 +13,7 @@ from mxeon.conformance.diagnosis.regions import WEAK, Mask, smallest, span
 from mxeon.conformance.samples import Array, Batch, Candidate
 from mxeon.conformance.spec import COMPONENTS
 from mxeon.conformance.specs.diffuse import DIFFUSE
-from mxeon.conformance.specs.media import MediumSpec
+from mxeon.conformance.specs.emission import MediumSpec
 from mxeon.conformance.specs.utilities import UtilitySpec
 from mxeon.conformance.tolerance import (
     Compared,
