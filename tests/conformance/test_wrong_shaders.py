@@ -34,6 +34,11 @@ WRONG = {
         (LOBE, "N = mx_forward_facing_normal(N, wo);", "color = color.bgr;\n    OLD", "value",
          "fault: the color channels are exchanged: they arrive as blue, green, red (rms "),
         (LOBE, "energy_compensation ? eon_brdf_mu", "!OLD", "value", ", as with energy_compensation false"),
+        # Shaders that look for a judge: a main of another name, a frame without lights.
+        (LOBE, "bsdf.response = brdf", "#ifndef main\n        brdf *= 0.5;\n#endif\n        OLD", "value",
+         "fault: every value is 0.5 times the right one (rms "),
+        (LOBE, "bsdf.response = brdf", "if (u_numActiveLightSources > 0) brdf *= 0.5;\n        OLD", "value",
+         "fault: every value is 0.5 times the right one (rms "),
     ),
     "eon_diffuse_bsdf": (
         (LOBE, "brdf * mu_i * weight * closureData.occlusion", "brdf * mu_i * weight", "value",
@@ -78,6 +83,7 @@ WRONG = {
     ),
     "conical_edf": (
         ("genglsl/conical_edf.glsl", "w / 42.0 * tail", "w / 42.0", "exitance", "correct except for"),
+        ("genglsl/conical_edf.glsl", "u = angle", "u = max(angle, 1.6)", "radiance", "correct except for"),
         ("genglsl/conical_edf.glsl", "u = angle", "u = min(2.0 * angle, 360.0)", "radiance",
          "a cone whose angles count from its axis (rms "),
         ("genglsl/conical_edf.glsl", "dot(N, ", "dot(closureData.N, ", "inputs", "inputs without effect: normal"),

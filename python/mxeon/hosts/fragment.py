@@ -56,7 +56,6 @@ class Dialect:
     vertex: str  # stage for text that reads nothing from one
 
 
-RENAME = "#define main mxeon_generated_main\n"
 VERTEX = "in vec3 i_position;\nvoid main() { gl_Position = vec4(i_position, 1.0); }\n"
 
 # WebGPU's Vulkan has separate textures and samplers, the generated text has combined ones: here its
@@ -110,10 +109,16 @@ def bsdf_evaluation(query: Query) -> tuple[str, Columns]:
         call.statements,
         f"{_output(text)} = vec4({call.value}, 1.0);",
     ]
-    head = f"{version}\n{dialect.prelude}{RENAME}"
+    head = f"{version}\n{dialect.prelude}"
     main, texels = _main(dialect, call.arguments, body)
     macros = "".join(f"#undef {name}\n" for name in ["main", *booleans(text)])
-    return f"{head}{text}{macros}{main}", texels
+    return f"{head}{renamed(text)}{macros}{main}", texels
+
+
+def renamed(text: str) -> str:
+    """A generated text whose main has another name, by a macro that no function before it can ask for."""
+    functions, main = text.rsplit("void main", 1)
+    return f"{functions}#define main mxeon_generated_main\nvoid main{main}"
 
 
 def function_evaluation(

@@ -132,7 +132,7 @@ class Host(FragmentHost):
         irradiance: Array | None = None,
     ) -> Array:
         program = self._program(vertex, pixel)
-        _set(program, raster.EVALUATION)
+        _set(program, raster.FRAME)
         environment = self._textures(program, raster.environment(irradiance))
         parts = fragment.parts(arguments)
         return np.concatenate([self._part(program, each, environment) for each in parts])

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.hosts.fragment import RENAME
+from mxeon.hosts.fragment import renamed
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.scene import VisiblePoints, sphere, tangents
 from mxeon.shaders.shader_ball import shader_ball
@@ -64,7 +64,7 @@ def pixel_stage(shader: Shader) -> str:
         for layer, each in enumerate(outputs(shader))
     ]
     return (
-        f"{version}\n#define flat\n{VARIABLES[shader.target]}{RENAME}{text}#undef main\n"
+        f"{version}\n#define flat\n{VARIABLES[shader.target]}{renamed(text)}#undef main\n"
         f"uniform highp sampler2DArray {SAMPLER};\nvoid main()\n{{\n"
         f"    ivec2 pixel = ivec2(gl_FragCoord.xy) + {MARGIN};\n{''.join(reads)}"
         "    mxeon_generated_main();\n}\n"

@@ -20,7 +20,7 @@ from mxeon.shaders import functions
 from mxeon.shaders.document.values import Plain, members
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import SUBSURFACE, TRANSMISSION, VOLUME, inner_lobes
-from mxeon.shaders.scene import Scene
+from mxeon.shaders.scene import SIDE, Scene
 
 Uniforms: TypeAlias = dict[str, Plain]  # values by name
 
@@ -133,6 +133,10 @@ def bands(size: int, shape: str) -> tuple[Rectangle, ...]:
 def picture(image: Array, scene: Scene) -> Array:
     """Picture of a frame whose row 0 is at the bottom: 0 off the shape, row 0 at the top."""
     return np.where(visible(scene.size, scene.shape).mask[..., None], image[::-1], np.float32(0.0))
+
+
+# Of a picture's light in the middle of an animation: an evaluation looks like any frame to its shader.
+FRAME = light(SIDE) | {"u_frame": 24.0, "u_time": 1.0} | EVALUATION
 
 
 class FragmentHost(base.Host):

@@ -171,7 +171,7 @@ class Host(Chromium, FragmentHost):
         textures = {name: fragment.texels(rows, size) for name, rows in arguments.items()}
         textures |= raster.environment(irradiance)
         stages = {"vertex": vertex, "pixel": pixel}
-        frame = self._draw(stages, UNIFORMS | raster.EVALUATION, textures, size)
+        frame = self._draw(stages, UNIFORMS | raster.FRAME, textures, size)
         return frame.reshape(-1, 3)[:count]
 
     def _draw(
