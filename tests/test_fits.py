@@ -95,6 +95,25 @@ def test_the_albedo_of_smooth_ggx_has_the_error_that_its_tolerance_states():
     assert 0.9 * microfacets.SMOOTH_ESS_FIT < error <= microfacets.SMOOTH_ESS_FIT
 
 
+def test_compensated_values_have_the_errors_that_their_tolerance_states():
+    coefficients = shipped_coefficients("ggx_albedo", "GGX_ALBEDO")
+    error, factor = ggx_albedo.value_errors(coefficients)
+    assert 0.9 * microfacets.ESS_VALUE_FIT < error <= microfacets.ESS_VALUE_FIT
+    assert 0.9 * microfacets.COMPENSATED < factor <= microfacets.COMPENSATED
+    wrong = (coefficients[0] + 1e-2, *coefficients[1:])
+    assert ggx_albedo.value_errors(wrong)[0] > microfacets.ESS_VALUE_FIT
+
+
+def test_the_average_of_a_metal_has_the_error_that_its_tolerance_states():
+    text = source_file("glsl", "fresnel_conductor").read_text(encoding="utf-8")
+    weights = [float(each) for each in re.findall(r"#define FRESNEL_AVG_W\d (\S+)", text)]
+    metals = np.linspace(0.05, 5.0, 100), np.linspace(0.5, 10.0, 150)
+    error = fresnel_average.conductor_error(weights, *metals)
+    assert 0.9 * microfacets.METAL_FIT < error <= microfacets.METAL_FIT
+    weights[0] += 1e-3
+    assert fresnel_average.conductor_error(weights, *metals) > microfacets.METAL_FIT
+
+
 def test_the_albedo_of_an_index_below_1_has_the_error_that_its_tolerance_states():
     # The largest error is near the critical angle of smooth surfaces.
     n = np.repeat(ggx_inside.INDICES, 5)

@@ -126,11 +126,39 @@ def largest_error(coefficients, across=145, along=97):
     return float(np.max(np.abs(fitted(mu, alpha, coefficients) - albedo(mu, alpha))))
 
 
+def peak(mu, alpha, count=400):
+    """Largest value, pi f cos, of facets that reflect everything: it is in the plane of incidence."""
+    mu_i = (np.arange(count) + 0.5).reshape(-1, *(1,) * np.ndim(mu)) / count
+    s, s_i = (np.sqrt((1.0 - each) * (1.0 + each)) for each in (mu, mu_i))
+    alpha2 = alpha * alpha
+    h2 = (mu + mu_i) ** 2 / (2.0 + 2.0 * (mu * mu_i - s * s_i))  # squared height of the half vector
+    lambdas = (np.sqrt(alpha2 + (1.0 - alpha2) * each * each) for each in (mu, mu_i))
+    smith = sum(each * other for each, other in zip(lambdas, (mu_i, mu), strict=True))
+    return np.max(alpha2 / (1.0 + (alpha2 - 1.0) * h2) ** 2 * mu_i / (2.0 * smith), axis=0)
+
+
+def value_errors(coefficients, across=145, along=97):
+    """Largest error of a compensated value, over itself or 1, and the largest factor there of F_ss.
+
+    A value v / E_ss has the error of E_ss over E_ss, and v (1 - E_ss) / E_ss times that of F_ss.
+    """
+    mu, alpha = points(across, along)
+    E, v = albedo(mu, alpha), peak(mu, alpha)
+    wrong = np.abs(fitted(mu, alpha, coefficients) - E) / E
+    factor = np.minimum(v, 1.0) * (1.0 - E) / E
+    return float(np.max(np.minimum(v / E, 1.0) * wrong)), float(np.max(factor))
+
+
 def main():
-    """Print the lines for the shaders and the error of the fit."""
+    """Print the lines for the shaders and the errors of the fit."""
     coefficients = fit()
     print(*defines(FORM, coefficients, "GGX_ALBEDO"), sep="\n")
     print(f"largest absolute error {largest_error(coefficients):.3g}")
+    print(
+        "of a value over itself {:.3g}, times the error of F_ss {:.2g}".format(
+            *value_errors(coefficients)
+        )
+    )
 
 
 if __name__ == "__main__":

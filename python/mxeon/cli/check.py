@@ -62,6 +62,13 @@ def add_parser(commands: arguments.Commands) -> None:
     arguments.add_full(command)
     arguments.add_json(command)
     arguments.add_workers(command)
+    command.add_argument(
+        "--seed",
+        type=int,
+        default=1,
+        metavar="N",
+        help="draw other random samples, and other numbers of them (default: %(default)s)",
+    )
     command.add_argument("--scheduler", metavar="ADDRESS", help="run on this Dask cluster")
     command.add_argument(
         "--waitForWorkers",
@@ -113,6 +120,7 @@ def run(options: argparse.Namespace) -> int:
         progress=_importing(progress) if options.report else progress,
         refuse=refuse,
         compared=compared,
+        seed=options.seed,
     )
     return show_run(result, options, refused)
 

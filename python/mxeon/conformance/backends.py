@@ -25,12 +25,13 @@ from mxeon.conformance.samples import (
     LEAST_TURNED,
     LOBE_RIM,
     RIM,
-    SEED,
     Array,
     Batch,
     Counts,
+    Mask,
     Values,
     directions,
+    generator,
     rounded,
 )
 from mxeon.conformance.spec import LobeSpec, Spec
@@ -77,7 +78,6 @@ if TYPE_CHECKING:
 
 WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
 NO_IMPLEMENTATION = "Could not find a matching implementation"
-Mask: TypeAlias = NDArray[np.bool_]
 Pairs: TypeAlias = tuple[Array, Array, Mask]  # wo, wi, and which of them are judged
 Draw: TypeAlias = Callable[[Counts], "T"]
 Asked: TypeAlias = "tuple[Shader, Array, Array, Values, str]"  # for pairs, in a branch
@@ -101,7 +101,7 @@ class Samples:
         self.backend: Any = backend
         self.spec: Any = backend.spec  # of a family that has what is taken of it
         counts = backend.fewer or self.spec.counts, self.spec.counts
-        self.counts: Counts = min(counts, key=lambda each: each.pairs)
+        self.counts: Counts = min(counts, key=lambda each: each.pairs).varied()
         self._drawn: dict[str, object] = {}
 
     def take(self, draw: Draw[T]) -> T:
@@ -359,7 +359,7 @@ class ClosureSamples(Samples):
     @cached_property
     def edges(self) -> Batch:
         edges = super().edges
-        return edges.where(np.random.default_rng(SEED).permutation(len(edges.wo))[:SOME])
+        return edges.where(generator().permutation(len(edges.wo))[:SOME])
 
 
 def joined(batches: Sequence[Batch]) -> Batch:
@@ -546,7 +546,7 @@ class RenderedLobeSamples(RenderedSamples):
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        rng, count = np.random.default_rng(SEED), self.counts.few
+        rng, count = generator(), self.counts.few
         inputs = self.taken(self.spec.random_inputs(rng, count))
         batch = Batch(directions(rng, count), directions(rng, count), inputs)
         return (batch.where(_is_shown(batch, LOBE_RIM)),)

@@ -4,7 +4,9 @@
 All numbers are float32 numbers in float64, so that a float32 engine sees the same samples.
 """
 
+import math
 from collections.abc import Callable, Iterable, Mapping
+from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import product
@@ -17,7 +19,8 @@ from mxeon.hosts.base import TURN
 from mxeon.hosts.textures import latlong_directions
 from mxeon.shaders.scene import Scene
 
-SEED = 1
+# Of `mxeon check`: verdicts must not depend on it, nor can a shader know it.
+SEED: ContextVar[int] = ContextVar("seed", default=1)
 PAIRS = 1 << 16
 FEW = 1 << 14  # pairs of the checks that do not ask for all
 GRAZING = 1e-6  # smallest cosine of the random pairs
@@ -25,6 +28,7 @@ RIM = 0.05  # smallest cosine judged in a picture: nearer to the rim a pixel's p
 LOBE_RIM = 0.25  # of a lobe below others
 
 Array: TypeAlias = NDArray[np.float64]
+Mask: TypeAlias = NDArray[np.bool_]
 Values: TypeAlias = Mapping[str, ArrayLike]  # of a node's inputs, by name
 Changes: TypeAlias = tuple[Values, Values]  # inputs before and after a change of one of them
 
@@ -41,6 +45,15 @@ class Counts:
     materials: int = 64
     nodes: int = 48
     mirrored: int = 1 << 11  # views with lights near the mirror direction
+
+    def varied(self) -> "Counts":
+        """Up to an eighth fewer of the samples that are drawn: their number tells a shader nothing."""
+        rng = generator()
+        fewer = {
+            name: math.ceil(getattr(self, name) * (1.0 - rng.random() / 8.0))
+            for name in ("pairs", "few", "albedos", "mirrored")
+        }
+        return replace(self, **fewer)
 
 
 @dataclass(frozen=True)
@@ -105,6 +118,11 @@ class Candidate:
     title: str
     values: Callable[[Batch], Array]
     permitted: bool = False  # whether the specification leaves it open
+
+
+def generator() -> np.random.Generator:
+    """A generator of random numbers; each kind of samples has its own, of one seed."""
+    return np.random.default_rng(SEED.get())
 
 
 def directions(rng: np.random.Generator, count: int) -> Array:

@@ -17,7 +17,7 @@ import numpy as np
 from mxeon.conformance.check import judge, not_measured
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.results import SHADER_FUNCTIONS, Place, Result
-from mxeon.conformance.samples import GRAZING, SEED, Array, directions, float32
+from mxeon.conformance.samples import GRAZING, Array, directions, float32, generator
 from mxeon.conformance.spec import TURN
 from mxeon.conformance.specs.diffuse import LOSS_FIT
 from mxeon.conformance.specs.diffuse import VALUE as MODEL_VALUE
@@ -155,7 +155,7 @@ def _version(function: str) -> tuple[Callable[..., Array], bool]:
 @cache
 def random_columns() -> Columns:
     """Random arguments by the names of parameters; those of one name may be of several functions."""
-    rng = np.random.default_rng(SEED)
+    rng = generator()
     wo, wi = directions(rng, POINTS), directions(rng, POINTS)
     pairs = np.array(list(product(AXES, AXES)))
     wo[: len(pairs)], wi[: len(pairs)] = pairs[:, 0], pairs[:, 1]

@@ -16,7 +16,6 @@ from numpy.typing import ArrayLike
 from mxeon.conformance.samples import (
     FRAMES,
     LEAN,
-    SEED,
     Array,
     Batch,
     Candidate,
@@ -25,6 +24,7 @@ from mxeon.conformance.samples import (
     Values,
     directions,
     float32,
+    generator,
     node_inputs,
     outside_directions,
     rounded,
@@ -257,7 +257,7 @@ class LobeSpec(ValueSpec):
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         """Random pairs, a quarter of each direction grazing; special ones; and outside ones."""
-        rng, count = np.random.default_rng(SEED), counts.pairs
+        rng, count = generator(), counts.pairs
         pairs = directions(rng, count), directions(rng, count)
         return (
             self._batch(rng, pairs, self.random_inputs),
@@ -279,7 +279,7 @@ class LobeSpec(ValueSpec):
         Half of the normals face away from the viewer. Tangents lean out of the surface by up to LEAN,
         as those of a geometry do where a picture turns the normal.
         """
-        rng = np.random.default_rng(SEED)
+        rng = generator()
         frames = turned_frames(rng, FRAMES)
         count = len(frames)
         wo, wi = turned_directions(rng, count), turned_directions(rng, count)

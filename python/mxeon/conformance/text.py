@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from mxeon.conformance.check import judge, not_measured
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.results import SOURCE, Place, Result
-from mxeon.conformance.samples import SEED
+from mxeon.conformance.samples import generator
 from mxeon.conformance.specs import PLAIN_LOBES
 from mxeon.conformance.specs.diffuse import DiffuseSpec
 from mxeon.conformance.specs.lobes import PbrSpec
@@ -459,7 +459,7 @@ def _closure_faults(subject: DiffuseSpec, target: str, library: str) -> tuple[li
     text = source(subject, target, library)
     if filled := FILLED.search(text):
         raise NotRun(f"{filled[1].partition('(')[0]} is a function, which the host {target} runs")
-    rng = np.random.default_rng(SEED)
+    rng = generator()
     rows = {
         name: each.reshape(MATERIALS, -1)
         for name, each in subject.random_inputs(rng, MATERIALS).items()

@@ -19,7 +19,6 @@ from mxeon.conformance.backends import (
     PICTURE_SIZE,
     Backend,
     CyclesPictures,
-    Mask,
     Pairs,
     PictureSamples,
     errors_of,
@@ -28,12 +27,13 @@ from mxeon.conformance.backends import (
 )
 from mxeon.conformance.results import Claims
 from mxeon.conformance.samples import (
-    SEED,
     Array,
     Batch,
     Counts,
+    Mask,
     Values,
     directions,
+    generator,
     outside_directions,
     special_directions,
 )
@@ -224,7 +224,7 @@ class FacetPairSamples(FacetSamples):
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        rng, spec, count = np.random.default_rng(SEED), self.spec, FEW_CALLS.pairs
+        rng, spec, count = generator(), self.spec, FEW_CALLS.pairs
         random = directions(rng, count), directions(rng, count)
         special = Batch(*special_directions(rng), {})
         half = np.linalg.norm(special.wo + special.wi, axis=1)

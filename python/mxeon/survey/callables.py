@@ -24,12 +24,12 @@ from mxeon.conformance.diagnosis.regions import smallest
 from mxeon.conformance.results import PASSED, Run
 from mxeon.conformance.samples import (
     PAIRS,
-    SEED,
     Array,
     Batch,
     Counts,
     Values,
     directions,
+    generator,
     special_directions,
 )
 from mxeon.conformance.specs.diffuse import (
@@ -73,7 +73,7 @@ class ClaimedModel(DiffuseModelSpec):
         return ""  # a function needs none
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        rng = np.random.default_rng(SEED)
+        rng = generator()
         wo, wi = directions(rng, PAIRS), directions(rng, PAIRS)
         exact = special_directions(rng)
         special = Batch(*exact, self.special_inputs(rng, len(exact[0])))

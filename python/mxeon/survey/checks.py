@@ -9,7 +9,7 @@ import numpy as np
 from mxeon.conformance.case import Case
 from mxeon.conformance.check import check, with_inputs
 from mxeon.conformance.diagnosis.candidates import Diagnosis
-from mxeon.conformance.samples import SEED, Array, Batch
+from mxeon.conformance.samples import Array, Batch, generator
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.tolerance import Compared, Measurement, given, roundings, sum_of
 from mxeon.models.sampling import eon_cltc_pdf
@@ -78,7 +78,7 @@ def samples(case: Case) -> Measurement:
 def _deviation(case: Case, mu: float) -> float:
     """Standard deviations by which the counts of one viewer's samples leave their density."""
     # Draw directions, and count them in bins of the hemisphere.
-    rng = np.random.default_rng(SEED)
+    rng = generator()
     wo = np.array([np.sqrt(1.0 - mu * mu), 0.0, mu])
     draws = np.broadcast_to(wo, (SAMPLES, 3)), rng.random((SAMPLES, 2)), np.full(SAMPLES, ROUGHNESS)
     wi = cast(Renderer, case.host).sample(*draws).astype(np.float64)

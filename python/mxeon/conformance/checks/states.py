@@ -16,7 +16,7 @@ from mxeon.conformance.backends import joined
 from mxeon.conformance.case import Case
 from mxeon.conformance.check import check, with_batch
 from mxeon.conformance.diagnosis.candidates import Diagnosis, not_finite
-from mxeon.conformance.samples import SEED, Array, Batch, Values, rounded, sky_map
+from mxeon.conformance.samples import Array, Batch, Values, generator, rounded, sky_map
 from mxeon.conformance.spec import LobeSpec, broadcast_inputs
 from mxeon.conformance.tolerance import Compared
 from mxeon.hosts.calls import LIGHTS, NORMAL, SECOND_LIGHT, SKY, TANGENT
@@ -182,7 +182,7 @@ def covering(axes: tuple[tuple[str, ...], ...]) -> tuple[tuple[str, ...], ...]:
 
 def pixels_of(case: Case) -> list[Pixels]:
     """Pixels of combinations of the states that the node and the engine can have."""
-    rng, plain = np.random.default_rng(SEED), {*case.lobe.plain, *case.backend.plain}
+    rng, plain = generator(), {*case.lobe.plain, *case.backend.plain}
     axes = tuple(tuple(each)[: 1 if name in plain else None] for name, each in AXES.items())
     rows = covering(axes)
     turned = case.samples.turned

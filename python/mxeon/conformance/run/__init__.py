@@ -55,6 +55,7 @@ def check(
     ] = lambda tasks, total: tasks,
     refuse: Callable[[str], None] = lambda error: None,
     compared: Sequence[str] = (),
+    seed: int = 1,
 ) -> Run:
     """Run every check on every host, and compare pictures of documents with the reference's.
 
@@ -77,6 +78,7 @@ def check(
       example.
     - `refuse`: Called with each fault of each document that cannot be read, before any other work.
     - `compared`: Those of `libraries` whose failures and refusals do not change the verdict.
+    - `seed`: Seed of the samples, at least 0; verdicts should not depend on it.
 
     A document that cannot be judged is among those refused; the others are judged.
 
@@ -94,10 +96,12 @@ def check(
                 raise InputError(str(reason)) from None
     if workers < 0:
         raise InputError(f"workers must be at least 0; got {workers}")
+    if seed < 0:
+        raise InputError(f"seed must be at least 0; got {seed}")
     check_timeout(timeout)
     survey = survey_documents(list(map(str, files)), libraries, policy, workers, timeout)
     keep = folder is not None
-    planned = make_plan(files, hosts, libraries, policy, keep, nodes, survey, compared)
+    planned = make_plan(files, hosts, libraries, policy, keep, nodes, survey, compared, seed)
     for line in chain.from_iterable(to_run(planned, {}).refused.values()):
         refuse(line)
     # Work; an executor that cannot work leaves the folder as it is.

@@ -34,6 +34,7 @@ from mxeon.conformance.run.plan import (
     Task,
     diffuse_specs,
 )
+from mxeon.conformance.samples import SEED
 from mxeon.conformance.shader_functions import judge_functions
 from mxeon.conformance.specs import ALL
 from mxeon.conformance.text import check_definitions, check_texts
@@ -80,6 +81,7 @@ class Judge:
 
         Raise NotRun if the host cannot be opened here.
         """
+        SEED.set(task.seed)
         try:
             findings = self._findings(task)
             # The folder whose `libraries` take the place of MaterialX's, if the library has one.
@@ -127,7 +129,7 @@ class Judge:
                 return self._document(task, host)
             if task.check == FUNCTIONS:
                 return Findings(judge_functions(host, task.library))
-        case = self._case(host, task.subject, task.library)
+        case = self._case(host, task.subject, task.library, task.seed)
         if task.check == CURVE:
             inputs = CURVE_COLOR, CURVE_ROUGHNESS
             measured, expected = integrated(case, CURVE_COSINES, *inputs)
@@ -161,7 +163,7 @@ class Judge:
         return Findings(results, pictures, notes=notes)
 
 
-def _case(host: Engine, title: str, library: str) -> Case:
+def _case(host: Engine, title: str, library: str, seed: int) -> Case:
     spec = next(each for each in own_nodes(host.name) or ALL if each.title == title)
     backend = backend_of(host.name, spec)
     assert backend is not None  # or there were no task

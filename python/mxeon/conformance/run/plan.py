@@ -15,7 +15,7 @@ import re
 import sysconfig
 from collections.abc import Generator, Iterable, Iterator, Sequence
 from contextlib import closing, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache, partial
 from itertools import islice, product
 from pathlib import Path
@@ -182,6 +182,7 @@ class Task:
     subject: str  # title of a node, path of a document, or SHADER_FUNCTIONS
     host: str
     library: str
+    seed: int = 1  # of its samples
 
     def __str__(self) -> str:
         return f"{self.host}, {self.check}, {self.subject}, {self.library}"
@@ -304,6 +305,7 @@ def make_plan(
     nodes: Sequence[str] = (),
     survey: Survey = EMPTY,
     compared: Sequence[str] = (),
+    seed: int = 1,
 ) -> Plan:
     """The tasks of a run, those of one host and library beside each other.
 
@@ -344,14 +346,14 @@ def make_plan(
     return Plan(
         version=mxeon.__version__,
         software=_software(),
-        tasks=tuple(tasks),
+        tasks=tuple(replace(task, seed=seed) for task in tasks),
         documents=tuple(dict.fromkeys(documents)),
         contents={file: survey.nodes.get(file, ()) for file in documents} if files else {},
         unreached=survey.unreached if files and not nodes else {},
         refused=survey.refused,
         libraries={each: origins(each) for each in libraries if each not in LIBRARIES},
         compared=tuple(compared),
-        options=_options(policy),
+        options=_options(policy) | {"--seed": str(seed)},
         files=digests(dict.fromkeys(documents), policy, (*libraries, *policy.definitions))
         if resumable
         else {},

@@ -3,15 +3,13 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from mxeon.conformance.samples import (
     LEAST_SHEEN,
-    SEED,
     Batch,
     Counts,
     Values,
     directions,
+    generator,
     special_directions,
 )
 from mxeon.conformance.spec import Input, color
@@ -121,7 +119,7 @@ class CombinedSpec(PbrSpec):
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         """Random pairs and special ones; those outside are judged with the lobes."""
-        rng, count = np.random.default_rng(SEED), counts.pairs
+        rng, count = generator(), counts.pairs
         wo, wi = directions(rng, count), directions(rng, count)
         special = special_directions(rng)
         return (

@@ -9,7 +9,6 @@ import numpy as np
 
 from mxeon.conformance.samples import (
     GRID,
-    SEED,
     Array,
     Batch,
     Candidate,
@@ -17,6 +16,7 @@ from mxeon.conformance.samples import (
     Values,
     directions,
     float32,
+    generator,
     rounded,
     turned_directions,
     turned_frames,
@@ -112,7 +112,8 @@ EMITTING_TEXT = node_text("surface", "surfaceshader", "shading", EMITTED)
 SURFACE_COLOR = (0.2, 0.5, 2.0)  # radiance of a surface
 BLACK_LOBE = '  <oren_nayar_diffuse_bsdf name="lobe" type="BSDF" />\n'
 LEAST_FALLOFF = 1.0  # degrees of full angle between the cones
-EXPONENTS = (1.0, 8.0)
+LEAST_CONE = 1e-3  # least share of a full turn
+EXPONENTS = (0.5, 20.0)
 BLUE, ORANGE = (0.2, 0.5, 0.8), (2.0, 0.4, 0.1)  # radiances of the materials in pictures
 INNER, OUTER = "inner_angle", "outer_angle"
 # In pictures the falloff takes half of the sphere, so that it is not steep.
@@ -136,7 +137,8 @@ FACTORS = {  # of an emission, by the last word of the row's name
 }
 
 UNIT, EXITANCE = "radiance", "exitance / pi"
-EDGE = 1e-3  # cosine from a hard edge: within it the engine's own cosine decides
+# Cosine from a hard edge within which the engine's own cosine decides; of narrow cones, half of 1 - cos.
+EDGE = 1e-3
 SMALL = Scene("dark", size=8)
 OPACITIES = (0.0, 0.25, 1.0)
 
@@ -151,7 +153,7 @@ def _errors(radiance: Tolerance, *exitance: Term) -> dict[str, Tolerance]:
 
 UNIFORM = _errors(sum_of(roundings(6, "three of each emission and its factor"), unit=UNIT))
 POWER_ERRORS = _errors(
-    sum_of(roundings(8), roundings(EXPONENTS[1], "to the power of 8"), unit=UNIT)
+    sum_of(roundings(8), roundings(EXPONENTS[1], "to the power of 20"), unit=UNIT)
 )
 # Ten roundings of 1 - cos of both angles, of which a view takes 1 - mu in all, and two of differences,
 # relative to 1 and the slope of the falloff; in an average ten of an angle shift the falloff at a slope 1/2.
@@ -167,7 +169,7 @@ OPACITY = sum_of(roundings(3), unit=UNIT)
 @lru_cache(maxsize=16)
 def power_error(host: Host) -> float:
     """Error of the engine's own power of numbers in [0, 1], beside its rounding."""
-    rng = np.random.default_rng(SEED)
+    rng = generator()
     base, exponent = float32(rng.random(ARGUMENTS)), float32(rng.uniform(*EXPONENTS, ARGUMENTS))
     return beside_rounding(POWER.errors(host, base, exponent))
 
@@ -212,7 +214,7 @@ class EmissionSpec(RowSpec):
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         """Random views from the front, and cosines from 1 to grazing."""
-        rng = np.random.default_rng(SEED)
+        rng = generator()
         mu = np.repeat(GRID, 64)
         radius = np.sqrt(1.0 - mu * mu)
         special = rounded([radius, 0.0 * mu, mu])
@@ -223,7 +225,7 @@ class EmissionSpec(RowSpec):
 
     def backs(self, counts: Counts) -> Batch:
         """Views from the back."""
-        rng = np.random.default_rng(SEED)
+        rng = generator()
         return self.views(rng, directions(rng, counts.few) * [1.0, 1.0, -1.0])
 
     def integrated(self, counts: Counts) -> tuple[Batch, Array]:
@@ -231,7 +233,7 @@ class EmissionSpec(RowSpec):
 
         The weighted sum over the views of a material is its exitance over pi.
         """
-        rng, count = np.random.default_rng(SEED), counts.materials
+        rng, count = generator(), counts.materials
         inputs = self.random_inputs(rng, count)
         mu, weights = _nodes(self._stops(inputs), counts.nodes)
         azimuth = 2.0 * np.pi * rng.random(mu.shape)
@@ -256,7 +258,7 @@ class ConeSpec(EmissionSpec):
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         """Those of any emission; views near both edges; and views of turned axes."""
-        rng = np.random.default_rng(SEED)
+        rng = generator()
         return (
             *super().batches(counts),
             self._at_edges(rng, counts.few),
@@ -277,7 +279,7 @@ class ConeSpec(EmissionSpec):
         """Views a little inside and outside of the cones."""
         inputs = self.random_inputs(rng, count)
         angle = np.where(np.arange(count) % 2, inputs[INNER], inputs[OUTER])
-        step = np.where(rng.random(count) < 0.5, -2.0, 2.0) * EDGE
+        step = np.where(rng.random(count) < 0.5, -2.0, 2.0) * _edge(angle)
         mu = np.clip(cone_cosine(angle) + step, 0.0, 1.0)
         wo = rounded([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu])
         return _away(Batch(wo, wo, inputs))
@@ -299,8 +301,12 @@ class ConeSpec(EmissionSpec):
 def _away(batch: Batch) -> Batch:
     """Views of a batch that are not at the hard edge of a cone."""
     hard = batch.inputs[OUTER] <= batch.inputs[INNER]
-    edge = cone_cosine(batch.inputs[INNER])
-    return batch.where(~hard | (np.abs(np.maximum(batch.wo[:, 2], 0.0) - edge) >= EDGE))
+    away = np.abs(np.maximum(batch.wo[:, 2], 0.0) - cone_cosine(batch.inputs[INNER]))
+    return batch.where(~hard | (away >= _edge(batch.inputs[INNER])))
+
+
+def _edge(angle: Array) -> Array:
+    return np.minimum(EDGE, 0.5 * (1.0 - cone_cosine(angle)))
 
 
 def _nodes(stops: Array, count: int) -> tuple[Array, Array]:
@@ -315,8 +321,9 @@ def _nodes(stops: Array, count: int) -> tuple[Array, Array]:
 
 
 def random_cones(rng: np.random.Generator, count: int) -> dict[str, Array]:
-    """Angles of cones: half of them with a falloff, of at least LEAST_FALLOFF degrees."""
-    inner, wide = 360.0 * rng.random(count), rng.random(count) < 0.5
+    """Angles of cones: half of them with a falloff, of at least LEAST_FALLOFF degrees; a quarter narrow ones."""
+    turn, wide = rng.random(count), rng.random(count) < 0.5
+    inner = 360.0 * np.where(rng.random(count) < 0.25, LEAST_CONE**turn, turn)
     inner = np.where(wide, inner * (1.0 - LEAST_FALLOFF / 360.0), inner)
     more = LEAST_FALLOFF * ((360.0 - inner) / LEAST_FALLOFF) ** rng.random(count)
     outer = np.where(wide, inner + more, inner * rng.random(count))
@@ -449,9 +456,9 @@ class MediumSpec(RowSpec):
         )
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random views, and random inputs of the node."""
-        rng, count = np.random.default_rng(SEED), counts.pairs
-        wo = directions(rng, count)
+        """Random views, none at grazing where refraction may fail instead, and random inputs of the node."""
+        rng, count = generator(), counts.pairs
+        wo = turned_directions(rng, count)
         return (Batch(wo, wo * [1.0, 1.0, -1.0], self.random_inputs(rng, count)),)
 
     def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:

@@ -9,12 +9,12 @@ import numpy as np
 
 from mxeon.conformance.samples import (
     LEAST_TURNED,
-    SEED,
     Array,
     Batch,
     Counts,
     Values,
     directions,
+    generator,
     rounded,
     sky,
     special_directions,
@@ -180,7 +180,7 @@ class HairSpec(PbrSpec):
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         """Random pairs, as many in the lobes, and special ones, with roughness above 0."""
-        rng, count = np.random.default_rng(SEED), counts.pairs
+        rng, count = generator(), counts.pairs
         wo, inputs = directions(rng, count), self.random_inputs(rng, count)
         free = directions(rng, count) * _sides(rng, count)
         view, light = special_directions(rng)
@@ -199,7 +199,7 @@ class HairSpec(PbrSpec):
 
     def edges(self, counts: Counts) -> Batch:
         """Exact directions, those along the fiber among them, and inputs on their edges."""
-        rng = np.random.default_rng(SEED)
+        rng = generator()
         along = np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
         pairs = np.repeat(along, 4, axis=0), np.tile(along, (4, 1))
         wo, wi = (np.concatenate(each) for each in zip(special_directions(rng), pairs, strict=True))
@@ -213,12 +213,12 @@ class HairSpec(PbrSpec):
             name: np.maximum(batch.inputs[name], [LEAST_TURNED**2, LEAST_TURNED])
             for name in ROUGHNESSES
         }
-        sides = _sides(np.random.default_rng(SEED), len(batch.wi))
+        sides = _sides(generator(), len(batch.wi))
         return replace(batch.altered(**wide), wi=batch.wi * sides)
 
     def region(self, key: str, count: int) -> Batch:
         """Pairs in the lobes of a row of REGIONS, with each lobe in a channel of its own."""
-        rng, row = np.random.default_rng(SEED), REGIONS[key]
+        rng, row = generator(), REGIONS[key]
         sine = 0.9 * (2.0 * rng.random(count) - 1.0)
         low, high = row.azimuths
         azimuth = (low + (high - low) * rng.random(count)) * rng.choice([-1.0, 1.0], count)

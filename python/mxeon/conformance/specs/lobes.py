@@ -10,13 +10,13 @@ import numpy as np
 
 from mxeon.conformance.samples import (
     LEAST_SHEEN,
-    SEED,
     TURNED,
     Array,
     Batch,
     Candidate,
     Counts,
     Values,
+    generator,
     rounded,
     sky,
     special_directions,
@@ -193,7 +193,7 @@ class PbrSpec(RowSpec, LobeSpec):
 
     def edges(self, counts: Counts) -> Batch:
         """Exact directions and inputs on their edges, roughness and index 0 among them."""
-        rng = np.random.default_rng(SEED)
+        rng = generator()
         wo, wi = special_directions(rng)
         inputs = self.special_inputs(rng, len(wo))
         for name, start, step in (("roughness", 0, 4), ("ior", 0, 3), ("extinction", 1, 6)):
@@ -212,7 +212,7 @@ class PbrSpec(RowSpec, LobeSpec):
 
         The weighted sum of pi f cos over a material's directions is its directional albedo.
         """
-        rng, count = np.random.default_rng(SEED), counts.materials
+        rng, count = generator(), counts.materials
         mu = LEAST_VIEW + (1.0 - LEAST_VIEW) * rng.random(count)
         radius, azimuth = np.sqrt(1.0 - mu * mu), 2.0 * np.pi * rng.random(count)
         wo = rounded([radius * np.cos(azimuth), radius * np.sin(azimuth), mu])
@@ -256,5 +256,9 @@ class FlatSpec(PbrSpec):
     flat = True
 
 
-BURLEY = FlatSpec.of(node("burley"), (WEIGHT, COLOR, ROUGHNESS, NORMAL), FLAT_ERRORS)
+BURLEY = FlatSpec.of(
+    node("burley"),
+    (WEIGHT, COLOR, replace(ROUGHNESS, low=0.0, edges=(0.0, 0.05, 1.0)), NORMAL),
+    FLAT_ERRORS,
+)
 TRANSLUCENT = FlatSpec.of(node("translucent"), (WEIGHT, COLOR, NORMAL), FLAT_ERRORS)

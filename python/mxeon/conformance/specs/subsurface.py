@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.conformance.samples import (
-    SEED,
     Array,
     Batch,
     Candidate,
     Counts,
     Values,
+    generator,
     turned_directions,
 )
 from mxeon.conformance.spec import ZERO, Input, broadcast_inputs
@@ -60,7 +60,7 @@ class SubsurfaceSpec(FlatSpec):
 
     def cylinder(self, counts: Counts) -> Batch:
         """Pixels of squares of 2 x 2 of a frame of two rows, which are points of a cylinder along the rows."""
-        rng, quads = np.random.default_rng(SEED), counts.few // 4
+        rng, quads = generator(), counts.few // 4
         angle = rng.uniform(-0.5, 0.5, quads)
         pixel = np.arange(4 * quads)
         row, quad, column = pixel // (2 * quads), pixel % (2 * quads) // 2, pixel % 2

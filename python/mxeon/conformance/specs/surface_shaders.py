@@ -12,13 +12,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mxeon.conformance.samples import (
-    SEED,
     Array,
     Batch,
     Counts,
     Values,
     directions,
     float32,
+    generator,
 )
 from mxeon.conformance.spec import CHANGED_COLOR, Input, LobeSpec, color, draw
 from mxeon.conformance.specs.lobes import LEAST_VIEW
@@ -344,7 +344,7 @@ class SurfaceShaderSpec(LobeSpec):
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         """Random pairs, half of them near the mirror direction, with random materials."""
-        rng, count = np.random.default_rng(SEED), counts.pairs
+        rng, count = generator(), counts.pairs
         wo, wi = _views(rng, count), directions(rng, count)
         alpha = np.full((count, 2), SPREAD)
         near = reflected(wo, alpha, rng.random(count), rng.random(count))
@@ -360,13 +360,13 @@ class SurfaceShaderSpec(LobeSpec):
 
     def materials(self, counts: Counts) -> Batch:
         """Views of materials in which every lobe takes part."""
-        rng, count = np.random.default_rng(SEED), counts.materials
+        rng, count = generator(), counts.materials
         wo = _views(rng, count)
         return _isotropic(Batch(wo, wo, self.special_inputs(rng, count)))
 
     def drawn(self, counts: Counts) -> Batch:
         """Pairs with every input of the node, a quarter lit from below; NaN stands for a default."""
-        rng, pairs = np.random.default_rng(SEED), self.batches(counts)[0].first(GRAPHS)
+        rng, pairs = generator(), self.batches(counts)[0].first(GRAPHS)
         count = len(pairs.wo)
         inputs = {**pairs.inputs, **draw(rng, count, self.table.others)}
         inputs = {name: np.maximum(each, LEAST) for name, each in inputs.items()}
@@ -386,7 +386,7 @@ class SurfaceShaderSpec(LobeSpec):
     def films(self, counts: Counts) -> Batch:
         """Some of the pairs, under random films."""
         batch = self.batches(counts)[0].first(counts.albedos)
-        return batch.altered(**draw(np.random.default_rng(SEED), len(batch.wo), self.table.films))
+        return batch.altered(**draw(generator(), len(batch.wo), self.table.films))
 
     def changed(self, batch: Batch, ports: Mapping[str, Plain]) -> Batch:
         """A few views for each input: of the material with every lobe, then with a change of it.

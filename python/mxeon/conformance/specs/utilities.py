@@ -16,13 +16,13 @@ from numpy.typing import ArrayLike
 
 from mxeon import inversion
 from mxeon.conformance.samples import (
-    SEED,
     Array,
     Batch,
     Changes,
     Counts,
     Values,
     float32,
+    generator,
 )
 from mxeon.conformance.spec import COMPONENTS, LOGARITHM, POWER, Input, RowSpec, draw, draw_edges
 from mxeon.conformance.tolerance import (
@@ -142,7 +142,7 @@ def _logarithm_error(host: Host) -> float:
 
 def _shares() -> Array:
     """Numbers in [0, 1], the last of which is 1."""
-    return float32(np.append(np.random.default_rng(SEED).random(FEWER), 1.0))
+    return float32(np.append(generator().random(FEWER), 1.0))
 
 
 # What an engine's function adds, by node: the other factor of a product, or a slope.
@@ -209,12 +209,12 @@ class UtilitySpec(RowSpec):
         return (Term(factor * error(host), words),)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        rng, count = np.random.default_rng(SEED), counts.pairs
+        rng, count = generator(), counts.pairs
         return _batch(draw(rng, count, self.inputs)), _batch(draw_edges(rng, count, self.inputs))
 
     def outside(self, counts: Counts) -> Batch:
         """Values at the ends of the ranges and beyond them."""
-        rng, count = np.random.default_rng(SEED), counts.pairs
+        rng, count = generator(), counts.pairs
         return _batch(
             {
                 name: rng.choice(
