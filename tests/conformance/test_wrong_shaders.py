@@ -151,7 +151,7 @@ WRONG = {
     ),
     "sheen_bsdf, mode conty_kulla": (
         ("genglsl/sheen_bsdf.glsl", "mode == 0 ? 1e-4 : 0.01", "0.01", "domain",
-         "the value is wrong with roughness 0.001, 0.0001"),
+         "the albedo is wrong with roughness 0.001, 0.0001"),
         ("mx_sheen_bsdf.glsl", "mode == 0", "mode != 0", "environment", "best match: Zeltner sheen (rms "),
     ),
     "sheen_bsdf, mode zeltner": (

@@ -18,7 +18,7 @@ no fit.
 
 import numpy as np
 
-from mxeon.models.microfacet import fresnel_formulas
+from mxeon.models.microfacet import fresnel
 from tools.fits.ggx_albedo import legendre
 from tools.fits.minimax import DIGITS, Form, defines, least_largest, mp, roots
 
@@ -89,7 +89,7 @@ def conductor_error(weights, n, k):
     n, k = np.meshgrid(n, k)
 
     def at(c):
-        return fresnel_formulas.conductor(np.full(n.shape, c), n, k)
+        return fresnel.conductor(np.full(n.shape, c), n, k)
 
     exact = sum(2.0 * w * c * at(c) for c, w in zip(*legendre(NODES), strict=True))
     fitted = 1.0 - sum(w * (1.0 - at(c)) for c, w in zip(COSINES, weights, strict=True))

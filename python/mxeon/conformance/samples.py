@@ -21,6 +21,7 @@ from mxeon.shaders.scene import Scene
 
 # Of `mxeon check`: verdicts must not depend on it, nor can a shader know it.
 SEED: ContextVar[int] = ContextVar("seed", default=1)
+GOLDEN_RATIO = 0.618  # its multiples are spread evenly over [0, 1)
 PAIRS = 1 << 16
 FEW = 1 << 14  # pairs of the checks that do not ask for all
 GRAZING = 1e-6  # smallest cosine of the random pairs
@@ -47,13 +48,10 @@ class Counts:
     mirrored: int = 1 << 11  # views with lights near the mirror direction
 
     def varied(self) -> "Counts":
-        """Up to an eighth fewer of the samples that are drawn: their number tells a shader nothing."""
-        rng = generator()
-        fewer = {
-            name: math.ceil(getattr(self, name) * (1.0 - rng.random() / 8.0))
-            for name in ("pairs", "few", "albedos", "mirrored")
-        }
-        return replace(self, **fewer)
+        """These for the seed 1, else up to an eighth fewer: their number tells a shader nothing."""
+        share = 1.0 - (SEED.get() - 1) * GOLDEN_RATIO % 1.0 / 8.0
+        names = "pairs", "few", "albedos", "mirrored"
+        return replace(self, **{name: math.ceil(share * getattr(self, name)) for name in names})
 
 
 @dataclass(frozen=True)
