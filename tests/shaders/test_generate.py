@@ -156,6 +156,8 @@ def test_our_nodes_compile_together_with_every_bsdf_node_of_pbrlib(target, tmp_p
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.stem)
 def test_a_source_keeps_no_state(path):
     text = path.read_text(encoding="utf-8")
+    if path.stem == "head":  # of a path tracer's interface, whose state is there alone
+        text = re.sub(r"^\w+ path_\w+;.*$", "", text, flags=re.MULTILINE)
     assert kept(text) == set() and not re.search(r"\bstatic\b", text)
     assert kept(text + "vec3 last = vec3(0.0);\nfloat value;") == {"vec3 last", "float value"}
 

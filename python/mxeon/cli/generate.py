@@ -24,6 +24,7 @@ def add_parser(commands: arguments.Commands) -> None:
         "generate my.mtlx --target glsl --outputPath out",
         "generate *.mtlx --target osl --target mdl --outputPath out",
         "generate my.mtlx --target osl --profile cycles --outputPath out  # for Blender",
+        "generate my.mtlx --target glsl --closures path --outputPath out  # for a path tracer",
     )
     command.add_argument("files", nargs="+", metavar="FILE", help="MaterialX documents")
     command.add_argument(
@@ -40,7 +41,10 @@ def add_parser(commands: arguments.Commands) -> None:
         "--element", metavar="NAME", help="generate this material only (default: all)"
     )
     command.add_argument(
-        "--profile", metavar="NAME", help="variant of a target: cycles, the OSL of Blender's Cycles"
+        "--profile",
+        "--closures",
+        metavar="NAME",
+        help="variant of a target: cycles, the OSL of Blender's Cycles; or path, GLSL that a path tracer includes",
     )
     arguments.add_library(command)
     arguments.add_materialx(command)

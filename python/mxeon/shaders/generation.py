@@ -12,8 +12,9 @@ from types import MappingProxyType
 import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
 
-from mxeon.errors import DocumentError, InterfaceError, assert_known
+from mxeon.errors import DocumentError, InputError, InterfaceError, assert_known
 from mxeon.io.files import AnyPath
+from mxeon.shaders import path_tracing
 from mxeon.shaders.closure_calls import check_closure_calls
 from mxeon.shaders.document.notes import CodeWarning, warn_of_files, warn_of_names
 from mxeon.shaders.document.policy import DEFAULT, Policy
@@ -28,7 +29,7 @@ from mxeon.shaders.generators import (
     generator_of,
     tokens_of,
 )
-from mxeon.shaders.library import load_library, own_folders
+from mxeon.shaders.library import has_profile, load_library, own_folders
 from mxeon.shaders.library_tree import in_words, root
 
 __all__ = [
@@ -123,7 +124,8 @@ def generate(
     - `target`: glsl, essl, vulkan, wgsl, msl, slang, osl or mdl.
     - `element`: Name or name path of one renderable element; None for all.
     - `library`: "eonlib", "stock" for MaterialX as it comes, or a folder; see `load_library`.
-    - `profile`: "cycles" for osl that Blender's Cycles compiles.
+    - `profile`: "cycles" for osl that Blender's Cycles compiles; "path" for text that a path tracer
+      includes, in glsl, essl, vulkan or slang.
     - `lights`: Whether a shader of a rasterized target gets MaterialX's directional light, as
       light type 1.
     - `policy`: Permissions, limits and search path.
@@ -153,10 +155,16 @@ def generate(
     assert_known("target", target, TARGETS)
     if os.path.isdir(library) and root(library):
         check_generator(library, target)
+    if profile == "path":
+        assert_known("target of the profile path", target, path_tracing.TARGETS)
+        if not has_profile(library, profile):
+            raise InputError(
+                f"library {library}: must have genglsl/path for the profile path; use --library eonlib"
+            )
     checked = read_document(document, library, profile, policy)
     content, names = checked.content, shader_names(checked.renderables)
     generator = generator_of(content, target, library, profile, policy.definitions)
-    context = context_of(content, target, generator, library, lights, policy.path)
+    context = context_of(content, target, generator, library, lights, policy.path, profile)
     elements: Sequence[mx.TypedElement] = checked.renderables
     if element is not None:
         paths = [each.getNamePath() for each in elements]
@@ -184,6 +192,10 @@ def generate(
                 {stage: source.getSourceCode(stage) for stage in STAGES if source.hasStage(stage)}
             )
             inputs, name = _inputs(source, content), source.getName()
+            if profile == "path":
+                stages = MappingProxyType(
+                    {"pixel": path_tracing.path_text(stages["pixel"], target, each, library)}
+                )
             shader = Shader(name, path, target, stages, inputs, content, folders, root(library))
             shaders.append(shader)
     inputs_of_all = [port for shader in shaders for port in shader.inputs]

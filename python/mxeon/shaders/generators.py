@@ -70,6 +70,7 @@ def context_of(
     library: str,
     lights: bool,
     path: Iterable[str],
+    profile: str | None = None,
 ) -> mx_gen.GenContext:
     """A context for one document only, as it keeps implementations by name.
 
@@ -83,6 +84,13 @@ def context_of(
     context.getOptions().targetDistanceUnit = "meter"
     # MaterialX has v = 0 at the bottom of an image, OSL's texture() at the top.
     context.getOptions().fileTextureVerticalFlip = target == "osl"
+    if profile == "path":  # which follows light itself
+        none = mx_gen.HwSpecularEnvironmentMethod.SPECULAR_ENVIRONMENT_NONE
+        context.getOptions().hwSpecularEnvironmentMethod = none
+        context.getOptions().hwTransparency = True
+        context.getOptions().shaderInterfaceType = (
+            mx_gen.ShaderInterfaceType.SHADER_INTERFACE_REDUCED
+        )
     if lights and isinstance(generator, mx_gen.HwShaderGenerator):
         light = document.getNodeDef("ND_directional_light")
         mx_gen.HwShaderGenerator.bindLightShader(light, 1, context)

@@ -39,7 +39,7 @@ from mxeon.shaders.library_tree import (
 
 SOURCE_FOLDERS = ("genglsl", "genosl")
 
-PROFILES = ("cycles",)
+PROFILES = {"cycles": "genosl", "path": "genglsl"}  # and the folder of their sources
 LOADED = 16  # libraries that a process keeps, of some 10 MB each
 
 # Targets of generators; 1.39.5 alone has all.
@@ -58,7 +58,7 @@ class Implementation:
     @property
     def ours(self) -> bool:
         """Whether it lies in one of eonlib's folders."""
-        folders = {eonlib_folder(), source_folder("eonlib") / "genosl"}
+        folders = {eonlib_folder(), *(source_folder("eonlib") / each for each in SOURCE_FOLDERS)}
         return bool(self.document) and not folders.isdisjoint(Path(self.document).resolve().parents)
 
 
@@ -121,7 +121,7 @@ def profile_documents(library: str, profile: str) -> list[Path]:
     """
     if kind_of(library) == "stock":
         return []
-    return sorted((source_folder(library) / "genosl" / profile).glob("*.xml"))
+    return sorted((source_folder(library) / PROFILES[profile] / profile).glob("*.xml"))
 
 
 def has_profile(library: str, profile: str) -> bool:

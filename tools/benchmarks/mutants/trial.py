@@ -35,6 +35,7 @@ TEXT, TESTS = "text", "tests"  # in the place of a host
 
 # What Cycles cannot show exactly or at all, tests run in Blender's OSL.
 PROFILE, PROFILE_TESTS = "genosl/cycles/", ("tests/hosts/test_osl.py",)
+PATH, PATH_TESTS = "genglsl/path/", ("tests/shaders/test_path_tracing.py",)  # which no check runs
 NOISY = ("environment", "furnace")  # checks that take Cycles longest
 # Files that no shader for gl holds: there the gl host has nothing to see.
 ON_CYCLES = ("genosl/",)
@@ -47,6 +48,8 @@ def trial(mutant: Mutant, judge: Judge, every: bool = False) -> dict[str, Any]:
     if mutant.tests:
         named = tuple(f"{MODEL_TESTS}/{name}" for name in mutant.tests)
         return by_tests(mutant, (named,) if mutant.equivalent else (named, (MODEL_TESTS,)))
+    if mutant.file.startswith(PATH):
+        return by_tests(mutant, (PATH_TESTS,))
     found = _on_hosts(mutant, judge, every)
     if found["verdict"] == SURVIVED and mutant.file.startswith(PROFILE):
         return by_tests(mutant, (PROFILE_TESTS,))

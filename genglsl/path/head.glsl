@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// A point of a surface, and what one question to its material has to remember.
+
+struct Point
+{
+    vec3 position;
+    vec3 normal;   // of shading, unit
+    vec3 tangent;  // unit, across the normal
+    vec2 texcoord;
+    bool inside;   // whether wo lies inside a solid of this material, which bends light the other way there
+};
+
+#define PATH_NOTHING 0
+#define PATH_VALUE 1
+#define PATH_PDF 2
+#define PATH_DRAW 3
+
+int path_asked;
+vec3 path_wo;
+vec3 path_wi;
+vec3 path_u;
+bool path_inside;
+bool path_thin;
+float path_eta; // index of the lobe below relative to that above
+vec3 path_root; // answer of the closure called last, which is that of the material
+
+#define u_numActiveLightSources 1
+#define u_refractionTwoSided false

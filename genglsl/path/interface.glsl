@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a path tracer calls: docs/path_tracing.md. Directions are unit vectors that leave the point.
+
+void path_ask(int asked, Point p, vec3 wo, vec3 wi, vec3 u)
+{
+    path_asked = asked;
+    path_wo = wo;
+    vec3 both = wo + wi;
+    path_wi = dot(both, both) > 0.0 ? wi : wi + 1e-6 * p.tangent;  // opposite directions have no half vector
+    path_u = u;
+    path_inside = p.inside;
+    path_thin = material_is_thin_walled;
+    path_root = vec3(0.0);
+    path_place(p);
+    path_material();
+}
+
+// f cos(theta_i), with the share of light that the surface does not let pass.
+vec3 material_evaluate(Point p, vec3 wo, vec3 wi)
+{
+    path_ask(PATH_VALUE, p, wo, wi, vec3(0.0));
+    return path_root * path_out.a;
+}
+
+// Density of wi in 1/sr among what material_sample draws; its integral is the share of draws that are not lost.
+float material_pdf(Point p, vec3 wo, vec3 wi)
+{
+    path_ask(PATH_PDF, p, wo, wi, vec3(0.0));
+    return path_root.x > 0.0 ? path_root.y * path_out.a : 0.0;
+}
+
+// Draws wi by three random numbers in [0, 1): whether the path goes on there, with `weight`, f cos(theta_i) / pdf.
+// Where a surface lets light pass, wi is -wo and pdf is 0, since no other call can find that direction.
+bool material_sample(Point p, vec3 wo, vec3 u, out vec3 wi, out vec3 weight, out float pdf)
+{
+    wi = -wo;
+    weight = vec3(1.0);
+    pdf = 0.0;
+
+    // A loop, so that compilers write the material out once.
+    for (int asked = PATH_DRAW; asked >= PATH_VALUE; --asked)
+    {
+        path_ask(asked, p, wo, wi, u);
+        if (asked == PATH_DRAW)
+        {
+            if (path_u.z >= path_out.a)
+            {
+                return true;
+            }
+            if (!(path_root.x > 0.0) || path_root.y > 2.0)
+            {
+                return false;
+            }
+            wi = path_unpacked(path_root.yz);
+        }
+        else if (asked == PATH_PDF)
+        {
+            pdf = path_root.y * path_out.a;
+        }
+    }
+    weight = path_root * path_out.a / pdf;
+    return pdf > 0.0;
+}
+
+// Share of the light that the surface does not let pass straight on, for rays that look for shadows.
+float material_opacity(Point p, vec3 wo)
+{
+    path_ask(PATH_NOTHING, p, wo, wo, vec3(0.0));
+    return path_out.a;
+}
+
+// Radiance that the surface emits towards wo.
+vec3 material_emission(Point p, vec3 wo)
+{
+    path_ask(PATH_NOTHING, p, wo, wo, vec3(0.0));
+    return path_out.rgb;
+}

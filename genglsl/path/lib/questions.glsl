@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a closure answers a path tracer. PATH_VALUE: `response` is f cos(theta_i) of path_wo and path_wi. PATH_PDF: it
+// is (weight, density of path_wi, 0). PATH_DRAW: (weight, a direction of that density in two numbers). A weight is
+// the mean albedo of the lobes below; of two closures one is drawn by their weights, and densities are mixed by them,
+// so that a density is exactly that of what is drawn, however rough the weights are.
+
+#include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
+#include "libraries/pbrlib/genglsl/lib/mx_microfacet.glsl"
+
+// An environment of radiance 1 turns INDIRECT into the albedo. A path has no neighbors to form derivatives with.
+#define mx_environment_irradiance(N) vec3(1.0)
+#define fwidth(x) vec3(0.0)
+
+#define PATH_WASTED vec2(4.0, 0.0)
+
+// The surface node asks once for a light; what it asks of an environment and of the view is not answered.
+bool path_is_asked(ClosureData closureData)
+{
+    return closureData.closureType == CLOSURE_TYPE_REFLECTION && path_asked != PATH_NOTHING;
+}
+
+// The question as eonlib's own function understands it: of a value, or of the albedo.
+ClosureData path_question(ClosureData closureData)
+{
+    closureData.closureType = path_asked == PATH_VALUE ? CLOSURE_TYPE_REFLECTION : CLOSURE_TYPE_INDIRECT;
+    closureData.L = path_wi;
+    closureData.V = path_wo;
+    closureData.occlusion = 1.0;
+    return closureData;
+}
+
+float path_mean(vec3 color)
+{
+    return dot(max(color, 0.0), vec3(1.0 / 3.0));
+}
+
+// A unit vector on the octahedron |x| + |y| + |z| = 1, whose lower half is folded outwards.
+vec2 path_fold(vec2 w)
+{
+    return vec2(w.x < 0.0 ? abs(w.y) - 1.0 : 1.0 - abs(w.y), w.y < 0.0 ? abs(w.x) - 1.0 : 1.0 - abs(w.x));
+}
+
+vec2 path_packed(vec3 w)
+{
+    vec2 flat_w = w.xy / (abs(w.x) + abs(w.y) + abs(w.z));
+    return w.z < 0.0 ? path_fold(flat_w) : flat_w;
+}
+
+vec3 path_unpacked(vec2 w)
+{
+    float z = 1.0 - abs(w.x) - abs(w.y);
+    return normalize(vec3(z < 0.0 ? path_fold(w) : w, z));
+}
+
+// A direction in the frame of X and N, and back.
+vec3 path_local(vec3 w, vec3 X, vec3 N)
+{
+    return vec3(dot(w, X), dot(w, cross(N, X)), dot(w, N));
+}
+
+vec3 path_world(vec3 w, vec3 X, vec3 N)
+{
+    return normalize(w.x * X + w.y * cross(N, X) + w.z * N);
+}
+
+// Any unit vector across N.
+vec3 path_across(vec3 N)
+{
+    return normalize(cross(abs(N.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0), N));
+}
+
+// The answer of a lobe: `drawn` for path_u, or the density of path_wi.
+vec3 path_answer(float weight, vec2 drawn, float pdf)
+{
+    return path_asked == PATH_DRAW ? vec3(weight, drawn) : vec3(weight, pdf, 0.0);
+}
+
+// The answer of two lobes. What is left of the random number chooses again.
+vec3 path_either(vec3 a, vec3 b)
+{
+    float total = a.x + b.x;
+    if (!(total > 0.0))
+    {
+        return vec3(0.0);
+    }
+    float share = a.x / total;
+    if (path_asked == PATH_PDF)
+    {
+        return vec3(total, mix(b.y, a.y, share), 0.0);
+    }
+    bool first = path_u.z < share;
+    path_u.z = first ? path_u.z / share : (path_u.z - share) / (1.0 - share);
+    return vec3(total, first ? a.yz : b.yz);
+}
+
+// The response of a closure below a factor.
+vec3 path_scaled(vec3 response, vec3 factor)
+{
+    return path_asked == PATH_VALUE ? response * factor : vec3(response.x * path_mean(factor), response.yz);
+}
+
+// What the closure called last answers is the answer of the material.
+void path_end(BSDF bsdf)
+{
+    path_root = bsdf.response;
+}
+
+// Answers for a lobe that is drawn by a cosine about N; its response is the value or the albedo.
+void path_cosine(vec3 N, inout BSDF bsdf)
+{
+    if (path_asked != PATH_VALUE)
+    {
+        vec3 X = path_across(N);
+        float phi = 2.0 * M_PI * path_u.y;
+        vec3 wi = vec3(sqrt(path_u.x) * vec2(mx_cos(phi), mx_sin(phi)), sqrt(1.0 - path_u.x));
+        float pdf = max(dot(N, path_wi), 0.0) * M_PI_INV;
+        bsdf.response = path_answer(path_mean(bsdf.response), path_packed(path_world(wi, X, N)), pdf);
+    }
+    path_end(bsdf);
+}

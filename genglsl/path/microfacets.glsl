@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+// The microfacet lobes for path tracers, drawn by visible normals. eonlib's nodes call two functions of
+// microfacet_lobe.glsl, which macros replace here.
+//
+// Transmission: the light that is not reflected passes the visible facets, refracted by the index, each alike as in
+// MaterialX's own transmission of an environment. Into a thinner medium some reflect totally, and F tells them apart.
+
+#include "lib/questions.glsl"
+#include "../lib/microfacet_film.glsl"
+
+// Narrower lobes are lost in the rounding of directions: a smooth surface has this alpha.
+#define PATH_LEAST_ALPHA 1e-4
+
+// An index nearer to 1 leaves facets without a direction to tell them by.
+#define PATH_LEAST_BEND 1e-3
+
+// The index below relative to that above.
+float path_ior(float ior)
+{
+    float n = path_inside ? 1.0 / max(ior, PATH_LEAST_BEND) : ior;
+    return abs(n - 1.0) < PATH_LEAST_BEND ? 1.0 + PATH_LEAST_BEND : max(n, PATH_LEAST_BEND);
+}
+
+vec3 path_mirrored(vec3 w, vec3 N)
+{
+    return w - 2.0 * dot(w, N) * N;
+}
+
+// The facet that reflects wo into wi, or refracts it below the surface; a thin wall bends nothing.
+vec3 path_facet(vec3 wo, vec3 wi, vec3 N)
+{
+    bool through = dot(N, wi) < 0.0;
+    if (through && !path_thin)
+    {
+        vec3 H = normalize(wo + path_eta * wi);
+        return dot(H, N) < 0.0 ? -H : H;
+    }
+    return normalize(wo + (through ? path_mirrored(wi, N) : wi));
+}
+
+MicrofacetLobe path_microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec2 roughness, bool retroreflective)
+{
+    roughness = max(roughness, vec2(PATH_LEAST_ALPHA));
+    MicrofacetLobe lobe = microfacet_lobe(closureData, N, X, roughness, retroreflective);
+    lobe.X = normalize(X - dot(X, lobe.N) * lobe.N);
+    lobe.mu_h = clamp(dot(lobe.wo, path_facet(lobe.wo, lobe.wi, lobe.N)), M_FLOAT_EPS, 1.0);
+    return lobe;
+}
+
+// Density of wi by visible normals, G_1 D / (4 mu_o) for reflection; for refraction the solid angle of facets for that
+// of wi is n^2 |wi . h| / |wo + n wi|^2: [Walter2007], Eq. (17).
+float path_facet_pdf(MicrofacetLobe lobe, bool through)
+{
+    if ((dot(lobe.N, lobe.wi) < 0.0) != through)
+    {
+        return 0.0;
+    }
+    vec3 wo = path_local(lobe.wo, lobe.X, lobe.N);
+    vec3 H = path_facet(lobe.wo, lobe.wi, lobe.N);
+    vec2 stretched = lobe.roughness * wo.xy;
+    float visible = mx_ggx_NDF(path_local(H, lobe.X, lobe.N), lobe.roughness)
+                    / (lobe.mu_o + sqrt(dot(stretched, stretched) + lobe.mu_o * lobe.mu_o));
+    if (!through || path_thin)
+    {
+        return 0.5 * visible;
+    }
+    float cosine_o = dot(lobe.wo, H);
+    float cosine_i = -dot(lobe.wi, H);
+    vec3 total = lobe.wo + path_eta * lobe.wi;
+    float jacobian = path_eta * path_eta * cosine_i / dot(total, total);
+    return cosine_o > 0.0 && cosine_i > 0.0 ? 2.0 * visible * cosine_o * jacobian : 0.0;
+}
+
+// Draws a facet, and the direction into which it reflects or refracts, packed.
+vec2 path_facet_draw(MicrofacetLobe lobe, bool through)
+{
+    vec3 wo = path_local(lobe.wo, lobe.X, lobe.N);
+    wo.z = lobe.mu_o;
+    vec3 H = path_world(mx_ggx_importance_sample_VNDF(path_u.xy, wo, lobe.roughness), lobe.X, lobe.N);
+    float cosine = dot(lobe.wo, H);
+    vec3 wi = 2.0 * cosine * H - lobe.wo;
+    if (through && path_thin)
+    {
+        wi = path_mirrored(wi, lobe.N);
+    }
+    else if (through)
+    {
+        float squared = 1.0 - (1.0 - cosine) * (1.0 + cosine) / (path_eta * path_eta);
+        wi = squared > 0.0 ? (cosine / path_eta - sqrt(squared)) * H - lobe.wo / path_eta : lobe.N;
+    }
+    bool below = dot(lobe.N, wi) < 0.0;
+    return below == through ? path_packed(normalize(wi)) : PATH_WASTED;
+}
+
+void path_microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelData fd, MicrofacetFresnel F, vec3 tint,
+                          float weight, int distribution, int scatter_mode, inout BSDF bsdf)
+{
+    // 0: reflection, 1: transmission, 2: both.
+    vec3 compensation = 1.0 + F.average * ((1.0 - lobe.albedo) / lobe.albedo);
+    vec3 albedo = lobe.albedo * F.visible * compensation;
+    vec3 reflected = scatter_mode == 1 ? vec3(0.0) : albedo * tint * weight;
+    vec3 passed = scatter_mode == 0 ? vec3(0.0) : max(1.0 - albedo, 0.0) * tint * weight;
+    if (scatter_mode != 1)
+    {
+        microfacet_bsdf(closureData, lobe, fd, F, tint, weight, distribution, 0, bsdf);
+    }
+    if (path_asked == PATH_VALUE)
+    {
+        vec3 share = path_eta < 1.0 ? max(1.0 - F.value, 0.0) / max(1.0 - F.visible, 1e-6) : vec3(1.0);
+        bsdf.response += passed * share * path_facet_pdf(lobe, true);
+    }
+    else
+    {
+        bool draws = path_asked == PATH_DRAW;
+        vec3 up = path_answer(path_mean(reflected), draws ? path_facet_draw(lobe, false) : PATH_WASTED,
+                              path_facet_pdf(lobe, false));
+        vec3 down = path_answer(path_mean(passed), draws ? path_facet_draw(lobe, true) : PATH_WASTED,
+                                path_facet_pdf(lobe, true));
+        bsdf.response = path_either(up, down);
+    }
+}
+
+// Nothing is off because of the question alone.
+bool path_microfacet_is_off(ClosureData closureData, float weight, int scatter_mode)
+{
+    return weight <= 0.0;
+}
+
+#define microfacet_lobe path_microfacet_lobe
+#define microfacet_bsdf path_microfacet_bsdf
+#define microfacet_is_off path_microfacet_is_off
+#include "../dielectric_bsdf.glsl"
+#include "../conductor_bsdf.glsl"
+#include "../generalized_schlick_bsdf.glsl"
+#undef microfacet_lobe
+#undef microfacet_bsdf
+#undef microfacet_is_off
+
+void path_dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior, vec2 roughness,
+                          bool retroreflective, float thinfilm_thickness, float thinfilm_ior, vec3 N, vec3 X,
+                          int distribution, int scatter_mode, inout BSDF bsdf)
+{
+    if (path_is_asked(closureData))
+    {
+        path_eta = path_ior(ior);
+        dielectric_bsdf(path_question(closureData), weight, tint, path_inside ? path_eta : ior, roughness,
+                        retroreflective, thinfilm_thickness, thinfilm_ior, N, X, distribution, scatter_mode, bsdf);
+        path_end(bsdf);
+    }
+}
+
+void path_conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 extinction, vec2 roughness,
+                         bool retroreflective, float thinfilm_thickness, float thinfilm_ior, vec3 N, vec3 X,
+                         int distribution, inout BSDF bsdf)
+{
+    if (path_is_asked(closureData))
+    {
+        conductor_bsdf(path_question(closureData), weight, ior, extinction, roughness, retroreflective,
+                       thinfilm_thickness, thinfilm_ior, N, X, distribution, bsdf);
+        path_end(bsdf);
+    }
+}
+
+void path_generalized_schlick_bsdf(ClosureData closureData, float weight, vec3 color0, vec3 color82, vec3 color90,
+                                   float exponent, vec2 roughness, bool retroreflective, float thinfilm_thickness,
+                                   float thinfilm_ior, vec3 N, vec3 X, int distribution, int scatter_mode,
+                                   inout BSDF bsdf)
+{
+    if (path_is_asked(closureData))
+    {
+        path_eta = path_ior(mx_f0_to_ior(path_mean(color0)));
+        generalized_schlick_bsdf(path_question(closureData), weight, color0, color82, color90, exponent, roughness,
+                                 retroreflective, thinfilm_thickness, thinfilm_ior, N, X, distribution, scatter_mode,
+                                 bsdf);
+        path_end(bsdf);
+    }
+}

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Generated text that a path tracer includes, the profile "path": docs/path_tracing.md.
+
+The text of the material stays as it is, but what a stage reads and writes becomes variables.
+"""
+
+import re
+
+import MaterialX as mx
+
+from mxeon.errors import InterfaceError
+from mxeon.shaders.library import source_folder
+
+TARGETS = ("glsl", "essl", "vulkan", "slang")
+
+# What a shader reads of its vertex stage, from a Point; the object's space is the world's.
+PLACES = {
+    "position": "p.position",
+    "normal": "p.normal",
+    "tangent": "p.tangent",
+    "bitangent": "cross(p.normal, p.tangent)",
+    "texcoord": "p.texcoord",
+}
+MEMBER = re.compile(r"^ *(?:flat )?(?:in )?\w+ (([a-z]+)\w*)(?: : \w+)?;$", re.MULTILINE)
+LAYOUT = r"^(?:layout \(location = \d+\) )?"
+HEADS = re.compile(r"^#version.*\n|^#pragma shader_stage.*\n", re.MULTILINE)
+# The stage's inputs, its output and its main: as MaterialX writes them, and as a path tracer has them.
+GLSL = (
+    (LAYOUT + r"in VertexData\n", "struct VertexData\n"),
+    (LAYOUT + r"(?:flat )?in (\w+ \w+;\n)", r"\1"),
+    (LAYOUT + r"out vec4 (\w+);\n", r"vec4 \1;\n#define path_out \1\n"),
+    (r"^void main\(\)\n", "void path_material()\n"),
+    (r"^ *discard;\n", ""),
+)
+SLANG = (
+    (r"^static VertexData vd;\n", r"\g<0>static float4 path_out;\n"),
+    (
+        r'^\[shader\("fragment"\)\]\nfloat4 fragmentMain\(VertexData _vd\) : SV_Target\n',
+        "void path_material()\n",
+    ),
+    (r"^    vd = _vd;\n|^ *discard;\n", ""),
+    (r"^    return (\w+);\n}\s*\Z", r"    path_out = \1;\n}\n"),
+)
+WORDS = {"vec2": "float2", "vec3": "float3", "vec4": "float4"}  # of Slang
+GLOBAL = re.compile(r"^(?=(?:int|bool|float|vec\d) path_\w+;)", re.MULTILINE)
+
+
+def path_text(text: str, target: str, element: mx.TypedElement, library: str) -> str:
+    """The pixel stage of a material as text to include, behind a path tracer's version and declarations.
+
+    InterfaceError if the text mixes surfaces, since a path could follow only one.
+    """
+    if "mx_mix_surfaceshader(" in text:
+        raise InterfaceError(
+            "path: the material must have one surface; it mixes several: mix their closures instead"
+        )
+    text = HEADS.sub("", text)
+    slang = target == "slang"
+    for old, new in SLANG if slang else GLSL:
+        text = re.sub(old, new, text, flags=re.MULTILINE)
+    declared = re.search(r"^(?:#define|static float4) path_out.*\n", text, re.MULTILINE)
+    assert declared
+    inside = "struct VertexData" in text
+    block = text[text.index("struct VertexData") if inside else 0 : declared.start()]
+    prefix = "vd." if inside else ""
+    places = [
+        f"    {prefix}{name} = {PLACES[kind]};\n"
+        for name, kind in MEMBER.findall(block)
+        if kind in PLACES
+    ]
+    head, tail = (own_text(name, library, slang) for name in ("head", "interface"))
+    names = (
+        f"#define u_viewPosition ({prefix}positionWorld + path_wo)\n"
+        f"#define material_is_thin_walled {thin_walled(element)}\n"
+    )
+    place = f"\nvoid path_place(Point p)\n{{\n{''.join(places)}}}\n\n"
+    return text[: declared.end()] + head + names + text[declared.end() :] + place + tail
+
+
+def own_text(name: str, library: str, slang: bool) -> str:
+    """A file of the interface, in the words of the target."""
+    text = (source_folder(library) / "genglsl" / "path" / f"{name}.glsl").read_text(
+        encoding="utf-8"
+    )
+    if slang:
+        text = re.sub(
+            r"\b\w+", lambda word: WORDS.get(word[0], word[0]), GLOBAL.sub("static ", text)
+        )
+    return text
+
+
+def thin_walled(element: mx.TypedElement) -> str:
+    """Whether the surface of a material is a thin wall, as GLSL has it; one that is computed is none."""
+    shaders = mx.getShaderNodes(element) if element.getType() == "material" else [element]
+    nodes = [each for each in shaders if isinstance(each, mx.Node)]
+    names = ("thin_walled", "geometry_thin_walled")
+    return str(any(each.getInputValue(name) for each in nodes for name in names)).lower()

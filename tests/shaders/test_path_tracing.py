@@ -1,0 +1,342 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Text for path tracers: values are the rasterizer's, densities those of what is drawn, for nodes and surface shaders.
+
+Seeds are fixed. FALSE_ALARM is the probability that some chi-square test of this file fails although all is right.
+"""
+
+import re
+import shutil
+import subprocess
+
+import numpy as np
+import pytest
+
+from mxeon.errors import InputError, InterfaceError
+from mxeon.shaders.generation import generate
+from mxeon.shaders.library import examples_folder
+from mxeon.shaders.nodes import connection_text, document_text, input_text, material_text, node_text
+from tests.support.paths import Material, chi_square, counted, expected, uniforms
+from tests.support.wrong_libraries import copy_of_eonlib
+from tools.benchmarks.mutants.mutant import read_table
+from tools.benchmarks.mutants.trial import wrong_library
+
+FALSE_ALARM = 1e-4
+COLOR = {"color": (0.8, 0.4, 0.2)}
+ROUGH = {"roughness": (0.5, 0.3)}
+FIBER = {
+    "cuticle_angle": 0.7,
+    "roughness_R": (0.3, 0.4),
+    "roughness_TT": (0.1, 0.3),
+    "roughness_TRT": (0.5, 0.6),
+    "absorption_coefficient": (0.1, 0.3, 0.5),
+}
+NODES = (
+    ("oren_nayar_diffuse_bsdf", COLOR | {"roughness": 0.7, "energy_compensation": True}),
+    ("oren_nayar_diffuse_bsdf", COLOR | {"roughness": 0.7}),
+    ("eon_diffuse_bsdf", COLOR | {"roughness": 1.0}),
+    ("burley_diffuse_bsdf", COLOR | {"roughness": 0.8}),
+    ("subsurface_bsdf", COLOR),
+    ("translucent_bsdf", COLOR),
+    ("sheen_bsdf", COLOR | {"roughness": 0.4}),
+    ("sheen_bsdf", COLOR | {"roughness": 0.4, "mode": "zeltner"}),
+    ("dielectric_bsdf", ROUGH),
+    ("dielectric_bsdf", ROUGH | {"scatter_mode": "T"}),
+    ("dielectric_bsdf", ROUGH | {"scatter_mode": "RT", "thinfilm_thickness": 400.0}),
+    ("dielectric_bsdf", ROUGH | {"scatter_mode": "RT", "ior": 0.7}),
+    ("dielectric_bsdf", ROUGH | {"retroreflective": True}),
+    ("conductor_bsdf", ROUGH | {"thinfilm_thickness": 400.0}),
+    ("generalized_schlick_bsdf", ROUGH | {"scatter_mode": "RT", "color0": (0.1, 0.05, 0.02)}),
+    ("chiang_hair_bsdf", FIBER),
+)
+BASE, WARM, COOL = (0.8, 0.5, 0.3), (1.0, 0.9, 0.8), (0.5, 0.6, 1.0)
+GREEN, YELLOW = (0.6, 0.9, 0.8), (0.9, 0.95, 0.7)
+SURFACES = {
+    "standard_surface": {
+        "base_color": BASE, "diffuse_roughness": 0.4, "metalness": 0.3, "specular": 0.9, "specular_color": WARM,
+        "specular_roughness": 0.35, "specular_anisotropy": 0.4, "specular_rotation": 0.1, "transmission": 0.3,
+        "transmission_color": GREEN, "transmission_extra_roughness": 0.1, "subsurface": 0.3, "sheen": 0.5,
+        "sheen_color": COOL, "sheen_roughness": 0.4, "coat": 0.5, "coat_color": YELLOW, "coat_roughness": 0.25,
+        "coat_anisotropy": 0.2, "thin_film_thickness": 400.0, "emission": 0.2, "opacity": (0.8, 0.8, 0.8),
+    },
+    "open_pbr_surface": {
+        "base_color": BASE, "base_diffuse_roughness": 0.5, "base_metalness": 0.3, "specular_weight": 0.9,
+        "specular_color": WARM, "specular_roughness": 0.5, "specular_roughness_anisotropy": 0.4,
+        "transmission_weight": 0.3, "transmission_color": GREEN, "subsurface_weight": 0.3, "fuzz_weight": 0.5,
+        "fuzz_color": COOL, "coat_weight": 0.5, "coat_color": YELLOW, "coat_roughness": 0.4,
+        "coat_roughness_anisotropy": 0.2, "thin_film_weight": 0.5, "emission_luminance": 0.2, "geometry_opacity": 0.8,
+    },
+    "gltf_pbr": {
+        "base_color": BASE, "metallic": 0.3, "roughness": 0.5, "transmission": 0.3, "specular": 0.9,
+        "specular_color": WARM, "sheen_color": COOL, "sheen_roughness": 0.5, "clearcoat": 0.5,
+        "clearcoat_roughness": 0.4, "emissive": (0.2, 0.1, 0.0), "iridescence": 0.5, "iridescence_thickness": 400.0,
+        "anisotropy_strength": 0.4, "alpha": 0.8, "alpha_mode": 2,
+    },
+    "UsdPreviewSurface": {
+        "diffuseColor": BASE, "emissiveColor": (0.1, 0.1, 0.0), "metallic": 0.3, "roughness": 0.5, "clearcoat": 0.5,
+        "clearcoatRoughness": 0.4, "opacity": 0.8,
+    },
+}  # fmt: skip
+
+
+def kind(value):
+    kinds = {int: "integer", float: "float", tuple: "color3"}
+    return kinds[type(value)]
+
+
+def surface_text(category):
+    """XML of a material of a surface shader with all lobes on."""
+    inputs = "".join(
+        input_text(name, kind(value), value) for name, value in SURFACES[category].items()
+    )
+    return document_text(
+        node_text(category, "surfaceshader", "shading", inputs.replace('"2.0"', '"2"'))
+    )
+
+
+DOCUMENTS = {
+    f"{name}-{number}": material_text(name, inputs) for number, (name, inputs) in enumerate(NODES)
+}
+DOCUMENTS |= {name: surface_text(name) for name in SURFACES}
+LEVEL = FALSE_ALARM / (3 * len(DOCUMENTS))
+every_document = pytest.mark.parametrize("name", DOCUMENTS)
+
+
+def view(mu):
+    S = np.sqrt(1.0 - mu * mu)
+    return np.array([S * np.cos(0.3), S * np.sin(0.3), mu])
+
+
+def refracted(wo, ior=1.5):
+    """Where the smooth transmission of UsdPreviewSurface goes; other lobes are no sharper than a cell."""
+    return np.array([-wo[0] / ior, -wo[1] / ior, -np.sqrt(1.0 - (1.0 - wo[2] ** 2) / ior**2)])
+
+
+def directions(rng, count):
+    w = rng.normal(size=(count, 3))
+    return w / np.linalg.norm(w, axis=1, keepdims=True)
+
+
+@pytest.fixture(scope="module")
+def gl(hosts):
+    return hosts("gl")
+
+
+@pytest.fixture(scope="module")
+def materials(gl):
+    """The material of each document, compiled once."""
+    known = {}
+    return lambda name: known.setdefault(name, Material(gl, DOCUMENTS[name]))
+
+
+def p_value(material, mu, count, per_cell=16, **options):
+    wo = view(mu)
+    sharp = refracted(wo)
+    probabilities = expected(material, wo, sharp, per_cell, **options)
+    return chi_square(counted(material, wo, sharp, count, **options), probabilities)
+
+
+@every_document
+def test_a_value_is_the_rasterizers(gl, materials, name):
+    rng = np.random.default_rng(3)
+    wo, wi = directions(rng, 4096), directions(rng, 4096)
+    wi[:8], wo[8:16, 2] = wo[:8], 1e-3
+    wo /= np.linalg.norm(wo, axis=1, keepdims=True)
+    [shader] = generate(DOCUMENTS[name], "glsl")
+    alike = (
+        wi[:, 2] * wo[:, 2] > 0.0
+    )  # light from behind is not the rasterizer's, if a lobe transmits
+    alike |= not re.search(r"-9|-1[014]$|surface|pbr|Surface", name)
+    value = gl.evaluate(shader, np.float32(wo), np.float32(wi), {}, "direct")
+    opacity = materials(name).ask("opacity", wo[:1])[0, 0]
+    np.testing.assert_allclose(
+        materials(name).ask("evaluate", wo, wi)[alike], opacity * value[alike], 1e-5, 1e-6
+    )
+
+
+@every_document
+@pytest.mark.parametrize("mu", (0.8, 0.3))
+def test_draws_have_their_density(materials, name, mu):
+    assert p_value(materials(name), mu, 1 << 16) > LEVEL
+
+
+@pytest.mark.parametrize("name", [name for name in DOCUMENTS if re.search(r"-9|-1[014]$", name)])
+def test_draws_from_inside_have_their_density(materials, name):
+    assert p_value(materials(name), 0.8, 1 << 16, inside=True) > LEVEL
+
+
+@pytest.mark.whole
+@pytest.mark.parametrize("name", SURFACES)
+def test_ten_million_draws_have_their_density(materials, name):
+    assert p_value(materials(name), 0.9, 10**7, per_cell=64) > LEVEL
+
+
+@every_document
+def test_weight_times_density_is_the_value(materials, name):
+    wo, u = view(0.6), uniforms(4096)
+    wi, weight, density = (
+        materials(name).ask(what, wo, u=u) for what in ("wi", "weight", "density")
+    )
+    seen = density[:, 0] > 0.0
+    # A direction is rounded to 6e-8, which a lobe of alpha 1e-4 multiplies by 1e4: the same one is asked for twice.
+    pdf, value = (materials(name).ask(what, wo, wi)[seen] for what in ("pdf", "evaluate"))
+    np.testing.assert_allclose(pdf, density[seen], 2e-3)
+    np.testing.assert_allclose(value, (weight * density)[seen], 2e-3, 1e-6)
+
+
+# Error of the rasterizer's albedo, beside the noise of 2^16 draws: films 0.07, tilted fibers have none in closed form.
+ALBEDO_ERRORS = {
+    "dielectric_bsdf-10": 0.07,
+    "dielectric_bsdf-11": 0.2,
+    "conductor_bsdf-13": 0.08,
+    "chiang_hair_bsdf-15": 0.2,
+}
+
+
+@every_document
+def test_a_furnace_by_sampling_is_the_albedo(gl, materials, name):
+    wo = view(0.8)
+    [shader] = generate(DOCUMENTS[name], "glsl")
+    branches = ("environment", "transmission")
+    albedo = sum(
+        gl.evaluate(shader, np.float32([wo]), np.float32([wo]), {}, each)[0] for each in branches
+    )
+    opacity = materials(name).ask("opacity", wo)[0, 0]
+    weights = materials(name).ask("weight", wo, u=uniforms(1 << 16))
+    noise = 5.0 * weights.std(axis=0) / 2.0**8
+    error = abs(weights.mean(axis=0) - (1.0 - opacity) - opacity * albedo)
+    assert (error < noise + ALBEDO_ERRORS.get(name, 5e-3)).all()
+
+
+@every_document
+def test_no_answer_is_nan(materials, name):
+    for mu in (1.0, 1e-3, 1e-7):
+        for what in ("wi", "weight", "density"):
+            assert np.isfinite(materials(name).ask(what, view(mu), u=uniforms(2048))).all()
+        w = directions(np.random.default_rng(5), 2048)
+        w[:2] = view(mu), -view(mu)
+        for what in ("pdf", "evaluate", "emission"):
+            assert np.isfinite(materials(name).ask(what, view(mu), w)).all()
+
+
+def test_no_edge_of_an_input_is_nan(gl):
+    edges = [
+        {"roughness": (0.0, 0.0)},
+        {"ior": 0.0},
+        {"ior": 1.0},
+        {"weight": 0.0},
+        {"roughness": (1.0, 1e-5)},
+    ]
+    for each in edges:
+        material = Material(gl, material_text("dielectric_bsdf", {"scatter_mode": "RT"} | each))
+        for what in ("wi", "weight", "density"):
+            assert np.isfinite(material.ask(what, view(0.5), u=uniforms(2048))).all()
+
+
+def test_the_density_of_another_roughness_is_noticed(gl, materials):
+    wrong = Material(gl, material_text("eon_diffuse_bsdf", COLOR | {"roughness": 0.8}))
+    wo, right = view(0.3), materials("eon_diffuse_bsdf-2")
+    assert chi_square(counted(right, wo, -wo, 1 << 16), expected(wrong, wo, -wo)) < LEVEL
+
+
+MUTANTS = [each for each in read_table() if each.group == "Path tracing"]
+
+
+@pytest.mark.parametrize("mutant", MUTANTS, ids=lambda mutant: mutant.name)
+def test_a_wrong_formula_is_noticed(gl, materials, mutant):
+    name = mutant.name.partition(":")[0]
+    with wrong_library(mutant) as library:
+        wrong = Material(gl, DOCUMENTS[name], library)
+    wo, u = view(0.3), uniforms(1 << 14)
+    wi, density, weight = (wrong.ask(what, wo, u=u) for what in ("wi", "density", "weight"))
+    albedo = materials(name).ask("weight", wo, u=u)
+    noise = 5.0 * (weight.std() + albedo.std() + 1e-3) / 2.0**7
+    seen = density[:, 0] > 0.0
+    another_density = not np.allclose(wrong.ask("pdf", wo, wi)[seen], density[seen], 2e-3)
+    another_albedo = (abs(weight.mean(axis=0) - albedo.mean(axis=0)) > noise).any()
+    assert another_density or another_albedo or p_value(wrong, 0.3, 1 << 16) < LEVEL
+
+
+def test_other_text_does_not_change(tmp_path):
+    documents = copy_of_eonlib(tmp_path)
+    shutil.rmtree(tmp_path / "genglsl" / "path")
+    for document in map(surface_text, SURFACES):
+        [with_path] = generate(document, "glsl")
+        [without] = generate(document, "glsl", library=str(documents))
+        assert with_path.stages == without.stages
+
+
+MAIN = """
+void main()
+{
+    Point p = Point(vec3(0.0), vec3(0.0, 0.0, 1.0), vec3(1.0, 0.0, 0.0), vec2(0.0), false);
+    vec3 wi;
+    vec3 weight;
+    float pdf;
+    material_sample(p, p.normal, vec3(0.5), wi, weight, pdf);
+    color = vec4(weight + material_evaluate(p, wi, wi) + material_emission(p, wi), pdf + material_pdf(p, wi, wi));
+}
+"""
+VERSIONS = {
+    "essl": "#version 300 es\nprecision highp float;\nout vec4 color;\n",
+    "vulkan": "#version 450\nlayout (location = 0) out vec4 color;\n",
+}
+
+
+def validated(folder, text, *options):
+    """What glslangValidator says of a pixel stage that it refuses."""
+    validator = shutil.which("glslangValidator")
+    if not validator:
+        pytest.skip("needs glslangValidator")
+    file = folder / "path.frag"
+    file.write_text(text, encoding="utf-8")
+    done = subprocess.run(
+        [validator, *options, str(file)], capture_output=True, text=True, check=False
+    )
+    return done.stdout if done.returncode else ""
+
+
+def test_the_page_of_webgl_compiles(tmp_path):
+    page = (examples_folder() / "path_tracer.html").read_text(encoding="utf-8")
+    head, tracer = (
+        re.search(rf"const {name} = `(.*?)`", page, re.DOTALL)[1] for name in ("HEAD", "TRACER")
+    )
+    [shader] = generate(surface_text("standard_surface"), "essl", profile="path")
+    assert validated(tmp_path, head + shader.stages["pixel"] + tracer) == ""
+
+
+@pytest.mark.parametrize("target", VERSIONS)
+@pytest.mark.parametrize("name", SURFACES)
+def test_the_text_compiles_for_other_targets(tmp_path, target, name):
+    [shader] = generate(surface_text(name), target, profile="path")
+    options = ["-V", "-o", str(tmp_path / "path.spv")] if target == "vulkan" else []
+    assert validated(tmp_path, VERSIONS[target] + shader.stages["pixel"] + MAIN, *options) == ""
+
+
+@pytest.mark.parametrize("host", ["vulkan", "webgl", "slang"])
+def test_other_hosts_answer_alike(hosts, materials, host):
+    name = "dielectric_bsdf-10" if host == "webgl" else "standard_surface"
+    other, here = Material(hosts(host), DOCUMENTS[name]), materials(name)
+    wo, w, u = view(0.5), directions(np.random.default_rng(5), 1024), uniforms(1024)
+    for what in ("evaluate", "pdf", "emission"):
+        np.testing.assert_allclose(other.ask(what, wo, w), here.ask(what, wo, w), 1e-3, 1e-5)
+    apart = np.linalg.norm(other.ask("wi", wo, u=u) - here.ask("wi", wo, u=u), axis=1)
+    assert (apart > 1e-3).mean() < 5e-3  # after a rounding, a draw may choose another lobe
+
+
+def test_mixed_surfaces_are_refused():
+    surfaces = "".join(node_text("standard_surface", "surfaceshader", name) for name in "ab")
+    ports = "".join(
+        connection_text(port, "surfaceshader", name) for port, name in (("fg", "a"), ("bg", "b"))
+    )
+    with pytest.raises(InterfaceError, match="one surface"):
+        generate(
+            document_text(surfaces + node_text("mix", "surfaceshader", "shading", ports)),
+            "glsl",
+            profile="path",
+        )
+
+
+@pytest.mark.parametrize(("target", "library"), [("osl", "eonlib"), ("glsl", "stock")])
+def test_what_lacks_the_interface_is_refused(target, library):
+    with pytest.raises(InputError, match="path"):
+        generate(DOCUMENTS["eon_diffuse_bsdf-2"], target, profile="path", library=library)
