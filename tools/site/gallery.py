@@ -47,6 +47,28 @@ it vanishes if no energy is lost or gained. Nothing casts a shadow here.
 
 """
 
+TRACED = """
+## Path traced
+
+Three of [MaterialX's examples](https://github.com/AcademySoftwareFoundation/MaterialX/tree/main/resources/Materials/Examples):
+the rasterizer's picture on the left, [paths of light](path_tracing.md) on the right, with the ball's
+shadows and reflections of itself.
+
+![carpaint](images/gallery/traced_carpaint.webp)
+
+*standard_surface_carpaint: 32 paths a pixel, 9.9 % noise.*
+
+![glass](images/gallery/traced_glass.webp)
+
+*standard_surface_glass: 40 paths a pixel, 12 % noise.*
+
+![velvet](images/gallery/traced_velvet.webp)
+
+*open_pbr_velvet: 32 paths a pixel, 9 % noise.*
+
+    mxeon render standard_surface_glass.mtlx --integrator path --size 192 --samples 40 --output glass.png
+"""
+
 
 def studio():
     """Radiance of a studio, a latitude-longitude picture: a floor, a ceiling and soft boxes."""
@@ -137,7 +159,7 @@ def page():
             f"## {document.stem}\n\n{description.removeprefix('<!-- ').removesuffix(' -->')}\n\n"
             f"{shown}\n\n    {command}\n"
         )
-    return HEAD + "\n".join(sections)
+    return HEAD + "\n".join(sections) + TRACED
 
 
 if __name__ == "__main__":

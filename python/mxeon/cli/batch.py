@@ -119,7 +119,7 @@ def picture(
     picture cannot show correctly.
     """
     from mxeon.conformance import reference
-    from mxeon.hosts import open_host
+    from mxeon.hosts import open_host, path_tracer
     from mxeon.hosts.base import LobeWarning
     from mxeon.shaders import scene as scenes
 
@@ -127,7 +127,7 @@ def picture(
     if environment:
         light = setting.light if scene else None
         setting = scenes.Scene("environment", light, Path(environment))
-    with open_host(host, reference.ROW) as engine:
+    with open_host(host, reference.ROW, path_tracer.ROW) as engine:
         if no_studio := not (scene or environment or engine.draws_images):
             setting = scenes.SIDE
         setting = replace(setting, size=size, paths=paths, shape=shape or setting.shape)

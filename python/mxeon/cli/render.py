@@ -24,6 +24,7 @@ def add_parser(commands: arguments.Commands) -> None:
         "render my.mtlx --output my.png",
         "render my.mtlx --output my.exr --scene back --shape sphere --library stock",
         "render my.mtlx --output my.png --environment sky.exr --element gold",
+        "render my.mtlx --output my.png --integrator path --samples 256",
     )
     command.add_argument("file", metavar="FILE", help="a MaterialX document")
     command.add_argument(
@@ -58,10 +59,22 @@ def add_parser(commands: arguments.Commands) -> None:
         help="width and height in pixels (default: %(default)s)",
     )
     command.add_argument(
-        "--samples", type=int, metavar="N", help="paths per pixel, for cycles (default: automatic)"
+        "--integrator",
+        choices=("raster", "path"),
+        default="raster",
+        help="path: on gl, trace paths of light, with shadows and reflections of the object itself",
     )
     command.add_argument(
-        "--bounces", type=int, metavar="N", help="bounces per path, for cycles (default: automatic)"
+        "--samples",
+        type=int,
+        metavar="N",
+        help="paths per pixel, for cycles and --integrator path (default: automatic)",
+    )
+    command.add_argument(
+        "--bounces",
+        type=int,
+        metavar="N",
+        help="bounces per path, for cycles and --integrator path (default: automatic)",
     )
     arguments.add_library(command)
     arguments.add_materialx(command)
@@ -79,6 +92,9 @@ def run(options: argparse.Namespace) -> int:
         raise InputError(f"{rule}; got {options.output}: make {folder} first")
     names = ("host", "scene", "environment", "size", "shape", "element", "library")
     known = {name: getattr(options, name) for name in names}
+    if options.integrator == "path" and options.host != "gl":
+        raise InputError(f"--integrator path: the host must be gl; got {options.host}")
+    known["host"] = "path" if options.integrator == "path" else options.host
     paths = Paths(options.samples, options.bounces)
     work = partial(picture, policy=arguments.policy(options), paths=paths, **known)
     [result] = run_batch(work, [options.file], options.workers, options.timeout)

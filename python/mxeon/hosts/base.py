@@ -72,7 +72,9 @@ class Engine(ABC):
     def refuse_paths(self, scene: Scene) -> None:
         """Raise InputError if a scene sets samples or bounces, which this host cannot change."""
         if scene.paths != Paths():
-            raise InputError(f"{self.name}: samples and bounces can be set for cycles only")
+            raise InputError(
+                f"{self.name}: samples and bounces can be set for cycles and --integrator path only"
+            )
 
     def refuse_shape(self, scene: Scene) -> None:
         """Raise InputError if a scene shows anything but a sphere."""

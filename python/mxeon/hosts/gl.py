@@ -93,6 +93,7 @@ class Host(FragmentHost):
         uniforms: Mapping[str, object],
         size: tuple[int, int],
         passes: Iterable[int],
+        textures: Mapping[str, Array] | None = None,
     ) -> NDArray[np.float32]:
         """The sum of what a fragment shader draws, for each value of the uniform `tracer_pass` in `passes`.
 
@@ -103,6 +104,9 @@ class Host(FragmentHost):
         _set(program, uniforms)
         triangle = context.vertex_array(program, _buffers(context, program, raster.TRIANGLE))
         frame = context.framebuffer([context.renderbuffer(size, components=4, dtype="f4")])
+        for unit, (name, texture) in enumerate(self._textures(program, textures or {}).items()):
+            texture.use(location=unit)
+            _set(program, {name: unit})
         frame.use()
         frame.clear()
         context.enable(context.BLEND)

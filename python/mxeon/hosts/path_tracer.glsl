@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// A path tracer around the text of a material: one path per pixel and pass, on the sphere or the shader ball. World
+// frame: x to the right, y up, z towards the viewer, who looks along parallel rays.
+
+#define TRACER_OFFSET 2e-4  // From a surface to the next ray, against its own hit.
+#define TRACER_FAR 8.0
+#define TRACER_CLOSE 1e-5
+#define TRACER_STEPS 160
+
+uniform int tracer_pass;
+uniform int tracer_bounces; // Times that a path may be scattered.
+uniform int tracer_size;
+uniform bool tracer_ball;
+uniform vec3 tracer_light; // Towards a distant light of irradiance pi; zero for none.
+uniform sampler2D tracer_environment;
+uniform bool tracer_mapped; // Whether the environment is a map, whose texels are drawn by their light:
+uniform sampler2D tracer_drawn; // numbers of texels, each as often as it is to be drawn, 256 x 256,
+uniform sampler2D tracer_chance; // and the probability of each texel.
+uniform mat3 tracer_foot; // From the picture to the foot of the shader ball, and from there to its belt.
+uniform mat3 tracer_belt;
+
+out vec4 tracer_radiance; // And the square of its mean over the channels.
+
+// One round of the generator below.
+uvec4 tracer_mixed(uvec4 v)
+{
+    v.x += v.y * v.w;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v.w += v.y * v.z;
+    return v;
+}
+
+// pcg4d of [Jarzynski2020]: random numbers of 24 bits in [0, 1), from counters alone.
+vec3 tracer_random(int bounce)
+{
+    uvec4 v = uvec4(gl_FragCoord.xy, tracer_pass, bounce);
+    v = tracer_mixed(v * 1664525u + 1013904223u);
+    v = tracer_mixed(v ^ (v >> 16u));
+    return vec3(v.xyz >> 8u) / 16777216.0;
+}
+
+// Signed distances as in mxeon.shaders.shader_ball.
+float tracer_distance(vec3 p)
+{
+    if (!tracer_ball)
+    {
+        return length(p) - 1.0;
+    }
+    vec3 upright = tracer_foot * p;
+    vec3 q = tracer_belt * (upright - vec3(0.0, 0.2, 0.0));
+    float ring = sqrt(0.72 * 0.72 - 0.13 * 0.13);
+    float groove = length(vec2(length(q.xz) - ring, abs(q.y) - 0.13)) - 0.035;
+    vec2 edge = vec2(length(upright.xz) - 0.5, abs(upright.y + 0.6) - 0.1) + 0.02;
+    float foot = min(max(edge.x, edge.y), 0.0) + length(max(edge, 0.0)) - 0.02;
+    return min(max(length(q) - 0.72, -groove), foot);
+}
+
+// The next surface along a ray, from outside or from inside; no less than TRACER_FAR for none.
+float tracer_hit(vec3 origin, vec3 direction)
+{
+    float t = 0.0;
+    for (int step = 0; step < TRACER_STEPS && t < TRACER_FAR; ++step)
+    {
+        float d = abs(tracer_distance(origin + t * direction));
+        t += d;
+        if (d < TRACER_CLOSE)
+        {
+            return t;
+        }
+    }
+    return TRACER_FAR;
+}
+
+// Outward normal, by a tetrahedron of distances.
+vec3 tracer_normal(vec3 p)
+{
+    if (!tracer_ball)
+    {
+        return normalize(p);
+    }
+    vec2 e = vec2(1e-3, -1e-3);
+    return normalize(e.xyy * tracer_distance(p + e.xyy) + e.yyx * tracer_distance(p + e.yyx)
+                     + e.yxy * tracer_distance(p + e.yxy) + e.xxx * tracer_distance(p + e.xxx));
+}
+
+Point tracer_point(vec3 position, vec3 normal, vec3 wo)
+{
+    vec3 east = vec3(normal.z, 0.0, -normal.x);
+    vec3 tangent = dot(east, east) > 1e-12 ? normalize(east) : vec3(1.0, 0.0, 0.0);
+    vec3 outward = tracer_ball ? tracer_foot * position - vec3(0.0, 0.2, 0.0) : normal;
+    float latitude = atan(outward.y, length(outward.xz));
+    vec2 texcoord = vec2(0.5 + atan(outward.x, outward.z) / (2.0 * M_PI), 0.5 + latitude / M_PI);
+    return Point(position, normal, tangent, texcoord, dot(normal, wo) < 0.0 && !(material_is_thin_walled));
+}
+
+// Where a direction lies in the environment, which MaterialX turns by half a turn.
+vec2 tracer_latlong(vec3 direction)
+{
+    float longitude = atan(-direction.x, direction.z) / (2.0 * M_PI) + 0.5;
+    return vec2(longitude, 0.5 - asin(clamp(direction.y, -1.0, 1.0)) / M_PI);
+}
+
+vec3 tracer_sky(vec3 direction)
+{
+    return textureLod(tracer_environment, tracer_latlong(direction), 0.0).rgb;
+}
+
+// Density of a direction among those of tracer_towards, in 1/sr.
+float tracer_sky_pdf(vec3 direction)
+{
+    vec2 size = vec2(textureSize(tracer_chance, 0));
+    float chance = texelFetch(tracer_chance, ivec2(min(tracer_latlong(direction) * size, size - 1.0)), 0).x;
+    float area = 2.0 * M_PI * M_PI * sqrt(max(1.0 - direction.y * direction.y, 1e-8)) / (size.x * size.y);
+    return tracer_mapped ? chance / area : 0.0;
+}
+
+// Draws a direction to the environment.
+vec3 tracer_towards(vec3 u)
+{
+    int k = int(u.x * 65536.0);
+    float texel = texelFetch(tracer_drawn, ivec2(k % 256, k / 256), 0).x;
+    vec2 size = vec2(textureSize(tracer_chance, 0));
+    vec2 at = (vec2(mod(texel, size.x), floor(texel / size.x)) + u.yz) / size;
+    float longitude = 2.0 * M_PI * (at.x - 0.5);
+    float polar = M_PI * at.y;
+    return vec3(-sin(polar) * sin(longitude), cos(polar), sin(polar) * cos(longitude));
+}
+
+bool tracer_is_shadowed(vec3 position, vec3 normal, vec3 wi)
+{
+    return tracer_hit(position + TRACER_OFFSET * sign(dot(wi, normal)) * normal, wi) < TRACER_FAR;
+}
+
+// What a light and the environment send along wo, by way of the point. Drawing wi from the material finds the
+// environment too; both ways are weighted by their densities: [Veach1995], balance heuristic.
+vec3 tracer_lit(Point p, vec3 normal, vec3 wo, vec3 u)
+{
+    vec3 lit = vec3(0.0);
+    if (dot(tracer_light, tracer_light) > 0.0 && !tracer_is_shadowed(p.position, normal, tracer_light))
+    {
+        lit = M_PI * material_evaluate(p, wo, tracer_light);
+    }
+    vec3 wi = tracer_towards(u);
+    float pdf = tracer_sky_pdf(wi);
+    if (pdf > 0.0 && !tracer_is_shadowed(p.position, normal, wi))
+    {
+        lit += material_evaluate(p, wo, wi) * tracer_sky(wi) / (pdf + material_pdf(p, wo, wi));
+    }
+    return lit;
+}
+
+void main()
+{
+    vec2 at = (2.0 * gl_FragCoord.xy - float(tracer_size)) / float(tracer_size);
+    vec3 origin = vec3(at, 2.0);
+    vec3 direction = vec3(0.0, 0.0, -1.0);
+    vec3 radiance = vec3(0.0);
+    vec3 throughput = vec3(1.0);
+    float pdf = 0.0;
+    for (int bounce = 0; bounce <= tracer_bounces; ++bounce)
+    {
+        float t = tracer_hit(origin, direction);
+        if (t >= TRACER_FAR)
+        {
+            float drawn = pdf > 0.0 ? pdf / (pdf + tracer_sky_pdf(direction)) : 1.0;
+            radiance += throughput * tracer_sky(direction) * drawn;
+            break;
+        }
+        vec3 position = origin + t * direction;
+        vec3 normal = tracer_normal(position);
+        Point p = tracer_point(position, normal, -direction);
+        radiance += throughput * (material_emission(p, -direction) + tracer_lit(p, normal, -direction, tracer_random(-1 - bounce)));
+        vec3 wi;
+        vec3 weight;
+        if (bounce == tracer_bounces || !material_sample(p, -direction, tracer_random(bounce), wi, weight, pdf))
+        {
+            break;
+        }
+        throughput *= weight;
+        direction = wi;
+        origin = position + TRACER_OFFSET * sign(dot(wi, normal)) * normal;
+    }
+    float mean = dot(radiance, vec3(1.0 / 3.0));
+    tracer_radiance = vec4(radiance, mean * mean);
+}

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures by paths, on OpenGL: generated text of the profile "path" inside `path_tracer.glsl`."""
+
+import warnings
+from pathlib import Path
+from typing import ClassVar
+
+import numpy as np
+
+from mxeon.hosts import Row, gl, raster
+from mxeon.hosts.base import Array
+from mxeon.hosts.textures import read_latlong
+from mxeon.shaders.generation import Shader
+from mxeon.shaders.scene import Scene
+from mxeon.shaders.shader_ball import BELT, OBJECT
+
+SAMPLES, BOUNCES = 64, 8  # of a pixel, and of a path, unless the scene says otherwise
+HEAD = (
+    "#version 430\n#define texture(map, at) textureLod(map, at, 0.0)\n"  # paths have no derivatives
+)
+
+
+def by_light(sky: Array) -> tuple[Array, Array]:
+    """Numbers of texels in proportion to their light, 256 x 256, and the probability of each texel."""
+    rows, columns, _ = sky.shape
+    across = np.sin(np.pi * (np.arange(rows) + 0.5) / rows)[:, np.newaxis]
+    share = np.cumsum(sky.mean(axis=-1) * across + 1e-6)
+    drawn = np.searchsorted(share, (np.arange(1 << 16) + 0.5) / (1 << 16) * share[-1])
+    chance = np.bincount(drawn, minlength=rows * columns) / float(1 << 16)
+    return np.float32(drawn).reshape(256, 256, 1), np.float32(chance).reshape(rows, columns, 1)
+
+
+class NoiseNote(UserWarning):
+    """How far a picture is from a converged one."""
+
+
+class Host(gl.Host):
+    """A path tracer on OpenGL; a picture reports its noise as a NoiseNote."""
+
+    name = "path"
+    profile: ClassVar[str | None] = "path"
+
+    def picture(self, shader: Shader, scene: Scene) -> Array:
+        samples, bounces = scene.paths.samples or SAMPLES, scene.paths.bounces or BOUNCES
+        tracer = Path(__file__).with_suffix(".glsl").read_text(encoding="utf-8")
+        uniforms: dict[str, object] = {
+            **raster.inputs(shader),
+            "tracer_bounces": bounces,
+            "tracer_size": scene.size,
+            "tracer_ball": scene.shape == "ball",
+            "tracer_light": scene.light or (0.0, 0.0, 0.0),
+            "tracer_foot": tuple(OBJECT.T.ravel()),
+            "tracer_belt": tuple(BELT.T.ravel()),
+        }
+        sky = read_latlong(scene.environment)
+        drawn, chance = by_light(sky)
+        uniforms["tracer_mapped"] = sky.size > sky.shape[-1]
+        textures = raster.textures(shader, scene) | {"tracer_environment": sky}
+        textures |= {"tracer_drawn": drawn, "tracer_chance": chance}
+        text, size = HEAD + shader.stages["pixel"] + tracer, (scene.size, scene.size)
+        sums = self.accumulate(text, uniforms, size, range(samples), textures)
+        mean = raster.picture(sums / np.float32(samples), scene)
+        gray = mean[..., :3].mean(axis=-1)
+        variance = np.maximum(mean[..., 3] - gray**2, 0.0) / max(samples - 1, 1)
+        noise = np.sqrt(variance.sum() / max((gray**2).sum(), 1e-30))
+        note = f"{shader.element}: {samples} paths a pixel leave a noise of {100.0 * noise:.2g} % of the light"
+        warnings.warn(NoiseNote(note), stacklevel=2)
+        return mean[..., :3]
+
+    def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
+        return ()
+
+
+ROW = Row("path", "glsl", "mxeon.hosts.path_tracer")

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The path tracer: pictures known without noise, on the sphere and the shader ball."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mxeon.errors import MISUSE, PASSED
+from mxeon.hosts.path_tracer import Host, NoiseNote
+from mxeon.shaders.nodes import material_text
+from mxeon.shaders.scene import FURNACE, SIDE, Paths, sphere
+from tests.support.command import PLASTER, run
+
+CLAY = material_text("eon_diffuse_bsdf", {"color": (0.8, 0.4, 0.2), "roughness": 1.0})
+WHITE = material_text("eon_diffuse_bsdf", {"color": (1.0, 1.0, 1.0), "roughness": 1.0})
+GLASS = material_text("dielectric_bsdf", {"roughness": (0.0, 0.0), "scatter_mode": "RT"})
+SIZE = 32
+
+
+@pytest.fixture(scope="module")
+def tracer(hosts):
+    hosts("gl")  # or the test is skipped
+    host = Host()
+    yield host
+    host.close()
+
+
+def traced(tracer, document, scene, paths, shape="sphere"):
+    [shader] = tracer.compile(document)
+    with pytest.warns(NoiseNote, match="noise"):
+        return tracer.picture(shader, replace(scene, size=SIZE, paths=paths, shape=shape))
+
+
+def test_direct_light_is_the_rasterizers(hosts, tracer):
+    gl = hosts("gl")
+    [shader] = gl.compile(CLAY)
+    expected = gl.picture(shader, replace(SIDE, size=SIZE))
+    np.testing.assert_allclose(traced(tracer, CLAY, SIDE, Paths(1, 1)), expected, atol=1e-4)
+
+
+@pytest.mark.parametrize("shape", ["sphere", "ball"])
+def test_a_white_shape_vanishes_in_a_furnace(tracer, shape):
+    image = traced(tracer, WHITE, FURNACE, Paths(1, 64), shape)
+    seen = image[image.sum(axis=-1) > 0.0]
+    assert len(seen) > 300
+    np.testing.assert_allclose(np.median(seen), 1.0, atol=1e-4)
+
+
+def test_glass_loses_little_in_a_furnace(tracer):
+    image = traced(tracer, GLASS, FURNACE, Paths(16, 64))
+    mask = sphere(SIZE).mask
+    assert abs(image[mask].mean() - 1.0) < 0.02
+
+
+def test_the_command_prints_the_noise(hosts, tmp_path):
+    hosts("gl")
+    options = ["--output", str(tmp_path / "clay.png"), "--size", "16", "--integrator", "path"]
+    done = run("render", PLASTER, *options, "--samples", "2")
+    assert done.returncode == PASSED
+    assert "2 paths a pixel leave a noise of" in done.stderr
+    assert run("render", PLASTER, *options, "--host", "cycles").returncode == MISUSE
