@@ -7,13 +7,12 @@ Inputs have MaterialX's names, order, units and defaults, whatever the functions
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Literal, TypeAlias, cast, overload
+from types import ModuleType
+from typing import Literal, TypeAlias, cast, overload
 
 import numpy as np
 
 from mxeon.models import coat, sampling, table, varnished
-from mxeon.models import coat as coat_sampling
-from mxeon.models import coat as openpbr
 from mxeon.models.core.arguments import checked_choice, checked_directions
 from mxeon.models.core.arrays import Array, any_array, array_namespace, cosine, library
 from mxeon.models.core.quadrature import albedo_dir_quadrature
@@ -91,21 +90,6 @@ NODES_BY_CATEGORY = {
     **{row.category: row.name for row in reversed((*NODES, SUBSURFACE_NODE, HAIR_NODE))},
 }
 
-
-LAYERED = (
-    coat.dielectric_over_eon_brdf,
-    coat.dielectric_over_eon_albedo_dir,
-    coat.dielectric_over_eon_albedo_avg,
-    coat_sampling.dielectric_over_eon_sample,
-    coat_sampling.dielectric_over_eon_pdf,
-)
-VARNISHED = (
-    varnished.varnished_brdf,
-    varnished.varnished_albedo_dir,
-    varnished.varnished_albedo_avg,
-    varnished.varnished_sample,
-    varnished.varnished_pdf,
-)
 
 Edf: TypeAlias = Literal["uniform_edf", "conical_edf", "generalized_schlick_edf"]
 Vdf: TypeAlias = Literal["absorption_vdf", "anisotropic_vdf"]
@@ -230,9 +214,7 @@ def _of_table(row: table.Model) -> ShadingModel:
     return ShadingModel(row.name, row.title, node, tuple(inputs), value, albedo, known, sampler)
 
 
-def _over_eon(
-    name: str, title: str, node: str, functions: tuple[Callable[..., Any], ...]
-) -> ShadingModel:
+def _over_eon(name: str, title: str, module: ModuleType) -> ShadingModel:
     """The model of an interface over EON; `alpha` is the roughness of the interface."""
     inputs = (
         parameter("oren_nayar_diffuse_bsdf", "color", "rho"),
@@ -240,11 +222,14 @@ def _over_eon(
         Parameter("alpha", 0.05, "coat_alpha"),
         Parameter("ior", 1.5, "coat_ior"),
     )
-    brdf, albedo_dir, albedo_avg, sample, pdf = functions
+    brdf, albedo_dir, albedo_avg, sample, pdf = (
+        getattr(module, f"{name}_{each}")
+        for each in ("brdf", "albedo_dir", "albedo_avg", "sample", "pdf")
+    )
     return ShadingModel(
         name,
         title,
-        node,
+        "layer_bsdf",
         inputs,
         lambda wo, wi, i: _per_coat(brdf, i, wo, wi)[0],
         lambda wo, i: _per_coat(albedo_dir, i, cosine(wo[:, 2]))[0],
@@ -280,8 +265,8 @@ def _of_openpbr() -> ShadingModel:
         "OpenPBR's base",
         "open_pbr_surface",
         parameters,
-        lambda wo, wi, i: called(openpbr.openpbr_base_brdf, i, wo=wo, wi=wi),
-        lambda wo, i: called(openpbr.openpbr_base_albedo_dir, i, mu=cosine(wo[:, 2])),
+        lambda wo, wi, i: called(coat.openpbr_base_brdf, i, wo=wo, wi=wi),
+        lambda wo, i: called(coat.openpbr_base_albedo_dir, i, mu=cosine(wo[:, 2])),
         sampler=COSINE,
     )
 
@@ -321,8 +306,8 @@ MODELS: dict[str, NodeModel] = {
     for each in (
         *map(_of_table, (*table.MODELS, *table.KNOWN_DEFECTS, *table.OTHERS)),
         *map(_of_table, table.PARAMETRIZATIONS),
-        _over_eon("dielectric_over_eon", "dielectric over EON", "layer_bsdf", LAYERED),
-        _over_eon("varnished", "EON under a varnish", "layer_bsdf", VARNISHED),
+        _over_eon("dielectric_over_eon", "dielectric over EON", coat),
+        _over_eon("varnished", "EON under a varnish", varnished),
         _of_openpbr(),
         *map(_of_node, (*NODES, *FILM_NODES, SUBSURFACE_NODE, HAIR_NODE)),
         *map(_of_transmission, TRANSMISSION_NODES),

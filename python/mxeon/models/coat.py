@@ -64,8 +64,7 @@ from mxeon.models.core.arrays import (
 )
 from mxeon.models.core.chebyshev import chebyshev_coefficients, chebyshev_nodes, chebyshev_sum
 from mxeon.models.core.quadrature import unit_rule
-from mxeon.models.diffuse import C1, eon_albedo_dir, eon_brdf
-from mxeon.models.diffuse import fon_loss_mu as fon_loss
+from mxeon.models.diffuse import C1, eon_albedo_dir, eon_brdf, fon_loss_mu
 from mxeon.models.microfacet import dielectric_brdf, generalized_schlick_brdf
 from mxeon.models.microfacet.fresnel import dielectric, dielectric_avg, fresnel_schlick_avg
 from mxeon.models.microfacet.slopes import slope_nodes
@@ -273,7 +272,7 @@ def dielectric_over_eon_albedo_avg(
     weight = weight * 2.0 * mu * number * xp.cosh(extent * x**3) * extent * 3.0 * x * x
     reflected = coat.at(mu)[1]
     passed = xp.sum(weight * (1.0 - reflected))
-    share = xp.sum(weight * (1.0 - reflected) * fon_loss(mu)) / (passed * C1)
+    share = xp.sum(weight * (1.0 - reflected) * fon_loss_mu(mu)) / (passed * C1)
     grazing, upright = (eon_albedo_dir(each, rho, roughness) for each in (0.0, 1.0))
     return (1.0 - passed) + passed * (grazing + share * (upright - grazing))
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.projections.polar import PolarAxes
 
+    from mxeon.models.shading_model import ShadingModel
+
 VIEWS = (0.0, 30.0, 60.0)  # polar angles of the viewer, degrees
 VIEW_COLORS = ("#6a4c93", "#c9811b", "#1b8f8f")  # none of them a channel's
 CHANNEL_COLORS = ("#d8505f", "#2f9e63", "#3f7fd1")
@@ -23,29 +25,7 @@ FIBER = "chiang_hair_bsdf"
 STYLE = {"axes.grid": True, "grid.alpha": 0.3, "font.size": 9, "axes.titlesize": 10}
 
 
-class Drawable(Protocol):
-    """What a figure needs of a model."""
-
-    @property
-    def title(self) -> str: ...
-
-    @property
-    def node(self) -> str: ...
-
-    @property
-    def lights(self) -> str: ...
-
-    @property
-    def functions(self) -> tuple[str, ...]: ...
-
-    def bsdf(self, wo: ArrayLike, wi: ArrayLike, **named: ArrayLike) -> Array: ...
-
-    def albedo_dir(self, mu: ArrayLike, **named: ArrayLike) -> Array: ...
-
-    def pdf(self, wo: ArrayLike, wi: ArrayLike, **named: ArrayLike) -> Array: ...
-
-
-def draw(model: Drawable, inputs: Mapping[str, ArrayLike], path: str | None = None) -> Figure:
+def draw(model: ShadingModel, inputs: Mapping[str, ArrayLike], path: str | None = None) -> Figure:
     """The figure of a model with these inputs, one material; written to `path` if there is one."""
     # Load matplotlib, which the models do without.
     try:
@@ -58,7 +38,8 @@ def draw(model: Drawable, inputs: Mapping[str, ArrayLike], path: str | None = No
     with style.context(["default", STYLE]):
         columns = 3 if "pdf" in model.functions else 2
         figure = Figure(figsize=(3.7 * columns, 3.6), layout="constrained")
-        figure.suptitle(model.title + "".join(f", {n} {_words(v)}" for n, v in inputs.items()))
+        words = {n: " ".join(f"{each:.4g}" for each in np.ravel(v)) for n, v in inputs.items()}
+        figure.suptitle(model.title + "".join(f", {n} {v}" for n, v in words.items()))
         polar = cast("PolarAxes", figure.add_subplot(1, columns, 1, projection="polar"))
         _draw_lobe(polar, model, inputs)
         _draw_albedo(figure.add_subplot(1, columns, 2), model, inputs)
@@ -69,30 +50,19 @@ def draw(model: Drawable, inputs: Mapping[str, ArrayLike], path: str | None = No
     return figure
 
 
-def _words(value: ArrayLike) -> str:
-    """A value for a title."""
-    return " ".join(f"{each:.4g}" for each in np.ravel(value))
-
-
 def _plane(angles: ArrayLike) -> Array:
     """Directions in the plane of the tangent, by their angles from the normal in radian."""
     angle = np.asarray(angles, np.float64)
     return np.stack([np.sin(angle), np.zeros_like(angle), np.cos(angle)], axis=-1)
 
 
-def _angles(model: Drawable) -> Array:
-    """Angles of lights from the normal: those from which it scatters light."""
-    ends = {"front": (-0.5, 0.5), "back": (0.5, 1.5), "all sides": (-1.0, 1.0)}[model.lights]
-    inside = 1e-4
-    return np.linspace(ends[0] * np.pi + inside, ends[1] * np.pi - inside, ANGLES)
-
-
-def _lobes(model: Drawable, inputs: Mapping[str, ArrayLike]) -> tuple[Array, list[Array]]:
+def _lobes(model: ShadingModel, inputs: Mapping[str, ArrayLike]) -> tuple[Array, list[Array]]:
     """Angles of lights, and for each view the value times |cosine|, averaged over the channels.
 
     The value of a fiber has no cosine beside it.
     """
-    angles = _angles(model)
+    ends = {"front": (-0.5, 0.5), "back": (0.5, 1.5), "all sides": (-1.0, 1.0)}[model.lights]
+    angles = np.linspace(ends[0] * np.pi + 1e-4, ends[1] * np.pi - 1e-4, ANGLES)
     wi = _plane(angles)
     cosine = np.ones(ANGLES) if model.node == FIBER else np.abs(np.cos(angles))
     lobes = []
@@ -103,7 +73,7 @@ def _lobes(model: Drawable, inputs: Mapping[str, ArrayLike]) -> tuple[Array, lis
     return angles, lobes
 
 
-def _draw_lobe(axes: PolarAxes, model: Drawable, inputs: Mapping[str, ArrayLike]) -> None:
+def _draw_lobe(axes: PolarAxes, model: ShadingModel, inputs: Mapping[str, ArrayLike]) -> None:
     """Value times cosine over the angle of the light, for some views, which are marked."""
     angles, lobes = _lobes(model, inputs)
     for view, color, lobe in zip(VIEWS, VIEW_COLORS, lobes, strict=True):
@@ -125,7 +95,7 @@ def _draw_lobe(axes: PolarAxes, model: Drawable, inputs: Mapping[str, ArrayLike]
     axes.legend(loc="upper center", bbox_to_anchor=below, ncols=3, fontsize=7, frameon=False)
 
 
-def _draw_albedo(axes: Axes, model: Drawable, inputs: Mapping[str, ArrayLike]) -> None:
+def _draw_albedo(axes: Axes, model: ShadingModel, inputs: Mapping[str, ArrayLike]) -> None:
     """Directional albedo over the angle of the viewer."""
     degrees = np.linspace(0.0, 89.5, 60)
     albedo = model.albedo_dir(np.cos(np.radians(degrees)), **inputs)
@@ -143,7 +113,7 @@ def _draw_albedo(axes: Axes, model: Drawable, inputs: Mapping[str, ArrayLike]) -
     axes.set_xticks(range(0, 91, 15))
 
 
-def _draw_density(axes: Axes, model: Drawable, inputs: Mapping[str, ArrayLike]) -> None:
+def _draw_density(axes: Axes, model: ShadingModel, inputs: Mapping[str, ArrayLike]) -> None:
     """Density of samples over the angle of the light, and what it would be without any noise."""
     axes.set(title="density of samples, 1/sr", xlabel="light's angle, degrees")
     angles, lobes = _lobes(model, inputs)

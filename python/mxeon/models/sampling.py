@@ -76,8 +76,7 @@ from mxeon.models.core.arrays import (
     hypot,
     root,
 )
-from mxeon.models.diffuse import C1, C2, cosines, eon_multiple_weight, fon_quotient
-from mxeon.models.diffuse import fon_loss_mu as fon_loss
+from mxeon.models.diffuse import C1, C2, cosines, eon_multiple_weight, fon_loss_mu, fon_quotient
 from mxeon.models.microfacet import ggx
 from mxeon.models.sheen import zeltner_matrix
 
@@ -280,8 +279,8 @@ def _density(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
 
 def eon_density_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
     """Density from the cosines, and from s of `cosines`."""
-    weight, loss_o = eon_multiple_weight(rho, roughness), fon_loss(mu_o)
-    parts = 1.0 + roughness * fon_quotient(mu_o, mu_i, s) + weight * loss_o * fon_loss(mu_i)
+    weight, loss_o = eon_multiple_weight(rho, roughness), fon_loss_mu(mu_o)
+    parts = 1.0 + roughness * fon_quotient(mu_o, mu_i, s) + weight * loss_o * fon_loss_mu(mu_i)
     total = 1.0 + C1 * roughness + (weight * (C1 - C2) - roughness) * loss_o
     return mu_i * parts / (np.pi * total)
 
@@ -317,7 +316,7 @@ def eon_integrals(
     towards = (2.0 / np.pi) * roughness * S_o
     lower = towards * (1.0 - mu_o) * eon_cube_gap(mu_o, S_o) / 3.0
     upper = towards * eon_segment(mu_o, S_o)
-    multiple = (C1 - C2) * eon_multiple_weight(rho, roughness) * fon_loss(mu_o)
+    multiple = (C1 - C2) * eon_multiple_weight(rho, roughness) * fon_loss_mu(mu_o)
     return lower, upper, multiple, 1.0
 
 

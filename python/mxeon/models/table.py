@@ -227,33 +227,24 @@ OTHERS = (
 
 
 def _reparametrized(
-    name: str, title: str, base: str, parameter: Callable[[ArrayLike], Numbers]
+    name: str, title: str, base: str, parameter: Callable[[Numbers], Numbers]
 ) -> Model:
     """A model as a function of another roughness, from which its own parameter follows."""
     row = next(each for each in MODELS if each.name == base)
 
+    @any_array
     def brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-        return row.brdf(wo, wi, rho, parameter(roughness))
+        return row.brdf(wo, wi, rho, parameter(checked("roughness", roughness)))
 
+    @any_array
     def albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-        return row.closed_albedo_dir(mu, rho, parameter(roughness))
+        return row.closed_albedo_dir(mu, rho, parameter(checked("roughness", roughness)))
 
     return Model(name, title, brdf, "roughness", albedo_dir if row.albedo_dir else None)
 
 
-@any_array
-def _half_pi(roughness: ArrayLike) -> Numbers:
-    return 0.5 * np.pi * checked("roughness", roughness)
-
-
-@any_array
-def _slope(roughness: ArrayLike) -> Numbers:
-    return float(np.sqrt(0.5)) * checked("roughness", roughness)
-
-
-@any_array
-def _square(roughness: ArrayLike) -> Numbers:
-    return checked("roughness", roughness) ** 2
+def _square(roughness: Numbers) -> Numbers:
+    return roughness**2
 
 
 # The models with other meanings of a roughness in [0, 1], which renderers have instead of sigma.
@@ -262,8 +253,8 @@ PARAMETRIZATIONS = (
         _reparametrized(f"{base}_{word}", f"{short} with {meaning}", base, parameter)
         for base, short in (("qon", "QON"), ("oren_nayar", "full Oren-Nayar"))
         for word, meaning, parameter in (
-            ("half_pi", "sigma = roughness pi/2", _half_pi),
-            ("slope", "sigma = roughness / sqrt(2)", _slope),
+            ("half_pi", "sigma = roughness pi/2", lambda r: 0.5 * np.pi * r),
+            ("slope", "sigma = roughness / sqrt(2)", lambda r: float(np.sqrt(0.5)) * r),
             ("squared", "sigma = roughness^2", _square),
         )
     ),

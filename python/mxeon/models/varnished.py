@@ -75,8 +75,7 @@ from mxeon.models.core.arrays import (
 from mxeon.models.core.chebyshev import chebyshev_coefficients, chebyshev_nodes, chebyshev_sum
 from mxeon.models.core.evaluation import evaluate
 from mxeon.models.core.quadrature import unit_rule
-from mxeon.models.diffuse import C1, C2, eon_albedo
-from mxeon.models.diffuse import fon_loss_mu as fon_loss
+from mxeon.models.diffuse import C1, C2, eon_albedo, fon_loss_mu
 from mxeon.models.microfacet import dielectric_brdf
 from mxeon.models.sampling import around, cosine_pdf, unpack_uniforms
 
@@ -118,7 +117,7 @@ def inner(mu: Array, ior: float | Array) -> Array:
 def shape(mu: Array, turned: Array, ior: float | Array, r: Array) -> tuple[Array, Array, Array]:
     """mu', 1 + r b and H(mu'): k = rho A (1 + r b + W <H>_R H)."""
     m = inner(mu, ior)
-    return m, 1.0 + r * turned * root((1.0 - m) * (1.0 + m)) / nonzero(m), fon_loss(m)
+    return m, 1.0 + r * turned * root((1.0 - m) * (1.0 + m)) / nonzero(m), fon_loss_mu(m)
 
 
 def absorbed(means: Sequence[float | Array], rho: Array, r: Array) -> Array:
@@ -221,7 +220,7 @@ def integrated(alpha: Array, ior: Array) -> tuple[list[Array], Array]:
     x, weight = (like(each, alpha) for each in unit_rule(BELOW))
     beyond, weight = root(squared) * x, 2.0 * squared * weight * x
     R = squared + xp.sum(total * share)
-    loss = xp.sum(weight * fon_loss(beyond)) + xp.sum(total * share * fon_loss(m))
+    loss = xp.sum(weight * fon_loss_mu(beyond)) + xp.sum(total * share * fon_loss_mu(m))
 
     # s / t has the integral 2 S S' (1 / max(mu, mu') - 1) over azimuths; with R(m) the share that returns,
     #   b mu' / S' = 2 / (pi R) [(1 - mu') int_0^mu' R(m) S m dm + mu' int_mu'^1 R(m) S (1 - m) dm],
