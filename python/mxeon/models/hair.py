@@ -232,14 +232,6 @@ def distribution(
     return M * azimuthal(phi - exit_angle, s)
 
 
-__all__ = [
-    "LOBES",
-    "chiang_hair_attenuation",
-    "chiang_hair_bcsdf",
-    "hair_azimuthal",
-    "hair_longitudinal",
-]
-
 BLOCK = 4096  # elements at a time: a lobe keeps many numbers for each
 TINTS, ROUGHNESSES = (
     tuple(f"{prefix}_{lobe}" for lobe in ("R", "TT", "TRT")) for prefix in ("tint", "roughness")

@@ -133,13 +133,12 @@ def cosine_pdf(wi: ArrayLike) -> Array:
         >>> round(float(cosine_pdf([0.6, 0.0, 0.8])), 6)
         0.254648
     """
-    (w,) = broadcastable({"wi": checked_directions("wi", wi)}, {})
-    return w[..., 2] / np.pi
+    return checked_directions("wi", wi)[..., 2] / np.pi
 
 
 def checked_draw(wo: ArrayLike, u: ArrayLike, **numbers: ArrayLike) -> list[Array]:
     """Checked arguments of a sampler, in this order, as float64 arrays whose shapes broadcast."""
-    return _broadcastable({"wo": checked_directions("wo", wo), "u": _checked_pairs(u)}, numbers)
+    return _broadcastable({"wo": checked_directions("wo", wo), "u": checked_pairs("u", u)}, numbers)
 
 
 def checked_pdf(wo: ArrayLike, wi: ArrayLike, **numbers: ArrayLike) -> list[Array]:
@@ -150,7 +149,7 @@ def checked_pdf(wo: ArrayLike, wi: ArrayLike, **numbers: ArrayLike) -> list[Arra
 
 def unpack_uniforms(u: ArrayLike) -> tuple[Array, Array]:
     """The two random numbers of each pair, checked, as float64 arrays of shape (...)."""
-    u = _checked_pairs(u)
+    u = checked_pairs("u", u)
     return u[..., 0], u[..., 1]
 
 
@@ -192,11 +191,6 @@ def rotate_z(w: Array, cosine: Array, sine: Array) -> Array:
 def _broadcastable(vectors: dict[str, Numbers], numbers: dict[str, ArrayLike]) -> list[Array]:
     """Vectors and checked numbers as float64 arrays; raise if their shapes do not broadcast."""
     return broadcastable(vectors, {name: checked(name, value) for name, value in numbers.items()})
-
-
-def _checked_pairs(u: ArrayLike) -> Array:
-    """Checked random numbers of shape (..., 2), as a float64 array."""
-    return broadcastable({"u": checked_pairs("u", u)}, {})[0]
 
 
 def _uniform_density(wi: Numbers) -> Array:
@@ -253,7 +247,7 @@ def eon_sample(
     wi = rotate_z(eon_draw(mu_o, S_o, u1, u2, rho, roughness), cosine, sine)
     # The end of a part may reach the horizon, where the density is 0 and a weight 0/0.
     wi = stack_xyz(wi[..., 0], wi[..., 1], array_namespace(wi).maximum(wi[..., 2], LEAST_COSINE))
-    return wi, _density(wo, wi, rho, roughness)
+    return wi, eon_density_mu(*cosines(wo, wi), rho, roughness)
 
 
 @any_array
@@ -269,11 +263,6 @@ def eon_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike, *, rho: ArrayLik
         0.332784
     """
     wo, wi, roughness, rho = checked_pdf(wo, wi, roughness=roughness, rho=rho)
-    return _density(wo, wi, rho, roughness)
-
-
-def _density(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
-    """The four parts together, with the weight of `multiple` for `rho`, over their integral."""
     return eon_density_mu(*cosines(wo, wi), rho, roughness)
 
 

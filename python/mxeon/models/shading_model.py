@@ -49,7 +49,7 @@ def into_frame(w: ArrayLike, normal: ArrayLike, tangent: ArrayLike) -> Array:
 
     The tangent is any vector not parallel to the normal; its part along the normal is taken away.
     """
-    vectors, axes = _vectors(w), _axes(normal, tangent)
+    vectors, axes = _floats(checked_triples("w", w)), _axes(normal, tangent)
     xp = array_namespace(vectors)
     return xp.stack([xp.sum(vectors * axis, axis=-1) for axis in axes], axis=-1) + 0.0
 
@@ -57,14 +57,9 @@ def into_frame(w: ArrayLike, normal: ArrayLike, tangent: ArrayLike) -> Array:
 @any_array
 def out_of_frame(w: ArrayLike, normal: ArrayLike, tangent: ArrayLike) -> Array:
     """Vectors with these components along the tangent, the bitangent and the normal."""
-    vectors, (x, y, z) = _vectors(w), _axes(normal, tangent)
+    vectors, (x, y, z) = _floats(checked_triples("w", w)), _axes(normal, tangent)
     turned: Array = vectors[..., :1] * x + vectors[..., 1:2] * y + vectors[..., 2:] * z
     return turned + 0.0
-
-
-def _vectors(w: ArrayLike) -> Array:
-    array = checked_triples("w", w)
-    return array if library(array) else np.asarray(array, np.float64)
 
 
 def _axes(normal: ArrayLike, tangent: ArrayLike) -> tuple[Array, Array, Array]:

@@ -54,19 +54,11 @@ from mxeon.models.core.arrays import (
 from mxeon.models.core.evaluation import evaluate, evaluate_material
 from mxeon.models.diffuse import cosines
 
-__all__ = [
-    "conty_kulla_albedo_dir",
-    "conty_kulla_brdf",
-    "zeltner_albedo_dir",
-    "zeltner_brdf",
-    "zeltner_matrix",
-]
-
 # Roughness that the Zeltner lobe has at least: [MaterialX2026], Zeltner Sheen Model.
 ZELTNER_LEAST_ROUGHNESS = 0.01
 
 # Roughness and sum of cosines that divide are at least this, lest a quotient overflow by itself.
-LEAST_ZELTNER = 1e-300
+LEAST = 1e-300
 
 
 @any_array
@@ -147,7 +139,7 @@ def _tinted(
 def _conty_kulla_formula(wo: Array, wi: Array, tint: Array, roughness: Array) -> Array:
     """Conty and Kulla's lobe, (C, ...), on valid arrays."""
     xp = array_namespace(wo, wi, roughness)
-    least = max(LEAST_ZELTNER, least_normal(wo))  # that of float32 is larger
+    least = max(LEAST, least_normal(wo))  # that of float32 is larger
     mu_o, mu_i, _ = cosines(wo, wi)
     flat = xp.square(wo[..., 0] + wi[..., 0]) + xp.square(wo[..., 1] + wi[..., 1])
     upright = xp.square(mu_o + mu_i)
@@ -203,9 +195,6 @@ STEEP = 0.25
 BLOCK = 2**8  # elements at once
 ALONG = 1e-8  # distance from 1 of a cosine that counts as the normal's for derivatives
 
-# Roughness above 0 that divides is at least this, lest the quotient overflow.
-LEAST_CONTY_KULLA = 1e-300
-
 
 @any_array
 def conty_kulla_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
@@ -235,9 +224,7 @@ def _albedo(mu: Array, roughness: Array) -> Array:
         albedo = np.zeros((1, *mu.shape))
         for steep in (False, True):
             rows = ((mu > STEEP) == steep) & (roughness > 0.0)
-            albedo[:, rows] = _integral(
-                mu[rows], np.maximum(roughness[rows], LEAST_CONTY_KULLA), steep
-            )
+            albedo[:, rows] = _integral(mu[rows], np.maximum(roughness[rows], LEAST), steep)
         return albedo
     above, rough = mu > STEEP, roughness > 0.0
     r = guarded(roughness, rough, 1.0)

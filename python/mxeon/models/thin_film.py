@@ -72,10 +72,7 @@ from mxeon.models.core.chebyshev import chebyshev_coefficients, chebyshev_nodes,
 from mxeon.models.core.colorimetry import XYZ_TO_REC709, XYZ_TO_REC709_E, matching_functions
 from mxeon.models.core.evaluation import evaluate_material
 from mxeon.models.microfacet import (
-    CONDUCTOR,
-    DIELECTRIC,
     NODES,
-    SCHLICK,
     Curve,
     Lobe,
     evaluate_lobe,
@@ -343,7 +340,7 @@ def film_curve(category: str, form: Form = TEXT) -> Curve:
 
     Where the thickness is 0 it is the node's own.
     """
-    bare = CURVES[category]
+    bare = NODES[category][0]
 
     def at(
         mu: Array, *, thinfilm_thickness: Array, thinfilm_ior: Array, **material: Array
@@ -357,7 +354,7 @@ def film_curve(category: str, form: Form = TEXT) -> Curve:
     def average(*, thinfilm_thickness: Array, thinfilm_ior: Array, **material: Array) -> Array:
         def coated() -> Array:
             film = thinfilm_thickness, thinfilm_ior
-            curve = _fine(category, without_clamp(form), film, material)
+            curve = _fine(category, replace(form, clamped=False), film, material)
             # Clamp it there, and sum.
             kept = within(curve) if form.clamped else curve
             return array_namespace(curve).tensordot(like(_rule()[2], curve), kept, axes=1)
@@ -380,7 +377,7 @@ def _fine(
 ) -> Array:
     """The curve at the cosines of a fine rule from those of nodes, shape (FINE, 3, ...), all at once."""
     mu, between, _ = (like(each, film[1]) for each in _rule())
-    channels = {k for k, v in material.items() if k in COLORS[category]}
+    channels = {k for k, v in material.items() if k in NODES[category][1]}
     axes = max((v.ndim - 1 for k, v in material.items() if k in channels), default=film[0].ndim)
     spread = {k: v[:, np.newaxis] if k in channels else v for k, v in material.items()}
     nodes = array_namespace(mu).reshape(mu, (-1, *(1,) * max(axes, film[0].ndim, film[1].ndim)))
@@ -397,11 +394,6 @@ def _rule() -> tuple[Array, Array, Array]:
     moments = (degree + 0.5)[:, np.newaxis] * legendre.legvander(x, POINTS - 1).T * w
     between = legendre.legvander(fine, POINTS - 1) @ moments
     return 0.5 * (1.0 + x), between, 0.5 * weight * (1.0 + fine)
-
-
-def without_clamp(form: Form) -> Form:
-    """The form with values outside [0, 1] as they are."""
-    return replace(form, clamped=False)
 
 
 def _airy(
@@ -432,15 +424,6 @@ def _to_rgb(xyz: Array, form: Form) -> Array:
     return xp.sum(weights * xyz, axis=0)
 
 
-def _dielectric(mu: Array, film_ior: Array, _: Form, ior: Array) -> Polarizations:
-    none = like(np.zeros(1), ior)
-    return over_index(mu[np.newaxis], film_ior[np.newaxis], ior[np.newaxis], none)
-
-
-def _conductor(mu: Array, film_ior: Array, _: Form, ior: Array, extinction: Array) -> Polarizations:
-    return over_index(mu[np.newaxis], film_ior[np.newaxis], ior, extinction)
-
-
 def _schlick(
     mu: Array,
     film_ior: Array,
@@ -456,34 +439,16 @@ def _schlick(
     return over_schlick(mu[np.newaxis], film_ior[np.newaxis], F, base)
 
 
-CURVES = {
-    "dielectric_bsdf": DIELECTRIC,
-    "conductor_bsdf": CONDUCTOR,
-    "generalized_schlick_bsdf": SCHLICK,
-}
-# Inputs of each curve that have channels.
-COLORS = {
-    "dielectric_bsdf": ("tint",),
-    "conductor_bsdf": ("ior", "extinction"),
-    "generalized_schlick_bsdf": ("color0", "color82", "color90"),
-}
 SUBSTRATES: dict[str, Callable[..., Polarizations]] = {
-    "dielectric_bsdf": _dielectric,
-    "conductor_bsdf": _conductor,
+    "dielectric_bsdf": lambda mu, film_ior, _, ior: over_index(
+        mu[np.newaxis], film_ior[np.newaxis], ior[np.newaxis], like(np.zeros(1), ior)
+    ),
+    "conductor_bsdf": lambda mu, film_ior, _, ior, extinction: over_index(
+        mu[np.newaxis], film_ior[np.newaxis], ior, extinction
+    ),
     "generalized_schlick_bsdf": _schlick,
 }
 
-
-__all__ = [
-    "CIE_RGB",
-    "MATERIALX",
-    "PRINTED",
-    "TEXT",
-    "Form",
-    "film_conductor",
-    "film_dielectric",
-    "film_schlick",
-]
 
 PORTS = {"thickness": "thinfilm_thickness", "film_ior": "thinfilm_ior"}  # of the nodes
 
@@ -676,8 +641,8 @@ class PolynomialCurve:
     """Curve of a film, by a polynomial in the cosine for each material."""
 
     def __init__(self, category: str, form: Form) -> None:
-        self._bare = CURVES[category].at
-        self._curve = film_curve(category, without_clamp(form)).at
+        self._bare = NODES[category][0].at
+        self._curve = film_curve(category, replace(form, clamped=False)).at
 
     def __call__(self, mu: Array, **material: Array) -> Array:
         """F at cosines of shape (nodes, nodes, ...), shape (3, nodes, nodes, ...)."""

@@ -30,7 +30,7 @@ shapes do not broadcast or the reading is unknown.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TypeAlias
@@ -349,28 +349,28 @@ def _whole(cosine: Array, color0: Array, color82: Array, color90: Array, exponen
     return within(fresnel.schlick(cosine, color0, color82, color90, exponent))
 
 
-def _no_dip(cosine: Array, color0: Array, color82: Array, color90: Array, exponent: Array) -> Array:
-    """F without the dip at 82 degrees."""
-    return _whole(cosine, color0, 0.0 * color82 + 1.0, color90, exponent)
-
-
-def _darker(cosine: Array, color0: Array, color82: Array, color90: Array, exponent: Array) -> Array:
-    """F with color82 as a factor of color90."""
-    return _whole(cosine, color0, 0.0 * color82 + 1.0, color82 * color90, exponent)
-
-
-def _of_index(cosine: Array, color0: Array, **others: Array) -> Array:
-    """F of a dielectric of the index, which no input but color0 enters."""
-    return fresnel.dielectric(cosine, index_of(_mean(color0, 0), DARKEST))
-
-
 READINGS = {
     "text": Reading("1 - F of all inputs, kept in [0, 1]", _whole),
     "unclamped": Reading("1 - F of all inputs, as it is", fresnel.schlick),
     "channel": Reading("1 - F of all inputs; an index for each channel", _whole, "channel"),
-    "closure": Reading("1 - F without color82", _no_dip, least=0.0),
-    "grazing": Reading("1 - F with color82 color90 at grazing", _darker, "channel"),
-    "dielectric": Reading("1 - F of the index of color0 alone", _of_index),
+    "closure": Reading(
+        "1 - F without color82",
+        lambda c, color0, color82, color90, exponent: _whole(
+            c, color0, 0.0 * color82 + 1.0, color90, exponent
+        ),
+        least=0.0,
+    ),
+    "grazing": Reading(
+        "1 - F with color82 color90 at grazing",
+        lambda c, color0, color82, color90, exponent: _whole(
+            c, color0, 0.0 * color82 + 1.0, color82 * color90, exponent
+        ),
+        "channel",
+    ),
+    "dielectric": Reading(
+        "1 - F of the index of color0 alone",
+        lambda c, color0, **others: fresnel.dielectric(c, index_of(_mean(color0, 0), DARKEST)),
+    ),
 }
 
 
@@ -426,25 +426,15 @@ def generalized_schlick_btdf(
         >>> generalized_schlick_btdf(*pair, 0.04, 1.0, 1.0, [0.3, 0.3], 5.0).round(4)
         array([10.1048])
     """
-    how = _reading(reading)
-    checked_switch("inside", inside)
-    parts = _parts(how, color0, color82, color90)
+    colors = {"color0": color0, "color82": color82, "color90": color90}
+    vectors = {"wo": checked_directions("wo", wo), "wi": checked_transmitted("wi", wi)}
+    vectors |= {"roughness": checked_roughness(roughness)}
+    at, parts = _parts(reading, colors, inside)
     numbers = {"exponent": checked("exponent", exponent)}
-    directions = {"wo": checked_directions("wo", wo), "wi": checked_transmitted("wi", wi)}
-    pairs = {"roughness": checked_roughness(roughness)}
-    lead_shape(directions | pairs | parts[0][1], numbers)
+    lead_shape(vectors | parts[0][1], numbers)
     channels = [
-        evaluate_btdf(
-            how.at,
-            wo,
-            wi,
-            roughness,
-            1.0 / index if inside else index,
-            colors,
-            numbers,
-            radiance=radiance,
-        )
-        for index, colors in parts
+        evaluate_btdf(at, wo, wi, roughness, index, material, numbers, radiance=radiance)
+        for index, material in parts
     ]
     return array_namespace(*channels).concat(channels, axis=-1)
 
@@ -470,43 +460,41 @@ def generalized_schlick_transmittance_dir(
         >>> generalized_schlick_transmittance_dir(wo, [0.04, 0.25], 1.0, 1.0, alpha, 5.0).round(3)
         array([0.945, 0.738])
     """
-    how = _reading(reading)
-    checked_switch("inside", inside)
-    parts = _parts(how, color0, color82, color90)
+    colors = {"color0": color0, "color82": color82, "color90": color90}
+    vectors = {"wo": checked_directions("wo", wo)}
+    vectors |= {"roughness": checked_roughness(roughness)}
+    at, parts = _parts(reading, colors, inside)
     numbers = {"exponent": checked("exponent", exponent)}
-    directions = {"wo": checked_directions("wo", wo)}
-    pairs = {"roughness": checked_roughness(roughness)}
-    lead_shape(directions | pairs | parts[0][1], numbers)
+    lead_shape(vectors | parts[0][1], numbers)
     channels = [
-        evaluate_transmittance(
-            how.at,
-            wo,
-            roughness,
-            colors,
-            numbers | {"ior": 1.0 / index if inside else index},
-            shadow,
-        )
-        for index, colors in parts
+        evaluate_transmittance(at, wo, roughness, material, numbers | {"ior": index}, shadow)
+        for index, material in parts
     ]
     return array_namespace(*channels).concat(channels, axis=-1)
 
 
 def _parts(
-    how: Reading, color0: ArrayLike, color82: ArrayLike, color90: ArrayLike
-) -> list[tuple[Array, dict[str, Numbers]]]:
-    """Index and colors of each evaluation: of all channels, or of one after another."""
-    given = {"color0": color0, "color82": color82, "color90": color90}
+    reading: str, given: Mapping[str, ArrayLike], inside: bool
+) -> tuple[Callable[..., Array], list[tuple[Array, dict[str, Numbers]]]]:
+    """F, and index and colors of each evaluation: of all channels, or of one after another."""
+    how = _reading(reading)
+    checked_switch("inside", inside)
     colors = {name: checked_color(name, value) for name, value in given.items()}
     count = channel_count(colors)
+
+    def index(color0: Array) -> Array:
+        outside = index_of(color0, how.least)
+        return 1.0 / outside if inside else outside
+
     if how.index == "average":
-        return [(index_of(_mean(colors["color0"], -1)[..., 0], how.least), colors)]
+        return how.at, [(index(_mean(colors["color0"], -1)[..., 0]), colors)]
     xp = array_namespace(*colors.values())
     spread = {
         name: xp.broadcast_to(value, (*value.shape[:-1], count)) for name, value in colors.items()
     }
-    return [
+    return how.at, [
         (
-            index_of(spread["color0"][..., channel], how.least),
+            index(spread["color0"][..., channel]),
             {name: value[..., channel : channel + 1] for name, value in spread.items()},
         )
         for channel in range(count)
