@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A dielectric over EON as a BSDF of Mitsuba; see `mxeon.models.coat` and `mxeon.models.varnished`.
+"""A dielectric over EON as a BSDF of Mitsuba; see `mxeon.models.coat` and `mxeon.models.coat`.
 
 What the dielectric reflects depends on a cosine alone: a cubic in each part of an octave, whose
 coefficients are computed in float64 whenever `alpha` or `ior` changes, with their derivatives where these
@@ -17,7 +17,16 @@ import numpy as np
 from mxeon.mitsuba.diffuse import EonPlugin, Mitsuba, RoughDiffusePlugin
 from mxeon.mitsuba.octaves import gather_cubic, octave_cells, octave_cubics
 from mxeon.models import coat as openpbr
-from mxeon.models.coat import Coat, constant_coat
+from mxeon.models.coat import (
+    Coat,
+    Varnish,
+    albedo,
+    constant_coat,
+    constant_varnish,
+    cut,
+    nonzero,
+    under,
+)
 from mxeon.models.core.arguments import RANGES
 from mxeon.models.core.arrays import Array
 from mxeon.models.diffuse import eon_albedo
@@ -25,7 +34,6 @@ from mxeon.models.diffuse import fon_loss_mu as fon_loss
 from mxeon.models.microfacet import ggx
 from mxeon.models.microfacet.fresnel import dielectric, dielectric_avg, schlick, schlick_avg
 from mxeon.models.sampling import visible_density, visible_normal
-from mxeon.models.varnished import Varnish, albedo, constant_varnish, cut, nonzero, under
 
 ALPHAS, IORS = (RANGES[name][:2] for name in ("coat_alpha", "coat_ior"))
 STEP = 1e-4  # of the differences that stand for the derivatives of the coefficients

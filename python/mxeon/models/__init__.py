@@ -13,6 +13,11 @@ from mxeon.models.coat import dielectric_over_eon_pdf as dielectric_over_eon_pdf
 from mxeon.models.coat import dielectric_over_eon_sample as dielectric_over_eon_sample
 from mxeon.models.coat import openpbr_base_albedo_dir as openpbr_base_albedo_dir
 from mxeon.models.coat import openpbr_base_brdf as openpbr_base_brdf
+from mxeon.models.coat import varnished_albedo_avg as varnished_albedo_avg
+from mxeon.models.coat import varnished_albedo_dir as varnished_albedo_dir
+from mxeon.models.coat import varnished_brdf as varnished_brdf
+from mxeon.models.coat import varnished_pdf as varnished_pdf
+from mxeon.models.coat import varnished_sample as varnished_sample
 from mxeon.models.core.evaluation import threads as threads
 from mxeon.models.core.layering import Bsdf as Bsdf
 from mxeon.models.core.layering import add as add
@@ -135,11 +140,6 @@ from mxeon.models.transmission import (
 from mxeon.models.transmission import refraction_direction as refraction_direction
 from mxeon.models.transmission import schlick_ior as schlick_ior
 from mxeon.models.transmission import transmission_half_vector as transmission_half_vector
-from mxeon.models.varnished import varnished_albedo_avg as varnished_albedo_avg
-from mxeon.models.varnished import varnished_albedo_dir as varnished_albedo_dir
-from mxeon.models.varnished import varnished_brdf as varnished_brdf
-from mxeon.models.varnished import varnished_pdf as varnished_pdf
-from mxeon.models.varnished import varnished_sample as varnished_sample
 
 __all__ = ["SAMPLERS"] + [
     name for name, value in globals().items() if callable(value) and not name.startswith("_")

@@ -7,12 +7,11 @@ Inputs have MaterialX's names, order, units and defaults, whatever the functions
 from __future__ import annotations
 
 from collections.abc import Callable
-from types import ModuleType
 from typing import Literal, TypeAlias, cast, overload
 
 import numpy as np
 
-from mxeon.models import coat, sampling, table, varnished
+from mxeon.models import coat, sampling, table
 from mxeon.models.core.arguments import checked_choice, checked_directions
 from mxeon.models.core.arrays import Array, any_array, array_namespace, cosine, library
 from mxeon.models.core.quadrature import albedo_dir_quadrature
@@ -214,7 +213,7 @@ def _of_table(row: table.Model) -> ShadingModel:
     return ShadingModel(row.name, row.title, node, tuple(inputs), value, albedo, known, sampler)
 
 
-def _over_eon(name: str, title: str, module: ModuleType) -> ShadingModel:
+def _over_eon(name: str, title: str) -> ShadingModel:
     """The model of an interface over EON; `alpha` is the roughness of the interface."""
     inputs = (
         parameter("oren_nayar_diffuse_bsdf", "color", "rho"),
@@ -223,7 +222,7 @@ def _over_eon(name: str, title: str, module: ModuleType) -> ShadingModel:
         Parameter("ior", 1.5, "coat_ior"),
     )
     brdf, albedo_dir, albedo_avg, sample, pdf = (
-        getattr(module, f"{name}_{each}")
+        getattr(coat, f"{name}_{each}")
         for each in ("brdf", "albedo_dir", "albedo_avg", "sample", "pdf")
     )
     return ShadingModel(
@@ -306,8 +305,8 @@ MODELS: dict[str, NodeModel] = {
     for each in (
         *map(_of_table, (*table.MODELS, *table.KNOWN_DEFECTS, *table.OTHERS)),
         *map(_of_table, table.PARAMETRIZATIONS),
-        _over_eon("dielectric_over_eon", "dielectric over EON", coat),
-        _over_eon("varnished", "EON under a varnish", varnished),
+        _over_eon("dielectric_over_eon", "dielectric over EON"),
+        _over_eon("varnished", "EON under a varnish"),
         _of_openpbr(),
         *map(_of_node, (*NODES, *FILM_NODES, SUBSURFACE_NODE, HAIR_NODE)),
         *map(_of_transmission, TRANSMISSION_NODES),

@@ -16,7 +16,6 @@ not broadcast.
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import lru_cache
 
 import numpy as np
 
@@ -38,6 +37,7 @@ from mxeon.models.core.arrays import (
     trimmed,
 )
 from mxeon.models.core.evaluation import evaluate_material
+from mxeon.models.core.quadrature import unit_rule
 
 # Hoffman's correction is largest here: [MaterialX2026], Generalized Schlick Equations.
 COS_THETA_MAX = 1.0 / 7.0
@@ -190,7 +190,7 @@ def _smooth_avg(ior: Array, extinction: Array) -> Array:
     """
     real, squared = (ior - 1.0) * (ior + 1.0) - extinction**2, (2.0 * ior * extinction) ** 2
     total = np.zeros(len(ior))
-    for c, weight in zip(*_gauss(), strict=True):
+    for c, weight in zip(*unit_rule(NODES), strict=True):
         x = c * c
         part = real + x
         m = np.sqrt(part * part + squared)
@@ -198,13 +198,6 @@ def _smooth_avg(ior: Array, extinction: Array) -> Array:
         A, B = m + x, m * x + (1.0 - x) ** 2
         total += (2.0 * c * weight) * ((A - u) * B / ((A + u) * (B + u * (1.0 - x))))
     return total
-
-
-@lru_cache(maxsize=1)
-def _gauss() -> tuple[Array, Array]:
-    """Nodes and weights of Gauss-Legendre on [0, 1]."""
-    x, weight = np.polynomial.legendre.leggauss(NODES)
-    return 0.5 + 0.5 * x, 0.5 * weight
 
 
 def _split_avg(ior: Array, extinction: Array, n2: Array) -> Array:

@@ -59,20 +59,11 @@ def _uniform(wo: Array, inputs: Inputs) -> Array:
     return uniform_edf(wo, inputs["color"])
 
 
-def _cone(wo: Array, inputs: Inputs) -> Array:
-    return conical_edf(wo, inputs["color"], inputs["inner_angle"], inputs["outer_angle"])
-
-
 def _halves(wo: Array, inputs: Inputs) -> Array:
     """A cone whose angles count from the axis."""
     names = "inner_angle", "outer_angle"
     angles = (np.minimum(2.0 * np.asarray(inputs[name]), 360.0) for name in names)
     return conical_edf(wo, inputs["color"], *angles)
-
-
-def _whole(wo: Array, inputs: Inputs) -> Array:
-    """The radiance without the cone."""
-    return np.where(wo[:, 2:] < 0.0, 0.0, inputs["color"])
 
 
 ONE_SIDE = "emission from the front alone"
@@ -94,13 +85,13 @@ EMISSIONS = (
         "conical emission",
         "conical_edf",
         ("color", "inner_angle", "outer_angle"),
-        _cone,
+        lambda wo, i: conical_edf(wo, i["color"], i["inner_angle"], i["outer_angle"]),
         lambda inputs: conical_exitance(
             inputs["color"], inputs["inner_angle"], inputs["outer_angle"]
         ),
         variants=(
             Variant("a cone whose angles count from its axis", _halves),
-            Variant("uniform emission from the front", _whole),
+            Variant("uniform emission from the front", front_only(_uniform)),
         ),
     ),
     Emission(

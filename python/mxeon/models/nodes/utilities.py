@@ -129,23 +129,11 @@ def _blackbody(inputs: Inputs) -> dict[str, Array]:
     return {"out": color / (color @ LUMINANCE)[..., np.newaxis]}
 
 
-def _kang(inputs: Inputs) -> dict[str, Array]:
-    """The color by the cubic fits of [Kang2002], clipped."""
-    color = kang_xyz(_share(inputs, "temperature", *TEMPERATURES)) @ XYZ_TO_REC709.T
-    return {"out": np.maximum(color, 0.0)}
-
-
 def _hair_roughness(inputs: Inputs) -> dict[str, Array]:
     numbers = [_share(inputs, name, LEAST_HAIR) for name in ("longitudinal", "azimuthal")]
     scales = [np.abs(np.asarray(inputs[name], np.float64)) for name in ("scale_TT", "scale_TRT")]
     pairs = chiang_hair_roughness(*numbers, *scales)
     return dict(zip(("roughness_R", "roughness_TT", "roughness_TRT"), pairs, strict=True))
-
-
-def _unsquared_scales(inputs: Inputs) -> dict[str, Array]:
-    """Roughnesses whose variances are scaled by numbers that are not squared."""
-    scales = ("scale_TT", "scale_TRT")
-    return _hair_roughness({**inputs, **{name: np.sqrt(np.abs(inputs[name])) for name in scales}})
 
 
 def _unsquared_variance(inputs: Inputs) -> dict[str, Array]:
@@ -163,12 +151,6 @@ def _melanin(inputs: Inputs) -> dict[str, Array]:
     concentration = _share(inputs, "melanin_concentration", 0.0, LARGEST_MELANIN)
     redness = _share(inputs, "melanin_redness")
     return {"absorption": deon_hair_absorption_from_melanin(concentration, redness, *colors)}
-
-
-def _hair_color(inputs: Inputs) -> dict[str, Array]:
-    color = _share(inputs, "color", LEAST_HAIR)
-    roughness = _share(inputs, "azimuthal_roughness")
-    return {"absorption": chiang_hair_absorption_from_color(color, roughness)}
 
 
 def constant(category: str, value: float) -> Variant[Outputs]:
@@ -224,7 +206,14 @@ UTILITIES = (
         _blackbody,
         (
             Variant("luminance 1 before negative channels are clipped", _clipped, permitted=True),
-            Variant("Kang's cubic, extrapolated below 1667 K", _kang),
+            Variant(
+                "Kang's cubic, extrapolated below 1667 K",
+                lambda i: {
+                    "out": np.maximum(
+                        kang_xyz(_share(i, "temperature", *TEMPERATURES)) @ XYZ_TO_REC709.T, 0.0
+                    )
+                },
+            ),
         ),
     ),
     UtilityNode(
@@ -234,7 +223,12 @@ UTILITIES = (
         _hair_roughness,
         (
             constant("chiang_hair_roughness", 0.0),
-            Variant("scales that are not squared", _unsquared_scales),
+            Variant(
+                "scales that are not squared",
+                lambda i: _hair_roughness(
+                    {**i, **{n: np.sqrt(np.abs(i[n])) for n in ("scale_TT", "scale_TRT")}}
+                ),
+            ),
             Variant("a deviation instead of the variance", _unsquared_variance),
         ),
     ),
@@ -260,7 +254,11 @@ UTILITIES = (
         "chiang_hair_absorption_from_color",
         {"color": (1.0, 1.0, 1.0), "azimuthal_roughness": 0.2},
         {"absorption": "vector3"},
-        _hair_color,
+        lambda i: {
+            "absorption": chiang_hair_absorption_from_color(
+                _share(i, "color", LEAST_HAIR), _share(i, "azimuthal_roughness")
+            )
+        },
         (constant("chiang_hair_absorption_from_color", 1.0),),
     ),
 )
