@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 
 from mxeon.models.core.arrays import Array, array_namespace
@@ -25,7 +23,11 @@ def chebyshev_coefficients(values: Array) -> Array:
 
 def chebyshev_polynomials(x: Array, count: int) -> Array:
     """The polynomials T_0 to T_(count - 1) of 2 x - 1, shape (count, ...)."""
-    return array_namespace(x).stack(list(_recurrence(x, count)))
+    y = 2.0 * x - 1.0
+    found = [0.0 * y + 1.0, y]
+    while len(found) < count:
+        found.append(2.0 * y * found[-1] - found[-2])
+    return array_namespace(x).stack(found[:count])
 
 
 def chebyshev_sum(coefficients: Array, x: Array) -> Array:
@@ -44,15 +46,6 @@ def cell_cubics(coefficients: Array, cells: int) -> Array:
     x = np.sort(chebyshev_nodes(4))
     values = chebyshev_sum(coefficients, (np.arange(cells)[:, np.newaxis] + x) / cells)
     return np.asarray(np.linalg.inv(np.vander(x, increasing=True)) @ values.T)
-
-
-def _recurrence(x: Array, count: int) -> Iterator[Array]:
-    """The polynomials of `chebyshev_polynomials`, one after another."""
-    y = 2.0 * x - 1.0
-    this, after = 0.0 * y + 1.0, y
-    for _ in range(count):
-        yield this
-        this, after = after, 2.0 * y * after - this
 
 
 def _angles(count: int) -> Array:

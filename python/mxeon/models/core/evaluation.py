@@ -69,10 +69,12 @@ def evaluate(
     arguments = {"wo": checked_triples("wo", wo), "wi": checked_triples("wi", wi)}
     arguments["rho"] = checked_vector("rho", rho)
     numbers = {name: checked(name, value) for name, value in parameter.items()}
-    refuse_ambiguous("rho", arguments["rho"], lead_shape(arguments, numbers))
-    if array_namespace(*arguments.values(), *numbers.values()) is not NUMPY:
-        return _evaluate_whole(formula, arguments, numbers)
     shape = lead_shape(arguments, numbers)
+    refuse_ambiguous("rho", arguments["rho"], shape)
+    if array_namespace(*arguments.values(), *numbers.values()) is not NUMPY:
+        wo, wi = (checked_directions(name, arguments[name]) for name in ("wo", "wi"))
+        rho = _leading_channels(arguments["rho"], len(shape))
+        return _trailing_channels(formula(wo, wi, rho, *numbers.values()), len(rho), shape)
     arguments |= {name: array[..., np.newaxis] for name, array in numbers.items()}
     arrays = {name: with_axes(array, len(shape) + 1) for name, array in arguments.items()}
     out = np.empty(shape + arrays["rho"].shape[-1:])
@@ -90,16 +92,6 @@ def evaluate(
 
     _for_each(fill, list(blocks(shape)))
     return out
-
-
-def _evaluate_whole(
-    formula: Callable[..., Array], vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]
-) -> Array:
-    """`evaluate` for arrays of another library, all at once."""
-    wo, wi = (checked_directions(name, vectors[name]) for name in ("wo", "wi"))
-    shape, rho = lead_shape(vectors, numbers), vectors["rho"]
-    value = formula(wo, wi, _leading_channels(rho, len(shape)), *numbers.values())
-    return _trailing_channels(value, int(rho.shape[-1]), shape)
 
 
 def _leading_channels(array: Numbers, axes: int) -> Numbers:

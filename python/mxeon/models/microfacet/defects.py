@@ -52,16 +52,6 @@ def averaged_channels(albedo: Array) -> Array:
     return np.broadcast_to(mean, albedo.shape).copy()
 
 
-def _compensated_by(cosine: Callable[[Pair], Array]) -> Callable[[Pair], Array]:
-    """Compensation with F at a cosine instead of its average F_ss."""
-
-    def factor(pair: Pair) -> Array:
-        F = pair.curve.at(cosine(pair), **pair.material)
-        return 1.0 + F * missing(pair.wo[2], pair.roughness)
-
-    return factor
-
-
 def _compensated_bsdl(pair: Pair) -> Array:
     """Compensation of OSL's BSDL: F at the half vector, and E_ss at the arithmetic mean of both alphas."""
     alpha = 0.5 * (pair.roughness[0] + pair.roughness[1])
@@ -81,11 +71,6 @@ def fitted_albedo(mu: Array, alpha: Array, F0: Array | float, F90: Array | float
     return albedo
 
 
-def fitted_half(pair: Pair) -> Array:
-    """Compensation of MaterialX 1.39.5: F at the half vector, and the fit for E_ss."""
-    return 1.0 + pair.curve.at(pair.cosine, **pair.material) * _missing_by_fit(pair)
-
-
 def schlick_average(normal: Array, grazing: Array | float) -> Array:
     """Average of F over the hemisphere, as Schlick's curve of exponent 5 has it between two ends.
 
@@ -95,26 +80,25 @@ def schlick_average(normal: Array, grazing: Array | float) -> Array:
     return average
 
 
+def _half(pair: Pair) -> Array:
+    """F at the half vector."""
+    return pair.curve.at(pair.cosine, **pair.material)
+
+
+def _normal(pair: Pair) -> Array:
+    """F along the normal."""
+    return pair.curve.at(np.ones_like(pair.cosine), **pair.material)
+
+
 def _averaged(pair: Pair) -> Array:
     """Average of F by its ends."""
     ends = (pair.curve.at(np.full_like(pair.cosine, mu), **pair.material) for mu in (1.0, 0.0))
     return schlick_average(*ends)
 
 
-def averaged_exact(pair: Pair) -> Array:
-    """Compensation with the average of F by its ends."""
-    return 1.0 + _averaged(pair) * missing(pair.wo[2], pair.roughness)
-
-
-def averaged_fitted(pair: Pair) -> Array:
-    """Compensation of MaterialX after 1.39.5: the average of F by its ends, and the fit for E_ss."""
-    return 1.0 + _averaged(pair) * _missing_by_fit(pair)
-
-
-def _normal_fitted(pair: Pair) -> Array:
-    """Compensation with F along the normal, and the fit for E_ss."""
-    F = pair.curve.at(np.ones_like(pair.cosine), **pair.material)
-    return 1.0 + F * _missing_by_fit(pair)
+def _missing(pair: Pair) -> Array:
+    """(1 - E_ss) / E_ss."""
+    return missing(pair.wo[2], pair.roughness)
 
 
 def _missing_by_fit(pair: Pair) -> Array:
@@ -122,6 +106,17 @@ def _missing_by_fit(pair: Pair) -> Array:
     alpha = np.maximum(ggx.mean_alpha(pair.roughness), 1e-6)
     E = fitted_albedo(np.clip(pair.wo[2], 1e-6, 1.0), alpha, 1.0, 1.0)
     return (1.0 - E) / E
+
+
+def _compensated(
+    F: Callable[[Pair], Array], lost: Callable[[Pair], Array] = _missing
+) -> Callable[[Pair], Array]:
+    """Compensation with F instead of its average F_ss, and (1 - E_ss) / E_ss."""
+    return lambda pair: 1.0 + F(pair) * lost(pair)
+
+
+fitted_half = _compensated(_half, _missing_by_fit)  # of MaterialX 1.39.5
+averaged_fitted = _compensated(_averaged, _missing_by_fit)  # of MaterialX after 1.39.5
 
 
 def _separable(pair: Pair) -> Array:
@@ -142,22 +137,24 @@ MICROFACET_DEFECTS = (
     MicrofacetDefect(
         "compensation_half",
         "compensation with F at the half vector",
-        Lobe(_compensated_by(lambda pair: pair.cosine)),
+        Lobe(_compensated(_half)),
     ),
     MicrofacetDefect(
         "compensation_f0",
         "compensation with F along the normal",
-        Lobe(_compensated_by(lambda pair: np.ones_like(pair.cosine))),
+        Lobe(_compensated(_normal)),
     ),
     MicrofacetDefect(
         "compensation_f0_fitted",
         "compensation with F along the normal and MaterialX's fit of E_ss",
-        Lobe(_normal_fitted),
+        Lobe(_compensated(_normal, _missing_by_fit)),
     ),
     MicrofacetDefect(
         "compensation_view",
         "compensation with F at the view direction",
-        Lobe(_compensated_by(lambda pair: np.minimum(pair.wo[2], 1.0))),
+        Lobe(
+            _compensated(lambda pair: pair.curve.at(np.minimum(pair.wo[2], 1.0), **pair.material))
+        ),
     ),
     MicrofacetDefect(
         "compensation_fitted",
@@ -167,7 +164,7 @@ MICROFACET_DEFECTS = (
     MicrofacetDefect(
         "compensation_average",
         "compensation with the average F0 + (F90 - F0) / 21",
-        Lobe(averaged_exact),
+        Lobe(_compensated(_averaged)),
     ),
     MicrofacetDefect(
         "compensation_average_fitted",

@@ -159,16 +159,18 @@ def conductor_avg(ior: Array, extinction: Array) -> Array:
     """
     # Take the split rule for all arrays that cannot be written into.
     if array_namespace(ior, extinction) is not NUMPY:
-        return _split_avg_of_arrays(ior, extinction)
+        return _split_avg(ior, extinction)
     ior, extinction = np.broadcast_arrays(ior, extinction)
     n2 = (ior + 1j * extinction) ** 2
     smooth = _is_smooth(n2)
     total = np.empty(smooth.shape)
-    n, k = ior[smooth], extinction[smooth]
-    groups = (slice(start, start + GROUP) for start in range(0, len(n), GROUP))
-    total[smooth] = np.concatenate([np.empty(0), *(_smooth_avg(n[g], k[g]) for g in groups)])
-    rest = np.logical_not(smooth)
-    total[rest] = _split_avg(ior[rest], extinction[rest], n2[rest])
+    for rows, average, size in (
+        (smooth, _smooth_avg, GROUP),
+        (np.logical_not(smooth), _split_avg, GROUP // 128),
+    ):
+        n, k = ior[rows], extinction[rows]
+        groups = (slice(start, start + size) for start in range(0, len(n), size))
+        total[rows] = np.concatenate([np.empty(0), *(average(n[g], k[g]) for g in groups)])
     return np.minimum(total, 1.0)
 
 
@@ -200,24 +202,11 @@ def _smooth_avg(ior: Array, extinction: Array) -> Array:
     return total
 
 
-def _split_avg(ior: Array, extinction: Array, n2: Array) -> Array:
-    """F_ss of materials (N,), by a double-exponential rule on either side of the critical angle.
+def _split_avg(ior: Array, extinction: Array) -> Array:
+    """F_ss by a double-exponential rule on either side of the critical angle, all nodes at once.
 
-    The nodes crowd at the ends of both parts, where the singularities are.
-    """
-    split = np.clip(np.sqrt(1.0 - n2).real, 0.0, 1.0)
-    total = np.zeros(split.shape)
-    terms = ior, extinction, _gap(ior, extinction)
-    for low, length in ((np.zeros(split.shape), split), (split, 1.0 - split)):
-        rows = length > 0.0
-        total[rows] += _part(low[rows], length[rows], *(array[rows] for array in terms))
-    return 2.0 * total
-
-
-def _split_avg_of_arrays(ior: Array, extinction: Array) -> Array:
-    """`_split_avg` for arrays of another library, all nodes at once.
-
-    The critical angle counts as a constant of the integral, which does not depend on where it is split.
+    The nodes crowd at the ends of both parts, where the singularities are. The critical angle counts as a constant
+    of the integral, which does not depend on where it is split.
     """
     # Find the critical angle, the real part of sqrt(1 - n^2).
     xp = array_namespace(ior, extinction)
@@ -235,21 +224,6 @@ def _split_avg_of_arrays(ior: Array, extinction: Array) -> Array:
         mu = at_most(low + length * x, 1.0)
         total = total + length * xp.sum(weight * mu * _conductor(mu, ior, extinction, gap), axis=0)
     return trimmed(2.0 * total, 1.0)
-
-
-def _part(low: Array, length: Array, ior: Array, extinction: Array, gap: Array) -> Array:
-    """Integral of c F over [low, low + length] of the cosine c, of materials (N,)."""
-    total = np.zeros(len(low))
-    t = STEP * np.arange(-STEPS, STEPS + 1)
-    X = np.exp(np.pi * np.sinh(t))
-    rule = X / (1.0 + X), STEP * np.pi * np.cosh(t) * X / (1.0 + X) ** 2
-    count = max(1, GROUP // max(len(low), 1))  # nodes at once
-    for start in range(0, len(t), count):
-        x, weight = (values[start : start + count, np.newaxis] for values in rule)
-        mu = low + length * x
-        part = weight * length * mu * _conductor(mu, ior, extinction, gap)
-        total += np.sum(part, axis=0)
-    return total
 
 
 def schlick_avg(color0: Array, color82: Array, color90: Array, exponent: Array) -> Array:
