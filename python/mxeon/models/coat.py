@@ -26,9 +26,10 @@ not broadcast.
 Where there is one dielectric, its albedo and energy compensation depend on the viewer's cosine alone: one integral at
 some cosines, interpolated.
 
-**A varnish**: EON below a rough dielectric interface, with its exits and internal reflections. The interface
-reflects f_r and passes T = 1 - E_r, which reaches EON along refracted directions w'. Of what EON returns, a share R is
-reflected back to it at each pass. The first pass keeps EON's value f_b; the others keep its mean, as in the sum of [Saunderson1942], here for a base whose albedo depends on direction:
+**A varnish**: EON below a rough dielectric interface, with its exits and internal reflections. The interface reflects
+f_r and passes T = 1 - E_r, which reaches EON along refracted directions w'. Of what EON returns, a share R is
+reflected back to it at each pass. The first pass keeps EON's value f_b; the others keep its mean, as in the sum of
+[Saunderson1942], here for a base whose albedo depends on direction:
 
     f = f_r + T(mu_o) T(mu_i) / n^2 [f_b(wo', wi') + R k(mu_o) k(mu_i) / (pi (1 - R <k>))]       (1)
     w' = (x / n, y / n, mu'),  mu'^2 = mu^2 + (1 - mu^2) (1 - 1 / n^2)
@@ -199,12 +200,6 @@ def checked_scalar(name: str, value: ArrayLike, quantity: str = "") -> Numbers:
     return number
 
 
-@any_array
-def _brought(*arguments: ArrayLike) -> tuple[ArrayLike, ...]:
-    """Arguments in one library."""
-    return arguments
-
-
 def of_one_coat(function: Callable[P, R]) -> Callable[P, R]:
     """Function of arrays of any library, which are brought to one.
 
@@ -218,7 +213,7 @@ def of_one_coat(function: Callable[P, R]) -> Callable[P, R]:
     def wrapper(*args: P.args, **kwargs: P.kwargs) -> R:
         call = parameters.bind(*args, **kwargs).arguments
         plain = {name: call.pop(name) for name in own if not library(call[name])}
-        brought = dict(zip(call, _brought(*call.values()), strict=True))
+        brought = dict(zip(call, any_array(lambda *each: each)(*call.values()), strict=True))
         return cast(Callable[..., R], function)(**brought, **plain)
 
     wrapper.__doc__ = with_arguments(function.__doc__, function.__module__, list(types))
@@ -345,13 +340,11 @@ def openpbr_base_albedo_dir(
     specular_ior: float,
     metalness: ArrayLike,
 ) -> Array:
-    """Directional albedo of `openpbr_base_brdf`.
+    """Directional albedo of `openpbr_base_brdf`, 1 where rho is 1, with an error below 2e-7.
 
         E = (1 - m) E_dielectric_over_eon + m (rho E_ss + (1 - rho) W) (1 + F_ss (1 - E_ss) / E_ss)
 
     W is the facets' mean of (1 - c)^5.
-
-    Result (..., C): 1 where rho is 1. Accuracy: error below 2e-7.
 
         >>> openpbr_base_albedo_dir([0.1, 1.0], [0.7, 1.0], 0.5, 0.5, 1.5, 0.25).round(5)
         array([[0.74305, 1.     ],
@@ -407,7 +400,10 @@ def mixed_sample(
     What is left of u1, which chooses, is stretched over [0, 1).
     """
     xp = array_namespace(share)
-    u1, first, second = _split(u, share)
+    u1, u2 = unpack_uniforms(u)
+    zero = 0.0 * share
+    stretches = stretched(u1, zero, share), stretched(u1, share, zero + 1.0)
+    first, second = (xp.stack([each, u2 + zero * each], axis=-1) for each in stretches)
     reflected = ggx_sample(wo, first, alpha)[0]
     return xp.where((u1 < share)[..., np.newaxis], reflected, base(second))
 
@@ -423,16 +419,6 @@ def mixed_pdf(
     base = base_pdf(upper)
     mixed = share * ggx_pdf(wo, wi, alpha) + xp.where(z < 0.0, 0.0, (1.0 - share) * base)
     return mixed[()]
-
-
-@any_array
-def _split(u: ArrayLike, share: Array) -> tuple[Array, Array, Array]:
-    """The first random number, and the pairs of either lobe, (..., 2): the first one's below the share."""
-    u1, u2 = unpack_uniforms(u)
-    xp, zero = array_namespace(u1, share), 0.0 * share
-    first, second = stretched(u1, zero, share), stretched(u1, share, zero + 1.0)
-    pairs = [xp.stack([each, u2 + 0.0 * each], axis=-1) for each in (first, second)]
-    return u1, pairs[0], pairs[1]
 
 
 @any_array

@@ -498,13 +498,12 @@ def fon_albedo_avg(roughness: ArrayLike) -> Array:
 
 @any_array
 def eon_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-    """Directional albedo of EON.
+    """Directional albedo of EON; exactly 1 where rho is 1.
 
         E(mu) = rho (1 - (1 - rho) roughness H(mu) / D),
         D = 1 + c1 roughness - rho roughness (c1 - c2)
 
-    Result (..., C): in [0, rho]; exactly 1 where rho is 1. Accuracy: relative error below 1e-15.
-    The form is Eq. (28) with 1 - E_FON = roughness A H. [Portsmouth2025], Eq. (28).
+    Accuracy: relative error below 1e-15. [Portsmouth2025], Eq. (28) with 1 - E_FON = roughness A H.
 
         >>> eon_albedo_dir([0.0, 1.0], [0.5, 1.0], 1.0).round(6)
         array([[0.5     , 1.      ],
@@ -538,7 +537,7 @@ def eon_albedo_avg(rho: ArrayLike, roughness: ArrayLike) -> Array:
         <E> = rho (1 + c2 roughness) / D = rho <E_FON> / (1 - rho (1 - <E_FON>)),
         D = 1 + c1 roughness - rho roughness (c1 - c2)
 
-    Result (..., C): in [0, rho]. [Portsmouth2025], Eqs. (15), (28), averaged; inverse of Eq. (33).
+    [Portsmouth2025], Eqs. (15), (28), averaged; inverse of Eq. (33).
 
         >>> eon_albedo_avg([0.5, 1.0], 1.0).round(6)
         array([0.45439, 1.     ])

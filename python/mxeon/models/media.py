@@ -90,13 +90,12 @@ def uniform_exitance(radiance: ArrayLike) -> Array:
 def conical_edf(
     wo: ArrayLike, radiance: ArrayLike, inner_angle: ArrayLike, outer_angle: ArrayLike
 ) -> Array:
-    """Radiance of a surface that emits inside a cone around its normal.
+    """Radiance of a surface that emits inside a cone around its normal; below the horizon the cosine counts as 0.
 
         L_e = c smoothstep(c_out, c_in, cos)    if outer_angle > inner_angle
         L_e = c if cos >= c_in, else 0          otherwise
 
-    Result (..., C): in the unit of `radiance`. Below the horizon the cosine counts as 0, as the
-    text has it. [MaterialX2026], section `conical_edf`, Conical Falloff Equations.
+    [MaterialX2026], section `conical_edf`, Conical Falloff Equations.
 
         >>> conical_edf([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8]], [2.0], 60.0, 90.0).round(6)
         array([[2.      ],
@@ -153,15 +152,12 @@ def conical_exitance(radiance: ArrayLike, inner_angle: ArrayLike, outer_angle: A
 def generalized_schlick_edf(
     wo: ArrayLike, base: ArrayLike, color0: ArrayLike, color90: ArrayLike, exponent: ArrayLike
 ) -> Array:
-    """Radiance of another emission, scaled by a Schlick curve.
+    """Radiance of another emission `base`, (..., C) in [0, 1e50], scaled by a Schlick curve.
 
         L_e = (r_0 + (r_90 - r_0) (1 - cos)^q) L_base
 
-    - `base` (..., C): Radiance of the scaled emission towards `wo`, per channel, in [0, 1e50].
-
-    Result (..., C): in the unit of `base`. The back is seen at |cos|: with a negative cosine the
-    curve of the text would leave the range between both factors. [MaterialX2026], section
-    `generalized_schlick_edf`, Generalized Schlick Emission Equations.
+    The back is seen at |cos|: with a negative cosine the curve of the text would leave the range between both
+    factors. [MaterialX2026], section `generalized_schlick_edf`, Generalized Schlick Emission Equations.
 
         >>> generalized_schlick_edf([0.6, 0.0, 0.8], [2.0], [1.0], [0.0], 1.0).round(6)
         array([1.6])
@@ -233,14 +229,12 @@ def extinction(absorption: ArrayLike, scattering: ArrayLike) -> Array:
 
 @any_array
 def transmittance(absorption: ArrayLike, scattering: ArrayLike, distance: ArrayLike) -> Array:
-    """Share of the radiance that passes a homogeneous medium, T = exp(-sigma_t t).
+    """Share T = exp(-sigma_t t) of the radiance that passes a homogeneous medium, without what is scattered in.
 
-    - `absorption`, `scattering`: Coefficients in 1/m, in [0, 1e50]. `absorption_vdf` has a
-      scattering of 0.
     - `distance`: t in m, in [0, 1e50].
 
-    Result: in [0, 1]. Light that is scattered into the ray is left out. [MaterialX2026], sections
-    `absorption_vdf`, Beer-Lambert Absorption, and `anisotropic_vdf`, Extinction.
+    `absorption_vdf` has a scattering of 0. [MaterialX2026], sections `absorption_vdf`, Beer-Lambert Absorption, and
+    `anisotropic_vdf`, Extinction.
 
         >>> round(float(transmittance(0.5, 0.5, 2.0)), 6)
         0.135335
@@ -449,15 +443,14 @@ FAR = 3.0  # length of the profile's second exponential over that of the first
 
 @any_array
 def subsurface_albedo(rho: ArrayLike, scatter_anisotropy: ArrayLike = 0.0) -> Array:
-    """Single-scattering albedo of a medium that has a diffuse reflectance.
+    """Single-scattering albedo in (0, 1] of a medium that has a diffuse reflectance.
 
         d = 4.09712 + 4.20863 rho - sqrt(9.59217 + 41.6808 rho + 17.7126 rho^2)
         w0 = 1 - d^2,  w = w0 / (1 - g (1 - w0))
 
-    Result: in (0, 1]. It rises with rho but for the last 1.2e-5 of its range. The printed digits
-    leave d = -5e-6 at rho = 1, and 0 at rho = 1 - 1.2e-5; w is 1 - 3e-11 at 1. At rho = 0 they
-    leave w0 = 6e-6 instead of 0. Accuracy: a half space of this albedo reflects rho within 0.0021
-    for g = 0, by its H function. [MaterialX2026], Subsurface Scattering Model, Albedo Inversion.
+    It rises with rho but for the last 1.2e-5 of its range: the printed digits leave d = -5e-6 at rho = 1, and w0 = 6e-6
+    at rho = 0. Accuracy: a half space of this albedo reflects rho within 0.0021 for g = 0, by its H function.
+    [MaterialX2026], Subsurface Scattering Model, Albedo Inversion.
 
         >>> subsurface_albedo([0.2, 0.5, 0.8]).round(6)
         array([0.613357, 0.911709, 0.990589])
@@ -597,7 +590,13 @@ def _exponential(mu: Array, reach: Array) -> tuple[Array, Array]:
     xp, (u, weights) = array_namespace(mu, reach), (like(each, reach) for each in _rule())
     share = -xp.expm1(-2.0 / reach)
     distance = xp.minimum(-reach * xp.log1p(-u * share), 2.0)
-    return xp.sum(weights * _circle(mu[..., np.newaxis], distance), axis=-1), share[..., 0]
+    # The mean of max(cos(theta), 0) over the circle at this distance from a point of the unit sphere.
+    mu, squared = mu[..., np.newaxis], distance * distance
+    along = mu * (1.0 - 0.5 * squared)
+    across = root(at_least_0((1.0 - mu * mu) * squared * (1.0 - 0.25 * squared)))
+    lit = arccosine(-along / xp.maximum(across, 1e-300))
+    circle = (along * lit + root(at_least_0(across**2 - along**2))) / np.pi
+    return xp.sum(weights * circle, axis=-1), share[..., 0]
 
 
 @cache
@@ -606,15 +605,6 @@ def _rule() -> tuple[Array, Array]:
     x, w = unit_rule(NODES)
     u = (np.arange(PANELS)[:, np.newaxis] + x).ravel() / PANELS
     return u, np.tile(w / PANELS, PANELS)
-
-
-def _circle(mu: Array, distance: Array) -> Array:
-    """Mean of max(cos(theta), 0) over the circle at a distance from a point of the unit sphere."""
-    squared = distance * distance
-    along = mu * (1.0 - 0.5 * squared)
-    across = root(at_least_0((1.0 - mu * mu) * squared * (1.0 - 0.25 * squared)))
-    lit = arccosine(-along / array_namespace(across).maximum(across, 1e-300))
-    return (along * lit + root(at_least_0(across**2 - along**2))) / np.pi
 
 
 # Constants of radiation of the SI of 2019, which are exact: c1 = 2 h c^2 and c2 = h c / k_B.

@@ -82,15 +82,13 @@ def conty_kulla_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: 
 
 @any_array
 def zeltner_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: ArrayLike) -> Array:
-    """BRDF of the sheen of Zeltner, Burley and Chiang. It is not reciprocal.
+    """BRDF of the sheen of Zeltner, Burley and Chiang, not reciprocal, with the sign of `zeltner_albedo_dir`.
 
         f = color E(mu_o) a^2 / (pi |M^-1 wi|^4),  M^-1 = (a 0 b; 0 a 0; 0 0 1)
 
-    Result (..., C): BRDF in 1/sr. It has the sign of E, see `zeltner_albedo_dir`. The text states f
-    times the cosine; the cosine is that of D_o times |M^-1 wi|, and cancels. The frame of M is
-    turned so that wo has azimuth 0. Along the normal b is 0 and any frame serves. Accuracy: as that
-    of `conty_kulla_brdf`. [MaterialX2026], Zeltner Sheen Model; [Zeltner2022], whose omega_i is wo
-    here.
+    The text states f times the cosine, which is that of D_o times |M^-1 wi|, and cancels. The frame of M is turned so
+    that wo has azimuth 0. Along the normal b is 0 and any frame serves. Accuracy: as that of `conty_kulla_brdf`.
+    [MaterialX2026], Zeltner Sheen Model; [Zeltner2022], whose omega_i is wo here.
 
         >>> zeltner_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.002916, 0.011662])

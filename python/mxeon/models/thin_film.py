@@ -420,8 +420,7 @@ def _to_rgb(xyz: Array, form: Form) -> Array:
     if form.mixed:
         diagonal = xp.stack([xyz[k, k, ...] for k in range(3)])
         return xp.tensordot(like(matrix, xyz), diagonal, axes=1)
-    weights = like(matrix.T.reshape(3, 3, *(1,) * (xyz.ndim - 2)), xyz)
-    return xp.sum(weights * xyz, axis=0)
+    return xp.sum(like(matrix.T.reshape(3, 3, *(1,) * (xyz.ndim - 2)), xyz) * xyz, axis=0)
 
 
 def _schlick(
@@ -567,11 +566,9 @@ def film_brdf(
     form: Form = TEXT,
     lobe: Lobe | None = None,
 ) -> Array:
-    """BRDF of a microfacet node under a thin film, scatter mode R.
+    """BRDF of a microfacet node under a thin film, scatter mode R, in 1/sr; `lobe` has other terms than the text's.
 
-    - `lobe`: Other terms than the specification's.
-
-    Result (..., 3): BRDF in 1/sr. [MaterialX2026], Thin-Film Iridescence; Energy Compensation.
+    [MaterialX2026], Thin-Film Iridescence; Energy Compensation.
 
         >>> inputs = {"tint": np.ones(3), "ior": 1.5, "roughness": [0.3, 0.3]}
         >>> soap = {"thinfilm_thickness": 400.0, "thinfilm_ior": 1.33}
@@ -592,13 +589,10 @@ def film_albedo_dir(
     form: Form = TEXT,
     compensate: bool = True,
 ) -> Array:
-    """Directional albedo of `film_brdf`, by quadrature.
+    """Directional albedo of `film_brdf`, by quadrature, with or without the energy compensation.
 
-    - `compensate`: Whether the energy compensation enters.
-
-    Result (..., 3). The film's curve is a polynomial of degree 48 in the cosine, within 1e-4 of the
-    curve for films up to 2000 nm of index up to 2. [MaterialX2026], Directional Albedo and Energy
-    Conservation.
+    The film's curve is a polynomial of degree 48 in the cosine, within 1e-4 of the curve for films up to 2000 nm of
+    index up to 2. [MaterialX2026], Directional Albedo and Energy Conservation.
 
         >>> inputs = {"tint": np.ones(3), "ior": 1.5, "roughness": [0.3, 0.3]}
         >>> soap = {"thinfilm_thickness": 400.0, "thinfilm_ior": 1.33}

@@ -273,7 +273,10 @@ def evaluate_transmittance(
         spread = {k: v[new] if k in vectors else v for k, v in material.items()}
         passed = (1.0 - at(cosine, **spread)) * weight
         if shadow:
-            passed = passed * _shadow(wo, mu_i, roughness)
+            # G2 / G1(wo), whose limits at grazing are finite; 1 at alpha 0.
+            visibility = ggx.visibility(wo[2], within(mu_i), ggx.mean_alpha(roughness))
+            length = ggx.stretched_length(wo, roughness)
+            passed = passed * (2.0 * mu_i * visibility * (wo[2] + length))
         T: Array = array_namespace(passed).sum(passed, axis=tuple(range(1, 1 + axes)))
         return T
 
@@ -289,14 +292,6 @@ def evaluate_transmittance(
 
     arguments = {**directions, **pairs, **vectors}
     return evaluate_material(value, arguments, numbers, channel_count(vectors), BLOCK)
-
-
-def _shadow(wo: Array, mu_i: Array, roughness: Array) -> Array:
-    """G2 / G1(wo), whose limits at grazing are finite; 1 at alpha 0."""
-    length = ggx.stretched_length(wo, roughness)
-    visibility = ggx.visibility(wo[2], within(mu_i), ggx.mean_alpha(roughness))
-    share: Array = 2.0 * mu_i * visibility * (wo[2] + length)
-    return share
 
 
 def _visible(wo: Array, roughness: Array, ior: Array) -> Nodes:

@@ -218,11 +218,9 @@ def dielectric_brdf(
 
         f = tint D F G2 / (4 mu_o mu_i) (1 + F_ss (1 - E_ss) / E_ss)
 
-    `ior` 0 disables the Fresnel curve, F = 1, which is what the equations give in its limit. Below
-    1 light comes from the denser side and F is 1 beyond the critical angle. Of negative numbers the
-    specification says nothing, stock MaterialX squares them; here they are refused. Accuracy:
-    relative error of the compensation's factor below 1e-10, of the rest 2e-14 at alpha >= 0.05.
-    [MaterialX2026], Microfacet BRDF; Energy Compensation; dielectric_bsdf.
+    Below index 1 light comes from the denser side and F is 1 beyond the critical angle; negative numbers, which stock
+    MaterialX squares, are refused. Accuracy: relative error of the compensation's factor below 1e-10, of the rest 2e-14
+    at alpha >= 0.05. [MaterialX2026], Microfacet BRDF; Energy Compensation; dielectric_bsdf.
 
         >>> dielectric_brdf([0.6, 0.0, 0.8], [-0.6, 0.0, 0.8], 1.0, [0.3, 0.3], 1.5).round(6)
         array([0.060074])
@@ -356,13 +354,11 @@ def generalized_schlick_albedo_dir(
 def ggx_albedo_dir_anisotropic(wo: ArrayLike, roughness: ArrayLike) -> Array:
     """Directional albedo of anisotropic GGX at unit Fresnel reflectance, by quadrature.
 
-    Result (...): above 0; exceeds 1 where alpha_x and alpha_y differ. The masking of the
-    specification takes sqrt(alpha_x alpha_y), which does not belong to the anisotropic
-    distribution: the albedo at grazing falls far below 1 along the smoother direction and exceeds 1
-    along the rougher one, 30 at mu_o = 0.001 for roughness (0.001, 1). The energy compensation of
-    the BRDFs takes `ggx_albedo_dir` at sqrt(alpha_x alpha_y). Accuracy: error below 5e-6 of the
-    larger of 1 and the albedo for mu_o >= 1e-4 and roughness >= 1e-4. Cosines below 1e-12 count as
-    1e-12. [MaterialX2026], Energy Compensation; Height-Correlated Smith Masking-Shadowing.
+    It exceeds 1 where alpha_x and alpha_y differ: the specification's masking at sqrt(alpha_x alpha_y) does not belong
+    to the anisotropic distribution. At grazing it falls far below 1 along the smoother direction and exceeds 1 along the
+    rougher one, 30 at mu_o = 0.001 for roughness (0.001, 1). Accuracy: error below 5e-6 of the larger of 1 and the
+    albedo for mu_o >= 1e-4 and roughness >= 1e-4. Cosines below 1e-12 count as 1e-12. [MaterialX2026], Energy
+    Compensation; Height-Correlated Smith Masking-Shadowing.
 
         >>> ggx_albedo_dir_anisotropic([[0.6, 0.0, 0.8], [0.0, 0.6, 0.8]], [0.1, 0.5]).round(6)
         array([0.837774, 0.874089])

@@ -8,6 +8,7 @@ F_ss, the cosine-weighted average over the hemisphere, is 2 times the integral o
 - `ior`, `extinction` (..., C): Complex index of refraction per channel, in [0, 1e50]; a number is one channel.
 - `color0`, `color82`, `color90` (..., C): Reflectance r0 along the normal, multiplier at acos(1/7), and reflectance r90
   at grazing, per channel, in [0, 1]; a number is one channel.
+- `exponent` (...): q, in [0, 1e50].
 
 Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
 not broadcast.
@@ -293,14 +294,11 @@ def fresnel_dielectric(mu: ArrayLike, ior: ArrayLike) -> Array:
 
 @any_array
 def fresnel_dielectric_avg(ior: ArrayLike) -> Array:
-    """Average Fresnel reflectance F_ss of a dielectric, in closed form.
+    """Average Fresnel reflectance F_ss of a dielectric, in closed form; `ior` as for `fresnel_dielectric`.
 
-    - `ior` (...): Index of refraction relative to the exterior medium, in [0, 1e50].
-
-    Result (...): in [0, 1]. Accuracy: relative error below 2.2e-14. Form: Walsh's result in
-    log(ior), with every cancellation near 1 taken out; below 1 from the other side of the
-    interface, ior^2 (1 - F_ss(1 / ior)) = 1 - F_ss(ior). [Walsh1926]; [MaterialX2026], Energy
-    Compensation.
+    Accuracy: relative error below 2.2e-14. Form: Walsh's result in log(ior), with every cancellation near 1 taken out;
+    below 1 from the other side of the interface, ior^2 (1 - F_ss(1 / ior)) = 1 - F_ss(ior). [Walsh1926];
+    [MaterialX2026], Energy Compensation.
 
         >>> fresnel_dielectric_avg([0.0, 1.0, 1.5]).round(6)
         array([1.      , 0.      , 0.091778])
@@ -345,16 +343,13 @@ def fresnel_schlick(
     color90: ArrayLike,
     exponent: ArrayLike,
 ) -> Array:
-    """Fresnel reflectance by the generalized Schlick curve with Hoffman's dip.
+    """Fresnel reflectance by the generalized Schlick curve with Hoffman's dip; at most 1.
 
         F = r0 + (r90 - r0) (1 - mu)^q - a mu (1 - mu)^6
 
-    - `exponent` (...): q, in [0, 1e50]; at 0 the curve is r90, along the normal too.
-
-    Result (..., C): at most 1; below 0 for some colors. The specification does not clamp F, and
-    neither does this function: where `color0` is dark, `color82` small and `color90` bright, it
-    falls below 0, to -0.127 at mu = 0.26 for 0, 0 and 1 with exponent 5. It never exceeds 1.
-    [MaterialX2026], Generalized Schlick Equations.
+    The specification does not clamp F, and neither does this function: where `color0` is dark, `color82` small and
+    `color90` bright, it falls below 0, to -0.127 at mu = 0.26 for 0, 0 and 1 with exponent 5. At exponent 0 the curve
+    is r90, along the normal too. [MaterialX2026], Generalized Schlick Equations.
 
         >>> fresnel_schlick(0.5, [0.9, 0.2], [0.5, 1.0], 1.0, 5.0).round(6)
         array([0.837879, 0.225   ])
@@ -368,14 +363,11 @@ def fresnel_schlick(
 def fresnel_schlick_avg(
     color0: ArrayLike, color82: ArrayLike, color90: ArrayLike, exponent: ArrayLike
 ) -> Array:
-    """Average Fresnel reflectance F_ss of the generalized Schlick curve, in closed form.
+    """Average Fresnel reflectance F_ss of the generalized Schlick curve, not clamped, in closed form.
 
         F_ss = r0 + 2 (r90 - r0) / ((q + 1) (q + 2)) - a / 126
 
-    - `exponent` (...): q, in [0, 1e50].
-
-    Result (..., C): of the curve as it is, not clamped. Accuracy: absolute error below 2.2e-14.
-    [MaterialX2026], Energy Compensation; Generalized Schlick Equations.
+    Accuracy: absolute error below 2.2e-14. [MaterialX2026], Energy Compensation; Generalized Schlick Equations.
 
         >>> fresnel_schlick_avg([0.9, 0.2], [0.5, 1.0], 1.0, 5.0).round(6)
         array([0.838481, 0.238095])
