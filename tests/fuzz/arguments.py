@@ -61,7 +61,10 @@ CHECKS = ("_", "checked", "unpack")  # of functions that check arguments for oth
 PLUMBING = (
     "mxeon.models.core.arguments",
     "mxeon.models.catalog",
-    *(f"mxeon.models.coat.{name}" for name in ("coat_of", "checked_", "mixed_", "unpack_", "varnish_of")),
+    *(
+        f"mxeon.models.coat.{name}"
+        for name in ("coat_of", "checked_", "mixed_", "unpack_", "varnish_of")
+    ),
     "mxeon.models.core.evaluation",
     "mxeon.models.lobe_plot",
     "mxeon.models.microfacet.node_",
