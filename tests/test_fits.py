@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 from mxeon.conformance.specs import microfacets
+from mxeon.models import thin_film as film_model
+from mxeon.models.core.colorimetry import XYZ_TO_REC709_E
 from mxeon.models.microfacet.ggx import ggx_albedo_dir
 from mxeon.models.sheen import conty_kulla_albedo_dir
 from mxeon.shaders import functions as twins
@@ -178,7 +180,7 @@ def test_the_shader_has_the_nodes_of_a_film():
     def rows(pattern):
         found = re.findall(rf"#define \w+_FILM_{pattern} (.*)", text)
         return [
-            list(map(float, re.findall(r"-?\d[\d.e-]*", each.removeprefix("vec3"))))
+            list(map(float, re.findall(r"-?\d[\d.e-]*", re.sub(r"^vec\d", "", each))))
             for each in found
         ]
 
@@ -186,3 +188,5 @@ def test_the_shader_has_the_nodes_of_a_film():
     np.testing.assert_array_equal(np.transpose(rows(r"FACETS_\d\d")), thin_film.FACETS)
     orders = [thin_film.VALUE_ORDER, thin_film.WIDTH_ORDER, thin_film.ORDER_RATIO]
     assert [each for [each] in rows(r"ORDER_\w+")] == orders
+    assert np.transpose(rows(r"COLOR_\w")) == pytest.approx(XYZ_TO_REC709_E)
+    assert rows("HEIGHTS") == [pytest.approx(film_model.AREAS, rel=1e-7)]

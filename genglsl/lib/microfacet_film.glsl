@@ -30,14 +30,6 @@
 // Outer node of Gauss's rule of three for a semicircle over [-1, 1], in which x has the weight (1 - x^2) / 2.
 #define MICROFACET_FILM_OUTER 0.70710678
 
-// A node: its cosine, its width, and its weights in MicrofacetFresnel's value, average and visible.
-struct MicrofacetFilmNode
-{
-    float mu;
-    float width;
-    vec3 weights;
-};
-
 // Mean of the cosines of wo with the visible facets, reach of the nodes around it, and their bend.
 vec3 microfacet_film_facets(float mu, float alpha)
 {
@@ -51,24 +43,18 @@ vec3 microfacet_film_facets(float mu, float alpha)
     return vec3(mu + s * s * C.x, s * C.y, C.z);
 }
 
-// Node i: 0 is the half vector, 1 to 3 are of F_ss, 4 to 6 of the visible facets.
-MicrofacetFilmNode microfacet_film_node(int i, MicrofacetLobe lobe, vec3 facets)
+// Cosine and width of node i, and its weights in the averages: 0 to 2 are of the visible facets, 3 to 5 of F_ss,
+// 6 is the half vector.
+vec4 microfacet_film_node(int i, float mu_h, vec3 facets)
 {
-    vec3 average = i < 2 ? MICROFACET_FILM_AVERAGE_1 : MICROFACET_FILM_AVERAGE_2;
-    average = i == 3 ? MICROFACET_FILM_AVERAGE_3 : average;
-    float x = MICROFACET_FILM_OUTER * float(i - 5);
+    float x = MICROFACET_FILM_OUTER * float(i - 1);
     float mu = facets.x + facets.y * (x + facets.z * (4.0 * x * x - 1.0));  // a bend keeps the mean
+    vec3 average = i < 4 ? MICROFACET_FILM_AVERAGE_1 : MICROFACET_FILM_AVERAGE_2;
+    average = i == 5 ? MICROFACET_FILM_AVERAGE_3 : average;
 
-    MicrofacetFilmNode node = MicrofacetFilmNode(lobe.mu_h, 0.0, vec3(1.0, 0.0, 0.0));
-    if (i > 3)
-    {
-        node = MicrofacetFilmNode(clamp(mu, 0.0, 1.0), facets.y / 3.0, vec3(0.0, 0.0, 0.5 - 0.5 * x * x));
-    }
-    else if (i > 0)
-    {
-        node = MicrofacetFilmNode(average.x, average.z, vec3(0.0, average.y, 0.0));
-    }
-    return node;
+    vec4 node = vec4(clamp(mu, 0.0, 1.0), facets.y / 3.0, 0.5 - 0.5 * x * x, 0.0);
+    node = i > 2 ? vec4(average.x, average.z, 0.0, average.y) : node;
+    return i > 5 ? vec4(mu_h, 0.0, 0.0, 0.0) : node;
 }
 
 // Reflectances under a film instead of those without one. What no closure asks for is not averaged: the value in
@@ -79,16 +65,15 @@ void microfacet_film(MicrofacetLobe lobe, FresnelData fd, inout MicrofacetFresne
     {
         vec3 facets = microfacet_film_facets(lobe.mu_o, lobe.alpha);
         bool is_lit = lobe.closure == CLOSURE_TYPE_REFLECTION;
-        int i = is_lit ? 0 : 1;
-        int end = is_lit && fd.model == FRESNEL_MODEL_CONDUCTOR ? 4 : 7;
+        int i = is_lit && fd.model == FRESNEL_MODEL_CONDUCTOR ? 3 : 0;
+        int end = is_lit ? 7 : 6;
         F = MicrofacetFresnel(vec3(0.0), vec3(0.0), vec3(0.0));
         do
         {
-            MicrofacetFilmNode node = microfacet_film_node(i, lobe, facets);
-            vec3 reflected = thin_film_fresnel(node.mu, node.width, fd);
-            F.value += node.weights.x * reflected;
-            F.average += node.weights.y * reflected;
-            F.visible += node.weights.z * reflected;
+            vec4 node = microfacet_film_node(i, lobe.mu_h, facets);
+            F.value = thin_film_fresnel(node.x, node.y, fd);  // the last node's is the half vector's
+            F.visible += node.z * F.value;
+            F.average += node.w * F.value;
             i++;
         } while (i < end);
     }

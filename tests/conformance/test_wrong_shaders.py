@@ -180,12 +180,12 @@ WRONG = {
          "the environment is looked up on the other side of the surface"),
     ),
     "conductor_bsdf, thin film": (
-        (FILMED, "F.average += node.weights.y * reflected;", "F.average = thin_film_fresnel(2.0 / 3.0, 0.0, fd);",
+        (FILMED, "F.average += node.w * F.value;", "F.average = thin_film_fresnel(2.0 / 3.0, 0.0, fd);",
          "film_average", "F at the cosine 2/3"),
-        (FILM, "r21 * r23.im)", "-r21 * r23.im)", "film", ""),
+        (FILM, "r21_s * r23_s.im)", "-r21_s * r23_s.im)", "film", ""),
         (FILM, "4.3278e9, 4.5282e9", "4.3728e9, 4.5282e9", "film_curve", ""),
         (FILM, "THIN_FILM_ORDER_RATIO 0.6", "THIN_FILM_ORDER_RATIO 0.006", "film_orders", ""),
-        (FILM, "return clamp(0.5 * mean +", "return 1.1 + clamp(0.5 * mean +", "film_energy", ""),
+        (FILM, "return clamp(mean +", "return 1.1 + clamp(mean +", "film_energy", ""),
         (FILMED, "F.visible += node", "F.visible += 0.5 * node", "film_environment", ""),
         (FILMED, "0.43884,", "0.33884,", "film_smooth", ""),
         (FILMED, "void microfacet_film(MicrofacetLobe lobe, FresnelData fd, inout MicrofacetFresnel F)\n{",
@@ -195,8 +195,8 @@ WRONG = {
     "dielectric_bsdf, thin film": (
         (FILM, "M_PI * fd.tf_thickness", "M_PI * min(fd.tf_thickness, 2000.0)", "domain",
          "the value is wrong with thinfilm_thickness 2500, 3000, 6000, 100000"),
-        (FILM, "vec3 sum = vec3(0.0)", "vec3 sum = vec3(0.01)", "film_limit", ""),
-        (FILM, "return clamp(0.5 * mean +", "return mean / step(1.0, fd.tf_ior) + clamp(0.5 * mean +", "film_finite", ""),
+        (FILM, "max(fd.tf_ior, 1.0)", "max(fd.tf_ior, 0.995)", "film_limit", ""),
+        (FILM, "return clamp(mean +", "return mean / step(1.0, fd.tf_ior) + clamp(mean +", "film_finite", ""),
     ),
     "uniform_edf": (
         ("mx_uniform_edf.glsl", "result = color;", "result = color * 0.31830989;", "radiance",

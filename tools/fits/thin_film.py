@@ -40,10 +40,10 @@ FACETS = (
     (0.21155, 3.7698, -4.8277, 0.78139, 3.7484, -7.6828, 3.4317, -2.6436, 3.5978, -0.3586),
     (0.39911, -1.0011, 1.2036, -0.88274, 0.42655, -0.10374, -0.6846, -1.2458, 1.73, -0.12605),
 )  # fmt: skip
-# Orders are summed while the square of one exceeds a limit, of a value this times the square of both
-# polarizations' mean reflectances in all channels, of a node of a rule this times the square of its width if
-# that is more; each counts as smaller than the one before it by a factor at least.
-VALUE_ORDER, WIDTH_ORDER, ORDER_RATIO = 2e-14, 1e-3, 0.6
+# Orders are summed while the square of one exceeds a limit, of a value this times the squares of the mean
+# reflectances of all channels, of a node of a rule this times the square of its width if that is more; each
+# counts as smaller than the one before it by a factor at least.
+VALUE_ORDER, WIDTH_ORDER, ORDER_RATIO = 8e-14, 1e-3, 0.6
 NARROWEST = min(film.GAUSSIANS, key=lambda gaussian: gaussian[3])  # of the sensitivities
 LEAST_PATH, LEAST_LOST = 1e-21, 1e-12  # of a path difference in m, and of light that is not trapped
 
@@ -63,7 +63,7 @@ def shader_curve(category, material, mu, width=0.0):
     weights = [(1.0 - R) * (1.0 - S) / each for (R, S), each in zip(pairs, lost, strict=True)]
     sizes = [np.sqrt(R * S) for R, S in pairs]
     # As many orders as count of both polarizations and all channels.
-    bright = 3.0 * (sum(means) ** 2).mean(axis=0)
+    bright = 3.0 * ((0.5 * sum(means)) ** 2).mean(axis=0)
     least = np.maximum(VALUE_ORDER * bright, WIDTH_ORDER * np.square(width))
     count = order_count(np.stack(weights), np.stack(sizes), opd, spread, least)
     xyz = sum(
@@ -101,9 +101,13 @@ def decay(mu, var, opd, spread):
 
 
 def order_count(weights, sizes, opd, spread, least):
-    """Orders that the shader sums, at least one, of weights and amplitudes of polarizations and channels."""
+    """Orders that the shader sums, at least one, of weights and amplitudes of polarizations and channels.
+
+    Light polarized along s is reflected more at both interfaces, that along p is let through more.
+    """
     k2 = np.exp(-2.0 * decay(*NARROWEST[2:], opd, spread))
-    largest, first = ((each**2).max(axis=(0, 1)) for each in (sizes, weights * sizes))
+    along_p, along_s = weights[0], sizes[1]
+    largest, first = ((each**2).max(axis=0) for each in (along_s, along_p * along_s))
     ratio, order = np.minimum(largest * k2**3, ORDER_RATIO), first * k2
     count = np.ones_like(order)
     while np.any(order * ratio > least):
