@@ -231,6 +231,8 @@ WRONG = {
          "refraction", ""),
     ),
     "dielectric_bsdf, scatter_mode RT": (
+        (FACETS, "CLOSURE_TYPE_TRANSMISSION && scatter_mode != 0", "CLOSURE_TYPE_TRANSMISSION", "kept",
+         "mode R transmits light"),
         ("mx_dielectric_bsdf.glsl", "mx_surface_transmission(N, V, X, safeAlpha, distribution, fd, safeTint)",
          "mx_surface_transmission(N, V, X, safeAlpha, distribution, fd, vec3(1.0))", "transmitted_inputs", ""),
     ),

@@ -302,20 +302,38 @@ def clear(case: Case) -> Iterator[Compared]:
         yield Compared(white, case.albedo(white) + case.transmitted(white), ONE)
 
 
-@check(is_transmitting, offset, diagnose=unknown)
+@check(is_transmitting, offset, diagnose=lambda case: diagnose_kept(case))
 def kept(case: Case) -> Iterator[Compared]:
     """Modes R and RT reflect, and pass to their base, the same light; mode T reflects nothing; mode R transmits nothing."""
+    return (compared for _, compared in _modes(case))
+
+
+def _modes(case: Case) -> Iterator[tuple[str, Compared]]:
+    """Values of a mode against those of mode R, or none, and of mode R against none, with words for an error."""
     spec = case.of(TransmissionSpec)
     only = case.another(spec.reflection) if spec.reflects else None
-    none = 0.0 * ONE
+    none, words = 0.0 * ONE, "reflects {}, unlike mode R" if only else "reflects {}"
     for batch in case.views:
-        yield Compared(batch, case.direct(batch), only.direct(batch) if only else none)
-        yield Compared(batch, case.albedo(batch), only.albedo(batch) if only else none)
+        reflected = only.direct(batch) if only else none
+        yield words.format("a light"), Compared(batch, case.direct(batch), reflected)
+        reflected = only.albedo(batch) if only else none
+        yield words.format("an environment"), Compared(batch, case.albedo(batch), reflected)
         for branch in SCATTERING if only else SCATTERING[:2]:
             expected = only.throughput(batch, branch) if only else ONE
-            yield Compared(batch, case.throughput(batch, branch), expected)
+            compared = Compared(batch, case.throughput(batch, branch), expected)
+            yield f"passes other light to its base (branch {branch})", compared
         if only:
-            yield Compared(batch, only.transmitted(batch), none)
+            yield "mode R transmits light", Compared(batch, only.transmitted(batch), none)
+
+
+def diagnose_kept(case: Case) -> Diagnosis:
+    tolerance = case.tolerance("kept")
+    wrong = (
+        words
+        for words, (_, *values) in _modes(case)
+        if tolerance.metric(*values).max() > tolerance.value
+    )
+    return Diagnosis("; ".join(dict.fromkeys(wrong)))
 
 
 DENSER = with_inputs("the index is different", ior=2.5, color0=(0.5, 0.5, 0.5))
