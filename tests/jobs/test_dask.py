@@ -176,18 +176,3 @@ def test_a_farm_finds_what_one_machine_finds(pair, tmp_path, monkeypatch):
     keep_checks(monkeypatch, "value", "reciprocity", "curve", "picture")
     found = check([EXAMPLE], scheduler=pair, folder=tmp_path)
     assert found.results == check([EXAMPLE]).results and not found.missing
-
-
-@pytest.mark.whole
-def test_an_item_that_hangs_ends_its_workers_and_is_given_up():
-    import dask
-
-    with dask.config.set({"distributed.scheduler.allowed-failures": 0}), farm({}) as address:
-        (outcome,) = run(_sleep, [60.0], address, timeout=1.0).values()
-    assert outcome.value is None and outcome.failure.startswith("KilledWorker: ")
-
-
-def _sleep(seconds):
-    import time
-
-    time.sleep(seconds)

@@ -199,19 +199,6 @@ def test_page_says(page, words):
     assert words in page.text
 
 
-def test_page_gives_the_verdict_before_anything_else(page):
-    order = (
-        "Failed",
-        "1 failed, 1 passed",  # on gl with eonlib
-        "With eonlib on gl",  # the pictures
-        "Failed checks",
-        "Not run: Blender is not here",
-        "Versions and documents",
-    )
-    places = [page.text.index(words, len("mxeon:")) for words in order]
-    assert places == sorted(places)
-
-
 def test_an_unfinished_run_says_what_is_missing(run):
     started = replace(run, results=(made_result(PASSED),), missing=("gl, value, clay, eonlib",))
     text = Page(page_of(started)).text
