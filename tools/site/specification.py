@@ -9,6 +9,7 @@ python -m tools.site.specification --page      the pages alone, from out/specifi
 import json
 import re
 import sys
+import textwrap
 from collections import Counter
 from contextlib import closing
 
@@ -69,7 +70,8 @@ HEAD = "| check | mode | tolerance | stock | eonlib | stock's defect |\n|---|---
 
 def measured(host):
     """Where a host ran, and its results of the nodes with both libraries, as rows of text."""
-    tasks = make_plan((), (host,), LIBRARIES, nodes=NODES).tasks
+    plans = [make_plan((), (host,), (library,), nodes=NODES) for library in LIBRARIES]
+    tasks = [task for plan in plans for task in plan.tasks]
     with closing(Judge(DEFAULT)) as judge:
         findings = [judge.work(t) for t in tasks if t.host == host and t.check != "curve"]
     [device] = findings[0].hosts
@@ -157,7 +159,7 @@ def node_table(node, results):
         for check, modes in passed.items()
     )
     parts = [HEAD + "".join(lines)] if lines else []
-    parts += [f"Passed with both: {words}.\n"] if words else []
+    parts += [textwrap.fill(f"Passed with both: {words}.", 120) + "\n"] if words else []
     return "\n" + "\n".join(parts)
 
 
