@@ -417,3 +417,10 @@ def test_what_an_emission_prints_names_its_functions():
     assert repr(mxeon.model("uniform_edf")).startswith(
         "uniform_edf: uniform emission; edf, exitance\n"
     )
+
+
+def test_help_of_a_function_has_its_equation_ranges_units_and_example():
+    text = models.eon_brdf.__doc__
+    for part in ("f = rho / pi A", "in 1/sr", "`rho` (..., C): ", "in [0, 1]", ">>> eon_brdf("):
+        assert part in text
+    assert "`alpha`" in models.varnished_brdf.__doc__

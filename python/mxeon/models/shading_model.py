@@ -282,9 +282,6 @@ class ShadingModel(NodeModel):
     `sample` draws below the horizon for a model that reflects is wasted: its value is 0, its density
     counts. Without a sampling of its own a model has that of the cosine, hair that of the sphere.
 
-    Arrays of PyTorch and JAX give results of their library wherever the functions of the model take
-    them; others refuse them by name.
-
     Each function raises ValueError if an input leaves its range, a shape fits nothing or two things, or
     the model does not have the function; TypeError if an input is unknown or is there twice.
     """

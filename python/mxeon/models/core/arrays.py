@@ -20,10 +20,11 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import wraps
 from importlib import import_module
 from inspect import signature
+from itertools import chain
 from textwrap import dedent, indent
 from typing import Any, ParamSpec, Protocol, TypeAlias, TypeVar, cast
 
@@ -99,7 +100,11 @@ def any_array(function: Callable[P, R]) -> Callable[P, R]:
 
     @wraps(function)
     def wrapper(*args: P.args, **kwargs: P.kwargs) -> R:
-        others = [each for each in _values((*args, *kwargs.values())) if library(each)]
+        held = (
+            each.values() if isinstance(each, Mapping) else (each,)
+            for each in (*args, *kwargs.values())
+        )
+        others = [each for each in chain.from_iterable(held) if library(each)]
         if not others:
             return function(*args, **kwargs)
         convert = _converter(others)
@@ -129,12 +134,6 @@ def with_arguments(text: str | None, module: str, names: Sequence[str]) -> str |
         if set(re.findall(r"\w+", each[1])) & set(names) - own
     ]
     return text.rstrip() + "\n\n" + indent("".join(told), "    ")
-
-
-def _values(arguments: Iterable[object]) -> Iterator[object]:
-    """Arguments, of a mapping by names what it holds."""
-    for each in arguments:
-        yield from each.values() if isinstance(each, Mapping) else (each,)
 
 
 def _converter(others: Sequence[object]) -> Callable[[object], object]:

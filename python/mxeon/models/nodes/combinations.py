@@ -92,11 +92,6 @@ def _combined(
     )
 
 
-def _ended(lobe: Bsdf) -> Bsdf:
-    """A sum as MaterialX's `add` leaves it: with a throughput of at least 0."""
-    return replace(lobe, throughput=np.maximum(lobe.throughput, 0.0))
-
-
 def _scaled(top: Bsdf, base: Bsdf, inputs: Inputs) -> Bsdf:
     return layering.multiply(top, column(inputs, FACTOR))
 
@@ -122,8 +117,15 @@ def _unscaled(combine: Combine) -> tuple[Variant[Scattering], ...]:
 
 
 def _clamped(combine: Callable[..., Bsdf], layered: bool) -> tuple[Variant[Scattering], ...]:
-    """A combination of a sum that has lost the excess of its albedo over 1, over a base or not."""
-    value, albedo = _values(partial(combine, finish=_ended))
+    """A combination of a sum that has lost the excess of its albedo over 1, over a base or not.
+
+    MaterialX's `add` leaves a throughput of at least 0.
+    """
+    value, albedo = _values(
+        partial(
+            combine, finish=lambda lobe: replace(lobe, throughput=np.maximum(lobe.throughput, 0.0))
+        )
+    )
     return (Variant("a sum whose throughput is clamped at 0", value if layered else None, albedo),)
 
 
@@ -188,10 +190,5 @@ COMBINATIONS = (
         COLORS,
     ),
 )
-NESTED = (
-    "multiply_sum",
-    "mix_sum",
-    "layer_sum",
-    "mix_layer",
-    "layer_colored",
-)  # rows of combinations of a sum
+# Rows of combinations of a sum.
+NESTED = ("multiply_sum", "mix_sum", "layer_sum", "mix_layer", "layer_colored")

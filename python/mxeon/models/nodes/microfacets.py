@@ -50,14 +50,9 @@ from mxeon.models.transmission import (
 )
 
 # Forms of the energy compensation, which the text leaves open.
-OPEN = (
-    "compensation_half",
-    "compensation_f0",
-    "compensation_view",
-    "compensation_fitted",
-    "compensation_average",
-    "compensation_average_fitted",
-)
+OPEN = [
+    f"compensation_{each}" for each in ["half", "f0", "view", "fitted", "average", "average_fitted"]
+]
 WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
 REFLECTION, NONE = {"scatter_mode": "R"}, dict[str, str]()
 

@@ -25,6 +25,7 @@ FACETS: dict[str, Value] = {
     "thinfilm_thickness": 0.0,
     "thinfilm_ior": 1.5,
 }
+GOLD = (0.183, 0.421, 1.373), (3.424, 2.346, 1.770)
 # Defaults of the inputs of a node, in the order of its definition; those that select a mode and those of
 # BY_NAME are left out. A test compares them with MaterialX's definitions.
 DEFAULTS: dict[str, dict[str, Value]] = {
@@ -34,15 +35,9 @@ DEFAULTS: dict[str, dict[str, Value]] = {
     "subsurface_bsdf": {"color": GRAY, "radius": WHITE},
     "sheen_bsdf": {"color": WHITE, "roughness": 0.3},
     "dielectric_bsdf": {"tint": WHITE, "ior": 1.5, **FACETS},
-    "conductor_bsdf": {
-        "ior": (0.183, 0.421, 1.373),
-        "extinction": (3.424, 2.346, 1.770),
-        **FACETS,
-    },
+    "conductor_bsdf": {"ior": GOLD[0], "extinction": GOLD[1], **FACETS},
     "generalized_schlick_bsdf": {
-        "color0": WHITE,
-        "color82": WHITE,
-        "color90": WHITE,
+        **dict.fromkeys(("color0", "color82", "color90"), WHITE),
         "exponent": 5.0,
         **FACETS,
     },
