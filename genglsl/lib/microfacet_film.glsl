@@ -58,7 +58,7 @@ vec4 microfacet_film_node(int i, float mu_h, vec3 facets)
 }
 
 // Reflectances under a film instead of those without one. What no closure asks for is not averaged: the value in
-// an environment, and the visible facets of a metal in a light, since nothing lies below it.
+// an environment, and the visible facets of a metal in a light: nothing lies below it.
 void microfacet_film(MicrofacetLobe lobe, FresnelData fd, inout MicrofacetFresnel F)
 {
     if (fd.airy)

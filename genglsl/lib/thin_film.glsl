@@ -19,8 +19,8 @@
 // Divisors that vanish: a root of 0, and full reflection at grazing.
 #define THIN_FILM_LEAST 1e-12
 
-// Orders are summed while the square of one exceeds the first number times the squared mean reflectances, or
-// the second times the squared width. Each counts as smaller than the one before it by the third at least.
+// Orders are summed while the square of one exceeds the first number times the squared mean reflectances and
+// the second times the squared width. The ratio of successive squares counts as the third at most.
 // Source: tools/fits/thin_film.py. Largest relative error of a film that reflects 1e-3 or more: 8e-4.
 #define THIN_FILM_ORDER_VALUE 8e-14
 #define THIN_FILM_ORDER_WIDTH 1e-3
@@ -99,7 +99,7 @@ vec3 thin_film_color(vec4 S)
 
 // Airy Summation, higher-order terms: the sum of C_m S_m / 2 over both polarizations. C_m = C_0 z^m and S_m / 2 =
 // k^(m^2) exp(i mu_k phi m), k = exp(-sigma_k^2 phi^2). `spread` is what phi varies by in a mean: few waves are
-// left to the other nodes, many fade. Real z need no sine: S_(m + 1) + k^(4 m) S_(m - 1) = 2 k^(2 m) Re S_1 S_m.
+// left to the other nodes, many fade. Real z need no sine: S_(m + 1) + k^(4 m) S_(m - 1) = k^(2 m) Re S_1 S_m.
 vec3 thin_film_orders(vec3 C0_s, ThinFilmComplex s, vec3 C0_p, ThinFilmComplex p, float phi, float spread,
                       float limit, bool is_real)
 {
