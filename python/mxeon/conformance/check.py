@@ -18,8 +18,7 @@ from numpy.typing import ArrayLike
 
 from mxeon.conformance.backends import Backend
 from mxeon.conformance.case import Case
-from mxeon.conformance.diagnosis.candidates import UNTOLD, Diagnosis, searched
-from mxeon.conformance.diagnosis.comparisons import VALUE, Comparison
+from mxeon.conformance.diagnosis import UNTOLD, VALUE, Comparison, Diagnosis, searched
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Place, Result
 from mxeon.conformance.results import Control as Caught
 from mxeon.conformance.samples import Array, Batch

@@ -15,7 +15,7 @@ import mxeon
 from mxeon.conformance.backends import Rendered, picture_pairs
 from mxeon.conformance.case import Case
 from mxeon.conformance.check import judge, not_measured
-from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.diagnosis import Diagnosis
 from mxeon.conformance.reference import ExpectedPicture
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.reference.measured import HostValues

@@ -15,7 +15,7 @@ from itertools import product
 import numpy as np
 
 from mxeon.conformance.check import judge, not_measured
-from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.diagnosis import Diagnosis
 from mxeon.conformance.results import SHADER_FUNCTIONS, Place, Result
 from mxeon.conformance.samples import GRAZING, Array, directions, float32, generator
 from mxeon.conformance.spec import TURN

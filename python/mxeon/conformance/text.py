@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.conformance.check import judge, not_measured
-from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.diagnosis import Diagnosis
 from mxeon.conformance.results import SOURCE, Place, Result
 from mxeon.conformance.samples import generator
 from mxeon.conformance.specs import PLAIN_LOBES

@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 
 from mxeon.conformance.backends import Evaluating
 from mxeon.conformance.case import Case, make_case
-from mxeon.conformance.diagnosis.candidates import INEXACT
-from mxeon.conformance.diagnosis.comparisons import ALBEDO, VALUE
+from mxeon.conformance.diagnosis import ALBEDO, INEXACT, VALUE
 from mxeon.conformance.results import FAILED, Result
 from mxeon.conformance.results.known_issues import ISSUES
 from mxeon.conformance.specs.diffuse import DIFFUSE

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.conformance.diagnosis.candidates import sentence
+from mxeon.conformance.diagnosis import sentence
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Control, Result
 from mxeon.errors import assert_known
 from mxeon.kit.encoding import fault

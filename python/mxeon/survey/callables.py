@@ -18,8 +18,7 @@ from mxeon.conformance.backends import Backend, Samples
 from mxeon.conformance.case import Case, edge_values
 from mxeon.conformance.check import Check
 from mxeon.conformance.checks import CHECKS
-from mxeon.conformance.diagnosis.candidates import Diagnosis
-from mxeon.conformance.diagnosis.comparisons import VALUE
+from mxeon.conformance.diagnosis import VALUE, Diagnosis
 from mxeon.conformance.diagnosis.regions import smallest
 from mxeon.conformance.results import PASSED, Run
 from mxeon.conformance.samples import (

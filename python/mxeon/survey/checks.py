@@ -8,7 +8,7 @@ import numpy as np
 
 from mxeon.conformance.case import Case
 from mxeon.conformance.check import check, with_inputs
-from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.diagnosis import Diagnosis
 from mxeon.conformance.samples import Array, Batch, generator
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.tolerance import Compared, Measurement, given, roundings, sum_of

@@ -8,8 +8,7 @@ import numpy as np
 
 from mxeon.conformance.case import LIGHT, Case, throughputs
 from mxeon.conformance.check import add_check, check, of_family, pass_all, shifted, with_values
-from mxeon.conformance.diagnosis.candidates import Diagnosis
-from mxeon.conformance.diagnosis.comparisons import ALBEDO, THROUGHPUT, VALUE
+from mxeon.conformance.diagnosis import ALBEDO, THROUGHPUT, VALUE, Diagnosis
 from mxeon.conformance.specs.combinations import SINGLE, CombinedSpec
 from mxeon.conformance.tolerance import Compared
 from mxeon.models.nodes.combinations import FACTOR

@@ -10,7 +10,7 @@ import numpy as np
 from mxeon.conformance.case import Case
 from mxeon.conformance.check import check, scale
 from mxeon.conformance.checks.lobes import is_layer
-from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.diagnosis import Diagnosis
 from mxeon.conformance.results import WRONG_INSIDE
 from mxeon.conformance.samples import Batch
 from mxeon.conformance.spec import Input, Spec

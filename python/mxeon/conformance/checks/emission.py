@@ -19,8 +19,7 @@ from mxeon.conformance.check import (
     with_inputs,
 )
 from mxeon.conformance.checks.lobes import summed
-from mxeon.conformance.diagnosis.candidates import Diagnosis
-from mxeon.conformance.diagnosis.comparisons import BACK, RADIANCE, TRANSMITTANCE, VALUE
+from mxeon.conformance.diagnosis import BACK, RADIANCE, TRANSMITTANCE, VALUE, Diagnosis
 from mxeon.conformance.specs.emission import (
     OPACITY,
     UNIMPLEMENTED,

@@ -7,7 +7,7 @@ from functools import partial
 
 from mxeon.conformance.case import Case, over_condition
 from mxeon.conformance.check import add_check, with_inputs
-from mxeon.conformance.diagnosis.candidates import Diagnosis, explain
+from mxeon.conformance.diagnosis import Diagnosis, explain
 from mxeon.conformance.diagnosis.faults import DIRECT_FAULTS
 from mxeon.conformance.specs.hair import REGION, REGIONS, HairSpec
 from mxeon.conformance.tolerance import Compared, Term, scaled

@@ -9,6 +9,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike
 
+from mxeon.conformance import diagnosis
 from mxeon.conformance.backends import WHITE, scene_of
 from mxeon.conformance.case import BRANCHES, Case, dead_inputs, edge_values, frames
 from mxeon.conformance.check import (
@@ -25,9 +26,7 @@ from mxeon.conformance.check import (
     take_response,
     with_inputs,
 )
-from mxeon.conformance.diagnosis import inputs as input_diagnosis
-from mxeon.conformance.diagnosis.candidates import Diagnosis, explain
-from mxeon.conformance.diagnosis.comparisons import ALBEDO, THROUGHPUT, TRANSMISSION, VALUE
+from mxeon.conformance.diagnosis import ALBEDO, THROUGHPUT, TRANSMISSION, VALUE, Diagnosis, explain
 from mxeon.conformance.samples import LEAST_COLOR82, SKY_ROWS, SLOPE, Array, Batch, Values, sky_map
 from mxeon.conformance.spec import LobeSpec, Spec
 from mxeon.conformance.specs.combinations import CombinedSpec
@@ -216,12 +215,12 @@ add_check(
     "The value follows the surface's frame, with the normal turned toward the viewer.",
     lambda spec: (is_lobe(spec) and not isinstance(spec, SubsurfaceSpec)) or is_model(spec, *MODES),
     with_inputs("the node's normal is dropped", normal=(0.0, 0.0, 1.0)),
-    diagnose=input_diagnosis.diagnose_frame,
+    diagnose=diagnosis.diagnose_frame,
 )
 
 
 def diagnose_surroundings(case: Case) -> Diagnosis:
-    return input_diagnosis.diagnose_surroundings(surroundings(case), SURROUNDINGS.value)
+    return diagnosis.diagnose_surroundings(surroundings(case), SURROUNDINGS.value)
 
 
 @check(
@@ -309,7 +308,7 @@ def opaque_values(case: Case, branch: str) -> Iterator[Compared]:
     tolerance=OPAQUE,
     pairs=True,
     lit=True,
-    diagnose=lambda case: input_diagnosis.diagnose_throughput(
+    diagnose=lambda case: diagnosis.diagnose_throughput(
         {branch: list(opaque_values(case, branch)) for branch in BRANCHES}
     ),
 )
@@ -394,7 +393,7 @@ def flag(case: Case) -> Measurement:
     ),
     drop_changes,
     tolerance=count_of("inputs"),
-    diagnose=input_diagnosis.diagnose_inputs,
+    diagnose=diagnosis.diagnose_inputs,
 )
 def inputs(case: Case) -> Measurement:
     """Every input of the node changes the value."""
@@ -407,7 +406,7 @@ def inputs(case: Case) -> Measurement:
     tolerance=count_of("values"),
     pairs=True,
     hosts=shows_exactly,
-    diagnose=input_diagnosis.diagnose_finite,
+    diagnose=diagnosis.diagnose_finite,
 )
 def finite(case: Case) -> Measurement:
     """Every value at the edges of the domain is finite."""

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from mxeon.conformance import diagnosis
 from mxeon.conformance.backends import WHITE
 from mxeon.conformance.case import SCATTERING, Case
 from mxeon.conformance.check import (
@@ -23,16 +24,17 @@ from mxeon.conformance.check import (
     with_values,
 )
 from mxeon.conformance.checks.lobes import SURROUNDINGS, finite, is_plain, shows_exactly, summed
-from mxeon.conformance.diagnosis import inputs as input_diagnosis
-from mxeon.conformance.diagnosis.candidates import (
+from mxeon.conformance.diagnosis import (
+    ALBEDO,
     NEAR,
     OTHER_AVERAGE,
+    THROUGHPUT,
     UNKNOWN,
     UNMASKED,
+    VALUE,
     Diagnosis,
     not_finite,
 )
-from mxeon.conformance.diagnosis.comparisons import ALBEDO, THROUGHPUT, VALUE
 from mxeon.conformance.samples import (
     LEAST_COLOR82,
     Array,
@@ -134,7 +136,7 @@ def _clear(batch: Batch) -> Batch:
     is_facets,
     with_inputs("the flag is dropped", retroreflective=False),
     pairs=True,
-    diagnose=input_diagnosis.ignored("retroreflective"),
+    diagnose=diagnosis.ignored("retroreflective"),
 )
 def retroreflection(case: Case) -> Iterator[Compared]:
     """The retroreflective lobe equals the mirror lobe for the mirrored view."""
@@ -148,7 +150,7 @@ def retroreflection(case: Case) -> Iterator[Compared]:
     is_facets,
     with_inputs("the tangent is dropped", tangent=(1.0, 0.0, 0.0)),
     pairs=True,
-    diagnose=input_diagnosis.ignored("tangent"),
+    diagnose=diagnosis.ignored("tangent"),
 )
 def anisotropy(case: Case) -> Compared:
     """The lobe turns with the tangent."""
@@ -208,7 +210,7 @@ def diagnose_sky(case: Case) -> Diagnosis:
 
 
 def diagnose_stretched(case: Case) -> Diagnosis:
-    return input_diagnosis.diagnose_stretched(anisotropic_albedo(case))
+    return diagnosis.diagnose_stretched(anisotropic_albedo(case))
 
 
 @check(is_facets, isotropic, pairs=True, lit=True, diagnose=diagnose_stretched)
@@ -636,7 +638,7 @@ add_check(
     scale_cosine("the value is divided by cos(theta_o)", -1),
     tolerance=count_of("values"),
     lit=True,
-    diagnose=input_diagnosis.diagnose_finite,
+    diagnose=diagnosis.diagnose_finite,
 )
 
 

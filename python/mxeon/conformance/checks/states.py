@@ -15,7 +15,7 @@ import numpy as np
 from mxeon.conformance.backends import joined
 from mxeon.conformance.case import Case
 from mxeon.conformance.check import check, with_batch
-from mxeon.conformance.diagnosis.candidates import Diagnosis, not_finite
+from mxeon.conformance.diagnosis import Diagnosis, not_finite
 from mxeon.conformance.samples import Array, Batch, Values, generator, rounded, sky_map
 from mxeon.conformance.spec import LobeSpec, broadcast_inputs
 from mxeon.conformance.tolerance import Compared

@@ -9,8 +9,7 @@ import numpy as np
 
 from mxeon.conformance.case import SCATTERING, Case, albedos, values
 from mxeon.conformance.check import add_check, check, control, of_family, scale, shifted
-from mxeon.conformance.diagnosis.candidates import Diagnosis
-from mxeon.conformance.diagnosis.comparisons import ALBEDO, VALUE
+from mxeon.conformance.diagnosis import ALBEDO, VALUE, Diagnosis
 from mxeon.conformance.specs.surface_shaders import GRAPHS, SurfaceShaderSpec
 from mxeon.conformance.specs.surface_shaders import VALUE as VALUE_ERROR
 from mxeon.conformance.tolerance import (

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from mxeon.conformance import diagnosis
 from mxeon.conformance.case import Case
 from mxeon.conformance.check import add_check, check, drop_changes, no_number, of_family, shifted
 from mxeon.conformance.checks.lobes import inputs
-from mxeon.conformance.diagnosis import inputs as input_diagnosis
-from mxeon.conformance.diagnosis.candidates import Diagnosis, explain
+from mxeon.conformance.diagnosis import Diagnosis, explain
 from mxeon.conformance.samples import Array, Batch, Candidate
 from mxeon.conformance.specs.utilities import ROUND_TRIPS, UtilitySpec
 from mxeon.conformance.tolerance import (
@@ -67,7 +67,7 @@ add_check(
     is_utility,
     drop_changes,
     tolerance=count_of("inputs"),
-    diagnose=input_diagnosis.diagnose_inputs,
+    diagnose=diagnosis.diagnose_inputs,
 )
 
 

@@ -5,12 +5,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from mxeon.conformance.samples import Array, Batch
+from mxeon.conformance.samples import Array, Batch, Mask
 from mxeon.conformance.tolerance import Compared, Tolerance, relative
-
-Mask = NDArray[np.bool_]
 
 COLORS = ("color", "tint", "color0")  # inputs of which one is the color of a node
 INDICES = {"ior": "an index of refraction", "extinction": "an extinction"}
@@ -41,14 +39,15 @@ def smallest(batches: Sequence[Batch], wrong: Sequence[Mask]) -> str:
 
     "" if there is none worth a name.
     """
-    count = sum(map(len, wrong))
     bad = np.concatenate(wrong)
     sizes: dict[str, int] = {}
     found = (chain(_directions(batch), _inputs(batch)) for batch in batches)
     for regions in zip(*found, strict=True):
         name = regions[0][0]
         mask = np.concatenate([mask for _, mask in regions])
-        if mask[bad].all() and bad[mask].mean() >= DENSITY and mask.sum() <= LARGEST * count:
+        if not mask[bad].all() or not mask.any():
+            continue
+        if bad[mask].mean() >= DENSITY and mask.mean() <= LARGEST:
             sizes[name] = int(mask.sum())
     return min(sizes, key=lambda name: sizes[name], default="")
 
