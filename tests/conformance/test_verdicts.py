@@ -52,7 +52,9 @@ ABSENT = (
 def film(choices):
     """What a film is named by, whose curve and compensation are these."""
     return {
-        **dict.fromkeys(("film", "film_curve", "film_orders"), f"{choices}, and its compensation"),
+        **dict.fromkeys(
+            ("film", "film_curve", "film_orders"), f"{choices}, with MaterialX's compensation"
+        ),
         "film_limit": choices,
         **dict.fromkeys(
             ("film_environment", "film_visible", "film_glossy"),

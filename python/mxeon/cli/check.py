@@ -67,7 +67,7 @@ def add_parser(commands: arguments.Commands) -> None:
         type=int,
         default=1,
         metavar="N",
-        help="draw other random samples, and other numbers of them (default: %(default)s)",
+        help="draw other random samples, and a different number of them (default: %(default)s)",
     )
     command.add_argument("--scheduler", metavar="ADDRESS", help="run on this Dask cluster")
     command.add_argument(

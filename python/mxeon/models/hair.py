@@ -2,8 +2,9 @@
 """The hair model of [MaterialX2026], section `chiang_hair_bsdf`, after [Chiang2016] and [dEon2011].
 
 The fiber is +x, and the normal +z is turned to the viewer. Light comes from the whole sphere. A direction has the
-inclination theta, sin(theta) = x, and an azimuth about the fiber. Roughnesses and absorption, per radius of the fiber,
-follow from what an artist sets.
+inclination theta, sin(theta) = x, and an azimuth about the fiber. Absorption is per radius of the fiber, as in the
+text's equation; the text's table says diameter. Other functions compute roughnesses and absorption from what an artist
+sets.
 
 - `wo` (..., 3): Direction to the viewer, unit vector to 1e-6, fiber +x, normal +z, z >= 0.
 - `wi` (..., 3): Direction to the light, unit vector to 1e-6, on either side.

@@ -304,8 +304,8 @@ def _film_variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
         one = form == MIXED and row.category == "dielectric_bsdf"  # index of all channels
         if one or (form.share != 1.0 and not schlick):
             continue
-        later = ((", and F averaged from F0 and F90", AVERAGED),) if form == STOCK else ()
-        for words, terms in (("", None), (", and its compensation", FITTED), *later):
+        later = ((", with F averaged from F0 and F90", AVERAGED),) if form == STOCK else ()
+        for words, terms in (("", None), (", with MaterialX's compensation", FITTED), *later):
             value = partial(_value, row.category, form, terms)
             variants.append(Variant(f"{title}{words}", value, permitted=permitted))
     return tuple(variants)

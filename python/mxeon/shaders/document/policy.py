@@ -22,7 +22,7 @@ LIMITS = {
     "chain": "nodes in a chain of connections",
     "shaders": "renderable elements",
     "ports": "node inputs in all shaders, each nodegraph counted as one node",
-    "text": "characters of shader code that the document brings, in all its shaders",
+    "text": "characters of the document's own shader code, counted once for each shader that uses it",
     "texels": "pixels in all images that a document reads",
 }
 
