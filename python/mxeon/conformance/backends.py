@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias, TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.conformance.cache import Evaluations
+from mxeon.conformance.cache import EVALUATIONS, Recent, contents, parts
 from mxeon.conformance.results import Claims
 from mxeon.conformance.samples import (
     LEAST_TURNED,
@@ -34,7 +34,7 @@ from mxeon.conformance.samples import (
     generator,
     rounded,
 )
-from mxeon.conformance.spec import LobeSpec, Spec
+from mxeon.conformance.spec import LobeSpec, Spec, broadcast_inputs
 from mxeon.conformance.specs.combinations import CombinedSpec
 from mxeon.conformance.specs.diffuse import (
     LOBE_VALUE,
@@ -79,7 +79,6 @@ if TYPE_CHECKING:
 WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
 NO_IMPLEMENTATION = "Could not find a matching implementation"
 Pairs: TypeAlias = tuple[Array, Array, Mask]  # wo, wi, and which of them are judged
-Draw: TypeAlias = Callable[[Counts], "T"]
 Asked: TypeAlias = "tuple[Shader, Array, Array, Values, str]"  # for pairs, in a branch
 T = TypeVar("T")
 
@@ -97,6 +96,8 @@ def implementation(host: Host, text: str, library: str) -> Shader | None:
 class Samples:
     """The samples of a spec that a backend takes, each drawn once."""
 
+    whole: ClassVar[bool] = False  # whether controls and what takes long get all of them
+
     def __init__(self, backend: Backend) -> None:
         self.backend: Any = backend
         self.spec: Any = backend.spec  # of a family that has what is taken of it
@@ -104,7 +105,7 @@ class Samples:
         self.counts: Counts = min(counts, key=lambda each: each.pairs).varied()
         self._drawn: dict[str, object] = {}
 
-    def take(self, draw: Draw[T]) -> T:
+    def take(self, draw: Callable[[Counts], T]) -> T:
         """What a method of the spec draws."""
         if draw.__qualname__ not in self._drawn:
             self._drawn[draw.__qualname__] = draw(self.counts)
@@ -118,6 +119,8 @@ class Samples:
     @cached_property
     def few(self) -> tuple[Batch, ...]:
         """Some of them, for what takes long and for controls."""
+        if self.whole:
+            return self.batches
         peaks = (each.first(self.counts.few) for each in self._peaks)
         return (*self.spec.few(self.batches, self.counts), *peaks)
 
@@ -172,7 +175,7 @@ class Backend(ABC):
 
     def __init__(self, host: Host, spec: Spec, library: str) -> None:
         self.host, self.spec, self.library = host, spec, library
-        self._evaluations = Evaluations()
+        self._evaluations = Recent[Array](EVALUATIONS)
 
     @classmethod
     def supports(cls, spec: Spec) -> bool:
@@ -306,8 +309,8 @@ class Evaluating(Backend):
             asked = shader or self.shader, wo, wi, inputs, branch
             return self.asked(asked, output, irradiance).astype(np.float64)
 
-        key = branch, output, irradiance, shader and shader.element
-        return self._evaluations.values(batch, key, evaluated)
+        rest = branch, output, shader and shader.element, contents(irradiance)
+        return self._evaluations.value((*parts(batch), *rest), evaluated)
 
 
 class InTheDark(Evaluating):
@@ -367,16 +370,10 @@ def joined(batches: Sequence[Batch]) -> Batch:
     if len(batches) == 1:
         return batches[0]
     wo, wi = (np.concatenate(each) for each in ([b.wo for b in batches], [b.wi for b in batches]))
-    inputs = {name: np.concatenate([_each(b, name) for b in batches]) for name in batches[0].inputs}
+    rows = list(map(broadcast_inputs, batches))
+    inputs = {name: np.concatenate([each[name] for each in rows]) for name in rows[0]}
     frames = [batch.frame for batch in batches if batch.frame is not None]
     return Batch(wo, wi, inputs, frame=np.concatenate(frames) if frames else None)
-
-
-def _each(batch: Batch, name: str) -> Array:
-    """An input of each pair."""
-    values = np.asarray(batch.inputs[name])
-    constant = values.shape[:1] != (len(batch.wo),)
-    return np.broadcast_to(values, (len(batch.wo), *values.shape)) if constant else values
 
 
 def _altered(batch: Batch) -> Batch:
@@ -384,7 +381,7 @@ def _altered(batch: Batch) -> Batch:
     if "weight" in batch.inputs:
         changes["weight"] = np.maximum(batch.inputs["weight"], 0.0)
     if {"tint", "ior"} <= batch.inputs.keys():
-        index = _each(batch, "ior")
+        index = broadcast_inputs(batch)["ior"]
         changes["ior"] = np.where(np.arange(len(index)) % 7 == 3, 0.0, index)
     return batch.altered(**changes)
 
@@ -406,15 +403,16 @@ class Closures(Evaluating):
         own = super().error(spec, quantity)
         if quantity == "states" and isinstance(spec, TransmissionSpec):
             return None  # a light shows nothing of what it transmits
-        if not isinstance(spec, LobeSpec) or quantity not in QUANTITIES:
+        if not isinstance(spec, LobeSpec):
             return own
         exact = GRAPH if isinstance(spec, SurfaceShaderSpec) else ARGUMENTS
-        if quantity == "difference":
-            return difference_of(exact)
-        if quantity == "frame":
-            return own  # frames are turned in float32
-        told = quantity in ("value", "albedo") or (own and quantity in ("throughput", "lambert"))
-        return exact if told else None
+        told: dict[str, Tolerance | None] = {
+            **dict.fromkeys(("value", "albedo"), exact),
+            **dict.fromkeys(("throughput", "lambert"), own and exact),
+            **dict.fromkeys(("integral", "light", "reciprocity"), None),
+            "difference": difference_of(exact),
+        }
+        return told.get(quantity, own)
 
     def together(self, batch: Batch, irradiance: NDArray[np.float32] | None, two: bool) -> Array:
         return np.pi * self.evaluate(batch, "direct", shader=self.two if two else self.shader)
@@ -432,19 +430,6 @@ class Closures(Evaluating):
         names = self.spec.names if isinstance(self.spec, SurfaceShaderSpec) else ()
         return tuple(each for each in names if each.endswith(("normal", "tangent")))
 
-
-# Quantities of a lobe that depend on how it is asked; other checks have an error of their own.
-QUANTITIES = (
-    "value",
-    "albedo",
-    "throughput",
-    "frame",
-    "integral",
-    "light",
-    "reciprocity",
-    "lambert",
-    "difference",
-)
 
 # Renderers whose camera and light show one pair for each pixel.
 
@@ -544,16 +529,14 @@ class RenderedSamples(Samples):
 class RenderedLobeSamples(RenderedSamples):
     """Random pairs far from the rim, with colors and roughnesses of a lobe below others."""
 
+    whole = True
+
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
         rng, count = generator(), self.counts.few
         inputs = self.taken(self.spec.random_inputs(rng, count))
         batch = Batch(directions(rng, count), directions(rng, count), inputs)
         return (batch.where(_is_shown(batch, LOBE_RIM)),)
-
-    @cached_property
-    def few(self) -> tuple[Batch, ...]:
-        return self.batches
 
 
 class Rendered(Evaluating):
@@ -587,8 +570,9 @@ class Rendered(Evaluating):
             "light": LIGHT,
             "lambert": cls.flat,
             "difference": difference_of(value),
+            "frame": None,
         }
-        return own.get(quantity) if quantity in QUANTITIES else spec.errors.get(quantity)
+        return own.get(quantity, spec.errors.get(quantity))
 
     place: ClassVar[Tolerance | None] = None  # error of values of microfacets by a pixel's place
 
@@ -629,15 +613,14 @@ class RenderedLobes(Rendered):
         return BELOW if quantity == "value" else None
 
     def direct(self, batch: Batch) -> Array:
-        return diffuse_alone(self._lit, batch)
-
-    def _lit(self, batch: Batch) -> Array:
         assert isinstance(self.spec, SurfaceLobe)
-        inputs: Values = {
-            port: batch.inputs[name] for name, port in self.spec.ports.items() if port
-        }
-        values = self.host.evaluate(self.shader, batch.wo, batch.wi, inputs, "direct")
-        return values.astype(np.float64)
+        ports = {name: port for name, port in self.spec.ports.items() if port}
+
+        def lit(batch: Batch) -> Array:
+            inputs = {port: batch.inputs[name] for name, port in ports.items()}
+            return self.evaluate(replace(batch, inputs=inputs), "direct")
+
+        return diffuse_alone(lit, batch)
 
 
 def diffuse_alone(show: Callable[[Batch], Array], batch: Batch) -> Array:
@@ -750,6 +733,8 @@ CYCLES_NOISE = sum_of(
 class PictureSamples(Samples):
     """The lit points of a sphere away from rim and terminator, for each light and material."""
 
+    whole = True
+
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
         pictures = self.backend
@@ -759,10 +744,6 @@ class PictureSamples(Samples):
             for inputs in pictures.materials
         )
         return tuple(batch for batch in batches if len(batch.wo))
-
-    @cached_property
-    def few(self) -> tuple[Batch, ...]:
-        return self.batches
 
     @cached_property
     def views(self) -> tuple[Batch, ...]:
@@ -994,13 +975,11 @@ class EmissionPictures(Pictures):
 class UtilitySamples(Samples):
     """All samples in one batch, which takes a renderer one run."""
 
+    whole = True
+
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
         return (joined(super().batches),)
-
-    @cached_property
-    def few(self) -> tuple[Batch, ...]:
-        return self.batches
 
 
 class UtilityOsl(Evaluating):

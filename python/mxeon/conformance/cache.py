@@ -20,7 +20,7 @@ T = TypeVar("T")
 
 
 class Recent(Generic[T]):
-    """An LRU cache of at most so many values."""
+    """An LRU cache of at most so many values, of which arrays are read-only."""
 
     def __init__(self, most: int) -> None:
         self._most = most
@@ -28,7 +28,9 @@ class Recent(Generic[T]):
 
     def value(self, key: Hashable, compute: Callable[[], T]) -> T:
         if key not in self._values:
-            self._values[key] = compute()
+            found = self._values[key] = compute()
+            if isinstance(found, np.ndarray):
+                found.setflags(write=False)
         self._values.move_to_end(key)
         if len(self._values) > self._most:
             self._values.popitem(last=False)
@@ -44,7 +46,7 @@ def contents(value: object) -> Hashable:
 
 
 class Remembered:
-    """A function of batches that caches a few of its values, which are read-only."""
+    """A function of batches that caches a few of its values."""
 
     def __init__(self, function: Callable[[Batch], Array]) -> None:
         self._function = function
@@ -53,29 +55,11 @@ class Remembered:
     def __call__(self, batch: Batch) -> Array:
         if len(batch.wo) > LARGEST:
             return self._function(batch)
-        key = batch.scene, *_parts(batch)
-        return self._known.value(key, lambda: _read_only(self._function(batch)))
+        key = batch.scene, *parts(batch)
+        return self._known.value(key, lambda: self._function(batch))
 
 
-class Evaluations:
-    """A cache of the values that a host returns for batches; they are read-only."""
-
-    def __init__(self) -> None:
-        self._known = Recent[Array](EVALUATIONS)
-
-    def values(
-        self, batch: Batch, rest: tuple[object, ...], evaluate: Callable[[], Array]
-    ) -> Array:
-        key = *_parts(batch), *map(contents, rest)
-        return self._known.value(key, lambda: _read_only(evaluate()))
-
-
-def _parts(batch: Batch) -> tuple[Hashable, ...]:
+def parts(batch: Batch) -> tuple[Hashable, ...]:
     """A key for a batch, but for its scene."""
     inputs = tuple((name, contents(values)) for name, values in batch.inputs.items())
     return contents(batch.wo), contents(batch.wi), contents(batch.frame), inputs
-
-
-def _read_only(values: Array) -> Array:
-    values.setflags(write=False)
-    return values

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 import mxeon
 from mxeon.conformance.backends import Backend, Samples
+from mxeon.conformance.cache import parts
 from mxeon.conformance.case import Case, edge_values
 from mxeon.conformance.check import Check
 from mxeon.conformance.checks import CHECKS
@@ -119,7 +120,7 @@ class Function(Backend):
             finite = np.isfinite(values).all(axis=1, keepdims=True)
             return np.pi * (np.where(finite, values, np.nan) * batch.wi[:, 2:])
 
-        return self._evaluations.values(batch, (), evaluated)
+        return self._evaluations.value(parts(batch), evaluated)
 
     def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
         """Nothing, (N, 0): a function has no environment branch."""
