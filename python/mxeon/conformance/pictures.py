@@ -93,21 +93,29 @@ FITTED, SHADED = (
 )
 
 
-def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe]) -> Tolerance:
-    """Tolerance of a material's pictures: that of its lobes, with what else may add to it."""
+def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe], host: Host) -> Tolerance:
+    """Tolerance of a material's pictures: of its lobes' fits or of images, and what else adds to it.
+
+    An image's filter works on codes, before a decoding.
+    """
+    nodes = list(inner_nodes(shader))
+    if categories(shader.document.traverseTree()) & FITTED_NODES:
+        tolerance = FITTED
+    elif categories(nodes) & FITTED_NODES:
+        tolerance = SHADED
+    elif any(port.type == "filename" and port.value for port in shader.inputs):
+        files = (each for each in nodes if each.isA(mx.Input) and each.getType() == "filename")
+        encoded = any(each.getActiveColorSpace() == "srgb_texture" for each in files)
+        tolerance = ENCODED if encoded else TEXTURED
+    else:
+        tolerance = PLAIN
     rings = RINGS.term("subsurface scattering in six circles")
     others = [rings] * (SUBSURFACE in inner_lobes(shader))
-    others += BLACKBODY.terms * ("blackbody" in categories(inner_nodes(shader)))
+    others += BLACKBODY.terms * ("blackbody" in categories(nodes))
     others += _others(tuple(lobes))
-    tolerance = _lobes_tolerance(shader)
-    return replace(tolerance.plus(*others), unit=RELATIVE) if others else tolerance
-
-
-def rounded_by(host: Host, tolerance: Tolerance) -> Tolerance:
     rounding = host_row(host.name).rounding
-    if not rounding:
-        return tolerance
-    return replace(tolerance.plus(Term(rounding, "the pixels' own rounding")), unit=RELATIVE)
+    others += [Term(rounding, "the pixels' own rounding")] * bool(rounding)
+    return replace(tolerance.plus(*others), unit=RELATIVE) if others else tolerance
 
 
 def categories(elements: Iterable[mx.Element]) -> set[str]:
@@ -128,11 +136,20 @@ def inner_nodes(shader: Shader) -> Iterator[mx.Element]:
 
 def _others(lobes: tuple[ShownLobe, ...]) -> list[Term]:
     """What inputs of lobes add: a film, an index below 1, and narrow lobes of hair and sheen."""
+
+    def some(name: str, condition: Callable[[np.ndarray], np.ndarray], category: str = "") -> bool:
+        """Whether an input fulfills a condition anywhere, in lobes of a category or in all."""
+        return any(
+            bool(np.any(condition(lobe.inputs[name])))
+            for lobe in lobes
+            if name in lobe.inputs and category in ("", lobe.category)
+        )
+
     film, trapped = FILM_ALBEDO.term("a film"), FILM_TRAPPED.term("a film of an index below 1.25")
     inside = FACET_ERRORS["denser"].term("the throughput of an index below 1")
-    others = [film] * _any(lobes, "thinfilm_thickness", lambda value: value > 0.0)
-    others += [trapped] * _any(lobes, "thinfilm_ior", lambda value: value < LEAST_FILM)
-    others += [inside] * _any(lobes, "ior", lambda value: value < 1.0, "dielectric_bsdf")
+    others = [film] * some("thinfilm_thickness", lambda value: value > 0.0)
+    others += [trapped] * some("thinfilm_ior", lambda value: value < LEAST_FILM)
+    others += [inside] * some("ior", lambda value: value < 1.0, "dielectric_bsdf")
     hairs = [
         np.reshape(lobe.inputs[name], (-1, 2)).min(axis=0)
         for lobe in lobes
@@ -151,42 +168,10 @@ def _others(lobes: tuple[ShownLobe, ...]) -> list[Term]:
     return others
 
 
-def _any(
-    lobes: tuple[ShownLobe, ...],
-    name: str,
-    condition: Callable[[np.ndarray], np.ndarray],
-    category: str = "",
-) -> bool:
-    """Whether an input fulfills a condition anywhere, in lobes of a category or in all."""
-    return any(
-        bool(np.any(condition(lobe.inputs[name])))
-        for lobe in lobes
-        if name in lobe.inputs and category in ("", lobe.category)
-    )
-
-
-def _lobes_tolerance(shader: Shader) -> Tolerance:
-    """Tolerance of lobes without light below the surface: of their fits, or of images.
-
-    An image's filter works on codes, before a decoding.
-    """
-    if categories(shader.document.traverseTree()) & FITTED_NODES:
-        return FITTED
-    if categories(inner_nodes(shader)) & FITTED_NODES:
-        return SHADED
-    if not any(port.type == "filename" and port.value for port in shader.inputs):
-        return PLAIN
-    inputs = (each for each in inner_nodes(shader) if each.isA(mx.Input))
-    encoded = any(
-        each.getType() == "filename" and each.getActiveColorSpace() == "srgb_texture"
-        for each in inputs
-    )
-    return ENCODED if encoded else TEXTURED
-
-
 Pixels: TypeAlias = NDArray[np.floating]
 Shown: TypeAlias = tuple[Scene, Pixels, ExpectedPicture]  # with the host's picture
 Pixel: TypeAlias = tuple[float, dict[str, list[float]], float]
+Note: TypeAlias = tuple[str, str]  # a warning, and what it is about
 
 MATCH = "Every pixel matches the reference."
 SAME_NAMES = "nodes {} have the values of one of them; see docs/upstream/same_names.md"
@@ -195,23 +180,34 @@ DEFINED_MATERIAL = (
 )
 
 
-def judge_document(
-    file: Path, host: Host, judge: Reference, library: str, policy: Policy = DEFAULT
-) -> tuple[tuple[Result, ...], tuple[Picture, ...], tuple[tuple[str, str], ...]]:
-    """Pictures of every material of a document on a host, judged against the reference's.
-
-    Raise DocumentError if no shader can be made from the document.
-    """
+def _read(
+    file: Path, make: Callable[[], tuple[Shader, ...]]
+) -> tuple[tuple[Shader, ...], dict[str, str], list[Note]]:
+    """Shaders of a document, their approximations by element, and notes with their location."""
     with warnings.catch_warnings(record=True) as records:
         warnings.simplefilter("always")
         warnings.simplefilter("error", MissingFileWarning)
-        shaders = host.compile(file, library=library, policy=policy)
+        shaders = make()
     messages = [record.message for record in records]
     approximations = {
         message.element: message.approximation
         for message in messages
         if isinstance(message, ApproximationWarning)
     }
+    others = (each for each in messages if isinstance(each, (CodeWarning, DocumentWarning)))
+    return shaders, approximations, [(str(each), file.name) for each in others]
+
+
+def judge_document(
+    file: Path, host: Host, judge: Reference, library: str, policy: Policy = DEFAULT
+) -> tuple[tuple[Result, ...], tuple[Picture, ...], tuple[Note, ...]]:
+    """Pictures of every material of a document on a host, judged against the reference's.
+
+    Raise DocumentError if no shader can be made from the document.
+    """
+    shaders, approximations, others = _read(
+        file, lambda: host.compile(file, library=library, policy=policy)
+    )
     results: list[Result] = []
     pictures: list[Picture] = []
     for shader in shaders:
@@ -228,9 +224,7 @@ def judge_document(
         for scene in host_row(host.name).scenes
         for text in host.approximations(shader, scene)
     )
-    others = (CodeWarning, DocumentWarning)
-    notes += [(str(message), file.name) for message in messages if isinstance(message, others)]
-    return tuple(results), tuple(pictures), tuple(notes)
+    return tuple(results), tuple(pictures), (*notes, *others)
 
 
 def _judge_material(
@@ -249,6 +243,8 @@ def _judge_material(
     try:
         _assert_judged(shader, host)
         expected = [judge.expected(shader, scene, values) for scene in scenes]
+        if front_lit:
+            expected = list(map(_front_lit, expected, scenes))
     except OutsideModel as reason:
         return not_measured(place, reason), ()
     except NotRun as reason:
@@ -257,12 +253,11 @@ def _judge_material(
         references = [*expected]
         cases = list(zip(scenes, images, expected, strict=True))
         lobes = (lobe for each in expected for lobe in each.lobes)
-        tolerance = rounded_by(host, tolerance_of(shader, lobes))
-        result = _judge_match(place, cases, tolerance, front_lit)
+        result = _judge_match(place, cases, tolerance_of(shader, lobes, host))
         if result.verdict == FAILED and (known := _known(shader)):
             result = replace(result, diagnosis=known)
     return result, tuple(
-        _picture(file, shader, host, library, scene, image, reference, front_lit)
+        _picture(file, shader, host, library, scene, image, reference)
         for scene, image, reference in zip(scenes, images, references, strict=True)
     )
 
@@ -285,7 +280,6 @@ def _picture(
     scene: Scene,
     image: Pixels,
     expected: ExpectedPicture | None,
-    front_lit: bool,
 ) -> Picture:
     identity = host.identity()
     metadata = {
@@ -302,9 +296,7 @@ def _picture(
     names = (file.name, shader.element, host.name, library, scene.name)
     if expected is None:
         return Picture(*names, image, None, metadata)
-    reference, judged = np.asarray(expected.image, np.float32), expected.judged.copy()
-    if front_lit:
-        judged[judged] = _is_front_lit(*_directions(scene, judged))
+    reference, judged = np.asarray(expected.image, np.float32), expected.judged
     partly = judged.sum() < sphere(scene.size).mask.sum()
     where = judged[..., None].astype(np.float32) if partly else None
     return Picture(*names, image, reference, metadata, where)
@@ -336,12 +328,10 @@ def _judge_finite(place: Place, images: Sequence[Pixels], reason: str) -> Result
     return replace(result, diagnosis=reason)
 
 
-def _judge_match(
-    place: Place, cases: Sequence[Shown], tolerance: Tolerance, front_lit: bool
-) -> Result:
+def _judge_match(place: Place, cases: Sequence[Shown], tolerance: Tolerance) -> Result:
     """Result for a material that the models cover: its pixels have to be the reference's."""
     metric = scaled if tolerance.unit == RELATIVE else absolute
-    pixels = [_worst_pixel(case, front_lit, metric) for case in cases]
+    pixels = [_worst_pixel(case, metric) for case in cases]
     error, worst, _ = max(pixels, key=lambda entry: entry[0])
     first, image, expected = cases[0]
 
@@ -349,7 +339,7 @@ def _judge_match(
         if not wrong:
             return Measurement(error, worst)
         brighter = image + np.float32(3.0 * tolerance.value) * np.maximum(1.0, image)
-        return Measurement(_worst_pixel((first, brighter, expected), front_lit, metric)[0], {})
+        return Measurement(_worst_pixel((first, brighter, expected), metric)[0], {})
 
     words = "the picture is brighter by three tolerances"
     names = [scene.name for scene, *_ in cases]
@@ -370,20 +360,16 @@ def _appearance(pixels: Sequence[Pixel], scenes: Sequence[str]) -> str:
     return f"{of_white(sizes[worst])} too {sign} in {light}"
 
 
-def _worst_pixel(case: Shown, front_lit: bool, metric: Metric) -> Pixel:
+def _worst_pixel(case: Shown, metric: Metric) -> Pixel:
     """Largest error times cos(theta_o), its pixel, and the largest difference of all pixels.
 
     The difference has a sign, and is relative where the reference exceeds 1.
     """
     scene, image, (reference, mask) = case[0], case[1], (case[2].image, case[2].judged)
-    wo, wi = _directions(scene, mask)
+    wo, _ = _directions(scene, mask)
     measured, expected = (each[mask].astype(np.float64) for each in (image, reference))
     error = metric(measured, expected) * wo[:, 2]
     difference = (measured - expected) / np.maximum(1.0, np.abs(expected))
-    if front_lit:
-        front = _is_front_lit(wo, wi)
-        error = np.where(front, error, 0.0)
-        difference = np.where(front[:, np.newaxis], difference, 0.0)
     worst = int(error.argmax())
     row, column = np.argwhere(mask)[worst]
     point = {
@@ -402,9 +388,12 @@ def _directions(scene: Scene, mask: NDArray[np.bool_]) -> tuple[Pixels, Pixels]:
     return wo[chosen], wi[chosen]
 
 
-def _is_front_lit(wo: Pixels, wi: Pixels) -> NDArray[np.bool_]:
-    lit: NDArray[np.bool_] = (wo[:, :2] * wi[:, :2]).sum(axis=1) >= 0.0
-    return lit
+def _front_lit(expected: ExpectedPicture, scene: Scene) -> ExpectedPicture:
+    """An expected picture that is judged for s >= 0 alone."""
+    judged = expected.judged.copy()
+    wo, wi = _directions(scene, judged)
+    judged[judged] = (wo[:, :2] * wi[:, :2]).sum(axis=1) >= 0.0
+    return replace(expected, judged=judged)
 
 
 # --- documents on hosts that make no pictures: their shaders are generated, and not run -----------
@@ -415,7 +404,7 @@ DOCUMENT_CLAIM = "Shaders are generated from every material of the document."
 
 def generate_document(
     file: Path, host: str, library: str, policy: Policy = DEFAULT
-) -> tuple[tuple[Result, ...], tuple[tuple[str, str], ...]]:
+) -> tuple[tuple[Result, ...], tuple[Note, ...]]:
     """Result of generating a document's shaders for a host's target, and notes with their location.
 
     Raise DocumentError if no shader can be made from the document; NotRun if the host reads no
@@ -426,15 +415,7 @@ def generate_document(
         raise NotRun(f"{host}: this renderer only has its own materials; it reads no documents")
     if target not in TARGETS:
         raise NotRun(f"{host}: this MaterialX has no generator for {target}")
-    with warnings.catch_warnings(record=True) as records:
-        warnings.simplefilter("always")
-        warnings.simplefilter("error", MissingFileWarning)
-        shaders = generate(file, target, library=library, policy=policy)
-    notes = tuple(
-        (str(record.message), file.name)
-        for record in records
-        if isinstance(record.message, (CodeWarning, DocumentWarning))
-    )
+    shaders, _, notes = _read(file, lambda: generate(file, target, library=library, policy=policy))
     data = file.read_bytes()
     half = data[: len(data) // 2].decode(errors="replace")
     try:
@@ -452,7 +433,7 @@ def generate_document(
         "half of the document is cut off",
         Diagnosis,
     )
-    return (result,), notes
+    return (result,), tuple(notes)
 
 
 # --- one material of each node, for the page on which hosts stand together ------------------------
