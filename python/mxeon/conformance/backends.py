@@ -66,7 +66,7 @@ from mxeon.errors import DocumentError, NotRun
 from mxeon.hosts import front_lit_only, host_row
 from mxeon.hosts.base import Host
 from mxeon.hosts.calls import LIT
-from mxeon.hosts.pairs import DISTANCE, JITTER, LEAST_SINE, PIXEL, perpendicular, visible
+from mxeon.hosts.pairs import DISTANCE, JITTER, PIXEL, apart, visible
 from mxeon.hosts.testrender_scene import EYE, NEAREST
 from mxeon.models.nodes.node import Scattering, Variant
 from mxeon.models.nodes.renderers import BSDL_VARIANTS, CYCLES_VARIANTS
@@ -436,8 +436,6 @@ class Closures(Evaluating):
 SMOOTH = ("eon", "qon", "burley")  # models whose roughness sharpens no lobe
 # Sine times cosine of a view whose mirror direction is far from it and from its opposite.
 OBLIQUE = 0.25
-FARTHER = 1.001 * LEAST_SINE  # beyond roundings
-NO_SINE = 1e-6  # of directions that are the same up to the roundings of float32
 FEW_RENDERED = Counts(1 << 12, 1 << 10, 1 << 9, albedos=8, materials=16, nodes=32, mirrored=1 << 10)
 FAST_ARC_COSINE = Term(4.6e-5, "OpenImageIO's fast arc cosine")  # by its source
 POINT = 3.0 * EYE / NEAREST  # roundings of a point at the distance 40, seen from a light 1/2 away
@@ -644,19 +642,6 @@ def _with_variants(backend: type[Rendered], spec: Spec) -> Spec:
         return spec
     variants = (*backend.variants[spec.row.name], *spec.row.variants)
     return replace(spec, row=replace(spec.row, variants=variants))
-
-
-def apart(wo: Array, wi: Array) -> Array:
-    """Lights turned away from the view, or from its opposite, until a renderer shows the pair."""
-    # The direction across the view in which a light lies, or any where it has none.
-    cosine = (wo * wi).sum(axis=1, keepdims=True)
-    across = wi - cosine * wo
-    sine = np.linalg.norm(across, axis=1, keepdims=True)
-    across = np.where(sine > NO_SINE, across, perpendicular(wo))
-    along = np.sign(cosine) * np.sqrt(1.0 - FARTHER**2)
-    moved = along * wo + FARTHER * across / np.linalg.norm(across, axis=1, keepdims=True)
-    moved = moved / np.linalg.norm(moved, axis=1, keepdims=True)  # wo is one up to its roundings
-    return np.where(visible(wo, wi)[:, np.newaxis], wi, moved)
 
 
 def _is_shown(batch: Batch, rim: float = RIM) -> Mask:

@@ -71,6 +71,8 @@ class PairHost(base.Host):
 Vectors = NDArray[np.float64]
 
 LEAST_SINE = 0.08  # of the angle between view and light: the camera would see the light, or have points behind it
+FARTHER = 1.001 * LEAST_SINE  # beyond roundings
+NO_SINE = 1e-6  # of directions that are the same up to the roundings of float32
 CORNERS = ((1.0, 0.0), (-0.5, 0.75**0.5), (-0.5, -(0.75**0.5)))  # of a triangle
 
 
@@ -89,6 +91,18 @@ def perpendicular(vectors: Array) -> Vectors:
 def visible(wo: Array, wi: Array) -> NDArray[np.bool_]:
     """Which pairs of directions a scene can show, (N,)."""
     return np.asarray(np.linalg.norm(np.cross(wo, wi), axis=1) >= LEAST_SINE)
+
+
+def apart(wo: Array, wi: Array) -> Array:
+    """Lights turned away from the view, or from its opposite, until a renderer shows the pair."""
+    # The direction across the view in which a light lies, or any where it has none.
+    cosine = (wo * wi).sum(axis=1, keepdims=True)
+    across = wi - cosine * wo
+    sine = np.linalg.norm(across, axis=1, keepdims=True)
+    across = np.where(sine > NO_SINE, across, perpendicular(wo))
+    along = np.sign(cosine) * np.sqrt(1.0 - FARTHER**2)
+    moved = unit(along * wo + FARTHER * unit(across))  # wo is one up to its roundings
+    return np.where(visible(wo, wi)[:, np.newaxis], wi, moved)
 
 
 def unit(vectors: Vectors) -> Vectors:

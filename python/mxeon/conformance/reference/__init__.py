@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 
 from mxeon import hosts
 from mxeon.conformance.reference.graph import Graph
-from mxeon.conformance.reference.measured import LIT, PATTERNS, Elements, HostValues, Measure
+from mxeon.conformance.reference.measured import PATTERNS, HostValues, Measure
 from mxeon.conformance.reference.nodes import ManyMaterialsError, ShadingPoints, ShownLobe
 from mxeon.errors import NotRun
 from mxeon.hosts import base
 from mxeon.hosts.base import Identity, Query
+from mxeon.shaders.document.drawn_values import LIT, Elements
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import TRANSMISSION, inner_lobes
 from mxeon.shaders.scene import VIEW, Scene, sphere, tangents

@@ -21,7 +21,7 @@ import MaterialX as mx
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.conformance.reference.measured import CLOSURES, DRAWN, Measure
+from mxeon.conformance.reference.measured import DRAWN, Measure
 from mxeon.conformance.reference.nodes import (
     COMBINATIONS,
     LOBES,
@@ -46,6 +46,7 @@ from mxeon.io.srgb import srgb_decoded
 from mxeon.models.core.layering import Bsdf
 from mxeon.models.nodes import utilities
 from mxeon.models.nodes.emissions import BASE, EMISSIONS, Emission
+from mxeon.shaders.document.drawn_values import CLOSURES
 from mxeon.shaders.document.graphs import reachable
 from mxeon.shaders.document.values import color_spaces
 

@@ -37,10 +37,6 @@ from mxeon.shaders.document.values import Plain
 from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG, OREN_NAYAR, value_text
 
 Albedo: TypeAlias = Callable[[Array, Inputs], Array]
-Material: TypeAlias = tuple[
-    tuple[str, tuple[float, ...]], ...
-]  # inputs of one value each, hashable
-
 # A lobe of weight one from its node, its inputs, each one value or one for each point, and whether
 # its throughput is asked for.
 Lobe: TypeAlias = Callable[[PbrNode, Inputs, bool], Bsdf]
@@ -153,12 +149,13 @@ def _albedo(
         raise ManyMaterialsError
     if closed or varied or len(wo) < SEPARATE:
         return albedo(wo, _at(inputs, points))
-    material = tuple((name, tuple(value.ravel().tolist())) for name, value in inputs.items())
+    key = albedo, *((name, contents(value)) for name, value in inputs.items())
     # Whether the lobe stays itself when it is turned about the normal.
     roughness = inputs.get("roughness", np.zeros(1))
     turns = roughness.ndim == 1 or bool(np.ptp(roughness[0]) == 0.0)
     low = float(np.sqrt(wo[:, 2].min()))
-    series = _series(albedo, material, low, ISOTROPIC if turns else ANISOTROPIC)
+    degrees = ISOTROPIC if turns else ANISOTROPIC
+    series = SERIES.value((low, *key), lambda: _series(albedo, inputs, low, degrees))
     if series is not None:
         return _interpolated(series, wo, low, turns)
     if not turns:
@@ -166,7 +163,12 @@ def _albedo(
     # The symmetric points of a sphere have cosines that differ by roundings.
     rounded = np.asarray(np.round(np.minimum(wo[:, 2], 1.0), 13), np.float64)
     mu, indices = np.unique(rounded, return_inverse=True)
-    return _albedos(albedo, material, mu.tobytes())[indices]
+
+    def one_by_one() -> Array:
+        return albedo(_directions(mu, 0.0 * mu), _at(inputs, np.ones(len(mu), bool)))
+
+    # All scenes of a document ask for them.
+    return ALBEDOS.value((contents(mu), *key), one_by_one)[indices]
 
 
 def _directions(mu: Array, phi: Array) -> Array:
@@ -188,20 +190,13 @@ def _interpolated(series: Array, wo: Array, low: float, turns: bool) -> Array:
     return np.asarray(np.concatenate(sums)[indices], np.float64)
 
 
-@lru_cache(maxsize=8)
-def _albedos(albedo: Albedo, material: Material, cosines: bytes) -> Array:
-    """Albedos of an isotropic material, which all scenes of a document ask for."""
-    mu = np.frombuffer(cosines)
-    every = np.ones(len(mu), bool)
-    return albedo(_directions(mu, np.zeros_like(mu)), _at(_inputs(material), every))
+ALBEDOS, SERIES = Recent[Array](8), Recent[Array | None](32)  # of materials
 
 
-@lru_cache(maxsize=32)
 def _series(
-    albedo: Albedo, material: Material, low: float, degrees: tuple[tuple[int, int], ...]
+    albedo: Albedo, inputs: Inputs, low: float, degrees: tuple[tuple[int, int], ...]
 ) -> Array | None:
     """Chebyshev coefficients of an albedo, (., ., 3), or None where they fall too slowly."""
-    inputs = _inputs(material)
     for degree, turns in degrees:
         x, y = chebyshev.chebpts1(degree + 1), chebyshev.chebpts1(turns + 1)
         mu, phi = np.meshgrid(
@@ -214,13 +209,6 @@ def _series(
         if max(float(np.abs(tail).max()) for tail in tails) < TAIL:
             return np.asarray(series, np.float64)
     return None
-
-
-def _inputs(material: Material) -> dict[str, Array]:
-    return {
-        name: np.array(values) if len(values) == 1 else np.array([values])
-        for name, values in material
-    }
 
 
 def _transform(points: Array) -> Array:

@@ -2,23 +2,31 @@
 """Checks of the files that a document names and of its shader code."""
 
 import glob
+import html
 import os
 import re
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from functools import cache
+from itertools import islice
 from pathlib import Path
 
 import MaterialX as mx
 
 from mxeon.errors import DocumentError
-from mxeon.io.files import AnyPath
+from mxeon.io.files import AnyPath, regular
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.values import label, location
 from mxeon.shaders.document.words import ENDS_A_STRING
+from mxeon.shaders.document.xml import decode, strict
 from mxeon.shaders.library import SOURCE_FOLDERS, eonlib_folder, source_folder
 from mxeon.shaders.library_tree import roots
 
 CODE = ("file", "sourcecode")
+ATTRIBUTE = re.compile(r"""([\w:.-]+)\s*=\s*("[^"]*"|'[^']*')""")
+NAMING = ("value", "file", "href", "fileprefix")
+# A part of a file's name that is filled in later: <UDIM>, [token], {frame}.
+OPEN_PART = re.compile(r"<[^<>]*>|\[[^][]*\]|\{[^{}]*\}")
 
 
 def folder(document: mx.Document) -> Path:
@@ -130,3 +138,44 @@ def _libraries() -> dict[Path, str]:
     standard = mx.getDefaultDataSearchPath().asString().split(mx.PATH_LIST_SEPARATOR)
     ours = (eonlib_folder(), *(source_folder("eonlib") / name for name in SOURCE_FOLDERS))
     return {Path(each).resolve(): str(each) for each in (*standard, *ours)}
+
+
+def named_files(document: str, policy: Policy) -> list[str]:
+    """A document, and the files that it and what it includes name."""
+    home, seen, texts = Path(os.path.realpath(document)).parent, {document: None}, [document]
+    for text in texts:  # which grows by what is included
+        folders = {home, Path(os.path.realpath(text)).parent, Path.cwd(), *map(Path, policy.path)}
+        # A document with more elements than it may have is refused, and its files do not count.
+        for key, name in islice(_names(_text(text, policy)), 6 * policy.elements):
+            for path in _paths(name, folders):
+                if path not in seen and (policy.outside or inside(path, home, policy.path)):
+                    seen[path] = None
+                    if key == "href":
+                        texts.append(path)
+    return list(seen)
+
+
+def _text(path: str, policy: Policy) -> str:
+    """Text of a document, or "" of one that is too large or cannot be read."""
+    with suppress(OSError, DocumentError), open(path, "rb", opener=regular) as file:
+        data = file.read(policy.size + 1)
+        return strict(decode(data, path)) if len(data) <= policy.size else ""
+    return ""
+
+
+def _names(text: str) -> Iterator[tuple[str, str]]:
+    """Attributes of a document that may name files, each with every prefix that the document has."""
+    found = dict.fromkeys(
+        (key, html.unescape(value[1:-1])) for key, value in ATTRIBUTE.findall(text) if key in NAMING
+    )
+    prefixes = ["", *(value for key, value in found if key == "fileprefix")]
+    return ((key, prefix + value) for key, value in found if value for prefix in prefixes)
+
+
+def _paths(name: str, folders: Iterable[Path]) -> Iterator[str]:
+    """The regular files that a name may mean, by their real paths."""
+    for folder in folders:
+        paths = [str(folder / name)]
+        if OPEN_PART.search(name):
+            paths = glob.glob("*".join(map(glob.escape, OPEN_PART.split(paths[0]))))
+        yield from map(os.path.realpath, filter(os.path.isfile, paths))

@@ -8,8 +8,8 @@ import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
+from itertools import chain
 from pathlib import Path
-from typing import Any
 
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED, Result
 
@@ -40,35 +40,32 @@ class Issue:
 
 def read_issues(text: str, measured: str) -> tuple[Issue, ...]:
     """The issues of `known_issues.toml` that a check shows, with what `measured.json` says of them."""
-    found = json.loads(measured)
+    found, plain = json.loads(measured), ("title", "host", "library", "unavoidable", "differs")
     return tuple(
-        _issue(page, entry, found.get(page, {}))
+        Issue(
+            page,
+            **{name: entry[name] for name in plain if name in entry},
+            rows=_pairs(entry.get("rows", {})),
+            also=tuple(entry.get("also", ())),
+            implied=_pairs(entry.get("implied", {})),
+            repaired=_pairs(entry.get("repaired", {}), *entry.get("remains", {}).values()),
+            says=found.get(page, {}).get("says", ""),
+            patch=tuple(found.get(page, {}).get("patch", ())),
+            sizes={
+                (check, subject): size
+                for check, subjects in found.get(page, {}).get("sizes", {}).items()
+                for subject, size in subjects.items()
+            },
+        )
         for page, entry in tomllib.loads(text).items()
         if "host" in entry
     )
 
 
-def _issue(page: str, entry: Mapping[str, Any], measured: Mapping[str, Any]) -> Issue:
-    plain = ("title", "host", "library", "unavoidable", "differs")
-    pairs: dict[str, Any] = {
-        name: _pairs(entry.get(name, {})) for name in ("rows", "implied", "repaired")
-    }
-    for remains in entry.get("remains", {}).values():
-        pairs["repaired"] += _pairs(remains)
-    sizes = measured.get("sizes", {})
-    return Issue(
-        page,
-        **{name: entry[name] for name in plain if name in entry},
-        **pairs,
-        also=tuple(entry.get("also", ())),
-        says=measured.get("says", ""),
-        patch=tuple(measured.get("patch", ())),
-        sizes={(check, subject): size for check in sizes for subject, size in sizes[check].items()},
-    )
-
-
-def _pairs(subjects: Mapping[str, Sequence[str]]) -> tuple[Row, ...]:
-    return tuple((check, subject) for check, each in subjects.items() for subject in each)
+def _pairs(*groups: Mapping[str, Sequence[str]]) -> tuple[Row, ...]:
+    """Keys of checks with their subjects."""
+    rows = chain.from_iterable(each.items() for each in groups)
+    return tuple((check, subject) for check, subjects in rows for subject in subjects)
 
 
 RENDERERS = {

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Float64 values of one expression of MDL, MSL or OSL.
+
+Nothing is executed. A few substitutions turn the text into Python, `ast` parses it, and a walk over a few kinds
+of nodes evaluates it. There are no statements, loops, attributes or indices: work grows with the length alone. A
+number is a column (N, 1), a color or vector (N, 3); an int stays one, as OSL distinguishes the two. What else the
+caller's functions return brings its own operators.
+"""
+
+import ast
+import keyword
+import operator
+import re
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mxeon.errors import NotRun, ShaderError
+from mxeon.shaders.closure_calls import COMMENT
+
+Array = NDArray[Any]  # of float64, int64 or bool
+LONGEST = 10_000  # characters; those of the libraries have 700
+# What only Python would read: its words and operators, `=` for an argument, comments.
+FOREIGN = re.compile(
+    rf"\b(?:{'|'.join(keyword.kwlist)})\b|\*\*|[#@%\\'`\[\]{{}}]|(?<![<>=!])=(?!=)|[^\x20-\x7e]"
+)
+PYTHON = (
+    (r"::", "__"),
+    (r"(?<=[(,]) *(\w+) *:", r"\1="),  # a named argument
+    (r"\?", " if "),  # `a ? b : c` becomes `a if b else c`, whose parts are taken in that order
+    (r":", " else "),
+    (r"!(?!=)", "~"),
+    (r"\b((?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)f\b", r"\1"),
+)
+
+
+def _divided(left: Array, right: Array) -> Array:
+    whole = left.dtype.kind == right.dtype.kind == "i"
+    return np.trunc(left / right).astype(np.int64) if whole else left / right
+
+
+def _triple(*values: Array) -> Array:
+    """A color or vector of one number or color, or of three numbers."""
+    if len(values) not in (1, 3):
+        raise TypeError(f"a color takes one number or three; got {len(values)}")
+    return np.concatenate(np.broadcast_arrays(*values), axis=1) * np.ones((1, 3))
+
+
+OPERATORS: Mapping[type[ast.AST], Callable[[Any, Any], Any]] = {
+    **{ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: _divided},
+    **{ast.Lt: operator.lt, ast.Gt: operator.gt, ast.LtE: operator.le, ast.GtE: operator.ge},
+    **{ast.Eq: operator.eq, ast.NotEq: operator.ne},
+}
+KNOWN: Mapping[str, Any] = {
+    **{"true": np.array([[1]]), "false": np.array([[0]]), "math__PI": np.array([[np.pi]])},
+    **dict.fromkeys(("color", "float3", "vector", "normal"), _triple),
+}
+
+
+def evaluate(text: str, names: Mapping[str, Any]) -> Any:
+    """Value of an expression whose variables and functions are `names`, besides KNOWN.
+
+    Raises ShaderError for what a compiler would refuse, and NotRun for what is not supported.
+    """
+    text = " ".join(COMMENT.sub(" ", text).split())
+    if len(text) > LONGEST:
+        raise NotRun(f"an expression must have at most {LONGEST} characters; got {len(text)}")
+    if foreign := FOREIGN.search(text):
+        raise NotRun(f"{foreign[0]!r} in an expression is not supported")
+    for pattern, replacement in PYTHON:
+        text = re.sub(pattern, replacement, text)
+    known = {**KNOWN, **{name.replace("::", "__"): value for name, value in names.items()}}
+    try:
+        with np.errstate(all="ignore"):
+            return _value(ast.parse(text.strip(), mode="eval").body, known)
+    except (RecursionError, MemoryError):
+        raise NotRun("an expression must be nested less deeply") from None
+    except (SyntaxError, AttributeError, OverflowError, TypeError, ValueError) as error:
+        raise ShaderError(f"the expression of the lobe is wrong: {error.args[0]}") from None
+
+
+def _value(node: ast.expr, names: Mapping[str, Any]) -> Any:
+    match node:
+        case ast.Constant(value=str(value)):
+            return value
+        case ast.Constant(value=int(value) | float(value)):
+            return np.array([[value]], np.int64 if isinstance(value, int) else np.float64)
+        case ast.Name(id=name):
+            if name not in names:
+                raise ShaderError(f"{_spelled(name)} is not defined")
+            return names[name]
+        case ast.UnaryOp(op=ast.USub(), operand=operand):
+            return 0 - _value(operand, names)
+        case ast.UnaryOp(op=ast.Invert(), operand=operand):
+            return _value(operand, names) == 0
+        case (
+            ast.BinOp(left=left, op=operation, right=right)
+            | ast.Compare(left=left, ops=[operation], comparators=[right])
+        ) if type(operation) in OPERATORS:
+            return OPERATORS[type(operation)](_value(left, names), _value(right, names))
+        case ast.IfExp(body=condition, test=yes, orelse=no):
+            truth = _value(condition, names) != 0
+            chosen = _value(yes, names), _value(no, names)
+            return (
+                chosen[not truth.all()] if truth.all() == truth.any() else np.where(truth, *chosen)
+            )
+        case ast.Call(func=ast.Name(id=name), args=arguments, keywords=keywords):
+            function = _function(name, names)
+            positional = [_value(each, names) for each in arguments]
+            return function(*positional, **{str(k.arg): _value(k.value, names) for k in keywords})
+    raise NotRun(f"{type(node).__name__} in an expression is not supported")
+
+
+def _function(name: str, names: Mapping[str, Any]) -> Callable[..., Any]:
+    if callable(names.get(name)):
+        return names[name]  # type: ignore[no-any-return]
+    if name.rpartition("__")[0] not in ("", "df"):
+        raise NotRun(f"function {_spelled(name)} is not supported")
+    known = ", ".join(_spelled(each) for each in names if callable(names[each]))
+    raise ShaderError(f"function {_spelled(name)} is unknown; known are {known}")
+
+
+def _spelled(name: str) -> str:
+    return name.replace("__", "::")
