@@ -150,7 +150,7 @@ def test_an_environment_image_ends_at_its_poles(host, hosts, tmp_path):
     np.testing.assert_allclose(below, 0.0, atol=2.0**-7)
 
 
-def test_library_prints_the_folder_and_what_each_target_finds(capsys):
+def test_library_prints_the_folder_and_what_each_target_finds(capsys, tmp_path):
     assert main(["library", "--folder"]) == PASSED
     assert capsys.readouterr().out.strip() == str(eonlib_folder())
     assert main(["library", "--verify"]) == PASSED
@@ -159,6 +159,9 @@ def test_library_prints_the_folder_and_what_each_target_finds(capsys):
     assert main(["library"]) == PASSED
     recipes = capsys.readouterr().out.splitlines()
     assert len(recipes) == 8 and all(str(eonlib_folder()) in line for line in recipes)
+    words = recipes[-1].partition("mxeon ")[2].split()
+    names = {"DIR": str(tmp_path), "FILE": str(CLAY)}
+    assert main([names.get(word, word) for word in words]) == PASSED
 
 
 @pytest.mark.parametrize(

@@ -30,7 +30,7 @@ CLIENTS = {
     "generateshader": "generateshader --library {} --target glsl FILE",
     "MaterialX's viewer": "MaterialXView --library {}",
     "USD": "export PXR_MTLX_PLUGIN_SEARCH_PATHS={}",
-    "Blender's Cycles": "mxeon generate --library {} --profile cycles --target osl FILE",
+    "Blender's Cycles": "mxeon generate --library {} --profile cycles --target osl --outputPath DIR FILE",
 }
 
 

@@ -440,7 +440,7 @@ add_check(
 add_check(
     TRANSMISSION,
     "transmission",
-    "The throughput of a layer is 1 - E for light through the base, too.",
+    "The throughput of a layer is 1 - E for light that comes through the base, too.",
     is_layer,
     pass_all,
 )

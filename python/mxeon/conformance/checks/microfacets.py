@@ -184,7 +184,7 @@ def _turned_back(w: Array, tangent: Array) -> Array:
     key="sky",
 )
 def reflected_sky(case: Case) -> Iterator[Compared]:
-    """An uneven environment is reflected as the values integrate over it, retroreflected, too.
+    """The reflection of an uneven environment is the integral of the values over it, also for retroreflection.
 
     Means of the sky under each lobe, which one for a mirrored view has by retroreflection; factors cancel.
     """

@@ -103,7 +103,7 @@ add_check(
 
 @check(is_shader, scale("every value is 1 % too low", 0.99), lit=True, diagnose=diagnose_sum)
 def lobes_mean(case: Case) -> Iterator[Compared]:
-    """Averaged over many materials and views, no light is gained or lost."""
+    """Averaged over many materials and views, the shader returns as much light as its lobes."""
     yield from values(case)
     yield from albedos(case)
 
