@@ -58,8 +58,8 @@ def test_causes_count_documents_the_worst_first():
     assert rows == [
         "1 refused: must contain a renderable element; got ... (light.mtlx)",
         "1 no reference: there is no model for ... (a/glass.mtlx)",
-        "1 passed: as the reference's (a/clay.mtlx)",
-        "1 passed: as the reference's, with inputs that the host computed (b/noise.mtlx)",
+        "1 passed: matches the reference (a/clay.mtlx)",
+        "1 passed: matches the reference, with inputs that the host computed (b/noise.mtlx)",
     ]
 
 

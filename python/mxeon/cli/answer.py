@@ -175,7 +175,7 @@ def _document_verdicts(run: Run) -> Iterator[DocumentVerdict]:
 def _cause(result: Result, measured: bool) -> str:
     """Why a document has its verdict, by the result that decides."""
     if result.verdict == PASSED and result.check == "picture":
-        return f"as the reference's{', with inputs that the host computed' * measured}"
+        return f"matches the reference{', with inputs that the host computed' * measured}"
     if result.verdict == PASSED and result.check == DOCUMENT_KEY:
         return "shaders are generated"
     reason = (result.reason or result.diagnosis).split("; last output:")[0]
