@@ -155,7 +155,7 @@ def node_table(node, results):
     everything = {mode_of(subject) for _, subject in rows}
     words = ", ".join(
         f"`{check}`"
-        + (set(modes) != everything) * f" ({', '.join(each or 'alone' for each in modes)})"
+        + (set(modes) != everything) * f" ({'; '.join(each or 'alone' for each in modes)})"
         for check, modes in passed.items()
     )
     parts = [HEAD + "".join(lines)] if lines else []
