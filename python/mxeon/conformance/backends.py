@@ -79,6 +79,7 @@ if TYPE_CHECKING:
 WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
 NO_IMPLEMENTATION = "Could not find a matching implementation"
 Pairs: TypeAlias = tuple[Array, Array, Mask]  # wo, wi, and which of them are judged
+Families: TypeAlias = tuple[type[Spec], ...]
 Asked: TypeAlias = "tuple[Shader, Array, Array, Values, str]"  # for pairs, in a branch
 T = TypeVar("T")
 
@@ -165,11 +166,13 @@ class Samples:
 class Backend(ABC):
     """A way of asking an engine about one node: its shader, and values of it."""
 
-    families: ClassVar[tuple[type[Spec], ...]] = ()  # of nodes of which it has values
-    others: ClassVar[tuple[type[Spec], ...]] = ()  # of these, families of which it has none
+    families: ClassVar[Families] = ()  # of nodes of which it has values
+    others: ClassVar[Families] = ()  # of these, families of which it has none
     # Axes of `checks.states` of which it has the first state alone.
     plain: ClassVar[tuple[str, ...]] = ()
     any_pairs: ClassVar[bool] = True  # those at the edges of the domain, too
+    # Families of nodes of which the host itself finds no light and lets none pass.
+    unlit: ClassVar[Families] = ()
     sampled: ClassVar[type[Samples]] = Samples
     fewer: ClassVar[Counts | None] = None  # counts of samples where a spec has more
 
@@ -194,11 +197,6 @@ class Backend(ABC):
     def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
         """The largest error of a quantity, engine functions apart; None where it is not asked."""
         return spec.errors.get(quantity)
-
-    @classmethod
-    def lit(cls, spec: Spec) -> bool:
-        """Whether the host itself finds light and lets it pass."""
-        return True
 
     def implemented(self, text: str) -> Shader:
         """Shader of a document; NotRun where the target has no implementation of an optional node."""
@@ -247,8 +245,8 @@ class Backend(ABC):
 class Evaluating(Backend):
     """An engine that runs the generated shader for any pairs."""
 
-    families: ClassVar[tuple[type[Spec], ...]] = (Spec,)
-    others = (SurfaceLobe, EmittingSurface)
+    families: ClassVar[Families] = (Spec,)
+    others: ClassVar[Families] = (SurfaceLobe, EmittingSurface)
 
     @classmethod
     def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
@@ -259,7 +257,7 @@ class Evaluating(Backend):
         return super().error(spec, quantity)
 
     def precision(self, quantity: str) -> tuple[Term, ...]:
-        return self.spec.engine(quantity, self.host)
+        return () if isinstance(self.spec, self.unlit) else self.spec.engine(quantity, self.host)
 
     @cached_property
     def shader(self) -> Shader:
@@ -390,7 +388,7 @@ class Closures(Evaluating):
     """A host that returns closures; arguments have no errors, and no closure finds light."""
 
     plain = ("lights", "environment", "inputs")
-    sampled, fewer = ClosureSamples, FEW_CLOSURES
+    sampled, fewer, unlit = ClosureSamples, FEW_CLOSURES, (LobeSpec,)
 
     def asked(self, asked: Asked, output: str, irradiance: NDArray[np.float32] | None) -> Array:
         from mxeon.conformance.reference.closures import evaluate
@@ -416,13 +414,6 @@ class Closures(Evaluating):
 
     def together(self, batch: Batch, irradiance: NDArray[np.float32] | None, two: bool) -> Array:
         return np.pi * self.evaluate(batch, "direct", shader=self.two if two else self.shader)
-
-    @classmethod
-    def lit(cls, spec: Spec) -> bool:
-        return not isinstance(spec, LobeSpec)
-
-    def precision(self, quantity: str) -> tuple[Term, ...]:
-        return () if isinstance(self.spec, LobeSpec) else super().precision(quantity)
 
     @property
     def unset(self) -> tuple[str, ...]:
@@ -537,17 +528,19 @@ class RenderedLobeSamples(RenderedSamples):
         return (batch.where(_is_shown(batch, LOBE_RIM)),)
 
 
+# Nodes of pbrlib without a closure of their own in renderers.
+WITHOUT_CLOSURE = (HairSpec, SubsurfaceSpec, FilmSpec, TransmissionSpec)
+
+
 class Rendered(Evaluating):
     """OSL's testrender, whose own closures light a point."""
 
-    sampled, fewer = RenderedSamples, FEW_RENDERED
+    families: ClassVar[Families] = (DiffuseSpec, PbrSpec)
+    others: ClassVar[Families] = (HairSpec, FilmSpec, TransmissionSpec)
+    sampled, fewer, unlit = RenderedSamples, FEW_RENDERED, (Spec,)
     variants: ClassVar[Mapping[str, tuple[Variant[Scattering], ...]]] = BSDL_VARIANTS
     flat: ClassVar[Tolerance] = FLAT
     sharp: ClassVar[Tolerance] = SHARP
-
-    @classmethod
-    def supports(cls, spec: Spec) -> bool:
-        return isinstance(spec, (DiffuseSpec, SubsurfaceSpec)) or _is_plain(spec)
 
     @classmethod
     def prepared(cls, spec: Spec) -> Spec:
@@ -574,13 +567,6 @@ class Rendered(Evaluating):
 
     place: ClassVar[Tolerance | None] = None  # error of values of microfacets by a pixel's place
 
-    @classmethod
-    def lit(cls, spec: Spec) -> bool:
-        return False
-
-    def precision(self, quantity: str) -> tuple[Term, ...]:
-        return ()
-
     def direct(self, batch: Batch) -> Array:
         """Values, where need be of a pair that is shown next to the one that is not."""
         return super().direct(replace(batch, wi=apart(batch.wo, batch.wi)))
@@ -589,22 +575,16 @@ class Rendered(Evaluating):
 class Traced(Rendered):
     """Cycles, whose closures of pbrlib's nodes light a point; pictures show the diffuse ones."""
 
+    families, others = (PbrSpec,), WITHOUT_CLOSURE
     variants = CYCLES_VARIANTS
     flat, sharp, place = TRACED_FLAT, TRACED_SHARP, TRACED_SHARP
-
-    @classmethod
-    def supports(cls, spec: Spec) -> bool:
-        return _is_plain(spec)
 
 
 class RenderedLobes(Rendered):
     """The diffuse lobe of a surface shader, told apart from what lies over it; see SurfaceLobe."""
 
+    families, others = (SurfaceLobe,), ()
     sampled, any_pairs = RenderedLobeSamples, False
-
-    @classmethod
-    def supports(cls, spec: Spec) -> bool:
-        return isinstance(spec, SurfaceLobe)
 
     @classmethod
     def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
@@ -627,12 +607,6 @@ def diffuse_alone(show: Callable[[Batch], Array], batch: Batch) -> Array:
     lambert = show(batch.altered(color=WHITE, roughness=0.0)) - others
     with np.errstate(divide="ignore", invalid="ignore"):  # a shader that stays black has no value
         return (show(batch) - others) / lambert * batch.wi[:, 2:]
-
-
-def _is_plain(spec: Spec) -> bool:
-    """Whether a node of pbrlib has a closure of its own in renderers."""
-    others = (HairSpec, SubsurfaceSpec, FilmSpec, TransmissionSpec)
-    return isinstance(spec, PbrSpec) and not isinstance(spec, others)
 
 
 @lru_cache(maxsize=16)
@@ -870,13 +844,10 @@ class LobePictures(Pictures):
 class Drawn(Pictures):
     """Pictures of a sphere whose points and light have no error but rounding."""
 
+    families = (PbrSpec, DiffuseSpec, SurfaceLobe)
+    others = (*WITHOUT_CLOSURE, CombinedSpec)
     errors = errors_of(EXACT, EXACT_ALBEDO)
     lobe: ClassVar[Tolerance] = LOBE_VALUE
-
-    @classmethod
-    def supports(cls, spec: Spec) -> bool:
-        plain = _is_plain(spec) and not isinstance(spec, CombinedSpec)
-        return plain or isinstance(spec, (DiffuseSpec, SurfaceLobe))
 
     @classmethod
     def error(cls, spec: Spec, quantity: str) -> Tolerance | None:

@@ -76,7 +76,7 @@ class Check:
         """Whether it is asked about a node on a host, by one of its backends."""
         if not (self.applies(spec) and self.hosts(spec, host)):
             return False
-        if (self.pairs and not backend.any_pairs) or (self.lit and not backend.lit(spec)):
+        if (self.pairs and not backend.any_pairs) or (self.lit and isinstance(spec, backend.unlit)):
             return False
         return (self.tolerance or backend.error(spec, self.quantity)) is not None
 

@@ -3,21 +3,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import MaterialX as mx
 import numpy as np
 from numpy.typing import NDArray
 
 from mxeon import hosts
-from mxeon.conformance.reference.graph import Graph
-from mxeon.conformance.reference.measured import PATTERNS, HostValues, Measure
+from mxeon.conformance.reference.graph import DRAWN, Graph, Measure
 from mxeon.conformance.reference.nodes import ManyMaterialsError, ShadingPoints, ShownLobe
-from mxeon.errors import NotRun
+from mxeon.conformance.samples import Array
+from mxeon.errors import DocumentError, NotRun
 from mxeon.hosts import base
 from mxeon.hosts.base import Identity, Query
-from mxeon.shaders.document.drawn_values import LIT, Elements
+from mxeon.shaders.document.drawn_values import (
+    LIT,
+    NAME,
+    Elements,
+    emission_document,
+    value_document,
+)
+from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import TRANSMISSION, inner_lobes
 from mxeon.shaders.scene import VIEW, Scene, sphere, tangents
@@ -27,8 +35,56 @@ SCENES = 4  # whose points are kept: the pictures of a run have as many
 STRIDE = 8  # of the pixels that are judged where each has a material of its own
 MOST = 2000  # pixels of which all are judged then: an integral takes about a millisecond
 
+PATTERNS = (*DRAWN, "boolean", "color4", "vector4")  # of which a generator draws three components
+TARGETS = ("glsl", "essl", "vulkan", "wgsl")  # whose shaders of an output draw its value
+
 # Any target will do: the document behind the shader is what is evaluated.
 ROW = hosts.Row("reference", target="glsl", module=__name__)
+
+
+class HostValues:
+    """Array of a shader's nodes at the pixels of a picture, as a host draws them; NotRun if it cannot.
+
+    Patterns are not what the reference knows: where it has no function for a node, the value that comes
+    from it is drawn by the host that is judged, as an output of a document of its own, and the reference
+    goes on from there.
+    """
+
+    def __init__(self, host: base.Host, shader: Shader, library: str, policy: Policy) -> None:
+        self._host, self._shader = host, shader
+        self.library, self._policy = library, policy
+        self._pictures: dict[tuple[str, ...], Array] = {}
+
+    def __call__(self, size: int, elements: Elements, kind: str, output: str = "") -> Array:
+        """Array of a node in a picture, (size, size, components)."""
+        key = (*(each.getNamePath() for each in elements), output, str(size))
+        make = partial(value_document, self._shader.document, elements, kind, output)
+        return self._drawn(key, make, elements[-1].getNamePath(), size)[..., : DRAWN[kind]]
+
+    def emitted(self, size: int, output: mx.Output) -> Array:
+        """Picture of a surface that emits the color of an output, (size, size, 3)."""
+        make = partial(emission_document, self._shader.document, output)
+        return self._drawn((output.getNamePath(), str(size)), make, output.getNamePath(), size)
+
+    def _drawn(
+        self,
+        key: tuple[str, ...],
+        make: Callable[[], tuple[mx.Document, str]],
+        name: str,
+        size: int,
+    ) -> Array:
+        """Picture of the element of a document to be made, on which no light falls; kept by a key."""
+        if key in self._pictures:
+            return self._pictures[key]
+        if self._host.target not in TARGETS:
+            raise NotRun(f"{self._host.name}: the value of {name!r} cannot be drawn here")
+        document, path = make()
+        try:
+            [shader] = self._host.compile(document, path, library=self.library, policy=self._policy)
+        except DocumentError as error:
+            raise NotRun(f"reference: the value of {name!r} cannot be drawn; {error}") from None
+        image = self._host.picture(shader, Scene(NAME, size=size))
+        return self._pictures.setdefault(key, np.asarray(image, np.float64))
 
 
 @dataclass(frozen=True, eq=False)

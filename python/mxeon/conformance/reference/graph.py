@@ -21,7 +21,6 @@ import MaterialX as mx
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.conformance.reference.measured import DRAWN, Measure
 from mxeon.conformance.reference.nodes import (
     COMBINATIONS,
     LOBES,
@@ -46,10 +45,14 @@ from mxeon.io.srgb import srgb_decoded
 from mxeon.models.core.layering import Bsdf
 from mxeon.models.nodes import utilities
 from mxeon.models.nodes.emissions import BASE, EMISSIONS, Emission
-from mxeon.shaders.document.drawn_values import CLOSURES
+from mxeon.shaders.document.drawn_values import CLOSURES, Elements
 from mxeon.shaders.document.graphs import reachable
 from mxeon.shaders.document.values import color_spaces
 
+# Types that a generator draws as a color, and their components.
+DRAWN = {"float": 1, "integer": 1, "vector2": 2, "color3": 3, "vector3": 3}
+# Array of a node, by its type and the name of its output.
+Measure: TypeAlias = Callable[[Elements, str, str], Array]
 Path: TypeAlias = tuple[str, ...]
 Step: TypeAlias = tuple[Callable[..., Value], tuple[Path, ...]]
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Nodes of a document: BSDFs as rows of the models, those that combine them, and those that compute numbers.
 
-A host draws the values of every other node that is no nodegraph of these: see `measured`.
+A host draws the values of every other node that is no nodegraph of these: see `HostValues`.
 
 A value is an array whose last axis holds its components; a number is () or (N, 1). What a function returns is
 repeated over the components of the node's type, so that a number becomes a color.

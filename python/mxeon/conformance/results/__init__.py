@@ -88,7 +88,7 @@ class Result:
     - `claimed`, `model`: Titles of the model that a renderer's own node claims, and of its published
       form that was judged.
     - `measured`: Inputs of a document's nodes whose values come from the host itself, since nodes of
-      patterns have no model; see `mxeon.conformance.reference.measured`.
+      patterns have no model; see `mxeon.conformance.reference.HostValues`.
     - `pages`: Names of the pages of `docs/upstream/` on the defects that it shows.
 
     Raises ValueError if the verdict is unknown, or an error is negative or has no tolerance.
