@@ -34,7 +34,8 @@ every_model = pytest.mark.parametrize("name", MODELS)
 SCATTERING = [name for name, each in MODELS.items() if isinstance(each, ShadingModel)]
 every_scattering = pytest.mark.parametrize("name", SCATTERING)
 SAMPLED = [name for name in SCATTERING if "sample" in MODELS[name].functions]
-ROUGH = {"roughness": 0.5, "alpha": 0.3}
+# Inputs that samples spread over, by their channels; others have their defaults.
+ROUGH = {("roughness", 0): 0.5, ("roughness", 2): (0.3, 0.6), ("alpha", 0): 0.3}
 OTHER_ALBEDO = ("burley_lambert",)  # whose defect it is
 MASS = 2e-3  # of a density: noise of the share below the horizon
 
@@ -114,7 +115,8 @@ def sphere(low, high, count=96):
 @pytest.mark.parametrize("name", SAMPLED)
 def test_every_drawn_direction_has_a_value_and_its_density(name):
     row, wo = mxeon.model(name), np.array([np.sqrt(0.84), 0.0, 0.4])
-    inputs = {each.name: ROUGH[each.name] for each in row.parameters if each.name in ROUGH}
+    keys = {each.name: (each.name, each.channels) for each in row.parameters}
+    inputs = {each: ROUGH[key] for each, key in keys.items() if key in ROUGH}
     k, count = np.random.default_rng(1), 96
     grid = np.stack(np.meshgrid(*[np.arange(count)] * 2), axis=-1).reshape(-1, 2)
     wi, pdf = row.sample(wo, (grid + k.random(grid.shape)) / count, **inputs)

@@ -165,31 +165,3 @@ def test_mitsuba_has_the_values_of_the_model(tilt):
             form=FORMS[TILTED],
         )
         np.testing.assert_allclose(value, expected, rtol=2e-6)
-
-
-@pytest.mark.parametrize(
-    ("inputs", "message"),
-    [
-        ({"roughness_R": (0.0, 0.1)}, r"^roughness_R must lie in \[1e-12, 1e12\]; got 0.0 at"),
-        ({"roughness_TT": 0.1}, r"^roughness_TT must have shape \(..., 2\); got shape \(\)"),
-        ({"tint_TRT": 1.5}, r"^tint_TRT must lie in \[0, 1\]; got 1.5"),
-        ({"cuticle_angle": -0.1}, r"^cuticle_angle must lie in \[0, 1\]; got -0.1"),
-        ({"absorption_coefficient": -1.0}, r"^absorption_coefficient must lie in \[0, 1e50\]"),
-    ],
-)
-def test_inputs_out_of_range_are_refused(inputs, message):
-    with pytest.raises(ValueError, match=message):
-        chiang_hair_bcsdf([0, 0, 1], [0, 0, -1], **inputs)
-
-
-def test_other_arguments_are_refused():
-    with pytest.raises(TypeError, match=r"^inputs must be among tint_R, .*; got weight$"):
-        chiang_hair_bcsdf([0, 0, 1], [0, 0, -1], weight=1.0)
-    with pytest.raises(ValueError, match="^wi must be unit vectors"):
-        chiang_hair_bcsdf([0, 0, 1], [0, 0, -2])
-    with pytest.raises(ValueError, match=r"^theta_i must lie in \[-pi/2, pi/2\]; got 2.0"):
-        hair_longitudinal(2.0, 0.0, 0.1)
-    with pytest.raises(ValueError, match=r"^variance must lie in \[1e-12, 1e12\]; got 0"):
-        hair_longitudinal(0.0, 0.0, 0.0)
-    with pytest.raises(ValueError, match=r"^scale must lie in \[1e-12, 1e12\]; got 0"):
-        hair_azimuthal(0.0, 0.0)

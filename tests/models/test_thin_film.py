@@ -16,7 +16,6 @@ from mxeon.models.thin_film import (
     TEXT,
     Form,
     PolynomialCurve,
-    film_albedo_dir,
     film_brdf,
     film_conductor,
     film_curve,
@@ -229,17 +228,6 @@ def test_equal_inputs_of_all_directions_have_the_values_of_each(row):
     assert film_brdf(row.category, wo[0], wi[0], twice).shape == (2, 3)
 
 
-def test_bad_films_are_refused():
-    with pytest.raises(ValueError, match=r"^film_ior must lie in \[1, 1e50\]; got 0.9"):
-        film_dielectric(1.0, 100.0, 0.9, 1.5)
-    wo, material = [0.0, 0.0, 1.0], {"tint": WHITE, "ior": 1.5, "roughness": [0.3, 0.3]}
-    film = {"thinfilm_thickness": -1.0, "thinfilm_ior": 1.5}
-    with pytest.raises(ValueError, match="^thinfilm_thickness must lie in"):
-        film_brdf("dielectric_bsdf", wo, wo, material | film)
-    with pytest.raises(ValueError, match="^thinfilm_thickness must lie in"):
-        film_albedo_dir("dielectric_bsdf", wo, material | film)
-
-
 def filmed(row):
     """Random inputs of a row, with a film that is not next to nothing."""
     values = inputs(row)
@@ -258,15 +246,3 @@ def test_the_average_of_a_curve_is_weighted_by_the_cosine(film):
     expected = (2.0 * mu[:, np.newaxis] * film_dielectric(mu, *film)).mean(axis=0)
     average = film_curve("dielectric_bsdf").average(**material)
     assert np.allclose(average, expected, rtol=0.0, atol=AVERAGED)
-
-
-def test_a_film_refuses_forms_and_inputs_of_another_type():
-    with pytest.raises(ValueError, match="^form must be a Form; got 'x'$"):
-        film_dielectric(0.5, 500.0, 1.5, 1.5, form="x")
-    wo = [[0.0, 0.0, 1.0]]
-    with pytest.raises(ValueError, match="^inputs must be a mapping of names to values; got 3$"):
-        film_brdf("dielectric_bsdf", wo, wo, 3)
-    with pytest.raises(
-        ValueError, match="^inputs must have ior, roughness, thinfilm_ior, thinfilm_"
-    ):
-        film_brdf("dielectric_bsdf", wo, wo, {"tint": 1.0})

@@ -6,7 +6,6 @@ import pytest
 
 from mxeon.models import fresnel_dielectric, smith_g1, smith_g2
 from mxeon.models.microfacet import (
-    DIELECTRIC,
     dielectric_albedo_dir,
     generalized_schlick_albedo_dir,
 )
@@ -15,7 +14,6 @@ from mxeon.models.transmission import (
     Facet,
     dielectric_btdf,
     dielectric_transmittance_dir,
-    evaluate_btdf,
     generalized_schlick_btdf,
     generalized_schlick_transmittance_dir,
     refraction_direction,
@@ -196,15 +194,12 @@ def test_microfacets_neither_reflect_nor_transmit_more_than_all_light(ior):
         assert (R + T).max() <= 1.0 + tolerances.TRANSMITTANCE_CRITICAL * (ior < 1.0) + 1e-5
 
 
-def test_light_may_pass_between_directions_that_no_facet_joins_by_the_letter():
-    wo, wi = (
+def test_no_light_passes_between_directions_that_no_facet_joins():
+    bent = (
         view(0.3),
         view(0.3) * DOWN,
-    )  # the light is bent back, by far more than an index of 1.5 can
-    inputs = {"tint": np.ones(1)}
-    letter = evaluate_btdf(DIELECTRIC.at, wo, wi, [0.5, 0.5], 1.5, inputs, {}, anywhere=True)
-    assert letter[0] > 0.0
-    assert dielectric_btdf(wo, wi, 1.0, [0.5, 0.5], 1.5)[0] == 0.0
+    )  # back to where it came from, farther than an index of 1.5 can
+    assert dielectric_btdf(*bent, 1.0, [0.5, 0.5], 1.5)[0] == 0.0
 
 
 @pytest.mark.parametrize("reading", READINGS)
@@ -253,31 +248,3 @@ def _mitsuba(mi, bsdf, mode, wo, wi):
     point = mi.SurfaceInteraction3f()
     point.wi = mi.Vector3f(wo)
     return bsdf.eval(mi.BSDFContext(mode), point, mi.Vector3f(wi))[0]
-
-
-MESSAGES = (
-    (
-        lambda: refraction_direction([0, 0, -1.0], [0, 0, 1.0], 1.5),
-        "wo must not point below the horizon",
-    ),
-    (
-        lambda: transmission_half_vector([0, 0, 1.0], [0, 0, 1.0], 1.5),
-        "wi must not point above the horizon",
-    ),
-    (
-        lambda: dielectric_btdf([0, 0, 1.0], [0, 0, -1.0], 1.0, [2.0, 0.5], 1.5),
-        "roughness must lie in [0, 1]; got 2.0",
-    ),
-    (
-        lambda: dielectric_transmittance_dir([0, 0, 1.0], 1.0, [0.5, 0.5], -1.0),
-        "ior must lie in [0, 1e50]; got -1.0",
-    ),
-    (lambda: schlick_ior(0.5, "mean"), "reading must be one of text, unclamped"),
-)
-
-
-@pytest.mark.parametrize(("call", "message"), MESSAGES)
-def test_bad_arguments_are_named(call, message):
-    with pytest.raises(ValueError) as error:
-        call()
-    assert str(error.value).startswith(message)

@@ -69,6 +69,7 @@ from numpy.polynomial.chebyshev import chebint, chebval
 from mxeon.models import diffuse as formulas
 from mxeon.models.core.arguments import (
     checked,
+    checked_all,
     checked_color,
     checked_colors,
     checked_directions,
@@ -373,10 +374,7 @@ def _metal_share(
 ) -> Array:
     """Share of the metal, (..., 1); raise ValueError unless all arguments broadcast."""
     vectors = {"wo": checked_directions("wo", wo), "wi": checked_directions("wi", wi)}
-    numbers = {
-        "roughness": checked("roughness", roughness),
-        "metalness": checked("metalness", metalness),
-    }
+    numbers = checked_all({"roughness": roughness, "metalness": metalness})
     lead_shape(vectors | {"rho": checked_color("rho", rho)}, numbers)
     return numbers["metalness"][..., np.newaxis]
 

@@ -15,7 +15,7 @@ not broadcast. Formulas have the components of directions, (3, ...), on the firs
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,6 +24,7 @@ import numpy as np
 from mxeon.models.core.arguments import (
     channel_count,
     checked,
+    checked_all,
     checked_color,
     checked_directions,
     checked_numbers,
@@ -34,7 +35,6 @@ from mxeon.models.core.arguments import (
     lead_shape,
 )
 from mxeon.models.core.arrays import (
-    NUMPY,
     Array,
     ArrayLike,
     Numbers,
@@ -57,44 +57,29 @@ LOBES = ("R", "TT", "TRT", "TRRT+")
 SCALE = np.sqrt(np.pi / 8.0)  # of the logistic distribution: Azimuthal Scattering
 LEAST = 1e-300  # of numbers that divide, lest a quotient overflow by itself
 
-# The power series of I_0 has positive terms alone; beyond BESSEL the asymptotic one is as exact, its
-# least term being exp(-2 x). Both stop where a term is below 2^-53 of the sum.
-BESSEL, TERMS = 20.0, 48
+# Coefficients of (x / 20)^(2 k) in the power series of I_0, which has positive terms alone, and of (20 / x)^k in
+# the asymptotic one, as exact beyond x = 20, its least term being exp(-2 x). Both end where a term is below 2^-53.
+BESSEL, ORDERS = 20.0, np.arange(1, 48)
+SERIES = np.cumprod(np.append(1.0, (0.5 * BESSEL / ORDERS) ** 2)).tolist()
+TAIL = np.cumprod(
+    np.append(1.0, (2 * ORDERS[:38] - 1) ** 2 / (8.0 * ORDERS[:38] * BESSEL))
+).tolist()
 
 
 def bessel_scaled(x: Array) -> Array:
     """exp(-x) I_0(x) for x >= 0, of [Olver2010], Eq. 10.25.2 and 10.40.1."""
     xp = array_namespace(x)
     small, large = xp.minimum(x, BESSEL), xp.maximum(x, BESSEL)
-    if xp is NUMPY:
-        series, tail = _bessel_series(small, large)
-    else:
-        series, tail = (1.0 + each for each in _bessel_powers(small, large))
+    series, tail = _polynomial(SERIES, xp.square(small / BESSEL)), _polynomial(TAIL, BESSEL / large)
     return xp.where(x < BESSEL, xp.exp(-small) * series, tail / xp.sqrt(2.0 * np.pi * large))
 
 
-def _bessel_series(small: Array, large: Array) -> tuple[Array, Array]:
-    """Both series, term by term."""
-    series = term = np.ones_like(small)
-    tail = rest = np.ones_like(large)
-    for k in range(1, TERMS):
-        term = term * np.square(0.5 * small / k)
-        series = series + term
-        if k < 2.0 * BESSEL - 1.0:  # beyond, the terms grow again
-            rest = rest * (2 * k - 1) ** 2 / (8.0 * k * large)
-            tail = tail + rest
-    return series, tail
-
-
-def _bessel_powers(small: Array, large: Array) -> Iterator[Array]:
-    """Both series but for their first term, as few operations, which a library compiles in less time."""
-    xp = array_namespace(small)
-    k = np.arange(1, TERMS)
-    terms = np.cumprod((0.5 * BESSEL / k) ** 2)
-    rest = np.cumprod(np.where(k < 2.0 * BESSEL - 1.0, (2 * k - 1) ** 2 / (8.0 * k * BESSEL), 0.0))
-    for x, powers, coefficients in ((small / BESSEL, 2 * k, terms), (BESSEL / large, k, rest)):
-        factors = x[..., np.newaxis] ** like(powers, x)
-        yield xp.sum(factors * like(coefficients, x), axis=-1)
+def _polynomial(coefficients: list[float], x: Array) -> Array:
+    """Sum of coefficients times powers of x, by Horner's rule."""
+    total = 0.0 * x + coefficients[-1]
+    for each in reversed(coefficients[:-1]):
+        total = total * x + each
+    return total
 
 
 def longitudinal(sin_i: Array, cos_i: Array, sin_o: Array, cos_o: Array, v: Array) -> Array:
@@ -199,8 +184,9 @@ def attenuations(
     bends = ior > least
     sin_t = at_most(xp.abs(view.sin_o) / xp.maximum(guarded(ior, bends, least), LEAST), 1.0)
     cos_t = root((1.0 - sin_t) * (1.0 + sin_t))
-    cos_t = xp.maximum(guarded(cos_t, cos_t > least, least), LEAST)
-    return attenuation(F, xp.exp(-absorption * (2.0 * xp.cos(view.gamma_t) / cos_t)))
+    passes, path = cos_t > least, 2.0 * xp.cos(view.gamma_t)
+    path = xp.where(passes, path / xp.maximum(guarded(cos_t, passes, 1.0), LEAST), path / least)
+    return attenuation(F, xp.exp(-absorption * path))
 
 
 def distribution(
@@ -405,18 +391,13 @@ def chiang_hair_roughness(
         >>> r.round(6), tt.round(6), trt.round(6)
         (array([0.006516, 0.10076 ]), array([0.001629, 0.10076 ]), array([0.026063, 0.10076 ]))
     """
-    values = {
-        "longitudinal": longitudinal,
-        "azimuthal": azimuthal,
-        "scale_tt": scale_tt,
-        "scale_trt": scale_trt,
-    }
-    numbers = {name: checked(name, value) for name, value in values.items()}
+    scales = {"scale_tt": scale_tt, "scale_trt": scale_trt}
+    numbers = checked_all({"longitudinal": longitudinal, "azimuthal": azimuthal} | scales)
     shape, xp = lead_shape({}, numbers), array_namespace(*numbers.values())
-    long, azim, *scales = (xp.broadcast_to(value, shape) for value in numbers.values())
+    long, azim, *factors = (xp.broadcast_to(value, shape) for value in numbers.values())
     v = xp.square(0.726 * long + 0.812 * long**2 + 3.7 * long**20)
     s = 0.265 * azim + 1.194 * azim**2 + 5.372 * azim**22
-    tt, trt = (xp.stack([scale * scale * v, s], axis=-1) for scale in scales)
+    tt, trt = (xp.stack([factor * factor * v, s], axis=-1) for factor in factors)
     return xp.stack([v, s], axis=-1), tt, trt
 
 
@@ -442,12 +423,9 @@ def deon_hair_absorption_from_melanin(
         >>> deon_hair_absorption_from_melanin(0.25, 0.5, *colors).round(6)
         array([0.087168, 0.157794, 0.348095])
     """
-    values = {
-        "melanin_concentration": melanin_concentration,
-        "melanin_redness": melanin_redness,
-    }
     colors = {"eumelanin_color": eumelanin_color, "pheomelanin_color": pheomelanin_color}
-    numbers = {name: checked(name, value) for name, value in values.items()}
+    mixed = {"melanin_concentration": melanin_concentration, "melanin_redness": melanin_redness}
+    numbers = checked_all(mixed)
     vectors = {name: _color(name, value) for name, value in colors.items()}
     lead_shape(vectors, numbers)
     concentration, redness = (value[..., np.newaxis] for value in numbers.values())

@@ -55,7 +55,7 @@ import numpy as np
 
 from mxeon.models.core.arguments import (
     broadcastable,
-    checked,
+    checked_all,
     checked_directions,
     checked_pairs,
     checked_roughness,
@@ -138,13 +138,14 @@ def cosine_pdf(wi: ArrayLike) -> Array:
 
 def checked_draw(wo: ArrayLike, u: ArrayLike, **numbers: ArrayLike) -> list[Array]:
     """Checked arguments of a sampler, in this order, as float64 arrays whose shapes broadcast."""
-    return _broadcastable({"wo": checked_directions("wo", wo), "u": checked_pairs("u", u)}, numbers)
+    vectors = {"wo": checked_directions("wo", wo), "u": checked_pairs("u", u)}
+    return broadcastable(vectors, checked_all(numbers))
 
 
 def checked_pdf(wo: ArrayLike, wi: ArrayLike, **numbers: ArrayLike) -> list[Array]:
     """Checked arguments of a density, in this order, as float64 arrays whose shapes broadcast."""
     vectors = {"wo": checked_directions("wo", wo), "wi": checked_directions("wi", wi)}
-    return _broadcastable(vectors, numbers)
+    return broadcastable(vectors, checked_all(numbers))
 
 
 def unpack_uniforms(u: ArrayLike) -> tuple[Array, Array]:
@@ -186,11 +187,6 @@ def rotate_z(w: Array, cosine: Array, sine: Array) -> Array:
     """Vectors rotated about the normal by the angle that has this cosine and sine."""
     x, y = w[..., 0], w[..., 1]
     return stack_xyz(cosine * x - sine * y, sine * x + cosine * y, w[..., 2])
-
-
-def _broadcastable(vectors: dict[str, Numbers], numbers: dict[str, ArrayLike]) -> list[Array]:
-    """Vectors and checked numbers as float64 arrays; raise if their shapes do not broadcast."""
-    return broadcastable(vectors, {name: checked(name, value) for name, value in numbers.items()})
 
 
 def _uniform_density(wi: Numbers) -> Array:

@@ -30,6 +30,7 @@ import numpy as np
 
 from mxeon.models.core.arguments import (
     checked,
+    checked_all,
     checked_numbers,
     checked_triples,
     checked_vector,
@@ -51,7 +52,7 @@ from mxeon.models.core.arrays import (
     like,
     root,
 )
-from mxeon.models.core.evaluation import evaluate, evaluate_material
+from mxeon.models.core.evaluation import evaluate, evaluate_number
 from mxeon.models.diffuse import cosines
 
 # Roughness that the Zeltner lobe has at least: [MaterialX2026], Zeltner Sheen Model.
@@ -208,21 +209,18 @@ def conty_kulla_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
         >>> round(float(conty_kulla_albedo_dir(1.0, 0.5)), 12)
         0.083333333333
     """
-    numbers = dict(
-        zip(("mu", "roughness"), checked_numbers(mu=mu, roughness=roughness), strict=True)
-    )
-    return evaluate_material(_albedo, {}, numbers, 1, BLOCK)[..., 0][()]
+    return evaluate_number(_albedo, {}, checked_all({"mu": mu, "roughness": roughness}), BLOCK)
 
 
 def _albedo(mu: Array, roughness: Array) -> Array:
-    """Albedo of a block, shape (1, ...)."""
+    """Albedo of a block."""
     xp = array_namespace(mu, roughness)
     if xp is NUMPY:
         mu, roughness = np.broadcast_arrays(mu, roughness)
-        albedo = np.zeros((1, *mu.shape))
+        albedo = np.zeros(mu.shape)
         for steep in (False, True):
             rows = ((mu > STEEP) == steep) & (roughness > 0.0)
-            albedo[:, rows] = _integral(mu[rows], np.maximum(roughness[rows], LEAST), steep)
+            albedo[rows] = _integral(mu[rows], np.maximum(roughness[rows], LEAST), steep)
         return albedo
     above, rough = mu > STEEP, roughness > 0.0
     r = guarded(roughness, rough, 1.0)
@@ -231,7 +229,7 @@ def _albedo(mu: Array, roughness: Array) -> Array:
     near, far = (_integral(guarded(mu - k * step, above, STEEP), r, True) for k in (1.0, 2.0))
     high = 2.0 * near - far
     low = _integral(guarded(mu, ~above, STEEP), r, False)
-    return xp.where(rough, xp.where(above, high, low), 0.0)[np.newaxis]
+    return xp.where(rough, xp.where(above, high, low), 0.0)
 
 
 def _integral(mu: Array, roughness: Array, steep: bool) -> Array:

@@ -47,6 +47,7 @@ from numpy.polynomial import legendre
 
 from mxeon.models.core.arguments import (
     checked,
+    checked_all,
     checked_choice,
     checked_directions,
     checked_numbers,
@@ -253,8 +254,13 @@ def _orders(x: Array, y: Array, phi: Array, orders: int) -> Array:
 def _integrated(x: Array, y: Array, phi: Array) -> Array:
     """`_orders` of all orders by an integral over wavenumbers.
 
-    The sum of all w^m is ((1 - |w|^2) / |1 - w|^2 - 1) / 2 in its real part. A node of a Gaussian turns w by a
-    multiple of one step: no node takes a sine of its own.
+    The damping exp(-sigma^2 m^2 phi^2) is the mean of exp(i m sqrt(2) sigma u phi) over a standard normal u. So
+
+        sum of z^m S(m phi) = mean over u of the sum of w^m,  w = z exp(i (mu + sqrt(2) sigma u) phi),  |w| = |z|
+
+    The sum over m >= 1 is w / (1 - w), with the real part (Re(w) - |w|^2) / |1 - w|^2, which is
+    ((1 - |w|^2) / |1 - w|^2 - 1) / 2, since |1 - w|^2 = 1 - 2 Re(w) + |w|^2. The mean is the trapezoidal rule of
+    HEIGHTS; a node turns w by a multiple of one step, so that no node takes a sine of its own.
     """
     xp, angle = array_namespace(phi), _column(CENTERS, phi) * phi
     step = _column(np.sqrt(2.0) * STEP * SPREADS, phi) * phi
@@ -471,12 +477,8 @@ def film_dielectric(
                [0.015 , 0.014 , 0.0178],
                [0.0209, 0.0142, 0.0348]])
     """
-    return _reflectance(
-        "dielectric_bsdf",
-        form,
-        {},
-        {"mu": mu, "ior": ior, "thickness": thickness, "film_ior": film_ior},
-    )
+    numbers = {"mu": mu, "ior": ior, "thickness": thickness, "film_ior": film_ior}
+    return _reflectance("dielectric_bsdf", form, {}, numbers)
 
 
 @any_array
@@ -547,7 +549,7 @@ def _reflectance(
         return curve.at(mu, **material)
 
     vectors = {name: checked_rgb(name, value) for name, value in colors.items()}
-    values = {name: checked(name, value) for name, value in numbers.items()}
+    values = checked_all(numbers)
     lead_shape(vectors, values)
     ports = {PORTS.get(name, name): value for name, value in values.items()}
     return evaluate_material(at, vectors, ports, 3)

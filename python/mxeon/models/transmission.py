@@ -123,29 +123,23 @@ def refracted(wo: Array, normal: Array, ior: Array) -> Array:
     return xp.where(passes, wi, 0.0)
 
 
+@dataclass(frozen=True)
 class Facet:
-    """The microfacet between directions on either side of it, on float64 arrays, components first.
+    """The microfacet between directions on either side of it, on float64 arrays, components first."""
 
-    - `normal`: Unit vector on the side of wo; 0 where there is no such facet.
-    - `cosine_o`, `cosine_i`: |wo . wh| and |wi . wh|; 0 where there is none.
-    - `jacobian`: |d wh / d wi|, the solid angle of normals for that of wi.
-    """
-
-    def __init__(self, normal: Array, cosine_o: Array, cosine_i: Array, jacobian: Array) -> None:
-        self.normal, self.cosine_o, self.cosine_i = normal, cosine_o, cosine_i
-        self.jacobian = jacobian
+    normal: Array  # unit vector on the side of wo; 0 where there is no such facet
+    cosine_o: Array  # |wo . wh|; 0 where there is none
+    cosine_i: Array  # |wi . wh|; 0 where there is none
+    jacobian: Array  # |d wh / d wi|, the solid angle of normals for that of wi
 
     @classmethod
-    def of(cls, wo: Array, wi: Array, ior: Array, anywhere: bool = False) -> Facet:
-        """The facet between wo and wi; `anywhere` keeps vectors with both directions on one side.
-
-        |wo + n wi|^2 (d wh / d wi) = n^2 |wi . wh|: [Walter2007], Eq. (17).
-        """
+    def of(cls, wo: Array, wi: Array, ior: Array) -> Facet:
+        """The facet between wo and wi: |wo + n wi|^2 (d wh / d wi) = n^2 |wi . wh|, [Walter2007], Eq. (17)."""
         xp = array_namespace(wo, wi, ior)
         total = wo + ior * wi
         length = root(xp.sum(total * total, axis=0))
         side_o, side_i = xp.sum(wo * total, axis=0), xp.sum(wi * total, axis=0)
-        real = (length > 0.0) & (anywhere | ((side_o * side_i < 0.0) & (side_o * total[2] > 0.0)))
+        real = (length > 0.0) & (side_o * side_i < 0.0) & (side_o * total[2] > 0.0)
         scale = xp.where(real, 1.0, 0.0) / xp.where(length > 0.0, length, 1.0)
         normal = total * (scale * xp.where(total[2] < 0.0, -1.0, 1.0))
         cosine_o, cosine_i = (trimmed(xp.abs(side) * scale, 1.0) for side in (side_o, side_i))
@@ -188,20 +182,17 @@ def evaluate_btdf(
     numbers: dict[str, Numbers],
     *,
     radiance: bool = True,
-    anywhere: bool = False,
 ) -> Array:
     """Values of a BTDF, shape (..., C); `vectors` and `numbers` are checked inputs of the curve.
 
     - `at`: `at(cosine, ior=ior, **material)`, shape (C, ...): F at the cosine on the side of wo.
-    - `anywhere`: Whether directions count that lie on one side of the microfacet.
     """
     directions = {"wo": checked_directions("wo", wo), "wi": checked_transmitted("wi", wi)}
     pairs = {"roughness": checked_roughness(roughness)}
     checked_switch("radiance", radiance)
-    checked_switch("anywhere", anywhere)
 
     def value(wo: Array, wi: Array, roughness: Array, ior: Array, **material: Array) -> Array:
-        facet = Facet.of(wo, wi, ior, anywhere)
+        facet = Facet.of(wo, wi, ior)
         F = at(facet.cosine_o, ior=ior, **material)
         G2 = ggx.visibility(wo[2], -wi[2], ggx.mean_alpha(roughness))
         lobe = ggx.ndf(facet.normal, roughness) * G2
@@ -421,17 +412,17 @@ def generalized_schlick_btdf(
         >>> generalized_schlick_btdf(*pair, 0.04, 1.0, 1.0, [0.3, 0.3], 5.0).round(4)
         array([10.1048])
     """
-    colors = {"color0": color0, "color82": color82, "color90": color90}
     vectors = {"wo": checked_directions("wo", wo), "wi": checked_transmitted("wi", wi)}
-    vectors |= {"roughness": checked_roughness(roughness)}
-    at, parts = _parts(reading, colors, inside)
-    numbers = {"exponent": checked("exponent", exponent)}
-    lead_shape(vectors | parts[0][1], numbers)
-    channels = [
-        evaluate_btdf(at, wo, wi, roughness, index, material, numbers, radiance=radiance)
-        for index, material in parts
-    ]
-    return array_namespace(*channels).concat(channels, axis=-1)
+    return _by_index(
+        lambda at, ior, material, numbers: evaluate_btdf(
+            at, wo, wi, roughness, ior, material, numbers, radiance=radiance
+        ),
+        vectors | {"roughness": checked_roughness(roughness)},
+        {"color0": color0, "color82": color82, "color90": color90},
+        exponent,
+        reading,
+        inside,
+    )
 
 
 @any_array
@@ -455,45 +446,46 @@ def generalized_schlick_transmittance_dir(
         >>> generalized_schlick_transmittance_dir(wo, [0.04, 0.25], 1.0, 1.0, alpha, 5.0).round(3)
         array([0.945, 0.738])
     """
-    colors = {"color0": color0, "color82": color82, "color90": color90}
-    vectors = {"wo": checked_directions("wo", wo)}
-    vectors |= {"roughness": checked_roughness(roughness)}
-    at, parts = _parts(reading, colors, inside)
-    numbers = {"exponent": checked("exponent", exponent)}
-    lead_shape(vectors | parts[0][1], numbers)
-    channels = [
-        evaluate_transmittance(at, wo, roughness, material, numbers | {"ior": index}, shadow)
-        for index, material in parts
-    ]
-    return array_namespace(*channels).concat(channels, axis=-1)
+    vectors = {"wo": checked_directions("wo", wo), "roughness": checked_roughness(roughness)}
+    return _by_index(
+        lambda at, ior, material, numbers: evaluate_transmittance(
+            at, wo, roughness, material, numbers | {"ior": ior}, shadow
+        ),
+        vectors,
+        {"color0": color0, "color82": color82, "color90": color90},
+        exponent,
+        reading,
+        inside,
+    )
 
 
-def _parts(
-    reading: str, given: Mapping[str, ArrayLike], inside: bool
-) -> tuple[Callable[..., Array], list[tuple[Array, dict[str, Numbers]]]]:
-    """F, and index and colors of each evaluation: of all channels, or of one after another."""
+def _by_index(
+    evaluate: Callable[..., Array],
+    vectors: dict[str, Numbers],
+    given: Mapping[str, ArrayLike],
+    exponent: ArrayLike,
+    reading: str,
+    inside: bool,
+) -> Array:
+    """Values of evaluate(F, index, colors, numbers): of all channels, or of one after another by its own index."""
     how = _reading(reading)
     checked_switch("inside", inside)
     colors = {name: checked_color(name, value) for name, value in given.items()}
-    count = channel_count(colors)
+    count, numbers = channel_count(colors), {"exponent": checked("exponent", exponent)}
+    lead_shape(vectors | colors, numbers)
 
     def index(color0: Array) -> Array:
         outside = index_of(color0, how.least)
         return 1.0 / outside if inside else outside
 
     if how.index == "average":
-        return how.at, [(index(_mean(colors["color0"], -1)[..., 0]), colors)]
-    xp = array_namespace(*colors.values())
-    spread = {
-        name: xp.broadcast_to(value, (*value.shape[:-1], count)) for name, value in colors.items()
-    }
-    return how.at, [
-        (
-            index(spread["color0"][..., channel]),
-            {name: value[..., channel : channel + 1] for name, value in spread.items()},
-        )
-        for channel in range(count)
-    ]
+        return evaluate(how.at, index(_mean(colors["color0"], -1)[..., 0]), colors, numbers)
+    xp, channels = array_namespace(*colors.values()), []
+    colors = {k: xp.broadcast_to(v, (*v.shape[:-1], count)) for k, v in colors.items()}
+    for channel in range(count):
+        own = {name: value[..., channel : channel + 1] for name, value in colors.items()}
+        channels.append(evaluate(how.at, index(own["color0"][..., 0]), own, numbers))
+    return xp.concat(channels, axis=-1)
 
 
 def _reading(name: str) -> Reading:

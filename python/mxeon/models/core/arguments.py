@@ -219,9 +219,19 @@ def checked_real(name: str, value: ArrayLike) -> Numbers:
     return _array(name, value, lambda array: array)
 
 
+def checked_all(values: Mapping[str, ArrayLike]) -> dict[str, Numbers]:
+    """Arguments by name, each inside the range of its name."""
+    return {name: checked(name, value) for name, value in values.items()}
+
+
+def checked_vectors(values: Mapping[str, ArrayLike]) -> dict[str, Numbers]:
+    """The same, each with at least one axis."""
+    return {name: with_axis(value) for name, value in checked_all(values).items()}
+
+
 def checked_numbers(**values: ArrayLike) -> list[Array]:
     """Numbers inside the ranges of their names, in float64, whose shapes broadcast."""
-    return broadcastable({}, {name: checked(name, value) for name, value in values.items()})
+    return broadcastable({}, checked_all(values))
 
 
 def checked_vector(name: str, value: ArrayLike) -> Numbers:
@@ -250,7 +260,7 @@ def checked_colors(
 ) -> tuple[list[Array], list[Array]]:
     """Colors (..., C) and numbers with an axis for their channels, in float64, that broadcast."""
     vectors = {name: checked_color(name, value) for name, value in colors.items()}
-    values = broadcastable(vectors, {name: checked(name, each) for name, each in numbers.items()})
+    values = broadcastable(vectors, checked_all(numbers))
     channel_count(vectors)
     return values[: len(colors)], [value[..., np.newaxis] for value in values[len(colors) :]]
 

@@ -1,19 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Types of arrays in the signatures of the models.
-
-
-Arrays of any library that follows the array API standard: its functions, and what brings arguments to it.
+"""Arrays of any library that follows the array API standard, and operations whose derivatives are finite at edges.
 
 A formula takes its functions from its arguments, by the names of the standard. `any_array` marks what users call: with
 arrays of PyTorch or JAX it brings all arguments to that library, its precision and its device. A value that a
 transformation traces has no numbers yet, and is not checked.
 
-
-Operations whose derivatives are finite at the edges of a domain.
-
-Libraries that differentiate multiply the derivatives of single steps: where a root begins, infinity
-times 0. Each function below is the plain operation of NumPy, to the last bit. For other arrays it takes
-its value at the edge from a branch of its own, and its derivative there is the one of its docstring.
+Libraries that differentiate multiply the derivatives of single steps: where a root begins, infinity times 0. Each
+operation from `cosine` on is the plain one of NumPy, to the last bit. For other arrays it takes its value at the edge
+from a branch of its own, and its derivative there is the one of its docstring.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from mxeon.models.core.arguments import (
     BLOCK,
     are_directions,
     blocks,
-    checked,
+    checked_all,
     checked_directions,
     checked_triples,
     checked_vector,
@@ -66,32 +66,24 @@ def evaluate(
     - `rho` (..., C): A list of N numbers beside N directions is refused, unless it is red, green and blue.
     - `**parameter` (...): At most one, under a name of `RANGES`.
     """
-    arguments = {"wo": checked_triples("wo", wo), "wi": checked_triples("wi", wi)}
-    arguments["rho"] = checked_vector("rho", rho)
-    numbers = {name: checked(name, value) for name, value in parameter.items()}
-    shape = lead_shape(arguments, numbers)
-    refuse_ambiguous("rho", arguments["rho"], shape)
-    if array_namespace(*arguments.values(), *numbers.values()) is not NUMPY:
-        wo, wi = (checked_directions(name, arguments[name]) for name in ("wo", "wi"))
-        rho = _leading_channels(arguments["rho"], len(shape))
-        return _trailing_channels(formula(wo, wi, rho, *numbers.values()), len(rho), shape)
-    arguments |= {name: array[..., np.newaxis] for name, array in numbers.items()}
-    arrays = {name: with_axes(array, len(shape) + 1) for name, array in arguments.items()}
-    out = np.empty(shape + arrays["rho"].shape[-1:])
+    pair = {"wo": checked_triples("wo", wo), "wi": checked_triples("wi", wi)}
+    color, numbers = checked_vector("rho", rho), checked_all(parameter)
+    refuse_ambiguous("rho", color, lead_shape(pair | {"rho": color}, numbers))
+    xp = array_namespace(*pair.values(), color, *numbers.values())
+    if xp is not NUMPY:
+        pair = {name: checked_directions(name, w) for name, w in pair.items()}
 
-    def fill(block: tuple[slice, ...]) -> None:
-        parts = {name: tile(array, block) for name, array in arrays.items()}
-        for name in ("wo", "wi"):
-            if not are_directions(parts[name]):
-                refuse_direction(name, arguments[name])
-            parts[name] = on_horizon(parts[name])
-        wo, wi, rho, *rest = parts.values()
-        values = formula(np.moveaxis(wo, 0, -1), np.moveaxis(wi, 0, -1), rho, *(a[0] for a in rest))
-        for channel, value in enumerate(values):
-            out[block][..., channel] = value
+    # Directions of NumPy are checked block by block, which are in the cache.
+    def value(rho: Array, wo: Array, wi: Array, **rest: Array) -> Array:
+        parts = {"wo": wo, "wi": wi}
+        if xp is NUMPY:
+            for name, w in parts.items():
+                if not are_directions(w):
+                    refuse_direction(name, pair[name])
+            parts = {name: on_horizon(w) for name, w in parts.items()}
+        return formula(*(xp.moveaxis(w, 0, -1) for w in parts.values()), rho, *rest.values())
 
-    _for_each(fill, list(blocks(shape)))
-    return out
+    return evaluate_material(value, pair | {"rho": color}, numbers, color.shape[-1])
 
 
 def _leading_channels(array: Numbers, axes: int) -> Numbers:
@@ -142,6 +134,20 @@ def evaluate_material(
 
     _for_each(fill, list(blocks(shape, size)))
     return out
+
+
+def evaluate_number(
+    formula: Callable[..., Array],
+    vectors: Mapping[str, Numbers],
+    numbers: Mapping[str, Numbers],
+    size: int = BLOCK,
+) -> Array:
+    """`evaluate_material` of a formula without channels, shape (...)."""
+
+    def one(**arguments: Array) -> Array:
+        return formula(**arguments)[np.newaxis]
+
+    return evaluate_material(one, vectors, numbers, 1, size)[..., 0][()]
 
 
 def _for_each(fill: Callable[[tuple[slice, ...]], None], tiling: list[tuple[slice, ...]]) -> None:

@@ -33,11 +33,11 @@ import numpy as np
 
 from mxeon.models.core.arguments import (
     channel_count,
-    checked,
+    checked_all,
     checked_directions,
     checked_roughness,
     checked_switch,
-    checked_vector,
+    checked_vectors,
     lead_shape,
     refuse_ambiguous,
 )
@@ -51,7 +51,7 @@ from mxeon.models.core.arrays import (
     library,
     like,
 )
-from mxeon.models.core.evaluation import evaluate_material
+from mxeon.models.core.evaluation import evaluate_material, evaluate_number
 from mxeon.models.microfacet import fresnel, ggx
 from mxeon.models.microfacet.ggx import albedo, mean_alpha, missing_light
 from mxeon.models.microfacet.slopes import slope_nodes, transmitting_nodes
@@ -175,8 +175,8 @@ def _material(
 ) -> tuple[Curve, dict[str, Numbers], dict[str, Numbers]]:
     """Curve of a node, and its checked inputs with channels and without."""
     curve, colors, numbers = NODES[category]
-    vectors = {name: checked_vector(name, inputs[name]) for name in colors}
-    return curve, vectors, {name: checked(name, inputs[name]) for name in numbers}
+    vectors = checked_vectors({name: inputs[name] for name in colors})
+    return curve, vectors, checked_all({name: inputs[name] for name in numbers})
 
 
 @any_array
@@ -416,10 +416,9 @@ def lobe_albedo(
 
 def _unseen(wo: Numbers, roughness: Numbers) -> Array:
     """(1 - E_ss) / E_ss of checked arguments by quadrature, shape (...)."""
-    E_ss = evaluate_material(
-        lambda mu, roughness: albedo(mu, mean_alpha(roughness))[np.newaxis],
+    E_ss = evaluate_number(
+        lambda mu, roughness: albedo(mu, mean_alpha(roughness)),
         {"roughness": roughness},
         {"mu": wo[..., 2]},
-        1,
-    )[..., 0]
+    )
     return (1.0 - E_ss) / E_ss

@@ -37,6 +37,11 @@ ALBEDO_FIT = np.array(
 )
 
 
+# Least cosine and alpha of that fit. The shaders clamp both to M_FLOAT_EPS, 1e-8 in 1.39.5; between the two
+# limits the fit changes by less than 2e-5.
+LEAST = 1e-6
+
+
 @dataclass(frozen=True)
 class MicrofacetDefect:
     """A known wrong variant of the three microfacet nodes."""
@@ -50,13 +55,6 @@ def averaged_channels(albedo: Array) -> Array:
     """Albedo whose channels all have their mean, as the throughput of a colored node may have."""
     mean = np.mean(albedo, axis=-1, keepdims=True)
     return np.broadcast_to(mean, albedo.shape).copy()
-
-
-def _compensated_bsdl(pair: Pair) -> Array:
-    """Compensation of OSL's BSDL: F at the half vector, and E_ss at the arithmetic mean of both alphas."""
-    alpha = 0.5 * (pair.roughness[0] + pair.roughness[1])
-    F = pair.curve.at(pair.cosine, **pair.material)
-    return 1.0 + F * missing_light(pair.wo[2], alpha)
 
 
 def fitted_albedo(mu: Array, alpha: Array, F0: Array | float, F90: Array | float) -> Array:
@@ -101,10 +99,15 @@ def _missing(pair: Pair) -> Array:
     return missing(pair.wo[2], pair.roughness)
 
 
+def _missing_at_mean(pair: Pair) -> Array:
+    """(1 - E_ss) / E_ss at the arithmetic mean of both alphas."""
+    return missing_light(pair.wo[2], 0.5 * (pair.roughness[0] + pair.roughness[1]))
+
+
 def _missing_by_fit(pair: Pair) -> Array:
     """(1 - E_ss) / E_ss by the fit of MaterialX 1.39.5."""
-    alpha = np.maximum(ggx.mean_alpha(pair.roughness), 1e-6)
-    E = fitted_albedo(np.clip(pair.wo[2], 1e-6, 1.0), alpha, 1.0, 1.0)
+    alpha = np.maximum(ggx.mean_alpha(pair.roughness), LEAST)
+    E = fitted_albedo(np.clip(pair.wo[2], LEAST, 1.0), alpha, 1.0, 1.0)
     return (1.0 - E) / E
 
 
@@ -197,7 +200,7 @@ FITTED_DEFECTS = tuple(
 BSDL = MicrofacetDefect(
     "bsdl",
     "BSDL's lobe: compensation with F at the half vector, masking of the anisotropic distribution",
-    Lobe(_compensated_bsdl, _anisotropic),
+    Lobe(_compensated(_half, _missing_at_mean), _anisotropic),
 )
 # Of Blender's Cycles, whose closures do not compensate.
 SINGLE = MicrofacetDefect(
@@ -244,6 +247,6 @@ def fitted_compensation(wo: Array, inputs: Mapping[str, Array], F: Array) -> Arr
 
 
 def _arguments(wo: Array, inputs: Mapping[str, Array]) -> tuple[Array, Array]:
-    """Cosine and alpha, at least 1e-6 as in the shaders."""
-    alpha = np.sqrt(np.maximum(inputs["roughness"], 1e-6).prod(axis=-1))
-    return np.clip(wo[:, 2], 1e-6, 1.0), alpha
+    """Cosine and alpha, at least LEAST."""
+    alpha = np.sqrt(np.maximum(inputs["roughness"], LEAST).prod(axis=-1))
+    return np.clip(wo[:, 2], LEAST, 1.0), alpha

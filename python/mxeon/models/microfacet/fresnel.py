@@ -20,12 +20,16 @@ from collections.abc import Callable
 
 import numpy as np
 
-from mxeon.models.core.arguments import channel_count, checked, checked_numbers, checked_vector
+from mxeon.models.core.arguments import (
+    channel_count,
+    checked_all,
+    checked_numbers,
+    checked_vectors,
+)
 from mxeon.models.core.arrays import (
     NUMPY,
     Array,
     ArrayLike,
-    Numbers,
     any_array,
     array_namespace,
     at_least_0,
@@ -37,7 +41,7 @@ from mxeon.models.core.arrays import (
     root,
     trimmed,
 )
-from mxeon.models.core.evaluation import evaluate_material
+from mxeon.models.core.evaluation import evaluate_material, evaluate_number
 from mxeon.models.core.quadrature import unit_rule
 
 # Hoffman's correction is largest here: [MaterialX2026], Generalized Schlick Equations.
@@ -245,8 +249,20 @@ def _schlick_a(color0: Array, color82: Array, color90: Array, exponent: Array) -
 def _external_avg(gap: Array) -> Array:
     """F_ss for n = 1 + gap >= 1.
 
-    F_ss = (sinh^2 t - (n - 1)) / (2 cosh^2 t) + tanh(t/2) (3 n + 1) / (6 (n + 1))
-           + n sinh^2 t log(tanh(t/2)) / (2 cosh^3 t) + n (2 t coth(2 t) - 1) / (cosh t sinh 2 t)
+    Printed [Walsh1926]:
+
+        F_ss = 1/2 + (n - 1) (3 n + 1) / (6 (n + 1)^2) + n^2 (n^2 - 1)^2 / (n^2 + 1)^3 log((n - 1) / (n + 1))
+               - 2 n^3 (n^2 + 2 n - 1) / ((n^2 + 1) (n^4 - 1)) + 8 n^4 (n^4 + 1) / ((n^2 + 1) (n^4 - 1)^2) log(n)
+
+    With n = e^t: n^2 + 1 = 2 n cosh t, n^2 - 1 = 2 n sinh t, n^4 - 1 = 2 n^2 sinh 2t, n^4 + 1 = 2 n^2 cosh 2t,
+    (n - 1) / (n + 1) = tanh(t/2), so that the terms, in the same order, are
+
+        1/2 + tanh(t/2) (3 n + 1) / (6 (n + 1)) + n sinh^2 t log(tanh(t/2)) / (2 cosh^3 t)
+        - (n^2 + 2 n - 1) / (2 cosh t sinh 2t) + 2 n t cosh 2t / (cosh t sinh^2 2t)
+
+    Fourth and fifth are infinite at t = 0. As n^2 + 2 n - 1 = 2 n + 2 n sinh t, the 2 n of the fourth is the -1 of
+    n (2 t coth 2t - 1) / (cosh t sinh 2t), and its rest is -n sinh t / (cosh t sinh 2t) = -n / (2 cosh^2 t). With
+    1/2 = cosh^2 t / (2 cosh^2 t) that is (sinh^2 t - (n - 1)) / (2 cosh^2 t).
     """
     xp = array_namespace(gap)
     n = 1.0 + gap
@@ -288,8 +304,7 @@ def fresnel_dielectric(mu: ArrayLike, ior: ArrayLike) -> Array:
         >>> fresnel_dielectric([1.0, 0.5, 0.0], 1.5).round(6)
         array([0.04    , 0.089187, 1.      ])
     """
-    numbers = {"mu": checked("mu", mu), "ior": checked("ior", ior)}
-    return _number(dielectric, numbers)
+    return evaluate_number(dielectric, {}, checked_all({"mu": mu, "ior": ior}))
 
 
 @any_array
@@ -303,7 +318,7 @@ def fresnel_dielectric_avg(ior: ArrayLike) -> Array:
         >>> fresnel_dielectric_avg([0.0, 1.0, 1.5]).round(6)
         array([1.      , 0.      , 0.091778])
     """
-    return _number(dielectric_avg, {"ior": checked("ior", ior)})
+    return evaluate_number(dielectric_avg, {}, checked_all({"ior": ior}))
 
 
 @any_array
@@ -317,8 +332,7 @@ def fresnel_conductor(mu: ArrayLike, ior: ArrayLike, extinction: ArrayLike) -> A
         >>> fresnel_conductor(0.5, [0.183, 1.373], [3.424, 1.770]).round(6)
         array([0.93869 , 0.412954])
     """
-    vectors = {"ior": _color("ior", ior), "extinction": _color("extinction", extinction)}
-    return _colors(conductor, vectors, {"mu": checked("mu", mu)})
+    return _colors(conductor, {"ior": ior, "extinction": extinction}, mu=mu)
 
 
 @any_array
@@ -331,8 +345,7 @@ def fresnel_conductor_avg(ior: ArrayLike, extinction: ArrayLike) -> Array:
         >>> fresnel_conductor_avg([0.183, 1.373], [3.424, 1.770]).round(6)
         array([0.942313, 0.411657])
     """
-    vectors = {"ior": _color("ior", ior), "extinction": _color("extinction", extinction)}
-    return _colors(conductor_avg, vectors, {})
+    return _colors(conductor_avg, {"ior": ior, "extinction": extinction})
 
 
 @any_array
@@ -354,9 +367,8 @@ def fresnel_schlick(
         >>> fresnel_schlick(0.5, [0.9, 0.2], [0.5, 1.0], 1.0, 5.0).round(6)
         array([0.837879, 0.225   ])
     """
-    vectors = _schlick_colors(color0, color82, color90)
-    numbers = {"mu": checked("mu", mu), "exponent": checked("exponent", exponent)}
-    return _colors(schlick, vectors, numbers)
+    colors = {"color0": color0, "color82": color82, "color90": color90}
+    return _colors(schlick, colors, mu=mu, exponent=exponent)
 
 
 @any_array
@@ -372,35 +384,16 @@ def fresnel_schlick_avg(
         >>> fresnel_schlick_avg([0.9, 0.2], [0.5, 1.0], 1.0, 5.0).round(6)
         array([0.838481, 0.238095])
     """
-    vectors = _schlick_colors(color0, color82, color90)
-    numbers = {"exponent": checked("exponent", exponent)}
-    return _colors(schlick_avg, vectors, numbers)
-
-
-def _color(name: str, value: ArrayLike) -> Numbers:
-    """Checked argument with an axis of channels."""
-    return checked_vector(name, value)
-
-
-def _schlick_colors(
-    color0: ArrayLike, color82: ArrayLike, color90: ArrayLike
-) -> dict[str, Numbers]:
-    """Checked colors of the generalized Schlick curve, by name."""
     colors = {"color0": color0, "color82": color82, "color90": color90}
-    return {name: _color(name, value) for name, value in colors.items()}
-
-
-def _number(formula: Callable[..., Array], numbers: dict[str, Numbers]) -> Array:
-    """Formula without channels over arguments that broadcast."""
-    values = evaluate_material(lambda **parts: formula(**parts)[np.newaxis], {}, numbers, 1)
-    return values[..., 0][()]
+    return _colors(schlick_avg, colors, exponent=exponent)
 
 
 def _colors(
-    formula: Callable[..., Array], vectors: dict[str, Numbers], numbers: dict[str, Numbers]
+    formula: Callable[..., Array], colors: dict[str, ArrayLike], **numbers: ArrayLike
 ) -> Array:
     """Formula over arguments that broadcast, colors among them."""
-    return evaluate_material(formula, vectors, numbers, channel_count(vectors))
+    vectors = checked_vectors(colors)
+    return evaluate_material(formula, vectors, checked_all(numbers), channel_count(vectors))
 
 
 @any_array
@@ -415,14 +408,14 @@ def artistic_ior(reflectivity: ArrayLike, edge_color: ArrayLike) -> tuple[Array,
     - `edge_color` (...): Per channel, in [0, 1]: 0 has the largest n, and no extinction; 1 the least n.
 
     The paper's k^2 is (r (n + 1)^2 - (n - 1)^2) / (1 - r), a difference of large numbers. Its roots in n are n_max and
-    1 / n_max, and k^2 is their product here. [Gulbrandsen2014]; [MaterialX2026], artistic_ior.
+    1 / n_max, and k^2 is their product here; 1 - sqrt(r) is (1 - r) / (1 + sqrt(r)). [Gulbrandsen2014]; [MaterialX2026], artistic_ior.
 
         >>> ior, extinction = artistic_ior(0.944, 0.998)
         >>> round(float(ior), 4), round(float(extinction), 4)
         (0.1676, 3.2568)
     """
     r, g = checked_numbers(reflectivity=reflectivity, edge_color=edge_color)
-    n_min, n_max = _extremes(r)
+    n_min, n_max = (1.0 - r) / (1.0 + r), (1.0 + root(r)) ** 2 / (1.0 - r)
     ior = g * n_min + (1.0 - g) * n_max
     square = g * (n_max - n_min) * ((ior - n_min) + (n_min - 1.0 / n_max))
     return ior, root(at_least_0(square))
@@ -459,8 +452,3 @@ def normal_reflectance(ior: Array, extinction: Array) -> Array:
     """
     square = extinction**2
     return ((ior - 1.0) ** 2 + square) / ((ior + 1.0) ** 2 + square)
-
-
-def _extremes(r: Array) -> tuple[Array, Array]:
-    """The least and the largest n of a reflectance; 1 - sqrt(r) is (1 - r) / (1 + sqrt(r))."""
-    return (1.0 - r) / (1.0 + r), (1.0 + root(r)) ** 2 / (1.0 - r)

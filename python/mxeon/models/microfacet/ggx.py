@@ -27,6 +27,7 @@ import numpy as np
 from mxeon.models.core.arguments import (
     broadcastable,
     checked,
+    checked_all,
     checked_directions,
     checked_numbers,
     checked_pairs,
@@ -54,7 +55,7 @@ from mxeon.models.core.chebyshev import (
     chebyshev_polynomials,
     chebyshev_sum,
 )
-from mxeon.models.core.evaluation import evaluate_material
+from mxeon.models.core.evaluation import evaluate_number
 
 # Sums of cosines below count as 0: D alone is at most 1e162.
 LEAST = 1e-140
@@ -136,12 +137,8 @@ def ggx_ndf(wh: ArrayLike, roughness: ArrayLike) -> Array:
         >>> ggx_ndf([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8]], [0.5, 0.25]).round(6)
         array([2.546479, 0.588591])
     """
-    vectors = {
-        "wh": checked_directions("wh", wh),
-        "roughness": checked_roughness(roughness),
-    }
-    values = evaluate_material(lambda wh, roughness: ndf(wh, roughness)[np.newaxis], vectors, {}, 1)
-    return values[..., 0][()]
+    vectors = {"wh": checked_directions("wh", wh), "roughness": checked_roughness(roughness)}
+    return evaluate_number(ndf, vectors, {})
 
 
 @any_array
@@ -155,17 +152,14 @@ def smith_g1(wo: ArrayLike, roughness: ArrayLike) -> Array:
         >>> smith_g1([0.6, 0.0, 0.8], [[0.5, 0.25], [0.0, 0.0]]).round(6)
         array([0.967118, 1.      ])
     """
-    vectors = {
-        "wo": checked_directions("wo", wo),
-        "roughness": checked_roughness(roughness),
-    }
+    vectors = {"wo": checked_directions("wo", wo), "roughness": checked_roughness(roughness)}
 
     def value(wo: Array, roughness: Array) -> Array:
         length = stretched_length(wo, roughness)
         masking = 2.0 * wo[2] * reciprocal(wo[2] + length)
-        return array_namespace(wo).where(length > 0.0, masking, 1.0)[np.newaxis]
+        return array_namespace(wo).where(length > 0.0, masking, 1.0)
 
-    return evaluate_material(value, vectors, {}, 1)[..., 0][()]
+    return evaluate_number(value, vectors, {})
 
 
 @any_array
@@ -182,16 +176,11 @@ def smith_g2(mu_o: ArrayLike, mu_i: ArrayLike, alpha: ArrayLike) -> Array:
         >>> smith_g2(0.8, [0.6, 0.0], 0.5).round(6)
         array([0.881115, 0.      ])
     """
-    numbers = {
-        "mu_o": checked("mu_o", mu_o),
-        "mu_i": checked("mu_i", mu_i),
-        "alpha": checked("alpha", alpha),
-    }
 
     def value(mu_o: Array, mu_i: Array, alpha: Array) -> Array:
-        return (4.0 * mu_o * mu_i * visibility(mu_o, mu_i, alpha))[np.newaxis]
+        return 4.0 * mu_o * mu_i * visibility(mu_o, mu_i, alpha)
 
-    return evaluate_material(value, {}, numbers, 1)[..., 0][()]
+    return evaluate_number(value, {}, checked_all({"mu_o": mu_o, "mu_i": mu_i, "alpha": alpha}))
 
 
 @any_array
@@ -207,18 +196,13 @@ def smith_g2_anisotropic(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> 
         >>> smith_g2_anisotropic([0.6, 0.0, 0.8], [[0.0, 0.8, 0.6], [1.0, 0.0, 0.0]], [0.5, 0.25]).round(6)
         array([0.942466, 0.      ])
     """
-    vectors = {
-        "wo": checked_directions("wo", wo),
-        "wi": checked_directions("wi", wi),
-        "roughness": checked_roughness(roughness),
-    }
+    vectors = {"wo": checked_directions("wo", wo), "wi": checked_directions("wi", wi)}
 
     def value(wo: Array, wi: Array, roughness: Array) -> Array:
-        visibility = visibility_anisotropic(wo, wi, roughness)
-        G2: Array = 4.0 * wo[2] * wi[2] * visibility
-        return G2[np.newaxis]
+        G2: Array = 4.0 * wo[2] * wi[2] * visibility_anisotropic(wo, wi, roughness)
+        return G2
 
-    return evaluate_material(value, vectors, {}, 1)[..., 0][()]
+    return evaluate_number(value, vectors | {"roughness": checked_roughness(roughness)}, {})
 
 
 LARGEST_ANISOTROPY = 0.98  # beyond it alpha along the tangent would soon divide by 0
@@ -310,7 +294,7 @@ def ggx_albedo_dir(mu: ArrayLike, alpha: ArrayLike) -> Array:
         >>> ggx_albedo_dir([1.0, 0.1], [1.0, 0.01]).round(9)
         array([0.30685282, 0.99412395])
     """
-    return _in_blocks(checked("mu", mu), checked("alpha", alpha))[()]
+    return _in_blocks(checked("mu", mu), checked("alpha", alpha))
 
 
 def albedo(mu: Array, alpha: Array) -> Array:
@@ -329,11 +313,8 @@ def albedo(mu: Array, alpha: Array) -> Array:
 
 def _in_blocks(mu: Array, alpha: Array) -> Array:
     """E_ss on valid float64 arrays, block by block."""
-    numbers = {"mu": mu, "alpha": alpha}
     formula = quadrature if array_namespace(mu, alpha) is NUMPY else _extrapolated
-    return evaluate_material(
-        lambda mu, alpha: formula(mu, alpha)[np.newaxis], {}, numbers, 1, ALBEDO_BLOCK
-    )[..., 0]
+    return evaluate_number(formula, {}, {"mu": mu, "alpha": alpha}, ALBEDO_BLOCK)
 
 
 def _extrapolated(mu: Array, alpha: Array) -> Array:
@@ -418,10 +399,7 @@ def missing_light(mu: Array, alpha: Array) -> Array:
     """
     if array_namespace(mu, alpha) is NUMPY and alpha.size == 1 and mu.size >= MANY:
         return _of_one_alpha(mu, float(alpha.item()))
-    numbers = {"mu": mu, "alpha": alpha}
-    return evaluate_material(
-        lambda mu, alpha: _interpolated(mu, alpha)[np.newaxis], {}, numbers, 1, BLOCK
-    )[..., 0]
+    return evaluate_number(_interpolated, {}, {"mu": mu, "alpha": alpha}, BLOCK)
 
 
 def _interpolated(mu: Array, alpha: Array) -> Array:

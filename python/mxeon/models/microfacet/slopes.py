@@ -87,7 +87,14 @@ class Slopes:
     def rays(self, omega: Array) -> tuple[Array, Array, Array]:
         """Of each azimuth: B and g, with the slope's squared length g r^2, and the last r.
 
-        wo . h / h_z = mu_o + B r; wi lies above the horizon where mu_o g r^2 <= 2 B r + mu_o.
+        phi = omega + phi_0, tan(phi_0) = alpha_y y / (alpha_x x), joins the azimuths of h and of slopes:
+
+            wo . h / h_z = mu_o + r (alpha_x x cos(phi) + alpha_y y sin(phi)) = mu_o + B r,  B = A cos(omega)
+            |h / h_z|^2 = 1 + g r^2,  g = (alpha_x cos(phi))^2 + (alpha_y sin(phi))^2
+
+        The reflected mu_i = 2 (wo . h) h_z / |h|^2 - mu_o = 2 (mu_o + B r) / (1 + g r^2) - mu_o is at least 0 where
+        mu_o g r^2 <= 2 B r + mu_o, so the last r is (B + q) / (mu_o g) = mu_o / (q - B), q = sqrt(B^2 + mu_o^2 g):
+        the first form for B >= 0 and the second one below, which do not cancel.
         """
         (cos_0, sin_0), (alpha_x, alpha_y) = self.axis, self.roughness
         xp = array_namespace(omega)

@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a refused argument is told: one row for each rule, of functions that check it in their own way.
+
+`test_arguments` tries every bad value with every function; these are the words.
+"""
+
+import re
+
+import numpy as np
+import pytest
+
+from mxeon import albedo, models, sampling
+from mxeon.models.core.layering import Bsdf, mix, multiply, throughput
+from mxeon.models.nodes.utilities import node
+from mxeon.models.table import KNOWN_DEFECTS, MODELS, OTHERS, PARAMETRIZATIONS, model
+
+ROWS = (*MODELS, *KNOWN_DEFECTS, *OTHERS, *PARAMETRIZATIONS)
+UP, A = [0.0, 0.0, 1.0], [0.5, 0.5]
+BELOW = [UP, [0.6, 0.0, -0.8]]
+SOAP = {"tint": 1.0, "ior": 1.5, "roughness": A, "thinfilm_thickness": -1.0, "thinfilm_ior": 1.3}
+CLAY = {"mu": 0.5, "rho": 0.5, "roughness": 0.5}
+COAT = CLAY | {"alpha": 0.3, "ior": 1.5}
+BASE = CLAY | {"specular_roughness": 0.3, "specular_ior": 1.5, "metalness": 0.5}
+LOBE = Bsdf(np.array(0.5), np.array(0.5))
+
+
+def openpbr(**changes):
+    return models.openpbr_base_albedo_dir(**BASE | changes)
+
+
+def coated(**changes):
+    return models.dielectric_over_eon_albedo_dir(**COAT | changes)
+
+
+RULES = {
+    # Ranges, with the place of the first bad element.
+    "roughness must lie in [0, 1]; got 1.2": lambda: models.eon_brdf(UP, UP, 1.0, 1.2),
+    "roughness must lie in [0, 1]; got -0.5 at index (2,)": lambda: models.eon_brdf(
+        UP, UP, 1.0, [0.0, 1.0, -0.5]
+    ),
+    "rho must lie in [0, 1]; got 2.0 at index (0, 1)": lambda: models.eon_brdf(
+        UP, UP, [[0.5, 2.0, 3.0]], 1.0
+    ),
+    "rho must lie in [0, 1]; got nan": lambda: models.eon_brdf(UP, UP, np.nan, 1.0),
+    "sigma must lie in [0, pi/2]; got 1.6": lambda: models.qon_brdf(UP, UP, 1.0, 1.6),
+    "mu must lie in [0, 1]; got 2.0 at index (1,)": lambda: albedo.fon_albedo_dir([0.5, 2.0], 1.0),
+    "extinction must lie in [0, 1e50]; got -1.0 at index (1,)": lambda: models.fresnel_conductor(
+        0.5, 1.0, [0.0, -1.0]
+    ),
+    "ior must lie in [0, 1e50]; got inf": lambda: models.fresnel_dielectric_avg(np.inf),
+    "u must lie in [0, 1); got 1.0 at index (1, 0)": lambda: sampling.eon_sample(
+        UP, [[0.0, 0.0], [1.0, 0.0]], 0.5
+    ),
+    "color must lie in [0, 1]; got 1.2 at index (2,)": lambda: models.eon_rho_from_albedo_normal(
+        [0.5, 1.0, 1.2], 0.5
+    ),
+    "hair_color must lie in (0, 1]; got 0.0 at index (0,)": (
+        lambda: models.chiang_hair_absorption_from_color([0.0, 1.0, 1.0], 0.5)
+    ),
+    "theta_i must lie in [-pi/2, pi/2]; got 2.0": lambda: models.hair_longitudinal(2.0, 0.0, 0.1),
+    "roughness_R must lie in [1e-12, 1e12]; got 0.0 at index (0,)": (
+        lambda: models.chiang_hair_bcsdf(UP, UP, roughness_R=(0.0, 0.1))
+    ),
+    "thinfilm_thickness must lie in [0, 1e9]; got -1.0": lambda: models.film_brdf(
+        "dielectric_bsdf", UP, UP, SOAP
+    ),
+    "weight must lie in [0, inf); got -0.5": lambda: multiply(LOBE, -0.5),
+    "amount must lie in [0, 1]; got 1.5": lambda: mix(LOBE, LOBE, 1.5),
+    "albedo must lie in (-inf, inf); got nan at index (1,)": lambda: throughput([0.5, np.nan]),
+    "specular_roughness must lie in [0.1, 1]; got 0.05": lambda: openpbr(specular_roughness=0.05),
+    "alpha must lie in [0.01, 1]; got 0.001": lambda: coated(alpha=0.001),
+    # Directions.
+    "wi must be unit vectors to 1e-06; got squared length 4.0 at index (1,)": (
+        lambda: models.lambert_brdf(UP, [UP, [0.0, 0.0, 2.0]], 1.0)
+    ),
+    "wo must be unit vectors to 1e-06; got squared length nan": lambda: models.lambert_brdf(
+        [np.nan, 0.0, 1.0], UP, 1.0
+    ),
+    "wi must be unit vectors to 1e-06; got squared length inf": lambda: models.lambert_brdf(
+        UP, [1e200, 0.0, 0.0], 1.0
+    ),
+    "wi must not point below the horizon (z >= 0); got z = -0.8 at index (1,)": (
+        lambda: sampling.cosine_pdf(BELOW)
+    ),
+    "wo must not point below the horizon (z >= 0); got z = -0.8 at index (1,)": (
+        lambda: sampling.eon_sample(BELOW, A, 0.5)
+    ),
+    "wi must not point above the horizon (z <= 0); got z = 0.8": lambda: models.translucent_btdf(
+        UP, [0.6, 0, 0.8], 1.0
+    ),
+    # Kinds of arguments.
+    "rho must be real numbers; got 'red'": lambda: models.lambert_brdf(UP, UP, "red"),
+    "rho must be real numbers; got 1j": lambda: models.lambert_brdf(UP, UP, 1j),
+    "rho must be real numbers; got [[1.0], [1.0, 0.5]]": lambda: models.lambert_brdf(
+        UP, UP, [[1.0], [1.0, 0.5]]
+    ),
+    "rho must not be a masked array, whose mask would be lost; fill it": (
+        lambda: models.lambert_brdf(UP, UP, np.ma.masked_less([0.1, 0.5], 0.2))
+    ),
+    "inputs must be a mapping of names to values; got 3": lambda: models.film_brdf(
+        "dielectric_bsdf", UP, UP, 3
+    ),
+    "inputs must have ior, roughness, thinfilm_ior, thinfilm_thickness": lambda: models.film_brdf(
+        "dielectric_bsdf", UP, UP, {"tint": 1.0}
+    ),
+    "form must be a Form; got 'x'": lambda: models.film_dielectric(0.5, 5.0, 1.5, 1.5, form="x"),
+    "reading must be one of text, unclamped": lambda: models.schlick_ior(0.5, "mean"),
+    f"model must be one of {', '.join(row.name for row in ROWS)}; got 'phong'": lambda: model(
+        "phong"
+    ),
+    "category must be one of roughness_anisotropy, ": lambda: node("nothing"),
+    # Shapes.
+    "wo must have shape (..., 3); got shape (2,)": lambda: models.lambert_brdf([1.0, 0.0], UP, 1.0),
+    "wi must have shape (..., 3); got shape ()": lambda: models.lambert_brdf(UP, 1.0, 1.0),
+    "u must have shape (..., 2); got shape (3,)": lambda: sampling.cosine_sample([0.1, 0.2, 0.3]),
+    "roughness must be a number or have shape (..., 2); got shape (3,): write roughness[..., np": (
+        lambda: models.smith_g1(UP, [0.5, 0.5, 0.5])
+    ),
+    "hair_color must have shape (..., 3); got shape ()": (
+        lambda: models.chiang_hair_absorption_from_color(0.5, 0.5)
+    ),
+    "ior, extinction must have equal numbers of channels; got 2, 3": (
+        lambda: models.fresnel_conductor_avg([1.0, 2.0], [1.0, 2.0, 3.0])
+    ),
+    "alpha must be one number, for all pairs; got shape (2,)": lambda: coated(alpha=[0.1, 0.2]),
+    "specular_roughness must be one number, for all pairs; got shape (2,)": (
+        lambda: openpbr(specular_roughness=[0.3, 0.5])
+    ),
+    "wo, wi, rho, roughness must broadcast (last axis of wo, wi, rho apart); "
+    "got shapes (2, 3), (3, 3), (1,), ()": lambda: models.eon_brdf([UP] * 2, [UP] * 3, 1.0, 1.0),
+    "rho, roughness, mu must broadcast (last axis of rho apart); got shapes (4, 3), (5,), ()": (
+        lambda: albedo.eon_albedo_dir(0.5, np.full((4, 3), 0.5), [0.5] * 5)
+    ),
+    "rho, mu, parameter 0 must broadcast (last axis of rho apart); got shapes (1,), (4,), (5,)": (
+        lambda: albedo.albedo_dir_quadrature(models.eon_brdf, [0.5] * 4, 0.5, [0.5] * 5)
+    ),
+    "wo, wi, roughness, ior, extinction must broadcast": lambda: models.conductor_brdf(
+        UP, UP, [A] * 2, np.ones((3, 1)), 1.0
+    ),
+    "wo, u, roughness must broadcast (last axis of wo, u apart); got shapes (4, 3), (2,), (5,)": (
+        lambda: sampling.ltc_sample([UP] * 4, A, [0.5] * 5)
+    ),
+    "wo, radiance, inner_angle, outer_angle must broadcast": lambda: models.conical_edf(
+        [UP] * 2, [1.0], np.ones(3), 1.0
+    ),
+    "rho, mu, roughness, metalness must broadcast": lambda: openpbr(
+        metalness=[0.1] * 5, roughness=[0.5] * 4
+    ),
+}
+
+
+@pytest.mark.parametrize("message", RULES)
+def test_a_message_names_rule_value_and_place(message):
+    with pytest.raises(ValueError, match="^" + re.escape(message)):
+        RULES[message]()
+
+
+def test_inputs_of_another_name_are_refused():
+    with pytest.raises(TypeError, match=r"^inputs must be among tint_R, .*; got weight$"):
+        models.chiang_hair_bcsdf(UP, UP, weight=1.0)
+
+
+def test_the_first_bad_element_of_a_large_array_is_found():
+    wi = np.tile(UP, (100_000, 1))
+    wi[77_777, 2] = wi[99_999, 2] = -1.0
+    with pytest.raises(ValueError, match=re.escape("z = -1.0 at index (77777,)")):
+        models.lambert_brdf(UP, wi, 1.0)
