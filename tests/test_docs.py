@@ -28,8 +28,10 @@ LOADED = re.compile(
 )
 IMPORTED = re.compile(r"(?:url\(|@import )[\"']?(?:https?:)?//")
 LINK = re.compile(r"\]\(([^)\s]+)\)")
-FOLDERS = "docs|tests|tools|examples|libraries|genglsl|genosl|python"
-PATH = re.compile(rf"`((?:{FOLDERS})/[^`<\s]*[^`<\s:.])(?::\d+)?`")  # without placeholders
+FOLDERS = (
+    "docs|tests|tools|examples|libraries|genglsl|genosl|python|models|shaders|hosts|conformance"
+)
+PATH = re.compile(rf"`((?:{FOLDERS})/[^`<\s:]*[^`<\s:.])(?::([\w.]+))?`")  # without placeholders
 SCRIPT = re.compile(r"python -m ((?:tests|tools)[\w.]*\w)")
 NAME = re.compile(r"`(mxeon(?:\.\w+)+)")
 
@@ -79,13 +81,19 @@ def test_every_link_of_the_prose_leads_to_a_file(name):
     assert [link for link in files if not (ROOT / name).parent.joinpath(link).exists()] == []
 
 
-def test_every_path_that_the_prose_names_exists():
-    paths = {path for text in prose().values() for path in PATH.findall(text)}
+def test_every_path_that_the_prose_names_exists_and_has_the_name_behind_the_colon():
+    paths = {place for text in prose().values() for place in PATH.findall(text)}
     assert len(paths) > 50
-    names = {path.partition(":")[0] for path in paths}  # without the number of a line
-    # Pages on defects name MaterialX's own files.
-    folders = (ROOT, Path(mx.__file__).parent)
-    lost = [name for name in names if not any(any(each.glob(name)) for each in folders)]
+    # Pages on defects name MaterialX's own files, those on design begin in the package.
+    folders = (ROOT, Path(mx.__file__).parent, ROOT / "python/mxeon")
+    found = {place: [file for each in folders for file in each.glob(place[0])] for place in paths}
+    assert sorted(place for place, files in found.items() if not files) == []
+    named = [
+        (place, files[0]) for place, files in found.items() if place[1] and not place[1].isdigit()
+    ]
+    lost = [
+        place for place, file in named if place[1].split(".")[-1] not in file.read_text("utf-8")
+    ]
     assert sorted(lost) == []
 
 
