@@ -2,7 +2,7 @@
 """Materials from documents, beside the reference's pictures pixel by pixel; and one material of each node."""
 
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TypeAlias
@@ -60,6 +60,7 @@ from mxeon.io.srgb import SLOPE
 from mxeon.models.hair import ROUGHNESSES
 from mxeon.models.nodes import NODES
 from mxeon.models.sheen import conty_kulla_albedo_dir
+from mxeon.shaders.document.graphs import categories, inner_nodes
 from mxeon.shaders.document.notes import DocumentWarning, MissingFileWarning, same_names
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.generation import TARGETS, ApproximationWarning, CodeWarning, Shader, generate
@@ -97,7 +98,7 @@ def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe], host: Host) -> Tole
 
     An image's filter works on codes, before a decoding.
     """
-    nodes = list(inner_nodes(shader))
+    nodes = list(inner_nodes(shader.document))
     if categories(shader.document.traverseTree()) & FITTED_NODES:
         tolerance = FITTED
     elif categories(nodes) & FITTED_NODES:
@@ -115,22 +116,6 @@ def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe], host: Host) -> Tole
     rounding = host_row(host.name).rounding
     others += [Term(rounding, "the pixels' own rounding")] * bool(rounding)
     return replace(tolerance.plus(*others), unit=RELATIVE) if others else tolerance
-
-
-def categories(elements: Iterable[mx.Element]) -> set[str]:
-    return {each.getCategory() for each in elements}
-
-
-def inner_nodes(shader: Shader) -> Iterator[mx.Element]:
-    """Nodes of a shader's document, and those of the graphs that define them."""
-    waiting, seen = [shader.document], set()
-    while waiting:
-        for each in waiting.pop().traverseTree():
-            yield each
-            graph = each.getImplementation() if each.isA(mx.Node) else None
-            if graph and graph.isA(mx.NodeGraph) and graph.getNamePath() not in seen:
-                seen.add(graph.getNamePath())
-                waiting.append(graph)
 
 
 def _others(lobes: tuple[ShownLobe, ...]) -> list[Term]:
@@ -305,7 +290,7 @@ def _assert_judged(shader: Shader, host: Host) -> None:
     """Raise NotRun where the host shows another material, or its own closures, which are judged by themselves."""
     if reason := host.unread(shader):
         raise NotRun(f"{host.name}: {reason}: the picture is shown and only has to be finite")
-    own = sorted(categories(inner_nodes(shader)) & set(BSDF_NODES))
+    own = sorted(categories(inner_nodes(shader.document)) & set(BSDF_NODES))
     if own and host.language == "osl":
         raise NotRun(
             f"{host.name} has its own closures for {', '.join(own)}: their picture is shown and "

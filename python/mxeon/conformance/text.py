@@ -26,7 +26,7 @@ from mxeon.hosts import HOSTS
 from mxeon.models import diffuse as formulas
 from mxeon.shaders.closure_calls import COMMENT
 from mxeon.shaders.expressions import Array, evaluate
-from mxeon.shaders.functions import LANGUAGES, SIGNATURE, has_functions, twins
+from mxeon.shaders.functions import LANGUAGES, Parts, has_functions, parts, twins
 from mxeon.shaders.generation import TARGETS, ApproximationWarning, generate
 from mxeon.shaders.library import load_library
 from mxeon.shaders.nodes import EON, FLAG, INVERSIONS, OREN_NAYAR
@@ -35,7 +35,6 @@ from mxeon.shaders.nodes import EON, FLAG, INVERSIONS, OREN_NAYAR
 
 Faults = Callable[..., tuple[list[str], int]]  # in words, and the number that the control has
 Inputs = Mapping[str, Array]
-Parts = dict[str, list[str]]  # tokens of functions and constants by name
 # By check: its claim, what it counts, and the error that its control makes.
 CLAIMS = {
     "definition": (
@@ -74,8 +73,8 @@ def check_texts(subjects: Iterable[DiffuseSpec], library: str) -> tuple[Result, 
     if all(has_functions(library, language) for language in LANGUAGES):
         glsl, osl = (COMMENT.sub(" ", twins(language, library)) for language in LANGUAGES)
         texts = glsl, osl, re.sub(r"\b\d+\.\d+\b", "777.0", osl, count=1)
-        title, parts = "shader twins, osl", map(_parts, texts)
-        results.append(_judged("languages", title, library, _language_faults, *parts))
+        title = "shader twins, osl"
+        results.append(_judged("languages", title, library, _language_faults, *map(parts, texts)))
     return (
         *results,
         *(
@@ -189,27 +188,12 @@ def _plain(text: str) -> tuple[object, ...]:
 
 # --- languages ------------------------------------------------------------------------------------
 
-GLSL_WORDS = {"color": "vec3", "vector": "vec3", "output": "out", "atan2": "atan"}
-
 
 def _language_faults(glsl: Parts, *osl: Parts) -> tuple[list[str], int]:
     found, control = (
         [name for name in glsl | each if glsl.get(name) != each.get(name)] for each in osl
     )
     return [f"{name} is different in OSL" for name in found], len(control)
-
-
-def _parts(text: str) -> Parts:
-    """Functions and constants of a text, in GLSL's words."""
-    parts = dict(re.findall(r"^#define (\w+) (.+)$", text, re.MULTILINE))
-    matches = list(SIGNATURE.finditer(text))
-    ends = [match.start() for match in matches[1:]] + [len(text)]
-    for match, end in zip(matches, ends, strict=True):
-        parts[match[1]] = re.sub(r"^#.*\n?", "", text[match.start() : end], flags=re.MULTILINE)
-    return {
-        name: [GLSL_WORDS.get(word, word) for word in re.findall(r"[\w.]+|\S", part)]
-        for name, part in parts.items()
-    }
 
 
 # --- generated sources ----------------------------------------------------------------------------

@@ -6,6 +6,7 @@ transforms are the shader's.
 """
 
 import warnings
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ from mxeon.io.images import ImageWarning, open_image, read_image
 
 IRRADIANCE_SIZE = 32  # rows of an irradiance map: a cosine lobe has no finer detail
 FIRST_TILE = {"<UDIM>": "1001", "<UVTILE>": "u1_v1"}  # MaterialX's names of it
+FILES = 16  # images whose values at the points of a picture are kept
 RADIANCE_SIZE = 64  # rows and columns, or a few more, of the radiance that is summed
 
 
@@ -42,6 +44,24 @@ def read_texture(path: str | Path) -> NDArray[np.float32]:
         warnings.warn(ImageWarning(f"{path}: should hold finite numbers; {reason}"), stacklevel=2)
     gray = pixels.shape[-1] == 1
     return (np.broadcast_to(pixels, (*pixels.shape[:2], 3)) if gray else pixels)[::-1]
+
+
+@lru_cache(maxsize=FILES)
+def texels_at(path: str, texcoord: bytes) -> NDArray[np.float64]:
+    """All channels of a texture at points, (N, channels), by its four nearest texels."""
+    texels = read_texture(path)
+    height, width = texels.shape[:2]
+    texel = np.frombuffer(texcoord).reshape(-1, 2) * [width, height] - 0.5
+    corner = np.floor(texel).astype(int)
+    u, v = (texel - corner).T[..., None]
+    x, y = corner.T
+
+    def at(dx: int, dy: int) -> NDArray[np.float64]:
+        return np.asarray(texels[(y + dy) % height, (x + dx) % width], np.float64)
+
+    lower = at(0, 0) * (1.0 - u) + at(1, 0) * u
+    upper = at(0, 1) * (1.0 - u) + at(1, 1) * u
+    return np.asarray(lower * (1.0 - v) + upper * v)
 
 
 def read_latlong(environment: float | str | Path | None) -> NDArray[np.float32]:

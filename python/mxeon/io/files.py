@@ -76,6 +76,15 @@ def write_text(path: AnyPath, text: str) -> None:
         beside.write_text(text, encoding="utf-8", errors="replace")
 
 
+def sync(folder: AnyPath) -> None:
+    """Flush the names in a folder to disk."""
+    file = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(file)
+    finally:
+        os.close(file)
+
+
 def regular(path: AnyPath, flags: int) -> int:
     """Descriptor of a regular file: `open(path, opener=regular)`.
 

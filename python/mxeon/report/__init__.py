@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 import json
-from collections import deque
-from collections.abc import Callable, Generator, Iterable, Iterator
+import re
+from collections import Counter, deque
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import closing, contextmanager
 from dataclasses import replace
@@ -17,7 +18,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from mxeon.conformance.results import Picture, Run, image_names
+from mxeon.conformance.results import Picture, Run
 from mxeon.conformance.results.known_issues import issues_of
 from mxeon.conformance.results.records import make_converter
 from mxeon.errors import PackageError, install
@@ -30,6 +31,7 @@ PAGES = "upstream"  # folder beside the report with the pages on defects
 
 JSON_FORMAT = 1
 
+NOT_PLAIN = re.compile("[^A-Za-z0-9]+")
 REFERENCE = "reference"
 # Metadata that a picture shares with its reference.
 SHARED_METADATA = ("version", "library", "document", "element", "scene", "points")
@@ -98,7 +100,9 @@ def _picture_fields(run: Run) -> list[dict[str, Any]]:
     stems = dict(zip(places, image_names(pictures), strict=True))
     with in_threads(_largest_difference, run.pictures) as each:
         differences = list(each)
-    for picture, stem, largest in zip(run.pictures, run.image_names, differences, strict=True):
+    for picture, stem, largest in zip(
+        run.pictures, image_names(run.pictures), differences, strict=True
+    ):
         reference = stems.get((REFERENCE, *_subject(picture)))
         fields.append(
             {key: getattr(picture, key) for key in keys}
@@ -107,6 +111,19 @@ def _picture_fields(run: Run) -> list[dict[str, Any]]:
             | {"largest_difference": largest}
         )
     return fields
+
+
+def image_names(pictures: Sequence[Picture]) -> tuple[str, ...]:
+    """File names for pictures, without suffix: ASCII, and different whatever the case."""
+    names, uses = [], Counter[str]()
+    for picture in pictures:
+        document = Path(picture.document).stem
+        words = (document, picture.element, picture.host, picture.library, picture.scene)
+        name = "-".join(NOT_PLAIN.sub("_", word)[:40] for word in words)
+        uses[name.lower()] += 1
+        # A counter is a sixth word, which no other name has.
+        names.append(name if uses[name.lower()] == 1 else f"{name}-{uses[name.lower()]}")
+    return tuple(names)
 
 
 def _largest_difference(picture: Picture) -> float | None:
@@ -177,7 +194,9 @@ def html(run: Run) -> Generator[str, None, None]:
     """
     with needing_extra("report.html"):
         from mxeon.report.page import render
-    files = {id(each): stem for each, stem in zip(run.pictures, run.image_names, strict=True)}
+    files = {
+        id(each): stem for each, stem in zip(run.pictures, image_names(run.pictures), strict=True)
+    }
     return render(run, lambda picture: f"pictures/{files[id(picture)]}.png")
 
 

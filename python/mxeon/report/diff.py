@@ -11,10 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, VERDICTS, Result
-from mxeon.conformance.results.records import ERRORS, read_record, spelled
+from mxeon.conformance.results.records import read_record
 from mxeon.errors import InputError
 from mxeon.hosts.base import Identity
 from mxeon.io.files import regular
+from mxeon.io.records import ERRORS, spelled
 from mxeon.report import JSON_FORMAT
 
 FACTOR = 2.0  # a figure that changes by less is not reported

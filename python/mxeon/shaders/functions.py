@@ -10,6 +10,8 @@ from mxeon.errors import InputError, ShaderError
 from mxeon.shaders.library import kind_of, source_folder
 
 LANGUAGES = ("glsl", "osl")
+GLSL_WORDS = {"color": "vec3", "vector": "vec3", "output": "out", "atan2": "atan"}
+Parts = dict[str, list[str]]  # tokens of functions and constants by name
 FAMILY = "oren_nayar_family"
 ALL = "eon_sampling"  # includes all the others
 STEMS = ("eon", FAMILY, "ltc_sampling", ALL)
@@ -38,6 +40,19 @@ def twins(language: str, library: str) -> str:
         if all(source_file(each, stem, library).is_file() for each in LANGUAGES)
     ]
     return "\n".join(source(language, stem, library) for stem in stems)
+
+
+def parts(text: str) -> Parts:
+    """Functions and constants of a text, in GLSL's words."""
+    found = dict(re.findall(r"^#define (\w+) (.+)$", text, re.MULTILINE))
+    matches = list(SIGNATURE.finditer(text))
+    ends = [match.start() for match in matches[1:]] + [len(text)]
+    for match, end in zip(matches, ends, strict=True):
+        found[match[1]] = re.sub(r"^#.*\n?", "", text[match.start() : end], flags=re.MULTILINE)
+    return {
+        name: [GLSL_WORDS.get(word, word) for word in re.findall(r"[\w.]+|\S", part)]
+        for name, part in found.items()
+    }
 
 
 def expanded(path: Path) -> str:

@@ -13,13 +13,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
-from functools import cached_property, lru_cache, partial
+from functools import cached_property, partial
 from operator import itemgetter
 from typing import TypeAlias
 
 import MaterialX as mx
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from mxeon.conformance.reference.nodes import (
     COMBINATIONS,
@@ -40,7 +40,7 @@ from mxeon.conformance.reference.nodes import (
 )
 from mxeon.conformance.samples import Array
 from mxeon.errors import NotRun, OutsideModel
-from mxeon.hosts.textures import read_texture
+from mxeon.hosts.textures import texels_at
 from mxeon.io.srgb import srgb_decoded
 from mxeon.models.core.layering import Bsdf
 from mxeon.models.nodes import utilities
@@ -64,7 +64,6 @@ UNCONNECTED: dict[str, Value] = {
     "surfaceshader": np.zeros(3),
     "VDF": None,
 }
-FILES = 16  # images whose values at the points of a picture are kept
 CHANNELS = {"float": 1, "color3": 3}  # of an image, by the type that it is read as
 UTILITIES = {row.category: row for row in utilities.UTILITIES}
 
@@ -375,7 +374,7 @@ class Graph:
         if file.hasUnit():
             raise NotRun("reference: an image must hold no lengths")
         channels = CHANNELS.get(node.getType(), 0)
-        values = _texels(file.getValueString(), self._points.texcoord.tobytes())
+        values = texels_at(file.getValueString(), self._points.texcoord.tobytes())
         if not 0 < channels <= values.shape[-1]:
             raise NotRun(
                 f"reference: {file.getValueString()}: must be read as float, or as color3 from an "
@@ -429,21 +428,3 @@ def _linear(element: mx.Element, value: Array) -> Array:
     if spaces != ("srgb_texture", "lin_rec709"):
         raise NotRun(f"reference: there is no transform from color space {' to '.join(spaces)}")
     return np.concatenate([srgb_decoded(value[..., :3]), value[..., 3:]], axis=-1)
-
-
-@lru_cache(maxsize=FILES)
-def _texels(path: str, texcoord: bytes) -> Array:
-    """Array of all channels of an image at points, (N, channels), by its four nearest texels."""
-    texels = read_texture(path)
-    height, width = texels.shape[:2]
-    texel = np.frombuffer(texcoord).reshape(-1, 2) * [width, height] - 0.5
-    corner = np.floor(texel).astype(int)
-    u, v = (texel - corner).T[..., None]
-    x, y = corner.T
-
-    def at(dx: int, dy: int) -> NDArray[np.float64]:
-        return np.asarray(texels[(y + dy) % height, (x + dx) % width], np.float64)
-
-    lower = at(0, 0) * (1.0 - u) + at(1, 0) * u
-    upper = at(0, 1) * (1.0 - u) + at(1, 1) * u
-    return np.asarray(lower * (1.0 - v) + upper * v)

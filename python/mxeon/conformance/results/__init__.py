@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -36,7 +35,6 @@ LIGHTS = {
     "back": "light from behind",
     "furnace": "a white environment",
 }
-NOT_PLAIN = re.compile("[^A-Za-z0-9]+")
 DIRECT = ("value", "lobe")  # the checks of a node in direct light, of which it has one
 
 
@@ -214,19 +212,6 @@ class Picture:
             gaps = np.abs(np.subtract.outer(np.arange(len(judged)), lines))
             nearest.append(lines[gaps.argmin(axis=1)])
         return np.where(judged, apart, np.nan)[np.ix_(*nearest)]
-
-
-def image_names(pictures: Sequence[Picture]) -> tuple[str, ...]:
-    """File names for pictures, without suffix: ASCII, and different whatever the case."""
-    names, uses = [], Counter[str]()
-    for picture in pictures:
-        document = Path(picture.document).stem
-        words = (document, picture.element, picture.host, picture.library, picture.scene)
-        name = "-".join(NOT_PLAIN.sub("_", word)[:40] for word in words)
-        uses[name.lower()] += 1
-        # A counter is a sixth word, which no other name has.
-        names.append(name if uses[name.lower()] == 1 else f"{name}-{uses[name.lower()]}")
-    return tuple(names)
 
 
 @dataclass(frozen=True)
@@ -408,8 +393,3 @@ class Run:
             + f" MaterialX {self.software['MaterialX']}"
             for folder, files in self.libraries.items()
         )
-
-    @cached_property
-    def image_names(self) -> tuple[str, ...]:
-        """File names for the pictures, without suffix: ASCII, and different whatever the case."""
-        return image_names(self.pictures)

@@ -19,14 +19,14 @@ from typing import Any, Self, cast
 
 import numpy as np
 from filelock import FileLock, Timeout
-from numpy.lib.format import header_data_from_array_1_0, write_array_header_1_0
 from numpy.typing import ArrayLike, NDArray
 
 from mxeon.conformance.results import listed
-from mxeon.conformance.results.records import ERRORS, StoredImage, images_of, make_converter
+from mxeon.conformance.results.records import StoredImage, images_of, make_converter
 from mxeon.conformance.run.plan import Findings, Plan
 from mxeon.errors import InputError
-from mxeon.io.files import below, regular, replacing
+from mxeon.io.files import below, regular, replacing, sync
+from mxeon.io.records import ERRORS
 
 FORMAT = 6
 JOURNAL = "journal/items.jsonl"
@@ -78,7 +78,7 @@ class Journal:
             map(lambda picture, own: replace(picture, **own), findings.pictures, images)
         )
         if pictures:
-            _sync(self._path.parent)
+            sync(self._path.parent)
         findings = replace(findings, pictures=pictures)
         record = {"task": number, "findings": self._converter.unstructure(findings)}
         size, rest = os.fstat(self._file).st_size, memoryview(_line(record))
@@ -98,8 +98,8 @@ class Journal:
             os.replace(self._path.parent, self._folder / PREVIOUS)
         with replacing(self._path) as beside:
             beside.write_bytes(_line({"format": FORMAT} | self._converter.unstructure(self._plan)))
-        _sync(self._path.parent)
-        _sync(self._folder)
+        sync(self._path.parent)
+        sync(self._folder)
 
     def _continue(self) -> None:
         """Take the findings of the journal that is there."""
@@ -109,15 +109,12 @@ class Journal:
         os.truncate(self._path, size)
 
     def _store(self, image: ArrayLike) -> NDArray[np.float32]:
-        """An image in a file of the folder, hashed and written without a copy of its pixels."""
-        pixels, header = np.ascontiguousarray(image, np.float32), BytesIO()
-        write_array_header_1_0(header, header_data_from_array_1_0(pixels))
-        parts = header.getvalue(), pixels.data
-        digest = hashlib.sha256(parts[0])
-        digest.update(parts[1])
-        path = below(self._path.parent, f"{digest.hexdigest()}.npy")
-        with replacing(path) as beside, open(beside, "wb") as file:
-            file.writelines(parts)
+        """An image in a file of the folder."""
+        stream = BytesIO()
+        np.save(stream, np.ascontiguousarray(image, np.float32))
+        path = below(self._path.parent, f"{hashlib.sha256(stream.getbuffer()).hexdigest()}.npy")
+        with replacing(path) as beside:
+            beside.write_bytes(stream.getbuffer())
         return cast(NDArray[np.float32], StoredImage(path))  # read anew by each use
 
 
@@ -205,12 +202,3 @@ def _facts(plan: Plan) -> dict[str, str]:
     )
     facts = {"mxeon": plan.version} | plan.software | plan.options
     return facts | {"hosts": hosts, "libraries": libraries, "documents": listed(plan.documents)}
-
-
-def _sync(folder: Path) -> None:
-    """Flush the names in a folder to disk."""
-    file = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(file)
-    finally:
-        os.close(file)

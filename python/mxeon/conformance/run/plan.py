@@ -42,7 +42,7 @@ from mxeon.hosts.base import Identity
 from mxeon.io.files import regular
 from mxeon.jobs import pool
 from mxeon.shaders.contents import ShownNode, document_nodes, node_of
-from mxeon.shaders.document.policy import DEFAULT, LIMITS, Policy
+from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.document.references import named_files
 from mxeon.shaders.functions import has_functions
 from mxeon.shaders.library import (
@@ -349,7 +349,7 @@ def make_plan(
         refused=survey.refused,
         libraries={each: origins(each) for each in libraries if each not in LIBRARIES},
         compared=tuple(compared),
-        options=_options(policy) | {"--seed": str(seed)},
+        options=policy.options | {"--seed": str(seed)},
         files=digests(dict.fromkeys(documents), policy, (*libraries, *policy.definitions))
         if resumable
         else {},
@@ -425,18 +425,6 @@ def _examples(library: str) -> list[Path]:
     files = sorted(examples_folder().glob("*.mtlx"))
     missing = [spec.node for spec in DIFFUSE if spec not in diffuse_specs(library)]
     return [file for file in files if not any(node in file.read_text() for node in missing)]
-
-
-def _options(policy: Policy) -> dict[str, str]:
-    prefixes = dict.fromkeys(LIMITS, "max") | {"outside": "allow", "code": "allow"}
-    folders = {"path": policy.path, "definitions": policy.definitions}
-    values = vars(policy) | {
-        name: os.pathsep.join(each) or "none" for name, each in folders.items()
-    }
-    return {
-        f"--{prefixes[name]}{name.capitalize()}" if name in prefixes else f"--{name}": str(value)
-        for name, value in values.items()
-    }
 
 
 # --- the files that a run depends on --------------------------------------------------------------

@@ -6,7 +6,7 @@ nodes are counted as often as they are used, by weights, without visiting them a
 mapping from each key to its parts. Nothing here recurses, because the depth is unknown.
 """
 
-from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from graphlib import CycleError, TopologicalSorter
 from typing import TypeVar
 
@@ -80,6 +80,22 @@ def upstream(
     paths = reachable(start, lambda path: _upstream(document, path))
     nodes = (each for each in elements if each.isA(mx.Node))
     return [each for each in nodes if each.getNamePath() in paths]
+
+
+def categories(elements: Iterable[mx.Element]) -> set[str]:
+    return {each.getCategory() for each in elements}
+
+
+def inner_nodes(document: mx.Document) -> Iterator[mx.Element]:
+    """Elements of a document, and those of the graphs that define its nodes."""
+    waiting, seen = [document], set()
+    while waiting:
+        for each in waiting.pop().traverseTree():
+            yield each
+            graph = each.getImplementation() if each.isA(mx.Node) else None
+            if graph and graph.isA(mx.NodeGraph) and graph.getNamePath() not in seen:
+                seen.add(graph.getNamePath())
+                waiting.append(graph)
 
 
 def check_inheritance(document: mx.Document, policy: Policy) -> None:

@@ -93,6 +93,17 @@ class Policy:
             if getattr(self, name) < 0:
                 raise InputError(f"{name} must be at least 0; got {getattr(self, name)}")
 
+    @property
+    def options(self) -> dict[str, str]:
+        """Its values by the options of the command."""
+        prefixes = dict.fromkeys(LIMITS, "max") | {"outside": "allow", "code": "allow"}
+        folders = {"path": self.path, "definitions": self.definitions}
+        values = vars(self) | {n: os.pathsep.join(each) or "none" for n, each in folders.items()}
+        return {
+            f"--{prefixes[n]}{n.capitalize()}" if n in prefixes else f"--{n}": str(value)
+            for n, value in values.items()
+        }
+
     def check_limit(self, name: str, value: int, rule: str, unit: str) -> None:
         """Raise DocumentError if a value exceeds a limit."""
         limit = getattr(self, name)

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Dataclasses as JSON and back; each value has to be of its type."""
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any, TypeAlias, TypeVar, get_origin
+
+import cattrs
+import numpy as np
+from cattrs.gen import make_dict_structure_fn, make_dict_unstructure_fn
+
+from mxeon.errors import InputError
+
+NOT_FINITE = ("NaN", "Infinity", "-Infinity")
+# Raised on reading JSON of unknown origin.
+ERRORS = (
+    ValueError,
+    KeyError,
+    TypeError,
+    AttributeError,
+    RecursionError,
+    cattrs.BaseValidationError,
+)
+T = TypeVar("T")
+Overrides: TypeAlias = dict[str, Any]  # by field; cattrs types the options beside them alone
+
+
+def strict_converter(fields: Mapping[Any, Overrides]) -> cattrs.Converter:
+    """A converter between dataclasses and the types of JSON.
+
+    `fields` are those of a record that have other keys or types there. Numbers that are not finite are
+    written as the texts NOT_FINITE. `structure` raises some of ERRORS.
+    """
+    converter = cattrs.Converter(
+        forbid_extra_keys=True, unstruct_collection_overrides={tuple: list}
+    )
+    # Types are exact: Python takes true for 1.
+    for kind, words in ((str, "a text"), (bool, "true or false"), (int, "a whole number")):
+        converter.register_structure_hook(kind, _exactly(kind, words))
+    converter.register_structure_hook(float, _number)
+    converter.register_unstructure_hook(float, spelled)
+    converter.register_structure_hook_func(_is_array, lambda rows, _: np.array(rows, dtype=float))
+    converter.register_unstructure_hook_func(_is_array, lambda array: array.tolist())
+    for record, own in fields.items():
+        to_json: Any = make_dict_unstructure_fn(record, converter, **own)
+        converter.register_unstructure_hook(record, to_json)
+        converter.register_structure_hook(record, make_dict_structure_fn(record, converter, **own))
+    return converter
+
+
+def read_strictly(converter: cattrs.Converter, value: object, kind: type[T]) -> T:
+    """An instance of a dataclass from JSON's types; every key has to be there.
+
+    Raise InputError for the first value that is wrong, with its path and the rule.
+    """
+    try:
+        record = converter.structure(value, kind)
+    except ERRORS as error:
+        first = cattrs.transform_error(error, format_exception=_reason)[0]
+        raise InputError(first) from None
+    if converter.unstructure(record) != value:  # a text was taken for a list, for example
+        raise InputError("it must have the structure that mxeon writes")
+    return record
+
+
+def spelled(number: float) -> float | str:
+    """A number as JSON can hold it: one that is not finite as a text."""
+    if math.isfinite(number):
+        return number
+    return "NaN" if math.isnan(number) else "Infinity" if number > 0 else "-Infinity"
+
+
+def _is_array(kind: object) -> bool:
+    return (get_origin(kind) or kind) is np.ndarray
+
+
+def _exactly(kind: type[T], words: str) -> Callable[[object, type], T]:
+    def structure(value: object, _: type) -> T:
+        if type(value) is not kind:
+            raise InputError(f"must be {words}; got {value!r}")
+        return value
+
+    return structure
+
+
+def _number(value: object, _: type) -> float:
+    if type(value) not in (int, float) and value not in NOT_FINITE:
+        raise InputError(f"must be a number; got {value!r}")
+    try:
+        return float(value)  # type: ignore[arg-type]
+    except OverflowError:
+        raise InputError(
+            f"must be a number below 1.8e308; got one of {len(str(value))} digits"
+        ) from None
+
+
+def _reason(error: BaseException, kind: type | None) -> str:
+    return f"lacks {error}" if isinstance(error, KeyError) else str(error)
