@@ -87,15 +87,15 @@ FACET_PAIRS = sum_in("pi f cos", roundings(16 * 2.5**2, "of numbers up to 25/4")
 
 
 class Renderer(Protocol):
-    """What an engine is asked about its own nodes; each has some of these verbs."""
+    """Operations of an engine on its own nodes; each engine has some of them."""
 
     def node(self, material: Material, scene: Scene) -> Array:
-        """Picture of the sphere or the polyhedron with a material on it; see `Host.picture`."""
+        """Picture of the sphere or the polyhedron with a material; see `Host.picture`."""
 
     def pairs(
         self, material: Material, wo: Array, wi: Array, color: Array, roughness: Array
     ) -> Array:
-        """f cos(theta_i), (N, 3) in 1/sr, for unit vectors with normal +z; inputs stand in the material."""
+        """f cos(theta_i), (N, 3) in 1/sr, for unit vectors with normal +z; the material contains the inputs."""
 
     def sample(self, wo: Array, u: Array, roughness: Array) -> Array:
         """Directions to the light (N, 3) that the renderer draws for EON from u (N, 2) in [0, 1)."""
@@ -122,7 +122,7 @@ class Native(CyclesPictures):
 
     @property
     def claims(self) -> Claims:
-        """Titles of the model that the node claims, and of the form of it that is judged."""
+        """Titles of the model that the node claims, and of its form that is checked."""
         claimed, *_ = self.node.forms or (self.node.model,)
         title, own = (reference.model(name).title for name in (claimed, self.node.model))
         return {"claimed": title, "model": own}
@@ -146,7 +146,7 @@ class FormSamples(PictureSamples):
 
 
 class Exact(Native):
-    """A node on a sphere whose points and light have no error but rounding."""
+    """A node on a sphere whose points and light are exact up to rounding."""
 
     errors = errors_of(EXACT, EXACT_ALBEDO)
 
@@ -173,7 +173,7 @@ class Exact(Native):
 
 
 class FacetSamples(FormSamples):
-    """The points in a white environment for two materials: they take long."""
+    """Points in a white environment, for two materials only, because they take long."""
 
     @cached_property
     def views(self) -> tuple[Batch, ...]:
@@ -200,7 +200,7 @@ class Facets(Exact):
         return facet_pairs(scene)
 
     def picture(self, batch: Batch) -> Array:
-        """Values at the points of a batch, without those of a black lobe where others lie beside it."""
+        """Values at the points of a batch, minus those of a black lobe if the material has other lobes."""
         values = super().picture(batch)
         if self.node.beside:
             values = values - super().picture(batch.altered(color=BLACK))

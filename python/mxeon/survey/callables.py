@@ -63,7 +63,7 @@ class CallableHost(Host):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ClaimedModel(DiffuseModelSpec):
-    """The model that a function has to be, instead of a node."""
+    """The model that a function claims to be; it stands for a node."""
 
     @property
     def other_models(self) -> tuple[reference.Model, ...]:
@@ -85,7 +85,7 @@ class CallableSamples(Samples):
 
     @cached_property
     def edges(self) -> Batch:
-        """Pairs and inputs at the edges of the domain, then all others for which a check asks."""
+        """Pairs and inputs at the edges of the domain, then all others that a check uses."""
         asked = [self.spec.edges(self.counts)]
 
         def note(batch: Batch) -> Batch:
@@ -135,7 +135,7 @@ def _arguments(batch: Batch) -> tuple[Array, Array, Array, Array]:
 
 
 def _finite_rows(found: Compared | Iterable[Compared]) -> Iterator[Compared]:
-    """Values without the rows that are not finite, which are for one check; as they are if all are so."""
+    """Values without rows that are not finite, which `finite` reports; all values if no row is finite."""
     for each in [found] if isinstance(found, Compared) else found:
         expected = np.broadcast_to(each.expected, each.measured.shape)
         rows = np.asarray(np.isfinite(each.measured + expected).all(axis=1))
@@ -160,7 +160,7 @@ def _explain_not_finite(case: Case) -> Diagnosis:
 
 
 def _of_rest(check: Check) -> Check:
-    """A check that judges the finite values; "finite" says of the others where they are."""
+    """A check of the finite values; "finite" reports where the others are."""
     if check.key == "finite":
         return replace(check, diagnose=_explain_not_finite)
     if check.key == "inputs":
@@ -236,7 +236,7 @@ def _case(brdf: Brdf, model: str, name: str | None) -> Case:
 
 
 def _checks(model: str) -> tuple[Check, ...]:
-    """Rows of the table for values of a model, whichever models they are made for."""
+    """Rows of the table that check values of any model."""
     row = reference.model(model)
     if not row.parameter:
         assert_known("model", model, (row.name for row in reference.MODELS if row.parameter))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a node of a renderer's own is judged by, and how its material is made."""
+"""How a renderer's own node is checked, and how its material is made."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PUBLISHED = ("eon", "eon_fitted")  # the paper prints EON with the exact albedo,
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RendererSpec(DiffuseModelSpec):
-    """A node of a renderer's own, and the model that its documentation claims.
+    """A renderer's own node, and the model that its documentation claims.
 
     In `material`, "{color}", "{roughness}" and "{degrees}" stand for the inputs; nothing but the diffuse
     lobe may depend on them.

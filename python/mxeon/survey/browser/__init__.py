@@ -98,7 +98,7 @@ class Browser(webgl.Chromium):
         )
 
     def picture(self, job: Mapping[str, object], size: int) -> NDArray[np.float32]:
-        """Picture of the page's answer to a job, (size, size, 3), row 0 at the top; read-only."""
+        """Picture that the page draws for a job, (size, size, 3), row 0 at the top; read-only."""
         return self._picture(json.dumps(job), size)
 
     def ask(self, job: Mapping[str, object]) -> Answer:
