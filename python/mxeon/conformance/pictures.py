@@ -240,10 +240,29 @@ def _judge_material(
         result = _judge_match(place, cases, tolerance_of(shader, lobes, host))
         if result.verdict == FAILED and (known := _known(shader)):
             result = replace(result, diagnosis=known)
-    return result, tuple(
-        _picture(file, shader, host, library, scene, image, reference)
-        for scene, image, reference in zip(scenes, images, references, strict=True)
-    )
+    identity = host.identity()
+    names = (file.name, shader.element, host.name, library)
+
+    def picture(scene: Scene, image: Pixels, expected: ExpectedPicture | None) -> Picture:
+        metadata = {
+            "version": mxeon.__version__,
+            "host": f"{host.name} {identity.version}",
+            "device": identity.device,
+            "library": library,
+            "document": str(file),
+            "element": shader.element,
+            "scene": scene.name,
+        }
+        if expected is None:
+            return Picture(*names, scene.name, image, None, metadata)
+        if expected.measured:
+            metadata["from the host"] = ", ".join(expected.measured)
+        reference, judged = np.asarray(expected.image, np.float32), expected.judged
+        partly = judged.sum() < sphere(scene.size).mask.sum()
+        where = judged[..., None].astype(np.float32) if partly else None
+        return Picture(*names, scene.name, image, reference, metadata, where)
+
+    return result, tuple(map(picture, scenes, images, references))
 
 
 def _known(shader: Shader) -> str:
@@ -254,36 +273,6 @@ def _known(shader: Shader) -> str:
     graph = element.getImplementation() if element.isA(mx.Node) else None
     defined = element.getType() == "material" and graph and graph.isA(mx.NodeGraph)
     return DEFINED_MATERIAL if defined else ""
-
-
-def _picture(
-    file: Path,
-    shader: Shader,
-    host: Host,
-    library: str,
-    scene: Scene,
-    image: Pixels,
-    expected: ExpectedPicture | None,
-) -> Picture:
-    identity = host.identity()
-    metadata = {
-        "version": mxeon.__version__,
-        "host": f"{host.name} {identity.version}",
-        "device": identity.device,
-        "library": library,
-        "document": str(file),
-        "element": shader.element,
-        "scene": scene.name,
-    }
-    if expected and expected.measured:
-        metadata["from the host"] = ", ".join(expected.measured)
-    names = (file.name, shader.element, host.name, library, scene.name)
-    if expected is None:
-        return Picture(*names, image, None, metadata)
-    reference, judged = np.asarray(expected.image, np.float32), expected.judged
-    partly = judged.sum() < sphere(scene.size).mask.sum()
-    where = judged[..., None].astype(np.float32) if partly else None
-    return Picture(*names, image, reference, metadata, where)
 
 
 def _assert_judged(shader: Shader, host: Host) -> None:

@@ -221,19 +221,17 @@ class FunctionProbe:
         return tuple(name for name in ours if own.get(name) != ours[name])
 
     @cached_property
-    def values(self) -> Mapping[str, Array]:
-        return self.scaled_values(1.0)
+    def values(self) -> Mapping[bool, Mapping[str, Array]]:
+        """Values of every function that the library has; with True, those of the control."""
+        return {wrong: self._values(0.95 if wrong else 1.0) for wrong in (False, True)}
 
     @cached_property
-    def wrong_values(self) -> Mapping[str, Array]:
-        return self.scaled_values(0.95)
+    def turn(self) -> Term:
+        """The error of the engine's own cosine and sine over a turn, of which samples are made."""
+        error = float(TURN.errors(self.host, random_columns()["u2"]).max())
+        return Term(4.0 * error, "the engine's sine and cosine, which turn a direction twice")
 
-    @cached_property
-    def sine_error(self) -> float:
-        """Error of the engine's own cosine and sine over a turn, of which samples are made."""
-        return float(TURN.errors(self.host, random_columns()["u2"]).max())
-
-    def scaled_values(self, scale: float) -> Mapping[str, Array]:
+    def _values(self, scale: float) -> Mapping[str, Array]:
         """Values of every function of eonlib that the library has, with its last argument scaled, in one call."""
         language, columns = self.host.language, random_columns()
         names = [name for name in functions.names(language) if name not in self.missing_functions]
@@ -266,12 +264,16 @@ class FunctionCheck:
     key: str  # one word, and a sentence
     claim: str
     holds: Callable[[str], bool]  # whether it asks a function; the first row that does takes it
-    tolerance: Callable[[FunctionProbe], Tolerance]
+    error: Tolerance
     # Factor of a function's values, (N, 1): they count relative to what they are sensitive to.
     scale: Callable[[str], Array | float] = lambda name: 1.0 / _condition(name)[:, np.newaxis]
     metric: Metric = absolute
+    turns: bool = False  # whether its functions turn directions by the engine's sine and cosine
 
-    def error(self, function: str, values: Array) -> float:
+    def tolerance(self, probe: FunctionProbe) -> Tolerance:
+        return self.error.plus(probe.turn) if self.turns else self.error
+
+    def largest(self, function: str, values: Array) -> float:
         scale = self.scale(function)
         return float(self.metric(scale * values, scale * _expected(function)).max())
 
@@ -281,14 +283,14 @@ FUNCTION_CHECKS = (
         "twins",
         "The shader functions of models and albedos match the NumPy models.",
         lambda name: "_brdf" in name or "_albedo_" in name,
-        lambda probe: MODEL_VALUE,
+        MODEL_VALUE,
         lambda name: np.pi * random_columns()["mu_i"][:, None] if "_brdf" in name else 1.0,
     ),
     FunctionCheck(
         "loss",
         "1 - E keeps its relative accuracy down to a cosine of 1e-6.",
         lambda name: name == "fon_loss",
-        lambda probe: LOSS,
+        LOSS,
         lambda name: 1.0,
         relative,
     ),
@@ -296,23 +298,20 @@ FUNCTION_CHECKS = (
         "samples",
         "The sampling functions return the same directions as NumPy's.",
         lambda name: bool(SAMPLES.fullmatch(name)),
-        lambda probe: PART.plus(
-            Term(
-                4.0 * probe.sine_error, "the engine's sine and cosine, which turn a direction twice"
-            )
-        ),
+        PART,
+        turns=True,
     ),
     FunctionCheck(
         "densities",
         "The sampling densities and the matrix of linearly transformed cosines match NumPy's.",
         lambda name: bool(DENSITIES.fullmatch(name)),
-        lambda probe: DENSITY,
+        DENSITY,
     ),
     FunctionCheck(
         "parts",
         "The functions that models and sampling are built from match NumPy's.",
         lambda name: True,
-        lambda probe: PART,
+        PART,
     ),
 )
 
@@ -338,9 +337,10 @@ def _judged(check: FunctionCheck, probe: FunctionProbe) -> Result:
 
     def measure(wrong: bool) -> Measurement:
         """The function of the row that is furthest from its NumPy version."""
-        values = probe.wrong_values if wrong else probe.values
         errors = {
-            name: check.error(name, each) for name, each in values.items() if row_of(name) is check
+            name: check.largest(name, each)
+            for name, each in probe.values[wrong].items()
+            if row_of(name) is check
         }
         errors |= {name: np.inf for name in probe.missing_functions if row_of(name) is check}
         name = max(errors, key=lambda function: errors[function])
@@ -352,7 +352,8 @@ def _judged(check: FunctionCheck, probe: FunctionProbe) -> Result:
 
 def _causes(check: FunctionCheck, probe: FunctionProbe) -> str:
     """The functions that are wrong by themselves, and those of the row that use them."""
-    errors = {name: row_of(name).error(name, values) for name, values in probe.values.items()}
+    values = probe.values[False]
+    errors = {name: row_of(name).largest(name, each) for name, each in values.items()}
     wrong = [name for name in errors if errors[name] > row_of(name).tolerance(probe).value]
     uses = functions.uses(probe.text)
     causes = [name for name in wrong if not any(other in wrong for other in uses[name])]

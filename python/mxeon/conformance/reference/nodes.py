@@ -68,58 +68,35 @@ class ManyMaterialsError(Exception):
     """More points with a material of their own than may be integrated one by one."""
 
 
-def lit(wo: Array, wi: Array, irradiance: float, most: float = np.inf) -> Lobe:
-    """Lobe under a distant light: its irradiance times f |cos(theta_i)|, 0 on the dark side.
+def scattered(
+    wo: Array, wi: Array | None, strength: float, most: float = np.inf, behind: bool = False
+) -> Lobe:
+    """Lobe in a light or, without `wi`, in a uniform environment.
 
+    Under a distant light it is the irradiance times f |cos(theta_i)|, 0 on the dark side; in an
+    environment its radiance times the directional albedo, or the share that is transmitted.
     Where materials of more than `most` points have albedos without a closed form, it raises
     ManyMaterialsError.
     """
-    above = wo[:, 2] > 0.0
+    above = np.ones(len(wo), bool) if wi is None else wo[:, 2] > 0.0
 
     def lobe(node: PbrNode, inputs: Inputs, layered: bool) -> Bsdf:
-        value = np.zeros(wo.shape)
-        if around := AROUND.get(node.category):
-            value[above] = irradiance * around(wo[above], wi[above], _at(inputs, above))
+        value, left = np.zeros(wo.shape), np.zeros(wo.shape)
+        if wi is None:
+            share = LET_THROUGH.get(node.name) if behind else node.integral or node.albedo
+            if share:
+                value = strength * _albedo(share, node, wo, inputs, above, most)
+        elif around := AROUND.get(node.category):
+            value[above] = strength * around(wo[above], wi[above], _at(inputs, above))
         else:
             shown = above & ((wi[:, 2] < 0.0) if node.transmits else (wi[:, 2] > 0.0))
             f = node.value(wo[shown], wi[shown], _at(inputs, shown))
-            value[shown] = irradiance * f * np.abs(wi[shown, 2:])
-        left = np.zeros(wo.shape)
+            value[shown] = strength * f * np.abs(wi[shown, 2:])
         if layered and node.layerable:
             left[above] = throughput(_albedo(node.albedo, node, wo[above], inputs, above, most))
         return Bsdf(value, left)
 
     return lobe
-
-
-def furnace(wo: Array, radiance: float, most: float = np.inf, behind: bool = False) -> Lobe:
-    """Lobe in a uniform environment: its directional albedo, or the share that it transmits.
-
-    `most` is as that of `lit`.
-    """
-
-    def lobe(node: PbrNode, inputs: Inputs, layered: bool) -> Bsdf:
-        every = np.ones(len(wo), bool)
-        value = left = np.zeros(wo.shape)
-        share = LET_THROUGH.get(node.name) if behind else node.integral or node.albedo
-        if share:
-            value = _albedo(share, node, wo, inputs, every, most)
-        if layered and node.layerable:
-            left = throughput(_albedo(node.albedo, node, wo, inputs, every, most))
-        return Bsdf(radiance * value, left)
-
-    return lobe
-
-
-def kept(lobe: Lobe) -> Lobe:
-    """The same lobe, which keeps its values of the last nodes and inputs."""
-    known = Recent[Bsdf](KEPT)
-
-    def values(node: PbrNode, inputs: Inputs, layered: bool) -> Bsdf:
-        key = node, layered, *((name, contents(each)) for name, each in inputs.items())
-        return known.value(key, lambda: lobe(node, inputs, layered))
-
-    return values
 
 
 def _at(inputs: Inputs, points: NDArray[np.bool_]) -> dict[str, Array]:
@@ -290,7 +267,7 @@ class ShadingPoints:
     normal: Array  # of the surface, orthogonal unit vectors in world space
     tangent: Array
     texcoord: Array | None = None
-    # Points with materials of their own whose albedos are integrated; see `lobes.lit`.
+    # Points with materials of their own whose albedos are integrated; see `scattered`.
     most: float = np.inf
     round: bool = False  # whether these are points of the unit sphere
     behind: bool = False  # whether light that is transmitted is asked for, and no other
@@ -323,13 +300,17 @@ class ShadingPoints:
     @cached_property
     def _own(self) -> Lobe:
         """Lobe in the frame of the surface; the last ones are kept, which another library's document has too."""
-        return kept(self._turned(self.normal, self.tangent))
+        turned, known = self._turned(self.normal, self.tangent), Recent[Bsdf](KEPT)
+
+        def lobe(node: PbrNode, inputs: Inputs, layered: bool) -> Bsdf:
+            key = node, layered, *((name, contents(each)) for name, each in inputs.items())
+            return known.value(key, lambda: turned(node, inputs, layered))
+
+        return lobe
 
     def _turned(self, normal: Array, tangent: Array) -> Lobe:
         wo, wi = self.directions(normal, tangent)
-        if wi is None:
-            return furnace(wo, self.strength, self.most, self.behind)
-        return lit(wo, wi, self.strength, self.most)
+        return scattered(wo, wi, self.strength, self.most, self.behind)
 
     def directions(self, normal: Array, tangent: Array) -> tuple[Array, Array | None]:
         """Directions to the viewer and to the light in a frame, whose normal is turned to the viewer.
