@@ -81,7 +81,9 @@ def evaluate(
                 if not are_directions(w):
                     refuse_direction(name, pair[name])
             parts = {name: on_horizon(w) for name, w in parts.items()}
-        return formula(*(xp.moveaxis(w, 0, -1) for w in parts.values()), rho, *rest.values())
+        order = (*range(1, wo.ndim), 0)  # components last
+        last = (xp.permute_dims(w, order) for w in parts.values())
+        return formula(*last, rho, *rest.values())
 
     return evaluate_material(value, pair | {"rho": color}, numbers, color.shape[-1])
 
