@@ -11,6 +11,7 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
@@ -171,41 +172,37 @@ def of_family(*kinds: type[Spec]) -> Callable[[Spec], bool]:
 CHECKS: list[Check] = []  # in the order in which they are defined
 
 
-def add_check(
-    measure: Measure,
-    key: str,
-    claim: str,
-    applies: Callable[[Spec], bool],
-    control: Control,
-    quantity: str = "",
-    diagnose: Callable[[Case], Diagnosis] | None = None,
-    **rest: Any,
-) -> None:
-    """Add a check, with the fields of one; its quantity is that of a comparison, or its key, unless given."""
-    own = measure if isinstance(measure, Comparison) else None
-    quantity = quantity or (own.quantity if own else key)
-    explain = diagnose or (own or VALUE).diagnose
-    CHECKS.append(Check(key, claim, applies, measure, control, quantity, explain, **rest))
-
-
 def check(
     applies: Callable[[Spec], bool],
     control: Control,
-    quantity: str = "",
+    judged: str | Comparison = "",
     key: str = "",
+    claim: str = "",
+    diagnose: Callable[[Case], Diagnosis] | str = "",
     **rest: Any,
 ) -> Callable[[M], M]:
-    """Make a function that measures a case a check: its name is the key, its first line the claim."""
+    """Make a function that measures a case a check: its name is the key, its first line the claim.
+
+    It is judged by the error of a quantity, which has its key's name unless given; or judged and explained as a
+    comparison is. A diagnosis may be the same words for all failures.
+    """
 
     def add(measure: M) -> M:
-        name, claim = (
-            key or getattr(measure, "__name__", ""),
-            (measure.__doc__ or "").split("\n")[0],
-        )
-        add_check(measure, name, claim, applies, control, quantity, **rest)
+        name = key or getattr(measure, "__name__", "")
+        words = claim or (measure.__doc__ or "").split("\n")[0]
+        own = judged if isinstance(judged, Comparison) else None
+        quantity = own.quantity if own else str(judged or name)
+        explain = diagnose or (own or VALUE).diagnose
+        if isinstance(explain, str):
+            explain = partial(_always, Diagnosis(explain))
+        CHECKS.append(Check(name, words, applies, measure, control, quantity, explain, **rest))
         return measure
 
     return add
+
+
+def _always(diagnosis: Diagnosis, case: Case) -> Diagnosis:
+    return diagnosis
 
 
 # Controls.

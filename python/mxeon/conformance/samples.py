@@ -128,9 +128,7 @@ def directions(rng: np.random.Generator, count: int) -> Array:
     mu = rng.random(count)
     mu[: count // 4] = GRAZING ** rng.random(count // 4)
     rng.shuffle(mu)
-    mu = float32(mu)
-    radius, azimuth = np.sqrt(1.0 - mu * mu), 2.0 * np.pi * rng.random(count)
-    return rounded([radius * np.cos(azimuth), radius * np.sin(azimuth), mu])
+    return directions_at(mu, 2.0 * np.pi * rng.random(count))
 
 
 def float32(values: ArrayLike) -> Array:
@@ -166,11 +164,13 @@ def special_directions(rng: np.random.Generator) -> tuple[Array, Array]:
     """
     mu_o, mu_i, azimuth = np.array(list(product(GRID, GRID, AZIMUTHS))).T
     free, other = directions(rng, EACH), directions(rng, EACH)
-    high = _directions(HORIZON + (1.0 - HORIZON) * rng.random(EACH), 2.0 * np.pi * rng.random(EACH))
-    rim = _directions(np.zeros(EACH), 2.0 * np.pi * rng.random(EACH))
+    high = directions_at(
+        HORIZON + (1.0 - HORIZON) * rng.random(EACH), 2.0 * np.pi * rng.random(EACH)
+    )
+    rim = directions_at(np.zeros(EACH), 2.0 * np.pi * rng.random(EACH))
     normal = np.broadcast_to([0.0, 0.0, 1.0], free.shape)
     pairs = (
-        (_directions(mu_o, 0.0 * mu_o), _directions(mu_i, azimuth)),
+        (directions_at(mu_o, 0.0 * mu_o), directions_at(mu_i, azimuth)),
         (free, free),
         (free, free * [-1.0, -1.0, 1.0]),
         (normal, free),
@@ -187,7 +187,9 @@ def special_directions(rng: np.random.Generator) -> tuple[Array, Array]:
 def outside_directions(rng: np.random.Generator) -> tuple[Array, Array]:
     """Directions that no model has: light from below the horizon, and cosines that exceed 1."""
     below = directions(rng, EACH) * [1.0, 1.0, -1.0]
-    high = _directions(HORIZON + (1.0 - HORIZON) * rng.random(EACH), 2.0 * np.pi * rng.random(EACH))
+    high = directions_at(
+        HORIZON + (1.0 - HORIZON) * rng.random(EACH), 2.0 * np.pi * rng.random(EACH)
+    )
     straight = np.broadcast_to([0.0, 0.0, ABOVE_ONE], below.shape)
     wo = np.concatenate([high, straight, directions(rng, EACH)])
     wi = np.concatenate([below, directions(rng, EACH), straight])
@@ -221,7 +223,7 @@ def aimed(axes: Array, of: Array, to: Array) -> Array:
 def turned_directions(rng: np.random.Generator, count: int) -> Array:
     """Directions for turned frames, (count, 3)."""
     low, high = TURNED
-    return _directions(low + (high - low) * rng.random(count), 2.0 * np.pi * rng.random(count))
+    return directions_at(low + (high - low) * rng.random(count), 2.0 * np.pi * rng.random(count))
 
 
 def node_inputs(rng: np.random.Generator, count: int) -> dict[str, Array]:
@@ -239,11 +241,12 @@ def with_edges(rng: np.random.Generator, values: Array, edges: ArrayLike) -> Arr
     return float32(mixed)
 
 
-def _directions(mu: Array, azimuth: Array) -> Array:
-    """Directions of given cosines, float32 numbers, and azimuths."""
+def directions_at(mu: ArrayLike, azimuth: ArrayLike) -> Array:
+    """Directions of cosines, which are rounded to float32, and azimuths, (..., 3)."""
     mu = float32(mu)
     radius = np.sqrt(1.0 - mu * mu)
-    return rounded([radius * np.cos(azimuth), radius * np.sin(azimuth), mu])
+    columns = radius * np.cos(azimuth), radius * np.sin(azimuth), mu
+    return rounded(np.broadcast_arrays(*columns))
 
 
 FRAMES = 1 << 12  # pairs in frames of their own

@@ -7,8 +7,8 @@ A family of nodes is one file under `specs`. How an engine is asked about it is 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from functools import partial
-from typing import Any, ClassVar
+from functools import lru_cache, partial
+from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -40,6 +40,7 @@ from mxeon.shaders.nodes import (
     SURFACE,
     connection_text,
     document_text,
+    input_text,
     input_types,
     lobe_text,
     node_text,
@@ -126,6 +127,19 @@ def broadcast_inputs(batch: Batch) -> dict[str, Array]:
     }
 
 
+class EngineError(NamedTuple):
+    """A term by a function that engines have themselves, measured on each."""
+
+    words: str
+    measure: Callable[[Host], float]
+    factor: float = 1.0
+
+
+@lru_cache(maxsize=64)
+def _measured(error: EngineError, host: Host) -> float:
+    return error.factor * error.measure(host)
+
+
 USUAL = Counts()
 ZERO = Candidate("zero", lambda batch: np.zeros((len(batch.wo), 3)))
 
@@ -136,7 +150,7 @@ class Spec(ABC):
 
     title: str  # in reports; unique
     node: str  # category
-    model: str  # name of the model that it has to be
+    model: str = ""  # name of the model that it has to be; "" for none
     inputs: tuple[Input, ...] = ()  # all but those that select the mode
     errors: Mapping[str, Tolerance] = field(default_factory=dict)  # of a right shader, by quantity
     libraries: tuple[str, ...] = ()  # with which it is judged; () for all
@@ -148,6 +162,8 @@ class Spec(ABC):
     # How a host that evaluates is asked for a value: branch, output, and the factor of what it returns.
     asked: tuple[str, str, float] = ("direct", "response", np.pi)
     optional: bool = False  # whether a target may lack the node, so that it is not run there
+    # What functions of an engine's own, measured there, add to the error of a quantity.
+    engines: Mapping[str, tuple[EngineError, ...]] = field(default_factory=dict)
 
     @abstractmethod
     def document(self, inputs: Values | None = None) -> str:
@@ -172,8 +188,9 @@ class Spec(ABC):
         return self
 
     def engine(self, quantity: str, host: Host) -> tuple[Term, ...]:
-        """What functions of an engine's own, measured there, add to the error of a quantity."""
-        return ()
+        """What functions of an engine's own add to the error of a quantity."""
+        found = ((_measured(each, host), each.words) for each in self.engines.get(quantity, ()))
+        return tuple(Term(error, words) for error, words in found if error)
 
 
 class ValueSpec(Spec):
@@ -223,8 +240,8 @@ class LobeSpec(ValueSpec):
         """MaterialX text of a material of two such lobes, `first` and `second`."""
         types = {**input_types(self.node), **{each.name: each.type for each in self.inputs}}
         lobes = (lobe_text(self.node, self.mode, name, types) for name in ("first", "second"))
-        ports = connection_text("in1", "BSDF", "first") + connection_text("in2", "BSDF", "second")
-        return document_text("".join(lobes) + node_text("add", "BSDF", "lobe", ports) + SURFACE)
+        total = network_text({"lobe": Node("add", "BSDF", ("first", "second"))})
+        return document_text("".join(lobes) + total + SURFACE)
 
     @abstractmethod
     def albedo(self, batch: Batch) -> Array:
@@ -303,10 +320,18 @@ class LobeSpec(ValueSpec):
         return Batch(wo, wi * [1.0, 1.0, self.side], inputs_and_weights)
 
 
+@dataclass(frozen=True, eq=False, kw_only=True)
 class RowSpec(ValueSpec):
     """A node whose functions are those of a row of `mxeon.models.nodes`."""
 
     row: Any
+
+    @classmethod
+    def of(
+        cls, row: Any, inputs: tuple[Input, ...], errors: Mapping[str, Tolerance], **rest: Any
+    ) -> Self:
+        own = {"title": row.category, "node": row.category, "model": row.name}
+        return cls(row=row, inputs=inputs, errors=errors, **(own | rest))
 
     @property
     def drawn(self) -> tuple[Input, ...]:
@@ -320,6 +345,9 @@ class RowSpec(ValueSpec):
 
     def value(self, batch: Batch) -> Array:
         return self.values(self.row.value, batch)
+
+    def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
+        return draw(rng, count, self.drawn)
 
     @property
     def others(self) -> tuple[Candidate, ...]:
@@ -336,6 +364,41 @@ class RowSpec(ValueSpec):
             if each.value
         )
         return (own, *variants, *self.others)
+
+
+# Ports at which nodes take others, in the order of Node.sources.
+PORTS = {
+    "layer": ("top", "base"),
+    "mix": ("fg", "bg"),
+    "add": ("in1", "in2"),
+    "multiply": ("in1",),
+    "generalized_schlick_edf": ("base",),
+}
+
+
+class Node(NamedTuple):
+    """A node of a document, by its category and type, the names of nodes that it takes, and XML of its inputs."""
+
+    category: str
+    kind: str
+    sources: tuple[str, ...] = ()
+    text: str = ""
+
+
+def network_text(
+    nodes: Mapping[str, Node], inputs: Iterable[Input] = (), values: Values | None = None
+) -> str:
+    """XML of nodes by name, with values of inputs by path; those without one are inputs of the last."""
+    texts = {name: each.text for name, each in nodes.items()}
+    for row in inputs:
+        name, _, port = row.name.rpartition("/")
+        value = np.broadcast_to((values or {}).get(row.name, row.default), COMPONENTS[row.type])
+        texts[name or [*nodes][-1]] += input_text(port, row.type, value)
+    for name, (category, kind, sources, _) in nodes.items():
+        ports = zip(PORTS.get(category, ()), sources, strict=False)
+        texts[name] += "".join(connection_text(port, kind, source) for port, source in ports)
+        texts[name] = node_text(category, kind, name, texts[name])
+    return "".join(texts.values())
 
 
 ARGUMENTS = 1 << 14  # arguments

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.conformance.samples import Array, Batch, Values
+from mxeon.conformance.samples import Array, Batch, Mask, Values
 
 Metric = Callable[[Array, Array], Array]  # of measured and expected values: error of each row
 
@@ -24,6 +24,9 @@ class Compared(NamedTuple):
     batch: Batch
     measured: Array
     expected: Array
+
+    def where(self, rows: Mask) -> "Compared":
+        return Compared(self.batch.where(rows), self.measured[rows], self.expected[rows])
 
 
 @dataclass(frozen=True)

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of the nodes that combine two lobes."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import product
 
 import numpy as np
 
-from mxeon.conformance.case import LIGHT, Case, throughputs
-from mxeon.conformance.check import add_check, check, of_family, pass_all, shifted, with_values
+from mxeon.conformance.case import Case
+from mxeon.conformance.check import check, of_family, pass_all, shifted, with_values
 from mxeon.conformance.diagnosis import ALBEDO, THROUGHPUT, VALUE, Diagnosis
 from mxeon.conformance.specs.combinations import SINGLE, CombinedSpec
 from mxeon.conformance.tolerance import Compared
@@ -16,32 +16,25 @@ from mxeon.models.nodes.combinations import FACTOR
 is_combined = of_family(CombinedSpec)
 
 
-add_check(
-    VALUE,
-    "combination",
-    "Two combined lobes have the value that the node's equation gives.",
-    is_combined,
-    shifted,
-    pairs=True,
-)
-
-add_check(
-    ALBEDO,
-    "combined_albedo",
-    "The environment branch of two combined lobes returns their albedo.",
-    is_combined,
-    shifted,
-    pairs=True,
-)
+@check(is_combined, shifted, VALUE, pairs=True)
+def combination(case: Case) -> Iterable[Compared]:
+    """Two combined lobes have the value that the node's equation gives."""
+    return VALUE(case)
 
 
-@check(is_combined, pass_all, "throughput", open=True, diagnose=THROUGHPUT.diagnose)
+@check(is_combined, shifted, ALBEDO, pairs=True)
+def combined_albedo(case: Case) -> Iterable[Compared]:
+    """The environment branch of two combined lobes returns their albedo."""
+    return ALBEDO(case)
+
+
+@check(is_combined, pass_all, THROUGHPUT, open=True)
 def combined_throughput(case: Case) -> Iterator[Compared]:
     """Two combined lobes pass on what they do not scatter, as the layer equation requires.
 
     A negative throughput counts as 0, as `layer` takes it.
     """
-    for compared in throughputs(case, *LIGHT):
+    for compared in THROUGHPUT(case):
         yield compared._replace(measured=np.maximum(compared.measured, 0.0))
 
 

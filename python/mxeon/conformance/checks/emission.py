@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of the nodes that emit light, and of media."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
 from mxeon.conformance.backends import implementation
-from mxeon.conformance.case import Case, over_condition, values
+from mxeon.conformance.case import Case, over_condition
 from mxeon.conformance.check import (
     Control,
-    add_check,
     check,
     gray,
     of_family,
@@ -52,13 +51,13 @@ def implemented(case: Case) -> Measurement:
     return Measurement(float(shader is None), {})
 
 
-@check(is_emission, gray, "value", diagnose=RADIANCE.diagnose)
+@check(is_emission, gray, RADIANCE)
 def radiance(case: Case) -> Iterator[Compared]:
     """The radiance matches the node's equation for every view from the front."""
-    return (over_condition(case, each) for each in values(case))
+    return (over_condition(case, each) for each in RADIANCE(case))
 
 
-@check(is_emission, offset, "value", pairs=True, open=True, diagnose=BACK.diagnose)
+@check(is_emission, offset, BACK, pairs=True, open=True)
 def back(case: Case) -> Iterator[Compared]:
     """The back of the surface emits what the equation gives."""
     return (over_condition(case, each) for each in BACK(case))
@@ -74,29 +73,27 @@ def exitance(case: Case) -> Compared:
     return Compared(views, measured, spec.exitance(views) / np.pi)
 
 
-add_check(
-    TRANSMITTANCE,
-    "transmittance",
-    "Over one meter, a medium transmits what its coefficients give.",
-    of_family(MediumSpec),
-    shifted,
-)
+@check(of_family(MediumSpec), shifted, TRANSMITTANCE)
+def transmittance(case: Case) -> Iterable[Compared]:
+    """Over one meter, a medium transmits what its coefficients give."""
+    return TRANSMITTANCE(case)
 
 
 def diagnose_opacity(case: Case) -> Diagnosis:
     """Whether the opacity is dropped."""
     full = max(
         OPACITY.metric(each.measured, case.expected(each.batch.altered(opacity=1.0))).max()
-        for each in values(case)
+        for each in VALUE(case)
     )
     return Diagnosis("the opacity is ignored" if full <= OPACITY.value else "")
 
 
-add_check(
-    VALUE,
-    "opacity",
-    "The light that a surface emits is scaled by its opacity.",
+@check(
     of_family(EmittingSurface),
     with_inputs("the opacity is 1", opacity=1.0),
+    VALUE,
     diagnose=diagnose_opacity,
 )
+def opacity(case: Case) -> Iterable[Compared]:
+    """The light that a surface emits is scaled by its opacity."""
+    return VALUE(case)

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of the hair node alone: its lobes apart, where they are wide, narrow, or seen straight."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
 from mxeon.conformance.case import Case, over_condition
-from mxeon.conformance.check import add_check, with_inputs
+from mxeon.conformance.check import check, of_family, with_inputs
 from mxeon.conformance.diagnosis import Diagnosis, explain
 from mxeon.conformance.diagnosis.faults import DIRECT_FAULTS
 from mxeon.conformance.specs.hair import REGION, REGIONS, HairSpec
@@ -18,22 +17,22 @@ TURN_FIBER = with_inputs(
 )
 
 
-def _values(case: Case, key: str) -> Compared:
+def _values(key: str, case: Case) -> Compared:
     """Values of a region, and the expected ones."""
     batch = case.of(HairSpec).region(key, case.samples.counts.few)
     return Compared(batch, case.direct(batch), case.expected(batch))
 
 
-def _measure(key: str) -> Callable[[Case], Compared]:
+def _measure(key: str, case: Case) -> Compared:
     """Values of a region against those of the equations, over their condition."""
-    return lambda case: over_condition(case, _values(case, key))
+    return over_condition(case, _values(key, case))
 
 
 def _diagnose(key: str, case: Case) -> Diagnosis:
     """The explanation of the values of a region."""
     others = set(FORMS) - {REGIONS[key].form, TILTED}  # which may be the same there
     candidates = [each for each in case.value_candidates if each.title not in others]
-    compared = _values(case, key)
+    compared = _values(key, case)
     brightest = min(float(compared.expected.max()), 1.0)
     terms = (Term(brightest * REGION.value, "a region"),)
     tolerance = replace(REGION, terms=terms, metric=scaled, exact=True)
@@ -41,13 +40,12 @@ def _diagnose(key: str, case: Case) -> Diagnosis:
 
 
 for _key, _region in REGIONS.items():
-    add_check(
-        _measure(_key),
-        _key,
-        _region.claim,
-        lambda spec: isinstance(spec, HairSpec),
+    check(
+        of_family(HairSpec),
         TURN_FIBER,
+        key=_key,
+        claim=_region.claim,
         lit=True,
         open=True,
         diagnose=partial(_diagnose, _key),
-    )
+    )(partial(_measure, _key))

@@ -2,7 +2,7 @@
 """Checks of a lobe: its values and albedos, its frame, its inputs, its edges, and its energy."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from itertools import product
 
@@ -13,7 +13,6 @@ from mxeon.conformance import diagnosis
 from mxeon.conformance.backends import WHITE, scene_of
 from mxeon.conformance.case import BRANCHES, Case, dead_inputs, edge_values, frames
 from mxeon.conformance.check import (
-    add_check,
     check,
     control,
     drop_changes,
@@ -27,7 +26,16 @@ from mxeon.conformance.check import (
     with_inputs,
 )
 from mxeon.conformance.diagnosis import ALBEDO, THROUGHPUT, TRANSMISSION, VALUE, Diagnosis, explain
-from mxeon.conformance.samples import LEAST_COLOR82, SKY_ROWS, SLOPE, Array, Batch, Values, sky_map
+from mxeon.conformance.samples import (
+    LEAST_COLOR82,
+    SKY_ROWS,
+    SLOPE,
+    Array,
+    Batch,
+    Values,
+    directions_at,
+    sky_map,
+)
 from mxeon.conformance.spec import LobeSpec, Spec
 from mxeon.conformance.specs.combinations import CombinedSpec
 from mxeon.conformance.specs.diffuse import DiffuseModelSpec, DiffuseSpec, SurfaceLobe, model_value
@@ -116,32 +124,33 @@ def has_environment(spec: Spec, host: str) -> bool:
     return not front_lit_only(host, spec.model)
 
 
-add_check(
-    VALUE,
-    "value",
-    "The value matches the model for every pair of directions, including back-lit and grazing ones.",
+@check(
     lambda spec: is_node(spec) and (is_lobe(spec) or is_model(spec, *ROUGH, *COATED)),
     gray,
+    VALUE,
     open=True,
 )
+def value(case: Case) -> Iterable[Compared]:
+    """The value matches the model for every pair of directions, including back-lit and grazing ones."""
+    return VALUE(case)
 
-add_check(
-    VALUE,
-    "lobe",
-    "The diffuse lobe of the surface shader matches the model.",
-    lambda spec: is_model(spec, "lambert") or not is_node(spec),
-    gray,
-)
 
-add_check(
-    ALBEDO,
-    "environment",
-    "The environment branch returns the directional albedo.",
+@check(lambda spec: is_model(spec, "lambert") or not is_node(spec), gray, VALUE)
+def lobe(case: Case) -> Iterable[Compared]:
+    """The diffuse lobe of the surface shader matches the model."""
+    return VALUE(case)
+
+
+@check(
     lambda spec: is_lobe(spec) or is_model(spec, *ROUGH, "lambert", *COATED),
     gray,
+    ALBEDO,
     open=True,
     hosts=has_environment,
 )
+def environment(case: Case) -> Iterable[Compared]:
+    """The environment branch returns the directional albedo."""
+    return ALBEDO(case)
 
 
 @check(lambda spec: is_model(spec, *MODES), gray, "integral")
@@ -149,7 +158,7 @@ def albedo(case: Case) -> list[Compared]:
     """Values integrate to the colored directional albedo."""
     rows = list(product((0.1, 0.3, 0.6, 0.95), COLORS, (0.25, 1.0)))
     mu, color, roughness = (np.array(column) for column in zip(*rows, strict=True))
-    wo = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=1)
+    wo = directions_at(mu, 0.0)
     batch = Batch(wo, wo, {"color": color, "roughness": roughness})
     return [Compared(batch, *integrated(case, mu, color, roughness))]
 
@@ -179,9 +188,8 @@ def integrated(
 @check(
     lambda spec: is_model(spec, *EON, *COATED),
     with_inputs("reflectance is 0.99", color=(0.99, 0.99, 0.99)),
-    "albedo",
+    ALBEDO,
     hosts=has_environment,
-    diagnose=ALBEDO.diagnose,
 )
 def furnace(case: Case) -> Iterator[Compared]:
     """A white surface disappears in a white environment."""
@@ -209,14 +217,14 @@ def black(case: Case) -> Iterator[Compared]:
         yield Compared(batch, case.direct(batch), np.zeros((1, 3)))
 
 
-add_check(
-    frames,
-    "frame",
-    "The value follows the surface's frame, with the normal turned toward the viewer.",
+@check(
     lambda spec: (is_lobe(spec) and not isinstance(spec, SubsurfaceSpec)) or is_model(spec, *MODES),
     with_inputs("the node's normal is dropped", normal=(0.0, 0.0, 1.0)),
     diagnose=diagnosis.diagnose_frame,
 )
+def frame(case: Case) -> Iterator[Compared]:
+    """The value follows the surface's frame, with the normal turned toward the viewer."""
+    return frames(case)
 
 
 def diagnose_surroundings(case: Case) -> Diagnosis:
@@ -279,9 +287,7 @@ def sphere(case: Case) -> Iterator[Compared]:
     "frame",
     pairs=True,
     lit=True,
-    diagnose=lambda case: Diagnosis(
-        "the curvature depends on the direction in which a surface bends"
-    ),
+    diagnose="the curvature depends on the direction in which a surface bends",
 )
 def cylinder(case: Case) -> Compared:
     """On a cylinder, light spreads alike, whichever way the axis runs on the screen.
@@ -400,9 +406,12 @@ def inputs(case: Case) -> Measurement:
     return count_named(dead_inputs(case))
 
 
+over_cosine = scale_cosine("the value is divided by cos(theta_o)", -1)
+
+
 @check(
     lambda spec: is_lobe(spec) or is_model(spec, *MODES),
-    scale_cosine("the value is divided by cos(theta_o)", -1),
+    over_cosine,
     tolerance=count_of("values"),
     pairs=True,
     hosts=shows_exactly,
@@ -429,21 +438,16 @@ def reads(name: str) -> Callable[[Spec], bool]:
     return lambda spec: is_layer(spec) and isinstance(spec, PbrSpec) and name in spec.row.inputs
 
 
-add_check(
-    THROUGHPUT,
-    "layering",
-    "The throughput of a layer of albedo E is 1 - E for light from above, for every weight.",
-    is_layer,
-    pass_all,
-)
+@check(is_layer, pass_all, THROUGHPUT)
+def layering(case: Case) -> Iterable[Compared]:
+    """The throughput of a layer of albedo E is 1 - E for light from above, for every weight."""
+    return THROUGHPUT(case)
 
-add_check(
-    TRANSMISSION,
-    "transmission",
-    "The throughput of a layer is 1 - E for light that comes through the base, too.",
-    is_layer,
-    pass_all,
-)
+
+@check(is_layer, pass_all, TRANSMISSION)
+def transmission(case: Case) -> Iterable[Compared]:
+    """The throughput of a layer is 1 - E for light that comes through the base, too."""
+    return TRANSMISSION(case)
 
 
 @check(reads("color82"), pass_all, pairs=True, lit=True, diagnose=THROUGHPUT.diagnose)
@@ -477,7 +481,7 @@ def layer(case: Case) -> Compared:
     # Where the equations gain energy by themselves, no throughput makes up for it.
     own = case.lobe.albedo(views)
     sound = np.asarray((case.samples.integrals <= own + ROUNDED).all(axis=1))
-    return Compared(views.where(sound), total[sound], np.ones((1, 3)))
+    return Compared(views, total, np.ones_like(total)).where(sound)
 
 
 @check(is_lobe, scale("values are 2 % too large", 1.02), open=True)

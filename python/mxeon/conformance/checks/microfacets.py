@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of lobes of microfacets alone, of the light that they transmit, and of those under a thin film."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -11,19 +11,24 @@ from mxeon.conformance import diagnosis
 from mxeon.conformance.backends import WHITE
 from mxeon.conformance.case import SCATTERING, Case
 from mxeon.conformance.check import (
-    add_check,
     check,
     drop_changes,
     of_family,
     offset,
     pass_all,
     scale,
-    scale_cosine,
     with_batch,
     with_inputs,
     with_values,
 )
-from mxeon.conformance.checks.lobes import SURROUNDINGS, finite, is_plain, shows_exactly, summed
+from mxeon.conformance.checks.lobes import (
+    SURROUNDINGS,
+    finite,
+    is_plain,
+    over_cosine,
+    shows_exactly,
+    summed,
+)
 from mxeon.conformance.diagnosis import (
     ALBEDO,
     NEAR,
@@ -109,14 +114,14 @@ def shape(case: Case) -> Compared:
     """
     batch, other = (_clear(each.first(PAIRS)) for each in case.samples.mirrored)
     first, second = case.expected(batch), case.expected(other)
-    lit = (np.minimum(first, second) > LEAST_VALUE).any(axis=1)
+    lit = np.asarray((np.minimum(first, second) > LEAST_VALUE).any(axis=1))
     least = np.minimum(batch.wo[:, 2], np.minimum(batch.wi[:, 2], other.wi[:, 2]))
     lit &= least >= LEAST_TANGENT_COSINE
     scale = (first * second).max(axis=1, keepdims=True)
     with np.errstate(invalid="ignore"):
         measured = case.direct(batch) * second / scale
         expected = case.direct(other) * first / scale
-    return Compared(batch.where(lit), measured[lit], expected[lit])
+    return Compared(batch, measured, expected).where(lit)
 
 
 def _clear(batch: Batch) -> Batch:
@@ -238,10 +243,6 @@ ONE = np.ones((1, 3))
 is_transmitting = of_family(TransmissionSpec)
 
 
-def unknown(case: Case) -> Diagnosis:
-    return Diagnosis(UNKNOWN)
-
-
 def diagnose_transmitted(case: Case) -> Diagnosis:
     """Whether the light is what facets pass, or that over G_1, as MaterialX has it; and where it is NaN."""
     compared, spec = list(transmitted(case)), case.of(TransmissionSpec)
@@ -304,7 +305,17 @@ def clear(case: Case) -> Iterator[Compared]:
         yield Compared(white, case.albedo(white) + case.transmitted(white), ONE)
 
 
-@check(is_transmitting, offset, diagnose=lambda case: diagnose_kept(case))
+def diagnose_kept(case: Case) -> Diagnosis:
+    tolerance = case.tolerance("kept")
+    wrong = (
+        words
+        for words, (_, *values) in _modes(case)
+        if tolerance.metric(*values).max() > tolerance.value
+    )
+    return Diagnosis("; ".join(dict.fromkeys(wrong)))
+
+
+@check(is_transmitting, offset, diagnose=diagnose_kept)
 def kept(case: Case) -> Iterator[Compared]:
     """Modes R and RT reflect, and pass to their base, the same light; mode T reflects nothing; mode R transmits nothing."""
     return (compared for _, compared in _modes(case))
@@ -328,16 +339,6 @@ def _modes(case: Case) -> Iterator[tuple[str, Compared]]:
             yield "mode R transmits light", Compared(batch, only.transmitted(batch), none)
 
 
-def diagnose_kept(case: Case) -> Diagnosis:
-    tolerance = case.tolerance("kept")
-    wrong = (
-        words
-        for words, (_, *values) in _modes(case)
-        if tolerance.metric(*values).max() > tolerance.value
-    )
-    return Diagnosis("; ".join(dict.fromkeys(wrong)))
-
-
 DENSER = with_inputs("the index is different", ior=2.5, color0=(0.5, 0.5, 0.5))
 
 
@@ -353,7 +354,7 @@ def critical(case: Case) -> Compared:
     return Compared(batch, case.transmitted(batch), batch.strength * passed)
 
 
-@check(is_transmitting, DENSER, tolerance=REFRACTED, lit=True, diagnose=unknown)
+@check(is_transmitting, DENSER, tolerance=REFRACTED, lit=True, diagnose=UNKNOWN)
 def refraction(case: Case) -> Compared:
     """An uneven environment is looked up along the ray that a solid sphere refracts."""
     index = case.of(TransmissionSpec).functions.ior
@@ -361,10 +362,9 @@ def refraction(case: Case) -> Compared:
     slope = (index(batch.inputs) ** 2 / batch.wo[:, 2])[:, np.newaxis]
     condition = np.maximum(1.0, slope / BENT)  # of a ray that turns by more than its cosine
     level = case.transmitted(batch)
-    bright = level.min(axis=1) > LEAST_PASSED
+    bright = np.asarray(level.min(axis=1) > LEAST_PASSED)
     measured = case.transmitted(batch, sky_map()) / np.where(bright[:, np.newaxis], level, 1.0)
-    expected = sky(place) / condition
-    return Compared(batch.where(bright), (measured / condition)[bright], expected[bright])
+    return Compared(batch, measured / condition, sky(place) / condition).where(bright)
 
 
 def _looking(batch: Batch, ior: Callable[[Mapping[str, Array]], Array]) -> tuple[Batch, Array]:
@@ -465,14 +465,10 @@ def brighter(batch: Batch, values: Array) -> Array:
     return values * np.where(np.any(batch.inputs["thinfilm_thickness"]), 100.0, 1.0)
 
 
-add_check(
-    VALUE,
-    "film",
-    "Under a thin film, the value contains the film's Airy reflectance.",
-    is_film,
-    dropped,
-    open=True,
-)
+@check(is_film, dropped, VALUE, open=True)
+def film(case: Case) -> Iterable[Compared]:
+    """Under a thin film, the value contains the film's Airy reflectance."""
+    return VALUE(case)
 
 
 @check(is_film, dropped, lit=True, open=True)
@@ -499,7 +495,7 @@ def _curves(case: Case, batch: Batch) -> Compared:
     The lobes are so smooth that their compensation is 1, whatever average it has.
     """
     (measured, mirror), (expected, white) = (
-        (direct(batch), direct(_mirror(case, batch))) for direct in _sides(case)
+        (direct(batch), direct(_mirror(case, batch))) for direct in (case.direct, case.expected)
     )
     return Compared(batch, measured / mirror, expected / white)
 
@@ -552,105 +548,20 @@ def film_energy(case: Case) -> list[Compared]:
     return cases
 
 
-add_check(
-    ALBEDO,
-    "film_environment",
-    "The environment branch returns the film's directional albedo.",
-    is_film,
-    dropped,
-    lit=True,
-    open=True,
-)
-
-
-@check(is_film, dropped, lit=True, open=True, diagnose=lambda case: diagnose_average(case))
-def film_average(case: Case) -> Compared:
-    """The compensation uses the film's reflectance averaged over the hemisphere."""
-    return average_case(case, film_views(case.of(FilmSpec), FRINGED))
-
-
-def average_case(case: Case, batch: Batch) -> Compared:
-    """F_ss of films whose curve is not next to 0, of the host and of the equations."""
-    (_, measured), (F, expected) = (_averages(case, each, batch) for each in _sides(case))
-    bright = F.min(axis=1) > LEAST_F
-    return Compared(batch.where(bright), measured[bright], expected[bright])
-
-
-@check(is_film, dropped, lit=True, open=True, diagnose=lambda case: diagnose_average(case))
-def film_smooth(case: Case) -> Compared:
-    """On smooth lobes, too, the compensation uses the film's average.
-
-    Values F (1 + F_ss k) of lobes that lose little, against those of lobes that lose less.
-
-    F and k are the host's, and F_ss that of the equations.
-    """
-    batch = film_views(case.of(FilmSpec), FRINGED)
-    F, F_ss = _averages(case, case.expected, batch)
-    (first, k), (second, other_k) = (
-        _parts(case, case.direct, batch.altered(roughness=(alpha, alpha))) for alpha in SMOOTH
-    )
-    expected = second * (1.0 + F_ss * k) / (1.0 + F_ss * other_k)
-    bright = F.min(axis=1) > LEAST_F
-    return Compared(batch.where(bright), first[bright], expected[bright])
-
-
-@check(is_film, dropped, lit=True, open=True, diagnose=lambda case: diagnose_visible(case))
-def film_visible(case: Case) -> Compared:
-    """The albedo averages the film's reflectance over the visible, lit facets."""
-    return _visible_cases(case, film_views(case.of(FilmSpec), STEEP))
-
-
-@check(is_film, dropped, lit=True, open=True, diagnose=lambda case: diagnose_visible(case))
-def film_glossy(case: Case) -> Compared:
-    """On glossy lobes, too, the albedo averages the film's reflectance over the visible facets."""
-    return _visible_cases(case, film_views(case.of(FilmSpec), GLOSSY))
-
-
-def _visible_cases(case: Case, batch: Batch) -> Compared:
-    """Means over the visible facets of films whose curve is not next to 0."""
-    albedos = (
-        lambda each: case.albedo(each) / case.albedo(_mirror(case, each)),
-        case.expected_albedo,
-    )
-    (_, measured), (F, expected) = (
-        _visible(case, direct, albedo, batch)
-        for direct, albedo in zip(_sides(case), albedos, strict=True)
-    )
-    bright = F.min(axis=1) > LEAST_F
-    return Compared(batch.where(bright), measured[bright], expected[bright])
-
-
-add_check(
-    THROUGHPUT,
-    "film_throughput",
-    "The throughput of a layer under a film is 1 - E of the film.",
-    lambda spec: isinstance(spec, FilmSpec) and spec.row.layerable,
-    pass_all,
-    lit=True,
-)
-
-
-add_check(
-    finite,
-    "film_finite",
-    "Every value under a film is finite at the edges of the domain.",
-    is_film,
-    scale_cosine("the value is divided by cos(theta_o)", -1),
-    tolerance=count_of("values"),
-    lit=True,
-    diagnose=diagnosis.diagnose_finite,
-)
+@check(is_film, dropped, ALBEDO, lit=True, open=True)
+def film_environment(case: Case) -> Iterable[Compared]:
+    """The environment branch returns the film's directional albedo."""
+    return ALBEDO(case)
 
 
 def diagnose_average(case: Case) -> Diagnosis:
     """Whether F at one cosine stands in the place of its average."""
-    batch, measured, expected = average_case(case, film_views(case.of(FilmSpec), FRINGED))
-    direct, model = _sides(case)
+    batch, measured, expected = film_average(case)
     view = np.broadcast_to([np.sqrt(1.0 - SLANT * SLANT), 0.0, SLANT], batch.wo.shape)
     slanted = replace(batch, wo=view, wi=view * MIRRORED)
     others = {
-        "at the half vector": _averages(case, direct, batch)[0],
-        "at the cosine 2/3": _averages(case, model, slanted)[0],
+        "at the half vector": _averages(case, case.direct, batch)[0],
+        "at the cosine 2/3": _averages(case, case.expected, slanted)[0],
     }
     errors = {words: np.sqrt(np.mean((measured - each) ** 2)) for words, each in others.items()}
     words = min(errors, key=errors.__getitem__)
@@ -660,17 +571,87 @@ def diagnose_average(case: Case) -> Diagnosis:
     return Diagnosis(text, permitted=words == "at the half vector")
 
 
+@check(is_film, dropped, lit=True, open=True, diagnose=diagnose_average)
+def film_average(case: Case) -> Compared:
+    """The compensation uses the film's reflectance averaged over the hemisphere.
+
+    F_ss of films whose curve is not next to 0.
+    """
+    batch = film_views(case.of(FilmSpec), FRINGED)
+    (_, measured), (F, expected) = (
+        _averages(case, each, batch) for each in (case.direct, case.expected)
+    )
+    return Compared(batch, measured, expected).where(F.min(axis=1) > LEAST_F)
+
+
+@check(is_film, dropped, lit=True, open=True, diagnose=diagnose_average)
+def film_smooth(case: Case) -> Compared:
+    """On smooth lobes, too, the compensation uses the film's average.
+
+    Values F (1 + F_ss k) of lobes that lose little, against those of lobes that lose less. F and k are the host's,
+    and F_ss that of the equations.
+    """
+    batch = film_views(case.of(FilmSpec), FRINGED)
+    F, F_ss = _averages(case, case.expected, batch)
+    (first, k), (second, other_k) = (
+        _parts(case, case.direct, batch.altered(roughness=(alpha, alpha))) for alpha in SMOOTH
+    )
+    expected = second * (1.0 + F_ss * k) / (1.0 + F_ss * other_k)
+    return Compared(batch, first, expected).where(F.min(axis=1) > LEAST_F)
+
+
 def diagnose_visible(case: Case) -> Diagnosis:
     """The explanation of a film's albedo, or the weights of the facets where that is right."""
     explained = ALBEDO.diagnose(case)
-    if RIGHT not in explained.text:
-        return explained
-    return Diagnosis(UNMASKED)
+    return explained if RIGHT not in explained.text else Diagnosis(UNMASKED)
 
 
-def _sides(case: Case) -> tuple[Function, Function]:
-    """Values of the host, and of the equations."""
-    return case.direct, case.expected
+@check(is_film, dropped, lit=True, open=True, diagnose=diagnose_visible)
+def film_visible(case: Case) -> Compared:
+    """The albedo averages the film's reflectance over the visible, lit facets."""
+    return _visible(case, film_views(case.of(FilmSpec), STEEP))
+
+
+@check(is_film, dropped, lit=True, open=True, diagnose=diagnose_visible)
+def film_glossy(case: Case) -> Compared:
+    """On glossy lobes, too, the albedo averages the film's reflectance over the visible facets."""
+    return _visible(case, film_views(case.of(FilmSpec), GLOSSY))
+
+
+def _visible(case: Case, batch: Batch) -> Compared:
+    """Means F_o over the visible facets of films whose curve is not next to 0, by albedos E_ss F_o (1 + F_ss k).
+
+    An albedo counts over the one of a mirror, E_ss (1 + k) = 1.
+    """
+
+    def mean(direct: Function, albedo: Array) -> tuple[Array, Array]:
+        F, F_ss = _averages(case, direct, batch)
+        _, k = _parts(case, direct, batch)
+        return F, np.asarray(albedo * (1.0 + k) / (1.0 + F_ss * k))
+
+    _, measured = mean(case.direct, case.albedo(batch) / case.albedo(_mirror(case, batch)))
+    F, expected = mean(case.expected, case.expected_albedo(batch))
+    return Compared(batch, measured, expected).where(F.min(axis=1) > LEAST_F)
+
+
+@check(
+    lambda spec: isinstance(spec, FilmSpec) and spec.row.layerable, pass_all, THROUGHPUT, lit=True
+)
+def film_throughput(case: Case) -> Iterable[Compared]:
+    """The throughput of a layer under a film is 1 - E of the film."""
+    return THROUGHPUT(case)
+
+
+@check(
+    is_film,
+    over_cosine,
+    tolerance=count_of("values"),
+    lit=True,
+    diagnose=diagnosis.diagnose_finite,
+)
+def film_finite(case: Case) -> Measurement:
+    """Every value under a film is finite at the edges of the domain."""
+    return finite(case)
 
 
 def _averages(case: Case, direct: Function, batch: Batch) -> tuple[Array, Array]:
@@ -687,25 +668,10 @@ def _averages(case: Case, direct: Function, batch: Batch) -> tuple[Array, Array]
 
 
 def _parts(case: Case, direct: Function, batch: Batch) -> tuple[Array, Array]:
-    """F (1 + F_ss k) and k of films in mirrored lights, (N, 3) each; k is (1 - E_ss) / E_ss."""
-    facets = _facets(batch)
-    return direct(batch) / facets, direct(_mirror(case, batch)) / facets - 1.0
-
-
-def _facets(batch: Batch) -> Array:
-    """Values of facets that reflect everything, in mirrored lights, (N, 1)."""
+    """F (1 + F_ss k) and k of films in mirrored lights, (N, 3) each: values over those of facets that reflect all."""
     alpha, mu = np.broadcast_to(batch.inputs["roughness"], (len(batch.wo), 2))[:, 0], batch.wo[:, 2]
-    return np.asarray(0.25 / (alpha * alpha * smith_lambda(mu, alpha))[:, np.newaxis])
-
-
-def _visible(case: Case, direct: Function, albedo: Function, batch: Batch) -> tuple[Array, Array]:
-    """F at the half vector, and F_o of an albedo E_ss F_o (1 + F_ss k), (N, 3) each.
-
-    The albedo is that over the one of a mirror, E_ss (1 + k) = 1.
-    """
-    F, F_ss = _averages(case, direct, batch)
-    _, k = _parts(case, direct, batch)
-    return F, np.asarray(albedo(batch) * (1.0 + k) / (1.0 + F_ss * k))
+    facets = 0.25 / (alpha * alpha * smith_lambda(mu, alpha))[:, np.newaxis]
+    return direct(batch) / facets, direct(_mirror(case, batch)) / facets - 1.0
 
 
 def _mirror(case: Case, batch: Batch) -> Batch:

@@ -8,7 +8,7 @@ import numpy as np
 
 from mxeon.conformance import diagnosis
 from mxeon.conformance.case import Case
-from mxeon.conformance.check import add_check, check, drop_changes, no_number, of_family, shifted
+from mxeon.conformance.check import check, drop_changes, no_number, of_family, shifted
 from mxeon.conformance.checks.lobes import inputs
 from mxeon.conformance.diagnosis import Diagnosis, explain
 from mxeon.conformance.samples import Array, Batch, Candidate
@@ -60,15 +60,15 @@ def round_trip(case: Case) -> Iterator[Compared]:
         yield Compared(batch, *ROUND_TRIPS[spec.node](outputs, batch))
 
 
-add_check(
-    inputs,
-    "output_inputs",
-    "Every input of the utility node changes the outputs that depend on it.",
+@check(
     is_utility,
     drop_changes,
     tolerance=count_of("inputs"),
     diagnose=diagnosis.diagnose_inputs,
 )
+def output_inputs(case: Case) -> Measurement:
+    """Every input of the utility node changes the outputs that depend on it."""
+    return inputs(case)
 
 
 def explained_finite(case: Case) -> Diagnosis:

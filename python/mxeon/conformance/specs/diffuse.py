@@ -18,6 +18,7 @@ from mxeon.conformance.samples import (
     Candidate,
     Counts,
     Values,
+    directions_at,
     rounded,
     with_edges,
 )
@@ -186,9 +187,7 @@ class DiffuseModelSpec(LobeSpec):
         cosine = [0.0, 1e-30, 1e-6, 0.5, 1.0]
         rows = product(cosine, cosine, [0.0, 1.0, 2.0, math.pi], [0.0, 1e-6, 1.0], [0.0, 0.5, 1.0])
         mu_o, mu_i, azimuth, roughness, color = np.array(list(rows)).T
-        S_o, S_i = np.sqrt(1.0 - mu_o**2), np.sqrt(1.0 - mu_i**2)
-        wo = np.stack([S_o, 0.0 * S_o, mu_o], axis=-1)
-        wi = np.stack([S_i * np.cos(azimuth), S_i * np.sin(azimuth), mu_i], axis=-1)
+        wo, wi = directions_at(mu_o, 0.0), directions_at(mu_i, azimuth)
         return Batch(wo, wi, {"color": np.stack([color] * 3, axis=-1), "roughness": roughness})
 
 

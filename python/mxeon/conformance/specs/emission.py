@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The EDF nodes, those that combine EDFs, and surfaces that emit: views from the front and the back; the VDF nodes."""
 
-from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 
 import numpy as np
 
@@ -15,6 +13,7 @@ from mxeon.conformance.samples import (
     Counts,
     Values,
     directions,
+    directions_at,
     float32,
     generator,
     rounded,
@@ -23,11 +22,13 @@ from mxeon.conformance.samples import (
 )
 from mxeon.conformance.spec import (
     ARGUMENTS,
-    COMPONENTS,
+    CHANGED_COLOR,
     EXPONENTIAL,
     POWER,
     ZERO,
+    EngineError,
     Input,
+    Node,
     RowSpec,
     Spec,
     ValueSpec,
@@ -36,6 +37,7 @@ from mxeon.conformance.spec import (
     color,
     draw,
     materials,
+    network_text,
 )
 from mxeon.conformance.tolerance import Term, Tolerance, roundings, sum_of
 from mxeon.hosts.base import Host
@@ -54,6 +56,8 @@ from mxeon.models.nodes.emissions import (
 from mxeon.models.nodes.media import AMOUNT as MEDIUM_AMOUNT
 from mxeon.models.nodes.media import COMBINED_MEDIA, MEDIA, Medium
 from mxeon.models.nodes.media import FACTOR as MEDIUM_FACTOR
+from mxeon.models.nodes.media import FIRST as MEDIUM_FIRST
+from mxeon.models.nodes.media import SECOND as MEDIUM_SECOND
 from mxeon.models.nodes.media import Value as Transmittance
 from mxeon.shaders.nodes import (
     SURFACE,
@@ -66,45 +70,28 @@ from mxeon.shaders.nodes import (
 )
 from mxeon.shaders.scene import VIEW, Scene, local_directions, sphere
 
-SOURCES = {  # names of the nodes that a node takes, by its port
-    "generalized_schlick_edf": {"base": "base"},
-    "mix": {"fg": "first", "bg": "second"},
-    "add": {"in1": "first", "in2": "second"},
-    "multiply": {"in1": "first"},
-}
 
-
-def network_text(
-    kind: str,
-    category: str,
-    name: str,
-    source: str,
-    inputs: Iterable[Input],
-    values: Values,
-    more: str = "",
-) -> str:
-    """XML of a node, with `more` of its ports, and of the sources that it takes: a value of each input, by path."""
-    sources = SOURCES.get(category, {})
-    ports = dict.fromkeys((*sources.values(), name), "")
-    for each in inputs:
-        node, _, port = each.name.rpartition("/")
-        value = np.broadcast_to(values[each.name], COMPONENTS[each.type])
-        ports[node or name] += input_text(port, each.type, value)
-    ports[name] += more + "".join(
-        connection_text(port, kind, each) for port, each in sources.items()
-    )
-    texts = [node_text(source, kind, each, ports[each]) for each in sources.values()]
-    return "".join(texts) + node_text(category, kind, name, ports[name])
-
-
-def title_of(row: Emission | Medium, kind: str, inputs: Sequence[Input]) -> str:
+def title_of(row: Emission | Medium, kind: str) -> str:
     """A node that combines others has its name in common with those of other types."""
-    scaled = f", in2 {inputs[-1].type}" if row.category == "multiply" else ""
-    return (
-        f"{row.category}, {kind}{scaled}"
-        if row in (*COMBINED_EMISSIONS, *COMBINED_MEDIA)
-        else row.category
-    )
+    factor = f", in2 {row.name.rpartition('_')[2]}" if row.category == "multiply" else ""
+    return f"{row.category}, {kind}{factor}" if "/" in row.inputs[0] else row.category
+
+
+def inputs_of(row: Emission | Medium) -> tuple[Input, ...]:
+    """The inputs of the row's functions; a factor has the type in the last word of the row's name."""
+    kind = row.name.rpartition("_")[2]
+    return tuple(INPUTS.get(name) or FACTORS[name, kind] for name in row.inputs)
+
+
+def chained(
+    row: Emission | Medium, kind: str, source: str, name: str, text: str = ""
+) -> dict[str, Node]:
+    """A node with the nodes that it takes, whose names are in the paths of its inputs."""
+    paths = (each.rpartition("/")[0] for each in row.inputs)
+    sources = tuple(dict.fromkeys(path for path in paths if path not in ("", name)))
+    return dict.fromkeys(sources, Node(source, kind)) | {
+        name: Node(row.category, kind, sources, text)
+    }
 
 
 EMITTED = connection_text("edf", "EDF", "emission")
@@ -116,6 +103,7 @@ LEAST_CONE = 1e-3  # least share of a full turn
 EXPONENTS = (0.5, 20.0)
 BLUE, ORANGE = (0.2, 0.5, 0.8), (2.0, 0.4, 0.1)  # radiances of the materials in pictures
 INNER, OUTER = "inner_angle", "outer_angle"
+LEAST, LARGEST = 1e-3, 16.0  # coefficients, 1/m: of 1e-3 and 1 - 1e-7 of the light
 # In pictures the falloff takes half of the sphere, so that it is not steep.
 INPUTS = {
     each.name: each
@@ -128,12 +116,20 @@ INPUTS = {
         Input("exponent", "float", *EXPONENTS, change=2.0, materials=(5.0, 2.0), default=5.0),
         Input(INNER, change=20.0, materials=(60.0, 0.0), default=60.0),
         Input(OUTER, change=150.0, materials=(140.0, 150.0), default=90.0),
-        Input("normal", "vector3", change=(0.0, 0.6, 0.8)),
+        # Of a medium: from one that hardly shows to one that hides nearly all.
+        *(
+            Input(name, "vector3", LEAST, LARGEST, change=CHANGED_COLOR, logarithmic=True)
+            for name in ("absorption", "scattering", MEDIUM_FIRST, MEDIUM_SECOND)
+        ),
+        Input(MEDIUM_AMOUNT, change=0.3, default=0.5),
     )
 }
-FACTORS = {  # of an emission, by the last word of the row's name
-    "float": Input(FACTOR, change=0.3, materials=(0.9, 0.5)),
-    "color3": color(FACTOR, (0.9, 0.6, 0.3), (0.5, 0.5, 0.5), edges=()),
+NORMAL = Input("normal", "vector3", change=(0.0, 0.6, 0.8))
+FACTORS = {
+    (FACTOR, "float"): Input(FACTOR, change=0.3, materials=(0.9, 0.5)),
+    (FACTOR, "color3"): color(FACTOR, (0.9, 0.6, 0.3), (0.5, 0.5, 0.5), edges=()),
+    (MEDIUM_FACTOR, "float"): Input(MEDIUM_FACTOR, high=3.0, change=0.3),
+    (MEDIUM_FACTOR, "color3"): replace(color(MEDIUM_FACTOR, edges=()), high=3.0),
 }
 
 UNIT, EXITANCE = "radiance", "exitance / pi"
@@ -166,7 +162,6 @@ CONE = _errors(
 OPACITY = sum_of(roundings(3), unit=UNIT)
 
 
-@lru_cache(maxsize=16)
 def power_error(host: Host) -> float:
     """Error of the engine's own power of numbers in [0, 1], beside its rounding."""
     rng = generator()
@@ -186,15 +181,13 @@ class EmissionSpec(RowSpec):
 
     def document(self, inputs: Values | None = None) -> str:
         """A material of the node and of those that it takes, with a value of each input."""
-        values = {each.name: each.default for each in self.drawn} | dict(inputs or {})
-        axis = vector_text("axis", values.pop("normal")) if "normal" in values else ""
-        turned = connection_text("normal", "vector3", "axis") if axis else ""  # a value is ignored
-        typed = [each for each in self.drawn if each.name in values]
-        text = network_text("EDF", self.node, "emission", "uniform_edf", typed, values, turned)
-        return document_text(axis + text + EMITTING_TEXT, "look")
-
-    def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        return draw(rng, count, self.drawn)
+        axis = turned = ""
+        if "normal" in (inputs or {}):  # a value without a node is ignored
+            axis = vector_text("axis", (inputs or {})["normal"])
+            turned = connection_text("normal", "vector3", "axis")
+        nodes = chained(self.row, "EDF", "uniform_edf", "emission", turned)
+        text = axis + network_text(nodes, self.drawn, inputs) + EMITTING_TEXT
+        return document_text(text, "look")
 
     def values(self, function: Value, batch: Batch) -> Array:
         """Radiance, (N, 3), of views whose cosines do not exceed 1 by a rounding."""
@@ -207,17 +200,10 @@ class EmissionSpec(RowSpec):
     def others(self) -> tuple[Candidate, ...]:
         return (ZERO,)
 
-    def engine(self, quantity: str, host: Host) -> tuple[Term, ...]:
-        if self.row.name != "schlick_emission" or quantity not in ("value", "integral"):
-            return ()
-        return (Term(power_error(host), "the engine's pow()"),)
-
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         """Random views from the front, and cosines from 1 to grazing."""
         rng = generator()
-        mu = np.repeat(GRID, 64)
-        radius = np.sqrt(1.0 - mu * mu)
-        special = rounded([radius, 0.0 * mu, mu])
+        special = directions_at(np.repeat(GRID, 64), 0.0)
         return (self.views(rng, directions(rng, counts.pairs)), self.views(rng, special))
 
     def few(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
@@ -235,10 +221,15 @@ class EmissionSpec(RowSpec):
         """
         rng, count = generator(), counts.materials
         inputs = self.random_inputs(rng, count)
-        mu, weights = _nodes(self._stops(inputs), counts.nodes)
-        azimuth = 2.0 * np.pi * rng.random(mu.shape)
-        radius = np.sqrt(1.0 - mu * mu)
-        wo = rounded([radius * np.cos(azimuth), radius * np.sin(azimuth), mu]).reshape(-1, 3)
+        x, w = np.polynomial.legendre.leggauss(counts.nodes)
+        stops = self._stops(inputs)
+        low, high = stops[:, :-1, np.newaxis], stops[:, 1:, np.newaxis]
+        t = 0.5 * (
+            x + 1.0
+        )  # high - mu = t^2 (high - low): dense at the upper end, where powers root
+        mu = float32(high - t * t * (high - low)).reshape(count, -1)
+        weights = 2.0 * mu * ((high - low) * w * t).reshape(count, -1)
+        wo = directions_at(mu, 2.0 * np.pi * rng.random(mu.shape)).reshape(-1, 3)
         each = np.repeat(np.arange(count), mu.shape[1])
         return Batch(wo, wo, {name: value[each] for name, value in inputs.items()}), weights
 
@@ -254,16 +245,30 @@ class ConeSpec(EmissionSpec):
     """An emission inside a cone, whose axis is an input."""
 
     def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        return super().random_inputs(rng, count) | random_cones(rng, count)
+        """Half of the cones have a falloff, of at least LEAST_FALLOFF degrees; a quarter are narrow."""
+        inputs, turn, wide = (
+            super().random_inputs(rng, count),
+            rng.random(count),
+            rng.random(count) < 0.5,
+        )
+        inner = 360.0 * np.where(rng.random(count) < 0.25, LEAST_CONE**turn, turn)
+        inner = np.where(wide, inner * (1.0 - LEAST_FALLOFF / 360.0), inner)
+        more = LEAST_FALLOFF * ((360.0 - inner) / LEAST_FALLOFF) ** rng.random(count)
+        outer = np.where(wide, inner + more, inner * rng.random(count))
+        return inputs | {INNER: float32(inner), OUTER: float32(outer)}
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Those of any emission; views near both edges; and views of turned axes."""
-        rng = generator()
-        return (
-            *super().batches(counts),
-            self._at_edges(rng, counts.few),
-            self._turned(rng, counts.few),
-        )
+        """Those of any emission; views a little inside and outside of the cones; and views of turned axes."""
+        rng, count = generator(), counts.few
+        inputs = self.random_inputs(rng, count)
+        angle = np.where(np.arange(count) % 2, inputs[INNER], inputs[OUTER])
+        step = np.where(rng.random(count) < 0.5, -2.0, 2.0) * _edge(angle)
+        wo = directions_at(np.clip(cone_cosine(angle) + step, 0.0, 1.0), 0.0)
+        frames = turned_frames(rng, count)
+        view = turned_directions(rng, len(frames))
+        axes = self.random_inputs(rng, len(frames)) | {"normal": rounded(frames[:, :, 2].T)}
+        near, turned = Batch(wo, wo, inputs), Batch(view, view, axes, frame=frames)
+        return *super().batches(counts), _away(near), _away(turned)
 
     def condition(self, batch: Batch) -> Array:
         """1 and the slope of the falloff in the cosine, (N, 1)."""
@@ -274,23 +279,6 @@ class ConeSpec(EmissionSpec):
 
     def views(self, rng: np.random.Generator, wo: Array) -> Batch:
         return _away(super().views(rng, wo))
-
-    def _at_edges(self, rng: np.random.Generator, count: int) -> Batch:
-        """Views a little inside and outside of the cones."""
-        inputs = self.random_inputs(rng, count)
-        angle = np.where(np.arange(count) % 2, inputs[INNER], inputs[OUTER])
-        step = np.where(rng.random(count) < 0.5, -2.0, 2.0) * _edge(angle)
-        mu = np.clip(cone_cosine(angle) + step, 0.0, 1.0)
-        wo = rounded([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu])
-        return _away(Batch(wo, wo, inputs))
-
-    def _turned(self, rng: np.random.Generator, count: int) -> Batch:
-        """Views in frames whose normals are the axes."""
-        frames = turned_frames(rng, count)
-        wo = turned_directions(rng, len(frames))
-        inputs = self.random_inputs(rng, len(frames))
-        inputs["normal"] = rounded(frames[:, :, 2].T)
-        return _away(Batch(wo, wo, inputs, frame=frames))
 
     def _stops(self, inputs: dict[str, Array]) -> Array:
         inner, outer = (np.clip(cone_cosine(inputs[name]), 0.0, 1.0) for name in (INNER, OUTER))
@@ -309,28 +297,6 @@ def _edge(angle: Array) -> Array:
     return np.minimum(EDGE, 0.5 * (1.0 - cone_cosine(angle)))
 
 
-def _nodes(stops: Array, count: int) -> tuple[Array, Array]:
-    """Cosines and weights, (M, K), of integrals of 2 mu over the pieces between stops."""
-    x, w = np.polynomial.legendre.leggauss(count)
-    low, high = stops[:, :-1, np.newaxis], stops[:, 1:, np.newaxis]
-    t = 0.5 * (x + 1.0)  # high - mu = t^2 (high - low): dense at the upper end, where powers root
-    mu = high - t * t * (high - low)
-    mu = float32(mu)
-    weights = 2.0 * mu * (high - low) * w * t
-    return mu.reshape(len(stops), -1), weights.reshape(len(stops), -1)
-
-
-def random_cones(rng: np.random.Generator, count: int) -> dict[str, Array]:
-    """Angles of cones: half of them with a falloff, of at least LEAST_FALLOFF degrees; a quarter narrow ones."""
-    turn, wide = rng.random(count), rng.random(count) < 0.5
-    inner = 360.0 * np.where(rng.random(count) < 0.25, LEAST_CONE**turn, turn)
-    inner = np.where(wide, inner * (1.0 - LEAST_FALLOFF / 360.0), inner)
-    more = LEAST_FALLOFF * ((360.0 - inner) / LEAST_FALLOFF) ** rng.random(count)
-    outer = np.where(wide, inner + more, inner * rng.random(count))
-    angles = rounded([inner, outer])
-    return {INNER: angles[:, 0], OUTER: angles[:, 1]}
-
-
 @dataclass(frozen=True, eq=False, kw_only=True)
 class AbsentSpec(Spec):
     """A node that no library of ours has: only its implementation is judged."""
@@ -341,15 +307,11 @@ class AbsentSpec(Spec):
         return document_text(self.text)
 
 
-def _absent(title: str, node: str, text: str) -> AbsentSpec:
-    return AbsentSpec(title=title, node=node, model="", text=text, libraries=("stock",))
-
-
 # A node that its document defines, without an implementation: a surface that is not lit.
-UNIMPLEMENTED = _absent(
-    "a node without an implementation",
-    "mxeon_absent",
-    """  <nodedef name="ND_mxeon_absent" node="mxeon_absent">
+UNIMPLEMENTED = AbsentSpec(
+    title="a node without an implementation",
+    node="mxeon_absent",
+    text="""  <nodedef name="ND_mxeon_absent" node="mxeon_absent">
     <output name="out" type="EDF" />
   </nodedef>
 """
@@ -357,8 +319,11 @@ UNIMPLEMENTED = _absent(
     + EMITTING_TEXT,
 )
 ABSENT = (
-    _absent(
-        "measured_edf", "measured_edf", node_text("measured_edf", "EDF", "emission") + EMITTING_TEXT
+    AbsentSpec(
+        title="measured_edf",
+        node="measured_edf",
+        text=node_text("measured_edf", "EDF", "emission") + EMITTING_TEXT,
+        libraries=("stock",),
     ),
 )
 
@@ -392,7 +357,6 @@ EMITTING_SURFACES = tuple(
     EmittingSurface(
         title=title,
         node="surface",
-        model="",
         has_bsdf=has_bsdf,
         errors={"value": OPACITY},
         libraries=("stock",),
@@ -402,21 +366,19 @@ EMITTING_SURFACES = tuple(
 
 
 def _spec(row: Emission) -> EmissionSpec:
-    inputs = INPUTS | {FACTOR: FACTORS.get(row.name.rsplit("_", 1)[-1], FACTORS["float"])}
-    drawn = tuple(inputs[name] for name in row.inputs)
-    cone = row.name == "conical"
-    powered = {"conical": CONE, "schlick_emission": POWER_ERRORS}
-    return (ConeSpec if cone else EmissionSpec)(
-        title=title_of(row, "EDF", drawn),
-        node=row.category,
-        model=row.name,
-        row=row,
-        inputs=(*drawn, INPUTS["normal"]) if cone else drawn,
-        errors=powered.get(row.name, UNIFORM),
+    drawn, cone = inputs_of(row), row.name == "conical"
+    powered = row.name == "schlick_emission"
+    power = (EngineError("the engine's pow()", power_error),)
+    return (ConeSpec if cone else EmissionSpec).of(
+        row,
+        (*drawn, NORMAL) if cone else drawn,
+        CONE if cone else POWER_ERRORS if powered else UNIFORM,
+        title=title_of(row, "EDF"),
         closure=not cone,
         counts=Counts(1 << 12, 1 << 10, materials=128, nodes=16),
         asked=("emission", "radiance", 1.0),
         optional=True,
+        engines=dict.fromkeys(("value", "integral"), power) if powered else {},
     )
 
 
@@ -427,8 +389,6 @@ EMISSION_SPECS = tuple(map(_spec, (*EMISSIONS, *COMBINED_EMISSIONS)))
 
 # Of the exponential of a rounded sum, of a product and of the quotient of two such values.
 TRANSMITTANCE = sum_of(roundings(12), unit="transmittance")
-LEAST, LARGEST = 1e-3, 16.0  # coefficients, 1/m: of 1e-3 and 1 - 1e-7 of the light
-LARGEST_FACTOR = 3.0  # of a multiple
 INTERFACE = lobe_text(
     "dielectric_bsdf",
     {"weight": 1.0, "scatter_mode": "T"},
@@ -444,16 +404,12 @@ class MediumSpec(RowSpec):
 
     row: Medium
 
-    @property
-    def combined(self) -> bool:
-        return self.row in COMBINED_MEDIA
-
     def document(self, inputs: Values | None = None) -> str:
-        halves = {each.name: 0.5 for each in self.inputs}
-        media = network_text("VDF", self.node, "medium", "anisotropic_vdf", self.inputs, halves)
-        return document_text(
-            INTERFACE + media + node_text("layer", "BSDF", "lobe", PORTS) + SURFACE
+        media = network_text(
+            chained(self.row, "VDF", "anisotropic_vdf", "medium"), self.inputs, inputs
         )
+        layer = node_text("layer", "BSDF", "lobe", PORTS)
+        return document_text(INTERFACE + media + layer + SURFACE)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         """Random views, none at grazing where refraction may fail instead, and random inputs of the node."""
@@ -462,60 +418,42 @@ class MediumSpec(RowSpec):
         return (Batch(wo, wo * [1.0, 1.0, -1.0], self.random_inputs(rng, count)),)
 
     def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        """Random coefficients, an eighth of them 0, shares and factors.
-
-        The text gives the anisotropy of a medium no part in what passes.
-        """
+        """Random coefficients, an eighth of them 0, shares and factors."""
         inputs = draw(rng, count, self.inputs)
         for each in self.inputs:
             if each.type == "vector3":
                 inputs[each.name][::8] = 0.0
-        if not self.combined and len(self.inputs) > 1:
-            inputs |= draw(rng, count, [Input("anisotropy", low=-0.9, high=0.9)])
         return inputs
 
     def values(self, function: Transmittance, batch: Batch) -> Array:
         return np.asarray(function(broadcast_inputs(batch)))
 
-    def engine(self, quantity: str, host: Host) -> tuple[Term, ...]:
-        if quantity != "value":
-            return ()
-        error = 2.0 * exponential_error(host) + self.combined * 2.0 * power_error(host)
-        return (Term(error, "the engine's exp() and pow(), twice"),)
 
-
-@lru_cache(maxsize=16)
 def exponential_error(host: Host) -> float:
     """Error of the engine's own exp(-x) for x in [0, 8], beside its rounding."""
     return beside_rounding(EXPONENTIAL.errors(host, float32(np.linspace(0.0, 8.0, ARGUMENTS))))
 
 
-def _medium_inputs(row: Medium) -> tuple[Input, ...]:
-    """The inputs that its transmittance depends on, by path."""
-    factor = (
-        replace(color(MEDIUM_FACTOR, edges=()), high=LARGEST_FACTOR)
-        if row.name.endswith("_color3")
-        else Input(MEDIUM_FACTOR, high=LARGEST_FACTOR, change=0.3)
-    )
-    others = {MEDIUM_AMOUNT: Input(MEDIUM_AMOUNT, change=0.3), MEDIUM_FACTOR: factor}
-    # A coefficient: from one that hardly shows to one that hides nearly all.
-    usual = Input("", "vector3", LEAST, LARGEST, change=(0.9, 0.1, 0.6), logarithmic=True)
-    return tuple(others.get(name, replace(usual, name=name)) for name in row.inputs)
+ENGINE = (
+    EngineError("the engine's exp(), twice", exponential_error, 2.0),
+    EngineError("the engine's pow(), twice", power_error, 2.0),
+)
+# The text gives the anisotropy of a medium no part in what passes.
+ANISOTROPY = Input("anisotropy", low=-0.9, high=0.9, default=0.5)
 
 
 def _medium_spec(row: Medium) -> MediumSpec:
-    inputs = _medium_inputs(row)
-    return MediumSpec(
-        title=title_of(row, "VDF", inputs),
-        node=row.category,
-        model=row.name,
-        row=row,
-        inputs=inputs,
-        errors={"value": TRANSMITTANCE},
+    inputs, combined = inputs_of(row), row in COMBINED_MEDIA
+    return MediumSpec.of(
+        row,
+        (*inputs, ANISOTROPY) if row.category == "anisotropic_vdf" else inputs,
+        {"value": TRANSMITTANCE},
+        title=title_of(row, "VDF"),
         counts=Counts(1 << 8),
         fixed={"top/weight": 0.0},
         asked=("transmission", "throughput", 1.0),
         optional=True,
+        engines={"value": ENGINE if combined else ENGINE[:1]},
     )
 
 

@@ -16,8 +16,8 @@ from mxeon.conformance.samples import (
     Candidate,
     Counts,
     Values,
+    directions_at,
     generator,
-    rounded,
     sky,
     special_directions,
 )
@@ -28,7 +28,6 @@ from mxeon.conformance.spec import (
     RowSpec,
     broadcast_inputs,
     color,
-    draw,
     draw_edges,
     materials,
 )
@@ -98,8 +97,7 @@ class PbrSpec(RowSpec, LobeSpec):
         cls, row: PbrNode, inputs: tuple[Input, ...], errors: Mapping[str, Tolerance], **rest: Any
     ) -> Self:
         words = [row.category, *(f"{name} {value}" for name, value in row.fixed.items())]
-        own = {"title": ", ".join(words), "node": row.category, "model": row.name}
-        return cls(row=row, inputs=inputs, errors=errors, **(own | rest))
+        return super().of(row, inputs, errors, **{"title": ", ".join(words), **rest})
 
     @property
     def bounded(self) -> tuple[Input, ...]:
@@ -130,9 +128,6 @@ class PbrSpec(RowSpec, LobeSpec):
     def document(self, inputs: Values | None = None) -> str:
         values = {**(inputs or {}), **self.row.fixed}
         return material_text(self.node, values, self.node, self.types)
-
-    def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        return draw(rng, count, self.drawn)
 
     def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
         return draw_edges(rng, count, self.drawn)
@@ -214,8 +209,7 @@ class PbrSpec(RowSpec, LobeSpec):
         """
         rng, count = generator(), counts.materials
         mu = LEAST_VIEW + (1.0 - LEAST_VIEW) * rng.random(count)
-        radius, azimuth = np.sqrt(1.0 - mu * mu), 2.0 * np.pi * rng.random(count)
-        wo = rounded([radius * np.cos(azimuth), radius * np.sin(azimuth), mu])
+        wo = directions_at(mu, 2.0 * np.pi * rng.random(count))
         inputs = taken(self.integrable(self.random_inputs(rng, count)))
         wi, weights = self.nodes(wo, inputs, counts.nodes)
         each = np.repeat(np.arange(count), wi.shape[1])
@@ -231,9 +225,7 @@ class PbrSpec(RowSpec, LobeSpec):
         slope = 6.0 * t * (1.0 - t) * 0.5 * w
         azimuth = np.arctan2(wo[:, 1], wo[:, 0])[:, np.newaxis, np.newaxis]
         phi = azimuth + 2.0 * np.pi * (np.arange(count) + 0.5) / count
-        radius = np.sqrt(1.0 - mu * mu)[:, np.newaxis]
-        height = self.side * mu[:, np.newaxis] + 0.0 * phi
-        wi = rounded((radius * np.cos(phi), radius * np.sin(phi), height)).reshape(len(wo), -1, 3)
+        wi = directions_at(self.side * mu[:, np.newaxis], phi).reshape(len(wo), -1, 3)
         weights = np.repeat(slope * 2.0 / count, count)
         return wi, np.broadcast_to(weights, wi.shape[:2])
 

@@ -4,7 +4,6 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from typing import ClassVar, NamedTuple
 
 import numpy as np
@@ -22,12 +21,21 @@ from mxeon.conformance.samples import (
     Mask,
     Values,
     directions,
+    directions_at,
     float32,
     generator,
     rounded,
     special_directions,
 )
-from mxeon.conformance.spec import ARGUMENTS, WAVE, Input, ValueSpec, beside_rounding, color
+from mxeon.conformance.spec import (
+    ARGUMENTS,
+    WAVE,
+    EngineError,
+    Input,
+    ValueSpec,
+    beside_rounding,
+    color,
+)
 from mxeon.conformance.specs.lobes import BURLEY_VALUE, NORMAL, WEIGHT, PbrSpec, lobe_errors
 from mxeon.conformance.specs.sheen import FIT_COSINE
 from mxeon.conformance.tolerance import (
@@ -204,6 +212,22 @@ FRAME = sum_of(
         "of two directions, five each, over twice the least cosine and the least alpha",
     )
 )
+A_COSINE, THREE_COSINES = "the fit of a cosine, which", "F_ss in three cosines,"
+# Outside the domains of fits: a quantity, an input, its value, and the largest error that was found there.
+BEYOND: tuple[tuple[str, str, float, float, str], ...] = (
+    ("throughput", "ior", 4.0, 0.03, f"{A_COSINE} ends at index 3"),
+    ("throughput", "ior", 10.0, 0.1, f"{A_COSINE} ends at index 3"),
+    ("throughput", "ior", 100.0, 0.17, f"{A_COSINE} ends at index 3"),
+    ("throughput", "ior", 0.2, 0.05, "the fit from inside, which ends at index 0.33"),
+    ("throughput", "exponent", 20.0, 0.09, f"{A_COSINE} ends at exponent 10"),
+    ("throughput", "exponent", 100.0, 0.23, f"{A_COSINE} ends at exponent 10"),
+    ("throughput", "exponent", 0.5, 0.05, f"{A_COSINE} begins at exponent 1"),
+    ("value", "extinction", 0.0, 0.22, f"{THREE_COSINES} which miss total reflection"),
+    ("value", "extinction", 0.2, 4.5e-3, f"{THREE_COSINES} below their domain"),
+    ("value", "ior", 10.0, 1e-3, f"{THREE_COSINES} above their domain"),
+    ("albedo", "extinction", 0.0, 0.07, f"{THREE_COSINES} which miss total reflection"),
+    ("albedo", "ior", 0.2, 7e-3, "a sum over 1024 directions, across a critical angle"),
+)
 ERRORS = {
     "picture albedo": sum_in("albedo", *COMPENSATION, sum_over(256)),
     "anisotropic_albedo": sum_of(*COMPENSATION, sum_over(1024), unit="albedo"),
@@ -217,36 +241,12 @@ ERRORS = {
             "of two directions, two each, over twice the least cosine and the least alpha",
         )
     ),
-    # Where a fit ends, by the largest error that was found there.
     **{
-        f"throughput with ior {index}": given(
-            error, "albedo", "the fit of a cosine, which ends at index 3"
-        )
-        for index, error in ((4, 0.03), (10, 0.1), (100, 0.17))
+        f"{quantity} with {name} {value:g}": compensated(error, words)
+        if quantity == "value"
+        else given(error, "albedo", words)
+        for quantity, name, value, error, words in BEYOND
     },
-    "throughput with ior 0.2": given(
-        0.05, "albedo", "the fit from inside, which ends at index 0.33"
-    ),
-    **{
-        f"throughput with exponent {exponent}": given(
-            error, "albedo", "the fit of a cosine, which ends at exponent 10"
-        )
-        for exponent, error in ((20, 0.09), (100, 0.23))
-    },
-    "throughput with exponent 0.5": given(
-        0.05, "albedo", "the fit of a cosine, which begins at exponent 1"
-    ),
-    "value with extinction 0": compensated(
-        0.22, "F_ss in three cosines, which miss total reflection"
-    ),
-    "value with extinction 0.2": compensated(4.5e-3, "F_ss in three cosines, below their domain"),
-    "value with ior 10": compensated(1e-3, "F_ss in three cosines, above their domain"),
-    "albedo with extinction 0": given(
-        0.07, "albedo", "F_ss in three cosines, which miss total reflection"
-    ),
-    "albedo with ior 0.2": given(
-        7e-3, "albedo", "a sum over 1024 directions, across a critical angle"
-    ),
     "dip": sum_in("albedo", HALF_DIP),
     "denser": sum_in("albedo", INSIDE, ESS),
 }
@@ -453,7 +453,6 @@ FILM_SEEN = (
     7.8e-2  # mean over the visible facets in three cosines and F_ss in three, times the light lost
 )
 FILM_OILED = 6e-2  # the same of films of index 1.25 or more
-FILM_WAVES = 2.0  # slope of curves of films from 200 nm in the cosines and sines of their phases
 FILM_PHASE = 71.0  # largest phase of a first order, in radian: 1000 nm of index 2.5
 CURVE_ROUNDINGS = (
     10 * 9.5 + 16
@@ -546,11 +545,6 @@ class FilmSpec(FacetSpec):
     def bounded(self) -> tuple[Input, ...]:
         return tuple(each for each in super().bounded if each.name.startswith("thinfilm"))
 
-    def engine(self, quantity: str, host: Host) -> tuple[Term, ...]:
-        if quantity != "film_curve":
-            return ()
-        return (Term(FILM_WAVES * wave_error(host), "the engine's own cosine and sine, times 2"),)
-
     def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
         return _in_air(super().random_inputs(rng, count))
 
@@ -612,8 +606,7 @@ def film_views(spec: PbrSpec, films: Films) -> Batch:
     """Views of films in ranges, and mirrored lights."""
     rng, (count, *ranges) = generator(), films
     alpha, mu, thickness = (low + (high - low) * rng.random(count) for low, high in ranges)
-    azimuth, radius = 2.0 * np.pi * rng.random(count), np.sqrt(1.0 - mu * mu)
-    wo = rounded([radius * np.cos(azimuth), radius * np.sin(azimuth), mu])
+    wo = directions_at(mu, 2.0 * np.pi * rng.random(count))
     inputs = simple(spec.random_inputs(rng, count))
     inputs["thinfilm_ior"] = np.maximum(inputs["thinfilm_ior"], LEAST_OIL)
     inputs["roughness"] = rounded([alpha, alpha])
@@ -631,14 +624,23 @@ def _steep(batch: Batch) -> np.ndarray:
     return np.asarray(cosine >= LEAST_FACET)
 
 
-@lru_cache(maxsize=16)
 def wave_error(host: Host) -> float:
     """Error of the engine's own cosine and sine of the phases of a film, beyond two roundings."""
     phases = float32(np.linspace(0.0, FILM_PHASE, ARGUMENTS))
     return beside_rounding(WAVE.errors(host, phases), 2.0)
 
 
+# The slope of curves of films from 200 nm in the cosines and sines of their phases is 2.
+WAVE_ERROR = EngineError("the engine's own cosine and sine, times 2", wave_error, 2.0)
+
+
 FILM_SPECS = tuple(
-    FilmSpec.of(row, INPUTS[row.category], FILM_ERRORS, title=f"{row.category}, thin film")
+    FilmSpec.of(
+        row,
+        INPUTS[row.category],
+        FILM_ERRORS,
+        title=f"{row.category}, thin film",
+        engines={"film_curve": (WAVE_ERROR,)},
+    )
     for row in FILM_NODES
 )

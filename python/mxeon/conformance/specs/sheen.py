@@ -2,13 +2,12 @@
 """The sheen node: Zeltner's, whose value and albedo are closed forms, and Conty and Kulla's, with fits."""
 
 from dataclasses import replace
-from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
 
 from mxeon.conformance.samples import LEAST_SHEEN, float32, generator
-from mxeon.conformance.spec import ARGUMENTS, POWER
+from mxeon.conformance.spec import ARGUMENTS, POWER, EngineError
 from mxeon.conformance.specs.lobes import (
     CLOSED_ALBEDO,
     COLOR,
@@ -61,15 +60,9 @@ class FittedSheen(PbrSpec):
 
     least_cosine: ClassVar[float] = FIT_COSINE
 
-    def engine(self, quantity: str, host: Host) -> tuple[Term, ...]:
-        """What the engine's own power is off by beyond the roundings of a logarithm."""
-        excess = EXPONENT * ROUNDING + _error(host) - LOGARITHM * ROUNDING
-        return (Term(excess, "the engine's pow()"),) if quantity == "value" and excess > 0.0 else ()
 
-
-@lru_cache(maxsize=16)
-def _error(host: Host) -> float:
-    """Error of the sheen by the engine's own power, relative where the sheen exceeds 1.
+def power_error(host: Host) -> float:
+    """Error of the sheen by the engine's own power beyond that of a logarithm, relative where the sheen exceeds 1.
 
     The sheen, as pi f cos, is at most (2 + n) / 8 times a sine to the power of n, 1 / roughness.
     """
@@ -79,7 +72,8 @@ def _error(host: Host) -> float:
     exponent = float32(exponent)
     factor = (2.0 + exponent) / 8.0
     scale = np.maximum(1.0, factor * sine**exponent)
-    return float((factor * POWER.errors(host, sine, exponent) / scale).max())
+    error = (factor * POWER.errors(host, sine, exponent) / scale).max()
+    return max(float(error) + (EXPONENT - LOGARITHM) * ROUNDING, 0.0)
 
 
 ZELTNER = PbrSpec.of(
@@ -101,4 +95,5 @@ CONTY_KULLA = FittedSheen.of(
             for least in (1e-3, 1e-4)
         },
     },
+    engines={"value": (EngineError("the engine's pow()", power_error),)},
 )

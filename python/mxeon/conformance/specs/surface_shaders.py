@@ -20,7 +20,7 @@ from mxeon.conformance.samples import (
     float32,
     generator,
 )
-from mxeon.conformance.spec import CHANGED_COLOR, Input, LobeSpec, color, draw
+from mxeon.conformance.spec import CHANGED_COLOR, Input, LobeSpec, ValueSpec, color, draw, materials
 from mxeon.conformance.specs.lobes import LEAST_VIEW
 from mxeon.conformance.specs.microfacets import FILM_ERRORS, reflected, sum_over
 from mxeon.conformance.tolerance import Term, mean_scaled, roundings, sum_in, sum_of
@@ -33,21 +33,23 @@ if TYPE_CHECKING:  # which load MaterialX
     from mxeon.shaders.document.values import Plain
     from mxeon.shaders.generation import Shader
 
-# Inputs by the range that is asked of them; a change is another value than any default.
+# Inputs by the range that is asked of them, with values of a material in which every lobe takes part; a change is
+# another value than any default.
 RANGES = {
-    "color": color("", edges=()),
-    "share": Input("", change=0.7),
-    "rough": Input("", low=0.1, change=0.73),
-    "sheen_rough": Input("", low=0.15, change=0.745),
-    "fuzz_rough": Input("", low=0.4, change=0.82),
+    "color": color("", (0.5, 0.6, 0.7), edges=()),
+    "share": Input("", change=0.7, materials=(0.5,)),
+    "rough": Input("", low=0.1, change=0.73, materials=(0.4,)),
+    "sheen_rough": Input("", low=0.15, change=0.745, materials=(0.5,)),
+    "fuzz_rough": Input("", low=0.4, change=0.82, materials=(0.5,)),
     "index": Input("", low=1.1, high=2.5, change=2.08),
-    "thickness": Input("", high=1000.0, change=700.0),
-    "film": Input("", low=100.0, high=1000.0, change=730.0),
+    "thickness": Input("", high=1000.0, change=700.0, materials=(400.0,)),
+    "film": Input("", low=100.0, high=1000.0, change=730.0, materials=(400.0,)),
 }
 # The mean free path below the surface, which shows on a curved one: an evaluation has a plane.
 FREE_PATHS = ("subsurface_radius", "subsurface_scale", "subsurface_radius_scale")
 BLENDED = "opacity blends what lies behind with the whole surface, not with a lobe"
 SHADED = "an occlusion is what an evaluation sets itself"
+WHITE = (1.0, 1.0, 1.0)
 TURNED_FRAME = {"normal": (0.48, 0.36, 0.8), "tangent": (0.6, 0.8, 0.0)}
 
 
@@ -58,21 +60,23 @@ def _ports(**names: str) -> tuple[Input, ...]:
     )
 
 
+def _whole(names: str) -> Values:
+    """Inputs of 1, colors among them."""
+    return {name: WHITE if "color" in name.lower() else 1.0 for name in names.split()}
+
+
 @dataclass(frozen=True, eq=False)
 class Lobes:
     """Inputs of a surface shader that its lobes may depend on."""
 
     judged: tuple[Input, ...]  # those whose values have a reference
     others: tuple[Input, ...]  # those of other lobes and of thin films, which are asked for energy
-    seen: Values  # a material in which every lobe takes part
     # Inputs that change no value of rasterized targets; docs/upstream/
     # surface_inputs.md says why.
     without_effect: tuple[str, ...]
     white: Values  # a material that loses no light, by the layer equation
     # What else the material has where an input is changed.
     needs: Mapping[str, Values] = field(default_factory=dict)
-    # Inputs that a curved surface alone has to show; that of pairs is a plane.
-    curved: tuple[str, ...] = ()
     # Inputs that are asked of no value, and why.
     unseen: Mapping[str, str] = field(default_factory=dict)
 
@@ -98,18 +102,6 @@ STANDARD = Lobes(
         thickness="thin_film_thickness",
         index="thin_film_IOR",
     ),
-    seen={
-        "metalness": 0.4,
-        "specular_anisotropy": 0.5,
-        "sheen": 0.5,
-        "coat": 0.5,
-        "coat_anisotropy": 0.5,
-        "coat_affect_color": 0.5,
-        "coat_affect_roughness": 0.5,
-        "transmission": 0.4,
-        "subsurface": 0.4,
-        "thin_film_thickness": 400.0,
-    },
     without_effect=(
         "transmission_depth",
         "transmission_scatter",
@@ -117,16 +109,9 @@ STANDARD = Lobes(
         "transmission_dispersion",
         "subsurface_anisotropy",
     ),
-    curved=("subsurface_radius", "subsurface_scale"),
     needs={"emission_color": {"emission": 1.0}},
     unseen={"opacity": BLENDED},
-    white={
-        "base": 1.0,
-        "base_color": (1.0, 1.0, 1.0),
-        "specular_roughness": 0.4,
-        "sheen": 1.0,
-        "coat": 1.0,
-    },
+    white={**_whole("base base_color sheen coat"), "specular_roughness": 0.4},
 )
 
 OPEN_PBR = Lobes(
@@ -144,18 +129,6 @@ OPEN_PBR = Lobes(
         ),
         *_ports(share="thin_film_weight thin_film_thickness", index="thin_film_ior"),
     ),
-    seen={
-        "base_metalness": 0.4,
-        "specular_roughness_anisotropy": 0.5,
-        "coat_weight": 0.5,
-        "coat_roughness": 0.4,
-        "coat_roughness_anisotropy": 0.5,
-        "fuzz_weight": 0.5,
-        "transmission_weight": 0.4,
-        "transmission_color": (0.5, 0.6, 0.7),
-        "subsurface_weight": 0.4,
-        "thin_film_weight": 0.5,
-    },
     without_effect=(
         "transmission_scatter",
         "transmission_scatter_anisotropy",
@@ -163,21 +136,16 @@ OPEN_PBR = Lobes(
         "transmission_dispersion_abbe_number",
         "subsurface_scatter_anisotropy",
     ),
-    curved=("subsurface_radius", "subsurface_radius_scale"),
     needs={
         "subsurface_weight": {"subsurface_color": CHANGED_COLOR},  # on a plane, its base else
         "emission_color": {"emission_luminance": 1000.0},
     },
     unseen={"geometry_opacity": BLENDED},
     white={
-        "base_weight": 1.0,
-        "base_color": (1.0, 1.0, 1.0),
+        **_whole("base_weight base_color coat_weight fuzz_weight fuzz_color"),
         "base_diffuse_roughness": 0.5,
-        "coat_weight": 1.0,
         "coat_roughness": 0.3,
         "coat_darkening": 0.0,
-        "fuzz_weight": 1.0,
-        "fuzz_color": (1.0, 1.0, 1.0),
     },
 )
 
@@ -190,17 +158,6 @@ GLTF = Lobes(
         fuzz_rough="sheen_roughness",
     ),
     _ports(share="transmission iridescence", index="iridescence_ior", film="iridescence_thickness"),
-    seen={
-        "metallic": 0.4,
-        "roughness": 0.5,
-        "anisotropy_strength": 0.5,
-        "sheen_color": (0.4, 0.5, 0.6),
-        "sheen_roughness": 0.5,
-        "clearcoat": 0.5,
-        "transmission": 0.4,
-        "iridescence": 0.5,
-        "iridescence_thickness": 400.0,
-    },
     without_effect=("thickness", "attenuation_distance", "attenuation_color", "dispersion"),
     needs={"emissive_strength": {"emissive": CHANGED_COLOR}},
     unseen={
@@ -208,12 +165,10 @@ GLTF = Lobes(
         **dict.fromkeys(("alpha", "alpha_mode", "alpha_cutoff"), BLENDED),
     },
     white={
-        "base_color": (1.0, 1.0, 1.0),
+        **_whole("base_color sheen_color clearcoat"),
         "metallic": 0.0,
         "roughness": 0.5,
-        "sheen_color": (1.0, 1.0, 1.0),
         "sheen_roughness": 0.6,
-        "clearcoat": 1.0,
         "clearcoat_roughness": 0.4,
     },
 )
@@ -226,9 +181,8 @@ PREVIEW = Lobes(
         index="ior",
     ),
     _ports(share="opacity"),
-    seen={"metallic": 0.4, "clearcoat": 0.5, "opacity": 0.6},
     without_effect=("displacement",),
-    white={"diffuseColor": (1.0, 1.0, 1.0), "clearcoat": 1.0, "clearcoatRoughness": 0.4},
+    white={**_whole("diffuseColor clearcoat"), "clearcoatRoughness": 0.4},
     needs={"specularColor": {"useSpecularWorkflow": 1}},
     unseen={"occlusion": SHADED},
 )
@@ -339,9 +293,6 @@ class SurfaceShaderSpec(LobeSpec):
     def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
         return draw(rng, count, (*self.table.judged, *self.table.others))
 
-    def edges(self, counts: Counts) -> Batch:
-        return self.materials(counts)
-
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         """Random pairs, half of them near the mirror direction, with random materials."""
         rng, count = generator(), counts.pairs
@@ -352,13 +303,12 @@ class SurfaceShaderSpec(LobeSpec):
         wi = np.where(kept[:, np.newaxis], near, wi)
         return (Batch(wo, wi, self.random_inputs(rng, count)),)
 
-    def few(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        return batches
+    few = ValueSpec.few
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
         return (_isotropic(batches[0].first(counts.albedos)),)
 
-    def materials(self, counts: Counts) -> Batch:
+    def edges(self, counts: Counts) -> Batch:
         """Views of materials in which every lobe takes part."""
         rng, count = generator(), counts.materials
         wo = _views(rng, count)
@@ -395,8 +345,9 @@ class SurfaceShaderSpec(LobeSpec):
         """
         table = self.table
         rows = []
+        seen, _ = materials(*table.judged, *table.others)
         for name in self.names:
-            before = {**table.seen, **table.needs.get(name, {})}
+            before = {**seen, **table.needs.get(name, {})}
             rows += [before, {**before, name: self.changed_inputs[name]}]
         few = batch.first(CHANGED)
         vectors = {

@@ -9,7 +9,7 @@ in which its roundings are alike.
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import lru_cache, partial
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,7 +24,16 @@ from mxeon.conformance.samples import (
     float32,
     generator,
 )
-from mxeon.conformance.spec import COMPONENTS, LOGARITHM, POWER, Input, RowSpec, draw, draw_edges
+from mxeon.conformance.spec import (
+    COMPONENTS,
+    LOGARITHM,
+    POWER,
+    EngineError,
+    Input,
+    RowSpec,
+    draw,
+    draw_edges,
+)
 from mxeon.conformance.tolerance import (
     Term,
     Tolerance,
@@ -127,14 +136,12 @@ FEWER = 1 << 12  # arguments of an engine's functions
 LEAST_LOGARITHM = 1e-4  # number whose logarithm is measured
 
 
-@lru_cache(maxsize=16)
 def _power_error(host: Host) -> float:
     """Error of the engine's own 20th and 22nd power in [0, 1]."""
     x = _shares()
     return float(POWER.errors(host, x, np.where(np.arange(len(x)) % 2, 20.0, 22.0)).max())
 
 
-@lru_cache(maxsize=16)
 def _logarithm_error(host: Host) -> float:
     """Error of the engine's own logarithm of numbers below 1."""
     return float(LOGARITHM.errors(host, float32(LEAST_LOGARITHM ** (1.0 - _shares()))).max())
@@ -145,18 +152,18 @@ def _shares() -> Array:
     return float32(np.append(generator().random(FEWER), 1.0))
 
 
-# What an engine's function adds, by node: the other factor of a product, or a slope.
-ENGINE: Mapping[str, tuple[float, Callable[[Host], float], str]] = {
-    "chiang_hair_roughness": (1.5, _power_error, "the engine's pow(), times 2 x 3.7 / 5.24"),
-    "deon_hair_absorption_from_melanin": (
-        14.0,
-        _logarithm_error,
-        "the engine's log(), times 9.2 of the concentration and 4.6 of the colors",
+# What an engine's function adds, by node: times the other factor of a product, or a slope.
+ENGINE = {
+    "chiang_hair_roughness": EngineError(
+        "the engine's pow(), times 2 x 3.7 / 5.24", _power_error, 1.5
     ),
-    "chiang_hair_absorption_from_color": (
-        2.0,
+    "deon_hair_absorption_from_melanin": EngineError(
+        "the engine's log(), times 9.2 of the concentration and 4.6 of the colors",
         _logarithm_error,
-        "the engine's log(), times 2 x 6.9 / 3.4^2",
+        14.0,
+    ),
+    "chiang_hair_absorption_from_color": EngineError(
+        "the engine's log(), times 2 x 6.9 / 3.4^2", _logarithm_error, 2.0
     ),
 }
 
@@ -201,12 +208,6 @@ class UtilitySpec(RowSpec):
         )
         surface = connection_text("edf", "EDF", "lobe")
         return document_text(text + node_text("surface", "surfaceshader", "shading", surface))
-
-    def engine(self, quantity: str, host: Host) -> tuple[Term, ...]:
-        if quantity != "value" or self.node not in ENGINE:
-            return ()
-        factor, error, words = ENGINE[self.node]
-        return (Term(factor * error(host), words),)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         rng, count = generator(), counts.pairs
@@ -334,14 +335,13 @@ def _spec(row: UtilityNode, output: str, *libraries: str) -> UtilitySpec:
         kind = TYPES[np.shape(row.inputs[name])]
         return Input(name, kind, edges=SHARES, change=0.25, default=0.5)
 
-    return UtilitySpec(
+    return UtilitySpec.of(
+        row,
+        tuple(INPUTS.get(name, usual(name)) for name in row.inputs),
+        ERRORS.get(title) or ERRORS[row.category],
         title=title,
-        node=row.category,
-        model=row.name,
-        row=row,
         output=output,
-        inputs=tuple(INPUTS.get(name, usual(name)) for name in row.inputs),
-        errors=ERRORS.get(title) or ERRORS[row.category],
+        engines={"value": (ENGINE[row.category],)} if row.category in ENGINE else {},
         libraries=libraries,
         closure=False,
         counts=Counts(1 << 12, 1 << 9, 1 << 9),

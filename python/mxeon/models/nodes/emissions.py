@@ -22,7 +22,7 @@ from mxeon.models.media import (
     uniform_edf,
     uniform_exitance,
 )
-from mxeon.models.nodes.node import Inputs, Node, Variant, combinations
+from mxeon.models.nodes.node import Inputs, Node, Variant, linear_nodes
 
 BASE = "base/color"  # of the uniform emission below a Schlick curve
 FIRST, SECOND = "first/color", "second/color"  # of two uniform emissions
@@ -131,7 +131,7 @@ def _combined(
 
 COMBINED_EMISSIONS = tuple(
     _combined(*each)
-    for each in combinations(
+    for each in linear_nodes(
         "emission",
         "an emission",
         "emissions",

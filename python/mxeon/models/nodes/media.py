@@ -15,7 +15,7 @@ import numpy as np
 
 from mxeon.models.core.arrays import Array
 from mxeon.models.media import transmittance
-from mxeon.models.nodes.node import Inputs, Node, Variant, column, combinations
+from mxeon.models.nodes.node import Inputs, Node, Variant, column, linear_nodes
 
 FIRST, SECOND = "first/absorption", "second/absorption"  # of two media that absorb
 AMOUNT, FACTOR = "medium/mix", "medium/in2"  # share of the first, and factor of it
@@ -84,7 +84,7 @@ def _combined(
 
 COMBINED_MEDIA = tuple(
     _combined(*each)
-    for each in combinations(
+    for each in linear_nodes(
         "medium", "a medium", "media", "two media", (FIRST, SECOND, AMOUNT, FACTOR)
     )
 )

@@ -174,7 +174,7 @@ def column(inputs: Inputs, name: str) -> Array:
 Combined: TypeAlias = tuple[str, str, str, tuple[str, ...], Callable[[Inputs], Array]]
 
 
-def combinations(
+def linear_nodes(
     kind: str, one: str, several: str, total: str, paths: tuple[str, str, str, str]
 ) -> tuple[Combined, ...]:
     """Name, title, category, inputs and combined color of the nodes that mix, add and scale emissions or media.
