@@ -8,7 +8,7 @@ in which its roundings are alike.
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -18,7 +18,6 @@ from mxeon import inversion
 from mxeon.conformance.samples import (
     Array,
     Batch,
-    Changes,
     Counts,
     Values,
     float32,
@@ -30,9 +29,12 @@ from mxeon.conformance.spec import (
     POWER,
     EngineError,
     Input,
+    Node,
     RowSpec,
+    broadcast_inputs,
     draw,
     draw_edges,
+    network_text,
 )
 from mxeon.conformance.tolerance import (
     Term,
@@ -49,7 +51,7 @@ from mxeon.models.diffuse import eon_albedo_avg, eon_albedo_dir
 from mxeon.models.microfacet.fresnel import normal_reflectance
 from mxeon.models.nodes.node import Variant
 from mxeon.models.nodes.utilities import LARGEST_REFLECTIVITY, UTILITIES, Outputs, UtilityNode
-from mxeon.shaders.nodes import INVERSIONS, connection_text, document_text, input_text, node_text
+from mxeon.shaders.nodes import INVERSIONS, connection_text, document_text, node_text
 
 NAME, COLOR = "value", "color"  # of the node in its document, and of its conversion to a color
 TYPES = {(): "float", (2,): "vector2", (3,): "color3"}  # types of the inputs by shape
@@ -57,7 +59,6 @@ SHARES = (0.0, 1e-4, 1e-3, 0.5, 0.98, 0.99, 0.9999, 1.0)  # edges of most inputs
 PIGMENTS = (0.01, 0.5, 1.0)
 TEMPERATURES = (800.0, 1000.0, 1667.0, 2222.0, 4000.0, 6504.0, 25000.0)
 BEYOND = (-1.0, 0.0, 0.5, 1.0, 2.0, 1e3)  # of an input that may leave its range
-COLD = (-1.0, 0.0, 1.0, 800.0, 25000.0, 1e9)  # temperatures of the same
 # Inputs with a range or a change of their own. A change is from the default of a document.
 INPUTS = {
     each.name: each
@@ -65,12 +66,10 @@ INPUTS = {
         Input(
             "temperature",
             "float",
-            TEMPERATURES[0],
-            TEMPERATURES[-1],
-            TEMPERATURES,
-            2000.0,
+            *(TEMPERATURES[0], TEMPERATURES[-1], TEMPERATURES, 2000.0),
             logarithmic=True,
             default=5000.0,
+            beyond=(-1.0, 0.0, 1.0, 800.0, 25000.0, 1e9),
         ),
         Input("scale_TT", high=3.0, edges=(0.0, 0.5, 1.0), change=0.7, default=0.5),
         Input("scale_TRT", high=3.0, edges=(0.0, 1.0, 2.0), change=1.5, default=2.0),
@@ -183,22 +182,10 @@ class UtilitySpec(RowSpec):
             if not name.startswith("scale_") or name.endswith(self.output.removeprefix("roughness"))
         )
 
-    @property
-    def changes(self) -> dict[str, Changes]:
-        before = {each.name: _filled(each, each.default) for each in self.inputs}
-        return {
-            each.name: (before, {**before, each.name: _filled(each, each.change)})
-            for each in self.inputs
-            if each.name in self.names
-        }
-
     def document(self, inputs: Values | None = None) -> str:
-        values = {**self.row.inputs, **(inputs or {})}
-        ports = "".join(
-            input_text(name, TYPES[self._shape(name)], values[name]) for name in self.row.inputs
-        )
         kind, single = self.row.outputs[self.output], len(self.row.outputs) == 1
-        text = node_text(self.node, kind if single else "multioutput", NAME, ports)
+        node = Node(self.node, kind if single else "multioutput")
+        text = network_text({NAME: node}, self.inputs, inputs)
         source, port = NAME, "" if single else self.output
         if kind != "color3":
             text += node_text("convert", "color3", COLOR, connection_text("in", kind, NAME, port))
@@ -216,18 +203,12 @@ class UtilitySpec(RowSpec):
     def outside(self, counts: Counts) -> Batch:
         """Values at the ends of the ranges and beyond them."""
         rng, count = generator(), counts.pairs
-        return _batch(
-            {
-                name: rng.choice(
-                    COLD if name == "temperature" else BEYOND, (count, *self._shape(name))
-                )
-                for name in self.row.inputs
-            }
-        )
+        beyond = (rng.choice(each.beyond, (count, *COMPONENTS[each.type])) for each in self.inputs)
+        return _batch({each.name: values for each, values in zip(self.inputs, beyond, strict=True)})
 
     def values(self, function: Outputs, batch: Batch) -> Array:
         """The output as a color, whose missing channels are 0, (N, 3)."""
-        output = np.asarray(function(self._whole(batch))[self.output])
+        output = np.asarray(function(broadcast_inputs(batch))[self.output])
         color = np.zeros((len(batch.wo), 3))
         color[:, : output.shape[-1]] = output
         return color
@@ -236,17 +217,6 @@ class UtilitySpec(RowSpec):
     def unit(self) -> Callable[[Array, Batch], Array]:
         """The values in a unit in which their roundings are alike."""
         return UNITS.get(self.title, lambda values, batch: values)
-
-    def _whole(self, batch: Batch) -> dict[str, Array]:
-        """All inputs with a row for each element."""
-        count, whole = len(batch.wo), {}
-        for name, default in self.row.inputs.items():
-            value = np.asarray(batch.inputs.get(name, default), np.float64)
-            whole[name] = np.broadcast_to(value, (count, *self._shape(name)))
-        return whole
-
-    def _shape(self, name: str) -> tuple[int, ...]:
-        return np.shape(self.row.inputs[name])
 
 
 def _of_index(values: Array, batch: Batch) -> Array:
@@ -304,12 +274,6 @@ def _batch(inputs: Mapping[str, Array]) -> Batch:
     return Batch(up, up, inputs)
 
 
-def _filled(row: Input, value: ArrayLike | None) -> ArrayLike:
-    """A number in each component of an input."""
-    filled: list[float] | float = np.full(COMPONENTS[row.type], value).tolist()
-    return filled
-
-
 def _inversion(node: str) -> UtilityNode:
     """A node of eonlib, with the other inversions that it may be instead, and its input as it is."""
 
@@ -335,9 +299,18 @@ def _spec(row: UtilityNode, output: str, *libraries: str) -> UtilitySpec:
         kind = TYPES[np.shape(row.inputs[name])]
         return Input(name, kind, edges=SHARES, change=0.25, default=0.5)
 
+    def filled(each: Input, value: ArrayLike | None) -> ArrayLike:
+        return np.full(COMPONENTS[each.type], value)
+
+    rows = [INPUTS.get(name) or usual(name) for name in row.inputs]
+    whole = {each.name: filled(each, each.default) for each in rows}
+    inputs = tuple(
+        replace(each, change=filled(each, each.change), needs=whole, beyond=each.beyond or BEYOND)
+        for each in rows
+    )
     return UtilitySpec.of(
         row,
-        tuple(INPUTS.get(name, usual(name)) for name in row.inputs),
+        inputs,
         ERRORS.get(title) or ERRORS[row.category],
         title=title,
         output=output,
