@@ -38,7 +38,7 @@ from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import inner_lobes
 from mxeon.shaders.library import source_folder
-from mxeon.shaders.scene import FRONT, Scene, sphere
+from mxeon.shaders.scene import Scene, sphere
 
 Socket: TypeAlias = float | Sequence[float]  # value of a Blender node's input
 
@@ -70,22 +70,6 @@ READ = '    {type} {name} = texture("{image}", s, t, 0.0, 0.0, 0.0, 0.0, "interp
 # The graph of a generated shader as a function: the functions before the shader stay as they are; one
 # more repeats the statements before the shader's uniform EDF, and returns its color.
 GRAPH_FUNCTION = "mxeon_graph"
-# Calls with the arguments that MaterialX's generated text has.
-_SURFACE = "N, dPdu"
-CLOSURES = {
-    "oren_nayar_diffuse_bsdf": "N, color(0.5), 0.5",
-    "burley_diffuse_bsdf": "N, color(0.5), 0.5",
-    "translucent_bsdf": "N, color(0.5)",
-    "dielectric_bsdf": f'{_SURFACE}, color(1.0), color(0.0), 0.5, 0.5, 1.5, "ggx"',
-    "conductor_bsdf": f'{_SURFACE}, 0.5, 0.5, color(0.2), color(3.9), "ggx"',
-    "generalized_schlick_bsdf": f"{_SURFACE}, color(1.0), color(0.0), 0.5, 0.5, color(0.04), "
-    'color(1.0), 5.0, "ggx"',
-    "sheen_bsdf": "N, color(0.5), 0.5",
-    "chiang_hair_bsdf": f"{_SURFACE}, color(1.0), color(1.0), color(1.0), 1.55, 0.1, 0.05, 0.2, 0.1, 0.05, "
-    "0.2, 0.5, vector(0.0)",
-    "subsurface_bssrdf": "N, color(0.5), color(0.1), 0.0",
-    "layer": "sheen_bsdf(N, color(0.5), 0.5), oren_nayar_diffuse_bsdf(N, color(0.5), 0.5)",
-}
 
 
 class Host(PairHost):
@@ -207,21 +191,6 @@ class Host(PairHost):
             )
             frame = {**process.request(EMITTER, ()), "size": size, "radius": 2.0}
             return self._render(folder, text, **frame).reshape(-1, 3)[:count]
-
-    def closures(self) -> dict[str, str]:
-        """For each of MaterialX's closures, "" if Cycles renders it, otherwise why not."""
-        frame, reasons = process.request(replace(FRONT, size=4), ()), dict.fromkeys(CLOSURES, "")
-        for name, arguments in CLOSURES.items():
-            text = f"shader asked(output closure color out = 0) {{ out = {name}({arguments}); }}\n"
-            try:
-                with self._folder() as folder:
-                    self._render(Path(folder), text, **frame)
-            except (NotRun, ShaderError) as error:
-                reasons[name] = str(error)
-        return reasons
-
-    def forget(self) -> None:
-        self._picture.cache_clear()
 
     def _rendered(
         self,
