@@ -6,8 +6,6 @@ from importlib import import_module
 from mxeon.conformance.check import CHECKS as CHECKS
 from mxeon.conformance.check import Check as Check
 
-for _name in (  # each adds its own
-    *("lobes", "states", "domains", "microfacets", "combinations", "emission", "hair"),
-    *("utilities", "surface_shaders"),
-):
+_NAMES = "lobes states domains microfacets emission utilities surface_shaders"
+for _name in _NAMES.split():  # each adds its own
     import_module(f"{__name__}.{_name}")

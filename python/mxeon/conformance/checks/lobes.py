@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of a lobe: its values and albedos, its frame, its inputs, its edges, and its energy."""
+"""Checks of a lobe: its values and albedos, its frame, its inputs, its edges, and its energy; of two; and of hair."""
 
 import math
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
+from functools import partial
 from itertools import product
 
 import numpy as np
@@ -11,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from mxeon.conformance import diagnosis
 from mxeon.conformance.backends import WHITE, scene_of
-from mxeon.conformance.case import BRANCHES, Case, dead_inputs, edge_values, frames
+from mxeon.conformance.case import BRANCHES, Case, dead_inputs, edge_values, frames, over_condition
 from mxeon.conformance.check import (
     check,
     control,
@@ -22,10 +23,13 @@ from mxeon.conformance.check import (
     pass_all,
     scale,
     scale_cosine,
+    shifted,
     take_response,
     with_inputs,
+    with_values,
 )
 from mxeon.conformance.diagnosis import ALBEDO, THROUGHPUT, TRANSMISSION, VALUE, Diagnosis, explain
+from mxeon.conformance.diagnosis.faults import DIRECT_FAULTS
 from mxeon.conformance.samples import (
     LEAST_COLOR82,
     SKY_ROWS,
@@ -37,10 +41,10 @@ from mxeon.conformance.samples import (
     sky_map,
 )
 from mxeon.conformance.spec import LobeSpec, Spec
-from mxeon.conformance.specs.combinations import CombinedSpec
+from mxeon.conformance.specs.combinations import SINGLE, CombinedSpec
 from mxeon.conformance.specs.diffuse import DiffuseModelSpec, DiffuseSpec, SurfaceLobe, model_value
 from mxeon.conformance.specs.emission import EmissionSpec, MediumSpec
-from mxeon.conformance.specs.hair import HairSpec
+from mxeon.conformance.specs.hair import REGION, REGIONS, HairSpec
 from mxeon.conformance.specs.lobes import PbrSpec
 from mxeon.conformance.specs.microfacets import FacetSpec, FilmSpec, TransmissionSpec
 from mxeon.conformance.specs.subsurface import ON_SPHERES, RINGS, SubsurfaceSpec, inner, spread
@@ -53,11 +57,14 @@ from mxeon.conformance.tolerance import (
     count_not_finite,
     count_of,
     given,
+    scaled,
     sum_in,
 )
 from mxeon.hosts import HOSTS, front_lit_only
 from mxeon.models import table as reference
 from mxeon.models.core.quadrature import hemisphere_nodes
+from mxeon.models.nodes.combinations import FACTOR
+from mxeon.models.nodes.lobes import FORMS, TILTED
 from mxeon.shaders.nodes import FLAG
 
 COLORS = ((0.2, 0.2, 0.2), (0.5, 0.5, 0.5), (0.8, 0.8, 0.8), (0.8, 0.4, 0.1))
@@ -510,3 +517,88 @@ def summed(case: Case, batch: Batch, weights: Array) -> tuple[Batch, Array]:
     values = case.direct(batch).reshape(count, nodes, 3)
     albedo = (weights[..., np.newaxis] * values).sum(axis=1)
     return batch.where(np.arange(count) * nodes), albedo
+
+
+# --- two lobes combined ------------------------------------------------------------------------
+
+is_combined = of_family(CombinedSpec)
+
+
+@check(is_combined, shifted, VALUE, pairs=True)
+def combination(case: Case) -> Iterable[Compared]:
+    """Two combined lobes have the value that the node's equation gives."""
+    return VALUE(case)
+
+
+@check(is_combined, shifted, ALBEDO, pairs=True)
+def combined_albedo(case: Case) -> Iterable[Compared]:
+    """The environment branch of two combined lobes returns their albedo."""
+    return ALBEDO(case)
+
+
+@check(is_combined, pass_all, THROUGHPUT, open=True)
+def combined_throughput(case: Case) -> Iterator[Compared]:
+    """Two combined lobes pass on what they do not scatter, as the layer equation requires.
+
+    A negative throughput counts as 0, as `layer` takes it.
+    """
+    for compared in THROUGHPUT(case):
+        yield compared._replace(measured=np.maximum(compared.measured, 0.0))
+
+
+@check(
+    lambda spec: spec.model in SINGLE,
+    with_values(
+        "values are multiplied twice",
+        lambda batch, values: values * np.reshape(batch.inputs[FACTOR], (len(values), -1)),
+    ),
+    pairs=True,
+    open=True,
+    diagnose=lambda case: Diagnosis("the factor is not clamped", permitted=True),
+)
+def factor(case: Case) -> Iterator[Compared]:
+    """Factors are clamped to [0, 1]."""
+    for batch, (factor, end) in product(case.few, ((2.0, 1.0), (-1.0, 0.0))):
+        beyond, nearest = (
+            batch.altered(**{FACTOR: np.full_like(batch.inputs[FACTOR], number)})
+            for number in (factor, end)
+        )
+        yield Compared(beyond, case.direct(beyond), case.direct(nearest))
+        passed = (case.throughput(each, "direct") for each in (beyond, nearest))
+        yield Compared(beyond, *passed)
+
+
+# --- hair: its lobes apart, where they are wide, narrow, or seen straight --------------------------
+
+TURN_FIBER = with_inputs(
+    "the normal is turned about the fiber by a tenth", normal=(0.0, 0.1, 0.995)
+)
+
+
+def _in_region(key: str, case: Case) -> Compared:
+    """Values of a region, and the expected ones."""
+    batch = case.of(HairSpec).region(key, case.samples.counts.few)
+    return Compared(batch, case.direct(batch), case.expected(batch))
+
+
+def _explained(key: str, case: Case) -> Diagnosis:
+    """The explanation of the values of a region."""
+    others = set(FORMS) - {REGIONS[key].form, TILTED}  # which may be the same there
+    candidates = [each for each in case.value_candidates if each.title not in others]
+    compared = _in_region(key, case)
+    brightest = min(float(compared.expected.max()), 1.0)
+    terms = (Term(brightest * REGION.value, "a region"),)
+    tolerance = replace(REGION, terms=terms, metric=scaled, exact=True)
+    return explain(case, [compared], candidates, DIRECT_FAULTS, tolerance)
+
+
+for _key, _row in REGIONS.items():
+    check(
+        of_family(HairSpec),
+        TURN_FIBER,
+        key=_key,
+        claim=_row.claim,
+        lit=True,
+        open=True,
+        diagnose=partial(_explained, _key),
+    )(lambda case, key=_key: over_condition(case, _in_region(key, case)))

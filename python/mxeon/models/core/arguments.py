@@ -39,8 +39,15 @@ def _each(names: str, ends: tuple[float, float, str]) -> dict[str, tuple[float, 
 # Ranges at whose ends rounding may step over them.
 CLOSED = ("[0, 1]", "[0.01, 1]", "[0.1, 1]", "[1, 4]", "[-1, 1]", "[0, pi/2]", "[-pi/2, pi/2]")
 
-# Ranges of the quantities, by name.
-RANGES = {
+
+class Ranges(dict[str, tuple[float, float, str]]):
+    """Ranges of quantities by name; one that is not there is a share."""
+
+    def __missing__(self, name: str) -> tuple[float, float, str]:
+        return _SHARE
+
+
+_RANGES = {
     **_each("mu mu_o mu_i", _SHARE),
     **_each("rho color color0 color82 color90 tint tint_R tint_TT tint_TRT edge_color", _SHARE),
     **_each("roughness alpha anisotropy glossiness longitudinal azimuthal", _SHARE),
@@ -68,6 +75,7 @@ RANGES = {
     **_each("sigma", (0.0, 0.5 * np.pi, "[0, pi/2]")),
     **_each("exposure", (-1000.0, 1000.0, "[-1000, 1000]")),
 }
+RANGES = Ranges(_RANGES)
 
 
 def spread_pair(name: str, array: Numbers) -> Numbers:

@@ -162,11 +162,18 @@ def evaluate_lobe(
     )
 
 
-# Of each node: its Fresnel curve, its inputs with channels, and those without.
-NODES: dict[str, tuple[Curve, tuple[str, ...], tuple[str, ...]]] = {
-    "dielectric_bsdf": (DIELECTRIC, ("tint",), ("ior",)),
-    "conductor_bsdf": (CONDUCTOR, ("ior", "extinction"), ()),
-    "generalized_schlick_bsdf": (SCHLICK, ("color0", "color82", "color90"), ("exponent",)),
+Color = tuple[float, float, float]
+ONE: Color = (1.0, 1.0, 1.0)
+GOLD: dict[str, Color] = {"ior": (0.183, 0.421, 1.373), "extinction": (3.424, 2.346, 1.770)}
+# Of each node: its Fresnel curve, its inputs with channels, and those without, with their defaults.
+NODES: dict[str, tuple[Curve, dict[str, Color], dict[str, float]]] = {
+    "dielectric_bsdf": (DIELECTRIC, {"tint": ONE}, {"ior": 1.5}),
+    "conductor_bsdf": (CONDUCTOR, GOLD, {}),
+    "generalized_schlick_bsdf": (
+        SCHLICK,
+        {"color0": ONE, "color82": ONE, "color90": ONE},
+        {"exponent": 5.0},
+    ),
 }
 
 

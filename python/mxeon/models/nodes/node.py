@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 from mxeon.models.core.arguments import RANGES
 from mxeon.models.core.arrays import Array
 from mxeon.models.hair import DEFAULTS as HAIR
+from mxeon.models.microfacet import NODES
 
 Value = float | tuple[float, ...]
 WHITE, GRAY, BLACK = (1.0,) * 3, (0.18,) * 3, (0.0,) * 3
@@ -25,7 +26,6 @@ FACETS: dict[str, Value] = {
     "thinfilm_thickness": 0.0,
     "thinfilm_ior": 1.5,
 }
-GOLD = (0.183, 0.421, 1.373), (3.424, 2.346, 1.770)
 # Defaults of the inputs of a node, in the order of its definition; those that select a mode and those of
 # BY_NAME are left out. A test compares them with MaterialX's definitions.
 DEFAULTS: dict[str, dict[str, Value]] = {
@@ -34,13 +34,7 @@ DEFAULTS: dict[str, dict[str, Value]] = {
     "translucent_bsdf": {"color": WHITE},
     "subsurface_bsdf": {"color": GRAY, "radius": WHITE},
     "sheen_bsdf": {"color": WHITE, "roughness": 0.3},
-    "dielectric_bsdf": {"tint": WHITE, "ior": 1.5, **FACETS},
-    "conductor_bsdf": {"ior": GOLD[0], "extinction": GOLD[1], **FACETS},
-    "generalized_schlick_bsdf": {
-        **dict.fromkeys(("color0", "color82", "color90"), WHITE),
-        "exponent": 5.0,
-        **FACETS,
-    },
+    **{name: {**colors, **numbers, **FACETS} for name, (_, colors, numbers) in NODES.items()},
     "chiang_hair_bsdf": HAIR,
     "uniform_edf": {"color": WHITE},
     "conical_edf": {"color": WHITE, "inner_angle": 60.0, "outer_angle": 0.0},
@@ -51,7 +45,7 @@ DEFAULTS: dict[str, dict[str, Value]] = {
 FRAME = ("weight", "normal", "tangent", "retroreflective")
 # Inputs of a lobe's weight, frame and mirror, which a call takes by name alone; others have ("weight", "normal").
 BY_NAME = {
-    **dict.fromkeys(("dielectric_bsdf", "conductor_bsdf", "generalized_schlick_bsdf"), FRAME),
+    **dict.fromkeys(NODES, FRAME),
     "chiang_hair_bsdf": ("normal", "curve_direction"),
 }
 # What an input is, where functions of `mxeon.models` have another name for it.
