@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the graphs of surface shaders say, and which of MaterialX's releases say it."""
+
+import sys
+from collections.abc import Container, Iterator, Mapping
+from functools import cache
+from hashlib import sha256
+from pathlib import Path
+
+import MaterialX as mx
+
+from mxeon.errors import NotRun
+from mxeon.shaders.library import load_library
+
+PARTS = 3  # that are named where two graphs differ in more
+# Digests of what the graphs of releases say, and the versions with each.
+RELEASES: Mapping[str, tuple[str, ...]] = {
+    "14ecabb97635dfa0": ("1.39.3", "1.39.4"),  # open_pbr_surface
+    "1e645305e1b7dc2b": ("1.39.5",),
+    "5568198babe96c17": ("1.39.3", "1.39.4", "1.39.5"),  # standard_surface
+    "1ccbee1d778c54c1": ("1.39.3",),  # gltf_pbr
+    "0a827f2dffe0f4cb": ("1.39.4",),
+    "0e6d434bddbb16ac": ("1.39.5",),
+    "df5c716ed323783b": ("1.39.3", "1.39.4"),  # UsdPreviewSurface
+    "482ef66253eae29d": ("1.39.5",),
+}
+
+
+@cache
+def installed() -> mx.Document:
+    """The data libraries of the MaterialX that is installed, which a custom build only hides."""
+    known = [path for each in sys.path if (path := Path(each, "MaterialX", "libraries")).is_dir()]
+    if not known or known[-1].samefile(Path(mx.__file__).with_name("libraries")):
+        return load_library("stock")
+    document = mx.createDocument()
+    path = mx.FileSearchPath(str(known[-1].parent))
+    mx.loadLibraries(mx.getDefaultDataLibraryFolders(), path, document)
+    return document
+
+
+def said(node: mx.Node, known: Container[str]) -> dict[str, str]:
+    """The defaults of a surface shader, and the nodes and connections of its graph and of those in it.
+
+    Graphs of nodes in the categories `known` are not looked into.
+    """
+    ports, graph = node.getNodeDef().getActiveInputs(), node.getImplementation()
+    if not (graph and graph.isA(mx.NodeGraph)):
+        raise NotRun(f"reference: the library has no graph of {node.getCategory()}")
+    defaults = {f"the default of {each.getName()}": _source(each) for each in ports}
+    return defaults | dict(_inside(graph, known, {graph.getName()}))
+
+
+def _inside(
+    graph: mx.NodeGraph, known: Container[str], seen: set[str]
+) -> Iterator[tuple[str, str]]:
+    for node in graph.getNodes():
+        name = node.getName()
+        yield f"node {name}", node.getCategory()
+        yield from ((f"{each.getName()} of {name}", _source(each)) for each in node.getInputs())
+        inner = None if node.getCategory() in known else node.getImplementation()
+        if inner and inner.isA(mx.NodeGraph) and inner.getName() not in seen:
+            seen.add(inner.getName())
+            yield from _inside(inner, known, seen)
+    for each in graph.getOutputs():
+        yield f"output {each.getName()} of {graph.getName()}", _source(each)
+
+
+def _source(port: mx.PortElement) -> str:
+    """What an input or output is connected to, or its value."""
+    if node := port.getNodeName():
+        return " ".join(filter(None, (node, port.getOutputString())))
+    if port.isA(mx.Input) and port.hasInterfaceName():
+        return f"the input {port.getInterfaceName()}"
+    value: str = port.getValueString()
+    try:
+        return ", ".join(f"{float(each):.7g}" for each in value.split(","))
+    except ValueError:
+        return value
+
+
+def digest(parts: Mapping[str, str]) -> str:
+    return sha256(repr(sorted(parts.items())).encode()).hexdigest()[:16]
+
+
+def differences(own: Mapping[str, str], right: Mapping[str, str]) -> str:
+    """The parts in which two graphs differ, in words."""
+    found = [
+        f"{name} is {own.get(name, 'missing')} instead of {right.get(name, 'missing')}"
+        for name in {**right, **own}
+        if own.get(name) != right.get(name)
+    ]
+    more = f", and {len(found) - PARTS} more differences" if len(found) > PARTS else ""
+    return f"{', '.join(found[:PARTS])}{more}"
