@@ -274,7 +274,7 @@ def _selected(
         library: [
             row.name
             for row in HOSTS
-            if any(task.subject in titles for task in _on_host(row.name, library, (), PBRLIB))
+            if any(task.subject in titles for task in _on_host(row.name, library, ()))
         ]
         for library in LIBRARIES
     }
@@ -326,7 +326,7 @@ def make_plan(
         for host in hosts:
             if not host_row(host).scenes:
                 tasks += [Task(DOCUMENT, file, host, library) for file in readable]
-            tasks += _on_host(host, library, paths, PBRLIB, everywhere)
+            tasks += _on_host(host, library, paths, everywhere)
     for host in hosts:  # nodes of a renderer's own, which use no library of ours
         for spec in own_nodes(host):
             tasks += _checks_of(spec, host, RENDERER_NODES)
@@ -362,7 +362,7 @@ def diffuse_specs(library: str) -> list[DiffuseSpec]:
 
 
 def _on_host(
-    host: str, library: str, files: Iterable[Path], nodes: Iterable[Spec], everywhere: bool = False
+    host: str, library: str, files: Iterable[Path], everywhere: bool = False
 ) -> Iterator[Task]:
     """Tasks of one host with one library, for files and nodes of pbrlib, or those it repairs."""
     ways, row = ways_of(host), host_row(host)
@@ -380,7 +380,7 @@ def _on_host(
         if evaluates:
             yield Task(CURVE, spec.title, host, library)
     defines = load_library(library).getMatchingNodeDefs
-    for each in nodes:
+    for each in PBRLIB:
         # Where pictures show a renderer's own closures, they are judged with the stock library alone.
         own = row.target == "osl" and kind in ("eonlib", "diffuse")
         left = each.closure and row.way == "pictures" and own
