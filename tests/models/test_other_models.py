@@ -25,7 +25,7 @@ def directions(seed):
 
 
 WO, WI = directions(1), directions(2)
-COATED = ("eon_coated", "openpbr_half_metal")
+COATED = ("eon_coated", "eon_varnished", "openpbr_half_metal")
 
 
 # By the last word of a name: the parameter of the model, from a roughness.

@@ -6,11 +6,14 @@ import pytest
 
 from mxeon.models.core.layering import Bsdf, layer
 from mxeon.models.core.quadrature import hemisphere_nodes
+from mxeon.models.diffuse import burley_albedo_dir
+from mxeon.models.media import blackbody_xyz, kang_xyz
 from mxeon.models.microfacet import defects as materialx_fits
+from mxeon.models.microfacet.ggx import ggx_albedo_dir
 from mxeon.models.nodes import NODES, node
 from mxeon.models.nodes.combinations import COMBINATIONS, NESTED, ROUGHNESS
 from mxeon.models.nodes.microfacets import MICROFACET_NODES
-from mxeon.models.sheen import zeltner_albedo_dir, zeltner_brdf
+from mxeon.models.sheen import conty_kulla_albedo_dir, zeltner_albedo_dir, zeltner_brdf
 
 COUNT = 6
 ROWS = NODES + COMBINATIONS
@@ -128,3 +131,42 @@ def test_the_fits_of_materialx_have_the_values_of_its_shaders():
         directions(), lobe, np.ones((COUNT, 1)), 1.0, np.ones((COUNT, 1))
     )
     np.testing.assert_allclose(white, 1.0, rtol=1e-12)
+
+
+def burley_error(mu, roughness):
+    inputs = {"roughness": roughness, "color": np.ones((len(mu), 1))}
+    exact = burley_albedo_dir(mu, 1.0, roughness)
+    return materialx_fits.burley_albedo(upright(mu), inputs) - exact
+
+
+def conty_kulla_error(mu, roughness):
+    exact = np.minimum(conty_kulla_albedo_dir(mu, roughness), 1.0)
+    return materialx_fits.conty_kulla_albedo(upright(mu), {"roughness": roughness})[:, 0] - exact
+
+
+def upright(mu):
+    return np.stack([0.0 * mu, 0.0 * mu, mu], axis=-1)
+
+
+def kang_error(share, _):
+    kelvin = 1667.0 * (25000.0 / 1667.0) ** share
+    x, exact = (
+        each[:, :2] / each.sum(axis=1)[:, np.newaxis]
+        for each in (kang_xyz(kelvin), blackbody_xyz(kelvin))
+    )
+    return x - exact
+
+
+@pytest.mark.parametrize(
+    ("error", "low", "stated"),
+    [
+        (lambda x, y: materialx_fits.fitted_albedo(x, y, 1.0, 1.0) - ggx_albedo_dir(x, y), 1e-3, 0.14),
+        (burley_error, 0.0, 0.0174),
+        (conty_kulla_error, 0.01, 0.0705),
+        (kang_error, 0.0, 6e-4),
+    ],
+)  # fmt: skip
+def test_a_fit_of_others_has_the_error_that_stands_beside_it(error, low, stated):
+    grid = np.unique(np.concatenate([low + (1.0 - low) * np.linspace(0.0, 1.0, 31), [2.0 * low]]))
+    largest = np.abs(error(*(each.ravel() for each in np.meshgrid(grid, grid)))).max()
+    assert 0.9 * stated < largest <= stated

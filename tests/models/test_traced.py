@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Transformations of PyTorch and JAX over the functions of every model, as they stand.
 
-A row of the catalog is tried with each of its functions: gradients are finite at every end of every input, and equal to
-differences of NumPy inside; `vmap`, `jit` and `compile` return NumPy's values.
+A row of the catalog is tried with each of its functions: no step makes a NaN and gradients are finite at every end of
+every input, and gradients equal differences of NumPy inside. `vmap`, `jit` and `compile` return NumPy's values.
 """
 
+from contextlib import nullcontext
 from functools import partial
 
 import numpy as np
@@ -13,6 +14,7 @@ import pytest
 import mxeon
 from mxeon.models import model_names
 from mxeon.models.core.arguments import RANGES
+from tests.support.tracing import untraced
 
 SEED, ROWS = 5, 3
 STEP, SLOPE = 1e-4, 3e-5  # of central differences, and their truncation
@@ -91,6 +93,20 @@ def numbers(result):
     return result[1] if isinstance(result, tuple) else result
 
 
+def no_nan(torch):
+    """Context in which a step of PyTorch that makes a NaN fails, also one whose result is left out."""
+    from torch.utils._python_dispatch import TorchDispatchMode
+
+    class NoNan(TorchDispatchMode):
+        def __torch_dispatch__(self, step, types, args=(), kwargs=None):
+            result = step(*args, **(kwargs or {}))
+            parts = result if isinstance(result, tuple | list) else (result,)
+            assert not any(torch.is_tensor(each) and each.isnan().any() for each in parts), step
+            return result
+
+    return NoNan()
+
+
 def assert_slopes(function, inputs, found):
     """Compare gradients of the sum with differences by each component, of all rows at once."""
     for name, gradient in found.items():
@@ -112,9 +128,10 @@ def test_torch_differentiates_and_maps_every_function_of_every_model(name, funct
     row = mxeon.model(name)
     model = getattr(row, function)
 
-    def gradients(given, inputs):
+    def gradients(given, inputs, steps=None):
         tensors = {key: torch.tensor(each, requires_grad=True) for key, each in inputs.items()}
-        value = numbers(model(*map(torch.tensor, given), **tensors))
+        with steps or nullcontext():
+            value = numbers(model(*map(torch.tensor, given), **tensors))
         if value.requires_grad:
             value.sum().backward()
         none = {key: np.zeros(np.shape(each)) for key, each in inputs.items()}
@@ -126,16 +143,36 @@ def test_torch_differentiates_and_maps_every_function_of_every_model(name, funct
     value, found = gradients(given, inputs)
     np.testing.assert_allclose(value, numbers(model(*given, **inputs)), VALUE, VALUE)
     assert_slopes(partial(model, *given), inputs, found)
-    # At the ends: finite.
-    for arguments in at_ends(row, function):
-        value_there, slopes = gradients(*arguments)
-        assert all(np.isfinite(each).all() for each in (value_there, *slopes.values())), arguments
+    # At the ends: finite, and without a warning of NumPy, which would be an error.
+    for given_there, inputs_there in at_ends(row, function):
+        value_there, slopes = gradients(given_there, inputs_there, no_nan(torch))
+        plain = numbers(model(*given_there, **inputs_there))
+        assert all(np.isfinite(each).all() for each in (value_there, plain, *slopes.values()))
     # A row at a time.
     if given and not any(map(one_for_all, row.parameters)):
         arrays = [torch.tensor(each) for each in (*given, *inputs.values())]
         count = len(given)
         mapped = torch.func.vmap(lambda *a: numbers(model(*a[:count], *a[count:])))(*arrays)
         np.testing.assert_allclose(mapped.numpy(), value, VALUE, VALUE)
+
+
+@pytest.mark.parametrize(("name", "function"), FUNCTIONS)
+def test_jax_traces_gradients_of_every_function_of_every_model(name, function):
+    """What `jit`, `vmap` and `grad` need of a function; compiling those of films and facets takes minutes."""
+    jax = pytest.importorskip("jax")
+    jax.config.update("jax_enable_x64", True)
+    row = mxeon.model(name)
+    given, inputs = vectors(row, function), inside(row)
+    axes = {each.name: None if one_for_all(each) else 0 for each in row.parameters}
+
+    def total(given, inputs):
+        return numbers(getattr(row, function)(*given, **inputs)).sum()
+
+    with untraced():  # PyTorch reaches the same lines
+        mapped = jax.vmap(jax.value_and_grad(total, argnums=1), in_axes=(0, axes))
+        value, slopes = jax.eval_shape(mapped, given, inputs)
+    assert value.shape == (ROWS,)
+    assert all(each.size % np.size(inputs[key]) == 0 for key, each in slopes.items())
 
 
 @pytest.mark.parametrize("name", COMPILED)

@@ -53,6 +53,10 @@ surface. Against light that walks (tools/fits/varnish_walk.py: index 1.1 to 2, a
 and 1, cosines 0.05 to 1) the albedo is off by at most 0.012, and at rho 1 by nothing; what EON returns into a twelfth
 of the hemisphere is 0.95 to 1.05 of the walk's at r 0, and 0.79 to 1.15 at r 1. (2) is the integral of (1) to 1e-6,
 and to 1e-4 at alpha 0.01 and index near 1.
+
+The base is EON, which is Lambert at r = 0: of its shape k and `<k>` are closed forms. Another base would need its
+own. The sum that serves any base, with its albedo for k and its mean albedo for `<k>`, is not the integral of (1);
+over the same domain it moves EON's albedo by up to 0.004 at r 1/2, and 0.0075 at r 1.
 """
 
 from __future__ import annotations
@@ -695,7 +699,8 @@ def varnished_brdf(
         f = f_r + T(mu_o) T(mu_i) / n^2 [f_b(wo', wi') + R k(mu_o) k(mu_i) / (pi (1 - R <k>))]
 
     Result (..., C): 1/sr. It is reciprocal, and EON to the last bit at `ior` 1. Accuracy: the albedo is off
-    by at most 0.012 from that of light that walks between facets and EON. [Saunderson1942].
+    by at most 0.012 from that of light that walks between facets and EON. A call takes 1.4 times as long as
+    one of `dielectric_over_eon_brdf`. [Saunderson1942].
 
         >>> wo, wi = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
         >>> varnished_brdf(wo, wi, [0.7, 0.1], 0.5, 0.3, 1.5).round(5)

@@ -154,13 +154,13 @@ KNOWN_DEFECTS = (
     ),
 )
 
-# The dielectric of the coat that is judged in a renderer.
+# The interface of the coats that are judged in a renderer.
 COATED = {"alpha": 0.5, "ior": 1.5}
 # OpenPBR's base that is judged there, whose facets have alpha 0.5625.
 HALF_METAL = {"specular_roughness": 0.75, "specular_ior": 1.5, "metalness": 0.5}
 
 # What renderers' own nodes have beside those: EON with the quartic also in surroundings, a defect of
-# it, Burley's model, EON under a coat, and OpenPBR's base. Shaders that are generated have none of them.
+# it, Burley's model, EON under a coat or a varnish, and OpenPBR's base. Shaders that are generated have none of them.
 OTHERS = (
     Model(
         "eon_fitted",
@@ -208,6 +208,14 @@ OTHERS = (
         "roughness",
         partial(coat.dielectric_over_eon_albedo_dir, **COATED),
         partial(coat.dielectric_over_eon_albedo_avg, **COATED),
+    ),
+    Model(
+        "eon_varnished",
+        "EON under a varnish of alpha 0.5 and index 1.5",
+        partial(coat.varnished_brdf, **COATED),
+        "roughness",
+        partial(coat.varnished_albedo_dir, **COATED),
+        partial(coat.varnished_albedo_avg, **COATED),
     ),
     Model(
         "openpbr_half_metal",

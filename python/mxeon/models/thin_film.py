@@ -83,7 +83,8 @@ from mxeon.models.microfacet import (
 
 Complex: TypeAlias = tuple[Array, Array]  # real and imaginary part
 
-# Gaussians of the sensitivities: tristimulus, v in m, mu in 1/m, sigma^2 in 1/m^2.
+# Gaussians of the sensitivities, as the text has them: tristimulus, v in m, mu in 1/m, sigma^2 in 1/m^2. XYZ of films
+# up to 2000 nm of indices up to 2.3 are off from those of wavelengths by at most 0.012 over dielectrics, 0.017 over metals.
 GAUSSIANS = (
     (0, 5.4856e-13, 1.6810e6, 4.3278e9),
     (0, 9.7470e-14, 2.2399e6, 4.5282e9),

@@ -86,7 +86,7 @@ OPAQUE = given(0.0, "throughput", "a constant has no roundings")
 ROUGH = ("eon", "eon_fitted", "qon", "fon")
 MODES = ("eon", "eon_fitted", "qon")  # of which a node is one
 EON = ("eon", "eon_fitted")
-COATED = ("eon_coated", "openpbr_half_metal")  # which a renderer has
+COATED = ("eon_coated", "eon_varnished", "openpbr_half_metal")  # which a renderer has
 BURLEY = ("burley", "burley_lambert")
 
 

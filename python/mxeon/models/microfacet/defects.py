@@ -211,7 +211,7 @@ SINGLE = MicrofacetDefect(
 
 
 def burley_albedo(wo: Array, inputs: Mapping[str, Array]) -> Array:
-    """Fit of Burley's albedo, mx_burley_diffuse_dir_albedo, (N, 3)."""
+    """Fit of Burley's albedo, mx_burley_diffuse_dir_albedo, (N, 3): up to 0.0174 off, at mu 0 and roughness 1/2."""
     x, r = np.minimum(wo[:, 2], 1.0), inputs["roughness"]
     smooth = 0.97619 - 0.488095 * (1.0 - x) ** 5
     rough = 1.55754 + (-2.02221 + (2.56283 - 1.06244 * x) * x) * x
@@ -219,9 +219,9 @@ def burley_albedo(wo: Array, inputs: Mapping[str, Array]) -> Array:
 
 
 def conty_kulla_albedo(wo: Array, inputs: Mapping[str, Array]) -> Array:
-    """Fit of the Conty-Kulla albedo, without the color, (N, 3).
+    """Fit of the Conty-Kulla albedo, without the color, (N, 3): mx_imageworks_sheen_dir_albedo_analytic.
 
-    mx_imageworks_sheen_dir_albedo_analytic.
+    It is up to 0.0705 off for mu and roughness in [0.01, 1], and 0.74 at roughness 0.001.
     """
     x, y = np.minimum(wo[:, 2], 1.0), inputs["roughness"]
     above = 13.673 - 68.78018 * x + 799.08825 * y - 905.00061 * x * y

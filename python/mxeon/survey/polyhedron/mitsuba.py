@@ -18,7 +18,7 @@ PRINCIPLED = {
     "roughness": "{roughness}",
     "specular": 0.0,
 }
-# The dielectric of the model "eon_coated".
+# The interface of the models "eon_coated" and "eon_varnished".
 COATED = {
     "type": "dielectric_over_eon",
     "reflectance": "{color}",
@@ -47,6 +47,7 @@ NODES = (
         for model, name in (("eon", "roughness"), ("fon", "roughness"), ("qon", "sigma"))
     ),
     node("dielectric_over_eon of mxeon.mitsuba", "eon_coated", COATED),
+    node("varnished of mxeon.mitsuba", "eon_varnished", COATED | {"type": "varnished"}),
     node("openpbr_base of mxeon.mitsuba", "openpbr_half_metal", BASE),
 )
 

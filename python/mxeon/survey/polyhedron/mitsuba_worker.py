@@ -18,7 +18,8 @@ import numpy as np  # noqa: E402
 Mitsuba: TypeAlias = Any  # an object of Mitsuba, whose types are those of another variant
 JsonObject: TypeAlias = dict[str, Any]  # of a request
 
-PLUGINS = ("eon", "fon", "qon", "dielectric_over_eon", "openpbr_base")  # of `mxeon.mitsuba`
+# Of `mxeon.mitsuba`.
+PLUGINS = ("eon", "fon", "qon", "dielectric_over_eon", "varnished", "openpbr_base")
 
 # Variants of Mitsuba's own BSDFs, and of those of `mxeon.mitsuba`, which Python is too slow for one by one.
 OWN, COMPILED = "scalar_rgb", "llvm_ad_rgb"
