@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A path tracer: one path per pixel and pass, with the value, sampling and density of the twins.
 //
-// Stands behind the twins and three macros: TRACER_BRDF(wo, wi, rho, r),
+// Stands behind the twins, path_random and three macros: TRACER_BRDF(wo, wi, rho, r),
 // TRACER_SAMPLE(wo, u1, u2, r) and TRACER_PDF(wo, wi, r). World frame: x to the right, y up; the
 // ball has radius 1 about the origin. The view is orthographic.
 
@@ -40,23 +40,9 @@ struct Hit {
     bool floor;
 };
 
-// One round of the generator below.
-uvec4 tracer_mixed(uvec4 v)
-{
-    v.x += v.y * v.w;
-    v.y += v.z * v.x;
-    v.z += v.x * v.y;
-    v.w += v.y * v.z;
-    return v;
-}
-
-// pcg4d of [Jarzynski2020]: random numbers of 24 bits in [0, 1), from counters alone.
 vec4 tracer_random(int dimension)
 {
-    uvec4 v = uvec4(gl_FragCoord.xy, tracer_pass, dimension + 65536 * tracer_seed);
-    v = tracer_mixed(v * 1664525u + 1013904223u);
-    v = tracer_mixed(v ^ (v >> 16u));
-    return vec4(v >> 8u) / 16777216.0;
+    return path_random(uvec4(gl_FragCoord.xy, tracer_pass, dimension + 65536 * tracer_seed));
 }
 
 // Keeps a hit if it is in front and the nearest so far.

@@ -8,6 +8,7 @@ objects. A path ends early only if its weight is 0.
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import partial
 from importlib.resources import files
 
 import numpy as np
@@ -81,7 +82,8 @@ def program(model: str, sampler: str) -> str:
     }
     defines = [f"#define TRACER_{head} {body}" for head, body in macros.items()]
     tracer = files("tools.paper").joinpath("tracer.glsl").read_text(encoding="utf-8")
-    return "\n".join(["#version 430", twins.source("glsl"), *defines, tracer])
+    sources = map(partial(twins.source, "glsl"), (twins.ALL, "random"))
+    return "\n".join(["#version 430", *sources, *defines, tracer])
 
 
 def trace(

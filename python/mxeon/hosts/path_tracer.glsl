@@ -21,23 +21,9 @@ uniform mat3 tracer_belt;
 
 out vec4 tracer_radiance; // And the square of its mean over the channels.
 
-// One round of the generator below.
-uvec4 tracer_mixed(uvec4 v)
-{
-    v.x += v.y * v.w;
-    v.y += v.z * v.x;
-    v.z += v.x * v.y;
-    v.w += v.y * v.z;
-    return v;
-}
-
-// pcg4d of [Jarzynski2020]: random numbers of 24 bits in [0, 1), from counters alone.
 vec3 tracer_random(int bounce)
 {
-    uvec4 v = uvec4(gl_FragCoord.xy, tracer_pass, bounce);
-    v = tracer_mixed(v * 1664525u + 1013904223u);
-    v = tracer_mixed(v ^ (v >> 16u));
-    return vec3(v.xyz >> 8u) / 16777216.0;
+    return path_random(uvec4(gl_FragCoord.xy, tracer_pass, bounce)).xyz;
 }
 
 // Signed distances as in mxeon.shaders.shader_ball.

@@ -41,7 +41,7 @@ SLANG = (
     (r"^    vd = _vd;\n|^ *discard;\n", ""),
     (r"^    return (\w+);\n}\s*\Z", r"    path_out = \1;\n}\n"),
 )
-WORDS = {"vec2": "float2", "vec3": "float3", "vec4": "float4"}  # of Slang
+WORDS = {"vec2": "float2", "vec3": "float3", "vec4": "float4", "uvec4": "uint4"}  # of Slang
 GLOBAL = re.compile(r"^(?=(?:int|bool|float|vec\d) path_\w+;)", re.MULTILINE)
 
 
@@ -68,13 +68,15 @@ def path_text(text: str, target: str, element: mx.TypedElement, library: str) ->
         for name, kind in MEMBER.findall(block)
         if kind in PLACES
     ]
-    head, tail = (own_text(name, library, slang) for name in ("head", "interface"))
+    head, random, tail = (
+        own_text(name, library, slang) for name in ("head", "random", "interface")
+    )
     names = (
         f"#define u_viewPosition ({prefix}positionWorld + path_wo)\n"
         f"#define material_is_thin_walled {thin_walled(element)}\n"
     )
     place = f"\nvoid path_place(Point p)\n{{\n{''.join(places)}}}\n\n"
-    return text[: declared.end()] + head + names + text[declared.end() :] + place + tail
+    return text[: declared.end()] + head + names + text[declared.end() :] + place + random + tail
 
 
 def own_text(name: str, library: str, slang: bool) -> str:

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Random numbers for tracers that have none of their own.
+
+// One round of the generator below.
+uvec4 path_mixed(uvec4 v)
+{
+    v.x += v.y * v.w;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v.w += v.y * v.z;
+    return v;
+}
+
+// pcg4d of [Jarzynski2020]: random numbers of 24 bits in [0, 1) from counters, such as those of pixel, pass and bounce.
+vec4 path_random(uvec4 counters)
+{
+    uvec4 v = path_mixed(counters * 1664525u + 1013904223u);
+    v = path_mixed(v ^ (v >> 16u));
+    return vec4(v >> 8u) / 16777216.0;
+}
