@@ -337,9 +337,9 @@ def test_every_check_of_a_node_has_a_shader_that_it_fails(stock, run):
     assert asked - failing == WITHOUT
 
 
-# Of shader functions, which `test_wrong_libraries.py` breaks; of graphs, which `test_graphs.py` does; and that no
-# input is dead.
-WITHOUT = {"densities", "graph", "loss", "parts", "reach", "samples", "twins"}
+# Of shader functions, which `test_wrong_libraries.py` breaks; of graphs, which `test_graphs.py` does; of draws, which
+# `test_path_tracing.py` does; and that no input is dead.
+WITHOUT = {"densities", "graph", "loss", "parts", "pdf", "reach", "sample", "samples", "twins"}
 
 
 @pytest.mark.parametrize("host", ["webgl", "vulkan", "wgsl", "slang"])

@@ -61,6 +61,8 @@ class Check:
     lit: bool = (
         False  # whether it is about how light is found, summed or let through, unlike closures
     )
+    # Of the text that it asks, not the rasterizer's; it is made where a node is asked for by name.
+    profile: str = ""
     # Whether an error differs, and does not fail, where a permitted function explains it.
     open: bool = False
     # Whether it can be asked on the host of a name.

@@ -12,6 +12,7 @@ from mxeon.conformance.diagnosis import Diagnosis
 from mxeon.conformance.samples import Array, Batch, generator
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.tolerance import Compared, Measurement, given, roundings, sum_of
+from mxeon.models.core.draws import deviation
 from mxeon.models.sampling import eon_cltc_pdf
 from mxeon.survey.backends import Renderer
 from mxeon.survey.specs import RendererSpec
@@ -24,9 +25,6 @@ OWN_DENSITY = sum_of(
 )
 COSINES = (0.05, 0.3, 0.7, 0.99)  # of the viewer
 SAMPLES = 1 << 15
-BINS = 8, 16  # of the cosine and of the azimuth
-FINE = 8  # points of a bin, along each axis, at which the density is averaged
-LEAST = 10.0  # samples that a bin has to expect
 ROUGHNESS = 1.0
 
 
@@ -67,8 +65,7 @@ def samples(case: Case) -> Measurement:
 
     Deviation of the chi-square of directions against their own density, in standard deviations.
 
-    Drawn for COSINES at ROUGHNESS. The cube root of a chi-square over its degrees of freedom is
-    nearly normal, which gives the deviation [WilsonHilferty1931].
+    Drawn for COSINES at ROUGHNESS.
     """
     deviations = [_deviation(case, mu) for mu in COSINES]
     worst = int(np.argmax(deviations))
@@ -77,38 +74,13 @@ def samples(case: Case) -> Measurement:
 
 def _deviation(case: Case, mu: float) -> float:
     """Standard deviations by which the counts of one viewer's samples leave their density."""
-    # Draw directions, and count them in bins of the hemisphere.
-    rng = generator()
+    rng, pole = generator(), np.array([0.0, 0.0, 1.0])
     wo = np.array([np.sqrt(1.0 - mu * mu), 0.0, mu])
     draws = np.broadcast_to(wo, (SAMPLES, 3)), rng.random((SAMPLES, 2)), np.full(SAMPLES, ROUGHNESS)
     wi = cast(Renderer, case.host).sample(*draws).astype(np.float64)
-    azimuth = np.arctan2(wi[:, 1], wi[:, 0])
-    edges = np.linspace(0.0, 1.0, BINS[0] + 1), np.linspace(-np.pi, np.pi, BINS[1] + 1)
-    counts, _, _ = np.histogram2d(np.clip(wi[:, 2], 0.0, 1.0), azimuth, edges)
-    expected = SAMPLES * _shares(case, wo)
-    kept = expected >= LEAST
-    # The rest goes into one bin more; samples that no bin holds are in it too.
-    observed = np.append(counts[kept], SAMPLES - counts[kept].sum())
-    mean = np.append(expected[kept], SAMPLES - expected[kept].sum())
-    mean[-1] = max(mean[-1], LEAST)
-    # Make a standard normal of the chi-square, by Wilson and Hilferty.
-    chi_square, freedom = ((observed - mean) ** 2 / mean).sum(), len(mean) - 1
-    spread = 2.0 / (9.0 * freedom)
-    return float(((chi_square / freedom) ** (1.0 / 3.0) - (1.0 - spread)) / np.sqrt(spread))
 
+    def density(w: Array) -> Array:
+        batch = Batch(np.broadcast_to(wo, w.shape), w, {"roughness": ROUGHNESS})
+        return np.where(w[:, 2] > 0.0, _density(case, batch), 0.0)
 
-def _shares(case: Case, wo: Array) -> Array:
-    """Integral of the renderer's density over each bin."""
-    heights, turns = (FINE * count for count in BINS)
-    mu, azimuth = np.meshgrid(
-        (np.arange(heights) + 0.5) / heights,
-        (2.0 * np.arange(turns) + 1.0) / turns * np.pi - np.pi,
-        indexing="ij",
-    )
-    radius = np.sqrt(1.0 - mu * mu)
-    wi = np.stack([radius * np.cos(azimuth), radius * np.sin(azimuth), mu], axis=-1)
-    pairs = np.broadcast_to(wo, wi.shape).reshape(-1, 3), wi.reshape(-1, 3)
-    batch = Batch(*pairs, {"roughness": ROUGHNESS})
-    values = _density(case, batch).reshape(BINS[0], FINE, BINS[1], FINE)
-    shares: Array = values.sum(axis=(1, 3)) * (2.0 * np.pi / (heights * turns))
-    return shares
+    return deviation(np.where(wi[:, 2:] > 0.0, wi, 0.0), density, pole)

@@ -50,6 +50,7 @@ from mxeon.shaders.library import (
     check_version,
     documents_folder,
     examples_folder,
+    has_profile,
     kind_of,
     library_folders,
     library_name,
@@ -257,6 +258,7 @@ def _selected(
     titles = {row.title for row in ALL_SPECS if row.node in nodes}
     rare = {each.title for each in PBRLIB} - {each.title for each in COMMON_SPECS}
     audit = COMMON in nodes or not (nodes or files)
+    by_name = {each.key for each in CHECKS if each.profile}
     if not nodes:
         titles = {title for file in files for title in survey.nodes.get(file, ())}
     chosen = [
@@ -264,8 +266,8 @@ def _selected(
         for task in tasks
         if ALL in nodes
         or task.subject in files
-        or task.subject in titles
-        or (audit and task.subject not in rare)
+        or (task.subject in titles and (nodes or task.check not in by_name))
+        or (audit and task.subject not in rare and task.check not in by_name)
     ]
     if chosen or not nodes:
         return sorted(chosen, key=lambda task: task.subject not in files)
@@ -402,6 +404,8 @@ def _on_host(
 def _checks_of(spec: Spec, host: str, library: str) -> Iterator[Task]:
     backend = backend_of(host, spec)
     for check in CHECKS:
+        if check.profile and not has_profile(library, check.profile):
+            continue
         if backend and check.applies_to(spec, backend, host):
             yield Task(check.key, spec.title, host, library)
 

@@ -26,7 +26,7 @@ from mxeon.conformance.specs.microfacets import FILM_ERRORS, reflected, sum_over
 from mxeon.conformance.tolerance import Term, mean_scaled, roundings, sum_in, sum_of
 from mxeon.errors import NotRun
 from mxeon.hosts.calls import NORMAL, TANGENT
-from mxeon.shaders.nodes import document_text, node_text
+from mxeon.shaders.nodes import document_text, input_text, node_text
 
 if TYPE_CHECKING:  # which load MaterialX
     from mxeon.conformance.reference.releases import Graphs
@@ -257,7 +257,11 @@ class SurfaceShaderSpec(LobeSpec):
         return replace(self, library=library)
 
     def document(self, inputs: Values | None = None) -> str:
-        return document_text(node_text(self.node, "surfaceshader", "shading"))
+        ports = (
+            input_text(name, "color3" if np.ndim(value) else "float", value)
+            for name, value in (inputs or {}).items()
+        )
+        return document_text(node_text(self.node, "surfaceshader", "shading", "".join(ports)))
 
     # What it has to be.
 

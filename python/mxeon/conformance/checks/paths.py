@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks of the text for path tracers: what it draws has the density that it states, and the weight of its value.
+
+What smooth transmission draws is nearly one direction, about which draws are counted.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from mxeon.conformance.case import Case
+from mxeon.conformance.check import check, scale, with_values
+from mxeon.conformance.diagnosis import Diagnosis
+from mxeon.conformance.samples import Array, Batch, generator
+from mxeon.conformance.spec import LobeSpec, Spec, materials
+from mxeon.conformance.specs.diffuse import SurfaceLobe
+from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
+from mxeon.conformance.tolerance import Compared, Measurement, Term, given, sum_of
+from mxeon.hosts import host_row
+from mxeon.hosts.base import Host
+from mxeon.models.core.draws import deviation
+
+CALL = """
+vec3 path_tracer(float what, vec3 wo, vec3 wi, vec3 u, float inside)
+{
+    Point p;
+    p.position = vec3(0.0);
+    p.normal = vec3(0.0, 0.0, 1.0);
+    p.tangent = vec3(1.0, 0.0, 0.0);
+    p.texcoord = vec3(0.3, 0.4, 0.0).xy;
+    p.inside = inside > 0.5;
+    if (what < 0.5)
+        return material_evaluate(p, wo, wi);
+    if (what < 1.5)
+        return vec3(material_pdf(p, wo, wi));
+    if (what < 2.5)
+        return vec3(material_opacity(p, wo));
+    if (what < 3.5)
+        return material_emission(p, wo);
+    vec3 weight;
+    float pdf;
+    bool kept = material_sample(p, wo, u, wi, weight, pdf);
+    if (!kept)
+        return vec3(0.0);
+    return what < 4.5 ? wi : what < 5.5 ? weight : vec3(pdf);
+}
+"""
+ASKED = ("evaluate", "pdf", "opacity", "emission", "wi", "weight", "density")
+TARGETS = ("glsl", "essl", "vulkan", "slang")  # of mxeon.shaders.path_tracing
+DRAWS, WEIGHED = 1 << 15, 1 << 12
+VIEW = np.array([0.7642691, 0.2364137, 0.6])
+
+
+@dataclass(frozen=True)
+class Paths:
+    """The text for path tracers of a document's one material, on a host."""
+
+    host: Host
+    text: str
+
+    def ask(
+        self,
+        what: str,
+        wo: ArrayLike,
+        wi: ArrayLike = (0.0, 0.0, 1.0),
+        u: ArrayLike = (0.0, 0.0, 0.0),
+        inside: bool = False,
+    ) -> Array:
+        """Answers (N, 3) of a function, one of ASKED; 0 where nothing is drawn."""
+        rows = map(np.atleast_2d, (float(ASKED.index(what)), wo, wi, u, float(inside)))
+        return self.host.execute(self.text, "path_tracer", *rows).astype(np.float64)
+
+
+@lru_cache(maxsize=2)
+def paths(host: Host, document: str, library: str = "eonlib") -> Paths:
+    from mxeon.shaders.generation import generate
+
+    [shader] = generate(document, host.target, profile="path", library=library)
+    return Paths(host, shader.stages["pixel"] + CALL)
+
+
+def paths_of(case: Case) -> Paths:
+    """The material that has another value than the default in each input but switches; all lobes of a surface shader."""
+    spec = case.spec
+    if isinstance(spec, SurfaceShaderSpec):
+        values, _ = materials(*spec.table.judged, *spec.table.others)
+    else:
+        changes = {each.name: each.change for each in spec.inputs if each.type != "boolean"}
+        values = {name: value for name, value in changes.items() if value is not None}
+    return paths(case.host, spec.document(values), case.library)
+
+
+def random(count: int, rng: np.random.Generator) -> Array:
+    """Numbers in [0, 1) with the 24 bits that a shader's generator gives, (N, 3)."""
+    return rng.integers(0, 1 << 24, (count, 3)).astype(np.float64) * 2.0**-24
+
+
+def refracted(wo: Array, index: float = 1.5) -> Array:
+    """Where the smooth transmission of UsdPreviewSurface goes."""
+    x, y, _ = -wo / index
+    return np.array([x, y, -np.sqrt(1.0 - x * x - y * y)])
+
+
+def is_drawn(spec: Spec) -> bool:
+    return isinstance(spec, LobeSpec) and not isinstance(spec, SurfaceLobe)
+
+
+def has_paths(spec: Spec, host: str) -> bool:
+    return host_row(host).target in TARGETS
+
+
+@check(
+    is_drawn,
+    with_values(
+        "a tenth of the density is that of a lobe, even in all directions, that is never drawn",
+        lambda batch, values: 0.9 * values + 0.1 / (4.0 * np.pi),
+    ),
+    tolerance=given(
+        6.0, "standard deviations", "chance reaches 6 once in 10^7 draws of a chi-square"
+    ),
+    pairs=True,
+    profile="path",
+    hosts=has_paths,
+    diagnose=lambda case: Diagnosis("what is drawn has another density than the one stated"),
+)
+def pdf(case: Case) -> Measurement:
+    """What a path tracer draws has the density that it is told, which integrates to the share of draws kept."""
+    text, draws = paths_of(case), random(DRAWS, generator())
+
+    def density(w: Array) -> Array:
+        batch = Batch(np.broadcast_to(VIEW, w.shape), w, {})
+        return case.measured(lambda each: text.ask("pdf", VIEW, each.wi), batch)[:, 0]
+
+    return Measurement(deviation(text.ask("wi", VIEW, u=draws), density, refracted(VIEW)), {})
+
+
+@check(
+    is_drawn,
+    scale("weights are 1 % too large", 1.01),
+    tolerance=sum_of(
+        Term(2e-3, "a direction's rounding of 6e-8, times the slope of a lobe of alpha 1e-4"),
+        unit="of the value",
+    ),
+    pairs=True,
+    profile="path",
+    hosts=has_paths,
+    diagnose=lambda case: Diagnosis("the weight of a draw is not its value over its density"),
+)
+def sample(case: Case) -> Compared:
+    """A draw's weight times its density is the value in its direction."""
+    text, u = paths_of(case), random(WEIGHED, generator())
+    wi, weight, density = (text.ask(what, VIEW, u=u) for what in ("wi", "weight", "density"))
+    kept = density[:, 0] > 0.0
+    batch = Batch(np.broadcast_to(VIEW, wi.shape), wi, {}).where(kept)
+    expected = text.ask("evaluate", VIEW, batch.wi)
+    size = expected.max(axis=1, keepdims=True)
+    return Compared(batch, case.outputs(batch, (weight * density)[kept]) / size, expected / size)
