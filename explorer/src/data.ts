@@ -67,6 +67,7 @@ export interface ShaderSource {
   readonly note: string;
   readonly library: string; // "eonlib", "stock"
   readonly pixel: string;
+  readonly paths: string; // the same for a path tracer; "" where there is none
   readonly inputs: readonly Port[];
   /** Uniforms that the page's own controls set, "" where it has none. */
   readonly controls: { readonly color: string; readonly roughness: string; readonly flag: string };

@@ -8,9 +8,13 @@ interface PackedPort extends Omit<Port, "image"> {
 }
 
 /** A shader whose texts, reference and images are places in the tables. */
-interface Packed extends Omit<ShaderSource, "pixel" | "document" | "reference" | "inputs"> {
+interface Packed extends Omit<
+  ShaderSource,
+  "pixel" | "paths" | "document" | "reference" | "inputs"
+> {
   readonly inputs: readonly PackedPort[];
   readonly pixel: readonly number[];
+  readonly paths: readonly number[];
   readonly document: readonly number[];
   readonly reference: number | null;
 }
@@ -32,6 +36,7 @@ export function page_data(json: string): PageData {
       : {
           ...source,
           pixel: whole(source.pixel),
+          paths: whole(source.paths),
           document: whole(source.document),
           inputs: source.inputs.map((port) => ({
             ...port,

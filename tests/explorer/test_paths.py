@@ -1,9 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Path tracing on the stage: a white furnace shows every pixel white."""
+"""Path tracing on the stage: a white furnace shows every pixel white, by models and by generated text."""
+
+from io import BytesIO
 
 import numpy as np
 import pytest
+from PIL import Image
 
+from mxeon.shaders.generation import generate
+from mxeon.shaders.library import examples_folder
+from tests.explorer.browser import until
 from tests.explorer.stage import (
     CLOCK,
     frame,
@@ -54,10 +60,35 @@ def whole(stage, name):
     return pixels[kept][:, :3], np.sqrt(1.0 - squared[kept])
 
 
-def test_a_white_furnace_keeps_every_exact_path(stage, sources):
+@pytest.mark.parametrize("source", ["model", "shader/eonlib"])
+def test_a_white_furnace_keeps_every_exact_path(stage, sources, source):
     white = {"color": [1, 1, 1], "light": None, "surroundings": "uniform"}
-    status = traced(stage, side(sources["eon"]), side(sources["fon"]), **white)
+    eon = sources["eon"] if source == "model" else source
+    status = traced(stage, side(eon), side(sources["fon"]), **white)
     assert status["samples"]["done"] == SAMPLES
     measured, _ = whole(stage, "left")
     assert np.abs(measured - 1.0).max() < EON_WEIGHT
     assert whole(stage, "right")[0].mean() < 0.95
+
+
+def test_generated_text_is_traced_like_its_model(stage, sources):
+    """Sliders reach it, too: color and roughness are those of the view."""
+    traced(stage, side("shader/eonlib"), side(sources["eon"]), samples=256)
+    text, model = (whole(stage, name)[0].mean(axis=0) for name in ("left", "right"))
+    np.testing.assert_allclose(text, model, 0.01)
+
+
+def test_the_example_traces_a_generated_text(browser, tmp_path):
+    [shader] = generate(examples_folder() / "plaster.mtlx", "essl", profile="path")
+    text = tmp_path / "plaster.essl"
+    text.write_text(shader.stages["pixel"], encoding="utf-8")
+    page = browser.new_page()
+    page.set_default_timeout(600_000.0)
+    page.goto((examples_folder() / "path_tracer.html").as_uri())
+    page.set_input_files("input", text)
+    until(page, "/^[2-9] paths/.test(document.querySelector('#said').textContent)")
+    canvas = Image.open(BytesIO(page.locator("canvas").screenshot()))
+    page.close()
+    pixels = np.asarray(canvas.convert("RGB"), float)
+    ball, sky = pixels[200:300, 200:300].mean(axis=(0, 1)), pixels[:20].mean(axis=(0, 1))
+    assert 255 > ball[0] > 1.2 * ball[2] and 255 > sky[2] > 1.1 * sky[0]

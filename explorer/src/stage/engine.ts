@@ -9,7 +9,7 @@ import type { ErrorOf, Errors } from "../verdict";
 import { own_view } from "../view";
 import { DIFFERENCE_COLORS, linear } from "./colors";
 import * as gpu from "./gpu";
-import { modelOf, shaderUniforms, wanted } from "./materials";
+import { modelOf, pathText, shaderUniforms, wanted } from "./materials";
 import { jitter, Paths, type Size } from "./paths";
 import { bend, camera, isUnshadowed, lightVector, toView } from "./scenes";
 import { hasTable, samplerRoughness, type Text, Texts } from "./texts";
@@ -348,11 +348,20 @@ export class Engine {
   private path(state: State, side: SideName, size: Size, index: number): void {
     this.traced ??= new Paths(this.gl, this.targets.size);
     const source = this.sources.get(state[side].source);
-    const model = source && !this.errors.has(source.id) && modelOf(source, state[side].flag);
-    const text = model && this.texts.paths(model, state[side].sampler, state.shape);
-    const program = text ? this.programs.get(text) : null;
-    const roughness = model ? samplerRoughness(model, state.roughness) : 0;
-    this.traced.draw(side, program, size, index, roughness, this.uniforms);
+    if (!source || this.errors.has(source.id)) {
+      this.traced.draw(side, null, size, index, {});
+      return;
+    }
+    const view = camera(state.shape);
+    const [light, eye] = [toView(view, lightVector(state)), toView(view, view.eye)];
+    const model = modelOf(source, state[side].flag);
+    const program = this.programs.get(pathText(this.texts, source, state[side], state.shape));
+    this.traced.draw(side, program, size, index, {
+      ...(source.kind === "shader" &&
+        shaderUniforms(this.textures, source, state[side], state, view, light, eye)),
+      ...this.uniforms,
+      stage_roughness: model ? samplerRoughness(model, state.roughness) : 0,
+    });
   }
 
   /** Compare the sides in frame `index` of the average, the sides after so many passes. */

@@ -2,7 +2,7 @@
 // What a side of the comparison is drawn with: texts of programs, and their uniforms.
 
 import type { ModelName, ShaderSource, Source, Vec3 } from "../data";
-import type { Side, State } from "../state";
+import type { Shape, Side, State } from "../state";
 import type { Uniforms, UniformValue } from "./gpu";
 import type { Camera } from "./scenes";
 import { hasTable, type Text, type Texts } from "./texts";
@@ -19,19 +19,23 @@ export interface Wanted {
   readonly text: Text;
 }
 
-/** The model that a source is, for path tracing; null if it has none. */
+/** The model that a source is; null if it has none. */
 export function modelOf(source: Source, flag: boolean): ModelName | null {
   if (source.kind === "model") return source.model;
   return source.actual && (flag ? source.actual.on : source.actual.off);
 }
 
+/** Paths on a source: on its generated text for path tracers, else on the model that it is. */
+export function pathText(texts: Texts, source: Source, side: Side, shape: Shape): Text {
+  if (source.kind === "shader" && source.paths) return texts.paths(source, shape);
+  const model = modelOf(source, side.flag);
+  if (!model) throw new Error("path tracing needs eonlib, or a material that is one diffuse node");
+  return texts.modelPaths(model, side.sampler, shape);
+}
+
 /** Programs of a side; raises an error if it cannot be drawn like that. */
 export function wanted(texts: Texts, source: Source, side: Side, state: State): Wanted[] {
-  if (state.paths) {
-    const model = modelOf(source, side.flag);
-    if (!model) throw new Error("path tracing needs a material that is one diffuse node");
-    return [{ source: source.id, text: texts.paths(model, side.sampler, state.shape) }];
-  }
+  if (state.paths) return [{ source: source.id, text: pathText(texts, source, side, state.shape) }];
   if (source.kind === "shader") return [{ source: source.id, text: texts.generated(source) }];
   const value = { source: source.id, text: texts.model(source.model) };
   if (!hasTable(source.model)) return [value];

@@ -41,7 +41,6 @@ export class Paths {
     program: gpu.Program | null,
     size: Size,
     index: number,
-    roughness: number,
     uniforms: gpu.Uniforms,
   ): void {
     const before = this.target(side, index);
@@ -57,7 +56,6 @@ export class Paths {
       stage_pass: index,
       stage_bounces: BOUNCES,
       stage_share: 1 / (index + 1),
-      stage_roughness: roughness,
     } as gpu.Uniforms);
   }
 

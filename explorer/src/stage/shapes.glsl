@@ -71,8 +71,10 @@ void stage_plane(inout Hit hit, vec3 origin, vec3 direction, float height, int p
 Hit stage_nearest(vec3 origin, vec3 direction)
 {
     Hit hit = Hit(STAGE_NEVER, vec3(0.0), STAGE_NOTHING);
-    float t = stage_sphere(origin, direction, 1.0).x;
-    stage_keep(hit, t, normalize(origin + t * direction), STAGE_SUBJECT);
+    vec2 ends = stage_sphere(origin, direction, 1.0);
+    float t = ends.x > 0.0 ? ends.x : ends.y; // The far side from inside.
+    vec3 normal = normalize(origin + t * direction);
+    stage_keep(hit, t, faceforward(normal, direction, normal), STAGE_SUBJECT);
 #if STAGE_SHAPE == 1
     stage_plane(hit, origin, direction, -1.0, STAGE_SUBJECT);
 #endif

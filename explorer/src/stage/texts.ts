@@ -7,9 +7,12 @@ import albedo from "./albedo.glsl";
 import camera from "./camera.glsl";
 import generated from "./generated.glsl";
 import geometry from "./geometry.glsl";
+import random from "../../../genglsl/path/random.glsl";
 import material from "./material.glsl";
+import modelPaths from "./model_paths.glsl";
 import paths from "./paths.glsl";
 import picture from "./picture.glsl";
+import places from "./places.glsl";
 import { SHAPE_INDEX } from "./scenes";
 import screen from "./screen.glsl";
 import shadow from "./shadow.glsl";
@@ -22,6 +25,9 @@ precision highp float;
 precision highp int;
 precision highp sampler2D;
 `;
+
+/** A path has no neighbors, and textures no derivatives. */
+const NO_MIPS = "#define texture(map, at) textureLod(map, at, 0.0)\n";
 
 /** One triangle over the whole frame. */
 export const VERTEX = `#version 300 es
@@ -92,6 +98,11 @@ function shaped(shape: Shape, ...parts: string[]): string {
   return HEAD + defined({ STAGE_SHAPE: SHAPE_INDEX[shape] }) + shapes + parts.join("");
 }
 
+/** Paths through the text of a material. */
+function traced(shape: Shape, ...material: string[]): string {
+  return shaped(shape, ...material, camera, surroundings, places, paths);
+}
+
 /** A program's pixel stage: a short name, which programs are kept by, and its long text. */
 export interface Text {
   readonly key: string;
@@ -106,7 +117,7 @@ export class Texts {
   }
 
   geometry(shape: Shape): Text {
-    const make = () => shaped(shape, this.functions, camera, geometry);
+    const make = () => shaped(shape, this.functions, camera, places, geometry);
     return { key: `geometry ${shape}`, make };
   }
 
@@ -127,11 +138,17 @@ export class Texts {
     return { key: `albedo ${model}`, make };
   }
 
-  paths(model: ModelName, sampler: Sampler, shape: Shape): Text {
+  /** Paths on what a model is. */
+  modelPaths(model: ModelName, sampler: Sampler, shape: Shape): Text {
     const [sample, pdf] = SAMPLERS[sampler];
     const macros = { STAGE_VALUE: MODELS[model].value, STAGE_SAMPLE: sample, STAGE_PDF: pdf };
-    const make = () => shaped(shape, this.functions, camera, surroundings, defined(macros), paths);
+    const make = () => traced(shape, this.functions, defined(macros), modelPaths, random);
     return { key: `paths ${model} ${sampler} ${shape}`, make };
+  }
+
+  /** Paths on a generated shader. */
+  paths(source: ShaderSource, shape: Shape): Text {
+    return { key: `paths ${source.id} ${shape}`, make: () => traced(shape, NO_MIPS, source.paths) };
   }
 
   picture(shape: Shape): Text {

@@ -114,7 +114,7 @@ function SideCard(props: SidesProps & { readonly name: SideName }) {
         )}
       </div>
       {source.note && <p class="note">{source.note}</p>}
-      {state.paths && (
+      {state.paths && !(source.kind === "shader" && source.paths) && (
         <label class="sampler">
           <span>Samples</span>
           <select

@@ -23,7 +23,7 @@ from mxeon.shaders.functions import source
 
 __all__ = ["document_sources", "page", "page_data"]
 
-TEXTS, PARAGRAPH = ("pixel", "document"), "\n\n"  # fields in the table of texts
+TEXTS, PARAGRAPH = ("pixel", "paths", "document"), "\n\n"  # fields in the table of texts
 MARK = "%DATA%"  # in the template, replaced by the data
 # Characters that could end the script element, or be read otherwise in HTML, as JSON writes them.
 ESCAPES = str.maketrans({sign: f"\\u{ord(sign):04x}" for sign in "<>&\u2028\u2029"})

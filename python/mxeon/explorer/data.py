@@ -118,6 +118,7 @@ class ShaderSource:
     pages: tuple[str, ...] = ()
     reference: ReferenceTable | None = None
     checked: Checked | None = None
+    paths: str = ""
     kind: str = "shader"
 
 

@@ -5,6 +5,7 @@ import math
 import warnings
 from base64 import b64encode
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -17,7 +18,7 @@ import numpy as np
 from mxeon.conformance.pictures import judge_document
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.results import PASSED, Result
-from mxeon.errors import MxeonError, printable
+from mxeon.errors import InterfaceError, MxeonError, printable
 from mxeon.explorer.data import (
     Checked,
     Controls,
@@ -77,14 +78,25 @@ def document_sources(
             references = {one.element: reference_of(one) for one in shaders[:REFERENCES]}
         open_ones = len(shaders) <= REFERENCES and None in references.values()
         checked = _checked(file, each, policy) if open_ones else {}
+        paths = path_texts(file, policy) if half == LIBRARIES[0] else {}
         for shader in shaders:
             title = f"{shader.element}, {Path(each).name.replace(',', ' ')}"
             own = f"{shader.name}/{half}"
             source = shader_source(shader, text, own, title, name, each, images)
             reference = references.get(shader.element)
             found = None if reference else checked.get(shader.element)
-            sources.append(replace(source, reference=reference, checked=found))
+            path = paths.get(shader.element, "")
+            sources.append(replace(source, reference=reference, checked=found, paths=path))
     return tuple(sources)
+
+
+def path_texts(document: str, policy: Policy = DEFAULT) -> dict[str, str]:
+    """What path tracers include of a document's materials with eonlib, by element; none of mixed surfaces."""
+    with warnings.catch_warnings(), suppress(InterfaceError):
+        warnings.simplefilter("ignore")  # generating has told of all of them
+        made = generate(document, "essl", profile="path", uniforms=True, policy=policy)
+        return {each.element: each.stages["pixel"] for each in made}
+    return {}
 
 
 def _checked(file: str, library: str, policy: Policy) -> dict[str, Checked]:

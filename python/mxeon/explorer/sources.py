@@ -20,7 +20,7 @@ from mxeon.conformance.specs.diffuse import DIFFUSE
 from mxeon.conformance.specs.diffuse import VALUE as VALUE_ERROR
 from mxeon.errors import NotRun
 from mxeon.explorer.data import Models, ModelSource, ShaderSource, Still
-from mxeon.explorer.documents import LIBRARIES, shader_source
+from mxeon.explorer.documents import LIBRARIES, path_texts, shader_source
 from mxeon.explorer.references import reference_of
 from mxeon.hosts import open_host
 from mxeon.hosts.base import Inputs
@@ -227,6 +227,7 @@ def _material_sources(material: ComparedMaterial) -> tuple[ShaderSource, ...]:
         for library in LIBRARIES
     }
     reference = reference_of(shaders["eonlib"])
+    [paths] = path_texts(material.text).values()
     return tuple(
         replace(
             shader_source(
@@ -239,6 +240,7 @@ def _material_sources(material: ComparedMaterial) -> tuple[ShaderSource, ...]:
             ),
             reference=reference,
             pages=material.pages if library == "stock" else (),
+            paths=paths if library == "eonlib" else "",
         )
         for library, shader in shaders.items()
     )

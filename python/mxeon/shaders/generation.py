@@ -115,6 +115,7 @@ def generate(
     library: str = "eonlib",
     profile: str | None = None,
     lights: bool = False,
+    uniforms: bool = False,
     policy: Policy = DEFAULT,
 ) -> tuple[Shader, ...]:
     """Shaders of a document, one for each renderable element.
@@ -128,6 +129,7 @@ def generate(
       includes, in glsl, essl, vulkan or slang.
     - `lights`: Whether a shader of a rasterized target gets MaterialX's directional light, as
       light type 1.
+    - `uniforms`: Whether inputs stay uniforms with the profile "path", whose text has literals.
     - `policy`: Permissions, limits and search path.
 
     Raises ValueError if the target, the library, the profile or the element is unknown; DocumentError if
@@ -164,7 +166,9 @@ def generate(
     checked = read_document(document, library, profile, policy)
     content, names = checked.content, shader_names(checked.renderables)
     generator = generator_of(content, target, library, profile, policy.definitions)
-    context = context_of(content, target, generator, library, lights, policy.path, profile)
+    context = context_of(
+        content, target, generator, library, lights, policy.path, profile, uniforms
+    )
     elements: Sequence[mx.TypedElement] = checked.renderables
     if element is not None:
         paths = [each.getNamePath() for each in elements]

@@ -71,6 +71,7 @@ def context_of(
     lights: bool,
     path: Iterable[str],
     profile: str | None = None,
+    uniforms: bool = False,
 ) -> mx_gen.GenContext:
     """A context for one document only, as it keeps implementations by name.
 
@@ -88,9 +89,10 @@ def context_of(
         none = mx_gen.HwSpecularEnvironmentMethod.SPECULAR_ENVIRONMENT_NONE
         context.getOptions().hwSpecularEnvironmentMethod = none
         context.getOptions().hwTransparency = True
-        context.getOptions().shaderInterfaceType = (
-            mx_gen.ShaderInterfaceType.SHADER_INTERFACE_REDUCED
-        )
+        if not uniforms:
+            context.getOptions().shaderInterfaceType = (
+                mx_gen.ShaderInterfaceType.SHADER_INTERFACE_REDUCED
+            )
     if lights and isinstance(generator, mx_gen.HwShaderGenerator):
         light = document.getNodeDef("ND_directional_light")
         mx_gen.HwShaderGenerator.bindLightShader(light, 1, context)
