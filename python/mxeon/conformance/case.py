@@ -197,15 +197,16 @@ def frames(case: Case) -> Iterator[Compared]:
         yield Compared(batch, output(batch), output(local))
 
 
-def dead_inputs(case: Case) -> list[str]:
-    """Names of the inputs whose change has no effect on the values."""
-    batch = case.few[0]
-    plain = case.direct(batch)  # most changes are of the batch as it is
+def dead_inputs(
+    case: Case, batch: Batch | None = None, show: Callable[[Batch], Array] | None = None
+) -> list[str]:
+    """Names of the inputs whose change has no effect on the values, or on what is shown of a batch."""
+    batch, show = batch or case.few[0], show or case.direct
+    plain = show(batch)  # most changes are of the batch as it is
     dead = []
     for name, (before, after) in case.changes.items():
-        one = case.direct(batch.altered(**before)) if before else plain
-        other = case.direct(batch.altered(**after))
-        if np.array_equal(one, other, equal_nan=True):
+        one = show(batch.altered(**before)) if before else plain
+        if np.array_equal(one, show(batch.altered(**after)), equal_nan=True):
             dead.append(name)
     return dead
 

@@ -58,9 +58,8 @@ class Check:
     diagnose: Callable[[Case], Diagnosis]
     tolerance: Tolerance | None = None  # where it is the same for all
     pairs: bool = False  # whether it needs pairs of directions that not every host has
-    lit: bool = (
-        False  # whether it is about how light is found, summed or let through, unlike closures
-    )
+    # Whether it is about how light is found, summed or let through, unlike closures.
+    lit: bool = False
     # Of the text that it asks, not the rasterizer's; it is made where a node is asked for by name.
     profile: str = ""
     # Whether an error differs, and does not fail, where a permitted function explains it.

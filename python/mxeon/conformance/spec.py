@@ -62,9 +62,8 @@ class Input:
     # Another value than the default, which must have an effect; None where it has none by itself.
     change: ArrayLike | None = None
     needs: Values = field(default_factory=dict, hash=False)  # inputs with which the change shows
-    logarithmic: bool = (
-        False  # random values uniform in their logarithm; else a tenth on either end
-    )
+    # Whether random values are uniform in their logarithm; else a tenth is on either end.
+    logarithmic: bool = False
     often: float | None = None  # every other random value, of an input that is rarely set
     equal: bool = False  # both components are the same in every other random value
     # Values in the two materials that stand for a node in pictures; () for the default.
@@ -156,9 +155,8 @@ class Spec(ABC):
     libraries: tuple[str, ...] = ()  # with which it is judged; () for all
     closure: bool = True  # whether eonlib leaves it to a renderer's own closures, in OSL
     counts: Counts = USUAL
-    fixed: Values = field(
-        default_factory=dict
-    )  # inputs that an evaluation sets unless a batch does
+    # Inputs that an evaluation sets unless a batch does.
+    fixed: Values = field(default_factory=dict)
     # How a host that evaluates is asked for a value: branch, output, and the factor of what it returns.
     asked: tuple[str, str, float] = ("direct", "response", np.pi)
     optional: bool = False  # whether a target may lack the node, so that it is not run there
@@ -222,9 +220,8 @@ class LobeSpec(ValueSpec):
     """A node that scatters light."""
 
     flat: ClassVar[bool] = False  # whether its values have no peak
-    plain: ClassVar[
-        tuple[str, ...]
-    ] = ()  # axes of `checks.states` of which it has the first state alone
+    # Axes of `checks.states` of which it has the first state alone.
+    plain: ClassVar[tuple[str, ...]] = ()
 
     @property
     def side(self) -> float:

@@ -164,13 +164,15 @@ class Tolerance:
         return _scale(expected)
 
 
-def sum_of(*terms: Term, unit: str = SCALED, metric: Metric = scaled) -> Tolerance:
-    return Tolerance(terms, unit, metric)
+def sum_of(
+    *terms: Term, unit: str = SCALED, metric: Metric = scaled, exact: bool = False
+) -> Tolerance:
+    return Tolerance(terms, unit, metric, exact)
 
 
-def sum_in(unit: str, *terms: Term) -> Tolerance:
+def sum_in(unit: str, *terms: Term, exact: bool = False) -> Tolerance:
     """A tolerance of absolute errors."""
-    return Tolerance(terms, unit, absolute)
+    return Tolerance(terms, unit, absolute, exact)
 
 
 def given(value: float, unit: str, words: str, metric: Metric = absolute) -> Tolerance:

@@ -54,15 +54,11 @@ def quantities(case: Case, batch: Batch, right: Batch) -> Iterator[tuple[str, Co
 def outside(case: Case) -> Iterator[Beyond]:
     """Each quantity of a few pairs for each value, but for what is wrong inside the ranges already."""
     spec, views = case.of(PbrSpec), case.samples.views[0]
-    mirrored = np.arange(len(views.wo))[:, np.newaxis] % 2 == 1  # where microfacets reflect most
-    wo = np.where(np.arange(len(views.wo))[:, np.newaxis] == 1, NORMAL, views.wo)
-    seen = {
-        name: np.maximum(views.inputs[name], LEAST)
-        for name in ("weight", "occlusion")
-        if name in views.inputs
-    }
-    views = replace(views, wo=wo).altered(**seen)
-    views = replace(views, wi=np.where(mirrored, views.wo * [-1.0, -1.0, spec.side], views.wi))
+    row, names = np.arange(len(views.wo))[:, np.newaxis], {"weight", "occlusion"}
+    wo = np.where(row == 1, NORMAL, views.wo)
+    wi = np.where(row % 2 == 1, wo * [-1.0, -1.0, spec.side], views.wi)  # microfacets reflect most
+    seen = {name: np.maximum(views.inputs[name], LEAST) for name in names & views.inputs.keys()}
+    views = replace(views, wo=wo, wi=wi).altered(**seen)
     plain = replace(case, outputs=lambda batch, values: values)
     wrong = {
         name

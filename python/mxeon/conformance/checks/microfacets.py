@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from mxeon.conformance import diagnosis
 from mxeon.conformance.backends import WHITE
-from mxeon.conformance.case import SCATTERING, Case
+from mxeon.conformance.case import SCATTERING, Case, dead_inputs
 from mxeon.conformance.check import (
     check,
     drop_changes,
@@ -433,14 +433,9 @@ def wrong_inputs(case: Case) -> list[str]:
 
     The retroreflective mode is of the reflection alone.
     """
-    batch, wrong = case.few[0].first(CHANGED_VIEWS), []
-    plain = case.transmitted(batch, sky_map())
-    for name, (without, change) in case.changes.items():
-        before = case.transmitted(batch.altered(**without), sky_map()) if without else plain
-        after = case.transmitted(batch.altered(**change), sky_map())
-        if np.array_equal(before, after, equal_nan=True) != (name == "retroreflective"):
-            wrong.append(name)
-    return wrong
+    batch = case.few[0].first(CHANGED_VIEWS)
+    dead = dead_inputs(case, batch, lambda each: case.transmitted(each, sky_map()))
+    return [each for each in case.changes if (each in dead) != (each == "retroreflective")]
 
 
 # --- thin films -----------------------------------------------------------------------------------

@@ -11,6 +11,7 @@ from mxeon.conformance.case import Case
 from mxeon.conformance.check import check, drop_changes, no_number, of_family, shifted
 from mxeon.conformance.checks.lobes import inputs
 from mxeon.conformance.diagnosis import Diagnosis, explain
+from mxeon.conformance.diagnosis.regions import span
 from mxeon.conformance.samples import Array, Batch, Candidate
 from mxeon.conformance.specs.utilities import ROUND_TRIPS, UtilitySpec
 from mxeon.conformance.tolerance import (
@@ -72,20 +73,16 @@ def output_inputs(case: Case) -> Measurement:
 
 
 def explained_finite(case: Case) -> Diagnosis:
-    """A bound that an input of each output that is not finite exceeds."""
+    """How many outputs are not finite, and the range of an input that has all of them."""
     batch = case.samples.take(case.of(UtilitySpec).outside)
-    bad = np.asarray(~np.isfinite(case.direct(batch)).all(axis=1))
-    if not bad.any():
+    values = case.direct(batch)
+    finite, none = np.isfinite(values), np.zeros_like(values)
+    if finite.all():
         return Diagnosis()
-    share = f"{int(bad.sum())} of {len(bad)} outputs are not finite"
-    for name, found in batch.inputs.items():
-        rows = np.reshape(found, (len(bad), -1))
-        low, high = rows.min(axis=1), rows.max(axis=1)
-        if low[bad].max() <= 0.0:
-            return Diagnosis(f"{share}, all with {name} {low[bad].max():g} or below")
-        if high[bad].min() >= 1.0:
-            return Diagnosis(f"{share}, all with {name} {high[bad].min():g} or above")
-    return Diagnosis(share)
+    compared = Compared(batch, np.where(finite, 0.0, np.nan), none)
+    place = span([compared], count_of("values"))
+    share = f"{int((~finite).any(axis=1).sum())} of {len(values)} outputs are not finite"
+    return Diagnosis(f"{share}, all {place}" if place else share)
 
 
 @check(

@@ -15,7 +15,7 @@ from mxeon.conformance.samples import (
 from mxeon.conformance.spec import Input, Node, color, network_text
 from mxeon.conformance.specs.lobes import CLOSED_ALBEDO, FLAT_FRAME, PbrSpec
 from mxeon.conformance.specs.sheen import ZELTNER_VALUE
-from mxeon.conformance.tolerance import ROUNDING, Term, Tolerance, sum_of
+from mxeon.conformance.tolerance import ROUNDING, Term, sum_of
 from mxeon.models.nodes.combinations import (
     AMOUNT,
     AMOUNT_ABOVE,
@@ -35,19 +35,17 @@ VALUE = sum_of(
 ALBEDO = sum_of(
     CLOSED_ALBEDO.term("two albedos, and a throughput between them", 3.0), unit="albedo"
 )
-NESTED_VALUE = Tolerance(
-    (
-        VALUE.term("two values and a throughput"),
-        ZELTNER_VALUE.term("a third value"),
-        CLOSED_ALBEDO.term("its throughput"),
-    ),
+NESTED_VALUE = sum_of(
+    VALUE.term("two values and a throughput"),
+    ZELTNER_VALUE.term("a third value"),
+    CLOSED_ALBEDO.term("its throughput"),
     exact=True,
 )
 ERRORS = {
     "albedo": ALBEDO,
     "throughput": ALBEDO,
     # The same products, of a factor that is exact.
-    "factor": Tolerance((Term(ROUNDING, "one float32 rounding"),), exact=True),
+    "factor": sum_of(Term(ROUNDING, "one float32 rounding"), exact=True),
     "frame": sum_of(FLAT_FRAME.term("three lobes in another frame", 3.0)),
 }
 

@@ -23,7 +23,7 @@ from mxeon.conformance.samples import (
     with_edges,
 )
 from mxeon.conformance.spec import CHANGED_COLOR, Input, LobeSpec
-from mxeon.conformance.tolerance import Term, Tolerance, absolute, roundings, sum_in
+from mxeon.conformance.tolerance import Term, Tolerance, roundings, sum_in
 from mxeon.models import table as reference
 from mxeon.models.table import Model
 from mxeon.shaders.nodes import (
@@ -61,18 +61,15 @@ ERRORS = {
     "value": VALUE,
     "albedo": ENVIRONMENT,
     "frame": FRAME,
-    "integral": Tolerance((VALUE.term("an average of values"),), "albedo", absolute, exact=True),
-    "reciprocity": Tolerance(VALUE.terms, "pi f cos cos", absolute),
+    "integral": sum_in("albedo", VALUE.term("an average of values"), exact=True),
+    "reciprocity": sum_in("pi f cos cos", *VALUE.terms),
     "lambert": LAMBERT,
 }
-LOBE_VALUE = Tolerance(
-    (
-        roundings(16 / LOBE_RIM**2, "of a pixel's point, over the square of the least cosine, 1/4"),
-        roundings(32, "in the lobe"),
-        roundings(4 * 48, "in sums that other lobes make 48 times as large"),
-    ),
+LOBE_VALUE = sum_in(
     UNIT,
-    absolute,
+    roundings(16 / LOBE_RIM**2, "of a pixel's point, over the square of the least cosine, 1/4"),
+    roundings(32, "in the lobe"),
+    roundings(4 * 48, "in sums that other lobes make 48 times as large"),
     exact=True,
 )
 

@@ -185,11 +185,8 @@ HALF_DIP = Term((1.0 - LEAST_COLOR82) * DIP_FIT, "half of the fit of the dip at 
 
 def compensated(average: float, words: str) -> Tolerance:
     """Of values whose F_ss has an error."""
-    terms = (
-        Term(ESS_VALUE_FIT, "the fit of E_ss over E_ss"),
-        Term(COMPENSATED * average, f"{words}, times 0.6"),
-    )
-    return Tolerance(terms, exact=True)
+    fit = Term(ESS_VALUE_FIT, "the fit of E_ss over E_ss")
+    return sum_of(fit, Term(COMPENSATED * average, f"{words}, times 0.6"), exact=True)
 
 
 VALUE = compensated(METAL_FIT, "the fit of F_ss")
@@ -559,12 +556,11 @@ class FilmSpec(FacetSpec):
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         """Random pairs and special ones whose facets are not at grazing, and mirrored ones."""
         rng, count = generator(), counts.pairs
-        special = special_directions(rng)
-        picked = rng.permutation(len(special[0]))[:count]
+        special = _some_special(rng, count)
         random = directions(rng, count), directions(rng, count)
         pairs = (
             self._batch(rng, random, self.random_inputs),
-            self._batch(rng, (special[0][picked], special[1][picked]), self.special_inputs),
+            self._batch(rng, special, self.special_inputs),
             self.mirrored(counts)[0].first(count),
         )
         return tuple(batch.where(_steep(batch)) for batch in pairs)
@@ -585,13 +581,17 @@ class FilmSpec(FacetSpec):
     def edges(self, counts: Counts) -> Batch:
         """Pairs and inputs at the edges of the domain, films next to vacuum and vast ones."""
         rng = generator()
-        special = special_directions(rng)
-        picked = rng.permutation(len(special[0]))[: 2 * counts.pairs]
-        wo, wi = (each[picked] for each in special)
+        wo, wi = _some_special(rng, 2 * counts.pairs)
         inputs = self.special_inputs(rng, len(wo))
         inputs["thinfilm_thickness"] = rng.choice(THICK, len(wo))
         inputs["thinfilm_ior"][::16] = 0.0
         return Batch(wo, wi, inputs)
+
+
+def _some_special(rng: np.random.Generator, count: int) -> tuple[Array, Array]:
+    wo, wi = special_directions(rng)
+    picked = rng.permutation(len(wo))[:count]
+    return wo[picked], wi[picked]
 
 
 def _in_air(inputs: dict[str, Array]) -> dict[str, Array]:

@@ -18,16 +18,13 @@ from mxeon.conformance.specs.lobes import (
     PbrSpec,
     lobe_errors,
 )
-from mxeon.conformance.tolerance import ROUNDING, Term, Tolerance, absolute, roundings, sum_of
+from mxeon.conformance.tolerance import ROUNDING, Term, Tolerance, roundings, sum_in, sum_of
 from mxeon.hosts.base import Host
 from mxeon.models.nodes import node
 
-INPUTS = (WEIGHT, COLOR, replace(ROUGHNESS, beyond=(1e-3, 1e-4, 2.0), ends=(1e-4, 1.0)), NORMAL)
-ZELTNER_INPUTS = (
-    WEIGHT,
-    COLOR,
-    replace(ROUGHNESS, beyond=(0.0, 1e-3, 2.0), ends=(0.01, 1.0)),
-    NORMAL,
+INPUTS, ZELTNER_INPUTS = (
+    (WEIGHT, COLOR, replace(ROUGHNESS, beyond=beyond, ends=(least, 1.0)), NORMAL)
+    for beyond, least in (((1e-3, 1e-4, 2.0), 1e-4), ((0.0, 1e-3, 2.0), 0.01))
 )
 FIT_COSINE = 1e-4  # least cosine of the domain of the fits
 EXPONENT = 1.0 / LEAST_SHEEN  # largest of a sine
@@ -44,13 +41,10 @@ def conty_kulla_value(logarithm: float) -> Tolerance:
     return sum_of(roundings(32), roundings(logarithm, words))
 
 
-CONTY_KULLA_ALBEDO = Tolerance(
-    (
-        Term(1.53e-3, "the fit of the albedo"),  # tools/fits/conty_kulla_albedo.py
-        CLOSED_ALBEDO.term("roundings of an albedo in closed form"),
-    ),
+CONTY_KULLA_ALBEDO = sum_in(
     "albedo",
-    absolute,
+    Term(1.53e-3, "the fit of the albedo"),  # tools/fits/conty_kulla_albedo.py
+    CLOSED_ALBEDO.term("roundings of an albedo in closed form"),
     exact=True,
 )
 

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Subsurface scattering: Lambert on a plane, and on a sphere, over which its profile spreads light."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache, partial
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from mxeon.conformance.samples import (
     Array,
@@ -98,22 +97,12 @@ SUBSURFACE = SubsurfaceSpec.of(
 )
 
 
-def spread(batch: Batch, far: float = FAR) -> Array:
-    """Light on a unit sphere by the profile of l / (1 - g), (N, 3)."""
-    reach = np.array(batch.inputs["radius"]) / (1.0 - batch.inputs["anisotropy"])
-    return _light(batch, reach.tolist(), far)
-
-
-def _even(batch: Batch, reach: float) -> Array:
-    """Light on a unit sphere by one mean free path l / (1 - g), whatever the radius, (N, 3)."""
-    return _light(batch, [reach / (1.0 - batch.inputs["anisotropy"])] * 3)
-
-
-def _light(batch: Batch, reaches: Sequence[float], far: float = FAR) -> Array:
-    """Light on a unit sphere by the profiles of a mean free path for each channel, (N, 3)."""
-    mu = batch.wi[:, 2]
-    light = [np.interp(mu, COSINES, _profile(each, far)) for each in reaches]
-    return np.asarray(batch.inputs["color"] * np.stack(light, axis=-1))
+def spread(batch: Batch, far: float = FAR, **changes: ArrayLike) -> Array:
+    """Light on a unit sphere by the profile of l / (1 - g), (N, 3), of a batch with other inputs."""
+    inputs = {**batch.inputs, **changes}
+    reach = np.array(inputs["radius"]) / (1.0 - inputs["anisotropy"])
+    light = [np.interp(batch.wi[:, 2], COSINES, _profile(each, far)) for each in reach.tolist()]
+    return np.asarray(inputs["color"] * np.stack(light, axis=-1))
 
 
 @lru_cache(maxsize=128)
@@ -135,19 +124,16 @@ ON_SPHERES = (
         "Lambert, whatever the radius",
         lambda batch: np.asarray(batch.inputs["color"] * np.maximum(batch.wi[:, 2:], 0.0)),
     ),
-    Candidate(
-        "the profile, whatever the anisotropy",
-        lambda batch: _light(batch, list(batch.inputs["radius"])),
-    ),
+    Candidate("the profile, whatever the anisotropy", partial(spread, anisotropy=0.0)),
     Candidate(
         "the profile, whatever the sign of the anisotropy",
-        lambda batch: spread(batch.altered(anisotropy=abs(batch.inputs["anisotropy"]))),
+        lambda batch: spread(batch, anisotropy=abs(batch.inputs["anisotropy"])),
     ),
     Candidate("MaterialX's blur along a circle of radius 1", _around),
     *(
         Candidate(
             f"the profile of a mean free path of {each:g}, whatever the radius",
-            partial(_even, reach=each),
+            partial(spread, radius=(each, each, each)),
         )
         for each in EVEN
     ),

@@ -122,12 +122,10 @@ OPEN_PBR = Lobes(
         index="specular_ior coat_ior",
         sheen_rough="fuzz_roughness",
     ),
-    (
-        *_ports(
-            share="transmission_weight subsurface_weight subsurface_radius",
-            color="transmission_color subsurface_color subsurface_radius_scale",
-        ),
-        *_ports(share="thin_film_weight thin_film_thickness", index="thin_film_ior"),
+    _ports(
+        share="transmission_weight subsurface_weight subsurface_radius thin_film_weight thin_film_thickness",
+        color="transmission_color subsurface_color subsurface_radius_scale",
+        index="thin_film_ior",
     ),
     without_effect=(
         "transmission_scatter",
