@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from functools import partial
 from itertools import product
+from typing import TypeGuard
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -40,7 +41,7 @@ from mxeon.conformance.samples import (
     directions_at,
     sky_map,
 )
-from mxeon.conformance.spec import LobeSpec, Spec
+from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs.combinations import SINGLE, CombinedSpec
 from mxeon.conformance.specs.diffuse import DiffuseModelSpec, DiffuseSpec, SurfaceLobe, model_value
 from mxeon.conformance.specs.emission import EmissionSpec, MediumSpec
@@ -94,7 +95,7 @@ def is_model(spec: Spec, *names: str) -> bool:
     return isinstance(spec, DiffuseModelSpec) and spec.model in names
 
 
-def is_plain(spec: Spec) -> bool:
+def is_plain(spec: Spec) -> TypeGuard[PbrSpec]:
     """Whether a spec is one lobe of pbrlib by itself, without a film, that transmits to no environment."""
     others = (CombinedSpec, FilmSpec, TransmissionSpec)
     return isinstance(spec, PbrSpec) and not isinstance(spec, others)
@@ -110,15 +111,13 @@ def is_node(spec: Spec) -> bool:
 
 
 def is_reciprocal(spec: Spec) -> bool:
-    own = is_plain(spec) and not isinstance(spec, (HairSpec, SubsurfaceSpec))
-    reciprocal = own and isinstance(spec, PbrSpec) and spec.row.reciprocal
-    return reciprocal or is_model(spec, *ROUGH, "lambert", "burley")
+    own = is_plain(spec) and spec.row.reciprocal and not isinstance(spec, SubsurfaceSpec)
+    return own or is_model(spec, *ROUGH, "lambert", "burley")
 
 
 def is_opaque(spec: Spec) -> bool:
     """Whether a node lets no light through to what lies below."""
-    opaque = is_plain(spec) and isinstance(spec, PbrSpec) and not spec.row.layerable
-    return opaque or is_model(spec, *MODES)
+    return (is_plain(spec) and not spec.row.layerable) or is_model(spec, *MODES)
 
 
 def shows_exactly(spec: Spec, host: str) -> bool:
@@ -207,7 +206,7 @@ def furnace(case: Case) -> Iterator[Compared]:
 
 @check(
     lambda spec: (
-        (is_plain(spec) and isinstance(spec, LobeSpec) and bool(spec.black))
+        (is_plain(spec) and bool(spec.black))
         or (
             is_model(spec, *ROUGH, "lambert", "burley")
             and is_node(spec)
@@ -435,14 +434,14 @@ def finite(case: Case) -> Measurement:
 ROUNDED = 1e-9  # difference of two albedos that are the same
 
 
-def is_layer(spec: Spec) -> bool:
+def is_layer(spec: Spec) -> TypeGuard[PbrSpec]:
     """Whether a node lets 1 - E through to what lies below."""
-    return is_plain(spec) and isinstance(spec, PbrSpec) and spec.row.layerable
+    return is_plain(spec) and spec.row.layerable
 
 
 def reads(name: str) -> Callable[[Spec], bool]:
     """Whether a layer is one of an input of a name."""
-    return lambda spec: is_layer(spec) and isinstance(spec, PbrSpec) and name in spec.row.inputs
+    return lambda spec: is_layer(spec) and name in spec.row.inputs
 
 
 @check(is_layer, pass_all, THROUGHPUT)
