@@ -9,7 +9,6 @@ from mxeon.models.media import (
     LINEAR,
     LOSS,
     SQUARED,
-    _rule,
     diffusion_blur,
     diffusion_cdf,
     diffusion_profile,
@@ -120,8 +119,3 @@ def test_a_blur_is_the_profile_s_mean_over_the_unit_sphere(reach):
         rings = np.maximum(cosine, 0.0).mean(axis=1)
         # The kinks of both sums cost 400^-2 times the slopes of what they sum.
         assert diffusion_blur(mu, reach) == pytest.approx(w @ rings / w.sum(), abs=1e-4)
-
-
-def test_the_rule_of_a_blur_integrates_on_the_unit_interval():
-    u, weights = _rule.__wrapped__()  # which others may have cached
-    np.testing.assert_allclose([weights.sum(), weights @ u**3], [1.0, 0.25], rtol=1e-12)

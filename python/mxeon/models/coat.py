@@ -90,7 +90,7 @@ from mxeon.models.core.arrays import (
     at_least_0,
     at_most,
     cosine,
-    cube_root,
+    fractional_power,
     library,
     like,
     magnitude,
@@ -156,7 +156,7 @@ class Coat:
 def place(mu: Array, alpha: float | Array) -> Array:
     """Cosine on the scale of the curves, in [0, 1]: the cube root spreads terms like mu log(mu) at 0."""
     extent = array_namespace(alpha).asinh(1.0 / alpha)
-    return cube_root(array_namespace(mu, alpha).asinh(mu / alpha) / extent)
+    return fractional_power(array_namespace(mu, alpha).asinh(mu / alpha) / extent, 1.0 / 3.0)
 
 
 def curves(alpha: Array, ior: Array) -> Array:
@@ -500,11 +500,9 @@ def dielectric_over_eon_pdf(
 def _facet_share(wo: ArrayLike, rho: ArrayLike, roughness: ArrayLike, of: Coat) -> Array:
     """E_r / E at the mean of rho's channels; 0 where nothing is reflected."""
     mu = unpack_cosine(wo)
-    xp, reflected = array_namespace(mu), of.at(mu)[1]
+    reflected = of.at(mu)[1]
     base = eon_albedo_dir(mu, checked_mean(rho)[..., np.newaxis], roughness)[..., 0]
-    total = reflected + (1.0 - reflected) * base
-    positive = total > 0.0
-    return xp.where(positive, reflected, 0.0) / xp.where(positive, total, 1.0)
+    return reflected / nonzero(reflected + (1.0 - reflected) * base)
 
 
 TERMS, SMOOTH = 24, 16  # coefficients of E_single and of the other curves, over `place`

@@ -26,7 +26,6 @@ not broadcast.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import cache
 
 import numpy as np
 
@@ -587,7 +586,8 @@ def blur_to(mu: Array, reach: Array, far: float) -> Array:
 
 def _exponential(mu: Array, reach: Array) -> tuple[Array, Array]:
     """Mean over the circles of one exponential of the profile, and its share on the sphere."""
-    xp, (u, weights) = array_namespace(mu, reach), (like(each, reach) for each in _rule())
+    xp, rule = array_namespace(mu, reach), unit_rule(NODES, PANELS)
+    u, weights = (like(each, reach) for each in rule)
     share = -xp.expm1(-2.0 / reach)
     distance = xp.minimum(-reach * xp.log1p(-u * share), 2.0)
     # The mean of max(cos(theta), 0) over the circle at this distance from a point of the unit sphere.
@@ -597,14 +597,6 @@ def _exponential(mu: Array, reach: Array) -> tuple[Array, Array]:
     lit = arccosine(-along / xp.maximum(across, 1e-300))
     circle = (along * lit + root(at_least_0(across**2 - along**2))) / np.pi
     return xp.sum(weights * circle, axis=-1), share[..., 0]
-
-
-@cache
-def _rule() -> tuple[Array, Array]:
-    """Nodes in [0, 1] and weights of Gauss-Legendre in PANELS of equal width."""
-    x, w = unit_rule(NODES)
-    u = (np.arange(PANELS)[:, np.newaxis] + x).ravel() / PANELS
-    return u, np.tile(w / PANELS, PANELS)
 
 
 # Constants of radiation of the SI of 2019, which are exact: c1 = 2 h c^2 and c2 = h c / k_B.

@@ -71,7 +71,6 @@ from mxeon.models.core.arrays import (
     at_least_0,
     at_most,
     below_1,
-    cube_root,
     fractional_power,
     hypot,
     root,
@@ -284,9 +283,9 @@ def eon_draw(mu_o: Array, S_o: Array, u1: Array, u2: Array, rho: Array, roughnes
     rest = xp.minimum(1.0 - u1, 1.0 - starts[3]) / (1.0 - starts[3])  # 1 - v of the flat part
     # Draw a cosine from each part, and keep the one chosen; the flat part has no cosine first.
     x = v[0] * mu_o * eon_cube_gap(mu_o, S_o)
-    lower = eon_lower_cosine(x, cube_root(1.0 - x))
+    lower = eon_lower_cosine(x, fractional_power(1.0 - x, 1.0 / 3.0))
     upper = eon_upper_cosine(fractional_power(v[1], 0.4), mu_o, eon_upper_limit(mu_o, S_o))
-    multiple = eon_multiple_cosine(cube_root(v[2]))
+    multiple = eon_multiple_cosine(fractional_power(v[2], 1.0 / 3.0))
     mu = xp.where(u1 < ends[0], lower, xp.where(u1 < ends[1], upper, multiple))
     S = root((1.0 - mu) * (1.0 + mu))
     is_towards, is_flat = (u1 < ends[1])[..., np.newaxis], (u1 >= ends[2])[..., np.newaxis]
@@ -595,22 +594,17 @@ def _cut_fraction(d: Array) -> Array:
     return 0.5 * d * d / (length * (1.0 + length))
 
 
-def cltc_clipped(u1: Array, u2: Array, d: Array) -> Array:
-    """Direction under the clamped cosine with d x + z >= 0: [Portsmouth2025], Listing 3."""
-    return _clipped(u1, 1.0 - u1, u2, d)
-
-
 def _draw(wo: Array, u1: Array, rest: Array, u2: Array, roughness: Array) -> tuple[Array, Array]:
     """`cltc_sample` of two random numbers; `rest` is 1 - u1, to all of its digits."""
     d = ltc_d(wo[..., 2], roughness)
-    wi, pdf = ltc_transformed(wo, _clipped(u1, rest, u2, d), roughness, d)
+    wi, pdf = ltc_transformed(wo, cltc_clipped(u1, rest, u2, d), roughness, d)
     # On the edge of the lune d x + z is zero up to rounding, of either sign.
     wi = stack_xyz(wi[..., 0], wi[..., 1], at_least_0(wi[..., 2]))
     return wi, pdf / cltc_kept_fraction(d)
 
 
-def _clipped(u1: Array, rest: Array, u2: Array, d: Array) -> Array:
-    """`cltc_clipped` where `rest` is 1 - u1.
+def cltc_clipped(u1: Array, rest: Array, u2: Array, d: Array) -> Array:
+    """Direction under the clamped cosine with d x + z >= 0, `rest` is 1 - u1: [Portsmouth2025], Listing 3.
 
     The chord at y has the half length c, c^2 = 1 - u1 + x^2, and x becomes c (1 - k) + k x. Then
 

@@ -311,11 +311,6 @@ def power(base: Array, exponent: Array) -> Array:
     return xp.where(steep, flat, xp.where(steep, 1.0, base) ** exponent)
 
 
-def cube_root(x: Array) -> Array:
-    """Cube root; where x is 0 its derivative counts as 0."""
-    return fractional_power(x, 1.0 / 3.0)
-
-
 def fractional_power(x: Array, exponent: float) -> Array:
     """x^exponent with an exponent in (0, 1); where x is 0 its derivative counts as 0."""
     xp = array_namespace(x)

@@ -98,7 +98,8 @@ def hemisphere_nodes(mu: Array | float, nodes: int) -> tuple[Array, Array, Array
 
 
 @lru_cache(maxsize=8)  # the rule takes longer than what it is used for
-def unit_rule(nodes: int) -> tuple[Array, Array]:
-    """Nodes and weights of Gauss-Legendre on [0, 1]."""
+def unit_rule(nodes: int, panels: int = 1) -> tuple[Array, Array]:
+    """Nodes and weights of Gauss-Legendre on [0, 1], in panels of equal width."""
     x, weight = np.polynomial.legendre.leggauss(nodes)
-    return 0.5 * (1.0 + x), 0.5 * weight
+    x = np.concatenate([k + 0.5 * (1.0 + x) for k in range(panels)]) / panels
+    return x, np.tile(0.5 * weight / panels, panels)

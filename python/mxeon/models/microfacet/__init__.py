@@ -95,7 +95,7 @@ class Pair:
 
 def compensation(pair: Pair) -> Array:
     """1 + F_ss (1 - E_ss) / E_ss: [MaterialX2026], Energy Compensation."""
-    return 1.0 + pair.curve.average(**pair.material) * missing(pair.wo[2], pair.roughness)
+    return 1.0 + pair.curve.average(**pair.material) * missing(pair)
 
 
 def uncompensated(pair: Pair) -> float:
@@ -108,9 +108,9 @@ def visibility(pair: Pair) -> Array:
     return ggx.visibility(pair.wo[2], pair.wi[2], ggx.mean_alpha(pair.roughness))
 
 
-def missing(mu_o: Array, roughness: Array) -> Array:
+def missing(pair: Pair) -> Array:
     """(1 - E_ss) / E_ss at alpha = sqrt(alpha_x alpha_y), to 1e-10."""
-    return missing_light(mu_o, ggx.mean_alpha(roughness))
+    return missing_light(pair.wo[2], ggx.mean_alpha(pair.roughness))
 
 
 @dataclass(frozen=True)

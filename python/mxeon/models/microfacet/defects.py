@@ -94,11 +94,6 @@ def _averaged(pair: Pair) -> Array:
     return schlick_average(*ends)
 
 
-def _missing(pair: Pair) -> Array:
-    """(1 - E_ss) / E_ss."""
-    return missing(pair.wo[2], pair.roughness)
-
-
 def _missing_at_mean(pair: Pair) -> Array:
     """(1 - E_ss) / E_ss at the arithmetic mean of both alphas."""
     return missing_light(pair.wo[2], 0.5 * (pair.roughness[0] + pair.roughness[1]))
@@ -112,7 +107,7 @@ def _missing_by_fit(pair: Pair) -> Array:
 
 
 def _compensated(
-    F: Callable[[Pair], Array], lost: Callable[[Pair], Array] = _missing
+    F: Callable[[Pair], Array], lost: Callable[[Pair], Array] = missing
 ) -> Callable[[Pair], Array]:
     """Compensation with F instead of its average F_ss, and (1 - E_ss) / E_ss."""
     return lambda pair: 1.0 + F(pair) * lost(pair)

@@ -41,7 +41,7 @@ from mxeon.models.core.arrays import (
     arcsine,
     array_namespace,
     at_most,
-    cube_root,
+    fractional_power,
     hypot,
     least_normal,
     like,
@@ -413,7 +413,7 @@ def _interpolated(mu: Array, alpha: Array) -> Array:
         rows = xp.tensordot(like(table, powers), powers, axes=1)
     rough = alpha > 0.0
     s = mu / xp.where(rough, mu + alpha, 1.0) * (1.0 + alpha)
-    value = chebyshev_sum(rows, cube_root(at_most(s, 1.0)))
+    value = chebyshev_sum(rows, fractional_power(at_most(s, 1.0), 1.0 / 3.0))
     return xp.where(rough, xp.maximum(value, 0.0), 0.0)  # a mirror misses nothing
 
 

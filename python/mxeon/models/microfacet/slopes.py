@@ -276,10 +276,7 @@ def _between(scale: Array, low: Array, high: Array) -> tuple[Array, Array]:
 
 def _crowded(panels: int, nodes: int, array: Array) -> tuple[Array, Array]:
     """Nodes and weights of [0, 1] along an axis before those of an array, as dense at its ends as squares."""
-    u, weight = unit_rule(nodes)
-    u = np.concatenate([k + u for k in range(panels)]) / panels
-    weight = np.tile(weight, panels) / panels
-    shape = (-1, *(1,) * array.ndim)
+    (u, weight), shape = unit_rule(nodes, panels), (-1, *(1,) * array.ndim)
     both = (u * u * (3.0 - 2.0 * u)).reshape(shape), (6.0 * u * (1.0 - u) * weight).reshape(shape)
     return like(both[0], array), like(both[1], array)
 
@@ -304,10 +301,8 @@ def _quadrants(scale: Array, isotropic: bool) -> tuple[Array, Array]:
 
 def _graded(scale: Array, length: Array) -> tuple[Array, Array]:
     """Nodes and weights of [0, length], denser towards 0 from `scale` on, along the first axis."""
-    xp, (x, weight) = array_namespace(length), unit_rule(NODES)
-    shape = (-1, *(1,) * (length.ndim - 1))
-    x = like((np.concatenate([k + x for k in range(PANELS)]) / PANELS).reshape(shape), length)
-    weight = like((np.concatenate([weight] * PANELS) / PANELS).reshape(shape), length)
+    xp, shape = array_namespace(length), (-1, *(1,) * (length.ndim - 1))
+    x, weight = (like(each.reshape(shape), length) for each in unit_rule(NODES, PANELS))
     extent = xp.asinh(length / scale)
     rise = xp.exp(extent * x)
     fall = 1.0 / rise

@@ -78,11 +78,13 @@ class MicrofacetLobe:
     def isotropic_albedo(self, wo: Array, inputs: Inputs) -> Array:
         return self.albedo(wo, isotropic(inputs))
 
+    def ends(self, wo: Array, inputs: Inputs) -> tuple[Array, Array | float]:
+        """F along the normal and at grazing."""
+        return self.fresnel(np.ones(len(wo)), inputs), inputs[self.edge] if self.edge else 1.0
+
     def fitted(self, wo: Array, inputs: Inputs) -> Array:
         """Albedo as MaterialX's throughput takes it, per channel and without a tint."""
-        F0 = self.fresnel(np.ones(len(wo)), inputs)
-        F90 = inputs[self.edge] if self.edge else 1.0
-        return layer_albedo(wo, inputs, F0, F90, self._at_view(wo, inputs))
+        return layer_albedo(wo, inputs, *self.ends(wo, inputs), self._at_view(wo, inputs))
 
     def indirect(self, wo: Array, inputs: Inputs) -> Array:
         """Albedo with the compensation of MaterialX's indirect branch: F at the view direction."""
@@ -90,9 +92,7 @@ class MicrofacetLobe:
 
     def averaged(self, wo: Array, inputs: Inputs) -> Array:
         """The same with the average of F by its ends, as in MaterialX after 1.39.5."""
-        F0 = self.fresnel(np.ones(len(wo)), inputs)
-        average = schlick_average(F0, inputs[self.edge] if self.edge else 1.0)
-        return self._compensated(wo, inputs, average)
+        return self._compensated(wo, inputs, schlick_average(*self.ends(wo, inputs)))
 
     def _compensated(self, wo: Array, inputs: Inputs, F: Array) -> Array:
         single = self.albedo(wo, isotropic(inputs), compensate=False)
@@ -273,9 +273,8 @@ def _environment(category: str, form: Form, wo: Array, inputs: Inputs) -> Array:
 
 def _fitted(lobe: MicrofacetLobe, form: Form, wo: Array, inputs: Inputs) -> Array:
     """Albedo of MaterialX's throughput: the bare lobe's fit, with F of the film at the view."""
-    F0 = lobe.fresnel(np.ones(len(wo)), inputs)
-    F90 = inputs[lobe.edge] if lobe.edge else 1.0
-    albedo = layer_albedo(wo, inputs, F0, F90, _reflectance(lobe.category, form, wo, inputs))
+    F = _reflectance(lobe.category, form, wo, inputs)
+    albedo = layer_albedo(wo, inputs, *lobe.ends(wo, inputs), F)
     return averaged_channels(albedo) if lobe.edge else albedo
 
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from mxeon.models.core.arguments import checked_choice
 from mxeon.models.core.arrays import Array
 from mxeon.models.core.colorimetry import XYZ_TO_REC709
 from mxeon.models.hair import (
@@ -267,6 +268,4 @@ UTILITIES = (
 def node(category: str) -> UtilityNode:
     """The row of UTILITIES of a category."""
     rows = {row.category: row for row in UTILITIES}
-    if category not in rows:
-        raise ValueError(f"category must be one of {', '.join(rows)}; got {category!r}")
-    return rows[category]
+    return rows[checked_choice("category", category, rows)]
