@@ -31,10 +31,11 @@ from mxeon.conformance.samples import (
     Mask,
     Values,
     directions,
+    float32,
     generator,
     rounded,
 )
-from mxeon.conformance.spec import LobeSpec, Spec, broadcast_inputs
+from mxeon.conformance.spec import POWER, LobeSpec, Spec, beside_rounding, broadcast_inputs
 from mxeon.conformance.specs.combinations import CombinedSpec
 from mxeon.conformance.specs.diffuse import (
     LOBE_VALUE,
@@ -77,6 +78,8 @@ if TYPE_CHECKING:
     from mxeon.shaders.generation import Shader
 
 WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
+LINEAR, SRGB_COLOR = 'colorspace="lin_rec709" version="', 'name="color" colorspace="srgb_texture"'
+POWERS = 1 << 12  # colors whose powers are measured
 NO_IMPLEMENTATION = "Could not find a matching implementation"
 Pairs: TypeAlias = tuple[Array, Array, Mask]  # wo, wi, and which of them are judged
 Families: TypeAlias = tuple[type[Spec], ...]
@@ -250,6 +253,8 @@ class Evaluating(Backend):
 
     @classmethod
     def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
+        if quantity == "color_space":
+            return sum_of(roundings(2 * 16, "of a color and the value it has, times the slope 2"))
         if quantity == "states" and "frame" in spec.errors:
             return sum_of(
                 spec.errors["frame"].term("a part in another frame"), roundings(12, "of six parts")
@@ -257,6 +262,10 @@ class Evaluating(Backend):
         return super().error(spec, quantity)
 
     def precision(self, quantity: str) -> tuple[Term, ...]:
+        if quantity == "color_space":
+            colors, power = float32(np.linspace(0.09, 1.0, POWERS)), float32(np.full(POWERS, 2.4))
+            errors = POWER.errors(self.host, colors, power)
+            return (Term(2.0 * beside_rounding(errors), "pow() as measured there, times 2"),)
         return () if isinstance(self.spec, self.unlit) else self.spec.engine(quantity, self.host)
 
     @cached_property
@@ -283,6 +292,12 @@ class Evaluating(Backend):
         """A shader of two lobes in one pixel."""
         text = cast(LobeSpec, self.spec).two_lobes()
         return self.host.compile(text, library=self.library)[0]
+
+    @cached_property
+    def decoded(self) -> Shader:
+        """The shader of a color in sRGB."""
+        text = self.spec.document({"color": WHITE}).replace('name="color"', SRGB_COLOR)
+        return self.host.compile(text.replace('version="', LINEAR), library=self.library)[0]
 
     def together(self, batch: Batch, irradiance: NDArray[np.float32] | None, two: bool) -> Array:
         """Light of several lights and of an environment in one pixel, from one lobe or from two."""
@@ -387,7 +402,7 @@ def _altered(batch: Batch) -> Batch:
 class Closures(Evaluating):
     """A host that returns closures; arguments have no errors, and no closure finds light."""
 
-    plain = ("lights", "environment", "inputs")
+    plain = ("lights", "environment", "shape", "inputs")
     sampled, fewer, unlit = ClosureSamples, FEW_CLOSURES, (LobeSpec,)
 
     def asked(self, asked: Asked, output: str, irradiance: NDArray[np.float32] | None) -> Array:

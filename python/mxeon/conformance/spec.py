@@ -220,6 +220,7 @@ class LobeSpec(ValueSpec):
     """A node that scatters light."""
 
     flat: ClassVar[bool] = False  # whether its values have no peak
+    curved: ClassVar[bool] = False  # whether they depend on how the surface bends
     # Axes of `checks.states` of which it has the first state alone.
     plain: ClassVar[tuple[str, ...]] = ()
 

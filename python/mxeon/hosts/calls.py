@@ -137,6 +137,11 @@ def bsdf_call(query: Query) -> BsdfCall:
         arguments = _surface_arguments(shader, before, inputs) | arguments
     else:
         ports = _ports(shader)
+        computed = _computed(text)
+        if any(f" {name} = " in computed for name in names):
+            names = [name for name in names if f" {name} = " not in computed]
+            names += [name for name in _words(computed) if name in ports]
+            statements = computed + statements
         arguments |= {name: _argument(name, ports, inputs) for name in names}
     return BsdfCall(statements, value, arguments)
 
@@ -197,14 +202,28 @@ def _graph_call(shader: Shader, wo: ArrayLike, inputs: Inputs) -> BsdfCall:
         raise InputError(
             f"element {shader.element!r} must call a uniform EDF; its shader calls none"
         )
-    before = re.split(r"\n *surfaceshader \w+ = ", text)[0]
-    # Slang's own main begins with its stage's inputs and outputs.
-    statements = re.split(r"\n\{\n|_vd;\n|float4 out1;\n", before)[-1]
-    ports = _ports(shader)
-    words = dict.fromkeys(re.findall(r"\w+", statements + color[1]))
+    statements, ports = _main(text), _ports(shader)
+    words = _words(statements + color[1])
     arguments: Arguments = {"V": ("vector3", wo)}  # of a graph that reads nothing
     arguments |= {name: _argument(name, ports, inputs) for name in words if name in ports}
     return BsdfCall(statements, color[1], arguments)
+
+
+@lru_cache(maxsize=16)
+def _main(text: str) -> str:
+    """The statements of a main before its surface."""
+    before = re.split(r"\n *surfaceshader \w+ = ", text)[0]
+    # Slang's own main begins with its stage's inputs and outputs.
+    return re.split(r"\n\{\n|_vd;\n|float4 out1;\n", before)[-1]
+
+
+def _computed(text: str) -> str:
+    """The same without properties of the surface: what nodes compute for a closure."""
+    return GEOMETRY.sub("", _main(text) + "\n")
+
+
+def _words(text: str) -> list[str]:
+    return list(dict.fromkeys(re.findall(r"\w+", text)))
 
 
 def _default(port: Input) -> ArrayLike:

@@ -29,7 +29,15 @@ from mxeon.conformance.check import (
     with_inputs,
     with_values,
 )
-from mxeon.conformance.diagnosis import ALBEDO, THROUGHPUT, TRANSMISSION, VALUE, Diagnosis, explain
+from mxeon.conformance.diagnosis import (
+    ALBEDO,
+    THROUGHPUT,
+    TRANSMISSION,
+    VALUE,
+    Comparison,
+    Diagnosis,
+    explain,
+)
 from mxeon.conformance.diagnosis.faults import DIRECT_FAULTS
 from mxeon.conformance.samples import (
     LEAST_COLOR82,
@@ -37,8 +45,10 @@ from mxeon.conformance.samples import (
     SLOPE,
     Array,
     Batch,
+    Candidate,
     Values,
     directions_at,
+    float32,
     sky_map,
 )
 from mxeon.conformance.spec import Spec
@@ -46,7 +56,7 @@ from mxeon.conformance.specs.combinations import SINGLE, CombinedSpec
 from mxeon.conformance.specs.diffuse import DiffuseModelSpec, DiffuseSpec, SurfaceLobe, model_value
 from mxeon.conformance.specs.emission import EmissionSpec, MediumSpec
 from mxeon.conformance.specs.hair import REGION, REGIONS, HairSpec
-from mxeon.conformance.specs.lobes import PbrSpec
+from mxeon.conformance.specs.lobes import FlatSpec, PbrSpec
 from mxeon.conformance.specs.microfacets import FacetSpec, FilmSpec, TransmissionSpec
 from mxeon.conformance.specs.subsurface import ON_SPHERES, RINGS, SubsurfaceSpec, inner, spread
 from mxeon.conformance.tolerance import (
@@ -62,6 +72,7 @@ from mxeon.conformance.tolerance import (
     sum_in,
 )
 from mxeon.hosts import HOSTS, front_lit_only
+from mxeon.io.srgb import srgb_decoded
 from mxeon.models import table as reference
 from mxeon.models.core.quadrature import hemisphere_nodes
 from mxeon.models.nodes.combinations import FACTOR
@@ -287,26 +298,32 @@ def sphere(case: Case) -> Iterator[Compared]:
         yield Compared(batch, case.measured(picture, batch), spread(batch))
 
 
-@check(
-    of_family(SubsurfaceSpec),
-    with_inputs("the mean free path is 0", radius=(0.0, 0.0, 0.0)),
-    "frame",
-    pairs=True,
-    lit=True,
-    diagnose="the curvature depends on the direction in which a surface bends",
-)
-def cylinder(case: Case) -> Compared:
-    """On a cylinder, light spreads alike, whichever way the axis runs on the screen.
+def in_srgb(case: Case) -> Iterator[Compared]:
+    """Values of colors in sRGB, against the engine's own of what they stand for."""
+    batch, evaluating = case.few[0].first(case.samples.counts.albedos), case.evaluating
+    ask = partial(evaluating.evaluate, branch="direct", shader=evaluating.decoded)
+    yield Compared(batch, np.pi * case.measured(ask, batch), of_decoded(case, batch))
 
-    Pixels in squares of 2 x 2 that bend along the columns, against the same along the rows.
-    """
-    batch = case.samples.take(case.of(SubsurfaceSpec).cylinder)
-    quarter = len(batch.wo) // 4
-    turned = np.arange(len(batch.wo)).reshape(2, quarter, 2).transpose(2, 1, 0).ravel()
-    there = case.evaluating.direct(batch.where(turned))
-    back = np.empty_like(there)
-    back[turned] = there
-    return Compared(batch, case.direct(batch), back)
+
+def of_decoded(case: Case, batch: Batch) -> Array:
+    linear = float32(srgb_decoded(batch.inputs["color"]))
+    return case.backend.direct(batch.altered(color=linear))
+
+
+COLOR_SPACE = Comparison(
+    "color_space",
+    in_srgb,
+    lambda case: (
+        Candidate("the color, decoded from sRGB", partial(of_decoded, case)),
+        Candidate("the color, not decoded from sRGB", case.backend.direct),
+    ),
+)
+
+
+@check(of_family(DiffuseSpec, FlatSpec), gray, COLOR_SPACE, pairs=True)
+def color_space(case: Case) -> Iterable[Compared]:
+    """A color in sRGB has the value of the linear color that it stands for."""
+    return COLOR_SPACE(case)
 
 
 def opaque_values(case: Case, branch: str) -> Iterator[Compared]:

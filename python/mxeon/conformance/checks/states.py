@@ -7,7 +7,7 @@ values of the parts are the expected ones, so a wrong model passes, and a failur
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from itertools import combinations, product
 
 import numpy as np
@@ -16,17 +16,28 @@ from mxeon.conformance.backends import joined
 from mxeon.conformance.case import Case
 from mxeon.conformance.check import check, with_batch
 from mxeon.conformance.diagnosis import Diagnosis, not_finite
-from mxeon.conformance.samples import Array, Batch, Values, generator, rounded, sky_map
+from mxeon.conformance.samples import (
+    Array,
+    Batch,
+    Values,
+    aimed,
+    float32,
+    generator,
+    rounded,
+    sky_map,
+)
 from mxeon.conformance.spec import LobeSpec, broadcast_inputs
 from mxeon.conformance.tolerance import Compared
 from mxeon.hosts.calls import LIGHTS, NORMAL, SECOND_LIGHT, SKY, TANGENT
 
-EACH = 12  # pixels of a combination of states
-FRAME = ("normal", "tangent")
+EACH = 12  # pixels of a combination of states: three squares of 2 x 2 of a frame of two rows
+STEP = 0.05  # radian from pixel to pixel of a surface that bends, whose radius is 1
+FRAME = ("normal", "tangent", "position")
 WEIGHTS = (0.0, 0.3, 1.0, 1.0)
 CLEARER = 0.7  # share of the pixels of one state that those of two may have to be named instead
 Inputs = Mapping[str, Array]
 Random = np.random.Generator
+Layout = tuple[tuple[int, ...], tuple[int, ...]]  # shape and order of axes of a list of pixels
 
 
 @dataclass(frozen=True)
@@ -95,6 +106,30 @@ def _axes(frames: Array) -> Array:
     )
 
 
+def _shape(columns: float = 0.0, rows: float = 0.0) -> Build:
+    """A surface that bends in each square by so many radian from column to column and from row to row."""
+
+    def build(pixels: Pixels, rng: Random) -> Pixels:
+        batch, pixel = pixels.batch, np.arange(EACH)
+        assert batch.frame is not None
+        first, column, row = pixel // 4 * 4, pixel % 2, pixel // 2 % 2
+        axes = [batch.inputs[name][first, :, np.newaxis] for name in ("normal", "tangent")]
+        frame = np.concatenate([batch.frame[first], *axes], axis=2)
+        local = np.stack([np.sin(columns * column), np.sin(rows * row), 0.0 * row], axis=1)
+        local[:, 2] = np.sqrt(1.0 - (local**2).sum(axis=1))
+        flat = STEP * np.stack([column * (not columns), row * (not rows), 0 * row], axis=1)
+        up, place = (
+            (frame[:, :, :3] @ each[:, :, np.newaxis])[:, :, 0] for each in (local, local + flat)
+        )
+        frame = aimed(frame, frame[:, :, 2], up)
+        inputs = dict(
+            zip(FRAME, map(float32, (frame[:, :, 3], frame[:, :, 4], place)), strict=True)
+        )
+        return replace(pixels, batch=replace(batch.altered(**inputs), frame=frame[:, :, :3]))
+
+    return build
+
+
 def _lobes(component: bool = False, differ: bool = True, swapped: bool = False) -> Build:
     """Another lobe, which differs in one input of each pixel, or in one component of it."""
 
@@ -150,6 +185,12 @@ AXES: dict[str, dict[str, Build]] = {
         "the normal on an axis": _frame(_axes),
         "the normal on an axis: the view along it": _frame(_axes, along=True),
     },
+    "shape": {
+        "a plane": _shape(),
+        "a surface that bends: along the columns": _shape(columns=STEP),
+        "a surface that bends: along the rows": _shape(rows=STEP),
+        "a surface that bends: a sphere": _shape(STEP, STEP),
+    },
     "lobes": {
         "one lobe": _plain,
         "two lobes: equal": _lobes(differ=False),
@@ -169,14 +210,19 @@ def covering(axes: tuple[tuple[str, ...], ...]) -> tuple[tuple[str, ...], ...]:
     >>> covering((("a", "b"), ("x", "y"), ("1",)))
     (('a', 'x', '1'), ('b', 'y', '1'), ('a', 'y', '1'), ('b', 'x', '1'))
     """
-    pairs = [pair for one, other in combinations(axes, 2) for pair in product(one, other)]
-    bits = {pair: 1 << number for number, pair in enumerate(pairs)}
-    rows = {row: sum(bits[pair] for pair in combinations(row, 2)) for row in product(*axes)}
-    waiting, found = sum(bits.values()), []
-    while waiting:
-        best = max(rows, key=lambda row: (rows[row] & waiting).bit_count())
-        found.append(best)
-        waiting &= ~rows[best]
+    sizes = [len(axis) for axis in axes]
+    rows = np.array(list(product(*map(range, sizes))))
+    meet = [
+        np.eye(sizes[one] * sizes[other], dtype=bool)[rows[:, one] * sizes[other] + rows[:, other]]
+        for one, other in combinations(range(len(axes)), 2)
+    ]
+    pairs, found = np.concatenate(meet, axis=1), []
+    gain, waiting = pairs.sum(axis=1), np.ones(pairs.shape[1], bool)
+    while waiting.any():
+        best = int(gain.argmax())
+        found.append(tuple(axis[state] for axis, state in zip(axes, rows[best], strict=True)))
+        gain -= pairs[:, pairs[best] & waiting].sum(axis=1)
+        waiting &= ~pairs[best]
     return tuple(found)
 
 
@@ -187,8 +233,11 @@ def pixels_of(case: Case) -> list[Pixels]:
     rows = covering(axes)
     turned = case.samples.turned
     batch = turned.where(np.arange(EACH * len(rows)) % len(turned.wo))
+    if case.lobe.curved:  # else no light leaves elsewhere
+        batch = batch.altered(**case.lobe.random_inputs(rng, len(batch.wo)))
     if "weight" in case.spec.names:
-        batch = batch.altered(weight=rng.choice(WEIGHTS, len(batch.wo)))
+        # The same in a square: where a lobe is left, derivatives have no values.
+        batch = batch.altered(weight=np.repeat(rng.choice(WEIGHTS, len(batch.wo) // 4), 4))
     found = []
     for number, states in enumerate(rows):
         part = batch.where(slice(EACH * number, EACH * (number + 1)))
@@ -214,19 +263,33 @@ exchanged = with_batch(
 def states(case: Case) -> Iterator[Compared]:
     """Lights, environments and lobes add up in a pixel, in every frame, whether inputs vary or not."""
     groups = pixels_of(case)
-    drawn: dict[tuple[bool, str, int], list[int]] = {}  # together; constant inputs by themselves
+    frames: dict[tuple[bool, str, int], list[int]] = {}  # together; constant inputs by themselves
     for number, pixels in enumerate(groups):
         alone = number if "constant inputs" in pixels.states else -1
         key = pixels.second is not None, "uneven" * (pixels.sky == "uneven"), alone
-        drawn.setdefault(key, []).append(number)
+        frames.setdefault(key, []).append(number)
     measured: dict[int, Array] = {}
-    for (two, uneven, _), numbers in drawn.items():
+    for (two, uneven, _), numbers in frames.items():
         batch = joined([asked(groups[number]) for number in numbers])
         sky = sky_map() if uneven else None
-        values = case.outputs(batch, case.evaluating.together(case.inputs(batch), sky, two))
+        ask = partial(case.evaluating.together, irradiance=sky, two=two)
+        values = case.outputs(batch, drawn(case.inputs(batch), ask, SQUARES))
         measured |= zip(numbers, np.split(values, len(numbers)), strict=True)
     for number, (pixels, expected) in enumerate(zip(groups, sums(case, groups), strict=True)):
         yield Compared(pixels.batch, measured[number], expected)
+
+
+# How pixels lie in a frame of two rows: each four in a square of 2 x 2, the same turned, or far from each other.
+SQUARES, TURNED, APART = ((-1, 2, 2), (1, 0, 2)), ((-1, 2, 2), (2, 0, 1)), ((-1, EACH), (1, 0))
+
+
+def drawn(batch: Batch, ask: Callable[[Batch], Array], layout: Layout) -> Array:
+    """Values of pixels in a layout."""
+    shape, axes = layout
+    order = np.arange(len(batch.wo)).reshape(shape).transpose(axes).ravel()
+    found = np.empty_like(batch.wo)
+    found[order] = ask(batch.where(order))
+    return found
 
 
 def asked(pixels: Pixels) -> Batch:
@@ -246,7 +309,13 @@ def asked(pixels: Pixels) -> Batch:
 
 
 def sums(case: Case, groups: Sequence[Pixels]) -> list[Array]:
-    """Sums of the parts of pixels, each by itself and in the surface's frame; under an uneven sky in its own."""
+    """Sums of the parts of pixels, each by itself, and beside pixels with other inputs.
+
+    They are on a plane in the surface's frame, but under an uneven sky. Where a shape changes them, they are on
+    the same shape, which bends the other way on the screen.
+    """
+    curved = case.lobe.curved
+    layout = TURNED if curved else APART
     found = [np.zeros_like(pixels.batch.wo) for pixels in groups]
     parts: dict[str, list[tuple[int, Batch]]] = {}
     for number, pixels in enumerate(groups):
@@ -255,8 +324,11 @@ def sums(case: Case, groups: Sequence[Pixels]) -> list[Array]:
                 continue
             own = replace(pixels.batch, inputs=inputs)
             own = replace(own, inputs=broadcast_inputs(own))
-            flat = replace(own.altered(normal=NORMAL, tangent=TANGENT), frame=None)
-            flat = replace(flat, inputs=broadcast_inputs(flat))
+            flat = own
+            if not curved:
+                place = zip(FRAME, (NORMAL, TANGENT, (0.0, 0.0, 0.0)), strict=True)
+                axes = {name: np.broadcast_to(each, own.wo.shape) for name, each in place}
+                flat = replace(own.altered(**axes), frame=None)
             for light in (own.wi, pixels.light)[: pixels.lights]:
                 parts.setdefault("light", []).append((number, replace(flat, wi=light)))
             if pixels.sky:
@@ -265,10 +337,11 @@ def sums(case: Case, groups: Sequence[Pixels]) -> list[Array]:
     for kind, rows in parts.items():
         batch = joined([each for _, each in rows])
         if kind == "light":
-            values = case.backend.direct(batch)
+            values = drawn(batch, case.backend.direct, layout)
         else:
             sky = sky_map() if kind == "uneven" else None
-            values = case.backend.albedo(batch, sky) + case.evaluating.transmitted(batch, sky)
+            values = drawn(batch, partial(case.backend.albedo, irradiance=sky), layout)
+            values += drawn(batch, partial(case.evaluating.transmitted, radiance=sky), layout)
         for (number, _), each in zip(rows, np.split(values, len(rows)), strict=True):
             found[number] += each
     return found

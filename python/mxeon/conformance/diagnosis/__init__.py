@@ -17,6 +17,7 @@ from mxeon.conformance.case import (
     dead_inputs,
     edge_values,
     frames,
+    over_condition,
     throughputs,
     values,
 )
@@ -118,8 +119,14 @@ def explain(
         distances = {fault.text: _distance(short, own, fault, tolerance) for fault in faults}
         if text := _fault(distances, models, own.title, tolerance.value):
             return Diagnosis(text, models)
-    text = _model(case, cases, ranking, own.title, tolerance, measure)
     nearest = next(each for each in candidates if each.title == ranking[0][0])
+    # What is near on average may be far off where values are wrong.
+    near, far = (
+        max(tolerance.metric(each.measured, model.values(each.batch)).max() for each in short)
+        for model in (nearest, own)
+    )
+    explains = nearest is not own and near <= max(tolerance.value, SAME * far)
+    text = _model(case, cases, ranking, own.title, tolerance, measure, explains)
     permitted = nearest.permitted and all(
         tolerance.metric(each.measured, nearest.values(each.batch)).max() <= tolerance.value
         for each in cases
@@ -172,13 +179,16 @@ def _model(
     own: str,
     tolerance: Tolerance,
     measure: Measure | None,
+    explains: bool,
 ) -> str:
-    """The closest model, the region that is wrong, or that no model is close."""
+    """The closest model, which may explain every wrong value, the region that is wrong, or that no model is close."""
+    if isinstance(case.spec, EmissionSpec):  # whose checks count errors so, too
+        cases = [over_condition(case, each) for each in cases]
     errors = [tolerance.metric(case.measured, case.expected) for case in cases]
     wrong: list[Mask] = [error > tolerance.value for error in errors]
     (first, least), (_, rival) = ranking[:2]
     # Another model explains all.
-    if first != own and least <= max(tolerance.value, SAME * rival):
+    if explains and least <= max(tolerance.value, SAME * rival):
         flags = (
             f", as with {FLAG} {str(spec.flag).lower()}"
             for spec in DIFFUSE
@@ -190,9 +200,9 @@ def _model(
     place = region([case.batch for case in cases], wrong)
     if place or not any(map(np.any, wrong)):
         return place or SINGLY_RIGHT
-    if first != own and least <= NEAR * rival:
-        return sentence(ranking)
     place, values = span(cases, tolerance), ""
+    if first != own and least <= NEAR * rival:
+        return f"{_all(wrong, place)}; {sentence(ranking)}" if place else sentence(ranking)
     bad = np.concatenate(wrong)
     if not place and measure and np.count_nonzero(bad) >= WORST and bad.mean() < 0.5:
         cures = _cures(case, cases, errors, tolerance, measure)
@@ -209,8 +219,13 @@ def _model(
     share = f"{100.0 * np.concatenate(wrong).mean():.3g} % of the pairs"
     index = int(np.argmax([error.max() for error in errors]))
     row, batch = int(errors[index].argmax()), cases[index].batch
-    light = f" and a light cosine of {batch.wi[row, 2]:.2g}" * ("albedo" not in tolerance.unit)
+    lit = "albedo" not in tolerance.unit and not isinstance(case.spec, EmissionSpec)
+    light = f" and a light cosine of {batch.wi[row, 2]:.2g}" * lit
     place = f"at a view cosine of {batch.wo[row, 2]:.2g}{light}"
+    if measure and case.backend.any_pairs:
+        same = list(measure(replace(case, asked=(batch.where(np.full(4, row)),))))
+        if all(tolerance.metric(*each[1:]).max() <= tolerance.value for each in same):
+            return f"wrong for {share}; the worst are right beside pixels with the same inputs"
     if isinstance(case.spec, PLACELESS):
         point = point_of(batch, row)
         numbers = (

@@ -117,9 +117,8 @@ def _parts(name: str, columns: Array, wrong: Mask) -> Iterator[tuple[str, Array]
 def _is_no_chance(mask: Mask, bad: Mask) -> bool:
     """Whether the wrong values would hardly all lie in a range if they were any others."""
     share = max(float(mask.mean()), 1.0 / mask.size)
-    return bool(
-        bad[mask].mean() >= DENSITY and -np.log(share) * (bad.any(axis=1).sum() - 1) >= CHANCE
-    )
+    odds = -np.log(share) * (bad.any(axis=1).sum() - 1)
+    return bool(odds * min(bad[mask].mean() / DENSITY, 1.0) >= CHANCE)
 
 
 def _short(number: float) -> str:

@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property, partial
 from operator import itemgetter
 from typing import TypeAlias
+from zlib import crc32
 
 import MaterialX as mx
 import numpy as np
@@ -79,9 +80,10 @@ class Graph:
         emits: bool = True,  # whether emission and opacity count
         measure: Measure
         | None = None,  # values of nodes without a function; None: they are not run
+        marked: bool = False,  # whether lobes and volumes have marks of their inputs instead of values
     ) -> None:
         self._document, self._points, self._inputs = document, points, inputs or {}
-        self._emits, self._measure = emits, measure
+        self._emits, self._measure, self._marked = emits, measure, marked
         self.measured: dict[str, None] = {}  # inputs, each behind the name of its node
         self.lobes: list[ShownLobe] = []
         self._shader: Path | None = None  # the surface shader that is a nodegraph
@@ -145,6 +147,9 @@ class Graph:
         if category == "image":
             value = self._image(node)
             return lambda: value, ()
+        if self._marked and category in VOLUMES:
+            names = tuple(port.getName() for port in definition(node).getActiveInputs())
+            return partial(_marks, node, names), self._sources(path, names)
         if category in self._operations:
             ports, operation = self._operations[category]
             sources = self._sources(path, ports)
@@ -172,7 +177,13 @@ class Graph:
             return known
         unlit = ("emission", "emission_color", "opacity")
         known["surface_unlit"] = unlit, lambda strength, color, opacity: strength * color * opacity
-        if self._emits:
+        if self._marked:
+            own = ("bsdf", "edf", "opacity", "thin_walled")
+            known["surface"] = (
+                own,
+                lambda bsdf, edf, opacity, thin: (bsdf.value + edf) * opacity + np.float64(thin),
+            )
+        elif self._emits:
             lit = ("bsdf", "edf", "opacity")
             known["surface"] = lit, lambda bsdf, edf, opacity: (bsdf.value + edf) * opacity
         else:
@@ -198,6 +209,8 @@ class Graph:
         names = tuple(port.getName() for port in definition(node).getActiveInputs())
 
         def lobe(*values: Array) -> Bsdf:
+            if self._marked:
+                return _marked_lobe(node, names, *values)
             inputs = dict(zip(names, values, strict=True))
             if np.any(inputs.get("weight", 1.0)):
                 self.lobes.append(ShownLobe(node.getCategory(), inputs))
@@ -218,7 +231,7 @@ class Graph:
         if category == "layer":
             self._tops.append(self._source(path, "top"))
             if definition(node).getActiveInput("base").getType() != "BSDF":
-                if self._points.behind:
+                if self._points.behind or self._marked:
                     return over_volume, self._sources(path, ports)
                 if not self._points.round:
                     self._assert_empty(path)
@@ -382,6 +395,29 @@ class Graph:
             )
         read = values[:, :channels]
         return _linear(file, read) if channels == 3 else read
+
+
+def _marks(node: mx.Node, names: tuple[str, ...], *values: Value) -> Array:
+    """Numbers in [0.1, 0.9] that stand for all inputs of a node which are not its defaults, (N, 3) or (3,)."""
+    phase = np.zeros(3)
+    for name, value in zip(names, values, strict=True):
+        port = definition(node).getActiveInput(name)
+        default = plain(port.getValue())
+        if isinstance(value, str):
+            name, value, default = f"{name} {value}", np.asarray(value != default), None
+        offset = np.atleast_1d(np.asarray(value, np.float64))
+        if default is not None and not port.hasDefaultGeomPropString():
+            offset = offset - np.asarray(default, np.float64)
+        rng = np.random.default_rng(crc32(f"{node.getCategory()} {name}".encode()))
+        phase = phase + offset @ rng.uniform(0.5, 1.5, (offset.shape[-1], 3))
+    return 0.5 + 0.4 * np.sin(phase)
+
+
+def _marked_lobe(node: mx.Node, names: tuple[str, ...], *values: Array) -> Bsdf:
+    marks = _marks(node, names, *values)
+    weight = np.reshape(dict(zip(names, values, strict=True)).get("weight", np.ones(1)), (-1, 1))
+    shown = weight * np.where(weight, marks, 0.0)  # without a weight an input may be no number
+    return Bsdf(shown, 1.0 - shown[..., ::-1])
 
 
 def _radiance(

@@ -12,7 +12,6 @@ import numpy as np
 from mxeon.conformance.reference.graph import Graph
 from mxeon.conformance.reference.nodes import OPERATIONS, ShadingPoints, plain
 from mxeon.conformance.samples import Array, Batch
-from mxeon.errors import OutsideModel
 from mxeon.hosts.calls import NORMAL, TANGENT
 from mxeon.shaders.released_graphs import RELEASES, differences, digest, installed, said
 
@@ -40,11 +39,10 @@ class Graphs:
         """Whether both say the same, so that their values are equal."""
         return self._said == self._says(self.right)
 
-    def values(self, batch: Batch, behind: bool, right: bool = False) -> Array:
-        """What a surface shader scatters from a light, and emits, or transmits from an environment, (N, 3).
+    def values(self, batch: Batch, right: bool = False) -> Array:
+        """What a surface shader makes of marks that stand for the inputs of its lobes, and emits, (N, 3).
 
-        An input that is NaN has the default of the definition. The result is NaN where a
-        lobe gets inputs that it does not have.
+        An input that is NaN has the default of the definition.
         """
         document = self.right if right else self.own
         definition, inputs = document.getNode(SHADER).getNodeDef(), {}
@@ -56,12 +54,8 @@ class Graphs:
                     rows = np.reshape(given, (len(batch.wo), -1))
                     inputs[name] = np.where(np.isnan(rows), default, rows)
         normal, tangent = (np.broadcast_to(axis, batch.wo.shape) for axis in (NORMAL, TANGENT))
-        wi = None if behind else batch.wi
-        points = ShadingPoints(batch.wo, wi, 1.0, normal, tangent, round=True, behind=behind)
-        try:
-            found = Graph(document, points, inputs).element(SHADER)
-        except (OutsideModel, ValueError):
-            found = np.full(3, np.nan)
+        points = ShadingPoints(batch.wo, batch.wi, 1.0, normal, tangent)
+        found = Graph(document, points, inputs, marked=True).element(SHADER)
         return np.array(np.broadcast_to(found, batch.wo.shape))
 
     @property

@@ -414,7 +414,7 @@ class TransmissionSpec(FacetSpec):
     """A node of `mxeon.models.nodes.microfacets`."""
 
     # In another frame a rounding decides about what total reflection takes from a sum of refractions.
-    plain = ("frame",)
+    plain = ("frame", "shape")
 
     @property
     def functions(self) -> Transmission:

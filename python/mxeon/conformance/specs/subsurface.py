@@ -13,8 +13,6 @@ from mxeon.conformance.samples import (
     Candidate,
     Counts,
     Values,
-    generator,
-    turned_directions,
 )
 from mxeon.conformance.spec import ZERO, Input, broadcast_inputs
 from mxeon.conformance.specs.lobes import COLOR, FLAT_ERRORS, NORMAL, WEIGHT, FlatSpec
@@ -31,7 +29,6 @@ MATERIALS: tuple[Values, ...] = (  # from one whose light is everywhere to one l
     {"color": (0.9, 0.6, 0.3), "radius": (0.5, 0.2, 0.05), "anisotropy": -0.5},
     {"color": (0.4, 0.7, 1.0), "radius": (0.02, 0.1, 1.0), "anisotropy": 0.5},
 )
-STEP = 0.05  # radian from pixel to pixel of a cylinder of radius 1
 # What may stand in the place of the radius, and of the far exponential's length, which is 3.
 EVEN = (0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.0)
 FARTHER = (1.0, 1.5, 2.0, 2.5, 4.0, 5.0, 6.0, 9.0, 12.0)
@@ -46,7 +43,7 @@ RINGS_MEAN = given(
 class SubsurfaceSpec(FlatSpec):
     """The node on a plane, where its radius and its anisotropy have no effect, and on a sphere."""
 
-    plain = ("frame",)  # frames that turn from pixel to pixel are a curved surface
+    curved = True
 
     @property
     def others(self) -> tuple[Candidate, ...]:
@@ -56,21 +53,6 @@ class SubsurfaceSpec(FlatSpec):
     def turned(self, counts: Counts) -> Batch:
         """Pairs in frames of their own, which no light leaves elsewhere: such a surface is not flat."""
         return super().turned(counts).altered(radius=(0.0, 0.0, 0.0))
-
-    def cylinder(self, counts: Counts) -> Batch:
-        """Pixels of squares of 2 x 2 of a frame of two rows, which are points of a cylinder along the rows."""
-        rng, quads = generator(), counts.few // 4
-        angle = rng.uniform(-0.5, 0.5, quads)
-        pixel = np.arange(4 * quads)
-        row, quad, column = pixel // (2 * quads), pixel % (2 * quads) // 2, pixel % 2
-        bent = angle[quad] + STEP * row
-        zero = np.zeros(len(bent))
-        normal = np.stack([zero, np.sin(bent), np.cos(bent)], axis=1)
-        position = normal + np.stack([STEP * column, zero, zero], axis=1)
-        inputs = {name: values[quad] for name, values in self.random_inputs(rng, quads).items()}
-        wi = turned_directions(rng, quads)[quad]
-        wo = np.broadcast_to(VIEW, wi.shape)
-        return Batch(wo, wi, {**inputs, "normal": normal, "position": position})
 
     def spheres(self, counts: Counts) -> tuple[Batch, ...]:
         """Points of a sphere under each light, for some materials."""

@@ -186,7 +186,7 @@ PREVIEW = Lobes(
 )
 
 
-GRAPHS = 32  # pairs by which a graph is compared with another
+GRAPHS = 64  # pairs by which a graph is compared with another
 LEAST, LARGEST = 0.05, 2.0  # of their inputs: no transmittance is 0, and no emission hides the rest
 OFTEN, SELDOM = 0.75, 0.5  # shares of them that set an input, and one of `further`
 CHANGED = 8  # pairs that a change of an input has to show in
@@ -216,7 +216,7 @@ STATES = sum_of(roundings(32, "of the same parts in two programs"))
 class SurfaceShaderSpec(LobeSpec):
     """A surface shader with every lobe on."""
 
-    plain = ("frame", "lobes")
+    plain = ("frame", "shape", "lobes")
 
     table: Lobes
     library: str = "eonlib"  # whose document the reference evaluates
@@ -317,23 +317,24 @@ class SurfaceShaderSpec(LobeSpec):
         return _isotropic(Batch(wo, wo, self.special_inputs(rng, count)))
 
     def drawn(self, counts: Counts) -> Batch:
-        """Pairs with every input of the node, a quarter lit from below; NaN stands for a default."""
+        """Pairs with every input of the node; NaN stands for a default."""
         rng, pairs = generator(), self.batches(counts)[0].first(GRAPHS)
         count = len(pairs.wo)
         inputs = {**pairs.inputs, **draw(rng, count, self.table.others)}
         inputs = {name: np.maximum(each, LEAST) for name, each in inputs.items()}
         for name, value in self.further.items():
             values = np.repeat(np.minimum(np.asarray([value], float), LARGEST), count, 0)
-            colored = value == CHANGED_COLOR
-            inputs[name] = np.maximum(rng.random((count, 3)), LEAST) if colored else values
+            if value == CHANGED_COLOR:
+                values = np.maximum(rng.random((count, 3)), LEAST)
+            elif isinstance(value, float):
+                values *= rng.choice((LEAST, 1.0), count)  # near a threshold at 0
+            inputs[name] = values
         for name in self.table.unseen:
             share = rng.random(count)
             inputs[name] = np.floor(3.0 * share) if name == "alpha_mode" else share
         for name, values in inputs.items():
             values[rng.random(count) > (SELDOM if name in self.further else OFTEN)] = np.nan
-        wi = np.array(pairs.wi)
-        wi[1::4, 2] *= -1.0
-        return replace(pairs, wi=wi, inputs=inputs)
+        return replace(pairs, inputs=inputs)
 
     def films(self, counts: Counts) -> Batch:
         """Some of the pairs, under random films."""
