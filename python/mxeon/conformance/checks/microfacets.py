@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mxeon.conformance import diagnosis
-from mxeon.conformance.backends import WHITE
 from mxeon.conformance.case import SCATTERING, Case, dead_inputs
 from mxeon.conformance.check import (
     check,
@@ -124,16 +123,16 @@ def shape(case: Case) -> Compared:
     return Compared(batch, measured, expected).where(lit)
 
 
-def _clear(batch: Batch) -> Batch:
+def _clear(batch: Batch, index: float = LEAST_DIVIDED, least_82: float = LEAST_COLOR82) -> Batch:
     """A batch without curves of which float32 cannot hold F: its terms cancel.
 
     These are dielectrics whose index is near 1, and deep dips at 82 degrees, which turn F negative.
     """
     changes: dict[str, ArrayLike] = {}
     if np.ndim(batch.inputs.get("ior", 0.0)) == 1:
-        changes["ior"] = np.maximum(batch.inputs["ior"], LEAST_DIVIDED)
+        changes["ior"] = np.maximum(batch.inputs["ior"], index)
     if "color82" in batch.inputs:
-        changes["color82"] = np.maximum(batch.inputs["color82"], LEAST_COLOR82)
+        changes["color82"] = np.maximum(batch.inputs["color82"], least_82)
     return batch.altered(**changes)
 
 
@@ -248,7 +247,8 @@ def diagnose_transmitted(case: Case) -> Diagnosis:
     compared, spec = list(transmitted(case)), case.of(TransmissionSpec)
 
     def distance(found: Callable[[Compared], Array]) -> float:
-        return float(np.sqrt(np.mean(np.concatenate([_squares(c, found(c)) for c in compared]))))
+        errors = [(each.measured - found(each))[np.isfinite(each.measured)] for each in compared]
+        return float(np.sqrt(np.mean(np.concatenate(errors) ** 2)))
 
     distances = {
         f"{SEEN}, divided by G_1 of the view": distance(lambda c: _seen(spec, c.batch, True)),
@@ -257,12 +257,6 @@ def diagnose_transmitted(case: Case) -> Diagnosis:
     words = min(distances, key=lambda name: distances[name])
     known = distances[words] < max(NEAR * distance(lambda c: c.expected), SUMMED)
     return Diagnosis("; ".join(filter(None, (words if known else "", not_finite(compared)))))
-
-
-def _squares(compared: Compared, expected: Array) -> Array:
-    """Squared errors of the values that are finite."""
-    known = np.isfinite(compared.measured)
-    return np.asarray((compared.measured - expected)[known] ** 2)
 
 
 def _seen(spec: TransmissionSpec, batch: Batch, masked: bool = False) -> Array:
@@ -506,7 +500,8 @@ def film_limit(case: Case) -> list[Compared]:
     A film of an index below that of vacuum counts as one of index 1, whatever that one does. Under a thin
     one the sensitivities count, of five digits, whose sum is not 1: as much as in the equations is right.
     """
-    batch = _compared(case)
+    # Under a film Schlick's curve has no dip: where that is negative, a film's counts as 0.
+    batch = _clear(case.few[0], LEAST_INDEX, 1.0).altered(thinfilm_thickness=300.0)
     without = batch.altered(thinfilm_thickness=0.0)
     bare = case.direct(without)
     empty, rare = (case.direct(batch.altered(thinfilm_ior=index)) for index in (1.0, RARE))
@@ -516,20 +511,6 @@ def film_limit(case: Case) -> list[Compared]:
         sensed = case.expected(thin) - case.expected(without)
         cases.append(Compared(batch, case.direct(thin), bare + sensed))
     return cases
-
-
-def _compared(case: Case) -> Batch:
-    """Random pairs with a film, whose substrate float32 can tell from vacuum.
-
-    Schlick's curve has no dip at 82 degrees: where that is negative, a film's counts as 0.
-    """
-    batch = case.few[0]
-    changes: dict[str, ArrayLike] = {"thinfilm_thickness": 300.0}
-    if "tint" in batch.inputs:
-        changes["ior"] = np.maximum(batch.inputs["ior"], LEAST_INDEX)
-    if "color82" in batch.inputs:
-        changes["color82"] = WHITE
-    return batch.altered(**changes)
 
 
 @check(is_film, with_values("values under a film are 100 times as large", brighter), lit=True)
