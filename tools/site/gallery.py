@@ -3,23 +3,27 @@
 
 python -m tools.site.gallery           the pictures, their differences, and gallery.md
 python -m tools.site.gallery --page    gallery.md alone
+python -m tools.site.gallery --traced FOLDER    the path-traced ones, of documents in a folder
 """
 
 import json
 import sys
-from contextlib import suppress
+import warnings
+from contextlib import closing, suppress
 from dataclasses import replace
+from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 from PIL import Image
 
+from mxeon.conformance.reference import Host as Reference
 from mxeon.errors import DocumentError
-from mxeon.hosts import open_host
+from mxeon.hosts import open_host, path_tracer
 from mxeon.hosts.points import visible
 from mxeon.io.images import write_exr
 from mxeon.io.srgb import srgb_encoded
-from mxeon.shaders.scene import FURNACE, STUDIO
+from mxeon.shaders.scene import FURNACE, SIDE, STUDIO, Paths, Scene
 from tools.site import DOCS
 
 PAGE = DOCS / "gallery.md"
@@ -50,24 +54,15 @@ it vanishes if no energy is lost or gained. Nothing casts a shadow here.
 TRACED = """
 ## Path traced
 
-Three of [MaterialX's examples](https://github.com/AcademySoftwareFoundation/MaterialX/tree/main/resources/Materials/Examples):
-the rasterizer's picture on the left, [paths of light](path_tracing.md) on the right, with the ball's
-shadows and reflections of itself.
+Three of [MaterialX's examples](https://github.com/AcademySoftwareFoundation/MaterialX/tree/main/resources/Materials/Examples).
+A sphere with a light and an even environment: the rasterizer, the float64 reference, and [paths of light](path_tracing.md).
+Then paths on the shader ball in the studio, with its shadows and its reflections of itself.
 
-![carpaint](images/gallery/traced_carpaint.webp)
-
-*standard_surface_carpaint: 32 paths a pixel, 9.9 % noise.*
-
-![glass](images/gallery/traced_glass.webp)
-
-*standard_surface_glass: 40 paths a pixel, 12 % noise.*
-
-![velvet](images/gallery/traced_velvet.webp)
-
-*open_pbr_velvet: 32 paths a pixel, 9 % noise.*
-
-    mxeon render standard_surface_glass.mtlx --integrator path --size 192 --samples 40 --output glass.png
+{}
+    mxeon render standard_surface_glass.mtlx --integrator path --size 192 --samples {} --output glass.png
 """
+NOISE = PICTURES / "traced.json"  # sentences of the path tracer, by document
+TRACED_SIZE, SAMPLES = 192, 400  # pixels, and paths of each
 
 
 def studio():
@@ -105,6 +100,10 @@ def pictures(host, document):
         yield pair[0].element, [np.where(mask, each, np.uint8(BACKGROUND)) for each in images]
 
 
+def save(path, codes):
+    Image.fromarray(np.hstack(codes)).save(path, quality=QUALITY, method=6)
+
+
 def render():
     """Write the pictures, the difference of each material, and the README's picture of two balls.
 
@@ -113,9 +112,6 @@ def render():
     PICTURES.mkdir(parents=True, exist_ok=True)
     write_exr(STUDIO.environment, studio(), {})
     differences = {}
-
-    def save(path, codes):
-        Image.fromarray(np.hstack(codes)).save(path, quality=QUALITY, method=6)
 
     with open_host("gl") as host:
         for document in sorted(EXAMPLES.glob("*.mtlx")):
@@ -126,6 +122,46 @@ def render():
         [(_, balls)] = pictures(host, TITANIUM)
     save(TITANIUM.with_suffix(".webp"), balls)
     DIFFERENCES.write_text(json.dumps(differences, indent=1) + "\n", encoding="utf-8")
+
+
+def trace(folder):
+    """Write the path-traced pictures of a folder's documents, and what is said of their noise."""
+    said, paths = {}, Paths(SAMPLES)
+    even, ball = Scene("even", SIDE.light, 0.5, TRACED_SIZE), replace(STUDIO, size=TRACED_SIZE)
+    with open_host("gl") as host, closing(path_tracer.Host()) as tracer:
+        for document in sorted(folder.glob("*.mtlx")):
+            [flat], [path] = host.compile(document), tracer.compile(document)
+            with warnings.catch_warnings(record=True) as notes:
+                warnings.simplefilter("always", path_tracer.NoiseNote)
+                spheres = {
+                    "rasterizer": host.picture(flat, even),
+                    # It takes a light or an environment.
+                    "reference": sum(
+                        Reference().picture(flat, replace(even, light=each))
+                        for each in (even.light, None)
+                    ),
+                    "paths": tracer.picture(path, replace(even, paths=paths)),
+                }
+                traced = tracer.picture(path, replace(ball, paths=paths))
+            shown = [
+                np.where(
+                    visible(TRACED_SIZE, shape).mask[..., None],
+                    srgb_encoded(each),
+                    np.uint8(BACKGROUND),
+                )
+                for each, shape in (
+                    *((each, "sphere") for each in spheres.values()),
+                    (traced, "ball"),
+                )
+            ]
+            save(PICTURES / f"traced_{document.stem}.webp", shown)
+            mask = visible(TRACED_SIZE, "sphere").mask
+            means = ", ".join(f"{name} {each[mask].mean():.4f}" for name, each in spheres.items())
+            noises = [str(each.message).partition("noise of ")[2] for each in notes]
+            said[document.stem] = (
+                f"mean radiance of the sphere: {means}; noise of the sphere {noises[0]}, of the ball {noises[1]}"
+            )
+    NOISE.write_text(json.dumps(said, indent=1) + "\n", encoding="utf-8")
 
 
 def words(difference):
@@ -159,10 +195,16 @@ def page():
             f"## {document.stem}\n\n{description.removeprefix('<!-- ').removesuffix(' -->')}\n\n"
             f"{shown}\n\n    {command}\n"
         )
-    return HEAD + "\n".join(sections) + TRACED
+    traced = "".join(
+        f"![{name}](images/gallery/traced_{name}.webp)\n\n*{name}: {said}.*\n\n"
+        for name, said in json.loads(NOISE.read_text(encoding="utf-8")).items()
+    )
+    return HEAD + "\n".join(sections) + TRACED.format(traced, SAMPLES)
 
 
 if __name__ == "__main__":
-    if "--page" not in sys.argv:
+    if "--traced" in sys.argv:
+        trace(Path(sys.argv[-1]))
+    elif "--page" not in sys.argv:
         render()
     PAGE.write_text(page(), encoding="utf-8")
