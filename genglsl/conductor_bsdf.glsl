@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node conductor_bsdf, which lets nothing through.
+// Entry point of the node conductor_bsdf, which lets nothing through: scatter_mode R, 0.
 
 #include "lib/microfacet_film.glsl"
 #include "lib/fresnel_conductor.glsl"
@@ -8,7 +8,7 @@ void conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 extinc
                     vec2 roughness, bool retroreflective, float thinfilm_thickness,
                     float thinfilm_ior, vec3 N, vec3 X, int distribution, inout BSDF bsdf)
 {
-    if (!microfacet_is_off(closureData, weight, 0))
+    if (weight > 0.0 && closureData.closureType != CLOSURE_TYPE_TRANSMISSION)
     {
         MicrofacetLobe lobe = microfacet_lobe(closureData, N, X, roughness, retroreflective);
         FresnelData fd = mx_init_fresnel_conductor(ior, extinction, thinfilm_thickness,
@@ -16,7 +16,7 @@ void conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 extinc
         MicrofacetFresnel F;
         F.value = mx_fresnel_conductor(lobe.mu_h, ior, extinction);
         F.average = fresnel_conductor_avg(ior, extinction);
-        F.visible = vec3(1.0);  // without a film the environment's sum has the curve
+        F.visible = vec3(1.0);  // nothing lies below
         microfacet_film(lobe, fd, F);
         microfacet_bsdf(closureData, lobe, fd, F, vec3(1.0), weight, distribution, 0, bsdf);
     }

@@ -28,16 +28,18 @@ struct MicrofacetLobe
 };
 
 // A Fresnel curve's value at the half vector, its cosine-weighted average over the hemisphere,
-// F_ss, and its average over the visible facets.
+// F_ss, and its average over the visible facets: over wi, weighted by D G_2 / (4 mu_o). Stock's sum
+// over an environment has the curve but no film, whose average is a factor outside it.
 struct MicrofacetFresnel
 {
     vec3 value;
     vec3 average;
     vec3 visible;
+    vec3 outside;
 };
 
-// Whether a lobe does nothing: it is switched off, or transmits and is asked for reflection. A
-// negative weight, never valid, counts as 0.
+// Whether a lobe does nothing: it is switched off, or transmits alone (scatter_mode 1, T; 0 is R, 2
+// is RT) and is asked for reflection. A negative weight, never valid, counts as 0.
 bool microfacet_is_off(ClosureData closureData, float weight, int scatter_mode)
 {
     bool transmission = closureData.closureType == CLOSURE_TYPE_TRANSMISSION;
@@ -75,8 +77,7 @@ float microfacet_value(MicrofacetLobe lobe)
            / (4.0 * lobe.mu_o);
 }
 
-// The curve that MaterialX sums over the facets of an environment. It has no film: a film's curve
-// stays outside the sum, as an average over the same facets, and within it they reflect everything.
+// The curve that MaterialX sums over the facets of an environment. Under a film they reflect everything.
 FresnelData microfacet_environment_curve(FresnelData fd)
 {
     if (fd.model == FRESNEL_MODEL_DIELECTRIC)
@@ -158,7 +159,6 @@ void microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelData f
     }
     else if (lobe.closure == CLOSURE_TYPE_INDIRECT)
     {
-        vec3 outside = fd.airy ? F.visible : vec3(1.0);
-        bsdf.response = microfacet_environment(lobe, distribution, fd) * outside * scale;
+        bsdf.response = microfacet_environment(lobe, distribution, fd) * F.outside * scale;
     }
 }

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// F_airy of [MaterialX2026], Thin-Film Iridescence Model: what vacuum, a film and a substrate reflect together,
-// in linear Rec. 709. Comments name the section of each equation. Each color channel has its own substrate and
-// its own sum over CIE XYZ. Amplitudes are complex, z = r_21 r_23, so no phase comes from an arctangent: the
-// text's r_123^m cos(mu_k phi m + m (phi_21 + phi_23)) is the real part of z^m exp(i mu_k phi m). All orders
-// count that are not negligible. A mean over cosines around mu is the same with waves that fade.
+// F_airy of [MaterialX2026], Thin-Film Iridescence Model: what vacuum (1), a film (2) and a substrate (3) reflect
+// together, in linear Rec. 709. Comments name the section of each equation. Each color channel has its own
+// substrate and its own sum over CIE XYZ. Amplitudes are complex, so no phase needs an arctangent: with z = r_21 r_23,
+// the text's r_123^m cos(mu_k phi m + m (phi_21 + phi_23)) is the real part of z^m exp(i mu_k phi m).
 
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
 
-// Spectral Sensitivity: mu_k, sigma_k^2 and v_k sqrt(2 pi sigma_k^2) / 1.0685e-7 of X, X, Y and Z, in 1/m and
-// 1/m^2. The first fades least. The colors of X, Y and Z are those of white E, which becomes that of Rec. 709.
+// Spectral Sensitivity of X, X, Y and Z: wavenumbers mu_k in 1/m, sigma_k^2 in 1/m^2, of which the first is least,
+// and v_k sqrt(2 pi sigma_k^2) / 1.0685e-7. Colors of X, Y and Z in Rec. 709, white E to its white by Bradford.
 #define THIN_FILM_POSITIONS vec4(1.6810e6, 2.2399e6, 1.7953e6, 2.2084e6)
 #define THIN_FILM_VARIANCES vec4(4.3278e9, 4.5282e9, 9.3046e9, 6.6121e9)
 #define THIN_FILM_HEIGHTS vec4(0.84659, 0.15386831, 1.0002219, 1.0011225)
@@ -19,8 +18,8 @@
 // Divisors that vanish: a root of 0, and full reflection at grazing.
 #define THIN_FILM_LEAST 1e-12
 
-// Orders are summed while the square of one exceeds the first number times the squared mean reflectances and
-// the second times the squared width. The ratio of successive squares counts as the third at most.
+// Orders are summed while the square of one exceeds both VALUE times the squared mean reflectances and WIDTH times
+// the squared width. Each square counts as at most RATIO of the one before, which ends slow sums.
 // Source: tools/fits/thin_film.py. Largest relative error of a film that reflects 1e-3 or more: 8e-4.
 #define THIN_FILM_ORDER_VALUE 8e-14
 #define THIN_FILM_ORDER_WIDTH 1e-3
@@ -61,25 +60,25 @@ ThinFilmComplex thin_film_root(vec3 ior, vec3 extinction, float sin2)
 }
 
 // Second Interface: r_23 of both polarizations, below a film of index n, at a cosine mu_t in it.
-void thin_film_substrate(float n, float mu_t, float sin2, FresnelData fd, out ThinFilmComplex s,
-                         out ThinFilmComplex p)
+void thin_film_substrate(float n, float mu_t, float sin2, FresnelData fd, out ThinFilmComplex r23_s,
+                         out ThinFilmComplex r23_p)
 {
     if (fd.model == FRESNEL_MODEL_SCHLICK)
     {
         // The phase is pi below a denser film, whose F0 may round. A negative curve has no amplitude.
         float F0 = (1.0 - 1e-6) * mx_ior_to_f0(n);
         vec3 r = sqrt(max(mx_fresnel_hoffman_schlick(mu_t, fd), 0.0));
-        p = ThinFilmComplex(r * (2.0 * step(vec3(F0), fd.F0) - 1.0), vec3(0.0));
-        s = ThinFilmComplex(-p.re, vec3(0.0));
+        r23_p = ThinFilmComplex(r * (2.0 * step(vec3(F0), fd.F0) - 1.0), vec3(0.0));
+        r23_s = ThinFilmComplex(-r23_p.re, vec3(0.0));
     }
     else
     {
         vec3 n2 = fd.ior * fd.ior - fd.extinction * fd.extinction;
         vec3 k2 = 2.0 * fd.ior * fd.extinction;
         ThinFilmComplex root = thin_film_root(fd.ior, fd.extinction, sin2);
-        s = thin_film_amplitude(ThinFilmComplex(vec3(n * mu_t), vec3(0.0)), root);
-        p = thin_film_amplitude(ThinFilmComplex(n2 * mu_t, k2 * mu_t),
-                                ThinFilmComplex(n * root.re, n * root.im));
+        r23_s = thin_film_amplitude(ThinFilmComplex(vec3(n * mu_t), vec3(0.0)), root);
+        r23_p = thin_film_amplitude(ThinFilmComplex(n2 * mu_t, k2 * mu_t),
+                                    ThinFilmComplex(n * root.re, n * root.im));
     }
 }
 
@@ -97,39 +96,40 @@ vec3 thin_film_color(vec4 S)
     return (S.x + S.y) * THIN_FILM_COLOR_X + S.z * THIN_FILM_COLOR_Y + S.w * THIN_FILM_COLOR_Z;
 }
 
-// Airy Summation, higher-order terms: the sum of C_m S_m / 2 over both polarizations. C_m = C_0 z^m and S_m / 2 =
-// k^(m^2) exp(i mu_k phi m), k = exp(-sigma_k^2 phi^2). `spread` is what phi varies by in a mean: few waves are
-// left to the other nodes, many fade. Real z need no sine: S_(m + 1) + k^(4 m) S_(m - 1) = k^(2 m) Re S_1 S_m.
-vec3 thin_film_orders(vec3 C0_s, ThinFilmComplex s, vec3 C0_p, ThinFilmComplex p, float phi, float spread,
+// Airy Summation, higher-order terms: the sum of C_m S_m / 2 over m and both polarizations, C_m = C_0 z^m, S_m / 2 =
+// fade^(m^2) exp(i mu_k phi m), fade = exp(-sigma_k^2 phi^2). Real z need no sine: S_(m + 1) + fade^(4 m) S_(m - 1) =
+// fade^(2 m) Re(S_1) S_m. A mean's nodes, over which phi varies by `spread`, add up slow waves well; fast ones have
+// to fade. The fourth power is a choice, as is m^2 for the order m, which keeps the recurrence.
+vec3 thin_film_orders(vec3 C0_s, ThinFilmComplex z_s, vec3 C0_p, ThinFilmComplex z_p, float phi, float spread,
                       float limit, bool is_real)
 {
     const vec4 positions2 = THIN_FILM_POSITIONS * THIN_FILM_POSITIONS;
     float spread2 = spread * spread;
-    vec4 k = exp(-THIN_FILM_VARIANCES * (phi * phi) - 0.25 * positions2 * positions2 * (spread2 * spread2));
-    vec4 k2 = k * k;
-    vec4 power = k2;  // k^(2 m)
-    vec4 cosine = k * mx_cos(THIN_FILM_POSITIONS * phi);
-    vec4 sine = k * mx_sin(THIN_FILM_POSITIONS * phi);
+    vec4 fade = exp(-THIN_FILM_VARIANCES * (phi * phi) - 0.25 * positions2 * positions2 * (spread2 * spread2));
+    vec4 fade2 = fade * fade;
+    vec4 power = fade2;  // fade^(2 m)
+    vec4 cosine = fade * mx_cos(THIN_FILM_POSITIONS * phi);
+    vec4 sine = fade * mx_sin(THIN_FILM_POSITIONS * phi);
     vec4 before = THIN_FILM_HEIGHTS;
-    vec4 S_re = THIN_FILM_HEIGHTS * cosine;
+    vec4 S_re = THIN_FILM_HEIGHTS * cosine;  // S_m / 2 times the heights
     vec4 S_im = THIN_FILM_HEIGHTS * sine;
 
     // Squares of the largest order, and of its ratio to the next: s reflects more at both interfaces, p passes more.
-    vec3 R = s.re * s.re + s.im * s.im;
+    vec3 R = z_s.re * z_s.re + z_s.im * z_s.im;
     vec3 first = C0_p * C0_p * R;
-    float order2 = max(first.x, max(first.y, first.z)) * k2.x;
-    float ratio2 = min(max(R.x, max(R.y, R.z)) * k2.x * k2.x * k2.x, THIN_FILM_ORDER_RATIO);
+    float order2 = max(first.x, max(first.y, first.z)) * fade2.x;
+    float ratio2 = min(max(R.x, max(R.y, R.z)) * fade2.x * fade2.x * fade2.x, THIN_FILM_ORDER_RATIO);
 
     vec3 sum = vec3(0.0);
-    ThinFilmComplex C_s = ThinFilmComplex(C0_s * s.re, C0_s * s.im);
-    ThinFilmComplex C_p = ThinFilmComplex(C0_p * p.re, C0_p * p.im);
+    ThinFilmComplex C_s = ThinFilmComplex(C0_s * z_s.re, C0_s * z_s.im);
+    ThinFilmComplex C_p = ThinFilmComplex(C0_p * z_p.re, C0_p * z_p.im);
     do
     {
         sum += (C_s.re + C_p.re) * thin_film_color(S_re);
         if (is_real)
         {
-            C_s.re *= s.re;
-            C_p.re *= p.re;
+            C_s.re *= z_s.re;
+            C_p.re *= z_p.re;
             vec4 next = power * (2.0 * cosine * S_re - power * before);
             before = S_re;
             S_re = next;
@@ -137,46 +137,41 @@ vec3 thin_film_orders(vec3 C0_s, ThinFilmComplex s, vec3 C0_p, ThinFilmComplex p
         else
         {
             sum -= (C_s.im + C_p.im) * thin_film_color(S_im);
-            C_s = thin_film_product(C_s, s);
-            C_p = thin_film_product(C_p, p);
+            C_s = thin_film_product(C_s, z_s);
+            C_p = thin_film_product(C_p, z_p);
             vec4 next = power * (cosine * S_re - sine * S_im);
             S_im = power * (cosine * S_im + sine * S_re);
             S_re = next;
         }
-        power *= k2;
+        power *= fade2;
         order2 *= ratio2;
-        ratio2 *= k2.x * k2.x;
+        ratio2 *= fade2.x * fade2.x;
     } while (order2 > limit);
     return sum;
 }
 
-// F_airy at a cosine mu, or its mean over cosines of a width around mu. A film thinner than vacuum is vacuum.
+// F_airy at a cosine mu, or its mean over cosines of a width around mu. A film of an index below 1 is none.
 vec3 thin_film_fresnel(float mu, float width, FresnelData fd)
 {
-    // Three-Layer Geometry
+    // Three-Layer Geometry: g = n mu_t, whose square loses no digits of a grazing mu.
     float n = max(fd.tf_ior, 1.0);
-    float sin2 = (1.0 - mu) * (1.0 + mu);
-    float sin2_t = sin2 / (n * n);
-    float mu_t = sqrt(max(1.0 - sin2_t, 0.0));
+    float g = sqrt((n - 1.0) * (n + 1.0) + mu * mu);
 
-    // First Interface: (n mu_t - mu) / (n mu_t + mu) and (mu_t - n mu) / (mu_t + n mu), 0 without a film.
-    float gap = (n - 1.0) * (n + 1.0);
-    float sum_s = n * mu_t + mu;
-    float sum_p = mu_t + n * mu;
-    float r21_s = gap / max(sum_s * sum_s, THIN_FILM_LEAST);
-    float r21_p = gap * (sin2_t - mu * mu) / max(sum_p * sum_p, THIN_FILM_LEAST);
+    // First Interface, without a film 0
+    float r21_s = (g - mu) / max(g + mu, THIN_FILM_LEAST);
+    float r21_p = (g - n * n * mu) / max(g + n * n * mu, THIN_FILM_LEAST);
 
     ThinFilmComplex r23_s, r23_p;
-    thin_film_substrate(n, mu_t, sin2, fd, r23_s, r23_p);
+    thin_film_substrate(n, g / n, (1.0 - mu) * (1.0 + mu), fd, r23_s, r23_p);
     ThinFilmComplex z_s = ThinFilmComplex(r21_s * r23_s.re, r21_s * r23_s.im);
     ThinFilmComplex z_p = ThinFilmComplex(r21_p * r23_p.re, r21_p * r23_p.im);
     vec3 C0_s = thin_film_weight(r21_s, r23_s);
     vec3 C0_p = thin_film_weight(r21_p, r23_p);
 
-    // Optical Path Difference: phi = 2 pi Delta, whose slope in mu is 4 pi d mu / (n mu_t).
+    // Optical Path Difference: phi = 2 pi Delta = 4 pi d g, whose slope in mu is 4 pi d mu / g.
     float scale = 4.0e-9 * M_PI * fd.tf_thickness;
-    float phi = scale * n * mu_t;
-    float spread = scale * width * mu / max(n * mu_t, THIN_FILM_LEAST);
+    float phi = scale * g;
+    float spread = scale * width * mu / max(g, THIN_FILM_LEAST);
     vec3 mean = 1.0 + 0.5 * (C0_s + C0_p);
     float limit = max(THIN_FILM_ORDER_VALUE * dot(mean, mean), THIN_FILM_ORDER_WIDTH * width * width);
     bool is_real = fd.model != FRESNEL_MODEL_CONDUCTOR;  // phases of total reflection have C_0 = 0

@@ -190,7 +190,7 @@ WRONG = {
         (FILM, "THIN_FILM_ORDER_RATIO 0.6", "THIN_FILM_ORDER_RATIO 0.006", "film_orders", ""),
         (FILM, "return clamp(mean +", "return 1.1 + clamp(mean +", "film_energy", ""),
         (FILMED, "F.visible += node", "F.visible += 0.5 * node", "film_environment", ""),
-        (FILMED, "0.43884,", "0.33884,", "film_smooth", ""),
+        (FILMED, "0.43737,", "0.33737,", "film_smooth", ""),
         (FILMED, "void microfacet_film(MicrofacetLobe lobe, FresnelData fd, inout MicrofacetFresnel F)\n{",
          "vec3 kept = vec3(-1.0);\nOLD\n    kept = kept.x < 0.0 ? fd.ior : kept;\n    fd.ior = kept;", "states",
          "two lobes that differ in ior"),
@@ -198,7 +198,7 @@ WRONG = {
     "dielectric_bsdf, thin film": (
         (FILM, "M_PI * fd.tf_thickness", "M_PI * min(fd.tf_thickness, 2000.0)", "domain",
          "the value is wrong with thinfilm_thickness 2500, 3000, 6000, 100000"),
-        (FILM, "max(fd.tf_ior, 1.0)", "max(fd.tf_ior, 0.995)", "film_limit", ""),
+        (FILM, "max(fd.tf_ior, 1.0)", "max(fd.tf_ior, 1.005)", "film_limit", ""),
         (FILM, "return clamp(mean +", "return mean / step(1.0, fd.tf_ior) + clamp(mean +", "film_finite", ""),
     ),
     "uniform_edf": (

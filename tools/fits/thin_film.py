@@ -30,15 +30,15 @@ STEP = 1e-6  # of a thickness, relative, by which the slope of a curve is measur
 # visible facets, polynomials of the mean of their cosines, of the reach of three nodes around it and of their
 # bend.
 NODES = (
-    (0.18007, 0.55789, 0.88374),
-    (0.11003, 0.43884, 0.45114),
-    (0.1992, 0.13803, 0.088381),
+    (0.17999, 0.55701, 0.88292),
+    (0.10982, 0.43737, 0.4528),
+    (0.19938, 0.13743, 0.088681),
 )
 STEEP = 0.2
 FACETS = (
-    (3.2739, -1.0485, -3.9422, 1.6943, -0.10219, 2.4881, -2.8084, -7.7466, 8.2377, 0.018445),
-    (0.21155, 3.7698, -4.8277, 0.78139, 3.7484, -7.6828, 3.4317, -2.6436, 3.5978, -0.3586),
-    (0.39911, -1.0011, 1.2036, -0.88274, 0.42655, -0.10374, -0.6846, -1.2458, 1.73, -0.12605),
+    (3.252, -0.91173, -4.1529, 1.7917, -0.12447, 2.405, -2.6953, -7.6708, 8.1838, 0.0010818),
+    (0.32298, 3.3428, -4.255, 0.51298, 3.6133, -7.43, 3.3391, -2.597, 3.5172, -0.34239),
+    (0.14542, 0.030955, -0.22576, -0.22374, 1.0328, -1.4779, 0.16285, -1.7185, 2.1385, 0.018052),
 )  # fmt: skip
 # Orders are summed while the square of one exceeds a limit, of a value this times the squares of the mean
 # reflectances of all channels, of a node of a rule this times the square of its width if that is more; each

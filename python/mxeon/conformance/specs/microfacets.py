@@ -447,9 +447,9 @@ TRANSMISSION_SPECS = tuple(
 # Largest errors of the shader's thin film, for cosines from 0.1 on and up to 1000 nm: tools/fits/thin_film.py
 # searches for each.
 FILM_SEEN = (
-    7.8e-2  # mean over the visible facets in three cosines and F_ss in three, times the light lost
+    7.82e-2  # mean over the visible facets in three cosines and F_ss in three, times the light lost
 )
-FILM_OILED = 6e-2  # the same of films of index 1.25 or more
+FILM_OILED = 6.92e-2  # the same of films of index 1.25 or more
 FILM_PHASE = 71.0  # largest phase of a first order, in radian: 1000 nm of index 2.5
 CURVE_ROUNDINGS = (
     10 * 9.5 + 16
@@ -472,7 +472,7 @@ def _mean(value: float, words: str) -> Tolerance:
 FILM_ERRORS = {
     # Few films come near to it: thin metals at grazing have the first, indices far apart the second.
     "value": sum_of(
-        *compensated(3.5e-2, "F_ss in three cosines").terms,
+        *compensated(3.61e-2, "F_ss in three cosines").terms,
         Term(8e-4, "orders that are not summed"),
     ),
     "albedo": FILM_ALBEDO,
