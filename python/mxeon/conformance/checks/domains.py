@@ -3,7 +3,6 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
@@ -13,7 +12,6 @@ from mxeon.conformance.checks.lobes import is_layer
 from mxeon.conformance.diagnosis import Diagnosis
 from mxeon.conformance.results import WRONG_INSIDE
 from mxeon.conformance.samples import Batch
-from mxeon.conformance.spec import Input
 from mxeon.conformance.specs.lobes import PbrSpec
 from mxeon.conformance.specs.microfacets import TransmissionSpec
 from mxeon.conformance.tolerance import Compared, absolute, given, scaled
@@ -23,15 +21,6 @@ from mxeon.hosts.calls import NORMAL
 PAIRS = 16  # of each value
 LEAST = 0.3  # of weights and occlusions, so that each pair shows it
 TOLERANCES = given(1.0, "tolerances", "the tolerance of each quantity")
-
-
-class Beyond(NamedTuple):
-    """A quantity of a node with a value of an input that lies outside its range."""
-
-    quantity: str
-    input: Input
-    value: float
-    compared: Compared  # divided by the largest error that passes
 
 
 def quantities(case: Case, batch: Batch, right: Batch) -> Iterator[tuple[str, Compared]]:
@@ -44,8 +33,11 @@ def quantities(case: Case, batch: Batch, right: Batch) -> Iterator[tuple[str, Co
         yield "throughput", Compared(batch, passed, np.maximum(1.0 - albedo, 0.0))
 
 
-def outside(case: Case) -> Iterator[Beyond]:
-    """Each quantity of a few pairs for each value, but for what is wrong inside the ranges already."""
+def outside(case: Case) -> Iterator[tuple[str, str, float, Compared]]:
+    """Each quantity of a few pairs for each input and value, but for what is wrong inside the ranges already.
+
+    Values are divided by the largest error that passes.
+    """
     spec, views = case.of(PbrSpec), case.samples.views[0]
     row, names = np.arange(len(views.wo))[:, np.newaxis], {"weight", "occlusion"}
     wo = np.where(row == 1, NORMAL, views.wo)
@@ -71,16 +63,15 @@ def outside(case: Case) -> Iterator[Beyond]:
                 if name not in wrong:
                     tolerance = case.tolerance(f"{name} with {each.name} {value:g}", name)
                     scale = tolerance.value * tolerance.scale(expected)
-                    compared = Compared(lit, measured / scale, expected / scale)
-                    yield Beyond(name, each, value, compared)
+                    yield name, each.name, value, Compared(lit, measured / scale, expected / scale)
 
 
 def diagnose(case: Case) -> Diagnosis:
     """The inputs, and the values of each, with which a quantity is wrong."""
     wrong: dict[tuple[str, str], list[float]] = {}
-    for each in outside(case):
-        if absolute(*each.compared[1:]).max() > TOLERANCES.value:
-            wrong.setdefault((each.input.name, each.quantity), []).append(each.value)
+    for quantity, name, value, compared in outside(case):
+        if absolute(*compared[1:]).max() > TOLERANCES.value:
+            wrong.setdefault((name, quantity), []).append(value)
     texts = (
         f"the {quantity} is wrong with {name} {', '.join(f'{value:g}' for value in values)}"
         for (name, quantity), values in wrong.items()
@@ -100,4 +91,4 @@ def diagnose(case: Case) -> Diagnosis:
 )
 def domain(case: Case) -> Iterator[Compared]:
     """Inputs outside their usual range have the value, the albedo and the throughput of the model, too."""
-    return (each.compared for each in outside(case))
+    return (compared for *_, compared in outside(case))

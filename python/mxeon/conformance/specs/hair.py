@@ -186,7 +186,7 @@ class HairSpec(PbrSpec):
         view, light = special_directions(rng)
         return (
             Batch(wo, free, {**inputs, "occlusion": np.round(rng.random(count), 2)}),
-            Batch(wo, aimed(rng, wo, inputs), inputs),
+            Batch(wo, in_lobes(rng, wo, inputs), inputs),
             Batch(view, light * _sides(rng, len(view)), self.random_inputs(rng, len(view))),
         )
 
@@ -233,7 +233,7 @@ class HairSpec(PbrSpec):
             inputs[name] = rounded(
                 low * (high / low) ** rng.random(count) for low, high in (row.variances, row.scales)
             )
-        return Batch(wo, aimed(rng, wo, inputs), {**inputs, **row.tints})
+        return Batch(wo, in_lobes(rng, wo, inputs), {**inputs, **row.tints})
 
     def integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
         """Wide lobes without tilt."""
@@ -266,7 +266,7 @@ def _sides(rng: np.random.Generator, count: int) -> Array:
     return np.stack([np.ones(count), np.ones(count), rng.choice([-1.0, 1.0], count)], axis=-1)
 
 
-def aimed(rng: np.random.Generator, wo: Array, inputs: dict[str, Array]) -> Array:
+def in_lobes(rng: np.random.Generator, wo: Array, inputs: dict[str, Array]) -> Array:
     """Directions of light in one of the lobes R, TT and TRT of each view, float32 numbers, (N, 3)."""
     count = len(wo)
     lobe, chosen = rng.integers(0, 3, count), np.arange(count)
