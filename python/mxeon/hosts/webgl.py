@@ -152,7 +152,10 @@ class Host(Chromium, FragmentHost):
         self.refuse_paths(scene)
         captured, frame = points.outputs(shader), (scene.size, scene.size)
         stages = {"vertex": VERTEX, "pixel": points.pixel_stage(shader)}
-        uniforms = UNIFORMS | _inputs(shader) | raster.light(scene)
+        pattern = r"^uniform vec2 (\w+_(uv_scale|uv_offset));"
+        images = re.findall(pattern, shader.stages["pixel"], re.MULTILINE)
+        uniforms = UNIFORMS | {name: IMAGE[kind] for name, kind in images}
+        uniforms |= raster.inputs(shader) | raster.light(scene)
         textures = raster.textures(shader, scene)
         if captured:
             textures[points.SAMPLER] = self._points(
@@ -224,11 +227,6 @@ def program(host: str = "webgl") -> str:
             f"or name another Chromium in {PROGRAM}"
         )
     return path
-
-
-def _inputs(shader: Shader) -> raster.Uniforms:
-    names = re.findall(r"^uniform vec2 (\w+_(uv_scale|uv_offset));", shader.stages["pixel"], re.M)
-    return {name: IMAGE[kind] for name, kind in names} | raster.inputs(shader)
 
 
 def _write(path: Path, groups: Mapping[str, Mapping[str, Array]]) -> dict[str, Layout]:

@@ -42,12 +42,13 @@ def safe_path() -> Iterator[None]:
     Workers get the parent's path except "", its working folder if it is `python -c` or
     interactive. They inherit the working folder, which they may not be able to enter.
     """
+    path = [folder for folder in sys.path if folder]
+    path = path if HOME in path else [*path, HOME]
     with _patching:
         flags, data = _util._args_from_interpreter_flags, spawn.get_preparation_data
         _util._args_from_interpreter_flags = lambda: [*flags(), "-P"]
         spawn.get_preparation_data = lambda name: (
-            {key: value for key, value in data(name).items() if key != "dir"}
-            | {"sys_path": _path()}
+            {key: value for key, value in data(name).items() if key != "dir"} | {"sys_path": path}
         )
         try:
             yield
@@ -60,8 +61,3 @@ def forget_working_folder() -> None:
     with suppress(FileNotFoundError):  # it may have been deleted
         if not sys.flags.safe_path and sys.path[0] == os.getcwd() != HOME:
             del sys.path[0]
-
-
-def _path() -> list[str]:
-    path = [folder for folder in sys.path if folder]
-    return path if HOME in path else [*path, HOME]

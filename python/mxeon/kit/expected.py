@@ -74,11 +74,8 @@ def _values(row: Model, view: View, place: NDArray[np.float64]) -> NDArray[np.fl
         return cast(float, view.scene.environment) * _albedo(row, view.material, normal[:, 2])
     wo = local_directions(normal, VIEW)
     wi = local_directions(normal, view.scene.light)
-    return np.pi * row.brdf(wo, wi, view.material.color, *_parameter(row, view)) * wi[:, 2:]
-
-
-def _parameter(row: Model, view: View) -> list[float]:
-    return [view.material.roughness] if row.parameter else []
+    parameter = [view.material.roughness] if row.parameter else []
+    return np.pi * row.brdf(wo, wi, view.material.color, *parameter) * wi[:, 2:]
 
 
 def _albedo(row: Model, material: Material, mu: NDArray[np.float64]) -> NDArray[np.float64]:

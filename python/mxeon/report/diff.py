@@ -124,7 +124,7 @@ def compare(before: Report, after: Report) -> tuple[Change, ...]:
     before = _renamed(before, _moved(list(before.libraries), list(after.libraries)))
     removed = {*before.documents} - {*after.documents, *after.refused}
     changes = [
-        *_removed(removed),
+        *(Change(OTHER, document, "checked", "removed") for document in sorted(removed)),
         *_results(_by(PLACE, before.results), _by(PLACE, after.results), bool(removed)),
         *_pictures(_by(SHOWN, before.pictures), _by(SHOWN, after.pictures)),
         *_refusals(set(before.refused), set(after.refused)),
@@ -204,10 +204,6 @@ def _pictures(
         if _apart(old, new):
             place = f"{', '.join(key)}, largest difference"
             yield Change(OTHER, place, _number(old), _number(new))
-
-
-def _removed(documents: Set[str]) -> Iterator[Change]:
-    return (Change(OTHER, document, "checked", "removed") for document in sorted(documents))
 
 
 def _refusals(before: Set[str], after: Set[str]) -> Iterator[Change]:

@@ -97,7 +97,8 @@ class Host(base.Host):
             folder, place = Path(name), self._engine.place
             block = statements(columns, folder / IMAGE, count, place)
             [read] = statements({"view": view}, folder / "view.tif", count, place)
-            shown = with_variables(shader, block, _printed_closure)
+            end = _print("mxeon_text({0})") + "    {0} = 0;\n"
+            shown = with_variables(shader, block, end.format)
             text = VIEW.format(read=read) + with_header(shown, shader)
             rows = self._printed(folder, text, count)
         found = read_trees([whole_label(each, ROOT) for each in rows])
@@ -137,7 +138,3 @@ class Host(base.Host):
 
 def _print(text: str) -> str:
     return PRINT.format(root=ROOT, text=text)
-
-
-def _printed_closure(output: str) -> str:
-    return _print(f"mxeon_text({output})") + f"    {output} = 0;\n"

@@ -64,7 +64,8 @@ def read_trees(labels: Sequence[str]) -> tuple[TreeRows, ...]:
         shapes.setdefault(NUMBER.sub("#", label), []).append(row)
         numbers.append(NUMBER.findall(label))
     return tuple(
-        TreeRows(np.array(rows), _tree(shape, _exact([numbers[row] for row in rows])))
+        # Nine digits are a float32.
+        TreeRows(np.array(rows), _tree(shape, np.array([numbers[row] for row in rows], np.float32)))
         for shape, rows in shapes.items()
     )
 
@@ -82,13 +83,9 @@ def with_roots(tree: ClosureTree | None) -> ClosureTree | None:
     return ClosureTree(tree.name, tuple(map(with_roots, tree.parts)), arguments)
 
 
-def _exact(numbers: Sequence[Sequence[str]]) -> Array:
-    """Float32 numbers from nine digits, as float64, (N, numbers)."""
-    return np.array(numbers, np.float32).astype(np.float64)
-
-
 def _tree(shape: str, numbers: Array) -> ClosureTree | None:
     """Tree of a label with placeholders for the numbers, which differ from point to point."""
+    numbers = numbers.astype(np.float64)
     columns = iter(range(numbers.shape[1])) if numbers.size else count()
     stack: list[tuple[str, list[Argument]]] = [("", [])]
     expected = "closure"
