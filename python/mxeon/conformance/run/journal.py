@@ -21,7 +21,7 @@ import numpy as np
 from filelock import FileLock, Timeout
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.conformance.results import listed
+from mxeon.conformance.results import Picture, listed
 from mxeon.conformance.results.records import StoredImage, images_of, make_converter
 from mxeon.conformance.run.plan import Findings, Plan
 from mxeon.errors import InputError
@@ -52,9 +52,11 @@ class Journal:
             for name in (JOURNAL, PREVIOUS, LOCK):
                 below(self._folder, name)
             stack.enter_context(_locked(self._folder))
-            resumed = self._resume and self._path.exists()
-            if resumed:
-                self._continue()
+            if self._resume and self._path.exists():
+                plan, self.findings, size = _read(self._folder)
+                if plan != self._plan:
+                    raise InputError(refusal(self._folder, _differences(plan, self._plan)))
+                os.truncate(self._path, size)
             else:
                 self._begin()
             self._file = os.open(self._path, os.O_WRONLY | os.O_APPEND)
@@ -70,16 +72,15 @@ class Journal:
 
         Raises OSError if there is no room; the journal is then as it was before.
         """
-        images: list[dict[str, Any]] = [
-            {name: self._store(image) for name, image in images_of(picture).items()}
-            for picture in findings.pictures
-        ]
-        pictures = tuple(
-            map(lambda picture, own: replace(picture, **own), findings.pictures, images)
-        )
-        if pictures:
+
+        def stored(picture: Picture) -> Picture:
+            images = images_of(picture).items()
+            own: dict[str, Any] = {name: self._store(image) for name, image in images}
+            return replace(picture, **own)
+
+        findings = replace(findings, pictures=tuple(map(stored, findings.pictures)))
+        if findings.pictures:
             sync(self._path.parent)
-        findings = replace(findings, pictures=pictures)
         record = {"task": number, "findings": self._converter.unstructure(findings)}
         size, rest = os.fstat(self._file).st_size, memoryview(_line(record))
         try:
@@ -100,13 +101,6 @@ class Journal:
             beside.write_bytes(_line({"format": FORMAT} | self._converter.unstructure(self._plan)))
         sync(self._path.parent)
         sync(self._folder)
-
-    def _continue(self) -> None:
-        """Take the findings of the journal that is there."""
-        plan, self.findings, size = _read(self._folder)
-        if plan != self._plan:
-            raise InputError(refusal(self._folder, _differences(plan, self._plan)))
-        os.truncate(self._path, size)
 
     def _store(self, image: ArrayLike) -> NDArray[np.float32]:
         """An image in a file of the folder."""
