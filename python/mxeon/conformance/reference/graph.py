@@ -209,9 +209,11 @@ class Graph:
         names = tuple(port.getName() for port in definition(node).getActiveInputs())
 
         def lobe(*values: Array) -> Bsdf:
-            if self._marked:
-                return _marked_lobe(node, names, *values)
             inputs = dict(zip(names, values, strict=True))
+            if self._marked:  # without a weight an input may be no number
+                weight = np.reshape(inputs.get("weight", np.ones(1)), (-1, 1))
+                shown = weight * np.where(weight, _marks(node, names, *values), 0.0)
+                return Bsdf(shown, 1.0 - shown[..., ::-1])
             if np.any(inputs.get("weight", 1.0)):
                 self.lobes.append(ShownLobe(node.getCategory(), inputs))
             return node_lobe(node, inputs, self._points, path in self._hiding)
@@ -411,13 +413,6 @@ def _marks(node: mx.Node, names: tuple[str, ...], *values: Value) -> Array:
         rng = np.random.default_rng(crc32(f"{node.getCategory()} {name}".encode()))
         phase = phase + offset @ rng.uniform(0.5, 1.5, (offset.shape[-1], 3))
     return 0.5 + 0.4 * np.sin(phase)
-
-
-def _marked_lobe(node: mx.Node, names: tuple[str, ...], *values: Array) -> Bsdf:
-    marks = _marks(node, names, *values)
-    weight = np.reshape(dict(zip(names, values, strict=True)).get("weight", np.ones(1)), (-1, 1))
-    shown = weight * np.where(weight, marks, 0.0)  # without a weight an input may be no number
-    return Bsdf(shown, 1.0 - shown[..., ::-1])
 
 
 def _radiance(
