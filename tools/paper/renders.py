@@ -81,7 +81,7 @@ def _lit(
 
 
 def furnaces(sheet: Sheet) -> None:
-    """Figures 5, 8, 9: QON, FON, EON: one bounce, with more contrast, in a white furnace."""
+    """Figures 5, 8, 9: QON, FON and EON, each with one bounce, the same with more contrast, and in a white furnace."""
     for figure, name in (("figure_05", "qon"), ("figure_08", "fon"), ("figure_09", "eon")):
         bounce = sheet.trace(VIEW | look(name), rho=CLAY, light=FRONT)
         ring = sheet.trace(RING | look(name))

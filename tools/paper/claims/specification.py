@@ -7,13 +7,13 @@ from mxeon.models.diffuse import qon_a
 from tools.paper.claims import Measured, Section
 from tools.paper.curves import directions
 
-REMARK = f"""Two sentences of the specification cannot be measured. It calls the printed L_r of
+REMARK = f"""Two sentences of that text cannot be measured. It calls the printed L_r of
 `oren_nayar_diffuse_bsdf` a radiance; the formula contains neither a cosine nor an irradiance, so it is
 the BRDF f, in 1/sr. It describes `roughness` as the sigma of Oren and Nayar; with
 `energy_compensation` it is the r of EON, which is dimensionless and lies in [0, 1], where r = 0.5
 corresponds to sigma = {0.25 * np.pi:.2f}."""
 _OREN_NAYAR = "oren_nayar_diffuse_bsdf"
-SECTION = Section("The specification of MaterialX's pbrlib", REMARK)
+SECTION = Section("The specification of MaterialX's pbrlib before June 2026", REMARK)
 claim = SECTION.claim
 
 
