@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from mxeon.conformance.checks.paths import paths, random, refracted
+from mxeon.conformance.draws import deviation
 from mxeon.conformance.results import PASSED
 from mxeon.errors import InputError, InterfaceError
-from mxeon.models.core.draws import deviation
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import connection_text, document_text, input_text, material_text, node_text
 from tests.support.wrong_libraries import copy_of_eonlib

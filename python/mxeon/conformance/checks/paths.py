@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from mxeon.conformance.case import Case
 from mxeon.conformance.check import check, scale, with_values
 from mxeon.conformance.diagnosis import Diagnosis
+from mxeon.conformance.draws import deviation
 from mxeon.conformance.samples import Array, Batch, generator
 from mxeon.conformance.spec import LobeSpec, Spec, materials
 from mxeon.conformance.specs.diffuse import SurfaceLobe
@@ -20,7 +21,6 @@ from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
 from mxeon.conformance.tolerance import Compared, Measurement, Term, given, sum_of
 from mxeon.hosts import host_row
 from mxeon.hosts.base import Host
-from mxeon.models.core.draws import deviation
 
 CALL = """
 vec3 path_tracer(float what, vec3 wo, vec3 wi, vec3 u, float inside)
