@@ -2,7 +2,6 @@
 """Verdicts are the same whatever the seed of the samples, and the seed changes them and their numbers."""
 
 import json
-from functools import lru_cache
 
 import pytest
 
@@ -11,37 +10,40 @@ from mxeon.conformance.samples import SEED, Counts
 from mxeon.errors import InputError
 from tests.support import command
 
-SEEDS = (2, 3, 4)
+SEEDS = (2, 3)  # beside 1, with which all other tests run
 LIBRARIES = ("eonlib", "stock")
 NODES = ("burley_diffuse_bsdf", "conical_edf", "roughness_anisotropy")
 
 
-@lru_cache
-def verdicts(seed, libraries, *nodes):
-    run = mxeon.check((), ["gl"], libraries, nodes=nodes, seed=seed)
-    places = {(each.library, each.subject, each.check): each for each in run.results}
-    found = {place: each.verdict for place, each in places.items()}
-    caught = {place: each.control is None or each.control.caught for place, each in places.items()}
-    return found, caught
+def verdicts(run):
+    """By library, subject and check the verdict, and whether the control was caught."""
+    return {
+        (each.library, each.subject, each.check): (
+            each.verdict,
+            each.control is None or each.control.caught,
+        )
+        for each in run.results
+    }
 
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_another_seed_gives_the_same_verdicts_and_catches_every_control(seed):
-    assert verdicts(seed, LIBRARIES, *NODES) == verdicts(1, LIBRARIES, *NODES)
+    again = mxeon.check((), ["gl"], LIBRARIES, nodes=NODES, seed=seed)
+    assert verdicts(again) == verdicts(mxeon.check((), ["gl"], LIBRARIES, nodes=NODES))
 
 
 @pytest.mark.whole
 @pytest.mark.parametrize("seed", SEEDS)
-def test_every_check_of_every_node_passes_with_another_seed(seed):
-    found, caught = verdicts(seed, LIBRARIES[:1], "all")
-    assert all(caught.values())
-    assert {each for each in found if found[each] != "passed"} == set()
+def test_every_check_of_every_node_has_the_same_verdict_with_another_seed(run, seed):
+    found = verdicts(mxeon.check((), ["gl"], LIBRARIES[:1], nodes=["all"], seed=seed))
+    assert len(found) > 400 and found.items() <= verdicts(run).items()
 
 
 @pytest.mark.whole
 @pytest.mark.parametrize("seed", SEEDS)
-def test_materialx_has_the_same_verdicts_with_another_seed(seed):
-    assert verdicts(seed, LIBRARIES[1:], "common") == verdicts(1, LIBRARIES[1:], "common")
+def test_materialx_has_the_same_verdicts_with_another_seed(stock, seed):
+    found = verdicts(mxeon.check((), ["gl"], LIBRARIES[1:], nodes=["common"], seed=seed))
+    assert len(found) > 200 and found.items() <= verdicts(stock).items()
 
 
 def test_numbers_of_samples_change_with_the_seed():
