@@ -58,6 +58,14 @@ WRONG = {
     ("mix, VDF", "transmittance"): ("mix(second_out, first_out", "mix(first_out, second_out"),
     ("subsurface_bsdf", "value"): ("N, albedo, radius", "N, sqrt(albedo), radius"),
 }  # fmt: skip
+NAMED = {
+    ("layer", "combination"): "fault: top and base are exchanged (rms ",
+    ("mix", "combination"): "fault: top and base are exchanged (rms ",
+    ("conductor_bsdf", "value"): "fault: ior and extinction are exchanged (rms ",
+    ("sheen_bsdf, mode conty_kulla", "value"): "best match: Zeltner sheen (rms ",
+    ("dielectric_bsdf, scatter_mode RT", "kept"): "mode R transmits light",
+    ("oren_nayar_diffuse_bsdf, energy_compensation false", "value"): "fault: the weight is ignored",
+}
 ROWS = [(*key, *change) for key, change in WRONG.items()]
 RIGHT = (
     *(key for key in WRONG if key[1] != "kept"), ("eon_diffuse_bsdf", "value"),
@@ -97,6 +105,12 @@ def test_the_closures_of_eonlib_are_those_of_the_equations(judged, title, check)
 @pytest.mark.parametrize(("title", "check", "old", "new"), ROWS)
 def test_a_wrong_text_is_noticed(changed, title, check, old, new):
     assert changed(old, new)(check, title, "osl").verdict == FAILED
+
+
+@pytest.mark.parametrize(("title", "check"), NAMED)
+def test_a_wrong_text_is_named(changed, title, check):
+    diagnosis = changed(*WRONG[title, check])(check, title, "osl").diagnosis
+    assert NAMED[title, check] in diagnosis
 
 
 def test_the_repair_on_its_page_gives_a_sheen_its_mode(judged, changed):

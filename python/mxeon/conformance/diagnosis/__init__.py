@@ -25,6 +25,7 @@ from mxeon.conformance.diagnosis.faults import (
     DIRECT_FAULTS,
     ENVIRONMENT_FAULTS,
     Fault,
+    exchanges,
     normal_ignored,
     scaled_by,
 )
@@ -115,7 +116,9 @@ def explain(
     ranking = sorted(models.items(), key=lambda item: item[1])
     # Look for a fault of the first where no other explains the values.
     if ranking[0][0] == own.title or ranking[0][1] > tolerance.value:
-        faults = (*faults, scaled_by(_factor(short)))
+        names = [each.name for each in case.spec.inputs if each.name not in DIMMING]
+        exchanged = exchanges(names) if faults else ()
+        faults = (*faults, *exchanged, scaled_by(_factor(short)))
         distances = {fault.text: _distance(short, own, fault, tolerance) for fault in faults}
         if text := _fault(distances, models, own.title, tolerance.value):
             return Diagnosis(text, models)
@@ -144,7 +147,10 @@ def _distance(
     """
     errors = []
     for case in cases:
-        values = fault.values(case.batch, candidate.values(fault.batch(case.batch)))
+        try:
+            values = fault.values(case.batch, candidate.values(fault.batch(case.batch)))
+        except ValueError:  # inputs that are exchanged may lie outside each other's domain
+            return float("inf")
         kept = case.batch.rough <= 1.0
         if "albedo" not in tolerance.unit:
             kept &= np.abs(case.batch.wi[:, 2]) > LEAST_LIGHT

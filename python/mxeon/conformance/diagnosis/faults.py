@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Known faults of the way from a node's inputs to a model, whatever the model, to name them by."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import permutations
+from itertools import combinations, permutations
 from operator import itemgetter
 
 import numpy as np
@@ -140,6 +140,22 @@ ENVIRONMENT_FAULTS = (
         lambda batch: replace(batch, wo=np.broadcast_to([0.0, 0.0, 1.0], batch.wo.shape)),
     ),
 )
+
+
+def exchanges(names: Iterable[str]) -> Iterator[Fault]:
+    """Two inputs in each other's place, or all those of two nodes, whose names are before a slash."""
+    for pair in combinations(dict.fromkeys(name.split("/")[0] for name in names), 2):
+        yield Fault(f"{pair[0]} and {pair[1]} are exchanged", partial(_exchanged, *pair))
+
+
+def _exchanged(one: str, other: str, batch: Batch) -> Batch:
+    changes, inputs = {}, batch.inputs
+    for name in inputs:
+        node, *port = name.split("/")
+        there = "/".join([{one: other, other: one}.get(node, node), *port])
+        if there in inputs and np.shape(inputs[there]) == np.shape(inputs[name]):
+            changes[name] = inputs[there]
+    return batch.altered(**changes)
 
 
 def scaled_by(factor: float) -> Fault:
