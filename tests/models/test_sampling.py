@@ -155,20 +155,20 @@ def test_the_mixture_has_a_density_where_listing_4_has_none():
 @pytest.mark.parametrize("d", [-0.5, -1e-3, 0.0, 1e-3, 0.5])
 def test_clipped_cosine_keeps_the_side_of_the_lune_that_lands_above_the_horizon(d):
     u1, u2 = np.moveaxis(uniforms(10000, 2), -1, 0)
-    wh = cltc.cltc_clipped(u1, 1.0 - u1, u2, np.float64(d))
+    wh = cltc.cltc_clipped(u1, u2, np.float64(d))
     assert (d * wh[..., 0] + wh[..., 2] >= -tolerances.LUNE).all()
 
 
 def test_clipped_cosine_keeps_its_digits_on_the_rim():
     rest, u2 = 2.0 ** -np.arange(1.0, 54.0)[:, np.newaxis], np.linspace(0.0, 1.0, 64, False)
-    z = cltc.cltc_clipped(1.0 - rest, rest, u2, np.float64(0.0))[..., 2]  # nothing is cut
+    z = cltc.cltc_clipped(1.0 - rest, u2, np.float64(0.0), rest)[..., 2]  # nothing is cut
     np.testing.assert_allclose(z, np.sqrt(rest + 0.0 * u2), rtol=tolerances.RIM)
 
 
 def test_listing_3_keeps_the_wrong_side_where_d_is_positive():
     d = float(ltc.ltc_d(1.0, 1.0))
     # Whatever the sign, the listing does what `cltc_clipped` does for a negative one.
-    x, _, z = cltc.cltc_clipped(1.0 - 1e-9, 1e-9, 0.0, -d)
+    x, _, z = cltc.cltc_clipped(1.0 - 1e-9, 0.0, -d, 1e-9)
     assert d > 0.0 and d * x + z < -0.9 * d
 
 

@@ -597,14 +597,14 @@ def _cut_fraction(d: Array) -> Array:
 def _draw(wo: Array, u1: Array, rest: Array, u2: Array, roughness: Array) -> tuple[Array, Array]:
     """`cltc_sample` of two random numbers; `rest` is 1 - u1, to all of its digits."""
     d = ltc_d(wo[..., 2], roughness)
-    wi, pdf = ltc_transformed(wo, cltc_clipped(u1, rest, u2, d), roughness, d)
+    wi, pdf = ltc_transformed(wo, cltc_clipped(u1, u2, d, rest), roughness, d)
     # On the edge of the lune d x + z is zero up to rounding, of either sign.
     wi = stack_xyz(wi[..., 0], wi[..., 1], at_least_0(wi[..., 2]))
     return wi, pdf / cltc_kept_fraction(d)
 
 
-def cltc_clipped(u1: Array, rest: Array, u2: Array, d: Array) -> Array:
-    """Direction under the clamped cosine with d x + z >= 0, `rest` is 1 - u1: [Portsmouth2025], Listing 3.
+def cltc_clipped(u1: Array, u2: Array, d: Array, rest: Array | None = None) -> Array:
+    """Direction under the clamped cosine with d x + z >= 0, `rest` to all digits 1 - u1: [Portsmouth2025], Listing 3.
 
     The chord at y has the half length c, c^2 = 1 - u1 + x^2, and x becomes c (1 - k) + k x. Then
 
@@ -612,6 +612,7 @@ def cltc_clipped(u1: Array, rest: Array, u2: Array, d: Array) -> Array:
 
     where of c - x and c + x the smaller one is (1 - u1) over the other: nothing cancels on the rim.
     """
+    rest = 1.0 - u1 if rest is None else rest
     wh = around(root(rest), root(u1), u2)
     x, y = wh[..., 0], wh[..., 1]
     xp, kept, cut = array_namespace(x, d), cltc_kept_fraction(d), _cut_fraction(d)

@@ -87,7 +87,7 @@ def side_of_the_lune() -> Measured:
     mu = np.linspace(0.999, 1.0, 100_001)
     d = ltc.ltc_d(mu, 1.0)
     u1, u2 = np.random.default_rng(2).random((2, 200_000))
-    wh = cltc.cltc_clipped(u1, 1.0 - u1, u2, -d[-1])
+    wh = cltc.cltc_clipped(u1, u2, -d[-1])
     lowest = np.min(d[-1] * wh[:, 0] + wh[:, 2])
     sentence = f"d > 0 for mu > {mu[d > 0.0].min():.5f}: up to {d.max():.1e} at r = 1"
     return f"{sentence}, where the listing draws z down to {lowest:.1e}", lowest
