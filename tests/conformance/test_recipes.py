@@ -19,7 +19,12 @@ PLACES = {
     "the tolerance of sheen's albedo": ({"CONTY_KULLA_ALBEDO"}, {f"{SPECS}/sheen.py"}),
     "the inputs of the dielectric": (PORTS, {f"{SPECS}/microfacets.py", *SHADERS}),
 }
-APART = ("conformance/checks/", "genglsl/path/", ".json")  # ask about single inputs, or copy them
+APART = (
+    "conformance/checks/",
+    "genglsl/path/",
+    ".json",
+    "__pycache__",
+)  # ask about single inputs, or are copies
 
 
 @pytest.mark.parametrize("name", PLACES)

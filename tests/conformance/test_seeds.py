@@ -9,6 +9,7 @@ import mxeon
 from mxeon.conformance.samples import SEED, Counts
 from mxeon.errors import InputError
 from tests.support import command
+from tests.support.sharing import EXAMPLES
 
 SEEDS = (2, 3)  # beside 1, with which all other tests run
 LIBRARIES = ("eonlib", "stock")
@@ -35,15 +36,15 @@ def test_another_seed_gives_the_same_verdicts_and_catches_every_control(seed):
 @pytest.mark.whole
 @pytest.mark.parametrize("seed", SEEDS)
 def test_every_check_of_every_node_has_the_same_verdict_with_another_seed(run, seed):
-    found = verdicts(mxeon.check((), ["gl"], LIBRARIES[:1], nodes=["all"], seed=seed))
+    found = verdicts(mxeon.check(EXAMPLES, ["gl"], LIBRARIES[:1], nodes=["all"], seed=seed))
     assert len(found) > 400 and found.items() <= verdicts(run).items()
 
 
 @pytest.mark.whole
 @pytest.mark.parametrize("seed", SEEDS)
 def test_materialx_has_the_same_verdicts_with_another_seed(stock, seed):
-    found = verdicts(mxeon.check((), ["gl"], LIBRARIES[1:], nodes=["common"], seed=seed))
-    assert len(found) > 200 and found.items() <= verdicts(stock).items()
+    found = verdicts(mxeon.check(EXAMPLES, ["gl"], LIBRARIES[1:], nodes=["all"], seed=seed))
+    assert len(found) > 400 and found.items() <= verdicts(stock).items()
 
 
 def test_numbers_of_samples_change_with_the_seed():

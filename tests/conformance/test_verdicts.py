@@ -66,7 +66,10 @@ def film(choices):
 
 SURFACE = dict.fromkeys(("lobes_albedo", "lobes_mean", "lobes_furnace", "lobes_energy"), LOBES)
 SURFACE |= {"lobes": "no single lobe explains it"}
-FILMS = {"lobes_film": "the lobes under the film are not those of the material"}
+FILMS = {"lobes_film": LOBES}
+SPHERE = {
+    "states": "all with a surface that bends: a sphere"
+}  # Zeltner's lobe, seen along the normal
 PASSED_THROUGH = {"transmitted": UNSHADOWED, "transmitted_finite": NAN}
 # By title, what does not pass with stock MaterialX, and words of each diagnosis.
 STOCK = {
@@ -86,8 +89,9 @@ STOCK = {
     },
     "sheen_bsdf, mode zeltner": {
         "value": "all with dot(N, V) rounded above 1",
-        "transmission": "all light passes (rms 0)", **dict.fromkeys(("layering", "layer"), UNCOLORED),
+        "transmission": "all light passes (rms 0)", **dict.fromkeys(("layering", "layer"), UNCOLORED), **SPHERE,
     },
+    **dict.fromkeys(("layer", "mix", "add"), SPHERE),
     "dielectric_bsdf, scatter_mode R": {
         **OPEN, **dict.fromkeys(("layering", "transmission", "layer", "denser"), UNTINTED),
         "finite": "with an index of refraction of 0", "lossless": HALF, "anisotropic_albedo": G_1,
@@ -97,18 +101,18 @@ STOCK = {
         **OPEN, **dict.fromkeys(("layering", "transmission", "layer", "dip"), AVERAGED),
         "lossless": HALF, "anisotropic_albedo": G_1,
     },
-    "multiply, in2 float": {"combined_throughput": UNSCALED},
-    "multiply, in2 color3": {"combined_throughput": UNSCALED},
-    "multiply, of a sum": {"combined_throughput": UNSCALED},
-    "mix, of a sum": {"combined_throughput": ENDED},
-    "mix, of a layer under a sum": {"combined_throughput": ENDED},
+    "multiply, in2 float": {"combined_throughput": UNSCALED, **SPHERE},
+    "multiply, in2 color3": {"combined_throughput": UNSCALED, **SPHERE},
+    "multiply, of a sum": {"combined_throughput": UNSCALED, **SPHERE},
+    "mix, of a sum": {"combined_throughput": ENDED, **SPHERE},
+    "mix, of a layer under a sum": {"combined_throughput": ENDED, **SPHERE},
     "layer, under a mix of a sum": {
-        "combination": ENDED, "combined_throughput": ENDED, "combined_albedo": "",
+        "combination": ENDED, "combined_throughput": ENDED, "combined_albedo": "", **SPHERE,
     },
     # Stock's sheen passes light by its albedo without the color.
     "layer, under a colored sum": dict.fromkeys(
         ("combination", "combined_albedo", "combined_throughput"), ""
-    ),
+    ) | SPHERE,
     "chiang_hair_bsdf": {
         **dict.fromkeys(("value", "black", "finite", "integral", "low_index"), NAN),
         "environment": "the closest is a GGX lobe of the mean roughness and tint, without absorption",

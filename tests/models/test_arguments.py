@@ -12,6 +12,7 @@ from pkgutil import resolve_name
 import numpy as np
 import pytest
 
+from mxeon.models.core.arguments import RANGES
 from mxeon.models.microfacet.fresnel import artistic_ior, artistic_parameters
 from mxeon.models.sheen import conty_kulla_albedo_dir
 from mxeon.models.transmission import refraction_direction
@@ -103,6 +104,10 @@ def test_every_function_computes_in_float64_whatever_the_type_of_its_arguments(k
 @pytest.mark.parametrize("roughness", (5e-324, 1e-320, 1e-300))
 def test_conty_kulla_has_no_albedo_away_from_grazing_at_the_least_roughness(roughness):
     assert conty_kulla_albedo_dir(0.5, roughness) == 0.0
+
+
+def test_a_quantity_without_a_range_of_its_own_is_a_share():
+    assert RANGES["sparkle"] == (0.0, 1.0, "[0, 1]")
 
 
 def test_edge_color_of_an_index_of_zero_is_its_limit():

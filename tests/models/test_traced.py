@@ -156,6 +156,7 @@ def test_torch_differentiates_and_maps_every_function_of_every_model(name, funct
         np.testing.assert_allclose(mapped.numpy(), value, VALUE, VALUE)
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(("name", "function"), FUNCTIONS)
 def test_jax_traces_gradients_of_every_function_of_every_model(name, function):
     """What `jit`, `vmap` and `grad` need of a function; compiling those of films and facets takes minutes."""

@@ -174,8 +174,9 @@ def test_draws_from_inside_have_their_density(materials, name):
 
 @pytest.mark.whole
 @pytest.mark.parametrize("name", SURFACES)
-def test_ten_million_draws_have_their_density(materials, name):
-    assert leaves(materials(name), 0.9, 10**7, nodes=64) < DEVIATION
+def test_a_million_draws_have_their_density(materials, name):
+    """Ten million do, too, with 64 nodes a cell: they take three minutes."""
+    assert leaves(materials(name), 0.9, 10**6, nodes=24) < DEVIATION
 
 
 # Error of the rasterizer's albedo, beside the noise of 2^16 draws: films 0.07, tilted fibers have none in closed form.
