@@ -207,9 +207,10 @@ def _model(
     if place or not any(map(np.any, wrong)):
         return place or SINGLY_RIGHT
     place, values = span(cases, tolerance), ""
-    if first != own and least <= NEAR * rival:
-        return f"{_all(wrong, place)}; {sentence(ranking)}" if place else sentence(ranking)
     bad = np.concatenate(wrong)
+    if first != own and least <= NEAR * rival:
+        few = place and bad.mean() < 0.5
+        return f"{_all(wrong, place)}; {sentence(ranking)}" if few else sentence(ranking)
     if not place and measure and np.count_nonzero(bad) >= WORST and bad.mean() < 0.5:
         cures = _cures(case, cases, errors, tolerance, measure)
         weak = span(cases, tolerance, WEAK) if len(cures) == 1 else ""
