@@ -56,7 +56,7 @@ TRACED = """
 
 Three of [MaterialX's examples](https://github.com/AcademySoftwareFoundation/MaterialX/tree/main/resources/Materials/Examples).
 A sphere with a light and an even environment: the rasterizer, the float64 reference, and [paths of light](path_tracing.md).
-Then paths on the shader ball in the studio, with its shadows and its reflections of itself.
+After it, the path-traced shader ball in the studio, with its shadows and its reflections of itself.
 
 {}
     mxeon render standard_surface_glass.mtlx --integrator path --size 192 --samples {} --output glass.png
