@@ -47,7 +47,7 @@ HEAD = """<!-- Made by `python -m tools.site.gallery`. -->
 
 The materials in `examples/` on a shader ball in a studio, rendered on the `gl` host: stock MaterialX on the left,
 eonlib on the right, the largest difference first. Furnace documents show a sphere in a white environment, where
-it vanishes if no energy is lost or gained. Nothing casts a shadow here.
+it vanishes if no energy is lost or gained. Nothing casts a shadow, except in the [path-traced pictures](#path-traced).
 
 """
 

@@ -149,7 +149,8 @@ def node_table(node, results):
         links = (
             f"[{each.partition('_')[2].replace('_', ' ')}](upstream/{each}.md)" for each in pages
         )
-        cells = check, mode_of(subject) or "all", allowed, *errors, ", ".join(links)
+        only = "all" if len({subject for _, subject in rows}) == 1 else "alone"
+        cells = check, mode_of(subject) or only, allowed, *errors, ", ".join(links)
         lines.append(f"| {' | '.join(cells)} |\n")
     # The modes that pass, where those are not all.
     everything = {mode_of(subject) for _, subject in rows}
