@@ -73,7 +73,7 @@ SPHERE = {
 PASSED_THROUGH = {"transmitted": UNSHADOWED, "transmitted_finite": NAN}
 # By title, what does not pass with stock MaterialX, and words of each diagnosis.
 STOCK = {
-    EON: {"value": CLAMPED, "albedo": CLAMPED, "flag": CLAMPED, "environment": ""},
+    EON: {"value": CLAMPED, "albedo": CLAMPED, "environment": ""},
     QON: {"environment": "QON with MaterialX's fit of its albedo"},
     f"{EON}, mdl": {"closure": "FON + white lobe"},
     f"{EON}, osl": {"closure": "energy_compensation is not the node's"},

@@ -85,7 +85,7 @@ WRONG = {
          "best match: a far exponential of 1.5 mean free paths instead of 3"),
     ),
     "conical_edf": (
-        ("genglsl/conical_edf.glsl", "w / 42.0 * tail", "w / 42.0", "exitance", "correct except for"),
+        ("genglsl/conical_edf.glsl", "w / 42.0 * tail", "w / 42.0", "radiance", "correct except for"),
         ("genglsl/conical_edf.glsl", "u = angle", "u = max(angle, 1.6)", "radiance", "pairs, all with inner_angle 1.6 or below"),
         ("genglsl/conical_edf.glsl", "u = angle", "u = min(2.0 * angle, 360.0)", "radiance",
          "a cone whose angles count from its axis (rms "),

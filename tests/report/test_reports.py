@@ -224,7 +224,6 @@ WRONG = (
     made("furnace", 1e-7),
     made("albedo", 0.3, pages=("a", "b")),
     made("black", 0.0),
-    made("flag", 0.2),
     made("value", 0.4, subject="sheen_bsdf, mode zeltner"),  # claims no rough diffuse model
 )
 RUN = Run("0.1.0", {}, (Identity("gl", "OpenGL 4.5", "llvmpipe"),), WRONG)
@@ -247,7 +246,7 @@ def test_a_row_has_the_claimed_model_the_model_that_is_there_and_the_pages(tmp_p
     assert entry.verdict == FAILED and entry.pages == ("a", "b")
     errors = {column: cell.error for column, cell in entry.cells.items()}
     assert errors == {
-        "direct": 0.4, "surroundings": 1e-7, "energy": 1e-7, "color": 0.3, "black": 0.0, "flag": 0.2
+        "direct": 0.4, "surroundings": 1e-7, "energy": 1e-7, "color": 0.3, "black": 0.0
     }  # fmt: skip
 
 

@@ -11,8 +11,7 @@ import subprocess
 import numpy as np
 import pytest
 
-from mxeon.conformance.checks.paths import paths, random, refracted
-from mxeon.conformance.draws import deviation
+from mxeon.conformance.checks.paths import deviation, paths, random, refracted
 from mxeon.conformance.results import PASSED
 from mxeon.errors import InputError, InterfaceError
 from mxeon.shaders.generation import generate

@@ -35,14 +35,13 @@ from mxeon.conformance.samples import (
     generator,
     rounded,
 )
-from mxeon.conformance.spec import POWER, LobeSpec, Spec, beside_rounding, broadcast_inputs
+from mxeon.conformance.spec import POWER, LobeSpec, Spec, broadcast_inputs
 from mxeon.conformance.specs.combinations import CombinedSpec
 from mxeon.conformance.specs.diffuse import (
     LOBE_VALUE,
     DiffuseModelSpec,
     DiffuseSpec,
     SurfaceLobe,
-    difference_of,
 )
 from mxeon.conformance.specs.emission import AbsentSpec, EmissionSpec, EmittingSurface, MediumSpec
 from mxeon.conformance.specs.hair import HairSpec
@@ -264,8 +263,8 @@ class Evaluating(Backend):
     def precision(self, quantity: str) -> tuple[Term, ...]:
         if quantity == "color_space":
             colors, power = float32(np.linspace(0.09, 1.0, POWERS)), float32(np.full(POWERS, 2.4))
-            errors = POWER.errors(self.host, colors, power)
-            return (Term(2.0 * beside_rounding(errors), "pow() as measured there, times 2"),)
+            error = POWER.error(lambda: (colors, power))(self.host)
+            return (Term(2.0 * error, "pow() as measured there, times 2"),)
         return () if isinstance(self.spec, self.unlit) else self.spec.engine(quantity, self.host)
 
     @cached_property
@@ -423,7 +422,6 @@ class Closures(Evaluating):
             **dict.fromkeys(("value", "albedo"), exact),
             **dict.fromkeys(("throughput", "lambert"), own and exact),
             **dict.fromkeys(("integral", "light", "reciprocity"), None),
-            "difference": difference_of(exact),
         }
         return told.get(quantity, own)
 
@@ -575,7 +573,6 @@ class Rendered(Evaluating):
             "integral": INTEGRAL,
             "light": LIGHT,
             "lambert": cls.flat,
-            "difference": difference_of(value),
             "frame": None,
         }
         return own.get(quantity, spec.errors.get(quantity))
@@ -732,7 +729,6 @@ def errors_of(value: Tolerance, albedo: Tolerance) -> Mapping[str, Tolerance]:
         "value": value,
         "albedo": albedo,
         "lambert": value,
-        "difference": difference_of(value),
     }
 
 

@@ -182,13 +182,6 @@ def throughputs(case: Case, *branches: str) -> Iterator[Compared]:
             yield Compared(batch, case.throughput(batch, branch), expected)
 
 
-def over_condition(case: Case, compared: Compared) -> Compared:
-    """Values that count relative to what they are sensitive to."""
-    batch, measured, expected = compared
-    condition = case.valued.condition(batch)
-    return Compared(batch, measured / condition, expected / condition)
-
-
 def frames(case: Case) -> Iterator[Compared]:
     """Values in turned frames, half of them with a normal that faces away, against those in none."""
     batch = case.samples.turned

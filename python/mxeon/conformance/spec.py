@@ -5,7 +5,7 @@ A family of nodes is one file under `specs`. How an engine is asked about it is 
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache, partial
 from typing import Any, ClassVar, NamedTuple, Self
@@ -34,7 +34,7 @@ from mxeon.conformance.samples import (
     turned_frames,
     with_edges,
 )
-from mxeon.conformance.tolerance import ROUNDING, Term, Tolerance
+from mxeon.conformance.tolerance import ROUNDING, Compared, Term, Tolerance
 from mxeon.hosts.base import Host
 from mxeon.shaders.nodes import (
     SURFACE,
@@ -211,9 +211,9 @@ class ValueSpec(Spec):
         """Some of them, for controls and for what takes long."""
         return tuple(batch.first(counts.few) for batch in batches)
 
-    def condition(self, batch: Batch) -> Array:
-        """What errors of values are divided by, (N, 3), (N, 1) or one number."""
-        return np.ones((1, 1))
+    def alike(self, compared: Compared) -> Compared:
+        """Values in a unit in which their errors are alike."""
+        return compared
 
 
 class LobeSpec(ValueSpec):
@@ -418,6 +418,14 @@ class EngineFunction:
         values = host.execute(text, function, *arguments)[:, 0]
         return np.abs(values - self.exact(*arguments))
 
+    def error(
+        self, arguments: Callable[[], Sequence[Array]], allowed: float = 1.0
+    ) -> Callable[[Host], float]:
+        """What measures a host's largest error of some arguments, beyond so many roundings of 1."""
+        return lambda host: max(
+            float(self.errors(host, *arguments()).max()) - allowed * ROUNDING, 0.0
+        )
+
 
 POWER = EngineFunction("power", "pow(x, y)", np.power)
 EXPONENTIAL = EngineFunction("exponential", "exp(-x)", lambda x: np.exp(-x))
@@ -428,8 +436,3 @@ TURN = EngineFunction(
     "max(abs(cos(6.28318530718 * x)), abs(sin(6.28318530718 * x)))",
     lambda x: np.maximum(np.abs(np.cos(2.0 * np.pi * x)), np.abs(np.sin(2.0 * np.pi * x))),
 )
-
-
-def beside_rounding(errors: Array, allowed: float = 1.0) -> float:
-    """The largest error beyond so many roundings of 1."""
-    return max(float(errors.max()) - allowed * ROUNDING, 0.0)

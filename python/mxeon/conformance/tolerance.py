@@ -28,6 +28,9 @@ class Compared(NamedTuple):
     def where(self, rows: Mask) -> "Compared":
         return Compared(self.batch.where(rows), self.measured[rows], self.expected[rows])
 
+    def over(self, scale: Array) -> "Compared":
+        return Compared(self.batch, self.measured / scale, self.expected / scale)
+
 
 @dataclass(frozen=True)
 class Measurement:

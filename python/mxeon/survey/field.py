@@ -32,7 +32,6 @@ CHECKS = {
     "color": ("albedo", "environment"),
     "black": ("black",),
     "back": (),
-    "flag": ("flag",),
 }
 NEAREST = re.compile(r"best match: (.+?) \(rms")
 

@@ -25,7 +25,6 @@ HEADINGS = {
     "color": ("Color", "error of the albedo at mixed reflectance"),
     "black": ("Black", "what a black surface scatters"),
     "back": ("Back-lit", "worst error of the portrait in light from behind"),
-    "flag": ("Flag", "error of the difference that energy_compensation makes"),
 }
 SCENES = {"side": "light from the side", "back": "light from behind"}
 INPUTS = ("color", "roughness", "wo", "wi", "measured", "expected")

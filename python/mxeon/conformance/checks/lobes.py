@@ -13,10 +13,9 @@ from numpy.typing import ArrayLike
 
 from mxeon.conformance import diagnosis
 from mxeon.conformance.backends import WHITE, scene_of
-from mxeon.conformance.case import BRANCHES, Case, dead_inputs, edge_values, frames, over_condition
+from mxeon.conformance.case import BRANCHES, Case, dead_inputs, edge_values, frames
 from mxeon.conformance.check import (
     check,
-    control,
     drop_changes,
     gray,
     of_family,
@@ -39,6 +38,7 @@ from mxeon.conformance.diagnosis import (
     explain,
 )
 from mxeon.conformance.diagnosis.faults import DIRECT_FAULTS
+from mxeon.conformance.results import WRONG_INSIDE
 from mxeon.conformance.samples import (
     LEAST_COLOR82,
     SKY_ROWS,
@@ -71,13 +71,14 @@ from mxeon.conformance.tolerance import (
     scaled,
     sum_in,
 )
+from mxeon.errors import NotRun
 from mxeon.hosts import HOSTS, front_lit_only
+from mxeon.hosts.calls import NORMAL
 from mxeon.io.srgb import srgb_decoded
 from mxeon.models import table as reference
 from mxeon.models.core.quadrature import hemisphere_nodes
 from mxeon.models.nodes.combinations import FACTOR
 from mxeon.models.nodes.lobes import FORMS, TILTED
-from mxeon.shaders.nodes import FLAG
 
 COLORS = ((0.2, 0.2, 0.2), (0.5, 0.5, 0.5), (0.8, 0.8, 0.8), (0.8, 0.4, 0.1))
 QUADRATURE_NODES = 16  # reaches 1e-9 on the models judged, far below float32
@@ -369,52 +370,6 @@ def lambert(case: Case) -> Iterator[Compared]:
         yield Compared(batch, case.direct(batch), model_value(batch, "lambert"))
 
 
-def modes_of(case: Case) -> tuple[str, str]:
-    """The model of a case's mode, and that of the other one."""
-    return ("eon", "qon") if case.spec.model == "eon" else ("qon", "eon")
-
-
-@control("the mode returns the values of the other mode")
-def take_other_mode(case: Case) -> Case:
-    """Values of the other mode: not by its flag, which a host may ignore."""
-    own, other = modes_of(case)
-
-    def change(batch: Batch, values: Array) -> Array:
-        if batch.inputs[FLAG] != (own == "eon"):
-            return values
-        return values + model_value(batch, other) - model_value(batch, own)
-
-    return replace(case, outputs=change)
-
-
-@check(
-    lambda spec: is_model(spec, *MODES) and isinstance(spec, DiffuseSpec) and FLAG in spec.names,
-    take_other_mode,
-    "difference",
-)
-def flag(case: Case) -> Measurement:
-    """energy_compensation changes the value by the difference between the two models.
-
-    The part that the case's own mode has in a wrong change by the flag, relative to the models'.
-    """
-    error = largest = 0.0
-    modes = modes_of(case)
-    for batch in case.few:
-        batch = batch.altered(roughness=np.minimum(batch.inputs["roughness"], 1.0))
-        # Leave out the pairs for which the host has no closure of the flagged model.
-        rows: slice | Array = slice(None)
-        if front_lit_only(case.host.name, "qon"):
-            rows = (batch.wo[:, :2] * batch.wi[:, :2]).sum(axis=1) >= 0.0
-        # A wrong change is charged to the mode whose values are wrong.
-        own, other = (case.direct(batch.altered(**{FLAG: mode == "eon"})) for mode in modes)
-        expected, beside = (model_value(batch, mode) for mode in modes)
-        change = absolute(own - other, expected - beside)
-        wrong = np.minimum(change, absolute(own, expected))
-        error = np.maximum(error, wrong[rows].max(initial=0.0))
-        largest = max(largest, np.abs(expected - beside)[rows].max(initial=0.0))
-    return Measurement(float(error / largest), {"expected": [float(largest)]})
-
-
 @check(
     lambda spec: (
         (is_node(spec) and (is_lobe(spec) or is_model(spec, *ROUGH, "lambert", *COATED)))
@@ -617,4 +572,83 @@ for _key, _row in REGIONS.items():
         lit=True,
         open=True,
         diagnose=partial(_explained, _key),
-    )(lambda case, key=_key: over_condition(case, _in_region(key, case)))
+    )(lambda case, key=_key: case.valued.alike(_in_region(key, case)))
+
+# --- inputs outside the ranges that the other checks draw from, as far as hosts pass them ---------
+
+PAIRS = 16  # of each value
+LEAST_WEIGHT = 0.3  # of weights and occlusions, so that each pair shows it
+TOLERANCES = given(1.0, "tolerances", "the tolerance of each quantity")
+
+
+def quantities(case: Case, batch: Batch, right: Batch) -> Iterator[tuple[str, Compared]]:
+    """Values, albedos and throughputs, each by its name, against those that are expected of other inputs."""
+    albedo = case.expected_albedo(right)
+    yield "value", Compared(batch, case.direct(batch), case.expected(right))
+    yield "albedo", Compared(batch, case.albedo(batch), albedo)
+    if is_layer(case.spec):
+        passed = case.throughput(batch, "direct")
+        yield "throughput", Compared(batch, passed, np.maximum(1.0 - albedo, 0.0))
+
+
+def outside(case: Case) -> Iterator[tuple[str, str, float, Compared]]:
+    """Each quantity of a few pairs for each input and value, but for what is wrong inside the ranges already.
+
+    Values are divided by the largest error that passes.
+    """
+    spec, views = case.of(PbrSpec), case.samples.views[0]
+    row, names = np.arange(len(views.wo))[:, np.newaxis], {"weight", "occlusion"}
+    wo = np.where(row == 1, NORMAL, views.wo)
+    wi = np.where(row % 2 == 1, wo * [-1.0, -1.0, spec.side], views.wi)  # microfacets reflect most
+    seen = {
+        name: np.maximum(views.inputs[name], LEAST_WEIGHT) for name in names & views.inputs.keys()
+    }
+    views = replace(views, wo=wo, wi=wi).altered(**seen)
+    plain = replace(case, outputs=lambda batch, values: values)
+    wrong = {
+        name
+        for name, (_, measured, expected) in quantities(plain, views, views)
+        if scaled(measured, expected).max() > case.tolerance(name).value
+    }
+    if len(wrong) == 2 + is_layer(spec):
+        raise NotRun(f"{case.host.name}: not measured, since {spec.title} {WRONG_INSIDE}")
+    batch = views.first(PAIRS)
+    for each in spec.bounded:
+        for value in each.beyond:
+            lit, right = (
+                batch.altered(**{each.name: np.full_like(batch.inputs[each.name], number)})
+                for number in (value, float(np.clip(value, *each.ends)))
+            )
+            for name, compared in quantities(case, lit, right):
+                if name not in wrong:
+                    tolerance = case.tolerance(f"{name} with {each.name} {value:g}", name)
+                    scale = tolerance.value * tolerance.scale(compared.expected)
+                    yield name, each.name, value, compared.over(scale)
+
+
+def diagnose_domain(case: Case) -> Diagnosis:
+    """The inputs, and the values of each, with which a quantity is wrong."""
+    wrong: dict[tuple[str, str], list[float]] = {}
+    for quantity, name, value, compared in outside(case):
+        if absolute(*compared[1:]).max() > TOLERANCES.value:
+            wrong.setdefault((name, quantity), []).append(value)
+    texts = (
+        f"the {quantity} is wrong with {name} {', '.join(f'{value:g}' for value in values)}"
+        for (name, quantity), values in wrong.items()
+    )
+    return Diagnosis("; ".join(texts))
+
+
+@check(
+    lambda spec: (
+        isinstance(spec, PbrSpec) and not isinstance(spec, TransmissionSpec) and bool(spec.bounded)
+    ),
+    scale("values are 30 % too large", 1.3),
+    tolerance=TOLERANCES,
+    pairs=True,
+    lit=True,
+    diagnose=diagnose_domain,
+)
+def domain(case: Case) -> Iterator[Compared]:
+    """Inputs outside their usual range have the value, the albedo and the throughput of the model, too."""
+    return (compared for *_, compared in outside(case))

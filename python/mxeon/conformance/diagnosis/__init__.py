@@ -3,6 +3,7 @@
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from operator import attrgetter
 from typing import TypeAlias
 from weakref import WeakKeyDictionary
@@ -17,7 +18,6 @@ from mxeon.conformance.case import (
     dead_inputs,
     edge_values,
     frames,
-    over_condition,
     throughputs,
     values,
 )
@@ -188,8 +188,6 @@ def _model(
     explains: bool,
 ) -> str:
     """The closest model, which may explain every wrong value, the region that is wrong, or that no model is close."""
-    if isinstance(case.spec, EmissionSpec):  # whose checks count errors so, too
-        cases = [over_condition(case, each) for each in cases]
     errors = [tolerance.metric(case.measured, case.expected) for case in cases]
     wrong: list[Mask] = [error > tolerance.value for error in errors]
     (first, least), (_, rival) = ranking[:2]
@@ -352,7 +350,17 @@ def _rests(case: Case) -> Sequence[Candidate]:
 def _backs(case: Case) -> Iterator[Compared]:
     """Radiance towards views from the back."""
     batch = case.samples.take(case.of(EmissionSpec).backs)
-    yield Compared(batch, case.direct(batch), case.expected(batch))
+    yield case.valued.alike(Compared(batch, case.direct(batch), case.expected(batch)))
+
+
+def _alike(case: Case) -> Sequence[Candidate]:
+    """Functions that may explain values, in the unit in which their errors are alike."""
+
+    def alike(candidate: Candidate, batch: Batch) -> Array:
+        values = candidate.values(batch)
+        return case.valued.alike(Compared(batch, values, values)).expected
+
+    return [replace(each, values=partial(alike, each)) for each in case.value_candidates]
 
 
 def _transmittances(case: Case) -> Iterator[Compared]:
@@ -375,8 +383,9 @@ ALBEDO = Comparison("albedo", albedos, ALBEDOS, ENVIRONMENT_FAULTS)
 # Of a layer, for light from above, and for light through the base.
 THROUGHPUT = Comparison("throughput", lambda case: throughputs(case, *LIGHT), _rests)
 TRANSMISSION = Comparison("throughput", lambda case: throughputs(case, "transmission"), _rests)
-RADIANCE = Comparison("value", values, VALUES)  # of an emission from the front
-BACK = Comparison("value", _backs, VALUES)
+# Of a utility node, or of an emission from the front.
+OUTPUT = Comparison("value", lambda case: map(case.valued.alike, values(case)), _alike)
+BACK = Comparison("value", _backs, _alike)
 TRANSMITTANCE = Comparison("value", _transmittances, VALUES)
 
 

@@ -23,7 +23,7 @@ from mxeon.conformance.samples import (
     with_edges,
 )
 from mxeon.conformance.spec import CHANGED_COLOR, Input, LobeSpec
-from mxeon.conformance.tolerance import Term, Tolerance, roundings, sum_in
+from mxeon.conformance.tolerance import Term, roundings, sum_in
 from mxeon.models import table as reference
 from mxeon.models.table import Model
 from mxeon.shaders.nodes import (
@@ -72,11 +72,6 @@ LOBE_VALUE = sum_in(
     roundings(4 * 48, "in sums that other lobes make 48 times as large"),
     exact=True,
 )
-
-
-def difference_of(value: Tolerance) -> Tolerance:
-    """Tolerance of the difference of two values, relative to the largest such difference, 0.4."""
-    return sum_in("relative", value.term("two values, over a difference of 0.4", 2.0 / 0.4))
 
 
 INPUTS = (
@@ -213,7 +208,7 @@ def _diffuse(node: str, flag: bool | None, model: str) -> DiffuseSpec:
         flag=flag,
         inputs=INPUTS if flag is None else (*INPUTS, Input(FLAG, "boolean", change=not flag)),
         fixed={} if flag is None else {FLAG: flag},
-        errors=ERRORS | {"difference": difference_of(VALUE)},
+        errors=ERRORS,
     )
 
 

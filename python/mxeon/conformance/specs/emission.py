@@ -32,15 +32,13 @@ from mxeon.conformance.spec import (
     RowSpec,
     Spec,
     ValueSpec,
-    beside_rounding,
     broadcast_inputs,
     color,
     draw,
     materials,
     network_text,
 )
-from mxeon.conformance.tolerance import Term, Tolerance, roundings, sum_of
-from mxeon.hosts.base import Host
+from mxeon.conformance.tolerance import Compared, roundings, sum_of
 from mxeon.models.media import cone_cosine, cone_width, surface_radiance
 from mxeon.models.nodes.emissions import (
     AMOUNT,
@@ -132,41 +130,31 @@ FACTORS = {
     (MEDIUM_FACTOR, "color3"): replace(color(MEDIUM_FACTOR, edges=()), high=3.0),
 }
 
-UNIT, EXITANCE = "radiance", "exitance / pi"
+UNIT = "radiance"
 # Cosine from a hard edge within which the engine's own cosine decides; of narrow cones, half of 1 - cos.
 EDGE = 1e-3
 SMALL = Scene("dark", size=8)
 OPACITIES = (0.0, 0.25, 1.0)
 
 
-def _errors(radiance: Tolerance, *exitance: Term) -> dict[str, Tolerance]:
-    terms = exitance or (
-        radiance.term("an average of radiances"),
-        Term(1e-6, "the quadrature on the equations"),
-    )
-    return {"value": radiance, "integral": sum_of(*terms, unit=EXITANCE)}
-
-
-UNIFORM = _errors(sum_of(roundings(6, "three of each emission and its factor"), unit=UNIT))
-POWER_ERRORS = _errors(
-    sum_of(roundings(8), roundings(EXPONENTS[1], "to the power of 20"), unit=UNIT)
-)
-# Ten roundings of 1 - cos of both angles, of which a view takes 1 - mu in all, and two of differences,
-# relative to 1 and the slope of the falloff; in an average ten of an angle shift the falloff at a slope 1/2.
-CONE = _errors(
-    sum_of(roundings(12, "relative to 1 and the slope"), unit="radiance and its slope"),
-    roundings(8, "of an average of radiances"),
-    roundings(5, "of a cone's cosine, ten times 1/2"),
-    Term(3e-8, "the quadrature on the equations"),
-)
+# By name of the row.
+ERRORS = {
+    # Ten roundings of 1 - cos of both angles, of which a view takes 1 - mu in all, and two of differences.
+    "conical": sum_of(roundings(12, "relative to 1 and the slope"), unit="radiance and its slope"),
+    "schlick_emission": sum_of(
+        roundings(8), roundings(EXPONENTS[1], "to the power of 20"), unit=UNIT
+    ),
+}
+UNIFORM = sum_of(roundings(6, "three of each emission and its factor"), unit=UNIT)
 OPACITY = sum_of(roundings(3), unit=UNIT)
 
 
-def power_error(host: Host) -> float:
-    """Error of the engine's own power of numbers in [0, 1], beside its rounding."""
+def _powers() -> tuple[Array, Array]:
     rng = generator()
-    base, exponent = float32(rng.random(ARGUMENTS)), float32(rng.uniform(*EXPONENTS, ARGUMENTS))
-    return beside_rounding(POWER.errors(host, base, exponent))
+    return float32(rng.random(ARGUMENTS)), float32(rng.uniform(*EXPONENTS, ARGUMENTS))
+
+
+power_error = POWER.error(_powers)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -193,9 +181,6 @@ class EmissionSpec(RowSpec):
         """Radiance, (N, 3), of views whose cosines do not exceed 1 by a rounding."""
         return function(np.clip(batch.wo, -1.0, 1.0), broadcast_inputs(batch))
 
-    def exitance(self, batch: Batch) -> Array:
-        return self.row.exitance(broadcast_inputs(batch))
-
     @property
     def others(self) -> tuple[Candidate, ...]:
         return (ZERO,)
@@ -214,31 +199,8 @@ class EmissionSpec(RowSpec):
         rng = generator()
         return self.views(rng, directions(rng, counts.few) * [1.0, 1.0, -1.0])
 
-    def integrated(self, counts: Counts) -> tuple[Batch, Array]:
-        """Emissions at the nodes of a quadrature, and weights of their radiance.
-
-        The weighted sum over the views of a material is its exitance over pi.
-        """
-        rng, count = generator(), counts.materials
-        inputs = self.random_inputs(rng, count)
-        x, w = np.polynomial.legendre.leggauss(counts.nodes)
-        stops = self._stops(inputs)
-        low, high = stops[:, :-1, np.newaxis], stops[:, 1:, np.newaxis]
-        t = 0.5 * (
-            x + 1.0
-        )  # high - mu = t^2 (high - low): dense at the upper end, where powers root
-        mu = float32(high - t * t * (high - low)).reshape(count, -1)
-        weights = 2.0 * mu * ((high - low) * w * t).reshape(count, -1)
-        wo = directions_at(mu, 2.0 * np.pi * rng.random(mu.shape)).reshape(-1, 3)
-        each = np.repeat(np.arange(count), mu.shape[1])
-        return Batch(wo, wo, {name: value[each] for name, value in inputs.items()}), weights
-
     def views(self, rng: np.random.Generator, wo: Array) -> Batch:
         return Batch(wo, wo, self.random_inputs(rng, len(wo)))
-
-    def _stops(self, inputs: dict[str, Array]) -> Array:
-        """Cosines between which the radiance is smooth, (M, 1 + pieces)."""
-        return np.broadcast_to([0.0, 1.0], (len(next(iter(inputs.values()))), 2))
 
 
 class ConeSpec(EmissionSpec):
@@ -270,20 +232,16 @@ class ConeSpec(EmissionSpec):
         near, turned = Batch(wo, wo, inputs), Batch(view, view, axes, frame=frames)
         return *super().batches(counts), _away(near), _away(turned)
 
-    def condition(self, batch: Batch) -> Array:
-        """1 and the slope of the falloff in the cosine, (N, 1)."""
+    def alike(self, compared: Compared) -> Compared:
+        """Values over 1 and the slope of the falloff in the cosine."""
+        batch = compared.batch
         inner, outer = (batch.inputs[name] for name in (INNER, OUTER))
         width = np.where(outer > inner, cone_width(inner, outer), np.inf)
         t = np.clip((np.maximum(batch.wo[:, 2], 0.0) - cone_cosine(outer)) / width, 0.0, 1.0)
-        return np.asarray(1.0 + 6.0 * t * (1.0 - t) / width)[:, np.newaxis]
+        return compared.over((1.0 + 6.0 * t * (1.0 - t) / width)[:, np.newaxis])
 
     def views(self, rng: np.random.Generator, wo: Array) -> Batch:
         return _away(super().views(rng, wo))
-
-    def _stops(self, inputs: dict[str, Array]) -> Array:
-        inner, outer = (np.clip(cone_cosine(inputs[name]), 0.0, 1.0) for name in (INNER, OUTER))
-        ends = np.zeros((len(inner), 2)) + [0.0, 1.0]
-        return np.sort(np.column_stack([ends, inner, np.minimum(inner, outer)]), axis=1)
 
 
 def _away(batch: Batch) -> Batch:
@@ -367,18 +325,17 @@ EMITTING_SURFACES = tuple(
 
 def _spec(row: Emission) -> EmissionSpec:
     drawn, cone = inputs_of(row), row.name == "conical"
-    powered = row.name == "schlick_emission"
     power = (EngineError("the engine's pow()", power_error),)
     return (ConeSpec if cone else EmissionSpec).of(
         row,
         (*drawn, NORMAL) if cone else drawn,
-        CONE if cone else POWER_ERRORS if powered else UNIFORM,
+        {"value": ERRORS.get(row.name, UNIFORM)},
         title=title_of(row, "EDF"),
         closure=not cone,
-        counts=Counts(1 << 12, 1 << 10, materials=128, nodes=16),
+        counts=Counts(1 << 12, 1 << 10),
         asked=("emission", "radiance", 1.0),
         optional=True,
-        engines=dict.fromkeys(("value", "integral"), power) if powered else {},
+        engines={"value": power} if row.name == "schlick_emission" else {},
     )
 
 
@@ -429,11 +386,7 @@ class MediumSpec(RowSpec):
         return np.asarray(function(broadcast_inputs(batch)))
 
 
-def exponential_error(host: Host) -> float:
-    """Error of the engine's own exp(-x) for x in [0, 8], beside its rounding."""
-    return beside_rounding(EXPONENTIAL.errors(host, float32(np.linspace(0.0, 8.0, ARGUMENTS))))
-
-
+exponential_error = EXPONENTIAL.error(lambda: [float32(np.linspace(0.0, 8.0, ARGUMENTS))])
 ENGINE = (
     EngineError("the engine's exp(), twice", exponential_error, 2.0),
     EngineError("the engine's pow(), twice", power_error, 2.0),

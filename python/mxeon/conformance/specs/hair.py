@@ -21,7 +21,7 @@ from mxeon.conformance.samples import (
 )
 from mxeon.conformance.spec import Input, ValueSpec, broadcast_inputs, color
 from mxeon.conformance.specs.lobes import NORMAL, PbrSpec, lobe_errors
-from mxeon.conformance.tolerance import Term, roundings, sum_in, sum_of
+from mxeon.conformance.tolerance import Compared, Term, roundings, sum_in, sum_of
 from mxeon.models.hair import ROUGHNESSES, SCALE, TINTS, chiang_hair_attenuation, section
 from mxeon.models.nodes.lobes import BESSEL, CLAMPED, HAIR_NODE, UNIFORM
 from mxeon.models.nodes.node import Scattering
@@ -165,8 +165,9 @@ class HairSpec(PbrSpec):
         front = shares @ FRONT / shares.sum(axis=-1)
         return np.asarray(front * sky(batch.normal) + (1.0 - front) * sky(-batch.normal))
 
-    def condition(self, batch: Batch) -> Array:
-        """The values, or LEAST, and their slopes in inclination and azimuth of both directions."""
+    def alike(self, compared: Compared) -> Compared:
+        """Values over themselves, or LEAST, and their slopes in inclination and azimuth of both directions."""
+        batch = compared.batch
         total = np.maximum(self.value(batch), LEAST)
         for step in np.eye(4) * STEP:
             up, down = (
@@ -176,7 +177,7 @@ class HairSpec(PbrSpec):
                 for turn in (step, -step)
             )
             total += np.abs(up - down) / (2.0 * STEP)
-        return total
+        return compared.over(total)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         """Random pairs, as many in the lobes, and special ones, with roughness above 0."""

@@ -33,7 +33,6 @@ from mxeon.conformance.spec import (
     EngineError,
     Input,
     ValueSpec,
-    beside_rounding,
     color,
 )
 from mxeon.conformance.specs.lobes import BURLEY_VALUE, NORMAL, WEIGHT, PbrSpec, lobe_errors
@@ -48,7 +47,6 @@ from mxeon.conformance.tolerance import (
     sum_in,
     sum_of,
 )
-from mxeon.hosts.base import Host
 from mxeon.models.nodes.microfacets import (
     FILM_NODES,
     MICROFACET_NODES,
@@ -624,16 +622,12 @@ def _steep(batch: Batch) -> np.ndarray:
     return np.asarray(cosine >= LEAST_FACET)
 
 
-def wave_error(host: Host) -> float:
-    """Error of the engine's own cosine and sine of the phases of a film, beyond two roundings."""
-    phases = float32(np.linspace(0.0, FILM_PHASE, ARGUMENTS))
-    return beside_rounding(WAVE.errors(host, phases), 2.0)
-
-
-# The slope of curves of films from 200 nm in the cosines and sines of their phases is 2.
-WAVE_ERROR = EngineError("the engine's own cosine and sine, times 2", wave_error, 2.0)
-
-
+# Of the phases of a film, beyond two roundings. The slope of curves of films from 200 nm in cosines and sines is 2.
+WAVE_ERROR = EngineError(
+    "the engine's own cosine and sine, times 2",
+    WAVE.error(lambda: [float32(np.linspace(0.0, FILM_PHASE, ARGUMENTS))], 2.0),
+    2.0,
+)
 FILM_SPECS = tuple(
     FilmSpec.of(
         row,

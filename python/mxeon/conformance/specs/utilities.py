@@ -37,6 +37,7 @@ from mxeon.conformance.spec import (
     network_text,
 )
 from mxeon.conformance.tolerance import (
+    Compared,
     Term,
     Tolerance,
     given,
@@ -45,7 +46,6 @@ from mxeon.conformance.tolerance import (
     sum_in,
     sum_of,
 )
-from mxeon.hosts.base import Host
 from mxeon.hosts.calls import GRAPH
 from mxeon.models.diffuse import eon_albedo_avg, eon_albedo_dir
 from mxeon.models.microfacet.fresnel import normal_reflectance
@@ -135,22 +135,14 @@ FEWER = 1 << 12  # arguments of an engine's functions
 LEAST_LOGARITHM = 1e-4  # number whose logarithm is measured
 
 
-def _power_error(host: Host) -> float:
-    """Error of the engine's own 20th and 22nd power in [0, 1]."""
-    x = _shares()
-    return float(POWER.errors(host, x, np.where(np.arange(len(x)) % 2, 20.0, 22.0)).max())
-
-
-def _logarithm_error(host: Host) -> float:
-    """Error of the engine's own logarithm of numbers below 1."""
-    return float(LOGARITHM.errors(host, float32(LEAST_LOGARITHM ** (1.0 - _shares()))).max())
-
-
 def _shares() -> Array:
     """Numbers in [0, 1], the last of which is 1."""
     return float32(np.append(generator().random(FEWER), 1.0))
 
 
+# The 20th and 22nd power in [0, 1], and the logarithm of numbers below 1.
+_power_error = POWER.error(lambda: (_shares(), np.resize([22.0, 20.0], FEWER + 1)), 0.0)
+_logarithm_error = LOGARITHM.error(lambda: [float32(LEAST_LOGARITHM ** (1.0 - _shares()))], 0.0)
 # What an engine's function adds, by node: times the other factor of a product, or a slope.
 ENGINE = {
     "chiang_hair_roughness": EngineError(
@@ -213,34 +205,20 @@ class UtilitySpec(RowSpec):
         color[:, : output.shape[-1]] = output
         return color
 
-    @property
-    def unit(self) -> Callable[[Array, Batch], Array]:
-        """The values in a unit in which their roundings are alike."""
-        return UNITS.get(self.title, lambda values, batch: values)
+    def alike(self, compared: Compared) -> Compared:
+        """An artistic index in a unit in which its roundings are alike; other outputs as they are.
 
-
-def _of_index(values: Array, batch: Batch) -> Array:
-    """n (1 - sqrt(r))^2: a rounding of 1 - sqrt(r) is divided by it in n."""
-    root = np.sqrt(_reflectivity(batch))
-    return np.asarray(values * np.square(1.0 - root))
-
-
-def _of_extinction(values: Array, batch: Batch) -> Array:
-    """k^2 (1 - r) / (n_max + 1)^2: k^2 is a difference of terms that large, over 1 - r."""
-    r = _reflectivity(batch)
-    largest = 2.0 / (1.0 - np.sqrt(r))  # n_max + 1
-    return np.asarray(np.square(values) * (1.0 - r) / np.square(largest))
-
-
-def _reflectivity(batch: Batch) -> Array:
-    return np.asarray(np.clip(batch.inputs["reflectivity"], 0.0, LARGEST_REFLECTIVITY))
-
-
-# Of outputs in which a rounding grows, by title.
-UNITS: Mapping[str, Callable[[Array, Batch], Array]] = {
-    "artistic_ior, ior": _of_index,
-    "artistic_ior, extinction": _of_extinction,
-}
+        n (1 - sqrt(r))^2: a rounding of 1 - sqrt(r) is divided by it in n. And k^2 (1 - r) / (n_max + 1)^2: k^2 is
+        a difference of terms that large, over 1 - r.
+        """
+        if self.node != "artistic_ior":
+            return compared
+        r = np.clip(compared.batch.inputs["reflectivity"], 0.0, LARGEST_REFLECTIVITY)
+        inverse = 1.0 / np.square(1.0 - np.sqrt(r))  # (n_max + 1)^2 / 4
+        if self.output == "ior":
+            return compared.over(inverse)
+        squares = map(np.square, compared[1:])
+        return Compared(compared.batch, *squares).over(4.0 * inverse / (1.0 - r))
 
 
 def _reached(albedo: Callable[[Array, Array], Array], rho: Array, batch: Batch) -> Array:

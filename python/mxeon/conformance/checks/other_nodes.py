@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks of the nodes that scatter nothing: those that emit light, media, and utility nodes."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from mxeon.conformance import diagnosis
+from mxeon.conformance.backends import implementation
+from mxeon.conformance.case import Case
+from mxeon.conformance.check import (
+    Control,
+    check,
+    drop_changes,
+    gray,
+    no_number,
+    of_family,
+    offset,
+    shifted,
+    with_inputs,
+)
+from mxeon.conformance.checks.lobes import inputs
+from mxeon.conformance.diagnosis import BACK, OUTPUT, TRANSMITTANCE, VALUE, Diagnosis
+from mxeon.conformance.diagnosis.regions import span
+from mxeon.conformance.specs.emission import (
+    OPACITY,
+    UNIMPLEMENTED,
+    AbsentSpec,
+    EmissionSpec,
+    EmittingSurface,
+    MediumSpec,
+)
+from mxeon.conformance.specs.utilities import ROUND_TRIPS, UtilitySpec
+from mxeon.conformance.tolerance import Compared, Measurement, count_not_finite, count_of
+
+is_emission = of_family(EmissionSpec)
+
+
+unimplemented = Control(
+    "the node is one that nothing implements", lambda case: case.another(UNIMPLEMENTED)
+)
+
+
+@check(
+    of_family(EmissionSpec, MediumSpec, AbsentSpec),
+    unimplemented,
+    tolerance=count_of("nodes"),
+    diagnose=lambda case: Diagnosis(
+        f"{case.host.target} has no implementation of {case.spec.title}"
+    ),
+)
+def implemented(case: Case) -> Measurement:
+    """The target implements the node."""
+    shader = implementation(case.host, case.spec.document(), case.library)
+    return Measurement(float(shader is None), {})
+
+
+@check(is_emission, gray, OUTPUT)
+def radiance(case: Case) -> Iterable[Compared]:
+    """The radiance matches the node's equation for every view from the front."""
+    return OUTPUT(case)
+
+
+@check(is_emission, offset, BACK, pairs=True, open=True)
+def back(case: Case) -> Iterable[Compared]:
+    """The back of the surface emits what the equation gives."""
+    return BACK(case)
+
+
+@check(of_family(MediumSpec), shifted, TRANSMITTANCE)
+def transmittance(case: Case) -> Iterable[Compared]:
+    """Over one meter, a medium transmits what its coefficients give."""
+    return TRANSMITTANCE(case)
+
+
+def diagnose_opacity(case: Case) -> Diagnosis:
+    """Whether the opacity is dropped."""
+    full = max(
+        OPACITY.metric(each.measured, case.expected(each.batch.altered(opacity=1.0))).max()
+        for each in VALUE(case)
+    )
+    return Diagnosis("the opacity is ignored" if full <= OPACITY.value else "")
+
+
+@check(
+    of_family(EmittingSurface),
+    with_inputs("the opacity is 1", opacity=1.0),
+    VALUE,
+    diagnose=diagnose_opacity,
+)
+def opacity(case: Case) -> Iterable[Compared]:
+    """The light that a surface emits is scaled by its opacity."""
+    return VALUE(case)
+
+
+# --- utility nodes, in units in which the roundings of their values are alike ---------------------
+
+is_utility = of_family(UtilitySpec)
+
+
+@check(is_utility, shifted, OUTPUT, open=True)
+def output(case: Case) -> Iterable[Compared]:
+    """The output of the utility node matches its equations."""
+    return OUTPUT(case)
+
+
+@check(lambda spec: "round_trip" in spec.errors, shifted, diagnose=OUTPUT.diagnose)
+def round_trip(case: Case) -> Iterator[Compared]:
+    """The outputs lead back to the reflectivity or the albedo that they were computed from."""
+    spec = case.of(UtilitySpec)
+    others = {
+        name: case.another(replace(spec, output=name))
+        for name in spec.row.outputs
+        if name != spec.output
+    }
+    for batch in case.batches:
+        outputs = {name: each.direct(batch) for name, each in {spec.output: case, **others}.items()}
+        yield Compared(batch, *ROUND_TRIPS[spec.node](outputs, batch))
+
+
+@check(
+    is_utility,
+    drop_changes,
+    tolerance=count_of("inputs"),
+    diagnose=diagnosis.diagnose_inputs,
+)
+def output_inputs(case: Case) -> Measurement:
+    """Every input of the utility node changes the outputs that depend on it."""
+    return inputs(case)
+
+
+def explained_finite(case: Case) -> Diagnosis:
+    """How many outputs are not finite, and the range of an input that has all of them."""
+    batch = case.samples.take(case.of(UtilitySpec).outside)
+    values = case.direct(batch)
+    finite, none = np.isfinite(values), np.zeros_like(values)
+    if finite.all():
+        return Diagnosis()
+    compared = Compared(batch, np.where(finite, 0.0, np.nan), none)
+    place = span([compared], count_of("values"))
+    share = f"{int((~finite).any(axis=1).sum())} of {len(values)} outputs are not finite"
+    return Diagnosis(f"{share}, all {place}" if place else share)
+
+
+@check(
+    lambda spec: is_utility(spec) and not spec.libraries,
+    no_number,
+    tolerance=count_of("values"),
+    pairs=True,
+    diagnose=explained_finite,
+)
+def output_finite(case: Case) -> Measurement:
+    """Every output is finite, at the ends of the ranges and beyond."""
+    batch = case.samples.take(case.of(UtilitySpec).outside)
+    return count_not_finite(batch, case.direct(batch))
