@@ -21,7 +21,7 @@ A claim *holds* if all of its measured values meet the limit in the column *requ
 some do, and *fails* if none does; NaN meets no limit. The last table is about MaterialX's text, not the
 paper.
 """
-TALLY = "{count} claims: {holds} hold, {part} hold in part, {fails} fail."
+TALLY = "{count} claims; verdicts: {holds} holds, {part} holds in part, {fails} fails."
 
 
 # A sentence with the numbers, and the values that are bounded.
