@@ -3,6 +3,7 @@
 
 import os
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -110,9 +111,13 @@ def test_a_lobe_of_microfacets_sums_as_many_directions_on_every_host(host, gl):
 BEHIND = np.array([[-0.6, 0.0, 0.8]])
 
 
-def test_the_text_is_evaluated_as_it_was_generated():
-    shader = generate(material_text(OREN_NAYAR, {FLAG: True}), "wgsl")[0]
-    text, _ = fragment.bsdf_evaluation(Query(shader, PAIR, PAIR, {}, "direct", "response", None))
+@pytest.mark.parametrize("node", [OREN_NAYAR, "dielectric_bsdf"])
+def test_the_text_is_evaluated_as_it_was_generated_by_one_program_for_all_branches(node):
+    shader = generate(material_text(node), "wgsl")[0]
+    lit = {calls.LIGHTS: 2.0, calls.SKY: True}
+    asked = product((*calls.CLOSURES, calls.LIT), calls.OUTPUTS[:2])
+    queries = (Query(shader, PAIR, PAIR, lit, *each, None) for each in asked)
+    [text] = {fragment.bsdf_evaluation(each)[0] for each in queries}
     functions, main = shader.stages["pixel"].rsplit("void main", 1)
     version, functions = functions.split("\n", 1)
     assert text.startswith(version) and functions in text and f"void main{main}" in text

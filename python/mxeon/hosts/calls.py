@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, TypeAlias, cast
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from mxeon.errors import InputError, InterfaceError
@@ -58,30 +59,33 @@ def prelude(text: str, end: int) -> Prelude | None:
     return Prelude(GEOMETRY.sub("", function[2]), inputs | properties)
 
 
-# By branch: the closure type of the repeated call, and its replacement. A BSDF
-# that only reflects is only called in the first two branches.
+# By branch: the closure type of the repeated call, and the first step of its evaluation. A BSDF that only reflects
+# is only called in the first two branches.
 CLOSURES = {
-    "direct": ("CLOSURE_TYPE_REFLECTION", "CLOSURE_TYPE_REFLECTION"),
-    "environment": ("CLOSURE_TYPE_INDIRECT", "CLOSURE_TYPE_INDIRECT"),
-    "transmission": ("CLOSURE_TYPE_REFLECTION", "CLOSURE_TYPE_TRANSMISSION"),
-    "emission": ("CLOSURE_TYPE_REFLECTION", "CLOSURE_TYPE_EMISSION"),
+    "direct": ("CLOSURE_TYPE_REFLECTION", 1),
+    "environment": ("CLOSURE_TYPE_INDIRECT", 2),
+    "transmission": ("CLOSURE_TYPE_REFLECTION", 3),
+    "emission": ("CLOSURE_TYPE_REFLECTION", 4),
 }
 EMISSION = "CLOSURE_TYPE_EMISSION"  # of the call of an EDF, in every branch
 GRAPH = "graph"  # instead of a branch: the color that the shader gives to its uniform EDF
 LIT = "lit"  # instead of a branch: several lights, then an environment on both sides, in one pixel
 # Inputs of LIT: number of lights, up to 2, direction of the second in world space, and whether an environment follows.
 LIGHTS, SECOND_LIGHT, SKY = "mxeon_lights", "mxeon_second", "mxeon_sky"
+# Steps 0 and 1 are lights, 2 an environment, 3 what it sends through. Every branch is the same program, which takes
+# a driver as long to compile as one branch for each.
+STEPS = "mxeon_steps"  # the first, the one behind the last, and the irradiance of a light
 LOOP = """{type} mxeon_sum = {type}(0.0);
-for (int mxeon_step = 0; mxeon_step < int({lights}) + ({sky} ? 2 : 0); ++mxeon_step)
+for (int mxeon_step = int(mxeon_steps.x); mxeon_step < int(mxeon_steps.y); ++mxeon_step)
 {{
-    bool mxeon_lit = mxeon_step < int({lights});
-    int mxeon_beside = mxeon_step == int({lights}) ? {indirect} : {transmission};
-    int mxeon_closure = mxeon_lit ? {direct} : mxeon_beside;
+    int mxeon_closure = mxeon_step < 2 ? CLOSURE_TYPE_REFLECTION : mxeon_step < 3 ? CLOSURE_TYPE_INDIRECT
+        : mxeon_step < 4 ? CLOSURE_TYPE_TRANSMISSION : CLOSURE_TYPE_EMISSION;
     {type} mxeon_first = L;
     {{
-        {type} L = mxeon_step == 1 ? {second} : mxeon_first;
+        {type} L = mxeon_step == 1 && mxeon_steps.x < 0.5 ? mxeon_second : mxeon_first;
 {block}
-        mxeon_sum += (mxeon_lit ? 3.14159265 : 1.0) * {result}.response;
+        float mxeon_strength = mxeon_step < 2 ? mxeon_steps.z : 1.0;
+        mxeon_sum += throughput_asked ? {result}.throughput : mxeon_strength * {result}.response;
     }}
 }}
 """
@@ -97,7 +101,7 @@ Arguments: TypeAlias = dict[str, tuple[str, ArrayLike]]  # type and values by na
 @dataclass(frozen=True)
 class BsdfCall:
     statements: str  # of the shader's main up to the call
-    value: str  # a color; the same for every output, so that they share a program
+    value: str  # a color
     arguments: Arguments  # types and values of what both read, but P
 
 
@@ -114,24 +118,25 @@ def bsdf_call(query: Query) -> BsdfCall:
     if branch == GRAPH:
         return _graph_call(shader, wo, inputs)
     emitted = output == "radiance"
-    called, closure = (EMISSION, EMISSION) if emitted else CLOSURES.get(branch, CLOSURES["direct"])
+    called, first = CLOSURES.get(branch, CLOSURES["direct"])
+    called = EMISSION if emitted else called
     text = shader.stages["pixel"]
-    start, statements, result, names = _find_calls(text, called, shader.element)
+    start, statements, value, names = _find_calls(text, called, shader.element)
     arguments: Arguments = {"V": ("vector3", wo), "L": ("vector3", wi), "N": ("vector3", NORMAL)}
     arguments["occlusion"] = ("float", inputs.get("occlusion", 1.0))
     if "position" in inputs:
         arguments["P"] = ("vector3", inputs["position"])
     if not emitted:
+        steps: ArrayLike = (first, first + 1, 1.0)
+        if branch == LIT:
+            ends = 2.0 - np.asarray(inputs[LIGHTS]), np.where(inputs[SKY], 4.0, 2.0)
+            steps = np.stack(np.broadcast_arrays(*ends, np.pi), axis=-1)
         arguments[ASKED] = ("boolean", output == "throughput")
-    statements = statements.replace(called, closure)
-    value = result if emitted else f"{ASKED} ? {result}.throughput : {result}.response"
-    if branch == LIT:
-        statements, value = _loop(shader, statements, result), "mxeon_sum"
-        arguments |= {
-            LIGHTS: ("float", inputs[LIGHTS]),
-            SECOND_LIGHT: ("vector3", inputs[SECOND_LIGHT]),
-            SKY: ("boolean", inputs[SKY]),
-        }
+        arguments[STEPS] = ("vector3", steps)
+        arguments[SECOND_LIGHT] = ("vector3", inputs.get(SECOND_LIGHT, NORMAL))
+        kind = "float3" if shader.target == "slang" else "vec3"
+        block = statements.replace(called, "mxeon_closure")
+        statements, value = LOOP.format(type=kind, block=block, result=value), "mxeon_sum"
     if before := prelude(text, start):
         statements = before.statements + statements
         arguments = _surface_arguments(shader, before, inputs) | arguments
@@ -144,22 +149,6 @@ def bsdf_call(query: Query) -> BsdfCall:
             statements = computed + statements
         arguments |= {name: _argument(name, ports, inputs) for name in names}
     return BsdfCall(statements, value, arguments)
-
-
-def _loop(shader: Shader, block: str, result: str) -> str:
-    """The statements of one light, once for each light and then for the environment."""
-    direct = CLOSURES["direct"][1]
-    return LOOP.format(
-        type="float3" if shader.target == "slang" else "vec3",
-        lights=LIGHTS,
-        second=SECOND_LIGHT,
-        sky=SKY,
-        direct=direct,
-        indirect=CLOSURES["environment"][1],
-        transmission=CLOSURES["transmission"][1],
-        block=block.replace(direct, "mxeon_closure"),
-        result=result,
-    )
 
 
 @lru_cache(maxsize=16)  # the checks of a node share its shader

@@ -18,7 +18,7 @@ from mxeon.hosts.raster import FragmentHost
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.scene import Scene
 
-PROGRAMS = 6  # to keep, of 10 MB each: a document's scenes and a node's checks share them
+PROGRAMS = 4  # to keep, of 10 MB each: a document's scenes and a node's checks share them
 ROWS = 256  # of a texture that are copied at a time
 CONSTANTS = 64  # textures of one value to keep: most inputs are the same for all pixels
 POINTS = 4  # textures of points to keep: most materials have the same vertex stage
@@ -165,6 +165,8 @@ class Host(FragmentHost):
         """One frame as float32 (height, width, 3), row 0 at the bottom; all of it or some parts."""
         context = self._context
         frame = context.framebuffer([context.renderbuffer(size, components=4, dtype="f4")])
+        # Mesa compiles a program twice, for whole tiles and for others, unless a component is left alone.
+        frame.color_mask = True, True, True, False
         frame.use()
         frame.clear()
         for unit, (name, texture) in enumerate(textures.items()):
