@@ -24,30 +24,29 @@ from mxeon.hosts.base import Host
 
 CALL = """
 vec3 path_tracer(float what, vec3 wo, vec3 wi, vec3 u, float inside)
-{
+{{
     Point p;
     p.position = vec3(0.0);
     p.normal = vec3(0.0, 0.0, 1.0);
     p.tangent = vec3(1.0, 0.0, 0.0);
     p.texcoord = vec3(0.3, 0.4, 0.0).xy;
     p.inside = inside > 0.5;
-    if (what < 0.5)
+    {answer}
+}}
+"""
+SCATTERED = """if (what < 0.5)
         return material_evaluate(p, wo, wi);
     if (what < 1.5)
         return vec3(material_pdf(p, wo, wi));
-    if (what < 2.5)
-        return vec3(material_opacity(p, wo));
-    if (what < 3.5)
-        return material_emission(p, wo);
     vec3 weight;
     float pdf;
     bool kept = material_sample(p, wo, u, wi, weight, pdf);
     if (!kept)
         return vec3(0.0);
-    return what < 4.5 ? wi : what < 5.5 ? weight : vec3(pdf);
-}
-"""
-ASKED = ("evaluate", "pdf", "opacity", "emission", "wi", "weight", "density")
+    return what < 2.5 ? wi : what < 3.5 ? weight : vec3(pdf);"""
+# Apart, since a driver copies the material to each call.
+PASSED = "return what < 5.5 ? vec3(material_opacity(p, wo)) : material_emission(p, wo);"
+ASKED = ("evaluate", "pdf", "wi", "weight", "density", "opacity", "emission")
 TARGETS = ("glsl", "essl", "vulkan", "slang")  # of mxeon.shaders.path_tracing
 DRAWS, WEIGHED = 1 << 15, 1 << 12
 VIEW = np.array([0.7642691, 0.2364137, 0.6])
@@ -69,8 +68,10 @@ class Paths:
         inside: bool = False,
     ) -> Array:
         """Answers (N, 3) of a function, one of ASKED; 0 where nothing is drawn."""
-        rows = map(np.atleast_2d, (float(ASKED.index(what)), wo, wi, u, float(inside)))
-        return self.host.execute(self.text, "path_tracer", *rows).astype(np.float64)
+        number = ASKED.index(what)
+        rows = map(np.atleast_2d, (float(number), wo, wi, u, float(inside)))
+        text = self.text + CALL.format(answer=SCATTERED if number < 5 else PASSED)
+        return self.host.execute(text, "path_tracer", *rows).astype(np.float64)
 
 
 @lru_cache(maxsize=2)
@@ -78,7 +79,7 @@ def paths(host: Host, document: str, library: str = "eonlib") -> Paths:
     from mxeon.shaders.generation import generate
 
     [shader] = generate(document, host.target, profile="path", library=library)
-    return Paths(host, shader.stages["pixel"] + CALL)
+    return Paths(host, shader.stages["pixel"])
 
 
 def paths_of(case: Case) -> Paths:
