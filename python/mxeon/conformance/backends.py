@@ -53,7 +53,6 @@ from mxeon.conformance.specs.utilities import UtilitySpec
 from mxeon.conformance.tolerance import (
     Term,
     Tolerance,
-    absolute,
     given,
     largest,
     mean_error,
@@ -656,28 +655,15 @@ EXACT = sum_in(
 )
 EXACT_ALBEDO = sum_in("albedo", roundings(21 * 1.02, "of numbers up to 1.02"))
 HALF = Tolerance((HALF_CUT, *EXACT.terms), "relative", relative, exact=True)
-HALF_ALBEDO = Tolerance(
-    (
-        HALF_CUT._replace(
-            value=2.0 * HALF_CUT.value, words="half floats of map and picture, cut off"
-        ),
-    )
-    + (EXACT_ALBEDO.term("roundings"),),
+HALF_ALBEDO = sum_in(
     "albedo",
-    absolute,
+    Term(2.0 * HALF_CUT.value, "half floats of map and picture, cut off"),
+    EXACT_ALBEDO.term("roundings"),
     exact=True,
 )
-HALF_LOBE = Tolerance(
-    (
-        Term(
-            96.0 * HALF_CUT.value,
-            "half floats in four pictures, 48 times as large, half of them alike",
-        ),
-        *LOBE_VALUE.terms,
-    ),
-    "pi f cos",
-    absolute,
-    exact=True,
+HALF_FOUR = "half floats in four pictures, 48 times as large, half of them alike"
+HALF_LOBE = sum_in(
+    "pi f cos", Term(96.0 * HALF_CUT.value, HALF_FOUR), *LOBE_VALUE.terms, exact=True
 )
 
 

@@ -39,8 +39,9 @@ from mxeon.conformance.reference.nodes import (
     plain,
     same,
 )
-from mxeon.conformance.samples import Array
+from mxeon.conformance.samples import Array, Batch
 from mxeon.errors import NotRun, OutsideModel
+from mxeon.hosts.calls import NORMAL, TANGENT
 from mxeon.hosts.textures import texels_at
 from mxeon.io.srgb import srgb_decoded
 from mxeon.models.core.layering import Bsdf
@@ -49,6 +50,7 @@ from mxeon.models.nodes.emissions import BASE, EMISSIONS, Emission
 from mxeon.shaders.document.drawn_values import CLOSURES, Elements
 from mxeon.shaders.document.graphs import reachable
 from mxeon.shaders.document.values import color_spaces
+from mxeon.shaders.released_graphs import RELEASES, differences, digest, installed, said
 
 # Types that a generator draws as a color, and their components.
 DRAWN = {"float": 1, "integer": 1, "vector2": 2, "color3": 3, "vector3": 3}
@@ -67,6 +69,7 @@ UNCONNECTED: dict[str, Value] = {
 }
 CHANNELS = {"float": 1, "color3": 3}  # of an image, by the type that it is read as
 UTILITIES = {row.category: row for row in utilities.UTILITIES}
+SHADER = "shading"  # name of the surface shader in a document that has one alone
 
 
 class Graph:
@@ -459,3 +462,58 @@ def _linear(element: mx.Element, value: Array) -> Array:
     if spaces != ("srgb_texture", "lin_rec709"):
         raise NotRun(f"reference: there is no transform from color space {' to '.join(spaces)}")
     return np.concatenate([srgb_decoded(value[..., :3]), value[..., 3:]], axis=-1)
+
+
+class Graphs:
+    """The surface shader of a document, and that of the installed release or of its own."""
+
+    def __init__(self, own: mx.Document, text: str) -> None:
+        self.own, self._said = own, self._says(own)
+        self._known = RELEASES.get(digest(self._said), ())
+        self.right = own
+        if mx.getVersionString() not in self._known:
+            self.right = mx.createDocument()
+            mx.readFromXmlString(self.right, text)
+            self.right.setDataLibrary(installed())
+
+    @staticmethod
+    def _says(document: mx.Document) -> dict[str, str]:
+        return said(document.getNode(SHADER), OPERATIONS)
+
+    @cached_property
+    def same(self) -> bool:
+        """Whether both say the same, so that their values are equal."""
+        return self._said == self._says(self.right)
+
+    def values(self, batch: Batch, right: bool = False) -> Array:
+        """What a surface shader makes of marks that stand for the inputs of its lobes, and emits, (N, 3).
+
+        An input that is NaN has the default of the definition.
+        """
+        document = self.right if right else self.own
+        definition, inputs = document.getNode(SHADER).getNodeDef(), {}
+        for name, given in batch.inputs.items():
+            if port := definition.getActiveInput(name):
+                frame = TANGENT if "tangent" in name else NORMAL
+                default = frame if port.hasDefaultGeomPropString() else plain(port.getValue())
+                if default is not None:
+                    rows = np.reshape(given, (len(batch.wo), -1))
+                    inputs[name] = np.where(np.isnan(rows), default, rows)
+        normal, tangent = (np.broadcast_to(axis, batch.wo.shape) for axis in (NORMAL, TANGENT))
+        points = ShadingPoints(batch.wo, batch.wi, 1.0, normal, tangent)
+        found = Graph(document, points, inputs, marked=True).element(SHADER)
+        return np.array(np.broadcast_to(found, batch.wo.shape))
+
+    @property
+    def difference(self) -> tuple[str, bool]:
+        """Where the graph differs, and whether it is that of another release, or of another version of the node."""
+        version, other = (
+            each.getNode(SHADER).getNodeDef().getVersionString() for each in (self.own, self.right)
+        )
+        parts = differences(self._said, self._says(self.right))
+        text = f"differs from the graph that is installed: {parts}"
+        if self._known:
+            text = f"the graph of MaterialX {' and '.join(self._known)}; it {text}"
+        elif version != other:
+            text = f"the graph of version {version} of the node; it {text}, of version {other}"
+        return text, bool(self._known) or version != other

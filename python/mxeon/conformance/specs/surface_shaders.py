@@ -29,7 +29,7 @@ from mxeon.hosts.calls import NORMAL, TANGENT
 from mxeon.shaders.nodes import document_text, input_text, node_text
 
 if TYPE_CHECKING:  # which load MaterialX
-    from mxeon.conformance.reference.releases import Graphs
+    from mxeon.conformance.reference.graph import Graphs
     from mxeon.shaders.document.values import Plain
     from mxeon.shaders.generation import Shader
 
@@ -278,7 +278,7 @@ class SurfaceShaderSpec(LobeSpec):
 
     @cached_property
     def graphs(self) -> Graphs:
-        from mxeon.conformance.reference.releases import Graphs
+        from mxeon.conformance.reference.graph import Graphs
 
         return Graphs(self._shader.document, self.document())
 
