@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache, cached_property
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,10 +24,8 @@ from mxeon.conformance.specs.diffuse import LOSS_FIT
 from mxeon.conformance.specs.diffuse import VALUE as MODEL_VALUE
 from mxeon.conformance.tolerance import (
     Measurement,
-    Metric,
     Term,
     Tolerance,
-    absolute,
     relative,
     roundings,
     sum_in,
@@ -38,16 +37,66 @@ from mxeon.models import diffuse, sampling
 from mxeon.shaders import functions
 
 KINDS = ("pairs", "pictures", "rendered")  # of probes whose hosts evaluate functions
-ROTATIONS = ("eon_around", "eon_azimuth_frame", "eon_rotate_z", "eon_towards")
-SAMPLES = re.compile(rf"\w+_(sample|draw|clipped|transformed)|{'|'.join(ROTATIONS)}")
-DENSITIES = re.compile(r"\w+_pdf|ltc_(density|[abcd])")
 STEP = 2.0**-22  # of the arguments by which a function's condition is measured
-
 CONDITIONED = "over 1, the value, and its change with each argument"
-LOSS = sum_of(Term(LOSS_FIT, "the fit of H"), roundings(12), unit="relative", metric=relative)
 PART = sum_in(CONDITIONED, roundings(16))
-# An inverse fourth power takes the 8 of an entry of a matrix four times, and 16 beside them.
-DENSITY = sum_in(CONDITIONED, roundings(48, "four times the 8 of a matrix entry, and 16"))
+
+
+class FunctionCheck(NamedTuple):
+    """What is asked of some of the shader functions."""
+
+    key: str  # one word, and a sentence
+    claim: str
+    names: str  # a pattern; the first row whose pattern is a function's name takes it
+    error: Tolerance
+    turns: bool = False  # whether its functions turn directions by the engine's sine and cosine
+
+
+FUNCTION_CHECKS = (
+    FunctionCheck(
+        "twins",
+        "The shader functions of models and albedos match the NumPy models.",
+        r"\w+(_brdf|_albedo_)\w*",
+        MODEL_VALUE,
+    ),
+    FunctionCheck(
+        "loss",
+        "1 - E keeps its relative accuracy down to a cosine of 1e-6.",
+        "fon_loss",
+        sum_of(Term(LOSS_FIT, "the fit of H"), roundings(12), unit="relative", metric=relative),
+    ),
+    FunctionCheck(
+        "samples",
+        "The sampling functions return the same directions as NumPy's.",
+        r"\w+_(sample|draw|clipped|transformed)|eon_(around|azimuth_frame|rotate_z|towards)",
+        PART,
+        turns=True,
+    ),
+    FunctionCheck(
+        "densities",
+        "The sampling densities and the matrix of linearly transformed cosines match NumPy's.",
+        r"\w+_pdf|ltc_(density|[abcd])",
+        # An inverse fourth power takes the 8 of an entry of a matrix four times, and 16 beside them.
+        sum_in(CONDITIONED, roundings(48, "four times the 8 of a matrix entry, and 16")),
+    ),
+    FunctionCheck(
+        "parts",
+        "The functions that models and sampling are built from match NumPy's.",
+        r"\w+",
+        PART,
+    ),
+)
+
+
+@cache
+def row_of(function: str) -> FunctionCheck:
+    return next(row for row in FUNCTION_CHECKS if re.fullmatch(row.names, function))
+
+
+def _error(function: str, values: Array) -> float:
+    """Largest error of a function's values, relative to what they are sensitive to."""
+    scale = _scale(function)
+    return float(row_of(function).error.metric(scale * values, scale * _expected(function)).max())
 
 
 @cache
@@ -56,14 +105,16 @@ def _expected(function: str) -> Array:
 
 
 @cache
-def _condition(function: str) -> Array:
-    """1, or the value if larger, and by how much it changes with each of its numbers, (N,)."""
+def _scale(function: str) -> Array:
+    """Factor of the values: pi cos(theta_i) for a BRDF; over 1, or the value, and its change with each number."""
     columns, exact = random_columns(), _expected(function)
+    if row_of(function).error.unit != CONDITIONED:
+        return np.pi * columns["mu_i"][:, np.newaxis] if "_brdf" in function else np.ones((1, 1))
     total: Array = np.maximum(1.0, np.abs(exact).max(axis=1))
     for name in numbers(function):
         change = expected(function, moved(columns, name, STEP)) - exact
         total = total + np.abs(change).max(axis=1) / STEP
-    return np.asarray(total)
+    return 1.0 / total[:, np.newaxis]
 
 
 POINTS = 4096  # of each function
@@ -231,6 +282,9 @@ class FunctionProbe:
         error = float(TURN.errors(self.host, random_columns()["u2"]).max())
         return Term(4.0 * error, "the engine's sine and cosine, which turn a direction twice")
 
+    def tolerance(self, row: FunctionCheck) -> Tolerance:
+        return row.error.plus(self.turn) if row.turns else row.error
+
     def _values(self, scale: float) -> Mapping[str, Array]:
         """Values of every function of eonlib that the library has, with its last argument scaled, in one call."""
         language, columns = self.host.language, random_columns()
@@ -257,69 +311,6 @@ class FunctionProbe:
         return dict(zip(names, np.split(values, len(names)), strict=True))
 
 
-@dataclass(frozen=True)
-class FunctionCheck:
-    """A row of the table: what is asked of some of the shader functions."""
-
-    key: str  # one word, and a sentence
-    claim: str
-    holds: Callable[[str], bool]  # whether it asks a function; the first row that does takes it
-    error: Tolerance
-    # Factor of a function's values, (N, 1): they count relative to what they are sensitive to.
-    scale: Callable[[str], Array | float] = lambda name: 1.0 / _condition(name)[:, np.newaxis]
-    metric: Metric = absolute
-    turns: bool = False  # whether its functions turn directions by the engine's sine and cosine
-
-    def tolerance(self, probe: FunctionProbe) -> Tolerance:
-        return self.error.plus(probe.turn) if self.turns else self.error
-
-    def largest(self, function: str, values: Array) -> float:
-        scale = self.scale(function)
-        return float(self.metric(scale * values, scale * _expected(function)).max())
-
-
-FUNCTION_CHECKS = (
-    FunctionCheck(
-        "twins",
-        "The shader functions of models and albedos match the NumPy models.",
-        lambda name: "_brdf" in name or "_albedo_" in name,
-        MODEL_VALUE,
-        lambda name: np.pi * random_columns()["mu_i"][:, None] if "_brdf" in name else 1.0,
-    ),
-    FunctionCheck(
-        "loss",
-        "1 - E keeps its relative accuracy down to a cosine of 1e-6.",
-        lambda name: name == "fon_loss",
-        LOSS,
-        lambda name: 1.0,
-        relative,
-    ),
-    FunctionCheck(
-        "samples",
-        "The sampling functions return the same directions as NumPy's.",
-        lambda name: bool(SAMPLES.fullmatch(name)),
-        PART,
-        turns=True,
-    ),
-    FunctionCheck(
-        "densities",
-        "The sampling densities and the matrix of linearly transformed cosines match NumPy's.",
-        lambda name: bool(DENSITIES.fullmatch(name)),
-        DENSITY,
-    ),
-    FunctionCheck(
-        "parts",
-        "The functions that models and sampling are built from match NumPy's.",
-        lambda name: True,
-        PART,
-    ),
-)
-
-
-def row_of(function: str) -> FunctionCheck:
-    return next(row for row in FUNCTION_CHECKS if row.holds(function))
-
-
 def judge_functions(host: Host, library: str) -> tuple[Result, ...]:
     probe = FunctionProbe(host, library)
     return tuple(_judged(check, probe) for check in FUNCTION_CHECKS)
@@ -331,14 +322,14 @@ def _judged(check: FunctionCheck, probe: FunctionProbe) -> Result:
         check=check.key, claim=check.claim, subject=SHADER_FUNCTIONS, host=host, library=library
     )
     try:
-        tolerance = check.tolerance(probe)
+        tolerance = probe.tolerance(check)
     except (NotRun, ShaderError) as error:
         return not_measured(place, error)
 
     def measure(wrong: bool) -> Measurement:
         """The function of the row that is furthest from its NumPy version."""
         errors = {
-            name: check.largest(name, each)
+            name: _error(name, each)
             for name, each in probe.values[wrong].items()
             if row_of(name) is check
         }
@@ -353,8 +344,8 @@ def _judged(check: FunctionCheck, probe: FunctionProbe) -> Result:
 def _causes(check: FunctionCheck, probe: FunctionProbe) -> str:
     """The functions that are wrong by themselves, and those of the row that use them."""
     values = probe.values[False]
-    errors = {name: row_of(name).largest(name, each) for name, each in values.items()}
-    wrong = [name for name in errors if errors[name] > row_of(name).tolerance(probe).value]
+    errors = {name: _error(name, each) for name, each in values.items()}
+    wrong = [name for name in errors if errors[name] > probe.tolerance(row_of(name)).value]
     uses = functions.uses(probe.text)
     causes = [name for name in wrong if not any(other in wrong for other in uses[name])]
     affected = [name for name in wrong if row_of(name) is check]
