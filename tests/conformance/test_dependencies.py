@@ -6,10 +6,10 @@ import pytest
 from mxeon.cli import main
 from mxeon.conformance.run import check, read_run
 from mxeon.conformance.run.journal import JOURNAL
-from mxeon.conformance.run.plan import digests
 from mxeon.hosts.base import Identity
 from mxeon.hosts.gl import Host
 from mxeon.shaders.document.policy import Policy
+from mxeon.shaders.document.references import digests
 from mxeon.shaders.library import examples_folder
 from tests.support.plans import keep_checks
 

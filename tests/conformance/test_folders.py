@@ -8,9 +8,9 @@ import pytest
 from mxeon.cli import main
 from mxeon.cli.answer import MANY, summary_by_cause
 from mxeon.conformance.results import FAILED, PASSED, Result, Run
-from mxeon.conformance.run.plan import documents_in
 from mxeon.errors import MISUSE, InputError
 from mxeon.hosts.base import Identity
+from mxeon.shaders.document.references import documents_in
 from tests.support.command import CLAY
 
 NAMES = ("a/clay.mtlx", "a/glass.mtlx", "b/noise.mtlx", "light.mtlx")

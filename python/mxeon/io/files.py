@@ -2,6 +2,7 @@
 """Files: only regular ones are read, and written ones appear whole or not at all."""
 
 import errno
+import hashlib
 import os
 import stat
 from collections.abc import Iterator
@@ -100,3 +101,10 @@ def regular(path: AnyPath, flags: int) -> int:
 def assert_regular(path: AnyPath) -> None:
     """Raise OSError unless a path is a readable regular file; for libraries that open by name."""
     os.close(regular(path, os.O_RDONLY))
+
+
+def digest(path: AnyPath) -> str:
+    """SHA-256 of a file; "" for what is no regular file or cannot be read."""
+    with suppress(OSError), open(path, "rb", opener=regular) as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+    return ""

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Results as JSON and back, for reports and journals."""
 
-import hashlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
@@ -12,7 +11,7 @@ from cattrs.gen import override
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from mxeon.conformance.results import Control, Picture, Result
-from mxeon.io.files import regular
+from mxeon.io.files import digest
 from mxeon.io.records import Overrides, read_strictly, strict_converter
 
 # JSON calls the error of a result or a control its figure.
@@ -35,11 +34,9 @@ class StoredImage:
     @property
     def whole(self) -> bool:
         """Whether the file is there, and as it was written."""
-        try:
-            with open(self.path, "rb", opener=regular) as file:
-                if hashlib.file_digest(file, "sha256").hexdigest() != self.path.stem:
-                    return False
-            # Mapped, not read: a header may declare any number of pixels.
+        if digest(self.path) != self.path.stem:
+            return False
+        try:  # mapped, not read: a header may declare any number of pixels
             pixels = np.lib.format.open_memmap(self.path, mode="r")
         except (OSError, ValueError, OverflowError):
             return False

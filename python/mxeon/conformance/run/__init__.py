@@ -17,7 +17,6 @@ from mxeon.conformance.run.plan import (
     Plan,
     Task,
     assert_known_names,
-    documents_in,
     make_plan,
     survey_documents,
 )
@@ -26,6 +25,7 @@ from mxeon.hosts import HOSTS, host_row
 from mxeon.jobs import TIMEOUT, WAIT, check_timeout, dask, pool
 from mxeon.jobs.pool import by_group
 from mxeon.shaders.document.policy import DEFAULT, Policy
+from mxeon.shaders.document.references import documents_in
 from mxeon.shaders.generation import TARGETS, check_generator
 from mxeon.shaders.library import library_name, untested
 from mxeon.shaders.library_tree import root

@@ -6,12 +6,11 @@ A task is a few words and its findings are plain data, so both travel to other p
 
 from __future__ import annotations
 
-import hashlib
 import os
 import platform
 import sysconfig
 from collections.abc import Generator, Iterable, Iterator, Sequence
-from contextlib import closing, suppress
+from contextlib import closing
 from dataclasses import dataclass, field, replace
 from functools import cache, partial
 from itertools import product
@@ -39,25 +38,20 @@ from mxeon.conformance.specs.microfacets import FilmSpec
 from mxeon.errors import DocumentError, InputError, MxeonError, assert_known
 from mxeon.hosts import HOSTS, host_names, host_row
 from mxeon.hosts.base import Identity
-from mxeon.io.files import regular
 from mxeon.jobs import pool
 from mxeon.shaders.contents import ShownNode, document_nodes, node_of
 from mxeon.shaders.document.policy import DEFAULT, Policy
-from mxeon.shaders.document.references import named_files
+from mxeon.shaders.document.references import digests
 from mxeon.shaders.functions import has_functions
 from mxeon.shaders.library import (
-    SOURCE_FOLDERS,
     check_version,
-    documents_folder,
     examples_folder,
     has_profile,
     kind_of,
-    library_folders,
     library_name,
     load_library,
-    source_folder,
 )
-from mxeon.shaders.library_tree import LIBRARIES, OVERLAY, origins, standard_folders
+from mxeon.shaders.library_tree import LIBRARIES, OVERLAY, origins
 
 Source = tuple[str, str]  # a file, and the library that it is read with
 
@@ -145,23 +139,7 @@ def _modes() -> tuple[tuple[Spec, ShownNode], ...]:
     return tuple((row, node_of(row.document(), row.node)) for row in ALL_SPECS)
 
 
-def documents_in(files: Iterable[str | os.PathLike[str]]) -> tuple[str, ...]:
-    """Files, and in the place of a folder the documents in it and below it, in order.
-
-    Raise ValueError if a folder holds no document.
-    """
-    documents: list[str] = []
-    for file in files:
-        inside = [os.fspath(file)]
-        if os.path.isdir(file):
-            inside = sorted(map(str, Path(file).rglob("*.mtlx")))
-        if not inside:
-            raise InputError(f"{file}: must hold MaterialX documents (*.mtlx); there is none")
-        documents += inside
-    return tuple(dict.fromkeys(documents))
-
-
-# --- the documents of a run -----------------------------------------------------------------------
+# --- the tasks of a run ---------------------------------------------------------------------------
 
 HOST, DEFINITION = "host", "definition"
 CURVE, PICTURE = "curve", "picture"
@@ -429,36 +407,3 @@ def _examples(library: str) -> list[Path]:
     files = sorted(examples_folder().glob("*.mtlx"))
     missing = [spec.node for spec in DIFFUSE if spec not in diffuse_specs(library)]
     return [file for file in files if not any(node in file.read_text() for node in missing)]
-
-
-# --- the files that a run depends on --------------------------------------------------------------
-
-
-def digests(
-    documents: Iterable[str | os.PathLike[str]], policy: Policy, libraries: Iterable[str] = ()
-) -> dict[str, str]:
-    """SHA-256 of every file that a run depends on; "" for what is no regular file or cannot be read.
-
-    By path: the documents, what they include and name as far as the policy permits, and what lies in
-    folders of libraries. By names that begin with "mxeon", "eonlib" or "MaterialX": code and data here.
-    """
-    paths = {path: path for document in documents for path in named_files(str(document), policy)}
-    folders = [
-        (str(folder), folder)
-        for library in set(libraries) - set(LIBRARIES)
-        for folder in library_folders(library)
-    ]
-    folders += [("mxeon", Path(mxeon.__file__).parent), ("eonlib", documents_folder())]
-    folders += [(f"eonlib/{name}", source_folder("eonlib") / name) for name in SOURCE_FOLDERS]
-    folders += [("MaterialX/libraries", folder) for folder in standard_folders()]
-    for name, folder in folders:
-        for path in sorted(folder.rglob("*")):
-            if path.is_file() and path.parent.name != "__pycache__":
-                paths[f"{name}/{path.relative_to(folder)}"] = str(path)
-    return {name: _digest(path) for name, path in paths.items()}
-
-
-def _digest(path: str) -> str:
-    with suppress(OSError), open(path, "rb", opener=regular) as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
-    return ""

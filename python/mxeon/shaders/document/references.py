@@ -13,14 +13,21 @@ from pathlib import Path
 
 import MaterialX as mx
 
-from mxeon.errors import DocumentError
-from mxeon.io.files import AnyPath, regular
+import mxeon
+from mxeon.errors import DocumentError, InputError
+from mxeon.io.files import AnyPath, digest, regular
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.values import label, location
 from mxeon.shaders.document.words import ENDS_A_STRING
 from mxeon.shaders.document.xml import decode, strict
-from mxeon.shaders.library import SOURCE_FOLDERS, eonlib_folder, source_folder
-from mxeon.shaders.library_tree import roots
+from mxeon.shaders.library import (
+    SOURCE_FOLDERS,
+    documents_folder,
+    eonlib_folder,
+    library_folders,
+    source_folder,
+)
+from mxeon.shaders.library_tree import LIBRARIES, roots, standard_folders
 
 CODE = ("file", "sourcecode")
 ATTRIBUTE = re.compile(r"""([\w:.-]+)\s*=\s*("[^"]*"|'[^']*')""")
@@ -179,3 +186,43 @@ def _paths(name: str, folders: Iterable[Path]) -> Iterator[str]:
         if OPEN_PART.search(name):
             paths = glob.glob("*".join(map(glob.escape, OPEN_PART.split(paths[0]))))
         yield from map(os.path.realpath, filter(os.path.isfile, paths))
+
+
+def documents_in(files: Iterable[str | os.PathLike[str]]) -> tuple[str, ...]:
+    """Files, and in the place of a folder the documents in it and below it, in order.
+
+    Raise ValueError if a folder holds no document.
+    """
+    documents: list[str] = []
+    for file in files:
+        inside = [os.fspath(file)]
+        if os.path.isdir(file):
+            inside = sorted(map(str, Path(file).rglob("*.mtlx")))
+        if not inside:
+            raise InputError(f"{file}: must hold MaterialX documents (*.mtlx); there is none")
+        documents += inside
+    return tuple(dict.fromkeys(documents))
+
+
+def digests(
+    documents: Iterable[str | os.PathLike[str]], policy: Policy, libraries: Iterable[str] = ()
+) -> dict[str, str]:
+    """SHA-256 of every file that a run depends on; "" for what is no regular file or cannot be read.
+
+    By path: the documents, what they include and name as far as the policy permits, and what lies in
+    folders of libraries. By names that begin with "mxeon", "eonlib" or "MaterialX": code and data here.
+    """
+    paths = {path: path for document in documents for path in named_files(str(document), policy)}
+    folders = [
+        (str(folder), folder)
+        for library in set(libraries) - set(LIBRARIES)
+        for folder in library_folders(library)
+    ]
+    folders += [("mxeon", Path(mxeon.__file__).parent), ("eonlib", documents_folder())]
+    folders += [(f"eonlib/{name}", source_folder("eonlib") / name) for name in SOURCE_FOLDERS]
+    folders += [("MaterialX/libraries", folder) for folder in standard_folders()]
+    for name, folder in folders:
+        for path in sorted(folder.rglob("*")):
+            if path.is_file() and path.parent.name != "__pycache__":
+                paths[f"{name}/{path.relative_to(folder)}"] = str(path)
+    return {name: digest(path) for name, path in paths.items()}
