@@ -189,7 +189,7 @@ def _paths(name: str, folders: Iterable[Path]) -> Iterator[str]:
 
 
 def documents_in(files: Iterable[str | os.PathLike[str]]) -> tuple[str, ...]:
-    """Files, and in the place of a folder the documents in it and below it, in order.
+    """Files, and the documents in folders and below them, in order.
 
     Raise ValueError if a folder holds no document.
     """
