@@ -187,14 +187,6 @@ class Backend(ABC):
         return isinstance(spec, cls.families) and not isinstance(spec, cls.others)
 
     @classmethod
-    def prepared(cls, spec: Spec) -> Spec:
-        """The spec with what an engine may have instead of its model."""
-        return spec
-
-    def samples(self) -> Samples:
-        return self.sampled(self)
-
-    @classmethod
     def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
         """The largest error of a quantity, engine functions apart; None where it is not asked."""
         return spec.errors.get(quantity)
@@ -222,8 +214,8 @@ class Backend(ABC):
         """What a result says of a renderer's own node beside its verdict."""
         return {}
 
-    def nearest_form(self) -> Spec:
-        """The spec, in the published form that is nearest to what is measured where there are several."""
+    def judged(self) -> Spec:
+        """The spec with what the engine may have instead of its model, or in the form nearest to what is measured."""
         return self.spec
 
     def portrait(self, scene: Scene) -> tuple[Array, Array, Mask, Mask]:
@@ -554,9 +546,8 @@ class Rendered(Evaluating):
     flat: ClassVar[Tolerance] = FLAT
     sharp: ClassVar[Tolerance] = SHARP
 
-    @classmethod
-    def prepared(cls, spec: Spec) -> Spec:
-        return _with_variants(cls, spec)
+    def judged(self) -> Spec:
+        return _with_variants(type(self), self.spec)
 
     @classmethod
     def error(cls, spec: Spec, quantity: str) -> Tolerance | None:

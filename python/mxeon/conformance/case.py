@@ -150,11 +150,11 @@ class Case:
 
 
 def make_case(backend: type[Backend], host: Engine, spec: Spec, library: str) -> Case:
-    spec = backend.prepared(spec).within(library)
+    spec = spec.within(library)
     made = backend(cast(Host, host), spec, library)
-    if (form := made.nearest_form()) is not spec:
+    if (form := made.judged()) is not spec:
         made = backend(cast(Host, host), form, library)
-    return Case(made.spec, made, made.samples())
+    return Case(made.spec, made, made.sampled(made))
 
 
 SCATTERING = ("direct", "environment", "transmission")  # branches of light that is scattered

@@ -160,11 +160,11 @@ class Exact(Native):
     def materials(self) -> Sequence[Values]:
         return EXACT_INPUTS
 
-    def nearest_form(self) -> Spec:
+    def judged(self) -> Spec:
         """The spec of the published form of the model that is nearest to what is measured."""
         if not self.node.forms:
             return self.node
-        batch = self.samples().batches[0]
+        batch = self.sampled(self).batches[0]
         values = self.direct(batch)
         errors = {
             form: float(np.abs(values - model_value(batch, form)).max()) for form in self.node.forms

@@ -232,7 +232,7 @@ def _case(brdf: Brdf, model: str, name: str | None) -> Case:
         errors=ERRORS,
     )
     function = Function(CallableHost(title, brdf), spec, LIBRARY)
-    return Case(spec, function, function.samples())
+    return Case(spec, function, function.sampled(function))
 
 
 def _checks(model: str) -> tuple[Check, ...]:
