@@ -3,9 +3,12 @@
 
 import os
 import re
+import shlex
 import subprocess
 import sys
+import tomllib
 from importlib.util import find_spec
+from itertools import pairwise
 from pathlib import Path
 from pkgutil import resolve_name
 from urllib.parse import urldefrag
@@ -15,6 +18,7 @@ import numpy as np
 import pytest
 
 from mxeon import models
+from mxeon.cli import parser
 from tools.site.__main__ import made
 from tools.site.ledger import FOLDER
 
@@ -128,3 +132,33 @@ def test_the_python_example_of_the_readme_runs(tmp_path):
     np.testing.assert_allclose(
         np.fromstring(run.stdout.strip("[] \n"), sep=" "), np.fromstring(stated, sep=" "), atol=5e-4
     )
+
+
+COMMAND = re.compile(r"^(?:\$ |.* IMAGE )?mxeon (\w.*?)(?: \|\| .*| [|>] .*|\\)?$", re.MULTILINE)
+COMMANDS = dict.fromkeys(
+    line
+    for text in prose().values()
+    for fence in re.findall(r"^```(?:sh|console)\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    for line in COMMAND.findall(fence)
+)
+
+
+@pytest.mark.parametrize("line", COMMANDS)
+def test_a_command_line_of_the_pages_is_one_that_mxeon_takes(tmp_path, monkeypatch, line):
+    monkeypatch.chdir(tmp_path)
+    words = shlex.split(line, comments=True)
+    for option, folder in pairwise(words):
+        if option in ("--materialx", "--definitions", "--path"):
+            Path(folder, "MaterialX").mkdir(parents=True, exist_ok=True)
+            Path(folder, "MaterialX", "__init__.py").touch()
+    assert parser().parse_args(words).run
+
+
+def test_the_container_of_the_page_has_a_python_and_an_extra_that_mxeon_has():
+    page = (ROOT / "docs" / "ci.md").read_text(encoding="utf-8")
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    [image] = re.findall(r"^FROM python:([\d.]+)-slim$", page, re.MULTILINE)
+    [extra] = re.findall(r"^RUN pip install '/mxeon\[(\w+)\]'$", page, re.MULTILINE)
+    least = project["requires-python"].removeprefix(">=")
+    assert [int(part) for part in image.split(".")] >= [int(part) for part in least.split(".")]
+    assert extra in project["optional-dependencies"]

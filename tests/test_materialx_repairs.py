@@ -12,48 +12,25 @@ from pathlib import Path
 import MaterialX as mx
 import pytest
 
-from mxeon.conformance.results import FAILED, PASSED, SOURCE
-from mxeon.conformance.results.known_issues import ISSUES, STOCK
-from mxeon.conformance.run.plan import ALL, make_plan
 from tests.support.availability import available
-from tests.support.sharing import shared
+from tests.support.sharing import every_node, shared
+from tests.support.verdicts import FAILED, PASSED, SOURCE, STOCK
 from tests.support.wheels import MAIN, wheel
 from tools.site import ledger
 from tools.site.ledger import pages
 
 pytestmark = pytest.mark.whole
 
-# Whatever the release fails, or differs in.
-ON_GL = {
-    (each.check, each.subject) for each in make_plan((), ("gl",), (STOCK,), nodes=(ALL,)).tasks
-}
-FAILING = [
-    (*row, issue.host)
-    for issue in ISSUES
-    if issue.library == STOCK and issue.host in ("gl", SOURCE)
-    for row in (*issue.rows, *issue.implied)
-    if row in (ON_GL if issue.host == "gl" else issue.rows)
-]
-OTHERS = {"release": FAILING, "main": []}
 # Judges rows of stock MaterialX, and prints what it found.
 JUDGE = """
 import json, sys
-from mxeon.conformance.run.judge import Judge
-from mxeon.conformance.results import SOURCE
-from mxeon.conformance.run.plan import EVERY_NODE, Task
-from mxeon.shaders.document.policy import DEFAULT
-judge = Judge(DEFAULT)
+from tests.support.verdicts import SOURCE, Verdicts
+judged = Verdicts()
 results = {}
 for check, subject, host in json.loads(sys.argv[1]):
-    whole = SOURCE, EVERY_NODE  # the task that answers all checks of text
-    task = Task(*(whole if host == SOURCE else (check, subject)), host, "stock")
-    [result] = [
-        each
-        for each in judge.work(task).results
-        if (each.check, each.subject) == (check, subject)
-    ]
+    text = host == SOURCE
+    result = judged.texts(check, "stock")[subject] if text else judged(check, subject, host, "stock")
     results["|".join((check, subject, host))] = result.verdict, result.diagnosis, result.pages
-judge.close()
 print(json.dumps(results))
 """
 
@@ -81,12 +58,26 @@ def rows_of(names):
     }
 
 
+@pytest.fixture(scope="module")
+def failing(tmp_path_factory):
+    """Whatever the release fails, or differs in."""
+    with available("gl"):
+        on_gl = {(e.check, e.subject) for e in every_node(tmp_path_factory, STOCK).results}
+    return [
+        (*row, entry.host)
+        for entry in ENTRIES.values()
+        if entry.library == STOCK and entry.host in ("gl", SOURCE)
+        for row in (*ledger.pairs(entry.rows), *ledger.pairs(entry.implied))
+        if row in (on_gl if entry.host == "gl" else ledger.pairs(entry.rows))
+    ]
+
+
 ROWS = {"release": rows_of(PATCHES), "main": rows_of(ON_MAIN)}
 CASES = [(version, row) for version, rows in ROWS.items() for row in rows]
 
 
 @pytest.fixture(scope="module")
-def judged(tmp_path_factory):
+def judged(tmp_path_factory, failing):
     """A function of a version: verdict and diagnosis of each row with it, repaired.
 
     What main has repaired passes there without the repair.
@@ -99,7 +90,10 @@ def judged(tmp_path_factory):
         if version == "main":
             package, files = wheel("main") / "MaterialX", OF_MAIN
         with available("gl"):
-            rows = sorted({*ROWS[version], *OTHERS[version]}, key=lambda row: row[::-1])
+            rows = sorted(
+                {*ROWS[version], *(failing if version == "release" else ())},
+                key=lambda row: row[::-1],
+            )
             make = partial(verdicts, folder, package, files, rows)
             return shared(tmp_path_factory, f"repaired {version}", make)
 
@@ -109,7 +103,7 @@ def judged(tmp_path_factory):
 def verdicts(folder, package, files, rows):
     """Verdict and diagnosis of each row with a package of MaterialX that has patches."""
     ledger.apply(ledger.linked(package, folder / "MaterialX"), *files)
-    path = [str(folder), str(ledger.ROOT / "python")]
+    path = [str(folder), str(ledger.ROOT / "python"), str(ledger.ROOT)]
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(path)}
     command = [sys.executable, "-c", JUDGE, json.dumps(rows)]
     run = subprocess.run(command, capture_output=True, text=True, env=environment)
@@ -127,15 +121,20 @@ def test_a_repair_makes_the_checks_pass_that_show_the_defect(judged, version, ro
     assert verdict == PASSED or (cause and diagnosis.startswith(cause)), diagnosis
 
 
-def test_with_all_patches_no_check_accuses_what_they_repair(judged):
-    repaired = {issue.page: issue.repaired for issue in ISSUES}
+def test_with_all_patches_no_check_accuses_what_they_repair(judged, failing):
+    repaired = {
+        page: [
+            row for each in (entry.repaired, *entry.remains.values()) for row in ledger.pairs(each)
+        ]
+        for page, entry in ENTRIES.items()
+    }
     results = judged("release")
     assert {
-        (*row, page) for row in FAILING for page in results[row][2] if row[:2] in repaired[page]
+        (*row, page) for row in failing for page in results[row][2] if row[:2] in repaired[page]
     } == set()
 
 
-def test_the_page_of_patches_lists_what_still_fails_with_them(judged):
+def test_the_page_of_patches_lists_what_still_fails_with_them(judged, failing):
     block = pages.INDEX.read_text("utf-8").split("<!-- remains -->")[1].split("<!-- end -->")[0]
     listed = [
         (check, subject)
@@ -143,5 +142,5 @@ def test_the_page_of_patches_lists_what_still_fails_with_them(judged):
         for check in re.findall(r"\w+", checks)
         for subject in re.findall("`([^`]+)`", subjects)
     ]
-    failed = {row[:2] for row in FAILING if judged("release")[row][0] == FAILED}
+    failed = {row[:2] for row in failing if judged("release")[row][0] == FAILED}
     assert sorted(listed) == sorted(failed)

@@ -8,11 +8,11 @@ import MaterialX as mx
 import numpy as np
 import pytest
 
-from mxeon.conformance.results import SOURCE
 from mxeon.errors import NotRun
 from tests.support.availability import available
 from tests.support.sharing import every_node, shared
 from tests.support.tolerances import PRINTED
+from tests.support.verdicts import SOURCE
 from tools.site.ledger import FOLDER, completed, entries, measure, measured, patches
 
 MEASURED = measured()

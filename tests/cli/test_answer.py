@@ -8,18 +8,17 @@ from xml.etree import ElementTree
 
 import pytest
 
+from mxeon import check
 from mxeon.cli import main
 from mxeon.cli.answer import LINES, answer
-from mxeon.cli.output import Progress
-from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Result, Run
-from mxeon.conformance.run import check
 from mxeon.errors import MISUSE
 from mxeon.errors import NOT_RUN as DID_NOT_RUN
-from mxeon.hosts.base import Identity
 from mxeon.report import to_json
 from tests.support.command import CLAY, PLASTER
 from tests.support.documents import connected, material
 from tests.support.plans import keep_checks
+from tests.support.results import Identity, Result, Run
+from tests.support.verdicts import DIFFERS, FAILED, NOT_RUN, PASSED
 
 EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
 NAME = "genglsl_clamped_dot"
@@ -167,18 +166,18 @@ def test_a_document_alone_has_its_nodes_judged_and_no_others(monkeypatch):
 
 def test_unreadable_documents_are_said_before_any_other_work(monkeypatch, capsys):
     keep_checks(monkeypatch, "value")
-    seen = []
-    monkeypatch.setattr(
-        Progress, "__call__", lambda self, steps, total: seen.append(said()) or steps
-    )
+    said = []
 
-    def said():
-        return capsys.readouterr().err
+    def progress(tasks, total):
+        said.append(total)
+        return tasks
 
+    check(["nosuch.mtlx", PLASTER], refuse=said.append, progress=progress)
+    line = "document must be a readable file; got 'nosuch.mtlx'"
+    assert said == [line, 1]
     assert main(["check", "nosuch.mtlx", PLASTER, "--workers", "0"]) == MISUSE
-    assert seen == ["mxeon: document must be a readable file; got 'nosuch.mtlx'\n"]
     printed = capsys.readouterr()
-    assert printed.err == ""
+    assert printed.err == f"mxeon: {line}\n"
     assert printed.out.startswith("Refused and not judged: nosuch.mtlx. The check passed on gl")
 
 

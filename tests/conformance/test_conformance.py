@@ -3,56 +3,38 @@
 
 import pytest
 
-from mxeon.conformance.checks import CHECKS
-from mxeon.conformance.results import NOT_RUN, PASSED, SHADER_FUNCTIONS
-from mxeon.conformance.run import check, judge, plan
-from mxeon.conformance.run.plan import survey_documents
-from mxeon.errors import InputError, NotRun
+from mxeon import check
+from mxeon.errors import InputError
 from mxeon.hosts import HOSTS
-from mxeon.jobs import dask
-from mxeon.shaders.document.policy import DEFAULT
-from mxeon.shaders.nodes import INVERSIONS, connection_text, document_text, node_text
+from mxeon.shaders.nodes import INVERSIONS
 from tests.support.plans import keep_checks
 from tests.support.sharing import EXAMPLES
+from tests.support.verdicts import NOT_RUN, PASSED, SHADER_FUNCTIONS
 
 
-def test_a_named_node_is_judged_alone():
-    tasks = plan.make_plan([], ["gl"], ["eonlib"], nodes=["sheen_bsdf"]).tasks
-    assert {task.subject for task in tasks} == {
-        "sheen_bsdf, mode conty_kulla",
-        "sheen_bsdf, mode zeltner",
-    }
-    assert {"pdf", "sample"} <= {task.check for task in tasks}
-    every = plan.make_plan([], ["gl"], ["eonlib"], nodes=["all"]).tasks
-    assert "pdf" not in {task.check for task in plan.make_plan([], ["gl"], ["eonlib"]).tasks}
-    assert set(every) >= set(plan.make_plan([], ["gl"], ["eonlib"]).tasks)
-    for library, judged in (("stock", True), ("eonlib", False)):  # what neither library repairs
-        tasks = plan.make_plan([], ["gl"], [library], nodes=["all"]).tasks
-        assert ("measured_edf" in {task.subject for task in tasks}) is judged
-    assert "uniform_edf" not in {
-        task.subject for task in plan.make_plan([], ["gl"], ["stock"]).tasks
-    }
+def test_a_named_node_is_judged_alone_and_with_its_draws():
+    results = check((), ["gl"], nodes=["conical_edf"]).results
+    assert {each.subject for each in results} == {"conical_edf"}
+    drawn = check((), ["gl"], nodes=["translucent_bsdf"]).results
+    assert {"pdf", "sample"} <= {each.check for each in drawn}
 
 
 @pytest.mark.parametrize(
     "host, node, message",
     [
         ("gl", "velvet", "^node must be one of oren_nayar_diffuse_bsdf, .*, all; got 'velvet'$"),
-        (
-            "msl",
-            "mix",
-            "^node must be judged on one of the hosts msl; got mix, judged with --library eonlib on gl, ",
-        ),
-        (
-            "cycles",
-            "sheen_bsdf",
-            "^node must be judged on one of the hosts cycles; .* with --library stock on .*, cycles, ",
-        ),
+        ("msl", "mix", "hosts msl; got mix, judged with --library eonlib on gl, "),
+        ("cycles", "sheen_bsdf", "hosts cycles; .* with --library stock on .*, cycles, "),
+        *((host, node, f"hosts {host}; got {node}, judged with ") for host, node in (
+            ("storm", "mix"), ("storm", "uniform_edf"), ("materialx", "layer"),
+            ("materialx", "subsurface_bsdf"), ("materialx", "chiang_hair_bsdf"),
+            ("cycles", "chiang_hair_bsdf"), ("testrender", "uniform_edf"), ("testrender", "blackbody"),
+        )),
     ],
-)
+)  # fmt: skip
 def test_a_node_that_is_judged_nowhere_is_refused(host, node, message):
     with pytest.raises(InputError, match=message):
-        plan.make_plan([], [host], ["eonlib"], nodes=[node])
+        check((), [host], nodes=[node])
 
 
 def test_texts_are_judged_by_values_and_where_a_host_runs_them_by_the_host(run):
@@ -74,16 +56,12 @@ def test_a_document_that_cannot_be_read_is_an_error_and_the_others_are_judged(
 
 
 def test_a_host_that_is_missing_is_reported_as_not_run(monkeypatch):
-    def missing(name):
-        raise NotRun(f"{name}: nowhere")
-
-    monkeypatch.setattr(judge, "open_engine", missing)
-    run = check(EXAMPLES[:1], ["gl"], nodes=["common"])
-    results = [each for each in run.results if each.host == "gl"]
-    assert {each.subject for each in results} > {
-        *("eon_diffuse_bsdf", str(EXAMPLES[0]), SHADER_FUNCTIONS)
-    }
-    assert {(each.verdict, each.reason) for each in results} == {(NOT_RUN, "gl: nowhere")}
+    monkeypatch.setenv("MXEON_CYCLES_PYTHON", "/nowhere/python")
+    run = check(EXAMPLES[:1], ["cycles"], nodes=["common"])
+    results = [each for each in run.results if each.host == "cycles"]
+    assert {each.subject for each in results} > {"eon_diffuse_bsdf", str(EXAMPLES[0])}
+    assert {each.verdict for each in results} == {NOT_RUN}
+    assert all(each.reason.startswith("cycles: ") for each in results)
 
 
 @pytest.mark.parametrize("host", [row.name for row in HOSTS if not row.module])
@@ -95,38 +73,24 @@ def test_a_target_of_which_only_the_text_can_be_checked_is_not_run(host):
     assert texts and {each.verdict for each in texts} == {PASSED}
 
 
-@pytest.mark.parametrize("shown", ["all", "a document"])
-def test_two_libraries_are_asked_the_same(shown, tmp_path):
-    """But for nodes and functions that one does not have."""
-    libraries = ("stock", "eonlib")
-    file = tmp_path / "glow.mtlx"
-    edf = connection_text("edf", "EDF", "glow")
-    glow = node_text("uniform_edf", "EDF", "glow")
-    file.write_text(document_text(glow + node_text("surface", "surfaceshader", "shading", edf)))
-    files = [str(file)] if shown != "all" else []
-    survey = survey_documents(files, libraries, DEFAULT, 0, 1.0)
-    nodes = () if files else ("all",)
-    tasks = plan.make_plan(files, ["gl"], libraries, nodes=nodes, survey=survey).tasks
-    stock, eonlib = (
-        {
-            (each.check, each.subject)
-            for each in tasks
-            if each.library == library and each.check != "picture"
-        }
-        for library in libraries
-    )
+def test_two_libraries_are_asked_the_same(run, stock):
+    """But for nodes and functions that one does not have, and for what neither repairs."""
+    asked = [
+        {(e.check, e.subject) for e in each.results if e.host == "gl" and e.check != "picture"}
+        for each in (stock, run)
+    ]
     own = {"eon_diffuse_bsdf", SHADER_FUNCTIONS, *INVERSIONS}
-    drawn = {check.key for check in CHECKS if check.profile}  # by the text for path tracers
-    assert stock == {each for each in eonlib if each[1] not in own and each[0] not in drawn}
-    assert ("opacity", "surface, an EDF alone") in stock
+    drawn = ("pdf", "sample")  # by the text for path tracers
+    eonlib = {each for each in asked[1] if each[1] not in own and each[0] not in drawn}
+    assert eonlib < asked[0]
+    assert {check for check, _ in asked[0] - eonlib} == {"implemented", "lobe", "opacity"}
 
 
 def test_misuse_leaves_the_journal_of_an_earlier_run_alone(tmp_path, monkeypatch):
-    keep_checks(monkeypatch, plan.HOST)
-    monkeypatch.setattr(dask, "ANSWER", 1.0)
+    keep_checks(monkeypatch, "host")
     check(EXAMPLES[:1], ["msl"], folder=tmp_path)
     before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
-    for wrong in ({"workers": -1}, {"timeout": 0.0}, {"scheduler": "tcp://127.0.0.1:9"}):
+    for wrong in ({"workers": -1}, {"timeout": 0.0}, {"scheduler": " "}):
         with pytest.raises(ValueError, match=r"^(workers|timeout|scheduler) must be "):
             check(EXAMPLES[:1], ["msl"], folder=tmp_path, **wrong)
     assert {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()} == before

@@ -1,73 +1,78 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a run depends on: a run is resumed with the same files, options and drivers only."""
 
+import re
+
 import pytest
 
+from mxeon import check
 from mxeon.cli import main
-from mxeon.conformance.run import check, read_run
-from mxeon.conformance.run.journal import JOURNAL
-from mxeon.hosts.base import Identity
-from mxeon.hosts.gl import Host
+from mxeon.errors import InputError
 from mxeon.shaders.document.policy import Policy
-from mxeon.shaders.document.references import digests
 from mxeon.shaders.library import examples_folder
 from tests.support.plans import keep_checks
+from tests.support.wrong_libraries import copy_of_eonlib
 
-INCLUDE = '<xi:include xmlns:xi="http://www.w3.org/2001/XInclude" href="{}"/>'
-FILE = '<input name="file" type="filename" value="{}"/>'
+INCLUDE = '<xi:include xmlns:xi="http://www.w3.org/2001/XInclude" href="part.mtlx"/>'
+CODE = Policy(code=True)
+TOKEN = '<token name="t" type="string" value="grid.png"/>'
+FILE = '<image name="i{}" type="color3"><input name="file" type="filename" value="{}"{}/></image>'
+# Files of a folder, and what a document says that depends on each.
+NAMES = {
+    "grid.png": FILE.format(1, "grid.png", ""),
+    "images/grid.png": FILE.format(2, "images/grid.png", ""),
+    "images/wood.png": FILE.format(3, "wood.png", ' fileprefix="images/"'),
+    "set.1001.png": FILE.format(4, "set.&lt;UDIM&gt;.png", ""),
+    "other.1001.png": FILE.format(5, "other.<UDIM>.png", ""),
+    "oak.png": FILE.format(6, "[which].png", ""),
+    "own.glsl": '<implementation name="i" file="own.glsl"/>',
+    "part.mtlx": INCLUDE,
+}
 
 
-def document(path, *parts, root=""):
-    path.parent.mkdir(parents=True, exist_ok=True)
-    text = f'<?xml version="1.0"?><materialx version="1.39" {root}>{"".join(parts)}</materialx>'
-    path.write_text(text, encoding="utf-8")
-    return path
-
-
-def texture(path):
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(b"pixels")
-    return path
-
-
-@pytest.mark.parametrize(
-    "parts, root, name",
-    [
-        ([FILE.format("grid.png")], "", "grid.png"),
-        ([FILE.format("images/grid.png")], "", "images/grid.png"),
-        ([FILE.format("grid.png")], 'fileprefix="images/"', "images/grid.png"),
-        ([FILE.format("set.&lt;UDIM&gt;.png")], "", "set.1001.png"),
-        ([FILE.format("set.<UDIM>.png")], "", "set.1001.png"),
-        ([FILE.format("[which].png")], "", "wood.png"),
-        (['<implementation name="i" file="own.glsl"/>'], "", "own.glsl"),
-        ([INCLUDE.format("part.mtlx")], "", "part.mtlx"),
-    ],
-)
-def test_what_a_document_names_is_a_dependency(tmp_path, parts, root, name):
-    file = document(tmp_path / "a.mtlx", *parts, root=root)
-    before = digests([file], Policy())
-    texture(tmp_path / name)
-    after = digests([file], Policy())
-    assert {path for path, _ in before.items() ^ after.items()} == {str(tmp_path / name)}
+def run_of(folder, *named):
+    """A folder with a short run on the gl host, and its document, which names files."""
+    text = (examples_folder() / "plaster.mtlx").read_text(encoding="utf-8")
+    file = folder / "plaster.mtlx"
+    file.write_text(text.replace("</materialx>", f"{''.join(named)}</materialx>"), encoding="utf-8")
+    check([file], folder=folder / "run", policy=CODE)
+    return folder / "run", file
 
 
 @pytest.fixture
 def run(tmp_path, monkeypatch):
-    """A folder with a short run on the gl host, and its document."""
+    """A run of two tasks, whose document names a texture."""
     keep_checks(monkeypatch, "curve", "picture")
-    texture(tmp_path / "grid.png")
-    token = '<token name="t" type="string" value="grid.png"/></materialx>'
-    text = (examples_folder() / "plaster.mtlx").read_text(encoding="utf-8")
-    file = tmp_path / "plaster.mtlx"
-    file.write_text(text.replace("</materialx>", token), encoding="utf-8")
-    check([file], folder=tmp_path / "run")
-    return tmp_path / "run", file
+    (tmp_path / "grid.png").write_bytes(b"pixels")
+    return run_of(tmp_path, TOKEN)
+
+
+def refusal(folder, files, **options):
+    """What has changed since a run."""
+    with pytest.raises(InputError, match="--resume needs the same run") as error:
+        check(files, folder=folder, resume=True, **{"policy": CODE} | options)
+    return str(error.value).partition("changed: ")[2]
+
+
+def test_what_a_document_names_is_a_dependency(tmp_path, monkeypatch):
+    keep_checks(monkeypatch, "host")
+    for name in NAMES:
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text('<?xml version="1.0"?><materialx version="1.39"/>')
+    folder, file = run_of(tmp_path, *NAMES.values())
+    for name in NAMES:
+        path = tmp_path / name
+        text = path.read_text()
+        path.write_text(f"{text}\n")
+        assert refusal(folder, [file]) == str(path)
+        path.write_text(text)
 
 
 def test_a_texture_that_changed_is_named_and_the_run_not_resumed(run, capsys):
     folder, file = run
     (file.parent / "grid.png").write_bytes(b"other")
     command = ["check", str(file), "--library", "eonlib", "--report", str(folder), "--resume"]
+    command.append("--allowCode")
     assert main(command) == 2
     error = capsys.readouterr().err
     assert error.endswith(f"changed: {file.parent / 'grid.png'}\n") and error.count("\n") == 1
@@ -75,22 +80,24 @@ def test_a_texture_that_changed_is_named_and_the_run_not_resumed(run, capsys):
 
 def test_an_option_that_changed_is_named(run):
     folder, file = run
-    with pytest.raises(ValueError, match=r"changed: --allowCode \(False, now True\), --maxSize \("):
-        options = {"policy": Policy(code=True, size=10**6)}
-        check([file], folder=folder, resume=True, **options)
+    changed = refusal(folder, [file], policy=Policy(size=10**6))
+    assert changed.startswith("--allowCode (True, now False), --maxSize (")
 
 
-def test_a_driver_that_changed_is_named_once_its_tasks_go_on(run, monkeypatch):
+def test_a_driver_that_changed_is_named_once_its_tasks_go_on(run):
+    """Its name is changed in the journal, of which the last line is left out."""
     folder, file = run
-    path = folder / JOURNAL
-    path.write_bytes(b"".join(path.read_bytes().splitlines(keepends=True)[:-1]))
-    monkeypatch.setattr(Host, "identity", lambda self: Identity("gl", "5.0", "another"))
-    with pytest.raises(ValueError, match=r"changed: host gl \(.*, now 5.0, another\)$"):
-        check([file], folder=folder, resume=True)
-    assert read_run(folder).missing
+    [path] = folder.rglob("*.jsonl")
+    lines = path.read_text(encoding="utf-8").splitlines(keepends=True)[:-1]
+    path.write_text(re.sub('"device": "[^"]*"', '"device": "another"', "".join(lines)))
+    assert re.fullmatch(r"host gl \(.*, another, now .*\)", refusal(folder, [file]))
 
 
-def test_a_folder_that_is_a_library_is_a_dependency(tmp_path):
-    source = texture(tmp_path / "library" / "genglsl" / "brick.glsl")
-    found = digests([], Policy(), ["eonlib", str(tmp_path / "library")])
-    assert found.keys() - digests([], Policy(), ["eonlib"]).keys() == {str(source)}
+def test_a_folder_that_is_a_library_is_a_dependency(tmp_path, monkeypatch):
+    keep_checks(monkeypatch, "host")
+    library = copy_of_eonlib(tmp_path)
+    options = {"hosts": ["msl"], "libraries": [library], "policy": CODE}
+    check((), folder=tmp_path / "run", **options)
+    source = tmp_path / "genglsl" / "lib" / "eon.glsl"
+    source.write_text(f"{source.read_text()}\n")
+    assert refusal(tmp_path / "run", (), **options) == str(source)

@@ -1,96 +1,109 @@
 # SPDX-License-Identifier: Apache-2.0
 """Engines that err: what a run says of them, and which of their own errors its tolerances take in."""
 
-from contextlib import closing
-
 import numpy as np
 import pytest
 
-from mxeon.conformance.results import FAILED, NOT_RUN, SHADER_FUNCTIONS
-from mxeon.conformance.run.judge import Judge
-from mxeon.conformance.run.plan import Task
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts.gl import Host
-from mxeon.shaders.document.policy import DEFAULT
+from tests.support.verdicts import FAILED, NOT_RUN, SHADER_FUNCTIONS, Verdicts
 
 EON, SHADER = "oren_nayar_diffuse_bsdf, energy_compensation true", "standard_surface, every lobe"
-EVALUATE, EXECUTE = Host.evaluate, Host.execute
 
 
-def judged(check, title):
-    """The result of a check on a gl host of its own."""
-    with closing(Judge(DEFAULT)) as judge:
-        [result] = judge.work(Task(check, title, "gl", "eonlib")).results
-    return result
+@pytest.fixture
+def judged_by(gl):
+    """A function that makes a judge of a kind of gl host."""
+    opened = []
+
+    def judge(kind):
+        opened.append(kind())
+        return Verdicts(lambda name: opened[-1])
+
+    yield judge
+    for host in opened:
+        host.close()
 
 
-def turned(host, shader, wo, wi, inputs, *rest, **options):
-    return EVALUATE(host, shader, wo, wi[:, [1, 0, 2]] * [-1, 1, 1], inputs, *rest, **options)
+class Turned(Host):
+    def evaluate(self, shader, wo, wi, *rest, **options):
+        return super().evaluate(shader, wo, wi[:, [1, 0, 2]] * [-1, 1, 1], *rest, **options)
 
 
-def swapped(host, shader, wo, wi, *rest, **options):
-    return EVALUATE(host, shader, wi, wo, *rest, **options)
+class Swapped(Host):
+    def evaluate(self, shader, wo, wi, *rest, **options):
+        return super().evaluate(shader, wi, wo, *rest, **options)
 
 
-def uncoated(host, shader, wo, wi, inputs, *rest, **options):
-    return EVALUATE(
-        host, shader, wo, wi, {**inputs, "coat": 0.0 * inputs["coat"]}, *rest, **options
-    )
+class Uncoated(Host):
+    def evaluate(self, shader, wo, wi, inputs, *rest, **options):
+        bare = {**inputs, "coat": 0.0 * inputs["coat"]}
+        return super().evaluate(shader, wo, wi, bare, *rest, **options)
 
 
-def without_numbers(host, shader, wo, *rest, **options):
-    return np.full(wo.shape, np.nan)
+class WithoutNumbers(Host):
+    def evaluate(self, shader, wo, *rest, **options):
+        return np.full(wo.shape, np.nan)
 
 
 @pytest.mark.parametrize(
-    "evaluate, check, title, words",
+    "kind, check, title, words",
     [
-        (turned, "reciprocity", EON, ""),
-        (swapped, "value", EON, ""),
-        (uncoated, "lobes", SHADER, "the layer equation holds without the coat"),
-        (without_numbers, "value", EON, "NaN or infinity"),
+        (Turned, "reciprocity", EON, ""),
+        (Swapped, "value", EON, ""),
+        (Uncoated, "lobes", SHADER, "the layer equation holds without the coat"),
+        (WithoutNumbers, "value", EON, "NaN or infinity"),
     ],
 )
-def test_a_host_that_mistakes_its_arguments_fails(monkeypatch, evaluate, check, title, words):
-    monkeypatch.setattr(Host, "evaluate", evaluate)
-    result = judged(check, title)
+def test_a_host_that_mistakes_its_arguments_fails(judged_by, kind, check, title, words):
+    result = judged_by(kind)(check, title)
     assert result.verdict == FAILED and words in result.diagnosis
-    assert (result.error == np.inf) == (evaluate is without_numbers)
+    assert (result.error == np.inf) == (kind is WithoutNumbers)
 
 
-@pytest.mark.parametrize("error, verdict", [(NotRun, NOT_RUN), (ShaderError, FAILED)])
+class Failing(Host):
+    error = NotRun
+
+    def evaluate(self, *arguments, **options):
+        raise self.error("0:1(1): error: here")
+
+    execute = picture = evaluate
+
+
+class Refusing(Failing):
+    error = ShaderError
+
+
+@pytest.mark.parametrize("kind, verdict", [(Failing, NOT_RUN), (Refusing, FAILED)])
 @pytest.mark.parametrize(
     "check, title",
     [("value", EON), ("output", "eon_rho_from_albedo_avg"), ("twins", SHADER_FUNCTIONS)],
 )
-def test_what_does_not_run_is_never_passed(monkeypatch, error, verdict, check, title):
-    def fails(*arguments, **options):
-        raise error("0:1(1): error: here")
-
-    for verb in ("evaluate", "execute", "picture"):
-        monkeypatch.setattr(Host, verb, fails)
-    with closing(Judge(DEFAULT)) as judge:
-        results = judge.work(Task(check, title, "gl", "eonlib")).results
+def test_what_does_not_run_is_never_passed(judged_by, kind, verdict, check, title):
+    results = judged_by(kind).all(check, title)
     assert {result.verdict for result in results} == {verdict}
     assert all("0:1(1): error: here" in each.reason + each.diagnosis for each in results)
 
 
+class Rounding(Host):
+    """Its power and exponential are off."""
+
+    def execute(self, source, name, *arguments):
+        values = super().execute(source, name, *arguments)
+        return values * (1.0 + 1e-4) if "power" in name or "exponential" in name else values
+
+
 @pytest.mark.parametrize(
-    "check, title, function, widened",
+    "check, title, widened",
     [
-        ("value", "sheen_bsdf, mode conty_kulla", "power", 2e-4),
-        ("radiance", "generalized_schlick_edf", "power", 2e-4),
-        ("transmittance", "anisotropic_vdf", "exponential", 3e-4),
-        ("value", "burley_diffuse_bsdf", "power", None),
+        ("value", "sheen_bsdf, mode conty_kulla", 2e-4),
+        ("radiance", "generalized_schlick_edf", 2e-4),
+        ("transmittance", "anisotropic_vdf", 3e-4),
+        ("value", "burley_diffuse_bsdf", None),
     ],
 )
 def test_a_tolerance_takes_in_the_error_of_an_engines_own_function(
-    monkeypatch, check, title, function, widened
+    judged, judged_by, check, title, widened
 ):
-    def execute(host, source, name, *arguments):
-        values = EXECUTE(host, source, name, *arguments)
-        return values * (1.0 + 1e-4) if function in name else values
-
     exact = judged(check, title).tolerance
-    monkeypatch.setattr(Host, "execute", execute)
-    assert judged(check, title).tolerance == (widened or exact) >= exact
+    assert judged_by(Rounding)(check, title).tolerance == (widened or exact) >= exact

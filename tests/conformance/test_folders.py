@@ -3,15 +3,13 @@
 
 import shutil
 
-import pytest
-
+from mxeon import check
 from mxeon.cli import main
 from mxeon.cli.answer import MANY, summary_by_cause
-from mxeon.conformance.results import FAILED, PASSED, Result, Run
-from mxeon.errors import MISUSE, InputError
-from mxeon.hosts.base import Identity
-from mxeon.shaders.document.references import documents_in
+from mxeon.errors import MISUSE
 from tests.support.command import CLAY
+from tests.support.results import Identity, Result, Run
+from tests.support.verdicts import FAILED, PASSED
 
 NAMES = ("a/clay.mtlx", "a/glass.mtlx", "b/noise.mtlx", "light.mtlx")
 
@@ -41,13 +39,11 @@ def test_a_folder_stands_for_the_documents_in_it_and_below_it(tmp_path):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text("")
     single = str(tmp_path / "b.mtlx")
-    expected = (single, str(tmp_path / "sub" / "a.mtlx"))
-    assert documents_in([tmp_path, single]) == expected
+    run = check([tmp_path, single], ["msl"])  # no document is one of MaterialX
+    assert {*run.refused} == {single, str(tmp_path / "sub" / "a.mtlx")}
 
 
 def test_a_folder_without_documents_is_misuse(tmp_path, capsys):
-    with pytest.raises(InputError, match="must hold MaterialX documents"):
-        documents_in([tmp_path])
     assert main(["check", str(tmp_path)]) == MISUSE
     assert "must hold MaterialX documents" in capsys.readouterr().err
 

@@ -14,11 +14,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mxeon.conformance.run import check, read_run, to_run
-from mxeon.conformance.run.journal import JOURNAL, LOCK, PREVIOUS, read_journal
+from mxeon import check
 from mxeon.shaders.library import examples_folder
-from tests.support.journals import FILES, FINDINGS, PIXELS, PLAN, TASKS, journal
 from tests.support.plans import keep_checks
+from tests.support.results import (
+    FILES,
+    FINDINGS,
+    JOURNAL,
+    LOCK,
+    PIXELS,
+    PLAN,
+    PREVIOUS,
+    TASKS,
+    journal,
+    read_journal,
+    read_run,
+    to_run,
+)
 
 EXAMPLE = examples_folder() / "plaster.mtlx"
 PLAIN = replace(FINDINGS, pictures=())
@@ -189,7 +201,7 @@ def test_a_killed_run_is_resumed_to_the_same_end(tmp_path, monkeypatch):
         assert process.poll() is None and time.monotonic() < end
         time.sleep(0.01)
     os.kill(process.pid, signal.SIGKILL)
-    process.wait()
+    process.wait(60.0)
     done = read_journal(tmp_path)[1].keys()
     assert read_run(tmp_path).missing
     command = [sys.executable, "-c", f"{SHORT}sys.exit(main())", *options, "--resume"]

@@ -1,19 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every node of eonlib's OSL by its closures, and wrong texts, compiled by the same OSL, that are noticed."""
 
+from copy import copy
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.reference.closures import evaluate
-from mxeon.conformance.results import FAILED, PASSED
-from mxeon.hosts.osl import Host
 from mxeon.shaders.generation import generate
 from mxeon.shaders.library import examples_folder
 from tests.support.cases import directions_32
-from tests.support.verdicts import Verdicts
+from tests.support.verdicts import FAILED, PASSED, Verdicts
 
 # Bundled documents without images, which the reference reads on a sphere alone.
 EXAMPLES = (
@@ -79,19 +77,20 @@ RIGHT = (
 
 
 @pytest.fixture
-def changed(hosts, monkeypatch):
-    """A judge of its own, which keeps no values, and a function that changes the texts that it is given."""
-    host, compiled = hosts("osl"), Host.compile
+def changed(hosts):
+    """A function that makes a judge, which keeps no values, of texts that it changes."""
+    host = hosts("osl")
 
     def change(old, new):
-        def compile_text(self, document, element=None, **options):
-            [shader] = compiled(self, document, element, **options)
+        def compile_text(document, element=None, **options):
+            [shader] = host.compile(document, element, **options)
             text = shader.stages["pixel"]
             assert old in text, f"{old} is not in the text"
             return (replace(shader, stages={"pixel": text.replace(old, new)}),)
 
-        monkeypatch.setattr(Host, "compile", compile_text)
-        return Verdicts(lambda name: host)
+        wrong = copy(host)
+        wrong.compile = compile_text
+        return Verdicts(lambda name: wrong)
 
     return change
 
@@ -122,11 +121,11 @@ def test_the_repair_on_its_page_gives_a_sheen_its_mode(judged, changed):
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
-def test_an_example_is_what_its_document_says(hosts, name):
+def test_an_example_is_what_its_document_says(hosts, reference, name):
     file, host = examples_folder() / f"{name}.mtlx", hosts("osl")
     wo, wi = (directions_32(np.random.default_rng(seed), 16) for seed in (1, 2))
     for osl, other in zip(generate(file, "osl"), generate(file, "glsl"), strict=True):
-        expected = np.pi * Reference().evaluate(other, wo, wi, {}, "direct")
+        expected = np.pi * reference.evaluate(other, wo, wi, {}, "direct")
         error = np.abs(np.pi * evaluate(host, osl, wo, wi, {}, "direct", "response") - expected)
         largest = (error / np.maximum(np.abs(expected), 1.0)).max()
         assert (largest <= GRAPH) == (osl.name not in COLOR82)

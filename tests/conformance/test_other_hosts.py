@@ -3,7 +3,7 @@
 
 import pytest
 
-from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
+from tests.support.verdicts import FAILED, NOT_RUN, PASSED
 
 EON, QON = (f"oren_nayar_diffuse_bsdf, energy_compensation {flag}" for flag in ("true", "false"))
 ZELTNER, DIELECTRIC = "sheen_bsdf, mode zeltner", "dielectric_bsdf, scatter_mode R"

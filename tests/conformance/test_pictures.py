@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mxeon.conformance.pictures import judge_document
 from mxeon.errors import NotRun
 from mxeon.io.images import write_exr
 from mxeon.shaders.generation import generate
@@ -16,16 +15,17 @@ from tests.support.documents import lobe, material
 
 
 @pytest.fixture
-def shown(gl, reference, tmp_path):
+def shown(judged, tmp_path):
     """A function that judges a document of one material: its result, its pictures and the notes."""
 
-    def judged(text, library="eonlib"):
+    def show(text, library="eonlib"):
         path = tmp_path / "shown.mtlx"
         path.write_text(text)
-        [result], pictures, notes = judge_document(path, gl, reference, library)
-        return result, pictures, notes
+        found = judged.document(path, library=library)
+        [result] = found.results
+        return result, found.pictures, found.notes
 
-    return judged
+    return show
 
 
 FILM = """<generalized_schlick_bsdf name="lobe" type="BSDF">

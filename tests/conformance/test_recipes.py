@@ -7,12 +7,13 @@ from pathlib import Path
 import pytest
 
 import mxeon
-from mxeon.conformance.specs.microfacets import INPUTS
 from mxeon.models.microfacet import NODES
+from mxeon.shaders.library import load_library
 
 ROOT = Path(__file__).resolve().parents[2]
 DIELECTRIC, SPECS = "dielectric_bsdf", "python/mxeon/conformance/specs"
-PORTS = {each.name for each in INPUTS[DIELECTRIC]} - {"weight", "normal", "tangent"}
+NODEDEF = load_library("stock").getNodeDef(f"ND_{DIELECTRIC}")
+PORTS = {each.getName() for each in NODEDEF.getActiveInputs()} - {"weight", "normal", "tangent"}
 SHADERS = {f"genglsl/{DIELECTRIC}.glsl", f"genosl/{DIELECTRIC}.osl"}
 # Words, and the only files that have all of them.
 PLACES = {

@@ -5,13 +5,12 @@ from pathlib import Path
 
 import pytest
 
-from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, SHADER_FUNCTIONS
-from mxeon.conformance.run import check
-from mxeon.conformance.run.plan import make_plan
+from mxeon import check
 from mxeon.errors import InputError
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.nodes import EON, INVERSIONS
 from tests.support.plans import keep_checks
+from tests.support.verdicts import FAILED, NOT_RUN, PASSED, SHADER_FUNCTIONS
 from tests.support.wrong_libraries import copy_of_eonlib, place_of, replace_text
 
 ON, OFF = (f"oren_nayar_diffuse_bsdf, energy_compensation {flag}" for flag in ("true", "false"))
@@ -203,7 +202,7 @@ def test_a_source_that_is_no_text_is_refused_in_one_line(copy):
     library = Path(copy())
     (library.parent / "genglsl" / "lib" / "eon.glsl").write_bytes(b"\xff\xfe")
     with pytest.raises(InputError, match="eon.glsl: must be text in UTF-8"):
-        make_plan([], ["gl"], [library])
+        check([], ["gl"], [library])
 
 
 def test_a_definition_that_the_documents_do_not_fit_is_named_before_they_are_refused(

@@ -3,7 +3,7 @@
 
 import pytest
 
-from mxeon.conformance.results import FAILED
+from tests.support.verdicts import FAILED
 from tests.support.wrong_libraries import copy_of_stock, replace_text, wrong_library
 
 # Files of eonlib have their path; those of MaterialX, their name alone.

@@ -3,7 +3,6 @@
 
 import json
 import re
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,7 +10,6 @@ import pytest
 from mxeon import check
 from mxeon.cli import main
 from mxeon.cli.explore import MATERIALS
-from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Result
 from mxeon.errors import MISUSE
 from mxeon.errors import PASSED as PASSED_STATUS
 from mxeon.explorer import PARAGRAPH, TEXTS, documents, page, page_data
@@ -23,6 +21,8 @@ from mxeon.shaders.library import examples_folder
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 from tests.explorer.browser import judged, opened, until
 from tests.support.documents import textured
+from tests.support.results import Result, kept
+from tests.support.verdicts import FAILED, NOT_RUN, PASSED
 
 LARGEST = 2 * 2**20  # bytes of the page without documents
 CLAY = str(examples_folder() / "clay.mtlx")
@@ -102,7 +102,7 @@ def result(host, subject, verdict, **distances):
     return Result("value", "claim", subject, host, "stock", verdict, distances=titles)
 
 
-def test_the_diagnoses_of_a_run_can_be_chosen(tmp_path, monkeypatch):
+def test_the_diagnoses_of_a_run_can_be_chosen(tmp_path):
     node = f"{OREN_NAYAR}, {FLAG}"
     results = (
         result("gl", f"{node} true", FAILED, eon_clamped=1e-7, eon=0.1),
@@ -111,10 +111,8 @@ def test_the_diagnoses_of_a_run_can_be_chosen(tmp_path, monkeypatch):
         result("cycles", f"{node} false", FAILED, qon=0.2, eon_rho_cubed=1e-5),
         result("cycles", "a document", NOT_RUN),
     )
-    run = SimpleNamespace(results=results)
-    monkeypatch.setattr("mxeon.conformance.run.read_run", {"run": run}.__getitem__)
-    out = tmp_path / "page.html"
-    assert main(["explore", "--report", "run", "--output", str(out)]) == PASSED_STATUS
+    run, out = str(kept(tmp_path / "run", *results)), tmp_path / "page.html"
+    assert main(["explore", "--report", run, "--output", str(out)]) == PASSED_STATUS
     found = [each for each in data_of(out.read_text())["sources"] if each["id"].startswith("run/")]
     assert [(each["model"], each["meant"]) for each in found] == [
         ("eon_clamped", "eon"),

@@ -3,14 +3,12 @@
 
 import pytest
 
-from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
-from mxeon.conformance.results.known_issues import ISSUES, RENDERER_NODES
 from mxeon.errors import NotRun
 from mxeon.hosts import open_engine
 from mxeon.survey import browser
 from mxeon.survey.browser import babylon, pathtracer, three
 from tests.support.availability import available
-from tests.support.verdicts import Verdicts
+from tests.support.verdicts import FAILED, NOT_RUN, PASSED, RENDERER_NODES, Verdicts
 from tests.test_upstream import same_record
 from tools.site import ledger
 from tools.site.ledger import measure
@@ -34,7 +32,7 @@ PACKAGES = {
 EON, FON, LOBE = "WebGPUPathTracer, eonBrdf", "WebGPUPathTracer, fonBrdf", pathtracer.LOBE
 
 of_each_issue = pytest.mark.parametrize(
-    "issue", [each for each in ISSUES if each.host in PICTURED], ids=lambda each: each.page
+    "issue", [each for each in measure.CHECKED if each.host in PICTURED], ids=lambda each: each.page
 )
 
 
@@ -83,7 +81,7 @@ def repaired(tmp_path_factory):
 
 
 @pytest.mark.parametrize(
-    "issue", [each for each in ISSUES if each.host in PACKAGES], ids=lambda each: each.page
+    "issue", [each for each in measure.CHECKED if each.host in PACKAGES], ids=lambda each: each.page
 )
 def test_a_repair_makes_the_checks_pass_that_show_the_defect(repaired, issue):
     for check, title in issue.rows:

@@ -10,9 +10,6 @@ import MaterialX as mx
 import numpy as np
 import pytest
 
-from mxeon.conformance.reference import Host as Reference
-from mxeon.conformance.results import FAILED, PASSED
-from mxeon.conformance.results.known_issues import RENDERER_NODES
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import cycles
 from mxeon.hosts.cycles import process as cycles_process
@@ -29,6 +26,7 @@ from tests.support.tolerances import (
     CYCLES_RIM,
     CYCLES_SUBSURFACE,
 )
+from tests.support.verdicts import FAILED, PASSED, RENDERER_NODES
 
 EMIT = "shader emit\n(\n    output closure color out = 0\n)\n{{\n    {}\n}}\n"
 SMALL = replace(FRONT, size=64)
@@ -102,11 +100,12 @@ def test_a_pixel_is_its_point_of_the_sphere(host):
 
 @pytest.mark.parametrize("scene", LIGHTS, ids=lambda scene: scene.name)
 @pytest.mark.parametrize("roughness", [0.0, 2e-5, 1.0])
-def test_eon_with_the_profile_is_exact(host, scene, roughness):
+def test_eon_with_the_profile_is_exact(host, reference, scene, roughness):
     shader = osl(eon("1.0, 0.4, 0.0", roughness), profile="cycles")
-    error = np.abs(host.picture(shader, scene) - Reference().picture(shader, scene))
+    expected = reference.picture(shader, scene)
+    error = np.abs(host.picture(shader, scene) - expected)
     pixels, _ = lit(scene)
-    bound = CYCLES_EON_RELATIVE * Reference().picture(shader, scene)
+    bound = CYCLES_EON_RELATIVE * expected
     assert np.all(error[pixels] <= bound[pixels])
 
 

@@ -6,15 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mxeon.conformance.results import PASSED
-from mxeon.conformance.results.known_issues import RENDERER_NODES
-from mxeon.conformance.run import check
+from mxeon import check
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.scene import BACK, FRONT, SIDE, VIEW, local_directions
 from mxeon.survey.facets import facet_points
 from mxeon.survey.polyhedron import luxcore, mitsuba
 from tests.support.availability import available
 from tests.support.plans import keep_host
+from tests.support.verdicts import PASSED, RENDERER_NODES
 
 EXAMPLE = examples_folder() / "plaster.mtlx"
 MODULES = {"mitsuba": mitsuba, "luxcore": luxcore}

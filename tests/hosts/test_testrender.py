@@ -5,21 +5,17 @@ The recording holds what OSL's programs printed and rendered; see `tests.support
 """
 
 import os
-from contextlib import closing
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import tests.support.osl as osl
-from mxeon.conformance.results import FAILED, PASSED
-from mxeon.conformance.run.judge import Judge
-from mxeon.conformance.run.plan import make_plan
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts.osl import engines as programs
 from mxeon.hosts.testrender import Host
 from mxeon.models import eon_brdf
-from mxeon.shaders.document.policy import DEFAULT
+from tests.support.verdicts import FAILED, PASSED
 
 EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
 # Of pi f cos: 3 roundings of a point 40 away, seen from a light at 1/2, times 8, and OpenImageIO's arc cosine.
@@ -101,9 +97,6 @@ QON = "qualitative Oren-Nayar (QON)"
         ("stock", "open_pbr_surface", "lobe", "docs/upstream/genosl_dropped_flag.md"),
     ],
 )
-def test_the_real_renderer_is_judged(library, subject, check, words):
-    tasks = make_plan([], ["testrender"], [library]).tasks
-    with closing(Judge(DEFAULT)) as judge:
-        [task] = [each for each in tasks if (each.subject, each.check) == (subject, check)]
-        for result in judge.work(task).results:
-            assert result.verdict == (FAILED if words else PASSED) and words in result.explanation
+def test_the_real_renderer_is_judged(judged, library, subject, check, words):
+    for result in judged.all(check, subject, "testrender", library):
+        assert result.verdict == (FAILED if words else PASSED) and words in result.explanation

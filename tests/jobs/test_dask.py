@@ -12,7 +12,7 @@ from unittest.mock import Mock
 import pytest
 
 import mxeon
-from mxeon.conformance.run import check
+from mxeon import check
 from mxeon.errors import InputError, NotRun
 from mxeon.jobs import dask
 from mxeon.jobs.pool import Outcome
@@ -57,7 +57,7 @@ def farm(*workers):
                 env=os.environ | {"PYTHONPATH": paths, "PYTHONSAFEPATH": "1"} | more,
                 stderr=subprocess.DEVNULL,
             )
-            stack.callback(process.wait)
+            stack.callback(process.wait, 60.0)
             stack.callback(process.terminate)
         started.wait_for_workers(len(workers), timeout=300)
         yield started.scheduler_address

@@ -6,8 +6,6 @@ import re
 import pytest
 
 import tools.paper as figures
-from mxeon.cli import main
-from mxeon.shaders import library
 from tools.paper.claims import sampling
 
 # Claims of the paper and of the specification that no measured value satisfies.
@@ -36,15 +34,3 @@ def test_measurements_refute_these_claims_and_no_others(tmp_path, gl, monkeypatc
     assert shown and shown == {
         path.name for path in (tmp_path / "figures").iterdir() if path.suffix in (".svg", ".png")
     }
-
-
-@pytest.mark.parametrize("checkout", [True, False])
-def test_the_command_needs_a_checkout(checkout, monkeypatch, tmp_path, capsys):
-    monkeypatch.setattr(figures, "figures", lambda folder, progress: f"{folder}/paper_checked.md")
-    if not checkout:
-        monkeypatch.setattr(library, "data_folder", lambda: tmp_path)
-    monkeypatch.chdir(tmp_path)
-    assert main(["figures", "out"]) == (0 if checkout else 3)
-    output, error = capsys.readouterr()
-    assert output == "out/paper_checked.md\n" * checkout
-    assert ("install a checkout of the repository" in error) != checkout

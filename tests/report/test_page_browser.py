@@ -10,7 +10,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
-from mxeon.conformance.run import check
+from mxeon import check
 from mxeon.hosts.webgl import program
 from mxeon.report import write
 from mxeon.shaders.library import examples_folder

@@ -4,26 +4,18 @@
 import json
 from dataclasses import replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
 
 from mxeon.cli import main
-from mxeon.conformance.results import (
-    FAILED,
-    NOT_RUN,
-    PASSED,
-    Control,
-    Picture,
-    Result,
-    Run,
-)
-from mxeon.conformance.results.records import read_record
-from mxeon.hosts.base import Identity
 from mxeon.models import table as reference
 from mxeon.report import to_json, write
-from mxeon.report.diff import BETTER, OTHER, WORSE, Change, Report, compare, read_results
+from mxeon.report.diff import BETTER, OTHER, WORSE, Change, compare, read_results
 from mxeon.survey.field import read_field
+from tests.support.results import Control, Identity, Picture, Result, Run
+from tests.support.verdicts import FAILED, NOT_RUN, PASSED
 
 PLACE = "gl, eonlib, value, clay"
 
@@ -36,7 +28,12 @@ def made_run(verdict=PASSED, figure=1e-7, device="llvmpipe", difference=1e-7, su
 
 
 def changes(before, after):
-    return compare(*(read_record(json.loads(to_json(run)), Report) for run in (before, after)))
+    reports = []
+    for run in (before, after):
+        with TemporaryDirectory() as folder:
+            Path(folder, "results.json").write_text(to_json(run))
+            reports.append(read_results(folder))
+    return compare(*reports)
 
 
 def test_equal_runs_do_not_differ():

@@ -3,10 +3,10 @@
 
 import pytest
 
-from mxeon.conformance.run.plan import survey_documents
-from mxeon.shaders.document.policy import DEFAULT
+from mxeon import check
 from mxeon.shaders.nodes import document_text, node_text
 from tests.support.documents import lobe, material
+from tests.support.plans import keep_checks
 
 SHEEN = '<sheen_bsdf name="lobe" type="BSDF">{}</sheen_bsdf>'
 EON, QON = (f"oren_nayar_diffuse_bsdf, energy_compensation {flag}" for flag in ("true", "false"))
@@ -24,10 +24,16 @@ def port(name, kind, value):
     return f'<input name="{name}" type="{kind}" value="{value}"/>'
 
 
-def titles(text, tmp_path, library="eonlib"):
+@pytest.fixture(autouse=True)
+def nothing_else(monkeypatch):
+    """Documents are read, and no node is judged."""
+    keep_checks(monkeypatch, "host")
+
+
+def titles(text, tmp_path):
     file = tmp_path / "look.mtlx"
     file.write_text(text)
-    return survey_documents([str(file)], [library], DEFAULT, 0, 1.0).nodes[str(file)]
+    return check([file], ["msl"]).contents[str(file)]
 
 
 @pytest.mark.parametrize(
@@ -91,7 +97,7 @@ def test_a_constant_input_that_a_document_does_not_have_is_not_reached(index, re
     glass = f'<dielectric_bsdf name="lobe" type="BSDF">{index}</dielectric_bsdf>'
     file = tmp_path / "glass.mtlx"
     file.write_text(material(varies + glass))
-    found = survey_documents([str(file)], ["eonlib"], DEFAULT, 0, 1.0).unreached[str(file)]
+    found = check([file], ["msl"]).unreached[str(file)]
     regions = found["dielectric_bsdf, scatter_mode R"]
     assert ("with an index of refraction of 0" in regions) != reached
     assert "with weight 0" in regions and "with an occlusion other than 1" not in regions
@@ -101,9 +107,8 @@ def test_what_one_library_lacks_is_told_with_its_name(tmp_path):
     file = tmp_path / "eon.mtlx"
     file.write_text(material('<eon_diffuse_bsdf name="lobe" type="BSDF"/>'))
     files = [str(file), str(tmp_path / "nosuch.mtlx")]
-    found = survey_documents(files, ["eonlib", "stock"], DEFAULT, 0, 1.0)
-    assert found.nodes[files[0]] == ("eon_diffuse_bsdf",)
-    assert found.unread == {(files[0], "stock"), (files[1], "eonlib"), (files[1], "stock")}
+    found = check(files, ["msl"], ["eonlib", "stock"])
+    assert found.contents[files[0]] == ("eon_diffuse_bsdf",)
     assert list(found.refused) == [f"{files[0]} with stock", files[1]]
     [undefined], [missing] = found.refused.values()
     assert undefined.startswith(

@@ -9,9 +9,9 @@ import pytest
 
 import mxeon
 from mxeon.cli import main
-from mxeon.conformance.results import PASSED
 from mxeon.shaders.library import SOURCE_FOLDERS, TESTED, data_folder
 from mxeon.shaders.library_export import export_library, recipes
+from tests.support.verdicts import PASSED
 from tests.support.wheels import run_with, verdicts_with
 
 

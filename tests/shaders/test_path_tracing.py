@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 from mxeon.conformance.checks.paths import deviation, paths, random, refracted
-from mxeon.conformance.results import PASSED
 from mxeon.errors import InputError, InterfaceError
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import connection_text, document_text, input_text, material_text, node_text
+from tests.support.verdicts import PASSED
 from tests.support.wrong_libraries import copy_of_eonlib
 from tools.benchmarks.mutants.mutant import read_table
 from tools.benchmarks.mutants.trial import wrong_library

@@ -8,10 +8,7 @@ import OpenImageIO as oiio
 import pytest
 
 from mxeon.cli import batch, main
-from mxeon.conformance.pictures import judge_document
-from mxeon.conformance.reference import Host as Reference
 from mxeon.errors import DocumentError
-from mxeon.hosts import open_host
 from mxeon.shaders.document.notes import MissingFileWarning
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.reading import read_document
@@ -97,15 +94,14 @@ def test_a_folder_of_the_path_must_exist(home, capsys):
     assert "--path: must name a folder that exists; got 'nowhere'" in capsys.readouterr().err
 
 
-def test_a_missing_image_is_an_error_to_render_and_check(home, capfd):
+def test_a_missing_image_is_an_error_to_render_and_check(home, capfd, gl, judged):
     path = written(home, textured("none.exr"))
     error = 'input "image/file" must name a file that exists; got none.exr: --path FOLDER'
     options = ["--host", "reference", "--output", str(home / "a.exr"), "--workers", "0"]
     assert main(["render", str(path), *options]) == 2
     assert error in capfd.readouterr().err
-    reference = Reference()
-    with pytest.raises(DocumentError, match="must name a file that exists"):
-        judge_document(path, open_host("gl"), reference, "eonlib")
+    [line] = judged.document(path).errors
+    assert "must name a file that exists" in line
 
 
 @pytest.mark.parametrize("name", ["set.&lt;UDIM&gt;.exr", "set.<UDIM>.exr", "tile.<UVTILE>.exr"])

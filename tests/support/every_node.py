@@ -4,13 +4,12 @@
 python -m tests.support.every_node LIBRARY [NODE ...]     prints the verdicts as JSON
 """
 
+import builtins
 import json
 import sys
-from contextlib import closing
 
-from mxeon.conformance.run.judge import Judge
-from mxeon.conformance.run.plan import make_plan
-from mxeon.shaders.document.policy import DEFAULT
+import mxeon
+from tests.support.plans import keep
 
 KEYS = (
     *("value", "environment", "film", "transmitted", "combination"),
@@ -19,15 +18,9 @@ KEYS = (
 
 
 def main(library, *nodes):
-    tasks = make_plan((), ("gl",), (library,), nodes=nodes or ("all",)).tasks
-    with closing(Judge(DEFAULT)) as judge:
-        results = [
-            each
-            for task in tasks
-            if (task.host, task.check in KEYS) == ("gl", True)
-            for each in judge.work(task).results
-        ]
-    print(json.dumps({f"{each.check}, {each.subject}": each.verdict for each in results}))
+    keep(builtins, lambda task: (task.host, task.check in KEYS) == ("gl", True))
+    run = mxeon.check((), ["gl"], [library], nodes=nodes or ["all"])
+    print(json.dumps({f"{each.check}, {each.subject}": each.verdict for each in run.results}))
 
 
 if __name__ == "__main__":

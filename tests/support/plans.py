@@ -11,15 +11,15 @@ from mxeon.shaders.nodes import EON, OREN_NAYAR
 def keep_checks(patch, *keys):
     """Let every run that this process plans consist of these checks of diffuse nodes alone."""
     others = {*node_names()} - {EON, OREN_NAYAR}
-    _keep(patch, lambda task: task.check in keys and task.subject.split(",")[0] not in others)
+    keep(patch, lambda task: task.check in keys and task.subject.split(",")[0] not in others)
 
 
 def keep_host(patch, host):
     """Let every run that this process plans consist of what a host is asked, without texts."""
-    _keep(patch, lambda task: task.host == host)
+    keep(patch, lambda task: task.host == host)
 
 
-def _keep(patch, kept):
+def keep(patch, kept):
     """Let plans have the tasks that are kept alone."""
     whole = run.make_plan
 

@@ -1,32 +1,41 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One check of one node, as a run makes it."""
+"""One check of one node, or one document, as a run judges it; and the words of results."""
 
-import pytest
-
-from mxeon.conformance.run import judge as judging
+from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import EVERY_NODE, Task
+from mxeon.hosts import open_engine
 from mxeon.shaders.document.policy import DEFAULT
+
+PASSED, DIFFERS, FAILED, NOT_RUN = "passed", "differs", "failed", "not run"
+SOURCE = "source"  # in the place of a host
+STOCK, RENDERER_NODES = "stock", "its own nodes"  # in the place of a library
+SHADER_FUNCTIONS = "shader twins"  # in the place of a node
 
 
 class Verdicts:
-    """A judge whose hosts are those of the session."""
+    """A judge whose hosts are those of the session, or of another function of their names."""
 
-    def __init__(self, hosts):
-        self._hosts, self._judge = hosts, judging.Judge(DEFAULT)
+    def __init__(self, hosts=open_engine):
+        self._judge = Judge(DEFAULT, hosts)
 
-    def __call__(self, check, subject, host="gl", library="eonlib"):
+    def __call__(self, check, subject, host="gl", library="eonlib", seed=1):
         """The result of a check of a node, by its title."""
-        [result] = self.all(check, subject, host, library)
+        [result] = self.all(check, subject, host, library, seed)
         return result
 
-    def all(self, check, subject, host, library):
+    def all(self, check, subject, host="gl", library="eonlib", seed=1):
         """Results of a task: those of texts and functions are several."""
-        with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(judging, "open_engine", self._hosts)
-            return self._judge.work(Task(check, subject, host, library)).results
+        return self._work(check, subject, host, library, seed).results
 
     def texts(self, check, library):
         """Results of the checks of texts that have this key, by their subject."""
-        task = check if check == "definition" else "source"
-        results = self.all(task, EVERY_NODE, "source", library)
+        task = check if check == "definition" else SOURCE
+        results = self.all(task, EVERY_NODE, SOURCE, library)
         return {each.subject: each for each in results if each.check == check}
+
+    def document(self, path, host="gl", library="eonlib"):
+        """Results, pictures and notes of a document, and why it cannot be read."""
+        return self._work("picture", str(path), host, library)
+
+    def _work(self, check, subject, host, library, seed=1):
+        return self._judge.work(Task(check, subject, host, library, seed))

@@ -2,6 +2,7 @@
 """The judge: works on tasks, one after the other, and keeps the hosts it opens."""
 
 import os
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from functools import lru_cache
@@ -70,8 +71,8 @@ def _one_result(task: Task, verdict: str, **words: str) -> Findings:
 class Judge:
     """Works on tasks, one after the other, and keeps the hosts it opens."""
 
-    def __init__(self, policy: Policy) -> None:
-        self._policy = policy
+    def __init__(self, policy: Policy, opened: Callable[[str], Engine] = open_engine) -> None:
+        self._policy, self._opened = policy, opened
         self._hosts: dict[str, Engine | NotRun] = {}  # or the reason why there is none
         self._reference = Reference()
         self._case = lru_cache(maxsize=1)(_case)  # its pairs take some memory
@@ -103,7 +104,7 @@ class Judge:
         """The host of that name, opened once."""
         if name not in self._hosts:
             try:
-                self._hosts[name] = open_engine(name)
+                self._hosts[name] = self._opened(name)
             except NotRun as reason:
                 self._hosts[name] = reason
         host = self._hosts[name]

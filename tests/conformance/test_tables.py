@@ -1,21 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The table of hosts: a host is one module and one row, and says which verbs it lacks."""
+"""Tables: a host is one module and one row, and says what it lacks; a model is one function and one row."""
 
+import re
 from importlib import import_module
 
 import numpy as np
 import pytest
 
-from mxeon import hosts
-from mxeon.conformance.pictures import generate_document
-from mxeon.conformance.results import SHADER_FUNCTIONS
-from mxeon.conformance.run import check
-from mxeon.errors import NotRun
+import mxeon
+from mxeon import check, hosts
 from mxeon.hosts import base
 from mxeon.models import table
+from mxeon.models.diffuse import eon_brdf, lambert_brdf
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.nodes import EON
 from tests.support.plans import keep_checks
+from tests.support.verdicts import NOT_RUN, SHADER_FUNCTIONS
 
 ENGINES = [row for row in hosts.host_rows() if row.module]
 
@@ -53,9 +53,12 @@ def test_a_new_host_is_one_module_and_one_row(toy, monkeypatch):
     assert reason == "toy: this host has no calls of a shader function; use gl"
 
 
-def test_a_document_is_not_run_on_a_renderer():
-    with pytest.raises(NotRun, match="^mitsuba: this renderer .*; it reads no documents$"):
-        generate_document(examples_folder() / "clay.mtlx", "mitsuba", "eonlib")
+def test_a_document_is_not_run_on_a_renderer(monkeypatch):
+    keep_checks(monkeypatch, "document")
+    run = check([examples_folder() / "clay.mtlx"], ["mitsuba"])
+    [result] = [each for each in run.results if each.check == "document"]
+    assert result.verdict == NOT_RUN
+    assert re.fullmatch("mitsuba: this renderer .*; it reads no documents", result.reason)
 
 
 @pytest.mark.parametrize("row", ENGINES, ids=lambda row: row.name)
@@ -63,3 +66,27 @@ def test_a_row_is_that_of_its_module(row):
     host = import_module(row.module).Host
     assert issubclass(host, base.Engine) and issubclass(host, base.Host) == bool(row.target)
     assert (host.name, getattr(host, "target", "")) == (row.name, row.target)
+
+
+def toy_brdf(wo, wi, rho, roughness):
+    """Lambert, and EON as far as the surface is rough."""
+    share = np.asarray(roughness)[..., np.newaxis]
+    return (1.0 - share) * lambert_brdf(wo, wi, rho) + share * eon_brdf(wo, wi, rho, roughness)
+
+
+@pytest.fixture
+def toy_model(monkeypatch):
+    """The table of models with one more row."""
+    row = table.Model("toy", "a toy model", toy_brdf, "roughness")
+    monkeypatch.setattr(table, "MODELS", (*table.MODELS, row))
+
+
+def test_a_new_model_is_one_row_by_which_functions_are_judged(toy_model):
+    assert {result.verdict for result in mxeon.check_brdf(toy_brdf, "toy").results} == {"passed"}
+
+
+def test_a_diagnosis_names_a_new_model(toy_model):
+    (value,) = [
+        result for result in mxeon.check_brdf(toy_brdf, "eon").results if result.check == "value"
+    ]
+    assert value.diagnosis.startswith("best match: a toy model (rms ")

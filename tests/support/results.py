@@ -1,12 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A plan of a run, findings of its tasks, and their journal."""
+"""Results that are made, not measured: for tests of what is done with them; and journals of runs."""
+
+from dataclasses import replace
 
 import numpy as np
 
-from mxeon.conformance.results import FAILED, AlbedoCurve, Control, Picture, Result
-from mxeon.conformance.run.journal import Journal
+from mxeon.conformance.results import AlbedoCurve, Control, Picture, Result, Run
+from mxeon.conformance.run import read_run, to_run
+from mxeon.conformance.run.journal import JOURNAL, LOCK, PREVIOUS, Journal, read_journal
 from mxeon.conformance.run.plan import Findings, Plan, Task
 from mxeon.hosts.base import Identity
+from tests.support.verdicts import FAILED
+
+__all__ = ["AlbedoCurve", "Control", "Identity", "Picture", "Result", "Run"]
+__all__ += ["JOURNAL", "LOCK", "PREVIOUS", "read_journal", "read_run", "to_run"]
 
 TASKS = tuple(Task("value", name, "gl", "eonlib") for name in "abc")
 OPTIONS, FILES = {"--maxSize": "9"}, {"clay.mtlx": "00", "clay.png": "01"}
@@ -41,3 +48,12 @@ FINDINGS = Findings(
 
 def journal(folder, plan=PLAN, **options):
     return Journal(folder, plan, **options)
+
+
+def kept(folder, *results):
+    """The folder of a run that had these results."""
+    tasks = tuple(Task(each.check, each.subject, each.host, each.library) for each in results)
+    with journal(folder, replace(PLAN, tasks=tasks)) as written:
+        for number, each in enumerate(results):
+            written.add(number, Findings(results=(each,)))
+    return folder
