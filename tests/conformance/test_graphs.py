@@ -107,4 +107,4 @@ def test_the_graph_of_another_release_is_recognized(judged, tmp_path):
     shutil.copy(wheel("1.39.3") / "MaterialX" / file, tmp_path / FILES["open_pbr_surface"])
     result = judged("graph", "open_pbr_surface, every lobe", library=str(tmp_path))
     assert result.verdict == DIFFERS
-    assert result.diagnosis.startswith("the graph of MaterialX 1.39.3; it differs from the graph ")
+    assert result.diagnosis.startswith("the graph of MaterialX 1.39.3 and 1.39.4; it differs from ")
