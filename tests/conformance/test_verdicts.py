@@ -96,10 +96,10 @@ STOCK = {
         **OPEN, **dict.fromkeys(("layering", "transmission", "layer", "denser"), UNTINTED),
         "finite": "with an index of refraction of 0", "lossless": HALF, "anisotropic_albedo": G_1,
     },
-    "conductor_bsdf": {**OPEN, "lossless": HALF, "anisotropic_albedo": G_1},
+    "conductor_bsdf": {**OPEN, **dict.fromkeys(("lossless", "energy"), HALF), "anisotropic_albedo": G_1},
     "generalized_schlick_bsdf, scatter_mode R": {
         **OPEN, **dict.fromkeys(("layering", "transmission", "layer", "dip"), AVERAGED),
-        "lossless": HALF, "anisotropic_albedo": G_1,
+        **dict.fromkeys(("lossless", "energy"), HALF), "anisotropic_albedo": G_1,
     },
     "multiply, in2 float": {"combined_throughput": UNSCALED, **SPHERE},
     "multiply, in2 color3": {"combined_throughput": UNSCALED, **SPHERE},
@@ -131,6 +131,7 @@ STOCK = {
     **{
         f"{node}_bsdf, scatter_mode {mode}": PASSED_THROUGH
         | ({"clear": UNSHADOWED} if mode == "RT" else {})
+        | ({"critical": NAN} if node == "generalized_schlick" else {})
         for node in ("dielectric", "generalized_schlick") for mode in ("T", "RT")
     },
     "subsurface_bsdf": {
@@ -142,11 +143,12 @@ STOCK = {
     "generalized_schlick_bsdf, thin film": film(SUBSTRATE) | {"film_throughput": f"{SUBSTRATE}: {BARE}"},
     "blackbody": {"output": "Kang's cubic, extrapolated below 1667 K"},
     "deon_hair_absorption_from_melanin": {"output_finite": "outputs are not finite"},
-    **{f"{node}, every lobe": SURFACE | FILMS for node in ("standard_surface", "gltf_pbr")},
+    **{
+        f"{node}, every lobe": SURFACE | FILMS
+        for node in ("standard_surface", "open_pbr_surface", "gltf_pbr")
+    },
     "UsdPreviewSurface, every lobe": SURFACE,
-    "open_pbr_surface, every lobe": {key: SURFACE[key] for key in SURFACE if key != "lobes_energy"} | FILMS,
 }  # fmt: skip
-del STOCK["dielectric_bsdf, thin film"]["film_environment"]  # its albedo is that of the bare lobe
 # Where the specification leaves a choice, a permitted function differs.
 FREE = {
     *((title, key) for title in STOCK if "value" in STOCK[title] for key in OPEN if STOCK[title].get(key) == OPEN[key]),

@@ -71,6 +71,13 @@ class Batch:
     def altered(self, **inputs: ArrayLike) -> "Batch":
         return replace(self, inputs={**self.inputs, **inputs})
 
+    def with_row(self, row: int, wo: ArrayLike, **inputs: ArrayLike) -> "Batch":
+        """The same with another view and other inputs in a row."""
+        views, changed = self.wo.copy(), {name: np.array(self.inputs[name]) for name in inputs}
+        for values, value in ((views, wo), *((changed[name], inputs[name]) for name in inputs)):
+            values[row] = value
+        return replace(self, wo=views, inputs={**self.inputs, **changed})
+
     def first(self, count: int) -> "Batch":
         return self.where(slice(count))
 

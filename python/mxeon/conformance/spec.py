@@ -234,10 +234,14 @@ class LobeSpec(ValueSpec):
         """Inputs that select the mode."""
         return self.fixed
 
+    @property
+    def types(self) -> dict[str, str]:
+        """Types of its inputs."""
+        return {**input_types(self.node), **{each.name: each.type for each in self.inputs}}
+
     def two_lobes(self) -> str:
         """MaterialX text of a material of two such lobes, `first` and `second`."""
-        types = {**input_types(self.node), **{each.name: each.type for each in self.inputs}}
-        lobes = (lobe_text(self.node, self.mode, name, types) for name in ("first", "second"))
+        lobes = (lobe_text(self.node, self.mode, name, self.types) for name in ("first", "second"))
         total = network_text({"lobe": Node("add", "BSDF", ("first", "second"))})
         return document_text("".join(lobes) + total + SURFACE)
 

@@ -44,6 +44,7 @@ from mxeon.conformance.samples import (
     Array,
     Batch,
     aimed,
+    directions_at,
     rounded,
     sky,
     sky_map,
@@ -386,6 +387,8 @@ def through_sphere(wo: Array, index: Array) -> Array:
 def _smooth(case: Case) -> Batch:
     """Views of smooth surfaces of all indices, with the node's colors."""
     batch = case.few[0].first(SMOOTH_VIEWS)
+    if "color0" in batch.inputs:  # as clear as a curve may be, whose index is the highest
+        batch = batch.with_row(0, directions_at(0.1, 0.5), weight=1.0, color0=0.99)
     batch = batch.where(batch.wo[:, 2] >= LEAST_SEEN)
     return batch.altered(roughness=(0.0, 0.0))
 
@@ -501,7 +504,8 @@ def film_limit(case: Case) -> list[Compared]:
     one the sensitivities count, of five digits, whose sum is not 1: as much as in the equations is right.
     """
     # Under a film Schlick's curve has no dip: where that is negative, a film's counts as 0.
-    batch = _clear(case.few[0], LEAST_INDEX, 1.0).altered(thinfilm_thickness=300.0)
+    batch = case.samples.mirrored[0].first(case.samples.counts.few)  # where most of a film shows
+    batch = _clear(batch, LEAST_INDEX, 1.0).altered(thinfilm_thickness=300.0)
     without = batch.altered(thinfilm_thickness=0.0)
     bare = case.direct(without)
     empty, rare = (case.direct(batch.altered(thinfilm_ior=index)) for index in (1.0, RARE))

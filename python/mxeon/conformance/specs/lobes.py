@@ -34,7 +34,7 @@ from mxeon.conformance.spec import (
 from mxeon.conformance.tolerance import Term, Tolerance, roundings, sum_in, sum_of
 from mxeon.models.nodes import node
 from mxeon.models.nodes.node import Inputs, PbrNode, Scattering
-from mxeon.shaders.nodes import input_types, material_text
+from mxeon.shaders.nodes import material_text
 
 COUNTS = Counts(pairs=1 << 12, few=1 << 10, diagnosed=1 << 11)
 LEAST_VIEW = 0.02  # cosine of the views whose values are integrated
@@ -121,10 +121,6 @@ class PbrSpec(RowSpec, LobeSpec):
     def mode(self) -> Values:
         return self.row.fixed
 
-    @property
-    def types(self) -> dict[str, str]:
-        return {**input_types(self.node), **{each.name: each.type for each in self.inputs}}
-
     def document(self, inputs: Values | None = None) -> str:
         values = {**(inputs or {}), **self.row.fixed}
         return material_text(self.node, values, self.node, self.types)
@@ -209,8 +205,13 @@ class PbrSpec(RowSpec, LobeSpec):
         """
         rng, count = generator(), counts.materials
         mu = LEAST_VIEW + (1.0 - LEAST_VIEW) * rng.random(count)
+        inputs = self.random_inputs(rng, count)
+        if self.row.mirror:  # a rough one: a fit of a compensation makes most light of it
+            mu[0] = 0.1
+            for name, value in {**self.row.mirror, "roughness": 1.0}.items():
+                inputs[name][0] = value
         wo = directions_at(mu, 2.0 * np.pi * rng.random(count))
-        inputs = taken(self.integrable(self.random_inputs(rng, count)))
+        inputs = taken(self.integrable(inputs))
         wi, weights = self.nodes(wo, inputs, counts.nodes)
         each = np.repeat(np.arange(count), wi.shape[1])
         spread = {name: values[each] for name, values in inputs.items()}

@@ -17,10 +17,20 @@ from mxeon.conformance.samples import (
     Counts,
     Values,
     directions,
+    directions_at,
     float32,
     generator,
 )
-from mxeon.conformance.spec import CHANGED_COLOR, Input, LobeSpec, ValueSpec, color, draw, materials
+from mxeon.conformance.spec import (
+    CHANGED_COLOR,
+    Input,
+    LobeSpec,
+    ValueSpec,
+    color,
+    draw,
+    draw_edges,
+    materials,
+)
 from mxeon.conformance.specs.lobes import LEAST_VIEW
 from mxeon.conformance.specs.microfacets import FILM_ERRORS, reflected, sum_over
 from mxeon.conformance.tolerance import Term, mean_scaled, roundings, sum_in, sum_of
@@ -36,8 +46,8 @@ if TYPE_CHECKING:  # which load MaterialX
 # Inputs by the range that is asked of them, with values of a material in which every lobe takes part; a change is
 # another value than any default.
 RANGES = {
-    "color": color("", (0.5, 0.6, 0.7), edges=()),
-    "share": Input("", change=0.7, materials=(0.5,)),
+    "color": color("", (0.5, 0.6, 0.7), edges=(1.0,)),
+    "share": Input("", edges=(0.0, 1.0), change=0.7, materials=(0.5,)),
     "rough": Input("", low=0.1, change=0.73, materials=(0.4,)),
     "sheen_rough": Input("", low=0.15, change=0.745, materials=(0.5,)),
     "fuzz_rough": Input("", low=0.4, change=0.82, materials=(0.5,)),
@@ -216,7 +226,7 @@ STATES = sum_of(roundings(32, "of the same parts in two programs"))
 class SurfaceShaderSpec(LobeSpec):
     """A surface shader with every lobe on."""
 
-    plain = ("frame", "shape", "lobes")
+    plain = ("frame", "shape", "lobes", "inputs from an image")
 
     table: Lobes
     library: str = "eonlib"  # whose document the reference evaluates
@@ -293,7 +303,8 @@ class SurfaceShaderSpec(LobeSpec):
         return draw(rng, count, self.table.judged)
 
     def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        return draw(rng, count, (*self.table.judged, *self.table.others))
+        """Half of the colors and shares on an edge, where most light leaves."""
+        return draw_edges(rng, count, (*self.table.judged, *self.table.others))
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         """Random pairs, half of them near the mirror direction, with random materials."""
@@ -313,8 +324,10 @@ class SurfaceShaderSpec(LobeSpec):
     def edges(self, counts: Counts) -> Batch:
         """Views of materials in which every lobe takes part."""
         rng, count = generator(), counts.materials
-        wo = _views(rng, count)
-        return _isotropic(Batch(wo, wo, self.special_inputs(rng, count)))
+        wo, inputs = _views(rng, count), self.special_inputs(rng, count)
+        # QON makes up to 1.4 % of light itself, at grazing.
+        inputs |= {name: 0.0 * inputs[name] for name in inputs if name == "diffuse_roughness"}
+        return _isotropic(Batch(wo, wo, inputs))
 
     def drawn(self, counts: Counts) -> Batch:
         """Pairs with every input of the node; NaN stands for a default."""
@@ -374,9 +387,11 @@ class SurfaceShaderSpec(LobeSpec):
 
 
 def _views(rng: np.random.Generator, count: int) -> Array:
-    """Random directions, none so grazing that a sheen's own equations gain energy."""
+    """Random directions, none so grazing that a sheen's own equations gain energy, and one that just is not."""
     wo = directions(rng, count)
-    return float32(np.where(wo[:, 2:] < LEAST_VIEW, [0.6, 0.0, 0.8], wo))
+    wo = float32(np.where(wo[:, 2:] < LEAST_VIEW, [0.6, 0.0, 0.8], wo))
+    wo[0] = directions_at(LEAST_VIEW, 0.0)
+    return wo
 
 
 def _isotropic(batch: Batch) -> Batch:
