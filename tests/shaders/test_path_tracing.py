@@ -21,7 +21,6 @@ from tools.benchmarks.mutants.mutant import read_table
 from tools.benchmarks.mutants.trial import wrong_library
 
 DEVIATION = 5.0  # standard deviations, which chance reaches once in 3.5 million tests
-CHUNK = 1 << 20  # draws at once
 COLOR = {"color": (0.8, 0.4, 0.2)}
 ROUGH = {"roughness": (0.5, 0.3)}
 FIBER = {
@@ -130,14 +129,9 @@ def materials(gl):
 def leaves(material, mu, count, nodes=8, **options):
     """Standard deviations by which draws leave their density."""
     wo = view(mu)
-    parts = range(0, count, CHUNK)
-    draws = [
-        material.ask("wi", wo, u=uniforms(min(CHUNK, count - start), 1 + start), **options)
-        for start in parts
-    ]
-    drawn = np.concatenate(draws)
+    drawn = material.ask("wi", wo, u=uniforms(count), **options)
     if material.ask("opacity", wo)[0, 0] < 1.0:  # what passes straight on has no density
-        drawn[np.linalg.norm(drawn + wo, axis=1) < 1e-6] = 0.0
+        drawn = drawn * (np.linalg.norm(drawn + wo, axis=1, keepdims=True) >= 1e-6)
     return deviation(
         drawn, lambda w: material.ask("pdf", wo, w, **options)[:, 0], refracted(wo), nodes
     )
@@ -173,9 +167,9 @@ def test_draws_from_inside_have_their_density(materials, name):
 
 @pytest.mark.whole
 @pytest.mark.parametrize("name", SURFACES)
-def test_a_million_draws_have_their_density(materials, name):
+def test_a_quarter_million_draws_have_their_density(materials, name):
     """Ten million do, too, with 64 nodes a cell: they take three minutes."""
-    assert leaves(materials(name), 0.9, 10**6, nodes=24) < DEVIATION
+    assert leaves(materials(name), 0.9, 1 << 18, nodes=12) < DEVIATION
 
 
 # Error of the rasterizer's albedo, beside the noise of 2^16 draws: films 0.07, tilted fibers have none in closed form.
@@ -295,7 +289,9 @@ def test_the_text_compiles_for_other_targets(tmp_path, target, name):
 @pytest.mark.parametrize("host", ["vulkan", "webgl", "slang"])
 @pytest.mark.parametrize("check", ["pdf", "sample"])
 def test_other_hosts_draw_by_their_density(judged, host, check):
-    title = "dielectric_bsdf, thin film" if host == "webgl" else "standard_surface, every lobe"
+    """Every lobe of a surface where a host compiles it in a second; its draws are counted on gl."""
+    every = host != "webgl" and check == "sample"
+    title = "standard_surface, every lobe" if every else "dielectric_bsdf, scatter_mode RT"
     result = judged(check, title, host)
     assert result.verdict == PASSED and result.control.caught
 

@@ -11,6 +11,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mxeon.conformance.cache import Recent, contents
 from mxeon.conformance.case import Case
 from mxeon.conformance.check import check, scale, with_values
 from mxeon.conformance.diagnosis import Diagnosis
@@ -49,6 +50,7 @@ PASSED = "return what < 5.5 ? vec3(material_opacity(p, wo)) : material_emission(
 ASKED = ("evaluate", "pdf", "wi", "weight", "density", "opacity", "emission")
 TARGETS = ("glsl", "essl", "vulkan", "slang")  # of mxeon.shaders.path_tracing
 DRAWS, WEIGHED = 1 << 15, 1 << 12
+ANSWERS = Recent[Array](4)  # to what a check and its control ask
 VIEW = np.array([0.7642691, 0.2364137, 0.6])
 
 
@@ -69,9 +71,12 @@ class Paths:
     ) -> Array:
         """Answers (N, 3) of a function, one of ASKED; 0 where nothing is drawn."""
         number = ASKED.index(what)
-        rows = map(np.atleast_2d, (float(number), wo, wi, u, float(inside)))
+        rows = [np.atleast_2d(each) for each in (float(number), wo, wi, u, float(inside))]
         text = self.text + CALL.format(answer=SCATTERED if number < 5 else PASSED)
-        return self.host.execute(text, "path_tracer", *rows).astype(np.float64)
+        return ANSWERS.value(
+            (self, *map(contents, rows)),
+            lambda: self.host.execute(text, "path_tracer", *rows).astype(np.float64),
+        )
 
 
 @lru_cache(maxsize=2)
@@ -183,8 +188,8 @@ def deviation(
     - `draws`: Unit vectors, (N, 3); zeros for draws that are lost, whose share is 1 minus the integral.
     - `density`: Of unit vectors (M, 3), in 1/sr, (M,).
     """
-    w, area = quadrature(pole, nodes)
-    shares = np.bincount(cell(w, pole), density(w) * area, minlength=(CELLS + 1) * CELLS)
+    w, area, cells = quadrature(tuple(pole), nodes)
+    shares = np.bincount(cells, density(w) * area, minlength=(CELLS + 1) * CELLS)
     kept = np.linalg.norm(draws, axis=1) > 0.5
     counts = np.bincount(cell(draws[kept], pole), minlength=len(shares))
     mean = len(draws) * np.append(shares, 1.0 - shares.sum())
@@ -216,8 +221,9 @@ def cell(w: Array, pole: Array) -> NDArray[np.int64]:
     return number
 
 
-def quadrature(pole: Array, nodes: int) -> tuple[Array, Array]:
-    """Directions and solid angles of the midpoint rule in each cell; in the first ring its steps grow by a factor."""
+@lru_cache(maxsize=1)
+def quadrature(pole: tuple[float, ...], nodes: int) -> tuple[Array, Array, NDArray[np.int64]]:
+    """Directions, solid angles and cells of a midpoint rule; in the first ring its steps grow by a factor."""
     inner = np.append(0.0, np.geomspace(LEAST, CONE, 8 * nodes))
     edges = np.append(inner, np.linspace(CONE, np.pi, CELLS * nodes + 1)[1:])
     angle, height = 0.5 * (edges[1:] + edges[:-1]), 0.5 * np.diff(edges)
@@ -227,4 +233,5 @@ def quadrature(pole: Array, nodes: int) -> tuple[Array, Array]:
     z = np.broadcast_to(np.cos(angle)[:, np.newaxis], (len(angle), len(azimuth)))
     local = np.stack([*(np.sin(angle)[:, np.newaxis] * each for each in ring), z], axis=-1)
     area = 2.0 * np.sin(angle) * np.sin(height) * turn
-    return local.reshape(-1, 3) @ axes(pole), np.repeat(area, len(azimuth))
+    w = local.reshape(-1, 3) @ axes(np.array(pole))
+    return w, np.repeat(area, len(azimuth)), cell(w, np.array(pole))
