@@ -124,3 +124,10 @@ def test_edge_color_of_no_reflection_is_one_that_gives_it_back():
 @pytest.mark.parametrize("ior", (5e-324, 1e-160, 1e-51))
 def test_an_index_of_nothing_reflects_all(ior):
     assert not refraction_direction([0.0, 0.0, 1.0], [0.0, 0.0, 1.0], ior).any()
+
+
+def test_a_quantity_without_a_range_is_refused():
+    with pytest.raises(
+        LookupError, match="'gloss' must have a range in mxeon.models.core.arguments"
+    ):
+        RANGES["gloss"]
