@@ -67,4 +67,4 @@ def test_every_input_of_a_surface_shader_is_changed_or_has_a_reason(spec):
     definitions = load_library("stock").getMatchingNodeDefs(spec.node)
     newest = max(definitions, key=lambda each: each.getVersionString())
     names = {each.getName() for each in newest.getActiveInputs()}
-    assert names == {*spec.names, *spec.table.unseen} | (names & {*FREE_PATHS})
+    assert names == {*spec.names, *spec.unseen} | (names & {*FREE_PATHS})

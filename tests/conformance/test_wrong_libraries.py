@@ -179,14 +179,15 @@ def test_functions_that_differ_in_osl_are_named(judged, copy, file, old, new, wo
         (INVERSIONS[1], '<invert name="dark"', '<absval name="dark"'),
     ],
 )
-def test_a_wrong_inversion_node_fails_there_and_back(judged, copy, node, old, new):
+def test_a_wrong_inversion_node_fails(judged, copy, node, old, new):
     library = copy(GRAPHS, old, new)
     if "invert" in old:
         library = copy(GRAPHS, "</invert>", "</absval>")
-    found = [judged(check, node, library=library) for check in ("output", "round_trip")]
-    assert {result.verdict for result in found} == {FAILED}
-    expected = "NaN or infinity" if "invert" in old else f"the equations of {node}"
-    assert all(expected in result.diagnosis for result in found)
+    result = judged("output", node, library=library)
+    assert result.verdict == FAILED
+    assert (
+        "NaN or infinity" if "invert" in old else f"the equations of {node}"
+    ) in result.diagnosis
 
 
 # --- documents on hosts without pictures --------------------------------------------------------

@@ -134,10 +134,6 @@ class Case:
         return {name: changes[name] for name in changes if name not in unset}
 
     @property
-    def value_candidates(self) -> tuple[Candidate, ...]:
-        return self.valued.value_candidates
-
-    @property
     def albedo_candidates(self) -> tuple[Candidate, ...]:
         return albedo_candidates(self.lobe)
 

@@ -11,7 +11,7 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from functools import partial
+from inspect import signature
 from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
@@ -31,7 +31,7 @@ from mxeon.hosts.base import RendererWarning
 Measure: TypeAlias = Callable[[Case], Compared | Iterable[Compared] | Measurement]
 
 CANNOT_TELL = "inconclusive: the values are right, but the control passed too:"
-M = TypeVar("M", bound=Measure)
+M = TypeVar("M", bound=Callable[..., Any])
 
 
 @dataclass(frozen=True)
@@ -185,25 +185,24 @@ def check(
     """Make a function that measures a case a check: its name is the key, its first line the claim.
 
     It is judged by the error of a quantity, which has its key's name unless given; or judged and explained as a
-    comparison is. A diagnosis may be the same words for all failures.
+    comparison is, which also measures if the function takes no case. A diagnosis may be the same words for all
+    failures.
     """
 
     def add(measure: M) -> M:
         name = key or getattr(measure, "__name__", "")
         words = claim or (measure.__doc__ or "").split("\n")[0]
         own = judged if isinstance(judged, Comparison) else None
+        asks = own if own and not signature(measure).parameters else measure
         quantity = own.quantity if own else str(judged or name)
         explain = diagnose or (own or VALUE).diagnose
         if isinstance(explain, str):
-            explain = partial(_always, Diagnosis(explain))
-        CHECKS.append(Check(name, words, applies, measure, control, quantity, explain, **rest))
+            always = Diagnosis(explain)
+            explain = lambda case: always  # noqa: E731
+        CHECKS.append(Check(name, words, applies, asks, control, quantity, explain, **rest))
         return measure
 
     return add
-
-
-def _always(diagnosis: Diagnosis, case: Case) -> Diagnosis:
-    return diagnosis
 
 
 # Controls.

@@ -267,11 +267,6 @@ def sky(normal: Array) -> Array:
     return 0.5 + SLOPE * normal
 
 
-def sky_behind(values: Array) -> Array:
-    """Means of the sky with every normal turned around, from those with none."""
-    return 1.0 - values
-
-
 @lru_cache(maxsize=1)
 def sky_map() -> NDArray[np.float32]:
     """The irradiance over pi as a latitude-longitude map, (SKY_ROWS, 2 SKY_ROWS, 3)."""

@@ -38,12 +38,11 @@ from mxeon.conformance.tolerance import ROUNDING, Compared, Term, Tolerance
 from mxeon.hosts.base import Host
 from mxeon.shaders.nodes import (
     SURFACE,
-    connection_text,
+    Node,
     document_text,
-    input_text,
     input_types,
     lobe_text,
-    node_text,
+    network_text,
 )
 
 COMPONENTS = {"float": (), "vector2": (2,), "vector3": (3,), "color3": (3,)}  # shape by type
@@ -88,21 +87,20 @@ def materials(*inputs: Input) -> tuple[Values, ...]:
 
 def draw(rng: np.random.Generator, count: int, inputs: Iterable[Input]) -> dict[str, Array]:
     """Random values of inputs in their ranges, by name."""
-    return {each.name: _drawn(rng, count, each) for each in inputs}
-
-
-def _drawn(rng: np.random.Generator, count: int, row: Input) -> Array:
-    low, high = np.asarray(row.low, np.float64), np.asarray(row.high, np.float64)
-    share = rng.random((count, *COMPONENTS[row.type]))
-    if row.logarithmic:
-        values = low * (high / low) ** share
-    else:
-        values = low + (high - low) * np.clip(1.25 * share - 0.125, 0.0, 1.0)
-    if row.often is not None:
-        values[::2] = row.often
-    if row.equal:
-        values[::2] = values[::2, :1]
-    return float32(values)
+    drawn = {}
+    for each in inputs:
+        low, high = np.asarray(each.low, np.float64), np.asarray(each.high, np.float64)
+        share = rng.random((count, *COMPONENTS[each.type]))
+        if each.logarithmic:
+            values = low * (high / low) ** share
+        else:
+            values = low + (high - low) * np.clip(1.25 * share - 0.125, 0.0, 1.0)
+        if each.often is not None:
+            values[::2] = each.often
+        if each.equal:
+            values[::2] = values[::2, :1]
+        drawn[each.name] = float32(values)
+    return drawn
 
 
 def draw_edges(rng: np.random.Generator, count: int, inputs: Iterable[Input]) -> dict[str, Array]:
@@ -368,42 +366,16 @@ class RowSpec(ValueSpec):
         return (own, *variants, *self.others)
 
 
-# Ports at which nodes take others, in the order of Node.sources.
-PORTS = {
-    "layer": ("top", "base"),
-    "mix": ("fg", "bg"),
-    "add": ("in1", "in2"),
-    "multiply": ("in1",),
-    "generalized_schlick_edf": ("base",),
-}
+def ports(inputs: Iterable[Input], values: Values | None) -> list[tuple[str, str, Array]]:
+    """Paths and types of inputs, and their values or those of a document."""
+    return [
+        (each.name, each.type, np.broadcast_to(value, COMPONENTS[each.type]))
+        for each in inputs
+        for value in [(values or {}).get(each.name, each.default)]
+    ]
 
 
-class Node(NamedTuple):
-    """A node of a document, by its category and type, the names of nodes that it takes, and XML of its inputs."""
-
-    category: str
-    kind: str
-    sources: tuple[str, ...] = ()
-    text: str = ""
-
-
-def network_text(
-    nodes: Mapping[str, Node], inputs: Iterable[Input] = (), values: Values | None = None
-) -> str:
-    """XML of nodes by name, with values of inputs by path; those without one are inputs of the last."""
-    texts = {name: each.text for name, each in nodes.items()}
-    for row in inputs:
-        name, _, port = row.name.rpartition("/")
-        value = np.broadcast_to((values or {}).get(row.name, row.default), COMPONENTS[row.type])
-        texts[name or [*nodes][-1]] += input_text(port, row.type, value)
-    for name, (category, kind, sources, _) in nodes.items():
-        ports = zip(PORTS.get(category, ()), sources, strict=False)
-        texts[name] += "".join(connection_text(port, kind, source) for port, source in ports)
-        texts[name] = node_text(category, kind, name, texts[name])
-    return "".join(texts.values())
-
-
-ARGUMENTS = 1 << 14  # arguments
+ARGUMENTS = 1 << 14  # of a function that is measured
 
 
 @dataclass(frozen=True)

@@ -97,10 +97,11 @@ def worst_of(metric: Metric, compared: Iterable[Compared]) -> Measurement:
     return worst
 
 
-def count_not_finite(batch: Batch, values: Array) -> Measurement:
-    """Number of rows that are not finite, and the first of them."""
-    bad = ~np.isfinite(values).all(axis=1)
-    return Measurement(int(bad.sum()), point_of(batch, int(bad.argmax())) if bad.any() else {})
+def count_not_finite(compared: Compared) -> Measurement:
+    """Number of measured rows that are not finite, and the first of them."""
+    bad = ~np.isfinite(compared.measured).all(axis=1)
+    first = point_of(compared.batch, int(bad.argmax())) if bad.any() else {}
+    return Measurement(int(bad.sum()), first)
 
 
 def count_named(names: Sequence[str]) -> Measurement:

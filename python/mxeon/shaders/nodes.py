@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The BSDF nodes, their inputs, and materials of one node as MaterialX text."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -155,3 +156,37 @@ def material_text(
 ) -> str:
     """XML of a document whose material is one BSDF node; see `lobe_text`."""
     return document_text(lobe_text(category, inputs or {}, types=types) + SURFACE, name)
+
+
+# Ports at which nodes take others, in the order of Node.sources.
+PORTS = {
+    "layer": ("top", "base"),
+    "mix": ("fg", "bg"),
+    "add": ("in1", "in2"),
+    "multiply": ("in1",),
+    "generalized_schlick_edf": ("base",),
+}
+
+
+class Node(NamedTuple):
+    """A node of a document, by its category and type, the names of nodes that it takes, and XML of its inputs."""
+
+    category: str
+    kind: str
+    sources: tuple[str, ...] = ()
+    text: str = ""
+
+
+def network_text(
+    nodes: Mapping[str, Node], inputs: Iterable[tuple[str, str, ArrayLike]] = ()
+) -> str:
+    """XML of nodes by name, with inputs by path, type and value; those without a path are of the last node."""
+    texts = {name: each.text for name, each in nodes.items()}
+    for path, kind, value in inputs:
+        name, _, port = path.rpartition("/")
+        texts[name or [*nodes][-1]] += input_text(port, kind, value)
+    for name, (category, kind, sources, _) in nodes.items():
+        ports = zip(PORTS.get(category, ()), sources, strict=False)
+        texts[name] += "".join(connection_text(port, kind, source) for port, source in ports)
+        texts[name] = node_text(category, kind, name, texts[name])
+    return "".join(texts.values())

@@ -91,7 +91,7 @@ def paths_of(case: Case) -> Paths:
     """The material that has another value than the default in each input but switches; all lobes of a surface shader."""
     spec = case.spec
     if isinstance(spec, SurfaceShaderSpec):
-        values, _ = materials(*spec.table.judged, *spec.table.others)
+        values, _ = materials(*spec.judged, *spec.others)
     else:
         changes = {each.name: each.change for each in spec.inputs if each.type != "boolean"}
         values = {name: value for name, value in changes.items() if value is not None}

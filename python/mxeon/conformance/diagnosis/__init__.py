@@ -30,7 +30,7 @@ from mxeon.conformance.diagnosis.faults import (
     scaled_by,
 )
 from mxeon.conformance.diagnosis.regions import WEAK, smallest, span
-from mxeon.conformance.samples import Array, Batch, Candidate, Mask, sky, sky_behind
+from mxeon.conformance.samples import Array, Batch, Candidate, Mask, sky
 from mxeon.conformance.spec import COMPONENTS
 from mxeon.conformance.specs.diffuse import DIFFUSE
 from mxeon.conformance.specs.emission import EmissionSpec, MediumSpec
@@ -360,7 +360,7 @@ def _alike(case: Case) -> Sequence[Candidate]:
         values = candidate.values(batch)
         return case.valued.alike(Compared(batch, values, values)).expected
 
-    return [replace(each, values=partial(alike, each)) for each in case.value_candidates]
+    return [replace(each, values=partial(alike, each)) for each in case.valued.value_candidates]
 
 
 def _transmittances(case: Case) -> Iterator[Compared]:
@@ -377,7 +377,7 @@ def _transmittances(case: Case) -> Iterator[Compared]:
     yield Compared(batch, through, expected)
 
 
-VALUES, ALBEDOS = attrgetter("value_candidates"), attrgetter("albedo_candidates")
+VALUES, ALBEDOS = attrgetter("valued.value_candidates"), attrgetter("albedo_candidates")
 VALUE = Comparison("value", values, VALUES, DIRECT_FAULTS)
 ALBEDO = Comparison("albedo", albedos, ALBEDOS, ENVIRONMENT_FAULTS)
 # Of a layer, for light from above, and for light through the base.
@@ -487,7 +487,8 @@ def diagnose_surroundings(compared: Compared, limit: float) -> Diagnosis:
     for words, found in LOOKUPS.items():
         if np.sqrt(np.mean((compared.measured - found(compared.batch)) ** 2)) <= limit:
             return Diagnosis(f"the environment is looked up {words}")
-    if np.sqrt(np.mean((compared.measured - sky_behind(compared.expected)) ** 2)) <= limit:
+    # With every normal turned around the sky is 1 minus itself.
+    if np.sqrt(np.mean((compared.measured - (1.0 - compared.expected)) ** 2)) <= limit:
         return Diagnosis("the environment is looked up on the other side of the surface")
     wrong = absolute(compared.measured, compared.expected) > limit
     return Diagnosis(not_finite([compared]) or region([compared.batch], [wrong]) or UNKNOWN)

@@ -12,7 +12,7 @@ from mxeon.conformance.samples import (
     generator,
     special_directions,
 )
-from mxeon.conformance.spec import Input, Node, color, network_text
+from mxeon.conformance.spec import Input, color, ports
 from mxeon.conformance.specs.lobes import CLOSED_ALBEDO, FLAT_FRAME, PbrSpec
 from mxeon.conformance.specs.sheen import ZELTNER_VALUE
 from mxeon.conformance.tolerance import ROUNDING, Term, sum_of
@@ -26,7 +26,7 @@ from mxeon.models.nodes.combinations import (
     ROUGHNESS,
 )
 from mxeon.models.nodes.node import PbrNode
-from mxeon.shaders.nodes import SURFACE, document_text, input_text
+from mxeon.shaders.nodes import SURFACE, Node, document_text, input_text, network_text
 
 VALUE = sum_of(
     ZELTNER_VALUE.term("two values", 2.0), CLOSED_ALBEDO.term("a throughput between them")
@@ -57,35 +57,24 @@ def over(category: str, *lobes: str) -> Node:
 SHEEN = Node("sheen_bsdf", "BSDF", text=input_text("mode", "string", "zeltner"))
 LOBES = {"top": SHEEN, "base": SHEEN}
 SUM = {"sum": over("add", "top", "base")}
-# By the name of the row: the nodes over both lobes.
-NODES: dict[str, dict[str, Node]] = {
-    "layer": {"lobe": over("layer", "top", "base")},
-    "mix": {"lobe": over("mix", "top", "base")},
-    "add": {"lobe": over("add", "top", "base")},
-    "multiply_float": {"lobe": over("multiply", "top")},
-    "multiply_color3": {"lobe": over("multiply", "top")},
-    "multiply_sum": {**SUM, "lobe": over("multiply", "sum")},
-    "mix_sum": {**SUM, "lobe": over("mix", "sum", "top")},
-    "layer_sum": {
-        **SUM,
-        "mixed": over("mix", "sum", "top"),
-        "lobe": over("layer", "mixed", "base"),
-    },
-    "mix_layer": {
-        **SUM,
-        "layered": over("layer", "sum", "base"),
-        "lobe": over("mix", "layered", "top"),
-    },
-    "layer_colored": {**SUM, "lobe": over("layer", "sum", "base")},
-}
-TITLES = {
-    "multiply_float": "multiply, in2 float",
-    "multiply_color3": "multiply, in2 color3",
-    "multiply_sum": "multiply, of a sum",
-    "mix_sum": "mix, of a sum",
-    "layer_sum": "layer, under a mix of a sum",
-    "mix_layer": "mix, of a layer under a sum",
-    "layer_colored": "layer, under a colored sum",
+# By the name of the row: its title, and the nodes over both lobes.
+NODES: dict[str, tuple[str, dict[str, Node]]] = {
+    "layer": ("layer", {"lobe": over("layer", "top", "base")}),
+    "mix": ("mix", {"lobe": over("mix", "top", "base")}),
+    "add": ("add", {"lobe": over("add", "top", "base")}),
+    "multiply_float": ("multiply, in2 float", {"lobe": over("multiply", "top")}),
+    "multiply_color3": ("multiply, in2 color3", {"lobe": over("multiply", "top")}),
+    "multiply_sum": ("multiply, of a sum", {**SUM, "lobe": over("multiply", "sum")}),
+    "mix_sum": ("mix, of a sum", {**SUM, "lobe": over("mix", "sum", "top")}),
+    "layer_sum": (
+        "layer, under a mix of a sum",
+        {**SUM, "mixed": over("mix", "sum", "top"), "lobe": over("layer", "mixed", "base")},
+    ),
+    "mix_layer": (
+        "mix, of a layer under a sum",
+        {**SUM, "layered": over("layer", "sum", "base"), "lobe": over("mix", "layered", "top")},
+    ),
+    "layer_colored": ("layer, under a colored sum", {**SUM, "lobe": over("layer", "sum", "base")}),
 }
 SINGLE = ("multiply_float", "multiply_color3")  # rows of `top` alone
 COLORED = ("multiply_color3", "multiply_sum")  # rows whose factor is a color
@@ -98,7 +87,8 @@ class CombinedSpec(PbrSpec):
     plain = ("lobes",)
 
     def document(self, inputs: Values | None = None) -> str:
-        return document_text(network_text(LOBES | NODES[self.model], self.inputs, inputs) + SURFACE)
+        nodes = LOBES | NODES[self.model][1]
+        return document_text(network_text(nodes, ports(self.inputs, inputs)) + SURFACE)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         """Random pairs and special ones; those outside are judged with the lobes."""
@@ -125,7 +115,7 @@ def _spec(row: PbrNode) -> CombinedSpec:
         row,
         tuple(inputs[name] for name in row.inputs),
         {"value": NESTED_VALUE if row.name in NESTED else VALUE, **ERRORS},
-        title=TITLES.get(row.name, row.category),
+        title=NODES[row.name][0],
     )
 
 

@@ -19,10 +19,8 @@ from mxeon.conformance.samples import (
     Counts,
     Values,
     directions_at,
-    rounded,
-    with_edges,
 )
-from mxeon.conformance.spec import CHANGED_COLOR, Input, LobeSpec
+from mxeon.conformance.spec import CHANGED_COLOR, Input, LobeSpec, color, draw, draw_edges
 from mxeon.conformance.tolerance import Term, roundings, sum_in
 from mxeon.models import table as reference
 from mxeon.models.table import Model
@@ -36,8 +34,7 @@ from mxeon.shaders.nodes import (
     node_text,
 )
 
-TINY = (0.0, 1e-6, 1e-3, 1.0)  # edges of a color channel
-SMOOTH = (0.0, 1e-6, 1e-3, 1.0)  # edges of the roughness, in units of the largest
+EDGES = (0.0, 1e-6, 1e-3, 1.0)  # of a color channel, and of the roughness in units of the largest
 UNIT = "pi f cos"
 LOSS_FIT = 2.7e-7  # relative error of the fit of FON's loss H: tools/fits
 
@@ -107,14 +104,6 @@ def model_albedo(batch: Batch, model: str) -> Array:
     return batch.strength * row.closed_albedo_dir(mu, batch.inputs["color"], *parameter)
 
 
-def _rounded_roughness(roughness: Array, row: Model) -> Array:
-    """Roughnesses as float32 numbers, none of which exceeds the model's largest by a rounding."""
-    largest = np.float32(row.largest)
-    if float(largest) > row.largest:
-        largest = np.nextafter(largest, np.float32(0.0))
-    return np.minimum(roughness.astype(np.float32), largest).astype(np.float64)
-
-
 @dataclass(frozen=True, eq=False, kw_only=True)
 class DiffuseModelSpec(LobeSpec):
     """What has to be a rough diffuse model: a row of `mxeon.models.table`."""
@@ -161,19 +150,22 @@ class DiffuseModelSpec(LobeSpec):
     def albedo(self, batch: Batch) -> Array:
         return model_albedo(batch, self.model)
 
+    @property
+    def drawn(self) -> tuple[Input, Input]:
+        """Its inputs; no roughness exceeds the model's largest by a rounding."""
+        most = np.float32(self.row.largest)
+        high = float(most if most <= self.row.largest else np.nextafter(most, np.float32(0.0)))
+        edges = tuple(high * each for each in EDGES)
+        return color("color", edges=EDGES), Input("roughness", high=high, edges=edges)
+
     def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        """A tenth of the colors and of the roughnesses lie on either end; the last colors are gray."""
-        color, roughness = rng.random((count, 3)), rng.random(count)
-        color = np.clip(1.25 * color - 0.125, 0.0, 1.0)
-        color[-(count // 16) :] = color[-(count // 16) :, :1]
-        roughness = self.row.largest * np.clip(1.25 * roughness - 0.125, 0.0, 1.0)
-        return {"color": rounded(color.T), "roughness": _rounded_roughness(roughness, self.row)}
+        """The last colors are gray."""
+        inputs = draw(rng, count, self.drawn)
+        inputs["color"][-(count // 16) :] = inputs["color"][-(count // 16) :, :1]
+        return inputs
 
     def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        inputs = self.random_inputs(rng, count)
-        color = with_edges(rng, inputs["color"], TINY)
-        roughness = with_edges(rng, inputs["roughness"], [self.row.largest * x for x in SMOOTH])
-        return {"color": color, "roughness": _rounded_roughness(roughness, self.row)}
+        return draw_edges(rng, count, self.drawn)
 
     def edges(self, counts: Counts) -> Batch:
         cosine = [0.0, 1e-30, 1e-6, 0.5, 1.0]

@@ -28,7 +28,6 @@ from mxeon.conformance.spec import (
     ZERO,
     EngineError,
     Input,
-    Node,
     RowSpec,
     Spec,
     ValueSpec,
@@ -36,7 +35,7 @@ from mxeon.conformance.spec import (
     color,
     draw,
     materials,
-    network_text,
+    ports,
 )
 from mxeon.conformance.tolerance import Compared, roundings, sum_of
 from mxeon.models.media import cone_cosine, cone_width, surface_radiance
@@ -59,10 +58,12 @@ from mxeon.models.nodes.media import SECOND as MEDIUM_SECOND
 from mxeon.models.nodes.media import Value as Transmittance
 from mxeon.shaders.nodes import (
     SURFACE,
+    Node,
     connection_text,
     document_text,
     input_text,
     lobe_text,
+    network_text,
     node_text,
     vector_text,
 )
@@ -174,7 +175,7 @@ class EmissionSpec(RowSpec):
             axis = vector_text("axis", (inputs or {})["normal"])
             turned = connection_text("normal", "vector3", "axis")
         nodes = chained(self.row, "EDF", "uniform_edf", "emission", turned)
-        text = axis + network_text(nodes, self.drawn, inputs) + EMITTING_TEXT
+        text = axis + network_text(nodes, ports(self.drawn, inputs)) + EMITTING_TEXT
         return document_text(text, "look")
 
     def values(self, function: Value, batch: Batch) -> Array:
@@ -362,9 +363,8 @@ class MediumSpec(RowSpec):
     row: Medium
 
     def document(self, inputs: Values | None = None) -> str:
-        media = network_text(
-            chained(self.row, "VDF", "anisotropic_vdf", "medium"), self.inputs, inputs
-        )
+        nodes = chained(self.row, "VDF", "anisotropic_vdf", "medium")
+        media = network_text(nodes, ports(self.inputs, inputs))
         layer = node_text("layer", "BSDF", "lobe", PORTS)
         return document_text(INTERFACE + media + layer + SURFACE)
 

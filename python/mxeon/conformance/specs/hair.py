@@ -139,7 +139,11 @@ REGIONS = {
         ior=(0.6, 0.95),
     ),
 }
-ERRORS = lobe_errors(VALUE, ALBEDO, FRAME, 5e-6, mean=MEAN) | dict.fromkeys(REGIONS, REGION)
+ERRORS = {
+    **lobe_errors(MEAN, ALBEDO, FRAME, quadrature=5e-6),
+    **dict.fromkeys(("value", "reciprocity"), VALUE),
+    **dict.fromkeys(REGIONS, REGION),
+}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

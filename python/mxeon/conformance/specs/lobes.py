@@ -56,30 +56,20 @@ FLAT_FRAME = sum_of(roundings(15 / TURNED[0], "of three cosines of at least 1/4,
 
 
 def lobe_errors(
-    value: Tolerance,
-    albedo: Tolerance,
-    frame: Tolerance,
-    quadrature: float,
-    throughput: Tolerance | None = None,
-    light: Tolerance | None = None,
-    mean: Tolerance | None = None,
+    value: Tolerance, albedo: Tolerance, frame: Tolerance, quadrature: float
 ) -> dict[str, Tolerance]:
-    """Errors of a lobe: `mean` of values in an integral, whose quadrature errs by so much on the equations."""
-    throughput = throughput or albedo
+    """Errors of a lobe whose integrals are off by the quadrature on the equations."""
     integral = sum_in(
         "albedo",
-        (mean or value).term("an average of values"),
+        value.term("an average of values"),
         Term(quadrature, "the quadrature on the equations"),
     )
-    passed = sum_in("light", integral.term("an albedo"), throughput.term("a throughput"))
     return {
-        "value": value,
-        "albedo": albedo,
+        **dict.fromkeys(("value", "reciprocity"), value),
+        **dict.fromkeys(("albedo", "throughput"), albedo),
         "frame": frame,
-        "throughput": throughput,
         "integral": integral,
-        "light": light or passed,
-        "reciprocity": value,
+        "light": sum_in("light", integral.term("an albedo"), albedo.term("a throughput")),
     }
 
 

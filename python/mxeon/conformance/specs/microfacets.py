@@ -262,7 +262,7 @@ def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
     light = sum_in(
         "light", *throughput.terms[1:], Term(QUADRATURE, "the quadrature on the equations")
     )
-    own = lobe_errors(VALUE, ENVIRONMENT, FRAME, QUADRATURE, throughput, light, MEAN)
+    own = lobe_errors(MEAN, ENVIRONMENT, FRAME, QUADRATURE)
     seen = sum_in(
         "irradiance",
         Term(
@@ -274,7 +274,15 @@ def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
             SLOPE * math.sqrt(2.0) * math.pi / (2 * SKY_ROWS), "the nearest texel, half of one away"
         ),
     )
-    return {**ERRORS, **own, "lossless": own["integral"], "sky": seen}
+    return {
+        **ERRORS,
+        **own,
+        **dict.fromkeys(("value", "reciprocity"), VALUE),
+        "throughput": throughput,
+        "light": light,
+        "lossless": own["integral"],
+        "sky": seen,
+    }
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -57,8 +57,6 @@ RANGES = {
 }
 # The mean free path below the surface, which shows on a curved one: an evaluation has a plane.
 FREE_PATHS = ("subsurface_radius", "subsurface_scale", "subsurface_radius_scale")
-BLENDED = "opacity blends what lies behind with the whole surface, not with a lobe"
-SHADED = "an occlusion is what an evaluation sets itself"
 WHITE = (1.0, 1.0, 1.0)
 TURNED_FRAME = {"normal": (0.48, 0.36, 0.8), "tangent": (0.6, 0.8, 0.0)}
 
@@ -73,127 +71,6 @@ def _ports(**names: str) -> tuple[Input, ...]:
 def _whole(names: str) -> Values:
     """Inputs of 1, colors among them."""
     return {name: WHITE if "color" in name.lower() else 1.0 for name in names.split()}
-
-
-@dataclass(frozen=True, eq=False)
-class Lobes:
-    """Inputs of a surface shader that its lobes may depend on."""
-
-    judged: tuple[Input, ...]  # those whose values have a reference
-    others: tuple[Input, ...]  # those of other lobes and of thin films, which are asked for energy
-    # Inputs that change no value of rasterized targets; docs/upstream/
-    # surface_inputs.md says why.
-    without_effect: tuple[str, ...]
-    white: Values  # a material that loses no light, by the layer equation
-    # What else the material has where an input is changed.
-    needs: Mapping[str, Values] = field(default_factory=dict)
-    # Inputs that are asked of no value, and why.
-    unseen: Mapping[str, str] = field(default_factory=dict)
-
-    @property
-    def films(self) -> tuple[Input, ...]:
-        """The inputs of a thin film."""
-        return tuple(
-            each for each in self.others if each.name.startswith(("thin_film", "iridescence"))
-        )
-
-
-STANDARD = Lobes(
-    _ports(
-        share="base diffuse_roughness metalness specular specular_anisotropy specular_rotation sheen coat coat_anisotropy coat_rotation coat_affect_color coat_affect_roughness",
-        color="base_color specular_color sheen_color coat_color",
-        rough="specular_roughness coat_roughness",
-        index="specular_IOR coat_IOR",
-        sheen_rough="sheen_roughness",
-    ),
-    _ports(
-        share="transmission transmission_extra_roughness subsurface subsurface_scale",
-        color="transmission_color subsurface_color subsurface_radius",
-        thickness="thin_film_thickness",
-        index="thin_film_IOR",
-    ),
-    without_effect=(
-        "transmission_depth",
-        "transmission_scatter",
-        "transmission_scatter_anisotropy",
-        "transmission_dispersion",
-        "subsurface_anisotropy",
-    ),
-    needs={"emission_color": {"emission": 1.0}},
-    unseen={"opacity": BLENDED},
-    white={**_whole("base base_color sheen coat"), "specular_roughness": 0.4},
-)
-
-OPEN_PBR = Lobes(
-    _ports(
-        share="base_weight base_diffuse_roughness base_metalness specular_weight specular_roughness_anisotropy coat_weight coat_roughness_anisotropy coat_darkening fuzz_weight",
-        color="base_color specular_color coat_color fuzz_color",
-        rough="specular_roughness coat_roughness",
-        index="specular_ior coat_ior",
-        sheen_rough="fuzz_roughness",
-    ),
-    _ports(
-        share="transmission_weight subsurface_weight subsurface_radius thin_film_weight thin_film_thickness",
-        color="transmission_color subsurface_color subsurface_radius_scale",
-        index="thin_film_ior",
-    ),
-    without_effect=(
-        "transmission_scatter",
-        "transmission_scatter_anisotropy",
-        "transmission_dispersion_scale",
-        "transmission_dispersion_abbe_number",
-        "subsurface_scatter_anisotropy",
-    ),
-    needs={
-        "subsurface_weight": {"subsurface_color": CHANGED_COLOR},  # on a plane, its base else
-        "emission_color": {"emission_luminance": 1000.0},
-    },
-    unseen={"geometry_opacity": BLENDED},
-    white={
-        **_whole("base_weight base_color coat_weight fuzz_weight fuzz_color"),
-        "base_diffuse_roughness": 0.5,
-        "coat_roughness": 0.3,
-        "coat_darkening": 0.0,
-    },
-)
-
-GLTF = Lobes(
-    _ports(
-        color="base_color specular_color sheen_color",
-        share="metallic specular anisotropy_strength anisotropy_rotation clearcoat",
-        rough="roughness clearcoat_roughness",
-        index="ior",
-        fuzz_rough="sheen_roughness",
-    ),
-    _ports(share="transmission iridescence", index="iridescence_ior", film="iridescence_thickness"),
-    without_effect=("thickness", "attenuation_distance", "attenuation_color", "dispersion"),
-    needs={"emissive_strength": {"emissive": CHANGED_COLOR}},
-    unseen={
-        "occlusion": SHADED,
-        **dict.fromkeys(("alpha", "alpha_mode", "alpha_cutoff"), BLENDED),
-    },
-    white={
-        **_whole("base_color sheen_color clearcoat"),
-        "metallic": 0.0,
-        "roughness": 0.5,
-        "sheen_roughness": 0.6,
-        "clearcoat_roughness": 0.4,
-    },
-)
-
-PREVIEW = Lobes(
-    _ports(
-        color="diffuseColor specularColor",
-        share="metallic clearcoat",
-        rough="roughness clearcoatRoughness",
-        index="ior",
-    ),
-    _ports(share="opacity"),
-    without_effect=("displacement",),
-    white={**_whole("diffuseColor clearcoat"), "clearcoatRoughness": 0.4},
-    needs={"specularColor": {"useSpecularWorkflow": 1}},
-    unseen={"occlusion": SHADED},
-)
 
 
 GRAPHS = 64  # pairs by which a graph is compared with another
@@ -228,16 +105,32 @@ class SurfaceShaderSpec(LobeSpec):
 
     plain = ("frame", "shape", "lobes", "inputs from an image")
 
-    table: Lobes
+    judged: tuple[Input, ...]  # those whose values have a reference
+    others: tuple[Input, ...]  # those of other lobes and of thin films, which are asked for energy
+    # Inputs that change no value of rasterized targets; docs/upstream/
+    # surface_inputs.md says why.
+    without_effect: tuple[str, ...]
+    white: Values  # a material that loses no light, by the layer equation
+    # What else the material has where an input is changed.
+    needs: Mapping[str, Values] = field(default_factory=dict)
+    # Inputs that are asked of no value: an opacity blends what lies behind with the whole surface, not with a lobe,
+    # and an occlusion is what an evaluation sets itself.
+    unseen: tuple[str, ...] = ()
     library: str = "eonlib"  # whose document the reference evaluates
+
+    @property
+    def film(self) -> tuple[Input, ...]:
+        """The inputs of a thin film."""
+        names = "thin_film", "iridescence"
+        return tuple(each for each in self.others if each.name.startswith(names))
 
     @cached_property
     def further(self) -> Values:
         """Inputs that are not drawn, each with a value that the material with every lobe does not have."""
         from mxeon.shaders.library import load_library
 
-        table, values = self.table, dict[str, ArrayLike]()
-        known = {*(each.name for each in (*table.judged, *table.others)), *table.unseen}
+        values = dict[str, ArrayLike]()
+        known = {*(each.name for each in (*self.judged, *self.others)), *self.unseen}
         for port in load_library("stock").getMatchingNodeDefs(self.node)[0].getActiveInputs():
             name, kind, default = port.getName(), port.getType(), port.getValue()
             if name in known:
@@ -253,7 +146,7 @@ class SurfaceShaderSpec(LobeSpec):
     @cached_property
     def changed_inputs(self) -> Values:
         """The same of each input but FREE_PATHS."""
-        ports = (*self.table.judged, *self.table.others)
+        ports = (*self.judged, *self.others)
         known = {each.name: each.change for each in ports if each.change is not None}
         return {**{name: known[name] for name in known if name not in FREE_PATHS}, **self.further}
 
@@ -300,11 +193,11 @@ class SurfaceShaderSpec(LobeSpec):
     # Its samples.
 
     def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        return draw(rng, count, self.table.judged)
+        return draw(rng, count, self.judged)
 
     def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
         """Half of the colors and shares on an edge, where most light leaves."""
-        return draw_edges(rng, count, (*self.table.judged, *self.table.others))
+        return draw_edges(rng, count, (*self.judged, *self.others))
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         """Random pairs, half of them near the mirror direction, with random materials."""
@@ -333,7 +226,7 @@ class SurfaceShaderSpec(LobeSpec):
         """Pairs with every input of the node; NaN stands for a default."""
         rng, pairs = generator(), self.batches(counts)[0].first(GRAPHS)
         count = len(pairs.wo)
-        inputs = {**pairs.inputs, **draw(rng, count, self.table.others)}
+        inputs = {**pairs.inputs, **draw(rng, count, self.others)}
         inputs = {name: np.maximum(each, LEAST) for name, each in inputs.items()}
         for name, value in self.further.items():
             values = np.repeat(np.minimum(np.asarray([value], float), LARGEST), count, 0)
@@ -342,7 +235,7 @@ class SurfaceShaderSpec(LobeSpec):
             elif isinstance(value, float):
                 values *= rng.choice((LEAST, 1.0), count)  # near a threshold at 0
             inputs[name] = values
-        for name in self.table.unseen:
+        for name in self.unseen:
             share = rng.random(count)
             inputs[name] = np.floor(3.0 * share) if name == "alpha_mode" else share
         for name, values in inputs.items():
@@ -352,18 +245,17 @@ class SurfaceShaderSpec(LobeSpec):
     def films(self, counts: Counts) -> Batch:
         """Some of the pairs, under random films."""
         batch = self.batches(counts)[0].first(counts.albedos)
-        return batch.altered(**draw(generator(), len(batch.wo), self.table.films))
+        return batch.altered(**draw(generator(), len(batch.wo), self.film))
 
     def changed(self, batch: Batch, ports: Mapping[str, Plain]) -> Batch:
         """A few views for each input: of the material with every lobe, then with a change of it.
 
         `ports` has the values of the inputs that a document does not set.
         """
-        table = self.table
         rows = []
-        seen, _ = materials(*table.judged, *table.others)
+        seen, _ = materials(*self.judged, *self.others)
         for name in self.names:
-            before = {**seen, **table.needs.get(name, {})}
+            before = {**seen, **self.needs.get(name, {})}
             rows += [before, {**before, name: self.changed_inputs[name]}]
         few = batch.first(CHANGED)
         vectors = {
@@ -401,12 +293,15 @@ def _isotropic(batch: Batch) -> Batch:
     )
 
 
-def _spec(node: str, table: Lobes) -> SurfaceShaderSpec:
+def _spec(
+    node: str, judged: tuple[Input, ...], others: tuple[Input, ...], **rest: Any
+) -> SurfaceShaderSpec:
     return SurfaceShaderSpec(
         title=f"{node}, every lobe",
         node=node,
         model=node,
-        table=table,
+        judged=judged,
+        others=others,
         errors={
             "value": VALUE,
             "albedo": ALBEDO,
@@ -415,12 +310,105 @@ def _spec(node: str, table: Lobes) -> SurfaceShaderSpec:
             "lobes_film": FILM,
         },
         counts=Counts(256, albedos=64, materials=1 << 11),  # a material a pair
+        **rest,
     )
 
 
 SURFACE_SHADERS = (
-    _spec("standard_surface", STANDARD),
-    _spec("open_pbr_surface", OPEN_PBR),
-    _spec("gltf_pbr", GLTF),
-    _spec("UsdPreviewSurface", PREVIEW),
+    _spec(
+        "standard_surface",
+        _ports(
+            share="base diffuse_roughness metalness specular specular_anisotropy specular_rotation sheen coat coat_anisotropy coat_rotation coat_affect_color coat_affect_roughness",
+            color="base_color specular_color sheen_color coat_color",
+            rough="specular_roughness coat_roughness",
+            index="specular_IOR coat_IOR",
+            sheen_rough="sheen_roughness",
+        ),
+        _ports(
+            share="transmission transmission_extra_roughness subsurface subsurface_scale",
+            color="transmission_color subsurface_color subsurface_radius",
+            thickness="thin_film_thickness",
+            index="thin_film_IOR",
+        ),
+        without_effect=(
+            "transmission_depth",
+            "transmission_scatter",
+            "transmission_scatter_anisotropy",
+            "transmission_dispersion",
+            "subsurface_anisotropy",
+        ),
+        needs={"emission_color": {"emission": 1.0}},
+        unseen=("opacity",),
+        white={**_whole("base base_color sheen coat"), "specular_roughness": 0.4},
+    ),
+    _spec(
+        "open_pbr_surface",
+        _ports(
+            share="base_weight base_diffuse_roughness base_metalness specular_weight specular_roughness_anisotropy coat_weight coat_roughness_anisotropy coat_darkening fuzz_weight",
+            color="base_color specular_color coat_color fuzz_color",
+            rough="specular_roughness coat_roughness",
+            index="specular_ior coat_ior",
+            sheen_rough="fuzz_roughness",
+        ),
+        _ports(
+            share="transmission_weight subsurface_weight subsurface_radius thin_film_weight thin_film_thickness",
+            color="transmission_color subsurface_color subsurface_radius_scale",
+            index="thin_film_ior",
+        ),
+        without_effect=(
+            "transmission_scatter",
+            "transmission_scatter_anisotropy",
+            "transmission_dispersion_scale",
+            "transmission_dispersion_abbe_number",
+            "subsurface_scatter_anisotropy",
+        ),
+        needs={
+            "subsurface_weight": {"subsurface_color": CHANGED_COLOR},  # on a plane, its base else
+            "emission_color": {"emission_luminance": 1000.0},
+        },
+        unseen=("geometry_opacity",),
+        white={
+            **_whole("base_weight base_color coat_weight fuzz_weight fuzz_color"),
+            "base_diffuse_roughness": 0.5,
+            "coat_roughness": 0.3,
+            "coat_darkening": 0.0,
+        },
+    ),
+    _spec(
+        "gltf_pbr",
+        _ports(
+            color="base_color specular_color sheen_color",
+            share="metallic specular anisotropy_strength anisotropy_rotation clearcoat",
+            rough="roughness clearcoat_roughness",
+            index="ior",
+            fuzz_rough="sheen_roughness",
+        ),
+        _ports(
+            share="transmission iridescence", index="iridescence_ior", film="iridescence_thickness"
+        ),
+        without_effect=("thickness", "attenuation_distance", "attenuation_color", "dispersion"),
+        needs={"emissive_strength": {"emissive": CHANGED_COLOR}},
+        unseen=("occlusion", "alpha", "alpha_mode", "alpha_cutoff"),
+        white={
+            **_whole("base_color sheen_color clearcoat"),
+            "metallic": 0.0,
+            "roughness": 0.5,
+            "sheen_roughness": 0.6,
+            "clearcoat_roughness": 0.4,
+        },
+    ),
+    _spec(
+        "UsdPreviewSurface",
+        _ports(
+            color="diffuseColor specularColor",
+            share="metallic clearcoat",
+            rough="roughness clearcoatRoughness",
+            index="ior",
+        ),
+        _ports(share="opacity"),
+        without_effect=("displacement",),
+        white={**_whole("diffuseColor clearcoat"), "clearcoatRoughness": 0.4},
+        needs={"specularColor": {"useSpecularWorkflow": 1}},
+        unseen=("occlusion",),
+    ),
 )

@@ -7,9 +7,8 @@ An error is relative to the largest component where that exceeds 1; of an artist
 in which its roundings are alike.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -29,12 +28,11 @@ from mxeon.conformance.spec import (
     POWER,
     EngineError,
     Input,
-    Node,
     RowSpec,
     broadcast_inputs,
     draw,
     draw_edges,
-    network_text,
+    ports,
 )
 from mxeon.conformance.tolerance import (
     Compared,
@@ -47,11 +45,16 @@ from mxeon.conformance.tolerance import (
     sum_of,
 )
 from mxeon.hosts.calls import GRAPH
-from mxeon.models.diffuse import eon_albedo_avg, eon_albedo_dir
-from mxeon.models.microfacet.fresnel import normal_reflectance
 from mxeon.models.nodes.node import Variant
 from mxeon.models.nodes.utilities import LARGEST_REFLECTIVITY, UTILITIES, Outputs, UtilityNode
-from mxeon.shaders.nodes import INVERSIONS, connection_text, document_text, node_text
+from mxeon.shaders.nodes import (
+    INVERSIONS,
+    Node,
+    connection_text,
+    document_text,
+    network_text,
+    node_text,
+)
 
 NAME, COLOR = "value", "color"  # of the node in its document, and of its conversion to a color
 TYPES = {(): "float", (2,): "vector2", (3,): "color3"}  # types of the inputs by shape
@@ -89,46 +92,34 @@ REFLECTANCE = sum_in(
     Term(3 * 5e-7, "three constants of six decimals"),
     roundings(12, "of numbers up to 1"),
 )
-INVERSION = {
-    "value": REFLECTANCE,
-    "round_trip": given(
-        2.0 * REFLECTANCE.value,
-        "albedo",
-        "twice the error of the reflectance, since an albedo grows at most twice as fast",
+# Errors of values, by title or category; and of other quantities.
+VALUES: Mapping[str, Tolerance] = {
+    **dict.fromkeys(INVERSIONS, REFLECTANCE),
+    **dict.fromkeys(("roughness_anisotropy", "glossiness_anisotropy"), ALPHA),
+    "roughness_dual": sum_in("alpha", roundings(2)),
+    # n_max is 1 in this unit at most.
+    "artistic_ior, ior": sum_in(
+        "n (1 - sqrt(r))^2", roundings(16, "four over 1 - sqrt(r), six beside, six in the mix")
     ),
+    "artistic_ior, extinction": sum_in(
+        "k^2 (1 - r) / (n_max + 1)^2",
+        roundings(8 + 16 + 4, "8 of the terms of k^2, 16 of n, 4 of 1 - r and the root"),
+    ),
+    "blackbody": BLACKBODY,
+    "chiang_hair_roughness": sum_of(roundings(24), unit=UNIT),
+    "deon_hair_absorption_from_melanin": sum_of(roundings(16), unit=UNIT),
+    "chiang_hair_absorption_from_color": sum_of(roundings(2 * 12, "of a square"), unit=UNIT),
 }
-ERRORS: Mapping[str, dict[str, Tolerance]] = {
-    **dict.fromkeys(INVERSIONS, INVERSION),
-    "roughness_anisotropy": {"value": ALPHA},
-    "roughness_dual": {"value": sum_in("alpha", roundings(2))},
-    "glossiness_anisotropy": {"value": ALPHA},
-    "artistic_ior, ior": {
-        # n_max is 1 in this unit at most.
-        "value": sum_in(
-            "n (1 - sqrt(r))^2", roundings(16, "four over 1 - sqrt(r), six beside, six in the mix")
-        ),
-        # k^2 makes up for the error of n.
-        "round_trip": sum_in("reflectance", roundings(16)),
-    },
-    "artistic_ior, extinction": {
-        "value": sum_in(
-            "k^2 (1 - r) / (n_max + 1)^2",
-            roundings(8 + 16 + 4, "8 of the terms of k^2, 16 of n, 4 of 1 - r and the root"),
-        )
-    },
+OTHERS: Mapping[str, dict[str, Tolerance]] = {
+    # k^2 makes up for the error of n.
+    "artistic_ior, ior": {"round_trip": sum_in("reflectance", roundings(16))},
     "blackbody": {
-        "value": BLACKBODY,
         "value in OSL": given(
             4e-3,
             UNIT,
             "OSL's blackbody() has an observer from 380 nm to 780 nm, its own table and primaries",
             scaled,
-        ),
-    },
-    "chiang_hair_roughness": {"value": sum_of(roundings(24), unit=UNIT)},
-    "deon_hair_absorption_from_melanin": {"value": sum_of(roundings(16), unit=UNIT)},
-    "chiang_hair_absorption_from_color": {
-        "value": sum_of(roundings(2 * 12, "of a square"), unit=UNIT)
+        )
     },
 }
 FEWER = 1 << 12  # arguments of an engine's functions
@@ -177,7 +168,7 @@ class UtilitySpec(RowSpec):
     def document(self, inputs: Values | None = None) -> str:
         kind, single = self.row.outputs[self.output], len(self.row.outputs) == 1
         node = Node(self.node, kind if single else "multioutput")
-        text = network_text({NAME: node}, self.inputs, inputs)
+        text = network_text({NAME: node}, ports(self.inputs, inputs))
         source, port = NAME, "" if single else self.output
         if kind != "color3":
             text += node_text("convert", "color3", COLOR, connection_text("in", kind, NAME, port))
@@ -213,7 +204,7 @@ class UtilitySpec(RowSpec):
         """
         if self.node != "artistic_ior":
             return compared
-        r = np.clip(compared.batch.inputs["reflectivity"], 0.0, LARGEST_REFLECTIVITY)
+        r = reflectivity(compared.batch)
         inverse = 1.0 / np.square(1.0 - np.sqrt(r))  # (n_max + 1)^2 / 4
         if self.output == "ior":
             return compared.over(inverse)
@@ -221,28 +212,8 @@ class UtilitySpec(RowSpec):
         return Compared(compared.batch, *squares).over(4.0 * inverse / (1.0 - r))
 
 
-def _reached(albedo: Callable[[Array, Array], Array], rho: Array, batch: Batch) -> Array:
-    """The albedo that EON has with a reflectance, (N, 3); infinite where that is no number."""
-    finite = np.isfinite(rho).all(axis=1, keepdims=True)
-    known = np.where(finite, np.clip(rho, 0.0, 1.0), 0.0)
-    return np.where(finite, albedo(known, np.asarray(batch.inputs["roughness"])), np.inf)
-
-
-# What the outputs of a node by name lead back to, and the input that it has to be.
-ROUND_TRIPS: Mapping[str, Callable[[Mapping[str, Array], Batch], tuple[Array, Array]]] = {
-    "artistic_ior": lambda outputs, batch: (
-        normal_reflectance(outputs["ior"], outputs["extinction"]),
-        np.minimum(batch.inputs["reflectivity"], LARGEST_REFLECTIVITY),
-    ),
-    INVERSIONS[0]: lambda outputs, batch: (
-        _reached(partial(eon_albedo_dir, 1.0), outputs["out"], batch),
-        np.asarray(batch.inputs["color"]),
-    ),
-    INVERSIONS[1]: lambda outputs, batch: (
-        _reached(eon_albedo_avg, outputs["out"], batch),
-        np.asarray(batch.inputs["color"]),
-    ),
-}
+def reflectivity(batch: Batch) -> Array:
+    return np.asarray(np.clip(batch.inputs["reflectivity"], 0.0, LARGEST_REFLECTIVITY))
 
 
 def _batch(inputs: Mapping[str, Array]) -> Batch:
@@ -273,14 +244,14 @@ def _inversion(node: str) -> UtilityNode:
 def _spec(row: UtilityNode, output: str, *libraries: str) -> UtilitySpec:
     title = row.category if len(row.outputs) == 1 else f"{row.category}, {output}"
 
-    def usual(name: str) -> Input:
-        kind = TYPES[np.shape(row.inputs[name])]
-        return Input(name, kind, edges=SHARES, change=0.25, default=0.5)
-
     def filled(each: Input, value: ArrayLike | None) -> ArrayLike:
         return np.full(COMPONENTS[each.type], value)
 
-    rows = [INPUTS.get(name) or usual(name) for name in row.inputs]
+    rows = [
+        INPUTS.get(name)
+        or Input(name, TYPES[np.shape(value)], edges=SHARES, change=0.25, default=0.5)
+        for name, value in row.inputs.items()
+    ]
     whole = {each.name: filled(each, each.default) for each in rows}
     inputs = tuple(
         replace(each, change=filled(each, each.change), needs=whole, beyond=each.beyond or BEYOND)
@@ -289,7 +260,7 @@ def _spec(row: UtilityNode, output: str, *libraries: str) -> UtilitySpec:
     return UtilitySpec.of(
         row,
         inputs,
-        ERRORS.get(title) or ERRORS[row.category],
+        {"value": VALUES.get(title) or VALUES[row.category], **OTHERS.get(title, {})},
         title=title,
         output=output,
         engines={"value": (ENGINE[row.category],)} if row.category in ENGINE else {},
