@@ -5,6 +5,7 @@ import ast
 import re
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -42,6 +43,7 @@ def test_the_code_passes(tool):
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+@cache  # parsing takes longer than all patterns
 def read(module):
     """Text of a module; of PARTLY without docstrings and comments: its messages and help texts among it."""
     text = module.read_text(encoding="utf-8")

@@ -45,7 +45,7 @@ LONG = (
     *(f"{name}_{each}" for name in INTERFACES for each in COATS),
 )
 LONG += ("film_albedo_dir", "dielectric_albedo_dir", "conty_kulla_albedo_dir", "transmittance_dir")
-ROWS, FEW = 48, 8
+ROWS, FEW = 48, 4
 # Thousands of nodes a row.
 FACETS = ("dielectric_albedo_dir", "conductor_albedo_dir", "schlick_albedo_dir")
 QUADRATURES = (*FACETS, "film_albedo_dir", "transmittance_dir", "ggx_albedo_dir_anisotropic")
@@ -175,7 +175,7 @@ def directions(rng, below, rows=ROWS):
     """Unit vectors, of which the first ones are along the normal or graze."""
     w = rng.normal(size=(rows, 3))
     w[: max(rows // 12, 1)] = 0.0, 0.0, 1.0
-    w[max(rows // 12, 1) : rows // 4, 2] = 0.0
+    w[max(rows // 12, 1) : max(rows // 4, 2), 2] = 0.0
     w[:, 2] = np.abs(w[:, 2])
     w /= np.linalg.norm(w, axis=1, keepdims=True)
     return rng.permutation(w) * (1.0, 1.0, -1.0 if below else 1.0)
