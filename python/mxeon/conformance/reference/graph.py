@@ -418,36 +418,31 @@ def _marks(node: mx.Node, names: tuple[str, ...], *values: Value) -> Array:
     return 0.5 + 0.4 * np.sin(phase)
 
 
+def _rows(names: Iterable[str], values: Iterable[Array], count: int = 1) -> dict[str, Array]:
+    """Inputs of a model with a row for each point, of which there are at least so many; numbers have one axis."""
+    columns = [np.atleast_2d(np.asarray(value, np.float64)) for value in values]
+    count = max(count, *map(len, columns))
+    rows = [np.broadcast_to(each, (count, each.shape[1])) for each in columns]
+    return {
+        name: each[:, 0] if each.shape[1] == 1 else each
+        for name, each in zip(names, rows, strict=True)
+    }
+
+
 def _radiance(
     row: Emission, ports: tuple[str, ...], points: ShadingPoints, *values: Array
 ) -> Array:
-    """Radiance of an emission to the viewer; a color has a row for each point, a number one value."""
+    """Radiance of an emission to the viewer."""
     wo = points.view
-    inputs = {
-        name: np.broadcast_to(value, wo.shape)
-        if np.shape(value)[-1:] == (3,)
-        else np.broadcast_to(np.ravel(value), len(wo))
-        for name, value in zip(ports, values, strict=True)
-    }
     try:
-        return row.value(wo, inputs)
+        return row.value(wo, _rows(ports, values, len(wo)))
     except ValueError as error:
         raise OutsideModel(f"reference: node {row.category!r}: {error}") from None
 
 
 def _utility(row: utilities.UtilityNode, *values: Array) -> Array | Mapping[str, Array]:
-    """The one output of a utility node, or all by name; numbers come as () or (N, 1)."""
-    columns = [
-        np.atleast_2d(np.asarray(value, np.float64).reshape(-1, np.size(default)))
-        for value, default in zip(values, row.inputs.values(), strict=True)
-    ]
-    count = max(map(len, columns))
-    inputs = {
-        name: np.broadcast_to(column, (count, column.shape[1]))
-        for name, column in zip(row.inputs, columns, strict=True)
-    }
-    numbers = {name: each[:, 0] if each.shape[1] == 1 else each for name, each in inputs.items()}
-    outputs = row.value(numbers)
+    """The one output of a utility node, or all by name."""
+    outputs = row.value(_rows(row.inputs, values))
     return next(iter(outputs.values())) if len(outputs) == 1 else outputs
 
 
