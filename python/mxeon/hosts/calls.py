@@ -74,7 +74,8 @@ LIT = "lit"  # instead of a branch: several lights, then an environment on both 
 LIGHTS, SECOND_LIGHT, SKY = "mxeon_lights", "mxeon_second", "mxeon_sky"
 # Steps 0 and 1 are lights, 2 an environment, 3 what it sends through. Every branch is the same program, which takes
 # a driver as long to compile as one branch for each.
-STEPS = "mxeon_steps"  # the first, the one behind the last, and the irradiance of a light
+# The first, the one behind the last, and the irradiance of a light, or -1 where the throughput is asked.
+STEPS = "mxeon_steps"
 LOOP = """{type} mxeon_sum = {type}(0.0);
 for (int mxeon_step = int(mxeon_steps.x); mxeon_step < int(mxeon_steps.y); ++mxeon_step)
 {{
@@ -85,13 +86,14 @@ for (int mxeon_step = int(mxeon_steps.x); mxeon_step < int(mxeon_steps.y); ++mxe
         {type} L = mxeon_step == 1 && mxeon_steps.x < 0.5 ? mxeon_second : mxeon_first;
 {block}
         float mxeon_strength = mxeon_step < 2 ? mxeon_steps.z : 1.0;
-        mxeon_sum += throughput_asked ? {result}.throughput : mxeon_strength * {result}.response;
+        mxeon_sum += mxeon_steps.z < 0.0 ? {result}.throughput : mxeon_strength * {result}.response;
     }}
 }}
 """
 OUTPUTS = ("response", "throughput", "radiance")  # the last is that of an EDF
 NORMAL, TANGENT = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
-ASKED = "throughput_asked"  # variable of an evaluation
+FAR = (0.0, 0.0, 1e31)  # instead of a position: the host takes that of its pixel, on a plane
+GIVEN = "P = P.z < 1e30 ? P : {};"
 # How MaterialX's text for WGSL, which has no booleans in memory, makes one of an integer.
 BOOLEAN = re.compile(r"^#define (\w+) bool\(\1\)$", re.MULTILINE)
 
@@ -102,7 +104,7 @@ Arguments: TypeAlias = dict[str, tuple[str, ArrayLike]]  # type and values by na
 class BsdfCall:
     statements: str  # of the shader's main up to the call
     value: str  # a color
-    arguments: Arguments  # types and values of what both read, but P
+    arguments: Arguments  # types and values of what both read
 
 
 def bsdf_call(query: Query) -> BsdfCall:
@@ -124,14 +126,12 @@ def bsdf_call(query: Query) -> BsdfCall:
     start, statements, value, names = _find_calls(text, called, shader.element)
     arguments: Arguments = {"V": ("vector3", wo), "L": ("vector3", wi), "N": ("vector3", NORMAL)}
     arguments["occlusion"] = ("float", inputs.get("occlusion", 1.0))
-    if "position" in inputs:
-        arguments["P"] = ("vector3", inputs["position"])
+    arguments["P"] = ("vector3", inputs.get("position", FAR))
     if not emitted:
-        steps: ArrayLike = (first, first + 1, 1.0)
+        steps: ArrayLike = (first, first + 1, -1.0 if output == "throughput" else 1.0)
         if branch == LIT:
             ends = 2.0 - np.asarray(inputs[LIGHTS]), np.where(inputs[SKY], 4.0, 2.0)
             steps = np.stack(np.broadcast_arrays(*ends, np.pi), axis=-1)
-        arguments[ASKED] = ("boolean", output == "throughput")
         arguments[STEPS] = ("vector3", steps)
         arguments[SECOND_LIGHT] = ("vector3", inputs.get(SECOND_LIGHT, NORMAL))
         kind = "float3" if shader.target == "slang" else "vec3"
@@ -193,7 +193,7 @@ def _graph_call(shader: Shader, wo: ArrayLike, inputs: Inputs) -> BsdfCall:
         )
     statements, ports = _main(text), _ports(shader)
     words = _words(statements + color[1])
-    arguments: Arguments = {"V": ("vector3", wo)}  # of a graph that reads nothing
+    arguments: Arguments = {"V": ("vector3", wo), "P": ("vector3", FAR)}
     arguments |= {name: _argument(name, ports, inputs) for name in words if name in ports}
     return BsdfCall(statements, color[1], arguments)
 

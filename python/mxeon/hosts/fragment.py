@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mxeon.hosts.base import Array, Query
-from mxeon.hosts.calls import booleans, bsdf_call
+from mxeon.hosts.calls import GIVEN, booleans, bsdf_call
 
 TEXEL = "texelFetch(mxeon_{}, mxeon_pixel, 0)"
 FETCH = {
@@ -103,9 +103,9 @@ def bsdf_evaluation(query: Query) -> tuple[str, Columns]:
     shader = query.shader
     dialect, call = DIALECTS[shader.target], bsdf_call(query)
     version, text = shader.stages["pixel"].split("\n", 1)
-    # Subsurface scattering divides by what P changes from pixel to pixel: that of a plane unless it is given.
+    # Subsurface scattering divides by what P changes from pixel to pixel.
     body = [
-        *(() if "P" in call.arguments else ("vec3 P = vec3(gl_FragCoord.xy, 0.0);",)),
+        GIVEN.format("vec3(gl_FragCoord.xy, 0.0)"),
         call.statements,
         f"{_output(text)} = vec4({call.value}, 1.0);",
     ]

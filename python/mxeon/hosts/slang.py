@@ -146,8 +146,8 @@ class Host(base.Host):
                 "slang: subsurface scattering needs derivatives between pixels, which a kernel lacks"
             )
         call = calls.bsdf_call(query)
-        position = () if "P" in call.arguments else ("float3 P = float3(0.0);",)
-        body = [*position, call.statements, f"float3 mxeon_value = {call.value};"]
+        position = calls.GIVEN.format("float3(0.0)")
+        body = [position, call.statements, f"float3 mxeon_value = {call.value};"]
         environment = self._environment(query.irradiance)
         return self._evaluate(text, call.arguments, body, environment)
 
