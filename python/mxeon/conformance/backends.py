@@ -896,11 +896,6 @@ class DarkPictures(Pictures):
 
     families, sampled = (EmittingSurface,), Samples
 
-    def picture(self, batch: Batch) -> Array:
-        scene = scene_of(batch)
-        [shader] = self.host.compile(self.spec.document(batch.inputs), library=self.library)
-        return self.host.picture(shader, scene)[sphere(scene.size).mask].astype(np.float64)
-
 
 class EmissionPictures(Pictures):
     """An EDF node on a sphere in the dark."""
