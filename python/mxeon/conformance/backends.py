@@ -723,8 +723,8 @@ class Pictures(Backend):
 
     @property
     def size(self) -> int:
-        if isinstance(self.spec, SurfaceLobe):
-            return PICTURE_SIZE // 4  # the shaders are long
+        if isinstance(self.spec, (SurfaceLobe, EmissionSpec)):
+            return PICTURE_SIZE // 4  # the shaders are long, or every pixel of one view is alike
         return PICTURE_SIZE // 2 if isinstance(self.spec, PbrSpec) else PICTURE_SIZE
 
     @property
@@ -882,7 +882,6 @@ class Half(Drawn):
         return ("retroreflective",)
 
 
-DARK = Scene("dark", size=32)
 # A pixel's point is off by three roundings of 2^-23, over a cosine of 0.05.
 PICTURE_RADIANCE = sum_of(
     roundings(5 * 6 / RIM, "of a pixel's point, over the least cosine, times the slope 5"),
@@ -900,12 +899,8 @@ class DarkPictures(Pictures):
 class EmissionPictures(Pictures):
     """An EDF node on a sphere in the dark."""
 
-    scenes, families = (DARK,), (EmissionSpec,)
+    scenes, families = (Scene("dark"),), (EmissionSpec,)
     errors: ClassVar[Mapping[str, Tolerance]] = {"value": PICTURE_RADIANCE}
-
-    @property
-    def size(self) -> int:
-        return DARK.size
 
     def shader_of(self, inputs: Values) -> Shader:
         return self.implemented(self.spec.document(inputs))
