@@ -22,6 +22,7 @@ from mxeon.conformance.case import (
     values,
 )
 from mxeon.conformance.diagnosis.faults import (
+    COLOR_FAULTS,
     DIRECT_FAULTS,
     ENVIRONMENT_FAULTS,
     Fault,
@@ -39,6 +40,7 @@ from mxeon.conformance.tolerance import (
     Compared,
     Tolerance,
     absolute,
+    count_of,
     mean_error,
     point_of,
     relative,
@@ -59,6 +61,7 @@ UNMASKED = "the visible facets are not weighted by masking and shadowing"
 UNTOLD = (SINGLY_RIGHT, UNKNOWN, OTHER_AVERAGE, UNMASKED)
 WORST = 32  # pairs of which one input is changed, and the fewest that have to be wrong
 CURES = 2  # inputs that are named
+FINITE = count_of("values")
 DIMMING = ("weight", "occlusion")  # inputs that make any error small
 SHOWN = 0.1  # share of the light that has to be left where another input is changed
 # Share of the distance to any other explanation up to which one explains all, and up to which it is
@@ -277,8 +280,9 @@ def _cures(
     index = int(np.argmax([np.count_nonzero(each > tolerance.value) for each in errors]))
     worst = np.argsort(errors[index])[-WORST:]
     batch, found = cases[index].batch.where(worst), []
-    light = np.broadcast_to(cases[index].expected, cases[index].measured.shape)[worst]
-    least = SHOWN * min(float(np.abs(light).mean()), 1.0)
+    # An input that only darkens what should be dark cures nothing.
+    light = np.maximum(np.abs(cases[index].expected), np.abs(cases[index].measured))[worst]
+    least = SHOWN * min(float(light.mean()), 1.0)
     for port in case.spec.inputs:
         if port.name not in batch.inputs or port.type not in COMPONENTS or port.name in DIMMING:
             continue
@@ -303,7 +307,12 @@ def not_finite(cases: Sequence[Compared]) -> str:
     wrong = [np.asarray(~np.isfinite(case.measured).all(axis=1)) for case in cases]
     if not any(map(np.any, wrong)):
         return ""
-    return f"NaN or infinity {smallest([case.batch for case in cases], wrong)}".rstrip()
+    numbers = (
+        Compared(case.batch, np.where(np.isfinite(case.measured), 0.0, np.nan), case.expected * 0.0)
+        for case in cases
+    )
+    place = smallest([case.batch for case in cases], wrong) or span(list(numbers), FINITE)
+    return f"NaN or infinity {place}".rstrip()
 
 
 # What is compared with what, by quantity.
@@ -384,7 +393,9 @@ ALBEDO = Comparison("albedo", albedos, ALBEDOS, ENVIRONMENT_FAULTS)
 THROUGHPUT = Comparison("throughput", lambda case: throughputs(case, *LIGHT), _rests)
 TRANSMISSION = Comparison("throughput", lambda case: throughputs(case, "transmission"), _rests)
 # Of a utility node, or of an emission from the front.
-OUTPUT = Comparison("value", lambda case: map(case.valued.alike, values(case)), _alike)
+OUTPUT = Comparison(
+    "value", lambda case: map(case.valued.alike, values(case)), _alike, COLOR_FAULTS
+)
 BACK = Comparison("value", _backs, _alike)
 TRANSMITTANCE = Comparison("value", _transmittances, VALUES)
 
@@ -490,5 +501,7 @@ def diagnose_surroundings(compared: Compared, limit: float) -> Diagnosis:
     # With every normal turned around the sky is 1 minus itself.
     if np.sqrt(np.mean((compared.measured - (1.0 - compared.expected)) ** 2)) <= limit:
         return Diagnosis("the environment is looked up on the other side of the surface")
+    if np.sqrt(np.mean((compared.measured - sky(compared.batch.normal)) ** 2)) <= limit:
+        return Diagnosis("the environment is looked up on the viewer's side alone")
     wrong = absolute(compared.measured, compared.expected) > limit
     return Diagnosis(not_finite([compared]) or region([compared.batch], [wrong]) or UNKNOWN)

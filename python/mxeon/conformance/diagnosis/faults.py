@@ -70,6 +70,7 @@ def _of_colors() -> Iterator[Fault]:
         "the color is ignored; 0.18 is used instead",
         _input("color", lambda color: np.full_like(color, 0.18)),
     )
+    yield Fault("the color is clamped to 1", _input("color", lambda color: np.minimum(color, 1.0)))
     yield Fault("the color is squared", _input("color", np.square))
     yield Fault("the color is replaced by its square root", _input("color", np.sqrt))
 
@@ -107,7 +108,8 @@ def _of_weight() -> Iterator[Fault]:
     yield Fault("the weight is applied twice", values=_scaled(_column("weight")))
 
 
-INPUT_FAULTS = (*_of_weight(), *_of_colors(), *_of_roughness())
+COLOR_FAULTS = tuple(_of_colors())
+INPUT_FAULTS = (*_of_weight(), *COLOR_FAULTS, *_of_roughness())
 
 DIRECT_FAULTS = (
     *INPUT_FAULTS,

@@ -22,6 +22,7 @@ NAMED = {
     "color": COLORS,
 }
 FRAME = ("normal", "tangent", "curve_direction", "position")  # inputs whose ranges say nothing
+USUAL = {"weight": 1.0, "occlusion": 1.0}  # where a batch has none
 CHANNELS = "red", "green", "blue"
 # Largest share of the right values in a range of an input that has all wrong ones, and in one of an input that is
 # known to be the cause.
@@ -65,16 +66,17 @@ def span(cases: Sequence[Compared], tolerance: Tolerance, most: float = RIGHT) -
         return words
     batches = [case.batch for case in cases]
     for name in batches[0].inputs:
-        if name in FRAME or not all(name in batch.inputs for batch in batches):
+        given = [batch.inputs.get(name, USUAL.get(name)) for batch in batches]
+        if name in FRAME or any(each is None for each in given):
             continue
-        columns = [_rows(batch.inputs[name], len(batch.wo)) for batch in batches]
+        columns = [_rows(each, len(batch.wo)) for each, batch in zip(given, batches, strict=True)]
         for part, numbers in _parts(name, np.concatenate(columns), wrong):
             values = np.broadcast_to(numbers, bad.shape)
             low, high = float(values[bad].min()), float(values[bad].max())
             inside = {
                 f"{_short(high)} or below": values <= high,
                 f"{_short(low)} or above": values >= low,
-                f"between {_short(low)} and {_short(high)}": (low <= values) & (values <= high),
+                f"between {_range(low, high)}": (low <= values) & (values <= high),
             }
             if low == high:
                 inside = {_short(low): values == low}
@@ -121,8 +123,14 @@ def _is_no_chance(mask: Mask, bad: Mask) -> bool:
     return bool(odds * min(bad[mask].mean() / DENSITY, 1.0) >= CHANCE)
 
 
-def _short(number: float) -> str:
-    return f"{float(f'{number:.2g}'):g}"
+def _short(number: float, digits: int = 2) -> str:
+    return f"{float(f'{number:.{digits}g}'):g}"
+
+
+def _range(low: float, high: float) -> str:
+    """Two numbers, with as many digits as tell them apart."""
+    digits = 2 if _short(low) != _short(high) else 4
+    return f"{_short(low, digits)} and {_short(high, digits)}"
 
 
 def unreached(values: Mapping[str, Sequence[float]]) -> tuple[str, ...]:
@@ -152,6 +160,7 @@ def _directions(batch: Batch) -> Iterator[tuple[str, Mask]]:
     half = wo + wi
     upright = np.abs(half[:, :2]).max(axis=1) <= UPRIGHT * half[:, 2]
     yield "with the half vector along the normal", upright
+    yield "with the viewer along the tangent", (np.abs(wo) == [1.0, 0.0, 0.0]).all(axis=1)
     # By one cosine, then by both.
     for name, mu in (("viewer", mu_o), ("light", mu_i)):
         yield f"with the {name} along the normal", mu >= 1.0
@@ -159,6 +168,7 @@ def _directions(batch: Batch) -> Iterator[tuple[str, Mask]]:
         yield f"with the {name} on the horizon", mu == 0.0
         for limit in COSINES:
             yield f"with the {name}'s cosine in [0, {limit:g}]", (mu >= 0.0) & (mu <= limit)
+            yield f"with the {name}'s cosine {limit:g} or below", mu <= limit
     for limit in COSINES:
         yield (
             f"with both cosines in [0, {limit:g}]",
@@ -166,6 +176,7 @@ def _directions(batch: Batch) -> Iterator[tuple[str, Mask]]:
         )
     # By the side of the light, and by the angle between the two.
     yield "with light from below the horizon", mu_i < 0.0
+    yield "with light from above the horizon", mu_i > 0.0
     yield "with dot(V, L) above 0.999", dot > 0.999
     yield "with dot(V, L) above 0.99", dot > 0.99
     yield "with dot(V, L) below 0", dot < 0.0
@@ -177,7 +188,7 @@ def _inputs(batch: Batch) -> Iterator[tuple[str, Mask]]:
     count = len(batch.wo)
     roughness = batch.rough
     weight, occlusion = (
-        np.broadcast_to(batch.inputs.get(name, 1.0), count) for name in ("weight", "occlusion")
+        np.broadcast_to(batch.inputs.get(name, default), count) for name, default in USUAL.items()
     )
     colors = [batch.inputs[name] for name in COLORS if name in batch.inputs]
     color = np.broadcast_to(colors[0] if colors else 0.5, (count, 3))
@@ -204,6 +215,7 @@ def _inputs(batch: Batch) -> Iterator[tuple[str, Mask]]:
         yield "with a tilted cuticle", _rows(batch.inputs["cuticle_angle"], count)[:, 0] != 0.5
     # By colors and normals.
     yield "with a white color", (color == 1.0).all(axis=1)
+    yield "with a black color", (color == 0.0).all(axis=1)
     yield "with a gray color", (color == color[:, :1]).all(axis=1)
     yield "with a color channel at 0", (color == 0.0).any(axis=1)
     yield "with a color channel in [0, 0.001]", np.asarray((color <= 1e-3).any(axis=1))
