@@ -47,6 +47,8 @@ WRONG = {
         ('nodename="transmission_roughness" />\n      <input name="normal" type="vector3" interfacename="normal" />\n      <input name="tangent" type="vector3" nodename="main_tangent" />',
          'nodename="transmission_roughness" />\n      <input name="normal" type="vector3" interfacename="normal" />',
          "tangent of transmission_bsdf is missing instead of main_tangent"),
+        ('type="color3" nodename="opacity_luminance" />', 'type="color3" interfacename="opacity" />',
+         "in of opacity_luminance_float is the input opacity instead of opacity_luminance"),
     ),
     "gltf_pbr": (
         ('<input name="bg" type="BSDF" nodename="reflection_bsdf" />\n      <input name="fg" type="BSDF" nodename="tf_reflection_bsdf" />',

@@ -38,6 +38,7 @@ WRONG = {
     ("dielectric_bsdf, scatter_mode R", "value"): ("roughness.y, ior,", "roughness.y, 1.0 / ior,"),
     ("dielectric_bsdf, scatter_mode RT", "kept"): ('scatter_mode == "R" ?', 'scatter_mode == "" ?'),
     ("conductor_bsdf", "value"): ("lobe_ior, lobe_extinction", "lobe_extinction, lobe_ior"),
+    ("conductor_bsdf", "shape"): ('lobe_distribution = "ggx"', 'lobe_distribution = "beckmann"'),
     ("conductor_bsdf", "frame"): ("transform(geomprop_Tworld_space, normalize(dPdu))", "vector(1, 0, 0)"),
     ("conductor_bsdf, thin film", "film"):
         (', "thinfilm_thickness", lobe_thinfilm_thickness, "thinfilm_ior", lobe_thinfilm_ior', ""),
@@ -59,6 +60,7 @@ WRONG = {
 NAMED = {
     ("layer", "combination"): "fault: top and base are exchanged (rms ",
     ("mix", "combination"): "fault: top and base are exchanged (rms ",
+    ("conductor_bsdf", "shape"): "distribution of conductor_bsdf must be ggx",
     ("conductor_bsdf", "value"): "fault: ior and extinction are exchanged (rms ",
     ("sheen_bsdf, mode conty_kulla", "value"): "best match: Zeltner sheen (rms ",
     ("dielectric_bsdf, scatter_mode RT", "kept"): "mode R transmits light",

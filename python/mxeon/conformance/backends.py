@@ -406,6 +406,8 @@ class Closures(Evaluating):
         own = super().error(spec, quantity)
         if quantity == "states" and isinstance(spec, TransmissionSpec):
             return None  # a light shows nothing of what it transmits
+        if quantity == "retroreflection" and isinstance(spec, FilmSpec):
+            return None  # no closure has the flag, with a film or without
         if not isinstance(spec, LobeSpec):
             return own
         exact = GRAPH if isinstance(spec, SurfaceShaderSpec) else ARGUMENTS

@@ -135,8 +135,8 @@ def picture(image: Array, scene: Scene) -> Array:
     return np.where(visible(scene.size, scene.shape).mask[..., None], image[::-1], np.float32(0.0))
 
 
-# Of a picture's light in the middle of an animation: an evaluation looks like any frame to its shader.
-FRAME = light(SIDE) | {"u_frame": 24.0, "u_time": 1.0} | EVALUATION
+# Of two lights in the middle of an animation: an evaluation looks like any frame to its shader.
+FRAME = light(SIDE) | {"u_numActiveLightSources": 2, "u_frame": 24.0, "u_time": 1.0} | EVALUATION
 
 
 class FragmentHost(base.Host):

@@ -139,7 +139,7 @@ def _clear(batch: Batch, index: float = LEAST_DIVIDED, least_82: float = LEAST_C
 
 
 @check(
-    is_facets,
+    lambda spec: is_facets(spec) or isinstance(spec, FilmSpec),
     with_inputs("the flag is dropped", retroreflective=False),
     pairs=True,
     diagnose=diagnosis.ignored("retroreflective"),
@@ -184,14 +184,15 @@ def reflected_sky(case: Case) -> Iterator[Compared]:
 
     Means of the sky under each lobe, which one for a mirrored view has by retroreflection; factors cancel.
     """
-    batch, weights = case.samples.integrated
-    count, nodes = min(SKIES, len(weights)), weights.shape[1]
-    part = batch.first(count * nodes)
-    values = case.lobe.value(part).reshape(count, nodes, 3) * weights[:count, :, np.newaxis]
+    views = case.samples.take(case.of(FacetSpec).stretched)[0].first(SKIES)
+    wi, weights = case.of(FacetSpec).nodes(views.wo, dict(views.inputs), case.samples.counts.nodes)
+    part = views.where(np.repeat(np.arange(len(wi)), wi.shape[1]))
+    part = replace(part, wi=wi.reshape(-1, 3))
+    values = case.lobe.value(part).reshape(wi.shape) * weights[:, :, np.newaxis]
     albedo = values.sum(axis=1)
     bright = albedo.min(axis=1) > LEAST_VALUE
-    seen = (values * sky(part.wi).reshape(count, nodes, 3)).sum(axis=1)
-    views, mean = part.where(np.flatnonzero(bright) * nodes), seen[bright] / albedo[bright]
+    seen = (values * sky(part.wi).reshape(wi.shape)).sum(axis=1)
+    views, mean = views.where(bright), seen[bright] / albedo[bright]
     mirrored = replace(views, wo=views.wo * [-1.0, -1.0, 1.0])
     for each in (views, mirrored.altered(retroreflective=True)):
         yield Compared(each, case.albedo(each, sky_map()) / case.albedo(each), mean)
@@ -248,7 +249,8 @@ def diagnose_transmitted(case: Case) -> Diagnosis:
     }
     words = min(distances, key=lambda name: distances[name])
     known = distances[words] < max(NEAR * distance(lambda c: c.expected), SUMMED)
-    return Diagnosis("; ".join(filter(None, (words if known else "", not_finite(compared)))))
+    found = filter(None, (words if known else "", not_finite(compared)))
+    return Diagnosis("; ".join(found) or UNKNOWN)
 
 
 def _seen(spec: TransmissionSpec, batch: Batch, masked: bool = False) -> Array:

@@ -76,13 +76,15 @@ def _sky(kind: str) -> Build:
     return lambda pixels, rng: replace(pixels, sky=kind)
 
 
-def _frame(make: Callable[[Array], Array], along: bool = False, scaled: bool = False) -> Build:
+def _frame(
+    make: Callable[[Array, Random], Array], along: bool = False, scaled: bool = False
+) -> Build:
     """Frames made of random ones; the view may lie along the normal, the tangent may lean and have any length."""
 
     def build(pixels: Pixels, rng: Random) -> Pixels:
         batch = pixels.batch
         assert batch.frame is not None
-        frame = make(batch.frame)
+        frame = make(batch.frame, rng)
         normal, tangent = frame[:, :, 2], frame[:, :, 0]
         if scaled:
             length = 10.0 ** rng.uniform(-1.0, 1.0, (len(frame), 1))
@@ -94,16 +96,16 @@ def _frame(make: Callable[[Array], Array], along: bool = False, scaled: bool = F
     return build
 
 
-def _upright(frames: Array) -> Array:
+def _upright(frames: Array, rng: Random) -> Array:
     return np.broadcast_to(np.eye(3), frames.shape)
 
 
-def _axes(frames: Array) -> Array:
-    """Frames whose normals are the axes in both directions, one after the other."""
+def _axes(frames: Array, rng: Random) -> Array:
+    """Frames whose normals are the axes in both directions, in any order, and whose tangents are axes or not."""
     turns = [np.roll(np.eye(3), shift, axis=0) for shift in range(3)]
-    return np.resize(
-        [turn * sign for turn in turns for sign in ([1, 1, 1], [1, -1, -1])], frames.shape
-    )
+    tangents = np.eye(3), np.array([[0.6, -0.8, 0.0], [0.8, 0.6, 0.0], [0.0, 0.0, 1.0]])
+    rows = product(tangents, turns, ([1, 1, 1], [1, -1, -1]))
+    return rng.permutation([turn * sign @ tangent for tangent, turn, sign in rows])
 
 
 def _shape(columns: float = 0.0, rows: float = 0.0) -> Build:
@@ -180,7 +182,7 @@ AXES: dict[str, dict[str, Build]] = {
     },
     "frame": {
         "the surface's frame": _frame(_upright),
-        "a turned frame": _frame(lambda frames: frames),
+        "a turned frame": _frame(lambda frames, rng: frames),
         "a tangent that leans and is not of length 1": _frame(_upright, scaled=True),
         "the normal on an axis": _frame(_axes),
         "the normal on an axis: the view along it": _frame(_axes, along=True),

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from mxeon.conformance.reference.nodes import DIFFUSE, NOTHING, Albedo, ShadingPoints
 from mxeon.conformance.samples import Array
-from mxeon.errors import OutsideModel
+from mxeon.errors import OutsideModel, ShaderError
 from mxeon.hosts.base import Host, Inputs
 from mxeon.hosts.osl.carriers import LAYER, MIX, OPERATIONS, SUM
 from mxeon.hosts.osl.trees import ClosureTree
@@ -35,6 +35,7 @@ Arguments: TypeAlias = Mapping[str, Array]
 THROUGH, GRAPH = "transmission", "graph"  # branches of `Host.evaluate`
 ONE = np.ones((1, 1))
 LEAST_HAIR = 1e-12  # roughness, below which the model is a delta
+GGX = "ggx"  # the facets' only distribution
 EMISSION, MEDIUM, HAIR = "uniform_edf", "anisotropic_vdf", HAIR_NODE.category
 LIGHTLESS = (EMISSION, MEDIUM, "transparent")  # closures that scatter no light at the surface
 SCHLICK = node("schlick")
@@ -102,6 +103,10 @@ class Views:
 
     def _lobe(self, closure: ClosureTree, row: PbrNode, layered: bool) -> Bsdf:
         """A lobe in its frame; stdosl.h lets through a layer what its top does not reflect."""
+        if (facets := closure.arguments.get("distribution", GGX)) != GGX:
+            raise ShaderError(
+                f"osl: distribution of {closure.name} must be {GGX}, as that of the node; got {facets}"
+            )
         wo, wi = self._directions(closure)
         inputs = _inputs(closure, row)
         # Schlick's curve has no tint of its own, and the closure has one.

@@ -107,7 +107,10 @@ LEAST, LARGEST = 1e-3, 16.0  # coefficients, 1/m: of 1e-3 and 1 - 1e-7 of the li
 INPUTS = {
     each.name: each
     for each in (
-        *(color(name, BLUE, ORANGE, edges=()) for name in ("color", BASE, FIRST)),
+        *(
+            replace(color(name, BLUE, ORANGE, edges=()), high=2.0)
+            for name in ("color", BASE, FIRST)
+        ),
         color(SECOND, (0.9, 0.1, 0.3), (0.1, 0.2, 0.3), edges=()),
         Input(AMOUNT, change=0.3, materials=(0.25, 0.75), default=0.5),
         color("color0", (0.1, 0.4, 0.9), (0.8, 0.5, 0.2), edges=()),
@@ -141,9 +144,14 @@ OPACITIES = (0.0, 0.25, 1.0)
 # By name of the row.
 ERRORS = {
     # Ten roundings of 1 - cos of both angles, of which a view takes 1 - mu in all, and two of differences.
-    "conical": sum_of(roundings(12, "relative to 1 and the slope"), unit="radiance and its slope"),
+    "conical": sum_of(
+        roundings(2 * 12, "relative to 1 and the slope, of colors up to 2"),
+        unit="radiance and its slope",
+    ),
     "schlick_emission": sum_of(
-        roundings(8), roundings(EXPONENTS[1], "to the power of 20"), unit=UNIT
+        roundings(2 * 8),
+        roundings(2 * EXPONENTS[1], "of a color of 2 to the power of 20"),
+        unit=UNIT,
     ),
 }
 UNIFORM = sum_of(roundings(6, "three of each emission and its factor"), unit=UNIT)
@@ -208,7 +216,10 @@ class ConeSpec(EmissionSpec):
     """An emission inside a cone, whose axis is an input."""
 
     def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        """Half of the cones have a falloff, of at least LEAST_FALLOFF degrees; a quarter are narrow."""
+        """Half of the cones have a falloff, of at least LEAST_FALLOFF degrees; a quarter are narrow.
+
+        Of those without one, some have twice the same angle.
+        """
         inputs, turn, wide = (
             super().random_inputs(rng, count),
             rng.random(count),
@@ -217,7 +228,7 @@ class ConeSpec(EmissionSpec):
         inner = 360.0 * np.where(rng.random(count) < 0.25, LEAST_CONE**turn, turn)
         inner = np.where(wide, inner * (1.0 - LEAST_FALLOFF / 360.0), inner)
         more = LEAST_FALLOFF * ((360.0 - inner) / LEAST_FALLOFF) ** rng.random(count)
-        outer = np.where(wide, inner + more, inner * rng.random(count))
+        outer = np.where(wide, inner + more, inner * np.minimum(1.2 * rng.random(count), 1.0))
         return inputs | {INNER: float32(inner), OUTER: float32(outer)}
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:

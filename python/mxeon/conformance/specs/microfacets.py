@@ -73,7 +73,7 @@ INDEX = Input(
     edges=(1.0, 1.5, 3.0),
     change=1.6,
     materials=(1.5, 1.2),
-    beyond=(0.0, 0.2, 4.0, 10.0, 100.0),
+    beyond=(0.0, 0.2, 1.02, 4.0, 10.0, 100.0),
 )
 FILM: Values = {"thinfilm_thickness": 400.0}
 # A film on nothing, for which MaterialX's average is off by most; its row has no special light in `domain`.
@@ -129,7 +129,7 @@ INPUTS = {
             type="color3",
             change=(0.9, 1.1, 1.6),
             materials=((0.2, 0.9, 1.1), (1.5, 0.6, 2.0)),
-            beyond=(0.05, 5.0, 10.0),
+            beyond=(0.0, 0.05, 0.18, 5.0, 10.0),
         ),
         Input(
             "extinction",
@@ -219,6 +219,7 @@ FRAME = sum_of(
 A_COSINE, THREE_COSINES = "the fit of a cosine, which", "F_ss in three cosines,"
 # Outside the domains of fits: a quantity, an input, its value, and the largest error that was found there.
 BEYOND: tuple[tuple[str, str, float, float, str], ...] = (
+    ("throughput", "ior", 1.02, 0.026, f"{A_COSINE} begins at index 1.03"),
     ("throughput", "ior", 4.0, 0.03, f"{A_COSINE} ends at index 3"),
     ("throughput", "ior", 10.0, 0.1, f"{A_COSINE} ends at index 3"),
     ("throughput", "ior", 100.0, 0.17, f"{A_COSINE} ends at index 3"),
@@ -297,9 +298,11 @@ class FacetSpec(PbrSpec):
         return tuple(batch.where(_has_curve(batch)) for batch in super().batches(counts))
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        return tuple(
-            replace(batch, inputs=simple(batch.inputs)) for batch in super().views(batches, counts)
-        )
+        """Views whose smoothest lobes are mirrors, which have an albedo, but no values."""
+        rows = [(batch, simple(batch.inputs)) for batch in super().views(batches, counts)]
+        for _, inputs in rows:
+            inputs["roughness"][inputs["roughness"] < LEAST_ALPHA] = 0.0
+        return tuple(replace(batch, inputs=inputs) for batch, inputs in rows)
 
     def mirrored(self, counts: Counts) -> tuple[Batch, Batch]:
         """Two lights near the mirror direction of each view, by normals that the view sees."""
@@ -508,6 +511,7 @@ FILM_ERRORS = {
     "film_limit": sum_of(Term(4.4e-3 * COMPENSATED, "F_ss in three cosines, times 0.6")),
     # Of the compensation a mirror has another share than a film.
     "film_energy": VALUE,
+    "retroreflection": BURLEY_VALUE,
     "film_average": _mean(7e-3, "F_ss in three cosines of films of 50 to 1000 nm"),
     "film_smooth": _mean(1e-5, "F_ss in three cosines, times what a lobe of alpha 0.04 loses"),
     "film_visible": _mean(1.9e-3, "visible facets in three cosines, films of 50 to 100 nm"),

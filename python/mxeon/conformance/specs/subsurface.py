@@ -111,6 +111,14 @@ ON_SPHERES = (
         "the profile, whatever the sign of the anisotropy",
         lambda batch: spread(batch, anisotropy=abs(batch.inputs["anisotropy"])),
     ),
+    Candidate(
+        "the profile, whatever an anisotropy below 0",
+        lambda batch: spread(batch, anisotropy=max(batch.inputs["anisotropy"], 0.0)),
+    ),
+    Candidate(
+        "the profile, with red and blue of the radius exchanged",
+        lambda batch: spread(batch, radius=np.array(batch.inputs["radius"])[..., ::-1]),
+    ),
     Candidate("MaterialX's blur along a circle of radius 1", _around),
     *(
         Candidate(

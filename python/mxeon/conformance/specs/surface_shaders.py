@@ -236,7 +236,7 @@ class SurfaceShaderSpec(LobeSpec):
                 values *= rng.choice((LEAST, 1.0), count)  # near a threshold at 0
             inputs[name] = values
         for name in self.unseen:
-            share = rng.random(count)
+            share = rng.random((count, 3) if name == "opacity" else count)
             inputs[name] = np.floor(3.0 * share) if name == "alpha_mode" else share
         for name, values in inputs.items():
             values[rng.random(count) > (SELDOM if name in self.further else OFTEN)] = np.nan
