@@ -160,6 +160,8 @@ WRONG = {
         ("mx_burley_diffuse_bsdf.glsl", "mx_burley_diffuse(NdotV, NdotL", "mx_burley_diffuse(NdotV, NdotV",
          "reciprocity", "no known model matches, the closest is Burley diffuse"),
         ("mx_burley_diffuse_bsdf.glsl", "* M_PI_INV;", "* M_PI_INV + 0.001;", "black", ""),
+        ("genglsl/burley_diffuse_bsdf.glsl", "N = mx_forward_facing_normal(N, wo);", "N = closureData.N;", "frame",
+         "branch direct: normal is ignored"),
         ("mx_burley_diffuse_bsdf.glsl", "(N, V);", "(vec3(0.0, 0.0, 1.0), V);", "frame",
          "branch direct: the node's normal is ignored; the surface's is used instead"),
     ),

@@ -461,7 +461,7 @@ def diagnose_frame(case: Case) -> Diagnosis:
         else:
             # Where it is wrong, or which axis has no effect.
             text = not_finite([compared]) or region([compared.batch], [wrong])
-            text = text or without_effect(case, "tangent")
+            text = text or without_effect(case, "normal") or without_effect(case, "tangent")
             text = text or without_effect(case, "curve_direction") or UNKNOWN
         return Diagnosis(f"branch {branch}: {text}")
     return Diagnosis(UNKNOWN)
