@@ -34,6 +34,8 @@ class Mutant:
     equivalent: bool  # the same function on the whole valid domain
     survives: bool  # no check notices it, for that reason
     tests: tuple[str, ...] = ()  # files of tests that are asked first about a wrong reference
+    operator: str = ""  # that made it, and where in the file it found what it changes
+    place: tuple[int, int] = (0, 0)
 
     def texts(self) -> dict[str, str]:
         """Text of each mutated file, by its path: of the functions in GLSL, that in OSL as well."""

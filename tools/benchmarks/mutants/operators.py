@@ -1,14 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Mutants of every shader by rule: each operator at each place where it applies."""
 
-import random
 import re
+import tomllib
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import cache
+from hashlib import sha256
+from pathlib import Path
 
 from tools.benchmarks.mutants.mutant import ROOT, Mutant, read_table
 
 GROUP = "Operators"
+SURVIVORS = Path(__file__).with_name("survivors.toml")  # lines => wrong ones that nothing notices
 FOLDERS = ("genglsl", "genosl")
 COMMENT = re.compile(
     r"//[^\n]*|/\*.*?\*/|^[ \t]*#(?:include|if|el|end|pragma|undef)[^\n]*", re.M | re.S
@@ -46,10 +50,16 @@ OPERATORS = {
 
 
 def made(seed: int, share: float) -> tuple[Mutant, ...]:
-    """A share in (0, 1] of the mutants that the operators make, the same for the same seed."""
-    mutants = every()
-    chosen = random.Random(seed).sample(range(len(mutants)), round(share * len(mutants)))
-    return tuple(mutants[place] for place in sorted(chosen))
+    """A share in (0, 1] of the mutants that the operators make.
+
+    A digest decides, so that for the same seed a mutant is chosen or not whatever the others are.
+    """
+    return tuple(each for each in every() if _fraction(f"{seed} {each.file} {each.new}") < share)
+
+
+def _fraction(text: str) -> float:
+    """A number in [0, 1) that looks random."""
+    return int.from_bytes(sha256(text.encode()).digest()[:6]) * 2.0**-48
 
 
 def _digest(mutant: Mutant) -> tuple[str, str]:
@@ -59,10 +69,18 @@ def _digest(mutant: Mutant) -> tuple[str, str]:
 
 @cache
 def every() -> tuple[Mutant, ...]:
-    """All of them; where the table lists a survivor with the same text, that."""
-    survivors = {_digest(each): each for each in read_table() if each.survives}
-    found = (each for name in files() for each in mutants_of(name))
-    return tuple(survivors.get(_digest(each), each) for each in found)
+    """All of them, those that survive with the reason in the table, which has the same text, or in SURVIVORS."""
+    table = {_digest(each): each.reason for each in read_table() if each.survives}
+    listed = tomllib.loads(SURVIVORS.read_text(encoding="utf-8"))["survivors"]
+    reasons = {
+        (group["file"], line): group["reason"] for group in listed for line in group["lines"]
+    }
+    found = []
+    for each in (each for name in files() for each in mutants_of(name)):
+        change = " ".join(f"{each.old} => {each.new}".split())
+        reason = table.get(_digest(each)) or reasons.get((each.file, change))
+        found.append(replace(each, reason=reason, survives=True) if reason else each)
+    return tuple(found)
 
 
 @cache
@@ -76,7 +94,7 @@ def mutants_of(file: str) -> Iterator[Mutant]:
     """Mutants of a file, each text once; those whose twin in OSL differs at the place are left out."""
     texts = set()
     text = (ROOT / file).read_text(encoding="utf-8")
-    code = COMMENT.sub(lambda match: re.sub(r"\S", " ", match[0]), text)
+    code = code_of(text)
     for operator, pattern in OPERATORS.items():
         match = pattern.search(code)
         while match:
@@ -86,7 +104,8 @@ def mutants_of(file: str) -> Iterator[Mutant]:
             column = match.start() - text.rfind("\n", 0, match.start())
             name = f"{operator}, {file}:{line}:{column}, {len(found)}"
             reason = f"{found.strip()!r} becomes {put.strip()!r}"
-            mutant = Mutant(name, GROUP, file, old, new, reason, "gl", False, False)
+            place = operator, match.span()
+            mutant = Mutant(name, GROUP, file, old, new, reason, "gl", False, False, (), *place)
             match = pattern.search(code, match.start() + 1)  # which may overlap this one
             try:
                 made = mutant.texts()[file]
@@ -95,6 +114,11 @@ def mutants_of(file: str) -> Iterator[Mutant]:
             if made not in texts:
                 texts.add(made)
                 yield mutant
+
+
+def code_of(text: str) -> str:
+    """A source with blanks instead of comments and includes."""
+    return COMMENT.sub(lambda match: re.sub(r"\S", " ", match[0]), text)
 
 
 def changed(operator: str, code: str) -> str:

@@ -1,0 +1,379 @@
+# SPDX-License-Identifier: Apache-2.0
+"""All mutants of the operators in one program: a uniform chooses the one that is there.
+
+Each place of a mutant becomes an expression that is the original unless the uniform `mutant` has its number: ` + `
+becomes ` + mutant_sign(mutant == 7) * `. So a node's shader compiles once for hundreds of mutants, each of which
+then takes the milliseconds of a check on its subset of samples. Mutants that cannot be written so, in constant
+expressions or of integers, are returned as such: each of them needs a separate library, as those of the table do.
+"""
+
+import re
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import closing
+from dataclasses import dataclass, replace
+from functools import cache, lru_cache, partial
+from typing import cast
+
+import moderngl
+import numpy as np
+from numpy.typing import ArrayLike
+
+from mxeon.conformance.backends import Evaluating
+from mxeon.conformance.cache import EVALUATIONS, Recent
+from mxeon.conformance.case import Case, make_case
+from mxeon.conformance.check import Check
+from mxeon.conformance.checks import CHECKS
+from mxeon.conformance.samples import Array
+from mxeon.conformance.shader_functions import (
+    FunctionProbe,
+    _scale,
+    expected,
+    random_columns,
+    row_of,
+)
+from mxeon.conformance.spec import Spec
+from mxeon.conformance.specs import DIFFUSE, PBRLIB, PLAIN_LOBES
+from mxeon.conformance.specs.combinations import CombinedSpec
+from mxeon.conformance.specs.microfacets import FILM_SPECS
+from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
+from mxeon.conformance.tolerance import Tolerance
+from mxeon.errors import NotRun, ShaderError
+from mxeon.hosts import gl
+from mxeon.shaders.functions import EACH as EVERY
+from mxeon.shaders.functions import STEMS, parts, source_file
+from tools.benchmarks.mutants import operators
+from tools.benchmarks.mutants.mutant import ROOT, Mutant
+from tools.benchmarks.mutants.trial import SURVIVED
+
+KINDS = ("float", "vec2", "vec3", "vec4")
+ONE = "{0} mutant_{1}(bool m, {0} x) {{ return m ? {2} : {3}; }}\n"
+TWO = "{0} mutant_{1}(bool m, {0} a, {4} b) {{ return m ? {2}(a, b) : {3}(a, b); }}\n"
+CALLS = ("sqrt", "abs", "exp", "log", "sin", "cos", "tan", "acos", "asin", "atan")
+HELPERS = "uniform int mutant;\nfloat mutant_sign(bool m) { return m ? -1.0 : 1.0; }\n" + "".join(
+    ONE.format(kind, "one", f"{kind}(1.0)", "x")
+    + ONE.format(kind, "zero", f"{kind}(0.0)", "x")
+    + ONE.format(kind, "over", "1.0 / x", "x")
+    + "".join(ONE.format(kind, call, "x", f"{call}(x)") for call in CALLS)
+    + "".join(
+        TWO.format(kind, *pair, other)
+        for pair in (("min", "max", "min"), ("max", "min", "max"))
+        for other in dict.fromkeys((kind, "float"))
+    )
+    for kind in KINDS
+)
+NUMBER = re.compile(r"\(mutant == (\d+)\)")
+CHANNELS = {name: place for names in ("xyzw", "rgba") for place, name in enumerate(names)}
+ERROR = re.compile(r"\b\d+:(\d+)\(\d+\): error")
+
+
+@dataclass(frozen=True)
+class Edit:
+    """Text that comes before and after a part of a source, or in the place of a token."""
+
+    start: int
+    end: int
+    before: str
+    after: str = ""
+    token: bool = False
+
+
+def edits(number: int, mutant: Mutant, code: str) -> list[Edit]:
+    """How a mutant is written; none where the operator's place has another form."""
+    operator, (start, end), on = mutant.operator, mutant.place, f"(mutant == {number})"
+    found, put = code[start:end], operators.changed(mutant.operator, code[start:end])
+
+    def wrapped(start: int, end: int, name: str) -> Edit:
+        return Edit(start, end, f"mutant_{name}({on}, ", ")")
+
+    if operator in ("constant", "unit"):
+        return [Edit(start, end, f"({on} ? {float(put)!r} : ", ")")]
+    if operator == "sign" and "=" in found:
+        return [Edit(end, code.index(";", end), f"mutant_sign({on}) * (", ")")]
+    if operator == "sign":
+        return [Edit(end, end, f"mutant_sign({on}) * ")]
+    if operator == "negative" and code[:start].rstrip()[-1:] != "/":
+        return [Edit(start, end, f"mutant_sign(!{on}) * ", token=True)]
+    if operator == "product" and (last := _operand(code, end)):
+        return [wrapped(end, last, "over")]
+    if operator == "comparison":
+        return [Edit(end, _end(code, end), "", f" != {on}")]
+    if operator == "channel":
+        old, new = (CHANNELS[each[1]] for each in (found, put))
+        return [Edit(start, end, f"[{on} ? {new} : {old}]", token=True)]
+    if operator == "bound":
+        return [Edit(start, end, f"mutant_{found}{on}, ", token=True)]
+    if found in CALLS:
+        return [Edit(start, end + 1, f"mutant_{found}({on}, ", token=True)]
+    if found == "!":
+        return [Edit(start, end, f"{on} == ", token=True)]
+    if operator == "factor":
+        last = found.startswith((" * ", " / "))
+        return [wrapped(start + 3, end, "one") if last else wrapped(start, end - 3, "one")]
+    if operator == "term" and found.startswith((" + ", " - ")):
+        return [wrapped(start + 3, end, "zero")]
+    if operator == "term":
+        sign = [Edit(end, end, f"mutant_sign({on}) * ")] if found.endswith(" - ") else []
+        return [wrapped(start, end - 3, "zero"), *sign]
+    if operator in ("yes", "no"):
+        return [Edit(start, end, f"({on} || " if operator == "yes" else f"(!{on} && ", ")")]
+    if operator == "statement":
+        first = start + len(found) - len(found.lstrip())
+        return [Edit(first, first, f"if (!{on}) ")]
+    return []
+
+
+def _operand(code: str, place: int) -> int:
+    """Where a name, a number, a call or a part in parentheses ends; 0 where there is none."""
+    start, depth = place, 0
+    for each in re.compile(r"-?[\w.]+|[(\[]|[)\]]|[^\w.()\[\]]+").finditer(code, place):
+        depth += {"(": 1, "[": 1, ")": -1, "]": -1}.get(each[0], 0)
+        if depth < 0 or (not depth and not re.fullmatch(r"-?[\w.]+|[)\]]", each[0])):
+            break
+        place = each.end()
+    return place if place > start else 0
+
+
+def _end(code: str, place: int) -> int:
+    """Where the right side of a comparison ends."""
+    depth = 0
+    for each in re.compile(r"[()\[\]]|[;,?:]|&&|\|\|").finditer(code, place):
+        depth += {"(": 1, "[": 1, ")": -1, "]": -1}.get(each[0], 0)
+        if depth < 0 or (not depth and each[0] not in "()[]"):
+            return len(code[: each.start()].rstrip())
+    return place
+
+
+def instrumented(text: str, mutants: Mapping[int, Mutant]) -> str:
+    """A source with all its mutants, by their numbers."""
+    code = operators.code_of(text)
+    made = [each for number, mutant in mutants.items() for each in edits(number, mutant, code)]
+    opens: dict[int, list[str]] = {}
+    closes: dict[int, list[str]] = {}
+    tokens: dict[int, Edit] = {}
+    for each in sorted(made, key=lambda each: (each.start, -each.end)):  # the outer ones first
+        if each.token:
+            tokens.setdefault(each.start, each)
+        else:
+            opens.setdefault(each.start, []).append(each.before)
+            closes.setdefault(each.end, []).insert(0, each.after)
+    parts, place = [], 0
+    for at in sorted({*opens, *closes, *tokens, len(text)}):
+        if at >= place:  # not inside of a token
+            parts += [text[place:at], *closes.get(at, ()), *opens.get(at, ())]
+            place = at
+        if at in tokens:
+            parts.append(tokens[at].before)
+            place = tokens[at].end
+    return "".join(parts)
+
+
+class Host(gl.Host):
+    """The gl host, whose shaders have the mutants `alive`, of which `mutant` is there; 0 for none."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.alive: dict[int, Mutant] = {}
+        self.mutant = 0
+        self.unwritten: set[int] = set()  # that no program can have
+        self._made = lru_cache(maxsize=gl.PROGRAMS)(self._schema)
+        self._program = self._chosen  # type: ignore[assignment]
+
+    def take(self, mutants: dict[int, Mutant]) -> None:
+        """Have these mutants instead of the others."""
+        self.alive = mutants
+        self._made.cache_clear()
+
+    def close(self) -> None:
+        self._program = self._made
+        super().close()
+
+    def _chosen(self, vertex: str, pixel: str) -> moderngl.Program:
+        program = self._made(vertex, pixel)
+        gl._set(program, {"mutant": self.mutant})
+        return program
+
+    def _schema(self, vertex: str, pixel: str) -> moderngl.Program:
+        while True:
+            text = self._written(pixel)
+            try:
+                return gl._program(self._context, vertex, text)
+            except ShaderError as error:
+                if not (wrong := _numbers_at(text, str(error))):
+                    raise
+                self.unwritten |= wrong
+
+    def _written(self, pixel: str) -> str:
+        files: dict[str, dict[int, Mutant]] = {}
+        for number, mutant in self.alive.items():
+            if number not in self.unwritten:
+                files.setdefault(mutant.file, {})[number] = mutant
+        helpers = HELPERS
+        for file, mutants in files.items():
+            if (chunk := chunk_of(file)) in pixel:
+                start = (ROOT / file).read_text(encoding="utf-8").index(chunk)
+                moved = {
+                    number: replace(each, place=(each.place[0] - start, each.place[1] - start))
+                    for number, each in mutants.items()
+                    if each.place[0] >= start
+                }
+                made = instrumented(chunk, moved)
+                self.unwritten |= mutants.keys() - set(map(int, NUMBER.findall(made)))
+                pixel = pixel.replace(chunk, f"/*mutants*/{made}")
+        return pixel.replace("/*mutants*/", helpers, 1)
+
+    def numbers_in(self, pixel: str) -> list[int]:
+        """The mutants alive of the sources that a shader's text has."""
+        known = {
+            file for file in {each.file for each in self.alive.values()} if chunk_of(file) in pixel
+        }
+        return [number for number, each in self.alive.items() if each.file in known]
+
+
+def _numbers_at(text: str, error: str) -> set[int]:
+    """The mutants on the lines of errors, or on the nearest ones before them."""
+    lines, found = text.splitlines(), set[int]()
+    for place in map(int, ERROR.findall(error)):
+        numbers = (NUMBER.findall(line) for line in reversed(lines[max(0, place - 12) : place]))
+        found.update(map(int, next(filter(None, numbers), ())))
+    return found
+
+
+@cache
+def chunk_of(file: str) -> str:
+    """A source without its includes and the comments above them, as a shader's text has it."""
+    text = (ROOT / file).read_text(encoding="utf-8")
+    return re.split(r"^#include .*\n", text, flags=re.M)[-1].strip()
+
+
+# Checks that take long are asked about what the others let pass.
+LATE = (
+    *("frame", "finite", "layer", "integral", "energy", "states", "lossless", "domain", "sky"),
+    *("narrow_lobes", "tilted_lobes", "wide_lobes", "straight_views", "low_index", "each_lobe"),
+)
+COMPOSED = (CombinedSpec, SurfaceShaderSpec)  # of lobes that are judged alone
+UNWRITTEN = "unwritten"
+OSL_TWINS = {
+    source_file("osl", stem).relative_to(ROOT).as_posix()
+    for stem in (*STEMS, "ggx_albedo", "conty_kulla_albedo")
+}
+# What no check of a node runs: text for path tracers, and functions that OSL alone calls.
+APART = ("genglsl/path/", "genglsl/lib/hair_parameters.glsl")
+EACH = 8  # of so many points of a shader function, one
+GROUP = 1024  # mutants of a program: the driver takes longer the more there are
+Asked = Callable[[], Iterator[tuple[str, bool]]]  # checks, and whether each failed
+Subject = tuple[str, bool, str, Asked]
+
+
+def trials(mutants: Sequence[Mutant]) -> dict[str, str]:
+    """By name of each mutant of a node's GLSL, or of a function that OSL has in the same text: what notices it.
+
+    That is a check and its subject. Others have SURVIVED, or are UNWRITTEN.
+    """
+    twins = [each for each in mutants if each.file in OSL_TWINS]
+    own = [each for each in mutants if each.file.startswith("genglsl/")]
+    mutants = [each for each in own if not each.file.startswith(APART)]
+    found = {each.name: SURVIVED for each in mutants}
+    numbered = list(enumerate(mutants, 1))
+    with closing(Host()) as host, np.errstate(all="ignore"), warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        asked = list(subjects(host))
+        for start in range(0, len(mutants), GROUP):
+            host.take(dict(numbered[start : start + GROUP]))
+            for number, words in noticed(host, asked):
+                found[mutants[number - 1].name] = words
+        found |= {mutants[number - 1].name: UNWRITTEN for number in host.unwritten}
+    return found | {each.name: "languages" if is_another_text(each) else SURVIVED for each in twins}
+
+
+def is_another_text(mutant: Mutant) -> bool:
+    """Whether a mutant of OSL has a function or constant that is not that of GLSL, as the check `languages` reads them."""
+    texts = (ROOT / mutant.file.replace("osl", "glsl")).read_text(), mutant.texts()[mutant.file]
+    glsl, osl = (parts(operators.COMMENT.sub(" ", each)) for each in texts)
+    return glsl != osl
+
+
+def noticed(host: Host, asked: Sequence[Subject]) -> Iterator[tuple[int, str]]:
+    """The numbers of mutants that are noticed, which are alive no more, and by what."""
+    seen: set[int] = set()
+    for title, composed, text, ask in asked:
+        own = [each for each in host.numbers_in(text) if not composed or each not in seen]
+        for number in own:
+            host.mutant = number
+            for check, failed in ask() if number not in host.unwritten else ():
+                if failed and number not in host.unwritten:
+                    del host.alive[number]
+                    yield number, f"{check}, {title}"
+                    break
+        seen.update(each for each in own if not composed)
+        host.mutant = 0
+
+
+def subjects(host: Host) -> Iterator[Subject]:
+    """What has mutants: a title, whether it is composed of others, its text, and what asks its checks."""
+    functions = Functions(host)
+    yield "functions", False, functions.text, functions
+    # Films before what has their code without a film.
+    specs = dict.fromkeys((*DIFFUSE, *PLAIN_LOBES, *FILM_SPECS, *PBRLIB))
+    cases = [_case(host, spec) for spec in specs if spec.title != "measured_edf"]
+    for late in (False, True):
+        for case in cases:
+            composed, text = isinstance(case.spec, COMPOSED), case.evaluating.shader.stages["pixel"]
+            yield case.spec.title, composed, text, partial(node, case, _rows(case, late))
+
+
+def _case(host: Host, spec: Spec) -> Case:
+    """A node with a subset of its samples."""
+    return replace(make_case(Evaluating, host, spec, "eonlib"), control=True)
+
+
+def _rows(case: Case, late: bool) -> Callable[[], list[tuple[Check, Tolerance]]]:
+    """Checks with their tolerances, which are measured when they are first asked for."""
+
+    @cache
+    def rows() -> list[tuple[Check, Tolerance]]:
+        own = [each for each in CHECKS if not each.profile and (each.key in LATE) == late]
+        own = [each for each in own if each.applies_to(case.spec, Evaluating, "gl")]
+        return [(each, each.tolerance or case.tolerance(each.quantity)) for each in own]
+
+    return rows
+
+
+class Functions:
+    """The shader functions, all by one call, at some of the points at which they are judged."""
+
+    def __init__(self, host: Host) -> None:
+        self._host, self.language = host, host.language
+        probe = FunctionProbe(cast(gl.Host, self), "eonlib")
+        self.text, self._rows = probe.text, []
+        names = list(probe._values(1.0))
+        for name in names:
+            row, exact = row_of(name), expected(name, random_columns())
+            scale = np.broadcast_to(_scale(name), exact.shape)[::EACH]
+            self._rows.append((row.key, probe.tolerance(row), scale, scale * exact[::EACH]))
+
+    def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
+        """The host's answer; of a call of all functions, the points are kept."""
+        if function == EVERY:
+            points = np.arange(len(np.asarray(arguments[0]))) % EACH == 0
+            self._asked = source, function, *(np.asarray(each)[points] for each in arguments)
+        return self._host.execute(source, function, *arguments)
+
+    def __call__(self) -> Iterator[tuple[str, bool]]:
+        values = self._host.execute(*self._asked).astype(np.float64)
+        parts_of = np.split(values, len(self._rows))
+        for each, (key, tolerance, scale, exact) in zip(parts_of, self._rows, strict=True):
+            error = tolerance.metric(scale * each[:, : scale.shape[1]], exact).max()
+            yield key, not error <= tolerance.value
+
+
+def node(
+    case: Case, rows: Callable[[], list[tuple[Check, Tolerance]]]
+) -> Iterator[tuple[str, bool]]:
+    """Whether each check of a node fails."""
+    case.backend._evaluations = Recent(EVALUATIONS)
+    for check, tolerance in rows():
+        try:
+            yield check.key, not check.measured(case, tolerance.metric).error <= tolerance.value
+        except (NotRun, ShaderError):
+            yield check.key, True
