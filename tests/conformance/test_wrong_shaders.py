@@ -35,7 +35,7 @@ WRONG = {
          "fault: the color channels are exchanged: they arrive as blue, green, red (rms "),
         (LOBE, "energy_compensation ? eon_brdf_mu", "!OLD", "value", ", as with energy_compensation false"),
         (LOBE, "N = mx_forward_facing_normal(N, wo);", "if (fwidth(color.r) + fwidth(roughness) == 0.0) color *= 0.5;\n    OLD",
-         "states", "all with constant inputs"),
+         "states", " constant inputs"),
         (LOBE, "N = mx_forward_facing_normal(N, wo);", "roughness += 0.5 * dFdx(roughness);\n    OLD", "value",
          "the worst are right beside pixels with the same inputs"),
         # Shaders that look for a judge: a main of another name, a frame with one light.
@@ -357,6 +357,26 @@ def test_a_color_that_is_not_decoded_from_srgb_is_named(judged, tmp_path, host):
     result = judged("color_space", "burley_diffuse_bsdf", host, str(tmp_path))
     assert result.verdict == FAILED and result.control.caught
     assert "best match: the color, not decoded from sRGB (rms " in result.diagnosis
+
+
+@pytest.mark.parametrize("host", ["gl", "webgl", "vulkan", "wgsl"])
+@pytest.mark.parametrize(
+    "old, new",
+    [
+        (").rgb", ").bgr"),
+        ("result = ", "uv = uv.yx;\n    result = "),
+        ("result = ", "uv = vec2(0.5);\n    result = "),
+        (").rgb", ").rgb;\n    result = pow(max(result, vec3(0.0)), vec3(2.2))"),
+    ],
+)
+def test_a_color_that_an_image_node_reads_wrongly_is_wrong_in_inputs_from_an_image(
+    judged, tmp_path, host, old, new
+):
+    file = "stdlib/genglsl/mx_image_color3.glsl"
+    replace_text(copy_of_stock(tmp_path, file), old, new, file)
+    result = judged("states", "burley_diffuse_bsdf", host, str(tmp_path))
+    assert result.verdict == FAILED and result.control.caught
+    assert result.diagnosis.endswith("all with inputs from an image")
 
 
 def test_every_check_of_a_node_has_a_shader_that_it_fails(stock, run):

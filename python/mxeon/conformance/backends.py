@@ -51,6 +51,7 @@ from mxeon.conformance.specs.subsurface import SubsurfaceSpec
 from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
 from mxeon.conformance.specs.utilities import UtilitySpec
 from mxeon.conformance.tolerance import (
+    ROUNDING,
     Term,
     Tolerance,
     given,
@@ -246,8 +247,12 @@ class Evaluating(Backend):
         if quantity == "color_space":
             return sum_of(roundings(2 * 16, "of a color and the value it has, times the slope 2"))
         if quantity == "states" and "frame" in spec.errors:
+            angle = 2.0 * spec.along * math.sqrt(2.0 * ROUNDING)
+            words = f"two slopes {spec.along:g} at the normal, times the angle of a rounded cosine"
             return sum_of(
-                spec.errors["frame"].term("a part in another frame"), roundings(12, "of six parts")
+                spec.errors["frame"].term("a part in another frame"),
+                roundings(12, "of six parts"),
+                *((Term(angle, words),) if angle else ()),
             )
         return super().error(spec, quantity)
 

@@ -157,6 +157,8 @@ class Spec(ABC):
     fixed: Values = field(default_factory=dict)
     # How a host that evaluates is asked for a value: branch, output, and the factor of what it returns.
     asked: tuple[str, str, float] = ("direct", "response", np.pi)
+    # Slope of values or albedos by the angle from a view along the normal, which no cosine near 1 tells.
+    along: float = 0.0
     optional: bool = False  # whether a target may lack the node, so that it is not run there
     # What functions of an engine's own, measured there, add to the error of a quantity.
     engines: Mapping[str, tuple[EngineError, ...]] = field(default_factory=dict)
@@ -219,7 +221,7 @@ class LobeSpec(ValueSpec):
 
     flat: ClassVar[bool] = False  # whether its values have no peak
     curved: ClassVar[bool] = False  # whether they depend on how the surface bends
-    # Axes of `checks.states` of which it has the first state alone.
+    # Axes of `checks.states` of which it has the first state alone, and states that it lacks.
     plain: ClassVar[tuple[str, ...]] = ()
 
     @property

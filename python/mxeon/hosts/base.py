@@ -108,6 +108,7 @@ class Host(Engine):
     target: ClassVar[str]
     profile: ClassVar[str | None] = None
     language: ClassVar[str] = "glsl"
+    reads_images: ClassVar[bool] = False  # whether its evaluations read a document's images
 
     def compile(
         self,

@@ -94,6 +94,9 @@ OUTPUTS = ("response", "throughput", "radiance")  # the last is that of an EDF
 NORMAL, TANGENT = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
 FAR = (0.0, 0.0, 1e31)  # instead of a position: the host takes that of its pixel, on a plane
 GIVEN = "P = P.z < 1e30 ? P : {};"
+FILES = ("filename", "string")  # types of inputs that an evaluation does not set
+# How each image lies in its texture, by the end of the variable's name.
+PLACED = {"_uv_scale": (1.0, 1.0), "_uv_offset": (0.0, 0.0)}
 # How MaterialX's text for WGSL, which has no booleans in memory, makes one of an integer.
 BOOLEAN = re.compile(r"^#define (\w+) bool\(\1\)$", re.MULTILINE)
 
@@ -145,7 +148,14 @@ def bsdf_call(query: Query) -> BsdfCall:
         computed = _computed(text)
         if any(f" {name} = " in computed for name in names):
             names = [name for name in names if f" {name} = " not in computed]
-            names += [name for name in _words(computed) if name in ports]
+            words = _words(computed)
+            names += [each for each in words if each in ports and ports[each].type not in FILES]
+            arguments |= {
+                each: ("vector2", value)
+                for each in words
+                for end, value in PLACED.items()
+                if each.endswith(end)
+            }
             statements = computed + statements
         arguments |= {name: _argument(name, ports, inputs) for name in names}
     return BsdfCall(statements, value, arguments)

@@ -110,7 +110,8 @@ def bsdf_evaluation(query: Query) -> tuple[str, Columns]:
         f"{_output(text)} = vec4({call.value}, 1.0);",
     ]
     head = f"{version}\n{dialect.prelude}"
-    main, texels = _main(dialect, call.arguments, body)
+    images = sum(port.type == "filename" for port in shader.inputs)
+    main, texels = _main(dialect, call.arguments, body, MOST - images)
     macros = "".join(f"#undef {name}\n" for name in ["main", *booleans(text)])
     return f"{head}{renamed(text)}{macros}{main}", texels
 
@@ -192,11 +193,14 @@ def _output(text: str) -> str:
 
 
 def _main(
-    dialect: Dialect, arguments: Mapping[str, tuple[str, ArrayLike]], body: Sequence[str]
+    dialect: Dialect,
+    arguments: Mapping[str, tuple[str, ArrayLike]],
+    body: Sequence[str],
+    most: int = MOST,
 ) -> tuple[str, Columns]:
     """A main that reads the arguments and then executes `body`, and the arguments' texels."""
     rows = columns(arguments)
-    if len(rows) <= MOST:
+    if len(rows) <= most:
         values = {f"mxeon_{name}": each for name, each in rows.items()}
         texels = [TEXEL.format(name) for name in rows]
     else:

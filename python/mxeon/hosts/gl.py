@@ -133,19 +133,19 @@ class Host(FragmentHost):
         vertex: str,
         pixel: str,
         arguments: Mapping[str, Array],
-        irradiance: Array | None = None,
+        textures: Mapping[str, Array],
     ) -> Array:
         program = self._program(vertex, pixel)
         _set(program, raster.FRAME)
-        environment = self._textures(program, raster.environment(irradiance))
+        own = self._textures(program, textures)
         parts = fragment.parts(arguments)
-        return np.concatenate([self._part(program, each, environment) for each in parts])
+        return np.concatenate([self._part(program, each, own) for each in parts])
 
     def _part(
         self,
         program: moderngl.Program,
         arguments: Mapping[str, Array],
-        environment: Mapping[str, moderngl.Texture | moderngl.TextureArray],
+        textures: Mapping[str, moderngl.Texture | moderngl.TextureArray],
     ) -> Array:
         count, size = fragment.frame(arguments)
         values = {
@@ -153,7 +153,7 @@ class Host(FragmentHost):
             for name, rows in arguments.items()
             if program.get(name, None)
         }
-        return self._draw(program, {**values, **environment}, size).reshape(-1, 3)[:count]
+        return self._draw(program, {**values, **textures}, size).reshape(-1, 3)[:count]
 
     def _draw(
         self,

@@ -62,13 +62,17 @@ def textures(shader: Shader, scene: Scene) -> dict[str, Array]:
     Samplers of one file have the same array.
     """
     radiance = read_latlong(scene.environment)
+    return images(shader) | {"u_envRadiance": radiance, "u_envIrradiance": irradiance(radiance)}
+
+
+def images(shader: Shader) -> dict[str, Array]:
+    """Texels of the images of a shader's document, by sampler."""
     pixels = {name: read_texture(name) for name in image_files([shader])}
-    images = {
+    return {
         port.name: pixels[str(port.value)]
         for port in shader.inputs
         if port.type == "filename" and port.value
     }
-    return images | {"u_envRadiance": radiance, "u_envIrradiance": irradiance(radiance)}
 
 
 def environment(irradiance: Array | None) -> dict[str, Array]:
@@ -145,19 +149,24 @@ class FragmentHost(base.Host):
     It writes the pixel stage of an evaluation or of a call; its engine draws it.
     """
 
+    reads_images = True
+
     def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
         return approximations(shader)
 
     def _values(self, query: Query) -> Array:
         pixel, arguments = fragment.bsdf_evaluation(query)
-        return self._evaluate(query.shader.stages["vertex"], pixel, arguments, query.irradiance)
+        textures = environment(query.irradiance) | images(query.shader)
+        return self._evaluate(query.shader.stages["vertex"], pixel, arguments, textures)
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
         parameters = functions.parameters(source, function)
         pixel, texels = fragment.function_evaluation(
             source, function, parameters, arguments, self.target
         )
-        return self._evaluate(fragment.DIALECTS[self.target].vertex, pixel, texels)
+        return self._evaluate(
+            fragment.DIALECTS[self.target].vertex, pixel, texels, environment(None)
+        )
 
     @abstractmethod
     def _evaluate(
@@ -165,6 +174,6 @@ class FragmentHost(base.Host):
         vertex: str,
         pixel: str,
         arguments: Mapping[str, Array],
-        irradiance: Array | None = None,
+        textures: Mapping[str, Array],
     ) -> Array:
         """Values of a pixel stage, one pixel per element, as many as the longest argument has."""

@@ -106,17 +106,16 @@ class Host(FragmentHost):
         vertex: str,
         pixel: str,
         arguments: Mapping[str, Array],
-        irradiance: Array | None = None,
+        textures: Mapping[str, Array],
     ) -> Array:
         """Values, one pixel per element, as many as the longest argument has.
 
         The vertex stage is that of the dialect: the pipeline has one block for both stages.
         """
-        environment = {} if irradiance is None else raster.environment(irradiance)
         count, size = fragment.frame(arguments)
         texels = [fragment.texels(rows, size, fragment.ODD) for rows in arguments.values()]
         sets: tuple[Bindings, ...] = (
-            self._generated(pixel, environment),
+            self._generated(pixel, textures),
             {0: (SAMPLER, self._device.create_sampler())},
             {number: (UNFILTERED, self._texture(rows)) for number, rows in enumerate(texels)},
         )

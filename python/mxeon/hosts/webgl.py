@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 from mxeon.errors import NotRun, ShaderError, install
 from mxeon.hosts import fragment, points, raster
 from mxeon.hosts.base import TURN, Array, Identity
+from mxeon.hosts.calls import PLACED
 from mxeon.hosts.raster import FragmentHost
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.scene import Scene
@@ -60,7 +61,6 @@ UNIFORMS = {
     "u_envMatrix": TURN.ravel().tolist(),
     "u_envLightIntensity": 1.0,
 }
-IMAGE = {"uv_scale": (1.0, 1.0), "uv_offset": (0.0, 0.0)}  # of every image outside an atlas
 
 
 class Chromium:
@@ -152,9 +152,9 @@ class Host(Chromium, FragmentHost):
         self.refuse_paths(scene)
         captured, frame = points.outputs(shader), (scene.size, scene.size)
         stages = {"vertex": VERTEX, "pixel": points.pixel_stage(shader)}
-        pattern = r"^uniform vec2 (\w+_(uv_scale|uv_offset));"
+        pattern = r"^uniform vec2 (\w+(_uv_scale|_uv_offset));"
         images = re.findall(pattern, shader.stages["pixel"], re.MULTILINE)
-        uniforms = UNIFORMS | {name: IMAGE[kind] for name, kind in images}
+        uniforms = UNIFORMS | {name: PLACED[kind] for name, kind in images}
         uniforms |= raster.inputs(shader) | raster.light(scene)
         textures = raster.textures(shader, scene)
         if captured:
@@ -168,13 +168,12 @@ class Host(Chromium, FragmentHost):
         vertex: str,
         pixel: str,
         arguments: Mapping[str, Array],
-        irradiance: Array | None = None,
+        textures: Mapping[str, Array],
     ) -> Array:
         count, size = fragment.frame(arguments)
-        textures = {name: fragment.texels(rows, size) for name, rows in arguments.items()}
-        textures |= raster.environment(irradiance)
+        own = {name: fragment.texels(rows, size) for name, rows in arguments.items()}
         stages = {"vertex": vertex, "pixel": pixel}
-        frame = self._draw(stages, UNIFORMS | raster.FRAME, textures, size)
+        frame = self._draw(stages, UNIFORMS | raster.FRAME, {**own, **textures}, size)
         return frame.reshape(-1, 3)[:count]
 
     def _draw(

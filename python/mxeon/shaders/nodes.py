@@ -3,10 +3,13 @@
 
 from collections.abc import Iterable, Mapping
 from functools import cache
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
+
+if TYPE_CHECKING:
+    import MaterialX as mx
 
 OREN_NAYAR = "oren_nayar_diffuse_bsdf"
 EON = "eon_diffuse_bsdf"
@@ -111,14 +114,21 @@ def vector_text(name: str, value: ArrayLike) -> str:
 SURFACE = node_text("surface", "surfaceshader", "shading", connection_text("bsdf", "BSDF", "lobe"))
 
 
-def with_input(nodes: str, node: str, name: str, kind: str, value: ArrayLike) -> str:
-    """XML of nodes with a new value for an input of one of them."""
-    begin = nodes.index(f'name="{node}" type=')
-    begin = nodes.index("\n", begin) + 1
-    end = nodes.index("  </", begin)
-    inputs = nodes[begin:end].splitlines(keepends=True)
-    kept = [line for line in inputs if f'name="{name}"' not in line]
-    return nodes[:begin] + "".join(kept) + input_text(name, kind, value) + nodes[end:]
+def with_images(text: str, inputs: Mapping[str, str], file: str) -> "mx.Document":
+    """The document of a text whose inputs, of types by path, read an image, each at its own `PATH_place/value`."""
+    import MaterialX as mx
+
+    document = mx.createDocument()
+    mx.readFromXmlString(document, text)
+    for path, kind in inputs.items():
+        node, port = path.split("/")
+        image = document.addNode("image", f"{node}_{port}", kind)
+        image.setInputValue("file", file, "filename")
+        place = document.addNode("constant", f"{node}_{port}_place", "vector2")
+        place.setInputValue("value", mx.Vector2(0.0, 0.0))
+        image.setConnectedNode("texcoord", place)
+        document.getNode(node).setConnectedNode(port, image)
+    return document
 
 
 def lobe_text(

@@ -7,10 +7,14 @@ values of the parts are the expected ones, so a wrong model passes, and a failur
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache, partial
+from functools import cache, lru_cache, partial
 from itertools import combinations, product
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mxeon.conformance.backends import joined
 from mxeon.conformance.case import Case
@@ -28,12 +32,19 @@ from mxeon.conformance.samples import (
 )
 from mxeon.conformance.spec import LobeSpec, broadcast_inputs
 from mxeon.conformance.tolerance import Compared
-from mxeon.hosts.calls import LIGHTS, NORMAL, SECOND_LIGHT, SKY, TANGENT
+from mxeon.hosts.calls import LIGHTS, LIT, NORMAL, SECOND_LIGHT, SKY, TANGENT
+from mxeon.io.images import FAST_EXR, write_image
+from mxeon.shaders.document.policy import Policy
+from mxeon.shaders.nodes import with_images
+
+if TYPE_CHECKING:  # which loads MaterialX
+    from mxeon.shaders.generation import Shader
 
 EACH = 12  # pixels of a combination of states: three squares of 2 x 2 of a frame of two rows
 STEP = 0.05  # radian from pixel to pixel of a surface that bends, whose radius is 1
 FRAME = ("normal", "tangent", "position")
 WEIGHTS = (0.0, 0.3, 1.0, 1.0)
+FEW = 6  # combinations of which a control is asked
 CLEARER = 0.7  # share of the pixels of one state that those of two may have to be named instead
 Inputs = Mapping[str, Array]
 Random = np.random.Generator
@@ -51,6 +62,7 @@ class Pixels:
     differ: tuple[str, ...] = ()  # the input in which the lobes of each pixel differ
     lights: int = 1
     sky: str = ""  # "uniform" or "uneven"
+    image: bool = False  # whether the inputs of its last lobe are texels of an image
 
 
 Build = Callable[[Pixels, Random], Pixels]
@@ -165,6 +177,20 @@ def _constant(pixels: Pixels, rng: Random) -> Pixels:
     )
 
 
+def _image(pixels: Pixels, rng: Random) -> Pixels:
+    """Inputs that half floats hold, as images and textures do."""
+
+    def halves(inputs: Inputs) -> Inputs:
+        names = inputs.keys() - FRAME
+        return {
+            **inputs,
+            **{name: np.asarray(inputs[name], np.float16).astype(np.float64) for name in names},
+        }
+
+    batch = replace(pixels.batch, inputs=halves(broadcast_inputs(pixels.batch)))
+    return replace(pixels, batch=batch, second=pixels.second and halves(pixels.second), image=True)
+
+
 # The first state of each axis is that of every other check. States whose words are the same up to a colon are
 # diagnosed together, too.
 AXES: dict[str, dict[str, Build]] = {
@@ -201,7 +227,11 @@ AXES: dict[str, dict[str, Build]] = {
         "two lobes: another component": _lobes(component=True),
         "two lobes: another component: exchanged": _lobes(component=True, swapped=True),
     },
-    "inputs": {"inputs that vary": _plain, "constant inputs": _constant},
+    "inputs": {
+        "inputs that vary": _plain,
+        "constant inputs": _constant,
+        "inputs from an image": _image,
+    },
 }
 
 
@@ -231,7 +261,12 @@ def covering(axes: tuple[tuple[str, ...], ...]) -> tuple[tuple[str, ...], ...]:
 def pixels_of(case: Case) -> list[Pixels]:
     """Pixels of combinations of the states that the node and the engine can have."""
     rng, plain = generator(), {*case.lobe.plain, *case.backend.plain}
-    axes = tuple(tuple(each)[: 1 if name in plain else None] for name, each in AXES.items())
+    if not case.host.reads_images:
+        plain.add("inputs from an image")
+    axes = tuple(
+        tuple(state for n, state in enumerate(each) if not n or not {name, state} & plain)
+        for name, each in AXES.items()
+    )
     rows = covering(axes)
     turned = case.samples.turned
     batch = turned.where(np.arange(EACH * len(rows)) % len(turned.wo))
@@ -265,18 +300,26 @@ exchanged = with_batch(
 def states(case: Case) -> Iterator[Compared]:
     """Lights, environments and lobes add up in a pixel, in every frame, whether inputs vary or not."""
     groups = pixels_of(case)
-    frames: dict[tuple[bool, str, int], list[int]] = {}  # together; constant inputs by themselves
+    if case.control:
+        groups = [each for each in groups if not each.image][:FEW]
+    frames: dict[tuple[bool, str, bool, int], list[int]] = {}  # constant inputs by themselves
     for number, pixels in enumerate(groups):
         alone = number if "constant inputs" in pixels.states else -1
-        key = pixels.second is not None, "uneven" * (pixels.sky == "uneven"), alone
+        key = pixels.second is not None, "uneven" * (pixels.sky == "uneven"), pixels.image, alone
         frames.setdefault(key, []).append(number)
     measured: dict[int, Array] = {}
-    for (two, uneven, _), numbers in frames.items():
-        batch = joined([asked(groups[number]) for number in numbers])
-        sky = sky_map() if uneven else None
-        ask = partial(case.evaluating.together, irradiance=sky, two=two)
-        values = case.outputs(batch, drawn(case.inputs(batch), ask, SQUARES))
-        measured |= zip(numbers, np.split(values, len(numbers)), strict=True)
+    with TemporaryDirectory(prefix="mxeon-") as folder:
+        file = Path(folder, "inputs.exr")
+        from_image = partial(imaged, case, cache(partial(compile_imaged, case, file)), file)
+        for (two, uneven, image, _), numbers in frames.items():
+            batch = joined([asked(groups[number]) for number in numbers])
+            ask = partial(
+                from_image if image else case.evaluating.together,
+                irradiance=sky_map() if uneven else None,
+                two=two,
+            )
+            values = case.outputs(batch, drawn(case.inputs(batch), ask, SQUARES))
+            measured |= zip(numbers, np.split(values, len(numbers)), strict=True)
     for number, (pixels, expected) in enumerate(zip(groups, sums(case, groups), strict=True)):
         yield Compared(pixels.batch, measured[number], expected)
 
@@ -292,6 +335,40 @@ def drawn(batch: Batch, ask: Callable[[Batch], Array], layout: Layout) -> Array:
     found = np.empty_like(batch.wo)
     found[order] = ask(batch.where(order))
     return found
+
+
+def imaged(
+    case: Case,
+    compiled: "Callable[[bool, str, tuple[str, ...]], Shader]",
+    file: Path,
+    batch: Batch,
+    irradiance: NDArray[np.float32] | None,
+    two: bool,
+) -> Array:
+    """Light in pixels whose last lobe has texels of an image as inputs, each a square of 2 x 2 equal ones."""
+    count, last = len(batch.wo), "second/" if two else "lobe/"
+    own = {name.removeprefix("second/"): name for name in batch.inputs if ("/" in name) == two}
+    names = [name for name in own if name in case.lobe.types and name not in FRAME]
+    texels, places = [], {}
+    for row, name in enumerate(names):
+        values = batch.inputs[own[name]].reshape(count, -1)
+        texels.append(np.concatenate([values, 1.0 - values, 1.0 - values], axis=1)[:, :3])
+        middles = (np.arange(count) + 0.5) / count, np.full(count, 1.0 - (row + 0.5) / len(names))
+        places[f"{last[:-1]}_{name}_place/value"] = rounded(middles)
+    write_image(file, np.asarray(texels, np.float32).repeat(2, axis=0).repeat(2, axis=1), FAST_EXR)
+    left = batch.inputs.keys() - {own[name] for name in names}
+    batch = replace(batch, inputs={name: batch.inputs[name] for name in left} | places)
+    shader = compiled(two, last, tuple(names))
+    return case.evaluating.evaluate(batch, LIT, irradiance=irradiance, shader=shader)
+
+
+def compile_imaged(
+    case: Case, file: Path, two: bool, last: str, names: tuple[str, ...]
+) -> "Shader":
+    ports = {last + name: case.lobe.types[name] for name in names}
+    text = case.lobe.two_lobes() if two else case.lobe.document()
+    document, policy = with_images(text, ports, str(file)), Policy(outside=True)
+    return case.host.compile(document, library=case.library, policy=policy)[0]
 
 
 def asked(pixels: Pixels) -> Batch:

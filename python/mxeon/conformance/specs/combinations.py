@@ -84,7 +84,8 @@ COLORED = ("multiply_color3", "multiply_sum")  # rows whose factor is a color
 class CombinedSpec(PbrSpec):
     """A node of `mxeon.models.nodes.combinations`, whose weights stay 1."""
 
-    plain = ("lobes",)
+    # MaterialX scales a lobe by the share of a mix that is connected wherever the lobe is used.
+    plain = ("lobes", "inputs from an image")
 
     def document(self, inputs: Values | None = None) -> str:
         nodes = LOBES | NODES[self.model][1]

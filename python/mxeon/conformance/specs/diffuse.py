@@ -201,6 +201,7 @@ def _diffuse(node: str, flag: bool | None, model: str) -> DiffuseSpec:
         inputs=INPUTS if flag is None else (*INPUTS, Input(FLAG, "boolean", change=not flag)),
         fixed={} if flag is None else {FLAG: flag},
         errors=ERRORS,
+        along=0.1 if model == "qon" else 0.0,
     )
 
 

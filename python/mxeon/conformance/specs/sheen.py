@@ -74,6 +74,7 @@ ZELTNER = PbrSpec.of(
     node("zeltner"),
     ZELTNER_INPUTS,
     lobe_errors(ZELTNER_VALUE, CLOSED_ALBEDO, FLAT_FRAME, quadrature=1e-8),
+    along=0.03,
 )
 CONTY_KULLA = FittedSheen.of(
     node("conty_kulla"),
