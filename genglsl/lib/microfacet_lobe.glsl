@@ -46,6 +46,12 @@ bool microfacet_is_off(ClosureData closureData, float weight, int scatter_mode)
     return weight <= 0.0 || (scatter_mode == 1 && !transmission);
 }
 
+// The half vector; the normal for a light exactly opposite the view, which no facet reflects.
+vec3 microfacet_half(vec3 wo, vec3 wi, vec3 N)
+{
+    return normalize(wi + wo + 1e-15 * N);
+}
+
 // Cosines and roughness of 0 would divide by 0. Retroreflection mirrors wo at the normal.
 MicrofacetLobe microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec2 roughness,
                                bool retroreflective)
@@ -58,7 +64,7 @@ MicrofacetLobe microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec2 rou
     lobe.N = mx_forward_facing_normal(N, lobe.wo);
     lobe.X = X;
     lobe.mu_o = clamp(dot(lobe.N, lobe.wo), M_FLOAT_EPS, 1.0);
-    lobe.mu_h = clamp(dot(lobe.wo, normalize(lobe.wi + lobe.wo)), M_FLOAT_EPS, 1.0);
+    lobe.mu_h = clamp(dot(lobe.wo, microfacet_half(lobe.wo, lobe.wi, lobe.N)), M_FLOAT_EPS, 1.0);
     lobe.roughness = clamp(roughness, M_FLOAT_EPS, 1.0);
     lobe.alpha = mx_average_alpha(lobe.roughness);
     lobe.albedo = ggx_albedo_dir(lobe.mu_o, lobe.alpha);
@@ -70,7 +76,7 @@ float microfacet_value(MicrofacetLobe lobe)
 {
     vec3 X = normalize(lobe.X - dot(lobe.X, lobe.N) * lobe.N);
     vec3 Y = cross(lobe.N, X);
-    vec3 H = normalize(lobe.wi + lobe.wo);
+    vec3 H = microfacet_half(lobe.wo, lobe.wi, lobe.N);
     vec3 local = vec3(dot(H, X), dot(H, Y), dot(H, lobe.N));
     float mu_i = clamp(dot(lobe.N, lobe.wi), 0.0, 1.0);
     return mx_ggx_NDF(local, lobe.roughness) * mx_ggx_smith_G2(mu_i, lobe.mu_o, lobe.alpha)

@@ -156,6 +156,7 @@ def _directions(batch: Batch) -> Iterator[tuple[str, Mask]]:
     yield "with dot(N, L) rounded above 1", mu_i > 1.0
     yield "with both directions on the horizon", (mu_o == 0.0) & (mu_i == 0.0)
     yield "in exact retro-reflection (L = V)", (wo == wi).all(axis=1)
+    yield "with the light opposite the view (L = -V)", (wo == -wi).all(axis=1)
     yield "in the mirror direction", (wo * [-1.0, -1.0, 1.0] == wi).all(axis=1)
     half = wo + wi
     upright = np.abs(half[:, :2]).max(axis=1) <= UPRIGHT * half[:, 2]

@@ -173,14 +173,16 @@ class PbrSpec(RowSpec, LobeSpec):
         )
 
     def edges(self, counts: Counts) -> Batch:
-        """Exact directions and inputs on their edges, roughness and index 0 among them."""
+        """Exact directions, some of light opposite the view; edges of inputs, roughness and index 0 among them."""
         rng = generator()
         wo, wi = special_directions(rng)
         inputs = self.special_inputs(rng, len(wo))
         for name, start, step in (("roughness", 0, 4), ("ior", 0, 3), ("extinction", 1, 6)):
             if name in inputs:
                 inputs[name][start::step] = 0.0
-        return Batch(wo, wi * [1.0, 1.0, self.side], inputs)
+        wi = wi * [1.0, 1.0, self.side]
+        wi[5::12] = -wo[5::12]
+        return Batch(wo, wi, inputs)
 
     def integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
         """The inputs of which a quadrature has all light."""
