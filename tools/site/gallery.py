@@ -55,8 +55,9 @@ TRACED = """
 ## Path traced
 
 Three of [MaterialX's examples](https://github.com/AcademySoftwareFoundation/MaterialX/tree/main/resources/Materials/Examples).
-A sphere with a light and an even environment: the rasterizer, the float64 reference, and [paths of light](path_tracing.md).
-After it, the path-traced shader ball in the studio, with its shadows and its reflections of itself.
+Each picture shows a sphere under a light and an even environment, drawn by the rasterizer, the float64 reference and
+[path tracing](path_tracing.md), and beside it the path-traced shader ball in the studio, with shadows and reflections of
+itself.
 
 {}
     mxeon render standard_surface_glass.mtlx --integrator path --size 192 --samples {} --output glass.png
