@@ -34,6 +34,7 @@ AWAY = "all where the normal faces away from the viewer"
 UNCOLORED = "its albedo without the color (rms "
 FIT = "MaterialX's fit of its albedo (rms "
 NAN = "NaN or infinity"
+OPPOSITE = f"{NAN} with the light opposite the view (L = -V)"
 UNSHADOWED = "the mean of 1 - F over the visible normals, divided by G_1 of the view"
 UNSCALED = "the throughput of the lobe before it is scaled"
 ENDED = "a sum whose throughput is clamped at 0"
@@ -94,12 +95,14 @@ STOCK = {
     **dict.fromkeys(("layer", "mix", "add"), SPHERE),
     "dielectric_bsdf, scatter_mode R": {
         **OPEN, **dict.fromkeys(("layering", "transmission", "layer", "denser"), UNTINTED),
-        "finite": "with an index of refraction of 0", "lossless": HALF, "anisotropic_albedo": G_1,
+        "finite": NAN, "lossless": HALF, "anisotropic_albedo": G_1,
     },
-    "conductor_bsdf": {**OPEN, **dict.fromkeys(("lossless", "energy"), HALF), "anisotropic_albedo": G_1},
+    "conductor_bsdf": {
+        **OPEN, **dict.fromkeys(("lossless", "energy"), HALF), "anisotropic_albedo": G_1, "finite": OPPOSITE,
+    },
     "generalized_schlick_bsdf, scatter_mode R": {
         **OPEN, **dict.fromkeys(("layering", "transmission", "layer", "dip"), AVERAGED),
-        **dict.fromkeys(("lossless", "energy"), HALF), "anisotropic_albedo": G_1,
+        **dict.fromkeys(("lossless", "energy"), HALF), "anisotropic_albedo": G_1, "finite": OPPOSITE,
     },
     "multiply, in2 float": {"combined_throughput": UNSCALED, **SPHERE},
     "multiply, in2 color3": {"combined_throughput": UNSCALED, **SPHERE},

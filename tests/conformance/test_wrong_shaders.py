@@ -130,8 +130,10 @@ WRONG = {
          "value", "the worst are right with color90 1"),
         ("mx_generalized_schlick_bsdf.glsl", "dirAlbedo = mx_ggx_dir_albedo",
          "dirAlbedo = 1.0 + 0.0 * mx_ggx_dir_albedo", "layering", ""),
-        ("mx_generalized_schlick_bsdf.glsl", "clamp(dot(N, V), M_FLOAT_EPS, 1.0)", "dot(N, V)", "finite",
+        (FACETS, "clamp(dot(lobe.N, lobe.wo), M_FLOAT_EPS, 1.0)", "dot(lobe.N, lobe.wo)", "finite",
          "NaN or infinity with the viewer on the horizon"),
+        (FACETS, "normalize(wi + wo + 1e-15 * N)", "normalize(wi + wo)", "finite",
+         "NaN or infinity with the light opposite the view (L = -V)"),
     ),
     "conductor_bsdf": (
         (FACETS, "lobe.closure != CLOSURE_TYPE_TRANSMISSION", "lobe.closure == CLOSURE_TYPE_REFLECTION", "sky",
