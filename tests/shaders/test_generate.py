@@ -2,6 +2,7 @@
 """Generated shaders: every target, every input, and the compilers that run here."""
 
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -9,10 +10,13 @@ import warnings
 from dataclasses import replace
 
 import MaterialX as mx
+import MaterialX.PyMaterialXGenShader as mx_gen
 import pytest
 
 from mxeon.hosts.cycles.process import interpreter
+from mxeon.shaders.document.reading import read_document
 from mxeon.shaders.generation import TARGETS, ApproximationWarning, generate
+from mxeon.shaders.generators import ERROR, lines_left_out
 from mxeon.shaders.library import examples_folder, load_library, source_folder
 from mxeon.shaders.nodes import EON, OREN_NAYAR
 from tests.support.availability import available
@@ -215,3 +219,21 @@ def test_the_profile_warns_of_qon_alone(flag):
     with warnings.catch_warnings(record=True, action="always") as caught:
         generate(text, "osl", profile="cycles")
     assert [each.category for each in caught] == [ApproximationWarning] * (flag == "false")
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_every_example_is_valid_and_renders_all_its_materials_and_nothing_else(path):
+    document = read_document(path).content
+    assert document.validate() == (True, "")
+    assert document.getVersionString() == "1.39"
+    assert document.getColorSpace() == "lin_rec709"
+    found = mx_gen.findRenderableElements(document)
+    assert found and found == document.getMaterialNodes()
+
+
+def test_lines_with_the_words_are_left_out_of_what_libraries_print(capfd):
+    with lines_left_out("of no use"):
+        os.write(ERROR, b"this is of no use\nthis is\n")
+    assert capfd.readouterr().err == "this is\n"
+    generate(material(lobe()), "wgsl")  # whose flag is a boolean
+    assert capfd.readouterr().err == ""
