@@ -77,6 +77,7 @@ def ended(library, folder, options=LINES, command=TOOLS / "mxeon", documents="")
     return subprocess.run(command, env=os.environ | variables, capture_output=True, text=True)
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(("wrong", "status"), [(False, 0), (True, 1)])
 def test_the_action_fails_where_the_library_does_and_keeps_the_report(wrong, status, tmp_path):
     library = export_library(tmp_path / "libraries")
@@ -109,6 +110,7 @@ def test_the_action_takes_every_line_of_its_options(text, tmp_path):
     assert done.stdout.splitlines() == [*given, "--library", "library"]
 
 
+@pytest.mark.whole
 def test_the_action_judges_documents_without_a_library_as_the_command_does(tmp_path):
     options = "--host gl --workers 0"
     done = ended("", tmp_path, options, documents=str(ROOT / "examples" / "plaster.mtlx"))

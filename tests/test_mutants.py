@@ -65,7 +65,6 @@ def test_operators_change_every_shader_once_and_repeatably():
     assert {each.operator for each in made} == operators.OPERATORS.keys()
 
 
-@pytest.mark.whole
 def test_a_tenth_of_the_operators_mutants_is_noticed_but_for_those_that_are_listed(gl):
     """The listed ones are the control: a check that fails without a mutant would notice them all."""
     tenth = {each.name: each for each in operators.made(1, SHARE)}

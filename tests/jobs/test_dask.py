@@ -24,6 +24,7 @@ ONE_THREAD = ["--nthreads", "1"]
 OTHER_VERSION = "import mxeon\nmxeon.__version__ = '0.0.9'\n"
 # Dask leaves the sockets open by which it looks for a free port.
 pytestmark = [
+    pytest.mark.whole,
     pytest.mark.filterwarnings("ignore:unclosed <socket:ResourceWarning"),
     pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
 ]
@@ -89,14 +90,12 @@ def test_a_worker_killed_at_work_costs_nothing(pair, tmp_path):
     assert run(square, [3], pair) == {0: Outcome(9)}
 
 
-@pytest.mark.whole
 def test_a_worker_killed_with_its_result_costs_nothing(tmp_path, monkeypatch):
     monkeypatch.setattr(dask, "FETCH", 1.0)
     with farm({}) as address:  # no other worker can do it instead
         assert run(Lost, [str(tmp_path / "a")], address) == {0: Outcome("done")}
 
 
-@pytest.mark.whole
 def test_workers_that_do_not_fit_get_no_work_and_are_named(tmp_path):
     preload = tmp_path / "preload.py"
     preload.write_text(OTHER_VERSION)
@@ -171,7 +170,6 @@ def test_an_address_without_an_answer_is_one_line(address, wait, words):
             check([EXAMPLE], scheduler=address, wait=wait)
 
 
-@pytest.mark.whole
 def test_a_farm_finds_what_one_machine_finds(pair, tmp_path, monkeypatch):
     keep_checks(monkeypatch, "value", "reciprocity", "curve", "picture")
     found = check([EXAMPLE], scheduler=pair, folder=tmp_path)

@@ -76,6 +76,7 @@ def test_the_shaders_of_every_node_of_a_copy_compile(copy, tmp_path, version):
 MEDIA = dict.fromkeys(TESTED[:-1], "transmittance, ")
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("version", [TESTED[0], "main"])
 def test_every_node_has_the_values_of_the_models(copy, version):
     verdicts = verdicts_with(version, copy)
