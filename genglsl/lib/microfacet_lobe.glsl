@@ -46,7 +46,8 @@ bool microfacet_is_off(ClosureData closureData, float weight, int scatter_mode)
     return weight <= 0.0 || (scatter_mode == 1 && !transmission);
 }
 
-// The half vector; the normal for a light exactly opposite the view, which no facet reflects.
+// The half vector; the normal for a light exactly opposite the view, which no facet reflects. 1e-15 has a
+// square that is no denormal, and turns only sums that are themselves roundings of 0.
 vec3 microfacet_half(vec3 wo, vec3 wi, vec3 N)
 {
     return normalize(wi + wo + 1e-15 * N);
