@@ -10,13 +10,7 @@ import numpy as np
 import pytest
 
 from mxeon.errors import PackageError
-from mxeon.fit import (
-    FIT_MODELS,
-    MeasuredBrdf,
-    fit_brdf,
-    merl_directions,
-    read_merl,
-)
+from mxeon.fit import FIT_MODELS, MeasuredBrdf, fit_brdf, merl_directions, read_merl
 from mxeon.fit.measured import MERL_CELLS, MERL_SCALES
 from mxeon.models import eon_brdf
 from tests.support.availability import available

@@ -10,15 +10,7 @@ from PIL import Image
 from mxeon.shaders.generation import generate
 from mxeon.shaders.library import examples_folder
 from tests.explorer.browser import until
-from tests.explorer.stage import (
-    CLOCK,
-    frame,
-    model_sources,
-    opened_stage,
-    side,
-    view,
-    written,
-)
+from tests.explorer.stage import CLOCK, frame, model_sources, opened_stage, side, view, written
 from tests.support.tolerances import EON_WEIGHT
 
 SAMPLES = 16

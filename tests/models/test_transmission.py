@@ -5,10 +5,7 @@ import numpy as np
 import pytest
 
 from mxeon.models import fresnel_dielectric, smith_g1, smith_g2
-from mxeon.models.microfacet import (
-    dielectric_albedo_dir,
-    generalized_schlick_albedo_dir,
-)
+from mxeon.models.microfacet import dielectric_albedo_dir, generalized_schlick_albedo_dir
 from mxeon.models.transmission import (
     READINGS,
     Facet,

@@ -9,15 +9,7 @@ import pytest
 from scipy import special
 
 from mxeon.models import media as volume
-from mxeon.models.nodes.media import (
-    AMOUNT,
-    COMBINED_MEDIA,
-    FACTOR,
-    FIRST,
-    MEDIA,
-    METER,
-    SECOND,
-)
+from mxeon.models.nodes.media import AMOUNT, COMBINED_MEDIA, FACTOR, FIRST, MEDIA, METER, SECOND
 
 FALSE_ALARM = 1e-4
 ANISOTROPIES = (-0.999999, -0.9, -0.3, 0.0, 1e-9, 0.3, 0.9, 0.999999)

@@ -14,14 +14,7 @@ import MaterialX.PyMaterialXGenShader as mx_gen
 from mxeon.shaders.generation import GENERATORS, TARGETS, generate
 from mxeon.shaders.library import examples_folder, load_library
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
-from tools.benchmarks.rounds import (
-    Check,
-    Group,
-    figure,
-    interleave,
-    peak_memory,
-    reset_memory,
-)
+from tools.benchmarks.rounds import Check, Group, figure, interleave, peak_memory, reset_memory
 
 STAGES = "pixel", "vertex"
 DOCUMENTS = (1, 10, 100, 1000)

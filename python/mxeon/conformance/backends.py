@@ -37,12 +37,7 @@ from mxeon.conformance.samples import (
 )
 from mxeon.conformance.spec import POWER, LobeSpec, Spec, broadcast_inputs
 from mxeon.conformance.specs.combinations import CombinedSpec
-from mxeon.conformance.specs.diffuse import (
-    LOBE_VALUE,
-    DiffuseModelSpec,
-    DiffuseSpec,
-    SurfaceLobe,
-)
+from mxeon.conformance.specs.diffuse import LOBE_VALUE, DiffuseModelSpec, DiffuseSpec, SurfaceLobe
 from mxeon.conformance.specs.emission import AbsentSpec, EmissionSpec, EmittingSurface, MediumSpec
 from mxeon.conformance.specs.hair import HairSpec
 from mxeon.conformance.specs.lobes import PbrSpec

@@ -19,15 +19,7 @@ from mxeon.conformance.diagnosis import Diagnosis
 from mxeon.conformance.reference import ExpectedPicture, HostValues
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.reference.nodes import ShownLobe
-from mxeon.conformance.results import (
-    FAILED,
-    LIGHTS,
-    PORTRAIT,
-    Picture,
-    Place,
-    Result,
-    of_white,
-)
+from mxeon.conformance.results import FAILED, LIGHTS, PORTRAIT, Picture, Place, Result, of_white
 from mxeon.conformance.samples import Batch, Values
 from mxeon.conformance.specs import surface_shaders as surfaces
 from mxeon.conformance.specs.diffuse import DiffuseModelSpec, SurfaceLobe, model_value

@@ -36,14 +36,7 @@ from mxeon.conformance.samples import (
 )
 from mxeon.conformance.tolerance import ROUNDING, Compared, Term, Tolerance
 from mxeon.hosts.base import Host
-from mxeon.shaders.nodes import (
-    SURFACE,
-    Node,
-    document_text,
-    input_types,
-    lobe_text,
-    network_text,
-)
+from mxeon.shaders.nodes import SURFACE, Node, document_text, input_types, lobe_text, network_text
 
 COMPONENTS = {"float": (), "vector2": (2,), "vector3": (3,), "color3": (3,)}  # shape by type
 CHANGED_COLOR = (0.9, 0.1, 0.6)

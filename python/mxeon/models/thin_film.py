@@ -72,14 +72,7 @@ from mxeon.models.core.arrays import (
 from mxeon.models.core.chebyshev import chebyshev_coefficients, chebyshev_nodes, chebyshev_sum
 from mxeon.models.core.colorimetry import XYZ_TO_REC709, XYZ_TO_REC709_E, matching_functions
 from mxeon.models.core.evaluation import evaluate_material
-from mxeon.models.microfacet import (
-    NODES,
-    Curve,
-    Lobe,
-    evaluate_lobe,
-    fresnel,
-    lobe_albedo,
-)
+from mxeon.models.microfacet import NODES, Curve, Lobe, evaluate_lobe, fresnel, lobe_albedo
 
 Complex: TypeAlias = tuple[Array, Array]  # real and imaginary part
 

@@ -30,13 +30,7 @@ from mxeon.conformance.results import (
 from mxeon.io.images import difference_scale
 from mxeon.io.srgb import srgb_encoded
 from mxeon.report import in_threads
-from mxeon.report.formats import (
-    linked,
-    nearest,
-    of_white,
-    unit_meaning,
-    vector,
-)
+from mxeon.report.formats import linked, nearest, of_white, unit_meaning, vector
 from mxeon.report.plots import (
     albedo_plot,
     difference_gradient,

@@ -39,14 +39,7 @@ from mxeon.conformance.samples import (
 )
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs.diffuse import model_value
-from mxeon.conformance.tolerance import (
-    Term,
-    Tolerance,
-    mean_error,
-    roundings,
-    sum_in,
-    sum_of,
-)
+from mxeon.conformance.tolerance import Term, Tolerance, mean_error, roundings, sum_in, sum_of
 from mxeon.models import table as reference
 from mxeon.shaders.scene import FURNACE, Scene, sphere
 from mxeon.survey.facets import NARROWEST, facet_points

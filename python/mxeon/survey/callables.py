@@ -32,11 +32,7 @@ from mxeon.conformance.samples import (
     generator,
     special_directions,
 )
-from mxeon.conformance.specs.diffuse import (
-    ERRORS,
-    DiffuseModelSpec,
-    inputs_of,
-)
+from mxeon.conformance.specs.diffuse import ERRORS, DiffuseModelSpec, inputs_of
 from mxeon.conformance.tolerance import Compared, absolute, point_of
 from mxeon.errors import InputError, assert_known
 from mxeon.hosts.base import Host, Identity

@@ -27,14 +27,7 @@ from mxeon.conformance.samples import (
     rounded,
     special_directions,
 )
-from mxeon.conformance.spec import (
-    ARGUMENTS,
-    WAVE,
-    EngineError,
-    Input,
-    ValueSpec,
-    color,
-)
+from mxeon.conformance.spec import ARGUMENTS, WAVE, EngineError, Input, ValueSpec, color
 from mxeon.conformance.specs.lobes import BURLEY_VALUE, NORMAL, WEIGHT, PbrSpec, lobe_errors
 from mxeon.conformance.specs.sheen import FIT_COSINE
 from mxeon.conformance.tolerance import (

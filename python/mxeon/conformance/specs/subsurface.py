@@ -7,13 +7,7 @@ from functools import lru_cache, partial
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.conformance.samples import (
-    Array,
-    Batch,
-    Candidate,
-    Counts,
-    Values,
-)
+from mxeon.conformance.samples import Array, Batch, Candidate, Counts, Values
 from mxeon.conformance.spec import ZERO, Input, broadcast_inputs
 from mxeon.conformance.specs.lobes import COLOR, FLAT_ERRORS, NORMAL, WEIGHT, FlatSpec
 from mxeon.conformance.tolerance import given, mean_error

@@ -14,14 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mxeon import inversion
-from mxeon.conformance.samples import (
-    Array,
-    Batch,
-    Counts,
-    Values,
-    float32,
-    generator,
-)
+from mxeon.conformance.samples import Array, Batch, Counts, Values, float32, generator
 from mxeon.conformance.spec import (
     COMPONENTS,
     LOGARITHM,

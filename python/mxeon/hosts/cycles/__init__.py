@@ -23,14 +23,7 @@ from mxeon.hosts.base import Array, Identity, Inputs, Query
 from mxeon.hosts.calls import GRAPH
 from mxeon.hosts.cycles import process
 from mxeon.hosts.cycles.process import interpreter
-from mxeon.hosts.osl.points import (
-    IMAGE,
-    columns_of,
-    side,
-    statements,
-    with_header,
-    with_variables,
-)
+from mxeon.hosts.osl.points import IMAGE, columns_of, side, statements, with_header, with_variables
 from mxeon.hosts.pairs import DISTANCE, HEIGHT, LAMP, SKY, PairHost, tilted_triangles
 from mxeon.hosts.process import Worker
 from mxeon.io.images import read_image, write_image

@@ -9,14 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mxeon.models.core.arrays import Array
-from mxeon.models.microfacet import (
-    Lobe,
-    Pair,
-    compensation,
-    ggx,
-    missing,
-    uncompensated,
-)
+from mxeon.models.microfacet import Lobe, Pair, compensation, ggx, missing, uncompensated
 from mxeon.models.microfacet.ggx import missing_light
 
 # MaterialX 1.39.5, rational fit of the GGX albedo A F0 + B F90 in x = mu, y = alpha; up to 0.14 off

@@ -20,12 +20,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from mxeon.models.core.arguments import (
-    channel_count,
-    checked_all,
-    checked_numbers,
-    checked_vectors,
-)
+from mxeon.models.core.arguments import channel_count, checked_all, checked_numbers, checked_vectors
 from mxeon.models.core.arrays import (
     NUMPY,
     Array,
