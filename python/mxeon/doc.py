@@ -42,7 +42,17 @@ def library_tables(library: str = "stock") -> dict[str, Table]:
 
 def _table(definitions: Sequence[mx.NodeDef]) -> Table:
     chosen = [each for each in definitions if each.getNodeGroup() == GROUP] or definitions
-    inputs = [port for each in chosen for port in map(_input, each.getActiveInputs())]
+    inputs = [
+        PortRow(
+            port.getName(),
+            port.getDocString(),
+            (port.getType(),),
+            port.getDefaultGeomPropString() or _default(port),
+            _range(port),
+        )
+        for each in chosen
+        for port in each.getActiveInputs()
+    ]
     outputs = [
         PortRow(port.getName(), port.getDocString(), (port.getType(),))
         for each in chosen
@@ -59,11 +69,6 @@ def _merged(ports: Iterable[PortRow]) -> Iterable[PortRow]:
         types = tuple(dict.fromkeys(first.types + port.types))
         merged[port.name] = replace(first, types=types)
     return merged.values()
-
-
-def _input(port: mx.Input) -> PortRow:
-    default = port.getDefaultGeomPropString() or _default(port)
-    return PortRow(port.getName(), port.getDocString(), (port.getType(),), default, _range(port))
 
 
 def _default(port: mx.Input) -> str:

@@ -17,9 +17,7 @@ from mxeon.errors import DocumentError, InputError, MxeonError, NotRun, printabl
 from mxeon.jobs import check_timeout
 
 if TYPE_CHECKING:
-    from mxeon.hosts.base import Host
     from mxeon.shaders.document.policy import Policy
-    from mxeon.shaders.generation import Shader
     from mxeon.shaders.scene import Paths
 
 
@@ -83,21 +81,19 @@ class Source:
         return f"{self.file}: {self.target}"
 
 
+ENDINGS = {"pixel": ".frag", "vertex": ".vert"}  # as generateshader has them
+
+
 def shader_texts(source: Source, element: str | None, **options: Any) -> dict[str, str]:
     """Shader texts of a document by file name; options are those of `mxeon.generate`."""
     from mxeon.shaders.generation import generate
 
     stem = " ".join(printable(Path(source.file).stem).split())
     return {
-        f"{stem}.{shader.name}.{source.target}{_ending(shader, stage)}": text
+        f"{stem}.{shader.name}.{source.target}{ENDINGS[stage] * (len(shader.stages) > 1)}": text
         for shader in generate(source.file, source.target, element, **options)
         for stage, text in shader.stages.items()
     }
-
-
-def _ending(shader: Shader, stage: str) -> str:
-    """Ending of a file name, as generateshader has it."""
-    return {"pixel": ".frag", "vertex": ".vert"}[stage] if len(shader.stages) > 1 else ""
 
 
 def picture(
@@ -122,6 +118,7 @@ def picture(
     from mxeon.hosts import open_host, path_tracer
     from mxeon.hosts.base import LobeWarning
     from mxeon.shaders import scene as scenes
+    from mxeon.shaders.document.notes import MissingFileWarning
 
     setting = scenes.scene(scene or "studio")
     if environment:
@@ -131,7 +128,13 @@ def picture(
         if no_studio := not (scene or environment or engine.draws_images):
             setting = scenes.SIDE
         setting = replace(setting, size=size, paths=paths, shape=shape or setting.shape)
-        shader = _one_shader(file, engine, element, library, policy)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", MissingFileWarning)
+            shaders = engine.compile(file, element, library=library, policy=policy)
+        if len(shaders) > 1:
+            names = ", ".join(each.element for each in shaders)
+            raise InputError(f"--element must name one of {names}; got none")
+        [shader] = shaders
         image = engine.picture(shader, setting)
         for reason in engine.approximations(shader, setting):
             warnings.warn(LobeWarning(shader.element, reason), stacklevel=2)
@@ -151,18 +154,3 @@ def picture(
         "scene": setting.name,
         "shape": setting.shape,
     } | ({"definitions": os.pathsep.join(policy.definitions)} if policy.definitions else {})
-
-
-def _one_shader(
-    file: str, engine: Host, element: str | None, library: str, policy: Policy
-) -> Shader:
-    """The shader of a document's one material, or of its element of that name."""
-    from mxeon.shaders.document.notes import MissingFileWarning
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("error", MissingFileWarning)
-        shaders = engine.compile(file, element, library=library, policy=policy)
-    if len(shaders) > 1:
-        names = ", ".join(shader.element for shader in shaders)
-        raise InputError(f"--element must name one of {names}; got none")
-    return shaders[0]

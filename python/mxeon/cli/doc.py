@@ -43,11 +43,16 @@ def add_parser(commands: arguments.Commands) -> None:
 def run(options: argparse.Namespace) -> int:
     """Fill or compare; return FAILED if a specification differs."""
     from mxeon.doc import MARKER, compare, fill, library_tables, read_tables
+    from mxeon.io.files import regular
 
     if options.json and not options.compare:
         raise InputError("--json must come with --compare: a template has no differences")
     arguments.assert_other(options.output, [options.file])
-    text = _text(options.file)
+    with open(options.file, encoding="utf-8", opener=regular) as file:
+        try:
+            text = file.read()
+        except UnicodeDecodeError:
+            raise DocumentError(f"{options.file}: must be text in UTF-8") from None
     tables = library_tables(options.library)
     try:
         if not options.compare:
@@ -64,16 +69,6 @@ def run(options: argparse.Namespace) -> int:
         lines = "\n".join(map(one_line, differences)) or "no difference"
         _write(lines + "\n", options.output)
     return FAILED if differences else PASSED
-
-
-def _text(path: str) -> str:
-    from mxeon.io.files import regular
-
-    with open(path, encoding="utf-8", opener=regular) as file:
-        try:
-            return file.read()
-        except UnicodeDecodeError:
-            raise DocumentError(f"{path}: must be text in UTF-8") from None
 
 
 def _write(text: str, path: str | None) -> None:

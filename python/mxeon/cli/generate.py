@@ -3,10 +3,8 @@
 
 import argparse
 import json
-from collections.abc import Mapping
 from contextlib import closing
 from functools import partial
-from pathlib import Path
 
 from mxeon.cli import arguments
 from mxeon.cli.batch import Source, run_batch, shader_texts
@@ -55,6 +53,8 @@ def add_parser(commands: arguments.Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Write the shaders of all documents for all targets; return the exit status."""
+    from mxeon.io.files import below, write_text
+
     sources = [Source(file, target) for file in options.files for target in options.target]
     work = partial(
         shader_texts,
@@ -69,35 +69,19 @@ def run(options: argparse.Namespace) -> int:
         for source, result in zip(sources, results, strict=True):
             for warning in result.warnings:
                 warn(warning)
-            error = result.error or _collision(source, result.value, options.outputPath, written)
-            if error:
-                errors.append(error)
-            else:
-                written += _write(result.value, options.outputPath)
+            if result.error:
+                errors.append(result.error)
+                continue
+            files = {below(options.outputPath, name): text for name, text in result.value.items()}
+            if taken := {*map(str, files)} & {*written}:
+                rule = f"must not overwrite {min(taken)} of this run; rename the document"
+                errors.append(InputError(f"{source.file}: {rule}"))
+                continue
+            for path, text in files.items():
+                write_text(path, text)
+            written += map(str, files)
     lines = [line for error in errors for line in status_of(error)[1:]]
     outcome = {"files": written, "errors": lines}
     for line in [as_output(json.dumps(outcome))] if options.json else written:
         print(line)
     return min((fail(*status_of(error)) for error in errors), default=PASSED)
-
-
-def _collision(
-    source: Source, texts: Mapping[str, str], folder: str, written: list[str]
-) -> InputError | None:
-    """The error that a file of a document was written for another one, or None."""
-    taken = {str(Path(folder, name)) for name in texts} & set(written)
-    if not taken:
-        return None
-    return InputError(
-        f"{source.file}: must not overwrite {min(taken)} of this run; rename the document"
-    )
-
-
-def _write(texts: Mapping[str, str], folder: str) -> list[str]:
-    """Write texts by file name; return their paths."""
-    from mxeon.io.files import below, write_text
-
-    files = {below(folder, name): text for name, text in texts.items()}
-    for path, text in files.items():
-        write_text(path, text)
-    return list(map(str, files))

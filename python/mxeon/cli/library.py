@@ -29,7 +29,13 @@ def add_parser(commands: arguments.Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print the folder, or write a copy; return the exit status."""
-    from mxeon.shaders.library import documents_folder, eonlib_folder
+    from mxeon.shaders.library import (
+        assert_ours,
+        documents_folder,
+        eonlib_folder,
+        implementations,
+        load_library,
+    )
 
     if options.export is not None:
         from mxeon.shaders.library_export import export_library
@@ -42,20 +48,13 @@ def run(options: argparse.Namespace) -> int:
     elif options.folder:
         print(eonlib_folder())
     elif options.verify:
-        _verify()
+        document = load_library()
+        for one in implementations(document):
+            print(f"{one.node:30} {one.target:10} {one.name:40} {one.document}")
+        assert_ours(document)
     else:
         _explain(eonlib_folder(), documents_folder())
     return PASSED
-
-
-def _verify() -> None:
-    """Print every implementation; raise LibraryError unless all are eonlib's."""
-    from mxeon.shaders.library import assert_ours, implementations, load_library
-
-    document = load_library()
-    for one in implementations(document):
-        print(f"{one.node:30} {one.target:10} {one.name:40} {one.document}")
-    assert_ours(document)
 
 
 def _explain(folder: Path, documents: Path) -> None:

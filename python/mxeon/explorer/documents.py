@@ -4,10 +4,9 @@
 import math
 import warnings
 from base64 import b64encode
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from types import MappingProxyType
 from xml.etree import ElementTree
@@ -28,9 +27,9 @@ from mxeon.explorer.data import (
     ShaderSource,
     Texels,
 )
-from mxeon.explorer.references import reference_of
+from mxeon.explorer.references import LOBES, lobes_of, reference_of
 from mxeon.hosts import open_host
-from mxeon.hosts.image_limit import check_images, image_files
+from mxeon.hosts.raster import check_images, image_files
 from mxeon.hosts.textures import read_texture
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.document.values import Plain, members
@@ -160,9 +159,10 @@ def shader_source(
         controls=Controls(),
         document=document,
     )
-    node = _only_diffuse_node(shader)
-    if node is None:
+    lobes = lobes_of(shader, (*LOBES, "EDF"))
+    if len(lobes) != 1 or lobes[0].getCategory() not in DIFFUSE_NODES:
         return source
+    [node] = lobes
     names = {port.path: port.name for port in source.inputs}
     path = node.getNamePath()
     color, roughness, flag = (
@@ -172,26 +172,12 @@ def shader_source(
     connected = any(
         each.getConnectedOutput() or each.getConnectedNode() for each in node.getInputs()
     )
-    if connected or not (color and roughness and _is_whole(source)):
+    # Nothing weakens the lobe where its weight and its opacity are the number 1.
+    factors = {port.path.rpartition("/")[2]: port.value for port in source.inputs}
+    whole = factors.get("weight") == factors.get("opacity") == 1.0
+    if connected or not (color and roughness and whole):
         return source
     return replace(source, meant=MEANT[node.getCategory()])
-
-
-def _is_whole(source: ShaderSource) -> bool:
-    """Whether nothing weakens the lobe of a source: its weight and its opacity are the number 1."""
-    factors = {port.path.rpartition("/")[2]: port.value for port in source.inputs}
-    return factors.get("weight") == factors.get("opacity") == 1.0
-
-
-def _only_diffuse_node(shader: Shader) -> mx.Node | None:
-    """The rough diffuse node that is all of a material; None if there is more or another."""
-    material = shader.document.getDescendant(shader.element)
-    upstream = {each.getUpstreamElement().getNamePath() for each in material.traverseGraph()}
-    nodes = [shader.document.getDescendant(path) for path in sorted(upstream)]
-    lobes = [node for node in nodes if node.getType() in ("BSDF", "EDF", "VDF", "surfaceshader")]
-    diffuse = [node for node in lobes if node.getCategory() in DIFFUSE_NODES]
-    others = [node for node in lobes if node.getCategory() not in (*DIFFUSE_NODES, "surface")]
-    return diffuse[0] if len(diffuse) == 1 and not others else None
 
 
 def _ports(shader: Shader, images: Mapping[str, Texels | None]) -> Iterator[ShaderInput]:
@@ -236,11 +222,23 @@ def _numbers(
 
 def _port(shader: Shader, port: Input) -> ShaderInput:
     """An input without a value, with its label and range."""
-    words = partial(_attribute, _descriptions(shader.document, port.path))
+    # The elements that describe it: its own, and that of its node's definition.
+    parent, _, name = port.path.rpartition("/")
+    node = shader.document.getDescendant(parent) if parent else None
+    definition = node.getNodeDef() if isinstance(node, mx.Node) else None
+    inputs = (
+        shader.document.getDescendant(port.path),
+        definition and definition.getActiveInput(name),
+    )
+    elements = [each for each in inputs if each is not None]
+
+    def words(attribute: str) -> str:
+        return next(filter(None, (each.getAttribute(attribute) for each in elements)), "")
+
     low, high = (next(filter(None, map(_least, map(words, names))), None) for names in RANGE)
     if low and high and not math.isfinite(high[0] - low[0]):
         low = high = None  # a slider of such a length has no step
-    label = words("uiname") or port.path.rpartition("/")[2].replace("_", " ")
+    label = words("uiname") or name.replace("_", " ")
     # Words that choose from a list are numbers in the shader; frames of images do not move here.
     shown = not (words("enum") or port.type == "filename" or "frame" in port.path)
     return ShaderInput(
@@ -253,20 +251,6 @@ def _port(shader: Shader, port: Input) -> ShaderInput:
         high and high[0],
         shown=shown,
     )
-
-
-def _descriptions(document: mx.Document, path: str) -> list[mx.Element]:
-    """The elements that describe an input: its own, and that of its node's definition."""
-    parent, _, name = path.rpartition("/")
-    node = document.getDescendant(parent) if parent else None
-    definition = node.getNodeDef() if isinstance(node, mx.Node) else None
-    inputs = (document.getDescendant(path), definition and definition.getActiveInput(name))
-    return [each for each in inputs if each is not None]
-
-
-def _attribute(elements: Iterable[mx.Element], name: str) -> str:
-    """The first of the elements' attributes of a name that has a text."""
-    return next(filter(None, (each.getAttribute(name) for each in elements)), "")
 
 
 def _least(text: str) -> tuple[float] | None:

@@ -65,7 +65,7 @@ def _directions(rows: Array) -> tuple[Direction, ...]:
 
 def reference_of(shader: Shader) -> ReferenceTable | None:
     """Values of a shader's material with its own inputs; None where no model covers all of its lobes."""
-    lobes = _lobes(shader)
+    lobes = lobes_of(shader)
     spec = _spec(lobes)
     try:
         direct, white = _hair(shader) if spec is HAIR else _values(shader)
@@ -139,12 +139,12 @@ def _batches(spec: PbrSpec, shader: Shader) -> tuple[Batch, Batch]:
     return Batch(WO, WI, inputs), Batch(SEEN, SEEN, inputs)
 
 
-def _lobes(shader: Shader) -> list[mx.Node]:
+def lobes_of(shader: Shader, types: tuple[str, ...] = LOBES) -> list[mx.Node]:
     """The lobes and surface shaders of a material, but for the surface around one BSDF."""
     material = shader.document.getDescendant(shader.element)
     paths = {each.getUpstreamElement().getNamePath() for each in material.traverseGraph()}
     nodes = [shader.document.getDescendant(path) for path in sorted(paths)]
-    return [each for each in nodes if each.getType() in LOBES and each.getCategory() != "surface"]
+    return [each for each in nodes if each.getType() in types and each.getCategory() != "surface"]
 
 
 def _spec(lobes: list[mx.Node]) -> PbrSpec | None:

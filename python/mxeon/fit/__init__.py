@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from itertools import product
+from typing import Any
 
 import numpy as np
 
@@ -149,6 +150,10 @@ def fit_brdf(measurement: MeasuredBrdf, model: str = "eon") -> Fit:
         (array([0.5]), np.float64(0.25))
     """
     assert_known("model", model, FIT_MODELS)
+    try:
+        from scipy.optimize import least_squares
+    except ImportError as error:
+        raise PackageError(f"mxeon.fit needs scipy: {install('fit')}") from error
     row, data = FIT_MODELS[model], measurement
     channels, scale = data.value.shape[1], 1.0 if data.error is None else data.error
 
@@ -162,33 +167,15 @@ def fit_brdf(measurement: MeasuredBrdf, model: str = "eon") -> Fit:
     lows, highs = zip(*([(0.0, 1.0)] * channels + list(row.bounds.values())), strict=True)
     albedo = list(np.clip(np.pi * data.value.mean(axis=0), 0.05, 0.95))
     starts = ([*albedo, *start] for start in product(*row.starts.values()))
-    best = min((_search(residuals, start, lows, highs) for start in starts), key=lambda s: s[1])
-    x, cost, jacobian = best
-    covariance = _inverse_normal(jacobian)
-    scatter = float(np.sqrt(cost / max(data.value.size - len(x), 1)))
+    ends: dict[str, Any] = {"bounds": (lows, highs), "xtol": 1e-10, "ftol": 1e-10}
+    found = (least_squares(residuals, start, **ends) for start in starts)
+    best = min(found, key=lambda each: float(each.cost))
+    x = best.x
+    # (J^T J)^-1, with very large numbers where it has none.
+    _, singular, rows = np.linalg.svd(best.jac, full_matrices=False)
+    kept = np.maximum(singular, max(LEAST_SINGULAR * singular[0], np.finfo(np.float64).tiny))
+    covariance = (rows.T / kept**2) @ rows
+    scatter = float(np.sqrt(2.0 * best.cost / max(data.value.size - len(x), 1)))
     covariance = covariance if data.error is not None else covariance * scatter**2
     errors = parameters(np.sqrt(np.diag(covariance)))
     return Fit(model, parameters(x), errors, covariance, scatter, data.error is not None)
-
-
-def _search(
-    residuals: Callable[[Array], Array],
-    start: list[float],
-    lows: tuple[float, ...],
-    highs: tuple[float, ...],
-) -> tuple[Array, float, Array]:
-    """Parameters, sum of squares, and derivatives where a search from a start ends."""
-    try:
-        from scipy.optimize import least_squares
-    except ImportError as error:
-        raise PackageError(f"mxeon.fit needs scipy: {install('fit')}") from error
-    found = least_squares(residuals, start, bounds=(lows, highs), xtol=1e-10, ftol=1e-10)
-    return found.x, 2.0 * float(found.cost), found.jac
-
-
-def _inverse_normal(jacobian: Array) -> Array:
-    """(J^T J)^-1, with very large numbers where it has none."""
-    _, singular, rows = np.linalg.svd(jacobian, full_matrices=False)
-    kept = np.maximum(singular, max(LEAST_SINGULAR * singular[0], np.finfo(np.float64).tiny))
-    inverse: Array = (rows.T / kept**2) @ rows
-    return inverse

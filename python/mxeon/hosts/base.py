@@ -120,9 +120,9 @@ class Host(Engine):
     ) -> tuple[Shader, ...]:
         """Shaders of a document for this host; arguments and errors as for `mxeon.generate`.
 
-        Images that are too large in total are refused, too; see `mxeon.hosts.textures.check_images`.
+        Images that are too large in total are refused, too; see `mxeon.hosts.raster.check_images`.
         """
-        from mxeon.hosts.image_limit import check_images
+        from mxeon.hosts.raster import check_images
         from mxeon.shaders.generation import generate
 
         shaders = generate(

@@ -142,10 +142,16 @@ def bsdf_call(query: Query) -> BsdfCall:
         statements, value = LOOP.format(type=kind, block=block, result=value), "mxeon_sum"
     if before := prelude(text, start):
         statements = before.statements + statements
-        arguments = _surface_arguments(shader, before, inputs) | arguments
+        ports = {port.path.rsplit("/", 1)[-1]: port for port in shader.inputs}
+        own: Arguments = {}
+        for name, kind in before.inputs.items():
+            default = _default(ports[name]) if name in ports else _argument(name, {}, {})[1]
+            own[name] = kind, inputs.get(name, default)
+        arguments = own | arguments
     else:
         ports = _ports(shader)
-        computed = _computed(text)
+        # What nodes compute for a closure, without properties of the surface.
+        computed = GEOMETRY.sub("", _main(text) + "\n")
         if any(f" {name} = " in computed for name in names):
             names = [name for name in names if f" {name} = " not in computed]
             words = _words(computed)
@@ -184,15 +190,6 @@ def _find_calls(text: str, closure: str, element: str) -> tuple[int, str, str, l
     return start, block[: block.index(end) + len(end)], results[-1], arguments
 
 
-def _surface_arguments(shader: Shader, before: Prelude, inputs: Inputs) -> Arguments:
-    ports = {port.path.rsplit("/", 1)[-1]: port for port in shader.inputs}
-    arguments: Arguments = {}
-    for name, kind in before.inputs.items():
-        default = _default(ports[name]) if name in ports else _argument(name, {}, {})[1]
-        arguments[name] = kind, inputs.get(name, default)
-    return arguments
-
-
 def _graph_call(shader: Shader, wo: ArrayLike, inputs: Inputs) -> BsdfCall:
     """Call of a shader's graph: the statements before its surface, and the color of its uniform EDF."""
     text = shader.stages["pixel"]
@@ -214,11 +211,6 @@ def _main(text: str) -> str:
     before = re.split(r"\n *surfaceshader \w+ = ", text)[0]
     # Slang's own main begins with its stage's inputs and outputs.
     return re.split(r"\n\{\n|_vd;\n|float4 out1;\n", before)[-1]
-
-
-def _computed(text: str) -> str:
-    """The same without properties of the surface: what nodes compute for a closure."""
-    return GEOMETRY.sub("", _main(text) + "\n")
 
 
 def _words(text: str) -> list[str]:

@@ -204,7 +204,10 @@ def _main(
         values = {f"mxeon_{name}": each for name, each in rows.items()}
         texels = [TEXEL.format(name) for name in rows]
     else:
-        values = {STACK: _stacked(rows)}
+        layers = np.zeros((len(rows), max(map(len, rows.values())), 3), np.float32)
+        for layer, each in zip(layers, rows.values(), strict=True):
+            layer[:, : each.shape[1]] = each
+        values = {STACK: layers}
         texels = [LAYER.format(index, len(rows)) for index in range(len(rows))]
     fetches = [
         FETCH[kind].format(name, texel)
@@ -216,12 +219,3 @@ def _main(
     ]
     text = [*samplers, "void main()", "{", *("    " + line for line in lines), "}", ""]
     return "\n".join(text), values
-
-
-def _stacked(rows: Columns) -> NDArray[np.float32]:
-    """Columns of three values each as layers, (layers, N, 3)."""
-    count = max(map(len, rows.values()))
-    layers = np.zeros((len(rows), count, 3), np.float32)
-    for layer, each in zip(layers, rows.values(), strict=True):
-        layer[:, : each.shape[1]] = each
-    return layers

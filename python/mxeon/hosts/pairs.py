@@ -118,16 +118,20 @@ VIEW = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True)
-class TiltedTriangles:
-    width: float  # of the picture
-    corners: Vectors  # (N, 3, 3)
+class TurnedPairs:
     turn: Vectors  # (N, 3, 3), from the frame of the pairs to that of the scene
-    irradiance: Vectors  # (N, 1), of a surface that faces the light, of radiant intensity 1
 
     def turned(self, vectors: Array) -> Vectors:
         """Vectors of the frame of the pairs, (N or 1, 3), in that of the scene."""
         each = np.broadcast_to(np.asarray(vectors, np.float64), (len(self.turn), 3))
         return np.asarray((self.turn @ each[:, :, np.newaxis])[:, :, 0])
+
+
+@dataclass(frozen=True)
+class TiltedTriangles(TurnedPairs):
+    width: float  # of the picture
+    corners: Vectors  # (N, 3, 3)
+    irradiance: Vectors  # (N, 1), of a surface that faces the light, of radiant intensity 1
 
     @property
     def place(self) -> str:
@@ -160,4 +164,4 @@ def tilted_triangles(wo: Array, wi: Array, size: int) -> TiltedTriangles:
     flat = np.broadcast_to(offsets, (len(points), 3, 2))
     corners = points[:, np.newaxis] + np.concatenate([flat, depth[:, :, np.newaxis]], axis=2)
     squared = (light * light).sum(axis=1, keepdims=True)
-    return TiltedTriangles(PIXEL * size, corners, turn, 1.0 / squared)
+    return TiltedTriangles(turn, PIXEL * size, corners, 1.0 / squared)

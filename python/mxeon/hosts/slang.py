@@ -115,18 +115,14 @@ class Host(base.Host):
             try:
                 self._device = slangpy.Device(type=slangpy.DeviceType[device])
                 self._white = self._texture(np.ones((1, 1, 3)))
-                self._release_at_exit()
-                return
+                break
             except RuntimeError as error:
                 lines = [line.strip() for line in str(error).splitlines() if "error" in line]
-        remedy = "without a GPU it needs a C++ compiler: on Debian: apt-get install g++"
-        raise NotRun(f"slang: no kernel for the CPU; {'; '.join([*lines, remedy])}")
-
-    def _release_at_exit(self) -> None:
-        """Slang removes the files of the kernels that are released.
-
-        A worker is ended by SIGTERM and, soon after, killed: it releases them before all else.
-        """
+        else:
+            remedy = "without a GPU it needs a C++ compiler: on Debian: apt-get install g++"
+            raise NotRun(f"slang: no kernel for the CPU; {'; '.join([*lines, remedy])}")
+        # Slang removes the files of the kernels that are released. A worker is ended by SIGTERM and, soon
+        # after, killed: it releases them before all else.
         atexit.register(self._kernels.clear)
         if multiprocessing.parent_process():
             signal.signal(signal.SIGTERM, self._end)

@@ -6,8 +6,6 @@ Each pixel of a picture shows its own pair of directions; see `testrender_scene`
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -15,14 +13,21 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import NotRun, ShaderError
-from mxeon.hosts import fragment
 from mxeon.hosts import testrender_scene as scenes
 from mxeon.hosts.base import Array, Identity, Inputs
 from mxeon.hosts.osl.engines import find_program, output, version
-from mxeon.hosts.osl.points import IMAGE, columns_of, side, statements, with_header, with_variables
+from mxeon.hosts.osl.points import (
+    CALL,
+    IMAGE,
+    call_text,
+    columns_of,
+    side,
+    statements,
+    with_header,
+    with_variables,
+)
 from mxeon.hosts.pairs import LAMP, SKY, PairHost
-from mxeon.io.images import read_image, write_image
-from mxeon.shaders import functions
+from mxeon.io.images import read_image
 from mxeon.shaders.generation import Shader
 
 HELPERS = {
@@ -30,12 +35,7 @@ HELPERS = {
     "mxeon_light": "shader mxeon_light() { Ci = emission(); }",
     "mxeon_sky": "shader mxeon_sky() { Ci = background(); }",
 }
-
-# The shader that evaluates a function at every point of the grid, with a texel for each argument.
-SHADER = "mxeon_call"
-OPTIONS = ("--center", "-d", "float", SHADER, "-o", "result")
-TEXEL = '{kind} mxeon_{name} = ({kind}) {read} texture("{file}", u, v, 0.0, 0.0, 0.0, 0.0, "interp", "closest");'
-SCALARS = ("float", "int")
+OPTIONS = ("--center", "-d", "float", CALL, "-o", "result")  # a function at every point of the grid
 
 
 class Host(PairHost):
@@ -60,10 +60,7 @@ class Host(PairHost):
         lit = light != SKY
         wo, wi = (np.asarray(each, np.float64) for each in (wo, wi))
         scene = scenes.pair_scene(wo, wi, side(len(wo)))
-        columns = {
-            name: replace(each, values=scene.turned(each.rows)) if each.directed else each
-            for name, each in columns_of(shader, inputs).items()
-        }
+        columns = columns_of(shader, inputs, scene.turned)
         block = statements(columns, self._folder / IMAGE, len(wo), scenes.PLACE)
         text = with_variables(shader, block, lambda output: last.format(output=output))
         for name, each in {shader.name: with_header(text, shader), **HELPERS}.items():
@@ -77,16 +74,10 @@ class Host(PairHost):
         return values / scene.irradiance[:, np.newaxis] if light == LAMP else values
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
-        parameters = functions.parameters(source, function)
-        kinds = {name: kind for kind, name in parameters}
-        self._compile(SHADER, call_text(source, function, parameters))
-        values = {name: (kinds[name], value) for name, value in zip(kinds, arguments, strict=True)}
-        columns = fragment.columns(values)
-        count, (width, height) = fragment.frame(columns)
-        for name, rows in columns.items():
-            image = fragment.texels(rows, (width, height))
-            write_image(self._folder / f"{name}.tif", image, {})
-        size = ["-t", "1", "--res", str(width), str(height)]
+        place, last = (self._folder / IMAGE, scenes.PLACE), "result = {};"
+        text, count = call_text(source, function, arguments, *place, "output color result", last)
+        self._compile(CALL, text)
+        size = ["-t", "1", "--res", *[str(side(count))] * 2]
         pixels = self._image([find_program("testshade"), *size, *OPTIONS])
         return pixels.reshape(-1, 3)[:count]
 
@@ -110,20 +101,3 @@ class Host(PairHost):
             return read_image(picture).astype(np.float64)
         except ValueError as error:
             raise NotRun(f"testrender: {error}") from None
-
-
-def call_text(source: str, function: str, parameters: Sequence[tuple[str, str]]) -> str:
-    """Text of a shader whose output `result` is a function of its textures."""
-    reads = [
-        TEXEL.format(
-            kind=kind,
-            name=name,
-            read="(float)" if kind in SCALARS else "(color)",
-            file=f"{name}.tif",
-        )
-        for kind, name in parameters
-    ]
-    names = ", ".join(f"mxeon_{name}" for _, name in parameters)
-    lines = [*reads, f"result = (color) {function}({names});"]
-    body = "\n".join(f"    {line}" for line in lines)
-    return f"{source}\nshader {SHADER}(output color result = 0)\n{{\n{body}\n}}\n"

@@ -18,9 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.hosts.base import Array
-from mxeon.hosts.pairs import CORNERS, frames, unit
-
-Vectors = NDArray[np.float64]
+from mxeon.hosts.pairs import CORNERS, TurnedPairs, Vectors, frames, unit
 
 SCENE, POINTS, LIGHT = "scene.xml", "points.obj", "light.obj"
 EYE = 40.0  # height of the camera above the light, which lies at the origin
@@ -59,11 +57,10 @@ SKY_GROUP = """  <ShaderGroup name="sky">
 
 
 @dataclass(frozen=True)
-class PairScene:
+class PairScene(TurnedPairs):
     size: int  # pixels on a side of the picture
     rays: Vectors  # unit vectors (N, 3) from the camera through the pixels' centers, row 0 first
     points: Vectors  # (N, 3), float32 numbers
-    turn: NDArray[np.float64]  # (N, 3, 3), from the frame of the pairs to that of the scene
 
     @property
     def irradiance(self) -> NDArray[np.float64]:
@@ -71,11 +68,6 @@ class PairScene:
         area = 0.5 * np.cross(*np.diff(_light_corners(), axis=0))
         squared = (self.points**2).sum(axis=1)
         return np.asarray(np.abs(self.points @ area) / squared**1.5)
-
-    def turned(self, vectors: Array) -> Vectors:
-        """Vectors of the frame of the pairs, (N or 1, 3), in that of the scene."""
-        each = np.broadcast_to(np.asarray(vectors, np.float64), self.rays.shape)
-        return np.asarray((self.turn @ each[:, :, np.newaxis])[:, :, 0])
 
     def files(self, shader: str, lit: bool) -> dict[str, str]:
         """Texts of the files of the scene, by name, with its light or with a white sky."""
@@ -113,7 +105,7 @@ def pair_scene(wo: Array, wi: Array, size: int) -> PairScene:
     # The frames of both pairs, which have the view as their first axis.
     local = frames(wo, wi)
     world = frames(-rays, -unit(points))
-    return PairScene(size, rays, points, world @ np.swapaxes(local, 1, 2))
+    return PairScene(world @ np.swapaxes(local, 1, 2), size, rays, points)
 
 
 def _rays(size: int) -> Vectors:

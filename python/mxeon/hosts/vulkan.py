@@ -53,7 +53,6 @@ STD140 = {"mat4": (16, 64), "vec4": (16, 16), "vec3": (16, 12), "vec2": (8, 8)}
 STD140 |= dict.fromkeys(("float", "int", "bool"), (4, 4))  # type -> alignment and size, in bytes
 BLOCK_SIZE = 1 << 14
 
-CORNERS = np.array([[-1, -1, 0], [3, -1, 0], [-1, 3, 0]], dtype="f4")
 FORMATS = {"uint8": "rgba8unorm", "float16": "rgba16float"}  # which can be filtered
 FLOATS = {1: "r32float", 2: "rg32float", 4: "rgba32float"}  # components -> format
 WHITE = np.full((1, 1, 4), 255, dtype=np.uint8)
@@ -158,7 +157,8 @@ class Host(FragmentHost):
         render.set_pipeline(pipeline)
         for index, group in enumerate(groups):
             render.set_bind_group(index, group)
-        corners = self._device.create_buffer_with_data(data=CORNERS, usage="VERTEX")
+        corners = raster.TRIANGLE["i_position"]
+        corners = self._device.create_buffer_with_data(data=corners, usage="VERTEX")
         render.set_vertex_buffer(0, corners)
         render.draw(3)
         render.end()

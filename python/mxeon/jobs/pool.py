@@ -133,7 +133,11 @@ def run(
     if workers < 1:
         raise InputError(f"workers must be at least 1; got {workers}")
     check_timeout(timeout)
-    _check_working_folder()
+    try:
+        os.getcwd()
+    except FileNotFoundError:
+        rule = "working folder must exist, as worker processes start in it"
+        raise NotRun(f"{rule}; it was deleted") from None
     workers = min(workers, len(items))
     waiting = Queue([Attempt(index, item, group(item)) for index, item in enumerate(items)])
     with temporary_folder("mxeon-pool-") as logs:
@@ -146,15 +150,6 @@ def run(
     for attempt in waiting:
         failure = "worker processes end before they begin to work"
         yield attempt.index, Outcome(None, failure, attempt.number)
-
-
-def _check_working_folder() -> None:
-    """Raise NotRun if the folder in which processes start does not exist."""
-    try:
-        os.getcwd()
-    except FileNotFoundError:
-        rule = "working folder must exist, as worker processes start in it"
-        raise NotRun(f"{rule}; it was deleted") from None
 
 
 def in_order(outcomes: Iterable[tuple[int, Outcome]]) -> Iterator[Outcome]:
@@ -262,16 +257,10 @@ def _end(error: BaseException, timeout: float) -> str:
         return f"timed out after {timeout:g} s"
     if not isinstance(error, ProcessExpired):
         return f"{type(error).__name__}: {error}"
-    code = error.exitcode
-    end = f"crashed ({_signal(-code)})" if code < 0 else f"ended with exit status {code}"
-    return f"worker process {end}"
-
-
-def _signal(number: int) -> str:
-    try:
-        return signal.Signals(number).name
-    except ValueError:  # a real-time signal has no name
-        return f"signal {number}"
+    if (code := error.exitcode) >= 0:
+        return f"worker process ended with exit status {code}"
+    names = {each.value: each.name for each in signal.Signals}  # a real-time signal has none
+    return f"worker process crashed ({names.get(-code, f'signal {-code}')})"
 
 
 def _prepare() -> None:

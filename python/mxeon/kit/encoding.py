@@ -45,7 +45,9 @@ def fault(image: NDArray[np.float64], model: Expected, mask: NDArray[np.bool_]) 
         times = next(known, f"{factor:.3g}")
         scale = "" if abs(factor - 1.0) <= SAME_SCALE else f"{times} times as bright"
         return " and ".join(filter(None, (words, scale)))
-    if _clipped(image[mask], model.value):
+    # Many pixels share one largest value although their expected values differ.
+    top = image[mask] >= image[mask].max() - 1e-6
+    if top.sum() > 20 and np.ptp(model.value[top]) > 0.02:
         return "clipped"
     return "not Lambert's cosine in any known encoding: tone-mapped, or lit otherwise"
 
@@ -64,9 +66,3 @@ def _likeness(
     noise = tiles(error, model.slack, mask).pixel_noise
     rest = np.sqrt(max(0.0, np.mean(error**2) - noise**2))
     return factor, rest / np.sqrt(np.mean((factor * value) ** 2))
-
-
-def _clipped(values: NDArray[np.float64], expected: NDArray[np.float64]) -> bool:
-    """Whether many pixels share one largest value although their expected values differ."""
-    top = values >= values.max() - 1e-6
-    return bool(top.sum() > 20 and np.ptp(expected[top]) > 0.02)

@@ -71,16 +71,13 @@ def _values(row: Model, view: View, place: NDArray[np.float64]) -> NDArray[np.fl
     x, y = place.T
     normal = np.stack([x, y, np.sqrt(1.0 - x * x - y * y)], axis=-1)
     if view.scene.light is None:
-        return cast(float, view.scene.environment) * _albedo(row, view.material, normal[:, 2])
+        table = _albedo_table(row, view.material)
+        albedo = [np.interp(normal[:, 2], COSINES, channel) for channel in table.T]
+        return cast(float, view.scene.environment) * np.stack(albedo, axis=-1)
     wo = local_directions(normal, VIEW)
     wi = local_directions(normal, view.scene.light)
     parameter = [view.material.roughness] if row.parameter else []
     return np.pi * row.brdf(wo, wi, view.material.color, *parameter) * wi[:, 2:]
-
-
-def _albedo(row: Model, material: Material, mu: NDArray[np.float64]) -> NDArray[np.float64]:
-    table = _albedo_table(row, material)
-    return np.stack([np.interp(mu, COSINES, channel) for channel in table.T], axis=-1)
 
 
 @lru_cache(maxsize=64)

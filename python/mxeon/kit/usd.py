@@ -2,7 +2,6 @@
 """The scenes of the kit in USD's text form, written without USD."""
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from mxeon.kit.mesh import Mesh
 from mxeon.kit.views import View
@@ -122,7 +121,12 @@ def scene_layer(view: View, node: str, flagged: bool) -> str:
     if scene.light is None:
         light = DOME.format(radiance=scene.environment)
     else:
-        rows = ", ".join(str((*row, 0.0)) for row in _frame(scene.light).tolist())
+        # A right-handed frame whose z is the direction.
+        z = np.array(scene.light)
+        x = np.cross(np.eye(3)[np.abs(z).argmin()], z)
+        x /= np.linalg.norm(x)
+        frame = np.stack([x, np.cross(z, x), z])
+        rows = ", ".join(str((*row, 0.0)) for row in frame.tolist())
         light = DISTANT.format(irradiance=float(np.pi), rows=rows)
     return SCENE.format(
         name=view.name,
@@ -133,12 +137,3 @@ def scene_layer(view: View, node: str, flagged: bool) -> str:
         node=node,
         flag=FLAG.format(flag=material.energy_compensation) if flagged else "",
     )
-
-
-def _frame(direction: ArrayLike) -> NDArray[np.float64]:
-    """Rows x, y, z of a right-handed frame whose z is `direction`."""
-    z = np.array(direction)
-    helper = np.eye(3)[np.abs(z).argmin()]
-    x = np.cross(helper, z)
-    x /= np.linalg.norm(x)
-    return np.stack([x, np.cross(z, x), z])

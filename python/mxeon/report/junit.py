@@ -20,14 +20,26 @@ def to_junit(run: Run) -> str:
     """
     root = ElementTree.Element("testsuites", name="mxeon")
     for name in dict.fromkeys(result.location for result in run.results):
-        results = [_counted(run, result) for result in run.results if result.location == name]
+        # What fails with a library that does not count was not run.
+        results = [
+            replace(each, verdict=NOT_RUN, reason=f"for comparison: {each.explanation}")
+            if each.verdict == FAILED and each.library in run.compared
+            else each
+            for each in run.results
+            if each.location == name
+        ]
         counts = summarize(results).counts
         totals = {"tests": len(results), "failures": counts[FAILED], "errors": 0}
         totals["skipped"] = counts[NOT_RUN]
         words = {key: str(value) for key, value in totals.items()}
         suite = ElementTree.SubElement(root, "testsuite", {"name": _xml(name)} | words)
         properties = ElementTree.SubElement(suite, "properties")
-        for key, value in _properties(run, results[0].host).items():
+        versions = {"mxeon": run.version} | run.software
+        for identity in run.hosts:
+            if identity.name == results[0].host:
+                versions |= {"host": identity.name, "host version": identity.version}
+                versions["device"] = identity.device
+        for key, value in versions.items():
             ElementTree.SubElement(properties, "property", name=_xml(key), value=_xml(value))
         for result in results:
             _add_case(suite, result)
@@ -39,13 +51,6 @@ def to_junit(run: Run) -> str:
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'
 
 
-def _counted(run: Run, result: Result) -> Result:
-    """A result, not run where it fails with a library that does not count."""
-    if result.verdict != FAILED or result.library not in run.compared:
-        return result
-    return replace(result, verdict=NOT_RUN, reason=f"for comparison: {result.explanation}")
-
-
 def _add_errors(root: ElementTree.Element, refused: Mapping[str, Sequence[str]]) -> None:
     count = str(len(refused))
     totals = {"tests": count, "failures": "0", "errors": count, "skipped": "0"}
@@ -55,15 +60,6 @@ def _add_errors(root: ElementTree.Element, refused: Mapping[str, Sequence[str]])
         case = ElementTree.SubElement(suite, "testcase", named)
         first = ElementTree.SubElement(case, "error", type="refused", message=_xml(lines[0]))
         first.text = _xml("\n".join(lines))
-
-
-def _properties(run: Run, host: str) -> dict[str, str]:
-    versions = {"mxeon": run.version} | run.software
-    for identity in run.hosts:
-        if identity.name == host:
-            versions |= {"host": identity.name, "host version": identity.version}
-            versions["device"] = identity.device
-    return versions
 
 
 def _add_case(suite: ElementTree.Element, result: Result) -> None:

@@ -158,20 +158,16 @@ def library_name(library: str | os.PathLike[str]) -> str:
     known = tree(library)
     if known.kind == OVERLAY:
         profiles = [file for each in PROFILES for file in profile_documents(library, each)]
-        check_files([*_documents(library, rule), *_sources(library), *profiles])
+        sources = [
+            path
+            for folder in library_folders(library)[1:]
+            for path in sorted(folder.rglob("*.*"))
+            if path.suffix in FILES and not path.is_dir()
+        ]
+        check_files([*_documents(library, rule), *sources, *profiles])
     else:
         check_files(os.path.join(library, path) for path in known.own)
     return library
-
-
-def _sources(library: str) -> list[Path]:
-    """Files of the folders that a library may take sources from."""
-    return [
-        path
-        for folder in library_folders(library)[1:]
-        for path in sorted(folder.rglob("*.*"))
-        if path.suffix in FILES and not path.is_dir()
-    ]
 
 
 def load_library(

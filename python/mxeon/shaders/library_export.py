@@ -47,9 +47,25 @@ def export_library(path: AnyPath) -> Path:
     """
     target = Path(os.path.realpath(path))
     if target.suffix == ".zip":
-        _write_archive(target)
-    else:
-        _write_folder(target)
+        with replacing(target) as beside, ZipFile(beside, "w") as archive:
+            for name, data in _content().items():
+                entry = ZipInfo(f"{target.stem}/{name}")  # of 1980: the same archive each time
+                entry.external_attr = 0o644 << 16
+                archive.writestr(entry, data, ZIP_DEFLATED)
+        return target
+    if target.exists() and not (target.is_dir() and not any(target.iterdir())):
+        raise InputError(f"{target}: must be a new or empty folder, or end in .zip")
+    target.parent.mkdir(parents=True, exist_ok=True)
+    beside = target.with_name(f"{TEMPORARY}{token_hex(8)}")
+    with naming(target):
+        beside.mkdir()
+        try:
+            for name, data in _content().items():
+                (beside / name).parent.mkdir(parents=True, exist_ok=True)
+                (beside / name).write_bytes(data)
+            os.replace(beside, target)
+        finally:
+            shutil.rmtree(beside, ignore_errors=True)
     return target
 
 
@@ -66,27 +82,3 @@ def _content() -> dict[str, bytes]:
         "LICENSE": (data_folder() / "LICENSE").read_bytes(),
         "README.txt": text.encode(),
     }
-
-
-def _write_archive(target: Path) -> None:
-    with replacing(target) as beside, ZipFile(beside, "w") as archive:
-        for name, data in _content().items():
-            entry = ZipInfo(f"{target.stem}/{name}")  # of 1980: the same archive each time
-            entry.external_attr = 0o644 << 16
-            archive.writestr(entry, data, ZIP_DEFLATED)
-
-
-def _write_folder(target: Path) -> None:
-    if target.exists() and not (target.is_dir() and not any(target.iterdir())):
-        raise InputError(f"{target}: must be a new or empty folder, or end in .zip")
-    target.parent.mkdir(parents=True, exist_ok=True)
-    beside = target.with_name(f"{TEMPORARY}{token_hex(8)}")
-    with naming(target):
-        beside.mkdir()
-        try:
-            for name, data in _content().items():
-                (beside / name).parent.mkdir(parents=True, exist_ok=True)
-                (beside / name).write_bytes(data)
-            os.replace(beside, target)
-        finally:
-            shutil.rmtree(beside, ignore_errors=True)

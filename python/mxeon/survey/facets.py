@@ -45,7 +45,12 @@ def polyhedron() -> Polyhedron:
     theta, phi = np.meshgrid(polar[1:-1], azimuth, indexing="ij")
     ring = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], -1)
     local = np.concatenate([[[0.0, 0.0, 1.0]], ring.reshape(-1, 3), [[0.0, 0.0, -1.0]]])
-    vertices = (local @ _frame()).astype(np.float32).astype(np.float64)
+    # From two axes across AXIS, and AXIS.
+    axis = np.asarray(AXIS) / np.linalg.norm(AXIS)
+    across = np.cross([0.0, 0.0, 1.0], axis)
+    across /= np.linalg.norm(across)
+    frame = np.stack([across, np.cross(axis, across), axis])
+    vertices = (local @ frame).astype(np.float32).astype(np.float64)
     quads = np.array([_quad(row, column) for row in range(RINGS) for column in range(SECTORS)])
     triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
     corners = vertices[triangles]
@@ -102,11 +107,3 @@ def _quad(row: int, column: int) -> tuple[int, int, int, int]:
         return 1 + (ring - 1) * SECTORS + sector if ring < RINGS else 1 + (RINGS - 1) * SECTORS
 
     return vertex(row, column), vertex(row + 1, column), vertex(row + 1, after), vertex(row, after)
-
-
-def _frame() -> NDArray[np.float64]:
-    """Rows: two axes across AXIS, and AXIS."""
-    axis = np.asarray(AXIS) / np.linalg.norm(AXIS)
-    across = np.cross([0.0, 0.0, 1.0], axis)
-    across /= np.linalg.norm(across)
-    return np.stack([across, np.cross(axis, across), axis])

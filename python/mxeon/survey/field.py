@@ -98,23 +98,18 @@ def read_field(folders: Sequence[str | PathLike[str]]) -> tuple[Entry, ...]:
     later counts. Raises ValueError if a folder has no report, or no report has such a node.
     """
     entries = {}
-    for folder in folders:
-        for report in _reports(Path(folder)):
+    for folder in map(Path, folders):
+        reports = sorted(path.parent for path in folder.glob(f"*/{RESULTS}"))
+        reports = [folder] if (folder / RESULTS).is_file() else reports
+        if not reports:
+            raise InputError(f"{folder}: must be the folder of a report, or hold some")
+        for report in reports:
             for entry in _entries(read_results(report), report):
                 key = entry.host, entry.version, entry.device, entry.library, entry.node
                 entries[key] = entry
     if not entries:
         raise InputError("a report must have a node that claims a rough diffuse model; none has")
     return tuple(entries.values())
-
-
-def _reports(folder: Path) -> list[Path]:
-    if (folder / RESULTS).is_file():
-        return [folder]
-    reports = sorted(path.parent for path in folder.glob(f"*/{RESULTS}"))
-    if not reports:
-        raise InputError(f"{folder}: must be the folder of a report, or hold some")
-    return reports
 
 
 def _entries(report: Report, folder: Path) -> Iterator[Entry]:
@@ -130,7 +125,18 @@ def _entries(report: Report, folder: Path) -> Iterator[Entry]:
         claimed = direct and (direct.claimed or claims.get(direct.subject))
         if direct and claimed:
             portraits = {each.scene: each for each in _portraits(report, place, folder)}
-            cells = _cells(results, direct, portraits.get(BACK))
+            cells = {
+                column: next(results[key] for key in keys if key in results)
+                for column, keys in CHECKS.items()
+                if any(key in results for key in keys)
+            }
+            # The largest error of the portrait in light from behind, judged as the check of values.
+            if BACK in portraits:
+                error, allowed = portraits[BACK].difference, direct.tolerance or 0.0
+                verdict = PASSED if error <= allowed else FAILED
+                words = PORTRAIT, "Light from behind, at the points of a sphere."
+                about = *words, direct.subject, direct.host, direct.library
+                cells[BACK] = Result(*about, verdict, error, direct.unit, allowed)
             pages = tuple(dict.fromkeys(page for each in results.values() for page in each.pages))
             hosts = {each.name: (each.version, each.device) for each in report.hosts}
             names = (*place, *hosts.get(direct.host, ("", "")), claimed, direct.model)
@@ -153,28 +159,6 @@ def _portraits(report: Report, place: Place, folder: Path) -> Iterator[Portrait]
                 folder / "pictures" / Path(file).name for file in (each.exr, each.reference)
             )
             yield Portrait(each.scene, image, model, each.largest_difference)
-
-
-def _cells(
-    results: Mapping[str, Result], direct: Result, behind: Portrait | None
-) -> dict[str, Result]:
-    cells = {
-        column: next(results[key] for key in keys if key in results)
-        for column, keys in CHECKS.items()
-        if any(key in results for key in keys)
-    }
-    if behind:
-        cells["back"] = _back_lit(direct, behind.difference)
-    return cells
-
-
-def _back_lit(direct: Result, error: float) -> Result:
-    """The largest error of the portrait in light from behind, judged as the check of values."""
-    allowed = direct.tolerance or 0.0
-    verdict = PASSED if error <= allowed else FAILED
-    claim = "Light from behind, at the points of a sphere."
-    place = PORTRAIT, claim, direct.subject, direct.host, direct.library
-    return Result(*place, verdict, error, direct.unit, allowed)
 
 
 def write_field(entries: Sequence[Entry], file: str | PathLike[str], pages: str = "") -> Path:

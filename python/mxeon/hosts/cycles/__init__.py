@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -23,10 +22,18 @@ from mxeon.hosts.base import Array, Identity, Inputs, Query
 from mxeon.hosts.calls import GRAPH
 from mxeon.hosts.cycles import process
 from mxeon.hosts.cycles.process import interpreter
-from mxeon.hosts.osl.points import IMAGE, columns_of, side, statements, with_header, with_variables
+from mxeon.hosts.osl.points import (
+    IMAGE,
+    call_text,
+    columns_of,
+    side,
+    statements,
+    with_header,
+    with_variables,
+)
 from mxeon.hosts.pairs import DISTANCE, HEIGHT, LAMP, SKY, PairHost, tilted_triangles
 from mxeon.hosts.process import Worker
-from mxeon.io.images import read_image, write_image
+from mxeon.io.images import read_image
 from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import inner_lobes
@@ -47,19 +54,6 @@ TEXCOORD = """{
 
 
 SKY_SAMPLES = 64  # paths per pixel under a sky
-EMITTER = Scene("emitter")  # without light, for emission
-CALL = """#include "{source}"
-
-shader call(output closure color out = 0)
-{{
-    float s = 0.5 + 0.5 * P[0];
-    float t = 0.5 - 0.5 * P[1];
-{reads}
-    color value = {function}({names});
-    out = value * emission();
-}}
-"""
-READ = '    {type} {name} = texture("{image}", s, t, 0.0, 0.0, 0.0, 0.0, "interp", "closest");'
 # The graph of a generated shader as a function: the functions before the shader stay as they are; one
 # more repeats the statements before the shader's uniform EDF, and returns its color.
 GRAPH_FUNCTION = "mxeon_graph"
@@ -102,7 +96,9 @@ class Host(PairHost):
         self.refuse_shape(scene)
         if isinstance(scene.environment, (str, Path)):
             raise NotRun("cycles: environment must be uniform; got an image")
-        text = _on_sphere(with_header(shader.stages["pixel"], shader))
+        text = with_header(shader.stages["pixel"], shader)
+        head, brace, body = text.rpartition("\n)\n{\n")
+        text = f"{head}{brace}{TEXCOORD}{body}}}"
         return self._picture(scene, inner_lobes(shader), text=text)
 
     def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
@@ -118,20 +114,14 @@ class Host(PairHost):
         self, shader: Shader, wo: Array, wi: Array, inputs: Inputs, last: str, light: str
     ) -> NDArray[np.float64]:
         scene = tilted_triangles(wo, wi, side(len(wo)))
-        columns = {
-            name: replace(each, values=scene.turned(each.rows)) if each.directed else each
-            for name, each in columns_of(shader, inputs).items()
-        }
+        columns = columns_of(shader, inputs, scene.turned)
         with self._folder() as name:
             folder = Path(name)
             block = statements(columns, folder / IMAGE, len(wo), scene.place)
             text = with_variables(shader, block, lambda output: last.format(output=output))
             corners = folder / "triangles.npy"
             np.save(corners, scene.corners.astype(np.float32))
-            frame: dict[str, object] = {
-                **process.request(Scene("pairs"), ()),
-                "size": side(len(wo)),
-            }
+            frame: dict[str, object] = {**process.request(process.DARK, ()), "size": side(len(wo))}
             frame |= {"radius": 0.5 * HEIGHT, "width": scene.width, "triangles": str(corners)}
             if light == LAMP:
                 frame["lamp"] = DISTANCE
@@ -146,44 +136,22 @@ class Host(PairHost):
         return self._picture(scene, (), kind=kind, inputs=tuple(inputs.items()))
 
     def call(self, function: str, *arguments: ArrayLike) -> Array:
-        return self.execute(functions.expanded(self._file(function)), function, *arguments)
+        for path in sorted(self._sources.rglob("*.osl")):
+            if function in functions.signatures(path.read_text(encoding="utf-8")):
+                return self.execute(functions.expanded(path), function, *arguments)
+        raise InputError(f"function must be defined in {self._sources}; got {function!r}")
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
         """Values of a function: a plane emits them, and its shader reads the arguments pixel by pixel.
 
         It reads images by position and unfiltered, so every bit of a float32 survives.
         """
-        types = [kind for kind, _ in functions.parameters(source, function)]
-        if len(types) != len(arguments):
-            raise InputError(f"{function} takes {len(types)} arguments; got {len(arguments)}")
-        columns = [
-            np.asarray(values, np.float32).reshape(-1, 1 if kind == "float" else 3)
-            for kind, values in zip(types, arguments, strict=True)
-        ]
-        count = max(map(len, columns))
-        size = side(count)
-        names = [f"argument{index}" for index in range(len(types))]
-        with self._folder() as place:
-            folder = Path(place)
-            reads = []
-            for kind, name, column in zip(types, names, columns, strict=True):
-                image, pixels = (
-                    folder / f"{name}.exr",
-                    np.zeros((size * size, column.shape[1]), "f4"),
-                )
-                pixels[:count] = column
-                write_image(image, pixels.reshape(size, size, -1), {})
-                reads.append(READ.format(type=kind, name=name, image=image.as_posix()))
-            path = folder / "functions.osl"
-            path.write_text(source, encoding="utf-8")
-            text = CALL.format(
-                source=path.as_posix(),
-                reads="\n".join(reads),
-                function=function,
-                names=", ".join(names),
-            )
-            frame = {**process.request(EMITTER, ()), "size": size, "radius": 2.0}
-            return self._render(folder, text, **frame).reshape(-1, 3)[:count]
+        with self._folder() as name:
+            place, output = (Path(name, IMAGE), process.PLACE), "output closure color out"
+            last = "out = {} * emission();"
+            text, count = call_text(source, function, arguments, *place, output, last)
+            frame = {**process.request(process.DARK, ()), "body": "plane", "size": side(count)}
+            return self._render(Path(name), text, **frame).reshape(-1, 3)[:count]
 
     def _rendered(
         self,
@@ -207,12 +175,6 @@ class Host(PairHost):
     def _folder(self) -> TemporaryDirectory[str]:
         return TemporaryDirectory(dir=self._temporary.name)
 
-    def _file(self, function: str) -> Path:
-        for path in sorted(self._sources.rglob("*.osl")):
-            if function in functions.signatures(path.read_text(encoding="utf-8")):
-                return path
-        raise InputError(f"function must be defined in {self._sources}; got {function!r}")
-
     def _render(self, folder: Path, text: str, **frame: object) -> Array:
         shader = folder / "shader.osl"
         shader.write_text(text)
@@ -232,12 +194,6 @@ class Host(PairHost):
             return read_image(output)
         except ImageError as error:
             raise NotRun(f"cycles: Blender wrote no picture that can be read; {error}") from None
-
-
-def _on_sphere(text: str) -> str:
-    """A generated shader that reads the sphere's texture coordinates."""
-    head, brace, body = text.rpartition("\n)\n{\n")
-    return head + brace + TEXCOORD + body + "}"
 
 
 def _graph_function(shader: Shader, inputs: Inputs) -> tuple[str, list[ArrayLike]]:

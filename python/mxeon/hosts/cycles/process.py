@@ -57,6 +57,8 @@ class SceneParts(TypedDict):
     body: str
 
 
+DARK = Scene("dark")  # of emission, and of other lights than a scene has
+PLACE = "0.5 + 0.5 * P[0], 0.5 - 0.5 * P[1]"  # OSL of a point's place on the body "plane"
 FEWEST_SAMPLES = 16  # below the surface; with fewer, the picture is noise
 
 

@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.errors import InputError, NotRun
+from mxeon.errors import NotRun
 from mxeon.hosts import base
 from mxeon.hosts.base import Array, Identity, Inputs
 from mxeon.hosts.osl.carriers import prelude
@@ -27,15 +27,14 @@ from mxeon.hosts.osl.engines import VARIABLES, Blender, Testshade
 from mxeon.hosts.osl.points import (
     IMAGE,
     Column,
+    call_text,
     columns_of,
-    indented,
     row,
     statements,
     with_header,
     with_variables,
 )
 from mxeon.hosts.osl.trees import KeptTrees, TreeRows, keys_of, read_trees, whole_label, with_roots
-from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 
 LINE = re.compile(r"^mxeon (\d+) (\S+) (.*)$")  # row of a point, label, and its text
@@ -51,7 +50,7 @@ vector mxeon_view()
 """
 ROOT = "root"
 SHADERS = 8  # with the names of their variables, whose closures are kept
-PRINT = '    printf("mxeon %d {root} %s\\n", MXEON_ROW, {text});\n'
+PRINT = f'printf("mxeon %d {ROOT} %s\\n", MXEON_ROW, mxeon_text({{0}}));'
 
 
 class Host(base.Host):
@@ -97,8 +96,7 @@ class Host(base.Host):
             folder, place = Path(name), self._engine.place
             block = statements(columns, folder / IMAGE, count, place)
             [read] = statements({"view": view}, folder / "view.tif", count, place)
-            end = _print("mxeon_text({0})") + "    {0} = 0;\n"
-            shown = with_variables(shader, block, end.format)
+            shown = with_variables(shader, block, f"    {PRINT}\n    {{0}} = 0;\n".format)
             text = VIEW.format(read=read) + with_header(shown, shader)
             rows = self._printed(folder, text, count)
         found = read_trees([whole_label(each, ROOT) for each in rows])
@@ -107,18 +105,9 @@ class Host(base.Host):
         return tuple(replace(each, tree=with_roots(each.tree)) for each in found)
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
-        parameters = functions.parameters(source, function)
-        if len(parameters) != len(arguments):
-            raise InputError(f"{function} takes {len(parameters)} arguments; got {len(arguments)}")
-        columns = {
-            f"argument{n}": Column(kind, value)
-            for n, ((kind, _), value) in enumerate(zip(parameters, arguments, strict=True))
-        }
-        count = max((len(column.rows) for column in columns.values()), default=1)
         with self._engine.folder() as name:
-            block = indented(statements(columns, Path(name, IMAGE), count, self._engine.place))
-            last = _print(f"mxeon_text((color) {function}({', '.join(columns)}))")
-            text = f"{source}\nshader call(output closure color out = 0)\n{{\n{block}{last}}}\n"
+            place, output = (Path(name, IMAGE), self._engine.place), "output closure color out"
+            text, count = call_text(source, function, arguments, *place, output, PRINT)
             rows = self._printed(Path(name), text, count)
         return np.array([row[ROOT].split() for row in rows], np.float32)
 
@@ -134,7 +123,3 @@ class Host(base.Host):
         if missing := sum(ROOT not in each for each in rows):
             raise NotRun(f"osl: {missing} of {count} points were not printed")
         return rows
-
-
-def _print(text: str) -> str:
-    return PRINT.format(root=ROOT, text=text)

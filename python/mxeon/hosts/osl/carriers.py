@@ -10,7 +10,7 @@ label is its text, with nine digits, enough to restore a float32 exactly. The sh
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import product
 
@@ -128,18 +128,14 @@ def prelude(text: str, carrier: Carrier) -> str:
         ]
     # Closures, with many keywords, so that unknown ones are reported, too.
     for name in names:
-        lines += [_function(f"mxeon_{name}", name, *kinds) for kinds in _forms(CLOSURES[name])]
+        arguments = (*CLOSURES[name].arguments.values(),)
+        for count in range(PAIRS + 1 if arguments else 1):
+            for kinds in product(WORDS, repeat=count):
+                pairs = (each for kind in kinds for each in ("string", kind))
+                lines.append(_function(f"mxeon_{name}", name, *arguments, *pairs))
     # What is built in cannot be hidden, but renamed.
     lines += [f"#define {name} mxeon_{name}" for name in (*names, "layer")]
     return "\n".join([*lines, ""])
-
-
-def _forms(signature: Signature) -> Iterator[tuple[str, ...]]:
-    """Types of the arguments of a closure with no keyword, one, and up to PAIRS of them."""
-    for count in range(PAIRS + 1 if signature.arguments else 1):
-        for kinds in product(WORDS, repeat=count):
-            pairs = (each for kind in kinds for each in ("string", kind))
-            yield *signature.arguments.values(), *pairs
 
 
 def _function(name: str, label: str, *kinds: str) -> str:

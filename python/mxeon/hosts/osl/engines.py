@@ -19,7 +19,6 @@ from mxeon.hosts.cycles.process import interpreter
 from mxeon.hosts.osl.carriers import DEBUG, HOLDOUT
 from mxeon.hosts.osl.points import side
 from mxeon.hosts.process import Worker
-from mxeon.shaders.scene import Scene
 
 VARIABLES = {"oslc": "MXEON_OSLC", "testrender": "MXEON_TESTRENDER", "testshade": "MXEON_TESTSHADE"}
 TIMEOUT = 300.0  # seconds for one of them
@@ -80,7 +79,6 @@ def output(
     return process.stdout
 
 
-DARK = Scene("dark")
 SECONDS = 300.0  # for one run
 TROUBLE = ("ERROR", "WARNING")  # the first words of the engine's messages
 
@@ -90,7 +88,7 @@ class Blender:
 
     carrier = HOLDOUT
     rooted = False
-    place = "0.5 + 0.5 * P[0], 0.5 - 0.5 * P[1]"  # on the plane that the worker shows
+    place = process.PLACE
 
     def __init__(self) -> None:
         python = interpreter("osl")
@@ -110,7 +108,7 @@ class Blender:
     def printed(self, folder: Path, text: str, count: int) -> list[str]:
         shader = folder / "shader.osl"
         shader.write_text(text, encoding="utf-8")
-        frame = process.request(DARK, ()) | {"body": "plane", "size": side(count)}
+        frame = process.request(process.DARK, ()) | {"body": "plane", "size": side(count)}
         reply = self._worker.ask(output=str(folder / "output.exr"), shader=str(shader), **frame)
         lines = self._worker.printed()
         if "error" in reply:

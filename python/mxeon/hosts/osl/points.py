@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -13,8 +13,10 @@ import MaterialX as mx
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.hosts.base import Inputs
+from mxeon.errors import InputError
+from mxeon.hosts.base import Array, Inputs
 from mxeon.io.images import write_image
+from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 
 LEAST_SIZE = 4  # Blender renders no smaller picture.
@@ -44,11 +46,6 @@ class Column:
 
     def some(self, rows: NDArray[np.intp]) -> Column:
         return self if len(self.rows) == 1 else replace(self, values=self.rows[rows])
-
-    @property
-    def directed(self) -> bool:
-        """Whether the values are directions, which turn with the frame of the surface."""
-        return self.kind in ("normal", "vector")
 
 
 def side(count: int) -> int:
@@ -85,15 +82,41 @@ def statements(columns: Mapping[str, Column], image: Path, count: int, place: st
                 [f"{kind} {name} = {x};"] if column.declared else [NO_WARNING, f"{name} = {x};"]
             )
     if columns:
-        _write(image, np.concatenate(values, axis=1))
+        size, channels = side(count), sum(each.shape[1] for each in values)
+        pixels = np.zeros((size * size, channels), np.float32)
+        pixels[:count] = np.concatenate(values, axis=1)
+        write_image(image, pixels.reshape(size, size, channels), {"compression": "none"})
     return lines
 
 
-def _write(image: Path, rows: NDArray[np.float32]) -> None:
-    size, channels = side(len(rows)), rows.shape[1]
-    pixels = np.zeros((size * size, channels), np.float32)
-    pixels[: len(rows)] = rows
-    write_image(image, pixels.reshape(size, size, channels), {"compression": "none"})
+CALL = "mxeon_call"  # name of a shader that calls a function
+
+
+def call_text(
+    source: str,
+    function: str,
+    arguments: Sequence[ArrayLike],
+    image: Path,
+    place: str,
+    output: str,
+    last: str,
+) -> tuple[str, int]:
+    """Text of a shader that calls a function of `source` at each point, and the number of points.
+
+    `image` and `place` are those of `statements`; `output` declares the shader's output, and `last` is
+    its last statement, with {} for the value, a color.
+    """
+    parameters = functions.parameters(source, function)
+    if len(parameters) != len(arguments):
+        raise InputError(f"{function} takes {len(parameters)} arguments; got {len(arguments)}")
+    columns = {
+        f"argument{n}": Column(kind, value)
+        for n, ((kind, _), value) in enumerate(zip(parameters, arguments, strict=True))
+    }
+    count = max((len(each.rows) for each in columns.values()), default=1)
+    value = last.format(f"(color) {function}({', '.join(columns)})")
+    body = indented([*statements(columns, image, count, place), value])
+    return f"{source}\nshader {CALL}({output} = 0)\n{{\n{body}}}\n", count
 
 
 OUTPUT = re.compile(r"\boutput MATERIAL (\w+) *=")  # of a shader
@@ -106,8 +129,13 @@ SURFACE = {
 NAMES = {"N": "normal", "dPdu": "tangent", "dPdv": "bitangent"}
 
 
-def columns_of(shader: Shader, inputs: Inputs) -> Mapping[str, Column]:
-    """Columns of the surface and of the inputs that a shader has, by the names of its variables."""
+def columns_of(
+    shader: Shader, inputs: Inputs, turned: Callable[[Array], Array] = lambda rows: rows
+) -> Mapping[str, Column]:
+    """Columns of the surface and of the inputs that a shader has, by the names of its variables.
+
+    Directions among them are turned.
+    """
     columns = {
         each: Column(kind, inputs.get(NAMES[each], value), declared=False)
         for each, (kind, value) in SURFACE.items()
@@ -116,7 +144,10 @@ def columns_of(shader: Shader, inputs: Inputs) -> Mapping[str, Column]:
         key = port.path if port.path in inputs else port.path.rsplit("/", 1)[-1]
         if key in inputs:
             columns[port.name] = Column(TYPES.get(port.type, port.type), inputs[key])
-    return columns
+    return {
+        name: replace(each, values=turned(each.rows)) if each.kind in ("normal", "vector") else each
+        for name, each in columns.items()
+    }
 
 
 def with_variables(shader: Shader, block: Iterable[str], last: Callable[[str], str]) -> str:

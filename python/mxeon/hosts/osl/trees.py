@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import count
 from typing import TypeAlias
@@ -100,7 +100,8 @@ def _tree(shape: str, numbers: Array) -> ClosureTree | None:
             stack.append((name, []))
             expected = "closure"
         elif values:
-            stack[-1][1].append(_rows(numbers, columns, values.count("#")))
+            rows = numbers[:, [next(columns) for _ in range(values.count("#"))]]
+            stack[-1][1].append(rows[:, 0] if rows.shape[1] == 1 else rows)
             expected = ""
         elif text is not None:
             stack[-1][1].append(text)
@@ -121,12 +122,6 @@ def _tree(shape: str, numbers: Array) -> ClosureTree | None:
     [root] = stack[0][1] or [None]
     assert root is None or isinstance(root, ClosureTree)
     return root
-
-
-def _rows(numbers: Array, columns: Iterator[int], width: int) -> Array:
-    """The next numbers of every point, (N,) or (N, width)."""
-    rows = numbers[:, [next(columns) for _ in range(width)]]
-    return rows[:, 0] if width == 1 else rows
 
 
 def _closure(name: str, values: Iterable[Argument]) -> ClosureTree:

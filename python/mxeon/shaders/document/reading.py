@@ -85,7 +85,12 @@ def read_document(
     else:
         raise DocumentError(f"document must be a readable file; got {str(source)!r}")
     elements = tuple(content.traverseTree())
-    _check_tokens(elements)
+    for each in elements:  # MaterialX would resolve tokens of names by themselves forever
+        if each.isA(mx.Token) and each.getType() in ("filename", "geomname"):
+            raise DocumentError(
+                f"{location(each)} must not have the type {each.getType()}, which crashes "
+                "MaterialX: give it the type string"
+            )
     _resolve_files(content, elements, [folder(content), *map(Path, policy.path)])
     content.setDataLibrary(data)
     _check_version(content, label(content))
@@ -112,16 +117,6 @@ def _is_text(source: AnyPath) -> TypeGuard[str]:
     """Whether a source is XML text; the path of a file is not, even if it begins with `<`."""
     starts = isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<")
     return starts and not os.path.isfile(source)
-
-
-def _check_tokens(elements: Iterable[mx.Element]) -> None:
-    """Raise DocumentError for tokens of names, which MaterialX would resolve by themselves forever."""
-    for element in elements:
-        if element.isA(mx.Token) and element.getType() in ("filename", "geomname"):
-            raise DocumentError(
-                f"{location(element)} must not have the type {element.getType()}, which crashes "
-                "MaterialX: give it the type string"
-            )
 
 
 def _resolve_files(

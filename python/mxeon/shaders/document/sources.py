@@ -125,7 +125,7 @@ class Sources:
         return self._copies[path]
 
     def _write(self, copy: str, path: str, depth: int | None) -> None:
-        """Check a file, and all that it includes, and write its copy."""
+        """Check a file, and all that it includes, and write its copy, whose includes are copies."""
         rule, title = f"{path}: must", label(self._document)
         self._policy.check_limit("includes", depth or 0, f"{rule} be included by", "files in a row")
         try:
@@ -140,15 +140,11 @@ class Sources:
             self._expressions = max(self._expressions, len(text))
         else:
             self._functions += len(text)
-            text = self._rewritten(text, path, depth)
+            lines = text.split("\n")
+            for number, line in enumerate(lines):
+                if name := included(line):
+                    start, end = line.index('"') + 1, line.rindex('"')
+                    inner = self._copy(name, os.path.dirname(path), f"{path}: include", depth + 1)
+                    lines[number] = f"{line[:start]}{inner}{line[end:]}"
+            text = "\n".join(lines)
         Path(copy).write_text(text, encoding="utf-8", newline="")
-
-    def _rewritten(self, text: str, path: str, depth: int) -> str:
-        """A source whose includes are copies."""
-        lines = text.split("\n")
-        for number, line in enumerate(lines):
-            if name := included(line):
-                start, end = line.index('"') + 1, line.rindex('"')
-                copy = self._copy(name, os.path.dirname(path), f"{path}: include", depth + 1)
-                lines[number] = f"{line[:start]}{copy}{line[end:]}"
-        return "\n".join(lines)

@@ -105,9 +105,11 @@ class Host(browser.PackageHost):
         files = ("structs/surface_record_struct", "common/fresnel_functions")
         texts = [_template(folder / f"{file}.glsl.js") for file in files]
         lobes = _template(folder / "bsdf/bsdf_functions.glsl.js")
-        return "\n".join(
-            [PI, *texts, _cut(lobes, "float diffuseEval(", "vec3 diffuseDirection("), GLSL]
-        )
+        begin, end = "float diffuseEval(", "vec3 diffuseDirection("
+        if begin not in lobes or end not in lobes:
+            raise NotRun(f"{PACKAGE}: no {begin}) in its shader text")
+        lobe = begin + lobes.split(begin)[1].split(end)[0]
+        return "\n".join([PI, *texts, lobe, GLSL])
 
 
 def _template(path: Path) -> str:
@@ -116,9 +118,3 @@ def _template(path: Path) -> str:
         return path.read_text("utf-8").split("`")[1]
     except (OSError, IndexError):
         raise NotRun(f"{PACKAGE}: no shader text in {path}") from None
-
-
-def _cut(text: str, begin: str, end: str) -> str:
-    if begin not in text or end not in text:
-        raise NotRun(f"{PACKAGE}: no {begin}) in its shader text")
-    return begin + text.split(begin)[1].split(end)[0]

@@ -47,7 +47,7 @@ class PolyhedronHost(Engine):
         mesh = polyhedron()
         np.savez(self._folder / MESH, vertices=mesh.vertices, triangles=mesh.triangles)
         self.worker = Worker(self.name, python, self.script, self._folder / "log.txt", limit)
-        self._picture = lru_cache(maxsize=PICTURES)(self._rendered)
+        self._picture = lru_cache(maxsize=PICTURES)(lambda job: self._ask(**json.loads(job)))
 
     def identity(self) -> Identity:
         try:
@@ -74,18 +74,13 @@ class PolyhedronHost(Engine):
         self.worker.close()
         self._temporary.cleanup()
 
-    def _rendered(self, request: str) -> Array:
-        """Picture of a node; read-only."""
-        picture = self._ask(**json.loads(request))
-        picture.flags.writeable = False  # shared by all callers
-        return picture
-
     def _ask(self, **request: object) -> Array:
         self.identity()
         output = self._folder / "output.npy"
         output.unlink(missing_ok=True)
         self.worker.ask(output=str(output), **request)
         values: Array = np.load(output, allow_pickle=False)
+        values.flags.writeable = False  # pictures are shared by all callers
         return values
 
     def _interpreter(self) -> Path:
