@@ -262,6 +262,13 @@ def test_a_failure_has_the_pages_that_explain_it(
     assert {*with_pages(result).pages} == pages
 
 
+def test_what_is_left_of_a_mended_defect_has_not_its_page():
+    near = {"energy-preserving Oren-Nayar (EON)": 1e-6, CLAMPED: 0.02}
+    place = ("value", "", EON, "gl", "stock", FAILED)
+    left = (Result(*place, each, "", 1e-6, distances=near) for each in (1e-4, 0.3))
+    assert [with_pages(each).pages for each in left] == [(), ("genglsl_clamped_dot",)]
+
+
 # --- pictures -----------------------------------------------------------------------------------
 
 

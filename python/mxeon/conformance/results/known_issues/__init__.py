@@ -75,6 +75,7 @@ RENDERERS = {
     "luxcore": "this LuxCoreRender",
     "three-gpu-pathtracer": "this three-gpu-pathtracer",
 }
+LEFT = 30.0  # smaller errors of the right model have another cause than the issue
 SPREAD = 1.5  # by which engines, drivers and versions of MaterialX may exceed an issue's size
 ISSUES = read_issues(
     *(
@@ -140,7 +141,12 @@ def _explains(issue: Issue, result: Result, materialx: str) -> bool:
     sized = result.host == issue.host or result.unit != "relative"
     if result.error is None and issue.sizes:  # as of a shader that does not compile
         return False
-    if sized and (result.error or 0.0) > SPREAD * issue.sizes.get(row, math.inf):
+    size = issue.sizes.get(row, math.inf)
+    if sized and (result.error or 0.0) > SPREAD * size:
+        return False
+    # Where the node's own model is nearest, a defect many times as large is mended; what is left has another cause.
+    own, *others = result.distances.values() or (math.inf,)
+    if sized and own < min(others, default=own) and (result.error or 0.0) < size / LEFT:
         return False
     gone = row in issue.repaired or set(issue.rows) <= set(issue.repaired)
     if result.diagnosis.startswith("fault: ") or (gone and _is_repaired(issue, materialx)):
