@@ -10,7 +10,7 @@ import pytest
 
 from mxeon import check
 from mxeon.cli import main
-from mxeon.cli.answer import LINES, answer
+from mxeon.cli.answer import LINES, WRONG_INSIDE, answer
 from mxeon.errors import MISUSE
 from mxeon.errors import NOT_RUN as DID_NOT_RUN
 from mxeon.report import to_json
@@ -146,6 +146,10 @@ def test_what_did_not_run_is_said_with_its_number():
             "1 differs where the specification leaves it open.",
         ),
         ([made(FAILED), made()], "1 of 2 checks failed on gl with eonlib."),
+        (
+            [made(FAILED), made(NOT_RUN), made(NOT_RUN, reason=f"x {WRONG_INSIDE}")],
+            "1 of 3 checks failed on gl with eonlib; 1 did not run.",
+        ),
         ([made(), made(NOT_RUN)], "Nothing failed, but 1 of 2 checks did not run."),
     ],
 )

@@ -12,94 +12,175 @@ import pytest
 from mxeon.cli import main
 from mxeon.models import table as reference
 from mxeon.report import to_json, write
-from mxeon.report.diff import BETTER, OTHER, WORSE, Change, compare, read_results
+from mxeon.report.diff import BETTER, LOST, OTHER, WORSE, WRONG_INSIDE, compare, lines, read_results
 from mxeon.survey.field import read_field
 from tests.support.results import Control, Identity, Picture, Result, Run
-from tests.support.verdicts import FAILED, NOT_RUN, PASSED
+from tests.support.verdicts import DIFFERS, FAILED, NOT_RUN, PASSED
 
-PLACE = "gl, eonlib, value, clay"
+PLACE, PICTURE = "gl, eonlib, value, clay", "gl, eonlib, side, largest difference, d: clay"
 
 
-def made_run(verdict=PASSED, figure=1e-7, device="llvmpipe", difference=1e-7, subject="clay"):
+def made_run(
+    verdict=PASSED, figure=1e-7, device="llvmpipe", difference=1e-7, subject="clay", **fields
+):
+    """A run with one check; fields of its result besides."""
     pixels = np.zeros((4, 4, 3))
-    picture = Picture("d", "e", "gl", "eonlib", "side", pixels + difference, pixels, {})
+    picture = Picture("d", "clay", "gl", "eonlib", "side", pixels + difference, pixels, {})
     result = Result("value", "claim", subject, "gl", "eonlib", verdict, figure, tolerance=1e-6)
+    result = replace(result, **fields)
     return Run("1.0", {"Python": "3"}, (Identity("gl", "4.5", device),), (result,), (picture,))
 
 
+def kept(run, folder):
+    """The folder of a run, with what is read of it."""
+    Path(folder).mkdir(exist_ok=True)
+    Path(folder, "results.json").write_text(to_json(run))
+    return str(folder)
+
+
+def read(run):
+    with TemporaryDirectory() as folder:
+        return read_results(kept(run, folder))
+
+
+def diff(folder, before, after, *options):
+    """The exit status of `report diff`."""
+    return main(["report", "diff", kept(before, folder / "a"), kept(after, folder / "b"), *options])
+
+
 def changes(before, after):
-    reports = []
-    for run in (before, after):
-        with TemporaryDirectory() as folder:
-            Path(folder, "results.json").write_text(to_json(run))
-            reports.append(read_results(folder))
-    return compare(*reports)
+    found = compare(read(before), read(after))
+    return tuple((each.kind, each.place, each.before, each.after) for each in found)
+
+
+def kinds(before, after):
+    return [kind for kind, *_ in changes(before, after)]
 
 
 def test_equal_runs_do_not_differ():
-    assert changes(made_run(), made_run(figure=1.5e-7)) == ()
+    assert changes(made_run(), made_run(figure=1.4e-7)) == ()
+    assert changes(made_run(FAILED), made_run(FAILED, figure=1.4e-7)) == ()
 
 
 @pytest.mark.parametrize(
     "after, expected",
     [
-        ({"verdict": FAILED}, Change(WORSE, PLACE, "passed at 1e-07", "failed at 1e-07")),
-        ({"verdict": NOT_RUN, "figure": None}, Change(WORSE, PLACE, "passed at 1e-07", "not run")),
-        ({"figure": 3e-7}, Change(OTHER, PLACE, "passed at 1e-07", "passed at 3e-07")),
-        ({"figure": float("nan")}, Change(OTHER, PLACE, "passed at 1e-07", "passed at NaN")),
-        ({"device": "GPU"}, Change(OTHER, "host gl", "4.5, llvmpipe", "4.5, GPU")),
-        (
-            {"difference": 1e-3},
-            Change(OTHER, "gl, eonlib, d, e, side, largest difference", "1e-07", "0.001"),
-        ),
+        ({"verdict": FAILED}, (WORSE, PLACE, "passed at 1e-07", "failed at 1e-07")),
+        ({"verdict": NOT_RUN, "figure": None}, (LOST, PLACE, "passed at 1e-07", "not run")),
+        ({"figure": 3e-7}, (OTHER, PLACE, "passed at 1e-07", "passed at 3e-07")),
+        ({"figure": float("nan")}, (OTHER, PLACE, "passed at 1e-07", "passed at NaN")),
+        ({"device": "GPU"}, (OTHER, "host gl", "4.5, llvmpipe", "4.5, GPU")),
+        ({"difference": 1e-3}, (OTHER, PICTURE, "1e-07", "0.001")),
     ],
 )
 def test_each_kind_of_change_is_told(after, expected):
     assert changes(made_run(), made_run(**after)) == (expected,)
 
 
-def test_a_check_that_went_is_worse_and_one_that_came_is_not():
-    found = changes(made_run(), made_run(subject="slate"))
-    assert [change.kind for change in found] == [WORSE, OTHER]
-    assert (found[0].after, found[1].before) == ("none", "none")
+QON, FON = (f"best match: {name} (rms 1e-9), then EON (rms 1)" for name in ("QON", "FON"))
+OPEN = "no permitted reading explains it any longer"
+
+
+@pytest.mark.parametrize(
+    "before, after, kind, words",
+    [
+        ({}, {"figure": 0.9}, WORSE, "failed at 0.3 -> failed at 0.9; 3 times larger"),
+        ({"figure": 0.9}, {}, BETTER, "failed at 0.9 -> failed at 0.3; 3 times smaller"),
+        ({}, {"figure": float("inf")}, WORSE, "failed at 0.3 -> failed at Infinity"),
+        ({}, {"figure": None}, WORSE, "failed at 0.3 -> failed"),  # as one that does not compile
+        ({"verdict": DIFFERS}, {"verdict": DIFFERS, "figure": 0.9}, WORSE, "3 times larger"),
+        ({"verdict": DIFFERS}, {"figure": 0.2}, WORSE, f"failed at 0.2; {OPEN}"),
+        ({"pages": ("a",)}, {"figure": 0.31}, WORSE, "a no longer explains it"),
+        ({"figure": 0.31}, {"pages": ("a",)}, BETTER, "a explains it"),
+        ({"pages": ("a",)}, {"figure": 1e-5}, BETTER, "30,000 times smaller"),
+        (
+            {"diagnosis": QON},
+            {"figure": 0.31, "diagnosis": FON},
+            WORSE,
+            "diagnosis was best match: QON (rms 1e-9), is best match: FON (rms 1e-9)",
+        ),
+        ({"diagnosis": QON}, {"diagnosis": FON}, OTHER, "diagnosis was best match: QON"),
+        ({"pages": ("a",)}, {}, OTHER, "a no longer explains it"),
+        ({}, {"verdict": NOT_RUN, "reason": "timed out"}, LOST, "failed at 0.3 -> not run; timed"),
+        ({"verdict": NOT_RUN, "reason": "timed out"}, {}, WORSE, "not run -> failed at 0.3"),
+        ({"verdict": NOT_RUN, "reason": f"x {WRONG_INSIDE}"}, {}, OTHER, "not run -> failed"),
+    ],
+)
+def test_a_failure_that_changes_is_worse_better_or_lost(
+    before, after, kind, words, tmp_path, capsys
+):
+    runs = [made_run(**{"verdict": FAILED, "figure": 0.3} | each) for each in (before, after)]
+    assert diff(tmp_path, *runs) == {WORSE: 1, LOST: 3}.get(kind, 0)
+    heading, subject, line, count = capsys.readouterr().out.splitlines()
+    assert (heading, subject, count) == (f"{kind}: gl with eonlib", "  clay", f"1 {kind}")
+    assert words in line and line.startswith("    value: ")
+
+
+def test_a_picture_counts_where_its_material_is_outside_its_tolerance():
+    failed = {"verdict": FAILED, "check": "picture", "subject": "d: clay"}
+    before, after = made_run(**failed), made_run(difference=1e-3, **failed)
+    assert changes(before, after) == ((WORSE, PICTURE, "1e-07", "0.001"),)
+    assert changes(after, before) == ((BETTER, PICTURE, "0.001", "1e-07"),)
+
+
+def test_lines_name_host_and_library_once_and_come_largest_first():
+    rows = [("value", "slate", 4.0), ("black", "clay", 2.0), ("value", "clay", 8.0)]
+    (result,) = made_run(FAILED).results
+    runs = [
+        replace(
+            made_run(),
+            results=tuple(
+                replace(result, check=check, subject=subject, error=1e-2 * growth**late)
+                for check, subject, growth in rows
+            ),
+        )
+        for late in (0, 1)
+    ]
+    printed = list(lines(compare(*map(read, runs))))
+    assert [each.split(": ")[0].strip() for each in printed] == (
+        ["worse", "clay", "value", "black", "slate", "value", "3 worse"]
+    )
+
+
+def test_a_check_that_went_is_lost_and_one_that_came_is_not():
+    for verdict in (PASSED, FAILED):
+        found = changes(made_run(verdict), made_run(subject="slate"))
+        assert [kind for kind, *_ in found] == [LOST, OTHER]
+        assert (found[0][3], found[1][2]) == ("none", "none")
 
 
 def test_a_document_that_was_removed_takes_its_checks_with_it():
     before = replace(made_run(), documents=(Path("a.mtlx"), Path("b.mtlx")))
     after = replace(before, documents=before.documents[:1], results=())
     changed = changes(before, after)
-    assert Change(OTHER, "b.mtlx", "checked", "removed") in changed
-    assert {each.kind for each in changed} == {OTHER}
-    assert changes(before, replace(before, results=()))[0].kind == WORSE
+    assert (OTHER, "b.mtlx", "checked", "removed") in changed
+    assert {kind for kind, *_ in changed} == {OTHER}
+    assert kinds(before, replace(before, results=())) == [LOST]
 
 
 def test_a_document_that_is_refused_now_is_worse():
     good, refused = made_run(), replace(made_run(), refused={"clay.mtlx": ("no such node",)})
-    assert changes(good, refused) == (Change(WORSE, "clay.mtlx", "not refused", "refused"),)
-    assert changes(refused, good) == (Change(BETTER, "clay.mtlx", "refused", "not refused"),)
+    assert changes(good, refused) == ((WORSE, "clay.mtlx", "not refused", "refused"),)
+    assert changes(refused, good) == ((BETTER, "clay.mtlx", "refused", "not refused"),)
     assert changes(refused, refused) == ()
 
 
-def test_a_new_check_that_fails_is_worse(tmp_path, capsys):
+def test_a_new_check_that_fails_is_worse():
     passed, failed = made_run(), made_run(FAILED, subject="slate")
     both = replace(passed, results=passed.results + failed.results)
-    (change,) = changes(passed, both)
-    assert (change.kind, change.before, change.after) == (WORSE, "none", "failed at 1e-07")
-    for name, run in (("a", passed), ("b", both)):
-        write(run, tmp_path / name)
-    assert main(["report", "diff", str(tmp_path / "a"), str(tmp_path / "b")]) == 1
+    ((kind, _, before, after),) = changes(passed, both)
+    assert (kind, before, after) == (WORSE, "none", "failed at 1e-07")
 
 
 @pytest.mark.parametrize("verdict, status", [(PASSED, 0), (FAILED, 1)])
 def test_the_exit_status_says_whether_anything_got_worse(tmp_path, capsys, verdict, status):
-    for name, run in (("a", made_run()), ("b", made_run(verdict))):
-        write(run, tmp_path / name)
-    assert main(["report", "diff", str(tmp_path / "a"), str(tmp_path / "b")]) == status
+    runs = made_run(), made_run(verdict)
+    assert diff(tmp_path, *runs) == status
     printed = capsys.readouterr().out
-    assert printed.startswith("no difference" if status == 0 else "worse: gl, eonlib, value, clay")
-    assert main(["report", "diff", str(tmp_path / "a"), str(tmp_path / "b"), "--json"]) == status
-    kinds = [each["kind"] for each in json.loads(capsys.readouterr().out)]
-    assert kinds == [WORSE] * status
+    assert printed.startswith("no difference" if status == 0 else "worse: gl with eonlib\n  clay\n")
+    assert diff(tmp_path, *runs, "--json") == status
+    found = json.loads(capsys.readouterr().out)
+    assert [(each["kind"], each["place"]) for each in found] == [(WORSE, PLACE)] * status
 
 
 @pytest.mark.parametrize(
@@ -166,11 +247,9 @@ def edit(folder, change):
 
 
 def test_names_in_a_report_cannot_steer_the_terminal(tmp_path, capsys):
-    for name in "ab":
-        write(made_run(subject=f"\x1b[2Jclay {name}\n"), tmp_path / name)
-    assert main(["report", "diff", str(tmp_path / "a"), str(tmp_path / "b")]) == 1
+    assert diff(tmp_path, *(made_run(subject=f"\x1b[2Jclay {name}\n") for name in "ab")) == 3
     printed = capsys.readouterr().out
-    assert "\x1b" not in printed and printed.count("\n") == 2
+    assert "\x1b" not in printed and printed.count("\n") == 7
 
 
 def run_with(*folders, verdict=PASSED):
@@ -195,9 +274,8 @@ def run_with(*folders, verdict=PASSED):
 )
 def test_a_library_that_lies_elsewhere_is_the_same_one(before, after):
     assert changes(run_with(*before), run_with(*after)) == ()
-    (change,) = changes(run_with(*before), run_with(*after, verdict=FAILED))
-    expected = f"gl, {after[-1]}, value, clay"
-    assert (change.kind, change.place) == (WORSE, expected)
+    ((kind, place, *_),) = changes(run_with(*before), run_with(*after, verdict=FAILED))
+    assert (kind, place) == (WORSE, f"gl, {after[-1]}, value, clay")
 
 
 EON = "oren_nayar_diffuse_bsdf, energy_compensation true"

@@ -15,7 +15,8 @@ from mxeon.jobs import TIMEOUT
 from mxeon.names import meant
 from mxeon.shaders.document.policy import LIMITS, SEARCH_PATH, Policy, environment_path
 
-STATUS = "exit status: 0 success, 1 a check failed, 2 misuse or bad input, 3 something did not run"
+STATUS = """exit status: 0 success, 1 a check, a comparison or a shader failed, 2 misuse or bad
+input, 3 something did not run; if several apply, the first of 2, 1 and 3"""
 UNTRUSTED = "documents you do not trust"  # heading of the options that --help-limits lists
 LIBRARY = (
     "eonlib (default), stock, or a folder. A copy of MaterialX's libraries, whole or in part, "

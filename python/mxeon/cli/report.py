@@ -5,7 +5,7 @@ import argparse
 import json
 
 from mxeon.cli import arguments
-from mxeon.errors import FAILED, PASSED, as_output, one_line
+from mxeon.errors import FAILED, NOT_RUN, PASSED, as_output, one_line
 
 
 def add_parser(commands: arguments.Commands) -> None:
@@ -22,7 +22,7 @@ def add_parser(commands: arguments.Commands) -> None:
     make.add_argument("report", metavar="DIR", help="the folder of the run")
     arguments.add_full(make)
     arguments.add_json(make)
-    summary = "list what changed between two runs; the exit status is 1 if something got worse"
+    summary = "list what changed between two runs; the exit status is 1 if something got worse, 3 if a check no longer runs"
     diff = arguments.add_command(actions, "diff", summary, run_diff, examples[1])
     diff.add_argument("before", metavar="BEFORE", help="folder of a report, or its results.json")
     diff.add_argument("after", metavar="AFTER", help="the same of a later run")
@@ -57,12 +57,17 @@ def run_field(options: argparse.Namespace) -> int:
 
 
 def run_diff(options: argparse.Namespace) -> int:
-    """Print the differences of two reports; return FAILED if a verdict became worse."""
-    from mxeon.report.diff import WORSE, compare, read_results
+    """Print the differences of two reports; return FAILED if something got worse, or NOT_RUN if it is lost."""
+    from mxeon.io.records import spelled
+    from mxeon.report.diff import LOST, WORSE, compare, lines, read_results
 
     changes = compare(read_results(options.before), read_results(options.after))
     if options.json:
-        print(as_output(json.dumps([vars(change) for change in changes], indent=1)))
+        rows = [
+            vars(each) | {"place": each.place, "growth": spelled(each.growth)} for each in changes
+        ]
+        print(as_output(json.dumps(rows, indent=1)))
     else:
-        print("\n".join(map(one_line, changes)) or "no difference")
-    return FAILED if any(change.kind == WORSE for change in changes) else PASSED
+        print("\n".join(lines(changes)))
+    kinds = {each.kind for each in changes}
+    return FAILED if WORSE in kinds else NOT_RUN if LOST in kinds else PASSED

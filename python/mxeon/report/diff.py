@@ -3,25 +3,39 @@
 
 import json
 import math
+import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
+from itertools import groupby
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, VERDICTS, Result
+from mxeon.conformance.results import (
+    DIFFERS,
+    FAILED,
+    NOT_RUN,
+    PASSED,
+    PORTRAIT,
+    VERDICTS,
+    WRONG_INSIDE,
+    Result,
+    in_words,
+    listed,
+)
+from mxeon.conformance.results.known_issues import SPREAD, says_first
 from mxeon.conformance.results.records import read_record
-from mxeon.errors import InputError
+from mxeon.errors import InputError, one_line
 from mxeon.hosts.base import Identity
 from mxeon.io.files import regular
 from mxeon.io.records import ERRORS, spelled
 from mxeon.report import JSON_FORMAT
 
-FACTOR = 2.0  # a figure that changes by less is not reported
-ORDER = (PASSED, DIFFERS, NOT_RUN, FAILED)
-WORSE, BETTER, OTHER = "worse", "better", "other"
+WORSE, LOST, BETTER, OTHER = KINDS = ("worse", "not run any longer", "better", "other")
+RANKS = (PASSED, DIFFERS, FAILED)
 PLACE = ("host", "library", "check", "subject")
+MODEL = re.compile("best match: |fault: |no known model ")  # a diagnosis that names one, or none
 SHOWN = ("host", "library", "document", "element", "scene")
 
 
@@ -29,17 +43,32 @@ SHOWN = ("host", "library", "document", "element", "scene")
 class Change:
     """One difference between two reports, with their values; "none" where one has no such entry.
 
-    WORSE are a worse verdict, a new check that fails, a document that is refused now, and the loss of
-    a check that did not fail, unless documents were removed. A figure alone is OTHER.
+    WORSE are a worse verdict, a new check that fails, a document that is refused now, and a check that
+    failed or differed before and has an error larger by SPREAD, which is what engines and drivers may add;
+    or, with another error, no longer the same cause. LOST is a check that does not run any longer, unless
+    documents were removed. An error within its tolerance is OTHER.
     """
 
-    kind: str  # WORSE, BETTER or OTHER
-    place: str  # host, library, check and subject, or the name of a version
+    kind: str  # one of KINDS
+    host: str  # or "", as the library, for what is of none
+    library: str
+    subject: str
+    item: str  # key of a check, scene of a picture, or name of a version
     before: str
     after: str
+    growth: float = 1.0  # of the error; infinite from none, or to one that is not finite
+    reason: str = ""
+
+    @property
+    def place(self) -> str:
+        return ", ".join(filter(None, (self.host, self.library, self.item, self.subject)))
 
     def __str__(self) -> str:
-        return f"{self.kind}: {self.place}: {self.before} -> {self.after}"
+        factor = max(self.growth, 1.0 / self.growth if self.growth else math.inf)
+        larger = "larger" if self.growth > 1.0 else "smaller"
+        words = f"{in_words(factor)} times {larger}" if SPREAD < factor < math.inf else ""
+        after = "; ".join(filter(None, (self.after, words, self.reason)))
+        return f"{self.item}: {self.before} -> {after}"
 
 
 @dataclass(frozen=True)
@@ -120,17 +149,48 @@ def read_results(folder: str | PathLike[str]) -> Report:
 
 
 def compare(before: Report, after: Report) -> tuple[Change, ...]:
-    """Changes from one report to another, those for the worse first."""
+    """Changes from one report to another by kind, host and library, and subject; the largest first."""
     before = _renamed(before, _moved(list(before.libraries), list(after.libraries)))
     removed = {*before.documents} - {*after.documents, *after.refused}
     changes = [
-        *(Change(OTHER, document, "checked", "removed") for document in sorted(removed)),
+        *(Change(OTHER, "", "", "", each, "checked", "removed") for each in sorted(removed)),
         *_results(_by(PLACE, before.results), _by(PLACE, after.results), bool(removed)),
-        *_pictures(_by(SHOWN, before.pictures), _by(SHOWN, after.pictures)),
+        *_pictures(before, after),
         *_refusals(set(before.refused), set(after.refused)),
         *_facts(before, after),
     ]
-    return tuple(sorted(changes, key=lambda change: (WORSE, BETTER, OTHER).index(change.kind)))
+
+    def size(change: Change) -> float:
+        return math.inf if change.growth == 0.0 else abs(math.log(change.growth))
+
+    largest: dict[tuple[str, ...], float] = {}
+    for each in changes:
+        group = _group(each)
+        largest[group] = max(size(each), largest.get(group, 0.0))
+
+    def order(change: Change) -> tuple[object, ...]:
+        kind, *location, subject = group = _group(change)
+        return KINDS.index(kind), *location, -largest[group], subject, -size(change)
+
+    return tuple(sorted(changes, key=order))
+
+
+def _group(change: Change) -> tuple[str, str, str, str]:
+    return change.kind, change.host, change.library, change.subject
+
+
+def lines(changes: Sequence[Change]) -> Iterator[str]:
+    """Sorted changes as text: each kind, host and library once, then each subject, and the numbers."""
+    location: list[str] = []
+    for group, rows in groupby(changes, key=_group):
+        kind, host, library, subject = group
+        if location != (location := [kind, host, library]):
+            yield f"{kind}: {one_line(f'{host} with {library}' if host else '')}".rstrip()
+        if subject:
+            yield f"  {one_line(subject)}"
+        yield from (f"  {'  ' * bool(subject)}{one_line(each)}" for each in rows)
+    tally = Counter(each.kind for each in changes)
+    yield ", ".join(f"{tally[kind]} {kind}" for kind in KINDS if tally[kind]) or "no difference"
 
 
 def _moved(before: Sequence[str], after: Sequence[str]) -> dict[str, str]:
@@ -179,38 +239,85 @@ def _results(
     after: Mapping[tuple[str, ...], Result],
     fewer: bool,
 ) -> Iterator[Change]:
-    """Changes of verdicts and errors; a loss is no worse where there are fewer documents."""
+    """Changes of results; a loss does not count where there are fewer documents."""
     for key in dict.fromkeys((*before, *after)):
-        place, old, new = ", ".join(key), before.get(key), after.get(key)
+        old, new = before.get(key), after.get(key)
+        host, library, check, subject, *number = key
+        growth = 1.0
         if old and new:
-            if old.verdict != new.verdict:
-                worse = ORDER.index(new.verdict) > ORDER.index(old.verdict)
-                yield Change(WORSE if worse else BETTER, place, _with_error(old), _with_error(new))
-            elif _apart(old.error, new.error):
-                yield Change(OTHER, place, _with_error(old), _with_error(new))
+            kind, reason = _change(old, new)
+            growth = _growth(old.error, new.error)
         elif old:
-            lost = OTHER if fewer or old.verdict == FAILED else WORSE
-            yield Change(lost, place, old.verdict, "none")
-        elif new:
-            kind = WORSE if new.verdict == FAILED else OTHER
-            yield Change(kind, place, "none", _with_error(new))
+            kind, reason = OTHER if fewer or old.verdict == NOT_RUN else LOST, ""
+        else:
+            kind, reason = WORSE if new and new.verdict == FAILED else OTHER, ""
+        if kind:
+            texts = (_with_error(old), _with_error(new))
+            item = ", ".join((check, *number))
+            yield Change(kind, host, library, subject, item, *texts, growth, reason)
 
 
-def _pictures(
-    before: Mapping[tuple[str, ...], ShownPicture], after: Mapping[tuple[str, ...], ShownPicture]
-) -> Iterator[Change]:
-    for key in before.keys() & after.keys():
-        old, new = (run[key].largest_difference for run in (before, after))
-        if _apart(old, new):
-            place = f"{', '.join(key)}, largest difference"
-            yield Change(OTHER, place, _number(old), _number(new))
+def _change(old: Result, new: Result) -> tuple[str, str]:
+    """The kind of a change of a result, and the reason where the values do not say it; "" for none."""
+    if NOT_RUN in (old.verdict, new.verdict):
+        if old.verdict == new.verdict:
+            return "", ""
+        # The failure that keeps a check from running is compared itself.
+        if WRONG_INSIDE in old.reason + new.reason:
+            return OTHER, old.reason or new.reason
+        if new.verdict == NOT_RUN:
+            return LOST, new.reason
+        return WORSE if new.verdict == FAILED else BETTER, ""
+    if old.verdict != new.verdict:
+        kind = WORSE if RANKS.index(new.verdict) > RANKS.index(old.verdict) else BETTER
+        explained = old.verdict == DIFFERS and new.verdict == FAILED
+        return kind, "no permitted reading explains it any longer" * explained
+    growth = _growth(old.error, new.error)
+    if not 1.0 / SPREAD <= growth <= SPREAD:
+        return OTHER if new.verdict == PASSED else WORSE if growth > 1.0 else BETTER, ""
+    lost, found = sorted({*old.pages} - {*new.pages}), sorted({*new.pages} - {*old.pages})
+    kind, reason = "", ""
+    if lost:
+        kind, reason = WORSE, f"{listed(lost)} no longer explains it"
+    elif MODEL.match(new.diagnosis) and says_first(old.diagnosis) != says_first(new.diagnosis):
+        was, now = (re.split("; |, then ", each.diagnosis)[0] or "none" for each in (old, new))
+        kind, reason = WORSE, f"diagnosis was {was}, is {now}"
+    elif found:
+        kind, reason = BETTER, f"{listed(found)} explains it"
+    # The same failure in other words is neither.
+    return OTHER if kind and _number(old.error) == _number(new.error) else kind, reason
+
+
+def _pictures(before: Report, after: Report) -> Iterator[Change]:
+    """Changes of pictures; those outside their tolerance are better or worse, the others only OTHER."""
+    shown = [_by(SHOWN, each.pictures) for each in (before, after)]
+    failed = [
+        {
+            (each.host, each.library, each.subject)
+            for each in report.results
+            if each.verdict == FAILED
+        }
+        for report in (before, after)
+    ]
+    for key in (key for key in shown[0] if key in shown[1]):
+        old, new = (each[key].largest_difference for each in shown)
+        growth = _growth(old, new)
+        if 1.0 / SPREAD <= growth <= SPREAD:
+            continue
+        host, library, document, element, scene, *number = key
+        subject = element if document == PORTRAIT else f"{Path(document).name}: {element}"
+        worse = growth > 1.0
+        counts = (host, library, subject) in failed[worse]
+        kind = (WORSE if worse else BETTER) if counts else OTHER
+        item = ", ".join((scene, *number, "largest difference"))
+        yield Change(kind, host, library, subject, item, _number(old), _number(new), growth)
 
 
 def _refusals(before: Set[str], after: Set[str]) -> Iterator[Change]:
     """A document that is refused was not judged, so nothing else here speaks of it."""
     for document in sorted(before ^ after):
         old, new = ("refused" if document in each else "not refused" for each in (before, after))
-        yield Change(WORSE if document in after else BETTER, document, old, new)
+        yield Change(WORSE if document in after else BETTER, "", "", "", document, old, new)
 
 
 def _facts(before: Report, after: Report) -> Iterator[Change]:
@@ -223,19 +330,25 @@ def _facts(before: Report, after: Report) -> Iterator[Change]:
     )
     for name in dict.fromkeys((*old, *new)):
         if old.get(name) != new.get(name):
-            yield Change(OTHER, name, old.get(name, "none"), new.get(name, "none"))
+            values = old.get(name, "none"), new.get(name, "none")
+            yield Change(OTHER, "", "", "", name, *values)
 
 
-def _apart(old: float | None, new: float | None) -> bool:
-    """Whether two figures differ by more than FACTOR, or at all if one is not finite."""
-    if old is None or new is None or not (math.isfinite(old) and math.isfinite(new)):
-        return _number(old) != _number(new)
-    small, large = sorted((old, new))
-    return large > FACTOR * small
+def _growth(old: float | None, new: float | None) -> float:
+    """New error over old one; an error that is not a finite number is infinite."""
+    small, large = (
+        math.inf if each is None or not math.isfinite(each) else each for each in (old, new)
+    )
+    if small == large:
+        return 1.0
+    return 0.0 if math.isinf(small) else large / small if small else math.inf
 
 
-def _with_error(result: Result) -> str:
-    return result.verdict + ("" if result.error is None else f" at {_number(result.error)}")
+def _with_error(result: Result | None) -> str:
+    if result is None:
+        return "none"
+    ran = result.verdict != NOT_RUN and result.error is not None
+    return f"{result.verdict} at {_number(result.error)}" if ran else result.verdict
 
 
 def _number(value: float | None) -> str:

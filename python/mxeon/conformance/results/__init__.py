@@ -260,11 +260,17 @@ def summarize(
         verb = "differs" if counts[DIFFERS] == 1 else "differ"
         differ = f"; {counts[DIFFERS]} {verb} where the specification leaves it open"
     verdict = PASSED
+    # Those that a failure keeps from running are part of it.
+    idle = sum(
+        each.verdict == NOT_RUN and not each.reason.endswith(WRONG_INSIDE) for each in results
+    )
+    missed = f"; {idle} did not run" if idle else ""
     if counts[FAILED]:
         failed = Counter(result.location for result in results if result.verdict == FAILED)
         places = [f"{count} on {location}" for location, count in failed.items()]
         where = f": {', '.join(places)}" if len(failed) > 1 else f" on {next(iter(failed))}"
-        verdict, sentence = FAILED, f"{counts[FAILED]} of {total} failed{where}{differ}."
+        verdict = FAILED
+        sentence = f"{counts[FAILED]} of {total} failed{where}{missed}{differ}."
     elif not counts[PASSED] + counts[DIFFERS]:
         verdict, sentence = NOT_RUN, "No check ran."
     elif counts[NOT_RUN]:

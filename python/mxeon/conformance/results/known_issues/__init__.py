@@ -153,10 +153,10 @@ def _explains(issue: Issue, result: Result, materialx: str) -> bool:
         return False
     first = result.host == issue.host and issue.rows[:1] == (row,)
     stated = issue.says if first and result.diagnosis else ""
-    return not stated or _model(result.diagnosis) == _model(stated)
+    return not stated or says_first(result.diagnosis) == says_first(stated)
 
 
-def _model(diagnosis: str) -> str:
+def says_first(diagnosis: str) -> str:
     """What a diagnosis says first, without its figures."""
     return re.split(r", then| \(|;", re.sub(r"\d[\d.e+-]*", "", diagnosis))[0]
 
