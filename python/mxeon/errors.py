@@ -73,6 +73,32 @@ class ShaderError(MxeonError, RuntimeError):
     status = FAILED
 
 
+# What compilers say of a line: "0:12(3): error: words", "ERROR: 0:12: words"; Slang quotes the line.
+REFUSED = re.compile(
+    r"error\[\w+\]: (?P<slang>.+)\n.*\n.*\n\d+ \| (?P<line>.+)|"
+    r"[:(](?P<number>\d+)[:()\d]*:\s*(?:error\b[^:]*:\s*)?(?P<words>.+)"
+)
+FUNCTION = re.compile(r"^\w[\w ]* (\w+)\([^;]*$", re.MULTILINE)
+
+
+def refused(host: str, words: str, text: str) -> ShaderError:
+    """The error of a shader's text by a compiler's words: the function, the line and the first complaint.
+
+    >>> str(refused("gl", "0:3(1): error: no x", "float f()\\n{\\n    return x;\\n}\\n"))
+    "gl: the shader does not compile, in f: 'return x;': no x"
+    """
+    found, lines = REFUSED.search(words), text.split("\n")
+    number = (
+        int(found["number"] or text[: text.find(found["line"])].count("\n") + 1) if found else 0
+    )
+    if not found or not 0 < number <= len(lines):
+        return ShaderError(f"{host}: the shader does not compile: {words.strip()}")
+    functions = FUNCTION.findall("\n".join(lines[:number]))
+    place = f"in {functions[-1]}: " if functions else ""
+    line, complaint = lines[number - 1].strip(), (found["slang"] or found["words"]).strip()
+    return ShaderError(f"{host}: the shader does not compile, {place}{line!r}: {complaint}")
+
+
 class NotRun(MxeonError, RuntimeError):
     """Something that cannot be executed here; says what and why."""
 

@@ -69,8 +69,11 @@ def test_what_the_compiler_refuses_is_a_shader_error_and_the_host_works_on(host)
     good = of_eon(host)
     wrong = good.stages["pixel"].replace("eon_brdf_mu", "no_such_function", 1)
     bad = replace(good, stages={**good.stages, "pixel": wrong})
+    # naga tells no line.
+    place = "(.|\n)*" if host.name == "wgsl" else ", in oren_nayar_lobe: '.*"
     for flag in (0.25, 0.5):
-        with pytest.raises(ShaderError, match=f"^{host.name}: (.|\n)*eon_brdf_mu"):
+        words = f"^{host.name}: the shader does not compile{place}eon_brdf_mu"
+        with pytest.raises(ShaderError, match=words):
             host.evaluate(bad, PAIR, PAIR, {"weight": flag}, "direct")
     third = replace(good, stages={**good.stages, "pixel": good.stages["pixel"] + "\n"})
     assert host.evaluate(third, PAIR, PAIR, {}, "direct").any()

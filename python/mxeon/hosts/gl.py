@@ -11,7 +11,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.errors import NotRun, ShaderError
+from mxeon.errors import NotRun, refused
 from mxeon.hosts import fragment, points, raster
 from mxeon.hosts.base import Array, Identity
 from mxeon.hosts.raster import FragmentHost
@@ -225,7 +225,7 @@ def _program(context: moderngl.Context, vertex: str, pixel: str) -> moderngl.Pro
     try:
         return context.program(vertex_shader=vertex, fragment_shader=pixel)
     except moderngl.Error as error:
-        raise ShaderError(f"gl: {str(error).strip()}") from None
+        raise refused("gl", str(error), pixel) from None
 
 
 def _points(

@@ -18,7 +18,7 @@ from typing import Any, TypeAlias, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.errors import NotRun, ShaderError, install
+from mxeon.errors import NotRun, install, refused
 from mxeon.hosts import base, calls, fragment, raster
 from mxeon.hosts.base import TURN, Array, Identity, Query
 from mxeon.shaders import functions
@@ -195,7 +195,7 @@ class Host(base.Host):
                 program = self._device.link_program([module], [module.entry_point(ENTRY)])
                 self._kernels[text] = self._device.create_compute_kernel(program)
             except slangpy.SlangCompileError as error:
-                raise ShaderError(f"slang: {str(error).strip()}") from None
+                raise refused("slang", str(error), text) from None
         return self._kernels[text]
 
     def _buffer(self, rows: Array, count: int) -> Resource:

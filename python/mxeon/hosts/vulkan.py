@@ -19,7 +19,7 @@ from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 
-from mxeon.errors import NotRun, ShaderError, install
+from mxeon.errors import NotRun, install, refused
 from mxeon.hosts import fragment, raster
 from mxeon.hosts.base import TURN, Array, Identity
 from mxeon.hosts.raster import FragmentHost
@@ -185,7 +185,7 @@ class Host(FragmentHost):
         try:
             module = self._device.create_shader_module(label=stage, code=code)
         except wgpu.GPUValidationError as error:
-            raise ShaderError(f"{self.name}: {str(error).strip()}") from None
+            raise refused(self.name, str(error), text) from None
         return {"module": module, "entry_point": "main"}
 
     def _vertex(self, pixel: str) -> str:
@@ -247,7 +247,7 @@ def _run(command: Sequence[str], text: str = "") -> None:
     except subprocess.TimeoutExpired:
         raise NotRun(f"vulkan: {command[0]} takes longer than {TIMEOUT:.0f} s") from None
     if process.returncode:
-        raise ShaderError(f"vulkan: {(process.stdout + process.stderr).strip()}")
+        raise refused("vulkan", process.stdout + process.stderr, text)
 
 
 def _std140(members: str) -> bytes:

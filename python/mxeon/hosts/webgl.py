@@ -23,7 +23,7 @@ from typing import Any, ClassVar, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.errors import NotRun, ShaderError, install
+from mxeon.errors import NotRun, install, refused
 from mxeon.hosts import fragment, points, raster
 from mxeon.hosts.base import TURN, Array, Identity
 from mxeon.hosts.calls import PLACED
@@ -213,7 +213,7 @@ class Host(Chromium, FragmentHost):
             file = Path(folder, "arrays")
             answer = self._ask(function, {**job, **_write(file, arrays)}, file)
         if "refused" in answer:
-            raise ShaderError(f"webgl: {answer['refused'].strip()}")
+            raise refused("webgl", answer["refused"], str(job.get("pixel", "")))
         return base64.b64decode(answer["bytes"])
 
 
