@@ -44,6 +44,7 @@ def test_check_passes_writes_a_report_and_answers_as_the_pages_show(tmp_path, ca
         for line in shown.splitlines():
             assert any(re.match(pattern(line), each) for each in rest), line
     assert printed[-1].endswith("report.html")
+    assert re.search(r"Finished in \d+\.\d s\.$", printed[-2])
     names = {path.name for path in (tmp_path / "report").iterdir()}
     assert names == {
         "report.html",
@@ -62,7 +63,11 @@ def test_check_passes_writes_a_report_and_answers_as_the_pages_show(tmp_path, ca
     }
     suites = ElementTree.parse(tmp_path / "report" / "junit.xml").findall("testsuite")
     assert {each.get("failures") for each in suites} == {"0"}
+    times = [each["seconds"] for each in found["results"]]
+    assert min(times) >= 0.0 and 0.0 < sum(times) <= found["seconds"]
     assert main(["report", "make", str(tmp_path / "report")]) == PASSED
+    kept = json.loads((tmp_path / "report" / "results.json").read_text())
+    assert [each["seconds"] for each in kept["results"]] == times
 
 
 def test_check_of_stock_fails_and_names_the_defects(capsys, monkeypatch):

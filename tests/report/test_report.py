@@ -42,6 +42,7 @@ def made_result(verdict, **changes):
         derivation="Two roundings of 6e-8 each.",
         worst={"wo": [0.0, 0.6, 0.8], "roughness": [1.0]},
         control=Control("s clamped", 0.35, caught=True),
+        seconds=1.5,
     )
     return replace(ran, **changes)
 
@@ -282,10 +283,45 @@ def test_junit_counts_and_explains(run):
     suites = ElementTree.fromstring(to_junit(run)).findall("testsuite")
     counts = {suite.get("name"): suite.get("failures") + suite.get("skipped") for suite in suites}
     assert counts == {"gl with eonlib": "10", "gl with stock": "10", "cycles with eonlib": "01"}
+    assert [suite.get("time") for suite in suites] == ["3.000", "1.500", "1.500"]
     assert suites[2].find("testcase/skipped").get("message") == "Blender is not here"
     failure = suites[1].find("testcase/failure")
     assert failure.get("message").endswith("inf > 2e-06 1/pi")
-    assert "nearest model: QON" in failure.text and "wo" in failure.text
+    assert failure.text == "nearest model: QON\nworst point: wo (0, 0.6, 0.8), roughness 1"
+
+
+@pytest.mark.parametrize(
+    "fields, kind, message, text",
+    [
+        (
+            {"error": None, "diagnosis": "GLSL: no", "worst": {}},
+            "new",
+            "reference value. GLSL: no",
+            "GLSL: no",
+        ),
+        (
+            {"pages": ("genglsl_clamped_dot",), "worst": {}},
+            "known",
+            "1.25e-07 > 2e-08 1/pi",
+            "see upstream/genglsl_clamped_dot.md",
+        ),
+    ],
+)
+def test_a_failure_in_junit_is_known_or_new_and_has_no_path(run, fields, kind, message, text):
+    folder, other = "/builds/7/libraries-1.39", "/a/stock"
+    results = [
+        made_result(FAILED, library=each, tolerance=2e-8, **fields)
+        for each in (folder, other, "/b/stock")
+    ]
+    suites = ElementTree.fromstring(to_junit(replace(run, results=tuple(results)))).findall(
+        "testsuite"
+    )
+    names = ["libraries-1.39", other, "/b/stock"]
+    assert [suite.get("name") for suite in suites] == [f"gl with {each}" for each in names]
+    case = suites[0].find("testcase")
+    assert case.get("classname") == "mxeon.gl.libraries-1.39.value"
+    assert (case[0].get("type"), case[0].text) == (kind, text)
+    assert case[0].get("message").endswith(message)
 
 
 def test_junit_replaces_what_xml_cannot_hold(run):

@@ -233,10 +233,15 @@ of_each_key = pytest.mark.parametrize("key", list(json.loads(REPORT)))
 def test_a_report_without_a_key_is_one_line(tmp_path, capsys, key):
     """But for those that earlier reports lack."""
     edit(tmp_path, lambda content: content.pop(key))
-    if key not in ("elsewhere", "refused", "libraries", "compared"):
+    if key not in ("elsewhere", "refused", "libraries", "compared", "seconds"):
         refusal_of(tmp_path, capsys)
     else:
         assert not getattr(read_results(tmp_path), key)
+
+
+def test_a_report_whose_results_have_no_times_is_read(tmp_path):
+    edit(tmp_path, lambda content: content["results"][0].pop("seconds"))
+    assert read_results(tmp_path).results == made_run().results
 
 
 def edit(folder, change):

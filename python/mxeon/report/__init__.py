@@ -46,7 +46,7 @@ def to_json(run: Run) -> str:
     - format: this layout's number, raised when a key changes or goes.
     - verdict: "passed", "failed" or "not run", and "differs" of a check where the
       specification leaves the difference open; counts: the number of checks with each.
-    - sentence: the same in words.
+    - sentence: the same in words; seconds: that the run took, or null.
     - missing: texts, the items that an interrupted run has not finished.
     - refused: texts, the documents that were refused; errors: texts, their faults.
     - compared: names of libraries judged for comparison, which verdict, counts and sentence ignore.
@@ -68,6 +68,7 @@ def to_json(run: Run) -> str:
         "verdict": summary.verdict,
         "counts": summary.counts,
         "sentence": summary.sentence,
+        "seconds": run.seconds,
         "missing": run.missing,
         "compared": run.compared,
         "refused": tuple(run.refused),

@@ -114,6 +114,7 @@ class Report:
     elsewhere: tuple[dict[str, str], ...] = ()
     libraries: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
     compared: tuple[str, ...] = ()
+    seconds: float | None = None
 
     def __post_init__(self) -> None:
         if self.verdict not in VERDICTS:
@@ -136,8 +137,15 @@ def read_results(folder: str | PathLike[str]) -> Report:
             content = json.load(file)
         if (written := content["format"]) == JSON_FORMAT:
             # Earlier reports lack some keys.
-            later: dict[str, object] = {"elsewhere": [], "refused": [], "compared": []}
-            return read_record({**later, "libraries": {}, **content}, Report)
+            later: dict[str, object] = {
+                "elsewhere": [],
+                "refused": [],
+                "compared": [],
+                "libraries": {},
+                "seconds": None,
+            }
+            results = [{"seconds": None, **each} for each in content["results"]]
+            return read_record({**later, **content, "results": results}, Report)
     except OSError as error:
         raise InputError(f"{rule}; {error.strerror}") from None
     except ERRORS as error:

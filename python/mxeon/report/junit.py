@@ -2,11 +2,16 @@
 """A run as JUnit XML, for build servers."""
 
 import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from xml.etree import ElementTree
 
 from mxeon.conformance.results import FAILED, NOT_RUN, Result, Run, summarize
+from mxeon.conformance.results.known_issues import issues_of
+from mxeon.errors import one_line
+from mxeon.report.formats import page_address, vector
 
 # Characters that XML 1.0 cannot hold, escaped or not (section 2.2, production Char).
 NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -15,34 +20,42 @@ NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 def to_junit(run: Run) -> str:
     """A run as JUnit XML text: a suite for each host and library, a case for each result.
 
-    A failed check is a failure, one that did not run is skipped, and a refused document is an error
-    in a separate suite, each with its message. Failures of a compared library are skipped.
+    A failed check is a failure, whose type is "known" if a page describes the defect and else "new"; one
+    that did not run is skipped, and a refused document is an error in a separate suite, each with its
+    message. Failures of a compared library are skipped. The folder of a library is named without its
+    path, which differs between machines, unless two have that name.
     """
     root = ElementTree.Element("testsuites", name="mxeon")
-    for name in dict.fromkeys(result.location for result in run.results):
+    folders = {result.library for result in run.results}
+    uses = Counter(Path(each).name for each in folders)
+    names = {each: Path(each).name if uses[Path(each).name] == 1 else each for each in folders}
+    for place in dict.fromkeys(result.location for result in run.results):
         # What fails with a library that does not count was not run.
         results = [
             replace(each, verdict=NOT_RUN, reason=f"for comparison: {each.explanation}")
             if each.verdict == FAILED and each.library in run.compared
             else each
             for each in run.results
-            if each.location == name
+            if each.location == place
         ]
         counts = summarize(results).counts
         totals = {"tests": len(results), "failures": counts[FAILED], "errors": 0}
         totals["skipped"] = counts[NOT_RUN]
         words = {key: str(value) for key, value in totals.items()}
-        suite = ElementTree.SubElement(root, "testsuite", {"name": _xml(name)} | words)
+        words["time"] = f"{sum(each.seconds or 0.0 for each in results):.3f}"
+        host, library = results[0].host, names[results[0].library]
+        name = _xml(f"{host} with {library}")
+        suite = ElementTree.SubElement(root, "testsuite", {"name": name} | words)
         properties = ElementTree.SubElement(suite, "properties")
         versions = {"mxeon": run.version} | run.software
         for identity in run.hosts:
-            if identity.name == results[0].host:
+            if identity.name == host:
                 versions |= {"host": identity.name, "host version": identity.version}
                 versions["device"] = identity.device
         for key, value in versions.items():
             ElementTree.SubElement(properties, "property", name=_xml(key), value=_xml(value))
         for result in results:
-            _add_case(suite, result)
+            _add_case(suite, result, f"mxeon.{host}.{library}.{result.check}")
     if run.refused:
         _add_errors(root, run.refused)
     ElementTree.indent(root)
@@ -62,20 +75,23 @@ def _add_errors(root: ElementTree.Element, refused: Mapping[str, Sequence[str]])
         first.text = _xml("\n".join(lines))
 
 
-def _add_case(suite: ElementTree.Element, result: Result) -> None:
-    name = f"mxeon.{result.host}.{result.library}.{result.check}"
+def _add_case(suite: ElementTree.Element, result: Result, name: str) -> None:
+    about = {"classname": _xml(name), "name": _xml(result.subject)}
     case = ElementTree.SubElement(
-        suite, "testcase", classname=_xml(name), name=_xml(result.subject)
+        suite, "testcase", about | {"time": f"{result.seconds or 0.0:.3f}"}
     )
     if result.verdict == NOT_RUN:
         ElementTree.SubElement(case, "skipped", message=_xml(result.reason))
     if result.verdict == FAILED:
-        message = f"{result.claim} {result.excess}"
-        failure = ElementTree.SubElement(
-            case, "failure", type=_xml(result.check), message=_xml(message)
-        )
-        words = "; ".join(filter(None, (result.diagnosis, result.references)))
-        failure.text = _xml(f"{words}\nworst point: {result.worst}")
+        message = one_line(f"{result.claim} {result.excess or result.diagnosis}")
+        kind = "known" if result.pages else "new"
+        failure = ElementTree.SubElement(case, "failure", type=kind, message=_xml(message))
+        pages = (f"see {page_address(issue)}" for issue in issues_of(result))
+        text = "; ".join(filter(None, (result.diagnosis, *pages)))
+        if result.worst:
+            worst = (f"{name} {vector(values)}" for name, values in result.worst.items())
+            text += f"\nworst point: {', '.join(worst)}"
+        failure.text = _xml(text)
 
 
 def _xml(text: object) -> str:

@@ -88,6 +88,7 @@ class Result:
     - `measured`: Inputs of a document's nodes whose values come from the host itself, since nodes of
       patterns have no model; see `mxeon.conformance.reference.HostValues`.
     - `pages`: Names of the pages of `docs/upstream/` on the defects that it shows.
+    - `seconds`: Time of its task, shared equally among the task's results.
 
     Raises ValueError if the verdict is unknown, or an error is negative or has no tolerance.
     """
@@ -111,6 +112,7 @@ class Result:
     model: str = ""
     measured: tuple[str, ...] = ()
     pages: tuple[str, ...] = ()
+    seconds: float | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         if self.verdict not in VERDICTS:
@@ -327,6 +329,7 @@ class Run:
     - `libraries`: By folder that was judged as a library: its files, under "folder", and those of
       MaterialX that complete it, under "MaterialX", unless it is loaded before all of them.
     - `compared`: Libraries judged for comparison; the verdict ignores their failures.
+    - `seconds`: Time from the first document to the last result; None for a run that is read.
     """
 
     version: str
@@ -343,6 +346,7 @@ class Run:
     unreached: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
     libraries: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
     compared: tuple[str, ...] = ()
+    seconds: float | None = field(default=None, compare=False)
 
     @cached_property
     def summary(self) -> Summary:
@@ -381,10 +385,11 @@ class Run:
 
     @property
     def sentence(self) -> str:
-        """The verdict, and the MaterialX that was judged, with its folder if it is not the installed one."""
+        """The verdict, the MaterialX that was judged, with its folder unless it is installed, and the time."""
         version, folder = (self.software.get(name) for name in ("MaterialX", "MaterialX folder"))
         judged = f" MaterialX {version}{f', from {folder}' if folder else ''}." if version else ""
-        return self.summary.sentence + judged
+        time = "" if self.seconds is None else f" Finished in {self.seconds:.1f} s."
+        return self.summary.sentence + judged + time
 
     @property
     def origins(self) -> tuple[str, ...]:

@@ -2,8 +2,10 @@
 """A conformance run: tasks are planned, worked on in processes, and kept in a journal."""
 
 import os
+import time
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager, nullcontext
+from dataclasses import replace
 from functools import lru_cache, partial
 from itertools import chain, product
 from pathlib import Path
@@ -85,6 +87,7 @@ def check(
     Raises ValueError if a name or number is wrong, the run to resume is another one, or no
     scheduler answers; NotRun if no process can start, or the cluster has no workers for too long.
     """
+    begin = time.monotonic()
     assert_known_names(hosts, nodes)
     files = documents_in(files)
     libraries = tuple(dict.fromkeys(map(library_name, libraries)))
@@ -121,7 +124,7 @@ def check(
                     journal.add(numbers[position], findings)  # with its pictures on disk
                 else:
                     done[numbers[position]] = findings
-        return to_run(planned, done)
+        return replace(to_run(planned, done), seconds=round(time.monotonic() - begin, 3))
 
 
 def read_run(folder: str | os.PathLike[str]) -> Run:

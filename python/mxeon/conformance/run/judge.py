@@ -2,6 +2,7 @@
 """The judge: works on tasks, one after the other, and keeps the hosts it opens."""
 
 import os
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
@@ -83,11 +84,13 @@ class Judge:
         Raise NotRun if the host cannot be opened here.
         """
         SEED.set(task.seed)
+        begin = time.monotonic()
         try:
             findings = self._findings(task)
             # The folder whose `libraries` take the place of MaterialX's, if the library has one.
             copy = root(task.library) if os.path.isabs(task.library) else ""
-            results = (with_pages(each, copy) for each in findings.results)
+            share = round((time.monotonic() - begin) / max(1, len(findings.results)), 3)
+            results = (replace(with_pages(each, copy), seconds=share) for each in findings.results)
             return replace(findings, results=tuple(results))
         except InterfaceError as reason:
             return not_run(task, str(reason))
