@@ -24,7 +24,7 @@ from tools.fits.minimax import shipped
 
 SETS = 32
 LEAST = 1e-6  # cosine and roughness from which on shaders take their fits
-EXACT = nodes._albedo
+EXACT = nodes.ShadingPoints._albedo
 
 GGX = shipped("ggx_albedo", "GGX_ALBEDO")
 DIELECTRIC = shipped("fresnel_dielectric", "GGX_DIELECTRIC")
@@ -59,12 +59,12 @@ def conductor_average(ior, extinction):
     )
 
 
-def fitted_albedo(exact, node, wo, inputs, points, most):
+def fitted_albedo(points, exact, node, wo, inputs):
     """Albedo of a lobe that lies over others as the shader takes it; that of others is exact."""
     fit = LAYERED.get(node.name)
     if fit is None or exact is not node.albedo:
-        return EXACT(exact, node, wo, inputs, points, most)
-    return np.broadcast_to(fit(wo[:, 2], nodes._at(inputs, points)), (len(wo), 3))
+        return EXACT(points, exact, node, wo, inputs)
+    return np.broadcast_to(fit(wo[:, 2], inputs), (len(wo), 3))
 
 
 def _microfacets(mu, inputs, curve):
@@ -114,7 +114,7 @@ def fits():
     curve = microfacets.CONDUCTOR
     exact = curve.average
     with ExitStack() as stack:
-        stack.enter_context(patch.object(nodes, "_albedo", fitted_albedo))
+        stack.enter_context(patch.object(nodes.ShadingPoints, "_albedo", fitted_albedo))
         stack.enter_context(patch.object(microfacets, "missing_light", missing_light))
         stack.enter_context(patch.object(fresnel, "dielectric_avg", dielectric_average))
         stack.callback(object.__setattr__, curve, "average", exact)  # of a frozen class

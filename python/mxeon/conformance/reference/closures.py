@@ -11,7 +11,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.conformance.reference.nodes import DIFFUSE, NOTHING, Albedo, ShadingPoints
+from mxeon.conformance.reference.nodes import DIFFUSE, NOTHING, ShadingPoints, albedo_at
 from mxeon.conformance.samples import Array
 from mxeon.errors import OutsideModel, ShaderError
 from mxeon.hosts.base import Host, Inputs
@@ -52,10 +52,9 @@ FLAGGED = {
 
 @dataclass(frozen=True)
 class Views:
-    """Directions at some points, and the light whose way is followed."""
+    """Some points, and the light whose way is followed."""
 
-    wo: Array
-    wi: Array
+    points: ShadingPoints
     occlusion: Array  # share of a light that reaches the surface from above
     branch: str  # as in `mxeon.hosts.base.Host.evaluate`
 
@@ -107,57 +106,32 @@ class Views:
             raise ShaderError(
                 f"osl: distribution of {closure.name} must be {GGX}, as that of the node; got {facets}"
             )
-        wo, wi = self._directions(closure)
+        names = ("normal", "curve_direction" if closure.name == HAIR else "tangent")
+        normal, tangent = (
+            np.broadcast_to(closure.arguments.get(name, axis), self.points.wo.shape)
+            for name, axis in zip(names, (UP, ALONG), strict=True)
+        )
+        if names[1] not in closure.arguments:  # any serves that is not parallel to the normal
+            tangent = np.where(np.abs(normal[:, :1]) > 0.9, UP, ALONG)
+        wo, wi = self.points.directions(normal, tangent)
         inputs = _inputs(closure, row)
         # Schlick's curve has no tint of its own, and the closure has one.
         tinted = row is SCHLICK
         tint = np.asarray(closure.arguments["reflection_tint"], np.float64) if tinted else ONE
         try:
-            value = self._value(closure, row, wo, wi, inputs)
-            seen = _albedo(row, row.albedo, wo, inputs) if layered else None
-            left = NOTHING.throughput if seen is None else 1.0 - tint * seen
+            if self.branch != THROUGH:
+                shade = ONE if wi is None or row.transmits else self.occlusion
+                value = tint * shade * self.points.scattered(row, wo, wi, inputs)
+            elif closure.name in TRANSMISSIONS:
+                white = {**inputs, "tint": np.ones((1, 3))}
+                passed = TRANSMISSIONS[closure.name].passed(wo, white, True)
+                value = np.asarray(closure.arguments["transmission_tint"] * passed)
+            else:
+                value = np.zeros(wo.shape)
+            seen = albedo_at(row.albedo, row, wo, inputs) if layered else None
         except ValueError as error:
             raise OutsideModel(f"osl: {closure.name}: {error}") from None
-        return Bsdf(value if self.branch == THROUGH else tint * value, left)
-
-    def _value(
-        self, closure: ClosureTree, row: PbrNode, wo: Array, wi: Array, inputs: Arguments
-    ) -> Array:
-        """Light that a lobe sends to the viewer, times the cosine, (N, 3)."""
-        if self.branch == THROUGH:
-            if closure.name not in TRANSMISSIONS:
-                return np.zeros(wo.shape)
-            tint, white = (
-                closure.arguments["transmission_tint"],
-                {**inputs, "tint": np.ones((1, 3))},
-            )
-            return np.asarray(tint * TRANSMISSIONS[closure.name].passed(wo, white, True))
-        if self.branch != "direct":
-            return _albedo(row, row.integral or row.albedo, wo, inputs)
-        if row is HAIR_NODE:  # which light meets from all sides
-            return self.occlusion * row.value(wo, wi, inputs)
-        side = np.where((wi[:, 2:] < 0.0) == row.transmits, 1.0, -1.0)
-        above = np.concatenate([wi[:, :2], side * wi[:, 2:]], axis=1)
-        lit = np.where(side < 0.0, 0.0, np.clip(np.abs(wi[:, 2:]), 0.0, 1.0))
-        shade = ONE if row.transmits else self.occlusion
-        return np.asarray(shade * row.value(wo, above, inputs) * lit)
-
-    def _directions(self, closure: ClosureTree) -> tuple[Array, Array]:
-        """Directions in the frame of a closure; those of the surface's own frame stay as they are."""
-        names = ("normal", "curve_direction" if closure.name == HAIR else "tangent")
-        normal, tangent = (
-            np.broadcast_to(closure.arguments.get(name, axis), self.wo.shape)
-            for name, axis in zip(names, (UP, ALONG), strict=True)
-        )
-        if names[1] not in closure.arguments:  # any serves that is not parallel to the normal
-            tangent = np.where(np.abs(normal[:, :1]) > 0.9, UP, ALONG)
-        above = bool(np.all(self.wo[:, 2] >= 0.0))
-        if above and np.all(normal == UP) and np.all(tangent == ALONG):
-            return self.wo, self.wi
-        points = ShadingPoints(self.wo, self.wi, 1.0, normal, tangent)
-        wo, wi = points.directions(normal, tangent)
-        assert wi is not None
-        return wo, wi
+        return Bsdf(value, NOTHING.throughput if seen is None else 1.0 - tint * seen)
 
 
 def radiance(tree: ClosureTree | None) -> Array:
@@ -194,22 +168,6 @@ def _mixed(first: Callable[[], Bsdf], second: Callable[[], Bsdf], share: Array) 
     if not np.any(share):
         return first()
     return second() if np.all(share == 1.0) else layering.mix(second(), first(), share)
-
-
-def _albedo(row: PbrNode, albedo: Albedo, wo: Array, inputs: Arguments) -> Array:
-    """An albedo of a lobe, once for the points that have the same view and inputs if it is no closed form."""
-    wo = np.minimum(wo, 1.0)  # a rounding may have made a cosine larger
-    if not row.fitted and row.integral is None:
-        return np.asarray(albedo(wo, inputs))
-    columns = [
-        np.broadcast_to(np.reshape(each, (len(each), -1)), (len(wo), np.size(each[0])))
-        for each in (wo, *inputs.values())
-    ]
-    _, first, places = np.unique(
-        np.concatenate(columns, axis=1), axis=0, return_index=True, return_inverse=True
-    )
-    some = {name: value[first] if len(value) > 1 else value for name, value in inputs.items()}
-    return np.asarray(albedo(wo[first], some)[places.ravel()])
 
 
 def _inputs(closure: ClosureTree, row: PbrNode) -> Arguments:
@@ -250,7 +208,9 @@ def evaluate(
         if output == "radiance" or branch == GRAPH:
             values[rows] = radiance(points.tree)
             continue
-        views = Views(wo[rows], wi[rows], occlusion[rows], branch)
+        shown, lights = wo[rows], wi[rows] if branch == "direct" else None
+        place = ShadingPoints(shown, lights, 1.0, np.array(UP), np.array(ALONG))
+        views = Views(place, occlusion[rows], branch)
         bsdf = views.bsdf(points.tree, output == "throughput")
         values[rows] = bsdf.throughput if output == "throughput" else bsdf.value
     return values

@@ -32,14 +32,12 @@ from mxeon.models.nodes.lobes import HAIR_NODE, SUBSURFACE_NODE
 from mxeon.models.nodes.media import METER
 from mxeon.models.nodes.microfacets import TRANSMISSION_NODES, TRANSMISSIONS, isotropic
 from mxeon.models.nodes.node import Inputs, PbrNode
+from mxeon.models.shading_model import ALONG, UP
 from mxeon.models.thin_film import FILM
 from mxeon.shaders.document.values import Plain
 from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG, OREN_NAYAR, value_text
 
 Albedo: TypeAlias = Callable[[Array, Inputs], Array]
-# A lobe of weight one from its node, its inputs, each one value or one for each point, and whether
-# its throughput is asked for.
-Lobe: TypeAlias = Callable[[PbrNode, Inputs, bool], Bsdf]
 
 # An albedo is interpolated over a picture if its last coefficients are below this, far below a host's
 # rounding: degrees in sqrt(mu) and in cos(2 phi).
@@ -66,86 +64,6 @@ def diffuse(name: str, category: str) -> PbrNode:
 
 class ManyMaterialsError(Exception):
     """More points with a material of their own than may be integrated one by one."""
-
-
-def scattered(
-    wo: Array, wi: Array | None, strength: float, most: float = np.inf, behind: bool = False
-) -> Lobe:
-    """Lobe in a light or, without `wi`, in a uniform environment.
-
-    Under a distant light it is the irradiance times f |cos(theta_i)|, 0 on the dark side; in an
-    environment its radiance times the directional albedo, or the share that is transmitted.
-    Where materials of more than `most` points have albedos without a closed form, it raises
-    ManyMaterialsError.
-    """
-    above = np.ones(len(wo), bool) if wi is None else wo[:, 2] > 0.0
-
-    def lobe(node: PbrNode, inputs: Inputs, layered: bool) -> Bsdf:
-        value, left = np.zeros(wo.shape), np.zeros(wo.shape)
-        if wi is None:
-            share = LET_THROUGH.get(node.name) if behind else node.integral or node.albedo
-            if share:
-                value = strength * _albedo(share, node, wo, inputs, above, most)
-        elif around := AROUND.get(node.category):
-            value[above] = strength * around(wo[above], wi[above], _at(inputs, above))
-        else:
-            shown = above & ((wi[:, 2] < 0.0) if node.transmits else (wi[:, 2] > 0.0))
-            f = node.value(wo[shown], wi[shown], _at(inputs, shown))
-            value[shown] = strength * f * np.abs(wi[shown, 2:])
-        if layered and node.layerable:
-            left[above] = throughput(_albedo(node.albedo, node, wo[above], inputs, above, most))
-        return Bsdf(value, left)
-
-    return lobe
-
-
-def _at(inputs: Inputs, points: NDArray[np.bool_]) -> dict[str, Array]:
-    """Inputs at some of the points, each (M,) or (M, components)."""
-    count = int(points.sum())
-    return {
-        name: value[points]
-        if len(value) == len(points)
-        else np.broadcast_to(value, (count, *value.shape[1:]))  # which the models compute once
-        for name, value in inputs.items()
-    }
-
-
-def _albedo(
-    albedo: Albedo,
-    node: PbrNode,
-    wo: Array,
-    inputs: Inputs,
-    points: NDArray[np.bool_],
-    most: float,
-) -> Array:
-    """Albedo at `points`, of which `wo` are the directions."""
-    # What is computed fast, or for other materials at each point, needs no series.
-    closed = not node.fitted and node.integral is None
-    varied = any(len(value) > 1 for value in inputs.values())
-    if varied and not closed and len(wo) > most:
-        raise ManyMaterialsError
-    if closed or varied or len(wo) < SEPARATE:
-        return albedo(wo, _at(inputs, points))
-    key = albedo, *((name, contents(value)) for name, value in inputs.items())
-    # Whether the lobe stays itself when it is turned about the normal.
-    roughness = inputs.get("roughness", np.zeros(1))
-    turns = roughness.ndim == 1 or bool(np.ptp(roughness[0]) == 0.0)
-    low = float(np.sqrt(wo[:, 2].min()))
-    degrees = ISOTROPIC if turns else ANISOTROPIC
-    series = SERIES.value((low, *key), lambda: _series(albedo, inputs, low, degrees))
-    if series is not None:
-        return _interpolated(series, wo, low, turns)
-    if not turns:
-        raise NotRun("reference: the albedo of so anisotropic a lobe takes too long over a picture")
-    # The symmetric points of a sphere have cosines that differ by roundings.
-    rounded = np.asarray(np.round(np.minimum(wo[:, 2], 1.0), 13), np.float64)
-    mu, indices = np.unique(rounded, return_inverse=True)
-
-    def one_by_one() -> Array:
-        return albedo(_directions(mu, 0.0 * mu), _at(inputs, np.ones(len(mu), bool)))
-
-    # All scenes of a document ask for them.
-    return ALBEDOS.value((contents(mu), *key), one_by_one)[indices]
 
 
 def _directions(mu: Array, phi: Array) -> Array:
@@ -179,20 +97,15 @@ def _series(
         mu, phi = np.meshgrid(
             np.square(low + (1.0 - low) * 0.5 * (1.0 + x)), 0.5 * np.arccos(y), indexing="ij"
         )
-        wo = _directions(mu.ravel(), phi.ravel())
-        values = albedo(wo, _at(inputs, np.ones(len(wo), bool))).reshape(*mu.shape, 3)
-        series = np.einsum("xi,yj,xyc->ijc", _transform(x), _transform(y), values)
+        values = albedo(_directions(mu.ravel(), phi.ravel()), inputs).reshape(*mu.shape, 3)
+        along, around = (
+            np.linalg.inv(chebyshev.chebvander(points, len(points) - 1)) for points in (x, y)
+        )
+        series = np.einsum("ix,jy,xyc->ijc", along, around, values)
         tails = [series[-degree // 8 :], series[:, -2:] if turns else np.zeros(1)]
         if max(float(np.abs(tail).max()) for tail in tails) < TAIL:
             return np.asarray(series, np.float64)
     return None
-
-
-def _transform(points: Array) -> Array:
-    """Matrix from the values at Chebyshev points to coefficients, (points, coefficients)."""
-    degree = len(points) - 1
-    scale = np.where(np.arange(degree + 1) == 0, 1.0, 2.0) / (degree + 1)
-    return np.asarray(chebyshev.chebvander(points, degree) * scale, np.float64)
 
 
 COSINES = np.linspace(-1.0, 1.0, 1025)  # of the light, between which its blur is straight
@@ -242,16 +155,12 @@ def _blur(reach: float) -> Array:
 LET_THROUGH: dict[str, Callable[[Array, Inputs], Array]] = {
     row.name: partial(_not_reflected, row.category) for row in TRANSMISSION_NODES
 }
-# Radiance over irradiance of what takes light from all sides, without a cosine.
-AROUND: dict[str, Callable[[Array, Array, Inputs], Array]] = {
-    SUBSURFACE_NODE.category: _spread,
-    HAIR_NODE.category: HAIR_NODE.value,
-}
-INNER_NODES = (
-    *map(_transmitting, TRANSMISSION_NODES),
-    replace(SUBSURFACE_NODE, inputs=("color", "radius", "anisotropy")),
+# What takes light from all sides, without a cosine.
+AROUND = (
+    replace(SUBSURFACE_NODE, inputs=("color", "radius", "anisotropy"), value=_spread),
     HAIR_NODE,
 )
+INNER_NODES = (*map(_transmitting, TRANSMISSION_NODES), *AROUND)
 
 
 UNIT = 1e-3  # by how much the length of a normal may differ from 1
@@ -267,18 +176,73 @@ class ShadingPoints:
     normal: Array  # of the surface, orthogonal unit vectors in world space
     tangent: Array
     texcoord: Array | None = None
-    # Points with materials of their own whose albedos are integrated; see `scattered`.
+    # Points with materials of their own whose albedos are integrated; more raise ManyMaterialsError.
     most: float = np.inf
     round: bool = False  # whether these are points of the unit sphere
     behind: bool = False  # whether light that is transmitted is asked for, and no other
 
-    def lobe(self, normal: Array, tangent: Array) -> Lobe:
-        """Lobe whose frame has a normal, turned to the viewer, and a tangent.
-
-        Raise OutsideModel if a normal is no unit vector.
-        """
+    def lobe(
+        self, node: PbrNode, inputs: Inputs, layered: bool, normal: Array, tangent: Array
+    ) -> Bsdf:
+        """Lobe of weight one, and its throughput if it is asked for; see `directions`."""
         own = np.array_equal(normal, self.normal) and np.array_equal(tangent, self.tangent)
-        return self._own if own else self._turned(normal, tangent)
+        wo, wi = self._own if own else self.directions(normal, tangent)
+
+        def scattered() -> Bsdf:
+            hides = layered and node.layerable
+            left = throughput(self._albedo(node.albedo, node, wo, inputs)) if hides else 0.0
+            value = self.strength * self.scattered(node, wo, wi, inputs)
+            return Bsdf(value, np.broadcast_to(left, wo.shape))
+
+        if not own:
+            return scattered()
+        # The last ones are kept, which another library's document has too.
+        key = node, layered, *((name, contents(each)) for name, each in inputs.items())
+        return self._known.value(key, scattered)
+
+    def scattered(self, node: PbrNode, wo: Array, wi: Array | None, inputs: Inputs) -> Array:
+        """Light that a lobe sends to the viewer, by directions in its frame, (N, 3).
+
+        Under a distant light f |cos(theta_i)|, 0 on the dark side; in an environment the directional albedo, or the
+        share that is transmitted.
+        """
+        if wi is None:
+            share = LET_THROUGH.get(node.name) if self.behind else node.integral or node.albedo
+            return self._albedo(share, node, wo, inputs) if share else np.zeros(wo.shape)
+        if node in AROUND:
+            return np.asarray(node.value(wo, wi, inputs))
+        shown = np.flatnonzero((wi[:, 2] < 0.0) if node.transmits else (wi[:, 2] > 0.0))
+        value, some = np.zeros(wo.shape), at(inputs, shown)
+        cosine = np.minimum(np.abs(wi[shown, 2:]), 1.0)
+        value[shown] = node.value(wo[shown], wi[shown], some) * cosine
+        return value
+
+    def _albedo(self, albedo: Albedo, node: PbrNode, wo: Array, inputs: Inputs) -> Array:
+        """Albedo at directions: over a picture of one material by a series, unless it is computed fast."""
+        closed = not node.fitted and node.integral is None
+        varied = any(len(value) > 1 for value in inputs.values())
+        if varied and not closed and len(wo) > self.most:
+            raise ManyMaterialsError
+        if closed or varied or not self.round or len(wo) < SEPARATE:
+            return albedo_at(albedo, node, wo, inputs)
+        # Whether the lobe stays itself when it is turned about the normal.
+        roughness = inputs.get("roughness", np.zeros(1))
+        turns = roughness.ndim == 1 or bool(np.ptp(roughness[0]) == 0.0)
+        low, degrees = float(np.sqrt(wo[:, 2].min())), ISOTROPIC if turns else ANISOTROPIC
+        key = albedo, *((name, contents(value)) for name, value in inputs.items())
+        series = SERIES.value((low, *key), lambda: _series(albedo, inputs, low, degrees))
+        if series is not None:
+            return _interpolated(series, wo, low, turns)
+        if not turns:
+            raise NotRun(
+                "reference: the albedo of so anisotropic a lobe takes too long over a picture"
+            )
+        # The symmetric points of a sphere have cosines that differ by roundings.
+        mu = np.asarray(np.round(np.minimum(wo[:, 2], 1.0), 13), np.float64)
+        upright = _directions(mu, np.zeros(len(mu)))
+        # All scenes of a document ask for them.
+        integrated = partial(albedo_at, albedo, node, upright, inputs)
+        return ALBEDOS.value((contents(upright), *key), integrated)
 
     def geometry(self, name: str) -> Array:
         """A property of the surface by its name in MaterialX; raises NotRun if it is not known."""
@@ -298,19 +262,12 @@ class ShadingPoints:
         return _within(self._axes(self.normal, self.tangent), self.wo)
 
     @cached_property
-    def _own(self) -> Lobe:
-        """Lobe in the frame of the surface; the last ones are kept, which another library's document has too."""
-        turned, known = self._turned(self.normal, self.tangent), Recent[Bsdf](KEPT)
+    def _own(self) -> tuple[Array, Array | None]:
+        return self.directions(self.normal, self.tangent)
 
-        def lobe(node: PbrNode, inputs: Inputs, layered: bool) -> Bsdf:
-            key = node, layered, *((name, contents(each)) for name, each in inputs.items())
-            return known.value(key, lambda: turned(node, inputs, layered))
-
-        return lobe
-
-    def _turned(self, normal: Array, tangent: Array) -> Lobe:
-        wo, wi = self.directions(normal, tangent)
-        return scattered(wo, wi, self.strength, self.most, self.behind)
+    @cached_property
+    def _known(self) -> Recent[Bsdf]:
+        return Recent(KEPT)
 
     def directions(self, normal: Array, tangent: Array) -> tuple[Array, Array | None]:
         """Directions to the viewer and to the light in a frame, whose normal is turned to the viewer.
@@ -320,6 +277,8 @@ class ShadingPoints:
         length = np.linalg.norm(normal, axis=-1)
         if (wrong := np.ravel(length)[np.ravel(~(np.abs(length - 1.0) <= UNIT))]).size:
             raise OutsideModel(f"reference: normal must have the length 1; got {wrong[0]:g}")
+        if np.all(normal == UP) and np.all(tangent == ALONG) and np.all(self.wo[:, 2] >= 0.0):
+            return self.wo, self.wi
         side = np.where((self.wo * normal).sum(axis=-1, keepdims=True) < 0.0, -1.0, 1.0)
         axes = self._axes(side * normal, tangent)
         return _within(axes, self.wo), None if self.wi is None else _within(axes, self.wi)
@@ -330,6 +289,22 @@ class ShadingPoints:
         axes = np.stack(np.broadcast_arrays(x, np.cross(z, x), z), axis=1)
         with np.errstate(invalid="ignore"):  # a tangent along the normal shows in the values
             return np.asarray(axes / np.linalg.norm(axes, axis=2, keepdims=True))
+
+
+def at(inputs: Inputs, points: NDArray[np.intp]) -> dict[str, Array]:
+    """Inputs at some of the points; what all of them have, the models compute once."""
+    return {name: each[points] if len(each) > 1 else each for name, each in inputs.items()}
+
+
+def albedo_at(albedo: Albedo, node: PbrNode, wo: Array, inputs: Inputs) -> Array:
+    """An albedo of a lobe, once for the points that have the same view and inputs if it is no closed form."""
+    wo = np.minimum(wo, 1.0)  # a rounding may have made a cosine larger
+    if not node.fitted and node.integral is None:
+        return np.asarray(np.broadcast_to(albedo(wo, inputs), wo.shape))
+    varied = [np.reshape(each, (len(wo), -1)) for each in inputs.values() if len(each) > 1]
+    rows = np.round(np.concatenate([wo, *varied], axis=1), 13)
+    _, first, places = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+    return np.asarray(albedo(wo[first], at(inputs, first))[places.ravel()])
 
 
 def _within(axes: Array, directions: Array) -> Array:
@@ -391,9 +366,8 @@ def node_lobe(
         rounded = np.float32(arguments["roughness"]) == np.float32(np.pi / 2.0)
         arguments["roughness"] = np.where(rounded, np.pi / 2.0, arguments["roughness"])
     tangent = inputs.get("tangent", inputs.get("curve_direction", points.tangent))
-    lobe = points.lobe(inputs["normal"], tangent)
     try:
-        values = lobe(row, arguments, layered)
+        values = points.lobe(row, arguments, layered, inputs["normal"], tangent)
     except ValueError as error:
         words = str(error).replace("rho must", "color must").replace("sigma must", "roughness must")
         raise OutsideModel(f"{name}: {words}") from None
