@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon import hosts
-from mxeon.conformance.reference.graph import DRAWN, Graph, Measure
+from mxeon.conformance.reference.graph import DRAWN, Graph
 from mxeon.conformance.reference.nodes import ManyMaterialsError, ShadingPoints, ShownLobe
 from mxeon.conformance.samples import Array
 from mxeon.errors import DocumentError, NotRun
@@ -115,41 +115,45 @@ class Host(base.Host):
         """
         self.refuse_paths(scene)
         self.refuse_shape(scene)
-        mask = sphere(scene.size).mask
-        image = np.zeros((*mask.shape, 3))
-        image[mask] = _lighted(shader, _shown(scene))[0]
-        return image
+        return self.expected(shader, scene).image
 
     def expected(
-        self, shader: Shader, scene: Scene, values: HostValues, stride: int = 1
+        self, shader: Shader, scene: Scene, values: HostValues | None = None, stride: int = 1
     ) -> ExpectedPicture:
         """What a host's picture has to show, some inputs of lobes being as that host has them.
 
-        At every so many rows and columns, if there are too many materials for all. Raise NotRun as
+        With such values, at every so many rows and columns if there are too many materials for all. Raise NotRun as
         `picture` does.
         """
         mask = sphere(scene.size).mask
         chosen = mask & _lattice(scene.size, stride)
-        points = _shown(scene, stride)
+        points = _shown(scene, stride, MOST if values and stride == 1 else np.inf)
 
         def measure(elements: Elements, kind: str, output: str) -> NDArray[np.float64]:
+            assert values
             return values(scene.size, elements, kind, output)[chosen]
 
         image = np.zeros((*mask.shape, 3))
         try:
-            image[chosen], measured, lobes = _lighted(shader, points, measure)
+            graph = Graph(shader.document, points, measure=measure if values else None)
+            image[chosen] = graph.element(shader.element)
+            if points.wi is None and TRANSMISSION in inner_lobes(shader):
+                dark = replace(points, behind=True)
+                behind = Graph(shader.document, dark, measure=measure if values else None)
+                image[chosen] += behind.element(shader.element)
         except ManyMaterialsError:
             return self.expected(shader, scene, values, STRIDE)
         except NotRun:
             shown = shader.document.getDescendant(shader.element)
-            if not shown.isA(mx.Output) or shown.getType() in LIT:
+            if values is None or not shown.isA(mx.Output) or shown.getType() in LIT:
                 raise
             # Of a pattern, a host draws the color that a surface emits of it; black for other types.
             if shown.getType() in PATTERNS:
                 image = values.emitted(scene.size, shown)
             return ExpectedPicture(image, mask, (shown.getName(),))
         middle = (np.arange(scene.size) // stride * stride + stride // 2).clip(max=scene.size - 1)
-        return ExpectedPicture(image[np.ix_(middle, middle)], chosen, measured, lobes)
+        image = image[np.ix_(middle, middle)]
+        return ExpectedPicture(image, chosen, tuple(graph.measured), tuple(graph.lobes))
 
     def _values(self, query: Query) -> NDArray[np.float64]:
         """Array of the document's lobes; see `mxeon.hosts.base.Host.evaluate`.
@@ -171,18 +175,6 @@ class Host(base.Host):
         return np.array(np.broadcast_to(values, wo.shape), np.float64)
 
 
-def _lighted(
-    shader: Shader, points: ShadingPoints, measure: Measure | None = None
-) -> tuple[NDArray[np.float64], tuple[str, ...], tuple[ShownLobe, ...]]:
-    """Array of a shader's element at points, the inputs that were measured for them, and the lobes."""
-    graph = Graph(shader.document, points, measure=measure)
-    values = graph.element(shader.element)
-    if points.wi is None and TRANSMISSION in inner_lobes(shader):
-        behind = Graph(shader.document, replace(points, behind=True), measure=measure)
-        values = values + behind.element(shader.element)
-    return values, tuple(graph.measured), tuple(graph.lobes)
-
-
 def _lattice(size: int, stride: int) -> NDArray[np.bool_]:
     """Pixels in the middle of squares of so many rows and columns."""
     chosen = np.arange(size) % stride == stride // 2
@@ -190,13 +182,13 @@ def _lattice(size: int, stride: int) -> NDArray[np.bool_]:
 
 
 @lru_cache(maxsize=2 * SCENES)
-def _shown(scene: Scene, stride: int = 0) -> ShadingPoints:
+def _shown(scene: Scene, stride: int, most: float) -> ShadingPoints:
     """The points that a picture shows, and the light at them.
 
     Raise NotRun if the light is an image.
     """
     points = sphere(scene.size)
-    mask = points.mask & _lattice(scene.size, max(stride, 1))
+    mask = points.mask & _lattice(scene.size, stride)
     normal, texcoord = points.normal[mask], points.texcoord[mask]
     if scene.light is not None:
         wi, strength = np.broadcast_to(scene.light, normal.shape), np.pi
@@ -205,5 +197,4 @@ def _shown(scene: Scene, stride: int = 0) -> ShadingPoints:
     else:
         raise NotRun("reference: environment must be uniform; got an image")
     wo = np.broadcast_to(VIEW, normal.shape)
-    most = MOST if stride == 1 else np.inf
     return ShadingPoints(wo, wi, strength, normal, tangents(normal), texcoord, most, True)

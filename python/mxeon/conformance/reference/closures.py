@@ -62,12 +62,23 @@ class Views:
         """Value of closures, and their throughput if something may lie below them."""
         if tree is None or tree.name in LIGHTLESS:
             return NOTHING
+        if tree.name in FLAGGED:  # by a keyword, which is 0 unless it is given
+            keyword, models = FLAGGED[tree.name]
+            flag = np.asarray(tree.arguments.get(keyword, 0.0), np.float64)
+            unset, given = (partial(self._lobe, tree, each, layered) for each in models)
+            return _mixed(unset, given, column(np.where(flag == 0.0, 0.0, 1.0)))
         if tree.name not in OPERATIONS:
-            return self._flagged(tree, layered)
+            return self._lobe(tree, ROWS[tree.name], layered)
         first, second = (*tree.parts, None)[:2]
         factor = column(tree.arguments["factor"]) if "factor" in tree.arguments else ONE
         if tree.name == LAYER:
-            return self._layer(first, second, layered)
+            medium = _coefficient(second, "extinction", MEDIUM)
+            if medium is None or not _only_medium(second):
+                return layering.layer(self.bsdf(first, True), self.bsdf(second, layered))
+            # A medium dims what passes the surface.
+            passed, surface = transmittance(medium, 0.0, METER), self.bsdf(first, layered)
+            value = surface.value * (passed if self.branch == THROUGH else 1.0)
+            return Bsdf(value, surface.throughput * passed)
         if tree.name == MIX:
             return _mixed(
                 partial(self.bsdf, first, layered), partial(self.bsdf, second, layered), factor
@@ -78,27 +89,6 @@ class Views:
             return NOTHING
         scaled = self.bsdf(first, layered)
         return Bsdf(factor * scaled.value, 1.0 - factor * (1.0 - scaled.throughput))
-
-    def _layer(self, top: ClosureTree | None, base: ClosureTree | None, layered: bool) -> Bsdf:
-        """A lobe over another, or over a medium, which dims what passes the surface."""
-        medium = _coefficient(base, "extinction", MEDIUM)
-        if medium is None or not _only_medium(base):
-            return layering.layer(self.bsdf(top, True), self.bsdf(base, layered))
-        passed, surface = transmittance(medium, 0.0, METER), self.bsdf(top, layered)
-        value = surface.value * (passed if self.branch == THROUGH else 1.0)
-        return Bsdf(value, surface.throughput * passed)
-
-    def _flagged(self, closure: ClosureTree, layered: bool) -> Bsdf:
-        """A lobe whose model a keyword may pick, which is 0 unless it is given."""
-        if closure.name not in FLAGGED:
-            return self._lobe(closure, ROWS[closure.name], layered)
-        keyword, (first, second) = FLAGGED[closure.name]
-        flag = np.asarray(closure.arguments.get(keyword, 0.0), np.float64)
-        return _mixed(
-            partial(self._lobe, closure, first, layered),
-            partial(self._lobe, closure, second, layered),
-            column(np.where(flag == 0.0, 0.0, 1.0)),
-        )
 
     def _lobe(self, closure: ClosureTree, row: PbrNode, layered: bool) -> Bsdf:
         """A lobe in its frame; stdosl.h lets through a layer what its top does not reflect."""

@@ -3,8 +3,7 @@
 
 A graph may contain the lobes that have a model, with their combinations; emissions; images; the
 operations that surface shaders are made of; and nodes that are nodegraphs of these. Any other node is
-NotRun, with its name, unless it adds nothing: a lobe whose weight is 0 everywhere, or that a mix leaves
-out.
+NotRun, with its name, unless a mix leaves it out.
 
 A path names a node within the nodes and nodegraphs around it: a tuple of name paths, the outermost first.
 """
@@ -14,6 +13,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property, partial
+from graphlib import TopologicalSorter
+from math import prod
 from operator import itemgetter
 from typing import TypeAlias
 from zlib import crc32
@@ -32,10 +33,8 @@ from mxeon.conformance.reference.nodes import (
     ShadingPoints,
     ShownLobe,
     Value,
-    definition,
     fitted,
     node_lobe,
-    over_volume,
     plain,
     same,
 )
@@ -119,19 +118,12 @@ class Graph:
         parts = self._parts([root])
         uses = Counter(part for inner in parts.values() for part in inner)
         values: dict[Path, Value] = {}
-        waiting = [root]
-        while waiting:
-            key = waiting[-1]
-            if key in values:
-                waiting.pop()
-            elif missing := [part for part in parts[key] if part not in values]:
-                waiting.append(missing[0])
-            else:
-                values[key] = self._step(key)[0](*(values[part] for part in parts[key]))
-                for part in parts[key]:
-                    uses[part] -= 1
-                    if not uses[part]:
-                        del values[part]
+        for key in TopologicalSorter(parts).static_order():
+            values[key] = self._step(key)[0](*(values[part] for part in parts[key]))
+            uses.subtract(parts[key])
+            for part in set(parts[key]):
+                if not uses[part]:
+                    del values[part]
         return values[root]
 
     def _step(self, path: Path) -> Step:
@@ -151,7 +143,7 @@ class Graph:
             value = self._image(node)
             return lambda: value, ()
         if self._marked and category in VOLUMES:
-            names = tuple(port.getName() for port in definition(node).getActiveInputs())
+            names = tuple(port.getName() for port in node.getNodeDef().getActiveInputs())
             return partial(_marks, node, names), self._sources(path, names)
         if category in self._operations:
             ports, operation = self._operations[category]
@@ -161,8 +153,6 @@ class Graph:
             self._shader = path
         if inner := self._inside(path, node):
             return same, (inner,)
-        if kind == "BSDF" and not self._weighs(path, node):
-            return lambda: NOTHING, ()
         raise NotRun(f"reference: there is no model for node {category!r}")
 
     @cached_property
@@ -174,23 +164,18 @@ class Graph:
             known[row.category] = ports, partial(_radiance, row, ports, self._points)
         for utility in UTILITIES.values():
             known[utility.category] = tuple(utility.inputs), partial(_utility, utility)
-        if self._points.behind:
-            known["surface"] = ("bsdf", "opacity"), lambda bsdf, opacity: bsdf.value * opacity
-            known["surface_unlit"] = (), lambda: np.zeros(3)
-            return known
+        emits = self._emits and not self._points.behind
+
+        def surface(
+            bsdf: Bsdf, opacity: float | Array = 1.0, edf: float | Array = 0.0, thin: bool = False
+        ) -> Array:
+            return np.asarray((bsdf.value + edf) * opacity + thin, np.float64)
+
+        # What counts of a surface: the opacity, what it emits, and whether its walls are thin.
+        ports = ("bsdf", "opacity", "edf", "thin_walled")
+        known["surface"] = ports[: 1 + self._emits + emits + self._marked], surface
         unlit = ("emission", "emission_color", "opacity")
-        known["surface_unlit"] = unlit, lambda strength, color, opacity: strength * color * opacity
-        if self._marked:
-            own = ("bsdf", "edf", "opacity", "thin_walled")
-            known["surface"] = (
-                own,
-                lambda bsdf, edf, opacity, thin: (bsdf.value + edf) * opacity + np.float64(thin),
-            )
-        elif self._emits:
-            lit = ("bsdf", "edf", "opacity")
-            known["surface"] = lit, lambda bsdf, edf, opacity: (bsdf.value + edf) * opacity
-        else:
-            known["surface"] = ("bsdf",), lambda bsdf: bsdf.value
+        known["surface_unlit"] = unlit, lambda *values: prod(values) * (not self._points.behind)
         return known
 
     def _inside(self, path: Path, node: mx.Node, output: str = "") -> Path | None:
@@ -202,14 +187,8 @@ class Graph:
             return self._connected(path, found[0])
         return None
 
-    def _weighs(self, path: Path, node: mx.Node) -> bool:
-        """Whether a lobe without a model has a weight that is not 0 everywhere."""
-        if not definition(node).getActiveInput("weight"):
-            return True
-        return bool(np.any(np.asarray(self._evaluate(self._source(path, "weight")))))
-
     def _lobe(self, path: Path, node: mx.Node) -> Step:
-        names = tuple(port.getName() for port in definition(node).getActiveInputs())
+        names = tuple(port.getName() for port in node.getNodeDef().getActiveInputs())
 
         def lobe(*values: Array) -> Bsdf:
             inputs = dict(zip(names, values, strict=True))
@@ -232,15 +211,13 @@ class Graph:
             for port, none in (("bg", 0.0), ("fg", 1.0)):
                 if np.all(share == none):
                     return same, self._sources(path, (port,))
-        # A layer asks its top for a throughput; a volume below must be empty.
+        # A layer asks its top for a throughput; a volume below dims what is transmitted alone.
         if category == "layer":
             self._tops.append(self._source(path, "top"))
-            if definition(node).getActiveInput("base").getType() != "BSDF":
-                if self._points.behind or self._marked:
-                    return over_volume, self._sources(path, ports)
-                if not self._points.round:
-                    self._assert_empty(path)
-                return same, self._sources(path, ("top",))
+            if node.getNodeDef().getActiveInput("base").getType() != "BSDF":
+                if not (self._points.behind or self._marked):
+                    return same, self._sources(path, ("top",))
+                return _over_volume, self._sources(path, ports)
 
         def combined(*values: Bsdf | Array) -> Bsdf:
             try:
@@ -249,16 +226,6 @@ class Graph:
                 raise OutsideModel(f"reference: node {node.getNamePath()!r}: {error}") from None
 
         return combined, self._sources(path, ports)
-
-    def _assert_empty(self, path: Path) -> None:
-        """Raise NotRun if the volume below a layer absorbs or scatters anything."""
-        base = self._source(path, "base")
-        volume = self._elements.get(base)
-        for name in ("absorption", "scattering") if volume else ():
-            if definition(volume).getActiveInput(name) is None:
-                continue
-            if np.any(np.asarray(self._evaluate(self._source(base, name)))):
-                raise NotRun("reference: there is no model for a layer over a volume")
 
     def _sources(self, path: Path, names: tuple[str, ...]) -> tuple[Path, ...]:
         return tuple(self._source(path, name) for name in names)
@@ -402,11 +369,16 @@ class Graph:
         return _linear(file, read) if channels == 3 else read
 
 
+def _over_volume(top: Bsdf, medium: Array | None) -> Bsdf:
+    passed = 1.0 if medium is None else medium
+    return Bsdf(top.value * passed, top.throughput * passed)
+
+
 def _marks(node: mx.Node, names: tuple[str, ...], *values: Value) -> Array:
     """Numbers in [0.1, 0.9] that stand for all inputs of a node which are not its defaults, (N, 3) or (3,)."""
     phase = np.zeros(3)
     for name, value in zip(names, values, strict=True):
-        port = definition(node).getActiveInput(name)
+        port = node.getNodeDef().getActiveInput(name)
         default = plain(port.getValue())
         if isinstance(value, str):
             name, value, default = f"{name} {value}", np.asarray(value != default), None

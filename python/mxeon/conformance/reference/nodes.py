@@ -113,6 +113,7 @@ REACHES = (1e-6, 1e3)  # of mean free paths, over the radius of the sphere
 
 
 def _dark(wo: Array, *_: object) -> Array:
+    """Light that a node in scatter mode T reflects."""
     return np.zeros(wo.shape)
 
 
@@ -121,13 +122,6 @@ def _not_reflected(category: str, wo: Array, inputs: Inputs) -> Array:
     functions = TRANSMISSIONS[category]
     rest = 1.0 - functions.reflected(wo, isotropic(inputs))
     return np.asarray(functions.tint(inputs) * np.maximum(rest, 0.0))
-
-
-def _transmitting(row: PbrNode) -> PbrNode:
-    """Row of a node in a scatter mode, of which T reflects nothing."""
-    if row.fixed["scatter_mode"] == "RT":
-        return row
-    return replace(row, value=_dark, albedo=_dark, integral=_dark)
 
 
 def _spread(wo: Array, wi: Array, inputs: Inputs) -> Array:
@@ -160,7 +154,15 @@ AROUND = (
     replace(SUBSURFACE_NODE, inputs=("color", "radius", "anisotropy"), value=_spread),
     HAIR_NODE,
 )
-INNER_NODES = (*map(_transmitting, TRANSMISSION_NODES), *AROUND)
+INNER_NODES = (
+    *(
+        row
+        if row.fixed["scatter_mode"] == "RT"
+        else replace(row, value=_dark, albedo=_dark, integral=_dark)
+        for row in TRANSMISSION_NODES
+    ),
+    *AROUND,
+)
 
 
 UNIT = 1e-3  # by how much the length of a normal may differ from 1
@@ -376,13 +378,6 @@ def node_lobe(
     return Bsdf(values.value * weight, left)
 
 
-def definition(node: mx.Node) -> mx.NodeDef:
-    """Nodedef of a node; raises NotRun if no nodedef matches its inputs."""
-    if definition := node.getNodeDef():
-        return definition
-    raise NotRun(f"reference: node {node.getNamePath()!r} has no definition")
-
-
 def _row(node: mx.Node, inputs: Mapping[str, Array]) -> PbrNode:
     """Row of the model that a node with these inputs has."""
     category = node.getCategory()
@@ -399,7 +394,7 @@ def _assert_known(node: mx.Node, row: PbrNode, inputs: Mapping[str, Array]) -> N
     frame = ("normal", "tangent", "curve_direction")
     known = {"weight", *frame, FLAG, *FILM, *row.inputs, *row.fixed}
     for port, value in inputs.items():
-        default = definition(node).getActiveInput(port).getValue()
+        default = node.getNodeDef().getActiveInput(port).getValue()
         if port not in known and not np.array_equal(value, np.asarray(plain(default))):
             raise NotRun(
                 f"reference: there is no model for input {port!r} of node {node.getCategory()!r}"
@@ -408,7 +403,7 @@ def _assert_known(node: mx.Node, row: PbrNode, inputs: Mapping[str, Array]) -> N
 
 def _shaped(node: mx.Node, port: str, value: Array) -> Array:
     """Value of an input as (1,) or (N,) if it is a number, else with its components."""
-    kind = definition(node).getActiveInput(port).getType()
+    kind = node.getNodeDef().getActiveInput(port).getType()
     if kind in ("float", "boolean"):
         return np.reshape(np.asarray(value, np.float64), -1)
     array = np.atleast_2d(np.asarray(value, np.float64))
@@ -549,9 +544,3 @@ VOLUMES: dict[str, Operation] = {
     "absorption_vdf": (("absorption",), lambda a: transmittance(a, 0.0, METER)),
     "anisotropic_vdf": (("absorption", "scattering"), lambda a, s: transmittance(a, s, METER)),
 }
-
-
-def over_volume(top: Bsdf, medium: Array | None) -> Bsdf:
-    """A layer over a volume, for light that is transmitted."""
-    passed = 1.0 if medium is None else medium
-    return Bsdf(top.value * passed, top.throughput * passed)
