@@ -91,15 +91,19 @@ def test_a_fault_in_a_copy_is_found_and_told_first(gl, tmp_path, capsys, name, p
     assert words in first
 
 
-def test_json_lists_the_files_of_the_folder_and_of_the_package(gl, tmp_path, capsys):
+def test_a_run_lists_the_files_of_folder_and_package_and_the_lobes_without_a_model(gl, tmp_path, capsys):
     copy, report = copy_of_stock(tmp_path / "copy", SHEEN, LIB), tmp_path / "report"
+    lobe = '<nodedef name="ND_own" node="own_bsdf"><output name="out" type="BSDF" /></nodedef>'
+    (copy / "own.mtlx").write_text(f'<materialx version="1.39">{lobe}</materialx>')
     options = ["--library", str(copy), "--node", "glossiness_anisotropy", "--workers", "0"]
     assert main(["check", *options, "--json", "--report", str(report)]) == 0
     [(folder, files)] = json.loads(capsys.readouterr().out)["libraries"].items()
-    assert folder == str(copy) and sorted(files["folder"]) == sorted([SHEEN, LIB])
-    assert set(files["folder"] + files["MaterialX"]) == set(tree(str(STOCK)).own)
-    line = f"<p>library {copy}: 2 files from the folder, {len(files['MaterialX'])} from MaterialX "
-    assert line in (report / "report.html").read_text()
+    own = [SHEEN, LIB, "own.mtlx"]
+    assert folder == str(copy) and sorted(files["folder"]) == sorted(own)
+    assert {*files["folder"], *files["MaterialX"]} == {*tree(str(STOCK)).own, "own.mtlx"}
+    line = f"<p>library {copy}: 3 files from the folder, {len(files['MaterialX'])} from MaterialX "
+    page = (report / "report.html").read_text()
+    assert line in page and "; no model judges its own_bsdf" in page
 
 
 def elsewhere(folder):

@@ -51,7 +51,8 @@ def to_json(run: Run) -> str:
     - refused: texts, the documents that were refused; errors: texts, their faults.
     - compared: names of libraries judged for comparison, which verdict, counts and sentence ignore.
     - version: of mxeon; software: name to version; documents: paths; notes: texts.
-    - libraries: by folder, its files under "folder", and under "MaterialX" those that complete it.
+    - libraries: by folder, its files under "folder", under "MaterialX" those that complete it, and
+      under "nodes without a model" the lobes that it adds.
     - hosts: objects of name, version, device.
     - results: objects with the fields of `mxeon.conformance.results.Result`; control is null or an
       object of variant, figure, caught.

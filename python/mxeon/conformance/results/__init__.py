@@ -22,6 +22,7 @@ PASSED, DIFFERS, FAILED, NOT_RUN = "passed", "differs", "failed", "not run"
 VERDICTS = (PASSED, DIFFERS, FAILED, NOT_RUN)
 # In the place of a document: one material of each node, as every host shows it.
 PORTRAIT = "portrait"
+UNJUDGED = "nodes without a model"  # beside the files of a library
 SOURCE = "source"  # in the place of a host, for what none has to run
 SHADER_FUNCTIONS = "shader twins"  # in the place of a node, for the functions of a library
 COUNTS = ("inputs", "values", "faults", "differences", "nodes")  # units of checks that count
@@ -393,7 +394,7 @@ class Run:
 
     @property
     def origins(self) -> tuple[str, ...]:
-        """For each folder judged as a library, how many files are its own and how many MaterialX's."""
+        """For each folder judged as a library: its files, MaterialX's, and the lobes that have no model."""
         return tuple(
             f"library {folder}: {counted(len(files['folder']), 'file')} from the folder, "
             + (
@@ -402,5 +403,6 @@ class Run:
                 else "loaded before"
             )
             + f" MaterialX {self.software['MaterialX']}"
+            + (f"; no model judges its {listed(files[UNJUDGED])}" if UNJUDGED in files else "")
             for folder, files in self.libraries.items()
         )

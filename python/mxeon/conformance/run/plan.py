@@ -26,7 +26,14 @@ from mxeon.conformance import shader_functions as functions
 from mxeon.conformance.backends import Evaluating, backend_of, own_nodes, ways_of
 from mxeon.conformance.checks import CHECKS
 from mxeon.conformance.diagnosis.regions import unreached
-from mxeon.conformance.results import SHADER_FUNCTIONS, SOURCE, AlbedoCurve, Picture, Result
+from mxeon.conformance.results import (
+    SHADER_FUNCTIONS,
+    SOURCE,
+    UNJUDGED,
+    AlbedoCurve,
+    Picture,
+    Result,
+)
 from mxeon.conformance.results.known_issues import RENDERER_NODES
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs import ALL as ALL_SPECS
@@ -40,6 +47,7 @@ from mxeon.hosts import HOSTS, host_names, host_row
 from mxeon.hosts.base import Identity
 from mxeon.jobs import pool
 from mxeon.shaders.contents import ShownNode, document_nodes, node_of
+from mxeon.shaders.document.drawn_values import LIT
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.document.references import digests
 from mxeon.shaders.functions import has_functions
@@ -327,13 +335,27 @@ def make_plan(
         contents={file: survey.nodes.get(file, ()) for file in documents} if files else {},
         unreached=survey.unreached if files and not nodes else {},
         refused=survey.refused,
-        libraries={each: origins(each) for each in libraries if each not in LIBRARIES},
+        libraries={
+            each: origins(each) | unjudged(each) for each in libraries if each not in LIBRARIES
+        },
         compared=tuple(compared),
         options=policy.options | {"--seed": str(seed)},
         files=digests(dict.fromkeys(documents), policy, (*libraries, *policy.definitions))
         if resumable
         else {},
     )
+
+
+def unjudged(library: str) -> dict[str, tuple[str, ...]]:
+    """The nodes that scatter or emit light which a library adds to MaterialX's, and which have no model."""
+    added = {
+        each.getNodeString()
+        for each in load_library(library).getNodeDefs()
+        if each.getType() in LIT
+    }
+    known = {each.getNodeString() for each in load_library("stock").getNodeDefs()}
+    names = added - known - set(node_names())
+    return {UNJUDGED: tuple(sorted(names))} if names else {}
 
 
 def diffuse_specs(library: str) -> list[DiffuseSpec]:
