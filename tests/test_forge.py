@@ -44,18 +44,18 @@ def test_the_action_and_the_container_install_the_driver_that_run_installs(path)
     assert f"--no-install-recommends {driver}\n" in path.read_text()
 
 
-def test_the_five_lines_of_the_page_call_the_action():
+def test_the_six_lines_of_the_page_call_the_action():
     [lines] = re.findall(r"```yaml\n(.*?)```", (ROOT / "docs" / "ci.md").read_text(), re.DOTALL)
     *_, step = yaml.safe_load(lines)["steps"]
     inputs = yaml.safe_load(ACTION.read_text())["inputs"]
-    assert len(lines.splitlines()) == 5 and "/mxeon@" in step["uses"]
+    assert len(lines.splitlines()) == 6 and "/mxeon@" in step["uses"]
     assert set(step["with"]) <= set(inputs)
 
 
 LINES = "--node oren_nayar_diffuse_bsdf\n--host gl  --workers\n0"
 
 
-def ended(library, folder, options=LINES, command=TOOLS / "mxeon", documents=""):
+def ended(library, folder, options=LINES, command=TOOLS / "mxeon", documents="", baseline=""):
     """The action's step that checks, as the forge starts it, for one node."""
     # Put the command where the action installs it.
     (folder / "mxeon" / "bin").mkdir(parents=True)
@@ -72,6 +72,7 @@ def ended(library, folder, options=LINES, command=TOOLS / "mxeon", documents="")
         "REPORT": str(folder / "report"),
         "OPTIONS": options,
         "MATERIALX": "",
+        "BASELINE": baseline,
     }
     command = ["bash", "--noprofile", "--norc", "-e", "-o", "pipefail", folder / "script.sh"]
     return subprocess.run(command, env=os.environ | variables, capture_output=True, text=True)
@@ -108,6 +109,19 @@ def test_the_action_takes_every_line_of_its_options(text, tmp_path):
     done = ended("library", tmp_path, text, echo, "look.mtlx 'my looks'")
     given = ["check", "--report", str(tmp_path / "report"), "look.mtlx", "my looks", *OPTIONS[text]]
     assert done.stdout.splitlines() == [*given, "--library", "library"]
+
+
+@pytest.mark.parametrize(
+    "check, diff, status", [(1, 0, 0), (3, 0, 0), (0, 3, 3), (1, 1, 1), (2, 0, 2)]
+)
+def test_the_action_with_a_baseline_fails_where_something_got_worse(check, diff, status, tmp_path):
+    made = tmp_path / "made"
+    made.write_text(f'#!/bin/sh\n[ "$1" = check ] && exit {check}\necho "$@"\nexit {diff}\n')
+    made.chmod(0o755)
+    done = ended("library", tmp_path, command=made, baseline="old")
+    compared = "" if check == 2 else f"report diff old {tmp_path / 'report'}\n"
+    assert (done.returncode, done.stdout) == (status, compared)
+    assert (tmp_path / "summary.md").read_text().strip() == compared.strip()
 
 
 @pytest.mark.whole

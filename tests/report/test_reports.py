@@ -121,6 +121,8 @@ def test_a_picture_counts_where_its_material_is_outside_its_tolerance():
     before, after = made_run(**failed), made_run(difference=1e-3, **failed)
     assert changes(before, after) == ((WORSE, PICTURE, "1e-07", "0.001"),)
     assert changes(after, before) == ((BETTER, PICTURE, "0.001", "1e-07"),)
+    moved = replace(after, pictures=(replace(after.pictures[0], document="new/d"),))
+    assert changes(before, moved) == ((WORSE, PICTURE, "1e-07", "0.001"),)
 
 
 def test_lines_name_host_and_library_once_and_come_largest_first():
@@ -156,6 +158,8 @@ def test_a_document_that_was_removed_takes_its_checks_with_it():
     assert (OTHER, "b.mtlx", "checked", "removed") in changed
     assert {kind for kind, *_ in changed} == {OTHER}
     assert kinds(before, replace(before, results=())) == [LOST]
+    moved = replace(before, documents=(Path("new/a.mtlx"), Path("new/b.mtlx")))
+    assert kinds(before, replace(moved, results=())) == [LOST]
 
 
 def test_a_document_that_is_refused_now_is_worse():

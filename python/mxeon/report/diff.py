@@ -36,7 +36,7 @@ WORSE, LOST, BETTER, OTHER = KINDS = ("worse", "not run any longer", "better", "
 RANKS = (PASSED, DIFFERS, FAILED)
 PLACE = ("host", "library", "check", "subject")
 MODEL = re.compile("best match: |fault: |no known model ")  # a diagnosis that names one, or none
-SHOWN = ("host", "library", "document", "element", "scene")
+SHOWN = ("host", "library", "subject", "scene")
 
 
 @dataclass(frozen=True)
@@ -90,6 +90,12 @@ class ShownPicture:
             raise InputError(
                 f"largest_difference must be at least 0; got {self.largest_difference}"
             )
+
+    @property
+    def subject(self) -> str:
+        """As that of a result: a document may lie in another folder."""
+        is_node = self.document == PORTRAIT
+        return self.element if is_node else f"{Path(self.document).name}: {self.element}"
 
 
 @dataclass(frozen=True)
@@ -159,7 +165,8 @@ def read_results(folder: str | PathLike[str]) -> Report:
 def compare(before: Report, after: Report) -> tuple[Change, ...]:
     """Changes from one report to another by kind, host and library, and subject; the largest first."""
     before = _renamed(before, _moved(list(before.libraries), list(after.libraries)))
-    removed = {*before.documents} - {*after.documents, *after.refused}
+    names = {Path(each).name for each in (*after.documents, *after.refused)}
+    removed = {each for each in before.documents if Path(each).name not in names}
     changes = [
         *(Change(OTHER, "", "", "", each, "checked", "removed") for each in sorted(removed)),
         *_results(_by(PLACE, before.results), _by(PLACE, after.results), bool(removed)),
@@ -312,8 +319,7 @@ def _pictures(before: Report, after: Report) -> Iterator[Change]:
         growth = _growth(old, new)
         if 1.0 / SPREAD <= growth <= SPREAD:
             continue
-        host, library, document, element, scene, *number = key
-        subject = element if document == PORTRAIT else f"{Path(document).name}: {element}"
+        host, library, subject, scene, *number = key
         worse = growth > 1.0
         counts = (host, library, subject) in failed[worse]
         kind = (WORSE if worse else BETTER) if counts else OTHER
