@@ -97,7 +97,7 @@ def edits(number: int, mutant: Mutant, code: str) -> list[Edit]:
     if operator == "product" and (last := _operand(code, end)):
         return [wrapped(end, last, "over")]
     if operator == "comparison":
-        return [Edit(end, _end(code, end), "", f" != {on}")]
+        return [Edit(start, _end(code, end), "", f" != {on}")]  # behind what the right side becomes
     if operator == "channel":
         old, new = (CHANNELS[each[1]] for each in (found, put))
         return [Edit(start, end, f"[{on} ? {new} : {old}]", token=True)]
