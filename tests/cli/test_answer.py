@@ -2,7 +2,9 @@
 """The short answer of a run, and what is said while it works."""
 
 import json
+import os
 import shutil
+import sys
 from dataclasses import replace
 from xml.etree import ElementTree
 
@@ -246,12 +248,20 @@ def test_a_host_on_which_nothing_is_measured_did_not_run(host, capsys):
         assert "passed" not in printed and "For comparison" not in printed
 
 
-def test_a_host_of_which_the_text_alone_is_made_did_not_run(capsys):
-    assert main(["check", PLASTER, "--host", "msl", "--workers", "0"]) == DID_NOT_RUN
-    assert "not run: msl with eonlib, 1 check: msl: running it needs" in capsys.readouterr().out
-
-
 # --- progress and names ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("ends, shown", [(os.openpty, True), (os.pipe, False)])
+def test_progress_is_shown_on_a_terminal_and_not_in_a_pipe(ends, shown, capsys, monkeypatch):
+    other, end = ends()
+    with open(other, "rb") as read, open(end, "w") as written:
+        monkeypatch.setattr(sys, "stderr", written)
+        assert main(["check", PLASTER, "--host", "msl", "--workers", "0"]) == DID_NOT_RUN
+        print(file=written, flush=True)
+        seen = read.readline()
+    assert "not run: msl with eonlib, 1 check: msl: running it needs" in capsys.readouterr().out
+    shows, leaves = b"mxeon check: 1 of ", b"\r\x1b[K\r\n"
+    assert (shows in seen and seen.endswith(leaves)) if shown else seen == b"\n"
 
 
 @pytest.mark.parametrize(

@@ -6,16 +6,13 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 
 import pytest
 
 from mxeon.jobs.signals import ENDING, OTHERS, SignalExit, block_signals, raise_signals
-from mxeon.shaders.library import examples_folder
+from tests.support.command import DEADLINE, PLASTER, wait_for
 
-PLASTER = str(examples_folder() / "plaster.mtlx")
 CHECK = ["check", PLASTER, "--workers", "1", "--report", "report"]
-DEADLINE = 300.0  # seconds, for a machine that is busy
 
 
 def start(folder, *arguments, code="from mxeon.__main__ import main; sys.exit(main())"):
@@ -29,13 +26,6 @@ def start(folder, *arguments, code="from mxeon.__main__ import main; sys.exit(ma
         text=True,
         process_group=0,
     )
-
-
-def wait_for(condition, process):
-    end = time.monotonic() + DEADLINE
-    while not condition():
-        assert process.poll() is None and time.monotonic() < end
-        time.sleep(0.01)
 
 
 @pytest.mark.parametrize(

@@ -1,12 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The journal of a run: nothing finished is lost or done twice, and nothing else counts as done."""
 
-import os
-import resource
-import signal
 import subprocess
 import sys
-import time
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
@@ -16,6 +12,8 @@ import pytest
 
 from mxeon import check
 from mxeon.shaders.library import examples_folder
+from tests.support.command import DEADLINE, wait_for
+from tests.support.faults import room_for
 from tests.support.plans import keep_checks
 from tests.support.results import (
     FILES,
@@ -157,16 +155,8 @@ def test_a_full_disk_loses_nothing_that_was_finished(tmp_path):
     with journal(tmp_path) as written:
         written.add(0, FINDINGS)
         size = (tmp_path / JOURNAL).stat().st_size
-        # No file may grow beyond so many bytes: what a full disk does, without one.
-        limits = resource.getrlimit(resource.RLIMIT_FSIZE)
-        handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-        resource.setrlimit(resource.RLIMIT_FSIZE, (size + 100, limits[1]))
-        try:
-            with pytest.raises(OSError, match="File too large"):
-                written.add(1, PLAIN)
-        finally:
-            resource.setrlimit(resource.RLIMIT_FSIZE, limits)
-            signal.signal(signal.SIGXFSZ, handler)
+        with room_for(size + 100), pytest.raises(OSError, match="File too large"):
+            written.add(1, PLAIN)
         assert (tmp_path / JOURNAL).stat().st_size == size
         written.add(1, FINDINGS)
     assert list(read_journal(tmp_path)[1]) == [0, 1]
@@ -179,13 +169,13 @@ from tests.support.plans import keep_checks
 keep_checks(builtins, *{KEPT})
 """
 # A run that waits to be killed when the findings of three tasks are kept.
-WAITING = """import time
+WAITING = """import signal
 from mxeon.conformance.run.journal import Journal
 add = Journal.add
 def add_three(journal, number, findings):
     add(journal, number, findings)
     if len(journal.findings) == 3:
-        time.sleep(300.0)
+        signal.pause()
 Journal.add = add_three
 """
 
@@ -196,12 +186,10 @@ def test_a_killed_run_is_resumed_to_the_same_end(tmp_path, monkeypatch):
     options = ["check", str(EXAMPLE), "--report", str(tmp_path)]
     code = f"{SHORT}{WAITING}sys.exit(main())"
     process = subprocess.Popen([sys.executable, "-c", code, *options], stdout=subprocess.DEVNULL)
-    path, end = tmp_path / JOURNAL, time.monotonic() + 300.0
-    while not path.exists() or path.read_bytes().count(b"\n") < 4:
-        assert process.poll() is None and time.monotonic() < end
-        time.sleep(0.01)
-    os.kill(process.pid, signal.SIGKILL)
-    process.wait(60.0)
+    path = tmp_path / JOURNAL
+    wait_for(lambda: path.exists() and path.read_bytes().count(b"\n") > 3, process)
+    process.kill()
+    process.wait(DEADLINE)
     done = read_journal(tmp_path)[1].keys()
     assert read_run(tmp_path).missing
     command = [sys.executable, "-c", f"{SHORT}sys.exit(main())", *options, "--resume"]

@@ -17,7 +17,7 @@ from mxeon.errors import InputError, NotRun
 from mxeon.jobs import dask
 from mxeon.jobs.pool import Outcome
 from mxeon.shaders.library import examples_folder
-from tests.support.faults import Lost, need, once, process, square
+from tests.support.faults import Lost, meet, need, once, square
 from tests.support.plans import keep_checks
 
 ONE_THREAD = ["--nthreads", "1"]
@@ -71,9 +71,9 @@ def pair():
         yield address
 
 
-def test_every_item_is_worked_on_once_and_by_all_workers(pair):
+def test_every_item_is_worked_on_once_and_by_all_workers(pair, tmp_path):
     assert run(square, range(20), pair) == {item: Outcome(item * item) for item in range(20)}
-    assert len({outcome.value for outcome in run(process, range(40), pair).values()}) == 2
+    assert len({outcome.value for outcome in run(meet, [str(tmp_path)] * 8, pair).values()}) == 2
 
 
 def test_what_one_worker_lacks_is_done_by_another(pair):

@@ -2,10 +2,14 @@
 """`mxeon figures`: the page of claims, and which of the papers' claims the measurements refute."""
 
 import re
+from functools import partial
+from pathlib import Path
 
 import pytest
 
-import tools.paper as figures
+from mxeon.cli import main
+from mxeon.errors import PASSED
+from tools import paper
 from tools.paper.claims import sampling
 
 # Claims of the paper and of the specification that no measured value satisfies.
@@ -25,9 +29,12 @@ REFUTED = {
 
 
 @pytest.mark.whole
-def test_measurements_refute_these_claims_and_no_others(tmp_path, gl, monkeypatch):
+def test_measurements_refute_these_claims_and_no_others(tmp_path, gl, monkeypatch, capsys):
     monkeypatch.setattr(sampling, "DEGREES", sampling.DEGREES[[*range(0, 30, 2), -2, -1]])
-    page = figures.figures(tmp_path, iter, size=16, samples=2, draws=100).read_text()
+    small = partial(paper.figures, size=16, samples=2, draws=100)
+    monkeypatch.setattr(paper, "figures", small)
+    assert main(["figures", str(tmp_path)]) == PASSED
+    page = Path(capsys.readouterr().out.strip()).read_text()
     row = re.compile(r"^\| [^|]* \| ([^|]*) \| [^|]* \| [^|]* \| \*\*fails\*\* \|$", re.MULTILINE)
     assert set(row.findall(page)) == REFUTED
     shown = set(re.findall(r"\]\(figures/(\S+)\)", page))

@@ -4,11 +4,15 @@
 import os
 import subprocess
 import sys
+import time
+
+import pytest
 
 from mxeon.shaders.library import examples_folder
 
 CLAY = str(examples_folder() / "clay.mtlx")
 PLASTER = str(examples_folder() / "plaster.mtlx")
+DEADLINE = 300.0  # seconds, for a machine that is busy
 
 
 def run(*arguments, **environment):
@@ -16,6 +20,15 @@ def run(*arguments, **environment):
     return subprocess.run(
         command, capture_output=True, text=True, env={**os.environ, **environment}, check=False
     )
+
+
+def wait_for(condition, process):
+    """Wait until a condition holds, while a process runs."""
+    end = time.monotonic() + DEADLINE
+    while not condition():
+        assert time.monotonic() < end
+        with pytest.raises(subprocess.TimeoutExpired):
+            process.wait(0.01)
 
 
 def one_line(text):
