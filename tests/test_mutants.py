@@ -66,8 +66,9 @@ def test_operators_change_every_shader_once_and_repeatably():
 
 
 def test_a_tenth_of_the_operators_mutants_is_noticed_but_for_those_that_are_listed(gl):
-    """The listed ones are the control: a check that fails without a mutant would notice them all."""
-    tenth = {each.name: each for each in operators.made(1, SHARE)}
+    """Some listed ones are the control: a check that fails without a mutant would notice them all."""
+    tenth = {each.name: each for each in operators.made(1, SHARE) if not each.survives}
+    tenth |= {each.name: each for each in operators.made(1, SHARE / 4.0) if each.survives}
     found = schemata.trials(list(tenth.values()))
     survivors = {name for name, words in found.items() if words == trial.SURVIVED}
     listed = {name for name in found if tenth[name].survives}

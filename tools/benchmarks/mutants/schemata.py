@@ -246,8 +246,12 @@ def chunk_of(file: str) -> str:
     return re.split(r"^#include .*\n", text, flags=re.M)[-1].strip()
 
 
-# Checks that take long are asked about what the others let pass.
-LATE = (
+# Checks that notice most, and that take long: the others are asked about what the first let pass, the last about the rest.
+FIRST = (
+    *("value", "environment", "layering", "denser", "output", "radiance", "sphere_mean"),
+    *("film", "film_visible", "film_environment", "combination", "combined_throughput"),
+)
+LAST = (
     *("frame", "finite", "layer", "integral", "energy", "states", "lossless", "domain", "sky"),
     *("narrow_lobes", "tilted_lobes", "wide_lobes", "straight_views", "low_index", "each_lobe"),
 )
@@ -313,13 +317,13 @@ def subjects(host: Host) -> Iterator[Subject]:
     """What has mutants: a title, whether it is composed of others, its text, and what asks its checks."""
     functions = Functions(host)
     yield "functions", False, functions.text, functions
-    # Films before what has their code without a film.
+    # Films before what transmits, which has their code without a film.
     specs = dict.fromkeys((*DIFFUSE, *PLAIN_LOBES, *FILM_SPECS, *PBRLIB))
     cases = [_case(host, spec) for spec in specs if spec.title != "measured_edf"]
-    for late in (False, True):
+    for turn in range(3):
         for case in cases:
             composed, text = isinstance(case.spec, COMPOSED), case.evaluating.shader.stages["pixel"]
-            yield case.spec.title, composed, text, partial(node, case, _rows(case, late))
+            yield case.spec.title, composed, text, partial(node, case, _rows(case, turn))
 
 
 def _case(host: Host, spec: Spec) -> Case:
@@ -327,12 +331,13 @@ def _case(host: Host, spec: Spec) -> Case:
     return replace(make_case(Evaluating, host, spec, "eonlib"), control=True)
 
 
-def _rows(case: Case, late: bool) -> Callable[[], list[tuple[Check, Tolerance]]]:
-    """Checks with their tolerances, which are measured when they are first asked for."""
+def _rows(case: Case, turn: int) -> Callable[[], list[tuple[Check, Tolerance]]]:
+    """Checks of a turn with their tolerances, which are measured when they are first asked for."""
 
     @cache
     def rows() -> list[tuple[Check, Tolerance]]:
-        own = [each for each in CHECKS if not each.profile and (each.key in LATE) == late]
+        own = [each for each in CHECKS if not each.profile]
+        own = [each for each in own if (each.key not in FIRST) + (each.key in LAST) == turn]
         own = [each for each in own if each.applies_to(case.spec, Evaluating, "gl")]
         return [(each, each.tolerance or case.tolerance(each.quantity)) for each in own]
 
