@@ -102,18 +102,25 @@ def bsdf_evaluation(query: Query) -> tuple[str, Columns]:
     """A pixel stage that evaluates a shader's BSDF, and its texels (N, 1 to 3) by sampler."""
     shader = query.shader
     dialect, call = DIALECTS[shader.target], bsdf_call(query)
-    version, text = shader.stages["pixel"].split("\n", 1)
+    before, output = _before_main(shader.stages["pixel"], dialect)
     # Subsurface scattering divides by what P changes from pixel to pixel.
     body = [
         GIVEN.format("vec3(gl_FragCoord.xy, 0.0)"),
         call.statements,
-        f"{_output(text)} = vec4({call.value}, 1.0);",
+        f"{output} = vec4({call.value}, 1.0);",
     ]
-    head = f"{version}\n{dialect.prelude}"
     images = sum(port.type == "filename" for port in shader.inputs)
     main, texels = _main(dialect, call.arguments, body, MOST - images)
+    return before + main, texels
+
+
+@lru_cache(maxsize=16)
+def _before_main(pixel: str, dialect: Dialect) -> tuple[str, str]:
+    """What comes before the main of an evaluation, and the name of the output of a generated text."""
+    version, text = pixel.split("\n", 1)
     macros = "".join(f"#undef {name}\n" for name in ["main", *booleans(text)])
-    return f"{head}{renamed(text)}{macros}{main}", texels
+    before = f"{version}\n{dialect.prelude}{renamed(text)}{macros}"
+    return before, re.findall(r"\bout vec4 (\w+);", text)[0]
 
 
 def renamed(text: str) -> str:
@@ -185,11 +192,6 @@ def columns(arguments: Mapping[str, tuple[str, ArrayLike]]) -> Columns:
         name: np.asarray(value, dtype=np.float32).reshape(-1, COMPONENTS.get(kind, 3))
         for name, (kind, value) in arguments.items()
     }
-
-
-@lru_cache(maxsize=16)
-def _output(text: str) -> str:
-    return str(re.findall(r"\bout vec4 (\w+);", text)[0])
 
 
 def _main(
