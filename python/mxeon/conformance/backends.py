@@ -325,7 +325,7 @@ class InTheDark(Evaluating):
 # OSL: closures are trees of arguments and weights, which the models evaluate in float64.
 
 # The closures are few, and their values are those of the models: more pairs would tell the models apart.
-FEW_CLOSURES = Counts(1 << 12, 1 << 6, 1 << 8, albedos=16, materials=8, mirrored=1 << 8)
+FEW_CLOSURES = Counts(1 << 11, 1 << 6, 1 << 8, albedos=16, materials=8, mirrored=1 << 8)
 SOME = 1 << 8  # pairs of every kind but the random ones
 # The models round in float64, 2^-53, and the sharpest lobe, of alpha 1e-4, takes that 1e8 times.
 ARGUMENTS = Tolerance(

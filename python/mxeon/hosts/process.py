@@ -102,7 +102,7 @@ class Worker:
         with self.log.open("rb") as log:
             log.seek(self._read)
             text = log.read().decode(errors="replace")
-        return [line.strip() for line in text.splitlines() if line.strip()]
+        return [line for each in text.splitlines() if (line := each.strip())]
 
     def close(self) -> None:
         if self._process:

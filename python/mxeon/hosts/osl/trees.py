@@ -48,9 +48,9 @@ def whole_label(texts: Mapping[str, str], root: str) -> str:
     """Text of a label, with every label in it replaced by its own text."""
     text = texts[root]
     for _ in range(DEEPEST):
-        if not LABEL.search(text):
+        text, labels = LABEL.subn(lambda match: texts[match[0]], text)
+        if not labels:
             return text
-        text = LABEL.sub(lambda match: texts[match[0]], text)
         if len(text) > LONGEST:
             break
     raise NotRun(f"osl: closures must be less than {DEEPEST} deep and {LONGEST} characters long")
