@@ -1,18 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes on hosts beside gl: one check of each kind that a host alone decides."""
+"""Nodes on hosts beside gl: one check of each kind that a host alone decides.
+
+What fails on Cycles as the pages of docs/upstream say, `test_upstream.py` judges.
+"""
 
 import pytest
 
 from tests.support.verdicts import FAILED, NOT_RUN, PASSED
 
-EON, QON = (f"oren_nayar_diffuse_bsdf, energy_compensation {flag}" for flag in ("true", "false"))
+EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
 ZELTNER, DIELECTRIC = "sheen_bsdf, mode zeltner", "dielectric_bsdf, scatter_mode R"
 HAIR = (
     *("chiang_hair_roughness, roughness_TRT", "deon_hair_absorption_from_melanin"),
     "chiang_hair_absorption_from_color",
 )
-CONSTANT = "whatever the inputs are (rms 0)"
-CUBED = "best match: EON with rho^3 (rms "
 
 
 @pytest.mark.parametrize(
@@ -23,13 +24,7 @@ CUBED = "best match: EON with rho^3 (rms "
         ("wgsl", "stock", "layering", ZELTNER, FAILED, "without the color"),
         ("slang", "eonlib", "value", ZELTNER, PASSED, ""),
         ("slang", "eonlib", "value", DIELECTRIC, PASSED, ""),
-        ("cycles", "stock", "value", EON, FAILED, CUBED),
-        ("cycles", "stock", "value", QON, FAILED, CUBED),
         ("cycles", "stock", "value", "burley_diffuse_bsdf", PASSED, ""),
-        ("cycles", "stock", "value", DIELECTRIC, FAILED, "single"),
-        ("cycles", "stock", "value", "conductor_bsdf", FAILED, "single"),
-        ("cycles", "stock", "layering", ZELTNER, FAILED, ""),
-        ("cycles", "stock", "layering", DIELECTRIC, FAILED, ""),
         ("cycles", "stock", "black", "translucent_bsdf", NOT_RUN, "'translucent_bsdf' is not supported"),
         ("cycles", "stock", "radiance", "generalized_schlick_edf", PASSED, ""),
         ("cycles", "eonlib", "radiance", "conical_edf", PASSED, ""),
@@ -38,7 +33,6 @@ CUBED = "best match: EON with rho^3 (rms "
         ("cycles", "stock", "implemented", "conical_edf", FAILED, ""),
         ("cycles", "stock", "transmittance", "anisotropic_vdf", NOT_RUN, ""),
         ("cycles", "stock", "output_inputs", HAIR[2], FAILED, ""),
-        *(("cycles", "stock", "output", title, FAILED, CONSTANT) for title in HAIR),
         *(("cycles", "eonlib", "output", title, PASSED, "") for title in HAIR),
         ("cycles", "stock", "output", "blackbody", PASSED, ""),
         *(
