@@ -85,13 +85,15 @@ def test_a_fault_in_a_copy_is_found_and_told_first(gl, tmp_path, capsys, name, p
     verdict, origin, first, *_ = capsys.readouterr().out.splitlines()
     own = len(tree(str(copy)).own)
     rest = len(tree(str(STOCK)).own) - own or "none"
-    assert verdict.endswith(f"MaterialX {mx.getVersionString()}.")
+    assert f" MaterialX {mx.getVersionString()}. Finished in " in verdict
     assert origin.startswith(f"library {copy}: {own} files from the folder, {rest} from MaterialX ")
     assert first.startswith(f"failed: gl with {copy}: {node}") and f"({key}" in first
     assert words in first
 
 
-def test_a_run_lists_the_files_of_folder_and_package_and_the_lobes_without_a_model(gl, tmp_path, capsys):
+def test_a_run_lists_the_files_of_folder_and_package_and_the_lobes_without_a_model(
+    gl, tmp_path, capsys
+):
     copy, report = copy_of_stock(tmp_path / "copy", SHEEN, LIB), tmp_path / "report"
     lobe = '<nodedef name="ND_own" node="own_bsdf"><output name="out" type="BSDF" /></nodedef>'
     (copy / "own.mtlx").write_text(f'<materialx version="1.39">{lobe}</materialx>')
@@ -104,6 +106,9 @@ def test_a_run_lists_the_files_of_folder_and_package_and_the_lobes_without_a_mod
     line = f"<p>library {copy}: 3 files from the folder, {len(files['MaterialX'])} from MaterialX "
     page = (report / "report.html").read_text()
     assert line in page and "; no model judges its own_bsdf" in page
+    assert main(["check", *options, "--full"]) == 0
+    rows = {*capsys.readouterr().out.splitlines()}
+    assert {f"library {copy}: {where}: {each}" for where in files for each in files[where]} <= rows
 
 
 def elsewhere(folder):
@@ -124,7 +129,25 @@ def other_generator(folder):
     return "has no mx_matrix_mul, which glsl calls: name its build with --materialx"
 
 
-@pytest.mark.parametrize("make", [elsewhere, package, other_generator])
+def unknown_token(folder):
+    source = "pbrlib/genglsl/lib/mx_closure_type.glsl"
+    replace_text(copy_of_stock(folder), "$closureDataConstructor", "$newToken /* $a */", source)
+    return "glsl does not replace its $newToken: name its build with --materialx"
+
+
+def holding(*names):
+    def make(folder):
+        for name in names:
+            (folder / name).write_text("")
+        return "none of its files is one" if names else "it is empty"
+
+    return make
+
+
+@pytest.mark.parametrize(
+    "make",
+    [elsewhere, package, other_generator, unknown_token, holding(), holding("own.glsl", "a.txt")],
+)
 def test_what_cannot_be_combined_is_refused_in_one_sentence(tmp_path, capsys, make):
     words = make(tmp_path)
     arguments = ["--library", str(tmp_path), "--node", "sheen_bsdf", "--workers", "0"]
@@ -151,5 +174,6 @@ def test_materialx_takes_a_build_in_every_process(gl, tmp_path, workers):
     stock, whole = (mxeon_run("check", "--library", each, *options) for each in ("stock", copy))
     assert f"MaterialX 1.39.4, from {build}." in stock.splitlines()[0]
     first, second = whole.splitlines()[:2]
-    assert first == stock.splitlines()[0].replace("stock", str(copy))
+    verdict = stock.splitlines()[0].replace("stock", str(copy)).partition(" Finished in ")[0]
+    assert first.startswith(f"{verdict} Finished in ")
     assert second.endswith("from the folder, none from MaterialX 1.39.4")

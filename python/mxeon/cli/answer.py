@@ -62,9 +62,10 @@ def show_run(run: Run, options: argparse.Namespace, said: Collection[str] = ()) 
         print(as_output(report.to_json(run)))
     else:
         files = [
-            one_line(f"library {folder}: {origin}: {', '.join(names) or 'nothing'}")
+            one_line(f"library {folder}: {origin}: {name}")
             for folder, origins in run.libraries.items()
             for origin, names in origins.items()
+            for name in names or ["nothing"]
         ]
         checks = [*map(_line, run.results), *files] if options.full else []
         print(printable("\n".join([*checks, *answer(run, options.full)])))

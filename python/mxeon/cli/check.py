@@ -5,6 +5,7 @@ import argparse
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from importlib import import_module
+from pathlib import Path
 from typing import Any, TypeVar
 
 from mxeon.cli import arguments
@@ -12,7 +13,7 @@ from mxeon.cli.output import Progress, fail
 from mxeon.errors import MISUSE, InputError
 from mxeon.hosts import host_names
 from mxeon.jobs import WAIT
-from mxeon.jobs.signals import block_signals
+from mxeon.jobs.signals import SignalExit, block_signals
 
 T = TypeVar("T")
 
@@ -87,6 +88,7 @@ def run(options: argparse.Namespace) -> int:
     progress.show("reads the documents" if options.files else "reads the library")
     from mxeon.cli.answer import show_run
     from mxeon.conformance.run import check
+    from mxeon.conformance.run.journal import JOURNAL
 
     if options.resume and not options.report:
         raise InputError("--resume needs the folder of the run to continue; pass --report DIR")
@@ -105,23 +107,31 @@ def run(options: argparse.Namespace) -> int:
         refused.append(error)
         fail(MISUSE, error)
 
-    result = check(
-        options.files,
-        host_names() if "all" in hosts else hosts,
-        libraries,
-        workers=options.workers,
-        timeout=options.timeout,
-        folder=options.report,
-        resume=options.resume,
-        scheduler=options.scheduler,
-        wait=options.waitForWorkers,
-        policy=arguments.policy(options),
-        nodes=nodes,
-        progress=_importing(progress) if options.report else progress,
-        refuse=refuse,
-        compared=compared,
-        seed=options.seed,
-    )
+    try:
+        result = check(
+            options.files,
+            host_names() if "all" in hosts else hosts,
+            libraries,
+            workers=options.workers,
+            timeout=options.timeout,
+            folder=options.report,
+            resume=options.resume,
+            scheduler=options.scheduler,
+            wait=options.waitForWorkers,
+            policy=arguments.policy(options),
+            nodes=nodes,
+            progress=_importing(progress) if options.report else progress,
+            refuse=refuse,
+            compared=compared,
+            seed=options.seed,
+        )
+    except SignalExit as end:
+        if options.report and Path(options.report, JOURNAL).exists():
+            remedy = (
+                f"--resume continues, `mxeon report make {options.report}` reports what is done"
+            )
+            end.args = (f"{end}; {remedy}",)
+        raise
     return show_run(result, options, refused)
 
 

@@ -42,12 +42,15 @@ def kit_node(category: str, definitions: tuple[str, ...] = (), library: str = "e
     """A BSDF node with color and roughness, of a library, MaterialX or folders of definitions."""
     needed = {"color": "color3", "roughness": "float"}
     data = load_library(library, None, definitions)
+    lacks = ""
     for each in data.getMatchingNodeDefs(category):
         ports = {port.getName(): port.getType() for port in each.getActiveInputs()}
-        if each.getType() == "BSDF" and needed.items() <= ports.items():
+        missing = [name for name, kind in needed.items() if ports.get(name) != kind]
+        if each.getType() == "BSDF" and not missing:
             return KitNode(category, each.getName(), ports.get(FLAG) == "boolean")
+        lacks = f", which lacks {' and '.join(missing)}" if missing else ", which is none"
     known = {each.getNodeString() for each in data.getNodeDefs() if each.getType() == "BSDF"}
-    remedy = meant(category, known - {category}) or ": load its definition by --definitions FOLDER"
+    remedy = lacks or meant(category, known) or ": load its definition by --definitions FOLDER"
     raise InputError(
         "node must be a BSDF with the inputs color (color3) and roughness (float); "
         f"got {category!r}{remedy}"

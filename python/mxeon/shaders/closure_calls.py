@@ -22,6 +22,8 @@ from mxeon.shaders.library import load_library
 from mxeon.shaders.library_tree import root, standard_folders
 
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+TEXT = re.compile(rf"{COMMENT.pattern}|\"[^\"\n]*\"", re.DOTALL)  # what may hold any characters
+TOKEN = re.compile(r"\$[A-Za-z]\w*")
 NODE = "asked"  # name of the node in that document
 CLOSURES = {"BSDF": "bsdf", "EDF": "edf"}  # inputs of a surface, which calls what it is given
 
@@ -40,6 +42,12 @@ def check_closure_calls(
                     f"{target}: MaterialX {mx.getVersionString()} does not call eonlib's function "
                     f"{function}({', '.join(signatures[0])}); use --library stock"
                 )
+
+
+def leftover(text: str) -> str:
+    """The first token in a generated text that the generator left as it is; "" for none."""
+    found = TOKEN.search(TEXT.sub("", text)) if "$" in text else None
+    return found[0] if found else ""
 
 
 @cache

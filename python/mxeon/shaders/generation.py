@@ -15,7 +15,7 @@ import MaterialX.PyMaterialXGenShader as mx_gen
 from mxeon.errors import DocumentError, InputError, InterfaceError, assert_known
 from mxeon.io.files import AnyPath
 from mxeon.shaders import path_tracing
-from mxeon.shaders.closure_calls import check_closure_calls
+from mxeon.shaders.closure_calls import check_closure_calls, leftover
 from mxeon.shaders.document.notes import CodeWarning, warn_of_files, warn_of_names
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.document.reading import read_document
@@ -195,6 +195,11 @@ def generate(
             stages = MappingProxyType(
                 {stage: source.getSourceCode(stage) for stage in STAGES if source.hasStage(stage)}
             )
+            if token := leftover("\n".join(stages.values())):
+                raise InterfaceError(
+                    f"{target}: the generator of MaterialX {mx.getVersionString()} does not replace "
+                    f"{token} in the library's sources; use those of its version"
+                )
             inputs, name = _inputs(source, content), source.getName()
             if profile == "path":
                 stages = MappingProxyType(
@@ -236,6 +241,8 @@ def check_generator(library: str, target: str) -> None:
         text = "\n".join(map(shader.getSourceCode, stages))
         missing = {*CALLED.findall(text)} - {*DEFINED.findall(text)}
         reason = f"it has no {min(missing)}, which {target} calls" if missing else ""
+        if token := leftover(text):
+            reason = f"{target} does not replace its {token}"
     except (mx.Exception, LookupError) as error:
         reason = in_words(library, str(error).strip().splitlines()[0])
     if reason:

@@ -149,11 +149,11 @@ def library_name(library: str | os.PathLike[str]) -> str:
     """
     if library in LIBRARIES:
         return str(library)
-    rule = (
-        f"library must be one of {', '.join(LIBRARIES)}, or a folder that holds MaterialX documents"
-    )
     if not os.path.isdir(library):
-        raise InputError(f"{rule}; got {str(library)!r}{meant(library, LIBRARIES)}")
+        raise InputError(
+            f"library must be one of {', '.join(LIBRARIES)}, or a folder that exists; "
+            f"got {str(library)!r}{meant(library, LIBRARIES)}"
+        )
     library = os.path.abspath(library)
     known = tree(library)
     if known.kind == OVERLAY:
@@ -164,6 +164,9 @@ def library_name(library: str | os.PathLike[str]) -> str:
             for path in sorted(folder.rglob("*.*"))
             if path.suffix in FILES and not path.is_dir()
         ]
+        rule = (
+            f"library {library}: must hold MaterialX documents, or files named as MaterialX's own"
+        )
         check_files([*_documents(library, rule), *sources, *profiles])
     else:
         check_files(os.path.join(library, path) for path in known.own)
@@ -238,11 +241,12 @@ def _first(library: str, profile: str | None) -> list[Path]:
     return [home / each for each in tree(library).own if each.endswith(DOCUMENT)]
 
 
-def _documents(folder: AnyPath, rule: str, remedy: str = "") -> list[Path]:
+def _documents(folder: AnyPath, rule: str) -> list[Path]:
     """MaterialX documents of a folder; none breaks the rule."""
     documents = sorted(Path(folder).rglob("*.mtlx")) if str(folder) else []
     if not documents:
-        raise InputError(f"{rule}; got {str(folder)!r}{remedy}")
+        empty = not any(names for *_, names in os.walk(folder))
+        raise InputError(f"{rule}; {'it is empty' if empty else 'none of its files is one'}")
     return documents
 
 
