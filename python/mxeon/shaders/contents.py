@@ -81,14 +81,14 @@ def _kind(source: mx.InterfaceElement | None) -> str:
 
 def _shown(walk: Walk, path: Path) -> ShownNode:
     """A node of a walk."""
-    node = walk.node(path)
+    node = walk.elements[path]
     inputs = definition.getActiveInputs() if (definition := node.getNodeDef()) else ()
     ports = [(port.getName(), port.getType()) for port in inputs]
     # Inputs that take a lobe count where there is one.
     sources = {name: walk.source(path, name) for name, kind in ports if kind in CLOSURES}
     lit = {name: each for name, each in sources.items() if each and walk.emits(each)}
     ports = [port for port in ports if port[0] in lit or port[0] not in sources]
-    ports += [(name, _kind(walk.node(each))) for name, each in lit.items()]
+    ports += [(name, _kind(walk.elements[each])) for name, each in lit.items()]
     values = ((name, walk.value(path, name)) for name, kind in ports if kind in MODES)
     known = tuple((name, value) for name, value in values if value is not None)
     thickness = walk.value(path, FILM) if (FILM, "float") in ports else "0"

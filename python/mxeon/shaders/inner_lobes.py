@@ -15,7 +15,7 @@ import MaterialX as mx
 from mxeon.shaders.document.graphs import reachable
 from mxeon.shaders.generation import Shader
 
-Path: TypeAlias = tuple[str, ...]  # name paths of the nodes around a node, and its own
+Path: TypeAlias = tuple[str, ...]
 
 SUBSURFACE, TRANSMISSION, VOLUME = "subsurface", "transmission", "volume"
 KINDS = {
@@ -46,39 +46,63 @@ def inner_lobes(shader: Shader) -> tuple[str, ...]:
     return tuple(kind for kind in (SUBSURFACE, TRANSMISSION, VOLUME) if kind in walk.kinds)
 
 
-class Walk:
+class Nodes:
+    """Elements of a document by their paths.
+
+    A path names a node within the nodes and nodegraphs around it: a tuple of name paths, the outermost first.
+    """
+
+    def __init__(self) -> None:
+        self.elements: dict[Path, mx.InterfaceElement] = {}
+
+    def path(self, around: Path, element: mx.Element) -> Path:
+        """Path of an element within another path, under which it is kept."""
+        path = (*around, element.getNamePath())
+        self.elements[path] = element
+        return path
+
+    def port(self, path: Path, name: str) -> mx.Input | None:
+        """Input of a node, or else of its nodedef, or None."""
+        if not (element := self.elements.get(path)):
+            return None
+        definition = element.getNodeDef()
+        return element.getInput(name) or (definition and definition.getActiveInput(name)) or None
+
+    def upstream(self, around: Path, port: mx.PortElement) -> Path | None:
+        """Path of the node that an input or output within another path is connected to, or None."""
+        if not (node := port.getConnectedNode()):
+            return None
+        graph, scope = node.getParent(), port.getParent()
+        if port.isA(mx.Input):
+            scope = scope.getParent()
+        if graph.getNamePath() != scope.getNamePath():
+            around = self.path((), graph)
+        return self.path(around, node)
+
+
+class Walk(Nodes):
     """The nodes that contribute light to a material, by their paths, and the kinds of lobes among them.
 
     Nodes of constant weight 0 are left out; with `values`, nodes that compute inputs are walked too.
     """
 
     def __init__(self, elements: Iterable[mx.TypedElement], values: bool = False) -> None:
+        super().__init__()
         self._values = values
-        self._nodes: dict[Path, mx.InterfaceElement] = {}
         self._dark: set[Path] = set()
         self.kinds: set[str] = set()
         roots = (each.getConnectedNode() if each.isA(mx.Output) else each for each in elements)
         graph = reachable([self.path((), root) for root in roots if root], self.parts)
         self.shown = tuple(path for path in graph if path not in self._dark)
 
-    def node(self, path: Path) -> mx.InterfaceElement:
-        """The node at a path."""
-        return self._nodes[path]
-
-    def path(self, around: Path, node: mx.InterfaceElement) -> Path:
-        """Path of a node within another one."""
-        path = (*around, node.getNamePath())
-        self._nodes[path] = node
-        return path
-
     def parts(self, path: Path) -> tuple[Path, ...]:
         """Paths of the nodes from which a node's light comes."""
-        node = self._nodes[path]
+        node = self.elements[path]
         if self._constant(path, "weight") == 0.0 or not self.emits(path):
             self._dark.add(path)
             return ()
         kind = KINDS.get(node.getCategory())
-        mode = _port(node, "scatter_mode")
+        mode = self.port(path, "scatter_mode")
         if mode and mode.getValueString() in ("T", "RT"):
             kind = TRANSMISSION
         if kind:
@@ -92,11 +116,11 @@ class Walk:
 
     def emits(self, path: Path) -> bool:
         """Whether a node emits light, unless it is no EDF; a color that is computed counts as any."""
-        node = self._nodes[path]
+        node = self.elements[path]
         if node.getType() != "EDF":
             return True
         sources = [self.source(path, name) for name in self._effective(path, node)]
-        lights = [each for each in sources if each and self._nodes[each].getType() == "EDF"]
+        lights = [each for each in sources if each and self.elements[each].getType() == "EDF"]
         if lights or node.getCategory() == "multiply":
             return any(map(self.emits, lights))
         return not self._black(path, "color")
@@ -104,7 +128,7 @@ class Walk:
     def _black(self, path: Path, name: str) -> bool:
         """Whether an input is 0, or a product with a factor of 0."""
         if source := self.source(path, name):
-            product = self._nodes[source].getCategory() == "multiply"
+            product = self.elements[source].getCategory() == "multiply"
             return product and any(self._black(source, factor) for factor in ("in1", "in2"))
         value = self.value(path, name)
         return bool(value) and not any(map(float, str(value).split(",")))
@@ -123,7 +147,7 @@ class Walk:
 
     def _resolved(self, path: Path, name: str) -> tuple[Path, mx.Input | None]:
         """The input that a node's input stands for, and the path of its node."""
-        while port := _port(self._nodes[path], name):
+        while port := self.port(path, name):
             if not port.hasInterfaceName() or len(path) < 2:
                 break
             path, name = path[:-1], port.getInterfaceName()
@@ -132,13 +156,7 @@ class Walk:
     def source(self, path: Path, name: str) -> Path | None:
         """Path of the node connected to an input, or None."""
         path, port = self._resolved(path, name)
-        node = port.getConnectedNode() if port else None
-        if not node:
-            return None
-        graph, parent = node.getParent(), self._nodes[path].getParent()
-        if graph.getNamePath() == parent.getNamePath():
-            return self.path(path[:-1], node)
-        return self.path(self.path((), graph), node)
+        return self.upstream(path[:-1], port) if port else None
 
     def value(self, path: Path, name: str) -> str | None:
         """Text of the value that an input has; None where it is computed or there is no input."""
@@ -148,15 +166,9 @@ class Walk:
     def _constant(self, path: Path, name: str) -> float | None:
         """Number of an input; None if it has none, or if it is not constant."""
         if source := self.source(path, name):
-            ports, function = ARITHMETIC.get(self._nodes[source].getCategory(), ((), None))
+            ports, function = ARITHMETIC.get(self.elements[source].getCategory(), ((), None))
             numbers = [self._constant(source, port) for port in ports]
             return function(*numbers) if function and None not in numbers else None
         _, port = self._resolved(path, name)
         value = port.getValue() if port else None
         return float(value) if isinstance(value, (bool, int, float)) else None
-
-
-def _port(node: mx.InterfaceElement, name: str) -> mx.Input | None:
-    """Input of a node, or else of its nodedef, or None."""
-    definition = node.getNodeDef()
-    return node.getInput(name) or (definition and definition.getActiveInput(name)) or None

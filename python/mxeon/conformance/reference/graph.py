@@ -4,8 +4,6 @@
 A graph may contain the lobes that have a model, with their combinations; emissions; images; the
 operations that surface shaders are made of; and nodes that are nodegraphs of these. Any other node is
 NotRun, with its name, unless a mix leaves it out.
-
-A path names a node within the nodes and nodegraphs around it: a tuple of name paths, the outermost first.
 """
 
 from __future__ import annotations
@@ -49,13 +47,13 @@ from mxeon.models.nodes.emissions import BASE, EMISSIONS, Emission
 from mxeon.shaders.document.drawn_values import CLOSURES, Elements
 from mxeon.shaders.document.graphs import reachable
 from mxeon.shaders.document.values import color_spaces
+from mxeon.shaders.inner_lobes import Nodes, Path
 from mxeon.shaders.released_graphs import RELEASES, differences, digest, installed, said
 
 # Types that a generator draws as a color, and their components.
 DRAWN = {"float": 1, "integer": 1, "vector2": 2, "color3": 3, "vector3": 3}
 # Array of a node, by its type and the name of its output.
 Measure: TypeAlias = Callable[[Elements, str, str], Array]
-Path: TypeAlias = tuple[str, ...]
 Step: TypeAlias = tuple[Callable[..., Value], tuple[Path, ...]]
 
 NUMBERS = ("float", "boolean", "integer")
@@ -71,7 +69,7 @@ UTILITIES = {row.category: row for row in utilities.UTILITIES}
 SHADER = "shading"  # name of the surface shader in a document that has one alone
 
 
-class Graph:
+class Graph(Nodes):
     """A document's graph at the points of a picture."""
 
     def __init__(
@@ -84,6 +82,7 @@ class Graph:
         | None = None,  # values of nodes without a function; None: they are not run
         marked: bool = False,  # whether lobes and volumes have marks of their inputs instead of values
     ) -> None:
+        super().__init__()
         self._document, self._points, self._inputs = document, points, inputs or {}
         self._emits, self._measure, self._marked = emits, measure, marked
         self.measured: dict[str, None] = {}  # inputs, each behind the name of its node
@@ -91,7 +90,6 @@ class Graph:
         self._shader: Path | None = None  # the surface shader that is a nodegraph
         self._tops: list[Path] = []  # of layers: their throughputs are needed
         self._hiding: set[Path] = set()  # and those of what they are made of
-        self._elements: dict[Path, mx.Element] = {(): document}
         self._steps: dict[Path, Step] = {}
 
     def element(self, name_path: str) -> Array:
@@ -101,10 +99,10 @@ class Graph:
         """
         element = self._document.getDescendant(name_path)
         graph = element.getParent()
-        around = self._inner((), graph) if graph.isA(mx.NodeGraph) else ()
+        around = self.path((), graph) if graph.isA(mx.NodeGraph) else ()
         # Ignore what is not finite: another node may leave it out.
         with np.errstate(divide="ignore", invalid="ignore"):
-            find = self._connected if element.isA(mx.Output) else self._inner
+            find = self._connected if element.isA(mx.Output) else self.path
             path = find(around, element)
             self._parts([path])
             self._hiding.update(self._parts(self._tops))
@@ -133,7 +131,7 @@ class Graph:
         return self._steps[path]
 
     def _node_step(self, path: Path) -> Step:
-        node = self._elements[path]
+        node = self.elements[path]
         category, kind = node.getCategory(), node.getType()
         if category in LOBES:
             return self._lobe(path, node)
@@ -249,7 +247,7 @@ class Graph:
 
     def _given(self, path: Path, name: str) -> Array | None:
         """Value that was handed in for an input, (N, 1) if it is one number for each point; or None."""
-        element = self._elements.get(path)
+        element = self.elements.get(path)
         lobe = element is not None and element.getCategory() in LOBES
         if name not in self._inputs or not (path == self._shader if self._shader else lobe):
             return None
@@ -263,16 +261,9 @@ class Graph:
         Where a value comes from a node without a function, and is an input that has a name as
         `shown`, all of it is measured.
         """
-        node, source = port.getConnectedNode(), port
-        graph, scope = node.getParent(), port.getParent()
-        if not port.getNodeName():
-            source = port.getConnectedOutput()
-        if port.isA(mx.Input):
-            scope = scope.getParent()
-        if graph.getNamePath() != scope.getNamePath():
-            around = self._inner((), graph)
-        path, output = self._inner(around, node), source.getOutputString()
-        kind = port.getType()
+        path, kind = self.upstream(around, port), port.getType()
+        assert path
+        output = (port if port.getNodeName() else port.getConnectedOutput()).getOutputString()
         if not (shown and self._measure and kind in DRAWN):
             return self._output(path, output)
         try:
@@ -287,7 +278,7 @@ class Graph:
 
     def _output(self, path: Path, output: str) -> Path:
         """Path of an output of a node: of several outputs, the one of that name."""
-        node = self._elements[path]
+        node = self.elements[path]
         if node.getType() != "multioutput":
             return path
         if node.getCategory() in UTILITIES:
@@ -304,30 +295,19 @@ class Graph:
         self._steps[constant] = (lambda: value), ()
         return constant
 
-    def _inner(self, around: Path, element: mx.Element) -> Path:
-        """Path of an element within another path, under which it is kept."""
-        path = (*around, element.getNamePath())
-        self._elements[path] = element
-        return path
-
     def _along(self, path: Path, outer: Path = ()) -> list[mx.Element]:
         """Elements at a path and around it, up to one within another path, the outermost first."""
         ends = range(max(len(outer), 1), len(path) + 1)
-        return [self._elements[path[:end]] for end in ends if path[:end] in self._elements]
+        return [self.elements[path[:end]] for end in ends if path[:end] in self.elements]
 
     def _port(self, path: Path, name: str) -> mx.Input:
-        """Input of a node, or else of its nodedef."""
-        element = self._elements.get(path)
-        nodedef = element.getNodeDef() if element and path else None
-        port = element and element.getInput(name)
-        port = port or (nodedef and nodedef.getActiveInput(name))
-        if not port:
-            raise NotRun(f"reference: node {'/'.join(path[-1:])!r} has no input {name!r}")
-        return port
+        if port := self.port(path, name):
+            return port
+        raise NotRun(f"reference: node {'/'.join(path[-1:])!r} has no input {name!r}")
 
     def _written(self, path: Path, name: str, port: mx.Input) -> Value:
         """Value of an input without a connection, in the document's color space and in meters."""
-        element = self._elements[path]
+        element = self.elements[path]
         nodedef = element.getNodeDef() if element.isA(mx.Node) else None
         declared = nodedef.getActiveInput(name) if nodedef else port
         if declared and declared.hasDefaultGeomPropString():  # nothing else sets it
@@ -405,7 +385,7 @@ def _radiance(
     row: Emission, ports: tuple[str, ...], points: ShadingPoints, *values: Array
 ) -> Array:
     """Radiance of an emission to the viewer."""
-    wo = points.view
+    wo, _ = points.own
     try:
         return row.value(wo, _rows(ports, values, len(wo)))
     except ValueError as error:

@@ -188,7 +188,7 @@ class ShadingPoints:
     ) -> Bsdf:
         """Lobe of weight one, and its throughput if it is asked for; see `directions`."""
         own = np.array_equal(normal, self.normal) and np.array_equal(tangent, self.tangent)
-        wo, wi = self._own if own else self.directions(normal, tangent)
+        wo, wi = self.own if own else self.directions(normal, tangent)
 
         def scattered() -> Bsdf:
             hides = layered and node.layerable
@@ -259,12 +259,8 @@ class ShadingPoints:
         return value
 
     @cached_property
-    def view(self) -> Array:
-        """Unit vectors to the viewer in the frame of the surface, (N, 3)."""
-        return _within(self._axes(self.normal, self.tangent), self.wo)
-
-    @cached_property
-    def _own(self) -> tuple[Array, Array | None]:
+    def own(self) -> tuple[Array, Array | None]:
+        """Directions to the viewer and to the light in the frame of the surface."""
         return self.directions(self.normal, self.tangent)
 
     @cached_property
