@@ -3,9 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import lru_cache, partial
+from functools import lru_cache
 
 import MaterialX as mx
 import numpy as np
@@ -56,35 +55,29 @@ class HostValues:
         self._pictures: dict[tuple[str, ...], Array] = {}
 
     def __call__(self, size: int, elements: Elements, kind: str, output: str = "") -> Array:
-        """Array of a node in a picture, (size, size, components)."""
+        """Array of a node in a picture on which no light falls, (size, size, components).
+
+        Of an output, it shows a surface that emits its color.
+        """
+        shown, document = elements[-1], self._shader.document
+        name = shown.getNamePath()
         key = (*(each.getNamePath() for each in elements), output, str(size))
-        make = partial(value_document, self._shader.document, elements, kind, output)
-        return self._drawn(key, make, elements[-1].getNamePath(), size)[..., : DRAWN[kind]]
-
-    def emitted(self, size: int, output: mx.Output) -> Array:
-        """Picture of a surface that emits the color of an output, (size, size, 3)."""
-        make = partial(emission_document, self._shader.document, output)
-        return self._drawn((output.getNamePath(), str(size)), make, output.getNamePath(), size)
-
-    def _drawn(
-        self,
-        key: tuple[str, ...],
-        make: Callable[[], tuple[mx.Document, str]],
-        name: str,
-        size: int,
-    ) -> Array:
-        """Picture of the element of a document to be made, on which no light falls; kept by a key."""
-        if key in self._pictures:
-            return self._pictures[key]
-        if self._host.target not in TARGETS:
-            raise NotRun(f"{self._host.name}: the value of {name!r} cannot be drawn here")
-        document, path = make()
-        try:
-            [shader] = self._host.compile(document, path, library=self.library, policy=self._policy)
-        except DocumentError as error:
-            raise NotRun(f"reference: the value of {name!r} cannot be drawn; {error}") from None
-        image = self._host.picture(shader, Scene(NAME, size=size))
-        return self._pictures.setdefault(key, np.asarray(image, np.float64))
+        if key not in self._pictures:
+            if self._host.target not in TARGETS:
+                raise NotRun(f"{self._host.name}: the value of {name!r} cannot be drawn here")
+            if shown.isA(mx.Output):
+                document, path = emission_document(document, shown)
+            else:
+                document, path = value_document(document, elements, kind, output)
+            try:
+                [shader] = self._host.compile(
+                    document, path, library=self.library, policy=self._policy
+                )
+            except DocumentError as error:
+                raise NotRun(f"reference: the value of {name!r} cannot be drawn; {error}") from None
+            image = self._host.picture(shader, Scene(NAME, size=size))
+            self._pictures[key] = np.asarray(image, np.float64)
+        return self._pictures[key][..., : DRAWN[kind]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,7 +142,7 @@ class Host(base.Host):
                 raise
             # Of a pattern, a host draws the color that a surface emits of it; black for other types.
             if shown.getType() in PATTERNS:
-                image = values.emitted(scene.size, shown)
+                image = values(scene.size, [shown], "color3")
             return ExpectedPicture(image, mask, (shown.getName(),))
         middle = (np.arange(scene.size) // stride * stride + stride // 2).clip(max=scene.size - 1)
         image = image[np.ix_(middle, middle)]

@@ -27,6 +27,7 @@ from mxeon.conformance.reference.nodes import (
     NOTHING,
     OPERATIONS,
     VOLUMES,
+    WIDTHS,
     Operation,
     ShadingPoints,
     ShownLobe,
@@ -56,7 +57,6 @@ DRAWN = {"float": 1, "integer": 1, "vector2": 2, "color3": 3, "vector3": 3}
 Measure: TypeAlias = Callable[[Elements, str, str], Array]
 Step: TypeAlias = tuple[Callable[..., Value], tuple[Path, ...]]
 
-NUMBERS = ("float", "boolean", "integer")
 # Where nothing is connected: black, and for a lobe zero, which hides nothing.
 UNCONNECTED: dict[str, Value] = {
     "BSDF": NOTHING,
@@ -149,9 +149,7 @@ class Graph(Nodes):
             return lambda *values: fitted(kind, operation(*values)), sources
         if kind == "surfaceshader" and self._shader is None:
             self._shader = path
-        if inner := self._inside(path, node):
-            return same, (inner,)
-        raise NotRun(f"reference: there is no model for node {category!r}")
+        return same, (self._inside(path, node),)
 
     @cached_property
     def _operations(self) -> dict[str, Operation]:
@@ -176,14 +174,14 @@ class Graph(Nodes):
         known["surface_unlit"] = unlit, lambda *values: prod(values) * (not self._points.behind)
         return known
 
-    def _inside(self, path: Path, node: mx.Node, output: str = "") -> Path | None:
-        """Path of what an output of a node, or its only one, has in its nodegraph; None if that is none."""
+    def _inside(self, path: Path, node: mx.Node, output: str = "") -> Path:
+        """Path of what an output of a node, or its only one, has in its nodegraph."""
         graph = node.getImplementation()
         outputs = graph.getOutputs() if graph and graph.isA(mx.NodeGraph) else []
         found = [each for each in outputs if each.getName() == output] or outputs
         if len(found) == 1 and found[0].getConnectedNode():
             return self._connected(path, found[0])
-        return None
+        raise NotRun(f"reference: there is no model for node {node.getCategory()!r}")
 
     def _lobe(self, path: Path, node: mx.Node) -> Step:
         names = tuple(port.getName() for port in node.getNodeDef().getActiveInputs())
@@ -247,13 +245,11 @@ class Graph(Nodes):
 
     def _given(self, path: Path, name: str) -> Array | None:
         """Value that was handed in for an input, (N, 1) if it is one number for each point; or None."""
-        element = self.elements.get(path)
-        lobe = element is not None and element.getCategory() in LOBES
+        lobe = path in self.elements and self.elements[path].getCategory() in LOBES
         if name not in self._inputs or not (path == self._shader if self._shader else lobe):
             return None
-        number = self._port(path, name).getType() in NUMBERS
         value = np.asarray(self._inputs[name])
-        return np.reshape(value, (-1, 1)) if number else value
+        return value if self._port(path, name).getType() in WIDTHS else np.reshape(value, (-1, 1))
 
     def _connected(self, around: Path, port: mx.PortElement, shown: str = "") -> Path:
         """Path of what an input or output within another path is connected to.
@@ -285,9 +281,7 @@ class Graph(Nodes):
             part = (*path, f".{output}")
             self._steps[part] = itemgetter(output), (path,)
             return part
-        if inner := self._inside(path, node, output):
-            return inner
-        raise NotRun(f"reference: there is no model for node {node.getCategory()!r}")
+        return self._inside(path, node, output)
 
     def _constant(self, path: Path, name: str, value: Value) -> Path:
         """Path of a value that has no parts."""

@@ -311,7 +311,6 @@ def _within(axes: Array, directions: Array) -> Array:
     return np.asarray(local / np.linalg.norm(local, axis=1, keepdims=True), np.float64)
 
 
-MATRICES = (mx.Matrix33, mx.Matrix44)
 DIFFUSE = {False: diffuse("qon", OREN_NAYAR), True: diffuse("eon", EON)}
 ROWS = (*NODES, *INNER_NODES)
 LOBES = {
@@ -355,10 +354,7 @@ def node_lobe(
         raise NotRun(f"reference: there is no model for this mode of node {node.getCategory()!r}")
     _assert_known(node, row, inputs)
     film = FILM if np.any(inputs.get(FILM[0], 0.0)) else ()
-    arguments = {
-        port: _where_shown(_shaped(node, port, inputs[port]), weight)
-        for port in (*row.inputs, *film)
-    }
+    arguments = {port: _argument(node, port, inputs[port], weight) for port in (*row.inputs, *film)}
     if row.name == "qon":
         # MaterialX keeps float32, in which pi / 2 is above pi / 2: that alone is lowered to it.
         rounded = np.float32(arguments["roughness"]) == np.float32(np.pi / 2.0)
@@ -397,24 +393,24 @@ def _assert_known(node: mx.Node, row: PbrNode, inputs: Mapping[str, Array]) -> N
             )
 
 
-def _shaped(node: mx.Node, port: str, value: Array) -> Array:
-    """Value of an input as (1,) or (N,) if it is a number, else with its components."""
+def _argument(node: mx.Node, port: str, value: Array, weight: Array) -> Array:
+    """Value of an input as (1,) or (N,) if it is a number, else with its components.
+
+    Where its lobe has no weight it is another point's: there it may be no number.
+    """
     kind = node.getNodeDef().getActiveInput(port).getType()
-    if kind in ("float", "boolean"):
-        return np.reshape(np.asarray(value, np.float64), -1)
-    array = np.atleast_2d(np.asarray(value, np.float64))
-    if port == "roughness":  # OpenPBR stretches a lobe beyond 1, and shaders take 1
-        array = np.clip(array, 0.0, 1.0)
-    return np.broadcast_to(array, (len(array), WIDTHS[kind]))
-
-
-def _where_shown(value: Array, weight: Array) -> Array:
-    """Array of an input with another point's where its lobe has no weight: there it may be no number."""
+    if kind not in WIDTHS:
+        array = np.reshape(np.asarray(value, np.float64), -1)
+    else:
+        array = np.atleast_2d(np.asarray(value, np.float64))
+        if port == "roughness":  # OpenPBR stretches a lobe beyond 1, and shaders take 1
+            array = np.clip(array, 0.0, 1.0)
+        array = np.broadcast_to(array, (len(array), WIDTHS[kind]))
     idle = weight[:, 0] == 0.0
-    if len(value) != len(idle) or not idle.any():
-        return value
-    shown = value.copy()
-    shown[idle] = value[int(idle.argmin())]
+    if len(array) != len(idle) or not idle.any():
+        return array
+    shown = array.copy()
+    shown[idle] = array[int(idle.argmin())]
     return shown
 
 
@@ -422,7 +418,7 @@ def plain(value: Plain) -> Array | bool | str | None:
     """A MaterialX value as a bool, a string, an array or None; NotRun for a matrix."""
     if value is None or isinstance(value, (bool, str)):
         return value
-    if isinstance(value, MATRICES):
+    if isinstance(value, (mx.Matrix33, mx.Matrix44)):
         raise NotRun("reference: no node computes with a matrix here")
     return np.asarray(value if isinstance(value, (int, float)) else tuple(value), dtype=np.float64)
 
