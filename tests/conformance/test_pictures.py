@@ -115,6 +115,17 @@ def test_the_color_of_a_noise_comes_from_the_host(shown):
     assert np.ptp(pictures[0].reference[128]) > 0.5  # the pattern is there
 
 
+def test_the_color_of_a_noise_in_a_node_of_its_own_comes_from_the_host(shown):
+    mixed = """<mix name="pattern" type="color3"><input name="fg" type="color3" value="0.2, 0.8, 0.4"/>
+      <input name="mix" type="float" nodename="noise"/></mix>"""
+    own = f"""<nodedef name="ND_own" node="own"><output name="out" type="BSDF"/></nodedef>
+      <nodegraph name="NG_own" nodedef="ND_own" colorspace="srgb_texture">{NOISE[: NOISE.index("<convert")]}
+      {mixed}{LOBE}<output name="out" type="BSDF" nodename="lobe"/></nodegraph><own name="lobe" type="BSDF"/>"""
+    text = material(own).replace("<materialx ", '<materialx colorspace="lin_rec709" ')
+    result, *_ = shown(text)
+    assert (result.check, result.verdict, result.measured) == ("picture", "passed", ("lobe.color",))
+
+
 def test_a_wrong_lobe_behind_a_measured_input_is_found(shown):
     result, *_ = shown(document_text(NOISE + LOBE + SURFACE), "stock")
     assert (result.check, result.verdict, result.measured) == ("picture", "failed", ("lobe.color",))
