@@ -124,9 +124,10 @@ def fits():
 
 def errors(shader, seed):
     """Errors of one set, by name: of values and albedos the largest, and those of their means."""
-    with patch.object(specs, "SEED", seed):
-        [batch] = batches = shader.batches(shader.counts)
-        [views] = shader.views(batches, batches, shader.counts)
+    token = SEED.set(seed)
+    [batch] = batches = shader.batches(shader.counts)
+    [views] = shader.views(batches, shader.counts)
+    SEED.reset(token)
     asked = ((batch, "direct"), (views, "environment"))
     exact = [shader._reference(*each) for each in asked]
     with fits():
@@ -142,7 +143,7 @@ def errors(shader, seed):
 
 def largest(shader, sets=SETS):
     """The largest errors of sets, by name."""
-    found, seeds = [], count(SEED + 1)
+    found, seeds = [], count(SEED.get() + 1)
     while len(found) < sets:
         with suppress(OutsideModel):  # a material that the layer equation does not have
             found.append(errors(shader, next(seeds)))
