@@ -31,13 +31,13 @@ class Mesh:
         return float(1.0 - (normal * a).sum(axis=1).min())
 
 
-def unit_sphere(subdivisions: int = SUBDIVISIONS) -> Mesh:
+def unit_sphere() -> Mesh:
     """The unit sphere: an icosahedron whose triangles are split in four, again and again."""
     golden = (1.0 + np.sqrt(5.0)) / 2.0
     rectangle = np.array([[0, 1, golden], [0, -1, golden], [0, 1, -golden], [0, -1, -golden]])
     vertices = np.concatenate([np.roll(rectangle, shift, axis=1) for shift in range(3)])
     mesh = Mesh(_on_sphere(vertices), _faces(vertices))
-    for _ in range(subdivisions):
+    for _ in range(SUBDIVISIONS):
         mesh = _split(mesh)
     return mesh
 

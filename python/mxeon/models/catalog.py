@@ -6,7 +6,7 @@ Inputs have MaterialX's names, order, units and defaults, whatever the functions
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Literal, TypeAlias, cast, overload
 
 import numpy as np
@@ -133,6 +133,16 @@ def model_names() -> tuple[str, ...]:
     return tuple(MODELS)
 
 
+def _inputs(category: str, names: Iterable[str] = ()) -> tuple[Parameter, ...]:
+    """Inputs of a node, by these names or all of them."""
+    return tuple(parameter(category, name) for name in names or DEFAULTS[category])
+
+
+def _about(row: Emission | Medium) -> tuple[str, str, str, tuple[Parameter, ...]]:
+    """Name, title, category and inputs of a node that goes by its category."""
+    return row.category, row.title, row.category, _inputs(row.category)
+
+
 def _of_node(row: PbrNode) -> ShadingModel:
     """The model of a row of pbrlib's nodes."""
     lights = "back" if row.transmits else "front"
@@ -140,7 +150,7 @@ def _of_node(row: PbrNode) -> ShadingModel:
         row.name,
         row.title,
         row.category,
-        tuple(parameter(row.category, name) for name in row.inputs),
+        _inputs(row.category, row.inputs),
         row.value,
         row.integral or row.albedo,
         sampler=SAMPLERS.get(row.name, COSINE),
@@ -170,24 +180,12 @@ def _of_transmission(row: PbrNode) -> ShadingModel:
         passed: Array = passing.passed(wo, inputs, True) / ior**2
         return passed if mode == "T" else passed + reflected(wo, inputs)
 
-    inputs = tuple(parameter(row.category, name) for name in row.inputs)
+    inputs = _inputs(row.category, row.inputs)
     lights = "back" if mode == "T" else "all sides"
     title, frame = f"{row.title}, scatter mode {mode}", FRAME[:-1]
     return ShadingModel(
         row.name, title, row.category, inputs, value, albedo, lights=lights, by_name=frame
     )
-
-
-def _of_emission(row: Emission) -> EmissionModel:
-    """The model of an EDF node."""
-    inputs = tuple(parameter(row.category, name) for name in DEFAULTS[row.category])
-    return EmissionModel(row.category, row.title, row.category, inputs, row.value, row.exitance)
-
-
-def _of_medium(row: Medium) -> MediumModel:
-    """The model of a VDF node."""
-    inputs = tuple(parameter(row.category, name) for name in DEFAULTS[row.category])
-    return MediumModel(row.category, row.title, row.category, inputs)
 
 
 def _of_table(row: table.Model) -> ShadingModel:
@@ -310,7 +308,7 @@ MODELS: dict[str, NodeModel] = {
         _of_openpbr(),
         *map(_of_node, (*NODES, *FILM_NODES, SUBSURFACE_NODE, HAIR_NODE)),
         *map(_of_transmission, TRANSMISSION_NODES),
-        *map(_of_emission, EMISSIONS),
-        *map(_of_medium, MEDIA),
+        *(EmissionModel(*_about(row), row.value, row.exitance) for row in EMISSIONS),
+        *(MediumModel(*_about(row)) for row in MEDIA),
     )
 }

@@ -193,12 +193,12 @@ def distribution(
     view: Section,
     wo: Array,
     wi: Array,
-    roughness: tuple[Array, Array],
+    roughness: Array,
     alpha: Array,
     lobe: int,
     form: HairForm,
 ) -> Array:
-    """M_p N_p of a lobe: Cuticle Tilt, Longitudinal Scattering, Azimuthal Scattering."""
+    """M_p N_p of a lobe of roughness (2, ...), v and s: Cuticle Tilt, Longitudinal Scattering, Azimuthal Scattering."""
     xp, (low, high) = array_namespace(wo, wi, alpha), form.limits
     v, s = (xp.minimum(xp.maximum(each, low), high) for each in roughness)
     inclined = [(wi[0], hypot(wi[1], wi[2])), (view.sin_o, view.cos_o)]
@@ -250,12 +250,17 @@ def chiang_hair_bcsdf(wo: ArrayLike, wi: ArrayLike, **inputs: Any) -> Array:
     numbers = {name: values.pop(name) for name in ("ior", "cuticle_angle")}
     colors = {name: values[name] for name in (*TINTS, "absorption_coefficient")}
 
-    # Sum the tinted lobes; that of the higher orders has the tint of TRT.
+    # Sum t_p A_p M_p N_p over the lobes; that of the higher orders has the tint and roughness of TRT.
     def formula(wo: Array, wi: Array, **inputs: Array) -> Array:
-        lobes = _lobes(wo, wi, inputs, form)
-        tints = [inputs[name] for name in (*TINTS, TINTS[-1])]
-        first, *others = (tint * lobe for tint, lobe in zip(tints, lobes, strict=True))
-        return form.factor * sum(others, first)
+        ior, alpha = inputs["ior"], np.pi * (inputs["cuticle_angle"] - 0.5)
+        view, effective = section(wo, ior)
+        factors = attenuations(view, effective, ior, inputs["absorption_coefficient"], form)
+        names = zip((*TINTS, TINTS[-1]), (*ROUGHNESSES, ROUGHNESSES[-1]), strict=True)
+        lobes: list[Array] = [
+            inputs[tint] * (A * distribution(view, wo, wi, inputs[rough], alpha, p, form))
+            for p, (A, (tint, rough)) in enumerate(zip(factors, names, strict=True))
+        ]
+        return form.factor * sum(lobes[1:], lobes[0])
 
     return evaluate_material(formula, vectors | values, numbers, channel_count(colors), BLOCK)
 
@@ -350,19 +355,6 @@ def _checked(inputs: dict[str, ArrayLike], wo: Numbers) -> dict[str, Array]:
     for name in (*TINTS, "absorption_coefficient"):
         values[name] = checked_vector(name, values[name])
     return values
-
-
-def _lobes(wo: Array, wi: Array, inputs: dict[str, Array], form: HairForm) -> list[Array]:
-    """A_p M_p N_p of the four lobes, each (C, ...)."""
-    ior, alpha = inputs["ior"], np.pi * (inputs["cuticle_angle"] - 0.5)
-    view, effective = section(wo, ior)
-    absorption = inputs["absorption_coefficient"]
-    factors = attenuations(view, effective, ior, absorption, form)
-    pairs = [inputs[name] for name in (*ROUGHNESSES, ROUGHNESSES[-1])]
-    return [
-        factor * distribution(view, wo, wi, (v, s), alpha, lobe, form)
-        for lobe, (factor, (v, s)) in enumerate(zip(factors, pairs, strict=True))
-    ]
 
 
 # Absorption of the pigments in red, green and blue, per radius of the fiber.

@@ -588,12 +588,6 @@ def cltc_kept_fraction(d: Array) -> Array:
     return 0.5 * (1.0 + 1.0 / root(1.0 + d * d))
 
 
-def _cut_fraction(d: Array) -> Array:
-    """1 - `cltc_kept_fraction`, which is small."""
-    length = root(1.0 + d * d)
-    return 0.5 * d * d / (length * (1.0 + length))
-
-
 def _draw(wo: Array, u1: Array, rest: Array, u2: Array, roughness: Array) -> tuple[Array, Array]:
     """`cltc_sample` of two random numbers; `rest` is 1 - u1, to all of its digits."""
     d = ltc_d(wo[..., 2], roughness)
@@ -615,7 +609,8 @@ def cltc_clipped(u1: Array, u2: Array, d: Array, rest: Array | None = None) -> A
     rest = 1.0 - u1 if rest is None else rest
     wh = around(root(rest), root(u1), u2)
     x, y = wh[..., 0], wh[..., 1]
-    xp, kept, cut = array_namespace(x, d), cltc_kept_fraction(d), _cut_fraction(d)
+    xp, kept, length = array_namespace(x, d), cltc_kept_fraction(d), root(1.0 + d * d)
+    cut = 0.5 * d * d / (length * (1.0 + length))  # 1 - kept, which is small
     half = root(rest + x * x)
     behind = x < 0.0
     far = half + xp.where(behind, -x, x)

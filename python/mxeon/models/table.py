@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from inspect import signature
 
 import numpy as np
 
@@ -34,10 +35,7 @@ class Model:
     @property
     def interval(self) -> tuple[float, float] | None:
         """Least and largest value of the parameter; None without one."""
-        if self.parameter is None:
-            return None
-        low, high, _ = RANGES[self.parameter]
-        return low, high
+        return RANGES[self.parameter][:2] if self.parameter else None
 
     @property
     def largest(self) -> float:
@@ -88,56 +86,35 @@ def _tinted(white: Callable[..., Array]) -> Callable[..., Array]:
     return tinted
 
 
+def _named(name: str, title: str, parameter: str) -> Model:
+    """Row of a model whose functions in `mxeon.models.diffuse` begin with its name."""
+    functions = (f"{name}_{each}" for each in ("brdf", "albedo_dir", "albedo_avg"))
+    brdf, *albedos = (getattr(diffuse, each, None) for each in functions)
+    assert brdf, f"{name}_brdf is not in mxeon.models.diffuse"
+    tinted = (
+        each if each is None or "rho" in signature(each).parameters else _tinted(each)
+        for each in albedos
+    )
+    return Model(name, title, brdf, parameter, *tinted)
+
+
 MODELS = (
     Model(
         "lambert", "Lambert", diffuse.lambert_brdf, None, _lambert_albedo_dir, _lambert_albedo_avg
     ),
-    Model("oren_nayar", "full Oren-Nayar", diffuse.oren_nayar_brdf, "sigma"),
-    Model(
-        "qon",
-        "qualitative Oren-Nayar (QON)",
-        diffuse.qon_brdf,
-        "sigma",
-        _tinted(diffuse.qon_albedo_dir),
-        _tinted(diffuse.qon_albedo_avg),
-    ),
-    Model("qon_footnote", "QON with the footnote's constant", diffuse.qon_footnote_brdf, "sigma"),
-    Model("qon_fujii", "QON with Fujii's coefficients", diffuse.qon_fujii_brdf, "sigma"),
-    Model(
-        "fon",
-        "Fujii Oren-Nayar (FON)",
-        diffuse.fon_brdf,
-        "roughness",
-        _tinted(diffuse.fon_albedo_dir),
-        _tinted(diffuse.fon_albedo_avg),
-    ),
-    Model(
-        "eon",
-        "energy-preserving Oren-Nayar (EON)",
-        diffuse.eon_brdf,
-        "roughness",
-        diffuse.eon_albedo_dir,
-        diffuse.eon_albedo_avg,
-    ),
+    _named("oren_nayar", "full Oren-Nayar", "sigma"),
+    _named("qon", "qualitative Oren-Nayar (QON)", "sigma"),
+    _named("qon_footnote", "QON with the footnote's constant", "sigma"),
+    _named("qon_fujii", "QON with Fujii's coefficients", "sigma"),
+    _named("fon", "Fujii Oren-Nayar (FON)", "roughness"),
+    _named("eon", "energy-preserving Oren-Nayar (EON)", "roughness"),
     Model("eon_approx", "EON with the paper's quartic", diffuse.eon_brdf_approx, "roughness"),
 )
 
 KNOWN_DEFECTS = (
-    Model("eon_clamped", "EON with clamped dot(wo, wi)", diffuse.eon_clamped_brdf, "roughness"),
-    Model(
-        "eon_rho_cubed",
-        "EON with rho^3",
-        diffuse.eon_rho_cubed_brdf,
-        "roughness",
-        diffuse.eon_rho_cubed_albedo_dir,
-    ),
-    Model(
-        "fon_white_lobe",
-        "FON + white lobe",
-        diffuse.fon_white_lobe_brdf,
-        "roughness",
-        diffuse.fon_white_lobe_albedo_dir,
-    ),
+    _named("eon_clamped", "EON with clamped dot(wo, wi)", "roughness"),
+    _named("eon_rho_cubed", "EON with rho^3", "roughness"),
+    _named("fon_white_lobe", "FON + white lobe", "roughness"),
     Model(
         "qon_fitted",
         "QON with MaterialX's fit of its albedo",
@@ -145,13 +122,7 @@ KNOWN_DEFECTS = (
         "sigma",
         diffuse.qon_fitted_albedo_dir,
     ),
-    Model(
-        "qon_tinted_twice",
-        "QON tinted twice",
-        diffuse.qon_tinted_twice_brdf,
-        "sigma",
-        diffuse.qon_tinted_twice_albedo_dir,
-    ),
+    _named("qon_tinted_twice", "QON tinted twice", "sigma"),
 )
 
 # The interface of the coats that are judged in a renderer.
@@ -169,19 +140,8 @@ OTHERS = (
         "roughness",
         diffuse.eon_albedo_dir_approx,
     ),
-    Model(
-        "eon_floor",
-        "EON with a reflectance of at least 0.1",
-        diffuse.eon_floor_brdf,
-        "roughness",
-    ),
-    Model(
-        "burley",
-        "Burley's diffuse model",
-        diffuse.burley_brdf,
-        "roughness",
-        diffuse.burley_albedo_dir,
-    ),
+    _named("eon_floor", "EON with a reflectance of at least 0.1", "roughness"),
+    _named("burley", "Burley's diffuse model", "roughness"),
     Model(
         "burley_lambert",
         "Burley's diffuse model with Lambert in surroundings",
@@ -189,16 +149,12 @@ OTHERS = (
         "roughness",
         lambda mu, rho, roughness: _lambert_albedo_dir(mu, rho),
     ),
-    Model(
-        "burley_cosine",
-        "Burley with squared roughness, times the cosine once more",
-        diffuse.burley_cosine_brdf,
-        "roughness",
+    _named(
+        "burley_cosine", "Burley with squared roughness, times the cosine once more", "roughness"
     ),
-    Model(
+    _named(
         "burley_schlick",
         "Burley with Schlick's weight for the cosine of retro-reflection",
-        diffuse.burley_schlick_brdf,
         "roughness",
     ),
     Model(
@@ -224,13 +180,7 @@ OTHERS = (
         "roughness",
         partial(coat.openpbr_base_albedo_dir, **HALF_METAL),
     ),
-    Model(
-        "qon_degrees",
-        "QON that takes degrees for radians",
-        diffuse.qon_degrees_brdf,
-        "sigma",
-        diffuse.qon_degrees_albedo_dir,
-    ),
+    _named("qon_degrees", "QON that takes degrees for radians", "sigma"),
 )
 
 

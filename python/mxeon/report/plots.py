@@ -91,9 +91,9 @@ def difference_pixels(difference_map: NDArray[np.float64], scale: float) -> NDAr
     return colors
 
 
-def difference_gradient(stops: int = 9) -> str:
+def difference_gradient() -> str:
     """DIFFERENCE_COLORS from left to right, as a CSS gradient."""
-    colors = (matplotlib.colors.to_hex(DIFFERENCE_COLORS(at)) for at in np.linspace(0, 1, stops))
+    colors = (matplotlib.colors.to_hex(DIFFERENCE_COLORS(at)) for at in np.linspace(0, 1, 9))
     return f"linear-gradient(to right, {', '.join(colors)})"
 
 

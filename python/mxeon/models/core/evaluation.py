@@ -88,20 +88,6 @@ def evaluate(
     return evaluate_material(value, pair | {"rho": color}, numbers, color.shape[-1])
 
 
-def _leading_channels(array: Numbers, axes: int) -> Numbers:
-    """Array (..., C) of another library as (C, ...), with this many axes behind C."""
-    xp = array_namespace(array)
-    shape = (1,) * (axes + 1 - array.ndim) + tuple(array.shape)
-    return xp.permute_dims(xp.reshape(array, shape), (axes, *range(axes)))
-
-
-def _trailing_channels(value: Array, channels: int, shape: tuple[int, ...]) -> Array:
-    """Values (C, ...) of another library as (..., C), broadcast to this shape."""
-    xp = array_namespace(value)
-    order = (*range(1, len(shape) + 1), 0)
-    return xp.permute_dims(xp.broadcast_to(value, (channels, *shape)), order)
-
-
 def evaluate_material(
     formula: Callable[..., Array],
     vectors: Mapping[str, Numbers],
@@ -121,8 +107,16 @@ def evaluate_material(
     """
     shape = lead_shape(vectors, numbers)
     if array_namespace(*vectors.values(), *numbers.values()) is not NUMPY:
-        parts = {name: _leading_channels(array, len(shape)) for name, array in vectors.items()}
-        return _trailing_channels(formula(**parts, **numbers), channels, shape)
+        # Channels first, with all axes behind them, and last again; a constant may be NumPy's.
+        axes, parts = len(shape), dict[str, Array]()
+        for name, array in vectors.items():
+            xp, wide = array_namespace(array), (1,) * (axes + 1 - array.ndim) + tuple(array.shape)
+            parts[name] = xp.permute_dims(xp.reshape(array, wide), (axes, *range(axes)))
+        values = formula(**parts, **numbers)
+        xp = array_namespace(values)
+        return xp.permute_dims(
+            xp.broadcast_to(values, (channels, *shape)), (*range(1, axes + 1), 0)
+        )
     arguments = {**vectors, **{name: array[..., np.newaxis] for name, array in numbers.items()}}
     arrays = {name: with_axes(array, len(shape) + 1) for name, array in arguments.items()}
     out = np.empty((*shape, channels))

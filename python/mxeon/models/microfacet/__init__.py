@@ -415,17 +415,12 @@ def lobe_albedo(
     channels = channel_count(vectors)
     unseen, average = np.zeros(()), np.zeros(1)
     if compensate:
-        unseen = _unseen(wo, roughness)
+        E_ss = evaluate_number(
+            lambda mu, roughness: albedo(mu, mean_alpha(roughness)),
+            {"roughness": roughness},
+            {"mu": wo[..., 2]},
+        )
+        unseen = (1.0 - E_ss) / E_ss
         average = evaluate_material(curve.average, vectors, numbers, channels)
     arguments["average"] = average
     return evaluate_material(value, arguments, {"unseen": unseen, **numbers}, channels, BLOCK)
-
-
-def _unseen(wo: Numbers, roughness: Numbers) -> Array:
-    """(1 - E_ss) / E_ss of checked arguments by quadrature, shape (...)."""
-    E_ss = evaluate_number(
-        lambda mu, roughness: albedo(mu, mean_alpha(roughness)),
-        {"roughness": roughness},
-        {"mu": wo[..., 2]},
-    )
-    return (1.0 - E_ss) / E_ss

@@ -87,11 +87,6 @@ def _averaged(pair: Pair) -> Array:
     return schlick_average(*ends)
 
 
-def _missing_at_mean(pair: Pair) -> Array:
-    """(1 - E_ss) / E_ss at the arithmetic mean of both alphas."""
-    return missing_light(pair.wo[2], 0.5 * (pair.roughness[0] + pair.roughness[1]))
-
-
 def _missing_by_fit(pair: Pair) -> Array:
     """(1 - E_ss) / E_ss by the fit of MaterialX 1.39.5."""
     alpha = np.maximum(ggx.mean_alpha(pair.roughness), LEAST)
@@ -184,11 +179,17 @@ FITTED_DEFECTS = tuple(
     for each in MICROFACET_DEFECTS
     if each.lobe.factor is compensation
 )
-# Of OSL's own renderer, which its closures are compared with alone.
+# Of OSL's own renderer, which its closures are compared with alone: E_ss is at the arithmetic mean of both alphas.
 BSDL = MicrofacetDefect(
     "bsdl",
     "BSDL's lobe: compensation with F at the half vector, masking of the anisotropic distribution",
-    Lobe(_compensated(_half, _missing_at_mean), _anisotropic),
+    Lobe(
+        _compensated(
+            _half,
+            lambda pair: missing_light(pair.wo[2], 0.5 * (pair.roughness[0] + pair.roughness[1])),
+        ),
+        _anisotropic,
+    ),
 )
 # Of Blender's Cycles, whose closures do not compensate.
 SINGLE = MicrofacetDefect(

@@ -146,13 +146,17 @@ def transmitting_nodes(wo: Array, roughness: Array, squared: Array) -> tuple[Arr
     - `squared` (...): Square of the cosine of the critical angle, at least 0.
     """
     slopes = Slopes.seen(wo, roughness)
-    meeting = _horizon_azimuth(slopes.mu_o, squared)
+    # Azimuth from wo of h on the critical cone around wo whose wi, reflected, is at the horizon.
+    mu_o, xp = slopes.mu_o, array_namespace(slopes.mu_o, squared)
+    slope = root(at_least_0(4.0 * squared / mu_o**2 - 1.0))
+    length = root((1.0 - mu_o) * (1.0 + mu_o)) * slope
+    cosine = (2.0 * squared / mu_o - mu_o) / xp.where(length > 0.0, length, 1.0)
+    meeting = arccosine(xp.where(length > 0.0, cosine, 0.0))
     omega, weight_omega = _split_azimuths(slopes, wo, squared, meeting)
     B, g, limit = slopes.rays(omega)
-    low, high = _transmitting(slopes.mu_o, B, g, squared)
-    minimum = array_namespace(low, limit).minimum
-    high = minimum(high, limit)
-    r, weight = _between(slopes.scale, minimum(low, high), high)
+    low, high = _transmitting(mu_o, B, g, squared)
+    high = xp.minimum(high, limit)
+    r, weight = _between(slopes.scale, xp.minimum(low, high), high)
     cosine, values = slopes.facets(r, B, g)
     return cosine, weight * weight_omega * values
 
@@ -228,14 +232,6 @@ def _split_azimuths(
             nodes.append((center + omega, weight * (2.0 if slopes.isotropic else 1.0)))
     omega, weight = (xp.concat(each) for each in zip(*nodes, strict=True))
     return omega[np.newaxis], weight[np.newaxis]
-
-
-def _horizon_azimuth(mu_o: Array, squared: Array) -> Array:
-    """Azimuth from wo of h on the critical cone around wo whose wi, reflected, is at the horizon."""
-    xp, sine = array_namespace(mu_o, squared), root((1.0 - mu_o) * (1.0 + mu_o))
-    slope = root(at_least_0(4.0 * squared / mu_o**2 - 1.0))
-    length = xp.where(sine * slope > 0.0, sine * slope, 1.0)
-    return arccosine(xp.where(sine * slope > 0.0, (2.0 * squared / mu_o - mu_o) / length, 0.0))
 
 
 def _cone_azimuth(mu_o: Array, squared: Array) -> Array:
