@@ -6,7 +6,7 @@ import itertools
 import os
 import sys
 import textwrap
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from importlib import import_module
 from typing import Any, NoReturn
 
@@ -117,31 +117,53 @@ def add_command(
     return command
 
 
-def add_json(command: argparse.ArgumentParser) -> None:
-    command.add_argument("--json", action="store_true", help="print JSON")
+def _folder(name: str) -> str:
+    """The name of a folder that exists."""
+    if not os.path.isdir(name):
+        raise argparse.ArgumentTypeError(f"must name a folder that exists; got {name!r}")
+    return name
 
 
-def add_report(command: argparse.ArgumentParser) -> None:
-    command.add_argument(
-        "--report", metavar="DIR", help="write an HTML page, JSON, JUnit XML and pictures to DIR"
-    )
+# Options that several commands have.
+SHARED: Mapping[str, Mapping[str, Any]] = {
+    "--json": {"action": "store_true", "help": "print JSON"},
+    "--report": {
+        "metavar": "DIR",
+        "help": "write an HTML page, JSON, JUnit XML and pictures to DIR",
+    },
+    "--full": {"action": "store_true", "help": "print every check, not a summary"},
+    "--library": {"default": "eonlib", "metavar": "NAME", "help": LIBRARY},
+    "--materialx": {
+        "type": _folder,
+        "metavar": "FOLDER",
+        "help": "use your own build of MaterialX; FOLDER holds its Python package, MaterialX/",
+    },
+    "--workers": {
+        "type": int,
+        "default": os.cpu_count(),
+        "metavar": "N",
+        "help": "number of worker processes (default: one per core; 0: none, run in this process)",
+    },
+    "--timeout": {
+        "type": float,
+        "default": TIMEOUT,
+        "metavar": "SECONDS",
+        "help": "stop a worker that takes longer than this for one item (default: %(default)g)",
+    },
+    "--definitions": {
+        "action": "append",
+        "type": _folder,
+        "default": [],
+        "metavar": "FOLDER",
+        "help": "load the MaterialX definitions in FOLDER in addition to the library; they are "
+        "trusted like the library; repeatable",
+    },
+}
 
 
-def add_full(command: argparse.ArgumentParser) -> None:
-    command.add_argument("--full", action="store_true", help="print every check, not a summary")
-
-
-def add_library(command: argparse.ArgumentParser) -> None:
-    command.add_argument("--library", default="eonlib", metavar="NAME", help=LIBRARY)
-
-
-def add_materialx(command: argparse.ArgumentParser) -> None:
-    command.add_argument(
-        "--materialx",
-        type=_folder,
-        metavar="FOLDER",
-        help="use your own build of MaterialX; FOLDER holds its Python package, MaterialX/",
-    )
+def add_shared(command: argparse.ArgumentParser, *names: str) -> None:
+    for name in names:
+        command.add_argument(name, **SHARED[name])
 
 
 def use_materialx(folder: str | None) -> None:
@@ -165,23 +187,6 @@ def use_materialx(folder: str | None) -> None:
         import_module("MaterialX")
     except ImportError as error:
         raise InputError(f"{rule}; {error}") from None
-
-
-def add_workers(command: argparse.ArgumentParser) -> None:
-    command.add_argument(
-        "--workers",
-        type=int,
-        default=os.cpu_count(),
-        metavar="N",
-        help="number of worker processes (default: one per core; 0: none, run in this process)",
-    )
-    command.add_argument(
-        "--timeout",
-        type=float,
-        default=TIMEOUT,
-        metavar="SECONDS",
-        help="stop a worker that takes longer than this for one item (default: %(default)g)",
-    )
 
 
 def assert_other(output: str | None, files: Iterable[str | None]) -> None:
@@ -211,7 +216,7 @@ def add_policy(command: argparse.ArgumentParser, runs_code: bool = False, **defa
         help="also look here for images and includes, after the document's own folder and "
         f"before those in ${SEARCH_PATH}; repeatable",
     )
-    add_definitions(command)
+    add_shared(command, "--definitions")
     command.add_argument(
         "--help-limits",
         action=_HelpLimits,
@@ -236,25 +241,6 @@ def add_policy(command: argparse.ArgumentParser, runs_code: bool = False, **defa
             metavar="N",
             help=f"at most N {meaning} (default: %(default)s)",
         )
-
-
-def add_definitions(command: argparse.ArgumentParser) -> None:
-    command.add_argument(
-        "--definitions",
-        action="append",
-        type=_folder,
-        default=[],
-        metavar="FOLDER",
-        help="load the MaterialX definitions in FOLDER in addition to the library; they are "
-        "trusted like the library; repeatable",
-    )
-
-
-def _folder(name: str) -> str:
-    """The name of a folder that exists."""
-    if not os.path.isdir(name):
-        raise argparse.ArgumentTypeError(f"must name a folder that exists; got {name!r}")
-    return name
 
 
 def policy(options: argparse.Namespace) -> Policy:

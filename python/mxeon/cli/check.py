@@ -56,13 +56,11 @@ def add_parser(commands: arguments.Commands) -> None:
         help="check the nodes of this category (such as sheen_bsdf), or 'common' or 'all' nodes, "
         "even if no document uses them; repeatable",
     )
-    arguments.add_report(command)
+    arguments.add_shared(command, "--report")
     command.add_argument(
         "--resume", action="store_true", help="continue an interrupted run in the --report folder"
     )
-    arguments.add_full(command)
-    arguments.add_json(command)
-    arguments.add_workers(command)
+    arguments.add_shared(command, "--full", "--json", "--workers", "--timeout")
     command.add_argument(
         "--seed",
         type=int,
@@ -78,7 +76,7 @@ def add_parser(commands: arguments.Commands) -> None:
         metavar="SECONDS",
         help="how long to wait for a worker of the cluster (default: %(default)g)",
     )
-    arguments.add_materialx(command)
+    arguments.add_shared(command, "--materialx")
     arguments.add_policy(command, runs_code=True)
 
 

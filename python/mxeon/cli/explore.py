@@ -35,8 +35,7 @@ def add_parser(commands: arguments.Commands) -> None:
         metavar="NAME",
         help="what to compare eonlib with: stock (default), or a folder",
     )
-    arguments.add_materialx(command)
-    arguments.add_workers(command)
+    arguments.add_shared(command, "--materialx", "--workers", "--timeout")
     arguments.add_policy(command, runs_code=True, shaders=MATERIALS)
 
 

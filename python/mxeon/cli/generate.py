@@ -44,10 +44,8 @@ def add_parser(commands: arguments.Commands) -> None:
         metavar="NAME",
         help="variant of a target: cycles, the OSL of Blender's Cycles; or path, GLSL that a path tracer includes",
     )
-    arguments.add_library(command)
-    arguments.add_materialx(command)
-    arguments.add_json(command)
-    arguments.add_workers(command)
+    names = "--library", "--materialx", "--json", "--workers", "--timeout"
+    arguments.add_shared(command, *names)
     arguments.add_policy(command)
 
 

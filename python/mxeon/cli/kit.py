@@ -34,9 +34,7 @@ def add_parser(commands: arguments.Commands) -> None:
         metavar="NAME",
         help="BSDF node of the materials, with inputs color and roughness (default: %(default)s)",
     )
-    arguments.add_definitions(export)
-    arguments.add_library(export)
-    arguments.add_materialx(export)
+    arguments.add_shared(export, "--definitions", "--library", "--materialx")
     summary = "check the images in DIR/renders"
     check = arguments.add_command(actions, "check", summary, run_check, *examples[1:])
     check.add_argument("folder", metavar="DIR", help="the folder of the kit")
@@ -50,9 +48,7 @@ def add_parser(commands: arguments.Commands) -> None:
         help="the one model that the renderer claims: eon, qon, fon or lambert (default: EON and QON, "
         "chosen by energy_compensation)",
     )
-    arguments.add_report(check)
-    arguments.add_full(check)
-    arguments.add_json(check)
+    arguments.add_shared(check, "--report", "--full", "--json")
 
 
 def run_export(options: argparse.Namespace) -> int:

@@ -76,9 +76,7 @@ def add_parser(commands: arguments.Commands) -> None:
         metavar="N",
         help="bounces per path, for cycles and --integrator path (default: automatic)",
     )
-    arguments.add_library(command)
-    arguments.add_materialx(command)
-    arguments.add_workers(command)
+    arguments.add_shared(command, "--library", "--materialx", "--workers", "--timeout")
     arguments.add_policy(command, runs_code=True)
 
 

@@ -20,13 +20,12 @@ def add_parser(commands: arguments.Commands) -> None:
     summary = "write the report of a run, finished or not"
     make = arguments.add_command(actions, "make", summary, run_make, examples[0])
     make.add_argument("report", metavar="DIR", help="the folder of the run")
-    arguments.add_full(make)
-    arguments.add_json(make)
+    arguments.add_shared(make, "--full", "--json")
     summary = "list what changed between two runs; the exit status is 1 if something got worse, 3 if a check no longer runs"
     diff = arguments.add_command(actions, "diff", summary, run_diff, examples[1])
     diff.add_argument("before", metavar="BEFORE", help="folder of a report, or its results.json")
     diff.add_argument("after", metavar="AFTER", help="the same of a later run")
-    arguments.add_json(diff)
+    arguments.add_shared(diff, "--json")
     summary = "show the renderers of many reports on one page"
     field = arguments.add_command(actions, "field", summary, run_field, examples[2])
     field.add_argument(

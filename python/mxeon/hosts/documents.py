@@ -13,7 +13,6 @@ from collections.abc import Sequence
 from functools import lru_cache
 from hashlib import sha256
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import ClassVar
 
 import MaterialX as mx
@@ -78,7 +77,7 @@ PICTURES = 64  # to keep: the checks of a node request some of them again
 
 
 class DocumentHost(base.Host):
-    """A renderer that reads documents, with one process at a time, for one library, and a folder.
+    """A renderer that reads documents, with one process at a time, for one library.
 
     Next to the module of a host is `worker.py`. Its arguments are the folder whose `libraries` replace
     MaterialX's own, or "", and the libraries to load before these. One picture, including the
@@ -89,15 +88,12 @@ class DocumentHost(base.Host):
 
     def __init__(self, limit: float = 300.0) -> None:
         self._python, self._limit = self._interpreter(), limit
-        self._temporary = TemporaryDirectory(prefix=f"mxeon-{self.name}-")
-        self._folder = Path(self._temporary.name)
         self._folders: tuple[str, ...] = ("",)
         self.worker = self._worker()
         self._picture = lru_cache(maxsize=PICTURES)(self._drawn)
 
     def close(self) -> None:
         self.worker.close()
-        self._temporary.cleanup()
 
     def identity(self) -> Identity:
         self.worker.start()
@@ -137,21 +133,20 @@ class DocumentHost(base.Host):
         return False
 
     def _worker(self) -> Worker:
-        script, log = Path(inspect.getfile(type(self))).with_name("worker.py"), "log.txt"
-        return Worker(
-            self.name, self._python, script, self._folder / log, self._limit, *self._folders
-        )
+        script = Path(inspect.getfile(type(self))).with_name("worker.py")
+        return Worker(self.name, self._python, script, self._limit, *self._folders)
 
     def _drawn(
         self, text: str, element: str, scene: Scene, folders: tuple[str, ...], blocks: bool
     ) -> Array:
         # Write the document under a new name: OpenUSD caches files.
-        document = self._folder / f"{sha256(text.encode()).hexdigest()}.mtlx"
+        folder = self.worker.folder
+        document = folder / f"{sha256(text.encode()).hexdigest()}.mtlx"
         document.write_text(text, encoding="utf-8")
-        output = self._folder / "output.npy"
+        output = folder / "output.npy"
         reply = self.worker.ask(
             output=str(output),
-            mesh=str(quad_file(self._folder, scene.size, PLACE if blocks else (0.0, 0.0))),
+            mesh=str(quad_file(folder, scene.size, PLACE if blocks else (0.0, 0.0))),
             document=str(document),
             element=element,
             size=scene.size * (BLOCK if blocks else 1),

@@ -15,6 +15,7 @@ from contextlib import suppress
 from pathlib import Path
 from signal import Signals
 from subprocess import PIPE, Popen
+from tempfile import TemporaryDirectory
 from threading import Timer
 from typing import TypeAlias
 
@@ -27,16 +28,19 @@ class Worker:
     """The process of a script, started by the first request and again after a crash.
 
     The script prints `{"version": ...}`, then one JSON object for each that it reads; or `{"error": ...}`,
-    and ends. What the renderer prints goes to the file `log`. A request may take `limit` seconds; then
-    the process is killed. Once it runs, `version` and `device` are those that it printed.
+    and ends. What the renderer prints goes to the file `log`, in `folder`, which is deleted at the end. A
+    request may take `limit` seconds; then the process is killed. Once it runs, `version` and `device` are
+    those that it printed.
     """
 
     def __init__(
-        self, name: str, python: Path, script: Path, log: Path, limit: float, *arguments: str
+        self, name: str, python: Path, script: Path, limit: float, *arguments: str
     ) -> None:
         self._name = name
         self._command: list[str | Path] = [python, "-I", "-W", "ignore", script, *arguments]
-        self.log = log
+        self._temporary = TemporaryDirectory(prefix=f"mxeon-{name}-")
+        self.folder = Path(self._temporary.name)
+        self.log = self.folder / "log.txt"
         self.limit = limit
         self._process: Popen[str] | None = None
         self.version: str | None = None
@@ -50,7 +54,7 @@ class Worker:
         """Start the process unless it runs, and wait for its version."""
         if self.pid is not None:
             return
-        self.close()
+        self._end()
         self._read = 0
         with self.log.open("w") as log:
             self._process = Popen(
@@ -60,11 +64,11 @@ class Worker:
                 stderr=log,
                 text=True,
                 errors="replace",
-                env=os.environ | {"TMPDIR": str(self.log.parent)},  # Blender leaves a folder
+                env=os.environ | {"TMPDIR": str(self.folder)},  # Blender leaves a folder
             )
         greeting = self._reply()
         if "error" in greeting:
-            self.close()
+            self._end()
             raise NotRun(f"{self._name}: {greeting['error']}")
         self.version, self.device = greeting["version"], greeting.get("device", "")
 
@@ -95,7 +99,7 @@ class Worker:
         else:
             end = f"ended by {Signals(-status).name}" if status < 0 else f"exit status {status}"
         last = " | ".join(self.printed()[-4:]) or "none"
-        self.close()
+        self._end()
         raise NotRun(f"{self._name}: {end}; last output: {last}")
 
     def printed(self) -> list[str]:
@@ -104,7 +108,15 @@ class Worker:
             text = log.read().decode(errors="replace")
         return [line for each in text.splitlines() if (line := each.strip())]
 
+    def temporary(self) -> TemporaryDirectory[str]:
+        """A new folder below `folder`."""
+        return TemporaryDirectory(dir=self.folder)
+
     def close(self) -> None:
+        self._end()
+        self._temporary.cleanup()
+
+    def _end(self) -> None:
         if self._process:
             self._process.kill()
             self._process.communicate()

@@ -11,7 +11,6 @@ import re
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TypeAlias
 
 import numpy as np
@@ -70,17 +69,13 @@ class Host(PairHost):
     profile = "cycles"
 
     def __init__(self, sources: Path | None = None, limit: float = 300.0) -> None:
-        python = interpreter()
         self._sources = Path(sources or source_folder("eonlib") / "genosl").resolve()
-        self._temporary = TemporaryDirectory(prefix="mxeon-cycles-")
-        log = Path(self._temporary.name, "log.txt")
         script = Path(__file__).with_name("worker.py")
-        self.worker = Worker(self.name, python, script, log, limit)
+        self.worker = Worker(self.name, interpreter(), script, limit)
         self._picture = lru_cache(maxsize=PICTURES)(self._rendered)
 
     def close(self) -> None:
         self.worker.close()
-        self._temporary.cleanup()
 
     def identity(self) -> Identity:
         self.worker.start()
@@ -115,7 +110,7 @@ class Host(PairHost):
     ) -> NDArray[np.float64]:
         scene = tilted_triangles(wo, wi, side(len(wo)))
         columns = columns_of(shader, inputs, scene.turned)
-        with self._folder() as name:
+        with self.worker.temporary() as name:
             folder = Path(name)
             block = statements(columns, folder / IMAGE, len(wo), scene.place)
             text = with_variables(shader, block, lambda output: last.format(output=output))
@@ -146,7 +141,7 @@ class Host(PairHost):
 
         It reads images by position and unfiltered, so every bit of a float32 survives.
         """
-        with self._folder() as name:
+        with self.worker.temporary() as name:
             place, output = (Path(name, IMAGE), process.PLACE), "output closure color out"
             last = "out = {} * emission();"
             text, count = call_text(source, function, arguments, *place, output, last)
@@ -162,7 +157,7 @@ class Host(PairHost):
         inputs: tuple[tuple[str, Socket], ...] = (),
     ) -> Array:
         frame = process.request(scene, lobes)
-        with self._folder() as folder:
+        with self.worker.temporary() as folder:
             if text:
                 pixels = self._render(Path(folder), text, **frame)
             else:
@@ -171,9 +166,6 @@ class Host(PairHost):
         image = np.where(sphere(scene.size).mask[..., None], pixels, np.float32(0.0))
         image.flags.writeable = False  # shared by all callers
         return image
-
-    def _folder(self) -> TemporaryDirectory[str]:
-        return TemporaryDirectory(dir=self._temporary.name)
 
     def _render(self, folder: Path, text: str, **frame: object) -> Array:
         shader = folder / "shader.osl"

@@ -91,19 +91,14 @@ class Blender:
     place = process.PLACE
 
     def __init__(self) -> None:
-        python = interpreter("osl")
-        self._temporary = TemporaryDirectory(prefix="mxeon-osl-")
         script = Path(process.__file__).with_name("worker.py")
-        log = Path(self._temporary.name, "log.txt")
-        self._worker = Worker("osl", python, script, log, SECONDS)
+        self._worker = Worker("osl", interpreter("osl"), script, SECONDS)
+        self.folder = self._worker.temporary
 
     @property
     def version(self) -> str:
         self._worker.start()
         return f"Blender {self._worker.version}"
-
-    def folder(self) -> TemporaryDirectory[str]:
-        return TemporaryDirectory(dir=self._temporary.name)
 
     def printed(self, folder: Path, text: str, count: int) -> list[str]:
         shader = folder / "shader.osl"
@@ -120,7 +115,6 @@ class Blender:
 
     def close(self) -> None:
         self._worker.close()
-        self._temporary.cleanup()
 
 
 HOST = "osl"

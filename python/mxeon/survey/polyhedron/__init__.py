@@ -12,7 +12,6 @@ import os
 import sys
 from functools import lru_cache
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import ClassVar
 
 import numpy as np
@@ -29,7 +28,7 @@ MESH = "polyhedron.npz"
 
 
 class PolyhedronHost(Engine):
-    """A renderer that shows its own nodes on the polyhedron, with a process and a folder.
+    """A renderer that shows its own nodes on the polyhedron, with a process.
 
     `samples` are those per pixel under an environment; one is enough under a distant light. A request
     may take `limit` seconds.
@@ -41,12 +40,10 @@ class PolyhedronHost(Engine):
     missing: ClassVar[str] = ""  # what to do where the renderer is not installed
 
     def __init__(self, limit: float = 120.0) -> None:
-        python = self._interpreter()
-        self._temporary = TemporaryDirectory(prefix=f"mxeon-{self.name}-")
-        self._folder = Path(self._temporary.name)
+        self.worker = Worker(self.name, self._interpreter(), self.script, limit)
+        self._folder = self.worker.folder
         mesh = polyhedron()
         np.savez(self._folder / MESH, vertices=mesh.vertices, triangles=mesh.triangles)
-        self.worker = Worker(self.name, python, self.script, self._folder / "log.txt", limit)
         self._picture = lru_cache(maxsize=PICTURES)(lambda job: self._ask(**json.loads(job)))
 
     def identity(self) -> Identity:
@@ -72,7 +69,6 @@ class PolyhedronHost(Engine):
 
     def close(self) -> None:
         self.worker.close()
-        self._temporary.cleanup()
 
     def _ask(self, **request: object) -> Array:
         self.identity()
