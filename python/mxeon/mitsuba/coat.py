@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A dielectric over EON as a BSDF of Mitsuba; see `mxeon.models.coat` and `mxeon.models.coat`.
+"""A dielectric over EON as a BSDF of Mitsuba; see `mxeon.models.coat`.
 
 What the dielectric reflects depends on a cosine alone: a cubic in each part of an octave, whose
 coefficients are computed in float64 whenever `alpha` or `ior` changes, with their derivatives where these

@@ -261,15 +261,13 @@ def dielectric_over_eon_brdf(
 def dielectric_over_eon_albedo_dir(
     mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float
 ) -> Array:
-    """Directional albedo of `dielectric_over_eon_brdf`.
+    """Directional albedo of `dielectric_over_eon_brdf`, 1 where rho is 1, with an error below 2e-7.
 
-        E = E_r + (1 - E_r) E_EON
+    E = E_r + (1 - E_r) E_EON
 
-    Result (..., C): 1 where rho is 1. Accuracy: error below 2e-7.
-
-        >>> dielectric_over_eon_albedo_dir([0.1, 1.0], [0.7, 1.0], 0.5, 0.3, 1.5).round(5)
-        array([[0.7426 , 1.     ],
-               [0.68356, 1.     ]])
+    >>> dielectric_over_eon_albedo_dir([0.1, 1.0], [0.7, 1.0], 0.5, 0.3, 1.5).round(5)
+    array([[0.7426 , 1.     ],
+           [0.68356, 1.     ]])
     """
     base = eon_albedo_dir(mu, rho, roughness)
     height = cast(Array, mu) if library(mu) else np.asarray(mu, np.float64)
@@ -485,8 +483,7 @@ def dielectric_over_eon_pdf(
 
         pdf = p pdf_GGX + (1 - p) pdf_EON,  p = E_r / (E_r + (1 - E_r) E_EON)
 
-    Result (...): 1/sr; its integral over the upper hemisphere is the probability that no sample is
-    wasted.
+    Its integral over the upper hemisphere is the probability that no sample is wasted.
 
         >>> wo, wi = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
         >>> round(float(dielectric_over_eon_pdf(wo, wi, 0.7, 0.5, 0.3, 1.5)), 5)
@@ -723,15 +720,13 @@ def varnished_brdf(
 def varnished_albedo_dir(
     mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float
 ) -> Array:
-    """Directional albedo of `varnished_brdf`.
+    """Directional albedo of `varnished_brdf`, 1 where rho is 1.
 
-        E = E_r + T [E_b(mu') - R k (1 - <E_b>_R) / (1 - R <k>)]
+    E = E_r + T [E_b(mu') - R k (1 - <E_b>_R) / (1 - R <k>)]
 
-    Result (..., C): 1 where rho is 1.
-
-        >>> varnished_albedo_dir([0.1, 1.0], [0.7, 1.0], 0.5, 0.3, 1.5).round(5)
-        array([[0.54965, 1.     ],
-               [0.48698, 1.     ]])
+    >>> varnished_albedo_dir([0.1, 1.0], [0.7, 1.0], 0.5, 0.3, 1.5).round(5)
+    array([[0.54965, 1.     ],
+           [0.48698, 1.     ]])
     """
     return _albedo(mu, rho, roughness, alpha, ior)[1]
 
@@ -740,12 +735,11 @@ def varnished_albedo_dir(
 def varnished_albedo_avg(rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float) -> Array:
     """Average of `varnished_albedo_dir` over the viewer's directions, weighted by the cosine.
 
-        <E> = <E_r> + n^2 [<E_b> - R <E_b>_R - R (<E_b>_R - R <k>) (1 - <E_b>_R) / (1 - R <k>)]
+    <E> = <E_r> + n^2 [<E_b> - R <E_b>_R - R (<E_b>_R - R <k>) (1 - <E_b>_R) / (1 - R <k>)]
+    <E_r> = 1 - n^2 (1 - R)
 
-    Result (..., C); <E_r> = 1 - n^2 (1 - R).
-
-        >>> varnished_albedo_avg([0.7, 1.0], 0.5, 0.3, 1.5).round(5)
-        array([0.49762, 1.     ])
+    >>> varnished_albedo_avg([0.7, 1.0], 0.5, 0.3, 1.5).round(5)
+    array([0.49762, 1.     ])
     """
     (color,), (r,) = any_array(checked_colors)({"rho": rho}, roughness=roughness)
     varnish = varnish_of(alpha, ior)

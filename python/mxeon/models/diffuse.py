@@ -249,12 +249,9 @@ def eon_brdf_approx_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness
 
 @any_array
 def lambert_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike) -> Array:
-    """BRDF of a smooth diffuse surface, Lambert's, in 1/sr.
+    """BRDF f = rho / pi of a smooth diffuse surface, Lambert's, in 1/sr.
 
-        f = rho / pi
-
-    Result (..., C): BRDF in 1/sr, in [0, 1/pi]. [Portsmouth2025], section 2.1, the limit
-    sigma -> 0.
+    [Portsmouth2025], section 2.1, the limit sigma -> 0.
 
         >>> lambert_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8]).round(6)
         array([0.063662, 0.254648])
@@ -455,8 +452,7 @@ def fon_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
 
         E(mu) = 1 - roughness A H(mu),  A = 1 / (1 + c1 roughness)
 
-    Result (...): in (0, 1]. Accuracy: relative error below 1e-15. [Portsmouth2025], Eqs. (12),
-    (13).
+    Accuracy: relative error below 1e-15. [Portsmouth2025], Eqs. (12), (13).
 
         >>> fon_albedo_dir([0.0, 1.0], 1.0).round(6)
         array([1.      , 0.776522])
@@ -839,22 +835,14 @@ def qon_degrees_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> A
 
 @any_array
 def eon_rho_cubed_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-    """Directional albedo of `eon_rho_cubed_brdf`.
-
-    E = rho (E_EON + (1 - rho) E_FON)
-    """
+    """Directional albedo E = rho (E_EON + (1 - rho) E_FON) of `eon_rho_cubed_brdf`."""
     (color,), (m, r) = checked_colors({"rho": rho}, mu=mu, roughness=roughness)
     return color * (eon_albedo_dir(mu, rho, roughness) + (1.0 - color) * fon_albedo_dir(m, r))
 
 
 @any_array
 def fon_white_lobe_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-    """Directional albedo of `fon_white_lobe_brdf`.
-
-        E = 1 - (1 - rho) E_FON
-
-    Result (..., C): in [0, 1]; not 0 where rho is 0.
-    """
+    """Directional albedo E = 1 - (1 - rho) E_FON of `fon_white_lobe_brdf`: not 0 where rho is 0."""
     (color,), (m, r) = checked_colors({"rho": rho}, mu=mu, roughness=roughness)
     return 1.0 - (1.0 - color) * fon_albedo_dir(m, r)
 

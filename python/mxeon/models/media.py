@@ -58,12 +58,10 @@ HALF_TURN = np.pi / 360.0  # radians of half of a full cone angle in degrees
 
 @any_array
 def uniform_edf(wo: ArrayLike, radiance: ArrayLike) -> Array:
-    """Radiance of a surface that emits the same in all directions.
+    """Radiance L_e = c of a surface that emits the same in all directions.
 
-        L_e = c
-
-    Result (..., C): in the unit of `radiance`. The equation has no side, so that the back emits as
-    much. [MaterialX2026], section `uniform_edf`, Uniform Emission Equation.
+    The equation has no side, so that the back emits as much. [MaterialX2026], section `uniform_edf`,
+    Uniform Emission Equation.
 
         >>> uniform_edf([0.6, 0.0, 0.8], [0.5, 2.0])
         array([0.5, 2. ])
@@ -74,12 +72,10 @@ def uniform_edf(wo: ArrayLike, radiance: ArrayLike) -> Array:
 
 @any_array
 def uniform_exitance(radiance: ArrayLike) -> Array:
-    """Radiant exitance of a uniform emitter, pi c.
+    """Radiant exitance pi c of a uniform emitter: [MaterialX2026], section `uniform_edf`.
 
-    Result: pi times the unit of `radiance`. [MaterialX2026], section `uniform_edf`.
-
-        >>> round(float(uniform_exitance(2.0)), 6)
-        6.283185
+    >>> round(float(uniform_exitance(2.0)), 6)
+    6.283185
     """
     (c,) = checked_numbers(radiance=radiance)
     return (np.pi * c)[()]
@@ -176,8 +172,7 @@ def generalized_schlick_exitance(
 
         M = pi c (r_0 + (r_90 - r_0) 2 / ((q + 1) (q + 2)))
 
-    Result (..., C): pi times the unit of `radiance`. [MaterialX2026], section
-    `generalized_schlick_edf`; the integral is our own.
+    [MaterialX2026], section `generalized_schlick_edf`; the integral is our own.
 
         >>> generalized_schlick_exitance([1.0], [0.0], [1.0], 0.0).round(6)
         array([3.141593])
@@ -215,12 +210,10 @@ def _checked(
 
 @any_array
 def extinction(absorption: ArrayLike, scattering: ArrayLike) -> Array:
-    """Extinction coefficient, sigma_t = sigma_a + sigma_s.
+    """Extinction coefficient, sigma_t = sigma_a + sigma_s: [MaterialX2026], section `anisotropic_vdf`, Extinction.
 
-    Result: in 1/m. [MaterialX2026], section `anisotropic_vdf`, Extinction.
-
-        >>> float(extinction(0.5, 1.5))
-        2.0
+    >>> float(extinction(0.5, 1.5))
+    2.0
     """
     sigma_a, sigma_s = checked_numbers(absorption=absorption, scattering=scattering)
     return (sigma_a + sigma_s)[()]
@@ -246,10 +239,9 @@ def transmittance(absorption: ArrayLike, scattering: ArrayLike, distance: ArrayL
 
 @any_array
 def single_scattering_albedo(absorption: ArrayLike, scattering: ArrayLike) -> Array:
-    """Share of the light that leaves a ray by being scattered, sigma_s / sigma_t.
+    """Share of the light that leaves a ray by being scattered, sigma_s / sigma_t; 0 where none leaves it.
 
-    Result: in [0, 1]; 0 where no light leaves the ray. [MaterialX2026], section `anisotropic_vdf`,
-    Extinction.
+    [MaterialX2026], section `anisotropic_vdf`, Extinction.
 
         >>> float(single_scattering_albedo(0.5, 1.5))
         0.75
@@ -287,7 +279,6 @@ def hg_sample(wo: ArrayLike, u: ArrayLike, g: ArrayLike) -> tuple[Array, Array]:
 
     The inverse of its distribution, in a form of our own that is 1 - x at g = 0 and does not cancel for any g.
 
-    - `wo` (..., 3): Direction from which the light leaves, any unit vector to 1e-6.
     - `u` (..., 2): Independent uniform random numbers, in [0, 1).
 
         >>> wi, pdf = hg_sample([0.0, 0.0, 1.0], [0.5, 0.0], 0.0)
@@ -313,16 +304,10 @@ def hg_sample(wo: ArrayLike, u: ArrayLike, g: ArrayLike) -> tuple[Array, Array]:
 
 @any_array
 def hg_pdf(wo: ArrayLike, wi: ArrayLike, g: ArrayLike) -> Array:
-    """Density of `hg_sample` at `wi`, in solid angle: the phase function itself.
+    """Density of `hg_sample` at `wi`, in 1/sr: `hg_phase` at cos = -dot(wo, wi).
 
-    - `wo`, `wi` (..., 3): Directions away from the position, unit vectors to 1e-6; cos =
-      -dot(wo, wi).
-
-    Result (...): in 1/sr. [MaterialX2026], section `anisotropic_vdf`, Henyey-Greenstein Phase
-    Function.
-
-        >>> round(float(hg_pdf([0.0, 0.0, 1.0], [0.0, 0.0, -1.0], 0.5)), 6)
-        0.477465
+    >>> round(float(hg_pdf([0.0, 0.0, 1.0], [0.0, 0.0, -1.0], 0.5)), 6)
+    0.477465
     """
     views, lights, (mean,) = (
         checked_sphere("wo", wo),
@@ -526,12 +511,10 @@ def diffusion_profile(separation: ArrayLike, radius: ArrayLike) -> Array:
 def diffusion_cdf(separation: ArrayLike, radius: ArrayLike) -> Array:
     """Share of the light that leaves a plane within a distance of where it enters.
 
-        C(r) = 1 - exp(-r / l) / 4 - 3 exp(-r / (3 l)) / 4
+    C(r) = 1 - exp(-r / l) / 4 - 3 exp(-r / (3 l)) / 4
 
-    Result: in (0, 1].
-
-        >>> diffusion_cdf(2.5, 1.0).round(6).item()
-        0.65353
+    >>> diffusion_cdf(2.5, 1.0).round(6).item()
+    0.65353
     """
     r, length = checked_numbers(separation=separation, radius=radius)
     expm1, x = array_namespace(r, length).expm1, r / length
@@ -540,12 +523,9 @@ def diffusion_cdf(separation: ArrayLike, radius: ArrayLike) -> Array:
 
 @any_array
 def diffusion_sample(u: ArrayLike, radius: ArrayLike) -> Array:
-    """Distance within which the share u of the light leaves: the inverse of `diffusion_cdf`.
+    """Distance within which the share u, in [0, 1), of the light leaves: the inverse of `diffusion_cdf`.
 
-    - `u`: In [0, 1).
-
-    Result: A length. Form: t = exp(-r / (3 l)) solves t^3 + 3 t = 4 (1 - u), so t = 2 sinh(asinh(2
-    (1 - u)) / 3).
+    t = exp(-r / (3 l)) solves t^3 + 3 t = 4 (1 - u), so t = 2 sinh(asinh(2 (1 - u)) / 3).
 
         >>> diffusion_sample(0.65353, 1.0).round(4).item()
         2.5

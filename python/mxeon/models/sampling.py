@@ -82,14 +82,11 @@ from mxeon.models.sheen import zeltner_matrix
 
 @any_array
 def uniform_sample(u: ArrayLike) -> tuple[Array, Array]:
-    """Direction sampled uniformly on the hemisphere, and its density.
+    """Direction sampled uniformly on the hemisphere, z = u[..., 0], and its density: [Portsmouth2025], Listing 4.
 
-    `wi` (..., 3): Unit vectors, z = u[..., 0]. `pdf` (...): 1/(2 pi), in 1/sr. [Portsmouth2025],
-    Listing 4.
-
-        >>> wi, pdf = uniform_sample([0.8, 0.0])
-        >>> wi.round(12), round(float(pdf), 6)
-        (array([0.6, 0. , 0.8]), 0.159155)
+    >>> wi, pdf = uniform_sample([0.8, 0.0])
+    >>> wi.round(12), round(float(pdf), 6)
+    (array([0.6, 0. , 0.8]), 0.159155)
     """
     u1, u2 = unpack_uniforms(u)
     wi = uniform_direction(u1, 1.0 - u1, u2)
@@ -98,25 +95,21 @@ def uniform_sample(u: ArrayLike) -> tuple[Array, Array]:
 
 @any_array
 def uniform_pdf(wi: ArrayLike) -> Array:
-    """Density of `uniform_sample` at `wi`, in solid angle.
+    """Density of `uniform_sample` at `wi`, 1/(2 pi).
 
-    Result (...): 1/(2 pi), in 1/sr.
-
-        >>> round(float(uniform_pdf([0.0, 0.6, 0.8])), 6)
-        0.159155
+    >>> round(float(uniform_pdf([0.0, 0.6, 0.8])), 6)
+    0.159155
     """
     return _uniform_density(checked_directions("wi", wi))
 
 
 @any_array
 def cosine_sample(u: ArrayLike) -> tuple[Array, Array]:
-    """Direction sampled proportionally to its cosine with the normal, and its density.
+    """Direction with z > 0, sampled proportionally to its cosine, and its density: [Portsmouth2025], Eq. (21).
 
-    `wi` (..., 3): Unit vectors, z > 0. `pdf` (...): z / pi, in 1/sr. [Portsmouth2025], Eq. (21).
-
-        >>> wi, pdf = cosine_sample([0.36, 0.0])
-        >>> wi.round(12), round(float(pdf), 6)
-        (array([0.6, 0. , 0.8]), 0.254648)
+    >>> wi, pdf = cosine_sample([0.36, 0.0])
+    >>> wi.round(12), round(float(pdf), 6)
+    (array([0.6, 0. , 0.8]), 0.254648)
     """
     u1, u2 = unpack_uniforms(u)
     wi = around(root(1.0 - u1), root(u1), u2)
@@ -125,12 +118,10 @@ def cosine_sample(u: ArrayLike) -> tuple[Array, Array]:
 
 @any_array
 def cosine_pdf(wi: ArrayLike) -> Array:
-    """Density of `cosine_sample` at `wi`, in solid angle.
+    """Density of `cosine_sample` at `wi`, z / pi.
 
-    Result (...): z / pi, in 1/sr.
-
-        >>> round(float(cosine_pdf([0.6, 0.0, 0.8])), 6)
-        0.254648
+    >>> round(float(cosine_pdf([0.6, 0.0, 0.8])), 6)
+    0.254648
     """
     return checked_directions("wi", wi)[..., 2] / np.pi
 
@@ -409,12 +400,10 @@ def ltc0_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Arra
 
 @any_array
 def ltc0_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
-    """Density of `ltc0_sample` at `wi`, in solid angle.
+    """Density of `ltc0_sample` at `wi`: [Portsmouth2025], Eqs. (23) and (24).
 
-    Result (...): 1/sr. [Portsmouth2025], Eqs. (23) and (24).
-
-        >>> round(float(ltc0_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 0.0)), 6)
-        0.31831
+    >>> round(float(ltc0_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 0.0)), 6)
+    0.31831
     """
     wo, wi, roughness = checked_pdf(wo, wi, roughness=roughness)
     return ltc_density(wo, wi, roughness, 0.0)
@@ -438,10 +427,9 @@ def ltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array
 
 @any_array
 def ltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
-    """Density of `ltc_sample` at `wi`, above the horizon, in solid angle.
+    """Density of `ltc_sample` at `wi`, above the horizon.
 
-    Result (...): 1/sr; its integral over the hemisphere is the probability that no sample is
-    wasted. [Portsmouth2025], Eqs. (23) and (24).
+    Its integral is the probability that no sample is wasted. [Portsmouth2025], Eqs. (23) and (24).
 
         >>> round(float(ltc_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 0.0)), 6)
         0.31831
@@ -521,10 +509,9 @@ def cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Arra
 
 @any_array
 def cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
-    """Density of `cltc_sample` at `wi`, in solid angle.
+    """Density of `cltc_sample` at `wi`.
 
-    Result (...): 1/sr; 0 for the directions that it never draws. [Portsmouth2025], Eqs. (23), (24)
-    and (27), Listing 3.
+    It is 0 for directions that are never drawn. [Portsmouth2025], Eqs. (23), (24) and (27), Listing 3.
 
         >>> round(float(cltc_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 0.0)), 6)
         0.31831
@@ -564,12 +551,10 @@ def eon_cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[
 
 @any_array
 def eon_cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
-    """Density of `eon_cltc_sample` at `wi`, in solid angle.
+    """Density of `eon_cltc_sample` at `wi`: [Portsmouth2025], Section 4, Listing 4.
 
-    Result (...): 1/sr. [Portsmouth2025], Section 4, Listing 4.
-
-        >>> round(float(eon_cltc_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 0.0)), 6)
-        0.31831
+    >>> round(float(eon_cltc_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 0.0)), 6)
+    0.31831
     """
     wo, wi, roughness = checked_pdf(wo, wi, roughness=roughness)
     P_u = eon_cltc_probability(wo[..., 2], roughness)
@@ -647,12 +632,11 @@ def ggx_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array
 
 @any_array
 def ggx_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
-    """Density of `ggx_sample` at `wi`, on the whole sphere, in solid angle.
+    """Density of `ggx_sample` at `wi`, on the whole sphere: [Heitz2014], Eqs. (16), (43).
 
         pdf = G1(wo) D(wh) / (4 mu_o), and 0 where wh is below the horizon
 
-    Result (...): 1/sr; its integral over the upper hemisphere is the probability that no sample is
-    wasted. [Heitz2014], Eqs. (16), (43).
+    Its integral over the upper hemisphere is the probability that no sample is wasted.
 
         >>> round(float(ggx_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], [0.5, 0.25])), 6)
         0.455389
@@ -704,8 +688,7 @@ def visible_normal(wo: Array, u1: Array, u2: Array, roughness: Array) -> Array:
 def zeltner_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled proportionally to the Zeltner lobe times the cosine, and its density.
 
-    `wi` (..., 3): Unit vectors above the horizon. `pdf` (...): 1/sr. [MaterialX2026], Zeltner Sheen
-    Model, LTC Inverse Matrix.
+    It lies above the horizon. [MaterialX2026], Zeltner Sheen Model, LTC Inverse Matrix.
 
         >>> wi, pdf = zeltner_sample([0.6, 0.0, 0.8], [0.25, 0.5], 1.0)
         >>> wi.round(6), round(float(pdf), 6)
@@ -724,12 +707,10 @@ def zeltner_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[A
 
 @any_array
 def zeltner_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
-    """Density of `zeltner_sample` at `wi`, in solid angle.
+    """Density of `zeltner_sample` at `wi`: [MaterialX2026], Zeltner Sheen Model, Cosine-Weighted BRDF.
 
-    Result (...): 1/sr. [MaterialX2026], Zeltner Sheen Model, Cosine-Weighted BRDF.
-
-        >>> round(float(zeltner_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 1.0)), 6)
-        0.24421
+    >>> round(float(zeltner_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 1.0)), 6)
+    0.24421
     """
     wo, wi, roughness = checked_pdf(wo, wi, roughness=roughness)
     a, b = zeltner_matrix(at_most(wo[..., 2], 1.0), roughness)

@@ -664,7 +664,7 @@ def film_spectrum(
 
     - `wavelength` (...): In nm, in [1, 1e9].
 
-    Result (...): in [0, 1]. [Belcour2017], Section 3.
+    [Belcour2017], Section 3.
 
         >>> film_spectrum([450.0, 550.0, 650.0], 1.0, 100.0, 1.38, 1.5, 0.0).round(4)
         array([0.0173, 0.0141, 0.0156])

@@ -332,10 +332,9 @@ def fresnel_conductor(mu: ArrayLike, ior: ArrayLike, extinction: ArrayLike) -> A
 
 @any_array
 def fresnel_conductor_avg(ior: ArrayLike, extinction: ArrayLike) -> Array:
-    """Average Fresnel reflectance F_ss of a conductor, by quadrature.
+    """Average Fresnel reflectance F_ss of a conductor, by quadrature, with an error below 1e-12.
 
-    Result (..., C): in [0, 1]. Accuracy: absolute error below 1e-12. [MaterialX2026], Energy
-    Compensation; Conductor Fresnel Equations.
+    [MaterialX2026], Energy Compensation; Conductor Fresnel Equations.
 
         >>> fresnel_conductor_avg([0.183, 1.373], [3.424, 1.770]).round(6)
         array([0.942313, 0.411657])
@@ -441,9 +440,6 @@ def artistic_parameters(ior: ArrayLike, extinction: ArrayLike) -> tuple[Array, A
 
 
 def normal_reflectance(ior: Array, extinction: Array) -> Array:
-    """Fresnel reflectance at normal incidence, without a check of the arguments.
-
-    Result (...).
-    """
+    """Fresnel reflectance at normal incidence, without a check of the arguments."""
     square = extinction**2
     return ((ior - 1.0) ** 2 + square) / ((ior + 1.0) ** 2 + square)
