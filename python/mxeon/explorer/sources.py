@@ -39,10 +39,11 @@ from mxeon.shaders.nodes import (
 from mxeon.shaders.scene import VIEW, local_directions, sphere
 
 ROUGH: Inputs = {"roughness": (0.5, 0.5)}
+REFLECTS: Inputs = {"scatter_mode": "R"}
 FILM: Inputs = {"thinfilm_thickness": 420.0, "thinfilm_ior": 1.4}
 COPPER: Inputs = {"ior": (0.216, 0.905, 1.137), "extinction": (3.67, 2.59, 2.43), **ROUGH}
 BRONZE: Inputs = {"color0": (0.85, 0.55, 0.25), "color82": (0.9, 0.8, 0.7), **ROUGH}
-GLASS: Inputs = {"ior": 1.5, "scatter_mode": "R", **ROUGH}
+GLASS: Inputs = {"ior": 1.5, **REFLECTS, **ROUGH}
 VELVET: Inputs = {"color": (0.75, 0.12, 0.2), "roughness": 0.4}
 LACQUER = """    <input name="base_color" type="color3" value="0.55, 0.12, 0.08" />
     <input name="base_diffuse_roughness" type="float" value="0.8" />
@@ -76,82 +77,32 @@ class ComparedMaterial:
         return tuple(dict.fromkeys(pages))
 
 
-def _lobe(key: str, title: str, category: str, inputs: Inputs, *subjects: str) -> ComparedMaterial:
-    """A material that is one BSDF node."""
-    return ComparedMaterial(
-        key, title, material_text(category, inputs, types=input_types(category)), subjects
-    )
+def _lobe(key: str, title: str, category: str, inputs: Inputs, *modes: str) -> ComparedMaterial:
+    """A material that is one BSDF node, which checks call by its category, or by it and each mode."""
+    text = material_text(category, inputs, types=input_types(category))
+    subjects = tuple(f"{category}, {mode}" for mode in modes) or (category,)
+    return ComparedMaterial(key, title, text, subjects)
 
 
+DIFFUSE_INPUTS: Inputs = {"color": (0.8, 0.4, 0.1), "roughness": 1.0, FLAG: True}
+HAIR: Inputs = {
+    "absorption_coefficient": (0.25, 0.6, 1.4),
+    **dict.fromkeys(("roughness_R", "roughness_TT", "roughness_TRT"), (0.1, 0.3)),
+}
+SHEEN, DIELECTRIC, CONDUCTOR = "sheen_bsdf", "dielectric_bsdf", "conductor_bsdf"
+SCHLICK, FILMED = "generalized_schlick_bsdf", "thin film"
+CONTY_KULLA, ZELTNER = ({**VELVET, "mode": mode} for mode in ("conty_kulla", "zeltner"))
 MATERIALS = (
-    _lobe(
-        "shader",
-        "Rough diffuse",
-        OREN_NAYAR,
-        {"color": (0.8, 0.4, 0.1), "roughness": 1.0, FLAG: True},
-        f"{OREN_NAYAR}, {FLAG} true",
-        f"{OREN_NAYAR}, {FLAG} false",
-    ),
-    _lobe(
-        "lobe/sheen",
-        "Sheen, Conty-Kulla",
-        "sheen_bsdf",
-        {**VELVET, "mode": "conty_kulla"},
-        "sheen_bsdf, mode conty_kulla",
-    ),
-    _lobe(
-        "lobe/sheen_zeltner",
-        "Sheen, Zeltner",
-        "sheen_bsdf",
-        {**VELVET, "mode": "zeltner"},
-        "sheen_bsdf, mode zeltner",
-    ),
-    _lobe(
-        "lobe/dielectric",
-        "Dielectric",
-        "dielectric_bsdf",
-        GLASS,
-        "dielectric_bsdf, scatter_mode R",
-    ),
-    _lobe("lobe/conductor", "Conductor", "conductor_bsdf", COPPER, "conductor_bsdf"),
-    _lobe(
-        "lobe/schlick",
-        "Schlick",
-        "generalized_schlick_bsdf",
-        {**BRONZE, "scatter_mode": "R"},
-        "generalized_schlick_bsdf, scatter_mode R",
-    ),
-    _lobe(
-        "lobe/film_dielectric",
-        "Film on dielectric",
-        "dielectric_bsdf",
-        {**GLASS, **FILM},
-        "dielectric_bsdf, thin film",
-    ),
-    _lobe(
-        "lobe/film_conductor",
-        "Film on conductor",
-        "conductor_bsdf",
-        {**COPPER, **FILM},
-        "conductor_bsdf, thin film",
-    ),
-    _lobe(
-        "lobe/film_schlick",
-        "Film on Schlick",
-        "generalized_schlick_bsdf",
-        {**BRONZE, **FILM, "scatter_mode": "R"},
-        "generalized_schlick_bsdf, thin film",
-    ),
-    _lobe(
-        "lobe/hair",
-        "Hair",
-        "chiang_hair_bsdf",
-        {
-            "absorption_coefficient": (0.25, 0.6, 1.4),
-            **dict.fromkeys(("roughness_R", "roughness_TT", "roughness_TRT"), (0.1, 0.3)),
-        },
-        "chiang_hair_bsdf",
-    ),
+    _lobe("shader", "Rough diffuse", OREN_NAYAR, DIFFUSE_INPUTS, f"{FLAG} true", f"{FLAG} false"),
+    _lobe("lobe/sheen", "Sheen, Conty-Kulla", SHEEN, CONTY_KULLA, "mode conty_kulla"),
+    _lobe("lobe/sheen_zeltner", "Sheen, Zeltner", SHEEN, ZELTNER, "mode zeltner"),
+    _lobe("lobe/dielectric", "Dielectric", DIELECTRIC, GLASS, "scatter_mode R"),
+    _lobe("lobe/conductor", "Conductor", CONDUCTOR, COPPER),
+    _lobe("lobe/schlick", "Schlick", SCHLICK, {**BRONZE, **REFLECTS}, "scatter_mode R"),
+    _lobe("lobe/film_dielectric", "Film on dielectric", DIELECTRIC, {**GLASS, **FILM}, FILMED),
+    _lobe("lobe/film_conductor", "Film on conductor", CONDUCTOR, {**COPPER, **FILM}, FILMED),
+    _lobe("lobe/film_schlick", "Film on Schlick", SCHLICK, {**BRONZE, **FILM, **REFLECTS}, FILMED),
+    _lobe("lobe/hair", "Hair", "chiang_hair_bsdf", HAIR),
     ComparedMaterial(
         "lobe/openpbr",
         "OpenPBR",

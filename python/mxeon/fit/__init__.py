@@ -27,38 +27,31 @@ class FitModel:
     """A model to fit: `value(wo, wi, rho, **scalars)`, shape (N, C)."""
 
     value: Callable[..., Array]
-    bounds: Mapping[str, tuple[float, float]]  # of each scalar
-    starts: Mapping[str, tuple[float, ...]]  # values of each scalar from which the search starts
+    scalars: Mapping[
+        str, tuple[float, ...]
+    ]  # least and largest value, and those a search starts from
+
+    @property
+    def bounds(self) -> dict[str, tuple[float, float]]:
+        return {name: (low, high) for name, (low, high, *_) in self.scalars.items()}
 
 
+COAT = {
+    "roughness": (0.0, 1.0, 0.5),
+    "alpha": (LEAST_ALPHA, 1.0, 0.1, 0.4),
+    "ior": (1.0, 4.0, 1.5),
+}
+BASE = {
+    "roughness": (0.0, 1.0, 0.5),
+    "specular_roughness": (np.sqrt(LEAST_ALPHA), 1.0, 0.4),
+    "specular_ior": (1.0, 4.0, 1.5),
+    "metalness": (0.0, 1.0, 0.1, 0.9),
+}
 FIT_MODELS = {
-    "eon": FitModel(eon_brdf, {"roughness": (0.0, 1.0)}, {"roughness": (0.2, 0.8)}),
-    **{
-        name: FitModel(
-            value,
-            {"roughness": (0.0, 1.0), "alpha": (LEAST_ALPHA, 1.0), "ior": (1.0, 4.0)},
-            {"roughness": (0.5,), "alpha": (0.1, 0.4), "ior": (1.5,)},
-        )
-        for name, value in (
-            ("dielectric_over_eon", dielectric_over_eon_brdf),
-            ("varnished", varnished_brdf),
-        )
-    },
-    "openpbr_base": FitModel(
-        openpbr_base_brdf,
-        {
-            "roughness": (0.0, 1.0),
-            "specular_roughness": (np.sqrt(LEAST_ALPHA), 1.0),
-            "specular_ior": (1.0, 4.0),
-            "metalness": (0.0, 1.0),
-        },
-        {
-            "roughness": (0.5,),
-            "specular_roughness": (0.4,),
-            "specular_ior": (1.5,),
-            "metalness": (0.1, 0.9),
-        },
-    ),
+    "eon": FitModel(eon_brdf, {"roughness": (0.0, 1.0, 0.2, 0.8)}),
+    "dielectric_over_eon": FitModel(dielectric_over_eon_brdf, COAT),
+    "varnished": FitModel(varnished_brdf, COAT),
+    "openpbr_base": FitModel(openpbr_base_brdf, BASE),
 }
 
 
@@ -166,7 +159,7 @@ def fit_brdf(measurement: MeasuredBrdf, model: str = "eon") -> Fit:
 
     lows, highs = zip(*([(0.0, 1.0)] * channels + list(row.bounds.values())), strict=True)
     albedo = list(np.clip(np.pi * data.value.mean(axis=0), 0.05, 0.95))
-    starts = ([*albedo, *start] for start in product(*row.starts.values()))
+    starts = ([*albedo, *start] for start in product(*(each[2:] for each in row.scalars.values())))
     ends: dict[str, Any] = {"bounds": (lows, highs), "xtol": 1e-10, "ftol": 1e-10}
     found = (least_squares(residuals, start, **ends) for start in starts)
     best = min(found, key=lambda each: float(each.cost))
