@@ -92,7 +92,9 @@ def answer(run: Run, full: bool = False) -> list[str]:
     looks = summary_by_cause(run) if many else list(map(one_line, _looks(run)))
     rows = {} if many else _rows(run)
     remedy, failures = list(_remedy(run)), list(_failures(run))
-    notes = [f"note: {note}" for note in new_notes(run)]
+    # Notes, but for those that a diagnosis repeats.
+    said = tuple({each.diagnosis for each in run.results if each.diagnosis})
+    notes = [f"note: {note}" for note in run.notes if not note.endswith(said)]
     first = list(map(one_line, [*run.origins, *_not_run(run, full)]))
     # The verdict comes first if there are no documents, or something was not judged.
     begins = run.refused or run.summary.verdict == NOT_RUN or not run.contents
@@ -196,12 +198,6 @@ def _refused(document: str, lines: Sequence[str]) -> DocumentVerdict:
 def is_refused(run: Run, document: str, library: str) -> bool:
     """Whether a document was refused, with a library at least."""
     return not run.refused.keys().isdisjoint((document, f"{document} with {library}"))
-
-
-def new_notes(run: Run) -> list[str]:
-    """Notes of a run, except those that a diagnosis repeats."""
-    said = tuple({each.diagnosis for each in run.results if each.diagnosis})
-    return [note for note in run.notes if not note.endswith(said)]
 
 
 def _looks(run: Run) -> Iterator[str]:

@@ -196,12 +196,6 @@ def assert_other(output: str | None, files: Iterable[str | None]) -> None:
         raise InputError(f"output must be another file than the one to read; got {output}")
 
 
-def assert_no_link(output: str) -> None:
-    """Raise InputError if an output is a link, through which another file would be replaced."""
-    if os.path.islink(output):
-        raise InputError(f"output must not be a link; got {output}")
-
-
 def add_policy(command: argparse.ArgumentParser, runs_code: bool = False, **defaults: int) -> None:
     """Add the options of `mxeon.shaders.document.policy`, with defaults of the command's own.
 

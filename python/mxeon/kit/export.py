@@ -17,7 +17,7 @@ from mxeon.errors import InputError
 from mxeon.io.files import below, write_text
 from mxeon.kit.mesh import Mesh, to_obj, unit_sphere
 from mxeon.kit.usd import mesh_layer, scene_layer
-from mxeon.kit.views import MATERIALS, USUAL, Material, View, views
+from mxeon.kit.views import MATERIALS, USUAL, View, views
 from mxeon.names import meant
 from mxeon.shaders.library import load_library
 from mxeon.shaders.nodes import FLAG, INPUT_TYPES, OREN_NAYAR, material_text
@@ -65,7 +65,13 @@ def export_kit(folder: str | PathLike[str], size: int = USUAL, node: KitNode = K
     """
     _assert_own(folder)
     pictures, mesh = views(size), unit_sphere()
-    files = {f"materials/{each.name}.mtlx": material_document(each, node) for each in MATERIALS} | {
+    files = {}
+    for each in MATERIALS:
+        inputs: dict[str, Any] = {"color": each.color, "roughness": each.roughness}
+        inputs |= {FLAG: each.energy_compensation} if node.flagged else {}
+        text = material_text(node.category, inputs, each.name, INPUT_TYPES)
+        files[f"materials/{each.name}.mtlx"] = text
+    files |= {
         f"scenes/{view.name}.usda": scene_layer(view, node.definition, node.flagged)
         for view in pictures
     }
@@ -92,13 +98,6 @@ def _assert_own(folder: str | PathLike[str]) -> None:
         return
     if any(path.iterdir()) and not os.path.lexists(path / DESCRIPTION):
         raise InputError(f"{folder}: must be new, empty or a kit; it holds other files")
-
-
-def material_document(material: Material, node: KitNode = KitNode()) -> str:
-    inputs: dict[str, Any] = {"color": material.color, "roughness": material.roughness}
-    if node.flagged:
-        inputs[FLAG] = material.energy_compensation
-    return material_text(node.category, inputs, material.name, INPUT_TYPES)
 
 
 def description(pictures: Sequence[View], size: int, node: str = OREN_NAYAR) -> dict[str, Any]:

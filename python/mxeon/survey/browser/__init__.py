@@ -63,43 +63,56 @@ def modules_folder(package: str, host: str) -> Path:
     return folder
 
 
-def package_version(folder: Path, package: str) -> str:
-    version: str = json.loads((folder / package / "package.json").read_text("utf-8"))["version"]
-    return version
+def pixels(answer: Answer, size: int) -> NDArray[np.float32]:
+    """Picture of an answer, (size, size, 3), row 0 at the top."""
+    values = np.frombuffer(base64.b64decode(answer["pixels"]), dtype=np.float32)
+    return values.reshape(size, size, 4)[..., :3]
 
 
-class Browser(webgl.Chromium):
-    """A page with a renderer, which may take `limit` seconds for a picture.
+def material(backend: str, **more: str) -> Material:
+    """Material of a node that a backend draws."""
+    return {"color": "{color}", "roughness": "{roughness}", "backend": backend, **more}
 
-    `page` is an ES module that exports `draw(job)`, whose answer has `pixels` or `failed`. `imports`
-    maps names in the page to paths in `modules`, the folder node_modules; `assets` are PNG files that
-    the renderer would load from the network, by address.
+
+class PackageHost(webgl.Chromium, Engine):
+    """The materials of an npm package, drawn by the page beside a host's module, each in `limit` seconds.
+
+    The page is an ES module that exports `draw(job)`, whose answer has `pixels` or `failed`. `imports`
+    maps names in the page to paths in the folder node_modules; `assets` are PNG files that the renderer
+    would load from the network, by address.
     """
 
     flags = (*webgl.FLAGS, "--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader")
+    title: ClassVar[str]  # of the package, in the version
+    package: ClassVar[str]
+    imports: ClassVar[Mapping[str, str]]
+    assets: ClassVar[Mapping[str, bytes]] = {}
+    backends: ClassVar[tuple[str, ...]] = ("webgl", "webgpu")
 
-    def __init__(
-        self,
-        host: str,
-        page: Path,
-        imports: Mapping[str, str],
-        modules: Path,
-        *,
-        assets: Mapping[str, bytes] | None = None,
-        limit: float = LIMIT,
-    ) -> None:
-        super().__init__(host, limit)
-        self._script = page
-        self._imports = {name: f"/{path}" for name, path in imports.items()}
-        self._modules = modules
-        self._assets = assets or {}
+    def __init__(self, limit: float = LIMIT) -> None:
+        self._modules = modules_folder(self.package, self.name)
+        super().__init__(self.name, limit)
+        self._script = Path(inspect.getfile(type(self))).with_suffix(".js")
         self._picture = lru_cache(maxsize=PICTURES)(
             lambda job, size: pixels(self.ask(json.loads(job)), size)
         )
 
-    def picture(self, job: Mapping[str, object], size: int) -> NDArray[np.float32]:
-        """Picture that the page draws for a job, (size, size, 3), row 0 at the top; read-only."""
-        return self._picture(json.dumps(job), size)
+    def identity(self) -> Identity:
+        answers = [self.ask({"backend": backend}) for backend in self.backends]
+        known = json.loads((self._modules / self.package / "package.json").read_text("utf-8"))
+        version = f"{self.title} {known['version']}, Chromium {answers[0]['browser']}"
+        return Identity(self.name, version, "; ".join(answer["device"] for answer in answers))
+
+    def node(self, material: Material, scene: Scene) -> Array:
+        self.refuse_paths(scene)
+        job = {
+            "size": scene.size,
+            "light": scene.light,
+            "irradiance": math.pi,
+            "environment": scene.environment,
+            **material,
+        }
+        return self._picture(json.dumps(job), scene.size)
 
     def ask(self, job: Mapping[str, object]) -> Answer:
         """The page's answer to a job."""
@@ -112,14 +125,15 @@ class Browser(webgl.Chromium):
         self._page.wait_for_function("window.answer")
 
     def _serve(self, route: Page) -> None:
-        if route.request.url in self._assets:
-            body = self._assets[route.request.url]
+        if route.request.url in self.assets:
+            body = self.assets[route.request.url]
             route.fulfill(body=body, content_type="image/png", headers=SHARED)
             return
         path = route.request.url.removeprefix(ORIGIN)
         if not path:
-            imports = json.dumps({"imports": self._imports})
-            route.fulfill(body=HTML.format(imports=imports), content_type="text/html")
+            imports = {"imports": {name: f"/{path}" for name, path in self.imports.items()}}
+            html = HTML.format(imports=json.dumps(imports))
+            route.fulfill(body=html, content_type="text/html")
             return
         own = {"page.js": self._script, "sphere.js": Path(__file__).with_name("sphere.js")}
         file = own.get(path, self._modules / path)
@@ -127,51 +141,3 @@ class Browser(webgl.Chromium):
             route.fulfill(path=file, content_type=TYPES[file.suffix])
         else:
             route.fulfill(status=404, body="")
-
-
-def pixels(answer: Answer, size: int) -> NDArray[np.float32]:
-    """Picture of an answer, (size, size, 3), row 0 at the top."""
-    values = np.frombuffer(base64.b64decode(answer["pixels"]), dtype=np.float32)
-    return values.reshape(size, size, 4)[..., :3]
-
-
-def material(backend: str, **more: str) -> Material:
-    """Material of a node that a backend draws."""
-    return {"color": "{color}", "roughness": "{roughness}", "backend": backend, **more}
-
-
-class PackageHost(Engine):
-    """The materials of an npm package, drawn on its backends by the page beside a host's module."""
-
-    title: ClassVar[str]  # of the package, in the version
-    package: ClassVar[str]
-    imports: ClassVar[Mapping[str, str]]
-    assets: ClassVar[Mapping[str, bytes]] = {}
-    backends: ClassVar[tuple[str, ...]] = ("webgl", "webgpu")
-
-    def __init__(self, limit: float = LIMIT) -> None:
-        self._modules = modules_folder(self.package, self.name)
-        self._version = package_version(self._modules, self.package)
-        page = Path(inspect.getfile(type(self))).with_suffix(".js")
-        self._browser = Browser(
-            self.name, page, self.imports, self._modules, assets=self.assets, limit=limit
-        )
-
-    def identity(self) -> Identity:
-        answers = [self._browser.ask({"backend": backend}) for backend in self.backends]
-        version = f"{self.title} {self._version}, Chromium {answers[0]['browser']}"
-        return Identity(self.name, version, "; ".join(answer["device"] for answer in answers))
-
-    def close(self) -> None:
-        self._browser.close()
-
-    def node(self, material: Material, scene: Scene) -> Array:
-        self.refuse_paths(scene)
-        job = {
-            "size": scene.size,
-            "light": scene.light,
-            "irradiance": math.pi,
-            "environment": scene.environment,
-            **material,
-        }
-        return self._browser.picture(job, scene.size)

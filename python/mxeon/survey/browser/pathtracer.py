@@ -94,9 +94,7 @@ class Host(browser.PackageHost):
         size = math.isqrt(count - 1) + 1  # the answer comes as a square
         rows = np.zeros((size * size, table.shape[1]), np.float32)
         rows[:count] = table
-        answer = self._browser.ask(
-            {"call": call, "rows": base64.b64encode(rows.tobytes()).decode()}
-        )
+        answer = self.ask({"call": call, "rows": base64.b64encode(rows.tobytes()).decode()})
         return browser.pixels(answer, size).reshape(-1, 3)[:count]
 
     def _source(self) -> str:
