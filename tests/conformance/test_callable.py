@@ -11,7 +11,7 @@ from mxeon.models import table as reference
 from mxeon.models.diffuse import eon_brdf
 
 PARAMETRIC = [row for row in reference.MODELS if row.parameter and row.name != "eon_approx"]
-SEES_ONLY = {"eon_clamped": {"value", "albedo"}, "eon_rho_cubed": {"value", "albedo"}}
+SEES_ONLY = {"eon_clamped": {"value", "integral"}, "eon_rho_cubed": {"value", "integral"}}
 
 # Five lines: what a renderer's own suite would hold.
 test_eon_in_five_lines = mxeon.brdf_test(eon_brdf, "eon")
@@ -57,7 +57,7 @@ def test_values_that_are_not_finite_are_counted_placed_and_the_rest_is_judged():
 
 def test_a_function_without_a_finite_value_fails_every_check_of_them():
     run = mxeon.check_brdf(lambda wo, wi, rho, roughness: np.full(wi.shape, np.nan))
-    assert failed(run) == {"value", "albedo", "black", "reciprocity", "lambert", "inputs", "finite"}
+    assert failed(run) == {"value", "integral", "black", "reciprocity", "lambert", "inputs", "finite"}
 
 
 def test_a_control_that_is_not_caught_is_said_to_be():

@@ -74,7 +74,7 @@ SPHERE = {
 PASSED_THROUGH = {"transmitted": UNSHADOWED, "transmitted_finite": NAN}
 # By title, what does not pass with stock MaterialX, and words of each diagnosis.
 STOCK = {
-    EON: {"value": CLAMPED, "albedo": CLAMPED, "environment": ""},
+    EON: {"value": CLAMPED, "integral": CLAMPED, "environment": ""},
     QON: {"environment": "QON with MaterialX's fit of its albedo"},
     f"{EON}, mdl": {"closure": "FON + white lobe"},
     f"{EON}, osl": {"closure": "energy_compensation is not the node's"},
@@ -218,8 +218,8 @@ def test_a_defect_that_was_repaired_upstream_is_said_to_be_once_all_its_rows_pas
 
     page = "docs/upstream/genglsl_clamped_dot.md"
     assert noted() == {}
-    assert page not in noted("value", "albedo")
-    assert noted("value", "albedo", "lobe")[page].startswith("repaired in MaterialX 2.0")
+    assert page not in noted("value", "integral")
+    assert noted("value", "integral", "lobe")[page].startswith("repaired in MaterialX 2.0")
 
 
 CLAMPED_MODEL = f"best match: {CLAMPED} (rms 0.001), then Lambert (0.2)"

@@ -22,7 +22,7 @@ from mxeon.conformance.reference.nodes import ShownLobe
 from mxeon.conformance.results import FAILED, LIGHTS, PORTRAIT, Picture, Place, Result, of_white
 from mxeon.conformance.samples import Batch, Values
 from mxeon.conformance.specs import surface_shaders as surfaces
-from mxeon.conformance.specs.diffuse import DiffuseModelSpec, SurfaceLobe, model_value
+from mxeon.conformance.specs.diffuse import DiffuseModelSpec, SurfaceLobe
 from mxeon.conformance.specs.hair import lobe_terms
 from mxeon.conformance.specs.microfacets import ERRORS as FACET_ERRORS
 from mxeon.conformance.specs.microfacets import (
@@ -425,7 +425,7 @@ def comparison_pictures(case: Case) -> tuple[Picture, ...]:
         where[where] = judged
         batch = Batch(wo[judged], wi[judged], PORTRAYED, scene)
         image, expected = (np.zeros((*where.shape, 3), np.float32) for _ in range(2))
-        image[where], expected[where] = case.direct(batch), model_value(batch, case.spec.model)
+        image[where], expected[where] = case.direct(batch), case.expected(batch)
         names = (PORTRAIT, case.spec.title, case.host.name, case.library, scene.name)
         keys = ("document", "element", "host", "library", "scene")
         metadata = dict(zip(keys, names, strict=True)) | {"version": mxeon.__version__}

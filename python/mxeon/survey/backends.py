@@ -38,7 +38,6 @@ from mxeon.conformance.samples import (
     special_directions,
 )
 from mxeon.conformance.spec import Spec
-from mxeon.conformance.specs.diffuse import model_value
 from mxeon.conformance.tolerance import Term, Tolerance, mean_error, roundings, sum_in, sum_of
 from mxeon.models import table as reference
 from mxeon.shaders.scene import FURNACE, Scene, sphere
@@ -160,9 +159,10 @@ class Exact(Native):
         batch = self.sampled(self).batches[0]
         values = self.direct(batch)
         errors = {
-            form: float(np.abs(values - model_value(batch, form)).max()) for form in self.node.forms
+            form: float(np.abs(values - form.value(batch)).max())
+            for form in (replace(self.node, model=each) for each in self.node.forms)
         }
-        return replace(self.node, model=min(errors, key=errors.__getitem__))
+        return min(errors, key=errors.__getitem__)
 
 
 class FacetSamples(FormSamples):

@@ -39,7 +39,7 @@ from mxeon.hosts.base import Host, Identity
 from mxeon.models import table as reference
 
 # Checks of values alone: a function has no environment branch and no flag.
-KEYS = ("value", "albedo", "black", "reciprocity", "lambert", "inputs", "finite")
+KEYS = ("value", "integral", "black", "reciprocity", "lambert", "inputs", "finite")
 LIBRARY = "callable"
 
 Brdf = Callable[[Array, Array, Array, Array], ArrayLike]  # of wo, wi, rho, roughness
@@ -239,5 +239,5 @@ def _checks(model: str) -> tuple[Check, ...]:
     return tuple(
         _of_rest(check)
         for check in CHECKS
-        if check.key in KEYS and (check.key != "albedo" or row.albedo_dir)
+        if check.key in KEYS and (check.key != "integral" or row.albedo_dir)
     )

@@ -29,7 +29,7 @@ CHECKS = {
     "direct": DIRECT,
     "surroundings": ("environment",),
     "energy": ("furnace",),
-    "color": ("albedo", "environment"),
+    "color": ("integral", "environment"),
     "black": ("black",),
     "back": (),
 }

@@ -185,13 +185,12 @@ def reflected_sky(case: Case) -> Iterator[Compared]:
     Means of the sky under each lobe, which one for a mirrored view has by retroreflection; factors cancel.
     """
     views = case.samples.take(case.of(FacetSpec).stretched)[0].first(SKIES)
-    wi, weights = case.of(FacetSpec).nodes(views.wo, dict(views.inputs), case.samples.counts.nodes)
-    part = views.where(np.repeat(np.arange(len(wi)), wi.shape[1]))
-    part = replace(part, wi=wi.reshape(-1, 3))
-    values = case.lobe.value(part).reshape(wi.shape) * weights[:, :, np.newaxis]
+    part, weights = case.of(FacetSpec).lit(views, case.samples.counts.nodes)
+    shape = (*weights.shape, 3)
+    values = case.lobe.value(part).reshape(shape) * weights[:, :, np.newaxis]
     albedo = values.sum(axis=1)
     bright = albedo.min(axis=1) > LEAST_VALUE
-    seen = (values * sky(part.wi).reshape(wi.shape)).sum(axis=1)
+    seen = (values * sky(part.wi).reshape(shape)).sum(axis=1)
     views, mean = views.where(bright), seen[bright] / albedo[bright]
     mirrored = replace(views, wo=views.wo * [-1.0, -1.0, 1.0])
     for each in (views, mirrored.altered(retroreflective=True)):

@@ -23,11 +23,10 @@ from numpy.typing import NDArray
 from mxeon.conformance.cache import Recent, contents
 from mxeon.conformance.samples import Array
 from mxeon.errors import NotRun, OutsideModel
-from mxeon.models import table
 from mxeon.models.core import layering
 from mxeon.models.core.layering import Bsdf, throughput
 from mxeon.models.media import diffusion_blur, transmittance
-from mxeon.models.nodes import NODES
+from mxeon.models.nodes import NODES, diffuse_node
 from mxeon.models.nodes.lobes import HAIR_NODE, SUBSURFACE_NODE
 from mxeon.models.nodes.media import METER
 from mxeon.models.nodes.microfacets import TRANSMISSION_NODES, TRANSMISSIONS, isotropic
@@ -47,19 +46,6 @@ ANISOTROPIC = ((32, 16), (48, 32))
 AT_ONCE = 1 << 12  # arguments of a series at once
 KEPT = 4  # lobes of the pictures of a scene, of up to 2.5 megabytes each
 SEPARATE = 1000  # directions, whose albedos are as soon computed one by one
-
-
-def diffuse(name: str, category: str) -> PbrNode:
-    """A model of the Oren-Nayar family as the row of a node."""
-    model = table.model(name)
-    return PbrNode(
-        name,
-        model.title,
-        category,
-        ("color", "roughness"),
-        lambda wo, wi, inputs: model.brdf(wo, wi, inputs["color"], inputs["roughness"]),
-        lambda wo, inputs: model.closed_albedo_dir(wo[:, 2], inputs["color"], inputs["roughness"]),
-    )
 
 
 class ManyMaterialsError(Exception):
@@ -311,7 +297,7 @@ def _within(axes: Array, directions: Array) -> Array:
     return np.asarray(local / np.linalg.norm(local, axis=1, keepdims=True), np.float64)
 
 
-DIFFUSE = {False: diffuse("qon", OREN_NAYAR), True: diffuse("eon", EON)}
+DIFFUSE = {False: diffuse_node("qon", OREN_NAYAR), True: diffuse_node("eon", EON)}
 ROWS = (*NODES, *INNER_NODES)
 LOBES = {
     category: tuple(row for row in ROWS if row.category == category)

@@ -14,7 +14,7 @@ import numpy as np
 from mxeon.conformance.backends import backend_of, own_nodes
 from mxeon.conformance.case import Case, make_case
 from mxeon.conformance.checks import CHECKS
-from mxeon.conformance.checks.lobes import integrated
+from mxeon.conformance.checks.lobes import summed
 from mxeon.conformance.pictures import (
     DOCUMENT_CLAIM,
     MATCH,
@@ -36,9 +36,10 @@ from mxeon.conformance.run.plan import (
     Task,
     diffuse_specs,
 )
-from mxeon.conformance.samples import SEED
+from mxeon.conformance.samples import SEED, Batch, directions_at
 from mxeon.conformance.shader_functions import judge_functions
 from mxeon.conformance.specs import ALL
+from mxeon.conformance.specs.diffuse import DiffuseSpec
 from mxeon.conformance.text import check_definitions, check_texts
 from mxeon.errors import DocumentError, ImageError, InterfaceError, NotRun, ShaderError
 from mxeon.hosts import open_engine
@@ -135,11 +136,13 @@ class Judge:
                 return Findings(judge_functions(host, task.library))
         case = self._case(host, task.subject, task.library, task.seed)
         if task.check == CURVE:
-            inputs = CURVE_COLOR, CURVE_ROUGHNESS
-            measured, expected = integrated(case, CURVE_COSINES, *inputs)
-            names = case.spec.title, host.name, case.library
-            curve = AlbedoCurve(*names, *inputs, CURVE_COSINES, measured, expected)
-            return Findings(curves=(curve,))
+            wo = directions_at(CURVE_COSINES, 0.0)
+            views = Batch(wo, wo, {"color": CURVE_COLOR, "roughness": CURVE_ROUGHNESS})
+            pairs = case.of(DiffuseSpec).lit(views, case.samples.counts.nodes)
+            views, measured = summed(case, *pairs)
+            place, expected = (task.subject, task.host, task.library), case.expected_albedo(views)
+            inputs = CURVE_COLOR, CURVE_ROUGHNESS, CURVE_COSINES
+            return Findings(curves=(AlbedoCurve(*place, *inputs, measured, expected),))
         check = next(each for each in CHECKS if each.key == task.check)
         results = (check.judge(case),)
         pictures: tuple[Picture, ...] = ()

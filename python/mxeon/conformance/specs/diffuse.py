@@ -2,9 +2,9 @@
 """The rough diffuse nodes, each mode with the model it has to be, and the diffuse lobes of surface shaders."""
 
 import math
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
-from functools import partial
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from itertools import product
 from typing import ClassVar
 
@@ -15,14 +15,17 @@ from mxeon.conformance.samples import (
     TURNED,
     Array,
     Batch,
-    Candidate,
     Counts,
     Values,
     directions_at,
 )
-from mxeon.conformance.spec import CHANGED_COLOR, Input, LobeSpec, color, draw, draw_edges
+from mxeon.conformance.spec import CHANGED_COLOR, Input, color
+from mxeon.conformance.specs.lobes import ScatteringSpec
 from mxeon.conformance.tolerance import Term, roundings, sum_in
 from mxeon.models import table as reference
+from mxeon.models.core.quadrature import hemisphere_nodes
+from mxeon.models.nodes import diffuse_node
+from mxeon.models.nodes.node import PbrNode, Variant
 from mxeon.models.table import Model
 from mxeon.shaders.nodes import (
     EON,
@@ -36,6 +39,7 @@ from mxeon.shaders.nodes import (
 
 EDGES = (0.0, 1e-6, 1e-3, 1.0)  # of a color channel, and of the roughness in units of the largest
 UNIT = "pi f cos"
+COUNTS = Counts(nodes=16)  # which reach 2e-8, the rounding of directions
 LOSS_FIT = 2.7e-7  # relative error of the fit of FON's loss H: tools/fits
 
 VALUE = sum_in(
@@ -83,38 +87,18 @@ def inputs_of(*names: str) -> tuple[Input, ...]:
     return tuple(each for each in INPUTS if each.name in names)
 
 
-def model_value(batch: Batch, model: str) -> Array:
-    """pi f cos(theta_i) of a model or a known defect with weight and occlusion, (N, 3).
-
-    It is 0 for light from below the horizon.
-    """
-    row = reference.model(model)
-    parameter = [batch.inputs["roughness"]] if row.parameter else []
-    above = batch.wi * np.where(batch.wi[:, 2:] < 0.0, [1.0, 1.0, -1.0], 1.0)
-    value: Array = row.brdf(batch.wo, above, batch.inputs["color"], *parameter)
-    occlusion = np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))
-    return np.pi * value * np.clip(batch.wi[:, 2:], 0.0, 1.0) * (batch.strength * occlusion)
-
-
-def model_albedo(batch: Batch, model: str) -> Array:
-    """Directional albedo of a model or a known defect with weight, (N, 3)."""
-    row = reference.model(model)
-    parameter = [batch.inputs["roughness"]] if row.parameter else []
-    mu = np.minimum(batch.wo[:, 2], 1.0)
-    return batch.strength * row.closed_albedo_dir(mu, batch.inputs["color"], *parameter)
-
-
 @dataclass(frozen=True, eq=False, kw_only=True)
-class DiffuseModelSpec(LobeSpec):
+class DiffuseModelSpec(ScatteringSpec):
     """What has to be a rough diffuse model: a row of `mxeon.models.table`."""
 
+    row: PbrNode = field(init=False)
+    counts: Counts = COUNTS
     beside: bool = False  # whether lobes that ignore the color lie beside it
 
     flat: ClassVar[bool] = True
 
-    @property
-    def row(self) -> Model:
-        return reference.model(self.model)
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "row", _row(self.model, self.node, self.other_models))
 
     @property
     def other_models(self) -> tuple[Model, ...]:
@@ -122,50 +106,19 @@ class DiffuseModelSpec(LobeSpec):
         return ()
 
     @property
-    def value_candidates(self) -> tuple[Candidate, ...]:
-        rows = {
-            row.brdf: row for row in self.other_models + reference.KNOWN_DEFECTS + reference.MODELS
-        }
-        rows[self.row.brdf] = self.row
-        return self._candidates(rows.values(), model_value)
-
-    @property
-    def albedo_candidates(self) -> tuple[Candidate, ...]:
-        rows = reference.MODELS + reference.KNOWN_DEFECTS + self.other_models
-        return self._candidates((row for row in rows if row.albedo_dir), model_albedo)
-
-    def _candidates(
-        self, rows: Iterable[Model], output: Callable[[Batch, str], Array]
-    ) -> tuple[Candidate, ...]:
-        ordered = sorted(rows, key=lambda row: row.name != self.model)
-        return tuple(Candidate(row.title, partial(_limited, row, output)) for row in ordered)
-
-    @property
-    def black(self) -> Values:
-        return {"color": (0.0, 0.0, 0.0)}
-
-    def value(self, batch: Batch) -> Array:
-        return model_value(batch, self.model)
-
-    def albedo(self, batch: Batch) -> Array:
-        return model_albedo(batch, self.model)
-
-    @property
     def drawn(self) -> tuple[Input, Input]:
         """Its inputs; no roughness exceeds the model's largest by a rounding."""
-        most = np.float32(self.row.largest)
-        high = float(most if most <= self.row.largest else np.nextafter(most, np.float32(0.0)))
+        largest = reference.model(self.model).largest
+        most = np.float32(largest)
+        high = float(most if most <= largest else np.nextafter(most, np.float32(0.0)))
         edges = tuple(high * each for each in EDGES)
         return color("color", edges=EDGES), Input("roughness", high=high, edges=edges)
 
     def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
         """The last colors are gray."""
-        inputs = draw(rng, count, self.drawn)
+        inputs = super().random_inputs(rng, count)
         inputs["color"][-(count // 16) :] = inputs["color"][-(count // 16) :, :1]
         return inputs
-
-    def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        return draw_edges(rng, count, self.drawn)
 
     def edges(self, counts: Counts) -> Batch:
         cosine = [0.0, 1e-30, 1e-6, 0.5, 1.0]
@@ -174,11 +127,31 @@ class DiffuseModelSpec(LobeSpec):
         wo, wi = directions_at(mu_o, 0.0), directions_at(mu_i, azimuth)
         return Batch(wo, wi, {"color": np.stack([color] * 3, axis=-1), "roughness": roughness})
 
+    def nodes(self, wo: Array, inputs: dict[str, Array], count: int) -> tuple[Array, Array]:
+        _, wi, weights = hemisphere_nodes(wo[:, 2], count)
+        azimuth = np.arctan2(wo[:, 1:2], wo[:, :1]) + np.arctan2(wi[..., 1], wi[..., 0])
+        return directions_at(wi[..., 2], azimuth), weights / (np.pi * wi[..., 2])
 
-def _limited(row: Model, output: Callable[[Batch, str], Array], batch: Batch) -> Array:
-    """Output of a model where no roughness exceeds its largest."""
-    roughness = np.minimum(batch.inputs["roughness"], row.largest)
-    return output(batch.altered(roughness=roughness), row.name)
+
+@lru_cache(maxsize=32)
+def _row(model: str, node: str, others: tuple[Model, ...]) -> PbrNode:
+    """A model as the row of a node, with all others that it may be."""
+    rows = {each.name: each for each in others + reference.KNOWN_DEFECTS + reference.MODELS}
+    owners = {each.brdf: each.name for each in (*rows.values(), reference.model(model))}
+    variants = []
+    for each in rows.values():
+        row, most = diffuse_node(each.name, node), each.largest
+        value = _limited(row.value, most) if owners[each.brdf] == each.name else None
+        albedo = _limited(row.albedo, most) if each.albedo_dir else None
+        variants += [Variant(each.title, value, albedo)] * (each.name != model)
+    return replace(diffuse_node(model, node), variants=tuple(variants))
+
+
+def _limited(function: Callable[..., Array], most: float) -> Callable[..., Array]:
+    """A function of directions and inputs where no roughness exceeds the largest."""
+    return lambda *given: function(
+        *given[:-1], {**given[-1], "roughness": np.minimum(given[-1]["roughness"], most)}
+    )
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

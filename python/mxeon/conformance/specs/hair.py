@@ -247,7 +247,7 @@ class HairSpec(PbrSpec):
         return {**inputs, **wide, "cuticle_angle": np.full(len(inputs["ior"]), 0.5)}
 
     def nodes(self, wo: Array, inputs: dict[str, Array], count: int) -> tuple[Array, Array]:
-        """Directions (M, K, 3) and weights (M, K) of a quadrature over all lights."""
+        # Over all lights.
         x, w = np.polynomial.legendre.leggauss(count)
         phi = np.pi * (np.arange(2 * count) + 0.5) / count
         sine, angle = (each.ravel() for each in np.meshgrid(x, phi))

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A mode of a BSDF node of `mxeon.models.nodes`, and the terms of errors that such nodes share."""
 
+from abc import abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
@@ -74,10 +75,89 @@ def lobe_errors(
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class PbrSpec(RowSpec, LobeSpec):
-    """A mode of a BSDF node: a row of `mxeon.models.nodes`."""
+class ScatteringSpec(RowSpec, LobeSpec):
+    """A node that scatters light as a row says."""
 
     row: PbrNode
+
+    @property
+    def black(self) -> Values:
+        names = ("color", "tint", "color0", "color90")
+        return {name: (0.0, 0.0, 0.0) for name in names if name in self.row.inputs}
+
+    @property
+    def side(self) -> float:
+        return -1.0 if self.row.transmits else 1.0
+
+    # What it has to be.
+
+    def values(self, function: Scattering, batch: Batch) -> Array:
+        """pi f |cos(theta_i)| with weight and occlusion, (N, 3); 0 on the other side."""
+        side = np.where(batch.wi[:, 2:] < 0.0, -1.0, 1.0) * (-1.0 if self.row.transmits else 1.0)
+        wi = batch.wi * np.concatenate([np.ones((len(side), 2)), side], axis=1)
+        occlusion = np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))
+        factor = batch.strength * (1.0 if self.row.transmits else occlusion)
+        lit = np.where(side < 0.0, 0.0, np.clip(np.abs(wi[:, 2:]), 0.0, 1.0))
+        return np.asarray(np.pi * function(batch.wo, wi, broadcast_inputs(batch)) * lit * factor)
+
+    def albedo(self, batch: Batch) -> Array:
+        return _albedo(self.row.albedo, batch)
+
+    def integral(self, batch: Batch) -> Array:
+        """Integral of the values with weight, (N, 3)."""
+        return _albedo(self.row.integral or self.row.albedo, batch)
+
+    @property
+    def albedo_candidates(self) -> tuple[Candidate, ...]:
+        own = Candidate(self.row.title, self.albedo)
+        variants = (
+            Candidate(each.title, partial(_albedo, each.albedo), each.permitted)
+            for each in self.row.variants
+            if each.albedo
+        )
+        return (own, *variants, ZERO)
+
+    # Its samples.
+
+    def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
+        return draw_edges(rng, count, self.drawn)
+
+    def integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
+        """The inputs of which a quadrature has all light."""
+        return inputs
+
+    def integrated(
+        self, counts: Counts, taken: Callable[[dict[str, Array]], dict[str, Array]]
+    ) -> tuple[Batch, Array]:
+        """Materials, each lit from the directions of a quadrature, and the weights of their values."""
+        rng, count = generator(), counts.materials
+        mu = LEAST_VIEW + (1.0 - LEAST_VIEW) * rng.random(count)
+        inputs = self.random_inputs(rng, count)
+        if self.row.mirror:  # a rough one: a fit of a compensation makes most light of it
+            mu[0] = 0.1
+            for name, value in {**self.row.mirror, "roughness": 1.0}.items():
+                inputs[name][0] = value
+        wo = directions_at(mu, 2.0 * np.pi * rng.random(count))
+        return self.lit(Batch(wo, wo, taken(self.integrable(inputs))), counts.nodes)
+
+    def lit(self, views: Batch, count: int) -> tuple[Batch, Array]:
+        """Each view lit from the directions of a quadrature, and the weights of its values.
+
+        The weighted sum of pi f cos over a view's directions is its directional albedo.
+        """
+        wi, weights = self.nodes(views.wo, dict(views.inputs), count)
+        pairs = views.where(np.repeat(np.arange(len(wi)), wi.shape[1]))
+        return replace(pairs, wi=wi.reshape(-1, 3)), weights
+
+    @abstractmethod
+    def nodes(self, wo: Array, inputs: dict[str, Array], count: int) -> tuple[Array, Array]:
+        """Directions (M, K, 3) and weights (M, K) of a quadrature over each view's hemisphere."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class PbrSpec(ScatteringSpec):
+    """A mode of a BSDF node: a row of `mxeon.models.nodes`."""
+
     counts: Counts = COUNTS
 
     least_cosine: ClassVar[float] = 0.0  # of a view whose albedo is compared
@@ -99,42 +179,12 @@ class PbrSpec(RowSpec, LobeSpec):
         return materials(WEIGHT, *self.drawn)
 
     @property
-    def black(self) -> Values:
-        names = ("color", "tint", "color0", "color90")
-        return {name: (0.0, 0.0, 0.0) for name in names if name in self.row.inputs}
-
-    @property
-    def side(self) -> float:
-        return -1.0 if self.row.transmits else 1.0
-
-    @property
     def mode(self) -> Values:
         return self.row.fixed
 
     def document(self, inputs: Values | None = None) -> str:
         values = {**(inputs or {}), **self.row.fixed}
         return material_text(self.node, values, self.node, self.types)
-
-    def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        return draw_edges(rng, count, self.drawn)
-
-    # What it has to be.
-
-    def values(self, function: Scattering, batch: Batch) -> Array:
-        """pi f |cos(theta_i)| with weight and occlusion, (N, 3); 0 on the other side."""
-        side = np.where(batch.wi[:, 2:] < 0.0, -1.0, 1.0) * (-1.0 if self.row.transmits else 1.0)
-        wi = batch.wi * np.concatenate([np.ones((len(side), 2)), side], axis=1)
-        occlusion = np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))
-        factor = batch.strength * (1.0 if self.row.transmits else occlusion)
-        lit = np.where(side < 0.0, 0.0, np.clip(np.abs(wi[:, 2:]), 0.0, 1.0))
-        return np.asarray(np.pi * function(batch.wo, wi, broadcast_inputs(batch)) * lit * factor)
-
-    def albedo(self, batch: Batch) -> Array:
-        return _albedo(self.row.albedo, batch)
-
-    def integral(self, batch: Batch) -> Array:
-        """Integral of the values with weight, (N, 3)."""
-        return _albedo(self.row.integral or self.row.albedo, batch)
 
     def sky(self, batch: Batch) -> Array:
         return sky(self.side * batch.normal)
@@ -153,16 +203,6 @@ class PbrSpec(RowSpec, LobeSpec):
             return opaque.values(mirrored, batch.altered(occlusion=1.0))  # light through the base
 
         return Candidate("a reflection instead", reflection), ZERO
-
-    @property
-    def albedo_candidates(self) -> tuple[Candidate, ...]:
-        own = Candidate(self.row.title, self.albedo)
-        variants = (
-            Candidate(each.title, partial(_albedo, each.albedo), each.permitted)
-            for each in self.row.variants
-            if each.albedo
-        )
-        return (own, *variants, ZERO)
 
     # Its samples.
 
@@ -184,33 +224,7 @@ class PbrSpec(RowSpec, LobeSpec):
         wi[5::12] = -wo[5::12]
         return Batch(wo, wi, inputs)
 
-    def integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
-        """The inputs of which a quadrature has all light."""
-        return inputs
-
-    def integrated(
-        self, counts: Counts, taken: Callable[[dict[str, Array]], dict[str, Array]]
-    ) -> tuple[Batch, Array]:
-        """Materials, each in nodes^2 directions of light, and the weights of their values.
-
-        The weighted sum of pi f cos over a material's directions is its directional albedo.
-        """
-        rng, count = generator(), counts.materials
-        mu = LEAST_VIEW + (1.0 - LEAST_VIEW) * rng.random(count)
-        inputs = self.random_inputs(rng, count)
-        if self.row.mirror:  # a rough one: a fit of a compensation makes most light of it
-            mu[0] = 0.1
-            for name, value in {**self.row.mirror, "roughness": 1.0}.items():
-                inputs[name][0] = value
-        wo = directions_at(mu, 2.0 * np.pi * rng.random(count))
-        inputs = taken(self.integrable(inputs))
-        wi, weights = self.nodes(wo, inputs, counts.nodes)
-        each = np.repeat(np.arange(count), wi.shape[1])
-        spread = {name: values[each] for name, values in inputs.items()}
-        return Batch(wo[each], wi.reshape(-1, 3), spread), weights
-
     def nodes(self, wo: Array, inputs: dict[str, Array], count: int) -> tuple[Array, Array]:
-        """Directions (M, K, 3) and weights (M, K) of a quadrature over each view's hemisphere."""
         # Gauss nodes, moved to the horizon and to the normal, and even azimuths.
         x, w = np.polynomial.legendre.leggauss(count)
         t = 0.5 * (x + 1.0)

@@ -335,8 +335,7 @@ class FacetSpec(PbrSpec):
         return simple(inputs)
 
     def nodes(self, wo: Array, inputs: dict[str, Array], count: int) -> tuple[Array, Array]:
-        """Directions and weights of a quadrature over the normals that each view sees."""
-        # Gauss nodes of the height of visible normals, and even azimuths.
+        # Gauss nodes of the height of the normals that each view sees, and even azimuths.
         x, w = np.polynomial.legendre.leggauss(count)
         height, around = np.meshgrid(0.5 * (x + 1.0), (np.arange(count) + 0.5) / count)
         size = height.size
