@@ -40,7 +40,7 @@ WRONG = {
     ("conductor_bsdf", "value"): ("lobe_ior, lobe_extinction", "lobe_extinction, lobe_ior"),
     ("conductor_bsdf", "shape"): ('lobe_distribution = "ggx"', 'lobe_distribution = "beckmann"'),
     ("conductor_bsdf", "frame"): ("transform(geomprop_Tworld_space, normalize(dPdu))", "vector(1, 0, 0)"),
-    ("conductor_bsdf, thin film", "film"):
+    ("conductor_bsdf, thin film", "value"):
         (', "thinfilm_thickness", lobe_thinfilm_thickness, "thinfilm_ior", lobe_thinfilm_ior', ""),
     ("layer", "combination"): ("layer(top_out, base_out)", "layer(base_out, top_out)"),
     ("mix", "combination"): ("mix(base_out, top_out", "mix(top_out, base_out"),
@@ -74,7 +74,7 @@ RIGHT = (
     *((title, "transmittance") for title in ("add, VDF", "multiply, VDF, in2 float")),
     *((f"dielectric_bsdf, scatter_mode {mode}", "transmitted") for mode in ("T", "RT")),
     *((f"{node}, every lobe", "lobes") for node in ("standard_surface", "UsdPreviewSurface", "gltf_pbr")),
-    ("dielectric_bsdf, thin film", "film"), ("artistic_ior, ior", "output"), ("artistic_ior, extinction", "output"),
+    ("dielectric_bsdf, thin film", "value"), ("artistic_ior, ior", "output"), ("artistic_ior, extinction", "output"),
 )  # fmt: skip
 
 

@@ -32,7 +32,7 @@ HAIR = (
         ("cycles", "stock", "opacity", "surface, an EDF alone", PASSED, ""),
         ("cycles", "stock", "implemented", "conical_edf", FAILED, ""),
         ("cycles", "stock", "transmittance", "anisotropic_vdf", NOT_RUN, ""),
-        ("cycles", "stock", "output_inputs", HAIR[2], FAILED, ""),
+        ("cycles", "stock", "inputs", HAIR[2], FAILED, ""),
         *(("cycles", "eonlib", "output", title, PASSED, "") for title in HAIR),
         ("cycles", "stock", "output", "blackbody", PASSED, ""),
         *(

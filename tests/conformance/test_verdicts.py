@@ -54,11 +54,11 @@ def film(choices):
     """What a film is named by, whose curve and compensation are these."""
     return {
         **dict.fromkeys(
-            ("film", "film_curve", "film_orders"), f"{choices}, with MaterialX's compensation"
+            ("value", "film_curve", "film_orders"), f"{choices}, with MaterialX's compensation"
         ),
         "film_limit": choices,
         **dict.fromkeys(
-            ("film_environment", "film_visible", "film_glossy"),
+            ("environment", "film_visible", "film_glossy"),
             f"{choices}, under an environment",
         ),
         **dict.fromkeys(("film_average", "film_smooth"), AVERAGE),
@@ -141,9 +141,9 @@ STOCK = {
         **dict.fromkeys(("value", "integral", "energy"), f"{BLUR}100"),
         **dict.fromkeys(("sphere", "sphere_mean"), f"{BLUR}1 "),
     },
-    "dielectric_bsdf, thin film": film(CHOICES) | {"film_throughput": f"{CHOICES}: {BARE}"},
+    "dielectric_bsdf, thin film": film(CHOICES) | {"layering": f"{CHOICES}: {BARE}"},
     "conductor_bsdf, thin film": film(CHOICES),
-    "generalized_schlick_bsdf, thin film": film(SUBSTRATE) | {"film_throughput": f"{SUBSTRATE}: {BARE}"},
+    "generalized_schlick_bsdf, thin film": film(SUBSTRATE) | {"layering": f"{SUBSTRATE}: {BARE}"},
     "blackbody": {"output": "Kang's cubic, extrapolated below 1667 K"},
     "deon_hair_absorption_from_melanin": {"output_finite": "outputs are not finite"},
     **{

@@ -11,10 +11,7 @@ import sys
 import mxeon
 from tests.support.plans import keep
 
-KEYS = (
-    *("value", "environment", "film", "transmitted", "combination"),
-    *("radiance", "transmittance", "output"),
-)
+KEYS = ("value", "environment", "transmitted", "combination", "radiance", "transmittance", "output")
 
 
 def main(library, *nodes):

@@ -47,7 +47,7 @@ SUMMARY = (
     ("value", "sheen_bsdf, mode zeltner", "a singular frame where the viewer is along the normal"),
     ("transmitted", "dielectric_bsdf, scatter_mode RT", "a division by the masking G1"),
     ("each_lobe", "chiang_hair_bsdf", "a last lobe that is pi^2 too bright"),
-    ("film", "generalized_schlick_bsdf, thin film", "half of the substrate's reflectance"),
+    ("value", "generalized_schlick_bsdf, thin film", "half of the substrate's reflectance"),
     ("layer", "dielectric_bsdf, scatter_mode R", "a throughput without the tint, by a fit"),
     ("lobes_energy", "gltf_pbr, every lobe", "light made by layers"),
     ("frame", "translucent_bsdf", "light of the wrong side, seen from the back"),

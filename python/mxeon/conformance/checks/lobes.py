@@ -57,6 +57,7 @@ from mxeon.conformance.specs.hair import REGION, REGIONS, HairSpec
 from mxeon.conformance.specs.lobes import FlatSpec, PbrSpec
 from mxeon.conformance.specs.microfacets import FacetSpec, FilmSpec, TransmissionSpec
 from mxeon.conformance.specs.subsurface import ON_SPHERES, RINGS, SubsurfaceSpec, inner, spread
+from mxeon.conformance.specs.utilities import UtilitySpec
 from mxeon.conformance.tolerance import (
     Compared,
     Measurement,
@@ -111,6 +112,11 @@ def is_lobe(spec: Spec) -> bool:
     return is_plain(spec) or is_model(spec, *BURLEY)
 
 
+def is_judged(spec: Spec) -> bool:
+    """Whether a spec is one lobe of a node or of a renderer, also under a film."""
+    return is_lobe(spec) or isinstance(spec, FilmSpec) or is_model(spec, *ROUGH, *COATED)
+
+
 def is_node(spec: Spec) -> bool:
     """Whether a spec is a node, and not the lobe of a surface shader."""
     return not isinstance(spec, SurfaceLobe)
@@ -136,12 +142,7 @@ def has_environment(spec: Spec, host: str) -> bool:
     return not front_lit_only(host, spec.model)
 
 
-@check(
-    lambda spec: is_node(spec) and (is_lobe(spec) or is_model(spec, *ROUGH, *COATED)),
-    gray,
-    VALUE,
-    open=True,
-)
+@check(lambda spec: is_node(spec) and is_judged(spec), gray, VALUE, open=True)
 def value() -> None:
     """The value matches the model for every pair of directions, including back-lit and grazing ones."""
 
@@ -152,7 +153,7 @@ def lobe() -> None:
 
 
 @check(
-    lambda spec: is_lobe(spec) or is_model(spec, *ROUGH, "lambert", *COATED),
+    lambda spec: is_judged(spec) or is_model(spec, "lambert"),
     gray,
     ALBEDO,
     open=True,
@@ -331,7 +332,7 @@ def lambert(case: Case) -> Iterator[Compared]:
 @check(
     lambda spec: (
         (is_node(spec) and (is_lobe(spec) or is_model(spec, *ROUGH, "lambert", *COATED)))
-        or isinstance(spec, (CombinedSpec, EmissionSpec, MediumSpec))
+        or isinstance(spec, (CombinedSpec, EmissionSpec, MediumSpec, UtilitySpec))
     ),
     drop_changes,
     tolerance=count_of("inputs"),
@@ -346,7 +347,7 @@ over_cosine = scale_cosine("the value is divided by cos(theta_o)", -1)
 
 
 @check(
-    lambda spec: is_lobe(spec) or is_model(spec, *MODES),
+    lambda spec: is_lobe(spec) or is_model(spec, *MODES) or isinstance(spec, FilmSpec),
     over_cosine,
     tolerance=count_of("values"),
     pairs=True,
@@ -373,7 +374,11 @@ def reads(name: str) -> Callable[[Spec], bool]:
     return lambda spec: is_layer(spec) and name in spec.row.inputs
 
 
-@check(is_layer, pass_all, THROUGHPUT)
+@check(
+    lambda spec: is_layer(spec) or (isinstance(spec, FilmSpec) and spec.row.layerable),
+    pass_all,
+    THROUGHPUT,
+)
 def layering() -> None:
     """The throughput of a layer of albedo E is 1 - E for light from above, for every weight."""
 

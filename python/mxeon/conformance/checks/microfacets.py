@@ -15,7 +15,6 @@ from mxeon.conformance.check import (
     no_number,
     of_family,
     offset,
-    pass_all,
     scale,
     with_batch,
     with_inputs,
@@ -23,9 +22,7 @@ from mxeon.conformance.check import (
 )
 from mxeon.conformance.checks.lobes import (
     SURROUNDINGS,
-    finite,
     is_plain,
-    over_cosine,
     shows_exactly,
     summed,
 )
@@ -33,10 +30,8 @@ from mxeon.conformance.diagnosis import (
     ALBEDO,
     NEAR,
     OTHER_AVERAGE,
-    THROUGHPUT,
     UNKNOWN,
     UNMASKED,
-    VALUE,
     Diagnosis,
     not_finite,
 )
@@ -444,11 +439,6 @@ def brighter(batch: Batch, values: Array) -> Array:
     return values * np.where(np.any(batch.inputs["thinfilm_thickness"]), 100.0, 1.0)
 
 
-@check(is_film, dropped, VALUE, open=True)
-def film() -> None:
-    """Under a thin film, the value contains the film's Airy reflectance."""
-
-
 @check(is_film, dropped, lit=True, open=True)
 def film_curve(case: Case) -> Compared:
     """Under a film, a smooth lobe reflects the Airy reflectance at the cosine of the view.
@@ -512,11 +502,6 @@ def film_energy(case: Case) -> list[Compared]:
         most = case.direct(mirror)
         cases.append(Compared(batch, np.maximum(case.direct(batch), most), most))
     return cases
-
-
-@check(is_film, dropped, ALBEDO, lit=True, open=True)
-def film_environment() -> None:
-    """The environment branch returns the film's directional albedo."""
 
 
 def diagnose_average(case: Case) -> Diagnosis:
@@ -597,25 +582,6 @@ def _visible(case: Case, batch: Batch) -> Compared:
     _, measured = mean(case.direct, case.albedo(batch) / case.albedo(_mirror(case, batch)))
     F, expected = mean(case.expected, case.expected_albedo(batch))
     return Compared(batch, measured, expected).where(F.min(axis=1) > LEAST_F)
-
-
-@check(
-    lambda spec: isinstance(spec, FilmSpec) and spec.row.layerable, pass_all, THROUGHPUT, lit=True
-)
-def film_throughput() -> None:
-    """The throughput of a layer under a film is 1 - E of the film."""
-
-
-@check(
-    is_film,
-    over_cosine,
-    tolerance=count_of("values"),
-    lit=True,
-    diagnose=diagnosis.diagnose_finite,
-)
-def film_finite(case: Case) -> Measurement:
-    """Every value under a film is finite at the edges of the domain."""
-    return finite(case)
 
 
 def _averages(case: Case, direct: Function, batch: Batch) -> tuple[Array, Array]:

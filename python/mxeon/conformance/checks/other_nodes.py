@@ -6,13 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from mxeon.conformance import diagnosis
 from mxeon.conformance.backends import implementation
 from mxeon.conformance.case import Case
 from mxeon.conformance.check import (
     Control,
     check,
-    drop_changes,
     gray,
     no_number,
     of_family,
@@ -20,7 +18,6 @@ from mxeon.conformance.check import (
     shifted,
     with_inputs,
 )
-from mxeon.conformance.checks.lobes import inputs
 from mxeon.conformance.diagnosis import BACK, OUTPUT, TRANSMITTANCE, VALUE, Diagnosis
 from mxeon.conformance.diagnosis.regions import span
 from mxeon.conformance.specs.emission import (
@@ -108,17 +105,6 @@ def round_trip(case: Case) -> Iterator[Compared]:
     for batch in case.batches:
         found = normal_reflectance(case.direct(batch), extinction.direct(batch))
         yield Compared(batch, found, reflectivity(batch))
-
-
-@check(
-    is_utility,
-    drop_changes,
-    tolerance=count_of("inputs"),
-    diagnose=diagnosis.diagnose_inputs,
-)
-def output_inputs(case: Case) -> Measurement:
-    """Every input of the utility node changes the outputs that depend on it."""
-    return inputs(case)
 
 
 def outside(case: Case) -> Compared:

@@ -68,51 +68,47 @@ class Pixels:
 Build = Callable[[Pixels, Random], Pixels]
 
 
-def _plain(pixels: Pixels, rng: Random) -> Pixels:
+def same(pixels: Pixels, rng: Random) -> Pixels:
     return pixels
 
 
-def _lights(count: int, first: float = 1.0, second: float = 1.0) -> Build:
+def lit(pixels: Pixels, rng: Random, count: int, first: float = 1.0, second: float = 1.0) -> Pixels:
     """So many lights; -1 for one on the side that the lobe does not scatter."""
-
-    def build(pixels: Pixels, rng: Random) -> Pixels:
-        wi = pixels.batch.wi
-        batch = replace(pixels.batch, wi=wi * [1.0, 1.0, first])
-        light = np.roll(wi, 1, axis=0) * [1.0, 1.0, second]
-        return replace(pixels, batch=batch, lights=count, light=light)
-
-    return build
+    wi = pixels.batch.wi
+    batch = replace(pixels.batch, wi=wi * [1.0, 1.0, first])
+    light = np.roll(wi, 1, axis=0) * [1.0, 1.0, second]
+    return replace(pixels, batch=batch, lights=count, light=light)
 
 
-def _sky(kind: str) -> Build:
-    return lambda pixels, rng: replace(pixels, sky=kind)
+def under(pixels: Pixels, rng: Random, sky: str) -> Pixels:
+    return replace(pixels, sky=sky)
 
 
-def _frame(
-    make: Callable[[Array, Random], Array], along: bool = False, scaled: bool = False
-) -> Build:
+def framed(
+    pixels: Pixels,
+    rng: Random,
+    make: Callable[[Array, Random], Array] = lambda frames, rng: frames,
+    along: bool = False,
+    scaled: bool = False,
+) -> Pixels:
     """Frames made of random ones; the view may lie along the normal, the tangent may lean and have any length."""
-
-    def build(pixels: Pixels, rng: Random) -> Pixels:
-        batch = pixels.batch
-        assert batch.frame is not None
-        frame = make(batch.frame, rng)
-        normal, tangent = frame[:, :, 2], frame[:, :, 0]
-        if scaled:
-            length = 10.0 ** rng.uniform(-1.0, 1.0, (len(frame), 1))
-            tangent = length * (tangent + rng.uniform(-0.5, 0.5, (len(frame), 1)) * normal)
-        axes = {"normal": rounded(normal.T), "tangent": rounded(tangent.T)}
-        wo = np.broadcast_to(NORMAL, batch.wo.shape) if along else batch.wo
-        return replace(pixels, batch=replace(batch.altered(**axes), wo=wo, frame=frame))
-
-    return build
+    batch = pixels.batch
+    assert batch.frame is not None
+    frame = make(batch.frame, rng)
+    normal, tangent = frame[:, :, 2], frame[:, :, 0]
+    if scaled:
+        length = 10.0 ** rng.uniform(-1.0, 1.0, (len(frame), 1))
+        tangent = length * (tangent + rng.uniform(-0.5, 0.5, (len(frame), 1)) * normal)
+    axes = {"normal": rounded(normal.T), "tangent": rounded(tangent.T)}
+    wo = np.broadcast_to(NORMAL, batch.wo.shape) if along else batch.wo
+    return replace(pixels, batch=replace(batch.altered(**axes), wo=wo, frame=frame))
 
 
-def _upright(frames: Array, rng: Random) -> Array:
+def upright(frames: Array, rng: Random) -> Array:
     return np.broadcast_to(np.eye(3), frames.shape)
 
 
-def _axes(frames: Array, rng: Random) -> Array:
+def on_axes(frames: Array, rng: Random) -> Array:
     """Frames whose normals are the axes in both directions, in any order, and whose tangents are axes or not."""
     turns = [np.roll(np.eye(3), shift, axis=0) for shift in range(3)]
     tangents = np.eye(3), np.array([[0.6, -0.8, 0.0], [0.8, 0.6, 0.0], [0.0, 0.0, 1.0]])
@@ -120,117 +116,108 @@ def _axes(frames: Array, rng: Random) -> Array:
     return rng.permutation([turn * sign @ tangent for tangent, turn, sign in rows])
 
 
-def _shape(columns: float = 0.0, rows: float = 0.0) -> Build:
+def bent(pixels: Pixels, rng: Random, columns: float = 0.0, rows: float = 0.0) -> Pixels:
     """A surface that bends in each square by so many radian from column to column and from row to row."""
-
-    def build(pixels: Pixels, rng: Random) -> Pixels:
-        batch, pixel = pixels.batch, np.arange(EACH)
-        assert batch.frame is not None
-        first, column, row = pixel // 4 * 4, pixel % 2, pixel // 2 % 2
-        axes = [batch.inputs[name][first, :, np.newaxis] for name in ("normal", "tangent")]
-        frame = np.concatenate([batch.frame[first], *axes], axis=2)
-        local = np.stack([np.sin(columns * column), np.sin(rows * row), 0.0 * row], axis=1)
-        local[:, 2] = np.sqrt(1.0 - (local**2).sum(axis=1))
-        flat = STEP * np.stack([column * (not columns), row * (not rows), 0 * row], axis=1)
-        up, place = (
-            (frame[:, :, :3] @ each[:, :, np.newaxis])[:, :, 0] for each in (local, local + flat)
-        )
-        frame = aimed(frame, frame[:, :, 2], up)
-        inputs = dict(
-            zip(FRAME, map(float32, (frame[:, :, 3], frame[:, :, 4], place)), strict=True)
-        )
-        return replace(pixels, batch=replace(batch.altered(**inputs), frame=frame[:, :, :3]))
-
-    return build
-
-
-def _lobes(component: bool = False, differ: bool = True, swapped: bool = False) -> Build:
-    """Another lobe, which differs in one input of each pixel, or in one component of it."""
-
-    def build(pixels: Pixels, rng: Random) -> Pixels:
-        first = broadcast_inputs(pixels.batch)
-        second, words = dict(first), [""] * EACH
-        names = [name for name in first if name not in FRAME]
-        for row in range(EACH) if differ else ():
-            name = words[row] = names[(row + rng.integers(2)) % len(names)]
-            values = second[name] = np.array(second[name])
-            parts = rng.integers(values.shape[-1]) if component and values.ndim == 2 else ...
-            values[row, parts] = first[name][row - 1, parts]
-        inputs, second = (second, first) if swapped else (first, second)
-        batch = replace(pixels.batch, inputs=inputs)
-        return replace(pixels, batch=batch, second=second, differ=tuple(words))
-
-    return build
-
-
-def _constant(pixels: Pixels, rng: Random) -> Pixels:
-    """The inputs of one pixel in all, but for its frame."""
-    row = rng.integers(EACH)
-
-    def constant(inputs: Inputs) -> Inputs:
-        return {name: each if name in FRAME else each[row] for name, each in inputs.items()}
-
-    batch = replace(pixels.batch, inputs=constant(broadcast_inputs(pixels.batch)))
-    differ = pixels.differ and (pixels.differ[row],) * EACH
-    return replace(
-        pixels, batch=batch, second=pixels.second and constant(pixels.second), differ=differ
+    batch, pixel = pixels.batch, np.arange(EACH)
+    assert batch.frame is not None
+    first, column, row = pixel // 4 * 4, pixel % 2, pixel // 2 % 2
+    axes = [batch.inputs[name][first, :, np.newaxis] for name in ("normal", "tangent")]
+    frame = np.concatenate([batch.frame[first], *axes], axis=2)
+    local = np.stack([np.sin(columns * column), np.sin(rows * row), 0.0 * row], axis=1)
+    local[:, 2] = np.sqrt(1.0 - (local**2).sum(axis=1))
+    flat = STEP * np.stack([column * (not columns), row * (not rows), 0 * row], axis=1)
+    up, place = (
+        (frame[:, :, :3] @ each[:, :, np.newaxis])[:, :, 0] for each in (local, local + flat)
     )
+    frame = aimed(frame, frame[:, :, 2], up)
+    inputs = dict(zip(FRAME, map(float32, (frame[:, :, 3], frame[:, :, 4], place)), strict=True))
+    return replace(pixels, batch=replace(batch.altered(**inputs), frame=frame[:, :, :3]))
 
 
-def _image(pixels: Pixels, rng: Random) -> Pixels:
+def doubled(
+    pixels: Pixels,
+    rng: Random,
+    component: bool = False,
+    differ: bool = True,
+    swapped: bool = False,
+) -> Pixels:
+    """Another lobe, which differs in one input of each pixel, or in one component of it."""
+    first = broadcast_inputs(pixels.batch)
+    second, words = dict(first), [""] * EACH
+    names = [name for name in first if name not in FRAME]
+    for row in range(EACH) if differ else ():
+        name = words[row] = names[(row + rng.integers(2)) % len(names)]
+        values = second[name] = np.array(second[name])
+        parts = rng.integers(values.shape[-1]) if component and values.ndim == 2 else ...
+        values[row, parts] = first[name][row - 1, parts]
+    inputs, second = (second, first) if swapped else (first, second)
+    batch = replace(pixels.batch, inputs=inputs)
+    return replace(pixels, batch=batch, second=second, differ=tuple(words))
+
+
+def changed(pixels: Pixels, change: Callable[[Array], Array]) -> Pixels:
+    """The same with other values of all inputs but the frame, in both lobes."""
+    batch, second = pixels.batch, pixels.second
+    inputs, others = (
+        {name: each if name in FRAME else change(each) for name, each in values.items()}
+        for values in (broadcast_inputs(batch), second or {})
+    )
+    return replace(pixels, batch=replace(batch, inputs=inputs), second=second and others)
+
+
+def constant(pixels: Pixels, rng: Random) -> Pixels:
+    """The inputs of one pixel in all."""
+    row = rng.integers(EACH)
+    differ = pixels.differ and (pixels.differ[row],) * EACH
+    return replace(changed(pixels, lambda values: values[row]), differ=differ)
+
+
+def in_image(pixels: Pixels, rng: Random) -> Pixels:
     """Inputs that half floats hold, as images and textures do."""
-
-    def halves(inputs: Inputs) -> Inputs:
-        names = inputs.keys() - FRAME
-        return {
-            **inputs,
-            **{name: np.asarray(inputs[name], np.float16).astype(np.float64) for name in names},
-        }
-
-    batch = replace(pixels.batch, inputs=halves(broadcast_inputs(pixels.batch)))
-    return replace(pixels, batch=batch, second=pixels.second and halves(pixels.second), image=True)
+    halves = changed(pixels, lambda values: values.astype(np.float16).astype(np.float64))
+    return replace(halves, image=True)
 
 
 # The first state of each axis is that of every other check. States whose words are the same up to a colon are
 # diagnosed together, too.
 AXES: dict[str, dict[str, Build]] = {
     "lights": {
-        "one light": _lights(1),
-        "no light": _lights(0),
-        "two lights": _lights(2),
-        "two lights: the second from behind": _lights(2, 1.0, -1.0),
-        "two lights: the first from behind": _lights(2, -1.0, 1.0),
+        "one light": partial(lit, count=1),
+        "no light": partial(lit, count=0),
+        "two lights": partial(lit, count=2),
+        "two lights: the second from behind": partial(lit, count=2, second=-1.0),
+        "two lights: the first from behind": partial(lit, count=2, first=-1.0),
     },
     "environment": {
-        "no environment": _plain,
-        "an environment: uniform": _sky("uniform"),
-        "an environment: uneven": _sky("uneven"),
+        "no environment": same,
+        "an environment: uniform": partial(under, sky="uniform"),
+        "an environment: uneven": partial(under, sky="uneven"),
     },
     "frame": {
-        "the surface's frame": _frame(_upright),
-        "a turned frame": _frame(lambda frames, rng: frames),
-        "a tangent that leans and is not of length 1": _frame(_upright, scaled=True),
-        "the normal on an axis": _frame(_axes),
-        "the normal on an axis: the view along it": _frame(_axes, along=True),
+        "the surface's frame": partial(framed, make=upright),
+        "a turned frame": framed,
+        "a tangent that leans and is not of length 1": partial(framed, make=upright, scaled=True),
+        "the normal on an axis": partial(framed, make=on_axes),
+        "the normal on an axis: the view along it": partial(framed, make=on_axes, along=True),
     },
     "shape": {
-        "a plane": _shape(),
-        "a surface that bends: along the columns": _shape(columns=STEP),
-        "a surface that bends: along the rows": _shape(rows=STEP),
-        "a surface that bends: a sphere": _shape(STEP, STEP),
+        "a plane": bent,
+        "a surface that bends: along the columns": partial(bent, columns=STEP),
+        "a surface that bends: along the rows": partial(bent, rows=STEP),
+        "a surface that bends: a sphere": partial(bent, columns=STEP, rows=STEP),
     },
     "lobes": {
-        "one lobe": _plain,
-        "two lobes: equal": _lobes(differ=False),
-        "two lobes: another input": _lobes(),
-        "two lobes: another input: exchanged": _lobes(swapped=True),
-        "two lobes: another component": _lobes(component=True),
-        "two lobes: another component: exchanged": _lobes(component=True, swapped=True),
+        "one lobe": same,
+        "two lobes: equal": partial(doubled, differ=False),
+        "two lobes: another input": doubled,
+        "two lobes: another input: exchanged": partial(doubled, swapped=True),
+        "two lobes: another component": partial(doubled, component=True),
+        "two lobes: another component: exchanged": partial(doubled, component=True, swapped=True),
     },
     "inputs": {
-        "inputs that vary": _plain,
-        "constant inputs": _constant,
-        "inputs from an image": _image,
+        "inputs that vary": same,
+        "constant inputs": constant,
+        "inputs from an image": in_image,
     },
 }
 

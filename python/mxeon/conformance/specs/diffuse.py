@@ -11,7 +11,6 @@ from typing import ClassVar
 import numpy as np
 
 from mxeon.conformance.samples import (
-    LOBE_RIM,
     TURNED,
     Array,
     Batch,
@@ -68,7 +67,6 @@ ERRORS = {
 }
 LOBE_VALUE = sum_in(
     UNIT,
-    roundings(16 / LOBE_RIM**2, "of a pixel's point, over the square of the least cosine, 1/4"),
     roundings(32, "in the lobe"),
     roundings(4 * 48, "in sums that other lobes make 48 times as large"),
     exact=True,
