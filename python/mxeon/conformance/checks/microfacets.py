@@ -20,12 +20,7 @@ from mxeon.conformance.check import (
     with_inputs,
     with_values,
 )
-from mxeon.conformance.checks.lobes import (
-    SURROUNDINGS,
-    is_plain,
-    shows_exactly,
-    summed,
-)
+from mxeon.conformance.checks.lobes import SURROUNDINGS, is_plain, shows_exactly, summed
 from mxeon.conformance.diagnosis import (
     ALBEDO,
     NEAR,

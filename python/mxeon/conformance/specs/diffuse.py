@@ -10,14 +10,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from mxeon.conformance.samples import (
-    TURNED,
-    Array,
-    Batch,
-    Counts,
-    Values,
-    directions_at,
-)
+from mxeon.conformance.samples import TURNED, Array, Batch, Counts, Values, directions_at
 from mxeon.conformance.spec import CHANGED_COLOR, Input, color
 from mxeon.conformance.specs.lobes import ScatteringSpec
 from mxeon.conformance.tolerance import Term, roundings, sum_in
