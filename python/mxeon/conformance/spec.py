@@ -311,8 +311,9 @@ class LobeSpec(ValueSpec):
     ) -> Batch:
         """Pairs with random inputs, weights and occlusions, lit from the side that it scatters."""
         wo, wi = pairs
-        inputs_and_weights = {**inputs(rng, len(wo)), **node_inputs(rng, len(wo))}
-        return Batch(wo, wi * [1.0, 1.0, self.side], inputs_and_weights)
+        drawn = inputs(rng, len(wo))
+        drawn |= node_inputs(rng, len(wo)) if "weight" in self.names else {}
+        return Batch(wo, wi * [1.0, 1.0, self.side], drawn)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -133,8 +133,9 @@ def is_opaque(spec: Spec) -> bool:
 
 
 def shows_exactly(spec: Spec, host: str) -> bool:
-    """Whether a host has directions to the last bit, those on the horizon too."""
-    return all(row.way not in ("rendered", "pictures") for row in HOSTS if row.name == host)
+    """Whether a host has directions to the last bit, those on the horizon too; closures have no film of index 0."""
+    others = ("rendered", "pictures", *["closures"] * isinstance(spec, FilmSpec))
+    return all(row.way not in others for row in HOSTS if row.name == host)
 
 
 def has_environment(spec: Spec, host: str) -> bool:

@@ -7,6 +7,7 @@ from functools import partial
 
 import numpy as np
 
+from mxeon.conformance.backends import joined
 from mxeon.conformance.case import SCATTERING, Case
 from mxeon.conformance.check import check, control, of_family, scale, shifted
 from mxeon.conformance.diagnosis import ALBEDO, VALUE, Diagnosis
@@ -21,8 +22,11 @@ from mxeon.conformance.tolerance import (
     scaled,
     sum_of,
 )
+from mxeon.errors import NotRun
+from mxeon.hosts.calls import NORMAL, TANGENT
 
 WORST = 32  # pairs that are looked at
+CHANGED = 8  # pairs that a change of an input has to show in
 # Inputs that take a lobe away, by its name.
 LOBE_INPUTS = {
     "coat": ("coat", "coat_weight", "clearcoat"),
@@ -128,8 +132,20 @@ def misplaced(case: Case) -> list[str]:
 def without_effect(case: Case) -> list[str]:
     """Inputs that change no value in any branch, and no emission."""
     spec, evaluating = case.of(SurfaceShaderSpec), case.evaluating
-    ports = {port.path.rsplit("/", 1)[-1]: port.value for port in evaluating.shader.inputs}
-    batch = spec.changed(case.samples.batches[0], ports)
+    given = {port.path.rsplit("/", 1)[-1]: port.value for port in evaluating.shader.inputs}
+    for name in spec.names:  # which have no value in a document
+        if name.endswith(("normal", "tangent")):
+            given.setdefault(name, TANGENT if "tangent" in name else NORMAL)
+    rows = [row for changes in spec.changes.values() for row in changes]
+    names = dict.fromkeys(name for row in rows for name in row)
+    if missing := [name for name in names if name not in given]:
+        raise NotRun(
+            f"{spec.node} of this MaterialX lacks an input that is varied: {', '.join(missing)}"
+        )
+    few = replace(
+        case.samples.batches[0].first(CHANGED), inputs={name: given[name] for name in names}
+    )
+    batch = joined([few.altered(**row) for row in rows])
     effective = np.zeros(len(spec.names), bool)
     for branch, output in (*((each, "response") for each in SCATTERING), ("emission", "radiance")):
         ask = partial(evaluating.evaluate, branch=branch, output=output)

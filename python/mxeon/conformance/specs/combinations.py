@@ -3,15 +3,7 @@
 
 from dataclasses import dataclass, replace
 
-from mxeon.conformance.samples import (
-    LEAST_SHEEN,
-    Batch,
-    Counts,
-    Values,
-    directions,
-    generator,
-    special_directions,
-)
+from mxeon.conformance.samples import LEAST_SHEEN, Values
 from mxeon.conformance.spec import Input, color, ports
 from mxeon.conformance.specs.lobes import CLOSED_ALBEDO, FLAT_FRAME, PbrSpec
 from mxeon.conformance.specs.sheen import ZELTNER_VALUE
@@ -90,16 +82,6 @@ class CombinedSpec(PbrSpec):
     def document(self, inputs: Values | None = None) -> str:
         nodes = LOBES | NODES[self.model][1]
         return document_text(network_text(nodes, ports(self.inputs, inputs)) + SURFACE)
-
-    def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random pairs and special ones; those outside are judged with the lobes."""
-        rng, count = generator(), counts.pairs
-        wo, wi = directions(rng, count), directions(rng, count)
-        special = special_directions(rng)
-        return (
-            Batch(wo, wi, self.random_inputs(rng, count)),
-            Batch(*special, self.random_inputs(rng, len(special[0]))),
-        )
 
 
 def _spec(row: PbrNode) -> CombinedSpec:

@@ -152,10 +152,6 @@ class HairSpec(PbrSpec):
 
     counts: Counts = COUNTS
 
-    @property
-    def black(self) -> Values:
-        return dict.fromkeys(TINTS, (0.0, 0.0, 0.0))
-
     def values(self, function: Scattering, batch: Batch) -> Array:
         """pi f with occlusion, (N, 3)."""
         occlusion = np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))

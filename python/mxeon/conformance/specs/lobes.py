@@ -33,6 +33,7 @@ from mxeon.conformance.spec import (
     materials,
 )
 from mxeon.conformance.tolerance import Term, Tolerance, roundings, sum_in, sum_of
+from mxeon.models.hair import TINTS
 from mxeon.models.nodes import node
 from mxeon.models.nodes.node import Inputs, PbrNode, Scattering
 from mxeon.shaders.nodes import material_text
@@ -82,7 +83,7 @@ class ScatteringSpec(RowSpec, LobeSpec):
 
     @property
     def black(self) -> Values:
-        names = ("color", "tint", "color0", "color90")
+        names = ("color", "tint", "color0", "color90", *TINTS)
         return {name: (0.0, 0.0, 0.0) for name in names if name in self.row.inputs}
 
     @property

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from mxeon.conformance.samples import (
     Array,
     Batch,
+    Changes,
     Counts,
     Values,
     directions,
@@ -34,13 +35,10 @@ from mxeon.conformance.spec import (
 from mxeon.conformance.specs.lobes import LEAST_VIEW
 from mxeon.conformance.specs.microfacets import FILM_ERRORS, reflected, sum_over
 from mxeon.conformance.tolerance import Term, mean_scaled, roundings, sum_in, sum_of
-from mxeon.errors import NotRun
-from mxeon.hosts.calls import NORMAL, TANGENT
 from mxeon.shaders.nodes import document_text, input_text, node_text
 
 if TYPE_CHECKING:  # which load MaterialX
     from mxeon.conformance.reference.graph import Graphs
-    from mxeon.shaders.document.values import Plain
     from mxeon.shaders.generation import Shader
 
 # Inputs by the range that is asked of them, with values of a material in which every lobe takes part; a change is
@@ -76,7 +74,6 @@ def _whole(names: str) -> Values:
 GRAPHS = 64  # pairs by which a graph is compared with another
 LEAST, LARGEST = 0.05, 2.0  # of their inputs: no transmittance is 0, and no emission hides the rest
 OFTEN, SELDOM = 0.75, 0.5  # shares of them that set an input, and one of `further`
-CHANGED = 8  # pairs that a change of an input has to show in
 SPREAD = 0.3  # alpha of the lobe in which half of the lights lie about the mirror direction
 STRETCHED = "anisotropy"  # in the names of inputs: an environment is summed too coarsely for them
 # Largest errors by the fits of all lobes of a material, of 32 sets of the size that a check asks for, with
@@ -153,6 +150,16 @@ class SurfaceShaderSpec(LobeSpec):
     @property
     def names(self) -> tuple[str, ...]:
         return tuple(self.changed_inputs)
+
+    @property
+    def changes(self) -> Mapping[str, Changes]:
+        """Of the material with every lobe."""
+        seen, _ = materials(*self.judged, *self.others)
+        wholes = {name: {**seen, **self.needs.get(name, {})} for name in self.names}
+        return {
+            name: (whole, {**whole, name: self.changed_inputs[name]})
+            for name, whole in wholes.items()
+        }
 
     def within(self, library: str) -> SurfaceShaderSpec:
         return replace(self, library=library)
@@ -246,36 +253,6 @@ class SurfaceShaderSpec(LobeSpec):
         """Some of the pairs, under random films."""
         batch = self.batches(counts)[0].first(counts.albedos)
         return batch.altered(**draw(generator(), len(batch.wo), self.film))
-
-    def changed(self, batch: Batch, ports: Mapping[str, Plain]) -> Batch:
-        """A few views for each input: of the material with every lobe, then with a change of it.
-
-        `ports` has the values of the inputs that a document does not set.
-        """
-        rows = []
-        seen, _ = materials(*self.judged, *self.others)
-        for name in self.names:
-            before = {**seen, **self.needs.get(name, {})}
-            rows += [before, {**before, name: self.changed_inputs[name]}]
-        few = batch.first(CHANGED)
-        vectors = {
-            name: TANGENT if "tangent" in name else NORMAL
-            for name in self.names
-            if name.endswith(("normal", "tangent"))
-        }
-        defaults = {**vectors, **ports}
-        names = sorted({name for row in rows for name in row})
-        if missing := [name for name in names if name not in defaults]:
-            raise NotRun(
-                f"{self.node} of this MaterialX lacks an input that is varied: {', '.join(missing)}"
-            )
-        inputs = {
-            name: np.repeat(
-                [np.asarray(row.get(name, defaults[name]), float) for row in rows], CHANGED, 0
-            )
-            for name in names
-        }
-        return Batch(np.tile(few.wo, (len(rows), 1)), np.tile(few.wi, (len(rows), 1)), inputs)
 
 
 def _views(rng: np.random.Generator, count: int) -> Array:
