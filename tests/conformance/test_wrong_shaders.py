@@ -273,7 +273,9 @@ WRONG = {
     "artistic_ior, ior": (
         ("mx_artistic_ior.glsl", "mix(n_max, n_min, edge_color)", "mix(n_min, n_max, edge_color)", "output",
          "the ends of n exchanged"),
-        ("mx_artistic_ior.glsl", "(np1*np1 * r - nm1*nm1)", "(np1*np1 * r)", "round_trip", ""),
+    ),
+    "artistic_ior, extinction": (
+        ("mx_artistic_ior.glsl", "(np1*np1 * r - nm1*nm1)", "(np1*np1 * r)", "output", ""),
     ),
     "chiang_hair_roughness, roughness_TRT": (
         ("mx_chiang_hair_bsdf.glsl", "v * scale_TRT * scale_TRT", "v * 4.0", "inputs",

@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of the nodes that scatter nothing: those that emit light, media, and utility nodes."""
 
-from collections.abc import Iterator
-from dataclasses import replace
-
 import numpy as np
 
 from mxeon.conformance.backends import implementation
@@ -28,9 +25,8 @@ from mxeon.conformance.specs.emission import (
     EmittingSurface,
     MediumSpec,
 )
-from mxeon.conformance.specs.utilities import UtilitySpec, reflectivity
+from mxeon.conformance.specs.utilities import UtilitySpec
 from mxeon.conformance.tolerance import Compared, Measurement, count_not_finite, count_of
-from mxeon.models.microfacet.fresnel import normal_reflectance
 
 is_emission = of_family(EmissionSpec)
 
@@ -96,15 +92,6 @@ is_utility = of_family(UtilitySpec)
 @check(is_utility, shifted, OUTPUT, open=True)
 def output() -> None:
     """The output of the utility node matches its equations."""
-
-
-@check(lambda spec: "round_trip" in spec.errors, shifted, diagnose=OUTPUT.diagnose)
-def round_trip(case: Case) -> Iterator[Compared]:
-    """The artistic index and extinction lead back to the reflectivity that they were computed from."""
-    extinction = case.another(replace(case.of(UtilitySpec), output="extinction"))
-    for batch in case.batches:
-        found = normal_reflectance(case.direct(batch), extinction.direct(batch))
-        yield Compared(batch, found, reflectivity(batch))
 
 
 def outside(case: Case) -> Compared:

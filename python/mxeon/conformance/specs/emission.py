@@ -200,9 +200,6 @@ class EmissionSpec(RowSpec):
         special = directions_at(np.repeat(GRID, 64), 0.0)
         return (self.views(rng, directions(rng, counts.pairs)), self.views(rng, special))
 
-    def few(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        return (batches[0].first(counts.few),)
-
     def backs(self, counts: Counts) -> Batch:
         """Views from the back."""
         rng = generator()

@@ -19,7 +19,7 @@ from mxeon.conformance.samples import (
     sky,
     special_directions,
 )
-from mxeon.conformance.spec import Input, ValueSpec, broadcast_inputs, color
+from mxeon.conformance.spec import Input, broadcast_inputs, color
 from mxeon.conformance.specs.lobes import NORMAL, PbrSpec, lobe_errors
 from mxeon.conformance.tolerance import Compared, Term, roundings, sum_in, sum_of
 from mxeon.models.hair import ROUGHNESSES, SCALE, TINTS, chiang_hair_attenuation, section
@@ -190,9 +190,6 @@ class HairSpec(PbrSpec):
             Batch(wo, in_lobes(rng, wo, inputs), inputs),
             Batch(view, light * _sides(rng, len(view)), self.random_inputs(rng, len(view))),
         )
-
-    def few(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        return ValueSpec.few(self, batches[:2], counts)
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
         """Views of fibers without tilt, whose albedo has a closed form."""

@@ -104,8 +104,6 @@ VALUES: Mapping[str, Tolerance] = {
     "chiang_hair_absorption_from_color": sum_of(roundings(2 * 12, "of a square"), unit=UNIT),
 }
 OTHERS: Mapping[str, dict[str, Tolerance]] = {
-    # k^2 makes up for the error of n.
-    "artistic_ior, ior": {"round_trip": sum_in("reflectance", roundings(16))},
     "blackbody": {
         "value in OSL": given(
             4e-3,
@@ -197,16 +195,12 @@ class UtilitySpec(RowSpec):
         """
         if self.node != "artistic_ior":
             return compared
-        r = reflectivity(compared.batch)
+        r = np.clip(compared.batch.inputs["reflectivity"], 0.0, LARGEST_REFLECTIVITY)
         inverse = 1.0 / np.square(1.0 - np.sqrt(r))  # (n_max + 1)^2 / 4
         if self.output == "ior":
             return compared.over(inverse)
         squares = map(np.square, compared[1:])
         return Compared(compared.batch, *squares).over(4.0 * inverse / (1.0 - r))
-
-
-def reflectivity(batch: Batch) -> Array:
-    return np.asarray(np.clip(batch.inputs["reflectivity"], 0.0, LARGEST_REFLECTIVITY))
 
 
 def _batch(inputs: Mapping[str, Array]) -> Batch:
