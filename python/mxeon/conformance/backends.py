@@ -40,7 +40,7 @@ from mxeon.conformance.specs.combinations import CombinedSpec
 from mxeon.conformance.specs.diffuse import LOBE_VALUE, DiffuseModelSpec, DiffuseSpec, SurfaceLobe
 from mxeon.conformance.specs.emission import AbsentSpec, EmissionSpec, EmittingSurface, MediumSpec
 from mxeon.conformance.specs.hair import HairSpec
-from mxeon.conformance.specs.lobes import PbrSpec
+from mxeon.conformance.specs.lobes import PbrSpec, ScatteringSpec
 from mxeon.conformance.specs.microfacets import FacetSpec, FilmSpec, TransmissionSpec
 from mxeon.conformance.specs.subsurface import SubsurfaceSpec
 from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
@@ -552,7 +552,7 @@ class Rendered(Evaluating):
 
     @classmethod
     def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
-        flat = isinstance(spec, LobeSpec) and spec.flat
+        flat = isinstance(spec, ScatteringSpec) and spec.flat
         value = cls.flat if flat else cls.sharp
         if quantity in ("retroreflection", "anisotropy"):
             return largest(spec.errors[quantity], cls.place) if cls.place else spec.errors[quantity]

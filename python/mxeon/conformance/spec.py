@@ -212,7 +212,6 @@ class ValueSpec(Spec):
 class LobeSpec(ValueSpec):
     """A node that scatters light."""
 
-    flat: ClassVar[bool] = False  # whether its values have no peak
     curved: ClassVar[bool] = False  # whether they depend on how the surface bends
     # Axes of `checks.states` of which it has the first state alone, and states that it lacks.
     plain: ClassVar[tuple[str, ...]] = ()

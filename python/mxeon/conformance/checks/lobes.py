@@ -51,10 +51,10 @@ from mxeon.conformance.samples import (
 )
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs.combinations import SINGLE, CombinedSpec
-from mxeon.conformance.specs.diffuse import DiffuseModelSpec, DiffuseSpec, SurfaceLobe
+from mxeon.conformance.specs.diffuse import DiffuseModelSpec, SurfaceLobe
 from mxeon.conformance.specs.emission import EmissionSpec, MediumSpec
 from mxeon.conformance.specs.hair import REGION, REGIONS, HairSpec
-from mxeon.conformance.specs.lobes import FlatSpec, PbrSpec
+from mxeon.conformance.specs.lobes import PbrSpec, ScatteringSpec
 from mxeon.conformance.specs.microfacets import FacetSpec, FilmSpec, TransmissionSpec
 from mxeon.conformance.specs.subsurface import ON_SPHERES, RINGS, SubsurfaceSpec, inner, spread
 from mxeon.conformance.specs.utilities import UtilitySpec
@@ -282,7 +282,7 @@ COLOR_SPACE = Comparison(
 )
 
 
-@check(of_family(DiffuseSpec, FlatSpec), gray, COLOR_SPACE, pairs=True)
+@check(lambda spec: isinstance(spec, ScatteringSpec) and spec.flat, gray, COLOR_SPACE, pairs=True)
 def color_space() -> None:
     """A color in sRGB has the value of the linear color that it stands for."""
 

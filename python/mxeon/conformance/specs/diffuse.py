@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from itertools import product
-from typing import ClassVar
 
 import numpy as np
 
@@ -84,9 +83,8 @@ class DiffuseModelSpec(ScatteringSpec):
 
     row: PbrNode = field(init=False)
     counts: Counts = COUNTS
+    flat: bool = True
     beside: bool = False  # whether lobes that ignore the color lie beside it
-
-    flat: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "row", _row(self.model, self.node, self.other_models))

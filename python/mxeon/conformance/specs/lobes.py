@@ -5,7 +5,7 @@ from abc import abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, ClassVar, Self
+from typing import Any, Self
 
 import numpy as np
 
@@ -80,6 +80,7 @@ class ScatteringSpec(RowSpec, LobeSpec):
     """A node that scatters light as a row says."""
 
     row: PbrNode
+    flat: bool = False  # whether its values have no peak
 
     @property
     def black(self) -> Values:
@@ -161,7 +162,7 @@ class PbrSpec(ScatteringSpec):
 
     counts: Counts = COUNTS
 
-    least_cosine: ClassVar[float] = 0.0  # of a view whose albedo is compared
+    least_cosine: float = 0.0  # of a view whose albedo is compared
 
     @classmethod
     def of(
@@ -250,15 +251,10 @@ BURLEY_VALUE = sum_of(
 FLAT_ERRORS = lobe_errors(BURLEY_VALUE, CLOSED_ALBEDO, FLAT_FRAME, quadrature=1e-8)
 
 
-class FlatSpec(PbrSpec):
-    """A lobe without a peak."""
-
-    flat = True
-
-
-BURLEY = FlatSpec.of(
+BURLEY = PbrSpec.of(
     node("burley"),
     (WEIGHT, COLOR, replace(ROUGHNESS, low=0.0, edges=(0.0, 0.05, 1.0)), NORMAL),
     FLAT_ERRORS,
+    flat=True,
 )
-TRANSLUCENT = FlatSpec.of(node("translucent"), (WEIGHT, COLOR, NORMAL), FLAT_ERRORS)
+TRANSLUCENT = PbrSpec.of(node("translucent"), (WEIGHT, COLOR, NORMAL), FLAT_ERRORS, flat=True)

@@ -4,7 +4,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import ClassVar, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -285,7 +285,7 @@ class FacetSpec(PbrSpec):
 
     counts: Counts = COUNTS
 
-    least_cosine: ClassVar[float] = FIT_COSINE
+    least_cosine: float = FIT_COSINE
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         return tuple(batch.where(_has_curve(batch)) for batch in super().batches(counts))
@@ -547,7 +547,7 @@ class FilmSpec(FacetSpec):
 
     counts: Counts = FILM_COUNTS
 
-    least_cosine: ClassVar[float] = LEAST_FACET
+    least_cosine: float = LEAST_FACET
 
     @property
     def bounded(self) -> tuple[Input, ...]:

@@ -2,7 +2,6 @@
 """The sheen node: Zeltner's, whose value and albedo are closed forms, and Conty and Kulla's, with fits."""
 
 from dataclasses import replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -49,12 +48,6 @@ CONTY_KULLA_ALBEDO = sum_in(
 )
 
 
-class FittedSheen(PbrSpec):
-    """The sheen whose values are powers, and whose albedo a shader takes from a fit."""
-
-    least_cosine: ClassVar[float] = FIT_COSINE
-
-
 def power_error(host: Host) -> float:
     """Error of the sheen by the engine's own power beyond that of a logarithm, relative where the sheen exceeds 1.
 
@@ -76,7 +69,7 @@ ZELTNER = PbrSpec.of(
     lobe_errors(ZELTNER_VALUE, CLOSED_ALBEDO, FLAT_FRAME, quadrature=1e-8),
     along=0.03,
 )
-CONTY_KULLA = FittedSheen.of(
+CONTY_KULLA = PbrSpec.of(
     node("conty_kulla"),
     INPUTS,
     {
@@ -91,4 +84,5 @@ CONTY_KULLA = FittedSheen.of(
         },
     },
     engines={"value": (EngineError("the engine's pow()", power_error),)},
+    least_cosine=FIT_COSINE,
 )

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mxeon.conformance.samples import Array, Batch, Candidate, Counts, Values
 from mxeon.conformance.spec import ZERO, Input, broadcast_inputs
-from mxeon.conformance.specs.lobes import COLOR, FLAT_ERRORS, NORMAL, WEIGHT, FlatSpec
+from mxeon.conformance.specs.lobes import COLOR, FLAT_ERRORS, NORMAL, WEIGHT, PbrSpec
 from mxeon.conformance.tolerance import given, mean_error
 from mxeon.models.media import FAR, blur_to
 from mxeon.models.nodes.lobes import SUBSURFACE_NODE, circle_blur
@@ -35,7 +35,7 @@ RINGS_MEAN = given(
 )
 
 
-class SubsurfaceSpec(FlatSpec):
+class SubsurfaceSpec(PbrSpec):
     """The node on a plane, where its radius and its anisotropy have no effect, and on a sphere."""
 
     curved = True
@@ -71,6 +71,7 @@ SUBSURFACE = SubsurfaceSpec.of(
     SUBSURFACE_NODE,
     (WEIGHT, COLOR, Input("radius", "color3", high=2.0), NORMAL),
     {**FLAT_ERRORS, "sphere": RINGS, "sphere_mean": RINGS_MEAN},
+    flat=True,
 )
 
 
