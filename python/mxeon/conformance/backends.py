@@ -41,7 +41,7 @@ from mxeon.conformance.specs.diffuse import LOBE_VALUE, DiffuseModelSpec, Diffus
 from mxeon.conformance.specs.emission import AbsentSpec, EmissionSpec, EmittingSurface, MediumSpec
 from mxeon.conformance.specs.hair import HairSpec
 from mxeon.conformance.specs.lobes import PbrSpec, ScatteringSpec
-from mxeon.conformance.specs.microfacets import FacetSpec, FilmSpec, TransmissionSpec
+from mxeon.conformance.specs.microfacets import FilmSpec, TransmissionSpec
 from mxeon.conformance.specs.subsurface import SubsurfaceSpec
 from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
 from mxeon.conformance.specs.utilities import UtilitySpec
@@ -110,16 +110,16 @@ class Samples:
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        """All samples, those near the mirror direction of microfacets among them."""
-        return (*self.spec.batches(self.counts), *self._peaks)
+        batches: tuple[Batch, ...] = self.spec.batches(self.counts)
+        return batches
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
         """Some of them, for what takes long and for controls."""
         if self.whole:
             return self.batches
-        peaks = (each.first(self.counts.few) for each in self._peaks)
-        return (*self.spec.few(self.batches, self.counts), *peaks)
+        few: tuple[Batch, ...] = self.spec.few(self.batches, self.counts)
+        return few
 
     @cached_property
     def views(self) -> tuple[Batch, ...]:
@@ -152,11 +152,6 @@ class Samples:
     def taken(self, inputs: Mapping[str, Array]) -> dict[str, Array]:
         """Inputs that the backend takes."""
         return dict(inputs)
-
-    @property
-    def _peaks(self) -> tuple[Batch, ...]:
-        peaked = isinstance(self.spec, FacetSpec) and not isinstance(self.spec, FilmSpec)
-        return (self.mirrored[0],) if peaked else ()
 
 
 class Backend(ABC):

@@ -388,12 +388,9 @@ def sums(case: Case, groups: Sequence[Pixels]) -> list[Array]:
         for inputs in (pixels.batch.inputs, pixels.second):
             if inputs is None:
                 continue
-            own = replace(pixels.batch, inputs=inputs)
-            own = replace(own, inputs=broadcast_inputs(own))
-            flat = own
+            own = flat = replace(pixels.batch, inputs=inputs)
             if not curved:
-                place = zip(FRAME, (NORMAL, TANGENT, (0.0, 0.0, 0.0)), strict=True)
-                axes = {name: np.broadcast_to(each, own.wo.shape) for name, each in place}
+                axes = dict(zip(FRAME, (NORMAL, TANGENT, (0.0, 0.0, 0.0)), strict=True))
                 flat = replace(own.altered(**axes), frame=None)
             for light in (own.wi, pixels.light)[: pixels.lights]:
                 parts.setdefault("light", []).append((number, replace(flat, wi=light)))

@@ -288,7 +288,12 @@ class FacetSpec(PbrSpec):
     least_cosine: float = FIT_COSINE
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        return tuple(batch.where(_has_curve(batch)) for batch in super().batches(counts))
+        """Those of any lobe, and lights near the mirror direction."""
+        others = (batch.where(_has_curve(batch)) for batch in super().batches(counts))
+        return *others, self.mirrored(counts)[0]
+
+    def few(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
+        return *super().few(batches, counts), batches[-1].first(counts.few)
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
         """Views whose smoothest lobes are mirrors, which have an albedo, but no values."""
