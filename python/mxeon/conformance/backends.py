@@ -828,11 +828,9 @@ class Drawn(Pictures):
         if isinstance(spec, DiffuseModelSpec):
             own = {"value": cls.lobe} if isinstance(spec, SurfaceLobe) else cls.errors
             return own.get(quantity)
-        if quantity == "value":
-            return cls.drawn(spec.errors["value"])
-        if quantity == "albedo":
-            return cls.drawn(spec.errors.get("picture albedo", spec.errors["albedo"]))
-        return None
+        if quantity not in ("value", "albedo"):
+            return None
+        return cls.drawn(spec.errors.get(f"picture {quantity}", spec.errors[quantity]))
 
     @classmethod
     def drawn(cls, error: Tolerance) -> Tolerance:

@@ -78,8 +78,10 @@ def materials(*inputs: Input) -> tuple[Values, ...]:
     )
 
 
-def draw(rng: np.random.Generator, count: int, inputs: Iterable[Input]) -> dict[str, Array]:
-    """Random values of inputs in their ranges, by name."""
+def draw(
+    rng: np.random.Generator, count: int, inputs: Sequence[Input], edged: bool = False
+) -> dict[str, Array]:
+    """Random values of inputs in their ranges, by name; half of them on an edge if asked."""
     drawn = {}
     for each in inputs:
         low, high = np.asarray(each.low, np.float64), np.asarray(each.high, np.float64)
@@ -93,17 +95,10 @@ def draw(rng: np.random.Generator, count: int, inputs: Iterable[Input]) -> dict[
         if each.equal:
             values[::2] = values[::2, :1]
         drawn[each.name] = float32(values)
+    for each in inputs:
+        if edged and each.edges:
+            drawn[each.name] = with_edges(rng, drawn[each.name], each.edges)
     return drawn
-
-
-def draw_edges(rng: np.random.Generator, count: int, inputs: Iterable[Input]) -> dict[str, Array]:
-    """Random values of inputs, half of them on an edge where the input has some."""
-    inputs = tuple(inputs)
-    values = draw(rng, count, inputs)
-    edged = {
-        each.name: with_edges(rng, values[each.name], each.edges) for each in inputs if each.edges
-    }
-    return values | edged
 
 
 def broadcast_inputs(batch: Batch) -> dict[str, Array]:
@@ -252,11 +247,10 @@ class LobeSpec(ValueSpec):
         return {}
 
     @abstractmethod
-    def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]: ...
-
-    @abstractmethod
-    def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        """Random values of the inputs, half of them on an edge."""
+    def random_inputs(
+        self, rng: np.random.Generator, count: int, edged: bool = False
+    ) -> dict[str, Array]:
+        """Random values of the inputs, half of them on an edge if asked."""
 
     @abstractmethod
     def edges(self, counts: Counts) -> Batch:
@@ -271,9 +265,9 @@ class LobeSpec(ValueSpec):
         rng, count = generator(), counts.pairs
         pairs = directions(rng, count), directions(rng, count)
         return (
-            self._batch(rng, pairs, self.random_inputs),
-            self._batch(rng, special_directions(rng), self.special_inputs),
-            self._batch(rng, outside_directions(rng), self.random_inputs),
+            self._batch(rng, pairs),
+            self._batch(rng, special_directions(rng), edged=True),
+            self._batch(rng, outside_directions(rng)),
         )
 
     def few(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
@@ -303,14 +297,11 @@ class LobeSpec(ValueSpec):
         return Batch(wo, wi * [1.0, 1.0, self.side], inputs, frame=frames)
 
     def _batch(
-        self,
-        rng: np.random.Generator,
-        pairs: tuple[Array, Array],
-        inputs: Callable[[np.random.Generator, int], dict[str, Array]],
+        self, rng: np.random.Generator, pairs: tuple[Array, Array], edged: bool = False
     ) -> Batch:
         """Pairs with random inputs, weights and occlusions, lit from the side that it scatters."""
         wo, wi = pairs
-        drawn = inputs(rng, len(wo))
+        drawn = self.random_inputs(rng, len(wo), edged)
         drawn |= node_inputs(rng, len(wo)) if "weight" in self.names else {}
         return Batch(wo, wi * [1.0, 1.0, self.side], drawn)
 

@@ -225,7 +225,7 @@ class FacetPairSamples(FacetSamples):
         outside = Batch(*outside_directions(rng), {})
         return (
             Batch(*random, spec.random_inputs(rng, count)),
-            special.altered(**spec.special_inputs(rng, len(special.wo))),
+            special.altered(**spec.random_inputs(rng, len(special.wo), edged=True)),
             outside.altered(**spec.random_inputs(rng, len(outside.wo))),
         )
 

@@ -72,7 +72,7 @@ class ClaimedModel(DiffuseModelSpec):
         rng = generator()
         wo, wi = directions(rng, PAIRS), directions(rng, PAIRS)
         exact = special_directions(rng)
-        special = Batch(*exact, self.special_inputs(rng, len(exact[0])))
+        special = Batch(*exact, self.random_inputs(rng, len(exact[0]), edged=True))
         return Batch(wo, wi, self.random_inputs(rng, PAIRS)), special
 
 

@@ -344,12 +344,9 @@ def inputs(case: Case) -> Measurement:
     return count_named(dead_inputs(case))
 
 
-over_cosine = scale_cosine("the value is divided by cos(theta_o)", -1)
-
-
 @check(
     lambda spec: is_lobe(spec) or is_model(spec, *MODES) or isinstance(spec, FilmSpec),
-    over_cosine,
+    scale_cosine("the value is divided by cos(theta_o)", -1),
     tolerance=count_of("values"),
     pairs=True,
     hosts=shows_exactly,

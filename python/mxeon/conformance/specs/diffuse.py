@@ -103,10 +103,13 @@ class DiffuseModelSpec(ScatteringSpec):
         edges = tuple(high * each for each in EDGES)
         return color("color", edges=EDGES), Input("roughness", high=high, edges=edges)
 
-    def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        """The last colors are gray."""
-        inputs = super().random_inputs(rng, count)
-        inputs["color"][-(count // 16) :] = inputs["color"][-(count // 16) :, :1]
+    def random_inputs(
+        self, rng: np.random.Generator, count: int, edged: bool = False
+    ) -> dict[str, Array]:
+        """The last colors are gray, but on edges."""
+        inputs = super().random_inputs(rng, count, edged)
+        gray = slice(count if edged else count - count // 16, None)
+        inputs["color"][gray] = inputs["color"][gray, :1]
         return inputs
 
     def edges(self, counts: Counts) -> Batch:

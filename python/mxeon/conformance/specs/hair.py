@@ -202,7 +202,7 @@ class HairSpec(PbrSpec):
         pairs = np.repeat(along, 4, axis=0), np.tile(along, (4, 1))
         wo, wi = (np.concatenate(each) for each in zip(special_directions(rng), pairs, strict=True))
         wi = wi * _sides(rng, len(wi))
-        return Batch(wo, wi, self.special_inputs(rng, len(wo)))
+        return Batch(wo, wi, self.random_inputs(rng, len(wo), edged=True))
 
     def turned(self, counts: Counts) -> Batch:
         """Pairs in frames of their own, none with a narrow lobe, whose place would be uncertain."""

@@ -29,7 +29,7 @@ from mxeon.conformance.spec import (
     RowSpec,
     broadcast_inputs,
     color,
-    draw_edges,
+    draw,
     materials,
 )
 from mxeon.conformance.tolerance import Term, Tolerance, roundings, sum_in, sum_of
@@ -121,8 +121,10 @@ class ScatteringSpec(RowSpec, LobeSpec):
 
     # Its samples.
 
-    def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        return draw_edges(rng, count, self.drawn)
+    def random_inputs(
+        self, rng: np.random.Generator, count: int, edged: bool = False
+    ) -> dict[str, Array]:
+        return draw(rng, count, self.drawn, edged)
 
     def integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
         """The inputs of which a quadrature has all light."""
@@ -218,7 +220,7 @@ class PbrSpec(ScatteringSpec):
         """Exact directions, some of light opposite the view; edges of inputs, roughness and index 0 among them."""
         rng = generator()
         wo, wi = special_directions(rng)
-        inputs = self.special_inputs(rng, len(wo))
+        inputs = self.random_inputs(rng, len(wo), edged=True)
         for name, start, step in (("roughness", 0, 4), ("ior", 0, 3), ("extinction", 1, 6)):
             if name in inputs:
                 inputs[name][start::step] = 0.0

@@ -558,13 +558,17 @@ class FilmSpec(FacetSpec):
     def bounded(self) -> tuple[Input, ...]:
         return tuple(each for each in super().bounded if each.name.startswith("thinfilm"))
 
-    def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        return _in_air(super().random_inputs(rng, count))
+    def random_inputs(
+        self, rng: np.random.Generator, count: int, edged: bool = False
+    ) -> dict[str, Array]:
+        """A dielectric below 1 counts as 1, a film in air; on edges, a quarter of the films have its index.
 
-    def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        """Values of which half lie on an edge; a quarter of the films have the substrate's index."""
-        inputs = _in_air(super().special_inputs(rng, count))
+        From below 1 on, total reflection gives the curve a kink, which no short average sees.
+        """
+        inputs = super().random_inputs(rng, count, edged)
         if "tint" in inputs:
+            inputs["ior"] = np.maximum(inputs["ior"], 1.0)
+        if edged and "tint" in inputs:
             same = rng.random(count) < 0.25
             inputs["thinfilm_ior"] = np.where(same, inputs["ior"], inputs["thinfilm_ior"])
         return inputs
@@ -575,8 +579,8 @@ class FilmSpec(FacetSpec):
         special = _some_special(rng, count)
         random = directions(rng, count), directions(rng, count)
         pairs = (
-            self._batch(rng, random, self.random_inputs),
-            self._batch(rng, special, self.special_inputs),
+            self._batch(rng, random),
+            self._batch(rng, special, edged=True),
             self.mirrored(counts)[0].first(count),
         )
         return tuple(batch.where(_steep(batch)) for batch in pairs)
@@ -600,7 +604,7 @@ class FilmSpec(FacetSpec):
         """Pairs and inputs at the edges of the domain, films next to vacuum and vast ones."""
         rng = generator()
         wo, wi = _some_special(rng, 2 * counts.pairs)
-        inputs = self.special_inputs(rng, len(wo))
+        inputs = self.random_inputs(rng, len(wo), edged=True)
         inputs["thinfilm_thickness"] = rng.choice(THICK, len(wo))
         inputs["thinfilm_ior"][::16] = 0.0
         return Batch(wo, wi, inputs)
@@ -610,14 +614,6 @@ def _some_special(rng: np.random.Generator, count: int) -> tuple[Array, Array]:
     wo, wi = special_directions(rng)
     picked = rng.permutation(len(wo))[:count]
     return wo[picked], wi[picked]
-
-
-def _in_air(inputs: dict[str, Array]) -> dict[str, Array]:
-    """Inputs in which a dielectric below 1 counts as 1, a film in air.
-
-    From below 1 on, total reflection gives the curve a kink, which no short average sees.
-    """
-    return {**inputs, "ior": np.maximum(inputs["ior"], 1.0)} if "tint" in inputs else inputs
 
 
 def film_views(spec: PbrSpec, films: Films) -> Batch:

@@ -22,16 +22,7 @@ from mxeon.conformance.samples import (
     float32,
     generator,
 )
-from mxeon.conformance.spec import (
-    CHANGED_COLOR,
-    Input,
-    LobeSpec,
-    ValueSpec,
-    color,
-    draw,
-    draw_edges,
-    materials,
-)
+from mxeon.conformance.spec import CHANGED_COLOR, Input, LobeSpec, ValueSpec, color, draw, materials
 from mxeon.conformance.specs.lobes import LEAST_VIEW
 from mxeon.conformance.specs.microfacets import FILM_ERRORS, reflected, sum_over
 from mxeon.conformance.tolerance import Term, mean_scaled, roundings, sum_in, sum_of
@@ -199,12 +190,11 @@ class SurfaceShaderSpec(LobeSpec):
 
     # Its samples.
 
-    def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        return draw(rng, count, self.judged)
-
-    def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        """Half of the colors and shares on an edge, where most light leaves."""
-        return draw_edges(rng, count, (*self.judged, *self.others))
+    def random_inputs(
+        self, rng: np.random.Generator, count: int, edged: bool = False
+    ) -> dict[str, Array]:
+        """Those of all lobes on edges, where most light leaves."""
+        return draw(rng, count, (*self.judged, *self.others) if edged else self.judged, edged)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         """Random pairs, half of them near the mirror direction, with random materials."""
@@ -224,7 +214,7 @@ class SurfaceShaderSpec(LobeSpec):
     def edges(self, counts: Counts) -> Batch:
         """Views of materials in which every lobe takes part."""
         rng, count = generator(), counts.materials
-        wo, inputs = _views(rng, count), self.special_inputs(rng, count)
+        wo, inputs = _views(rng, count), self.random_inputs(rng, count, edged=True)
         # QON makes up to 1.4 % of light itself, at grazing.
         inputs |= {name: 0.0 * inputs[name] for name in inputs if name == "diffuse_roughness"}
         return _isotropic(Batch(wo, wo, inputs))

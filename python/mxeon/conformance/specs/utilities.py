@@ -24,7 +24,6 @@ from mxeon.conformance.spec import (
     RowSpec,
     broadcast_inputs,
     draw,
-    draw_edges,
     ports,
 )
 from mxeon.conformance.tolerance import (
@@ -172,7 +171,9 @@ class UtilitySpec(RowSpec):
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         rng, count = generator(), counts.pairs
-        return _batch(draw(rng, count, self.inputs)), _batch(draw_edges(rng, count, self.inputs))
+        return _batch(draw(rng, count, self.inputs)), _batch(
+            draw(rng, count, self.inputs, edged=True)
+        )
 
     def outside(self, counts: Counts) -> Batch:
         """Values at the ends of the ranges and beyond them."""
