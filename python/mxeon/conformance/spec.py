@@ -28,7 +28,6 @@ from mxeon.conformance.samples import (
     node_inputs,
     outside_directions,
     rounded,
-    sky,
     special_directions,
     turned_directions,
     turned_frames,
@@ -241,11 +240,6 @@ class LobeSpec(ValueSpec):
         """Functions that may explain the albedo, its own model first."""
         return ()
 
-    @property
-    def black(self) -> Values:
-        """Inputs with which it scatters nothing; none where it always scatters some light."""
-        return {}
-
     @abstractmethod
     def random_inputs(
         self, rng: np.random.Generator, count: int, edged: bool = False
@@ -255,10 +249,6 @@ class LobeSpec(ValueSpec):
     @abstractmethod
     def edges(self, counts: Counts) -> Batch:
         """Pairs and inputs at the edges of the domain."""
-
-    def sky(self, batch: Batch) -> Array:
-        """Mean of the uneven sky that it scatters, (N, 3)."""
-        return sky(batch.normal)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         """Random pairs, a quarter of each direction grazing; special ones; and outside ones."""

@@ -191,8 +191,9 @@ def furnace(case: Case) -> Iterator[Compared]:
 )
 def black(case: Case) -> Iterator[Compared]:
     """A black surface scatters nothing."""
+    spec = case.of(ScatteringSpec)  # type: ignore[type-abstract]
     for batch in case.few:
-        batch = batch.altered(**case.lobe.black)
+        batch = batch.altered(**spec.black)
         yield Compared(batch, case.direct(batch), np.zeros((1, 3)))
 
 
@@ -231,7 +232,8 @@ def surroundings(case: Case) -> Compared:
         batch, level = batch.where(bright), level[bright]
     with np.errstate(divide="ignore", invalid="ignore"):
         measured = case.albedo(batch, sky_map()) / level
-    return Compared(batch, measured, case.lobe.sky(batch))
+    spec = case.of(ScatteringSpec)  # type: ignore[type-abstract]
+    return Compared(batch, measured, spec.sky(batch))
 
 
 def diagnose_sphere(case: Case) -> Diagnosis:

@@ -84,6 +84,7 @@ class ScatteringSpec(RowSpec, LobeSpec):
 
     @property
     def black(self) -> Values:
+        """Inputs with which it scatters nothing; none where it always scatters some light."""
         names = ("color", "tint", "color0", "color90", *TINTS)
         return {name: (0.0, 0.0, 0.0) for name in names if name in self.row.inputs}
 
@@ -104,6 +105,10 @@ class ScatteringSpec(RowSpec, LobeSpec):
 
     def albedo(self, batch: Batch) -> Array:
         return _albedo(self.row.albedo, batch)
+
+    def sky(self, batch: Batch) -> Array:
+        """Mean of the uneven sky that it scatters, (N, 3)."""
+        return sky(self.side * batch.normal)
 
     def integral(self, batch: Batch) -> Array:
         """Integral of the values with weight, (N, 3)."""
@@ -189,9 +194,6 @@ class PbrSpec(ScatteringSpec):
     def document(self, inputs: Values | None = None) -> str:
         values = {**(inputs or {}), **self.row.fixed}
         return material_text(self.node, values, self.node, self.types)
-
-    def sky(self, batch: Batch) -> Array:
-        return sky(self.side * batch.normal)
 
     @property
     def others(self) -> tuple[Candidate, ...]:
