@@ -3,7 +3,7 @@
 
 from dataclasses import dataclass, replace
 
-from mxeon.conformance.samples import LEAST_SHEEN, Values
+from mxeon.conformance.samples import LEAST_SHEEN, Batch, Counts, Values
 from mxeon.conformance.spec import Input, color, ports
 from mxeon.conformance.specs.lobes import CLOSED_ALBEDO, FLAT_FRAME, PbrSpec
 from mxeon.conformance.specs.sheen import ZELTNER_VALUE
@@ -78,6 +78,10 @@ class CombinedSpec(PbrSpec):
 
     # MaterialX scales a lobe by the share of a mix that is connected wherever the lobe is used.
     plain = ("lobes", "inputs from an image")
+
+    def batches(self, counts: Counts) -> tuple[Batch, ...]:
+        """Random pairs and special ones; those outside are judged with the lobes."""
+        return super().batches(counts)[:2]
 
     def document(self, inputs: Values | None = None) -> str:
         nodes = LOBES | NODES[self.model][1]
