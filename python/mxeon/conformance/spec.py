@@ -291,9 +291,8 @@ class LobeSpec(ValueSpec):
     ) -> Batch:
         """Pairs with random inputs, weights and occlusions, lit from the side that it scatters."""
         wo, wi = pairs
-        drawn = self.random_inputs(rng, len(wo), edged)
-        drawn |= node_inputs(rng, len(wo)) if "weight" in self.names else {}
-        return Batch(wo, wi * [1.0, 1.0, self.side], drawn)
+        inputs = {**self.random_inputs(rng, len(wo), edged), **node_inputs(rng, len(wo))}
+        return Batch(wo, wi * [1.0, 1.0, self.side], inputs)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

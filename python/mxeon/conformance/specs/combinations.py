@@ -3,7 +3,15 @@
 
 from dataclasses import dataclass, replace
 
-from mxeon.conformance.samples import LEAST_SHEEN, Batch, Counts, Values
+from mxeon.conformance.samples import (
+    LEAST_SHEEN,
+    Batch,
+    Counts,
+    Values,
+    directions,
+    generator,
+    special_directions,
+)
 from mxeon.conformance.spec import Input, color, ports
 from mxeon.conformance.specs.lobes import CLOSED_ALBEDO, FLAT_FRAME, PbrSpec
 from mxeon.conformance.specs.sheen import ZELTNER_VALUE
@@ -81,7 +89,13 @@ class CombinedSpec(PbrSpec):
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         """Random pairs and special ones; those outside are judged with the lobes."""
-        return super().batches(counts)[:2]
+        rng, count = generator(), counts.pairs
+        wo, wi = directions(rng, count), directions(rng, count)
+        special = special_directions(rng)
+        return (
+            Batch(wo, wi, self.random_inputs(rng, count)),
+            Batch(*special, self.random_inputs(rng, len(special[0]))),
+        )
 
     def document(self, inputs: Values | None = None) -> str:
         nodes = LOBES | NODES[self.model][1]
