@@ -98,7 +98,7 @@ COATED = ("eon_coated", "eon_varnished", "openpbr_half_metal")  # which a render
 BURLEY = ("burley", "burley_lambert")
 
 
-def is_model(spec: Spec, *names: str) -> bool:
+def is_model(spec: Spec, *names: str) -> TypeGuard[DiffuseModelSpec]:
     return isinstance(spec, DiffuseModelSpec) and spec.model in names
 
 
@@ -180,11 +180,7 @@ def furnace(case: Case) -> Iterator[Compared]:
 @check(
     lambda spec: (
         (is_plain(spec) and bool(spec.black))
-        or (
-            is_model(spec, *ROUGH, "lambert", "burley")
-            and is_node(spec)
-            and not getattr(spec, "beside", False)
-        )
+        or (is_model(spec, *ROUGH, "lambert", "burley") and is_node(spec) and not spec.beside)
     ),
     offset,
     tolerance=ZERO,

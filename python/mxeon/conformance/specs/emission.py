@@ -217,11 +217,8 @@ class ConeSpec(EmissionSpec):
 
         Of those without one, some have twice the same angle.
         """
-        inputs, turn, wide = (
-            super().random_inputs(rng, count),
-            rng.random(count),
-            rng.random(count) < 0.5,
-        )
+        inputs, turn = super().random_inputs(rng, count), rng.random(count)
+        wide = rng.random(count) < 0.5
         inner = 360.0 * np.where(rng.random(count) < 0.25, LEAST_CONE**turn, turn)
         inner = np.where(wide, inner * (1.0 - LEAST_FALLOFF / 360.0), inner)
         more = LEAST_FALLOFF * ((360.0 - inner) / LEAST_FALLOFF) ** rng.random(count)
