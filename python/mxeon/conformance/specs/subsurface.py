@@ -22,7 +22,7 @@ LEAST_HEIGHT = 0.3  # of its normals; next to the rim a pixel's point is far fro
 MATERIALS: tuple[Values, ...] = (  # from one whose light is everywhere to one like a plane
     {"color": (0.9, 0.6, 0.3), "radius": (0.5, 0.2, 0.05), "anisotropy": -0.5},
     {"color": (0.4, 0.7, 1.0), "radius": (0.02, 0.1, 1.0), "anisotropy": 0.5},
-    *({"color": (1.0, 1.0, 1.0), "radius": each, "anisotropy": 0.0} for each in np.eye(3)),
+    *(dict[str, ArrayLike](color=(1, 1, 1), radius=each, anisotropy=0.0) for each in np.eye(3)),
 )
 # What may stand in the place of the radius, and of the far exponential's length, which is 3.
 EVEN = (0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.0)
