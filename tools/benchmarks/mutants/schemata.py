@@ -249,7 +249,7 @@ def chunk_of(file: str) -> str:
 # Checks that notice most, and that take long: the others are asked about what the first let pass, the last about the rest.
 FIRST = (
     *("value", "environment", "layering", "denser", "output", "radiance", "sphere_mean"),
-    *("film", "film_visible", "film_environment", "combination", "combined_throughput"),
+    *("film_visible", "combination", "combined_throughput"),
 )
 LAST = (
     *("frame", "finite", "layer", "integral", "energy", "states", "lossless", "domain", "sky"),
