@@ -31,7 +31,7 @@ from mxeon.shaders.scene import VIEW, Scene, sphere, tangents
 
 SCENES = 4  # whose points are kept: the pictures of a run have as many
 
-STRIDE = 8  # of the pixels that are judged where each has a material of its own
+ROWS = 32  # and columns of pixels that are judged where each has a material of its own
 MOST = 2000  # pixels of which all are judged then: an integral takes about a millisecond
 
 PATTERNS = (*DRAWN, "boolean", "color4", "vector4")  # of which a generator draws three components
@@ -135,7 +135,7 @@ class Host(base.Host):
                 behind = Graph(shader.document, dark, measure=measure if values else None)
                 image[chosen] += behind.element(shader.element)
         except ManyMaterialsError:
-            return self.expected(shader, scene, values, STRIDE)
+            return self.expected(shader, scene, values, -(-scene.size // ROWS))
         except NotRun:
             shown = shader.document.getDescendant(shader.element)
             if values is None or not shown.isA(mx.Output) or shown.getType() in LIT:
