@@ -139,24 +139,35 @@ def test_what_did_not_run_is_said_with_its_number():
 
 
 @pytest.mark.parametrize(
-    ("results", "sentence"),
+    ("results", "verdict", "sentence"),
     [
-        ([made()], "The check passed on gl with eonlib."),
+        ([], NOT_RUN, "No check ran."),
+        ([made(NOT_RUN)], NOT_RUN, "No check ran."),
+        ([made()], PASSED, "The check passed on gl with eonlib."),
+        (
+            [made(), made(DIFFERS)],
+            PASSED,
+            "1 of 2 checks passed on gl with eonlib; "
+            "1 differs where the specification leaves it open.",
+        ),
         (
             [made(FAILED), made(FAILED, host="osl"), made(DIFFERS)],
+            FAILED,
             "2 of 3 checks failed: 1 on gl with eonlib, 1 on osl with eonlib; "
             "1 differs where the specification leaves it open.",
         ),
-        ([made(FAILED), made()], "1 of 2 checks failed on gl with eonlib."),
+        ([made(FAILED), made()], FAILED, "1 of 2 checks failed on gl with eonlib."),
         (
             [made(FAILED), made(NOT_RUN), made(NOT_RUN, reason=f"x {WRONG_INSIDE}")],
+            FAILED,
             "1 of 3 checks failed on gl with eonlib; 1 did not run.",
         ),
-        ([made(), made(NOT_RUN)], "Nothing failed, but 1 of 2 checks did not run."),
+        ([made(), made(NOT_RUN)], NOT_RUN, "Nothing failed, but 1 of 2 checks did not run."),
     ],
 )
-def test_the_verdict_counts_what_failed_and_what_differs(results, sentence):
-    assert made_run(*results).summary.sentence == sentence
+def test_the_verdict_is_the_worst_and_counts_what_did_not_pass(results, verdict, sentence):
+    summary = made_run(*results).summary
+    assert (summary.verdict, summary.sentence) == (verdict, sentence)
 
 
 # --- what is judged -------------------------------------------------------------------------------
