@@ -27,7 +27,7 @@ EXAMPLES = (
     "explore my.mtlx --output my.html  # draw and compare them in a browser",
     "library  # how to load eonlib in your renderer",
 )
-LEAST_MEMORY = 2**28  # bytes of address space
+LEAST_MEMORY = 2**28  # bytes of address space; with less OpenBLAS aborts the process
 COMMANDS = (check, generate, render, explore, library, invert, figures, report, kit, doc)
 
 
@@ -60,7 +60,10 @@ def _run(arguments: Sequence[str]) -> int:
     try:
         _check_encoding(arguments)
         options = parser().parse_args(arguments)
-        _check_memory()
+        limit, _ = resource.getrlimit(resource.RLIMIT_AS)
+        if limit != resource.RLIM_INFINITY and limit < LEAST_MEMORY:
+            rule = f"address space must be at least {LEAST_MEMORY} bytes; got {limit}"
+            raise NotRun(f"{rule}: raise it by ulimit -v")
         use_materialx(getattr(options, "materialx", None))
         with warnings.catch_warnings():
             warnings.showwarning = show_warning
@@ -77,15 +80,6 @@ def _run(arguments: Sequence[str]) -> int:
     except Exception:  # a bug of ours
         traceback.print_exc()
         return NOT_RUN
-
-
-def _check_memory() -> None:
-    """Raise NotRun if the memory limit is too low for OpenBLAS, which would abort the process."""
-    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
-    if limit != resource.RLIM_INFINITY and limit < LEAST_MEMORY:
-        raise NotRun(
-            f"address space must be at least {LEAST_MEMORY} bytes; got {limit}: raise it by ulimit -v"
-        )
 
 
 def _check_encoding(arguments: Sequence[str]) -> None:

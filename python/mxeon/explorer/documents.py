@@ -32,7 +32,7 @@ from mxeon.hosts import open_host
 from mxeon.hosts.raster import check_images, image_files
 from mxeon.hosts.textures import read_texture
 from mxeon.shaders.document.policy import DEFAULT, Policy
-from mxeon.shaders.document.values import Plain, members
+from mxeon.shaders.document.values import Plain, flat
 from mxeon.shaders.generation import Input, Shader, generate
 from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG, OREN_NAYAR
 
@@ -187,7 +187,7 @@ def _ports(shader: Shader, images: Mapping[str, Texels | None]) -> Iterator[Shad
             if port.value:
                 yield replace(_port(shader, port), image=images.get(str(port.value)))
         else:
-            for name, kind, value in _numbers(port.name, port.type, port.value, shader.document):
+            for name, kind, value in flat(port.name, port.type, port.value, shader.document):
                 yield replace(_port(shader, port), name=name, type=kind, value=_short(value))
 
 
@@ -206,18 +206,6 @@ def _by_effect(ports: tuple[ShaderInput, ...], document: mx.Document) -> tuple[S
         return 0 if document.getDescendant(port.path) else 1
 
     return tuple(sorted(ports, key=rank))
-
-
-def _numbers(
-    name: str, kind: str, value: Plain, document: mx.Document
-) -> Iterator[tuple[str, str, Plain]]:
-    """Name, type and value of an input, or of the members of a structure, unless it is text."""
-    if parts := members(kind, document):
-        values = value if isinstance(value, tuple) else ()
-        for (part, inner), member in zip(parts, values, strict=False):
-            yield from _numbers(f"{name}.{part}", inner, member, document)
-    elif value is not None and not isinstance(value, str):
-        yield name, kind, value
 
 
 def _port(shader: Shader, port: Input) -> ShaderInput:

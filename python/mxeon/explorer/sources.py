@@ -251,7 +251,14 @@ STILLS = ("eon", "eon_clamped", "qon", "lambert")
 
 def stills() -> tuple[Still, ...]:
     """A sphere of the color (0.8, 0.4, 0.1) and roughness 1, lit from behind."""
-    return tuple(Still(model(name).title, _address(picture(name))) for name in STILLS)
+    found = []
+    for name in STILLS:
+        with temporary_folder("mxeon-still-") as folder:
+            path = Path(folder, "still.png")
+            write_png(path, picture(name).astype(np.float32), {})
+            address = f"data:image/png;base64,{b64encode(path.read_bytes()).decode()}"
+        found.append(Still(model(name).title, address))
+    return tuple(found)
 
 
 def picture(name: str) -> NDArray[np.float64]:
@@ -267,11 +274,3 @@ def picture(name: str) -> NDArray[np.float64]:
     image = np.zeros((SIZE, SIZE, 3))
     image[points.mask] = values
     return image
-
-
-def _address(image: NDArray[np.float64]) -> str:
-    """An image as a PNG in a data: address."""
-    with temporary_folder("mxeon-still-") as folder:
-        path = Path(folder, "still.png")
-        write_png(path, image.astype(np.float32), {})
-        return f"data:image/png;base64,{b64encode(path.read_bytes()).decode()}"

@@ -19,7 +19,7 @@ from mxeon.hosts.textures import irradiance, read_latlong, read_texture, texels_
 from mxeon.shaders import functions
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.references import files
-from mxeon.shaders.document.values import Plain, label, members
+from mxeon.shaders.document.values import Plain, flat, label
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import SUBSURFACE, TRANSMISSION, VOLUME, inner_lobes
 from mxeon.shaders.scene import SIDE, Scene
@@ -110,18 +110,11 @@ def inputs(shader: Shader) -> Uniforms:
     A matrix is a flat tuple, whose rows are the columns of the uniform; each member of a structure
     is a separate uniform.
     """
-    ports: list[tuple[str, str, Plain]] = [
-        (port.name, port.type, port.value) for port in shader.inputs
-    ]
-    uniforms: Uniforms = {}
-    while ports:
-        name, kind, value = ports.pop()
-        if parts := members(kind, shader.document):
-            values = zip(parts, value if isinstance(value, tuple) else (), strict=False)
-            ports += [(f"{name}.{part}", inner, member) for (part, inner), member in values]
-        elif value is not None and not isinstance(value, str):
-            uniforms[name] = value
-    return uniforms
+    return {
+        name: value
+        for port in shader.inputs
+        for name, _, value in flat(port.name, port.type, port.value, shader.document)
+    }
 
 
 def light(scene: Scene) -> Uniforms:

@@ -80,7 +80,12 @@ class Host(FragmentHost):
                 raise NotRun(
                     f"{self.name}: no program {program!r}; on Debian: apt-get install glslang-tools"
                 )
-        self._adapter = self._find_adapter()
+        adapters = wgpu.gpu.enumerate_adapters_sync()
+        found = [each for each in adapters if each.info["backend_type"] == "Vulkan"]
+        if not found:
+            remedy = "on Debian: apt-get install mesa-vulkan-drivers"
+            raise NotRun(f"{self.name}: no Vulkan device; {remedy}")
+        self._adapter = found[0]
         self._device = self._adapter.request_device_sync()
         self._programs: dict[str, tuple[tuple[Resource, ...], Resource]] = {}
 
@@ -88,14 +93,6 @@ class Host(FragmentHost):
         info = self._adapter.info
         version = f"{self.path}, {info['description']}; wgpu {wgpu.__version__}"
         return Identity(self.name, version, info["device"])
-
-    def _find_adapter(self) -> Resource:
-        for adapter in wgpu.gpu.enumerate_adapters_sync():
-            if adapter.info["backend_type"] == "Vulkan":
-                return adapter
-        raise NotRun(
-            f"{self.name}: no Vulkan device; on Debian: apt-get install mesa-vulkan-drivers"
-        )
 
     def close(self) -> None:
         self._device.destroy()

@@ -53,10 +53,14 @@ def read_strictly(converter: cattrs.Converter, value: object, kind: type[T]) -> 
 
     Raise InputError for the first value that is wrong, with its path and the rule.
     """
+
+    def reason(error: BaseException, kind: type | None) -> str:
+        return f"lacks {error}" if isinstance(error, KeyError) else str(error)
+
     try:
         record = converter.structure(value, kind)
     except ERRORS as error:
-        first = cattrs.transform_error(error, format_exception=_reason)[0]
+        first = cattrs.transform_error(error, format_exception=reason)[0]
         raise InputError(first) from None
     if converter.unstructure(record) != value:  # a text was taken for a list, for example
         raise InputError("it must have the structure that mxeon writes")
@@ -92,7 +96,3 @@ def _number(value: object, _: type) -> float:
         raise InputError(
             f"must be a number below 1.8e308; got one of {len(str(value))} digits"
         ) from None
-
-
-def _reason(error: BaseException, kind: type | None) -> str:
-    return f"lacks {error}" if isinstance(error, KeyError) else str(error)

@@ -63,7 +63,11 @@ def export_kit(folder: str | PathLike[str], size: int = USUAL, node: KitNode = K
     InputError for a size out of range, or a folder that has no name, holds something else than a kit, or a
     link under a name of the kit's files.
     """
-    _assert_own(folder)
+    if not str(folder):
+        raise InputError("folder must have a name; got ''")
+    known = os.path.lexists(Path(folder, DESCRIPTION))
+    if os.path.isdir(folder) and os.listdir(folder) and not known:
+        raise InputError(f"{folder}: must be new, empty or a kit; it holds other files")
     pictures, mesh = views(size), unit_sphere()
     files = {}
     for each in MATERIALS:
@@ -87,17 +91,6 @@ def export_kit(folder: str | PathLike[str], size: int = USUAL, node: KitNode = K
         write_text(path, text)
     below(folder, RENDERS).mkdir(exist_ok=True)
     return Path(folder, README)
-
-
-def _assert_own(folder: str | PathLike[str]) -> None:
-    """Raise InputError unless a folder is new, empty or a kit's."""
-    if not str(folder):
-        raise InputError("folder must have a name; got ''")
-    path = Path(folder)
-    if not path.is_dir():
-        return
-    if any(path.iterdir()) and not os.path.lexists(path / DESCRIPTION):
-        raise InputError(f"{folder}: must be new, empty or a kit; it holds other files")
 
 
 def description(pictures: Sequence[View], size: int, node: str = OREN_NAYAR) -> dict[str, Any]:

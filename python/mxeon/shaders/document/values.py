@@ -2,7 +2,7 @@
 """Elements of a document: their names in messages, their values in Python and their color spaces."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import TypeAlias, cast
 
 import MaterialX as mx
@@ -55,6 +55,18 @@ def members(kind: str, document: mx.Document) -> tuple[tuple[str, str], ...]:
     definition = document.getTypeDef(kind)
     parts = definition.getMembers() if definition else ()
     return tuple((each.getName(), each.getType()) for each in parts)
+
+
+def flat(
+    name: str, kind: str, value: Plain, document: mx.Document
+) -> Iterator[tuple[str, str, Plain]]:
+    """Name, type and value of a shader's input, or of each member of a structure, unless it is text."""
+    if parts := members(kind, document):
+        values = value if isinstance(value, tuple) else ()
+        for (part, inner), member in zip(parts, values, strict=False):
+            yield from flat(f"{name}.{part}", inner, member, document)
+    elif value is not None and not isinstance(value, str):
+        yield name, kind, value
 
 
 def is_exact(text: str, kind: str) -> bool:
