@@ -20,6 +20,7 @@ from mxeon.models.core.arguments import (
     checked_sphere,
     checked_switch,
     checked_triples,
+    lead_shape,
     refuse_ambiguous,
     spread_pair,
 )
@@ -129,7 +130,7 @@ def rows(
 ) -> Rows:
     """Vectors (..., K) and a value for each parameter in rows, all by their names."""
     directions = {name: _floats(arguments[name]) for name in vectors}
-    lead = _lead(directions, {})
+    lead = lead_shape(directions, {})
     arrays, colored = {}, False
     for each in parameters:
         array = _floats(checked(each.name, arguments[each.name], each.quantity))
@@ -139,9 +140,10 @@ def rows(
             array = array if array.ndim else array[np.newaxis]
         arrays[each.name] = spread_pair(each.name, array) if each.channels == 2 else array
     # Lay out all pairs in one row; what is the same for all of them stays one.
-    channels = {each.name: each.channels for each in parameters}
-    lead = _lead(directions, {n: (a, channels[n]) for n, a in arrays.items()})
-    laid = {name: _laid(a, lead, bool(channels[name])) for name, a in arrays.items()}
+    wide = {each.name: arrays[each.name] for each in parameters if each.channels}
+    narrow = {name: array for name, array in arrays.items() if name not in wide}
+    lead = lead_shape(directions | wide, narrow)
+    laid = {name: _laid(array, lead, name in wide) for name, array in arrays.items()}
     weight = laid.pop(WEIGHT.name, None)
     found = [_laid(v, lead, True, whole=True) for v in directions.values()]
     return Rows(lead, found, laid, colored, weight)
@@ -160,21 +162,6 @@ def views(mu: ArrayLike, azimuth: ArrayLike) -> Array:
 def _floats(value: ArrayLike) -> Array:
     """Numbers in float64; another library's array as it is."""
     return cast(Array, value) if library(value) else np.asarray(value, np.float64)
-
-
-def _lead(
-    directions: Mapping[str, Array], arrays: Mapping[str, tuple[Array, int]]
-) -> tuple[int, ...]:
-    """Shape to which all broadcast but their last axes."""
-    shapes = {name: tuple(array.shape[:-1]) for name, array in directions.items()}
-    shapes |= {
-        n: tuple(a.shape[:-1] if channels else a.shape) for n, (a, channels) in arrays.items()
-    }
-    try:
-        return np.broadcast_shapes(*shapes.values())
-    except ValueError:
-        listed = ", ".join(f"{name} {shape}" for name, shape in shapes.items() if shape)
-        raise ValueError(f"shapes must broadcast, last axes apart; got {listed}") from None
 
 
 def _laid(array: Array, lead: tuple[int, ...], last: bool, whole: bool = False) -> Array:

@@ -16,7 +16,6 @@ from mxeon.shaders.nodes import DIFFUSE_NODES, FLAG, OREN_NAYAR
 
 COLORED = ("color3", "color4", "filename")
 HALF_PI = ctypes.c_float(math.pi / 2.0).value  # as MaterialX keeps it, which is above pi / 2
-ANY = (-math.inf, math.inf)
 
 
 class DocumentWarning(UserWarning):
@@ -113,11 +112,16 @@ def _misread(element: mx.ValueElement) -> str | None:
 
 
 def _out_of_range(element: mx.ValueElement) -> str | None:
-    """Warning of a value for which the model of its node is not defined."""
-    low, high = _range(element)
-    if (low, high) == ANY or all(low <= number <= high for number in numbers(element)):
+    """Warning of a value for which the model of its node, a rough diffuse one, is not defined."""
+    node, name = element.getParent(), element.getName()
+    diffuse = element.isA(mx.Input) and node.isA(mx.Node) and node.getCategory() in DIFFUSE_NODES
+    if not diffuse or name not in ("weight", "color", "roughness"):
         return None
-    rule = f"must lie in [{low:g}, {high:.6g}], where its model is defined"
+    qualitative = node.getCategory() == OREN_NAYAR and not node.getInputValue(FLAG)
+    high = HALF_PI if name == "roughness" and qualitative else 1.0
+    if all(0.0 <= number <= high for number in numbers(element)):
+        return None
+    rule = f"must lie in [0, {high:.6g}], where its model is defined"
     return f"{location(element)} {rule}; got {element.getValueString()}"
 
 
@@ -138,17 +142,3 @@ def _unconnected(element: mx.Element) -> str | None:
     rule = f"must be connected to a node; got nodename {element.getNodeName()!r}"
     remedy = "a nodegraph is connected by nodegraph"
     return f"{location(element)} {rule}, which MaterialX ignores: {remedy}"
-
-
-def _range(element: mx.ValueElement) -> tuple[float, float]:
-    """Range of an input of a rough diffuse node; ANY for other elements."""
-    node = element.getParent()
-    diffuse = node.isA(mx.Node) and node.getCategory() in DIFFUSE_NODES
-    if not diffuse or not element.isA(mx.Input):
-        return ANY
-    if element.getName() in ("weight", "color"):
-        return 0.0, 1.0
-    if element.getName() != "roughness":
-        return ANY
-    qualitative = node.getCategory() == OREN_NAYAR and not node.getInputValue(FLAG)
-    return 0.0, HALF_PI if qualitative else 1.0
