@@ -123,16 +123,11 @@ def test_a_shader_that_does_not_compile_is_the_shaders_error(host):
         host.picture(emit("out = nothing();"), SMALL)
 
 
-def endless(host):
-    """A picture that never ends."""
-    return host.picture(emit("while (P[0] < 2.0) { out = color(P) * emission(); }"), SMALL)
-
-
 def test_a_hang_is_not_run_and_the_next_picture_is(host):
     host.worker.start()
     limit, host.worker.limit = host.worker.limit, 1.0
     with pytest.raises(NotRun, match="no answer within 1 s; last output"):
-        endless(host)
+        host.picture(emit("while (P[0] < 2.0) { out = color(P) * emission(); }"), SMALL)
     host.worker.limit = limit
     assert host.call("same_float", [0.5])[0, 0] == 0.5
 

@@ -25,7 +25,10 @@ def distances(albedo, anisotropy, count, seed=1):
         reflectance.
     """
     rng = np.random.default_rng(seed)
-    points, ways = np.zeros((3, count)), _turned(_down(count), *_lambert(rng, count))
+    # The light below a diffuse surface.
+    down = np.repeat([[0.0], [0.0], [-1.0]], count, axis=1)
+    cosines, azimuths = np.sqrt(1.0 - rng.random(count)), 2.0 * np.pi * rng.random(count)
+    points, ways = np.zeros((3, count)), _turned(down, cosines, azimuths)
     ended = []
     while points.shape[1]:
         points = points - np.log1p(-rng.random(points.shape[1])) * ways
@@ -48,15 +51,6 @@ def reflectance_of_h(albedo):
         integral = (mu * weights * h / (mu + mu[:, np.newaxis])).sum(axis=1)
         h = 1.0 / (np.sqrt(1.0 - albedo) + 0.5 * albedo * integral)
     return 1.0 - 2.0 * np.sqrt(1.0 - albedo) * (h * mu * weights).sum()
-
-
-def _down(count):
-    return np.repeat([[0.0], [0.0], [-1.0]], count, axis=1)
-
-
-def _lambert(rng, count):
-    """Cosines and azimuths of light below a diffuse surface."""
-    return np.sqrt(1.0 - rng.random(count)), 2.0 * np.pi * rng.random(count)
 
 
 def _scattered(u, g):

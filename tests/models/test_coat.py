@@ -37,18 +37,14 @@ def test_curves_are_those_of_a_finer_quadrature(monkeypatch, alpha, ior):
     finer = {"LEAST_SCALE": 0.0, "NODES": 40, "PANELS": 6, "QUADRANT": 120}
     for name, value in finer.items():
         monkeypatch.setattr(slopes, name, value)
-    c, weight = slopes.slope_nodes(view_of(COSINES), np.full((2, len(COSINES)), alpha))
+    views = np.stack([np.sqrt((1.0 - COSINES) * (1.0 + COSINES)), 0.0 * COSINES, COSINES])
+    c, weight = slopes.slope_nodes(views, np.full((2, len(COSINES)), alpha))
     expected = 1.0 / ggx_albedo_dir(COSINES, alpha) - 1.0
     assert np.abs(missing - expected).max() < COAT
     E = np.sum(dielectric(c, np.asarray(ior)) * weight, axis=(0, 1))
     assert coat.average == fresnel_dielectric_avg(ior)
     assert np.abs(coat.edge_at(COSINES) - np.sum((1.0 - c) ** 5 * weight, axis=(0, 1))).max() < COAT
     assert np.abs(reflected - E * (1.0 + coat.average * expected)).max() < COAT
-
-
-def view_of(mu):
-    """Directions with these cosines, components first."""
-    return np.stack([np.sqrt((1.0 - mu) * (1.0 + mu)), 0.0 * mu, mu])
 
 
 @pytest.mark.parametrize("mu", (1.0, 0.5, 0.1))

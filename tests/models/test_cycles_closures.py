@@ -37,13 +37,10 @@ def test_a_lobe_is_single_scattering(name, inputs):
 
 def test_color82_counts_as_1():
     other = {**INPUTS, "color82": np.full((3, 3), 0.9)}
-    for function in (lambda each: variant("schlick").value(WO, WI, each), albedo_of_schlick):
-        assert np.array_equal(function(INPUTS), function(other))
-    assert np.array_equal(*(variant("schlick", 1).albedo(WO, each) for each in (INPUTS, other)))
-
-
-def albedo_of_schlick(inputs):
-    return variant("schlick").albedo(WO, inputs)
+    schlick, layered = variant("schlick"), variant("schlick", 1)
+    assert np.array_equal(*(schlick.value(WO, WI, each) for each in (INPUTS, other)))
+    assert np.array_equal(*(schlick.albedo(WO, each) for each in (INPUTS, other)))
+    assert np.array_equal(*(layered.albedo(WO, each) for each in (INPUTS, other)))
 
 
 @pytest.mark.parametrize("name", ["dielectric", "schlick"])

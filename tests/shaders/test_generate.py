@@ -70,11 +70,6 @@ def pixel(text, target, **options):
     return shader.stages["pixel"]
 
 
-def statements(source):
-    """The lines of a shader that compute or take the lobe."""
-    return "\n".join(line for line in source.splitlines() if "lobe_out" in line)
-
-
 def kept(source):
     """Variables of a shader outside of its functions, of MSL outside of its context's, that are not constant."""
     text = re.sub(
@@ -133,7 +128,8 @@ def test_the_surfaces_of_materialx_are_made_on_every_target(surface, target):
 @of_each_node
 @on_each_target
 def test_every_input_of_the_nodedef_is_used(node, inputs, target):
-    used = statements(pixel(material(lobe(node, **inputs)), target))
+    lines = pixel(material(lobe(node, **inputs)), target).splitlines()
+    used = "\n".join(line for line in lines if "lobe_out" in line)
     ports = load_library().getNodeDef(f"ND_{node}").getInputs()
     assert {port.getName() for port in ports} == set(inputs)
     assert [name for name in inputs if not re.search(rf"\blobe_{name}\b", used)] == []

@@ -24,11 +24,6 @@ def view(mu, azimuth=0.0):
     return np.array([S * np.cos(azimuth), S * np.sin(azimuth), mu])
 
 
-def polar_angle(mu):
-    """Angle whose cosine is `mu`, no rounding above a right angle."""
-    return np.minimum(np.arccos(mu), 0.5 * np.pi)
-
-
 gauss_legendre = lru_cache(np.polynomial.legendre.leggauss)
 
 
@@ -49,7 +44,8 @@ def directions(theta, phi):
 
 def hemisphere(mu, count=64):
     """Directions and weights in solid angle, exact across the kinks of EON for this `mu`."""
-    theta, dtheta = rule(np.unique([0.0, polar_angle(mu), 0.5 * np.pi]), count)
+    kink = np.minimum(np.arccos(mu), 0.5 * np.pi)  # no rounding above a right angle
+    theta, dtheta = rule(np.unique([0.0, kink, 0.5 * np.pi]), count)
     phi, dphi = rule(0.5 * np.pi * np.arange(-1, 4), count)
     weights = (dtheta * np.sin(theta))[:, :, np.newaxis, np.newaxis] * dphi
     return directions(theta, phi).reshape(-1, 3), weights.ravel()
