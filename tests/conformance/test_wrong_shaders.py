@@ -187,6 +187,8 @@ WRONG = {
          "best match: N of TRRT+ pi/2 instead of 1/(2 pi) (rms "),
         (HAIR, "max(roughness[p], vec2(1e-8, 1e-4))", "clamp(roughness[p], 0.001, 1.0)", "wide_lobes",
          "best match: roughness clamped to [0.001, 1] (rms "),
+        (HAIR, "else if (closureData.closureType == CLOSURE_TYPE_INDIRECT)", "else", "throughput",
+         "response not 0 (branches: transmission, emission)"),
         (HAIR, "total * closureData", "4.0 * OLD", "energy", "fault: every value is 4 times the right one (rms "),
         (HAIR, "X = normalize(X - dot(X, N) * N);", "X = normalize(cross(vec3(0.0, 1.0, 0.0), N));", "frame",
          "branch direct: curve_direction is ignored"),

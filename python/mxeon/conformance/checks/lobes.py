@@ -285,9 +285,14 @@ def color_space() -> None:
     """A color in sRGB has the value of the linear color that it stands for."""
 
 
-def opaque_values(case: Case, branch: str) -> Iterator[Compared]:
+# Outputs that an opaque node has none of, and their branches.
+NOTHING = (*product(["throughput"], BRANCHES), *product(["response"], ["transmission", "emission"]))
+
+
+def opaque_values(case: Case, output: str, branch: str) -> Iterator[Compared]:
     for batch in case.few:
-        yield Compared(batch, case.throughput(batch, branch), np.zeros((len(batch.wo), 3)))
+        values = case.evaluating.evaluate(case.inputs(batch), branch, output)
+        yield Compared(batch, case.throughputs(batch, values), np.zeros((len(batch.wo), 3)))
 
 
 @check(
@@ -297,12 +302,12 @@ def opaque_values(case: Case, branch: str) -> Iterator[Compared]:
     pairs=True,
     lit=True,
     diagnose=lambda case: diagnosis.diagnose_throughput(
-        {branch: list(opaque_values(case, branch)) for branch in BRANCHES}
+        {each: list(opaque_values(case, *each)) for each in NOTHING}
     ),
 )
 def throughput(case: Case) -> Iterator[Compared]:
-    """No light from below passes: the throughput is 0 in every branch, for every weight."""
-    return (each for branch in BRANCHES for each in opaque_values(case, branch))
+    """No light from below passes in any branch, nor comes any through the node, for every weight."""
+    return (each for row in NOTHING for each in opaque_values(case, *row))
 
 
 @check(is_reciprocal, scale_cosine("the value has an extra factor cos(theta_o)", 1))

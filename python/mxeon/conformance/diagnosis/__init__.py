@@ -431,10 +431,10 @@ def diagnose_finite(case: Case) -> Diagnosis:
     return Diagnosis(not_finite([edge_values(case)]))
 
 
-def diagnose_throughput(passed: Mapping[str, Sequence[Compared]]) -> Diagnosis:
-    """The branches whose throughput is not 0, with its value."""
+def diagnose_throughput(passed: Mapping[tuple[str, str], Sequence[Compared]]) -> Diagnosis:
+    """The outputs that are not 0, with their values and branches."""
     branches: dict[str, list[str]] = {}
-    for branch, compared in passed.items():
+    for (output, branch), compared in passed.items():
         wrong = [absolute(each.measured, each.expected) > 0.0 for each in compared]
         values = np.concatenate(
             [each.measured[bad] for each, bad in zip(compared, wrong, strict=True)]
@@ -442,8 +442,8 @@ def diagnose_throughput(passed: Mapping[str, Sequence[Compared]]) -> Diagnosis:
         if len(values):
             number = f"{values.flat[0]:.3g}" if np.ptp(values) == 0.0 else "not 0"
             place = smallest([each.batch for each in compared], wrong)
-            branches.setdefault(f"{number} {place}".rstrip(), []).append(branch)
-    texts = (f"throughput {text} (branches: {', '.join(branches[text])})" for text in branches)
+            branches.setdefault(f"{output} {number} {place}".rstrip(), []).append(branch)
+    texts = (f"{text} (branches: {', '.join(each)})" for text, each in branches.items())
     return Diagnosis("; ".join(texts))
 
 
