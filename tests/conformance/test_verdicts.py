@@ -77,7 +77,6 @@ STOCK = {
     EON: {"value": CLAMPED, "integral": CLAMPED, "environment": ""},
     QON: {"environment": "QON with MaterialX's fit of its albedo"},
     f"{EON}, mdl": {"closure": "FON + white lobe"},
-    f"{EON}, osl": {"closure": "energy_compensation is not the node's"},
     "open_pbr_surface": {"lobe": CLAMPED},
     "open_pbr_surface, thin-walled": {"lobe": "QON tinted twice"},
     "plaster.mtlx: ochre_plaster": {"picture": "% of white too bright in light from behind"},

@@ -14,10 +14,9 @@ from tests.support.verdicts import FAILED, NOT_RUN, PASSED, SHADER_FUNCTIONS
 from tests.support.wrong_libraries import copy_of_eonlib, place_of, replace_text
 
 ON, OFF = (f"oren_nayar_diffuse_bsdf, energy_compensation {flag}" for flag in ("true", "false"))
-MDL, OSL = "libraries/diffuse/eonlib_genmdl_impl.mtlx", "libraries/diffuse/eonlib_genosl_impl.mtlx"
+MDL = "libraries/diffuse/eonlib_genmdl_impl.mtlx"
 DEFINITIONS, GRAPHS = "libraries/diffuse/eonlib_defs.mtlx", "libraries/diffuse/eonlib_ng.mtlx"
 FLAG = "{{energy_compensation}}"
-KEYWORD = "&quot;energy_compensation&quot;"
 
 
 @pytest.fixture
@@ -72,30 +71,28 @@ def test_an_input_of_another_type_is_not_run_and_says_so(judged, copy):
 
 
 @pytest.mark.parametrize(
-    "file, old, new, title, words",
+    "old, new, words",
     [
-        (MDL, "28.0", "27.0", "mdl", "multiscatter_tint is not that of EON, rho^2 <E> / (1 - rho (1 - <E>)): off by up to"),
-        (MDL, FLAG + " ?", "false ?", "mdl", "rho^2 <E> / (1 - rho (1 - <E>)), but 0: off by up to"),
-        (MDL, "roughness: {{roughness}}", "roughness: 0.5", "mdl",
-         "roughness is not the node's roughness, but 0.5"),
-        (MDL, "df::diffuse_reflection_bsdf", "df::difuse_reflection_bsdf", "mdl",
+        ("28.0", "27.0", "multiscatter_tint is not that of EON, rho^2 <E> / (1 - rho (1 - <E>)): off by up to"),
+        (FLAG + " ?", "false ?", "rho^2 <E> / (1 - rho (1 - <E>)), but 0: off by up to"),
+        ("roughness: {{roughness}}", "roughness: 0.5", "roughness is not the node's roughness, but 0.5"),
+        ("df::diffuse_reflection_bsdf", "df::difuse_reflection_bsdf",
          "function df::difuse_reflection_bsdf is unknown; known are color, float3, "),
-        (OSL, KEYWORD, "&quot;energy_compensaton&quot;", "osl",
-         'keyword "energy_compensaton" is not known to OSL'),
-        (OSL, "{{normal}}, {{color}}", "{{color}}, {{normal}}", "osl", "normal is not the node's normal"),
-        (OSL, FLAG, "0", "osl", "energy_compensation is not the node's energy_compensation, but 0"),
-        (OSL, "{{weight}} * ", "", "osl", "weight is not the node's weight, but 1: off"),
+        ("normal: {{normal}}", "normal: {{color}}", "normal is not the node's normal: off by up to"),
+        ("weight: {{weight}}", "weight: 1.0", "weight is not the node's weight, but 1: off"),
+        ("tint: {{color}}", "tint: {{roughness}}", "color is not the node's color: off by up to"),
+        ("roughness: {{roughness}}", "roughness: {{color}}", "roughness is a float but receives a color"),
+        (", normal: {{normal}}", "", "normal is not passed"),
     ],
 )  # fmt: skip
-def test_a_wrong_closure_is_told_by_its_argument(judged, copy, file, old, new, title, words):
-    results = judged.texts("closure", copy(file, old, new))
+def test_a_wrong_closure_is_told_by_its_argument(judged, copy, old, new, words):
+    results = judged.texts("closure", copy(MDL, old, new))
     wrong = {
         each.subject: each.diagnosis
         for each in results.values()
         if each.verdict == FAILED and each.subject.startswith(ON)
     }
-    assert set(wrong) == {f"{ON}, {title}"}
-    assert words in wrong[f"{ON}, {title}"]
+    assert set(wrong) == {f"{ON}, mdl"} and words in wrong[f"{ON}, mdl"]
 
 
 def test_a_closure_that_is_defined_elsewhere_is_not_run(judged, copy):

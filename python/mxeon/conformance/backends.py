@@ -65,6 +65,7 @@ from mxeon.hosts.pairs import DISTANCE, JITTER, PIXEL, apart, visible
 from mxeon.hosts.testrender_scene import EYE, NEAREST
 from mxeon.models.nodes.node import Scattering, Variant
 from mxeon.models.nodes.renderers import BSDL_VARIANTS, CYCLES_VARIANTS
+from mxeon.models.shading_model import ALONG, UP
 from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, VIEW, Scene, local_directions, sphere
 
 if TYPE_CHECKING:
@@ -393,7 +394,18 @@ class Closures(Evaluating):
         from mxeon.conformance.reference.closures import evaluate
 
         assert irradiance is None, "closures look no environment up"
-        return evaluate(self.host, *asked, output)
+        shader, wo, wi, inputs, branch = asked
+        if shader is self.shader and isinstance(self.spec, (DiffuseSpec, PbrSpec)):
+            # A constant that is not the surface's own frame is the node's input, of its document.
+            frame = {
+                name: inputs[name]
+                for name, axis in (("normal", UP), ("tangent", ALONG))
+                if name in self.spec.types and np.ndim(inputs.get(name, 0.0)) == 1
+                if not np.array_equal(inputs[name], axis)
+            }
+            shader = self.implemented(self.spec.document(frame)) if frame else shader
+            inputs = {name: value for name, value in inputs.items() if name not in frame}
+        return evaluate(self.host, shader, wo, wi, inputs, branch, output)
 
     @classmethod
     def error(cls, spec: Spec, quantity: str) -> Tolerance | None:

@@ -64,11 +64,8 @@ def check_texts(subjects: Iterable[DiffuseSpec], library: str) -> tuple[Result, 
     """Results of all checks of generated text and of functions for the nodes of a library."""
     subjects = tuple(subjects)
     results = [
-        _judged(
-            "closure", f"{each.title}, {target}", library, _closure_faults, each, target, library
-        )
+        _judged("closure", f"{each.title}, mdl", library, _closure_faults, each, library)
         for each in subjects
-        for target in FUNCTIONS
     ]
     if all(has_functions(library, language) for language in LANGUAGES):
         glsl, osl = (COMMENT.sub(" ", twins(language, library)) for language in LANGUAGES)
@@ -248,7 +245,7 @@ def _dropped(subject: DiffuseSpec | PbrSpec, target: str, library: str) -> tuple
     return [f"{name} is never passed" for name in missing(inputs)], len(names) * all(noticed)
 
 
-# --- closures: the node's arguments for random materials -------------------------------------------
+# --- closures: the node's arguments for random materials, in MDL -----------------------------------
 
 MATERIALS = 256
 ROUNDED = 1e-12  # 4500 roundings of float64: no text has as many
@@ -259,74 +256,43 @@ TINTS = {
 }
 PBRLIB = "materialx::pbrlib_1_10::mx_oren_nayar_diffuse_bsdf"
 WHITE_LOBE = "FON + white lobe, as MDL's module pbrlib_1_10 defines this node; read, not run"
+UP = np.array([[0.0, 0.0, 1.0]])  # the normal of the surface, which is not the node's
+Closure = dict[str, Any]  # arguments by the names of the node's inputs, its weight among them
 
 
-class Closure(dict[str, Array]):
-    """Arguments of a closure by the names of the node's inputs, its weight among them."""
-
-    __array_ufunc__ = None  # an array times this is `__rmul__`
-
-    def __init__(self, **arguments: Any) -> None:
-        given = {"weight": 1.0, **{k: v for k, v in arguments.items() if v is not None}}
-        super().__init__({k: np.array(v, np.float64, ndmin=2) for k, v in given.items()})
-
-    def __mul__(self, weight: Any) -> "Closure":
-        return Closure(**{**self, "weight": self["weight"] * weight})
-
-    __rmul__ = __mul__
-
-    def __add__(self, other: Any) -> None:
-        raise NotRun("a sum of closures is not supported")
-
-
-# The functions below take what MDL's and OSL's documentation says.
+# The functions below take what MDL's documentation says.
 def diffuse_reflection_bsdf(
     tint: Any = 1.0, roughness: Any = 0.0, multiscatter_tint: Any = 0.0
 ) -> Closure:
-    return Closure(color=tint, roughness=roughness, multiscatter_tint=multiscatter_tint)
+    return {"weight": 1.0, "color": tint, "roughness": roughness, TINT: multiscatter_tint}
 
 
 def weighted_layer(weight: Any, layer: Closure, base: Any = (), normal: Any = None) -> Closure:
     if base:
         raise NotRun("a base below the layer is not supported")
-    return Closure(**{**layer, "normal": normal, "weight": layer["weight"] * weight})
+    return {**layer, "normal": normal, "weight": layer["weight"] * weight}
 
 
-def oren_nayar_diffuse_bsdf(normal: Any, color: Any, roughness: Any, *keywords: Any) -> Closure:
-    given = dict(zip(keywords[::2], keywords[1::2], strict=True))
-    flag = given.pop(FLAG, np.array([[0]]))
-    if given:
-        raise ShaderError(f'keyword "{next(iter(given))}" is not known to OSL')
-    if flag.dtype.kind != "i":
-        raise ShaderError(f"keyword {FLAG} is an int but receives a float")
-    return Closure(normal=normal, color=color, roughness=roughness, energy_compensation=flag)
-
-
-UP = np.array([[0.0, 0.0, 1.0]])  # the normal of the surface, which is not the node's
-FUNCTIONS: Mapping[str, Mapping[str, Any]] = {
-    "osl": {"oren_nayar_diffuse_bsdf": oren_nayar_diffuse_bsdf, "N": UP},
-    "mdl": {
-        "state::normal": lambda: UP,
-        "material": lambda *, surface: surface,
-        "material_surface": lambda *, scattering: scattering,
-        "df::weighted_layer": weighted_layer,
-        "df::diffuse_reflection_bsdf": diffuse_reflection_bsdf,
-        # FON, and with the flag a white lobe beside it.
-        PBRLIB: lambda mxp_weight, mxp_color, mxp_roughness, mxp_normal, mxp_energy_compensation: (
-            weighted_layer(
-                mxp_weight,
-                diffuse_reflection_bsdf(mxp_color, mxp_roughness, mxp_energy_compensation),
-                normal=mxp_normal,
-            )
-        ),
-    },
+FUNCTIONS: Mapping[str, Any] = {
+    "state::normal": lambda: UP,
+    "material": lambda *, surface: surface,
+    "material_surface": lambda *, scattering: scattering,
+    "df::weighted_layer": weighted_layer,
+    "df::diffuse_reflection_bsdf": diffuse_reflection_bsdf,
+    # FON, and with the flag a white lobe beside it.
+    PBRLIB: lambda mxp_weight, mxp_color, mxp_roughness, mxp_normal, mxp_energy_compensation: (
+        weighted_layer(
+            mxp_weight,
+            diffuse_reflection_bsdf(mxp_color, mxp_roughness, mxp_energy_compensation),
+            normal=mxp_normal,
+        )
+    ),
 }
 
 
-def _closure_faults(subject: DiffuseSpec, target: str, library: str) -> tuple[list[str], int]:
-    text = source(subject, target, library)
-    if filled := FILLED.search(text):
-        raise NotRun(f"{filled[1].partition('(')[0]} is a function, which the host {target} runs")
+def _closure_faults(subject: DiffuseSpec, library: str) -> tuple[list[str], int]:
+    """Arguments of the closure that are not the node's inputs, and their number without the weight."""
+    expression = _expression(source(subject, "mdl", library))
     rng = generator()
     rows = {
         name: each.reshape(MATERIALS, -1)
@@ -334,42 +300,31 @@ def _closure_faults(subject: DiffuseSpec, target: str, library: str) -> tuple[li
     }
     rows["weight"], normal = rng.random((MATERIALS, 1)), rng.standard_normal((MATERIALS, 3))
     rows["normal"] = normal / np.linalg.norm(normal, axis=1, keepdims=True)
-    rows[FLAG] = np.full((MATERIALS, 1), int(subject.flag or subject.flag is None))
-    found = [*_argument_faults(subject, target, text, rows, rows)]
-    if PBRLIB in text and subject.flag:
-        found = [WHITE_LOBE if TINT in each else each for each in found]
-    light = {**rows, "weight": np.ones((1, 1))}
-    return found, len([*_argument_faults(subject, target, text, light, rows)])
-
-
-def _argument_faults(
-    subject: DiffuseSpec, target: str, text: str, given: Inputs, inputs: Inputs
-) -> Iterator[str]:
-    """Arguments of the closure of given inputs that are not the node's inputs."""
-    closure = _evaluated(_expression(text), given, FUNCTIONS[target])
-    if not isinstance(closure, Closure):
-        raise ShaderError("the lobe is no closure")
-    expected = dict(inputs)
-    if target == "mdl":
-        del expected[FLAG]
-        expected[TINT] = _tint(subject, inputs)
-    for name, value in expected.items():
-        measured = closure.get(name)
-        wanted = TINTS[subject.model] if name == TINT else f"the node's {name}"
-        if measured is None:
-            yield f"{name} is not passed"
-        elif measured.shape[1] > value.shape[1]:
-            yield f"{name} is a float but receives a color or vector"
-        elif not (error := float(np.abs(measured - value).max())) <= ROUNDED:
-            constant = np.ptp(measured, axis=0).max() <= ROUNDED
-            instead = f", but {measured.flat[0]:.3g}" if constant else ""
-            yield f"{name} is not {wanted}{instead}: off by up to {error:.2g}"
-
-
-def _tint(subject: DiffuseSpec, inputs: Inputs) -> Array:
-    """rho^2 <E> / (1 - rho (1 - <E>)): [Portsmouth2025], Eq. (19); MDL without the flag is FON."""
-    if subject.model != "eon":
-        return np.zeros((MATERIALS, 3))
-    rho, r = inputs["color"], inputs["roughness"]
+    # [Portsmouth2025], Eq. (19); MDL without the flag is FON.
+    rho, r = rows["color"], rows["roughness"]
     average = (1.0 + formulas.C2 * r) / (1.0 + formulas.C1 * r)
-    return np.asarray(rho**2 * average / (1.0 - rho * (1.0 - average)))
+    tint = rho**2 * average / (1.0 - rho * (1.0 - average))
+    expected = {**rows, TINT: tint if subject.model == "eon" else np.zeros((MATERIALS, 3))}
+    flag = {FLAG: np.array([[int(subject.flag is not False)]])}
+
+    def faults(given: Inputs) -> Iterator[str]:
+        closure = _evaluated(expression, {**given, **flag}, FUNCTIONS)
+        if not isinstance(closure, dict):
+            raise ShaderError("the lobe is no closure")
+        for name, value in expected.items():
+            if closure.get(name) is None:
+                yield f"{name} is not passed"
+                continue
+            measured = np.array(closure[name], np.float64, ndmin=2)
+            if measured.shape[1] > value.shape[1]:
+                yield f"{name} is a float but receives a color or vector"
+            elif not (error := float(np.abs(measured - value).max())) <= ROUNDED:
+                wanted = TINTS[subject.model] if name == TINT else f"the node's {name}"
+                constant = np.ptp(measured, axis=0).max() <= ROUNDED
+                instead = f", but {measured.flat[0]:.3g}" if constant else ""
+                yield f"{name} is not {wanted}{instead}: off by up to {error:.2g}"
+
+    found = list(faults(rows))
+    if PBRLIB in expression and subject.flag:
+        found = [WHITE_LOBE if TINT in each else each for each in found]
+    return found, len(list(faults({**rows, "weight": np.ones((1, 1))})))

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Float64 values of one expression of MDL, MSL or OSL.
+"""Float64 values of one expression of MDL or MSL.
 
 Nothing is executed. A few substitutions turn the text into Python, `ast` parses it, and a walk over a few kinds
 of nodes evaluates it. There are no statements, loops, attributes or indices: work grows with the length alone. A
-number is a column (N, 1), a color or vector (N, 3); an int stays one, as OSL distinguishes the two. What else the
-caller's functions return brings its own operators.
+number is a column (N, 1), a color or vector (N, 3); an int stays one.
 """
 
 import ast
@@ -55,7 +54,7 @@ OPERATORS: Mapping[type[ast.AST], Callable[[Any, Any], Any]] = {
 }
 KNOWN: Mapping[str, Any] = {
     **{"true": np.array([[1]]), "false": np.array([[0]]), "math__PI": np.array([[np.pi]])},
-    **dict.fromkeys(("color", "float3", "vector", "normal"), _triple),
+    **dict.fromkeys(("color", "float3"), _triple),
 }
 
 

@@ -27,6 +27,7 @@ from mxeon.conformance.specs import PBRLIB
 from mxeon.conformance.specs.combinations import COMBINED_SPECS
 from mxeon.errors import MxeonError
 from mxeon.shaders import generators, library
+from mxeon.shaders.nodes import EON, OREN_NAYAR
 from tools.benchmarks.mutants.mutant import FOLDERS, ROOT, Mutant
 
 KILLED, SURVIVED = "killed", "survived"
@@ -39,7 +40,8 @@ PATH, PATH_TESTS = "genglsl/path/", ("tests/shaders/test_path_tracing.py",)  # w
 NOISY = ("environment", "furnace")  # checks that take Cycles longest
 # Files that no shader for gl holds: there the gl host has nothing to see.
 ON_CYCLES = ("genosl/",)
-NOT_ON_GL = (*ON_CYCLES, "libraries/diffuse/eonlib_genosl", "libraries/diffuse/eonlib_genmdl")
+CLOSURES = "libraries/diffuse/eonlib_genosl"  # calls of them, which host osl evaluates
+NOT_ON_GL = (*ON_CYCLES, CLOSURES, "libraries/diffuse/eonlib_genmdl")
 TEXT_FIRST = ("libraries/diffuse/eonlib_defs.mtlx",)  # other checks fail for what its check names
 
 
@@ -157,7 +159,7 @@ def stages(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
     """Hosts and tasks that can see a mutant, the cheapest first.
 
     The text and the nodes come first, then surface shaders, then pictures of documents one by one; then
-    Cycles, one by one.
+    the closures of OSL; then Cycles, one by one.
     """
     tasks = tasks_on_gl(path)
     if mutant.file.startswith(NOT_ON_GL):
@@ -168,6 +170,9 @@ def stages(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
         yield "gl", sorted(nodes, key=lambda task: (task.host == SOURCE) != text_first)
         yield "gl", [task for task in tasks if task.check == "lobe"]
         yield from (("gl", [task]) for task in tasks if task.check == PICTURE)
+    if mutant.file.startswith(CLOSURES):
+        planned = make_plan((), ["osl"], [path], nodes=(OREN_NAYAR, EON)).tasks
+        yield "osl", [task for task in planned if task.host == "osl"]
     if mutant.file.startswith(ON_CYCLES):
         planned = make_plan((), ["cycles"], [path]).tasks
         chosen = [task for task in planned if task.host == "cycles" and task.check != PICTURE]

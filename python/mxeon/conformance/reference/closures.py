@@ -34,6 +34,7 @@ from mxeon.shaders.nodes import FLAG, OREN_NAYAR
 Arguments: TypeAlias = Mapping[str, Array]
 THROUGH, GRAPH = "transmission", "graph"  # branches of `Host.evaluate`
 ONE = np.ones((1, 1))
+ROUNDED = 1e-4  # component of a unit vector that roundings may make
 LEAST_HAIR = 1e-12  # roughness, below which the model is a delta
 GGX = "ggx"  # the facets' only distribution
 EMISSION, MEDIUM, HAIR = "uniform_edf", "anisotropic_vdf", HAIR_NODE.category
@@ -101,6 +102,10 @@ class Views:
             np.broadcast_to(closure.arguments.get(name, axis), self.points.wo.shape)
             for name, axis in zip(names, (UP, ALONG), strict=True)
         )
+        opposite = np.abs(normal + self.points.normal).max(axis=1) < ROUNDED
+        if np.any(opposite & ((self.points.wo * self.points.normal).sum(axis=1) > ROUNDED)):
+            rule = "must be the node's, or face the viewer; got the opposite"
+            raise ShaderError(f"osl: normal of {closure.name} {rule}")
         if names[1] not in closure.arguments:  # any serves that is not parallel to the normal
             tangent = np.where(np.abs(normal[:, :1]) > 0.9, UP, ALONG)
         wo, wi = self.points.directions(normal, tangent)
@@ -192,6 +197,7 @@ def evaluate(
 ) -> Array:
     """Values of the closures that a host's shader makes, in a uniform environment; see `Host.evaluate`."""
     values = np.zeros((len(wo), 3))
+    normal = np.broadcast_to(np.asarray(inputs.get("normal", UP), np.float64), wo.shape)
     occlusion = np.broadcast_to(column(inputs.get("occlusion", 1.0)), (len(wo), 1))
     for points in host.trees(shader, wo, inputs):
         rows = points.rows
@@ -199,7 +205,7 @@ def evaluate(
             values[rows] = radiance(points.tree)
             continue
         shown, lights = wo[rows], wi[rows] if branch == "direct" else None
-        place = ShadingPoints(shown, lights, 1.0, np.array(UP), np.array(ALONG))
+        place = ShadingPoints(shown, lights, 1.0, normal[rows], np.array(ALONG))
         views = Views(place, occlusion[rows], branch)
         bsdf = views.bsdf(points.tree, output == "throughput")
         values[rows] = bsdf.throughput if output == "throughput" else bsdf.value

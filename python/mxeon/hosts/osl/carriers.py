@@ -16,7 +16,6 @@ from itertools import product
 
 MULTIPLE, SUM, MIX, LAYER = OPERATIONS = ("mul", "add", "mix", "layer")
 PAIRS = 2  # keywords with which a closure may be called
-WORDS = ("float", "string")  # types of their values; an int is passed as a float
 
 
 @dataclass(frozen=True)
@@ -25,6 +24,7 @@ class Signature:
 
     arguments: Mapping[str, str]  # OSL types by name, in their order
     keywords: tuple[str, ...] = ()  # besides `label`, which changes no light
+    kind: str = "float"  # of their values; OSL drops a keyword whose value has another type
 
 
 FRAME = {"normal": "normal", "tangent": "vector"}
@@ -35,9 +35,9 @@ DISTRIBUTION = {"distribution": "string"}
 FILM = ("thinfilm_thickness", "thinfilm_ior")
 # `energy_compensation` came with OSL 1.14.1, `mode` with OSL 1.13; stdosl.h names neither.
 CLOSURES = {
-    "oren_nayar_diffuse_bsdf": Signature(ROUGH, ("energy_compensation",)),
+    "oren_nayar_diffuse_bsdf": Signature(ROUGH, ("energy_compensation",), "int"),
     "burley_diffuse_bsdf": Signature(ROUGH),
-    "sheen_bsdf": Signature(ROUGH, ("mode",)),
+    "sheen_bsdf": Signature(ROUGH, ("mode",), "int"),
     "translucent_bsdf": Signature({"normal": "normal", "color": "color"}),
     "subsurface_bssrdf": Signature(
         {"normal": "normal", "color": "color", "radius": "color", "anisotropy": "float"}
@@ -88,6 +88,7 @@ closure color mxeon_label(string text)
     printf("mxeon %d %s %s\\n", MXEON_ROW, label, text);
     return {call};
 }}
+string mxeon_text(int x) {{ return format("%d", x); }}
 string mxeon_text(float x) {{ return format("%.9g", x); }}
 string mxeon_text(color x) {{ return format("%.9g %.9g %.9g", x[0], x[1], x[2]); }}
 string mxeon_text(vector x) {{ return mxeon_text((color) x); }}
@@ -130,7 +131,7 @@ def prelude(text: str, carrier: Carrier) -> str:
     for name in names:
         arguments = (*CLOSURES[name].arguments.values(),)
         for count in range(PAIRS + 1 if arguments else 1):
-            for kinds in product(WORDS, repeat=count):
+            for kinds in product((CLOSURES[name].kind, "string"), repeat=count):
                 pairs = (each for kind in kinds for each in ("string", kind))
                 lines.append(_function(f"mxeon_{name}", name, *arguments, *pairs))
     # What is built in cannot be hidden, but renamed.
