@@ -95,26 +95,34 @@ def row_of(function: str) -> FunctionCheck:
 
 def _error(function: str, values: Array) -> float:
     """Largest error of a function's values, relative to what they are sensitive to."""
-    scale = _scale(function)
-    return float(row_of(function).error.metric(scale * values, scale * _expected(function)).max())
+    expected, scale = exact(function)
+    return float(row_of(function).error.metric(scale * values, scale * expected).max())
 
 
 @cache
-def _expected(function: str) -> Array:
-    return expected(function, random_columns())
+def exact(function: str) -> tuple[Array, Array]:
+    """Values of a shader function in NumPy, and the factor of its errors.
 
-
-@cache
-def _scale(function: str) -> Array:
-    """Factor of the values: pi cos(theta_i) for a BRDF; over 1, or the value, and its change with each number."""
-    columns, exact = random_columns(), _expected(function)
+    That is pi cos(theta_i) for a BRDF; for others over 1, or the value, and its change with each number.
+    """
+    columns = random_columns()
+    values = _expected(function, columns)
     if row_of(function).error.unit != CONDITIONED:
-        return np.pi * columns["mu_i"][:, np.newaxis] if "_brdf" in function else np.ones((1, 1))
-    total: Array = np.maximum(1.0, np.abs(exact).max(axis=1))
-    for name in numbers(function):
-        change = expected(function, moved(columns, name, STEP)) - exact
-        total = total + np.abs(change).max(axis=1) / STEP
-    return 1.0 / total[:, np.newaxis]
+        brdf = "_brdf" in function
+        return values, np.pi * columns["mu_i"][:, np.newaxis] if brdf else np.ones((1, 1))
+    total: Array = np.maximum(1.0, np.abs(values).max(axis=1))
+    for kind, parameter in functions.signature("glsl", function):
+        # A quotient is off in proportion to itself, and huge beside a divisor of 0.
+        if parameter == "divisor" or (kind != "float" and parameter != "wo"):
+            continue
+        name = "gray" if parameter == "rho" else parameter
+        # Towards the middle of the range, which wo has in its cosine alone.
+        middle = np.array([0.0, 0.0, 0.5]) if name == "wo" else 0.5
+        moves = np.where(columns[name] > middle, -STEP, STEP) * (middle != 0.0)
+        moved = {**columns, name: columns[name] + moves}
+        moved["u"] = np.stack([moved["u1"], moved["u2"]], axis=-1)
+        total = total + np.abs(_expected(function, moved) - values).max(axis=1) / STEP
+    return values, 1.0 / total[:, np.newaxis]
 
 
 POINTS = 4096  # of each function
@@ -147,60 +155,25 @@ NAMED: Mapping[str, Callable[..., Array]] = {
 }
 
 
-def expected(function: str, columns: Columns) -> Array:
+def _expected(function: str, columns: Columns) -> Array:
     """Values of a shader function in NumPy, (N, 1) or (N, 3)."""
-    version, channels_first = _version(function)
-    arguments = {
-        name: columns[name] for name in inspect.signature(version).parameters if name in columns
-    }
-    # Colors have their channels first in some, and one channel in others.
+    version = NAMED.get(function) or getattr(sampling, function, None) or getattr(diffuse, function)
+    parameters = inspect.signature(version).parameters
+    arguments = {name: columns[name] for name in parameters if name in columns}
+    # Colors are one channel, or have their channels first: public functions take rows of colors.
+    own = "rho" in parameters and parameters["rho"].annotation == "Array"
+    channels_first = own and version.__module__ == diffuse.__name__
     if "rho" in arguments:
-        arguments["rho"] = columns["gray"] if _takes_gray(function) else columns["rho"]
+        arguments["rho"] = columns["gray" if _takes_gray(function) else "rho"]
         arguments["rho"] = arguments["rho"].T if channels_first else arguments["rho"]
     values = version(**arguments)
     values = np.asarray(values[0] if isinstance(values, tuple) else values)
-    if channels_first and values.ndim == 2 and "rho" in arguments:
-        values = values.T
+    values = values.T if channels_first and values.ndim == 2 else values
     return values.reshape(len(columns["mu"]), -1)
-
-
-def numbers(function: str) -> list[str]:
-    """Names of the columns of a function's parameters that are floats, or wo for its cosine.
-
-    Divisors are left out: a quotient is off in proportion to itself, and huge beside a divisor of 0.
-    """
-    return [
-        "gray" if name == "rho" else name
-        for kind, name in functions.signature("glsl", function)
-        if (kind == "float" and name != "divisor") or name == "wo"
-    ]
-
-
-def moved(columns: Columns, name: str, step: float) -> Columns:
-    """The columns with one of `numbers` moved by a step, towards the middle of its range."""
-    middle = np.array([0.0, 0.0, 0.5]) if name == "wo" else 0.5
-    moves = np.where(columns[name] > middle, -step, step) * (middle != 0.0)
-    result = {**columns, name: columns[name] + moves}
-    if name in ("u1", "u2"):
-        result["u"] = np.stack([result["u1"], result["u2"]], axis=-1)
-    return result
 
 
 def _takes_gray(function: str) -> bool:
     return ("float", "rho") in functions.signature("glsl", function)
-
-
-@cache
-def _version(function: str) -> tuple[Callable[..., Array], bool]:
-    """NumPy's version of a shader function, and whether colors have their channels first."""
-    if function in NAMED:
-        return NAMED[function], False
-    version = getattr(sampling, function, None) or getattr(diffuse, function)
-    rho = inspect.signature(version).parameters.get("rho")
-    # Public functions take rows of colors.
-    return version, bool(
-        rho and rho.annotation == "Array"
-    ) and version.__module__ == diffuse.__name__
 
 
 @cache

@@ -25,13 +25,7 @@ from mxeon.conformance.case import Case, make_case
 from mxeon.conformance.check import Check
 from mxeon.conformance.checks import CHECKS
 from mxeon.conformance.samples import Array
-from mxeon.conformance.shader_functions import (
-    FunctionProbe,
-    _scale,
-    expected,
-    random_columns,
-    row_of,
-)
+from mxeon.conformance.shader_functions import FunctionProbe, exact, row_of
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs import DIFFUSE, PBRLIB, PLAIN_LOBES
 from mxeon.conformance.specs.combinations import CombinedSpec
@@ -353,9 +347,9 @@ class Functions:
         self.text, self._rows = probe.text, []
         names = list(probe._values(1.0))
         for name in names:
-            row, exact = row_of(name), expected(name, random_columns())
-            scale = np.broadcast_to(_scale(name), exact.shape)[::EACH]
-            self._rows.append((row.key, probe.tolerance(row), scale, scale * exact[::EACH]))
+            row, (values, factor) = row_of(name), exact(name)
+            scale = np.broadcast_to(factor, values.shape)[::EACH]
+            self._rows.append((row.key, probe.tolerance(row), scale, scale * values[::EACH]))
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
         """The host's answer; of a call of all functions, the points are kept."""
@@ -367,8 +361,8 @@ class Functions:
     def __call__(self) -> Iterator[tuple[str, bool]]:
         values = self._host.execute(*self._asked).astype(np.float64)
         parts_of = np.split(values, len(self._rows))
-        for each, (key, tolerance, scale, exact) in zip(parts_of, self._rows, strict=True):
-            error = tolerance.metric(scale * each[:, : scale.shape[1]], exact).max()
+        for each, (key, tolerance, scale, right) in zip(parts_of, self._rows, strict=True):
+            error = tolerance.metric(scale * each[:, : scale.shape[1]], right).max()
             yield key, not error <= tolerance.value
 
 
