@@ -7,9 +7,9 @@ A negative control is the same case with other inputs or outputs.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from typing import TypeVar, cast
+from typing import Any, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,6 +52,7 @@ class Case:
     throughputs: Change = lambda batch, values: values
     control: bool = False  # on a subset: one failing sample is enough
     asked: tuple[Batch, ...] = ()  # by a diagnosis, instead of the samples
+    explained: dict[Any, Any] = field(default_factory=dict, init=False)  # diagnoses by comparison
 
     @property
     def host(self) -> Host:

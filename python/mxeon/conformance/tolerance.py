@@ -154,6 +154,10 @@ class Tolerance:
         )
         return text if self.exact or not self.value else f"{text}, rounded up"
 
+    def wrong(self, compared: Compared) -> Mask:
+        """Which rows have a larger error."""
+        return np.asarray(self.metric(compared.measured, compared.expected) > self.value)
+
     def plus(self, *terms: Term) -> "Tolerance":
         return replace(self, terms=(*self.terms, *terms))
 

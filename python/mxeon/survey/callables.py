@@ -20,7 +20,7 @@ from mxeon.conformance.case import Case, edge_values
 from mxeon.conformance.check import Check
 from mxeon.conformance.checks import CHECKS
 from mxeon.conformance.diagnosis import VALUE, Diagnosis
-from mxeon.conformance.diagnosis.regions import smallest
+from mxeon.conformance.diagnosis.regions import EXACT, smallest, unbounded
 from mxeon.conformance.results import PASSED, Run
 from mxeon.conformance.samples import (
     PAIRS,
@@ -144,9 +144,8 @@ VALUE_OF_REST = replace(VALUE, compared=lambda case: _finite_rows(VALUE(case)))
 
 def _explain_not_finite(case: Case) -> Diagnosis:
     """How many values are not finite, where, and the arguments of the first."""
-    found = edge_values(case)
-    wrong = np.asarray(~np.isfinite(found.measured).all(axis=1))
-    place = smallest([found.batch], [wrong])
+    found = unbounded(edge_values(case))
+    wrong, place = EXACT.wrong(found), smallest([found], EXACT)
     point = point_of(found.batch, int(wrong.argmax()))
     wo, wi, rho, roughness = (", ".join(f"{x:.6g}" for x in each) for each in point.values())
     return Diagnosis(

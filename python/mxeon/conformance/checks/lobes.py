@@ -204,7 +204,7 @@ def frame(case: Case) -> Iterator[Compared]:
 
 
 def diagnose_surroundings(case: Case) -> Diagnosis:
-    return diagnosis.diagnose_surroundings(surroundings(case), SURROUNDINGS.value)
+    return diagnosis.diagnose_surroundings(surroundings(case), SURROUNDINGS)
 
 
 @check(

@@ -16,7 +16,7 @@ from mxeon.conformance.check import (
     with_inputs,
 )
 from mxeon.conformance.diagnosis import BACK, OUTPUT, TRANSMITTANCE, VALUE, Diagnosis
-from mxeon.conformance.diagnosis.regions import span
+from mxeon.conformance.diagnosis.regions import EXACT, span, unbounded
 from mxeon.conformance.specs.emission import (
     OPACITY,
     UNIMPLEMENTED,
@@ -102,11 +102,9 @@ def outside(case: Case) -> Compared:
 
 def explained_finite(case: Case) -> Diagnosis:
     """How many outputs are not finite, and the range of an input that has all of them."""
-    compared = outside(case)
-    finite = np.isfinite(compared.measured)
-    wrong = compared._replace(measured=np.where(finite, 0.0, np.nan))
-    place = span([wrong], count_of("values"))
-    share = f"{int((~finite).any(axis=1).sum())} of {len(finite)} outputs are not finite"
+    compared = unbounded(outside(case))
+    wrong, place = EXACT.wrong(compared), span([compared], EXACT)
+    share = f"{wrong.sum()} of {len(wrong)} outputs are not finite"
     return Diagnosis(f"{share}, all {place}" if place else share)
 
 

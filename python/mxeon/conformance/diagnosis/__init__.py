@@ -6,7 +6,6 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from operator import attrgetter
 from typing import TypeAlias
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -30,8 +29,18 @@ from mxeon.conformance.diagnosis.faults import (
     normal_ignored,
     scaled_by,
 )
-from mxeon.conformance.diagnosis.regions import WEAK, smallest, span
-from mxeon.conformance.samples import Array, Batch, Candidate, Mask, sky
+from mxeon.conformance.diagnosis.regions import (
+    EXACT,
+    WEAK,
+    correct_except,
+    place_of,
+    region,
+    share,
+    smallest,
+    span,
+    unbounded,
+)
+from mxeon.conformance.samples import Array, Batch, Candidate, sky
 from mxeon.conformance.spec import COMPONENTS
 from mxeon.conformance.specs.diffuse import DIFFUSE
 from mxeon.conformance.specs.emission import EmissionSpec, MediumSpec
@@ -40,7 +49,6 @@ from mxeon.conformance.tolerance import (
     Compared,
     Tolerance,
     absolute,
-    count_of,
     mean_error,
     point_of,
     relative,
@@ -61,7 +69,6 @@ UNMASKED = "the visible facets are not weighted by masking and shadowing"
 UNTOLD = (SINGLY_RIGHT, UNKNOWN, OTHER_AVERAGE, UNMASKED)
 WORST = 32  # pairs of which one input is changed, and the fewest that have to be wrong
 CURES = 2  # inputs that are named
-FINITE = count_of("values")
 DIMMING = ("weight", "occlusion")  # inputs that make any error small
 SHOWN = 0.1  # share of the light that has to be left where another input is changed
 # Share of the distance to any other explanation up to which one explains all, and up to which it is
@@ -108,8 +115,8 @@ def explain(
     `candidates` are functions that may give the values, its own model first; a value is right up to the
     tolerance. `measure` compares the values of a case.
     """
-    if unbounded := not_finite(cases):  # it has no distance to anything
-        return Diagnosis(unbounded)
+    if text := not_finite(cases):  # it has no distance to anything
+        return Diagnosis(text)
     few = case.samples.counts.diagnosed
     short = [Compared(batch.first(few), *(each[:few] for each in rest)) for batch, *rest in cases]
     # Many a fault leaves the inputs of the own model alone.
@@ -123,8 +130,11 @@ def explain(
         exchanged = exchanges(names) if faults else ()
         faults = (*faults, *exchanged, scaled_by(_factor(short)))
         distances = {fault.text: _distance(short, own, fault, tolerance) for fault in faults}
-        if text := _fault(distances, models, own.title, tolerance.value):
-            return Diagnosis(text, models)
+        (text, least), *others = sorted(distances.items(), key=lambda item: item[1])
+        rival = min([*models.values(), *(distance for _, distance in others)])
+        enough = max(SAME * rival, tolerance.value)
+        if least <= SAME * models[own.title] and least <= enough:
+            return Diagnosis(f"fault: {text} (rms {least:.2g})", models)
     nearest = next(each for each in candidates if each.title == ranking[0][0])
     # What is near on average may be far off where values are wrong.
     near, far = (
@@ -133,9 +143,8 @@ def explain(
     )
     explains = nearest is not own and near <= max(tolerance.value, SAME * far)
     text = _model(case, cases, ranking, own.title, tolerance, measure, explains)
-    permitted = nearest.permitted and all(
-        tolerance.metric(each.measured, nearest.values(each.batch)).max() <= tolerance.value
-        for each in cases
+    permitted = nearest.permitted and not any(
+        tolerance.wrong(each._replace(expected=nearest.values(each.batch))).any() for each in cases
     )
     return Diagnosis(text, models, permitted)
 
@@ -172,15 +181,6 @@ def _factor(cases: Sequence[Compared]) -> float:
     return products / squares if squares else 1.0
 
 
-def _fault(faults: dict[str, float], models: dict[str, float], own: str, enough: float) -> str:
-    """The one fault that explains all, up to a distance that is enough; "" if there is none."""
-    (text, least), *others = sorted(faults.items(), key=lambda item: item[1])
-    rival = min([*models.values(), *(distance for _, distance in others)])
-    if least > SAME * models[own] or least > max(SAME * rival, enough):
-        return ""
-    return f"fault: {text} (rms {least:.2g})"
-
-
 def _model(
     case: Case,
     cases: Sequence[Compared],
@@ -191,8 +191,7 @@ def _model(
     explains: bool,
 ) -> str:
     """The closest model, which may explain every wrong value, the region that is wrong, or that no model is close."""
-    errors = [tolerance.metric(case.measured, case.expected) for case in cases]
-    wrong: list[Mask] = [error > tolerance.value for error in errors]
+    wrong = np.concatenate(list(map(tolerance.wrong, cases)))
     (first, least), (_, rival) = ranking[:2]
     # Another model explains all.
     if explains and least <= max(tolerance.value, SAME * rival):
@@ -204,36 +203,35 @@ def _model(
         )
         return sentence(ranking) + next(flags, "")
     # Its own model is correct except in a region or for a range of an input, or not accurate enough.
-    place = region([case.batch for case in cases], wrong)
-    if place or not any(map(np.any, wrong)):
+    if (place := region(cases, tolerance)) or not wrong.any():
         return place or SINGLY_RIGHT
-    place, values = span(cases, tolerance), ""
-    bad = np.concatenate(wrong)
+    place, values, mostly = span(cases, tolerance), "", wrong.mean() < 0.5
     if first != own and least <= NEAR * rival:
-        few = place and bad.mean() < 0.5
-        return f"{_all(wrong, place)}; {sentence(ranking)}" if few else sentence(ranking)
-    if not place and measure and np.count_nonzero(bad) >= WORST and bad.mean() < 0.5:
-        cures = _cures(case, cases, errors, tolerance, measure)
+        few = f"{correct_except(cases, tolerance, place)}; " if place and mostly else ""
+        return few + sentence(ranking)
+    if not place and measure and np.count_nonzero(wrong) >= WORST and mostly:
+        cures = _cures(case, cases, tolerance, measure)
         weak = span(cases, tolerance, WEAK) if len(cures) == 1 else ""
         place = weak if weak and cures[0].split()[0] in weak.split() else ""
         values = " or ".join(cures[:CURES])
     if place:
-        return _all(wrong, place)
-    if first == own and max(error.max() for error in errors) <= INEXACT * tolerance.value:
+        return correct_except(cases, tolerance, place)
+    errors = [tolerance.metric(each.measured, each.expected) for each in cases]
+    if first == own and max(map(np.max, errors)) <= INEXACT * tolerance.value:
         right = f"; the worst are right with {values}" if values else ""
         return f"right model, {own} (rms {least:.2g}), but not accurate enough{right}"
     if values:
-        return f"{_all(wrong)}; the worst are right with {values}"
-    share = f"{100.0 * np.concatenate(wrong).mean():.3g} % of the pairs"
-    index = int(np.argmax([error.max() for error in errors]))
+        return f"{correct_except(cases, tolerance)}; the worst are right with {values}"
+    part = f"{100.0 * wrong.mean():.3g} % of the pairs"
+    index = int(np.argmax(list(map(np.max, errors))))
     row, batch = int(errors[index].argmax()), cases[index].batch
     lit = "albedo" not in tolerance.unit and not isinstance(case.spec, EmissionSpec)
     light = f" and a light cosine of {batch.wi[row, 2]:.2g}" * lit
     place = f"at a view cosine of {batch.wo[row, 2]:.2g}{light}"
     if measure and case.backend.any_pairs:
-        same = list(measure(replace(case, asked=(batch.where(np.full(4, row)),))))
-        if all(tolerance.metric(*each[1:]).max() <= tolerance.value for each in same):
-            return f"wrong for {share}; the worst are right beside pixels with the same inputs"
+        same = measure(replace(case, asked=(batch.where(np.full(4, row)),)))
+        if not any(tolerance.wrong(each).any() for each in same):
+            return f"wrong for {part}; the worst are right beside pixels with the same inputs"
     if isinstance(case.spec, PLACELESS):
         point = point_of(batch, row)
         numbers = (
@@ -242,46 +240,36 @@ def _model(
             if port.name in point
         )
         place = f"with {', '.join(numbers)}"
-    if first == own and np.concatenate(wrong).mean() < 0.5:
-        return f"correct except for {share}; worst {place}"
+    if first == own and mostly:
+        return f"correct except for {part}; worst {place}"
     # What is off by as much as black would be resembles nothing.
     black = Candidate("", lambda batch: np.zeros((len(batch.wo), 1)))
     near = least < NAMED * _distance(cases, black, Fault(""), tolerance)
     closest = f", the closest is {first} (rms {least:.2g})" if near else ""
-    return f"no known model matches{closest}; wrong for {share}, worst {place}"
-
-
-def region(batches: Sequence[Batch], wrong: Sequence[Mask]) -> str:
-    """The share of the pairs that are wrong and the region of all of them; "" without a region."""
-    name = smallest(batches, wrong)
-    return name and _all(wrong, name)
+    return f"no known model matches{closest}; wrong for {part}, worst {place}"
 
 
 def searched(text: str, cases: Sequence[Compared], tolerance: Tolerance) -> str:
     """A diagnosis that names no cause, or the region or the range of an input that holds all wrong values."""
-    wrong = [tolerance.metric(case.measured, case.expected) > tolerance.value for case in cases]
-    if place := region([case.batch for case in cases], wrong):
-        return place
-    if place := span(cases, tolerance):
-        return _all(wrong, place)
+    if place := place_of(cases, tolerance):
+        return correct_except(cases, tolerance, place)
     if text == SINGLY_RIGHT and tolerance.metric in (absolute, relative, scaled):
-        text = f"wrong for {sum(map(np.count_nonzero, wrong))} of {sum(map(len, wrong))} pairs"
+        return f"wrong for {share(cases, tolerance)}"
     return text
 
 
 def _cures(
     case: Case,
     cases: Sequence[Compared],
-    errors: Sequence[Array],
     tolerance: Tolerance,
     measure: Measure,
 ) -> list[str]:
     """Values of single inputs with which the worst values are right."""
-    index = int(np.argmax([np.count_nonzero(each > tolerance.value) for each in errors]))
-    worst = np.argsort(errors[index])[-WORST:]
-    batch, found = cases[index].batch.where(worst), []
+    most = max(cases, key=lambda each: np.count_nonzero(tolerance.wrong(each)))
+    worst = np.argsort(tolerance.metric(most.measured, most.expected))[-WORST:]
+    batch, found = most.batch.where(worst), []
     # An input that only darkens what should be dark cures nothing.
-    light = np.maximum(np.abs(cases[index].expected), np.abs(cases[index].measured))[worst]
+    light = np.maximum(np.abs(most.expected), np.abs(most.measured))[worst]
     least = SHOWN * min(float(light.mean()), 1.0)
     for port in case.spec.inputs:
         if port.name not in batch.inputs or port.type not in COMPONENTS or port.name in DIMMING:
@@ -290,29 +278,19 @@ def _cures(
         for value in dict.fromkeys(float(np.ravel(end)[0]) for end in ends):
             changed = batch.altered(**{port.name: np.full_like(batch.inputs[port.name], value)})
             compared = list(measure(replace(case, asked=(changed,))))
-            right = all(tolerance.metric(*each[1:]).max() <= tolerance.value for each in compared)
-            if right and min(float(np.abs(each.expected).mean()) for each in compared) >= least:
+            wrong = any(tolerance.wrong(each).any() for each in compared)
+            if not wrong and min(float(np.abs(each.expected).mean()) for each in compared) >= least:
                 found.append(f"{port.name} {value:g}")
                 break
     return found
 
 
-def _all(wrong: Sequence[Mask], place: str = "") -> str:
-    count, total = sum(map(np.count_nonzero, wrong)), sum(map(len, wrong))
-    return f"correct except for {count} of {total} pairs{place and f', all {place}'}"
-
-
 def not_finite(cases: Sequence[Compared]) -> str:
     """Where values are not finite; "" if all are."""
-    wrong = [np.asarray(~np.isfinite(case.measured).all(axis=1)) for case in cases]
-    if not any(map(np.any, wrong)):
+    zeros = list(map(unbounded, cases))
+    if not any(EXACT.wrong(each).any() for each in zeros):
         return ""
-    numbers = (
-        Compared(case.batch, np.where(np.isfinite(case.measured), 0.0, np.nan), case.expected * 0.0)
-        for case in cases
-    )
-    place = smallest([case.batch for case in cases], wrong) or span(list(numbers), FINITE)
-    return f"NaN or infinity {place}".rstrip()
+    return f"NaN or infinity {place_of(zeros, EXACT)}".rstrip()
 
 
 # What is compared with what, by quantity.
@@ -332,17 +310,14 @@ class Comparison:
 
     def diagnose(self, case: Case) -> Diagnosis:
         """The explanation of a case, made once: several checks of a node fail for one reason."""
-        known = DIAGNOSES.setdefault(case, {})
+        known = case.explained
         if self not in known:
             tolerance = case.tolerance(self.quantity, "value")
             compared = list(self.compared(case))
             candidates = self.candidates(case)
             known[self] = explain(case, compared, candidates, self.faults, tolerance, self.compared)
-        return known[self]
-
-
-# By case, which it does not keep alive: samples take some memory.
-DIAGNOSES: WeakKeyDictionary[Case, dict[Comparison, Diagnosis]] = WeakKeyDictionary()
+        found: Diagnosis = known[self]
+        return found
 
 
 def _rests(case: Case) -> Sequence[Candidate]:
@@ -435,13 +410,10 @@ def diagnose_throughput(passed: Mapping[tuple[str, str], Sequence[Compared]]) ->
     """The outputs that are not 0, with their values and branches."""
     branches: dict[str, list[str]] = {}
     for (output, branch), compared in passed.items():
-        wrong = [absolute(each.measured, each.expected) > 0.0 for each in compared]
-        values = np.concatenate(
-            [each.measured[bad] for each, bad in zip(compared, wrong, strict=True)]
-        )
+        values = np.concatenate([each.measured[EXACT.wrong(each)] for each in compared])
         if len(values):
             number = f"{values.flat[0]:.3g}" if np.ptp(values) == 0.0 else "not 0"
-            place = smallest([each.batch for each in compared], wrong)
+            place = smallest(compared, EXACT)
             branches.setdefault(f"{output} {number} {place}".rstrip(), []).append(branch)
     texts = (f"{text} (branches: {', '.join(each)})" for text, each in branches.items())
     return Diagnosis("; ".join(texts))
@@ -451,16 +423,15 @@ def diagnose_frame(case: Case) -> Diagnosis:
     """Whether the normal is dropped or not turned, in the first branch that is wrong."""
     tolerance = case.tolerance("frame")
     for compared, branch in zip(frames(case), ("direct", "environment"), strict=True):
-        wrong = tolerance.metric(compared.measured, compared.expected) > tolerance.value
-        if not wrong.any():
+        if not tolerance.wrong(compared).any():
             continue
         expected = case.expected if branch == "direct" else case.expected_albedo
-        dropped = expected(normal_ignored(compared.batch))
-        if tolerance.metric(compared.measured, dropped).max() <= tolerance.value:
+        dropped = compared._replace(expected=expected(normal_ignored(compared.batch)))
+        if not tolerance.wrong(dropped).any():
             text = "the node's normal is ignored; the surface's is used instead"
         else:
             # Where it is wrong, or which axis has no effect.
-            text = not_finite([compared]) or region([compared.batch], [wrong])
+            text = not_finite([compared]) or region([compared], tolerance)
             text = text or without_effect(case, "normal") or without_effect(case, "tangent")
             text = text or without_effect(case, "curve_direction") or UNKNOWN
         return Diagnosis(f"branch {branch}: {text}")
@@ -493,15 +464,16 @@ def diagnose_stretched(compared: Compared) -> Diagnosis:
     return Diagnosis(UNKNOWN)
 
 
-def diagnose_surroundings(compared: Compared, limit: float) -> Diagnosis:
+def diagnose_surroundings(compared: Compared, tolerance: Tolerance) -> Diagnosis:
     """The direction at which the environment is looked up."""
-    for words, found in LOOKUPS.items():
-        if np.sqrt(np.mean((compared.measured - found(compared.batch)) ** 2)) <= limit:
+    batch, measured, expected = compared
+    irradiances = {
+        **{words: found(batch) for words, found in LOOKUPS.items()},
+        # With every normal turned around the sky is 1 minus itself.
+        "on the other side of the surface": 1.0 - expected,
+        "on the viewer's side alone": sky(batch.normal),
+    }
+    for words, irradiance in irradiances.items():
+        if np.sqrt(np.mean((measured - irradiance) ** 2)) <= tolerance.value:
             return Diagnosis(f"the environment is looked up {words}")
-    # With every normal turned around the sky is 1 minus itself.
-    if np.sqrt(np.mean((compared.measured - (1.0 - compared.expected)) ** 2)) <= limit:
-        return Diagnosis("the environment is looked up on the other side of the surface")
-    if np.sqrt(np.mean((compared.measured - sky(compared.batch.normal)) ** 2)) <= limit:
-        return Diagnosis("the environment is looked up on the viewer's side alone")
-    wrong = absolute(compared.measured, compared.expected) > limit
-    return Diagnosis(not_finite([compared]) or region([compared.batch], [wrong]) or UNKNOWN)
+    return Diagnosis(not_finite([compared]) or region([compared], tolerance) or UNKNOWN)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mxeon.conformance.samples import Array, Batch, Mask
-from mxeon.conformance.tolerance import Compared, Tolerance, relative
+from mxeon.conformance.tolerance import Compared, Tolerance, count_of, relative
 
 COLORS = ("color", "tint", "color0")  # inputs of which one is the color of a node
 INDICES = {"ior": "an index of refraction", "extinction": "an extinction"}
@@ -24,6 +24,7 @@ NAMED = {
 FRAME = ("normal", "tangent", "curve_direction", "position")  # inputs whose ranges say nothing
 USUAL = {"weight": 1.0, "occlusion": 1.0}  # where a batch has none
 CHANNELS = "red", "green", "blue"
+EXACT = count_of("values")
 # Largest share of the right values in a range of an input that has all wrong ones, and in one of an input that is
 # known to be the cause.
 RIGHT, WEAK = 0.4, 0.7
@@ -35,21 +36,44 @@ UPRIGHT = 1e-3  # tangent of a half vector along the normal: its cosine rounds t
 COSINES = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1)
 
 
-def smallest(batches: Sequence[Batch], wrong: Sequence[Mask]) -> str:
-    """Name of the smallest region that holds all wrong pairs, which a mask for each batch marks.
+def place_of(cases: Sequence[Compared], tolerance: Tolerance) -> str:
+    """The region, or else the range of an input, that holds all wrong pairs; "" if there is none."""
+    return smallest(cases, tolerance) or span(cases, tolerance)
 
-    "" if there is none worth a name.
-    """
-    bad = np.concatenate(wrong)
+
+def region(cases: Sequence[Compared], tolerance: Tolerance) -> str:
+    """The share of the pairs that are wrong and the region of all of them; "" without a region."""
+    place = smallest(cases, tolerance)
+    return place and correct_except(cases, tolerance, place)
+
+
+def correct_except(cases: Sequence[Compared], tolerance: Tolerance, place: str = "") -> str:
+    return f"correct except for {share(cases, tolerance)}" + f", all {place}" * bool(place)
+
+
+def share(cases: Sequence[Compared], tolerance: Tolerance) -> str:
+    """How many of the pairs are wrong."""
+    wrong = np.concatenate(list(map(tolerance.wrong, cases)))
+    return f"{np.count_nonzero(wrong)} of {len(wrong)} pairs"
+
+
+def unbounded(compared: Compared) -> Compared:
+    """0 for finite values and NaN for others, beside 0."""
+    zeros = np.where(np.isfinite(compared.measured), 0.0, np.nan)
+    return Compared(compared.batch, zeros, np.zeros_like(zeros))
+
+
+def smallest(cases: Sequence[Compared], tolerance: Tolerance) -> str:
+    """Name of the smallest region that holds all wrong pairs; "" if there is none worth a name."""
+    bad = np.concatenate(list(map(tolerance.wrong, cases)))
     sizes: dict[str, int] = {}
-    found = (chain(_directions(batch), _inputs(batch)) for batch in batches)
+    found = (chain(_directions(case.batch), _inputs(case.batch)) for case in cases)
     for regions in zip(*found, strict=True):
-        name = regions[0][0]
         mask = np.concatenate([mask for _, mask in regions])
         if not mask[bad].all() or not mask.any():
             continue
         if bad[mask].mean() >= DENSITY and mask.mean() <= LARGEST:
-            sizes[name] = int(mask.sum())
+            sizes[regions[0][0]] = int(mask.sum())
     return min(sizes, key=lambda name: sizes[name], default="")
 
 
@@ -58,7 +82,13 @@ def span(cases: Sequence[Compared], tolerance: Tolerance, most: float = RIGHT) -
 
     A color's channels are values of their own, each with its own channel of the inputs.
     """
-    bad = np.concatenate([_wrong(case, tolerance) for case in cases])
+    found = []
+    for _, measured, right in cases:
+        expected = np.broadcast_to(right, measured.shape)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            scale = expected if tolerance.metric is relative else tolerance.scale(expected)
+            found.append(~np.asarray(np.abs((measured - expected) / scale) <= tolerance.value))
+    bad = np.concatenate(found)
     wrong = np.asarray(bad.any(axis=0))
     bad = bad[:, wrong]
     best, words = most, ""
@@ -73,10 +103,12 @@ def span(cases: Sequence[Compared], tolerance: Tolerance, most: float = RIGHT) -
         for part, numbers in _parts(name, np.concatenate(columns), wrong):
             values = np.broadcast_to(numbers, bad.shape)
             low, high = float(values[bad].min()), float(values[bad].max())
+            digits = 2 if _short(low) != _short(high) else 4  # as many as tell them apart
             inside = {
                 f"{_short(high)} or below": values <= high,
                 f"{_short(low)} or above": values >= low,
-                f"between {_range(low, high)}": (low <= values) & (values <= high),
+                f"between {_short(low, digits)} and {_short(high, digits)}": (low <= values)
+                & (values <= high),
             }
             if low == high:
                 inside = {_short(low): values == low}
@@ -88,15 +120,6 @@ def span(cases: Sequence[Compared], tolerance: Tolerance, most: float = RIGHT) -
                     best, words = share, f"with {part} {text}"
     channels = [each for each, is_wrong in zip(CHANNELS, wrong, strict=False) if is_wrong]
     return words + f", in {' and '.join(channels)} alone" * bool(words and not wrong.all())
-
-
-def _wrong(case: Compared, tolerance: Tolerance) -> Mask:
-    """Which values of a case are wrong, channel by channel."""
-    expected = np.broadcast_to(case.expected, case.measured.shape)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        scale = expected if tolerance.metric is relative else tolerance.scale(expected)
-        error = np.abs((case.measured - expected) / scale)
-    return ~np.asarray(error <= tolerance.value)
 
 
 def _parts(name: str, columns: Array, wrong: Mask) -> Iterator[tuple[str, Array]]:
@@ -125,12 +148,6 @@ def _is_no_chance(mask: Mask, bad: Mask) -> bool:
 
 def _short(number: float, digits: int = 2) -> str:
     return f"{float(f'{number:.{digits}g}'):g}"
-
-
-def _range(low: float, high: float) -> str:
-    """Two numbers, with as many digits as tell them apart."""
-    digits = 2 if _short(low) != _short(high) else 4
-    return f"{_short(low, digits)} and {_short(high, digits)}"
 
 
 def unreached(values: Mapping[str, Sequence[float]]) -> tuple[str, ...]:
