@@ -2,6 +2,7 @@
 """Results that are made, not measured: for tests of what is done with them; and journals of runs."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
@@ -17,7 +18,7 @@ __all__ += ["JOURNAL", "LOCK", "PREVIOUS", "read_journal", "read_run", "to_run"]
 
 TASKS = tuple(Task("value", name, "gl", "eonlib") for name in "abc")
 OPTIONS, FILES = {"--maxSize": "9"}, {"clay.mtlx": "00", "clay.png": "01"}
-PLAN = Plan("1.0", {"Python": "3"}, TASKS, ("clay.mtlx",), OPTIONS, FILES)
+PLAN = Plan("1.0", {"Python": "3"}, TASKS, OPTIONS, FILES, documents=(Path("clay.mtlx"),))
 PIXELS = np.linspace(0.0, 1.0, 12, dtype=np.float32).reshape(2, 2, 3)
 FINDINGS = Findings(
     results=(

@@ -25,11 +25,11 @@ from mxeon.conformance.results import (
     listed,
 )
 from mxeon.conformance.results.known_issues import SPREAD, says_first
-from mxeon.conformance.results.records import read_record
+from mxeon.conformance.results.records import make_converter
 from mxeon.errors import InputError, one_line
 from mxeon.hosts.base import Identity
 from mxeon.io.files import regular
-from mxeon.io.records import ERRORS, spelled
+from mxeon.io.records import ERRORS, read_strictly, spelled
 from mxeon.report import JSON_FORMAT
 
 WORSE, LOST, BETTER, OTHER = KINDS = ("worse", "not run any longer", "better", "other")
@@ -151,7 +151,8 @@ def read_results(folder: str | PathLike[str]) -> Report:
                 "seconds": None,
             }
             results = [{"seconds": None, **each} for each in content["results"]]
-            return read_record({**later, **content, "results": results}, Report)
+            content = {**later, **content, "results": results}
+            return read_strictly(make_converter(), content, Report)
     except OSError as error:
         raise InputError(f"{rule}; {error.strerror}") from None
     except ERRORS as error:

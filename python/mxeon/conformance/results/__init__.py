@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import KW_ONLY, dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Required, TypedDict
@@ -241,61 +241,6 @@ class Summary:
     sentence: str
 
 
-def summarize(
-    results: Sequence[Result],
-    missing: Sequence[str] = (),
-    refused: Sequence[str] = (),
-    elsewhere: int = 0,
-) -> Summary:
-    """Verdict on results, with the tasks that are missing and the documents that were refused.
-
-    `elsewhere` is the number of failures for inputs that no document uses.
-
-        >>> summarize((), (), ["clay.mtlx"]).sentence
-        'Refused and not judged: clay.mtlx. No check ran.'
-    """
-    tally = Counter(result.verdict for result in results)
-    counts = {verdict: tally[verdict] for verdict in VERDICTS}
-    total = counted(len(results), "check")
-    hosts = " and ".join(dict.fromkeys(result.location for result in results))
-    differ = ""
-    if counts[DIFFERS]:
-        verb = "differs" if counts[DIFFERS] == 1 else "differ"
-        differ = f"; {counts[DIFFERS]} {verb} where the specification leaves it open"
-    verdict = PASSED
-    # Those that a failure keeps from running are part of it.
-    idle = sum(
-        each.verdict == NOT_RUN and not each.reason.endswith(WRONG_INSIDE) for each in results
-    )
-    missed = f"; {idle} did not run" if idle else ""
-    if counts[FAILED]:
-        failed = Counter(result.location for result in results if result.verdict == FAILED)
-        places = [f"{count} on {location}" for location, count in failed.items()]
-        where = f": {', '.join(places)}" if len(failed) > 1 else f" on {next(iter(failed))}"
-        verdict = FAILED
-        sentence = f"{counts[FAILED]} of {total} failed{where}{missed}{differ}."
-    elif not counts[PASSED] + counts[DIFFERS]:
-        verdict, sentence = NOT_RUN, "No check ran."
-    elif counts[NOT_RUN]:
-        verdict = NOT_RUN
-        sentence = f"Nothing failed, but {counts[NOT_RUN]} of {total} did not run{differ}."
-    elif differ:
-        sentence = f"{counts[PASSED]} of {total} passed on {hosts}{differ}."
-    else:
-        passed = "The check" if len(results) == 1 else f"All {len(results)} checks"
-        sentence = f"{passed} passed on {hosts}."
-    if elsewhere:
-        sentence += f" {elsewhere} of them for inputs that no document uses."
-    if missing:
-        verb = "is" if len(missing) == 1 else "are"
-        sentence += f" The run is not finished: {counted(len(missing), 'item')} {verb} missing."
-    if refused:
-        sentence = f"Refused and not judged: {listed(refused)}. {sentence}"
-    if (missing or refused) and verdict != FAILED:
-        verdict = NOT_RUN  # without what is not there nothing has passed
-    return Summary(verdict, counts, sentence)
-
-
 def listed(names: Sequence[str]) -> str:
     """The first names of a list, and the number of the others.
 
@@ -316,17 +261,15 @@ def counted(count: int, noun: str) -> str:
 
 
 @dataclass(frozen=True)
-class Run:
-    """Everything that one `mxeon check` measured.
+class Scope:
+    """What a run judges, and with what software.
 
-    - `version`, `software`: That of mxeon, and those of what took part: Python, NumPy, MaterialX, ...
-    - `notes`: Warnings that a reader has to see, e.g. what a host cannot express.
-    - `refused`: The faults of each document that could not be judged, by its path; if other libraries
-      can read it, the key names the library behind it: "clay.mtlx with stock".
+    - `version`, `software`: That of mxeon, and those of what takes part: Python, NumPy, MaterialX, ...
     - `contents`: Titles of the nodes of each document that the user gave, by its path.
     - `unreached`: For each of these, by title of a node, the regions that its inputs are not in, as
       diagnoses name them.
-    - `missing`: Tasks that are not done yet, where the run was interrupted.
+    - `refused`: The faults of each document that could not be judged, by its path; if other libraries
+      can read it, the key names the library behind it: "clay.mtlx with stock".
     - `libraries`: By folder that was judged as a library: its files, under "folder", and those of
       MaterialX that complete it, under "MaterialX", unless it is loaded before all of them.
     - `compared`: Libraries judged for comparison; the verdict ignores their failures.
@@ -335,35 +278,81 @@ class Run:
 
     version: str
     software: dict[str, str]
+    _: KW_ONLY
+    documents: tuple[Path, ...] = ()
+    contents: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    unreached: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
+    refused: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    libraries: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
+    compared: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Run(Scope):
+    """Everything that one `mxeon check` measured.
+
+    - `notes`: Warnings that a reader has to see, e.g. what a host cannot express.
+    - `missing`: Tasks that are not done yet, where the run was interrupted.
+    """
+
     hosts: tuple[Identity, ...]
     results: tuple[Result, ...]
     pictures: tuple[Picture, ...] = ()
     curves: tuple[AlbedoCurve, ...] = ()
     notes: tuple[str, ...] = ()
-    refused: dict[str, tuple[str, ...]] = field(default_factory=dict)
-    documents: tuple[Path, ...] = ()
-    contents: dict[str, tuple[str, ...]] = field(default_factory=dict)
     missing: tuple[str, ...] = ()
-    unreached: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
-    libraries: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
-    compared: tuple[str, ...] = ()
     seconds: float | None = field(default=None, compare=False)
 
     @cached_property
     def summary(self) -> Summary:
-        """The verdict on this run."""
-        judged = [each for each in self.results if each.library not in self.compared]
-        elsewhere = sum(map(self.is_elsewhere, judged))
-        summary = summarize(judged, self.missing, tuple(self.refused), elsewhere)
+        """The verdict on the results of all libraries that are not judged for comparison."""
+        results = [each for each in self.results if each.library not in self.compared]
+        tally = Counter(result.verdict for result in results)
+        counts = {verdict: tally[verdict] for verdict in VERDICTS}
+        total = counted(len(results), "check")
+        hosts = " and ".join(dict.fromkeys(result.location for result in results))
+        differ = ""
+        if counts[DIFFERS]:
+            verb = "differs" if counts[DIFFERS] == 1 else "differ"
+            differ = f"; {counts[DIFFERS]} {verb} where the specification leaves it open"
+        verdict = PASSED
+        # Those that a failure keeps from running are part of it.
+        idle = sum(
+            each.verdict == NOT_RUN and not each.reason.endswith(WRONG_INSIDE) for each in results
+        )
+        missed = f"; {idle} did not run" if idle else ""
+        if counts[FAILED]:
+            failed = Counter(result.location for result in results if result.verdict == FAILED)
+            places = [f"{count} on {location}" for location, count in failed.items()]
+            where = f": {', '.join(places)}" if len(failed) > 1 else f" on {next(iter(failed))}"
+            verdict = FAILED
+            sentence = f"{counts[FAILED]} of {total} failed{where}{missed}{differ}."
+        elif not counts[PASSED] + counts[DIFFERS]:
+            verdict, sentence = NOT_RUN, "No check ran."
+        elif counts[NOT_RUN]:
+            verdict = NOT_RUN
+            sentence = f"Nothing failed, but {counts[NOT_RUN]} of {total} did not run{differ}."
+        elif differ:
+            sentence = f"{counts[PASSED]} of {total} passed on {hosts}{differ}."
+        else:
+            passed = "The check" if len(results) == 1 else f"All {len(results)} checks"
+            sentence = f"{passed} passed on {hosts}."
+        if elsewhere := sum(map(self.is_elsewhere, results)):
+            sentence += f" {elsewhere} of them for inputs that no document uses."
+        if self.missing:
+            verb = "is" if len(self.missing) == 1 else "are"
+            items = counted(len(self.missing), "item")
+            sentence += f" The run is not finished: {items} {verb} missing."
+        if self.refused:
+            sentence = f"Refused and not judged: {listed(tuple(self.refused))}. {sentence}"
+        if (self.missing or self.refused) and verdict != FAILED:
+            verdict = NOT_RUN  # without what is not there nothing has passed
         for library in self.compared:
-            results = [
-                each for each in self.results if each.library == library and each.verdict != NOT_RUN
-            ]
-            failed = sum(each.verdict == FAILED for each in results)
-            words = f" For comparison, {failed} of {len(results)} failed with {library}."
-            if results:
-                summary = replace(summary, sentence=summary.sentence + words)
-        return summary
+            other = [each.verdict for each in self.results if each.library == library]
+            ran = len(other) - other.count(NOT_RUN)
+            words = f" For comparison, {other.count(FAILED)} of {ran} failed with {library}."
+            sentence += words * bool(ran)
+        return Summary(verdict, counts, sentence)
 
     @property
     def errors(self) -> tuple[str, ...]:

@@ -3,7 +3,6 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeVar
 
 import cattrs
 import numpy as np
@@ -12,12 +11,11 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from mxeon.conformance.results import Control, Picture, Result
 from mxeon.io.files import digest
-from mxeon.io.records import Overrides, read_strictly, strict_converter
+from mxeon.io.records import Overrides, strict_converter
 
 # JSON calls the error of a result or a control its figure.
 IMAGES = ("image", "reference", "judged")  # fields of a picture
 FIGURE = {"error": override(rename="figure")}
-T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -48,17 +46,9 @@ def make_converter(folder: Path | None = None) -> cattrs.Converter:
 
     Pictures are written as the names of their files in a folder, if there is one.
     """
-    images = {Picture: _image_fields(folder)} if folder else {}
-    return strict_converter({Control: FIGURE, Result: FIGURE, **images})
-
-
-def read_record(value: object, kind: type[T]) -> T:
-    """An instance of a dataclass from JSON's types; see `read_strictly`."""
-    return read_strictly(make_converter(), value, kind)
-
-
-def _image_fields(folder: Path) -> Overrides:
-    """Conversion of images to the names of their files in a folder, and back."""
+    fields: dict[type, Overrides] = {Control: FIGURE, Result: FIGURE}
+    if folder is None:
+        return strict_converter(fields)
 
     def name(image: StoredImage | None) -> str | None:
         return None if image is None else image.path.name
@@ -70,7 +60,10 @@ def _image_fields(folder: Path) -> Overrides:
         return None if name is None else stored(name)
 
     structure = dict.fromkeys(IMAGES, optional) | {"image": stored}
-    return {each: override(unstruct_hook=name, struct_hook=structure[each]) for each in IMAGES}
+    fields[Picture] = {
+        each: override(unstruct_hook=name, struct_hook=structure[each]) for each in IMAGES
+    }
+    return strict_converter(fields)
 
 
 def images_of(picture: Picture) -> dict[str, ArrayLike]:

@@ -3,17 +3,17 @@
 
 import os
 import time
-from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager, nullcontext
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import lru_cache, partial
 from itertools import chain, product
-from pathlib import Path
+from typing import cast
 
-from mxeon.conformance.results import Run
+from mxeon.conformance.results import NOT_RUN, Run, Scope
 from mxeon.conformance.results.known_issues import repaired
 from mxeon.conformance.run.journal import Journal, read_journal, refusal
-from mxeon.conformance.run.judge import Judge, not_run
+from mxeon.conformance.run.judge import Judge, one_result
 from mxeon.conformance.run.plan import (
     Findings,
     Plan,
@@ -116,10 +116,25 @@ def check(
         numbers = [n for n in range(len(planned.tasks)) if n not in done]
         waiting = [planned.tasks[number] for number in numbers]
         # A farm's machines may differ from each other.
-        identities = {} if scheduler else _identities(done.values())
-        with closing(_outcomes(waiting, executor)) as outcomes:
+        earlier = [] if scheduler else [host for part in done.values() for host in part.hosts]
+        identities = {host.name: host for host in earlier}
+        found = (
+            (
+                position,
+                cast(Findings | None, outcome.value)
+                or one_result(waiting[position], NOT_RUN, reason=outcome.failure),
+            )
+            for position, outcome in executor(waiting)
+        )
+        with closing(found) as outcomes:  # processes work until then
             for position, findings in progress(outcomes, len(waiting)):
-                _assert_same_hosts(folder, identities, _identities([findings]))
+                if differences := [
+                    f"host {before.name} ({before.version}, {before.device}, now {host.version}, {host.device})"
+                    for host in findings.hosts
+                    for before in [identities.get(host.name, host)]
+                    if before != host
+                ]:
+                    raise InputError(refusal(folder, differences))
                 if journal:
                     journal.add(numbers[position], findings)  # with its pictures on disk
                 else:
@@ -142,7 +157,7 @@ def work_or_not_run(policy: Policy, task: Task, judge: Judge | None = None) -> F
     try:
         return (judge or _judge(policy)).work(task)
     except NotRun as reason:
-        return not_run(task, str(reason))
+        return one_result(task, NOT_RUN, reason=str(reason))
 
 
 @lru_cache(maxsize=1)
@@ -171,42 +186,18 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
     places: dict[str, list[str]] = {}  # of each note
     for text, place in dict.fromkeys(notes):
         places.setdefault(text, []).append(place)
+    shared = {each.name: getattr(planned, each.name) for each in fields(Scope)}
     return Run(
-        version=planned.version,
-        software=planned.software,
+        **shared | {"refused": refused},
         hosts=tuple(dict.fromkeys(host for part in done for host in part.hosts)),
         results=results,
         pictures=tuple(picture for part in done for picture in part.pictures),
         curves=tuple(curve for part in done for curve in part.curves),
         notes=tuple(f"{text}: {', '.join(listed)}" for text, listed in places.items()),
-        refused=refused,
-        contents=planned.contents,
-        unreached=planned.unreached,
-        documents=tuple(map(Path, planned.documents)),
-        libraries=planned.libraries,
-        compared=planned.compared,
         missing=tuple(
             str(task) for number, task in enumerate(planned.tasks) if number not in findings
         ),
     )
-
-
-def _identities(findings: Iterable[Findings]) -> dict[str, str]:
-    """Version and device of each host that findings are of, by its name."""
-    return {host.name: f"{host.version}, {host.device}" for part in findings for host in part.hosts}
-
-
-def _assert_same_hosts(
-    folder: str | os.PathLike[str] | None, before: Mapping[str, str], now: Mapping[str, str]
-) -> None:
-    """Raise InputError if a host of a run that is resumed has another version or device."""
-    differences = [
-        f"host {name} ({before[name]}, now {now[name]})"
-        for name in before.keys() & now.keys()
-        if before[name] != now[name]
-    ]
-    if differences:
-        raise InputError(refusal(folder, differences))
 
 
 @contextmanager
@@ -223,16 +214,6 @@ def _executor(
         yield partial(pool.run, job, workers=workers, timeout=timeout, group=_subject)
     else:
         yield partial(_run_inline, policy)
-
-
-def _outcomes(
-    tasks: Sequence[Task], executor: Executor
-) -> Generator[tuple[int, Findings], None, None]:
-    """Findings of the tasks as they come, each with its position; processes work until it is closed."""
-    for position, outcome in executor(tasks):
-        findings = outcome.value
-        assert findings is None or isinstance(findings, Findings)
-        yield position, findings or not_run(tasks[position], outcome.failure)
 
 
 def _subject(task: Task) -> tuple[str, str, str]:

@@ -10,8 +10,8 @@ import hashlib
 import json
 import os
 import shutil
-from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from collections.abc import Sequence
+from contextlib import ExitStack
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
@@ -19,7 +19,6 @@ from typing import Any, Self, cast
 
 import numpy as np
 from filelock import FileLock, Timeout
-from numpy.typing import ArrayLike, NDArray
 
 from mxeon.conformance.results import Picture, listed
 from mxeon.conformance.results.records import StoredImage, images_of, make_converter
@@ -28,7 +27,7 @@ from mxeon.errors import InputError
 from mxeon.io.files import below, regular, replacing, sync
 from mxeon.io.records import ERRORS
 
-FORMAT = 6
+FORMAT = 7
 JOURNAL = "journal/items.jsonl"
 PREVIOUS, LOCK = "journal.previous", ".journal.lock"  # beside the folder `journal`
 
@@ -51,7 +50,12 @@ class Journal:
         with ExitStack() as stack:
             for name in (JOURNAL, PREVIOUS, LOCK):
                 below(self._folder, name)
-            stack.enter_context(_locked(self._folder))
+            self._folder.mkdir(parents=True, exist_ok=True)
+            try:
+                stack.enter_context(FileLock(self._folder / LOCK, timeout=0))
+            except Timeout:
+                rule = "must have one writer; another run writes there"
+                raise InputError(f"{self._folder}: {rule}") from None
             if self._resume and self._path.exists():
                 plan, self.findings, size = _read(self._folder)
                 if plan != self._plan:
@@ -74,8 +78,15 @@ class Journal:
         """
 
         def stored(picture: Picture) -> Picture:
-            images = images_of(picture).items()
-            own: dict[str, Any] = {name: self._store(image) for name, image in images}
+            own: dict[str, Any] = {}
+            for name, image in images_of(picture).items():
+                stream = BytesIO()
+                np.save(stream, np.ascontiguousarray(image, np.float32))
+                digest = hashlib.sha256(stream.getbuffer()).hexdigest()
+                path = below(self._path.parent, f"{digest}.npy")
+                with replacing(path) as beside:
+                    beside.write_bytes(stream.getbuffer())
+                own[name] = StoredImage(path)  # read anew by each use
             return replace(picture, **own)
 
         findings = replace(findings, pictures=tuple(map(stored, findings.pictures)))
@@ -101,15 +112,6 @@ class Journal:
             beside.write_bytes(_line({"format": FORMAT} | self._converter.unstructure(self._plan)))
         sync(self._path.parent)
         sync(self._folder)
-
-    def _store(self, image: ArrayLike) -> NDArray[np.float32]:
-        """An image in a file of the folder."""
-        stream = BytesIO()
-        np.save(stream, np.ascontiguousarray(image, np.float32))
-        path = below(self._path.parent, f"{hashlib.sha256(stream.getbuffer()).hexdigest()}.npy")
-        with replacing(path) as beside:
-            beside.write_bytes(stream.getbuffer())
-        return cast(NDArray[np.float32], StoredImage(path))  # read anew by each use
 
 
 def read_journal(folder: str | os.PathLike[str]) -> tuple[Plan, dict[int, Findings]]:
@@ -166,19 +168,19 @@ def _line(record: dict[str, object]) -> bytes:
     return (json.dumps(record) + "\n").encode()
 
 
-@contextmanager
-def _locked(folder: Path) -> Iterator[None]:
-    folder.mkdir(parents=True, exist_ok=True)
-    try:
-        with FileLock(folder / LOCK, timeout=0):
-            yield
-    except Timeout:
-        raise InputError(f"{folder}: must have one writer; another run writes there") from None
-
-
 def _differences(before: Plan, after: Plan) -> tuple[str, ...]:
     """The differences of two plans: values before and now, and names of files."""
-    old, new = _facts(before), _facts(after)
+    old, new = (
+        {"mxeon": plan.version}
+        | plan.software
+        | plan.options
+        | {
+            "hosts": ", ".join(dict.fromkeys(task.host for task in plan.tasks)),
+            "libraries": ", ".join(dict.fromkeys(task.library for task in plan.tasks)),
+            "documents": listed(list(map(str, plan.documents))),
+        }
+        for plan in (before, after)
+    )
     facts = [
         f"{name} ({old.get(name, 'none')}, now {new.get(name, 'none')})"
         for name in old | new
@@ -186,13 +188,3 @@ def _differences(before: Plan, after: Plan) -> tuple[str, ...]:
     ]
     files = {path for path, _ in before.files.items() ^ after.files.items()}
     return (*facts, *sorted(files)) or ("the checks",)
-
-
-def _facts(plan: Plan) -> dict[str, str]:
-    """The values of a plan, except its files, by names for a reader."""
-    hosts, libraries = (
-        ", ".join(dict.fromkeys(getattr(task, name) for task in plan.tasks))
-        for name in ("host", "library")
-    )
-    facts = {"mxeon": plan.version} | plan.software | plan.options
-    return facts | {"hosts": hosts, "libraries": libraries, "documents": listed(plan.documents)}

@@ -61,11 +61,8 @@ CLAIMS = {check.key: check.claim for check in CHECKS} | {
 }
 
 
-def not_run(task: Task, reason: str) -> Findings:
-    return _one_result(task, NOT_RUN, reason=reason)
-
-
-def _one_result(task: Task, verdict: str, **words: str) -> Findings:
+def one_result(task: Task, verdict: str, **words: str) -> Findings:
+    """Findings of a task that measured nothing, by the reason or the diagnosis."""
     place = (task.check, CLAIMS[task.check], task.subject, task.host, task.library)
     return Findings((Result(*place, verdict, **words),))  # type: ignore[arg-type]
 
@@ -94,10 +91,10 @@ class Judge:
             results = (replace(with_pages(each, copy), seconds=share) for each in findings.results)
             return replace(findings, results=tuple(results))
         except InterfaceError as reason:
-            return not_run(task, str(reason))
+            return one_result(task, NOT_RUN, reason=str(reason))
         except DocumentError as reason:  # a document of ours
             meaning = f"the library refuses a document of mxeon's own: {reason}"
-            return _one_result(task, FAILED, diagnosis=meaning)
+            return one_result(task, FAILED, diagnosis=meaning)
 
     def close(self) -> None:
         for host in self._hosts.values():

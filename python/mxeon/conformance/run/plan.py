@@ -15,6 +15,7 @@ from dataclasses import dataclass, field, replace
 from functools import cache, partial
 from itertools import product
 from pathlib import Path
+from typing import NamedTuple
 
 import MaterialX as mx
 import moderngl
@@ -33,6 +34,7 @@ from mxeon.conformance.results import (
     AlbedoCurve,
     Picture,
     Result,
+    Scope,
 )
 from mxeon.conformance.results.known_issues import RENDERER_NODES
 from mxeon.conformance.spec import Spec
@@ -64,18 +66,12 @@ from mxeon.shaders.library_tree import LIBRARIES, OVERLAY, origins
 Source = tuple[str, str]  # a file, and the library that it is read with
 
 
-@dataclass(frozen=True)
-class Survey:
-    """What the documents of a run contain."""
+class Survey(NamedTuple):
+    """What the documents of a run contain; see `mxeon.conformance.results.Scope`."""
 
-    # Titles of the nodes of each document, by its path.
-    nodes: dict[str, tuple[str, ...]] = field(default_factory=dict)
-    # For each document, by title of a node, the regions that its inputs are not in.
-    unreached: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
-    # Documents that cannot be read, each with the library that it is read with.
-    unread: frozenset[Source] = frozenset()
-    # As of `mxeon.conformance.results.Run`.
-    refused: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    contents: dict[str, tuple[str, ...]]
+    unreached: dict[str, dict[str, tuple[str, ...]]]
+    refused: dict[str, tuple[str, ...]]
 
 
 def survey_documents(
@@ -100,7 +96,10 @@ def survey_documents(
                 raise answer
             else:
                 for (spec, mode), node in product(_modes(), answer or ()):
-                    if _is(node, spec, mode):
+                    has_bsdf = "bsdf" in dict(node.inputs)
+                    if isinstance(spec, EmittingSurface) and spec.has_bsdf != has_bsdf:
+                        continue
+                    if node.has(mode) and (node.film or not isinstance(spec, FilmSpec)):
                         regions = set(unreached(dict(node.values)))
                         titles[file].setdefault(spec.title, regions).intersection_update(regions)
     refused: dict[str, tuple[str, ...]] = {}
@@ -115,7 +114,6 @@ def survey_documents(
             file: {title: tuple(sorted(each)) for title, each in found.items() if each}
             for file, found in titles.items()
         },
-        frozenset(faults),
         refused,
     )
 
@@ -133,12 +131,6 @@ def _answers(
     elif sources:
         for outcome in pool.in_order(pool.run(work, sources, workers, timeout)):
             yield outcome.value
-
-
-def _is(node: ShownNode, spec: Spec, mode: ShownNode) -> bool:
-    if isinstance(spec, EmittingSurface) and spec.has_bsdf != ("bsdf" in dict(node.inputs)):
-        return False
-    return node.has(mode) and (node.film or not isinstance(spec, FilmSpec))
 
 
 @cache
@@ -172,28 +164,15 @@ class Task:
 
 
 @dataclass(frozen=True)
-class Plan:
+class Plan(Scope):
     """The tasks of a run and all that they depend on; equal plans are equal runs."""
 
-    version: str  # of mxeon
-    # Versions of the packages that take part (Python, NumPy, MaterialX, ...).
-    software: dict[str, str]
     tasks: tuple[Task, ...]
-    documents: tuple[str, ...]  # their paths
     # The policy for documents, by the option of the command.
     options: dict[str, str] = field(default_factory=dict)
     # SHA-256 of each file that the findings depend on, by path; "" where it cannot be read. Empty
     # where the run is not kept.
     files: dict[str, str] = field(default_factory=dict)
-    # Titles of the nodes of each document, by its path.
-    contents: dict[str, tuple[str, ...]] = field(default_factory=dict)
-    # For each document, by title of a node, the regions that its inputs are not in.
-    unreached: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
-    # Documents that cannot be read; as of `mxeon.conformance.results.Run`.
-    refused: dict[str, tuple[str, ...]] = field(default_factory=dict)
-    # As those of `mxeon.conformance.results.Run`.
-    libraries: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
-    compared: tuple[str, ...] = ()  # as of `mxeon.conformance.results.Run`
 
 
 @dataclass(frozen=True)
@@ -246,7 +225,7 @@ def _selected(
     audit = COMMON in nodes or not (nodes or files)
     by_name = {each.key for each in CHECKS if each.profile}
     if not nodes:
-        titles = {title for file in files for title in survey.nodes.get(file, ())}
+        titles = {title for file in files for title in survey.contents.get(file, ())}
     chosen = [
         task
         for task in tasks
@@ -277,7 +256,7 @@ def _selected(
     )
 
 
-EMPTY = Survey()
+EMPTY = Survey({}, {}, {})
 
 
 def make_plan(
@@ -306,7 +285,10 @@ def make_plan(
     # What a document shows, and what libraries are compared in, is judged with each library.
     everywhere = bool(files and not nodes) or len(libraries) > 1
     for library in libraries:
-        readable = [str(file) for file in files if (str(file), library) not in survey.unread]
+        unread = survey.refused.keys()  # with all libraries, or this one
+        readable = [
+            file for file in map(str, files) if unread.isdisjoint((file, f"{file} with {library}"))
+        ]
         paths = list(map(Path, readable)) if files else _examples(library)
         documents += map(str, paths)
         tasks.append(Task(DEFINITION, EVERY_NODE, SOURCE, library))
@@ -331,8 +313,8 @@ def make_plan(
         version=mxeon.__version__,
         software=_software(),
         tasks=tuple(replace(task, seed=seed) for task in tasks),
-        documents=tuple(dict.fromkeys(documents)),
-        contents={file: survey.nodes.get(file, ()) for file in documents} if files else {},
+        documents=tuple(map(Path, dict.fromkeys(documents))),
+        contents={file: survey.contents.get(file, ()) for file in documents} if files else {},
         unreached=survey.unreached if files and not nodes else {},
         refused=survey.refused,
         libraries={

@@ -118,20 +118,16 @@ def repaired(results: Sequence[Result], software: Mapping[str, str]) -> tuple[tu
         (result.library, result.host, result.check, result.subject): result.verdict
         for result in results
     }
-
-    def software_of(issue: Issue) -> str:  # MaterialX's pages have the name of a generator
-        materialx = f"MaterialX {software['MaterialX']}"
-        return materialx if issue.page.startswith("gen") else RENDERERS.get(issue.host, materialx)
-
-    return tuple(
-        (
-            f"repaired in {software_of(issue)}, so that its page can go",
-            f"docs/upstream/{issue.page}.md",
-        )
-        for issue in ISSUES
-        if issue.rows
-        and all(verdicts.get((issue.library, issue.host, *row)) == PASSED for row in issue.rows)
-    )
+    notes = []
+    for issue in ISSUES:
+        found = [verdicts.get((issue.library, issue.host, *row)) for row in issue.rows]
+        if {*found} == {PASSED}:
+            own = RENDERERS.get(issue.host)
+            if not own or issue.page.startswith("gen"):  # the name of a generator of MaterialX
+                own = f"MaterialX {software['MaterialX']}"
+            page = f"docs/upstream/{issue.page}.md"
+            notes.append((f"repaired in {own}, so that its page can go", page))
+    return tuple(notes)
 
 
 def _explains(issue: Issue, result: Result, materialx: str) -> bool:
