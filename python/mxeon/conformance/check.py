@@ -8,8 +8,7 @@ engine; the check has to fail on it.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from inspect import signature
 from typing import Any, TypeAlias, TypeVar
@@ -20,7 +19,7 @@ from numpy.typing import ArrayLike
 from mxeon.conformance.backends import Backend
 from mxeon.conformance.case import Case
 from mxeon.conformance.diagnosis import UNTOLD, VALUE, Comparison, Diagnosis, searched
-from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Place, Result
+from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Result
 from mxeon.conformance.results import Control as Caught
 from mxeon.conformance.samples import Array, Batch
 from mxeon.conformance.spec import Spec
@@ -84,14 +83,8 @@ class Check:
 
     def judge(self, case: Case) -> Result:
         """The result for a case, with its control and, on failure, a diagnosis."""
-        place = Place(
-            check=self.key,
-            claim=self.claim,
-            subject=case.spec.title,
-            host=case.host.name,
-            library=case.library,
-            **case.backend.claims,
-        )
+        names = self.key, self.claim, case.spec.title, case.host.name, case.library
+        place = Result(*names, NOT_RUN, **case.backend.claims)
         tolerance = self.tolerance or case.tolerance(self.quantity)
 
         def diagnose() -> Diagnosis:
@@ -112,7 +105,7 @@ class Check:
 
 
 def judge(
-    place: Place,
+    place: Result,
     tolerance: Tolerance,
     measure: Callable[[bool], Measurement],
     variant: str,
@@ -120,18 +113,26 @@ def judge(
 ) -> Result:
     """The result of a check that measures a subject, and its control if True, whose mistake is `variant`.
 
-    A check whose engine is not there is not run; a shader error fails it.
+    `place` is the result of a check that is not run: it stays so without an engine; a shader error fails it.
+    The renderer's own warnings are part of a diagnosis, others are shown with their own lines.
     """
     try:
-        with renderer_warnings() as notes:
+        with warnings.catch_warnings(record=True) as records:
+            warnings.simplefilter("always", RendererWarning)
             right, wrong = measure(False), measure(True)
             diagnosis = diagnose() if right.error > tolerance.value else Diagnosis()
     except (NotRun, ShaderError) as error:
         return not_measured(place, error)
+    notes: dict[str, None] = {}  # each once
+    for record in records:
+        if isinstance(record.message, RendererWarning):
+            notes[str(record.message)] = None
+        else:
+            warnings.showwarning(record.message, record.category, record.filename, record.lineno)
     caught, passed = wrong.error > tolerance.value, right.error <= tolerance.value
     text = "; ".join([diagnosis.text, *notes]) if diagnosis.text else ""
-    return Result(
-        **place,
+    return replace(
+        place,
         verdict=PASSED if passed and caught else DIFFERS if diagnosis.permitted else FAILED,
         error=right.error,
         unit=tolerance.unit,
@@ -144,25 +145,11 @@ def judge(
     )
 
 
-def not_measured(place: Place, error: NotRun | ShaderError) -> Result:
+def not_measured(place: Result, error: NotRun | ShaderError) -> Result:
     """The result of a check without a measurement: not run, or failed by a shader error."""
     if isinstance(error, NotRun):
-        return Result(**place, verdict=NOT_RUN, reason=str(error))
-    return Result(**place, verdict=FAILED, diagnosis=str(error))
-
-
-@contextmanager
-def renderer_warnings() -> Iterator[list[str]]:
-    """The renderer's own warnings in a block, each once; others are shown with their own lines."""
-    notes: list[str] = []
-    with warnings.catch_warnings(record=True) as records:
-        warnings.simplefilter("always", RendererWarning)
-        yield notes
-    for record in records:
-        if not isinstance(record.message, RendererWarning):
-            warnings.showwarning(record.message, record.category, record.filename, record.lineno)
-        elif str(record.message) not in notes:
-            notes.append(str(record.message))
+        return replace(place, reason=str(error))
+    return replace(place, verdict=FAILED, diagnosis=str(error))
 
 
 def of_family(*kinds: type[Spec]) -> Callable[[Spec], bool]:

@@ -19,7 +19,7 @@ from mxeon.conformance.diagnosis import Diagnosis
 from mxeon.conformance.reference import ExpectedPicture, HostValues
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.reference.nodes import ShownLobe
-from mxeon.conformance.results import FAILED, LIGHTS, PORTRAIT, Picture, Place, Result, of_white
+from mxeon.conformance.results import FAILED, LIGHTS, NOT_RUN, PORTRAIT, Picture, Result, of_white
 from mxeon.conformance.samples import Batch, Values
 from mxeon.conformance.specs import surface_shaders as surfaces
 from mxeon.conformance.specs.diffuse import DiffuseModelSpec, SurfaceLobe
@@ -209,7 +209,7 @@ def _judge_material(
     """One material; `front_lit` where the host has its model for s >= 0 only."""
     scenes, library = host_row(host.name).scenes, values.library
     subject = f"{file.name}: {shader.element}"
-    place = Place(check="picture", claim=MATCH, subject=subject, host=host.name, library=library)
+    place = Result("picture", MATCH, subject, host.name, library, NOT_RUN)
     try:
         images = [host.picture(shader, scene) for scene in scenes]
     except (NotRun, ShaderError) as error:
@@ -279,7 +279,7 @@ def _assert_judged(shader: Shader, host: Host) -> None:
         )
 
 
-def _judge_finite(place: Place, images: Sequence[Pixels], reason: str) -> Result:
+def _judge_finite(place: Result, images: Sequence[Pixels], reason: str) -> Result:
     """Result for a material that the models do not cover: its pixels have to be numbers."""
 
     def measure(wrong: bool) -> Measurement:
@@ -288,12 +288,12 @@ def _judge_finite(place: Place, images: Sequence[Pixels], reason: str) -> Result
             float(sum((~np.isfinite(each)).any(axis=-1).sum() for each in shown)), {}
         )
 
-    place = {**place, "check": "finite", "claim": "Every pixel is finite."}
+    place = replace(place, check="finite", claim="Every pixel is finite.")
     result = judge(place, count_of("pixels"), measure, "one channel is not a number", Diagnosis)
     return replace(result, diagnosis=reason)
 
 
-def _judge_match(place: Place, cases: Sequence[Shown], tolerance: Tolerance) -> Result:
+def _judge_match(place: Result, cases: Sequence[Shown], tolerance: Tolerance) -> Result:
     """Result for a material that the models cover: its pixels have to be the reference's."""
     metric = scaled if tolerance.unit == RELATIVE else absolute
     pixels = [_worst_pixel(case, metric) for case in cases]
@@ -306,23 +306,20 @@ def _judge_match(place: Place, cases: Sequence[Shown], tolerance: Tolerance) -> 
         brighter = image + np.float32(3.0 * tolerance.value) * np.maximum(1.0, image)
         return Measurement(_worst_pixel((first, brighter, expected), metric)[0], {})
 
+    def appearance() -> Diagnosis:
+        """The largest difference of the pictures, in the words of those who look at them."""
+        sizes = [abs(each) if np.isfinite(each) else np.inf for _, _, each in pixels]
+        worst = int(np.argmax(sizes))
+        light = LIGHTS.get(name := cases[worst][0].name, name)
+        if not np.isfinite(sizes[worst]):
+            return Diagnosis(f"has pixels that are infinite or not a number in {light}")
+        sign = "bright" if pixels[worst][2] > 0 else "dark"
+        return Diagnosis(f"{of_white(sizes[worst])} too {sign} in {light}")
+
     words = "the picture is brighter by three tolerances"
-    names = [scene.name for scene, *_ in cases]
-    result = judge(place, tolerance, measure, words, lambda: Diagnosis(_appearance(pixels, names)))
+    result = judge(place, tolerance, measure, words, appearance)
     measured = dict.fromkeys(name for *_, each in cases for name in each.measured)
     return replace(result, measured=tuple(measured))
-
-
-def _appearance(pixels: Sequence[Pixel], scenes: Sequence[str]) -> str:
-    """The largest difference of pictures, in the words of those who look at them."""
-    differences = [difference for _, _, difference in pixels]
-    sizes = [abs(each) if np.isfinite(each) else np.inf for each in differences]
-    worst = int(np.argmax(sizes))
-    light = LIGHTS.get(scenes[worst], scenes[worst])
-    if not np.isfinite(sizes[worst]):
-        return f"has pixels that are infinite or not a number in {light}"
-    sign = "bright" if differences[worst] > 0 else "dark"
-    return f"{of_white(sizes[worst])} too {sign} in {light}"
 
 
 def _worst_pixel(case: Shown, metric: Metric) -> Pixel:
@@ -388,9 +385,7 @@ def generate_document(
         caught = False
     except DocumentError:
         caught = True
-    place = Place(
-        check=DOCUMENT_KEY, claim=DOCUMENT_CLAIM, subject=file.name, host=host, library=library
-    )
+    place = Result(DOCUMENT_KEY, DOCUMENT_CLAIM, file.name, host, library, NOT_RUN)
     result = judge(
         place,
         count_of("documents without a shader"),

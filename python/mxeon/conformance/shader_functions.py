@@ -17,7 +17,7 @@ import numpy as np
 
 from mxeon.conformance.check import judge, not_measured
 from mxeon.conformance.diagnosis import Diagnosis
-from mxeon.conformance.results import SHADER_FUNCTIONS, Place, Result
+from mxeon.conformance.results import NOT_RUN, SHADER_FUNCTIONS, Result
 from mxeon.conformance.samples import GRAZING, Array, directions, float32, generator
 from mxeon.conformance.spec import TURN
 from mxeon.conformance.specs.diffuse import LOSS_FIT
@@ -290,10 +290,8 @@ def judge_functions(host: Host, library: str) -> tuple[Result, ...]:
 
 
 def _judged(check: FunctionCheck, probe: FunctionProbe) -> Result:
-    host, library = probe.host.name, probe.library
-    place = Place(
-        check=check.key, claim=check.claim, subject=SHADER_FUNCTIONS, host=host, library=library
-    )
+    names = check.key, check.claim, SHADER_FUNCTIONS, probe.host.name, probe.library
+    place = Result(*names, NOT_RUN)
     try:
         tolerance = probe.tolerance(check)
     except (NotRun, ShaderError) as error:

@@ -15,7 +15,7 @@ import numpy as np
 
 from mxeon.conformance.check import judge, not_measured
 from mxeon.conformance.diagnosis import Diagnosis
-from mxeon.conformance.results import SOURCE, Place, Result
+from mxeon.conformance.results import NOT_RUN, SOURCE, Result
 from mxeon.conformance.samples import generator
 from mxeon.conformance.specs import PLAIN_LOBES
 from mxeon.conformance.specs.diffuse import DiffuseSpec
@@ -87,7 +87,7 @@ def check_texts(subjects: Iterable[DiffuseSpec], library: str) -> tuple[Result, 
 def _judged(check: str, subject: str, library: str, faults: Faults, *of: Any) -> Result:
     """Result of the faults of something."""
     claim, unit, variant = CLAIMS[check]
-    place = Place(check=check, claim=claim, subject=subject, host=SOURCE, library=library)
+    place = Result(check, claim, subject, SOURCE, library, NOT_RUN)
     try:
         found, control = faults(*of)
     except NotRun as error:

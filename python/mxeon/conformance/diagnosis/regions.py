@@ -116,7 +116,10 @@ def span(cases: Sequence[Compared], tolerance: Tolerance, most: float = RIGHT) -
                 share, least = float(mask[~bad].mean()), best
                 if text.startswith("between"):
                     least *= CLEARER
-                if share < least and _is_no_chance(mask, bad):
+                # The wrong values would hardly all lie in the range if they were any others.
+                odds = -np.log(max(mask.mean(), 1.0 / mask.size)) * (bad.any(axis=1).sum() - 1)
+                dense = odds * min(bad[mask].mean() / DENSITY, 1.0) >= CHANCE
+                if share < least and dense:
                     best, words = share, f"with {part} {text}"
     channels = [each for each, is_wrong in zip(CHANNELS, wrong, strict=False) if is_wrong]
     return words + f", in {' and '.join(channels)} alone" * bool(words and not wrong.all())
@@ -137,13 +140,6 @@ def _parts(name: str, columns: Array, wrong: Mask) -> Iterator[tuple[str, Array]
             f"a difference between the components of {name} of",
             np.ptp(columns, axis=1, keepdims=True),
         )
-
-
-def _is_no_chance(mask: Mask, bad: Mask) -> bool:
-    """Whether the wrong values would hardly all lie in a range if they were any others."""
-    share = max(float(mask.mean()), 1.0 / mask.size)
-    odds = -np.log(share) * (bad.any(axis=1).sum() - 1)
-    return bool(odds * min(bad[mask].mean() / DENSITY, 1.0) >= CHANCE)
 
 
 def _short(number: float, digits: int = 2) -> str:

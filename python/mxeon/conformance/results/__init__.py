@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Required, TypedDict
+from typing import TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,16 +58,6 @@ class Claims(TypedDict, total=False):
 
     claimed: str
     model: str
-
-
-class Place(Claims):
-    """What a result is of; see Result."""
-
-    check: Required[str]
-    claim: Required[str]
-    subject: Required[str]
-    host: Required[str]
-    library: Required[str]
 
 
 @dataclass(frozen=True)
