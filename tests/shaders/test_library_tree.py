@@ -14,6 +14,7 @@ import mxeon
 from mxeon.cli import main
 from mxeon.shaders.library_export import export_library
 from mxeon.shaders.library_tree import OVERLAY, PART, tree
+from tests.support.command import PLASTER
 from tests.support.wheels import wheel
 from tests.support.wrong_libraries import GLSL, STOCK, copy_of_stock, replace_text
 
@@ -155,6 +156,15 @@ def test_what_cannot_be_combined_is_refused_in_one_sentence(tmp_path, capsys, ma
     out, error = capsys.readouterr()
     assert out == "" and error.count("\n") == 1
     assert error.startswith(f"mxeon: library {tmp_path}: ") and words in error
+
+
+def test_a_token_in_a_source_that_is_loaded_first_did_not_run(tmp_path, capsys):
+    library = export_library(tmp_path / "mine")
+    source = library / "genglsl" / "lib" / "eon.glsl"
+    source.write_text(f"float own() {{ return $own; }}\n{source.read_text()}")
+    target = ["--target", "glsl", "--outputPath", str(tmp_path), "--workers", "0"]
+    assert main(["generate", PLASTER, "--library", str(library), *target]) == 3
+    assert "does not replace $own in the library's sources" in capsys.readouterr().err
 
 
 def mxeon_run(*arguments, **variables):
