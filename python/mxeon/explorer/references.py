@@ -68,7 +68,11 @@ def reference_of(shader: Shader) -> ReferenceTable | None:
     lobes = lobes_of(shader)
     spec = _spec(lobes)
     try:
-        direct, white = _hair(shader) if spec is HAIR else _values(shader)
+        if spec is HAIR:  # on a fiber, whose curve lies along x
+            lights, surroundings = _batches(HAIR, shader)
+            direct, white = HAIR.value(lights), HAIR.albedo(surroundings)
+        else:
+            direct, white = _values(shader)
     except (NotRun, ValueError):  # a lobe without a model, an input outside of the model's domain
         return None
     if not (np.isfinite(direct).all() and np.isfinite(white).all()):
@@ -108,12 +112,6 @@ def _values(shader: Shader) -> tuple[Array, Array]:
     host = reference.Host()
     direct = np.pi * host.evaluate(shader, WO, WI, {}, "direct")
     return direct, host.evaluate(shader, SEEN, SEEN, {}, "environment")
-
-
-def _hair(shader: Shader) -> tuple[Array, Array]:
-    """Values of hair on a fiber, as those of `_values`; its curve lies along x."""
-    lights, surroundings = _batches(HAIR, shader)
-    return HAIR.value(lights), HAIR.albedo(surroundings)
 
 
 def _forms(spec: PbrSpec, shader: Shader) -> Iterator[ShaderForm]:

@@ -130,7 +130,13 @@ def evaluate_material(
         for channel, value in enumerate(np.broadcast_to(values, (channels, *values.shape[1:]))):
             out[block][..., channel] = value
 
-    _for_each(fill, list(blocks(shape, size)))
+    tiling = list(blocks(shape, size))
+    if (count := min(_threads.get(), len(tiling))) < 2:
+        for block in tiling:
+            fill(block)
+        return out
+    with ThreadPoolExecutor(count) as pool:  # NumPy computes without the interpreter's lock
+        list(pool.map(fill, tiling))
     return out
 
 
@@ -146,15 +152,3 @@ def evaluate_number(
         return formula(**arguments)[np.newaxis]
 
     return evaluate_material(one, vectors, numbers, 1, size)[..., 0][()]
-
-
-def _for_each(fill: Callable[[tuple[slice, ...]], None], tiling: list[tuple[slice, ...]]) -> None:
-    """Fill every block, on as many threads as the context says."""
-    count = min(_threads.get(), len(tiling))
-    if count < 2:
-        for block in tiling:
-            fill(block)
-        return
-    # NumPy computes without the interpreter's lock.
-    with ThreadPoolExecutor(count) as pool:
-        list(pool.map(fill, tiling))
