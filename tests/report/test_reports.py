@@ -287,7 +287,7 @@ WRONG = (
     made("value", 0.4, diagnosis="best match: QON (rms 1e-9), then FON", pages=("a",)),
     made("environment", 1e-7),
     made("furnace", 1e-7),
-    made("albedo", 0.3, pages=("a", "b")),
+    made("integral", 0.3, pages=("a", "b")),
     made("black", 0.0),
     made("value", 0.4, subject="sheen_bsdf, mode zeltner"),  # claims no rough diffuse model
 )
