@@ -314,6 +314,10 @@ class RowSpec(ValueSpec):
         inputs = {each.name: each for each in self.inputs}
         return tuple(inputs[name] for name in self.row.inputs)
 
+    @property
+    def materials(self) -> tuple[Values, ...]:
+        return materials(*self.inputs)
+
     @abstractmethod
     def values(self, function: Any, batch: Batch) -> Array:
         """Values of a function of the row, (N, 3)."""

@@ -18,15 +18,7 @@ from mxeon.models.core.quadrature import hemisphere_nodes
 from mxeon.models.nodes import diffuse_node
 from mxeon.models.nodes.node import PbrNode, Variant
 from mxeon.models.table import Model
-from mxeon.shaders.nodes import (
-    EON,
-    FLAG,
-    OREN_NAYAR,
-    document_text,
-    input_text,
-    material_text,
-    node_text,
-)
+from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, document_text, input_text, node_text
 
 EDGES = (0.0, 1e-6, 1e-3, 1.0)  # of a color channel, and of the roughness in units of the largest
 UNIT = "pi f cos"
@@ -151,9 +143,6 @@ class DiffuseSpec(DiffuseModelSpec):
     """A rough diffuse node with its flag."""
 
     flag: bool | None  # energy_compensation, or None where the node has no such input
-
-    def document(self, inputs: Values | None = None) -> str:
-        return material_text(self.node, {**self.fixed, **(inputs or {})}, self.node)
 
 
 def _diffuse(node: str, flag: bool | None, model: str) -> DiffuseSpec:

@@ -34,7 +34,6 @@ from mxeon.conformance.spec import (
     broadcast_inputs,
     color,
     draw,
-    materials,
     ports,
 )
 from mxeon.conformance.tolerance import Compared, roundings, sum_of
@@ -171,10 +170,6 @@ class EmissionSpec(RowSpec):
     """A row of `mxeon.models.nodes.emissions`."""
 
     row: Emission
-
-    @property
-    def materials(self) -> tuple[Values, ...]:
-        return materials(*self.drawn)
 
     def document(self, inputs: Values | None = None) -> str:
         """A material of the node and of those that it takes, with a value of each input."""

@@ -22,16 +22,7 @@ from mxeon.conformance.samples import (
     sky,
     special_directions,
 )
-from mxeon.conformance.spec import (
-    ZERO,
-    Input,
-    LobeSpec,
-    RowSpec,
-    broadcast_inputs,
-    color,
-    draw,
-    materials,
-)
+from mxeon.conformance.spec import ZERO, Input, LobeSpec, RowSpec, broadcast_inputs, color, draw
 from mxeon.conformance.tolerance import Term, Tolerance, roundings, sum_in, sum_of
 from mxeon.models.hair import TINTS
 from mxeon.models.nodes import node
@@ -91,6 +82,9 @@ class ScatteringSpec(RowSpec, LobeSpec):
     @property
     def side(self) -> float:
         return -1.0 if self.row.transmits else 1.0
+
+    def document(self, inputs: Values | None = None) -> str:
+        return material_text(self.node, {**self.mode, **(inputs or {})}, self.node, self.types)
 
     # What it has to be.
 
@@ -184,16 +178,8 @@ class PbrSpec(ScatteringSpec):
         return tuple(each for each in self.drawn if each.beyond)
 
     @property
-    def materials(self) -> tuple[Values, ...]:
-        return materials(WEIGHT, *self.drawn)
-
-    @property
     def mode(self) -> Values:
         return self.row.fixed
-
-    def document(self, inputs: Values | None = None) -> str:
-        values = {**(inputs or {}), **self.row.fixed}
-        return material_text(self.node, values, self.node, self.types)
 
     @property
     def others(self) -> tuple[Candidate, ...]:
