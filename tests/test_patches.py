@@ -15,10 +15,11 @@ from tests.hosts.test_cycles_kernel import kernel
 from tests.support.availability import available
 from tests.support.wheels import MAIN, git
 from tools.site import versions
-from tools.site.ledger import ROOT, entries, measure, needed, patches
+from tools.site.ledger import ROOT, entries, measure, measured, patches, patches_of
 
 ENTRIES = entries()
 MATERIALX = patches("materialx")
+FILES = {page: files for page in ENTRIES if (files := patches_of(page))}
 INSTALLED = Path(mx.__file__).parent
 MODULES = packages_folder() / "node_modules"
 HOSTS = {"three.js": "three", "blender": "cycles"}  # that have the files of a project
@@ -103,10 +104,18 @@ def test_all_patches_but_those_that_main_has_apply_to_it(materialx):
 
 @pytest.mark.parametrize("page", MATERIALX)
 def test_a_patch_applies_alone(materialx, page):
-    """Or with those that it needs: to main, or to the release if main has it."""
-    names = needed(page, ENTRIES)
-    tag = "release" if ENTRIES[page].pull else "main"
-    applied(materialx, tag, *(each for each in MATERIALX if each in names))
+    """To the release, and to main if that lacks it."""
+    for tag in ("release", "main")[: 1 if ENTRIES[page].pull else 2]:
+        applied(materialx, tag, page)
+
+
+@pytest.mark.parametrize("page", [each for each in FILES if measured().get(each, {}).get("rows")])
+def test_a_message_has_a_figure_of_its_page(page):
+    for file in FILES[page]:
+        message = file.read_text().split("\n---\n")[0]
+        numbers = {float(each) for each in re.findall(r"\d+(?:\.\d+)?(?:e[+-]?\d+)?", message)}
+        figures = {float(row[2]) for row in measured()[page]["rows"]}
+        assert figures & numbers or figures == {float("inf")}
 
 
 KNOWN = json.loads(versions.RECORD.read_text())
