@@ -26,7 +26,7 @@ from mxeon.hosts import HOSTS
 from mxeon.models import diffuse as formulas
 from mxeon.shaders.closure_calls import COMMENT
 from mxeon.shaders.expressions import Array, evaluate
-from mxeon.shaders.functions import LANGUAGES, Parts, has_functions, parts, twins
+from mxeon.shaders.functions import LANGUAGES, has_functions, parts, twins
 from mxeon.shaders.generation import TARGETS, ApproximationWarning, generate
 from mxeon.shaders.library import load_library
 from mxeon.shaders.nodes import EON, FLAG, INVERSIONS, OREN_NAYAR
@@ -69,9 +69,17 @@ def check_texts(subjects: Iterable[DiffuseSpec], library: str) -> tuple[Result, 
     ]
     if all(has_functions(library, language) for language in LANGUAGES):
         glsl, osl = (COMMENT.sub(" ", twins(language, library)) for language in LANGUAGES)
-        texts = glsl, osl, re.sub(r"\b\d+\.\d+\b", "777.0", osl, count=1)
+        ours, *others = map(parts, (glsl, osl, re.sub(r"\b\d+\.\d+\b", "777.0", osl, count=1)))
+        found, control = (
+            [
+                f"{name} is different in OSL"
+                for name in ours | each
+                if ours.get(name) != each.get(name)
+            ]
+            for each in others
+        )
         title = "shader twins, osl"
-        results.append(_judged("languages", title, library, _language_faults, *map(parts, texts)))
+        results.append(_judged("languages", title, library, lambda: (found, len(control))))
     return (
         *results,
         *(
@@ -181,16 +189,6 @@ def _plain(text: str) -> tuple[object, ...]:
         return tuple(map(float, parts))
     except ValueError:
         return tuple(parts)
-
-
-# --- languages ------------------------------------------------------------------------------------
-
-
-def _language_faults(glsl: Parts, *osl: Parts) -> tuple[list[str], int]:
-    found, control = (
-        [name for name in glsl | each if glsl.get(name) != each.get(name)] for each in osl
-    )
-    return [f"{name} is different in OSL" for name in found], len(control)
 
 
 # --- generated sources ----------------------------------------------------------------------------

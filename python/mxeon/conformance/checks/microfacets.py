@@ -196,7 +196,18 @@ def diagnose_sky(case: Case) -> Diagnosis:
 
 
 def diagnose_stretched(case: Case) -> Diagnosis:
-    return diagnosis.diagnose_stretched(anisotropic_albedo(case))
+    """Whether directions of visible normals are weighted by G_1 at the mean alpha."""
+    batch, measured, expected = anisotropic_albedo(case)
+    view, alpha = batch.wo, batch.inputs["roughness"]
+    mu2, mean2 = view[:, 2] ** 2, alpha.prod(axis=1)
+    drawn = np.sqrt((alpha**2 * view[:, :2] ** 2).sum(axis=1) + mu2)
+    factor = (view[:, 2] + np.sqrt(mean2 + (1.0 - mean2) * mu2)) / (view[:, 2] + drawn)
+    scaled, plain = (
+        np.sqrt(np.mean((measured - scale * expected) ** 2))
+        for scale in (factor[:, np.newaxis], 1.0)
+    )
+    at_mean = "anisotropic visible normals are weighted by G_1 at the mean alpha"
+    return Diagnosis(at_mean if scaled < NEAR * plain else UNKNOWN)
 
 
 @check(is_facets, isotropic, pairs=True, lit=True, diagnose=diagnose_stretched)

@@ -128,7 +128,12 @@ def explain(
     if ranking[0][0] == own.title or ranking[0][1] > tolerance.value:
         names = [each.name for each in case.spec.inputs if each.name not in DIMMING]
         exchanged = exchanges(names) if faults else ()
-        faults = (*faults, *exchanged, scaled_by(_factor(short)))
+        # The factor by which the expected values come nearest to the measured ones.
+        weighed = [(each, np.maximum(1.0, np.abs(each.expected)) ** 2) for each in short]
+        squares = sum(np.sum(each.expected**2 / scale) for each, scale in weighed)
+        products = sum(np.sum(each.expected * each.measured / scale) for each, scale in weighed)
+        factor = float(products / squares) if squares else 1.0
+        faults = (*faults, *exchanged, scaled_by(factor))
         distances = {fault.text: _distance(short, own, fault, tolerance) for fault in faults}
         (text, least), *others = sorted(distances.items(), key=lambda item: item[1])
         rival = min([*models.values(), *(distance for _, distance in others)])
@@ -171,14 +176,6 @@ def _distance(
             error.mean(axis=0, keepdims=True) if tolerance.metric is mean_error else error
         )
     return float(np.sqrt(np.mean(np.concatenate(errors) ** 2)))
-
-
-def _factor(cases: Sequence[Compared]) -> float:
-    """The factor by which the expected values come nearest to the measured ones."""
-    scaled = [(case, np.maximum(1.0, np.abs(case.expected)) ** 2) for case in cases]
-    squares = sum(float(np.sum(case.expected**2 / scale)) for case, scale in scaled)
-    products = sum(float(np.sum(case.expected * case.measured / scale)) for case, scale in scaled)
-    return products / squares if squares else 1.0
 
 
 def _model(
@@ -447,21 +444,6 @@ def without_effect(case: Case, name: str) -> str:
     """Words on an input that changes nothing; "" if it does, or there is none."""
     dead = name in case.changes and name in dead_inputs(case)
     return f"{name} is ignored" if dead else ""
-
-
-def diagnose_stretched(compared: Compared) -> Diagnosis:
-    """Whether directions of visible normals are weighted by G_1 at the mean alpha."""
-    view, alpha = compared.batch.wo, compared.batch.inputs["roughness"]
-    mu2, mean2 = view[:, 2] ** 2, alpha.prod(axis=1)
-    drawn = np.sqrt((alpha**2 * view[:, :2] ** 2).sum(axis=1) + mu2)
-    factor = (view[:, 2] + np.sqrt(mean2 + (1.0 - mean2) * mu2)) / (view[:, 2] + drawn)
-    errors = (
-        np.sqrt(np.mean((compared.measured - scale * compared.expected) ** 2))
-        for scale in (factor[:, np.newaxis], 1.0)
-    )
-    if next(errors) < NEAR * next(errors):
-        return Diagnosis("anisotropic visible normals are weighted by G_1 at the mean alpha")
-    return Diagnosis(UNKNOWN)
 
 
 def diagnose_surroundings(compared: Compared, tolerance: Tolerance) -> Diagnosis:

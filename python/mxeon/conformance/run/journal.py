@@ -62,7 +62,14 @@ class Journal:
                     raise InputError(refusal(self._folder, _differences(plan, self._plan)))
                 os.truncate(self._path, size)
             else:
-                self._begin()
+                if self._path.exists():  # an earlier journal makes room
+                    shutil.rmtree(self._folder / PREVIOUS, ignore_errors=True)
+                    os.replace(self._path.parent, self._folder / PREVIOUS)
+                header = {"format": FORMAT} | self._converter.unstructure(self._plan)
+                with replacing(self._path) as beside:
+                    beside.write_bytes(_line(header))
+                sync(self._path.parent)
+                sync(self._folder)
             self._file = os.open(self._path, os.O_WRONLY | os.O_APPEND)
             stack.callback(os.close, self._file)
             self._exit = stack.pop_all()
@@ -102,16 +109,6 @@ class Journal:
             os.ftruncate(self._file, size)
             raise OSError(error.errno, error.strerror, str(self._path)) from None
         self.findings[number] = findings
-
-    def _begin(self) -> None:
-        """Write the first line; an earlier journal makes room."""
-        if self._path.exists():
-            shutil.rmtree(self._folder / PREVIOUS, ignore_errors=True)
-            os.replace(self._path.parent, self._folder / PREVIOUS)
-        with replacing(self._path) as beside:
-            beside.write_bytes(_line({"format": FORMAT} | self._converter.unstructure(self._plan)))
-        sync(self._path.parent)
-        sync(self._folder)
 
 
 def read_journal(folder: str | os.PathLike[str]) -> tuple[Plan, dict[int, Findings]]:

@@ -38,9 +38,11 @@ class Issue:
     sizes: Mapping[Row, float] = field(default_factory=dict, hash=False)
 
 
-def read_issues(text: str, measured: str) -> tuple[Issue, ...]:
+def read_issues() -> tuple[Issue, ...]:
     """The issues of `known_issues.toml` that a check shows, with what `measured.json` says of them."""
-    found, plain = json.loads(measured), ("title", "host", "library", "unavoidable", "differs")
+    file, plain = Path(__file__), ("title", "host", "library", "unavoidable", "differs")
+    found = json.loads(file.with_name("measured.json").read_text("utf-8"))
+    text = file.with_name("known_issues.toml").read_text("utf-8")
     return tuple(
         Issue(
             page,
@@ -77,12 +79,7 @@ RENDERERS = {
 }
 LEFT = 30.0  # smaller errors of the right model have another cause than the issue
 SPREAD = 1.5  # by which engines, drivers and versions of MaterialX may exceed an issue's size
-ISSUES = read_issues(
-    *(
-        Path(__file__).with_name(name).read_text("utf-8")
-        for name in ("known_issues.toml", "measured.json")
-    )
-)
+ISSUES = read_issues()
 
 
 def issues_of(result: Result) -> tuple[Issue, ...]:
