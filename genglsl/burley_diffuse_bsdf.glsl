@@ -3,6 +3,7 @@
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_diffuse.glsl"
+#include "lib/half_vector.glsl"
 
 // Directional albedo at unit reflectance; see burley_albedo_dir in mxeon.models.
 float burley_albedo_dir(float mu, float roughness)
@@ -35,7 +36,7 @@ void burley_diffuse_bsdf(ClosureData closureData, float weight, vec3 color, floa
     if (closureData.closureType == CLOSURE_TYPE_REFLECTION)
     {
         float mu_i = clamp(dot(N, wi), 0.0, 1.0);
-        float cosine = clamp(dot(wi, normalize(wi + wo)), 0.0, 1.0);
+        float cosine = clamp(dot(wi, eonlib_half_vector(wo, wi, N)), 0.0, 1.0);
         bsdf.response = color * closureData.occlusion * weight * mu_i * M_PI_INV
                         * mx_burley_diffuse(mu_o, mu_i, cosine, roughness);
     }

@@ -6,6 +6,7 @@
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_sheen.glsl"
 #include "lib/conty_kulla_albedo.glsl"
+#include "lib/half_vector.glsl"
 
 // Logarithm of the squared sine of the half vector's angle, from whichever of sine and cosine does
 // not cancel. The series is cut after the cube: 2e-9 of the logarithm.
@@ -70,7 +71,7 @@ void sheen_bsdf(ClosureData closureData, float weight, vec3 color, float roughne
     {
         float mu_i = clamp(dot(N, wi), 0.0, 1.0);
         float lobe = mode == 0
-            ? mu_i * conty_kulla_brdf(mu_o, mu_i, N, normalize(wi + wo), rough)
+            ? mu_i * conty_kulla_brdf(mu_o, mu_i, N, eonlib_half_vector(wo, wi, N), rough)
             : albedo * zeltner_lobe(wo, wi, N, mu_o, rough);
         bsdf.response = lobe * color * closureData.occlusion * weight;
     }

@@ -11,15 +11,15 @@ void subsurface_bsdf(ClosureData closureData, float weight, vec3 color, vec3 rad
 {
     bsdf.throughput = vec3(0.0);
 
+    // The normal as it comes: turned to the viewer, it would jump where the surface turns away. Where nothing
+    // changes from pixel to pixel, the surface is flat. Derivatives are defined where all pixels come along.
+    float curvature = length(fwidth(N)) / max(length(fwidth(closureData.P)), 1e-30);
+
     // A lobe that is switched off costs nothing; a negative weight, never valid, counts as 0.
     if (weight <= 0.0)
     {
         return;
     }
-
-    // The normal as it comes: turned to the viewer, it would jump where the surface turns away.
-    // Where nothing changes from pixel to pixel, the surface is flat.
-    float curvature = length(fwidth(N)) / max(length(fwidth(closureData.P)), 1e-30);
     N = mx_forward_facing_normal(N, closureData.V);
 
     if (closureData.closureType == CLOSURE_TYPE_REFLECTION)

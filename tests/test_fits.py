@@ -188,7 +188,8 @@ def test_the_shader_has_the_nodes_of_a_film():
     np.testing.assert_array_equal(np.transpose(rows(r"AVERAGE_\d")), thin_film.NODES)
     np.testing.assert_array_equal(np.transpose(rows(r"FACETS_\d\d")), thin_film.FACETS)
     orders = [thin_film.VALUE_ORDER, thin_film.WIDTH_ORDER, thin_film.ORDER_RATIO]
-    assert [each for [each] in rows(r"ORDER_\w+")] == orders
+    count = np.ceil(np.log(1e-6 * thin_film.VALUE_ORDER) / np.log(thin_film.ORDER_RATIO))
+    assert [each for [each] in rows(r"ORDER_\w+")] == [*orders, count]
     assert np.transpose(rows(r"COLOR_\w")) == pytest.approx(XYZ_TO_REC709_E)
     assert rows("HEIGHTS") == [pytest.approx(film_model.AREAS, rel=1e-7)]
 

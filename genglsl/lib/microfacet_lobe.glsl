@@ -4,6 +4,7 @@
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
 #include "ggx_albedo.glsl"
+#include "half_vector.glsl"
 
 // Least index of refraction for MaterialX's own curve: along the normal it divides 0 by 0 where
 // float32 adds nothing to 1. With ior 0 the curve of eonlib reflects everything.
@@ -46,13 +47,6 @@ bool microfacet_is_off(ClosureData closureData, float weight, int scatter_mode)
     return weight <= 0.0 || (scatter_mode == 1 && !transmission);
 }
 
-// The half vector; the normal for a light exactly opposite the view, which no facet reflects. 1e-15 has a
-// square that is no denormal, and turns only sums that are themselves roundings of 0.
-vec3 microfacet_half(vec3 wo, vec3 wi, vec3 N)
-{
-    return normalize(wi + wo + 1e-15 * N);
-}
-
 // Cosines and roughness of 0 would divide by 0. Retroreflection mirrors wo at the normal.
 MicrofacetLobe microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec2 roughness,
                                bool retroreflective)
@@ -65,7 +59,7 @@ MicrofacetLobe microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec2 rou
     lobe.N = mx_forward_facing_normal(N, lobe.wo);
     lobe.X = X;
     lobe.mu_o = clamp(dot(lobe.N, lobe.wo), M_FLOAT_EPS, 1.0);
-    lobe.mu_h = clamp(dot(lobe.wo, microfacet_half(lobe.wo, lobe.wi, lobe.N)), M_FLOAT_EPS, 1.0);
+    lobe.mu_h = clamp(dot(lobe.wo, eonlib_half_vector(lobe.wo, lobe.wi, lobe.N)), M_FLOAT_EPS, 1.0);
     lobe.roughness = clamp(roughness, M_FLOAT_EPS, 1.0);
     lobe.alpha = mx_average_alpha(lobe.roughness);
     lobe.albedo = ggx_albedo_dir(lobe.mu_o, lobe.alpha);
@@ -77,7 +71,7 @@ float microfacet_value(MicrofacetLobe lobe)
 {
     vec3 X = normalize(lobe.X - dot(lobe.X, lobe.N) * lobe.N);
     vec3 Y = cross(lobe.N, X);
-    vec3 H = microfacet_half(lobe.wo, lobe.wi, lobe.N);
+    vec3 H = eonlib_half_vector(lobe.wo, lobe.wi, lobe.N);
     vec3 local = vec3(dot(H, X), dot(H, Y), dot(H, lobe.N));
     float mu_i = clamp(dot(lobe.N, lobe.wi), 0.0, 1.0);
     return mx_ggx_NDF(local, lobe.roughness) * mx_ggx_smith_G2(mu_i, lobe.mu_o, lobe.alpha)
@@ -118,31 +112,35 @@ vec3 microfacet_environment(MicrofacetLobe lobe, int distribution, FresnelData f
     return radiance * (drawn / (lobe.mu_o + sqrt(alpha2 + (1.0 - alpha2) * mu2)));
 }
 
-// Light through a surface that reflects nothing, along the view refracted twice.
+// Light through a surface that reflects nothing, along the view refracted twice, as by a solid sphere.
+//
+// The ray leaves the sphere at the cosine c at which it met the facet. MaterialX computes c^2 anew, as
+// 1 - n^2 (1 - q^2) from the cosine q inside, and where its rounding exceeds c^2, nothing leaves: 0 / 0. A view
+// longer by d adds 8 d q^2 / n^2 to it, here 8e-6 n^2, three times the roundings of seven operations, and
+// otherwise changes nothing above d. Near n = 1 and above 4, d is too large: rough surfaces refract as with 1.001
+// and with 4. A smooth one, whose facets are one, keeps its n above 4, and refracts as with a larger c.
 vec3 microfacet_transmission(MicrofacetLobe lobe, int distribution, vec3 ior, vec3 tint)
 {
+    float n = max(ior.x, MICROFACET_LEAST_IOR);
+    vec3 wo = lobe.wo;
+    if (n > 4.0 && lobe.alpha <= M_FLOAT_EPS)
+    {
+        float mu = min(0.005 + 2e-3 * n, 0.9);
+        vec3 side = normalize(wo - lobe.mu_o * lobe.N);
+        wo = mu > lobe.mu_o ? mu * lobe.N + sqrt(1.0 - mu * mu) * side : wo;
+    }
+    else if (n >= 1.0)
+    {
+        n = clamp(n, 1.001, 4.0);
+        float n2 = n * n;
+        wo *= 1.0 + 1e-6 * n2 * n2 * n2 / (n2 - 1.0);
+    }
     FresnelData clear = mx_init_fresnel_schlick(vec3(0.0), vec3(1.0), vec3(0.0), 5.0, 0.0, 1.0);
-    clear.ior = max(ior, MICROFACET_LEAST_IOR);
+    clear.ior = vec3(n);
 
     // MaterialX divides the sum by G_1, for a shadowing that it does not have.
-    float shadowing = mx_ggx_smith_G1(lobe.mu_o, lobe.alpha);
-    vec3 wo = lobe.wo;
-    vec2 roughness = lobe.roughness;
-    vec3 light = vec3(-1.0);
-
-    // It is NaN where rounding makes one of many facets reflect totally, those that graze wo. In a
-    // second look-up a smooth surface takes their place, at a cosine where that does not happen.
-    for (int i = 0; i < 2 && !(dot(light, vec3(1.0)) >= 0.0); i++)
-    {
-        light = shadowing * mx_surface_transmission(lobe.N, wo, lobe.X, roughness, distribution,
-                                                    clear, tint);
-        float mu = max(lobe.mu_o, min(0.005 + 2e-3 * clear.ior.x, 0.9));
-        vec3 side = normalize(lobe.wo - lobe.mu_o * lobe.N);
-        wo = mu > lobe.mu_o ? mu * lobe.N + sqrt(1.0 - mu * mu) * side : lobe.wo;
-        roughness = vec2(M_FLOAT_EPS);
-        shadowing = 1.0;
-    }
-    return light;
+    return mx_ggx_smith_G1(lobe.mu_o, lobe.alpha)
+           * mx_surface_transmission(lobe.N, wo, lobe.X, lobe.roughness, distribution, clear, tint);
 }
 
 // Response and throughput of a lobe with its reflectances F: [MaterialX2026], Energy Compensation,

@@ -9,7 +9,7 @@ from tests.support.wrong_libraries import copy_of_stock, replace_text, wrong_lib
 # Files of eonlib have their path; those of MaterialX, their name alone.
 LOBE, FACETS = "genglsl/lib/oren_nayar_lobe.glsl", "genglsl/lib/microfacet_lobe.glsl"
 HAIR, FILM = "genglsl/chiang_hair_bsdf.glsl", "genglsl/lib/thin_film.glsl"
-FILMED = "genglsl/lib/microfacet_film.glsl"
+FILMED, HALF = "genglsl/lib/microfacet_film.glsl", "genglsl/lib/half_vector.glsl"
 
 # By title: file, a text, the text in its place, where OLD stands for the first, the check that notices it, words of
 # its diagnosis, and the verdict where it is not "failed".
@@ -132,7 +132,7 @@ WRONG = {
          "dirAlbedo = 1.0 + 0.0 * mx_ggx_dir_albedo", "layering", ""),
         (FACETS, "clamp(dot(lobe.N, lobe.wo), M_FLOAT_EPS, 1.0)", "dot(lobe.N, lobe.wo)", "finite",
          "NaN or infinity with the viewer on the horizon"),
-        (FACETS, "normalize(wi + wo + 1e-15 * N)", "normalize(wi + wo)", "finite",
+        (HALF, "wi + wo + 1e-15 * N", "wi + wo", "finite",
          "NaN or infinity with the light opposite the view (L = -V)"),
     ),
     "conductor_bsdf": (
@@ -164,6 +164,9 @@ WRONG = {
         ("mx_burley_diffuse_bsdf.glsl", "* M_PI_INV;", "* M_PI_INV + 0.001;", "black", ""),
         ("genglsl/burley_diffuse_bsdf.glsl", "N = mx_forward_facing_normal(N, wo);", "N = closureData.N;", "frame",
          "branch direct: normal is ignored"),
+        # Without the clamp, where engines here turn NaN into 0.
+        ("genglsl/burley_diffuse_bsdf.glsl", "clamp(dot(wi, eonlib_half_vector(wo, wi, N)), 0.0, 1.0)",
+         "dot(wi, normalize(wi + wo))", "finite", "NaN or infinity with the light opposite the view (L = -V)"),
         ("mx_burley_diffuse_bsdf.glsl", "(N, V);", "(vec3(0.0, 0.0, 1.0), V);", "frame",
          "branch direct: the node's normal is ignored; the surface's is used instead"),
     ),

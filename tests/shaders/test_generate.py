@@ -162,6 +162,20 @@ def test_a_source_keeps_no_state(path):
     assert kept(text + "vec3 last = vec3(0.0);\nfloat value;") == {"vec3 last", "float value"}
 
 
+# What no text may have, by what is wrong with it: an engine may show none of it.
+WRONG = {
+    "a derivative after a return, which some pixels have taken": r"(?s)\breturn;(?:(?!\n}).)*\b(?:fwidth|dFd[xy])\(",
+    "the half vector of opposite directions": r"normalize\(w[io] \+ w[io]\)",
+    "a loop without a count": r"\bwhile \((?![ip] < )",
+}
+
+
+@pytest.mark.parametrize("wrong", WRONG.values(), ids=WRONG)
+def test_no_source_has(wrong):
+    texts = {path.name: path.read_text(encoding="utf-8") for path in SOURCES}
+    assert [name for name, text in texts.items() if re.search(wrong, text)] == []
+
+
 @pytest.mark.parametrize("target", RASTERISED)
 def test_a_generated_shader_keeps_no_state_beside_that_of_materialx(target):
     text, _ = every_lobe()

@@ -4,8 +4,7 @@
 Mesa's driver RADV compiles for a chip by name, `RADV_FORCE_FAMILY`, without the hardware, and says what
 its compiler made. Shaders are compiled for one light: of two libraries the compiler may write out
 the loop over lights of one, which then counts once, and several times with the other. The estimate of cycles
-counts the body of a loop eight times, so it is that of what runs without a film: no loop over a film's nodes,
-and no second look-up of transmitted light.
+counts the body of a loop eight times, so it is that of what runs without a film: no loop over a film's nodes.
 """
 
 import os
@@ -39,7 +38,7 @@ STATISTICS = {
 LIGHTS = "for (int activeLightIndex = 0; activeLightIndex < numLights; ++activeLightIndex)"
 LIGHT = "int activeLightIndex = 0;"
 # What does not run without a film.
-UNUSED = {"if (fd.airy)": "if (false)", "i < 2 && !(dot(light, vec3(1.0)) >= 0.0)": "i < 1"}
+UNUSED = {"if (fd.airy)": "if (false)"}
 
 BINDING = re.compile(
     r"^layout \((?:std140, )?binding=(\d+)\) uniform (sampler2D|texture2D|sampler)?", re.MULTILINE
