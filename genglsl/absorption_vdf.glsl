@@ -4,7 +4,7 @@
 
 #include "lib/medium.glsl"
 
-void absorption_vdf(ClosureData closureData, vec3 absorption, inout VDF vdf)
+void absorption_vdf(ClosureData closureData, vec3 absorption, inout EONLIB_VDF vdf)
 {
     if (closureData.closureType == CLOSURE_TYPE_TRANSMISSION)
     {

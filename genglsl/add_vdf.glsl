@@ -3,7 +3,7 @@
 
 #include "lib/medium.glsl"
 
-void add_vdf(ClosureData closureData, VDF in1, VDF in2, out VDF result)
+void add_vdf(ClosureData closureData, EONLIB_VDF in1, EONLIB_VDF in2, out EONLIB_VDF result)
 {
     result.response = vec3(0.0);
     result.throughput = in1.throughput * in2.throughput;

@@ -5,7 +5,7 @@
 #include "lib/medium.glsl"
 
 void anisotropic_vdf(ClosureData closureData, vec3 absorption, vec3 scattering, float anisotropy,
-                     inout VDF vdf)
+                     inout EONLIB_VDF vdf)
 {
     if (closureData.closureType == CLOSURE_TYPE_TRANSMISSION)
     {

@@ -22,7 +22,7 @@
 #define BLACKBODY_Z_D3 -22.91965
 #define BLACKBODY_Z_D4 46.083796
 
-float blackbody_x(float t)
+float blackbody_X(float t)
 {
     float N = BLACKBODY_X_N0
               + t * (BLACKBODY_X_N1
@@ -33,7 +33,7 @@ float blackbody_x(float t)
     return N / D;
 }
 
-float blackbody_z(float t)
+float blackbody_Z(float t)
 {
     float N = BLACKBODY_Z_N0
               + t * (BLACKBODY_Z_N1
@@ -49,8 +49,8 @@ float blackbody_z(float t)
 void blackbody_rec709(float temperature, out vec3 result)
 {
     float t = 1000.0 / clamp(temperature, 800.0, 25000.0);
-    float X = blackbody_x(t);
-    float Z = blackbody_z(t);
+    float X = blackbody_X(t);
+    float Z = blackbody_Z(t);
     vec3 rec709 = vec3(3.2404542 * X - 1.5371385 - 0.4985314 * Z,
                        -0.9692660 * X + 1.8760108 + 0.0415560 * Z,
                        0.0556434 * X - 0.2040259 + 1.0572252 * Z);

@@ -35,7 +35,7 @@ float chiang_hair_norm(float v)
 
 // M_p of two points (cosine, sine), by the distance of one from the mirror image of the other: the
 // exponents themselves would cancel. I_0 is even, so that a tilted cosine may lose its sign.
-float chiang_hair_longitudinal(vec2 inclined_i, vec2 inclined_o, float v)
+float chiang_hair_along(vec2 inclined_i, vec2 inclined_o, float v)
 {
     float c = abs(inclined_i.x);
     vec2 d = vec2(c - inclined_o.x, inclined_i.y + inclined_o.y);
@@ -59,7 +59,7 @@ float chiang_hair_angle(vec2 w)
 }
 
 // N_p of the angle of a vector in the cross-section, which needs no wrapping.
-float chiang_hair_azimuthal(vec2 exit, float s)
+float chiang_hair_around(vec2 exit, float s)
 {
     float scale = sqrt(M_PI / 8.0) * s;
     float fall = exp(-chiang_hair_angle(exit) / scale);
@@ -84,7 +84,7 @@ float chiang_hair_fresnel(float mu, float ior)
 }
 
 // Product of two complex numbers: it adds the angles.
-vec2 complex_multiply(vec2 a, vec2 b)
+vec2 chiang_hair_product(vec2 a, vec2 b)
 {
     return vec2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x);
 }
@@ -98,63 +98,70 @@ vec2 chiang_hair_tilt(float alpha)
     float S = x * (1.0 - z / 6.0 * (1.0 - z / 20.0 * (1.0 - z / 42.0 * (1.0 - z / 72.0))));
     float C = 1.0
               - z / 2.0 * (1.0 - z / 12.0 * (1.0 - z / 30.0 * (1.0 - z / 56.0 * (1.0 - z / 90.0))));
-    return complex_multiply(vec2(C, S), vec2(C, S));
+    return chiang_hair_product(vec2(C, S), vec2(C, S));
 }
 
-// A_p of R, TT, TRT and TRRT+, the view (cosine, sine) in the cross-section, and that of the
-// refracted ray.
-void chiang_hair_section(vec3 wo, float ior, vec3 absorption, out vec3 A[4], out vec2 gamma_o,
-                         out vec2 gamma_t)
+// What the view's cross-section gives: A_p of R, TT and TRT, one a column, and of TRRT+, the view (cosine, sine)
+// in it, and that of the refracted ray.
+struct ChiangHairSection
 {
-    float c = length(wo.yz);
-    gamma_o = c > 0.0 ? vec2(wo.z, -wo.y) / c : vec2(1.0, 0.0);
-    float inside = sqrt(max((ior - wo.x) * (ior + wo.x), 1e-12));
-    float sine = clamp(-wo.y / inside, -1.0, 1.0);
-    gamma_t = vec2(sqrt((1.0 - sine) * (1.0 + sine)), sine);
-
-    float F = chiang_hair_fresnel(clamp(wo.z, 0.0, 1.0), ior);
-    vec3 T = exp(-absorption * (2.0 * gamma_t.x * max(ior, 1e-6) / inside));
-    A[0] = vec3(F);
-    A[1] = (1.0 - F) * (1.0 - F) * T;
-    A[2] = A[1] * F * T;
-    A[3] = A[2] * F * T / max(1.0 - F * T, 1e-7);  // the limit of 0 / 0 is 0
-}
-
-// Sum of the lobes, times pi.
-vec3 chiang_hair_sum(vec3 wo, vec3 wi, vec3 tint[3], vec2 roughness[3], float ior,
-                     float cuticle_angle, vec3 absorption)
-{
-    // Attenuate each lobe in the cross-section.
-    vec3 A[4];
+    mat3 A;
+    vec3 A_rest;
     vec2 gamma_o;
     vec2 gamma_t;
-    chiang_hair_section(wo, ior, absorption, A, gamma_o, gamma_t);
+};
+
+ChiangHairSection chiang_hair_section(vec3 wo, float ior, vec3 absorption)
+{
+    ChiangHairSection section;
+    float c = length(wo.yz);
+    section.gamma_o = c > 0.0 ? vec2(wo.z, -wo.y) / c : vec2(1.0, 0.0);
+    float inside = sqrt(max((ior - wo.x) * (ior + wo.x), 1e-12));
+    float sine = clamp(-wo.y / inside, -1.0, 1.0);
+    section.gamma_t = vec2(sqrt((1.0 - sine) * (1.0 + sine)), sine);
+
+    float F = chiang_hair_fresnel(clamp(wo.z, 0.0, 1.0), ior);
+    vec3 T = exp(-absorption * (2.0 * section.gamma_t.x * max(ior, 1e-6) / inside));
+    vec3 TT = (1.0 - F) * (1.0 - F) * T;
+    vec3 TRT = TT * F * T;
+    section.A = mat3(vec3(F), TT, TRT);
+    section.A_rest = TRT * F * T / max(1.0 - F * T, 1e-7);  // the limit of 0 / 0 is 0
+    return section;
+}
+
+// Sum of the lobes, times pi. Tints of R, TT and TRT are columns.
+vec3 chiang_hair_sum(vec3 wo, vec3 wi, mat3 tint, vec2 roughness_R, vec2 roughness_TT, vec2 roughness_TRT, float ior,
+                     float cuticle_angle, vec3 absorption)
+{
+    ChiangHairSection section = chiang_hair_section(wo, ior, absorption);
 
     // Tilt the light for R, and turn it to where R leaves.
     vec2 inclined_o = vec2(length(wo.yz), wo.x);
     vec2 inclined_i = vec2(length(wi.yz), wi.x);
     vec2 alpha = chiang_hair_tilt(M_PI * (cuticle_angle - 0.5));
     vec2 back = alpha * vec2(1.0, -1.0);  // by -alpha
-    vec2 tilted = complex_multiply(inclined_i, complex_multiply(alpha, alpha));
+    vec2 tilted = chiang_hair_product(inclined_i, chiang_hair_product(alpha, alpha));
     vec2 exit = vec2(dot(wi.yz, wo.yz), wi.z * wo.y - wo.z * wi.y);
-    exit = complex_multiply(exit, complex_multiply(gamma_o, gamma_o));
-    vec2 inside = -complex_multiply(gamma_t, gamma_t) * vec2(1.0, -1.0);  // by pi - 2 gamma_t
+    exit = chiang_hair_product(exit, chiang_hair_product(section.gamma_o, section.gamma_o));
+    // By pi - 2 gamma_t.
+    vec2 inside = -chiang_hair_product(section.gamma_t, section.gamma_t) * vec2(1.0, -1.0);
 
     // Add R, TT and TRT, each turned on from the one before.
     vec3 total = vec3(0.0);
     for (int p = 0; p < 3; ++p)
     {
-        vec2 r = max(roughness[p], vec2(1e-8, 1e-4));
-        float M = chiang_hair_longitudinal(tilted, inclined_o, r.x);
-        total += tint[p] * A[p] * M * chiang_hair_azimuthal(exit, r.y);
-        exit = complex_multiply(exit, inside);
-        tilted = complex_multiply(complex_multiply(tilted, back), complex_multiply(back, back));
+        vec2 r = p == 0 ? roughness_R : (p == 1 ? roughness_TT : roughness_TRT);
+        r = max(r, vec2(1e-8, 1e-4));
+        float M = chiang_hair_along(tilted, inclined_o, r.x);
+        total += tint[p] * section.A[p] * M * chiang_hair_around(exit, r.y);
+        exit = chiang_hair_product(exit, inside);
+        tilted = chiang_hair_product(chiang_hair_product(tilted, back), chiang_hair_product(back, back));
     }
 
     // Add the rest, TRRT+, which leaves at all azimuths alike.
-    float v = max(roughness[2].x, 1e-8);
-    float M = chiang_hair_longitudinal(inclined_i, inclined_o, v);
-    return total + tint[2] * A[3] * M * 0.5 * M_PI_INV;
+    float v = max(roughness_TRT.x, 1e-8);
+    float M = chiang_hair_along(inclined_i, inclined_o, v);
+    return total + tint[2] * section.A_rest * M * 0.5 * M_PI_INV;
 }
 
 void chiang_hair_bsdf(ClosureData closureData, vec3 tint_R, vec3 tint_TT, vec3 tint_TRT, float ior,
@@ -170,19 +177,12 @@ void chiang_hair_bsdf(ClosureData closureData, vec3 tint_R, vec3 tint_TT, vec3 t
     vec3 Y = cross(N, X);
 
     vec3 wo = vec3(dot(V, X), dot(V, Y), dot(V, N));
-    vec3 tint[3];
-    tint[0] = max(tint_R, vec3(0.0));
-    tint[1] = max(tint_TT, vec3(0.0));
-    tint[2] = max(tint_TRT, vec3(0.0));
+    mat3 tint = mat3(max(tint_R, vec3(0.0)), max(tint_TT, vec3(0.0)), max(tint_TRT, vec3(0.0)));
 
     if (closureData.closureType == CLOSURE_TYPE_REFLECTION)
     {
         vec3 wi = vec3(dot(L, X), dot(L, Y), dot(L, N));
-        vec2 roughness[3];
-        roughness[0] = roughness_R;
-        roughness[1] = roughness_TT;
-        roughness[2] = roughness_TRT;
-        vec3 total = chiang_hair_sum(wo, wi, tint, roughness, ior, cuticle_angle,
+        vec3 total = chiang_hair_sum(wo, wi, tint, roughness_R, roughness_TT, roughness_TRT, ior, cuticle_angle,
                                      absorption_coefficient);
         bsdf.response = total * closureData.occlusion * M_PI_INV;
     }
@@ -190,13 +190,10 @@ void chiang_hair_bsdf(ClosureData closureData, vec3 tint_R, vec3 tint_TT, vec3 t
     {
         // Exact for a cuticle without tilt in a uniform environment. In an uneven one, R and TRT
         // take the light from the viewer's side, TT that from the other, and TRRT+ half of both.
-        vec3 A[4];
-        vec2 gamma_o;
-        vec2 gamma_t;
-        chiang_hair_section(wo, ior, absorption_coefficient, A, gamma_o, gamma_t);
-        vec3 both = 0.5 * tint[2] * A[3];
-        vec3 front = tint[0] * A[0] + tint[2] * A[2] + both;
-        vec3 back = tint[1] * A[1] + both;
+        ChiangHairSection section = chiang_hair_section(wo, ior, absorption_coefficient);
+        vec3 both = 0.5 * tint[2] * section.A_rest;
+        vec3 front = tint[0] * section.A[0] + tint[2] * section.A[2] + both;
+        vec3 back = tint[1] * section.A[1] + both;
         vec3 light = front * mx_environment_irradiance(N) + back * mx_environment_irradiance(-N);
         bsdf.response = light * M_PI_INV;
     }

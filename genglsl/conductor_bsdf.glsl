@@ -15,7 +15,7 @@ void conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 extinc
                                                    thinfilm_ior);
         MicrofacetFresnel F;
         F.value = mx_fresnel_conductor(lobe.mu_h, ior, extinction);
-        F.average = fresnel_conductor_avg(ior, extinction);
+        F.average = eonlib_fresnel_conductor_avg(ior, extinction);
         F.visible = vec3(1.0);  // nothing lies below
         microfacet_film(lobe, fd, F);
         microfacet_bsdf(closureData, lobe, fd, F, vec3(1.0), weight, distribution, 0, bsdf);

@@ -16,12 +16,12 @@ void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior
     FresnelData fd = mx_init_fresnel_dielectric(ior, thinfilm_thickness, thinfilm_ior);
     float mu_visible = ggx_cosine_dielectric(lobe.mu_o, lobe.alpha, ior);
     MicrofacetFresnel F;
-    F.value = vec3(fresnel_dielectric(lobe.mu_h, ior));
-    F.average = vec3(fresnel_dielectric_avg(ior));
-    F.visible = vec3(fresnel_dielectric(mu_visible, ior));
+    F.value = vec3(eonlib_fresnel_dielectric(lobe.mu_h, ior));
+    F.average = vec3(eonlib_fresnel_dielectric_avg(ior));
+    F.visible = vec3(eonlib_fresnel_dielectric(mu_visible, ior));
     if (ior < 1.0)
     {
-        F.visible = vec3(fresnel_dielectric_inside(lobe.mu_o, lobe.alpha, ior));
+        F.visible = vec3(eonlib_fresnel_dielectric_inside(lobe.mu_o, lobe.alpha, ior));
     }
     microfacet_film(lobe, fd, F);
     microfacet_bsdf(closureData, lobe, fd, F, max(tint, 0.0), weight, distribution, scatter_mode,

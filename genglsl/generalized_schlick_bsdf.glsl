@@ -26,10 +26,10 @@ void generalized_schlick_bsdf(ClosureData closureData, float weight, vec3 color0
     FresnelData fd = mx_init_fresnel_schlick(max(color0, 0.0), max(color82, 0.0), max(color90, 0.0),
                                              exponent, thinfilm_thickness, thinfilm_ior);
     fd.ior = vec3(mx_f0_to_ior(dot(fd.F0, vec3(1.0 / 3.0))));  // which transmission refracts by
-    vec3 dip = fresnel_schlick_dip(fd.F0, fd.F82, fd.F90, exponent);
+    vec3 dip = eonlib_fresnel_schlick_dip(fd.F0, fd.F82, fd.F90, exponent);
     MicrofacetFresnel F;
     F.value = mx_fresnel_hoffman_schlick(lobe.mu_h, fd);
-    F.average = fresnel_schlick_avg(fd.F0, fd.F90, exponent, dip);
+    F.average = eonlib_fresnel_schlick_avg(fd.F0, fd.F90, exponent, dip);
     F.visible = generalized_schlick_visible(lobe, fd, dip);
     microfacet_film(lobe, fd, F);
     microfacet_bsdf(closureData, lobe, fd, F, vec3(1.0), weight, distribution, scatter_mode, bsdf);

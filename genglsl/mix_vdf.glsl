@@ -4,7 +4,7 @@
 
 #include "lib/medium.glsl"
 
-void mix_vdf(ClosureData closureData, VDF fg, VDF bg, float mixValue, out VDF result)
+void mix_vdf(ClosureData closureData, EONLIB_VDF fg, EONLIB_VDF bg, float mixValue, out EONLIB_VDF result)
 {
     // Avoid pow(0, x): what float32 has no logarithm of is black.
     float share = clamp(mixValue, 0.0, 1.0);

@@ -36,26 +36,26 @@ float fon_loss(float mu)
 }
 
 // A_F of [Portsmouth2025], below Eq. (11).
-float fon_a(float roughness)
+float fon_af(float roughness)
 {
     return 1.0 / (1.0 + EON_C1 * roughness);
 }
 
 // rho A_F / pi of [Portsmouth2025], Eq. (10).
-vec3 fon_scale(vec3 rho, float roughness)
+vec3 fon_lambert(vec3 rho, float roughness)
 {
-    return 1.0 / EON_PI * fon_a(roughness) * rho;
+    return 1.0 / EON_PI * fon_af(roughness) * rho;
 }
 
 // A_q of [Portsmouth2025], below Eq. (1).
-float qon_a(float sigma)
+float qon_aq(float sigma)
 {
     float sigma2 = sigma * sigma;
     return 1.0 - 0.5 * sigma2 / (sigma2 + 0.33);
 }
 
 // B_q of [Portsmouth2025], below Eq. (1).
-float qon_b(float sigma)
+float qon_bq(float sigma)
 {
     float sigma2 = sigma * sigma;
     return 0.45 * sigma2 / (sigma2 + 0.09);
@@ -72,7 +72,7 @@ float qon_albedo_dir(float mu, float sigma)
 {
     float S = sqrt((1.0 - mu) * (1.0 + mu));
     float G_over_pi = EON_C1 - fon_loss(mu) + 2.0 / (3.0 * EON_PI) * S;
-    return qon_a(sigma) + qon_b(sigma) * G_over_pi;
+    return qon_aq(sigma) + qon_bq(sigma) * G_over_pi;
 }
 
 // [Portsmouth2025], Eq. (28), where all but a loss cancels: rho (1 - r H (1 - rho) / D).
@@ -103,7 +103,7 @@ float fon_quotient(float mu_o, float mu_i, float s)
 
 // Weight of H(mu_o) H(mu_i) beside 1 + r s / t_F: [Portsmouth2025], Eq. (19) over Eq. (10). With
 // 1 - E = r H / (1 + c1 r) the powers of r cancel, and nothing in it vanishes.
-vec3 eon_multiple_weight(vec3 rho, float roughness)
+vec3 eon_multiple_ratio(vec3 rho, float roughness)
 {
     float weight = roughness * (1.0 + EON_C2 * roughness) * (1.0 / EON_LOSS_AVG);
     return weight * rho / eon_denominator(rho, roughness);
@@ -113,14 +113,14 @@ vec3 eon_multiple_weight(vec3 rho, float roughness)
 vec3 qon_brdf_mu(float mu_o, float mu_i, float s, vec3 rho, float sigma)
 {
     float quotient = qon_quotient(mu_o, mu_i, s);
-    return 1.0 / EON_PI * (qon_a(sigma) + qon_b(sigma) * quotient) * rho;
+    return 1.0 / EON_PI * (qon_aq(sigma) + qon_bq(sigma) * quotient) * rho;
 }
 
 // [Portsmouth2025], Eq. (16).
 vec3 eon_brdf_mu(float mu_o, float mu_i, float s, vec3 rho, float roughness)
 {
-    vec3 weight = eon_multiple_weight(rho, roughness);
-    vec3 scale = fon_scale(rho, roughness);
+    vec3 weight = eon_multiple_ratio(rho, roughness);
+    vec3 scale = fon_lambert(rho, roughness);
     float single_scatter = 1.0 + roughness * fon_quotient(mu_o, mu_i, s);
     return scale * (vec3(single_scatter) + fon_loss(mu_o) * fon_loss(mu_i) * weight);
 }

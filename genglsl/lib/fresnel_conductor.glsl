@@ -12,7 +12,7 @@
 #define FRESNEL_AVG_C2 0.9
 #define FRESNEL_AVG_W2 0.42364277
 
-vec3 fresnel_conductor_avg(vec3 ior, vec3 extinction)
+vec3 eonlib_fresnel_conductor_avg(vec3 ior, vec3 extinction)
 {
     return 1.0 - FRESNEL_AVG_W0 * (1.0 - mx_fresnel_conductor(FRESNEL_AVG_C0, ior, extinction))
            - FRESNEL_AVG_W1 * (1.0 - mx_fresnel_conductor(FRESNEL_AVG_C1, ior, extinction))

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fresnel reflectance of a dielectric, F_ss, its cosine-weighted average over the hemisphere, and its average
-// over the visible facets of GGX, or its cosine. mu is the cosine of wo with the normal.
+// Fresnel reflectance of a dielectric; F_ss, its cosine-weighted average over the hemisphere; and its average over
+// the visible facets of GGX: from an index of 1 on, the cosine at which the curve has that average, below 1, the
+// average itself. mu is the cosine of wo with the normal.
 
 // 1 - F_ss of a dielectric is t N / D, t = 1 / ior. Source: tools/fits/fresnel_average.py.
 // Domain: ior >= 1. Largest absolute error: 5.3e-5.
@@ -13,7 +14,8 @@
 #define FRESNEL_AVG_D2 43.891479
 #define FRESNEL_AVG_D3 -53.815382
 
-// That cosine is mu + alpha^2 / (mu + alpha) N / D, x = mu / (mu + alpha).
+// The cosine at which the curve has its average over the visible facets: mu + alpha^2 / (mu + alpha) N / D,
+// x = mu / (mu + alpha).
 // Source: tools/fits/ggx_cosine.py. Domain: mu and alpha in [1e-4, 1], index of refraction in [1.03, 3].
 // Largest absolute error of the albedo: 0.003, in [1.05, 2.5] 0.0017.
 #define GGX_DIELECTRIC_N000 121.31539
@@ -49,7 +51,7 @@
 #define GGX_DIELECTRIC_D210 107.1744
 
 // [MaterialX2026], Dielectric Fresnel Equations, from the amplitudes: no quotient of 0 at ior 0.
-float fresnel_dielectric(float mu, float ior)
+float eonlib_fresnel_dielectric(float mu, float ior)
 {
     float n2 = ior * ior;
     float g2 = (ior - 1.0) * (ior + 1.0) + mu * mu;  // n^2 + mu^2 - 1 loses mu^2 at grazing
@@ -60,7 +62,7 @@ float fresnel_dielectric(float mu, float ior)
 }
 
 // F_ss of a dielectric; below 1 from the other side, 1 - F_ss(n) = n^2 (1 - F_ss(1 / n)).
-float fresnel_dielectric_avg(float ior)
+float eonlib_fresnel_dielectric_avg(float ior)
 {
     float t = ior > 1.0 ? 1.0 / ior : ior;
     float N = FRESNEL_AVG_N0 + t * (FRESNEL_AVG_N1 + t * (FRESNEL_AVG_N2
@@ -70,7 +72,7 @@ float fresnel_dielectric_avg(float ior)
     return 1.0 - (ior > 1.0 ? lost : ior * ior * lost);
 }
 
-// Cosine for a dielectric. Indices beyond the domain have that of its end.
+// Cosine at which the curve has its average over the visible facets. Indices beyond the domain have that of its end.
 float ggx_cosine_dielectric(float mu, float alpha, float ior)
 {
     float n = clamp(ior, 1.03, 3.0);
@@ -95,25 +97,34 @@ float ggx_cosine_dielectric(float mu, float alpha, float ior)
     return clamp(mu + alpha * (1.0 - x) * N / D, 0.0, 1.0);
 }
 
-// Average over the visible facets for an index below 1: of them t^-p are below the critical angle.
-// Source: tools/fits/ggx_inside.py. Domain: mu and alpha in [1e-4, 1], index in [0.33, 0.98]. Largest absolute
-// error of the albedo: 2.8e-2.
-float fresnel_dielectric_inside(float mu, float alpha, float ior)
+// Average over the visible facets for an index n below 1, where those beyond the critical angle reflect everything.
+// With tau the cotangent of the angle between view and facet, tau_c the critical one, and tau_m one near their median:
+//   share below the critical angle: S = t^-p, t = 1 + exp(g asinh(k ln(tau_c^2 / tau_m^2)))
+//   their reflectance: F(tau), the tau above which 0.7213 of them are: 1 / 0.7213 = exp(0.326707)
+//   tau_m^2 = (mu^2 + a alpha^2) / (s^2 + b alpha^2), k^2 = k0 + k1 mu^2 s^2 / alpha^2, s^2 = 1 - mu^2
+// Logarithms of a, b, k0, k1, p and g are linear in x, y, z and x y. Source and derivation: tools/fits/ggx_inside.py.
+// Domain: mu and alpha in [1e-4, 1], index in [0.33, 0.98]. Largest absolute error of the albedo: 2.8e-2.
+float eonlib_fresnel_dielectric_inside(float mu, float alpha, float ior)
 {
     float s = sqrt(1.0 - mu * mu);
-    float a2 = alpha * alpha;
+    float alpha2 = alpha * alpha;
+    float n2 = ior * ior;
     float x = mu / (mu + alpha);
     float y = sqrt(alpha);
     float z = s / (s + alpha);
-    vec3 A = exp(vec3(0.57832, 3.8455, -12.129) + x * vec3(-1.0501, -0.97191, -2.2817)
-                 + z * vec3(0.58237, -0.54814, 10.885)
-                 + y * (vec3(-0.1491, -2.3176, -1.0809) + x * vec3(1.1587, -1.5649, 7.7815)));
-    vec3 B = exp(vec3(-11.175, -1.1887, 6.9511) + x * vec3(-2.49, -0.20226, 0.41509)
-                 + z * vec3(11.808, 1.1983, -6.4646)
-                 + y * (vec3(-2.918, -0.0033244, 0.40729) + x * vec3(7.0708, -0.19455, -2.4622)));
-    float m2 = (mu * mu + A.x * a2) / (s * s + A.y * a2);
-    float k = sqrt(A.z + B.x * mu * mu * s * s / a2);
-    float t = 1.0 + exp(min(B.z * asinh(k * log((1.0 - ior * ior) / max(ior * ior * m2, 1e-30))), 60.0));
-    float v = sinh(log(t * exp(0.326707 / B.y) - 1.0) / B.z);
-    return 1.0 - (1.0 - fresnel_dielectric(1.0 / sqrt(1.0 + exp(-v / k) / m2), ior)) / pow(t, B.y);
+    vec3 a_b_k0 = exp(vec3(0.57832, 3.8455, -12.129) + x * vec3(-1.0501, -0.97191, -2.2817)
+                      + z * vec3(0.58237, -0.54814, 10.885)
+                      + y * (vec3(-0.1491, -2.3176, -1.0809) + x * vec3(1.1587, -1.5649, 7.7815)));
+    vec3 k1_p_g = exp(vec3(-11.175, -1.1887, 6.9511) + x * vec3(-2.49, -0.20226, 0.41509)
+                      + z * vec3(11.808, 1.1983, -6.4646)
+                      + y * (vec3(-2.918, -0.0033244, 0.40729) + x * vec3(7.0708, -0.19455, -2.4622)));
+    float p = k1_p_g.y;
+    float g = k1_p_g.z;
+    float median2 = (mu * mu + a_b_k0.x * alpha2) / (s * s + a_b_k0.y * alpha2);
+    float k = sqrt(a_b_k0.z + k1_p_g.x * mu * mu * s * s / alpha2);
+    float critical = log((1.0 - n2) / max(n2 * median2, 1e-30));  // ln(tau_c^2 / tau_m^2)
+    float t = 1.0 + exp(min(g * asinh(k * critical), 60.0));
+    float typical = sinh(log(t * exp(0.326707 / p) - 1.0) / g) / k;  // ln(tau^2 / tau_m^2)
+    float cosine = 1.0 / sqrt(1.0 + exp(-typical) / median2);
+    return 1.0 - (1.0 - eonlib_fresnel_dielectric(cosine, ior)) / pow(t, p);
 }

@@ -66,13 +66,13 @@
 
 // F_ss of Hoffman's generalization of Schlick's curve, in closed form: the mean of (1 - c)^q is
 // 2 / ((q + 1) (q + 2)), that of c (1 - c)^6 is 1 / 126.
-vec3 fresnel_schlick_avg(vec3 color0, vec3 color90, float exponent, vec3 dip)
+vec3 eonlib_fresnel_schlick_avg(vec3 color0, vec3 color90, float exponent, vec3 dip)
 {
     return mix(color0, color90, 2.0 / ((exponent + 1.0) * (exponent + 2.0))) - dip / 126.0;
 }
 
 // Factor a of c (1 - c)^6 in Hoffman's curve: [MaterialX2026], Generalized Schlick Equations.
-vec3 fresnel_schlick_dip(vec3 color0, vec3 color82, vec3 color90, float exponent)
+vec3 eonlib_fresnel_schlick_dip(vec3 color0, vec3 color82, vec3 color90, float exponent)
 {
     float m = 6.0 / 7.0;
     float m2 = m * m;

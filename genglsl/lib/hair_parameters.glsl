@@ -19,7 +19,7 @@ float hair_variance(float longitudinal)
 }
 
 // The same: the azimuthal logistic scale s.
-float hair_scale(float azimuthal)
+float hair_logistic(float azimuthal)
 {
     float a = clamp(azimuthal, HAIR_LEAST, 1.0);
     return a * (0.265 + 1.194 * a) + 5.372 * pow(a, 22.0);
@@ -36,7 +36,7 @@ vec3 hair_absorption_of_melanin(float concentration, float redness, vec3 eumelan
 }
 
 // Absorption of hair of an apparent albedo: [Chiang2016], the fit of the absorption.
-vec3 hair_absorption_of_color(vec3 scattering, float azimuthal)
+vec3 hair_absorption_of_albedo(vec3 scattering, float azimuthal)
 {
     float b = clamp(azimuthal, 0.0, 1.0);
     float fit = 5.969 - b * (0.215 - b * (2.532 - b * (10.73 - b * (5.574 + b * 0.245))));

@@ -3,7 +3,9 @@
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 
-// Only what MaterialX generates since 1.39.5 has this macro.
-#ifndef AIRY_FRESNEL_ITERATIONS
-#define VDF BSDF
+// MaterialX states no version in its text; this macro of its films came with the type.
+#ifdef AIRY_FRESNEL_ITERATIONS
+#define EONLIB_VDF VDF
+#else
+#define EONLIB_VDF BSDF
 #endif

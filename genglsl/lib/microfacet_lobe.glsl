@@ -8,10 +8,10 @@
 
 // Least index of refraction for MaterialX's own curve: along the normal it divides 0 by 0 where
 // float32 adds nothing to 1. With ior 0 the curve of eonlib reflects everything.
-#define MICROFACET_LEAST_IOR 1e-3
+#define MICROFACET_LEAST_INDEX 1e-3
 
 // Index of a mirror by MaterialX's curves of dielectrics and conductors.
-#define MICROFACET_MIRROR_IOR 1e8
+#define MICROFACET_MIRROR_INDEX 1e8
 
 // The lobe at one direction wo: [MaterialX2026], Microfacet Model.
 struct MicrofacetLobe
@@ -67,7 +67,7 @@ MicrofacetLobe microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec2 rou
 }
 
 // D G_2 / (4 mu_o), the value of facets that reflect everything, times mu_i: 0 below the horizon.
-float microfacet_value(MicrofacetLobe lobe)
+float microfacet_lossless(MicrofacetLobe lobe)
 {
     vec3 X = normalize(lobe.X - dot(lobe.X, lobe.N) * lobe.N);
     vec3 Y = cross(lobe.N, X);
@@ -83,11 +83,11 @@ FresnelData microfacet_environment_curve(FresnelData fd)
 {
     if (fd.model == FRESNEL_MODEL_DIELECTRIC)
     {
-        fd.ior = max(fd.ior, MICROFACET_LEAST_IOR);
+        fd.ior = max(fd.ior, MICROFACET_LEAST_INDEX);
     }
     if (fd.airy)
     {
-        fd.ior = vec3(MICROFACET_MIRROR_IOR);
+        fd.ior = vec3(MICROFACET_MIRROR_INDEX);
         fd.F0 = vec3(1.0);
         fd.F82 = vec3(1.0);
         fd.F90 = vec3(1.0);
@@ -119,9 +119,9 @@ vec3 microfacet_environment(MicrofacetLobe lobe, int distribution, FresnelData f
 // longer by d adds 8 d q^2 / n^2 to it, here 8e-6 n^2, three times the roundings of seven operations, and
 // otherwise changes nothing above d. Near n = 1 and above 4, d is too large: rough surfaces refract as with 1.001
 // and with 4. A smooth one, whose facets are one, keeps its n above 4, and refracts as with a larger c.
-vec3 microfacet_transmission(MicrofacetLobe lobe, int distribution, vec3 ior, vec3 tint)
+vec3 microfacet_transmitted(MicrofacetLobe lobe, int distribution, vec3 ior, vec3 tint)
 {
-    float n = max(ior.x, MICROFACET_LEAST_IOR);
+    float n = max(ior.x, MICROFACET_LEAST_INDEX);
     vec3 wo = lobe.wo;
     if (n > 4.0 && lobe.alpha <= M_FLOAT_EPS)
     {
@@ -155,12 +155,12 @@ void microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelData f
 
     if (lobe.closure == CLOSURE_TYPE_REFLECTION)
     {
-        bsdf.response = microfacet_value(lobe) * F.value * scale * closureData.occlusion;
+        bsdf.response = microfacet_lossless(lobe) * F.value * scale * closureData.occlusion;
     }
     else if (lobe.closure == CLOSURE_TYPE_TRANSMISSION && scatter_mode != 0)
     {
         vec3 passed = max(1.0 - lobe.albedo * F.visible * compensation, 0.0);
-        bsdf.response = microfacet_transmission(lobe, distribution, fd.ior, tint) * passed * weight;
+        bsdf.response = microfacet_transmitted(lobe, distribution, fd.ior, tint) * passed * weight;
     }
     else if (lobe.closure == CLOSURE_TYPE_INDIRECT)
     {

@@ -34,19 +34,27 @@ struct ThinFilmComplex
     vec3 im;
 };
 
+ThinFilmComplex thin_film_complex(vec3 re, vec3 im)
+{
+    ThinFilmComplex z;  // Metal constructs no structure by a call
+    z.re = re;
+    z.im = im;
+    return z;
+}
+
 ThinFilmComplex thin_film_product(ThinFilmComplex a, ThinFilmComplex b)
 {
-    return ThinFilmComplex(a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re);
+    return thin_film_complex(a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re);
 }
 
 // (a - b) / (a + b)
-ThinFilmComplex thin_film_amplitude(ThinFilmComplex a, ThinFilmComplex b)
+ThinFilmComplex thin_film_interface(ThinFilmComplex a, ThinFilmComplex b)
 {
     vec3 re = a.re + b.re;
     vec3 im = a.im + b.im;
     vec3 inverse = 1.0 / max(re * re + im * im, THIN_FILM_LEAST);
-    return ThinFilmComplex((a.re * a.re + a.im * a.im - b.re * b.re - b.im * b.im) * inverse,
-                           2.0 * (a.im * b.re - a.re * b.im) * inverse);
+    return thin_film_complex((a.re * a.re + a.im * a.im - b.re * b.re - b.im * b.im) * inverse,
+                             2.0 * (a.im * b.re - a.re * b.im) * inverse);
 }
 
 // U + i V of Second Interface Phase, the root of (eta_3 + i kappa_3)^2 - sin^2(theta). The smaller part is a
@@ -58,7 +66,7 @@ ThinFilmComplex thin_film_root(vec3 ior, vec3 extinction, float sin2)
     vec3 larger = sqrt(0.5 * (sqrt(A * A + 4.0 * Q * Q) + abs(A)));
     vec3 smaller = Q / max(larger, THIN_FILM_LEAST);
     vec3 positive = step(vec3(0.0), A);
-    return ThinFilmComplex(mix(smaller, larger, positive), mix(larger, smaller, positive));
+    return thin_film_complex(mix(smaller, larger, positive), mix(larger, smaller, positive));
 }
 
 // Second Interface: r_23 of both polarizations, below a film of index n, at a cosine mu_t in it.
@@ -70,22 +78,22 @@ void thin_film_substrate(float n, float mu_t, float sin2, FresnelData fd, out Th
         // The phase is pi below a denser film, whose F0 may round. A negative curve has no amplitude.
         float F0 = (1.0 - 1e-6) * mx_ior_to_f0(n);
         vec3 r = sqrt(max(mx_fresnel_hoffman_schlick(mu_t, fd), 0.0));
-        r23_p = ThinFilmComplex(r * (2.0 * step(vec3(F0), fd.F0) - 1.0), vec3(0.0));
-        r23_s = ThinFilmComplex(-r23_p.re, vec3(0.0));
+        r23_p = thin_film_complex(r * (2.0 * step(vec3(F0), fd.F0) - 1.0), vec3(0.0));
+        r23_s = thin_film_complex(-r23_p.re, vec3(0.0));
     }
     else
     {
         vec3 n2 = fd.ior * fd.ior - fd.extinction * fd.extinction;
         vec3 k2 = 2.0 * fd.ior * fd.extinction;
         ThinFilmComplex root = thin_film_root(fd.ior, fd.extinction, sin2);
-        r23_s = thin_film_amplitude(ThinFilmComplex(vec3(n * mu_t), vec3(0.0)), root);
-        r23_p = thin_film_amplitude(ThinFilmComplex(n2 * mu_t, k2 * mu_t),
-                                    ThinFilmComplex(n * root.re, n * root.im));
+        r23_s = thin_film_interface(thin_film_complex(vec3(n * mu_t), vec3(0.0)), root);
+        r23_p = thin_film_interface(thin_film_complex(n2 * mu_t, k2 * mu_t),
+                                    thin_film_complex(n * root.re, n * root.im));
     }
 }
 
 // Airy Summation, DC term: C_0 = R_dc - T_12 as a product, in which nothing cancels. R_12 + R_dc is 1 + C_0.
-vec3 thin_film_weight(float r21, ThinFilmComplex r23)
+vec3 thin_film_c0(float r21, ThinFilmComplex r23)
 {
     float R12 = r21 * r21;
     vec3 R23 = r23.re * r23.re + r23.im * r23.im;
@@ -93,7 +101,7 @@ vec3 thin_film_weight(float r21, ThinFilmComplex r23)
 }
 
 // Color Conversion of what X, X, Y and Z respond with.
-vec3 thin_film_color(vec4 S)
+vec3 thin_film_rec709(vec4 S)
 {
     return (S.x + S.y) * THIN_FILM_COLOR_X + S.z * THIN_FILM_COLOR_Y + S.w * THIN_FILM_COLOR_Z;
 }
@@ -123,11 +131,11 @@ vec3 thin_film_orders(vec3 C0_s, ThinFilmComplex z_s, vec3 C0_p, ThinFilmComplex
     float ratio2 = min(max(R.x, max(R.y, R.z)) * fade2.x * fade2.x * fade2.x, THIN_FILM_ORDER_RATIO);
 
     vec3 sum = vec3(0.0);
-    ThinFilmComplex C_s = ThinFilmComplex(C0_s * z_s.re, C0_s * z_s.im);
-    ThinFilmComplex C_p = ThinFilmComplex(C0_p * z_p.re, C0_p * z_p.im);
+    ThinFilmComplex C_s = thin_film_complex(C0_s * z_s.re, C0_s * z_s.im);
+    ThinFilmComplex C_p = thin_film_complex(C0_p * z_p.re, C0_p * z_p.im);
     for (int m = 0; m < THIN_FILM_ORDER_COUNT; m++)
     {
-        sum += (C_s.re + C_p.re) * thin_film_color(S_re);
+        sum += (C_s.re + C_p.re) * thin_film_rec709(S_re);
         if (is_real)
         {
             C_s.re *= z_s.re;
@@ -138,7 +146,7 @@ vec3 thin_film_orders(vec3 C0_s, ThinFilmComplex z_s, vec3 C0_p, ThinFilmComplex
         }
         else
         {
-            sum -= (C_s.im + C_p.im) * thin_film_color(S_im);
+            sum -= (C_s.im + C_p.im) * thin_film_rec709(S_im);
             C_s = thin_film_product(C_s, z_s);
             C_p = thin_film_product(C_p, z_p);
             vec4 next = power * (cosine * S_re - sine * S_im);
@@ -169,10 +177,10 @@ vec3 thin_film_fresnel(float mu, float width, FresnelData fd)
 
     ThinFilmComplex r23_s, r23_p;
     thin_film_substrate(n, g / n, (1.0 - mu) * (1.0 + mu), fd, r23_s, r23_p);
-    ThinFilmComplex z_s = ThinFilmComplex(r21_s * r23_s.re, r21_s * r23_s.im);
-    ThinFilmComplex z_p = ThinFilmComplex(r21_p * r23_p.re, r21_p * r23_p.im);
-    vec3 C0_s = thin_film_weight(r21_s, r23_s);
-    vec3 C0_p = thin_film_weight(r21_p, r23_p);
+    ThinFilmComplex z_s = thin_film_complex(r21_s * r23_s.re, r21_s * r23_s.im);
+    ThinFilmComplex z_p = thin_film_complex(r21_p * r23_p.re, r21_p * r23_p.im);
+    vec3 C0_s = thin_film_c0(r21_s, r23_s);
+    vec3 C0_p = thin_film_c0(r21_p, r23_p);
 
     // Optical Path Difference: phi = 2 pi Delta = 4 pi d g, whose slope in mu is 4 pi d mu / g.
     float scale = 4.0e-9 * M_PI * fd.tf_thickness;

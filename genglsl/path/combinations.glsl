@@ -4,8 +4,8 @@
 #include "lib/questions.glsl"
 #include "../layer_bsdf.glsl"
 #include "../add_bsdf.glsl"
-#include "../multiply_bsdf_float.glsl"
-#include "../multiply_bsdf_color3.glsl"
+#include "../multiply_bsdfF.glsl"
+#include "../multiply_bsdfC.glsl"
 #include "libraries/pbrlib/genglsl/mx_mix_bsdf.glsl"
 #include "libraries/pbrlib/genglsl/mx_layer_vdf.glsl"
 
@@ -55,16 +55,16 @@ void path_add_bsdf(ClosureData closureData, BSDF in1, BSDF in2, out BSDF result)
     }
 }
 
-void path_multiply_bsdf_color3(ClosureData closureData, BSDF in1, vec3 in2, out BSDF result)
+void path_multiply_bsdfC(ClosureData closureData, BSDF in1, vec3 in2, out BSDF result)
 {
-    multiply_bsdf_color3(closureData, in1, in2, result);
+    multiply_bsdfC(closureData, in1, in2, result);
     if (path_is_asked(closureData))
     {
         path_combine(in1.response, clamp(in2, 0.0, 1.0), vec3(0.0), vec3(0.0), result);
     }
 }
 
-void path_multiply_bsdf_float(ClosureData closureData, BSDF in1, float in2, out BSDF result)
+void path_multiply_bsdfF(ClosureData closureData, BSDF in1, float in2, out BSDF result)
 {
-    path_multiply_bsdf_color3(closureData, in1, vec3(in2), result);
+    path_multiply_bsdfC(closureData, in1, vec3(in2), result);
 }

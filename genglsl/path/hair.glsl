@@ -19,28 +19,26 @@ struct PathHair
 PathHair path_hair(vec3 wo, vec3 tint_R, vec3 tint_TT, vec3 tint_TRT, float ior, vec2 roughness_R, vec2 roughness_TT,
                    vec2 roughness_TRT, float cuticle_angle, vec3 absorption)
 {
-    vec3 A[4];
-    vec2 gamma_o;
-    vec2 gamma_t;
-    chiang_hair_section(wo, ior, absorption, A, gamma_o, gamma_t);
+    ChiangHairSection section = chiang_hair_section(wo, ior, absorption);
     PathHair hair;
-    hair.weight = vec4(path_mean(tint_R * A[0]), path_mean(tint_TT * A[1]), path_mean(tint_TRT * A[2]),
-                       path_mean(tint_TRT * A[3]));
+    hair.weight = vec4(path_mean(tint_R * section.A[0]), path_mean(tint_TT * section.A[1]),
+                       path_mean(tint_TRT * section.A[2]), path_mean(tint_TRT * section.A_rest));
     vec2 least = vec2(1e-8, 1e-4);
     hair.roughness[0] = max(roughness_R, least);
     hair.roughness[1] = max(roughness_TT, least);
     hair.roughness[2] = max(roughness_TRT, least);
     hair.roughness[3] = hair.roughness[2];
     float c = length(wo.yz);
-    vec2 inside = -complex_multiply(gamma_t, gamma_t) * vec2(1.0, -1.0);
-    hair.exit[0] = complex_multiply(c > 0.0 ? wo.zy / c : vec2(1.0, 0.0), complex_multiply(gamma_o, gamma_o));
+    vec2 inside = -chiang_hair_product(section.gamma_t, section.gamma_t) * vec2(1.0, -1.0);
+    vec2 turned = chiang_hair_product(section.gamma_o, section.gamma_o);
+    hair.exit[0] = chiang_hair_product(c > 0.0 ? wo.zy / c : vec2(1.0, 0.0), turned);
     vec2 alpha = chiang_hair_tilt(M_PI * (cuticle_angle - 0.5));
-    vec2 back = complex_multiply(alpha, complex_multiply(alpha, alpha)) * vec2(1.0, -1.0);
-    hair.tilt[0] = complex_multiply(alpha, alpha);
+    vec2 back = chiang_hair_product(alpha, chiang_hair_product(alpha, alpha)) * vec2(1.0, -1.0);
+    hair.tilt[0] = chiang_hair_product(alpha, alpha);
     for (int p = 1; p < 3; ++p)
     {
-        hair.exit[p] = complex_multiply(hair.exit[p - 1], inside);
-        hair.tilt[p] = complex_multiply(hair.tilt[p - 1], back);
+        hair.exit[p] = chiang_hair_product(hair.exit[p - 1], inside);
+        hair.tilt[p] = chiang_hair_product(hair.tilt[p - 1], back);
     }
     hair.exit[3] = vec2(1.0, 0.0);
     hair.tilt[3] = vec2(1.0, 0.0);
@@ -57,10 +55,10 @@ float path_hair_pdf(PathHair hair, vec3 wo, vec3 wi)
     {
         for (float side = 1.0; side > -2.0; side -= 2.0)
         {
-            vec2 tilted = complex_multiply(vec2(side * c, wi.x), hair.tilt[p]);
-            vec2 from_exit = complex_multiply(side / c * wi.zy * vec2(1.0, -1.0), hair.exit[p]);
-            float N = p < 3 ? chiang_hair_azimuthal(from_exit, hair.roughness[p].y) : 0.5 * M_PI_INV;
-            float M = chiang_hair_longitudinal(tilted, inclined_o, hair.roughness[p].x);
+            vec2 tilted = chiang_hair_product(vec2(side * c, wi.x), hair.tilt[p]);
+            vec2 from_exit = chiang_hair_product(side / c * wi.zy * vec2(1.0, -1.0), hair.exit[p]);
+            float N = p < 3 ? chiang_hair_around(from_exit, hair.roughness[p].y) : 0.5 * M_PI_INV;
+            float M = chiang_hair_along(tilted, inclined_o, hair.roughness[p].x);
             sum += hair.weight[p] * M * N * max(tilted.x, 0.0) / c;
         }
     }
@@ -86,13 +84,13 @@ vec3 path_hair_draw(PathHair hair, vec3 wo)
     float z = clamp(1.0 + v * log(u.x + (1.0 - u.x) * exp(-2.0 / v)), -1.0, 1.0);
     float across = sqrt((1.0 - z) * (1.0 + z)) * mx_cos(2.0 * M_PI * u.y);
     float S = clamp(across * length(wo.yz) - z * wo.x, -1.0, 1.0);
-    vec2 inclined = complex_multiply(vec2(sqrt((1.0 - S) * (1.0 + S)), S), hair.tilt[p] * vec2(1.0, -1.0));
+    vec2 inclined = chiang_hair_product(vec2(sqrt((1.0 - S) * (1.0 + S)), S), hair.tilt[p] * vec2(1.0, -1.0));
 
     float scale = sqrt(M_PI / 8.0) * hair.roughness[p].y;
     float rest = exp(-M_PI / scale);
     float share = rest / (1.0 + rest) + u_azimuth * (1.0 - rest) / (1.0 + rest);
     float angle = p < 3 ? -scale * log(1.0 / share - 1.0) : 2.0 * M_PI * u_azimuth;
-    vec2 zy = inclined.x * complex_multiply(vec2(mx_cos(angle), mx_sin(angle)), hair.exit[p]);
+    vec2 zy = inclined.x * chiang_hair_product(vec2(mx_cos(angle), mx_sin(angle)), hair.exit[p]);
     return vec3(inclined.y, zy.y, zy.x);
 }
 

@@ -63,14 +63,14 @@ bool material_sample(Point p, vec3 wo, vec3 u, out vec3 wi, out vec3 weight, out
 }
 
 // Share of the light that the surface does not let pass straight on, for rays that look for shadows.
-float material_opacity(Point p, vec3 wo)
+float material_shadow(Point p, vec3 wo)
 {
     path_ask(PATH_NOTHING, p, wo, wo, vec3(0.0));
     return path_out.a;
 }
 
 // Radiance that the surface emits towards wo.
-vec3 material_emission(Point p, vec3 wo)
+vec3 material_emitted(Point p, vec3 wo)
 {
     path_ask(PATH_NOTHING, p, wo, wo, vec3(0.0));
     return path_out.rgb;

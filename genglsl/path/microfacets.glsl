@@ -15,7 +15,7 @@
 #define PATH_LEAST_BEND 1e-3
 
 // The index below relative to that above.
-float path_ior(float ior)
+float path_eta_of(float ior)
 {
     float n = path_inside ? 1.0 / max(ior, PATH_LEAST_BEND) : ior;
     return abs(n - 1.0) < PATH_LEAST_BEND ? 1.0 + PATH_LEAST_BEND : max(n, PATH_LEAST_BEND);
@@ -142,7 +142,7 @@ void path_dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, floa
 {
     if (path_is_asked(closureData))
     {
-        path_eta = path_ior(ior);
+        path_eta = path_eta_of(ior);
         dielectric_bsdf(path_question(closureData), weight, tint, path_inside ? path_eta : ior, roughness,
                         retroreflective, thinfilm_thickness, thinfilm_ior, N, X, distribution, scatter_mode, bsdf);
         path_end(bsdf);
@@ -168,7 +168,7 @@ void path_generalized_schlick_bsdf(ClosureData closureData, float weight, vec3 c
 {
     if (path_is_asked(closureData))
     {
-        path_eta = path_ior(mx_f0_to_ior(path_mean(color0)));
+        path_eta = path_eta_of(mx_f0_to_ior(path_mean(color0)));
         generalized_schlick_bsdf(path_question(closureData), weight, color0, color82, color90, exponent, roughness,
                                  retroreflective, thinfilm_thickness, thinfilm_ior, N, X, distribution, scatter_mode,
                                  bsdf);

@@ -32,8 +32,8 @@
 #define EON_ROOT4 0.0001101024
 #define EON_ROOT5 -0.0008543250
 
-// eon_multiple_weight of a gray rho.
-float eon_gray_weight(float rho, float roughness)
+// eon_multiple_ratio of a gray rho.
+float eon_gray_ratio(float rho, float roughness)
 {
     float weight = roughness * (1.0 + EON_C2 * roughness) * (1.0 / EON_LOSS_AVG);
     return weight * rho / (1.0 + EON_C1 * roughness - roughness * EON_LOSS_AVG * rho);
@@ -111,7 +111,7 @@ vec3 eon_draw(float mu_o, float S_o, float u1, float u2, float rho, float roughn
     float y_o = eon_upper_root(1.0 - mu_o);
     float lower = 2.0 / EON_PI * q * (1.0 - mu_o) / 3.0 * eon_cube_gap(mu_o, S_o);
     float upper = EON_C1 * q * y_o * y_o * sqrt(y_o);
-    float multiple = EON_LOSS_AVG * eon_gray_weight(rho, roughness) * fon_loss(mu_o);
+    float multiple = EON_LOSS_AVG * eon_gray_ratio(rho, roughness) * fon_loss(mu_o);
     float towards = lower + upper;
     float polar = towards + multiple;
     float v = u1 * (polar + 1.0);
@@ -144,7 +144,7 @@ float eon_pdf(vec3 wo, vec3 wi, float rho, float roughness)
     float mu_o = min(wo.z, 1.0);
     float mu_i = min(wi.z, 1.0);
     float s = oren_nayar_s(wo, wi);
-    float weight = eon_gray_weight(rho, roughness);
+    float weight = eon_gray_ratio(rho, roughness);
     float multiple = weight * fon_loss(mu_o) * fon_loss(mu_i);
     float parts = 1.0 + roughness * fon_quotient(mu_o, mu_i, s) + multiple;
     float total = 1.0 + EON_C1 * roughness + (weight * EON_LOSS_AVG - roughness) * fon_loss(mu_o);

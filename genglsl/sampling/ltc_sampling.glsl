@@ -58,24 +58,24 @@ float cosine_pdf(vec3 wi)
 
 // The entries of the matrix: [Portsmouth2025], Listing 2; mu and roughness in [0, 1]; the paper
 // states no error.
-float ltc_a(float mu, float roughness)
+float ltc_ma(float mu, float roughness)
 {
     return 1.0 + roughness * (0.303392 + (-0.518982 + 0.111709 * mu) * mu
                               + (-0.276266 + 0.335918 * mu) * roughness);
 }
 
-float ltc_b(float mu, float roughness)
+float ltc_mb(float mu, float roughness)
 {
     float b = -1.16407 + 1.15859 * mu + (0.150815 - 0.150105 * mu) * roughness;
     return roughness * b / (mu * mu * mu - 1.43545);
 }
 
-float ltc_c(float mu, float roughness)
+float ltc_mc(float mu, float roughness)
 {
     return 1.0 + roughness * (0.20013 + (-0.506373 + 0.261777 * mu) * mu);
 }
 
-float ltc_d(float mu, float roughness)
+float ltc_md(float mu, float roughness)
 {
     float d = 0.540852 + (-1.01625 + 0.475392 * mu) * mu;
     return roughness * d / (-1.0743 + (0.0725628 + mu) * mu);
@@ -84,9 +84,9 @@ float ltc_d(float mu, float roughness)
 // Unit M wh, rotated to the azimuth of wo: [Portsmouth2025], Eqs. (22), (25).
 vec3 ltc_transformed(vec3 wo, vec3 wh, float roughness, float d)
 {
-    float a = ltc_a(wo.z, roughness);
-    float b = ltc_b(wo.z, roughness);
-    float c = ltc_c(wo.z, roughness);
+    float a = ltc_ma(wo.z, roughness);
+    float b = ltc_mb(wo.z, roughness);
+    float c = ltc_mc(wo.z, roughness);
     vec3 wi = normalize(vec3(a * wh.x + b * wh.z, c * wh.y, d * wh.x + wh.z));
     vec3 turn = eon_azimuth_frame(wo);
     return eon_rotate_z(wi, turn.x, turn.y);
@@ -96,9 +96,9 @@ vec3 ltc_transformed(vec3 wo, vec3 wh, float roughness, float d)
 // the adjugate of M times wi, as long as the density needs it.
 float ltc_density(vec3 wo, vec3 wi, float roughness, float d)
 {
-    float a = ltc_a(wo.z, roughness);
-    float b = ltc_b(wo.z, roughness);
-    float c = ltc_c(wo.z, roughness);
+    float a = ltc_ma(wo.z, roughness);
+    float b = ltc_mb(wo.z, roughness);
+    float c = ltc_mc(wo.z, roughness);
     float det = c * (a - b * d);
     vec3 turn = eon_azimuth_frame(wo);
     vec3 back = eon_rotate_z(wi, turn.x, -turn.y);
@@ -122,12 +122,12 @@ float ltc0_pdf(vec3 wo, vec3 wi, float roughness)
 // The general transformed cosine, whose samples below the horizon are wasted.
 vec3 ltc_sample(vec3 wo, float u1, float u2, float roughness)
 {
-    return ltc_transformed(wo, cosine_sample(u1, u2), roughness, ltc_d(wo.z, roughness));
+    return ltc_transformed(wo, cosine_sample(u1, u2), roughness, ltc_md(wo.z, roughness));
 }
 
 float ltc_pdf(vec3 wo, vec3 wi, float roughness)
 {
-    return ltc_density(wo, wi, roughness, ltc_d(wo.z, roughness));
+    return ltc_density(wo, wi, roughness, ltc_md(wo.z, roughness));
 }
 
 // Fraction of the clamped cosine above d x + z = 0: [Portsmouth2025], below Eq. (26).
@@ -148,7 +148,7 @@ vec3 cltc_clipped(float u1, float u2, float d)
 // On the edge of the lune d x + z is zero up to rounding, of either sign.
 vec3 cltc_sample(vec3 wo, float u1, float u2, float roughness)
 {
-    float d = ltc_d(wo.z, roughness);
+    float d = ltc_md(wo.z, roughness);
     vec3 wi = ltc_transformed(wo, cltc_clipped(u1, u2, d), roughness, d);
     return vec3(wi.x, wi.y, max(wi.z, 0.0));
 }
@@ -156,7 +156,7 @@ vec3 cltc_sample(vec3 wo, float u1, float u2, float roughness)
 // [Portsmouth2025], Eq. (27).
 float cltc_pdf(vec3 wo, vec3 wi, float roughness)
 {
-    float d = ltc_d(wo.z, roughness);
+    float d = ltc_md(wo.z, roughness);
     return ltc_density(wo, wi, roughness, d) / cltc_kept_fraction(d);
 }
 

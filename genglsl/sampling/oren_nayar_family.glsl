@@ -15,19 +15,19 @@
 // [Portsmouth2025], Eq. (9).
 float qon_albedo_avg(float sigma)
 {
-    return qon_a(sigma) + (2.0 / 3.0 - 64.0 / (45.0 * EON_PI)) * qon_b(sigma);
+    return qon_aq(sigma) + (2.0 / 3.0 - 64.0 / (45.0 * EON_PI)) * qon_bq(sigma);
 }
 
 // [Portsmouth2025], Eq. (12), as 1 - r H / (1 + c1 r).
 float fon_albedo_dir(float mu, float roughness)
 {
-    return 1.0 - roughness * fon_loss(mu) * fon_a(roughness);
+    return 1.0 - roughness * fon_loss(mu) * fon_af(roughness);
 }
 
 // [Portsmouth2025], Eq. (15).
 float fon_albedo_avg(float roughness)
 {
-    return (1.0 + EON_C2 * roughness) * fon_a(roughness);
+    return (1.0 + EON_C2 * roughness) * fon_af(roughness);
 }
 
 // fon_loss with G_F of [Portsmouth2025], Eq. (14).
@@ -40,7 +40,7 @@ float fon_loss_approx(float mu)
 // [Portsmouth2025], Eqs. (12), (14).
 float fon_albedo_dir_approx(float mu, float roughness)
 {
-    return 1.0 - roughness * fon_loss_approx(mu) * fon_a(roughness);
+    return 1.0 - roughness * fon_loss_approx(mu) * fon_af(roughness);
 }
 
 // [Portsmouth2025], Eq. (28) with the albedo of Eq. (14), in the form of eon_albedo_dir.
@@ -109,9 +109,9 @@ vec3 oren_nayar_brdf(vec3 wo, vec3 wi, vec3 rho, float sigma)
     float cos_phi = oren_nayar_quotient(s, S_o * S_i);
     float behind = oren_nayar_quotient(min(s, 0.0), max(S_o, S_i))
                    * oren_nayar_behind_slope(mu_o, mu_i, S_o, S_i);
-    float C3 = 0.125 / 0.45 * qon_b(sigma) * (alpha * beta) * (alpha * beta);
+    float C3 = 0.125 / 0.45 * qon_bq(sigma) * (alpha * beta) * (alpha * beta);
     float aside = (1.0 - abs(cos_phi)) * oren_nayar_quotient(S_o + S_i, mu_o + mu_i);
-    float single_scatter = qon_a(sigma) + qon_b(sigma) * (qon_quotient(mu_o, mu_i, s) + behind);
+    float single_scatter = qon_aq(sigma) + qon_bq(sigma) * (qon_quotient(mu_o, mu_i, s) + behind);
     float k = sigma * sigma / (sigma * sigma + 0.13);
     float interreflection = 0.17 * k * (1.0 - beta * beta * cos_phi);
     return 1.0 / EON_PI * rho * (vec3(single_scatter + C3 * aside) + interreflection * rho);
@@ -128,7 +128,7 @@ vec3 qon_footnote_brdf(vec3 wo, vec3 wi, vec3 rho, float sigma)
 {
     float quotient = qon_quotient(wo.z, wi.z, oren_nayar_s(wo, wi));
     float A = 1.0 - 0.5 * sigma * sigma / (sigma * sigma + 0.57);
-    return 1.0 / EON_PI * (A + qon_b(sigma) * quotient) * rho;
+    return 1.0 / EON_PI * (A + qon_bq(sigma) * quotient) * rho;
 }
 
 // QON's B_q, FON's s/t and an A that grows with rho: the first formula proposed in [Fujii2013].
@@ -136,14 +136,14 @@ vec3 qon_fujii_brdf(vec3 wo, vec3 wi, vec3 rho, float sigma)
 {
     float quotient = fon_quotient(wo.z, wi.z, oren_nayar_s(wo, wi));
     vec3 tinted = 0.17 * sigma * sigma / (sigma * sigma + 0.13) * rho;
-    return 1.0 / EON_PI * rho * (vec3(qon_a(sigma) + qon_b(sigma) * quotient) + tinted);
+    return 1.0 / EON_PI * rho * (vec3(qon_aq(sigma) + qon_bq(sigma) * quotient) + tinted);
 }
 
 // [Portsmouth2025], Eq. (10).
 vec3 fon_brdf(vec3 wo, vec3 wi, vec3 rho, float roughness)
 {
     float quotient = fon_quotient(wo.z, wi.z, oren_nayar_s(wo, wi));
-    return 1.0 / EON_PI * fon_a(roughness) * (1.0 + roughness * quotient) * rho;
+    return 1.0 / EON_PI * fon_af(roughness) * (1.0 + roughness * quotient) * rho;
 }
 
 // [Portsmouth2025], Eq. (16).
@@ -158,6 +158,6 @@ vec3 eon_brdf_approx(vec3 wo, vec3 wi, vec3 rho, float roughness)
 {
     float single_scatter = 1.0 + roughness * fon_quotient(wo.z, wi.z, oren_nayar_s(wo, wi));
     float losses = max(fon_loss_approx(wo.z), 0.0) * max(fon_loss_approx(wi.z), 0.0);
-    vec3 multi_scatter = losses * eon_multiple_weight(rho, roughness);
-    return 1.0 / EON_PI * fon_a(roughness) * rho * (vec3(single_scatter) + multi_scatter);
+    vec3 multi_scatter = losses * eon_multiple_ratio(rho, roughness);
+    return 1.0 / EON_PI * fon_af(roughness) * rho * (vec3(single_scatter) + multi_scatter);
 }

@@ -127,7 +127,7 @@ def test_the_expression_of_a_lobe_is_bounded_and_is_never_executed(
     "file, old, new, words",
     [
         ("ltc_sampling", "0.303392", "0.303695",
-         {"samples": "ltc_a is off by", "densities": "with it ltc_density, ltc0_pdf, ltc_pdf"}),
+         {"samples": "ltc_ma is off by", "densities": "with it ltc_density, ltc0_pdf, ltc_pdf"}),
         ("eon_sampling", "return mu_i * parts", "return parts", {"densities": "eon_pdf is off by"}),
         ("eon_sampling", "* (1.0 / upper)", "* upper", {"samples": "eon_draw is off by"}),
         ("oren_nayar_family", "0.0571085289", "0.0571656374",
@@ -155,7 +155,7 @@ def test_shader_functions_that_do_not_compile_fail_with_the_words_of_the_compile
 @pytest.mark.parametrize(
     "file, old, new, words",
     [
-        ("eon", "0.33", "0.34", "qon_a"),
+        ("eon", "0.33", "0.34", "qon_aq"),
         ("ltc_sampling", "0.5 + 0.5 / sqrt", "0.5 - 0.5 / sqrt", "cltc_kept_fraction"),
         ("eon", "#define EON_Q3 0.0571913429", "#define EON_Q3 0.0571913430", "EON_Q3"),
     ],

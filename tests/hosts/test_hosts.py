@@ -139,7 +139,7 @@ def test_an_integer_of_the_text_is_the_boolean_that_it_was(hosts):
 def kernels(_):
     """Files of the kernels of Slang that this process has opened, and keeps open."""
     kept.append(open_host("slang"))
-    kept[-1].call("fon_a", np.array([0.5]))
+    kept[-1].call("fon_af", np.array([0.5]))
     maps = Path("/proc/self/maps").read_text().split()
     return {word for word in maps if "slang-generated" in word}
 

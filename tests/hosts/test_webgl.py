@@ -43,7 +43,7 @@ def test_no_name_resolves_in_the_browser(hosts):
 @pytest.mark.parametrize("name", ("plaster", "brick"))
 def test_a_picture_is_the_references(hosts, reference, name, scene):
     host = hosts("webgl")
-    host.call("fon_a", MU)  # leaves no frame behind that a picture would draw into
+    host.call("fon_af", MU)  # leaves no frame behind that a picture would draw into
     document = examples_folder() / f"{name}.mtlx"
     shader = generate(document, host.target, lights=True)[0]
     image = host.picture(shader, replace(scene, size=64))

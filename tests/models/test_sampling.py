@@ -62,7 +62,7 @@ def test_pdf_integrates_to_what_is_not_wasted(sampler, mu, roughness):
     wi, weights = hemisphere(mu)
     kept = 1.0
     if sampler.name == "ltc":
-        kept = cltc.cltc_kept_fraction(ltc.ltc_d(mu, roughness))
+        kept = cltc.cltc_kept_fraction(ltc.ltc_md(mu, roughness))
     clipped = sampler.name in ("ltc", "cltc", "eon_cltc")
     bound = tolerances.KINK_QUADRATURE if clipped else tolerances.QUADRATURE
     assert abs(sampler.pdf(view(mu), wi, roughness) @ weights - kept) < bound
@@ -166,7 +166,7 @@ def test_clipped_cosine_keeps_its_digits_on_the_rim():
 
 
 def test_listing_3_keeps_the_wrong_side_where_d_is_positive():
-    d = float(ltc.ltc_d(1.0, 1.0))
+    d = float(ltc.ltc_md(1.0, 1.0))
     # Whatever the sign, the listing does what `cltc_clipped` does for a negative one.
     x, _, z = cltc.cltc_clipped(1.0 - 1e-9, 0.0, -d, 1e-9)
     assert d > 0.0 and d * x + z < -0.9 * d
@@ -174,14 +174,16 @@ def test_listing_3_keeps_the_wrong_side_where_d_is_positive():
 
 def test_general_ltc_wastes_most_at_grazing_and_full_roughness():
     mu, roughness = np.meshgrid(np.linspace(0.0, 1.0, 201), np.linspace(0.0, 1.0, 51))
-    waste = 1.0 - cltc.cltc_kept_fraction(ltc.ltc_d(mu, roughness))
+    waste = 1.0 - cltc.cltc_kept_fraction(ltc.ltc_md(mu, roughness))
     assert waste.argmax() == np.ravel_multi_index((50, 0), waste.shape)
     assert abs(waste.max() - 0.0534) < tolerances.FIGURE * 0.0534
 
 
 def test_the_matrix_never_turns_the_hemisphere_over():
     mu, roughness = np.meshgrid(np.linspace(0.0, 1.0, 201), np.linspace(0.0, 1.0, 51))
-    a, b, c, d = (entry(mu, roughness) for entry in (ltc.ltc_a, ltc.ltc_b, ltc.ltc_c, ltc.ltc_d))
+    a, b, c, d = (
+        entry(mu, roughness) for entry in (ltc.ltc_ma, ltc.ltc_mb, ltc.ltc_mc, ltc.ltc_md)
+    )
     assert (c * (a - b * d)).min() > 0.9
 
 

@@ -25,6 +25,7 @@ from tests.support.documents import COMPENSATED, lobe, material
 EXAMPLES = sorted(examples_folder().glob("*.mtlx"))
 RASTERISED = ("glsl", "essl", "vulkan", "wgsl", "msl", "slang")
 SOURCES = sorted((source_folder("eonlib") / "genglsl").rglob("*.glsl"))
+OSL_SOURCES = sorted((source_folder("eonlib") / "genosl").rglob("*.osl"))
 LIBRARIES = ("eonlib", "stock")
 CONSTANT = {"const", "uniform", "struct", "in", "constant", "precision"}
 VALIDATED = {"glsl": (), "essl": (), "vulkan": ("-V",)}
@@ -176,6 +177,32 @@ def test_no_source_has(wrong):
     assert [name for name, text in texts.items() if re.search(wrong, text)] == []
 
 
+# Global names of a text: functions, structures, macros and variables.
+NAMES = re.compile(
+    r"^(?:closure )?(?:#define |struct |\w+ (?=\w+(?:\(|;|\[|$)))(\w+)", re.MULTILINE
+)
+CLOSURES = {"BSDF", "EDF", "VDF"}  # inputs of these types are no variables
+
+
+def test_no_name_in_a_source_is_one_that_materialx_makes_for_a_node():
+    """An input of a node is `node_input` in the text, and an output `node_output`."""
+    ports = {
+        port.getName()
+        for nodedef in load_library().getNodeDefs()
+        for port in (*nodedef.getActiveInputs(), *nodedef.getActiveOutputs())
+        if port.getType() not in CLOSURES or "out" in port.getName()
+    }
+    texts = {path.name: path.read_text(encoding="utf-8") for path in (*SOURCES, *OSL_SOURCES)}
+    texts["control"] = "vec3 thin_film_weight(float r)\n{\n}\nstruct hair_scale\n{"
+    found = [
+        name
+        for text in texts.values()
+        for name in NAMES.findall(text)
+        if any(name.endswith(f"_{port}") for port in ports)
+    ]
+    assert found == ["thin_film_weight", "hair_scale"]
+
+
 @pytest.mark.parametrize("target", RASTERISED)
 def test_a_generated_shader_keeps_no_state_beside_that_of_materialx(target):
     text, _ = every_lobe()
@@ -185,6 +212,40 @@ def test_a_generated_shader_keeps_no_state_beside_that_of_materialx(target):
     assert {each.split()[-1] for each in kept(both[0] + "vec3 last;")} >= {"last"}
     statics = [re.findall(r"\bstatic\b(?! const)", each) for each in both]
     assert len(statics[0]) <= len(statics[1])
+
+
+# Nodes whose names and inputs make uniforms that sound like functions: `thin_film_weight`, `hair_scale`.
+NAMED = {
+    "thin_film": lobe("dielectric_bsdf", "thin_film", thinfilm_thickness=400.0)
+    + '<multiply name="lobe" type="BSDF"><input name="in1" type="BSDF" nodename="thin_film"/></multiply>',
+    "hair": '<deon_hair_absorption_from_melanin name="melanin" type="vector3"/><normalmap name="hair" type="vector3"/>'
+    + '<chiang_hair_bsdf name="lobe" type="BSDF"><input name="absorption_coefficient" type="vector3" nodename="melanin"/>'
+    + '<input name="normal" type="vector3" nodename="hair"/></chiang_hair_bsdf>',
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", NAMED)
+@pytest.mark.parametrize("target", VALIDATED)
+def test_a_node_named_like_our_functions_makes_the_same_shader(name, target, tmp_path):
+    [shader] = generate(material(NAMED[name]), target)
+    validate(shader, target, tmp_path)
+    other = pixel(material(NAMED[name].replace(f'"{name}"', '"zzz"')), target)
+    assert other.replace("zzz_", f"{name}_") == shader.stages["pixel"]
+
+
+# What C++ does not compile, by a text that has it: a structure is no function, and an array has an address space.
+NOT_METAL = {
+    "ThinFilmComplex(re, im)": r"\b(?!GlobalContext)({})\(",
+    "void f(float a, vec3 A[4])": r"[(,]\s*(?!(?:const )?(?:thread|device|constant) )(?:const )?\w+ \w+\[\d*\]\s*[,)]",
+}
+
+
+@pytest.mark.parametrize("wrong, pattern", NOT_METAL.items(), ids=NOT_METAL)
+def test_metal_gets_what_is_valid_there(wrong, pattern):
+    source = pixel(every_lobe()[0], "msl")
+    pattern = pattern.format("|".join(re.findall(r"\bstruct (\w+)", source)))
+    assert re.search(pattern, source) is None
+    assert re.search(pattern, source + wrong)
 
 
 @of_each_example

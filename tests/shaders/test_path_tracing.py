@@ -256,7 +256,7 @@ void main()
     vec3 weight;
     float pdf;
     material_sample(p, p.normal, vec3(0.5), wi, weight, pdf);
-    color = vec4(weight + material_evaluate(p, wi, wi) + material_emission(p, wi), pdf + material_pdf(p, wi, wi));
+    color = vec4(weight + material_evaluate(p, wi, wi) + material_emitted(p, wi), pdf + material_pdf(p, wi, wi));
 }
 """
 VERSIONS = {

@@ -70,13 +70,13 @@ def oren_nayar(wo, wi, rho, sigma):
     return (rho * first + rho**2 * second) / mp.pi
 
 
-def fon_a(r):
+def fon_af(r):
     """[Portsmouth2025], below Eq. (11)."""
     return 1 / (1 + (half - 2 / (3 * mp.pi)) * r)
 
 
 def fon(wo, wi, rho, r):
-    return rho / mp.pi * (fon_a(r) + r * fon_a(r) * fon_quotient(wo, wi))
+    return rho / mp.pi * (fon_af(r) + r * fon_af(r) * fon_quotient(wo, wi))
 
 
 def g_q(mu):
@@ -107,12 +107,12 @@ def qon_albedo_dir(mu, rho, sigma):
 
 def fon_albedo_dir(mu, rho, r, g=g_f):
     """[Portsmouth2025], Eq. (12)."""
-    return rho * (fon_a(r) + r * fon_a(r) / mp.pi * g(mu))
+    return rho * (fon_af(r) + r * fon_af(r) / mp.pi * g(mu))
 
 
 def fon_albedo_avg(rho, r):
     """[Portsmouth2025], Eq. (15)."""
-    return rho * (fon_a(r) + (mp.mpf(2) / 3 - 28 / (15 * mp.pi)) * r * fon_a(r))
+    return rho * (fon_af(r) + (mp.mpf(2) / 3 - 28 / (15 * mp.pi)) * r * fon_af(r))
 
 
 def eon_albedo_dir(mu, rho, r):

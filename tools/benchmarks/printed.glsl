@@ -38,10 +38,10 @@ vec3 printed_quartic(float mu_o, float mu_i, float s, vec3 rho, float roughness)
 // Direction and density together, which share the matrix: [Portsmouth2025], Listing 3.
 vec4 printed_cltc(vec3 wo, float u1, float u2, float roughness)
 {
-    float a = ltc_a(wo.z, roughness);
-    float b = ltc_b(wo.z, roughness);
-    float c = ltc_c(wo.z, roughness);
-    float d = ltc_d(wo.z, roughness);
+    float a = ltc_ma(wo.z, roughness);
+    float b = ltc_mb(wo.z, roughness);
+    float c = ltc_mc(wo.z, roughness);
+    float d = ltc_md(wo.z, roughness);
     float kept = cltc_kept_fraction(d);
     vec3 wh = cltc_clipped(u1, u2, d);
     vec3 wi = vec3(a * wh.x + b * wh.z, c * wh.y, d * wh.x + wh.z);

@@ -104,7 +104,7 @@ def fit(sampled):
 def shipped():
     """Coefficients in the shader."""
     text = source_file("glsl", "fresnel_dielectric").read_text(encoding="utf-8")
-    vectors = re.findall(r"vec3\(([-\d., ]+)\)", text.split("float fresnel_dielectric_inside")[1])
+    vectors = re.findall(r"vec3\(([-\d., ]+)\)", text.split("dielectric_inside(")[1])
     rows = np.array([each.split(",") for each in vectors], float)
     return rows.reshape(2, 5, 3).transpose(0, 2, 1).ravel()
 

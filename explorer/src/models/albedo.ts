@@ -4,7 +4,7 @@
 
 import type { Triple } from "../data";
 import type { Brdf } from "./brdf";
-import { C1, C2, eon_denominator, fon_a, fon_loss, qon_a, qon_b } from "./formulas";
+import { C1, C2, eon_denominator, fon_af, fon_loss, qon_aq, qon_bq } from "./formulas";
 
 const { PI } = Math;
 
@@ -16,22 +16,22 @@ export type AlbedoAvg = (rho: number, parameter: number) => number;
 /** Directional albedo of QON at unit reflectance: [Portsmouth2025], Eqs. (5), (8). */
 export function qon_albedo_dir(mu: number, sigma: number): number {
   const g_over_pi = C1 - fon_loss(mu) + (2.0 / (3.0 * PI)) * Math.sqrt((1.0 - mu) * (1.0 + mu));
-  return qon_a(sigma) + qon_b(sigma) * g_over_pi;
+  return qon_aq(sigma) + qon_bq(sigma) * g_over_pi;
 }
 
 /** Average albedo of QON at unit reflectance: [Portsmouth2025], Eq. (9). */
 export function qon_albedo_avg(sigma: number): number {
-  return qon_a(sigma) + (2.0 / 3.0 - 64.0 / (45.0 * PI)) * qon_b(sigma);
+  return qon_aq(sigma) + (2.0 / 3.0 - 64.0 / (45.0 * PI)) * qon_bq(sigma);
 }
 
 /** Directional albedo of FON at unit reflectance: [Portsmouth2025], Eqs. (12), (13). */
 export function fon_albedo_dir(mu: number, roughness: number): number {
-  return 1.0 - roughness * fon_loss(mu) * fon_a(roughness);
+  return 1.0 - roughness * fon_loss(mu) * fon_af(roughness);
 }
 
 /** Average albedo of FON at unit reflectance: [Portsmouth2025], Eqs. (15), (29). */
 export function fon_albedo_avg(roughness: number): number {
-  return (1.0 + C2 * roughness) * fon_a(roughness);
+  return (1.0 + C2 * roughness) * fon_af(roughness);
 }
 
 /** Directional albedo of EON: [Portsmouth2025], Eq. (28). */

@@ -6,13 +6,13 @@ import type { Vec3 } from "../data";
 import {
   cosines,
   eon_brdf_mu,
-  eon_multiple_weight,
+  eon_multiple_ratio,
   fon_loss_approx,
   fon_quotient,
-  fon_scale,
+  fon_lambert,
   oren_nayar_quotient,
-  qon_a,
-  qon_b,
+  qon_aq,
+  qon_bq,
   qon_quotient,
 } from "./formulas";
 
@@ -63,29 +63,29 @@ export const oren_nayar_brdf: Brdf = (wo, wi, rho, sigma) => {
   const aside =
     (oren_nayar_quotient(cross, S_o * S_i) ** 2 / (1.0 + Math.abs(cos_phi))) *
     oren_nayar_quotient(S_o + S_i, mu_o + mu_i);
-  const C3 = (0.125 / 0.45) * qon_b(sigma) * (alpha * beta) ** 2;
-  const single_scatter = qon_a(sigma) + qon_b(sigma) * (qon_quotient(mu_o, mu_i, s) + behind);
+  const C3 = (0.125 / 0.45) * qon_bq(sigma) * (alpha * beta) ** 2;
+  const single_scatter = qon_aq(sigma) + qon_bq(sigma) * (qon_quotient(mu_o, mu_i, s) + behind);
   const interreflection = oren_nayar_interreflection(rho, sigma) * (1.0 - beta ** 2 * cos_phi);
   return (rho / PI) * (single_scatter + C3 * aside + interreflection);
 };
 
 /** [Portsmouth2025], Eqs. (1), (3), (4). */
 export const qon_brdf: Brdf = (wo, wi, rho, sigma) =>
-  (rho / PI) * (qon_a(sigma) + qon_b(sigma) * qon_quotient(...cosines(wo, wi)));
+  (rho / PI) * (qon_aq(sigma) + qon_bq(sigma) * qon_quotient(...cosines(wo, wi)));
 
 /** QON with 0.57 for 0.33 in A_q: [Portsmouth2025], footnote 1. */
 export const qon_footnote_brdf: Brdf = (wo, wi, rho, sigma) =>
-  (rho / PI) * (qon_a(sigma, 0.57) + qon_b(sigma) * qon_quotient(...cosines(wo, wi)));
+  (rho / PI) * (qon_aq(sigma, 0.57) + qon_bq(sigma) * qon_quotient(...cosines(wo, wi)));
 
 /** [Fujii2013], first proposed formula. */
 export const qon_fujii_brdf: Brdf = (wo, wi, rho, sigma) => {
-  const a = qon_a(sigma) + oren_nayar_interreflection(rho, sigma);
-  return (rho / PI) * (a + qon_b(sigma) * fon_quotient(...cosines(wo, wi)));
+  const a = qon_aq(sigma) + oren_nayar_interreflection(rho, sigma);
+  return (rho / PI) * (a + qon_bq(sigma) * fon_quotient(...cosines(wo, wi)));
 };
 
 /** [Portsmouth2025], Eqs. (10), (11). */
 export const fon_brdf: Brdf = (wo, wi, rho, roughness) =>
-  fon_scale(rho, roughness) * (1.0 + roughness * fon_quotient(...cosines(wo, wi)));
+  fon_lambert(rho, roughness) * (1.0 + roughness * fon_quotient(...cosines(wo, wi)));
 
 /** [Portsmouth2025], Eqs. (16), (19). */
 export const eon_brdf: Brdf = (wo, wi, rho, roughness) =>
@@ -96,6 +96,6 @@ export const eon_brdf_approx: Brdf = (wo, wi, rho, roughness) => {
   const [mu_o, mu_i, s] = cosines(wo, wi);
   const losses = Math.max(fon_loss_approx(mu_o), 0.0) * Math.max(fon_loss_approx(mu_i), 0.0);
   const single_scatter = 1.0 + roughness * fon_quotient(mu_o, mu_i, s);
-  const multi_scatter = eon_multiple_weight(rho, roughness) * losses;
-  return fon_scale(rho, roughness) * (single_scatter + multi_scatter);
+  const multi_scatter = eon_multiple_ratio(rho, roughness) * losses;
+  return fon_lambert(rho, roughness) * (single_scatter + multi_scatter);
 };

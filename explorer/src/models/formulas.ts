@@ -35,22 +35,22 @@ export function fon_loss_approx(mu: number): number {
 }
 
 /** A_F: [Portsmouth2025], below Eq. (11). */
-export function fon_a(roughness: number): number {
+export function fon_af(roughness: number): number {
   return 1.0 / (1.0 + C1 * roughness);
 }
 
 /** rho A_F / pi: [Portsmouth2025], Eq. (10). */
-export function fon_scale(rho: number, roughness: number): number {
-  return (rho / PI) * fon_a(roughness);
+export function fon_lambert(rho: number, roughness: number): number {
+  return (rho / PI) * fon_af(roughness);
 }
 
 /** A_q: [Portsmouth2025], below Eq. (1). */
-export function qon_a(sigma: number, constant = 0.33): number {
+export function qon_aq(sigma: number, constant = 0.33): number {
   return 1.0 - (0.5 * sigma ** 2) / (sigma ** 2 + constant);
 }
 
 /** B_q: [Portsmouth2025], below Eq. (1). */
-export function qon_b(sigma: number): number {
+export function qon_bq(sigma: number): number {
   return (0.45 * sigma ** 2) / (sigma ** 2 + 0.09);
 }
 
@@ -60,7 +60,7 @@ export function eon_denominator(rho: number, roughness: number): number {
 }
 
 /** Weight of H(mu_o) H(mu_i) beside FON's 1 + r s / t_F: Eq. (19) over Eq. (10). */
-export function eon_multiple_weight(rho: number, roughness: number): number {
+export function eon_multiple_ratio(rho: number, roughness: number): number {
   const weight = (roughness * (1.0 + C2 * roughness)) / (C1 - C2);
   return (rho * weight) / eon_denominator(rho, roughness);
 }
@@ -90,6 +90,6 @@ export function eon_brdf_mu(
 ): number {
   const single_scatter = 1.0 + roughness * fon_quotient(mu_o, mu_i, s);
   const losses = fon_loss(mu_o) * fon_loss(mu_i);
-  const multi_scatter = eon_multiple_weight(rho, roughness) * losses;
-  return fon_scale(rho, roughness) * (single_scatter + multi_scatter);
+  const multi_scatter = eon_multiple_ratio(rho, roughness) * losses;
+  return fon_lambert(rho, roughness) * (single_scatter + multi_scatter);
 }

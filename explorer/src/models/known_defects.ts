@@ -9,11 +9,11 @@ import {
   C2,
   cosines,
   eon_brdf_mu,
-  eon_multiple_weight,
-  fon_a,
+  eon_multiple_ratio,
+  fon_af,
   fon_loss,
   fon_quotient,
-  fon_scale,
+  fon_lambert,
 } from "./formulas";
 
 /** EON with dot(wo, wi) kept above 1e-8 before s is formed. */
@@ -27,16 +27,16 @@ export const eon_clamped_brdf: Brdf = (wo, wi, rho, roughness) => {
 export const eon_rho_cubed_brdf: Brdf = (wo, wi, rho, roughness) => {
   const [mu_o, mu_i, s] = cosines(wo, wi);
   const single_scatter = 1.0 + roughness * fon_quotient(mu_o, mu_i, s);
-  const weight = rho * eon_multiple_weight(rho, roughness);
+  const weight = rho * eon_multiple_ratio(rho, roughness);
   const multi_scatter = weight * (fon_loss(mu_o) * fon_loss(mu_i));
-  return fon_scale(rho, roughness) * (single_scatter + multi_scatter);
+  return fon_lambert(rho, roughness) * (single_scatter + multi_scatter);
 };
 
 /** FON plus the multiple-scattering lobe of a white surface. */
 export const fon_white_lobe_brdf: Brdf = (wo, wi, rho, roughness) => {
   const [mu_o, mu_i] = cosines(wo, wi);
   const losses = fon_loss(mu_o) * fon_loss(mu_i);
-  const white = ((roughness * fon_a(roughness)) / (Math.PI * (C1 - C2))) * losses;
+  const white = ((roughness * fon_af(roughness)) / (Math.PI * (C1 - C2))) * losses;
   return fon_brdf(wo, wi, rho, roughness) + white;
 };
 

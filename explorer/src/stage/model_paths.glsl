@@ -52,7 +52,7 @@ bool material_sample(Point p, vec3 wo, vec3 u, out vec3 wi, out vec3 weight, out
     return pdf > 0.0;
 }
 
-vec3 material_emission(Point p, vec3 wo)
+vec3 material_emitted(Point p, vec3 wo)
 {
     return vec3(0.0);
 }

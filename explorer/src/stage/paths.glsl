@@ -76,7 +76,7 @@ vec4 stage_path(vec3 origin, vec3 direction)
         vec3 outward = inside ? -hit.normal : hit.normal;
         Point p = stage_point(origin + hit.t * direction, outward, inside && !(material_is_thin_walled));
         if (hit.part == STAGE_SUBJECT)
-            radiance += throughput * material_emission(p, -direction);
+            radiance += throughput * material_emitted(p, -direction);
         if (bounce == stage_bounces)
             break;
         radiance += throughput * stage_reflected(hit, p, -direction);

@@ -18,16 +18,16 @@ vec3 eon_clamped_brdf(vec3 wo, vec3 wi, vec3 rho, float roughness)
 vec3 eon_rho_cubed_brdf(vec3 wo, vec3 wi, vec3 rho, float roughness)
 {
     float single_scatter = 1.0 + roughness * fon_quotient(wo.z, wi.z, oren_nayar_s(wo, wi));
-    vec3 weight = rho * eon_multiple_weight(rho, roughness);
+    vec3 weight = rho * eon_multiple_ratio(rho, roughness);
     float losses = fon_loss(min(wo.z, 1.0)) * fon_loss(min(wi.z, 1.0));
-    return fon_scale(rho, roughness) * (vec3(single_scatter) + losses * weight);
+    return fon_lambert(rho, roughness) * (vec3(single_scatter) + losses * weight);
 }
 
 // FON plus the multiple-scattering lobe of a white surface.
 vec3 fon_white_lobe_brdf(vec3 wo, vec3 wi, vec3 rho, float roughness)
 {
     float losses = fon_loss(min(wo.z, 1.0)) * fon_loss(min(wi.z, 1.0));
-    float white = roughness * fon_a(roughness) / (EON_PI * EON_LOSS_AVG) * losses;
+    float white = roughness * fon_af(roughness) / (EON_PI * EON_LOSS_AVG) * losses;
     return fon_brdf(wo, wi, rho, roughness) + vec3(white);
 }
 

@@ -75,7 +75,7 @@ FUNCTION_CHECKS = (
     FunctionCheck(
         "densities",
         "The sampling densities and the matrix of linearly transformed cosines match NumPy's.",
-        r"\w+_pdf|ltc_(density|[abcd])",
+        r"\w+_pdf|ltc_(density|m[abcd])",
         # An inverse fourth power takes the 8 of an entry of a matrix four times, and 16 beside them.
         sum_in(CONDITIONED, roundings(48, "four times the 8 of a matrix entry, and 16")),
     ),
@@ -144,7 +144,7 @@ Columns = Mapping[str, Array]
 NAMED: Mapping[str, Callable[..., Array]] = {
     "eon_around": sampling.around,
     "eon_azimuth_frame": lambda wo: sampling.stack_xyz(*sampling.azimuth_frame(wo)),
-    "eon_gray_weight": lambda gray, roughness: diffuse.eon_multiple_weight(gray, roughness),
+    "eon_gray_ratio": lambda gray, roughness: diffuse.eon_multiple_ratio(gray, roughness),
     "eon_rotate_z": lambda wi, cosine, sine: sampling.rotate_z(wi, cosine, sine),
     # y of the angle whose cosine is 1 - m, by the integral of which the shader has a fit.
     "eon_upper_root": lambda m: sampling.eon_upper_limit(1.0 - m, np.sqrt(m * (2.0 - m))),
@@ -208,7 +208,7 @@ def random_columns() -> Columns:
             "S": np.sqrt((1.0 - mu) * (1.0 + mu)),
             "S_o": np.hypot(wo[:, 0], wo[:, 1]),
             "S_i": np.hypot(wi[:, 0], wi[:, 1]),
-            "d": sampling.ltc_d(mu, roughness),
+            "d": sampling.ltc_md(mu, roughness),
             "cosine": np.cos(azimuth),
             "sine": np.sin(azimuth),
             "x": np.cos(elevation),

@@ -156,7 +156,7 @@ void main()
         vec3 position = origin + t * direction;
         vec3 normal = tracer_normal(position);
         Point p = tracer_point(position, normal, -direction);
-        radiance += throughput * (material_emission(p, -direction) + tracer_lit(p, normal, -direction, tracer_random(-1 - bounce)));
+        radiance += throughput * (material_emitted(p, -direction) + tracer_lit(p, normal, -direction, tracer_random(-1 - bounce)));
         vec3 wi;
         vec3 weight;
         if (bounce == tracer_bounces || !material_sample(p, -direction, tracer_random(bounce), wi, weight, pdf))

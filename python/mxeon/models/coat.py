@@ -545,8 +545,8 @@ def shape(mu: Array, turned: Array, ior: float | Array, r: Array) -> tuple[Array
 def absorbed(means: Sequence[float | Array], rho: Array, r: Array) -> Array:
     """1 - R `<k>`, as 1 - R + R (1 - `<k>`) without ones that cancel: (1 + c1 r) A is 1."""
     _, exits, loss, turn = means
-    weight = formulas.eon_multiple_weight(rho, r)
-    lost = 1.0 - rho + rho * formulas.fon_a(r) * (r * (C1 - turn) - weight * loss**2)
+    weight = formulas.eon_multiple_ratio(rho, r)
+    lost = 1.0 - rho + rho * formulas.fon_af(r) * (r * (C1 - turn) - weight * loss**2)
     return exits + (1.0 - exits) * lost
 
 
@@ -567,12 +567,12 @@ def under(
         shape(*each, ior, r) for each in zip(mu, turned, strict=True)
     )
     single = 1.0 + r * formulas.fon_quotient(m_o, m_i, s / ior**2)
-    weight = formulas.eon_multiple_weight(rho, r)
-    again = rho * formulas.fon_a(r) * (1.0 - means[1]) / absorbed(means, rho, r)
+    weight = formulas.eon_multiple_ratio(rho, r)
+    again = rho * formulas.fon_af(r) * (1.0 - means[1]) / absorbed(means, rho, r)
     mixed = again * weight * means[2]
     several = (weight + mixed * weight * means[2]) * (H_o * H_i)
     several = several + mixed * (p_o * H_i + p_i * H_o) + again * (p_o * p_i)
-    return formulas.fon_scale(rho, r) * (single + several)
+    return formulas.fon_lambert(rho, r) * (single + several)
 
 
 def albedo(
@@ -586,7 +586,7 @@ def albedo(
     """(2)."""
     (single, several, turned), (_, exits, loss, _) = curves, means
     _, p, H = shape(mu, turned, ior, r)
-    k = rho * formulas.fon_a(r) * (p + formulas.eon_multiple_weight(rho, r) * (loss * H))
+    k = rho * formulas.fon_af(r) * (p + formulas.eon_multiple_ratio(rho, r) * (loss * H))
     kept = (1.0 - exits) * (1.0 - eon_albedo(loss, rho, r)) / absorbed(means, rho, r)
     return single + several + (1.0 - single - several) * (eon_albedo(H, rho, r) - k * kept)
 

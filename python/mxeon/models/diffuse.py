@@ -107,22 +107,22 @@ def fon_loss_approx(mu: Array) -> Array:
     return C1 - m * (g1 + m * (g2 + m * (g3 + m * g4)))
 
 
-def fon_a(roughness: Array) -> Array:
+def fon_af(roughness: Array) -> Array:
     """A_F: [Portsmouth2025], below Eq. (11)."""
     return 1.0 / (1.0 + C1 * roughness)
 
 
-def fon_scale(rho: Array, roughness: Array) -> Array:
+def fon_lambert(rho: Array, roughness: Array) -> Array:
     """rho A_F / pi: [Portsmouth2025], Eq. (10)."""
-    return rho / np.pi * fon_a(roughness)
+    return rho / np.pi * fon_af(roughness)
 
 
-def qon_a(sigma: Number, constant: float = 0.33) -> Number:
+def qon_aq(sigma: Number, constant: float = 0.33) -> Number:
     """A_q: [Portsmouth2025], below Eq. (1)."""
     return 1.0 - 0.5 * sigma**2 / (sigma**2 + constant)
 
 
-def qon_b(sigma: Number) -> Number:
+def qon_bq(sigma: Number) -> Number:
     """B_q: [Portsmouth2025], below Eq. (1)."""
     return 0.45 * sigma**2 / (sigma**2 + 0.09)
 
@@ -132,7 +132,7 @@ def eon_denominator(rho: Array, roughness: Array) -> Array:
     return 1.0 + C1 * roughness - rho * (roughness * (C1 - C2))
 
 
-def eon_multiple_weight(rho: Array, roughness: Array) -> Array:
+def eon_multiple_ratio(rho: Array, roughness: Array) -> Array:
     """Weight of H(mu_o) H(mu_i) beside FON's 1 + r s / t_F: Eq. (19) over Eq. (10).
 
         rho r (1 + c2 r) / ((c1 - c2) D)
@@ -166,30 +166,30 @@ def fon_quotient(mu_o: Array, mu_i: Array, s: Array) -> Array:
 
 def qon_footnote_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, sigma: Array) -> Array:
     """QON with 0.57 for 0.33 in A_q: [Portsmouth2025], footnote 1."""
-    return rho / np.pi * (qon_a(sigma, 0.57) + qon_b(sigma) * qon_quotient(mu_o, mu_i, s))
+    return rho / np.pi * (qon_aq(sigma, 0.57) + qon_bq(sigma) * qon_quotient(mu_o, mu_i, s))
 
 
 def qon_fujii_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, sigma: Array) -> Array:
     """rho / pi (A_q + 0.17 rho k + B_q s / t_F), k = sigma^2 / (sigma^2 + 0.13): [Fujii2013]."""
-    a = qon_a(sigma) + oren_nayar_interreflection(rho, sigma)
-    return rho / np.pi * (a + qon_b(sigma) * fon_quotient(mu_o, mu_i, s))
+    a = qon_aq(sigma) + oren_nayar_interreflection(rho, sigma)
+    return rho / np.pi * (a + qon_bq(sigma) * fon_quotient(mu_o, mu_i, s))
 
 
 def qon_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, sigma: Array) -> Array:
     """rho / pi (A_q + B_q s / t_q): [Portsmouth2025], Eqs. (1), (3)."""
-    return rho / np.pi * (qon_a(sigma) + qon_b(sigma) * qon_quotient(mu_o, mu_i, s))
+    return rho / np.pi * (qon_aq(sigma) + qon_bq(sigma) * qon_quotient(mu_o, mu_i, s))
 
 
 def fon_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
     """rho / pi A_F (1 + r s / t_F): [Portsmouth2025], Eq. (10)."""
-    return fon_scale(rho, roughness) * (1.0 + roughness * fon_quotient(mu_o, mu_i, s))
+    return fon_lambert(rho, roughness) * (1.0 + roughness * fon_quotient(mu_o, mu_i, s))
 
 
 def eon_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
     """rho / pi A_F (1 + r s / t_F + weight H(mu_o) H(mu_i)): [Portsmouth2025], Eq. (16)."""
     single_scatter = 1.0 + roughness * fon_quotient(mu_o, mu_i, s)
-    multi_scatter = eon_multiple_weight(rho, roughness) * (fon_loss_mu(mu_o) * fon_loss_mu(mu_i))
-    return fon_scale(rho, roughness) * (single_scatter + multi_scatter)
+    multi_scatter = eon_multiple_ratio(rho, roughness) * (fon_loss_mu(mu_o) * fon_loss_mu(mu_i))
+    return fon_lambert(rho, roughness) * (single_scatter + multi_scatter)
 
 
 def oren_nayar_angle(y: Array, x: Array) -> Array:
@@ -233,8 +233,8 @@ def oren_nayar_formula(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:
     cross = wo[..., 0] * wi[..., 1] - wo[..., 1] * wi[..., 0]
     aside = oren_nayar_quotient(cross, S_o * S_i) ** 2 / (1.0 + xp.abs(cos_phi))
     aside = aside * oren_nayar_quotient(S_o + S_i, mu_o + mu_i)
-    C3 = 0.125 / 0.45 * qon_b(sigma) * (alpha * beta) ** 2
-    single_scatter = qon_a(sigma) + qon_b(sigma) * (qon_quotient(mu_o, mu_i, s) + behind)
+    C3 = 0.125 / 0.45 * qon_bq(sigma) * (alpha * beta) ** 2
+    single_scatter = qon_aq(sigma) + qon_bq(sigma) * (qon_quotient(mu_o, mu_i, s) + behind)
     interreflection = oren_nayar_interreflection(rho, sigma) * (1.0 - beta**2 * cos_phi)
     return rho / np.pi * (single_scatter + C3 * aside + interreflection)
 
@@ -243,8 +243,8 @@ def eon_brdf_approx_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness
     """EON with the quartic for H, which is kept from falling below 0 where mu < 0.0014."""
     losses = at_least_0(fon_loss_approx(mu_o)) * at_least_0(fon_loss_approx(mu_i))
     single_scatter = 1.0 + roughness * fon_quotient(mu_o, mu_i, s)
-    multi_scatter = eon_multiple_weight(rho, roughness) * losses
-    return fon_scale(rho, roughness) * (single_scatter + multi_scatter)
+    multi_scatter = eon_multiple_ratio(rho, roughness) * losses
+    return fon_lambert(rho, roughness) * (single_scatter + multi_scatter)
 
 
 @any_array
@@ -458,7 +458,7 @@ def fon_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
         array([1.      , 0.776522])
     """
     mu, r = checked_numbers(mu=mu, roughness=roughness)
-    return 1.0 - r * fon_loss_mu(mu) * fon_a(r)
+    return 1.0 - r * fon_loss_mu(mu) * fon_af(r)
 
 
 @any_array
@@ -474,7 +474,7 @@ def fon_albedo_dir_approx(mu: ArrayLike, roughness: ArrayLike) -> Array:
         array([1.000356, 0.776522])
     """
     mu, r = checked_numbers(mu=mu, roughness=roughness)
-    return 1.0 - r * fon_loss_approx(mu) * fon_a(r)
+    return 1.0 - r * fon_loss_approx(mu) * fon_af(r)
 
 
 @any_array
@@ -489,7 +489,7 @@ def fon_albedo_avg(roughness: ArrayLike) -> Array:
         array([1.      , 0.832811])
     """
     (r,) = checked_numbers(roughness=roughness)
-    return (1.0 + C2 * r) * fon_a(r)
+    return (1.0 + C2 * r) * fon_af(r)
 
 
 @any_array
@@ -561,7 +561,7 @@ def qon_albedo_dir(mu: ArrayLike, sigma: ArrayLike) -> Array:
     """
     mu, sigma = checked_numbers(mu=mu, sigma=sigma)
     g_over_pi = C1 - fon_loss_mu(mu) + 2.0 / (3.0 * np.pi) * root((1.0 - mu) * (1.0 + mu))
-    return qon_a(sigma) + qon_b(sigma) * g_over_pi
+    return qon_aq(sigma) + qon_bq(sigma) * g_over_pi
 
 
 @any_array
@@ -576,7 +576,7 @@ def qon_albedo_avg(sigma: ArrayLike) -> Array:
         np.float64(0.855278)
     """
     (sigma,) = checked_numbers(sigma=sigma)
-    return qon_a(sigma) + (2.0 / 3.0 - 64.0 / (45.0 * np.pi)) * qon_b(sigma)
+    return qon_aq(sigma) + (2.0 / 3.0 - 64.0 / (45.0 * np.pi)) * qon_bq(sigma)
 
 
 # [Portsmouth2025], Eqs. (32) and (34); color and roughness in [0, 1]; largest error of rho 4.41e-3,
@@ -750,9 +750,9 @@ def eon_rho_cubed_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: 
 
     def formula(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
         single_scatter = 1.0 + roughness * fon_quotient(mu_o, mu_i, s)
-        weight = rho * eon_multiple_weight(rho, roughness)
+        weight = rho * eon_multiple_ratio(rho, roughness)
         multi_scatter = weight * (fon_loss_mu(mu_o) * fon_loss_mu(mu_i))
-        return fon_scale(rho, roughness) * (single_scatter + multi_scatter)
+        return fon_lambert(rho, roughness) * (single_scatter + multi_scatter)
 
     return evaluate(of_cosines(formula), wo, wi, rho, roughness=roughness)
 
@@ -769,7 +769,7 @@ def fon_white_lobe_brdf(
 
     def formula(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
         losses = fon_loss_mu(mu_o) * fon_loss_mu(mu_i)
-        white = roughness * fon_a(roughness) / (np.pi * (C1 - C2)) * losses
+        white = roughness * fon_af(roughness) / (np.pi * (C1 - C2)) * losses
         return fon_brdf_mu(mu_o, mu_i, s, rho, roughness) + white
 
     return evaluate(of_cosines(formula), wo, wi, rho, roughness=roughness)
@@ -829,8 +829,8 @@ def qon_degrees_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> A
     """Directional albedo of `qon_degrees_brdf`."""
     (color,), (m, s) = checked_colors({"rho": rho}, mu=mu, sigma=sigma)
     rough = 0.5 * np.pi
-    lobe = (qon_albedo_dir(m, rough) - qon_a(rough)) / qon_b(rough)
-    return (qon_a(DEGREE * s) + qon_b(DEGREE * s) * lobe) * color
+    lobe = (qon_albedo_dir(m, rough) - qon_aq(rough)) / qon_bq(rough)
+    return (qon_aq(DEGREE * s) + qon_bq(DEGREE * s) * lobe) * color
 
 
 @any_array

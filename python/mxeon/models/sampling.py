@@ -75,7 +75,7 @@ from mxeon.models.core.arrays import (
     hypot,
     root,
 )
-from mxeon.models.diffuse import C1, C2, cosines, eon_multiple_weight, fon_loss_mu, fon_quotient
+from mxeon.models.diffuse import C1, C2, cosines, eon_multiple_ratio, fon_loss_mu, fon_quotient
 from mxeon.models.microfacet import ggx
 from mxeon.models.sheen import zeltner_matrix
 
@@ -254,7 +254,7 @@ def eon_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike, *, rho: ArrayLik
 
 def eon_density_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
     """Density from the cosines, and from s of `cosines`."""
-    weight, loss_o = eon_multiple_weight(rho, roughness), fon_loss_mu(mu_o)
+    weight, loss_o = eon_multiple_ratio(rho, roughness), fon_loss_mu(mu_o)
     parts = 1.0 + roughness * fon_quotient(mu_o, mu_i, s) + weight * loss_o * fon_loss_mu(mu_i)
     total = 1.0 + C1 * roughness + (weight * (C1 - C2) - roughness) * loss_o
     return mu_i * parts / (np.pi * total)
@@ -291,7 +291,7 @@ def eon_integrals(
     towards = (2.0 / np.pi) * roughness * S_o
     lower = towards * (1.0 - mu_o) * eon_cube_gap(mu_o, S_o) / 3.0
     upper = towards * eon_segment(mu_o, S_o)
-    multiple = (C1 - C2) * eon_multiple_weight(rho, roughness) * fon_loss_mu(mu_o)
+    multiple = (C1 - C2) * eon_multiple_ratio(rho, roughness) * fon_loss_mu(mu_o)
     return lower, upper, multiple, 1.0
 
 
@@ -422,7 +422,7 @@ def ltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array
         True
     """
     wo, u, roughness = checked_draw(wo, u, roughness=roughness)
-    return ltc_transformed(wo, cosine_sample(u)[0], roughness, ltc_d(wo[..., 2], roughness))
+    return ltc_transformed(wo, cosine_sample(u)[0], roughness, ltc_md(wo[..., 2], roughness))
 
 
 @any_array
@@ -435,29 +435,29 @@ def ltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
         0.31831
     """
     wo, wi, roughness = checked_pdf(wo, wi, roughness=roughness)
-    return ltc_density(wo, wi, roughness, ltc_d(wo[..., 2], roughness))
+    return ltc_density(wo, wi, roughness, ltc_md(wo[..., 2], roughness))
 
 
 # Entries of the matrix: [Portsmouth2025], Listing 2; mu, the cosine of wo, and roughness in [0, 1];
 # the paper states no error.
-def ltc_a(mu: Array, roughness: Array) -> Array:
+def ltc_ma(mu: Array, roughness: Array) -> Array:
     """Entry a of M."""
     a = 0.303392 + (-0.518982 + 0.111709 * mu) * mu + (-0.276266 + 0.335918 * mu) * roughness
     return 1.0 + roughness * a
 
 
-def ltc_b(mu: Array, roughness: Array) -> Array:
+def ltc_mb(mu: Array, roughness: Array) -> Array:
     """Entry b of M."""
     b = -1.16407 + 1.15859 * mu + (0.150815 - 0.150105 * mu) * roughness
     return roughness * b / (mu**3 - 1.43545)
 
 
-def ltc_c(mu: Array, roughness: Array) -> Array:
+def ltc_mc(mu: Array, roughness: Array) -> Array:
     """Entry c of M."""
     return 1.0 + roughness * (0.20013 + (-0.506373 + 0.261777 * mu) * mu)
 
 
-def ltc_d(mu: Array, roughness: Array | float) -> Array:
+def ltc_md(mu: Array, roughness: Array | float) -> Array:
     """Entry d of M."""
     d = 0.540852 + (-1.01625 + 0.475392 * mu) * mu
     return roughness * d / (-1.0743 + (0.0725628 + mu) * mu)
@@ -467,7 +467,7 @@ def ltc_transformed(
     wo: Array, wh: Array, roughness: Array, d: Array | float
 ) -> tuple[Array, Array]:
     """Unit M wh in the local frame of the surface, and its density under the clamped cosine."""
-    a, b, c = (entry(wo[..., 2], roughness) for entry in (ltc_a, ltc_b, ltc_c))
+    a, b, c = (entry(wo[..., 2], roughness) for entry in (ltc_ma, ltc_mb, ltc_mc))
     x, y, z = wh[..., 0], wh[..., 1], wh[..., 2]
     wi = stack_xyz(a * x + b * z, c * y, d * x + z)
     length = root(array_namespace(wi).sum(wi * wi, axis=-1))
@@ -478,7 +478,7 @@ def ltc_transformed(
 
 def ltc_density(wo: Array, wi: Array, roughness: Array, d: Array | float) -> Array:
     """Density at `wi` of M wh / |M wh| for `wh` under the clamped cosine."""
-    a, b, c = (entry(wo[..., 2], roughness) for entry in (ltc_a, ltc_b, ltc_c))
+    a, b, c = (entry(wo[..., 2], roughness) for entry in (ltc_ma, ltc_mb, ltc_mc))
     cosine, sine, _ = azimuth_frame(wo)
     wi = rotate_z(wi, cosine, -sine)
     x, y, z = wi[..., 0], wi[..., 1], wi[..., 2]
@@ -517,7 +517,7 @@ def cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
         0.31831
     """
     wo, wi, roughness = checked_pdf(wo, wi, roughness=roughness)
-    d = ltc_d(wo[..., 2], roughness)
+    d = ltc_md(wo[..., 2], roughness)
     return ltc_density(wo, wi, roughness, d) / cltc_kept_fraction(d)
 
 
@@ -575,7 +575,7 @@ def cltc_kept_fraction(d: Array) -> Array:
 
 def _draw(wo: Array, u1: Array, rest: Array, u2: Array, roughness: Array) -> tuple[Array, Array]:
     """`cltc_sample` of two random numbers; `rest` is 1 - u1, to all of its digits."""
-    d = ltc_d(wo[..., 2], roughness)
+    d = ltc_md(wo[..., 2], roughness)
     wi, pdf = ltc_transformed(wo, cltc_clipped(u1, u2, d, rest), roughness, d)
     # On the edge of the lune d x + z is zero up to rounding, of either sign.
     wi = stack_xyz(wi[..., 0], wi[..., 1], at_least_0(wi[..., 2]))

@@ -17,10 +17,10 @@ from mxeon.models.diffuse import (
     fon_albedo_dir_approx,
     fon_brdf,
     oren_nayar_brdf,
-    qon_a,
     qon_albedo_avg,
     qon_albedo_dir,
-    qon_b,
+    qon_aq,
+    qon_bq,
     qon_brdf,
     qon_fujii_brdf,
 )
@@ -65,7 +65,7 @@ def vector_form() -> Measured:
     phi = np.arctan2(wi[:, 1], wi[:, 0]) - np.arctan2(wo[:, 1], wo[:, 0])
     alpha, beta = np.maximum(theta_o, theta_i), np.minimum(theta_o, theta_i)
     g = np.maximum(np.cos(phi), 0.0) * np.sin(alpha) * np.tan(beta)
-    value = (qon_a(0.7) + qon_b(0.7) * g) / np.pi
+    value = (qon_aq(0.7) + qon_bq(0.7) * g) / np.pi
     return agreement((value - qon_brdf(wo, wi, 1.0, 0.7)[:, 0]) / np.maximum(g, 1.0))
 
 
@@ -78,7 +78,7 @@ def qon_directional() -> Measured:
 
 @claim("below Eq. (8)", "G_q tends to pi/2 at grazing")
 def qon_grazing() -> Measured:
-    G = np.pi * (qon_albedo_dir(0.0, SIGMA) - qon_a(SIGMA)) / qon_b(SIGMA)
+    G = np.pi * (qon_albedo_dir(0.0, SIGMA) - qon_aq(SIGMA)) / qon_bq(SIGMA)
     return agreement(G - np.pi / 2.0)
 
 
@@ -148,7 +148,7 @@ def kink() -> Measured:
     parts, ratios = [], []
     for degrees in (5, 25, 60):
         mu = np.cos(np.radians(degrees))
-        qon, fon = qon_b(0.5 * np.pi) / mu, (1.0 / mu - 1.0) / (1.0 + C1)
+        qon, fon = qon_bq(0.5 * np.pi) / mu, (1.0 / mu - 1.0) / (1.0 + C1)
         parts.append(f"{qon:.2g} / pi in QON and {fon:.2g} / pi in FON at {degrees}°")
         ratios.append(fon / qon)
     return f"at s = 0 the slope of f in s jumps by {', '.join(parts)}", ratios

@@ -54,7 +54,7 @@ def determinant() -> Measured:
     """Determinant of the inverse of M over all cosines and roughnesses."""
     a, b, c, d = (
         entry(COSINES[:, np.newaxis], np.linspace(0.0, 1.0, 101))
-        for entry in (ltc.ltc_a, ltc.ltc_b, ltc.ltc_c, ltc.ltc_d)
+        for entry in (ltc.ltc_ma, ltc.ltc_mb, ltc.ltc_mc, ltc.ltc_md)
     )
     det = c * (a - b * d)
     return f"det M from {det.min():.3f} to {det.max():.3f}", det.min()
@@ -63,7 +63,7 @@ def determinant() -> Measured:
 @claim("Section 4", "general LTC wastes samples below the horizon", "share", least=1e-3)
 def wasted() -> Measured:
     """Share of the samples of LTC that fall below the horizon."""
-    d = ltc.ltc_d(COSINES, 1.0)
+    d = ltc.ltc_md(COSINES, 1.0)
     share = 1.0 - cltc.cltc_kept_fraction(d)
     at = COSINES[share.argmax()]
     sentence = f"up to {100 * share.max():.2f} % of the samples at r = 1, at mu = {at:g}"
@@ -85,7 +85,7 @@ def normalized() -> Measured:
 def side_of_the_lune() -> Measured:
     """Lowest draw of Listing 3 along the normal, where the fitted d is positive."""
     mu = np.linspace(0.999, 1.0, 100_001)
-    d = ltc.ltc_d(mu, 1.0)
+    d = ltc.ltc_md(mu, 1.0)
     u1, u2 = np.random.default_rng(2).random((2, 200_000))
     wh = cltc.cltc_clipped(u1, u2, -d[-1])
     lowest = np.min(d[-1] * wh[:, 0] + wh[:, 2])

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from mxeon.models.diffuse import qon_a
+from mxeon.models.diffuse import qon_aq
 from tools.paper.claims import Measured, Section
 from tools.paper.curves import directions
 
@@ -21,7 +21,7 @@ claim = SECTION.claim
 def coefficient_b() -> Measured:
     """A + B g with the printed B, for sigma = 0, both directions at 60 degrees and together."""
     g = np.sin(np.radians(60.0)) * np.tan(np.radians(60.0))
-    value = qon_a(0.0) + (1.0 - 0.0) * g
+    value = qon_aq(0.0) + (1.0 - 0.0) * g
     sentence = f"B = 1 at sigma = 0, so pi f / rho = {value:.2f} with both at 60°, not 1"
     right = "[OrenNayar1994] has B = 0.45 sigma^2 / (sigma^2 + 0.09)"
     return f"{sentence}; {right}", abs(value - 1.0)

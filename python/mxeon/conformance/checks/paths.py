@@ -46,7 +46,7 @@ SCATTERED = """if (what < 0.5)
         return vec3(0.0);
     return what < 2.5 ? wi : what < 3.5 ? weight : vec3(pdf);"""
 # Apart, since a driver copies the material to each call.
-PASSED = "return what < 5.5 ? vec3(material_opacity(p, wo)) : material_emission(p, wo);"
+PASSED = "return what < 5.5 ? vec3(material_shadow(p, wo)) : material_emitted(p, wo);"
 ASKED = ("evaluate", "pdf", "wi", "weight", "density", "opacity", "emission")
 TARGETS = ("glsl", "essl", "vulkan", "slang")  # of mxeon.shaders.path_tracing
 DRAWS, WEIGHED = 1 << 15, 1 << 12

@@ -3,7 +3,7 @@
 
 #include "lib/medium.glsl"
 
-void multiply_vdf_color3(ClosureData closureData, VDF in1, vec3 in2, out VDF result)
+void multiply_vdfC(ClosureData closureData, EONLIB_VDF in1, vec3 in2, out EONLIB_VDF result)
 {
     // Avoid pow(0, x): what float32 has no logarithm of is black.
     result.response = vec3(0.0);

@@ -3,7 +3,7 @@
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 
-void multiply_bsdf_color3(ClosureData closureData, BSDF in1, vec3 in2, out BSDF result)
+void multiply_bsdfC(ClosureData closureData, BSDF in1, vec3 in2, out BSDF result)
 {
     vec3 weight = clamp(in2, 0.0, 1.0);
     result.response = in1.response * weight;

@@ -3,7 +3,7 @@
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 
-void multiply_bsdf_float(ClosureData closureData, BSDF in1, float in2, out BSDF result)
+void multiply_bsdfF(ClosureData closureData, BSDF in1, float in2, out BSDF result)
 {
     float weight = clamp(in2, 0.0, 1.0);
     result.response = in1.response * weight;
