@@ -58,7 +58,7 @@ def record(issue: Issue, results: Sequence[Result], place: str) -> dict[str, Any
         for each in shown
     ]
     # Without page, and without distances, which depend on the driver.
-    says = re.sub(r" \([^()]*\d[^()]*\)", "", shown[0].diagnosis.split("; see ")[0])
+    says = re.sub(r" \((?:rms )?\d[\d.e+-]*\)", "", shown[0].diagnosis.split("; see ")[0])
     return {"rows": rows, "place": place, "says": says}
 
 
