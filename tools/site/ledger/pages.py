@@ -26,7 +26,8 @@ from tools.site.ledger import (
 
 VERSIONS = Path(__file__).with_name("versions.json")
 INDEX = FOLDER / "README.md"
-SHOWN = 8  # lines of a diff on a page, unless its first change is longer
+WHOLE = 20  # a diff of fewer lines is shown whole
+SHOWN = 8  # lines of a longer diff on a page, unless its first change is longer
 TEMPLATES = Environment(
     loader=FileSystemLoader(Path(__file__).parent),
     trim_blocks=True,
@@ -97,7 +98,7 @@ def pages(known: dict[str, Entry] | None = None) -> dict[Path, str]:
 
 
 def short_diff(entry: Entry) -> tuple[str, int]:
-    """The first changes of a repair, or its shortest one, and how many lines that leaves out.
+    """A short repair, the first changes of a long one, or its shortest one, and how many lines that leaves out.
 
     The repair is the entry's first patch, or its own diff.
     """
@@ -116,11 +117,12 @@ def short_diff(entry: Entry) -> tuple[str, int]:
         inside = changed
     shown: list[str] = []
     left = 0
-    if changes and len(changes[0][1]) >= SHOWN:  # then a short one comes first
+    whole = sum(len(lines) for _, lines in changes) < WHOLE
+    if not whole and len(changes[0][1]) >= SHOWN:  # then a short one comes first
         changes.sort(key=lambda change: len(change[1]))
     for number, (file, lines) in enumerate(changes):
         head = f"--- {file}" if f"--- {file}" not in shown else "@@"
-        if number == 0 or len(shown) + len(lines) < SHOWN:
+        if whole or number == 0 or len(shown) + len(lines) < SHOWN:
             shown += [head, *lines]
         else:
             left += len(lines)
@@ -152,10 +154,10 @@ def seen(entry: Entry, versions: dict[str, Any]) -> str:
     if entry.page not in versions["pages"]:
         return ""
     shown = versions["pages"][entry.page]
-    commit, date = versions["commit"]
-    names = {name: f"main of {date} ({commit})" if name == "main" else name for name in shown}
+    names = {name: f"main of {versions['commit'][1]}" if name == "main" else name for name in shown}
     gone = [name for name in shown if shown[name]["passed"] or (entry.pull and name == "main")]
-    text = f"Seen in MaterialX {_joined([names[name] for name in shown if name not in gone])}"
+    there = [names[name] for name in shown if name not in gone]
+    text = f"Seen in MaterialX {there[0]} to {there[-1]}"
     text += f"; gone in {_joined([names[name] for name in gone])}" if gone else ""
     return f"{text}, by pull request {entry.pull}." if entry.pull else f"{text}."
 
