@@ -70,7 +70,7 @@ def shader_curve(category, material, mu, width=0.0):
         mean - 2.0 * weight * counted_orders(r12 * (x + 1j * y), opd, spread, count)
         for mean, weight, (r12, (x, y), _) in zip(means, weights, interfaces, strict=True)
     )
-    return np.clip(curve._to_rgb(0.5 * xyz, TEXT), 0.0, 1.0)
+    return np.clip(curve.to_rgb(0.5 * xyz, TEXT), 0.0, 1.0)
 
 
 def substrate(material):

@@ -409,15 +409,18 @@ def _airy(
     opd = path_difference(mu, thickness, film_ior)
     p, s = SUBSTRATES[category](mu, film_ior, form, **inputs)
     xyz = tristimulus(p, opd, form.orders) + tristimulus(s, opd, form.orders)
-    # XYZ of the substrate of each channel, (3, channels, ...), is what RGB (3, ...) is made of.
+    rgb = to_rgb(0.5 * xyz, form)
+    return within(rgb) if form.clamped else rgb
+
+
+def to_rgb(xyz: Array, form: Form) -> Array:
+    """RGB, shape (3, ...), of XYZ of the substrate of each channel, shape (3, channels, ...)."""
     xp, matrix = array_namespace(xyz), np.array(form.matrix)
-    xyz = xp.broadcast_to(0.5 * xyz, (3, 3, *xyz.shape[2:]))
+    xyz = xp.broadcast_to(xyz, (3, 3, *xyz.shape[2:]))
     if form.mixed:
         diagonal = xp.stack([xyz[k, k, ...] for k in range(3)])
-        rgb = xp.tensordot(like(matrix, xyz), diagonal, axes=1)
-    else:
-        rgb = xp.sum(like(matrix.T.reshape(3, 3, *(1,) * (xyz.ndim - 2)), xyz) * xyz, axis=0)
-    return within(rgb) if form.clamped else rgb
+        return xp.tensordot(like(matrix, xyz), diagonal, axes=1)
+    return xp.sum(like(matrix.T.reshape(3, 3, *(1,) * (xyz.ndim - 2)), xyz) * xyz, axis=0)
 
 
 def _schlick(
