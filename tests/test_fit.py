@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fits of measured BRDFs: parameters within their errors, files of MERL, and what is refused."""
 
+import re
 import runpy
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import matplotlib
 import numpy as np
 import pytest
 
-from mxeon.errors import PackageError
+from mxeon.errors import InputError, PackageError
 from mxeon.fit import FIT_MODELS, MeasuredBrdf, fit_brdf, merl_directions, read_merl
 from mxeon.fit.measured import MERL_CELLS, MERL_SCALES
 from mxeon.models import eon_brdf
@@ -91,6 +93,23 @@ def test_a_fit_says_its_parameters_and_evaluates_its_model():
     assert fit.brdf(data.wo[:4, np.newaxis], data.wi).shape == (4, *expected.shape)
 
 
+SIDES = np.array([[0.6, 0.0, 0.8], [0.0, 0.6, 0.8], [0.0, 0.0, 1.0]])
+ONE = MeasuredBrdf(SIDES[:1], SIDES[1:2], np.array([[0.2, 0.1, 0.05]]), np.array(0.001))
+
+
+@pytest.mark.parametrize(
+    ("data", "numbers"),
+    (
+        (ONE, 0),  # three values of four parameters
+        (replace(ONE, error=None), 0),
+        (MeasuredBrdf(*(np.repeat(each, 2, 0) for each in (ONE.wo, ONE.wi, ONE.value))), 0),
+        (MeasuredBrdf(SIDES, SIDES[::-1], np.zeros((3, 1)), 0.001), 1),  # black: rho alone
+    ),
+)
+def test_a_parameter_that_the_data_do_not_determine_has_no_number(data, numbers):
+    assert str(fit_brdf(data)).count("+-") == numbers
+
+
 # --- files of MERL ---------------------------------------------------------------------------
 
 
@@ -118,6 +137,24 @@ def test_a_file_of_merl_is_read_and_fitted(tmp_path):
 # --- what is refused -------------------------------------------------------------------------
 
 UP = np.array([[0.0, 0.0, 1.0]])
+# Sentences by the inputs of a measurement, or by the bytes of a file.
+BAD = {
+    "wo, wi must have shape (N, 3); got (3,), (1, 3)": {"wo": UP[0]},
+    "value must have shape (1, C); got (3,)": {"value": [0.2, 0.1, 0.05]},
+    "value must be finite; got nan at index (0, 1)": {"value": [[0.2, np.nan, 0.05]]},
+    "error must broadcast to the shape of value, (1, 3); got (7,)": {"error": np.ones(7)},
+    "error must be above 0; got 0.0 at index (2,)": {"error": [0.1, 0.1, 0.0]},
+    "error must be above 0; got -1.0": {"error": -1.0},
+    "got 3 that start with 616263": b"abc",
+}
+
+
+@pytest.mark.parametrize("message", BAD)
+def test_a_measurement_that_cannot_be_used_is_refused(message, tmp_path):
+    path, bad = tmp_path / "bad.binary", BAD[message]
+    path.write_bytes(bad if isinstance(bad, bytes) else b"")
+    with pytest.raises(InputError, match=f"{re.escape(message)}$"):
+        replace(ONE, **bad) if isinstance(bad, dict) else read_merl(path)
 
 
 def test_scipy_is_named_where_it_is_missing(monkeypatch):

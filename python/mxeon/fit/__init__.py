@@ -65,6 +65,7 @@ __all__ = [
 
 MISFIT = 1.5  # scatter above which a model does not fit data whose errors are known
 LEAST_SINGULAR = 1e-12  # of the largest one: below, a direction of parameters is undetermined
+ROUNDED = 1e-24  # of a squared unit vector: components that are 0 but for rounding
 
 UNDETERMINED = "not determined by the data"  # whose error is the parameter's whole range, or more
 
@@ -74,7 +75,8 @@ class Fit:
     """Parameters of a model that fit a measured BRDF best, with their standard deviations.
 
     - `values`, `errors`: By parameter: `rho` (C,), and numbers.
-    - `covariance`: (P, P). Of rho's channels and then the others, in the order of `values`.
+    - `covariance`: (P, P). Of rho's channels and then the others, in the order of `values`; infinite where
+      the data do not determine a parameter.
     - `scatter`: Root of the mean squared difference from the data, per degree of freedom: in units
       of `error`, about 1 where model and errors are right; in 1/sr without errors.
     - `weighted`: Whether the data had errors.
@@ -132,15 +134,19 @@ def fit_brdf(measurement: MeasuredBrdf, model: str = "eon") -> Fit:
     of the first fit's `brdf`.
 
     Errors are those of the linearized model: sqrt(diag((J^T J)^-1)), J the derivatives of the differences
-    over the errors of the data, and of 1 without them; then they are multiplied by the scatter. What the
-    data do not determine, such as the roughness of a black surface, has a very large one, and is printed
-    without a number. At an end of a parameter's range they hold on the side that is left.
+    over the errors of the data, and of 1 without them; then they are multiplied by the scatter, which takes
+    more values than parameters. What the data do not determine, such as the roughness of a black surface or
+    four parameters of three values, has an infinite or very large error, and is printed without a number.
+    At an end of a parameter's range errors hold on the side that is left.
 
         >>> from mxeon.models import eon_brdf
         >>> wo, wi = np.tile([0.6, 0.0, 0.8], (2, 1)), np.array([[0.0, 0.0, 1.0], [0.8, 0.0, 0.6]])
-        >>> fitted = fit_brdf(MeasuredBrdf(wo, wi, eon_brdf(wo, wi, [0.5], 0.25)))
-        >>> fitted.values["rho"].round(6), fitted.values["roughness"].round(6)
-        (array([0.5]), np.float64(0.25))
+        >>> value = eon_brdf(wo, wi, [0.5], 0.25)
+        >>> fitted = fit_brdf(MeasuredBrdf(wo, wi, value, 0.01 * value))
+        >>> fitted.values["roughness"].round(6), fitted.errors["roughness"].round(4)
+        (np.float64(0.25), np.float64(0.0313))
+        >>> fit_brdf(MeasuredBrdf(wo, wi, value)).errors["roughness"]  # no third value tells a scatter
+        np.float64(inf)
     """
     assert_known("model", model, FIT_MODELS)
     try:
@@ -164,11 +170,16 @@ def fit_brdf(measurement: MeasuredBrdf, model: str = "eon") -> Fit:
     found = (least_squares(residuals, start, **ends) for start in starts)
     best = min(found, key=lambda each: float(each.cost))
     x = best.x
-    # (J^T J)^-1, with very large numbers where it has none.
-    _, singular, rows = np.linalg.svd(best.jac, full_matrices=False)
-    kept = np.maximum(singular, max(LEAST_SINGULAR * singular[0], np.finfo(np.float64).tiny))
-    covariance = (rows.T / kept**2) @ rows
-    scatter = float(np.sqrt(2.0 * best.cost / max(data.value.size - len(x), 1)))
+    # (J^T J)^-1. Rows of 0 complete the singular vectors where there are fewer values than parameters.
+    freedom = data.value.size - len(x)
+    _, singular, rows = np.linalg.svd(np.pad(best.jac, ((0, max(-freedom, 0)), (0, 0))), False)
+    seen = singular > LEAST_SINGULAR * singular[0]
+    covariance = (rows[seen].T / singular[seen] ** 2) @ rows[seen]
+    scatter = float(np.sqrt(2.0 * best.cost / max(freedom, 1)))
     covariance = covariance if data.error is not None else covariance * scatter**2
+    # What moves along a direction that the data do not see has any error, as has all without a scatter.
+    blind = np.sum(rows[~seen] ** 2, axis=0) > ROUNDED
+    blind |= data.error is None and freedom <= 0
+    covariance[blind] = covariance[:, blind] = np.inf
     errors = parameters(np.sqrt(np.diag(covariance)))
     return Fit(model, parameters(x), errors, covariance, scatter, data.error is not None)

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from mxeon.errors import InputError
-from mxeon.models.core.arrays import Array
+from mxeon.models.core.arrays import Array, Numbers
 
 # A file of MERL: cells of theta_h, theta_d and phi_d, and the scale of each channel: [Matusik2003].
 MERL_CELLS = (90, 90, 180)
@@ -22,10 +22,10 @@ class MeasuredBrdf:
 
     - `wo`, `wi`: (N, 3). Directions to the viewer and to the light, unit vectors, normal +z.
     - `value`: (N, C). BRDF in 1/sr, without the cosine.
-    - `error`: (N, C). Standard deviation of each value. Without it all values count alike, and
-      their scatter about the fit tells the uncertainty.
+    - `error`: (N, C), or a shape that broadcasts to it. Standard deviation of each value. Without it all
+      values count alike, and their scatter about the fit tells the uncertainty.
 
-    Raises InputError if the shapes do not belong together, or a number is not finite.
+    Raises InputError if the shapes do not belong together, a value is not finite or an error not above 0.
     """
 
     wo: Array
@@ -40,13 +40,25 @@ class MeasuredBrdf:
         count = len(np.atleast_1d(self.wo))
         if self.wo.shape != (count, 3) or self.wi.shape != (count, 3) or not count:
             raise InputError(f"wo, wi must have shape (N, 3); got {self.wo.shape}, {self.wi.shape}")
-        if self.value.ndim != 2 or len(self.value) != count or not np.isfinite(self.value).all():
-            raise InputError(f"value must be finite, of shape ({count}, C); got {self.value.shape}")
-        if self.error is not None and not (
-            np.broadcast_shapes(self.error.shape, self.value.shape) == self.value.shape
-            and (self.error > 0.0).all()
-        ):
-            raise InputError("error must be above 0, and have the shape of value")
+        shape = self.value.shape
+        if len(shape) != 2 or shape[0] != count or not shape[1]:
+            raise InputError(f"value must have shape ({count}, C); got {shape}")
+        _require("value must be finite", self.value, np.isfinite(self.value))
+        if self.error is not None:
+            own = self.error.shape
+            if len(own) > 2 or any(
+                n not in (1, m) for n, m in zip(own[::-1], shape[::-1], strict=False)
+            ):
+                raise InputError(f"error must broadcast to the shape of value, {shape}; got {own}")
+            _require("error must be above 0", self.error, self.error > 0.0)
+
+
+def _require(rule: str, array: Numbers, valid: Numbers) -> None:
+    """Raise InputError with the first number that is not valid and its index."""
+    if not valid.all():
+        index = tuple(np.argwhere(~valid)[0].tolist())
+        place = f" at index {index}" if index else ""
+        raise InputError(f"{rule}; got {array[index]}{place}")
 
 
 def read_merl(path: str | Path, step: int = 6) -> MeasuredBrdf:
@@ -62,9 +74,12 @@ def read_merl(path: str | Path, step: int = 6) -> MeasuredBrdf:
     [Matusik2003]; [Rusinkiewicz1998] for the angles.
     """
     raw = Path(path).read_bytes()
-    header, count = np.frombuffer(raw[:12], "<i4"), int(np.prod(MERL_CELLS))
-    if tuple(header) != MERL_CELLS or len(raw) != 12 + 3 * 8 * count:
-        raise InputError(f"{path}: must be a MERL file of 90 x 90 x 180 cells and 3 channels")
+    start, size = np.array(MERL_CELLS, "<i4").tobytes(), 12 + 3 * 8 * int(np.prod(MERL_CELLS))
+    if len(raw) != size or raw[:12] != start:
+        raise InputError(
+            f"{path}: must be a MERL file of 90 x 90 x 180 cells and 3 channels, {size} bytes that "
+            f"start with {start.hex(' ', 4)}; got {len(raw)} that start with {raw[:12].hex(' ', 4)}"
+        )
     values = np.frombuffer(raw[12:], "<f8").reshape(3, *MERL_CELLS)
     grid = np.meshgrid(*(np.arange(step // 2, n, step) for n in MERL_CELLS), indexing="ij")
     cells = [each.ravel() for each in grid]
