@@ -124,6 +124,8 @@ def test_every_generated_file_is_that_of_today():
 def test_the_python_example_of_the_readme_runs(tmp_path):
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     [example] = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    for other in re.findall(r'"(\w+)"', example.partition("# or ")[2]):
+        exec(example.replace('"eon"', f'"{other}"'), {})
     (tmp_path / "example.py").write_text(example)
     command = [sys.executable, str(tmp_path / "example.py")]
     run = subprocess.run(command, capture_output=True, text=True, cwd=ROOT)

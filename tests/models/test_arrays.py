@@ -399,7 +399,7 @@ def test_transformations_of_jax_and_torch(library):
 
 def test_values_are_checked_wherever_there_are_any(library):
     up, rho = library.array([0.0, 0.0, 1.0]), library.array([0.5])
-    with pytest.raises(ValueError, match=r"^rho must lie in \[0, 1\]; got 1.5 at index \(0,\)"):
+    with pytest.raises(ValueError, match=r"^rho must lie in \[0, 1\]; got 1.5$"):
         lambert_brdf(up, up, library.array([1.5]))
     with pytest.raises(ValueError, match="^wi must not point below the horizon"):
         lambert_brdf(up, -up, rho)

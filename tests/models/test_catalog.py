@@ -96,7 +96,7 @@ def test_a_model_has_the_functions_that_it_names(name):
     light = LIGHT[row.lights]
     value = row.bsdf(WO, light)
     assert value.shape == (3,) and np.isfinite(value).all()
-    assert row.albedo_dir([0.3, 0.8]).shape == (2, 3)
+    assert row.albedo_dir([0.3, 0.5, 0.8]).shape == (3, 3)
     if "brdf" in row.functions:
         assert_array_equal(row.brdf(WO, light), value)
 
@@ -164,10 +164,12 @@ def test_the_words_of_a_model_show_its_inputs_with_ranges_and_units():
         "  color = (0.18, 0.18, 0.18), in [0, 1]",
         "  roughness = 0.0, in [0, pi/2] rad",
     ]
+    assert "without a cosine" in repr(mxeon.model("hair"))
 
 
-def test_the_node_of_eonlib_is_eon():
+def test_a_model_has_other_names():
     assert mxeon.model("eon_diffuse_bsdf") is mxeon.model("eon")
+    assert mxeon.model("generalized_schlick") is mxeon.model("schlick")
 
 
 @pytest.mark.parametrize("category", DEFAULTS)
@@ -340,6 +342,9 @@ def test_a_number_for_roughness_is_isotropic(function, inputs):
         (lambda: mxeon.model("eon").albedo_dir(0.5, normal=WO), TypeError, "an albedo has none to turn"),
         (lambda: mxeon.model("eon").brdf(WO, WI, normal=[0.0, 0.0, 2.0]), ValueError, "normal must be unit"),
         (lambda: mxeon.model("conductor").brdf(WO, WI, tangent=[0.0, 0.0, 1.0]), ValueError, "tangent must not be parallel"),
+        (lambda: mxeon.model("hair").albedo_dir(MANY[:4]), ValueError, "mu must be cosines; got shape (4, 3) of unit length, a direction: pass its z"),
+        (lambda: mxeon.model("eon").brdf(WO[:2], WI), ValueError, "wo must have shape (..., 3); got shape (2,)"),
+        (lambda: mxeon.model("eon").sample(WO, 0.5), ValueError, "u must have shape (..., 2); got shape ()"),
         (lambda: mxeon.model("eon").brdf(WO, WI, weight=1.5), ValueError, "weight must lie in [0, 1]; got 1.5"),
         (lambda: mxeon.model("conductor").brdf(WO, WI, retroreflective=1), ValueError, "retroreflective must be True or False"),
         (lambda: mxeon.model("hair").brdf(WO, WI), ValueError, "hair has no brdf: light passes through it, so call bsdf; it has bsdf"),

@@ -85,6 +85,7 @@ SAMPLERS = {
 NODES_BY_CATEGORY = {
     "oren_nayar_diffuse_bsdf": "qon",
     "eon_diffuse_bsdf": "eon",
+    "generalized_schlick": "schlick",  # not the EDF, whose name is as near
     # Modes after the first one do not count.
     **{row.category: row.name for row in reversed((*NODES, SUBSURFACE_NODE, HAIR_NODE))},
 }

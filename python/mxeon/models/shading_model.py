@@ -16,7 +16,9 @@ import numpy as np
 from mxeon.models import lobe_plot
 from mxeon.models.core.arguments import (
     ROUNDING,
+    UNIT_TOLERANCE,
     checked,
+    checked_real,
     checked_sphere,
     checked_switch,
     checked_triples,
@@ -129,7 +131,11 @@ def rows(
     parameters: Sequence[Parameter], vectors: Collection[str], /, **arguments: ArrayLike
 ) -> Rows:
     """Vectors (..., K) and a value for each parameter in rows, all by their names."""
-    directions = {name: _floats(arguments[name]) for name in vectors}
+    directions = {name: _floats(checked_real(name, arguments[name])) for name in vectors}
+    for name, w in directions.items():  # here, where they have the shape that a caller knows
+        count = 2 if name == "u" else 3
+        if w.shape[-1:] != (count,):
+            raise ValueError(f"{name} must have shape (..., {count}); got shape {tuple(w.shape)}")
     lead = lead_shape(directions, {})
     arrays, colored = {}, False
     for each in parameters:
@@ -153,6 +159,14 @@ def rows(
 def views(mu: ArrayLike, azimuth: ArrayLike) -> Array:
     """Directions with these cosines and azimuths, shape (..., 3)."""
     cosine, phi = _floats(checked("mu", mu)), _floats(checked("phi", azimuth))
+    given = host_values(cosine)
+    if given is not None and given.size and given.shape[-1:] == (3,):
+        length = np.sum(np.square(given, dtype=np.float64), axis=-1)
+        if np.all(np.abs(length - 1.0) <= UNIT_TOLERANCE):
+            raise ValueError(
+                f"mu must be cosines; got shape {given.shape} of unit length, a direction: pass its z, "
+                "or mu[..., np.newaxis] if they are cosines"
+            )
     xp = array_namespace(cosine, phi)
     sine = root((1.0 - cosine) * (1.0 + cosine))
     x, y = sine * xp.cos(phi), sine * xp.sin(phi)
@@ -281,6 +295,10 @@ class ShadingModel(NodeModel):
     lights: str = "front"  # from where it scatters light: "front", "back" or "all sides"
     by_name: tuple[str, ...] = ("weight", "normal")  # the other inputs of the node
 
+    def __repr__(self) -> str:
+        fiber = "\n  albedo_dir integrates the value without a cosine"
+        return super().__repr__() + (fiber if self.node == lobe_plot.FIBER else "")
+
     @property
     def functions(self) -> tuple[str, ...]:
         """Names of the functions that it has."""
@@ -309,7 +327,7 @@ class ShadingModel(NodeModel):
     def albedo_dir(
         self, mu: ArrayLike, *inputs: ArrayLike, azimuth: ArrayLike = 0.0, **named: ArrayLike
     ) -> Array:
-        """Directional albedo: the integral of value times cosine.
+        """Directional albedo: the integral of value times cosine; for hair, of the value alone.
 
         - `mu` (...): Cosine of the viewer's polar angle, in [0, 1].
         - `azimuth` (...): The viewer's angle from the tangent, in radian; it counts where the model is
@@ -331,7 +349,8 @@ class ShadingModel(NodeModel):
         """Directions drawn for the model, shape (..., 3), and their density in 1/sr, shape (...).
 
         `u`, shape (..., 2), are uniform random numbers in [0, 1). EON is sampled exactly for the mean of
-        the channels.
+        the channels. A mirror, of roughness 0, has no density: it counts as 0, as its value does, and the
+        weight of each sample is the albedo, `albedo_dir(wo[2])`, instead of 0 / 0.
         """
         self._need("sample")
         assert self.sampler is not None

@@ -411,5 +411,5 @@ def _real(name: str, value: ArrayLike) -> Numbers:
 def _refuse(rule: str, array: Numbers, valid: Numbers, quantity: str = "") -> NoReturn:
     """Raise ValueError for the first element of `array` that is not valid."""
     index = tuple(int(i) for i in np.argwhere(~valid)[0])
-    location = f" at index {index}" if index else ""
+    location = f" at index {index}" if valid.size > 1 else ""
     raise ValueError(f"{rule}; got {quantity}{array[index]}{location}")
