@@ -214,6 +214,22 @@ def test_a_sentence_says_how_a_material_looks(run, result, picture, words):
     assert words in Page(page_of(one)).text
 
 
+def test_the_worst_light_is_first_and_its_scale_reaches_its_largest_difference(run):
+    apart = np.where(np.arange(SIZE * SIZE) == 0, 0.013, 0.009).reshape(SIZE, SIZE, 1)
+    pictures = (
+        made_picture("clay", image=EXACT),
+        made_picture("clay", image=EXACT + apart, scene="back"),
+    )
+    about = {"check": "picture", "subject": "a/clay.mtlx: clay", "error": 0.013, "tolerance": 0.012}
+    shown = replace(run, results=(made_result(PASSED, **about),), pictures=pictures)
+    text = Page(page_of(shown)).text
+    first, second = (
+        text.index(each) for each in ("Light from behind, gl", "Light from the side, gl")
+    )
+    assert first < text.index("≥ 1.3 % of white") < second
+    assert text.count("1 passed") == 2  # in the header, and of the check itself
+
+
 def test_the_examples_of_the_page_on_checking_run(tmp_path, monkeypatch):
     my_renderer = SimpleNamespace(my_brdf=eon_brdf)
     monkeypatch.setitem(sys.modules, "my_renderer", my_renderer)

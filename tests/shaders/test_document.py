@@ -60,7 +60,7 @@ OUTSIDE = (
     ({"color": "0.5, -0.1, 0.5"}, f'input "lobe/color" must lie in [0, 1], {MODEL} 0.5, -0.1, 0.5'),
     ({"color": "0,&#10;2,&#10;0"}, f'input "lobe/color" must lie in [0, 1], {MODEL} 0, 2, 0'),
     ({"weight": "-1"}, f'input "lobe/weight" must lie in [0, 1], {MODEL} -1'),
-    ({"roughness": "1.6"}, f'input "lobe/roughness" must lie in [0, 1.5708], {MODEL} 1.6'),
+    ({"roughness": "1.6"}, f'input "lobe/roughness" must lie in [0, pi/2], {MODEL} 1.6'),
     ({"roughness": "1.2"} | COMPENSATED, f'input "lobe/roughness" must lie in [0, 1], {MODEL} 1.2'),
 )
 

@@ -17,6 +17,7 @@ from mxeon.conformance.results import (
     DIFFERS,
     DIRECT,
     FAILED,
+    LIGHTS,
     NOT_RUN,
     PASSED,
     WRONG_INSIDE,
@@ -24,6 +25,7 @@ from mxeon.conformance.results import (
     Run,
     counted,
     listed,
+    of_white,
 )
 from mxeon.conformance.results.known_issues import issues_of
 from mxeon.conformance.spec import ValueSpec
@@ -38,7 +40,9 @@ MANY = 20  # documents; more are counted by cause
 LOOKS = 4  # lines on the materials of one document
 FEWEST = 3  # nodes and causes on several documents, and reasons why checks did not run
 UNBOUNDED = 1e3  # larger errors are described in words
+NOTICED = 0.01  # of white: a larger difference is told, even within a tolerance
 AS_SPECIFIED = "looks as specified"
+OWN_INPUT = re.compile('(input "[^"]*") must lie in ')  # whose value the document has
 STATUSES = {PASSED: errors.PASSED, FAILED: errors.FAILED, NOT_RUN: errors.NOT_RUN}
 LETTERS = re.compile(r"\(([A-Z]+)\)$")  # of a model, behind its name
 REFUSED = "refused"
@@ -48,6 +52,7 @@ STATES = (FAILED, NOT_RUN, REFUSED, DIFFERS, NO_REFERENCE, PASSED)
 QUOTED = re.compile(r"'[^']*/[^']*'|\"[^\"]*\"")  # names of one document in a reason
 SHARE = re.compile(r"(up to|less than) [\d.,]+ % of white ")  # which no two documents share
 KEYS = ("picture", "finite", DOCUMENT_KEY)
+INDIRECT = ("environment", "layering", "transmission", "integral")  # checks in a white environment
 
 
 def show_run(run: Run, options: argparse.Namespace, said: Collection[str] = ()) -> int:
@@ -91,11 +96,17 @@ def answer(run: Run, full: bool = False) -> list[str]:
     many = len(run.contents) + len(run.refused) > MANY
     looks = summary_by_cause(run) if many else list(map(one_line, _looks(run)))
     rows = {} if many else _rows(run)
-    remedy, failures = list(_remedy(run)), list(_failures(run))
-    # Notes, but for those that a diagnosis repeats.
+    remedy, failures = [one_line(line) for line in _remedy(run)], list(_failures(run))
+    # Notes, but for those that a diagnosis or the reason of a picture repeats.
     said = tuple({each.diagnosis for each in run.results if each.diagnosis})
-    notes = [f"note: {note}" for note in run.notes if not note.endswith(said)]
-    first = list(map(one_line, [*run.origins, *_not_run(run, full)]))
+    reasons = {each.reason for each in run.results if OWN_INPUT.match(each.reason)}
+    notes = [
+        f"note: {note}"
+        for note in run.notes
+        if not (note.endswith(said) or any(reason in note for reason in reasons))
+    ]
+    idle = _not_run(run, full, [] if many else looks)
+    first = list(map(one_line, [*run.origins, *idle]))
     # The verdict comes first if there are no documents, or something was not judged.
     begins = run.refused or run.summary.verdict == NOT_RUN or not run.contents
     alone = len(run.contents) == 1
@@ -108,14 +119,14 @@ def answer(run: Run, full: bool = False) -> list[str]:
     table = list(_table(run, rows, kept))
     told = len(failures) if full else max(least, room - len(table) - bool(notes))
     noted = len(notes) if full else max(1, room - len(table) - len(failures[:told]))
-    after = [*remedy, *failures[:told], *notes[:noted]]
+    after = [*failures[:told], *notes[:noted]]
     lines = [*first, *looks[:seen], *table, *map(one_line, after)]
     lines.insert(0 if begins else len(lines), one_line(run.sentence))
     counts = len(looks) - seen, len(rows) - kept, len(failures) - told, len(notes) - noted
     cut = zip(("material", "node", "cause", "note"), counts, strict=True)
     if more := [counted(count, f"more {name}") for name, count in cut if count > 0]:
         lines.append(f"{', '.join(more)}: --full")
-    return lines
+    return [*lines, *remedy]
 
 
 class DocumentVerdict(NamedTuple):
@@ -201,10 +212,10 @@ def is_refused(run: Run, document: str, library: str) -> bool:
 
 
 def _looks(run: Run) -> Iterator[str]:
-    """A sentence for each material, those that look wrong first; materials that look alike share it."""
+    """A sentence for each material, those that look worst first; materials that look alike share it."""
     hosts = {each.host for each in run.results if each.check in KEYS}
     alike: dict[str, list[str]] = {}
-    wrong: set[str] = set()
+    ranks: dict[str, int] = {}
     for document in run.contents:
         if document in run.refused:
             continue
@@ -220,9 +231,8 @@ def _looks(run: Run) -> Iterator[str]:
             place = f" on {host}" if len(hosts) > 1 else ""
             sentence = _look(run, document, results)
             alike.setdefault(sentence, []).append(f"{name}{place}")
-            if any(each.verdict == FAILED for each in results):
-                wrong.add(sentence)
-    for sentence, names in sorted(alike.items(), key=lambda each: each[0] not in wrong):
+            ranks[sentence] = min(STATES.index(each.verdict) for each in results)
+    for sentence, names in sorted(alike.items(), key=lambda each: ranks.get(each[0], len(STATES))):
         yield f"{', '.join(names)}: {sentence}."
 
 
@@ -252,18 +262,25 @@ def _appearance(run: Run, document: str, result: Result) -> str:
         return f"there is no reference ({result.diagnosis}); every pixel is finite"
     if result.check != "picture":
         return "shaders are generated, not run"
-    place = result.host, result.library
-    if any(
-        each.verdict == FAILED and (each.host, each.library) == place
+    if (apart := _difference(run, result)) > NOTICED:
+        return f"differs by {of_white(apart)}, within this check's tolerance"
+    wrong = [
+        run.is_elsewhere(each, document)
         for each in run.results
+        if each.verdict == FAILED and (each.host, each.library) == (result.host, result.library)
         if each.subject in run.contents[document]
-    ):
-        return (
-            "the picture is right; its nodes are wrong for inputs that this material does not use"
-        )
+    ]
+    if wrong:
+        other = " for inputs that this material does not use" * all(wrong)
+        return f"the picture is right; its nodes are wrong{other}"
     if result.measured:
         return f"as specified, with {listed(result.measured)} as the host computes it"
     return AS_SPECIFIED
+
+
+def _difference(run: Run, result: Result) -> float:
+    """Largest difference of a material's pictures from the reference; 0 for any other result."""
+    return run.differences.get((result.subject, result.host, result.library), 0.0)
 
 
 def _title(run: Run, library: str) -> str:
@@ -300,8 +317,8 @@ def _rank(run: Run, result: Result) -> int:
     if run.is_elsewhere(result):
         return ELSEWHERE
     place = result.host, result.library
-    shown = [
-        each.verdict
+    right = [
+        each.verdict == PASSED and _difference(run, each) <= NOTICED
         for document, titles in run.contents.items()
         if result.subject in titles
         for each in run.results
@@ -309,7 +326,7 @@ def _rank(run: Run, result: Result) -> int:
         and (each.host, each.library) == place
         and _is_picture(each, document)
     ]
-    return ELSEWHERE if shown and set(shown) == {PASSED} else WRONG
+    return ELSEWHERE if right and all(right) else WRONG
 
 
 def _table(run: Run, rows: Rows, kept: int) -> Iterator[str]:
@@ -359,12 +376,16 @@ def model_of(title: str) -> str:
     return letters[1] if letters else name
 
 
-def _not_run(run: Run, full: bool) -> Iterator[str]:
-    """The first reasons that kept checks from running, or all, with their number."""
+def _not_run(run: Run, full: bool, looks: Sequence[str]) -> Iterator[str]:
+    """The first reasons that kept checks from running, or all, with their number.
+
+    Pictures whose reason is in a sentence on their material are left out.
+    """
     reasons = Counter(
         (each.location, each.reason)
         for each in run.results
         if each.verdict == NOT_RUN and not each.reason.endswith(WRONG_INSIDE)
+        if not (each.check in KEYS and any(one_line(each.reason) in look for look in looks))
     )
     shown = len(reasons) if full else FEWEST
     for (where, reason), count in list(reasons.items())[:shown]:
@@ -374,30 +395,60 @@ def _not_run(run: Run, full: bool) -> Iterator[str]:
 
 
 def _remedy(run: Run) -> Iterator[str]:
-    """How to load eonlib, if it repairs what fails with stock MaterialX."""
-    failed = {each.library for each in run.results if each.verdict == FAILED}
-    if (
-        run.contents
-        and "stock" in failed
-        and "eonlib" in {each.library for each in run.results} - failed
+    """What to do about the documents, where it is known: correct an input, load eonlib, or nothing."""
+    shown = [each for each in run.results if each.check in KEYS]
+    if not run.contents:
+        return
+    if inputs := _unique(found[1] for each in shown if (found := OWN_INPUT.match(each.reason))):
+        yield f"To fix it, correct {listed(inputs)}"
+        return
+    judged = {each.library for each in shown if each.check == "picture" and each.error is not None}
+    failed = [each for each in run.results if each.verdict == FAILED]
+    wrong = {
+        each.library
+        for each in failed
+        if each.check in KEYS or (each.library not in judged and not run.is_elsewhere(each))
+    } | {each.library for each in shown if _difference(run, each) > NOTICED}
+    libraries = {each.library for each in run.results}
+    # Defects with a page, which eonlib does not have.
+    nodes = [issues_of(each) for each in failed if each.check not in KEYS]
+    known = all(issues and not any(each.unavoidable for each in issues) for issues in nodes)
+    if "stock" in wrong and (
+        "eonlib" in libraries - wrong or (known and "eonlib" not in libraries)
     ):
         yield (
             f"To fix it, load {eonlib_folder()} before MaterialX's own libraries; `mxeon library` "
             f"prints the line for {', '.join(CLIENTS)}"
         )
+    elif wrong and "eonlib" not in libraries:
+        yield "To find out whether eonlib fixes it, check with --library eonlib"
+    elif (
+        shown
+        and not wrong
+        and not run.refused
+        and all(each.check == "picture" and each.verdict == PASSED for each in shown)
+    ):
+        several = len({each.subject for each in shown}) > 1
+        yield f"Nothing to do for {'these materials' if several else 'this material'}"
 
 
 def _failures(run: Run) -> Iterator[str]:
     """A line for each page or diagnosis that explains failures.
 
     Failures of a library that counts come first, then those at the documents' own inputs, then those
-    that no page explains.
+    that no page explains, then those in the light in which the first picture is most wrong.
     """
     groups: dict[tuple[str, str], list[Result]] = {}
-    failures = (each for each in run.results if each.verdict == FAILED)
+    failures = [each for each in run.results if each.verdict == FAILED]
+    seen = next((each.diagnosis for each in failures if each.check == "picture"), "")
+    white = seen.endswith(LIGHTS["furnace"])
 
-    def order(result: Result) -> tuple[bool, bool, bool]:
-        return result.library in run.compared, run.is_elsewhere(result), bool(result.pages)
+    def order(result: Result) -> tuple[bool, bool, bool, bool, float]:
+        lit = result.check in (INDIRECT if white else DIRECT)
+        # Errors of albedos and throughputs have one scale.
+        size = (result.error or 0.0) if white and lit else 0.0
+        known = run.is_elsewhere(result), bool(result.pages)
+        return result.library in run.compared, *known, not lit, -size
 
     for each in sorted(failures, key=order):
         kind = "cause" if each.library in run.compared else "failed"

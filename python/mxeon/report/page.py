@@ -153,8 +153,7 @@ def material(verdicts: Verdicts, pictures: Sequence[Picture]) -> dict[str, Any]:
         found[one.host, one.library] = verdicts.get((subject, one.host, one.library))
     tolerances = [each.tolerance or 0.0 for each in found.values() if each]
     rows = [_row(each, max(tolerances, default=0.0)) for each in by_row.values()]
-    if any(each and each.verdict in (FAILED, DIFFERS) for each in found.values()):
-        rows.sort(key=lambda row: -max(row["largest"].values(), default=0.0))
+    rows.sort(key=lambda row: -max(row["largest"].values(), default=0.0))
     answers = []
     for place, result in found.items():
         largest = {row["scene"]: row["largest"][place] for row in rows if place in row["largest"]}
@@ -190,7 +189,8 @@ def _sentence(result: Result | None, largest: Mapping[str, float]) -> str:
 def _row(pictures: Sequence[Picture], tolerance: float) -> dict[str, Any]:
     """Pictures of one scene on one host: each library's, the reference, and the differences from it.
 
-    All differences have one scale, which ends at the tolerance or above it: what is right is dark.
+    All differences have one scale, which ends at the tolerance or above it: what is right is dark. It
+    ends at the largest difference where that is less than twice as much.
     """
     shown: list[dict[str, Any]] = []
     apart: list[tuple[Picture, NDArray[np.float64]]] = []
@@ -205,11 +205,11 @@ def _row(pictures: Sequence[Picture], tolerance: float) -> dict[str, Any]:
         pixels = srgb_encoded(np.asarray(reference))
         partly = ", at the pixels to compare" if any(p.judged is not None for p in pictures) else ""
         shown.append(_figure("reference", "Reference", f"NumPy, float64{partly}", pixels))
+    largest = {(one.host, one.library): float(np.nanmax(values)) for one, values in apart}
     scale = max([tolerance, *(difference_scale(values) for _, values in apart)])
-    largest = {}
+    scale = max([scale, *(top for top in largest.values() if top < 2.0 * scale)])
     for one, values in apart:
-        top = float(np.nanmax(values))
-        largest[one.host, one.library] = top
+        top = largest[one.host, one.library]
         note = f"up to {of_white(top)}"
         if one.judged is not None:
             note += f" at the {np.count_nonzero(one.judged):,} pixels that were compared"

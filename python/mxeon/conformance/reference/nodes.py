@@ -33,7 +33,8 @@ from mxeon.models.nodes.microfacets import TRANSMISSION_NODES, TRANSMISSIONS, is
 from mxeon.models.nodes.node import Inputs, PbrNode
 from mxeon.models.shading_model import ALONG, UP
 from mxeon.models.thin_film import FILM
-from mxeon.shaders.document.values import Plain
+from mxeon.shaders.document.notes import out_of_range
+from mxeon.shaders.document.values import Plain, label
 from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG, OREN_NAYAR, value_text
 
 Albedo: TypeAlias = Callable[[Array, Inputs], Array]
@@ -328,10 +329,9 @@ def node_lobe(
 ) -> Bsdf:
     """Lobe of a node; raises NotRun if an input has a value that the models do not cover."""
     # A lobe without a weight scatters nothing.
-    name = f"reference: node {node.getNamePath()!r}"
     weight = np.reshape(inputs.get("weight", np.ones(1)), (-1, 1))  # hair has none
     if (beyond := weight[~((weight >= 0.0) & (weight <= 1.0))]).size:
-        raise OutsideModel(f"{name}: weight must lie in [0, 1]; got {beyond[0]:g}")
+        raise _outside(node, f"weight must lie in [0, 1]; got {beyond[0]:g}")
     if not weight.any():
         layerable = any(row.layerable for row in LOBES[node.getCategory()])
         return Bsdf(np.zeros(3), np.full(3, 1.0 if layerable else 0.0))
@@ -350,10 +350,18 @@ def node_lobe(
         values = points.lobe(row, arguments, layered, inputs["normal"], tangent)
     except ValueError as error:
         words = str(error).replace("rho must", "color must").replace("sigma must", "roughness must")
-        raise OutsideModel(f"{name}: {words}") from None
+        raise _outside(node, words) from None
     # What hides its base does so at any weight.
     left = 1.0 - weight * (1.0 - values.throughput) if row.layerable else values.throughput
     return Bsdf(values.value * weight, left)
+
+
+def _outside(node: mx.Node, words: str) -> OutsideModel:
+    """The error for a value outside of a node's model: the note on its input, where the document has the value."""
+    document = f"{label(node.getDocument())}: "
+    for text in filter(None, map(out_of_range, node.getInputs())):
+        return OutsideModel(text.removeprefix(document))
+    return OutsideModel(f"reference: node {node.getNamePath()!r}: {words}")
 
 
 def _row(node: mx.Node, inputs: Mapping[str, Array]) -> PbrNode:

@@ -344,6 +344,21 @@ class Run(Scope):
             sentence += words * bool(ran)
         return Summary(verdict, counts, sentence)
 
+    @cached_property
+    def differences(self) -> dict[tuple[str, str, str], float]:
+        """Largest difference of pictures from the reference, by subject, host and library.
+
+        It is relative where the reference exceeds 1.
+        """
+        found: dict[tuple[str, str, str], float] = {}
+        for each in self.pictures:
+            if each.reference is not None:
+                scale = np.maximum(1.0, np.abs(each.reference).max(axis=-1))
+                place = f"{each.document}: {each.element}", each.host, each.library
+                largest = float(np.nanmax(each.difference() / scale))
+                found[place] = max(found.get(place, 0.0), largest)
+        return found
+
     @property
     def errors(self) -> tuple[str, ...]:
         """The faults of all documents that were refused."""

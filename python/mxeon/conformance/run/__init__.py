@@ -193,7 +193,10 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
         results=results,
         pictures=tuple(picture for part in done for picture in part.pictures),
         curves=tuple(curve for part in done for curve in part.curves),
-        notes=tuple(f"{text}: {', '.join(listed)}" for text, listed in places.items()),
+        notes=tuple(
+            ": ".join(filter(None, (text, ", ".join(each for each in listed if each not in text))))
+            for text, listed in places.items()
+        ),
         missing=tuple(
             str(task) for number, task in enumerate(planned.tasks) if number not in findings
         ),

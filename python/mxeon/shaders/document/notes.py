@@ -43,7 +43,7 @@ def numbers(element: mx.ValueElement) -> tuple[float, ...]:
 def warn_of_elements(document: mx.Document, elements: Iterable[mx.Element]) -> None:
     """Warn about values that MaterialX misreads or that are outside a model's range, and about code."""
     values = [each for each in elements if each.isA(mx.ValueElement) and each.getValueString()]
-    for note in (_misread, _out_of_range, _unknown_space):
+    for note in (_misread, out_of_range, _unknown_space):
         _warn(DocumentWarning, [text for text in map(note, values) if text])
     _warn(DocumentWarning, [text for text in map(_unconnected, elements) if text])
     if names := ", ".join(each.getName() for each in foreign_code(document)):
@@ -111,7 +111,7 @@ def _misread(element: mx.ValueElement) -> str | None:
     return f"{location(element)} {rule}"
 
 
-def _out_of_range(element: mx.ValueElement) -> str | None:
+def out_of_range(element: mx.ValueElement) -> str | None:
     """Warning of a value for which the model of its node, a rough diffuse one, is not defined."""
     node, name = element.getParent(), element.getName()
     diffuse = element.isA(mx.Input) and node.isA(mx.Node) and node.getCategory() in DIFFUSE_NODES
@@ -121,7 +121,7 @@ def _out_of_range(element: mx.ValueElement) -> str | None:
     high = HALF_PI if name == "roughness" and qualitative else 1.0
     if all(0.0 <= number <= high for number in numbers(element)):
         return None
-    rule = f"must lie in [0, {high:.6g}], where its model is defined"
+    rule = f"must lie in [0, {1 if high == 1.0 else 'pi/2'}], where its model is defined"
     return f"{location(element)} {rule}; got {element.getValueString()}"
 
 
