@@ -69,6 +69,8 @@ def test_a_target_of_which_only_the_text_can_be_checked_is_not_run(host):
     run = check(EXAMPLES[:1], [host], nodes=["common"])
     (result,) = [each for each in run.results if (each.host, each.check) == (host, "host")]
     assert result.verdict == NOT_RUN and result.reason.startswith(f"{host}: running it needs ")
+    (shaders,) = [each for each in run.results if each.check == "document"]
+    assert shaders.verdict == PASSED and shaders.control.caught
     texts = [each for each in run.results if each.subject.endswith(f", {host}")]
     assert texts and {each.verdict for each in texts} == {PASSED}
 

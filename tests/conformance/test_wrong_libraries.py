@@ -1,13 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Copies of the library with one fault each: the check that finds it, and the words that name it."""
 
-from pathlib import Path
-
 import pytest
 
 from mxeon import check
-from mxeon.errors import InputError
-from mxeon.shaders.library import examples_folder
 from mxeon.shaders.nodes import EON, INVERSIONS
 from tests.support.plans import keep_checks
 from tests.support.verdicts import FAILED, NOT_RUN, PASSED, SHADER_FUNCTIONS
@@ -185,22 +181,6 @@ def test_a_wrong_inversion_node_fails(judged, copy, node, old, new):
     assert (
         "NaN or infinity" if "invert" in old else f"the equations of {node}"
     ) in result.diagnosis
-
-
-# --- documents on hosts without pictures --------------------------------------------------------
-
-
-def test_shaders_are_generated_where_no_picture_is_made():
-    run = check([examples_folder() / "plaster.mtlx"], ["msl"])
-    (result,) = [each for each in run.results if each.check == "document"]
-    assert result.verdict == PASSED and result.control.caught
-
-
-def test_a_source_that_is_no_text_is_refused_in_one_line(copy):
-    library = Path(copy())
-    (library.parent / "genglsl" / "lib" / "eon.glsl").write_bytes(b"\xff\xfe")
-    with pytest.raises(InputError, match="eon.glsl: must be text in UTF-8"):
-        check([], ["gl"], [library])
 
 
 def test_a_definition_that_the_documents_do_not_fit_is_named_before_they_are_refused(

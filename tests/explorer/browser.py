@@ -35,23 +35,30 @@ def started(kind, flags):
 
 @contextmanager
 def opened(browser, address, allowed=(), drawn=True, **options):
-    """The page at an address; messages that are not allowed, and requests, fail the test.
+    """The page of the explorer at an address, as `watched` has it.
 
     Unless it is to be drawn it has no WebGL, which costs a software driver most of its time.
     """
-    asked, said = [], []
     context = browser.new_context(**(SMALL | options))
     page = context.new_page()
-    page.set_default_timeout(600_000.0)  # of a busy machine
     if not drawn:
         page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
+    with watched(page, address, allowed):
+        until(page, DRAWN if drawn else "globalThis.mxeon !== undefined")
+        yield page
+        context.close()
+
+
+@contextmanager
+def watched(page, address, allowed=()):
+    """Open an address in a page; messages that are not allowed, and requests, fail the test."""
+    asked, said = [], []
+    page.set_default_timeout(600_000.0)  # of a busy machine
     page.on("request", lambda request: asked.append(request.url))
     page.on("console", lambda message: said.append(message.text))
     page.on("pageerror", lambda error: said.append(str(error)))
     page.goto(address)
-    until(page, DRAWN if drawn else "globalThis.mxeon !== undefined")
-    yield page
-    context.close()
+    yield
     start = address.partition("#")[0]
     others = [url for url in asked if not url.startswith((start, "data:", "blob:"))]
     assert not others, f"requests: {others}"

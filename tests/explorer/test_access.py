@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page for all readers: checked with axe-core, on a phone, and without WebGL2."""
+"""The page for all readers: checked with axe-core, and without WebGL2."""
 
 import pytest
 
@@ -57,14 +57,6 @@ def test_axe_finds_nothing(checked, name):
     checked.evaluate("mxeon.show(mxeon.from_address(''))")
     show(checked, **VIEWS[name])
     assert findings(checked) == []
-
-
-@pytest.fixture(scope="module")
-def phone(browser, documents):
-    """The page on a phone."""
-    options = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True}
-    with opened(browser, documents, **options) as page:
-        yield page
 
 
 def test_without_webgl2_there_are_pictures_and_all_numbers(browser, documents):

@@ -9,11 +9,11 @@ import pytest
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import host_row, materialx, storm
 from mxeon.shaders.library import examples_folder
-from mxeon.shaders.library_export import export_library
 from mxeon.shaders.nodes import OREN_NAYAR, material_text
 from mxeon.shaders.scene import FRONT, FURNACE, SIDE, sphere
 from tests.support.documents import lobe, material
 from tests.support.verdicts import FAILED, PASSED
+from tests.support.wrong_libraries import wrong_copy
 
 HOSTS = {"storm": storm.Host, "materialx": materialx.Host}
 DOCUMENT = examples_folder() / "eon_node.mtlx"
@@ -21,10 +21,11 @@ SMALL = replace(FRONT, size=16)
 EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
 # Half floats: 2^-11 of a value, twice; and of a sum over an environment, twice that.
 HALF, HALF_SURROUNDINGS = 2.0**-10 + 248 * 2.0**-24, 2.0**-9 + 2e-6
+LOBE = "genglsl/lib/oren_nayar_lobe.glsl"
 TEXTURED = 2.0**-8  # the least that OpenGL asks of a filter's weights
-# A line of eonlib and a wrong one: light from behind would be as that from the side.
-SIGN = ("float s = dot(wo, wi) - mu_o * mu_i;", "float s = abs(dot(wo, wi) - mu_o * mu_i);")
-BROKEN = (SIGN[0], "float s = no_such_function(wo);")
+# A line of eonlib, a wrong one and their file: light from behind would be as that from the side.
+SIGN = ("float s = dot(wo, wi) - mu_o * mu_i;", "float s = abs(dot(wo, wi) - mu_o * mu_i);", LOBE)
+BROKEN = (SIGN[0], "float s = no_such_function(wo);", LOBE)
 
 
 @pytest.fixture(scope="module", params=HOSTS)
@@ -35,21 +36,6 @@ def host(request, hosts):
 @pytest.fixture(scope="module")
 def on_storm(hosts):
     return hosts("storm")
-
-
-@pytest.fixture
-def copy_of_eonlib(tmp_path):
-    """A function that makes a copy of eonlib with another line in the place of one."""
-
-    def copy(old, new):
-        folder = export_library(tmp_path / "eonlib")
-        path = folder / "genglsl" / "lib" / "oren_nayar_lobe.glsl"
-        text = path.read_text()
-        assert old in text
-        path.write_text(text.replace(old, new))
-        return str(folder)
-
-    return copy
 
 
 def test_a_document_is_that_of_the_reference(host, judged):
@@ -102,11 +88,11 @@ def test_stock_is_wrong_from_behind(host, judged):
     assert result.pages == ("genglsl_clamped_dot",)
 
 
-def test_a_wrong_copy_of_eonlib_fails(judged, copy_of_eonlib):
-    assert judged("value", EON, "storm", copy_of_eonlib(*SIGN)).verdict == FAILED
+def test_a_wrong_copy_of_eonlib_fails(judged, tmp_path):
+    assert judged("value", EON, "storm", wrong_copy(tmp_path, *SIGN)).verdict == FAILED
 
 
-def test_a_shader_that_does_not_compile_is_a_shader_error(host, copy_of_eonlib):
-    [shader] = host.compile(material_text(OREN_NAYAR, {}), library=copy_of_eonlib(*BROKEN))
+def test_a_shader_that_does_not_compile_is_a_shader_error(host, tmp_path):
+    [shader] = host.compile(material_text(OREN_NAYAR, {}), library=wrong_copy(tmp_path, *BROKEN))
     with pytest.raises(ShaderError, match=f"^{host.name}: .*no_such_function"):
         host.picture(shader, SMALL)

@@ -61,13 +61,6 @@ def _deaf(_):
     return signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, ())
 
 
-with_processes = pytest.mark.parametrize("workers", [0, 2])
-
-
-def process(_):
-    return os.getpid()
-
-
 def hesitant(document):
     warnings.warn(f"{document} is odd", stacklevel=2)
     if document == "bad":
@@ -75,7 +68,7 @@ def hesitant(document):
     return document.upper()
 
 
-@with_processes
+@pytest.mark.parametrize("workers", [0, 2])
 def test_values_warnings_and_errors_come_in_order(workers):
     one, bad, two = run_batch(hesitant, ["one", "bad", "two"], workers, 60.0)
     assert one == BatchResult("ONE", ("one is odd",))

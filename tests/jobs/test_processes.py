@@ -7,11 +7,11 @@ from importlib.metadata import packages_distributions
 
 import pytest
 
-from mxeon.errors import NotRun
 from mxeon.hosts.cycles.process import interpreter
 from mxeon.jobs import pool
 from mxeon.jobs.pool import Outcome
 from mxeon.shaders.library import examples_folder
+from tests.support.availability import available
 from tests.support.faults import square
 
 # What any process could ask for: the standard library, what is installed, Blender's modules, and
@@ -69,17 +69,11 @@ def hostile(tmp_path_factory):
     return hostile
 
 
-def need(command):
-    if command == "cycles":
-        try:
-            interpreter()
-        except NotRun as reason:
-            pytest.skip(str(reason))
-
-
 @pytest.mark.parametrize("command", COMMANDS)
 def test_no_command_imports_from_the_folders_it_works_in(hostile, command):
-    need(command)
+    if command == "cycles":
+        with available("cycles"):
+            interpreter()
     if command == "kit check":
         run(hostile, COMMANDS["kit export"])
     ended = run(hostile, COMMANDS[command])

@@ -9,18 +9,14 @@ import pytest
 from mxeon.models import media as emission
 from mxeon.models import media as shading
 from mxeon.models.nodes.emissions import COMBINED_EMISSIONS, EMISSIONS
+from tests.support.cases import direction as view
 
-UP, SLANTED = [0.0, 0.0, 1.0], [0.6, 0.0, 0.8]
+UP = [0.0, 0.0, 1.0]
 ROWS = (*EMISSIONS, *COMBINED_EMISSIONS)
 QUADRATURE = 1e-10  # of 64 nodes on each smooth piece, relative to pi c
 ROUNDING = 1e-12
 ANGLES = ((60.0, 0.0), (60.0, 60.0), (0.0, 90.0), (60.0, 61e-0), (170.0, 200.0), (200.0, 300.0),
           (0.0, 360.0), (180.0, 180.0), (360.0, 10.0), (30.0, 30.001), (0.0, 0.0))  # fmt: skip
-
-
-def view(mu):
-    mu = np.asarray(mu, np.float64)
-    return np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=-1)
 
 
 def exitance(radiance, *edges):

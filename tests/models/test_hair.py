@@ -15,21 +15,12 @@ from mxeon.models.hair import (
     longitudinal,
 )
 from mxeon.models.nodes.lobes import FORMS, READINGS, TILTED, materialx_longitudinal
+from tests.support.hemispheres import sphere
 
 ROUND = 1e-14  # 45 roundings of float64
 PICK = {"roughness_R": (0.5, 0.6), "roughness_TT": (0.3, 0.4), "roughness_TRT": (0.8, 0.9)}
 VIEWS = np.array([[0.0, 0.0, 1.0], [0.6, 0.3, 0.0], [-0.95, -0.2, 0.0]])
 VIEWS[:, 2] = np.sqrt(1.0 - (VIEWS[:, :2] ** 2).sum(axis=1))
-
-
-def sphere(nodes):
-    """Directions of all lights about the fiber +x, and their solid angles."""
-    x, w = np.polynomial.legendre.leggauss(nodes)
-    phi = 2.0 * np.pi * (np.arange(2 * nodes) + 0.5) / (2 * nodes)
-    sine, angle = (each.ravel() for each in np.meshgrid(x, phi))
-    cosine = np.sqrt(1.0 - sine * sine)
-    wi = np.stack([sine, cosine * np.cos(angle), cosine * np.sin(angle)], axis=-1)
-    return wi, np.tile(w, 2 * nodes) * np.pi / nodes
 
 
 def furnace(wo, **inputs):

@@ -22,6 +22,7 @@ from mxeon.models.microfacet.defects import MICROFACET_DEFECTS, averaged_channel
 from mxeon.models.microfacet.ggx import ggx_albedo_dir
 from mxeon.models.nodes.microfacets import MICROFACET_NODES
 from tests.support import tolerances
+from tests.support.cases import direction as unit
 from tests.support.hemispheres import hemisphere
 
 GOLD = [0.183, 0.421, 1.373], [3.424, 2.346, 1.77]
@@ -42,12 +43,6 @@ INPUTS = {
     | {"exponent": 5.0},
 }
 every_node = pytest.mark.parametrize("name", BRDFS)
-
-
-def unit(mu, phi):
-    """Unit vectors with cosine `mu`."""
-    sine = np.sqrt((1.0 - mu) * (1.0 + mu))
-    return np.stack(np.broadcast_arrays(sine * np.cos(phi), sine * np.sin(phi), mu), axis=-1)
 
 
 def pairs(count, seed=1):

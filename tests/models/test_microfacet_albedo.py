@@ -25,6 +25,7 @@ from mxeon.models.microfacet import ggx as missing
 from mxeon.models.microfacet import slopes
 from mxeon.models.microfacet.ggx import missing_light
 from tests.support import tolerances
+from tests.support.cases import direction as unit
 from tests.support.hemispheres import hemisphere
 
 ALPHA = np.geomspace(1e-4, 1.0, 9)
@@ -48,12 +49,6 @@ NODES = {
     ),
 }
 every_node = pytest.mark.parametrize("name", NODES)
-
-
-def unit(mu, phi=0.0):
-    """Unit vectors with cosine `mu`."""
-    sine = np.sqrt((1.0 - mu) * (1.0 + mu))
-    return np.stack(np.broadcast_arrays(sine * np.cos(phi), sine * np.sin(phi), mu), axis=-1)
 
 
 # --- E_ss --------------------------------------------------------------------------------------

@@ -8,10 +8,11 @@ from mxeon.models.hair import DEFAULTS
 from mxeon.models.microfacet import dielectric_albedo_dir
 from mxeon.models.nodes.lobes import HAIR_NODE, circle_blur
 from mxeon.models.nodes.microfacets import CONDUCTOR, DIELECTRIC, FILM_NODES, TRANSMISSIONS
+from tests.support.hemispheres import sphere
 
 WO = np.array([[0.3, -0.4, np.sqrt(0.75)], [0.0, 0.6, 0.8]])
 WIDE = {name: (0.6, 0.8) for name in ("roughness_R", "roughness_TT", "roughness_TRT")}
-# Of 160 by 160 directions, for lobes as wide as these.
+# Of 160 by 320 directions, for lobes as wide as these.
 SPHERE = 1e-6
 FILM = {"thinfilm_thickness": np.array([0.0, 400.0]), "thinfilm_ior": np.array([1.3, 1.3])}
 METAL = {
@@ -29,19 +30,9 @@ def hair_inputs(count, **changes):
     return {name: np.repeat([np.asarray(each, float)], count, 0) for name, each in inputs.items()}
 
 
-def sphere(count=160):
-    """Directions in all of the sphere, by inclination to the fiber, and their weights."""
-    x, w = np.polynomial.legendre.leggauss(count)
-    phi = 2.0 * np.pi * (np.arange(count) + 0.5) / count
-    along, around = (each.ravel() for each in np.meshgrid(x, phi, indexing="ij"))
-    across = np.sqrt(1.0 - along * along)
-    wi = np.stack([along, across * np.cos(around), across * np.sin(around)], axis=-1)
-    return wi, np.repeat(w * 2.0 * np.pi / count, count)
-
-
 @pytest.mark.parametrize("wo", WO)
 def test_values_of_hair_integrate_to_its_albedo(wo):
-    wi, weights = sphere()
+    wi, weights = sphere(160)
     views = np.broadcast_to(wo, wi.shape)
     values = HAIR_NODE.value(views, wi, hair_inputs(len(wi)))
     expected = HAIR_NODE.albedo(wo[np.newaxis], hair_inputs(1))[0]

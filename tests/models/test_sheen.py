@@ -15,16 +15,11 @@ from mxeon.models.sheen import (
     zeltner_brdf,
 )
 from tests.support import tolerances
+from tests.support.cases import direction
 
 BRDFS = (conty_kulla_brdf, zeltner_brdf, burley_brdf)
 ROUGHNESS = np.array([0.0, 5e-324, 1e-300, 1e-8, 1e-4, 0.005, 0.01, 0.1, 0.5, 1.0])
 MU = np.array([0.0, 5e-324, 1e-300, 1e-160, 1e-16, 1e-8, 1e-3, 0.1, 0.5, 0.9, 1.0 - 1e-16, 1.0])
-
-
-def direction(mu, phi):
-    """Unit vectors with cosine `mu`."""
-    sine = np.sqrt((1.0 - mu) * (1.0 + mu))
-    return np.stack(np.broadcast_arrays(sine * np.cos(phi), sine * np.sin(phi), mu), axis=-1)
 
 
 @pytest.mark.parametrize("brdf", BRDFS, ids=lambda brdf: brdf.__name__)

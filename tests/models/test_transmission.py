@@ -32,22 +32,15 @@ def below():
     x, w = np.polynomial.legendre.leggauss(GRID)
     mu, weight = 0.5 * (1.0 + x), 0.5 * w
     phi = 2.0 * np.pi * (np.arange(GRID) + 0.5) / GRID
-    radius = np.sqrt(1.0 - mu * mu)[:, np.newaxis]
-    wi = np.stack(
-        [radius * np.cos(phi), radius * np.sin(phi), -mu[:, np.newaxis] + 0.0 * phi], axis=-1
-    )
+    wi = DOWN * view(mu[:, np.newaxis], phi)
     return wi, (weight * mu)[:, np.newaxis] * (2.0 * np.pi / GRID)
 
 
 def pairs(count=500, least=0.05):
     """Random pairs of directions on either side of the surface."""
     rng = np.random.default_rng(3)
-    wo, wi = (
-        np.stack(
-            [view(least + (1.0 - least) * u, 2.0 * np.pi * v) for u, v in rng.random((count, 2))]
-        )
-        for _ in range(2)
-    )
+    shares = (rng.random((count, 2)).T for _ in range(2))
+    wo, wi = (view(least + (1.0 - least) * u, 2.0 * np.pi * v) for u, v in shares)
     return wo, wi * DOWN
 
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The report page in a browser: it works without a network, and without a script too."""
 
-import os
 from contextlib import contextmanager
 from pathlib import Path
 from urllib.parse import urlsplit
@@ -11,12 +10,12 @@ import OpenImageIO as oiio
 import pytest
 
 from mxeon import check
-from mxeon.hosts.webgl import program
 from mxeon.report import write
 from mxeon.shaders.library import examples_folder
+from tests.explorer.browser import launched, watched
+from tests.support.availability import available
 from tests.support.plans import keep_checks
 
-sync_playwright = pytest.importorskip("playwright.sync_api").sync_playwright
 EXAMPLE = examples_folder() / "plaster.mtlx"
 
 
@@ -32,28 +31,17 @@ def address(tmp_path_factory):
 @pytest.fixture(scope="module")
 def browser():
     """Headless Chromium."""
-    with sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(
-            executable_path=program(), chromium_sandbox=os.geteuid() != 0
-        )
-        yield chromium
-        chromium.close()
+    with available("webgl"), launched() as browser:
+        yield browser
 
 
 @contextmanager
 def opened(browser, address, **options):
     """The page in the browser; whatever it asks for or complains of fails the test."""
-    asked, said = [], []
     page = browser.new_page(**options)
-    page.set_default_timeout(600_000.0)  # of a busy machine
-    page.on("request", lambda request: asked.append(request.url))
-    page.on("console", lambda message: said.append(message.text))
-    page.on("pageerror", lambda error: said.append(str(error)))
-    page.goto(address)
-    yield page
-    page.close()
-    assert [url for url in asked if not url.startswith(("data:", address))] == []
-    assert said == []
+    with watched(page, address):
+        yield page
+        page.close()
 
 
 def visible(page, selector):

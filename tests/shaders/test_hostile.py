@@ -14,13 +14,12 @@ from mxeon.shaders.document.policy import DEFAULT, LIMITS, Policy
 from mxeon.shaders.document.reading import read_document
 from mxeon.shaders.generation import CodeWarning, generate
 from tests.fuzz.found import doubled, row
-from tests.support.documents import connected, lobe, material
+from tests.support.documents import connected, lobe, material, textured, written
 
 TRUSTED = Policy(outside=True, code=True)
 XI = '<materialx version="1.39" xmlns:xi="http://www.w3.org/2001/XInclude">{}</materialx>'
 INCLUDE = XI.format('<xi:include href="{}"/>')
 PART = material(lobe())
-IMAGE = '<image name="image" type="color3"><input name="file" type="filename" value="{}"/></image>'
 NODEDEF = '<nodedef name="ND_a" node="a"><output name="out" type="BSDF"/></nodedef>'
 BROUGHT = NODEDEF + '<implementation name="IM_a" nodedef="ND_a" {}/><a name="lobe" type="BSDF"/>'
 INLINE = (
@@ -46,13 +45,6 @@ def home(tmp_path):
     return folder
 
 
-def written(folder, text):
-    """The document's file."""
-    path = folder / "look.mtlx"
-    path.write_text(text)
-    return path
-
-
 def refusal(source, policy=DEFAULT):
     """What is said of a document, which has to be one line."""
     with pytest.raises(DocumentError) as refused:
@@ -60,10 +52,6 @@ def refusal(source, policy=DEFAULT):
     message = str(refused.value)
     assert message.isprintable()
     return message
-
-
-def textured(name):
-    return material(IMAGE.format(name) + connected(color='nodename="image"'))
 
 
 # --- files outside ------------------------------------------------------------------------------
@@ -80,7 +68,7 @@ def textured(name):
     ],
 )
 def test_a_texture_outside_needs_permission(home, name):
-    path = written(home, textured(name.format(home.parent)))
+    path = written(home, textured([name.format(home.parent)]))
     assert "pass --allowOutside to permit it" in refusal(path)
     assert read_document(path, policy=TRUSTED)
 
@@ -103,7 +91,7 @@ def test_a_source_outside_needs_permission(home, name):
 def test_files_inside_and_in_the_libraries_need_no_permission(home):
     library = f"{mx.getDefaultDataSearchPath().asString()}/libraries/targets/genglsl.mtlx"
     for name in ("inside.png", "link/documents/inside.png", library):
-        assert read_document(written(home, textured(name)))
+        assert read_document(written(home, textured([name])))
 
 
 # --- code ---------------------------------------------------------------------------------------

@@ -2,10 +2,7 @@
 """Copies of MaterialX's libraries, whole and in part, in place of the installed ones."""
 
 import json
-import os
 import shutil
-import subprocess
-import sys
 
 import MaterialX as mx
 import pytest
@@ -14,7 +11,7 @@ import mxeon
 from mxeon.cli import main
 from mxeon.shaders.library_export import export_library
 from mxeon.shaders.library_tree import OVERLAY, PART, tree
-from tests.support.command import PLASTER
+from tests.support.command import PLASTER, run
 from tests.support.wheels import wheel
 from tests.support.wrong_libraries import GLSL, STOCK, copy_of_stock, replace_text
 
@@ -167,21 +164,14 @@ def test_a_token_in_a_source_that_is_loaded_first_did_not_run(tmp_path, capsys):
     assert "does not replace $own in the library's sources" in capsys.readouterr().err
 
 
-def mxeon_run(*arguments, **variables):
-    """Output of the command in a process of its own, which has to end with 0 or 1."""
-    command = [sys.executable, "-m", "mxeon", *map(str, arguments)]
-    environment = os.environ | {name: str(value) for name, value in variables.items()}
-    done = subprocess.run(command, capture_output=True, text=True, env=environment)
-    assert done.returncode < 2, done.stderr
-    return done.stdout
-
-
 @pytest.mark.parametrize("workers", "01")
 def test_materialx_takes_a_build_in_every_process(gl, tmp_path, workers):
     build = wheel("1.39.4")
     copy = shutil.copytree(build / "MaterialX" / "libraries", tmp_path / "libraries")
     options = ["--materialx", build, "--node", "translucent_bsdf", "--workers", workers]
-    stock, whole = (mxeon_run("check", "--library", each, *options) for each in ("stock", copy))
+    done = [run("check", "--library", each, *options) for each in ("stock", copy)]
+    assert max(each.returncode for each in done) < 2, done[0].stderr + done[1].stderr
+    stock, whole = (each.stdout for each in done)
     assert f"MaterialX 1.39.4, from {build}." in stock.splitlines()[0]
     first, second = whole.splitlines()[:2]
     verdict = stock.splitlines()[0].replace("stock", str(copy)).partition(" Finished in ")[0]

@@ -7,6 +7,7 @@ The checks `pdf` and `sample` of `mxeon check` judge draws of every node; here a
 import re
 import shutil
 import subprocess
+from functools import partial
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from mxeon.conformance.checks.paths import deviation, paths, random, refracted
 from mxeon.errors import InputError, InterfaceError
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import connection_text, document_text, input_text, material_text, node_text
+from tests.support.cases import direction
 from tests.support.verdicts import PASSED
 from tests.support.wrong_libraries import copy_of_eonlib
 from tools.benchmarks.mutants.mutant import read_table
@@ -97,12 +99,8 @@ DOCUMENTS = {
     f"{name}-{number}": material_text(name, inputs) for number, (name, inputs) in enumerate(NODES)
 }
 DOCUMENTS |= {name: surface_text(name) for name in SURFACES}
+view = partial(direction, phi=0.3)
 every_document = pytest.mark.parametrize("name", DOCUMENTS)
-
-
-def view(mu):
-    S = np.sqrt(1.0 - mu * mu)
-    return np.array([S * np.cos(0.3), S * np.sin(0.3), mu])
 
 
 def uniforms(count, seed=1):
@@ -112,11 +110,6 @@ def uniforms(count, seed=1):
 def directions(rng, count):
     w = rng.normal(size=(count, 3))
     return w / np.linalg.norm(w, axis=1, keepdims=True)
-
-
-@pytest.fixture(scope="module")
-def gl(hosts):
-    return hosts("gl")
 
 
 @pytest.fixture(scope="module")

@@ -14,15 +14,10 @@ from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.reading import read_document
 from mxeon.shaders.generation import generate
 from mxeon.shaders.scene import Paths
-from tests.support.documents import connected, lobe, material
+from tests.support.documents import lobe, material, textured, written
 
-IMAGE = '<image name="image" type="color3"><input name="file" type="filename" value="{}"/></image>'
 INCLUDE = '<materialx version="1.39" xmlns:xi="http://www.w3.org/2001/XInclude">{}</materialx>'
 TINT = (0.25, 0.5, 0.75)
-
-
-def textured(name):
-    return material(IMAGE.format(name) + connected(color='nodename="image"'))
 
 
 def picture(path, channels=TINT):
@@ -42,26 +37,20 @@ def home(tmp_path):
     return tmp_path / "home"
 
 
-def written(home, text):
-    path = home / "look.mtlx"
-    path.write_text(text)
-    return path
-
-
 def searched(home):
     return Policy(path=(str(home.parent / "none"), str(home.parent / "shared")))
 
 
 def test_an_image_is_looked_for_on_the_path_and_may_lie_there(home):
-    path = written(home, textured("maps/a.exr"))
-    image = read_document(path, policy=searched(home)).content.getDescendant("image/file")
+    path = written(home, textured(["maps/a.exr"]))
+    image = read_document(path, policy=searched(home)).content.getDescendant("i0/file")
     assert image.getValueString() == str(home.parent / "shared/maps/a.exr")
     with pytest.warns(MissingFileWarning, match="must name a file that exists; got maps/a.exr"):
         assert generate(path, "osl")
 
 
 def test_a_name_that_leads_out_of_the_path_is_refused(home):
-    path = written(home, textured("../private/b.exr"))
+    path = written(home, textured(["../private/b.exr"]))
     with pytest.raises(DocumentError, match="on the search path or in the libraries"):
         read_document(path, policy=searched(home))
 
@@ -81,7 +70,7 @@ def test_the_environment_names_folders_too(home, monkeypatch):
 @pytest.mark.parametrize("workers", ["0", "1"])
 def test_the_command_searches_folders(home, workers, capfd, monkeypatch):
     monkeypatch.chdir(home.parent)
-    written(home, textured("maps/a.exr"))
+    written(home, textured(["maps/a.exr"]))
     options = ["--workers", workers, "--outputPath", "out", "--target", "osl", "--path", "shared"]
     assert main(["generate", "home/look.mtlx", *options]) == 0
     assert capfd.readouterr().err == ""
@@ -95,8 +84,8 @@ def test_a_folder_of_the_path_must_exist(home, capsys):
 
 
 def test_a_missing_image_is_an_error_to_render_and_check(home, capfd, gl, judged):
-    path = written(home, textured("none.exr"))
-    error = 'input "image/file" must name a file that exists; got none.exr: --path FOLDER'
+    path = written(home, textured(["none.exr"]))
+    error = 'input "i0/file" must name a file that exists; got none.exr: --path FOLDER'
     options = ["--host", "reference", "--output", str(home / "a.exr"), "--workers", "0"]
     assert main(["render", str(path), *options]) == 2
     assert error in capfd.readouterr().err
@@ -109,7 +98,7 @@ def test_a_missing_image_is_an_error_to_render_and_check(home, capfd, gl, judged
 def test_a_set_of_textures_is_shown_as_its_first_tile(home, host, name):
     rest = ("front", None, 16, "sphere", None, "eonlib", searched(home), Paths())
     shown, expected = (
-        batch.picture(str(written(home, textured(each))), host, *rest)[0]
+        batch.picture(str(written(home, textured([each]))), host, *rest)[0]
         for each in (name, "maps/a.exr")
     )
     assert expected.any() and np.array_equal(shown, expected)

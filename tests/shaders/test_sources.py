@@ -2,7 +2,6 @@
 """Shader sources that a document brings: what they may include, and what is said of the others."""
 
 import os
-import warnings
 from pathlib import Path
 
 import MaterialX as mx
@@ -23,12 +22,7 @@ USE = '<own name="own" type="color3"/>' + connected(color='nodename="own"')
 BODY = "void own(out vec3 result) { result = vec3(0.123); }\n"
 OTHER = "float other(float x) { return 2.0 * x; }\n"
 SECRET = "// canary\n"
-
-
-@pytest.fixture(autouse=True)
-def _quiet():
-    with warnings.catch_warnings(action="ignore"):
-        yield
+pytestmark = pytest.mark.filterwarnings("ignore")  # of code that documents bring
 
 
 @pytest.fixture

@@ -6,8 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mxeon.errors import NotRun
-from mxeon.hosts import open_host
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.generation import TARGETS, generate
 from mxeon.shaders.scene import FURNACE
@@ -65,13 +63,8 @@ def test_a_public_matrix_is_its_numbers_row_after_row(target, size):
 
 
 @pytest.fixture(scope="module", params=["gl", "webgl"])
-def host(request):
-    try:
-        host = open_host(request.param)
-    except NotRun as reason:
-        pytest.skip(str(reason))
-    yield host
-    host.close()
+def host(request, hosts):
+    return hosts(request.param)
 
 
 def brightness(host, nodes, **values):

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Other versions of MaterialX: what mxeon needs of them is looked up in them, not in a list."""
 
-import shutil
-
 import MaterialX as mx
 import pytest
 
@@ -12,6 +10,7 @@ from mxeon.hosts import open_host
 from mxeon.shaders import closure_calls, generation, generators, library
 from mxeon.shaders.library import UntestedVersionWarning, load_library
 from tests.support.documents import lobe, material
+from tests.support.wrong_libraries import wrong_copy
 
 EXAMPLE = str(library.examples_folder() / "plaster.mtlx")
 CACHES = (
@@ -36,13 +35,8 @@ def fresh():
 @pytest.fixture
 def other_interface(fresh, monkeypatch, tmp_path):
     """A checkout whose oren_nayar_diffuse_bsdf takes one argument more than MaterialX passes."""
-    for name in ("libraries", "genglsl", "genosl"):
-        shutil.copytree(library.data_folder() / name, tmp_path / name)
-    source = tmp_path / "genglsl" / "oren_nayar_diffuse_bsdf.glsl"
-    text = source.read_text().replace(
-        "float weight, vec3 color", "float gain, float weight, vec3 color"
-    )
-    source.write_text(text)
+    old, new = "float weight, vec3 color", "float gain, float weight, vec3 color"
+    wrong_copy(tmp_path, old, new, "genglsl/oren_nayar_diffuse_bsdf.glsl")
     monkeypatch.setattr(library, "data_folder", lambda: tmp_path)
 
 

@@ -4,7 +4,7 @@
 import numpy as np
 
 
-def direction(mu, phi):
+def direction(mu, phi=0.0):
     """Unit vector at azimuth phi whose cosine with the normal is mu."""
     mu, phi = np.broadcast_arrays(np.asarray(mu, float), np.asarray(phi, float))
     S = np.sqrt((1.0 - mu) * (1.0 + mu))

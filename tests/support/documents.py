@@ -25,6 +25,13 @@ def connected(**inputs):
     return f'<{OREN_NAYAR} name="lobe" type="BSDF">{ports}</{OREN_NAYAR}>'
 
 
+def written(folder, text):
+    """The file of a document in a folder."""
+    path = folder / "look.mtlx"
+    path.write_text(text)
+    return path
+
+
 def textured(files):
     """A document whose color is the sum of the images in these files."""
     image = (

@@ -8,6 +8,7 @@ import pytest
 from scipy import special  # scipy.stats is slow to import
 
 from mxeon.models.sampling import SAMPLERS
+from tests.support.cases import direction as view
 
 COSINES = (1.0, 0.9, 0.5, 0.1, 1e-3, 0.0)
 ROUGHNESS = (0.0, 0.01, 0.4, 1.0)
@@ -16,12 +17,6 @@ BY_NAME = {sampler.name: sampler for sampler in SAMPLERS}
 
 every_sampler = pytest.mark.parametrize("sampler", SAMPLERS, ids=lambda sampler: sampler.name)
 every_scene = pytest.mark.parametrize(("mu", "roughness"), SCENES)
-
-
-def view(mu, azimuth=0.0):
-    """Direction with cosine `mu`."""
-    S = np.sqrt((1.0 - mu) * (1.0 + mu))
-    return np.array([S * np.cos(azimuth), S * np.sin(azimuth), mu])
 
 
 gauss_legendre = lru_cache(np.polynomial.legendre.leggauss)
@@ -49,6 +44,16 @@ def hemisphere(mu, count=64):
     phi, dphi = rule(0.5 * np.pi * np.arange(-1, 4), count)
     weights = (dtheta * np.sin(theta))[:, :, np.newaxis, np.newaxis] * dphi
     return directions(theta, phi).reshape(-1, 3), weights.ravel()
+
+
+def sphere(nodes):
+    """Directions of all lights about the fiber +x, and their solid angles."""
+    x, w = np.polynomial.legendre.leggauss(nodes)
+    phi = 2.0 * np.pi * (np.arange(2 * nodes) + 0.5) / (2 * nodes)
+    sine, angle = (each.ravel() for each in np.meshgrid(x, phi))
+    cosine = np.sqrt(1.0 - sine * sine)
+    wi = np.stack([sine, cosine * np.cos(angle), cosine * np.sin(angle)], axis=-1)
+    return wi, np.tile(w, 2 * nodes) * np.pi / nodes
 
 
 def uniforms(count, seed):
