@@ -21,7 +21,7 @@ from xml.etree import ElementTree
 
 import MaterialX as mx
 
-from mxeon.errors import DocumentError
+from mxeon.errors import DocumentError, InterfaceError
 from mxeon.shaders.document.words import NAMES
 from mxeon.shaders.generation import TARGETS, generate
 from mxeon.shaders.library import load_library
@@ -160,6 +160,8 @@ def _judged(element, place, document, targets):
             return named in said and "must" in said and all(map(str.isprintable, error.args))
         except ValueError:  # a number that is none
             continue
+        except InterfaceError:  # it reached source, in which no `$` may be left
+            return False
         if any(POISON in source for source in sources):
             return False
     return True
