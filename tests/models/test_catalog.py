@@ -3,9 +3,6 @@
 
 import re
 import sys
-from inspect import ismodule
-from pathlib import Path
-from pkgutil import resolve_name
 
 import MaterialX as mx
 import numpy as np
@@ -23,7 +20,6 @@ from tests.support import tolerances
 
 WO, WI = np.array([0.6, 0.0, 0.8]), np.array([-0.36, 0.48, 0.8])
 MANY = np.array([[0.6, 0.0, 0.8], [0.0, 0.8, 0.6], [0.0, 0.0, 1.0], [0.0, 0.6, 0.8], WI])
-PAGES = Path(__file__).resolve().parents[2] / "docs/api"
 TRANSMITTED = 3e-4  # of the albedo, whose quadrature states 2e-4; that of the values adds to it
 MODES = {"mode", "scatter_mode", "distribution", "energy_compensation"}
 FRAME = {"weight", "normal", "tangent", "curve_direction", "retroreflective"}
@@ -360,14 +356,6 @@ def test_messages_say_what_there_is(call, error, message):
         call()
 
 
-def test_every_function_on_the_pages_is_in_one_namespace():
-    text = "".join(page.read_text(encoding="utf-8") for page in PAGES.glob("*.md"))
-    paths = re.findall(r"^::: (mxeon\.(?:models|albedo|inversion|sampling)\.\S+)$", text, re.M)
-    names = {path.rpartition(".")[2] for path in paths if not ismodule(resolve_name(path))}
-    assert len(names) > 90 and names <= set(models.__all__) <= set(dir(models))
-    assert all(getattr(models, name) is not None for name in models.__all__)
-
-
 def test_three_samples_of_one_direction_take_no_color_for_their_reflectances():
     u, color = np.full((3, 2), 0.4), np.array([0.8, 0.4, 0.1])
     with pytest.raises(ValueError, match=r"^rho of shape \(3,\) beside 3 samples .* rho.mean\(\)"):
@@ -378,11 +366,13 @@ def test_three_samples_of_one_direction_take_no_color_for_their_reflectances():
     assert np.allclose(pdf, each)
 
 
-def test_a_plot_names_channels_and_multiplies_all_but_fibers_by_the_cosine():
+def test_a_plot_names_channels_and_inputs_and_multiplies_all_but_fibers_by_the_cosine():
     axes = mxeon.model("dielectric_rt").plot(tint=[0.9, 0.5, 0.1], roughness=0.5).get_axes()
     names = [text.get_text() for text in axes[1].get_legend().get_texts()]
     assert names == ["red", "green", "blue"]
     assert axes[0].get_title() == "value times cosine, mean of the channels, 1/sr"
+    figure = mxeon.model("eon").plot(color=[0.8, 0.4, 0.1], roughness=1.0)
+    assert figure.get_suptitle().endswith(", color 0.8 0.4 0.1, roughness 1")
     fiber = mxeon.model("hair").plot().get_axes()[0]
     assert fiber.get_title() == "value, mean of the channels, 1/sr"
 
@@ -396,11 +386,6 @@ def test_a_plot_has_a_lobe_an_albedo_and_the_density_of_samples(name, tmp_path):
     assert len(axes) == (3 if "pdf" in row.functions else 2)
     _, lobe = axes[0].lines[0].get_data()
     assert len(lobe) > 500 and np.isfinite(lobe).all() and lobe.max() > 0.0
-
-
-def test_a_plot_says_in_its_title_what_it_shows():
-    figure = mxeon.model("eon").plot(color=[0.8, 0.4, 0.1], roughness=1.0)
-    assert figure.get_suptitle().endswith(", color 0.8 0.4 0.1, roughness 1")
 
 
 def test_a_plot_without_matplotlib_says_what_to_install(monkeypatch):
