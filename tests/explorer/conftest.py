@@ -6,6 +6,7 @@ import pytest
 from mxeon import explorer
 from mxeon.io.files import write_text
 from tests.explorer.browser import launched, opened
+from tests.explorer.stage import model_sources
 from tests.support.availability import available
 
 
@@ -37,3 +38,16 @@ def page(shared_page):
     """The page with its first view."""
     shared_page.evaluate("mxeon.show(mxeon.from_address(''))")
     return shared_page
+
+
+@pytest.fixture(scope="package")
+def undrawn(browser, address):
+    """The page without documents and without WebGL."""
+    with opened(browser, address, drawn=False) as page:
+        yield page
+
+
+@pytest.fixture(scope="module")
+def sources(stage):
+    """A source of each model on the stage of a module, by the model's name."""
+    return model_sources(stage)

@@ -31,17 +31,11 @@ CHANGED = {
 }
 
 
-@pytest.fixture(scope="module")
-def page(browser, address):
-    with opened(browser, address, drawn=False) as page:
-        yield page
-
-
-def test_a_view_of_other_values_everywhere_comes_back(page):
-    first = page.evaluate("mxeon.from_address('')")
+def test_a_view_of_other_values_everywhere_comes_back(undrawn):
+    first = undrawn.evaluate("mxeon.from_address('')")
     assert set(CHANGED) == set(first)
     assert all(CHANGED[name] != first[name] for name in CHANGED.keys() - {"keep"})
-    again = page.evaluate("view => mxeon.from_address(mxeon.to_address(view))", CHANGED)
+    again = undrawn.evaluate("view => mxeon.from_address(mxeon.to_address(view))", CHANGED)
     assert again == CHANGED
 
 
@@ -55,14 +49,14 @@ def test_a_view_of_other_values_everywhere_comes_back(page):
         "%E0%A4%A&&==&=&#%00",
     ],
 )
-def test_what_cannot_be_read_keeps_its_first_value(page, part):
-    assert page.evaluate("address => mxeon.from_address(address)", part) == page.evaluate(
+def test_what_cannot_be_read_keeps_its_first_value(undrawn, part):
+    assert undrawn.evaluate("address => mxeon.from_address(address)", part) == undrawn.evaluate(
         "mxeon.from_address('')"
     )
 
 
-def test_numbers_out_of_range_come_to_its_ends(page):
-    view = page.evaluate("mxeon.from_address('roughness=7&color=-1,0.5,2&elevation=-1e9')")
+def test_numbers_out_of_range_come_to_its_ends(undrawn):
+    view = undrawn.evaluate("mxeon.from_address('roughness=7&color=-1,0.5,2&elevation=-1e9')")
     assert (view["roughness"], view["color"], view["elevation"]) == (1, [0, 0.5, 1], -90)
 
 

@@ -10,7 +10,7 @@ from PIL import Image
 from mxeon.shaders.generation import generate
 from mxeon.shaders.library import examples_folder
 from tests.explorer.browser import until
-from tests.explorer.stage import CLOCK, frame, model_sources, opened_stage, side, view, written
+from tests.explorer.stage import CLOCK, frame, opened_stage, side, view, written
 from tests.support.tolerances import EON_WEIGHT
 
 SAMPLES = 16
@@ -25,11 +25,6 @@ def stage(browser, tmp_path_factory):
         )
         page.evaluate(CLOCK, 0)
         yield page
-
-
-@pytest.fixture(scope="module")
-def sources(stage):
-    return model_sources(stage)
 
 
 def traced(stage, left, right=None, **patch):

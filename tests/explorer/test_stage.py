@@ -12,7 +12,6 @@ from tests.explorer.stage import (
     LIGHTS,
     RHO,
     ROUGHNESS,
-    model_sources,
     opened_stage,
     picture,
     side,
@@ -32,11 +31,6 @@ def stage(browser, tmp_path_factory):
     address = written(tmp_path_factory.mktemp("explorer") / "stage.html", *DOCUMENTS)
     with opened_stage(browser, address) as page:
         yield page
-
-
-@pytest.fixture(scope="module")
-def sources(stage):
-    return model_sources(stage)
 
 
 def parameter_of(row):

@@ -7,16 +7,7 @@ import pytest
 
 from mxeon.io.srgb import srgb_encoded
 from tests.explorer.browser import until
-from tests.explorer.stage import (
-    frame,
-    model_sources,
-    opened_stage,
-    picture,
-    settle,
-    side,
-    view,
-    written,
-)
+from tests.explorer.stage import frame, opened_stage, picture, settle, side, view, written
 
 # Noise of half a step against bands, half a step of rounding, and one for the average of frames.
 STEPS = 2
@@ -43,11 +34,6 @@ def stage(browser, address):
         shown.add_style_tag(content=ALONE)
         shown.evaluate(LISTEN)
         yield shown
-
-
-@pytest.fixture(scope="module")
-def sources(stage):
-    return model_sources(stage)
 
 
 def screen(stage, tmp_path):

@@ -8,7 +8,6 @@ from mxeon.models.core.quadrature import albedo_dir_quadrature
 from mxeon.models.diffuse import eon_rho_from_albedo_avg, eon_rho_from_albedo_normal
 from mxeon.models.sampling import uniform_sample
 from mxeon.models.table import KNOWN_DEFECTS, MODELS
-from tests.explorer.browser import opened
 from tests.support.hemispheres import uniforms
 
 ROWS = MODELS + KNOWN_DEFECTS
@@ -18,12 +17,6 @@ TWINS = 2**12 * 2**-52
 RHO = (0.0, 0.3, 0.8, 1.0)
 PARAMETERS = (0.0, 0.2, 0.7, 1.0)
 COSINES = (0.0, 1e-3, 0.05, 0.3, 0.77, 1.0)
-
-
-@pytest.fixture(scope="module")
-def page(browser, address):
-    with opened(browser, address, drawn=False) as page:
-        yield page
 
 
 @pytest.fixture(scope="module")
@@ -39,9 +32,9 @@ def parameter(row, value):
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row.name)
-def test_values_are_numpys(page, pairs, row):
+def test_values_are_numpys(undrawn, pairs, row):
     wo, wi = pairs
-    values = page.evaluate(
+    values = undrawn.evaluate(
         """([name, wo, wi, rhos, parameters]) => parameters.map(parameter =>
              rhos.map(rho => wo.map((each, k) =>
                mxeon.models.model(name).brdf(each, wi[k], rho, parameter))))""",
@@ -54,8 +47,8 @@ def test_values_are_numpys(page, pairs, row):
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row.name)
-def test_albedos_are_numpys(page, row):
-    dirs, avgs = page.evaluate(
+def test_albedos_are_numpys(undrawn, row):
+    dirs, avgs = undrawn.evaluate(
         """([name, mus, rhos, parameters]) => {
           const of = mxeon.models.model(name);
           return [
@@ -81,10 +74,10 @@ def test_albedos_are_numpys(page, row):
 @pytest.mark.parametrize(
     "invert", [eon_rho_from_albedo_normal, eon_rho_from_albedo_avg], ids=["normal", "average"]
 )
-def test_colors_to_enter_are_numpys(page, invert):
+def test_colors_to_enter_are_numpys(undrawn, invert):
     colors = np.linspace(0.0, 1.0, 21)
     for roughness in PARAMETERS:
-        values = page.evaluate(
+        values = undrawn.evaluate(
             f"([colors, r]) => colors.map(c => mxeon.models.{invert.__name__}(c, r))",
             [colors.tolist(), roughness],
         )
