@@ -36,7 +36,8 @@ def judge():
         yield opened
 
 
-def test_every_mutant_changes_the_sources():
+def test_every_mutant_has_a_name_of_its_own_and_changes_the_sources():
+    assert len(NAMED) == len(TABLE)
     read = cache(lambda file: (trial.ROOT / file).read_text())
     texts = [(each.name, *text) for each in TABLE for text in each.texts().items()]
     assert [name for name, file, text in texts if text == read(file)] == []
