@@ -346,10 +346,7 @@ class Run(Scope):
 
     @cached_property
     def differences(self) -> dict[tuple[str, str, str], float]:
-        """Largest difference of pictures from the reference, by subject, host and library.
-
-        It is relative where the reference exceeds 1.
-        """
+        """Largest difference of pictures, relative where the reference exceeds 1, by subject, host and library."""
         found: dict[tuple[str, str, str], float] = {}
         for each in self.pictures:
             if each.reference is not None:

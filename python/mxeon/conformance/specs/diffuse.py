@@ -79,9 +79,8 @@ class DiffuseModelSpec(ScatteringSpec):
     beside: bool = False  # whether lobes that ignore the color lie beside it
 
     def __post_init__(self) -> None:
-        object.__setattr__(
-            self, "row", _row(self.model, self.node, self.other_models, reference.MODELS)
-        )
+        others = self.other_models + reference.KNOWN_DEFECTS + reference.MODELS
+        object.__setattr__(self, "row", _row(self.model, self.node, others))
 
     @property
     def other_models(self) -> tuple[Model, ...]:
@@ -120,9 +119,9 @@ class DiffuseModelSpec(ScatteringSpec):
 
 
 @lru_cache(maxsize=32)
-def _row(model: str, node: str, others: tuple[Model, ...], models: tuple[Model, ...]) -> PbrNode:
+def _row(model: str, node: str, others: tuple[Model, ...]) -> PbrNode:
     """A model as the row of a node, with all others that it may be."""
-    rows = {each.name: each for each in others + reference.KNOWN_DEFECTS + models}
+    rows = {each.name: each for each in others}
     owners = {each.brdf: each.name for each in (*rows.values(), reference.model(model))}
     variants = []
     for each in rows.values():
