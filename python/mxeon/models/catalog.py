@@ -130,7 +130,11 @@ def model(name: str) -> NodeModel:
 
 
 def model_names() -> tuple[str, ...]:
-    """Names that `model` knows."""
+    """Names that `model` knows.
+
+    >>> model_names()[:2]
+    ('lambert', 'oren_nayar')
+    """
     return tuple(MODELS)
 
 

@@ -22,7 +22,13 @@ def node(name: str) -> PbrNode:
 
 
 def diffuse_node(name: str, category: str) -> PbrNode:
-    """A model of `mxeon.models.table` as the row of a node."""
+    """A model of `mxeon.models.table` as the row of a node.
+
+    >>> row, up = diffuse_node("lambert", "oren_nayar_diffuse_bsdf"), np.array([[0.0, 0.0, 1.0]])
+    >>> inputs = {"color": np.full((1, 3), 0.5), "roughness": np.zeros(1)}
+    >>> (np.pi * row.value(up, up, inputs)).tolist(), row.albedo(up, inputs).tolist()
+    ([[0.5, 0.5, 0.5]], [[0.5, 0.5, 0.5]])
+    """
     model = table.model(name)
     names = ("roughness",) if model.parameter else ()
 
