@@ -96,7 +96,7 @@ def refused(folder):
     return str(error.value)
 
 
-@pytest.mark.parametrize("text", ["", "{}\n", "[]\n", '{"format": 0}\n', "\0\n", '{"format": 7}\n'])
+@pytest.mark.parametrize("text", ["", "{}\n", "[]\n", '{"format": 0}\n', "\0\n", '{"format": 8}\n'])
 def test_what_is_no_journal_is_refused(tmp_path, text):
     (tmp_path / JOURNAL).parent.mkdir()
     (tmp_path / JOURNAL).write_text(text)
