@@ -88,7 +88,7 @@ def test_a_task_whose_picture_is_damaged_is_done_again(tmp_path, content):
 
 def refused(folder):
     """The one line that refuses a journal."""
-    with pytest.raises(ValueError, match=f"{JOURNAL}: must be a journal of format 7") as error:
+    with pytest.raises(ValueError, match=f"{JOURNAL}: must be a journal of format 8") as error:
         read_run(folder)
     with pytest.raises(ValueError, match="as mxeon wrote it; .*; run again without --resume$"):
         journal(folder, resume=True).__enter__()

@@ -29,7 +29,7 @@ from mxeon.report.junit import to_junit
 
 PAGES = "upstream"  # folder beside the report with the pages on defects
 
-JSON_FORMAT = 1
+JSON_FORMAT = 2
 
 NOT_PLAIN = re.compile("[^A-Za-z0-9]+")
 REFERENCE = "reference"
@@ -55,7 +55,7 @@ def to_json(run: Run) -> str:
       under "nodes without a model" the lobes that it adds.
     - hosts: objects of name, version, device.
     - results: objects with the fields of `mxeon.conformance.results.Result`; control is null or an
-      object of variant, figure, caught.
+      object of variant, error, caught.
     - elsewhere: objects of document, check, subject, host, library: failures for inputs that the
       document does not have.
     - pictures: objects of document, element, host, library, scene; exr and png, paths

@@ -6,7 +6,7 @@ import math
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from itertools import groupby
 from os import PathLike
 from pathlib import Path
@@ -21,6 +21,7 @@ from mxeon.conformance.results import (
     VERDICTS,
     WRONG_INSIDE,
     Result,
+    Verdict,
     in_words,
     listed,
 )
@@ -103,8 +104,8 @@ class Report:
     """Content of results.json; see `mxeon.report.to_json`."""
 
     format: int
-    verdict: str
-    counts: dict[str, int]
+    verdict: Verdict
+    counts: dict[Verdict, int]
     sentence: str
     missing: tuple[str, ...]
     errors: tuple[str, ...]
@@ -116,15 +117,13 @@ class Report:
     results: tuple[Result, ...]
     pictures: tuple[ShownPicture, ...]
     curves: Any
-    refused: tuple[str, ...] = ()
-    elsewhere: tuple[dict[str, str], ...] = ()
-    libraries: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
-    compared: tuple[str, ...] = ()
-    seconds: float | None = None
+    refused: tuple[str, ...]
+    elsewhere: tuple[dict[str, str], ...]
+    libraries: dict[str, dict[str, tuple[str, ...]]]
+    compared: tuple[str, ...]
+    seconds: float | None
 
     def __post_init__(self) -> None:
-        if self.verdict not in VERDICTS:
-            raise InputError(f"verdict must be one of {', '.join(VERDICTS)}; got {self.verdict!r}")
         judged = (each for each in self.results if each.library not in self.compared)
         tally = Counter(each.verdict for each in judged)
         if self.counts != {verdict: tally[verdict] for verdict in VERDICTS}:
@@ -142,16 +141,6 @@ def read_results(folder: str | PathLike[str]) -> Report:
         with open(path, encoding="utf-8", opener=regular) as file:
             content = json.load(file)
         if (written := content["format"]) == JSON_FORMAT:
-            # Earlier reports lack some keys.
-            later: dict[str, object] = {
-                "elsewhere": [],
-                "refused": [],
-                "compared": [],
-                "libraries": {},
-                "seconds": None,
-            }
-            results = [{"seconds": None, **each} for each in content["results"]]
-            content = {**later, **content, "results": results}
             return read_strictly(make_converter(), content, Report)
     except OSError as error:
         raise InputError(f"{rule}; {error.strerror}") from None

@@ -25,6 +25,7 @@ from mxeon.conformance.results import (
     Picture,
     Result,
     Run,
+    Verdict,
     counted,
 )
 from mxeon.io.images import difference_scale
@@ -61,7 +62,7 @@ class CheckResults:
     results: tuple[Result, ...]
 
     @property
-    def verdict(self) -> str:
+    def verdict(self) -> Verdict:
         """The worst verdict of the results."""
         return worst(self.results)
 
@@ -74,7 +75,7 @@ class CheckResults:
         return tables
 
 
-def worst(results: Iterable[Result]) -> str:
+def worst(results: Iterable[Result]) -> Verdict:
     """The worst verdict."""
     return min((each.verdict for each in results), key=WORST_FIRST.index)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from mxeon.conformance.backends import own_nodes
-from mxeon.conformance.results import DIRECT, FAILED, NOT_RUN, PASSED, PORTRAIT, Result
+from mxeon.conformance.results import DIRECT, FAILED, NOT_RUN, PASSED, PORTRAIT, Result, Verdict
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs.diffuse import DIFFUSE, SURFACE_LOBES
 from mxeon.errors import InputError
@@ -62,7 +62,7 @@ class Entry:
     portraits: Mapping[str, Portrait]  # by scene
 
     @property
-    def verdict(self) -> str:
+    def verdict(self) -> Verdict:
         """The worst verdict of the cells."""
         verdicts = [cell.verdict for cell in self.cells.values()]
         if FAILED in verdicts:
@@ -133,7 +133,7 @@ def _entries(report: Report, folder: Path) -> Iterator[Entry]:
             # The largest error of the portrait in light from behind, judged as the check of values.
             if BACK in portraits:
                 error, allowed = portraits[BACK].difference, direct.tolerance or 0.0
-                verdict = PASSED if error <= allowed else FAILED
+                verdict: Verdict = PASSED if error <= allowed else FAILED
                 words = PORTRAIT, "Light from behind, at the points of a sphere."
                 about = *words, direct.subject, direct.host, direct.library
                 cells[BACK] = Result(*about, verdict, error, direct.unit, allowed)

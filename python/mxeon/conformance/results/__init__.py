@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TypedDict
+from typing import Final, Literal, TypeAlias, TypedDict, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,8 +18,12 @@ from mxeon.errors import InputError
 from mxeon.hosts.base import Identity
 from mxeon.io.images import difference
 
-PASSED, DIFFERS, FAILED, NOT_RUN = "passed", "differs", "failed", "not run"
-VERDICTS = (PASSED, DIFFERS, FAILED, NOT_RUN)
+Verdict: TypeAlias = Literal["passed", "differs", "failed", "not run"]
+PASSED: Final = "passed"
+DIFFERS: Final = "differs"
+FAILED: Final = "failed"
+NOT_RUN: Final = "not run"
+VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 # In the place of a document: one material of each node, as every host shows it.
 PORTRAIT = "portrait"
 UNJUDGED = "nodes without a model"  # beside the files of a library
@@ -89,7 +93,7 @@ class Result:
     subject: str
     host: str
     library: str
-    verdict: str
+    verdict: Verdict
     error: float | None = None
     unit: str = ""
     tolerance: float | None = None
@@ -106,8 +110,7 @@ class Result:
     seconds: float | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
-        if self.verdict not in VERDICTS:
-            raise InputError(f"verdict must be one of {', '.join(VERDICTS)}; got {self.verdict!r}")
+        assert_verdict(self.verdict)
         if self.error is None:
             return
         if self.tolerance is None:
@@ -145,6 +148,14 @@ class Result:
     def references(self) -> str:
         """Where the defects that it shows are described, in words; "" for none."""
         return "; ".join(f"see docs/upstream/{page}.md" for page in self.pages)
+
+
+def assert_verdict(word: object) -> Verdict:
+    """Return a verdict; raise InputError for any other word."""
+    for verdict in VERDICTS:
+        if word == verdict:
+            return verdict
+    raise InputError(f"verdict must be one of {', '.join(VERDICTS)}; got {word!r}")
 
 
 def of_white(radiance: float) -> str:
@@ -226,8 +237,8 @@ class Summary:
     """The verdict on a whole run."""
 
     # FAILED if any check failed, else NOT_RUN if any or all did not run or are missing, else PASSED.
-    verdict: str
-    counts: dict[str, int]  # number of checks that ended with each of VERDICTS
+    verdict: Verdict
+    counts: dict[Verdict, int]  # number of checks that ended with each of VERDICTS
     sentence: str
 
 
@@ -305,7 +316,7 @@ class Run(Scope):
         if counts[DIFFERS]:
             verb = "differs" if counts[DIFFERS] == 1 else "differ"
             differ = f"; {counts[DIFFERS]} {verb} where the specification leaves it open"
-        verdict = PASSED
+        verdict: Verdict = PASSED
         # Those that a failure keeps from running are part of it.
         idle = sum(
             each.verdict == NOT_RUN and not each.reason.endswith(WRONG_INSIDE) for each in results

@@ -9,13 +9,11 @@ import numpy as np
 from cattrs.gen import override
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from mxeon.conformance.results import Control, Picture, Result
+from mxeon.conformance.results import Picture, Verdict, assert_verdict
 from mxeon.io.files import digest
 from mxeon.io.records import Overrides, strict_converter
 
-# JSON calls the error of a result or a control its figure.
 IMAGES = ("image", "reference", "judged")  # fields of a picture
-FIGURE = {"error": override(rename="figure")}
 
 
 @dataclass(frozen=True)
@@ -46,9 +44,8 @@ def make_converter(folder: Path | None = None) -> cattrs.Converter:
 
     Pictures are written as the names of their files in a folder, if there is one.
     """
-    fields: dict[type, Overrides] = {Control: FIGURE, Result: FIGURE}
     if folder is None:
-        return strict_converter(fields)
+        return _with_verdicts(strict_converter({}))
 
     def name(image: StoredImage | None) -> str | None:
         return None if image is None else image.path.name
@@ -60,10 +57,18 @@ def make_converter(folder: Path | None = None) -> cattrs.Converter:
         return None if name is None else stored(name)
 
     structure = dict.fromkeys(IMAGES, optional) | {"image": stored}
-    fields[Picture] = {
+    fields: Overrides = {
         each: override(unstruct_hook=name, struct_hook=structure[each]) for each in IMAGES
     }
-    return strict_converter(fields)
+    return _with_verdicts(strict_converter({Picture: fields}))
+
+
+def _with_verdicts(converter: cattrs.Converter) -> cattrs.Converter:
+    """A converter whose message for a wrong verdict lists the right ones."""
+    converter.register_structure_hook_func(
+        lambda kind: kind == Verdict, lambda word, _: assert_verdict(word)
+    )
+    return converter
 
 
 def images_of(picture: Picture) -> dict[str, ArrayLike]:

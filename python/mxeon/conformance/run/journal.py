@@ -27,7 +27,7 @@ from mxeon.errors import InputError
 from mxeon.io.files import below, regular, replacing, sync
 from mxeon.io.records import ERRORS
 
-FORMAT = 7
+FORMAT = 8
 JOURNAL = "journal/items.jsonl"
 PREVIOUS, LOCK = "journal.previous", ".journal.lock"  # beside the folder `journal`
 

@@ -23,7 +23,16 @@ from mxeon.conformance.pictures import (
     judge_document,
 )
 from mxeon.conformance.reference import Host as Reference
-from mxeon.conformance.results import DIRECT, FAILED, NOT_RUN, SOURCE, AlbedoCurve, Picture, Result
+from mxeon.conformance.results import (
+    DIRECT,
+    FAILED,
+    NOT_RUN,
+    SOURCE,
+    AlbedoCurve,
+    Picture,
+    Result,
+    Verdict,
+)
 from mxeon.conformance.results.known_issues import with_pages
 from mxeon.conformance.run.plan import (
     CURVE,
@@ -61,7 +70,7 @@ CLAIMS = {check.key: check.claim for check in CHECKS} | {
 }
 
 
-def one_result(task: Task, verdict: str, **words: str) -> Findings:
+def one_result(task: Task, verdict: Verdict, **words: str) -> Findings:
     """Findings of a task that measured nothing, by the reason or the diagnosis."""
     place = (task.check, CLAIMS[task.check], task.subject, task.host, task.library)
     return Findings((Result(*place, verdict, **words),))  # type: ignore[arg-type]

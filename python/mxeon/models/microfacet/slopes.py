@@ -31,6 +31,7 @@ from mxeon.models.core.arrays import (
     within,
 )
 from mxeon.models.core.quadrature import unit_rule
+from mxeon.models.microfacet.ggx import mean_alpha, smith_lambda
 
 # Gauss-Legendre nodes in r per panel, panels, and nodes per quadrant of phi.
 NODES, PANELS, QUADRANT = 20, 3, 20
@@ -49,12 +50,11 @@ FARTHEST_R = 1e12
 class Slopes:
     """Slopes that a direction sees, in polar coordinates r and omega, of which 0 is its own azimuth.
 
-    - `mu_o`: Cosine of the direction.
-    - `stretched`: (alpha_x x, alpha_y y) of the direction.
+    - `mu_o`, `alpha`: Cosine of the direction, and the mean of its two roughnesses.
     """
 
     mu_o: Array
-    stretched: tuple[Array, Array]
+    alpha: Array
     steepness: Array  # A: wo . h / h_z = mu_o + r A cos(omega)
     axis: tuple[Array, Array]  # cosine and sine of phi at omega 0
     roughness: Array
@@ -70,7 +70,7 @@ class Slopes:
             xp.where(tilted, y * alpha_y, 0.0) / length,
         )
         mu_o = at_most(xp.maximum(wo[2], LEAST_MU), 1.0)
-        return cls(mu_o, (x * alpha_x, y * alpha_y), A, axis, roughness)
+        return cls(mu_o, mean_alpha(roughness), A, axis, roughness)
 
     @property
     def scale(self) -> Array:
@@ -84,8 +84,8 @@ class Slopes:
         known = array_namespace(self.roughness) is NUMPY
         return known and bool(np.all(self.roughness[0] == self.roughness[1]))
 
-    def rays(self, omega: Array) -> tuple[Array, Array, tuple[Array, Array]]:
-        """Of each azimuth: B, the last r, and the slope (alpha_x cos(phi), alpha_y sin(phi)) at r = 1.
+    def rays(self, omega: Array) -> tuple[Array, Array, Array]:
+        """Of each azimuth: B and g, with the slope's squared length g r^2, and the last r.
 
         phi = omega + phi_0, tan(phi_0) = alpha_y y / (alpha_x x), joins the azimuths of h and of slopes:
 
@@ -99,38 +99,24 @@ class Slopes:
         (cos_0, sin_0), (alpha_x, alpha_y) = self.axis, self.roughness
         xp = array_namespace(omega)
         cosine, sine = xp.cos(omega), xp.sin(omega)
-        slope = (
-            alpha_x * (cos_0 * cosine - sin_0 * sine),
-            alpha_y * (sin_0 * cosine + cos_0 * sine),
-        )
-        g = _squared(slope)
+        g = (alpha_x * (cos_0 * cosine - sin_0 * sine)) ** 2
+        g = g + (alpha_y * (sin_0 * cosine + cos_0 * sine)) ** 2
         B = self.steepness * cosine
         ahead = xp.abs(B) + root(B * B + self.mu_o * self.mu_o * g)
         ahead = xp.maximum(ahead, self.mu_o / LARGEST_R)
         beyond = ahead / xp.maximum(self.mu_o * g, ahead / LARGEST_R)
-        return B, xp.where(B < 0.0, self.mu_o / ahead, beyond), slope
+        return B, g, xp.where(B < 0.0, self.mu_o / ahead, beyond)
 
-    def facets(self, r: Array, B: Array, slope: tuple[Array, Array]) -> tuple[Array, Array]:
+    def facets(self, r: Array, B: Array, g: Array) -> tuple[Array, Array]:
         """Cosine wo . h, and the integrand without F."""
-        xp = array_namespace(r, B)
+        xp = array_namespace(r, B, g)
         lean = at_least_0(B * r + self.mu_o)
-        stretch = 1.0 + _squared(slope) * r * r
-        double = 2.0 * lean / stretch
-        mu_i = at_most(at_least_0(double - self.mu_o), 1.0)
-        # wi = 2 (wo . h) h - wo, stretched along tangent and bitangent as in `ggx.stretched_length`.
-        along, across = (
-            alpha * double * r * each - of_wo
-            for alpha, each, of_wo in zip(self.roughness, slope, self.stretched, strict=True)
-        )
-        length_i = xp.sqrt(along * along + across * across + mu_i * mu_i)
-        smith = hypot(self.mu_o, self.steepness) * mu_i + length_i * self.mu_o
+        stretch = 1.0 + g * r * r
+        mu_i = at_most(at_least_0(2.0 * lean / stretch - self.mu_o), 1.0)
+        smith = smith_lambda(self.mu_o, self.alpha) * mu_i
+        smith = smith + smith_lambda(mu_i, self.alpha) * self.mu_o
         cosine = at_most(lean / xp.sqrt(stretch), 1.0)
         return cosine, _density(r) * 2.0 * mu_i * lean / smith
-
-
-def _squared(slope: tuple[Array, Array]) -> Array:
-    """g of a slope at r = 1."""
-    return slope[0] ** 2 + slope[1] ** 2
 
 
 def _density(r: Array) -> Array:
@@ -146,9 +132,9 @@ def slope_nodes(wo: Array, roughness: Array, isotropic: bool = False) -> tuple[A
     slopes = Slopes.seen(wo, roughness)
     scale = array_namespace(slopes.scale).maximum(slopes.scale, LEAST_SCALE)
     omega, weight_omega = _quadrants(scale, isotropic or slopes.isotropic)
-    B, limit, slope = slopes.rays(omega)
+    B, g, limit = slopes.rays(omega)
     r, weight = _graded(scale, limit)
-    cosine, values = slopes.facets(r, B, slope)
+    cosine, values = slopes.facets(r, B, g)
     return cosine, weight * weight_omega * values
 
 
@@ -167,11 +153,11 @@ def transmitting_nodes(wo: Array, roughness: Array, squared: Array) -> tuple[Arr
     cosine = (2.0 * squared / mu_o - mu_o) / xp.where(length > 0.0, length, 1.0)
     meeting = arccosine(xp.where(length > 0.0, cosine, 0.0))
     omega, weight_omega = _split_azimuths(slopes, wo, squared, meeting)
-    B, limit, slope = slopes.rays(omega)
-    low, high = _transmitting(mu_o, B, _squared(slope), squared)
+    B, g, limit = slopes.rays(omega)
+    low, high = _transmitting(mu_o, B, g, squared)
     high = xp.minimum(high, limit)
     r, weight = _between(slopes.scale, xp.minimum(low, high), high)
-    cosine, values = slopes.facets(r, B, slope)
+    cosine, values = slopes.facets(r, B, g)
     return cosine, weight * weight_omega * values
 
 
@@ -185,8 +171,7 @@ def refracting_nodes(wo: Array, roughness: Array, squared: Array) -> tuple[Array
     slopes = Slopes.seen(wo, roughness)
     mu_o = slopes.mu_o
     omega, weight_omega = _split_azimuths(slopes, wo, squared, _cone_azimuth(mu_o, squared))
-    B, _, slope = slopes.rays(omega)
-    g = _squared(slope)
+    B, g, _ = slopes.rays(omega)
     # Begin where wi leaves the horizon, end where light is reflected totally.
     low, high = _transmitting(mu_o, B, g, squared)
     xp = array_namespace(mu_o, high)
