@@ -97,6 +97,14 @@ float ggx_cosine_dielectric(float mu, float alpha, float ior)
     return clamp(mu + alpha * (1.0 - x) * N / D, 0.0, 1.0);
 }
 
+// asinh(x), which HLSL lacks; below 0.1 by its series, because log(1 + x) rounds x.
+float eonlib_asinh(float x)
+{
+    float u = abs(x);
+    float u2 = u * u;
+    return sign(x) * (u < 0.1 ? u * (1.0 - u2 * (1.0 / 6.0 - 0.075 * u2)) : log(u + sqrt(u2 + 1.0)));
+}
+
 // Average over the visible facets for an index n below 1, where those beyond the critical angle reflect everything.
 // With tau the cotangent of the angle between view and facet, tau_c the critical one, and tau_m one near their median:
 //   share below the critical angle: S = t^-p, t = 1 + exp(g asinh(k ln(tau_c^2 / tau_m^2)))
@@ -123,7 +131,7 @@ float eonlib_fresnel_dielectric_inside(float mu, float alpha, float ior)
     float median2 = (mu * mu + a_b_k0.x * alpha2) / (s * s + a_b_k0.y * alpha2);
     float k = sqrt(a_b_k0.z + k1_p_g.x * mu * mu * s * s / alpha2);
     float critical = log((1.0 - n2) / max(n2 * median2, 1e-30));  // ln(tau_c^2 / tau_m^2)
-    float t = 1.0 + exp(min(g * asinh(k * critical), 60.0));
+    float t = 1.0 + exp(min(g * eonlib_asinh(k * critical), 60.0));
     float typical = sinh(log(t * exp(0.326707 / p) - 1.0) / g) / k;  // ln(tau^2 / tau_m^2)
     float cosine = 1.0 / sqrt(1.0 + exp(-typical) / median2);
     return 1.0 - (1.0 - eonlib_fresnel_dielectric(cosine, ior)) / pow(t, p);

@@ -13,13 +13,14 @@ import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
 import pytest
 
+from mxeon.conformance.specs import ABSENT, ALL
 from mxeon.hosts.cycles.process import interpreter
 from mxeon.shaders.document.reading import read_document
 from mxeon.shaders.generation import TARGETS, ApproximationWarning, generate
 from mxeon.shaders.generators import ERROR, lines_left_out
 from mxeon.shaders.library import examples_folder, load_library, source_folder
 from mxeon.shaders.nodes import EON, OREN_NAYAR
-from tests.support.availability import available
+from tests.support.availability import available, required
 from tests.support.documents import COMPENSATED, lobe, material
 
 EXAMPLES = sorted(examples_folder().glob("*.mtlx"))
@@ -152,6 +153,52 @@ def test_our_nodes_compile_together_with_every_bsdf_node_of_pbrlib(target, tmp_p
     [shader] = generate(text, target, lights=True)
     validate(shader, target, tmp_path)
     assert all(f"{name}_lobe_" in shader.stages["pixel"] for name in names)
+
+
+def translated(source, language, folder):
+    """What spirv-cross says of a pixel stage that it cannot translate, or glslang of the HLSL; empty if neither."""
+    if missing := [each for each in ("glslangValidator", "spirv-cross") if not shutil.which(each)]:
+        message = f"needs the program {missing[0]}"
+        pytest.fail(message) if "vulkan" in required() else pytest.skip(message)
+    glsl, module, text = (folder / f"pixel.{suffix}" for suffix in ("frag", "spv", language))
+    glsl.write_text(source, encoding="utf-8")
+    steps = [
+        ["glslangValidator", "-V", "--quiet", "-o", module, glsl],
+        ["spirv-cross", module, f"--{language}", "--output", text],
+    ]
+    if language == "hlsl":
+        steps[1] += ["--shader-model", "50"]
+        parsed = folder / "parsed.spv"
+        steps += [
+            [
+                "glslangValidator",
+                "-D",
+                "-V",
+                "--quiet",
+                *["-S", "frag", "-e", "main", "-o"],
+                parsed,
+                text,
+            ]
+        ]
+    for step in steps:
+        done = subprocess.run(step, cwd=folder, capture_output=True, text=True, check=False)
+        if done.returncode:
+            return done.stdout + done.stderr
+    return ""
+
+
+ON_VULKAN = [spec for spec in ALL if spec not in ABSENT]
+
+
+@pytest.mark.whole
+@pytest.mark.parametrize("language", ("hlsl", "msl"))
+@pytest.mark.parametrize("spec", ON_VULKAN, ids=lambda spec: spec.title)
+def test_every_node_and_surface_translates_from_spirv(spec, language, tmp_path):
+    source = pixel(spec.within("eonlib").document(), "vulkan", lights=True)
+    assert translated(source, language, tmp_path) == ""
+    if spec.title == "gltf_pbr" and language == "hlsl":  # control: a function that HLSL lacks
+        wrong = source.replace(" eonlib_asinh(k", " asinh(k")
+        assert wrong != source and "not supported on HLSL" in translated(wrong, language, tmp_path)
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.stem)
