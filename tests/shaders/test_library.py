@@ -13,11 +13,13 @@ import pytest
 from mxeon.errors import InputError
 from mxeon.hosts.cycles.process import interpreter
 from mxeon.shaders import library, library_tree
-from mxeon.shaders.generation import generate
+from mxeon.shaders.generation import TARGETS, generate
 from mxeon.shaders.library_export import export_library
 from mxeon.shaders.nodes import EON, NODEDEFS, OREN_NAYAR
 from tests.support.availability import available
 from tests.support.documents import connected, lobe, material
+from tests.support.verdicts import FAILED, PASSED, Verdicts
+from tests.support.wrong_libraries import copy_of_eonlib, replace_text
 
 SCRIPTS = Path(mx.__file__).parent / "_scripts"
 STOCK = mx.getDefaultDataLibraryFolders()
@@ -115,6 +117,58 @@ def test_whatever_is_missing_of_eonlib_is_named():
             library.assert_ours(document)
         each.setNodeDefString(node)
     assert len(ours) == len(written(EONLIB))
+
+
+@pytest.mark.parametrize("folders", [(OURS, *STOCK), (*STOCK, OURS)], ids=["first", "last"])
+def test_eons_graph_serves_only_the_targets_without_an_implementation_of_their_own(folders):
+    document = loaded(folders)
+    definition = document.getNodeDef("ND_eon_diffuse_bsdf")
+    found = {
+        each.getName(): definition.getImplementation(each.getName())
+        for each in document.getTargetDefs()
+    }
+    graphs = {target for target, each in found.items() if each.isA(mx.NodeGraph)}
+    assert graphs == {"genoslnetwork"} and {"genglsl", "genosl", "genmdl"} < found.keys()
+    for each in document.getImplementations():
+        if each.getNodeDefString() == definition.getName():
+            each.removeAttribute("nodedef")
+    assert all(definition.getImplementation(target).isA(mx.NodeGraph) for target in found)
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_eons_graph_changes_no_text_where_a_target_has_its_own(target, tmp_path):
+    copy = copy_of_eonlib(tmp_path)
+    replace_text(copy, ' nodedef="ND_eon_diffuse_bsdf"', "", "diffuse/eonlib_ng.mtlx")
+    texts = [
+        generate(material(lobe(EON)), target, library=each)[0].stages
+        for each in ("eonlib", str(copy))
+    ]
+    assert texts[0] == texts[1]
+
+
+# Changes of the graph: a text, the text in its place, and checks that a target with only the graph then fails.
+CHANGES = (
+    ('type="boolean" value="true"', 'type="boolean" value="false"', {"value", "environment"}),
+    ('interfacename="weight"', 'value="1.0"', {"inputs", "value"}),
+    ('interfacename="color"', 'value="0.18, 0.18, 0.18"', {"inputs", "value", "environment"}),
+    ('interfacename="roughness"', 'value="0.0"', {"inputs", "value"}),
+    ('interfacename="normal"', 'value="0.0, 0.0, 1.0"', {"inputs"}),
+)
+
+
+@pytest.mark.parametrize("old, new, noticed", [("", "", set()), *CHANGES])
+def test_eons_graph_is_eon_and_the_checks_notice_each_change_of_it(old, new, noticed, tmp_path):
+    copy = copy_of_eonlib(tmp_path)
+    replace_text(copy, ' nodedef="ND_eon_diffuse_bsdf"', "", "diffuse/eonlib_genglsl_impl.mtlx")
+    graph = copy / "diffuse" / "eonlib_ng.mtlx"
+    graph.write_text(graph.read_text().replace(old, new, 1))  # EON's is the first in the file
+    judge = Verdicts()
+    verdicts = {
+        key: judge(key, EON, library=str(copy)).verdict
+        for key in ("inputs", "value", "environment")
+    }
+    assert {key for key, verdict in verdicts.items() if verdict == FAILED} >= noticed
+    assert noticed or {*verdicts.values()} == {PASSED}
 
 
 def parents(element):

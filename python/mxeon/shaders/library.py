@@ -42,8 +42,8 @@ SOURCE_FOLDERS = ("genglsl", "genosl")
 PROFILES = {"cycles": "genosl", "path": "genglsl"}  # and the folder of their sources
 LOADED = 16  # libraries that a process keeps, of some 10 MB each
 
-# Targets of generators; 1.39.5 alone has all.
-TARGETS = ("genglsl", "essl", "genmsl", "genslang", "genosl", "genmdl")
+# Targets of MaterialX 1.39.5; earlier versions have fewer. genoslnetwork takes graphs only.
+TARGETS = ("genglsl", "essl", "genmsl", "genslang", "genosl", "genmdl", "genoslnetwork")
 
 
 @dataclass(frozen=True)
@@ -262,12 +262,13 @@ def implementations(
     definitions = {each.getName(): each for each in data.getTargetDefs()}
     known = [each for each in TARGETS if each in definitions or not definitions]
     parents = {each: definitions[each].getMatchingTargets() for each in definitions}
-    return tuple(
-        _implementation(document, node, heir)
+    chosen = (
+        _implementation(document, node, heir, own=bool(target))
         for node, target in _shipped(library, profile)
         for heir in known
         if target in ("", heir, *parents.get(heir, ()))
     )
+    return tuple(dict.fromkeys(chosen))
 
 
 @cache
@@ -282,10 +283,11 @@ def _shipped(library: str, profile: str | None) -> tuple[tuple[str, str], ...]:
     return tuple(dict.fromkeys(pair for pair in pairs if pair[0]))
 
 
-def _implementation(document: mx.Document, node: str, target: str) -> Implementation:
+def _implementation(document: mx.Document, node: str, target: str, own: bool) -> Implementation:
+    """What a document implements a node with; a graph for every target does not count as a target's own."""
     definition = document.getNodeDef(node)
     element = definition and definition.getImplementation(target)
-    if not element:
+    if not element or (own and not element.getTarget()):
         return Implementation(node, target, "", "")
     return Implementation(node, target, element.getName(), element.getActiveSourceUri())
 
