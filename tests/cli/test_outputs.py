@@ -1,31 +1,183 @@
 # SPDX-License-Identifier: Apache-2.0
 """Outputs that would replace what is read, or files that nobody named."""
 
+import os
+
 import pytest
 
+from mxeon import check, report
 from mxeon.cli import main
-from mxeon.errors import MISUSE
-from tests.support.documents import lobe, material
+from mxeon.errors import MISUSE, PASSED
+from mxeon.kit.export import DESCRIPTION, export_kit, kit_node
+from mxeon.shaders.library_export import export_library
+from mxeon.shaders.nodes import OREN_NAYAR
+from tests.support.command import one_line
+from tests.support.documents import lobe, material, textured
+from tests.support.results import Run
+
+# The files of `inputs`, by what they are for a command.
+FILES = {
+    "document": "look.mtlx",
+    "include": "part.mtlx",
+    "texture": "tiles.png",
+    "set of textures": "tiles.1001.png",
+    "source": "code.glsl",
+    "included source": "code.inc",
+    "environment": "sky.exr",
+    "definitions": "defs/own.mtlx",
+    "library": "lib/nodes.mtlx",
+    "library's source": "lib/nodes.inc",
+    "results": "run/results.json",
+    "picture": "run/pictures/a.exr",
+    "journal": "run/journal/items.jsonl",
+    "kit": f"kit/{DESCRIPTION}",
+    "render": "kit/renders/a.exr",
+    "template": "nodes.md",
+}
+MATERIAL = ("document", "include", "texture", "set of textures", "source", "included source")
+LOADED = ("library", "library's source")
+TRUSTED = (*LOADED, "definitions")
+REPORTED = ("results", "picture", "journal")
+OPTIONS = ("--library", "lib", "--definitions", "defs", "--workers", "0")
+# Each command that writes: its arguments but for the output, the name of an output, and what it reads.
+WRITING = {
+    "render": (
+        ["render", "look.mtlx", "--environment", "sky.exr", *OPTIONS, "--output"],
+        "out.png",
+        (*MATERIAL, *TRUSTED, "environment"),
+    ),
+    "explore": (
+        ["explore", "look.mtlx", "--report", "run", *OPTIONS, "--output"],
+        "out.html",
+        (*MATERIAL, *TRUSTED, *REPORTED),
+    ),
+    "generate": (
+        ["generate", "look.mtlx", "--target", "osl", *OPTIONS, "--outputPath"],
+        "out/look.a.osl",
+        (*MATERIAL, *TRUSTED),
+    ),
+    "doc": (["doc", "nodes.md", "--library", "lib", "--output"], "out.md", (*LOADED, "template")),
+    "report field": (["report", "field", "run", "--output"], "out.html", REPORTED),
+    "check": (["check", "look.mtlx", *OPTIONS, "--report"], "out/junit.xml", (*MATERIAL, *TRUSTED)),
+    "kit check": (["kit", "check", "kit", "--report"], "out/results.json", ("kit", "render")),
+    "kit export": (
+        ["kit", "export", "--library", "lib", "--definitions", "defs"],
+        "out/kit.json",
+        TRUSTED,
+    ),
+}
+EMPTY = '<materialx version="1.39" xmlns:xi="http://www.w3.org/2001/XInclude"></materialx>'
+REPLACING = [(command, kind) for command, (*_, kinds) in WRITING.items() for kind in kinds]
 
 
-@pytest.mark.parametrize(
-    "arguments", (["explore"], ["doc"], ["render", "--host", "gl"]), ids=lambda each: each[0]
-)
-@pytest.mark.parametrize("output", ("same", "link"))
-def test_an_output_that_is_the_input_is_refused(arguments, output, tmp_path, capsys):
-    file, link = tmp_path / "same.exr", tmp_path / "link.exr"
-    file.write_text("text")
-    link.symlink_to(file)
-    assert main([*arguments, str(file), "--output", str(tmp_path / f"{output}.exr")]) == MISUSE
-    assert "output must be another file" in capsys.readouterr().err
-    assert file.read_text() == "text"
+@pytest.fixture
+def inputs(tmp_path, monkeypatch):
+    """The working folder, with a file of each kind; no engine starts there."""
+    for name in FILES.values():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(name)
+    look = textured(["tiles.png", "tiles.&lt;UDIM&gt;.png"])
+    parts = '<xi:include href="part.mtlx"/><implementation name="c" file="code.glsl"/>'
+    head, tag, rest = look.partition("<materialx")
+    rest = ' xmlns:xi="http://www.w3.org/2001/XInclude"' + rest.replace(">", f">{parts}", 1)
+    (tmp_path / "look.mtlx").write_text(head + tag + rest)
+    (tmp_path / "code.glsl").write_text('#include "code.inc"')
+    part = '<xi:include href="nodes.inc"/>'
+    (tmp_path / "lib" / "nodes.mtlx").write_text(EMPTY.replace("><", f">{part}<", 1))
+    for each in ("lib/nodes.inc", "defs/own.mtlx"):
+        (tmp_path / each).write_text(EMPTY)
+    monkeypatch.chdir(tmp_path)
+
+    def start(*_):
+        raise AssertionError
+
+    monkeypatch.setattr("mxeon.hosts.open_engine", start)
+    return tmp_path
+
+
+def content(folder):
+    return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def refused(arguments, folder, capsys):
+    """The one line that refuses arguments, which changes no file in a folder."""
+    before = content(folder)
+    assert main(arguments) == MISUSE
+    assert content(folder) == before
+    return one_line(capsys.readouterr().err)
+
+
+@pytest.mark.parametrize("command, kind", REPLACING)
+def test_no_output_is_a_file_that_is_read(command, kind, inputs, capsys):
+    arguments, name, _ = WRITING[command]
+    output = inputs / name
+    output.parent.mkdir(exist_ok=True)
+    for link in (os.symlink, os.link):
+        link(inputs / FILES[kind], output)
+        line = refused([*arguments, str(output.parent if "/" in name else output)], inputs, capsys)
+        assert "output must not replace a file that is read" in line and FILES[kind] in line
+        output.unlink()
+
+
+@pytest.mark.parametrize("spelling", ["tiles.png", "lib/../tiles.png", "./tiles.png"])
+def test_an_output_of_the_name_of_an_input_is_refused(spelling, inputs, capsys):
+    line = refused([*WRITING["render"][0], spelling], inputs, capsys)
+    assert "output must not replace a file that is read" in line
+
+
+HOLDING = {
+    ".": "check look.mtlx --report",
+    "defs": "check look.mtlx --definitions defs --report",
+    "lib": "check look.mtlx --library lib --report",
+    "kit": "kit check kit --report",
+    "kit/renders": "kit check kit --report",
+}
+
+
+@pytest.mark.parametrize("folder, command", HOLDING.items())
+@pytest.mark.parametrize("through", ["name", "link"])
+def test_a_report_goes_to_no_folder_that_holds_what_is_read(
+    folder, command, through, inputs, capsys
+):
+    if through == "link":
+        (inputs / "there").symlink_to(inputs / folder)
+        folder = "there"
+    line = refused([*command.split(), folder], inputs, capsys)
+    assert "must be a folder without files that are read" in line
+
+
+def test_functions_that_write_refuse_likewise(inputs):
+    writing = (
+        lambda: check(["look.mtlx"], folder="."),
+        lambda: check(["look.mtlx"], folder=""),
+        lambda: export_kit("kit", node=kit_node(OREN_NAYAR, library="lib")),
+        lambda: report.write(Run("1.0", {}, (), (), documents=(inputs / "look.mtlx",)), "out"),
+        lambda: export_library(""),
+    )
+    os.mkdir("out")
+    os.link("tiles.png", "out/results.json")
+    os.link("lib/nodes.mtlx", "kit/sphere.obj")
+    before = content(inputs)
+    for write in writing:
+        with pytest.raises(ValueError, match="files? that (is|are) read|must have a name"):
+            write()
+    assert content(inputs) == before
+
+
+def test_a_second_run_replaces_its_own_outputs(tmp_path, monkeypatch):
+    """Also into a folder of a library or a report that is read."""
+    monkeypatch.chdir(tmp_path)
+    os.mkdir("lib")
+    (tmp_path / "lib" / "own.mtlx").write_text('<materialx version="1.39"></materialx>')
+    (tmp_path / "t.md").write_text("@MX_TABLE_sheen_bsdf@")
+    for _ in range(2):
+        assert main(["doc", "t.md", "--library", "lib", "--output", "lib/nodes.md"]) == PASSED
 
 
 def test_a_kit_is_written_over_a_kit_alone(tmp_path, monkeypatch, capsys):
     (tmp_path / "README.md").write_text("mine")
     monkeypatch.chdir(tmp_path)
-    for folder in (".", ""):
-        assert main(["kit", "export", folder]) == MISUSE
+    assert main(["kit", "export", "."]) == MISUSE
     assert "must be new, empty or a kit" in capsys.readouterr().err
     assert [each.name for each in tmp_path.iterdir()] == ["README.md"]
 

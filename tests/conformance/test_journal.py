@@ -135,15 +135,30 @@ def test_a_run_that_was_never_begun_is_begun(tmp_path):
     assert read_journal(tmp_path) == (PLAN, {})
 
 
-def test_a_new_run_keeps_the_old_journal_beside(tmp_path):
-    path = kept(tmp_path, 0)
+def test_a_new_run_keeps_the_old_one_in_a_folder(tmp_path):
+    path = kept(tmp_path, 0, 1, 2)
     (tmp_path / LOCK).unlink(missing_ok=True)
+    (tmp_path / "junit.xml").write_text("old")
     before, files = path.read_bytes(), sorted(tmp_path.rglob("*"))
     journal(tmp_path)
     assert sorted(tmp_path.rglob("*")) == files  # untouched before it is entered
     with journal(tmp_path) as new:
-        assert new.findings == {}
-    assert (tmp_path / PREVIOUS / path.name).read_bytes() == before
+        assert new.findings == {} and not (tmp_path / "junit.xml").exists()
+    assert (tmp_path / PREVIOUS / JOURNAL).read_bytes() == before
+    assert (tmp_path / PREVIOUS / "junit.xml").read_text() == "old"
+
+
+def test_an_interrupted_run_is_continued_or_kept(tmp_path):
+    path = kept(tmp_path, 0)
+    before, words = (
+        path.read_bytes(),
+        "holds an interrupted run with 2 of 3 tasks left: --resume continues",
+    )
+    with pytest.raises(ValueError, match=words):
+        journal(tmp_path).__enter__()
+    assert path.read_bytes() == before
+    with journal(tmp_path, resume=True) as resumed:
+        assert list(resumed.findings) == [0]
 
 
 def test_one_folder_has_one_writer(tmp_path):

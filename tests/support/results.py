@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Results that are made, not measured: for tests of what is done with them; and journals of runs."""
 
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -47,8 +48,11 @@ FINDINGS = Findings(
 )
 
 
+@contextmanager
 def journal(folder, plan=PLAN, **options):
-    return Journal(folder, plan, **options)
+    with Journal(folder, **options) as written:
+        written.begin(plan)
+        yield written
 
 
 def kept(folder, *results):

@@ -5,6 +5,7 @@ A sub-command imports what it needs when it runs, so that `mxeon --help` answers
 """
 
 import argparse
+import re
 import resource
 import sys
 import traceback
@@ -83,7 +84,7 @@ def _run(arguments: Sequence[str]) -> int:
 
 
 def _check_encoding(arguments: Sequence[str]) -> None:
-    """Raise InputError unless all arguments are valid text: C++ libraries cannot open other file names."""
+    """Raise InputError unless all arguments are text: C++ libraries cannot open other file names."""
     for argument in arguments:
         try:
             argument.encode()
@@ -91,3 +92,5 @@ def _check_encoding(arguments: Sequence[str]) -> None:
             raise InputError(f"arguments must be UTF-8, file names too; got {argument!r}") from None
         if "\0" in argument:  # from Python alone: no shell passes it on
             raise InputError(f"arguments must have no null character; got {argument!r}")
+        if not argument or re.fullmatch("--[^=]+=", argument):
+            raise InputError(f"arguments must not be empty; got {' '.join(map(repr, arguments))}")

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from mxeon import errors
-from mxeon.cli.output import fail
+from mxeon.cli.output import fail, show
 from mxeon.conformance.pictures import DOCUMENT_KEY
 from mxeon.conformance.results import (
     DIFFERS,
@@ -75,7 +75,7 @@ def show_run(run: Run, options: argparse.Namespace, said: Collection[str] = ()) 
         checks = [*map(_line, run.results), *files] if options.full else []
         print(printable("\n".join([*checks, *answer(run, options.full)])))
         if page:
-            print(f"report: {page}")
+            show(f"report: {page}")
     if run.refused:
         return fail(errors.MISUSE, *(each for each in run.errors if each not in said))
     return STATUSES[run.summary.verdict]

@@ -6,11 +6,12 @@ import itertools
 import os
 import sys
 import textwrap
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from importlib import import_module
 from typing import Any, NoReturn
 
 from mxeon.errors import MISUSE, InputError, assert_known, one_line
+from mxeon.io.files import AnyPath
 from mxeon.jobs import TIMEOUT
 from mxeon.names import meant
 from mxeon.shaders.document.policy import LIMITS, SEARCH_PATH, Policy, environment_path
@@ -189,11 +190,15 @@ def use_materialx(folder: str | None) -> None:
         raise InputError(f"{rule}; {error}") from None
 
 
-def assert_other(output: str | None, files: Iterable[str | None]) -> None:
-    """Raise InputError if an output would replace one of the files that are read for it."""
-    there = [file for file in (output, *files) if file and os.path.exists(file)]
-    if there[:1] == [output] and any(os.path.samefile(there[0], file) for file in there[1:]):
-        raise InputError(f"output must be another file than the one to read; got {output}")
+def inputs(
+    options: argparse.Namespace, documents: Sequence[str] = (), *others: AnyPath | None
+) -> Iterator[AnyPath]:
+    """Every file that a command may read, for `mxeon.io.files.check_output`."""
+    from mxeon.shaders.document.references import files_read
+
+    yield from filter(None, others)
+    known = policy(options) if "path" in options else Policy()
+    yield from files_read(documents, known, [options.library]).values()
 
 
 def add_policy(command: argparse.ArgumentParser, runs_code: bool = False, **defaults: int) -> None:

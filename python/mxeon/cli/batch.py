@@ -84,13 +84,17 @@ class Source:
 ENDINGS = {"pixel": ".frag", "vertex": ".vert"}  # as generateshader has them
 
 
+def stem(file: str) -> str:
+    """How the names of a document's shaders begin."""
+    return " ".join(printable(Path(file).stem).split())
+
+
 def shader_texts(source: Source, element: str | None, **options: Any) -> dict[str, str]:
     """Shader texts of a document by file name; options are those of `mxeon.generate`."""
     from mxeon.shaders.generation import generate
 
-    stem = " ".join(printable(Path(source.file).stem).split())
     return {
-        f"{stem}.{shader.name}.{source.target}{ENDINGS[stage] * (len(shader.stages) > 1)}": text
+        f"{stem(source.file)}.{shader.name}.{source.target}{ENDINGS[stage] * (len(shader.stages) > 1)}": text
         for shader in generate(source.file, source.target, element, **options)
         for stage, text in shader.stages.items()
     }

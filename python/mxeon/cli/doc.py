@@ -43,11 +43,12 @@ def add_parser(commands: arguments.Commands) -> None:
 def run(options: argparse.Namespace) -> int:
     """Fill or compare; return FAILED if a specification differs."""
     from mxeon.doc import MARKER, compare, fill, library_tables, read_tables
-    from mxeon.io.files import regular
+    from mxeon.io.files import check_output, regular
 
     if options.json and not options.compare:
         raise InputError("--json must come with --compare: a template has no differences")
-    arguments.assert_other(options.output, [options.file])
+    if options.output is not None:
+        check_output(options.output, arguments.inputs(options, [], options.file))
     with open(options.file, encoding="utf-8", opener=regular) as file:
         try:
             text = file.read()

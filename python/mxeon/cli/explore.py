@@ -6,7 +6,7 @@ from functools import partial
 
 from mxeon.cli import arguments
 from mxeon.cli.batch import run_batch
-from mxeon.cli.output import fail, status_of, warn
+from mxeon.cli.output import fail, show, status_of, warn
 from mxeon.errors import PASSED
 
 MATERIALS = 300  # of a document: a page of 3 MB, in 10 s
@@ -41,11 +41,13 @@ def add_parser(commands: arguments.Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Write the page and print its path; return the exit status."""
+    from mxeon.conformance.results import report_files
     from mxeon.conformance.run import read_run
     from mxeon.explorer import document_sources, page, page_data
-    from mxeon.io.files import write_text
+    from mxeon.io.files import check_output, write_text
 
-    arguments.assert_other(options.output, options.files)
+    read = report_files(options.report) if options.report else ()
+    check_output(options.output, arguments.inputs(options, options.files, *read), [".html"])
     results = read_run(options.report).results if options.report else ()
     work = partial(document_sources, policy=arguments.policy(options), library=options.library)
     documents = list(run_batch(work, options.files, options.workers, options.timeout))
@@ -58,5 +60,5 @@ def run(options: argparse.Namespace) -> int:
         if not data.judged:
             warn("the host gl does not run here: the page leaves open which models the nodes are")
         write_text(options.output, page(data))
-        print(options.output)
+        show(options.output)
     return min((fail(*status_of(error)) for error in errors), default=PASSED)

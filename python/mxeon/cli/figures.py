@@ -8,7 +8,7 @@ import argparse
 import sys
 
 from mxeon.cli import arguments
-from mxeon.cli.output import Progress
+from mxeon.cli.output import Progress, show
 from mxeon.errors import PASSED, NotRun
 
 
@@ -20,6 +20,9 @@ def add_parser(commands: arguments.Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Write the figures and print the path of their page; return the exit status."""
+    from mxeon.io.files import check_output
+    from mxeon.shaders.document.policy import Policy
+    from mxeon.shaders.document.references import files_read
     from mxeon.shaders.library import data_folder
 
     checkout = data_folder()
@@ -28,8 +31,10 @@ def run(options: argparse.Namespace) -> int:
             "figures: they are not part of the wheel; "
             "install a checkout of the repository: pip install --editable '.[report]'"
         )
+    names = ["figures/*", "paper_checked.md"]
+    check_output(options.folder, files_read([], Policy()).values(), replaced=names)
     sys.path.append(str(checkout))  # as the last folder, which hides no package
     from tools.paper import figures
 
-    print(figures(options.folder, Progress("mxeon figures", lambda _: "")))
+    show(figures(options.folder, Progress("mxeon figures", lambda _: "")))
     return PASSED

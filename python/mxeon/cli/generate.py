@@ -2,13 +2,14 @@
 """`mxeon generate`: write shader sources."""
 
 import argparse
+import glob
 import json
 from contextlib import closing
 from functools import partial
 
 from mxeon.cli import arguments
-from mxeon.cli.batch import Source, run_batch, shader_texts
-from mxeon.cli.output import fail, status_of, warn
+from mxeon.cli.batch import Source, run_batch, shader_texts, stem
+from mxeon.cli.output import fail, show, status_of, warn
 from mxeon.errors import PASSED, InputError, as_output
 from mxeon.shaders.targets import CLASSES
 
@@ -51,8 +52,11 @@ def add_parser(commands: arguments.Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Write the shaders of all documents for all targets; return the exit status."""
-    from mxeon.io.files import below, write_text
+    from mxeon.io.files import below, check_output, write_text
 
+    stems = {glob.escape(stem(file)) for file in options.files}
+    names = [f"{each}.*.{target}*" for each in stems for target in options.target]
+    check_output(options.outputPath, arguments.inputs(options, options.files), replaced=names)
     sources = [Source(file, target) for file in options.files for target in options.target]
     work = partial(
         shader_texts,
@@ -80,6 +84,9 @@ def run(options: argparse.Namespace) -> int:
             written += map(str, files)
     lines = [line for error in errors for line in status_of(error)[1:]]
     outcome = {"files": written, "errors": lines}
-    for line in [as_output(json.dumps(outcome))] if options.json else written:
-        print(line)
+    if options.json:
+        print(as_output(json.dumps(outcome)))
+    else:
+        for each in written:
+            show(each)
     return min((fail(*status_of(error)) for error in errors), default=PASSED)

@@ -2,9 +2,10 @@
 """`mxeon kit`: test a renderer by its images of the conformance kit."""
 
 import argparse
+from contextlib import nullcontext
 
 from mxeon.cli import arguments
-from mxeon.cli.output import Progress, warn
+from mxeon.cli.output import Progress, show, warn
 from mxeon.errors import PASSED, PackageError
 from mxeon.shaders.nodes import OREN_NAYAR
 
@@ -57,7 +58,7 @@ def run_export(options: argparse.Namespace) -> int:
     from mxeon.kit.noise import student_quantile
 
     node = kit_node(options.node, arguments.definitions(options), options.library)
-    print(export_kit(options.folder, options.size, node))
+    show(export_kit(options.folder, options.size, node))
     try:
         student_quantile()
     except PackageError as error:
@@ -68,8 +69,14 @@ def run_export(options: argparse.Namespace) -> int:
 def run_check(options: argparse.Namespace) -> int:
     """Check images of the kit; return the exit status."""
     from mxeon.cli.answer import show_run
-    from mxeon.kit.check import check_kit
+    from mxeon.conformance.results import REPORT
+    from mxeon.conformance.run.journal import Journal
+    from mxeon.io.files import check_output
+    from mxeon.kit.check import check_kit, kit_files
 
     progress = Progress("mxeon kit check", lambda question: str(question.title))
-    result = check_kit(options.folder, options.renderer, progress, options.claims)
+    if options.report:
+        check_output(options.report, kit_files(options.folder), replaced=REPORT, apart=True)
+    with Journal(options.report) if options.report else nullcontext():
+        result = check_kit(options.folder, options.renderer, progress, options.claims)
     return show_run(result, options)

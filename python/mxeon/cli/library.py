@@ -5,6 +5,7 @@ import argparse
 from pathlib import Path
 
 from mxeon.cli import arguments
+from mxeon.cli.output import show
 from mxeon.errors import PASSED
 
 
@@ -44,9 +45,9 @@ def run(options: argparse.Namespace) -> int:
         if copy.is_dir():
             _explain(copy, copy / "documents")
         else:
-            print(copy)
+            show(copy)
     elif options.folder:
-        print(eonlib_folder())
+        show(eonlib_folder())
     elif options.verify:
         document = load_library()
         for one in implementations(document):
@@ -61,6 +62,7 @@ def _explain(folder: Path, documents: Path) -> None:
     """Print a folder of eonlib, and how each client loads it."""
     from mxeon.shaders.library_export import recipes
 
-    print(f"folder                {folder}")
-    print(f"diffuse nodes alone   {documents / 'diffuse'}")
-    print(recipes(folder))
+    show(f"folder                {folder}")
+    show(f"diffuse nodes alone   {documents / 'diffuse'}")
+    for line in recipes(folder).split("\n"):
+        show(line)

@@ -2,6 +2,7 @@
 """Messages on standard error, progress, and closed streams."""
 
 import os
+import re
 import shutil
 import sys
 import time
@@ -9,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Sized
 from io import TextIOWrapper
 from typing import IO, Any
 
-from mxeon.errors import MISUSE, DocumentError, one_line
+from mxeon.errors import MISUSE, DocumentError, one_line, printable
 
 
 def open_streams() -> None:
@@ -65,6 +66,11 @@ def fail(status: int, *messages: object) -> int:
     for message in messages:
         _print_line(one_line(message))
     return status
+
+
+def show(name: object) -> None:
+    """Print the name of an output on one line that steers no terminal and no runner."""
+    print(re.sub(r"[\t\n\r]", "\ufffd", printable(str(name))))
 
 
 def warn(message: object) -> None:

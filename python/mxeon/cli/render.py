@@ -7,7 +7,7 @@ from functools import partial
 
 from mxeon.cli import arguments
 from mxeon.cli.batch import picture, run_batch
-from mxeon.cli.output import warn
+from mxeon.cli.output import show, warn
 from mxeon.errors import PASSED, InputError
 from mxeon.hosts import HOSTS
 from mxeon.shaders.scene import Paths
@@ -82,9 +82,11 @@ def add_parser(commands: arguments.Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Write a picture and print its path; return the exit status."""
-    from mxeon.io.images import write_picture
+    from mxeon.io.files import check_output
+    from mxeon.io.images import PICTURES, write_picture
 
-    arguments.assert_other(options.output, [options.file, options.environment])
+    inputs = arguments.inputs(options, [options.file], options.environment)
+    check_output(options.output, inputs, PICTURES)
     if not os.path.isdir(folder := os.path.dirname(os.path.abspath(options.output))):
         rule = "output must lie in a folder that exists"
         raise InputError(f"{rule}; got {options.output}: make {folder} first")
@@ -101,5 +103,5 @@ def run(options: argparse.Namespace) -> int:
     if result.error:
         raise result.error
     write_picture(options.output, *result.value)
-    print(options.output)
+    show(options.output)
     return PASSED

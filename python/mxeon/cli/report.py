@@ -6,7 +6,8 @@ import json
 import os
 
 from mxeon.cli import arguments
-from mxeon.errors import FAILED, NOT_RUN, PASSED, InputError, as_output, one_line
+from mxeon.cli.output import show
+from mxeon.errors import FAILED, NOT_RUN, PASSED, InputError, as_output
 
 
 def add_parser(commands: arguments.Commands) -> None:
@@ -47,13 +48,18 @@ def run_make(options: argparse.Namespace) -> int:
 
 def run_field(options: argparse.Namespace) -> int:
     """Write the page that compares renderers; return PASSED: the page shows what failed."""
-    from mxeon.survey.field import read_field, write_field
+    from mxeon.conformance.results import report_files
+    from mxeon.io.files import check_output
+    from mxeon.survey.field import read_field, reports_in, write_field
 
+    reports = (each for folder in options.reports for each in reports_in(folder))
+    read = (file for each in reports for file in report_files(each))
+    check_output(options.output, read, [".html"])
     if os.path.islink(options.output):  # through which another file would be replaced
         raise InputError(f"output must not be a link; got {options.output}")
     entries = read_field(options.reports)
     page = write_field(entries, options.output)
-    print(one_line(f"field: {page}, {len(entries)} rows"))
+    show(f"field: {page}, {len(entries)} rows")
     return PASSED
 
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, replace
 from importlib import import_module
 from typing import cast
@@ -93,11 +94,19 @@ def open_host(name: str, *others: Row) -> Host:
     raise Unsupported(f"{name}: this renderer only has its own materials; gl renders MaterialX's")
 
 
+_OPENED: set[int] = set()  # processes that opened an engine: this one, and those it was forked from
+
+
 def open_engine(name: str, *others: Row) -> Engine:
     """Start the host or renderer of a name, or raise NotRun; `others` are additional rows."""
     from mxeon.shaders.generation import TARGETS
 
     row = host_row(name, *others)
+    if _OPENED - {os.getpid()}:
+        raise NotRun(
+            f"{name}: this process was forked from one that had opened an engine, whose threads are "
+            "missing here: pass workers=1, or start processes by the method spawn"
+        )
     if not row.module:
         raise NotRun(f"{name}: running it needs {row.needs}; its text is checked")
     if row.target and row.target not in TARGETS:
@@ -109,4 +118,5 @@ def open_engine(name: str, *others: Row) -> Engine:
             f"{name}: MaterialX must have a generator for {row.target}; {mx.__version__} has none: "
             f"pip install materialx=={TESTED[-1]}"
         )
+    _OPENED.add(os.getpid())
     return cast(Engine, import_module(row.module).Host())

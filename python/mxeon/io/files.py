@@ -5,8 +5,9 @@ import errno
 import hashlib
 import os
 import stat
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
+from functools import cache
 from pathlib import Path
 from secrets import token_hex
 
@@ -27,6 +28,57 @@ def below(folder: AnyPath, name: AnyPath) -> Path:
         if path.is_symlink():
             raise InputError(f"{path}: must not be a link, which leads to another file; remove it")
     return path
+
+
+def check_output(
+    output: AnyPath,
+    inputs: Iterable[AnyPath] = (),
+    endings: Sequence[str] = (),
+    replaced: Sequence[str] = (),
+    apart: bool = False,
+) -> None:
+    """Raise InputError or OSError unless an output can be written and replaces none of the inputs.
+
+    Files are compared by identity, so links and other spellings of a name count too. `inputs` is only
+    iterated if the output exists. An output with `replaced` is a folder in which files that match these
+    patterns are replaced; with `apart`, no input may lie in that folder at all.
+    """
+    place = Path(output)
+    if not os.fspath(output):
+        raise InputError("output must have a name; got ''")
+    if not replaced:
+        if endings and place.suffix.lower() not in endings:
+            raise InputError(f"output must end in {' or '.join(endings)}; got {str(output)!r}")
+        if place.exists() and not place.is_file():  # replacing a device would destroy it
+            raise OSError(errno.EINVAL, "not a regular file", str(output))
+        home, targets = Path(os.path.realpath(place)).parent, [place]
+    else:
+        home = Path(os.path.realpath(place))
+        targets = [file for pattern in replaced for file in place.glob(pattern)]
+    while not os.path.lexists(home):
+        home = home.parent
+    if not home.is_dir():
+        raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(home))
+    if not os.access(home, os.W_OK | os.X_OK):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(home))
+    known, whole = {*map(_identity, targets)} - {None}, _identity(place) if apart else None
+    parent = cache(_identity)
+    for file in inputs if known or whole else ():
+        if _identity(file) in known:
+            raise InputError(f"output must not replace a file that is read; {output} is {file}")
+        paths = (Path(os.path.abspath(file)), Path(os.path.realpath(file)))
+        if whole and any(whole == parent(each) for path in paths for each in path.parents):
+            rule = "must be a folder without files that are read"
+            raise InputError(f"{output}: {rule}; it holds {file}: name another folder")
+
+
+def _identity(path: AnyPath) -> tuple[int, int] | None:
+    """The identity of the file or folder that a path leads to, if there is one."""
+    try:
+        status = os.stat(path)
+    except (OSError, ValueError):
+        return None
+    return status.st_dev, status.st_ino
 
 
 @contextmanager

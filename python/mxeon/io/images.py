@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.errors import ImageError, InputError, printable
-from mxeon.io.files import AnyPath, assert_regular, replacing
+from mxeon.errors import ImageError, printable
+from mxeon.io.files import AnyPath, assert_regular, check_output, replacing
 from mxeon.io.srgb import Codes, srgb_encoded
 
 if TYPE_CHECKING:
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Pixels = NDArray[np.float32]
 
+PICTURES = (".exr", ".png")  # endings of files that `write_picture` writes
 LARGEST = 2**28  # values of an image: 1 GiB as float32, and the four channels of 8192 x 8192
 PNG_END = b"IEND\xaeB`\x82"  # the last chunk of a PNG file
 # Run lengths: 0.6 of the time of zip, and an eighth more bytes.
@@ -185,11 +186,9 @@ def without_threads() -> Iterator[None]:
 
 def write_picture(path: AnyPath, image: ArrayLike, metadata: Mapping[str, object]) -> None:
     """Write a linear image as EXR or PNG by the ending of `path`; see `write_exr`, `write_png`."""
-    writers = {".exr": write_exr, ".png": write_png}
-    ending = Path(path).suffix.lower()
-    if ending not in writers:
-        raise InputError(f"output must end in {' or '.join(writers)}; got {str(path)!r}")
-    writers[ending](path, image, metadata)
+    check_output(path, endings=PICTURES)
+    writers = dict(zip(PICTURES, (write_exr, write_png), strict=True))
+    writers[Path(path).suffix.lower()](path, image, metadata)
 
 
 def write_exr(path: AnyPath, image: ArrayLike, metadata: Mapping[str, object]) -> None:

@@ -83,6 +83,12 @@ def check_kit(
     )
 
 
+def kit_files(folder: str | PathLike[str]) -> Iterator[Path]:
+    """The files that `check_kit` reads."""
+    yield Path(folder, DESCRIPTION)
+    yield from Path(folder, RENDERS).glob("*")
+
+
 def _size(folder: Path) -> int:
     file = folder / DESCRIPTION
     kit = _description(file)

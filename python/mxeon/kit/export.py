@@ -14,11 +14,13 @@ from typing import Any
 
 import mxeon
 from mxeon.errors import InputError
-from mxeon.io.files import below, write_text
+from mxeon.io.files import below, check_output, write_text
 from mxeon.kit.mesh import Mesh, to_obj, unit_sphere
 from mxeon.kit.usd import mesh_layer, scene_layer
 from mxeon.kit.views import MATERIALS, USUAL, View, views
 from mxeon.names import meant
+from mxeon.shaders.document.policy import Policy
+from mxeon.shaders.document.references import files_read
 from mxeon.shaders.library import load_library
 from mxeon.shaders.nodes import FLAG, INPUT_TYPES, OREN_NAYAR, material_text
 from mxeon.shaders.scene import Scene
@@ -36,6 +38,7 @@ class KitNode:
     category: str = OREN_NAYAR
     definition: str = f"ND_{OREN_NAYAR}"  # name of its nodedef
     flagged: bool = True  # whether it has the input energy_compensation
+    folders: tuple[str, ...] = ()  # of the library and the definitions that it was read from
 
 
 def kit_node(category: str, definitions: tuple[str, ...] = (), library: str = "eonlib") -> KitNode:
@@ -47,7 +50,8 @@ def kit_node(category: str, definitions: tuple[str, ...] = (), library: str = "e
         ports = {port.getName(): port.getType() for port in each.getActiveInputs()}
         missing = [name for name, kind in needed.items() if ports.get(name) != kind]
         if each.getType() == "BSDF" and not missing:
-            return KitNode(category, each.getName(), ports.get(FLAG) == "boolean")
+            flagged = ports.get(FLAG) == "boolean"
+            return KitNode(category, each.getName(), flagged, (library, *definitions))
         lacks = f", which lacks {' and '.join(missing)}" if missing else ", which is none"
     known = {each.getNodeString() for each in data.getNodeDefs() if each.getType() == "BSDF"}
     remedy = lacks or meant(category, known) or ": load its definition by --definitions FOLDER"
@@ -63,8 +67,8 @@ def export_kit(folder: str | PathLike[str], size: int = USUAL, node: KitNode = K
     InputError for a size out of range, or a folder that has no name, holds something else than a kit, or a
     link under a name of the kit's files.
     """
-    if not str(folder):
-        raise InputError("folder must have a name; got ''")
+    read = files_read([], Policy(), node.folders).values()
+    check_output(folder, read, replaced=["*", "*/*"], apart=True)
     known = os.path.lexists(Path(folder, DESCRIPTION))
     if os.path.isdir(folder) and os.listdir(folder) and not known:
         raise InputError(f"{folder}: must be new, empty or a kit; it holds other files")

@@ -18,11 +18,11 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from mxeon.conformance.results import Picture, Run
+from mxeon.conformance.results import JUNIT, PAGE, REPORT, RESULTS, Picture, Run
 from mxeon.conformance.results.known_issues import issues_of
-from mxeon.conformance.results.records import make_converter
+from mxeon.conformance.results.records import StoredImage, images_of, make_converter
 from mxeon.errors import PackageError, install
-from mxeon.io.files import below, replacing, write_text
+from mxeon.io.files import AnyPath, below, check_output, replacing, write_text
 from mxeon.io.images import without_threads, write_exr, write_png
 from mxeon.report.formats import page_file
 from mxeon.report.junit import to_junit
@@ -142,12 +142,14 @@ def write(run: Run, folder: str | PathLike[str]) -> Path:
     on defects that explain failures. Each file is written whole or not at all, the page last: if it
     cannot be made, all other files exist.
 
-    Returns the page, report.html. Raises OSError if a file cannot be written, and ImportError if jinja2
-    or matplotlib, the `report` extra, is not installed.
+    Returns the page, report.html. Raises InputError if it would replace a document, a library or the
+    journal of the run; OSError if a file cannot be written, and ImportError if jinja2 or matplotlib, the
+    `report` extra, is not installed.
     """
+    check_output(folder, _inputs(run), replaced=REPORT)
     folder = Path(folder)
-    write_text(below(folder, "results.json"), to_json(run))
-    write_text(below(folder, "junit.xml"), to_junit(run))
+    write_text(below(folder, RESULTS), to_json(run))
+    write_text(below(folder, JUNIT), to_junit(run))
     pictures = _with_references(run.pictures)
     stems = [f"pictures/{stem}" for stem in image_names(pictures)]
     with (
@@ -162,11 +164,23 @@ def write(run: Run, folder: str | PathLike[str]) -> Path:
         write_text(below(folder, f"{PAGES}/{issue.page}.md"), text)
     with (
         closing(html(run)) as pieces,
-        replacing(below(folder, "report.html")) as beside,
+        replacing(below(folder, PAGE)) as beside,
         open(beside, "w", encoding="utf-8") as page,
     ):
         page.writelines(pieces)
-    return folder / "report.html"
+    return folder / PAGE
+
+
+def _inputs(run: Run) -> Iterator[AnyPath]:
+    """The files that a run was made from: its documents, libraries and journal."""
+    from mxeon.shaders.document.policy import Policy
+    from mxeon.shaders.document.references import files_read
+
+    yield from files_read(run.documents, Policy(outside=True), run.libraries).values()
+    for picture in run.pictures:
+        for image in images_of(picture).values():
+            if isinstance(image, StoredImage):
+                yield from (image.path, *image.path.parent.glob("*.jsonl"))
 
 
 def _write_picture(folder: Path, place: tuple[Picture, str]) -> None:

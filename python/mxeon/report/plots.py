@@ -14,6 +14,7 @@ import numpy as np
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 from matplotlib import style
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from PIL import Image
@@ -107,7 +108,7 @@ def albedo_plot(curves: Sequence[AlbedoCurve], markers: Sequence[str], prefix: s
     buffer = io.StringIO()
     # The defaults, not a matplotlibrc of the working folder, which could start LaTeX.
     with style.context(["default", STYLE]):
-        figure = Figure(figsize=(3.6, 2.4), layout="constrained")
+        figure = Figure(figsize=(3.6, 2.4), layout="constrained", facecolor="none")
         axes = figure.subplots()
         for channel, color in enumerate((TEXT_COLOR,) if gray else CHANNEL_COLORS):
             axes.plot(curves[0].mu, curves[0].expected[:, channel], color=color, linewidth=1.2)
@@ -124,7 +125,10 @@ def albedo_plot(curves: Sequence[AlbedoCurve], markers: Sequence[str], prefix: s
                 )
         axes.set(xlim=(-0.03, 1.03), xlabel="cosine of the polar angle", ylabel="albedo")
         axes.margins(y=0.15)
-        figure.savefig(buffer, format="svg", transparent=True, metadata=NO_METADATA)
+        axes.set_facecolor("none")
+        # Not savefig, whose dry run without the metadata reads SOURCE_DATE_EPOCH, maybe no number.
+        canvas: Any = FigureCanvasSVG(figure)
+        canvas.print_svg(buffer, metadata=NO_METADATA)
     svg = buffer.getvalue()
     svg = svg[svg.index("<svg") :].replace(TEXT_COLOR, "currentColor")
     return re.sub(r'((?:\bid="|href="#|url\(#))', rf"\g<1>{prefix}", svg)

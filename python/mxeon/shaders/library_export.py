@@ -9,7 +9,9 @@ from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 import mxeon
 from mxeon.errors import InputError
-from mxeon.io.files import TEMPORARY, AnyPath, naming, replacing
+from mxeon.io.files import TEMPORARY, AnyPath, check_output, naming, replacing
+from mxeon.shaders.document.policy import Policy
+from mxeon.shaders.document.references import files_read
 from mxeon.shaders.library import SOURCE_FOLDERS, data_folder, documents_folder, source_folder
 
 README = """eonlib {version}, a MaterialX data library.
@@ -46,6 +48,11 @@ def export_library(path: AnyPath) -> Path:
     Nothing half-written stays behind.
     """
     target = Path(os.path.realpath(path))
+    names = [] if target.suffix == ".zip" else ["*"]
+    in_the_way = target.exists() and not (target.is_dir() and not any(target.iterdir()))
+    if os.fspath(path) and names and in_the_way:
+        raise InputError(f"{target}: must be a new or empty folder, or end in .zip")
+    check_output(path, files_read([], Policy()).values(), replaced=names)
     if target.suffix == ".zip":
         with replacing(target) as beside, ZipFile(beside, "w") as archive:
             for name, data in _content().items():
@@ -53,8 +60,6 @@ def export_library(path: AnyPath) -> Path:
                 entry.external_attr = 0o644 << 16
                 archive.writestr(entry, data, ZIP_DEFLATED)
         return target
-    if target.exists() and not (target.is_dir() and not any(target.iterdir())):
-        raise InputError(f"{target}: must be a new or empty folder, or end in .zip")
     target.parent.mkdir(parents=True, exist_ok=True)
     beside = target.with_name(f"{TEMPORARY}{token_hex(8)}")
     with naming(target):

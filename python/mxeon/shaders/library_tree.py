@@ -63,13 +63,13 @@ def tree(library: str) -> Tree:
 
 @cache
 def _tree(folder: str) -> Tree:
-    own = dict(_files(folder))
+    own = dict(files_in(folder))
     named = tuple(each for each in own if each.endswith(FILES))
     if all(os.path.isdir(os.path.join(folder, "libraries", each)) for each in NEEDED):
         raise InputError(
             f"library {folder}: must be the folder with {', '.join(NEEDED)}; pass {folder}/libraries"
         )
-    installed = {path: file for root in standard_folders() for path, file in _files(str(root))}
+    installed = {path: file for root in standard_folders() for path, file in files_in(str(root))}
     # In a whole, a library that it has not at all, such as lights/, is the package's.
     if all(os.path.isdir(os.path.join(folder, each)) for each in NEEDED):
         tops = {each.partition("/")[0] for each in own}
@@ -116,7 +116,7 @@ def _place(folder: str, own: tuple[str, ...], installed: Mapping[str, str]) -> s
     return best[0] if best else None
 
 
-def _files(folder: str) -> Iterator[tuple[str, str]]:
+def files_in(folder: str) -> Iterator[tuple[str, str]]:
     """Relative and whole path of every file in a folder, without hidden ones, through links."""
     for top, folders, names in os.walk(folder, followlinks=True):
         home = os.path.realpath(top)

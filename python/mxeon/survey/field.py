@@ -9,11 +9,21 @@ from pathlib import Path
 from typing import TypeAlias
 
 from mxeon.conformance.backends import own_nodes
-from mxeon.conformance.results import DIRECT, FAILED, NOT_RUN, PASSED, PORTRAIT, Result, Verdict
+from mxeon.conformance.results import (
+    DIRECT,
+    FAILED,
+    NOT_RUN,
+    PASSED,
+    PORTRAIT,
+    RESULTS,
+    Result,
+    Verdict,
+    report_files,
+)
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs.diffuse import DIFFUSE, SURFACE_LOBES
 from mxeon.errors import InputError
-from mxeon.io.files import replacing
+from mxeon.io.files import AnyPath, check_output, replacing
 from mxeon.models import table as reference
 from mxeon.report import needing_extra
 from mxeon.report.diff import Report, read_results
@@ -22,7 +32,6 @@ from mxeon.survey.specs import RendererSpec
 
 Place: TypeAlias = tuple[str, str, str]  # host, library and node
 
-RESULTS = "results.json"
 BACK = "back"
 # Column -> the checks that answer it, the first that a node has; `back` is a portrait's.
 CHECKS = {
@@ -60,6 +69,7 @@ class Entry:
     cells: Mapping[str, Result]  # by column of CHECKS
     pages: tuple[str, ...]  # of docs/upstream, on its defects
     portraits: Mapping[str, Portrait]  # by scene
+    report: Path  # the folder of its report
 
     @property
     def verdict(self) -> Verdict:
@@ -91,6 +101,13 @@ def model_of(result: Result, expected: str) -> str:
     return nearest[1] if nearest else result.diagnosis.partition(";")[0]
 
 
+def reports_in(folder: AnyPath) -> list[Path]:
+    """A folder, if it is that of a report, or else the reports in it."""
+    if Path(folder, RESULTS).is_file():
+        return [Path(folder)]
+    return sorted(path.parent for path in Path(folder).glob(f"*/{RESULTS}"))
+
+
 def read_field(folders: Sequence[str | PathLike[str]]) -> tuple[Entry, ...]:
     """The nodes that claim a rough diffuse model, by the reports in some folders.
 
@@ -98,9 +115,8 @@ def read_field(folders: Sequence[str | PathLike[str]]) -> tuple[Entry, ...]:
     later counts. Raises ValueError if a folder has no report, or no report has such a node.
     """
     entries = {}
-    for folder in map(Path, folders):
-        reports = sorted(path.parent for path in folder.glob(f"*/{RESULTS}"))
-        reports = [folder] if (folder / RESULTS).is_file() else reports
+    for folder in folders:
+        reports = reports_in(folder)
         if not reports:
             raise InputError(f"{folder}: must be the folder of a report, or hold some")
         for report in reports:
@@ -140,7 +156,7 @@ def _entries(report: Report, folder: Path) -> Iterator[Entry]:
             pages = tuple(dict.fromkeys(page for each in results.values() for page in each.pages))
             hosts = {each.name: (each.version, each.device) for each in report.hosts}
             names = (*place, *hosts.get(direct.host, ("", "")), claimed, direct.model)
-            yield Entry(*names, cells, pages, portraits)
+            yield Entry(*names, cells, pages, portraits, folder)
 
 
 def claim(spec: Spec) -> str:
@@ -163,6 +179,8 @@ def _portraits(report: Report, place: Place, folder: Path) -> Iterator[Portrait]
 
 def write_field(entries: Sequence[Entry], file: str | PathLike[str], pages: str = "") -> Path:
     """Write the page that compares renderers, and return its path; see `mxeon.survey.field_page.render`."""
+    read = (each for entry in entries for each in report_files(entry.report))
+    check_output(file, read, [".html"])
     with needing_extra("the page that compares renderers"):
         from mxeon.survey.field_page import render
     with replacing(Path(file)) as beside, open(beside, "w", encoding="utf-8") as page:

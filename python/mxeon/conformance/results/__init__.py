@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import KW_ONLY, dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from mxeon.errors import InputError
 from mxeon.hosts.base import Identity
+from mxeon.io.files import AnyPath
 from mxeon.io.images import difference
 
 Verdict: TypeAlias = Literal["passed", "differs", "failed", "not run"]
@@ -40,6 +41,8 @@ LIGHTS = {
     "back": "light from behind",
     "furnace": "a white environment",
 }
+RESULTS, JUNIT, PAGE = "results.json", "junit.xml", "report.html"
+REPORT = (RESULTS, JUNIT, PAGE, "pictures/*", "upstream/*")  # patterns of the files of a report
 DIRECT = ("value", "lobe")  # the checks of a node in direct light, of which it has one
 
 
@@ -250,6 +253,12 @@ def listed(names: Sequence[str]) -> str:
     """
     more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
     return ", ".join(names[:NAMED]) + more
+
+
+def report_files(folder: AnyPath) -> Iterator[Path]:
+    """The files of the report in a folder, and of its journal."""
+    for pattern in (*REPORT, "journal/*"):
+        yield from Path(folder).glob(pattern)
 
 
 def counted(count: int, noun: str) -> str:

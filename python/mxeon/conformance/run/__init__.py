@@ -8,9 +8,10 @@ from contextlib import closing, contextmanager, nullcontext
 from dataclasses import fields, replace
 from functools import lru_cache, partial
 from itertools import chain, product
+from pathlib import Path
 from typing import cast
 
-from mxeon.conformance.results import NOT_RUN, Run, Scope
+from mxeon.conformance.results import NOT_RUN, REPORT, Run, Scope
 from mxeon.conformance.results.known_issues import repaired
 from mxeon.conformance.run.journal import Journal, read_journal, refusal
 from mxeon.conformance.run.judge import Judge, one_result
@@ -24,12 +25,13 @@ from mxeon.conformance.run.plan import (
 )
 from mxeon.errors import InputError, InterfaceError, NotRun
 from mxeon.hosts import HOSTS, host_row
+from mxeon.io.files import AnyPath, check_output
 from mxeon.jobs import TIMEOUT, WAIT, check_timeout, dask, pool
 from mxeon.jobs.pool import by_group
 from mxeon.shaders.document.policy import DEFAULT, Policy
-from mxeon.shaders.document.references import documents_in
+from mxeon.shaders.document.references import documents_in, files_read
 from mxeon.shaders.generation import TARGETS, check_generator
-from mxeon.shaders.library import library_name, untested
+from mxeon.shaders.library import examples_folder, library_name, untested
 from mxeon.shaders.library_tree import root
 
 __all__ = ["check", "read_run", "to_run", "work"]
@@ -69,7 +71,8 @@ def check(
       one.
     - `timeout`: Seconds that one task may take in a worker.
     - `folder`: Folder of the journal, from which an interrupted run can be resumed; None to keep
-      none.
+      none. It must hold no file that the run reads, and no other interrupted run. Results of an
+      earlier run move to its subfolder `previous_run`.
     - `resume`: Continue the run in `folder`.
     - `scheduler`, `wait`: Address of a Dask scheduler whose workers do the work, and seconds to
       wait for one that fits.
@@ -88,58 +91,69 @@ def check(
     scheduler answers; NotRun if no process can start, or the cluster has no workers for too long.
     """
     begin = time.monotonic()
-    assert_known_names(hosts, nodes)
-    files = documents_in(files)
-    libraries = tuple(dict.fromkeys(map(library_name, libraries)))
-    for library in filter(root, libraries):
-        for target in {host_row(host).target for host in hosts} & {*TARGETS}:
-            try:
-                check_generator(library, target)
-            except InterfaceError as reason:  # nothing would run
-                raise InputError(str(reason)) from None
-    if workers < 0:
-        raise InputError(f"workers must be at least 0; got {workers}")
-    if seed < 0:
-        raise InputError(f"seed must be at least 0; got {seed}")
-    check_timeout(timeout)
-    survey = survey_documents(list(map(str, files)), libraries, policy, workers, timeout)
-    keep = folder is not None
-    planned = make_plan(files, hosts, libraries, policy, keep, nodes, survey, compared, seed)
-    for line in chain.from_iterable(to_run(planned, {}).refused.values()):
-        refuse(line)
-    # Work; an executor that cannot work leaves the folder as it is.
-    with (
-        _executor(policy, workers, timeout, scheduler, wait) as executor,
-        nullcontext() if folder is None else Journal(folder, planned, resume) as journal,
-    ):
-        done: dict[int, Findings] = journal.findings if journal else {}
-        numbers = [n for n in range(len(planned.tasks)) if n not in done]
-        waiting = [planned.tasks[number] for number in numbers]
-        # A farm's machines may differ from each other.
-        earlier = [] if scheduler else [host for part in done.values() for host in part.hosts]
-        identities = {host.name: host for host in earlier}
-        found = (
-            (
-                position,
-                cast(Findings | None, outcome.value)
-                or one_result(waiting[position], NOT_RUN, reason=outcome.failure),
+    if folder is not None:
+        check_output(folder, _inputs(files, libraries, policy), replaced=REPORT, apart=True)
+    with nullcontext() if folder is None else Journal(folder, resume) as journal:
+        assert_known_names(hosts, nodes)
+        files = documents_in(files)
+        libraries = tuple(dict.fromkeys(map(library_name, libraries)))
+        for library in filter(root, libraries):
+            for target in {host_row(host).target for host in hosts} & {*TARGETS}:
+                try:
+                    check_generator(library, target)
+                except InterfaceError as reason:  # nothing would run
+                    raise InputError(str(reason)) from None
+        if workers < 0:
+            raise InputError(f"workers must be at least 0; got {workers}")
+        if seed < 0:
+            raise InputError(f"seed must be at least 0; got {seed}")
+        check_timeout(timeout)
+        survey = survey_documents(list(map(str, files)), libraries, policy, workers, timeout)
+        keep = folder is not None
+        planned = make_plan(files, hosts, libraries, policy, keep, nodes, survey, compared, seed)
+        for line in chain.from_iterable(to_run(planned, {}).refused.values()):
+            refuse(line)
+        with _executor(policy, workers, timeout, scheduler, wait) as executor:
+            if journal:
+                journal.begin(planned)
+            done: dict[int, Findings] = journal.findings if journal else {}
+            numbers = [n for n in range(len(planned.tasks)) if n not in done]
+            waiting = [planned.tasks[number] for number in numbers]
+            # A farm's machines may differ from each other.
+            earlier = [] if scheduler else [host for part in done.values() for host in part.hosts]
+            identities = {host.name: host for host in earlier}
+            found = (
+                (
+                    position,
+                    cast(Findings | None, outcome.value)
+                    or one_result(waiting[position], NOT_RUN, reason=outcome.failure),
+                )
+                for position, outcome in executor(waiting)
             )
-            for position, outcome in executor(waiting)
-        )
-        with closing(found) as outcomes:  # processes work until then
-            for position, findings in progress(outcomes, len(waiting)):
-                if differences := [
-                    f"host {before.name} ({before.version}, {before.device}, now {host.version}, {host.device})"
-                    for host in findings.hosts
-                    for before in [identities.get(host.name, host)]
-                    if before != host
-                ]:
-                    raise InputError(refusal(folder, differences))
-                if journal:
-                    journal.add(numbers[position], findings)  # with its pictures on disk
-                else:
-                    done[numbers[position]] = findings
-        return replace(to_run(planned, done), seconds=round(time.monotonic() - begin, 3))
+            with closing(found) as outcomes:  # processes work until then
+                for position, findings in progress(outcomes, len(waiting)):
+                    if differences := [
+                        f"host {before.name} ({before.version}, {before.device}, now {host.version}, {host.device})"
+                        for host in findings.hosts
+                        for before in [identities.get(host.name, host)]
+                        if before != host
+                    ]:
+                        raise InputError(refusal(folder, differences))
+                    if journal:
+                        journal.add(numbers[position], findings)  # with its pictures on disk
+                    else:
+                        done[numbers[position]] = findings
+            return replace(to_run(planned, done), seconds=round(time.monotonic() - begin, 3))
+
+
+def _inputs(files: Sequence[AnyPath], libraries: Iterable[str], policy: Policy) -> Iterator[str]:
+    """Every file that a run may read."""
+    documents = [
+        str(path)
+        for file in files or [examples_folder()]
+        for path in (sorted(Path(file).rglob("*.mtlx")) if os.path.isdir(file) else [file])
+    ]
+    yield from files_read(documents, policy, libraries).values()
 
 
 def read_run(folder: str | os.PathLike[str]) -> Run:

@@ -9,6 +9,7 @@ task; a last line that the end of a run tore is dropped. Pictures are NumPy file
 import hashlib
 import json
 import os
+import re
 import shutil
 from collections.abc import Sequence
 from contextlib import ExitStack
@@ -20,7 +21,7 @@ from typing import Any, Self, cast
 import numpy as np
 from filelock import FileLock, Timeout
 
-from mxeon.conformance.results import Picture, listed
+from mxeon.conformance.results import JUNIT, PAGE, RESULTS, Picture, counted, listed
 from mxeon.conformance.results.records import StoredImage, images_of, make_converter
 from mxeon.conformance.run.plan import Findings, Plan
 from mxeon.errors import InputError
@@ -29,43 +30,86 @@ from mxeon.io.records import ERRORS
 
 FORMAT = 8
 JOURNAL = "journal/items.jsonl"
-PREVIOUS, LOCK = "journal.previous", ".journal.lock"  # beside the folder `journal`
+PREVIOUS, LOCK = "previous_run", ".journal.lock"
+TASK = re.compile(rb'\{"task": (\d+),.*\n')
 
 
 class Journal:
-    """The journal of one run in a folder, locked while it is entered; untouched before.
+    """The folder of a run: locked while it is entered, without the results of an earlier run.
 
-    Without `resume`, an earlier journal is kept beside, as PREVIOUS. Entering raises InputError if
-    another process writes here, or the run to resume is another one; OSError if nothing can be written.
+    Entering moves an earlier run's journal, results and page to the folder PREVIOUS; with `resume`, the
+    journal stays. It raises InputError if another process writes here, or, without `resume`, if the
+    earlier run was interrupted. A folder that does not exist yet is made by `begin`.
     """
 
-    def __init__(self, folder: str | os.PathLike[str], plan: Plan, resume: bool = False) -> None:
-        self._folder, self._plan, self._resume = Path(folder), plan, resume
+    def __init__(self, folder: str | os.PathLike[str], resume: bool = False) -> None:
+        self._folder, self._resume = Path(folder), resume
         self._path = self._folder / JOURNAL
         self._exit = ExitStack()
         self._converter = make_converter(self._path.parent)
+        self._held = False
         self.findings: dict[int, Findings] = {}  # by the number of the task in the plan
 
     def __enter__(self) -> Self:
-        with ExitStack() as stack:
-            for name in (JOURNAL, PREVIOUS, LOCK):
-                below(self._folder, name)
-            self._folder.mkdir(parents=True, exist_ok=True)
-            try:
-                stack.enter_context(FileLock(self._folder / LOCK, timeout=0))
-            except Timeout:
-                rule = "must have one writer; another run writes there"
-                raise InputError(f"{self._folder}: {rule}") from None
+        if os.path.lexists(self._folder):
+            with ExitStack() as stack:
+                self._hold(stack)
+                self._exit = stack.pop_all()
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self._exit.close()
+
+    def _hold(self, stack: ExitStack) -> None:
+        for name in (JOURNAL, LOCK, RESULTS, JUNIT, PAGE, PREVIOUS, f"{PREVIOUS}/{JOURNAL}"):
+            below(self._folder, name)
+        self._folder.mkdir(parents=True, exist_ok=True)
+        try:
+            stack.enter_context(FileLock(self._folder / LOCK, timeout=0))
+        except Timeout:
+            rule = "must have one writer; another run writes there"
+            raise InputError(f"{self._folder}: {rule}") from None
+        if not self._resume and (left := _left(self._path)):
+            raise InputError(
+                f"{self._folder}: holds an interrupted run with {left} left: --resume continues it; "
+                f"to begin anew, remove {self._path.parent} or name another folder"
+            )
+        self._clear()
+        self._held = True
+
+    def _clear(self) -> None:
+        """Move the results of an earlier run away; of a run to resume, `report make` makes them again."""
+        there = [name for name in (RESULTS, JUNIT, PAGE) if (self._folder / name).is_file()]
+        if self._path.exists() and self._resume:
+            for name in there:
+                (self._folder / name).unlink()
+            return
+        there += [self._path.parent.name] * self._path.exists()
+        if there:
+            previous = self._folder / PREVIOUS
+            previous.mkdir(exist_ok=True)
+            if (previous / JOURNAL).exists():
+                shutil.rmtree((previous / JOURNAL).parent)
+            for name in (RESULTS, JUNIT, PAGE):
+                (previous / name).unlink(missing_ok=True)
+            for name in there:
+                os.replace(self._folder / name, previous / name)
+
+    def begin(self, plan: Plan) -> None:
+        """Write the plan of the run, or read what is done of the run to resume.
+
+        Raises InputError if that is another run; OSError if nothing can be written.
+        """
+        with self._exit as stack:
+            if not self._held:
+                self._hold(stack)
             if self._resume and self._path.exists():
-                plan, self.findings, size = _read(self._folder)
-                if plan != self._plan:
-                    raise InputError(refusal(self._folder, _differences(plan, self._plan)))
+                earlier, self.findings, size = _read(self._folder)
+                if earlier != plan:
+                    raise InputError(refusal(self._folder, _differences(earlier, plan)))
                 os.truncate(self._path, size)
             else:
-                if self._path.exists():  # an earlier journal makes room
-                    shutil.rmtree(self._folder / PREVIOUS, ignore_errors=True)
-                    os.replace(self._path.parent, self._folder / PREVIOUS)
-                header = {"format": FORMAT} | self._converter.unstructure(self._plan)
+                header = {"format": FORMAT} | self._converter.unstructure(plan)
                 with replacing(self._path) as beside:
                     beside.write_bytes(_line(header))
                 sync(self._path.parent)
@@ -73,10 +117,6 @@ class Journal:
             self._file = os.open(self._path, os.O_WRONLY | os.O_APPEND)
             stack.callback(os.close, self._file)
             self._exit = stack.pop_all()
-        return self
-
-    def __exit__(self, *error: object) -> None:
-        self._exit.close()
 
     def add(self, number: int, findings: Findings) -> None:
         """Keep the findings of a task: on disk when this returns, the pictures first.
@@ -125,6 +165,20 @@ def refusal(folder: str | os.PathLike[str] | None, differences: Sequence[str]) -
     changed = listed(differences)
     rule = "--resume needs the same run, or another --report folder: this one keeps the earlier run"
     return f"{folder}: {rule}; changed: {changed}"
+
+
+def _left(path: Path) -> str:
+    """How many tasks an interrupted run has left, in words; "" for a complete one, or none.
+
+    Journals of other versions count too, so this reads no more than the numbers of tasks.
+    """
+    try:
+        with open(path, "rb", opener=regular) as file:
+            total = len(json.loads(file.readline())["tasks"])
+            done = {found[1] for found in map(TASK.fullmatch, file) if found}
+    except (OSError, *ERRORS):
+        return ""
+    return f"{total - len(done)} of {counted(total, 'task')}" if len(done) < total else ""
 
 
 def _read(folder: Path) -> tuple[Plan, dict[int, Findings], int]:

@@ -21,17 +21,20 @@ from mxeon.shaders.document.values import label, location
 from mxeon.shaders.document.words import ENDS_A_STRING
 from mxeon.shaders.document.xml import decode, strict
 from mxeon.shaders.library import (
+    PROFILES,
     SOURCE_FOLDERS,
     documents_folder,
     eonlib_folder,
     library_folders,
     source_folder,
 )
-from mxeon.shaders.library_tree import LIBRARIES, roots, standard_folders
+from mxeon.shaders.library_tree import FILES, LARGEST, LIBRARIES, files_in, roots, standard_folders
 
 CODE = ("file", "sourcecode")
 ATTRIBUTE = re.compile(r"""([\w:.-]+)\s*=\s*("[^"]*"|'[^']*')""")
 NAMING = ("value", "file", "href", "fileprefix")
+# What shader code includes, and what documents of a library name, whatever its ending.
+INCLUDED = re.compile(r"""(?:#include\s+|\b(?:href|file)\s*=\s*)["']([^"'\n]+)["']""")
 # A part of a file's name that is filled in later: <UDIM>, [token], {frame}.
 OPEN_PART = re.compile(r"<[^<>]*>|\[[^][]*\]|\{[^{}]*\}")
 
@@ -157,7 +160,7 @@ def named_files(document: str, policy: Policy) -> list[str]:
             for path in _paths(name, folders):
                 if path not in seen and (policy.outside or inside(path, home, policy.path)):
                     seen[path] = None
-                    if key == "href":
+                    if key in ("href", "file"):
                         texts.append(path)
     return list(seen)
 
@@ -175,6 +178,7 @@ def _names(text: str) -> Iterator[tuple[str, str]]:
     found = dict.fromkeys(
         (key, html.unescape(value[1:-1])) for key, value in ATTRIBUTE.findall(text) if key in NAMING
     )
+    found |= dict.fromkeys(("file", each) for each in INCLUDED.findall(text))
     prefixes = ["", *(value for key, value in found if key == "fileprefix")]
     return ((key, prefix + value) for key, value in found if value for prefix in prefixes)
 
@@ -204,25 +208,41 @@ def documents_in(files: Iterable[str | os.PathLike[str]]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(documents))
 
 
-def digests(
-    documents: Iterable[str | os.PathLike[str]], policy: Policy, libraries: Iterable[str] = ()
+def files_read(
+    documents: Iterable[AnyPath], policy: Policy, libraries: Iterable[str] = ()
 ) -> dict[str, str]:
-    """SHA-256 of every file that a run depends on; "" for what is no regular file or cannot be read.
+    """Paths of every file that a run on documents may read.
 
-    By path: the documents, what they include and name as far as the policy permits, and what lies in
-    folders of libraries. By names that begin with "mxeon", "eonlib" or "MaterialX": code and data here.
+    By path: the documents, what they include and name as far as the policy permits, and what folders of
+    libraries consist of. By names that begin with "mxeon", "eonlib" or "MaterialX": code and data here.
     """
     paths = {path: path for document in documents for path in named_files(str(document), policy)}
-    folders = [
-        (str(folder), folder)
-        for library in set(libraries) - set(LIBRARIES)
-        for folder in library_folders(library)
-    ]
-    folders += [("mxeon", Path(mxeon.__file__).parent), ("eonlib", documents_folder())]
+    own = {*map(os.path.abspath, {*libraries, *policy.definitions} - {*LIBRARIES})}
+    paths |= {path: path for each in sorted(own) for path in _library_files(each)}
+    folders = [("mxeon", Path(mxeon.__file__).parent), ("eonlib", documents_folder())]
     folders += [(f"eonlib/{name}", source_folder("eonlib") / name) for name in SOURCE_FOLDERS]
     folders += [("MaterialX/libraries", folder) for folder in standard_folders()]
     for name, folder in folders:
         for path in sorted(folder.rglob("*")):
             if path.is_file() and path.parent.name != "__pycache__":
                 paths[f"{name}/{path.relative_to(folder)}"] = str(path)
-    return {name: digest(path) for name, path in paths.items()}
+    return paths
+
+
+def _library_files(library: str) -> Iterator[str]:
+    """Documents and sources in the folders of a library, and what they include."""
+    for folder in library_folders(library):
+        profiles = (folder / profile for profile in PROFILES)  # whose documents end in .xml
+        names = [path for _, path in files_in(str(folder)) if path.endswith(FILES)]
+        for path in (*names, *(str(file) for each in profiles for file in each.glob("*.xml"))):
+            yield path
+            with suppress(OSError), open(path, encoding="utf-8", errors="replace") as file:
+                for name in INCLUDED.findall(file.read(LARGEST)):
+                    yield from _paths(name, (Path(path).parent, folder))
+
+
+def digests(
+    documents: Iterable[AnyPath], policy: Policy, libraries: Iterable[str] = ()
+) -> dict[str, str]:
+    """SHA-256 of each of `files_read`; "" for what is no regular file or cannot be read."""
+    return {name: digest(path) for name, path in files_read(documents, policy, libraries).items()}
