@@ -19,6 +19,7 @@ import pytest
 
 from mxeon import models
 from mxeon.cli import parser
+from tests.support.availability import package
 from tools.site.__main__ import made
 from tools.site.ledger import FOLDER
 
@@ -56,7 +57,7 @@ def build(configuration, site):
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
     """Folder of the built site."""
-    pytest.importorskip("mkdocs")
+    package("mkdocs")
     folder = tmp_path_factory.mktemp("docs") / "site"
     built = build(ROOT / "mkdocs.yml", folder)
     assert built.returncode == 0, built.stdout + built.stderr

@@ -15,7 +15,7 @@ from mxeon.errors import InputError, PackageError
 from mxeon.fit import FIT_MODELS, MeasuredBrdf, fit_brdf, merl_directions, read_merl
 from mxeon.fit.measured import MERL_CELLS, MERL_SCALES
 from mxeon.models import eon_brdf
-from tests.support.availability import available
+from tests.support.availability import available, package
 from tools.site import research
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "fit_measured.py"
@@ -179,8 +179,8 @@ def test_the_example_finds_what_it_put_in(tmp_path, monkeypatch, capsys):
 
 
 def test_the_blocks_of_the_page_run_one_after_another(tmp_path, monkeypatch, capsys):
-    for package in ("torch", "array_api_compat", "mitsuba"):
-        pytest.importorskip(package)
+    for name in ("torch", "array_api_compat", "mitsuba"):
+        package(name)
     monkeypatch.chdir(tmp_path)
     matplotlib.use("agg")
     names = {}

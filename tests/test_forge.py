@@ -10,8 +10,9 @@ from pathlib import Path
 import pytest
 
 from mxeon.shaders.library_export import export_library
+from tests.support.availability import package
 
-yaml = pytest.importorskip("yaml")
+yaml = package("yaml")
 ROOT = Path(__file__).parents[1]
 WORKFLOW = ROOT / ".github" / "workflows" / "ci.yml"
 ACTION = ROOT / "action.yml"
@@ -21,7 +22,7 @@ TOOLS = Path(sys.executable).parent
 
 @pytest.mark.parametrize("path", SCHEMAS, ids=lambda path: path.name)
 def test_the_forge_can_read_the_file_and_the_linter_finds_nothing(path):
-    pytest.importorskip("check_jsonschema")
+    package("check_jsonschema")
     for command in (
         ["check-jsonschema", "--builtin-schema", SCHEMAS[path]],
         ["zizmor", "--offline", "--strict-collection", "--no-config"],

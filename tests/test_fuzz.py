@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The fuzzer: a slice of it has no fault, and a trial notices what is wrong."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -13,6 +14,7 @@ from tests.fuzz.cases import OUT, Case
 from tests.fuzz.families import FAMILIES, cases
 from tests.fuzz.trial import trial
 from tests.fuzz.words import CANARY, POISON
+from tests.support.availability import program
 
 LIMIT = 60.0  # seconds for one case
 # Cases of each family: few of those that take a second each. tests/models tries every argument.
@@ -29,20 +31,22 @@ def test_a_slice_of_each_family_ends_without_fault(family):
     assert [fault for fault in faults if fault] == []
 
 
-needs_strace = pytest.mark.skipif(
-    subprocess.run("strace -o /dev/null true", shell=True, capture_output=True).returncode != 0,
-    reason="needs strace, and leave to trace a process",
-)
+@pytest.fixture(scope="module")
+def strace():
+    """Skip the test where the system lets no process be traced."""
+    command = [program("strace"), "-o", os.devnull, sys.executable, "-V"]
+    if subprocess.run(command, capture_output=True).returncode:
+        pytest.skip("the system lets no process be traced")
 
 
-@needs_strace
+@pytest.mark.usefixtures("strace")
 def test_materialx_opens_no_file_that_a_document_names():
     paths = opens.opens(10)
     assert opens.strangers(paths) == []
     assert any(opens.COPIES in path for path in paths) and paths.total() > 100
 
 
-@needs_strace
+@pytest.mark.usefixtures("strace")
 def test_the_trace_notices_what_materialx_opens():
     assert any(path.endswith(".glsl") for path in opens.strangers(opens.opens(4, bare=True)))
 

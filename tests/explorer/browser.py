@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pages of the explorer in a headless Chromium, which fail a test by what they ask for or say."""
 
-import os
 from contextlib import contextmanager
 
-import pytest
-
-from mxeon.hosts.webgl import FLAGS, program
+from mxeon.hosts.webgl import FLAGS, is_root, program
+from tests.support.availability import package
 
 # Few pixels, for a software driver.
 SMALL = {"viewport": {"width": 880, "height": 180}, "device_scale_factor": 0.5}
@@ -15,7 +13,7 @@ HAS = """fields => Object.entries(fields).every(([name, value]) =>
 DRAWN = "mxeon?.stage?.isSettled(mxeon.state())"
 
 
-sync_playwright = pytest.importorskip("playwright.sync_api").sync_playwright
+sync_playwright = package("playwright.sync_api").sync_playwright
 
 
 @contextmanager
@@ -28,7 +26,7 @@ def launched(flags=FLAGS):
 @contextmanager
 def started(kind, flags):
     """A browser of a kind that playwright knows, with these flags."""
-    browser = kind.launch(executable_path=program(), args=flags, chromium_sandbox=os.geteuid() != 0)
+    browser = kind.launch(executable_path=program(), args=flags, chromium_sandbox=not is_root())
     yield browser
     browser.close()
 

@@ -5,9 +5,7 @@ import shutil
 import sys
 from pathlib import Path
 
-import pytest
-
-from tests.support.availability import required
+from tests.support.availability import PACKAGES, missing
 
 SOURCES = Path(__file__).parents[2] / "explorer"
 MODULES = SOURCES / "node_modules"
@@ -23,7 +21,4 @@ def needs_modules():
     """Skip the test where the packages are not installed; fail where `./run test --all` was to do it."""
     if node() and MODULES.is_dir():
         return
-    reason = "explorer/node_modules: must be installed; ./run test --all does it"
-    if "three" in required():
-        pytest.fail(reason)
-    pytest.skip(reason)
+    missing(PACKAGES, "explorer/node_modules: must be installed; ./run test --all does it")

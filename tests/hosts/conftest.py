@@ -4,13 +4,13 @@
 import pytest
 
 from mxeon import mitsuba as plugins
-from tests.support.availability import available
+from tests.support.availability import available, package
 
 
 @pytest.fixture
 def mi():
     """Mitsuba in an LLVM variant, with the plugins."""
-    mitsuba = pytest.importorskip("mitsuba")
+    mitsuba = package("mitsuba")
     mitsuba.set_variant("llvm_ad_rgb")
     with available("mitsuba"):
         plugins.register()

@@ -10,7 +10,7 @@ import pytest
 from mxeon.errors import NotRun
 from mxeon.models import eon_brdf
 from tests import support
-from tests.support.availability import available
+from tests.support.availability import available, program
 from tools.site.ledger import ROOT, apply, patches_of
 
 PROGRAM = Path(support.__file__).with_name("oren_nayar.cpp")
@@ -49,7 +49,7 @@ def values(tmp_path_factory):
         (target / FILE).parent.mkdir()
         (target / FILE).write_bytes((folder / FILE).read_bytes())
         apply(target, *patches, strip=4)  # a/intern/cycles/kernel
-        command = ["g++", "-std=c++17", f"-I{target}", PROGRAM, "-o", target / "program"]
+        command = [program("g++"), "-std=c++17", f"-I{target}", PROGRAM, "-o", target / "program"]
         subprocess.run(command, check=True)
         done = subprocess.run(
             [target / "program"], input=lines, capture_output=True, text=True, check=True

@@ -9,8 +9,13 @@ import pytest
 from mxeon.errors import NotRun
 from mxeon.hosts import open_engine
 from mxeon.survey import browser
+from tests.support.availability import package
 
 BLENDER, NOWHERE = "MXEON_CYCLES_PYTHON", "/nowhere/python"
+DISPLAY = (  # where MaterialX's renderer loads, and where it does not
+    "(no display: .* no Xvfb|MaterialX's renderer does not load .*); "
+    "on Debian: apt-get install libgl1 libsm6 libx11-6 xvfb$"
+)
 NPM = f"npm ci --prefix {browser.packages_folder()}$"
 ENVIRONMENTS = [  # host, its environment, and the words
     ("cycles", {BLENDER: NOWHERE}, f"no interpreter {NOWHERE}; pip install bpy"),
@@ -24,8 +29,7 @@ ENVIRONMENTS = [  # host, its environment, and the words
     ("three-gpu-pathtracer", {browser.MODULES: "/nowhere"}, f"no package .* in /nowhere; {NPM}"),
     ("webgl", {"MXEON_CHROMIUM": "none"}, "no program 'none'; .* apt-get install chromium"),
     ("webgl", {"MXEON_CHROMIUM": "true"}, "the browser fails; "),
-    ("materialx", {"DISPLAY": "", "PATH": ""}, "no display: .* no Xvfb; .* apt-get install xvfb$"),
-    ("materialx", {"DISPLAY": ":4711"}, "(ended by|exit status) .*; last output: "),
+    ("materialx", {"DISPLAY": "", "PATH": ""}, DISPLAY),
 ]
 MODULES = [  # host, a module of it and the package that it imports, and the words
     ("webgl", "webgl.sync_api", r"Playwright is not installed; pip install '\.\[webgl\]'"),
@@ -44,10 +48,36 @@ def assert_not_run(name, words):
 @pytest.mark.parametrize("name, environment, words", ENVIRONMENTS)
 def test_what_is_missing_is_named_with_its_remedy(monkeypatch, name, environment, words):
     if name == "webgl":
-        pytest.importorskip("playwright")
+        package("playwright")
     for variable, value in environment.items():
         monkeypatch.setenv(variable, value)
     assert_not_run(name, words)
+
+
+@pytest.fixture
+def no_library(tmp_path):
+    """Folder of a MaterialX whose renderer lacks a library, as its wheel does on an empty system."""
+    folder = tmp_path / "MaterialX"
+    folder.mkdir()
+    (folder / "__init__.py").write_text("getDefaultDataSearchPath, Exception = str, ValueError\n")
+    for name in ("PyMaterialXGenGlsl", "PyMaterialXGenShader"):
+        (folder / f"{name}.py").touch()
+    reason = "libICE.so.6: cannot open shared object file: No such file or directory"
+    (folder / "PyMaterialXRender.py").write_text(f"raise ImportError({reason!r})\n")
+    return tmp_path
+
+
+def test_missing_libraries_of_a_display_are_named_in_one_line(monkeypatch, no_library):
+    monkeypatch.setenv("MXEON_MATERIALX", str(no_library))
+    assert_not_run(
+        "materialx", r"MaterialX's renderer does not load \(libICE.so.6: .*\); on Debian: "
+    )
+
+
+def test_a_display_that_is_not_there_ends_the_renderer(hosts, monkeypatch):
+    hosts("materialx")
+    monkeypatch.setenv("DISPLAY", ":4711")
+    assert_not_run("materialx", "(ended by|exit status) .*; last output: ")
 
 
 @pytest.mark.parametrize("name, package, words", MODULES)
@@ -64,13 +94,13 @@ def test_a_missing_compiler_is_named_with_its_remedy(monkeypatch):
 
 @pytest.mark.parametrize("name", ["vulkan", "wgsl"])  # naga needs no compiler
 def test_a_missing_vulkan_driver_is_named_with_its_remedy(monkeypatch, name):
-    wgpu = pytest.importorskip("wgpu")
+    wgpu = package("wgpu")
     if name == "vulkan":
         monkeypatch.setattr("shutil.which", lambda program: program)
     else:
         monkeypatch.setenv("PATH", "/nowhere")
     monkeypatch.setattr(wgpu.gpu, "enumerate_adapters_sync", list)
-    assert_not_run(name, "no Vulkan device; .* install mesa-vulkan-drivers")
+    assert_not_run(name, "no Vulkan( or Metal or D3D12)? device; .* install mesa-vulkan-drivers")
 
 
 def test_a_missing_driver_is_named_with_its_remedy(hosts, monkeypatch):

@@ -23,6 +23,7 @@ from mxeon.models.core.arguments import RANGES
 from mxeon.models.core.arrays import NUMPY, array_namespace
 from mxeon.sampling import eon_sample
 from tests.fuzz import arguments
+from tests.support.availability import package
 from tests.support.tracing import untraced
 from tools.site import arrays as table
 
@@ -113,8 +114,8 @@ HIGH = (
 
 
 def pytorch():
-    torch = pytest.importorskip("torch")
-    pytest.importorskip("array_api_compat")
+    torch = package("torch")
+    package("array_api_compat")
 
     def gradients(function, values):
         tensors = {k: torch.tensor(v, requires_grad=True) for k, v in values.items()}
@@ -136,7 +137,7 @@ def pytorch():
 
 
 def jax():
-    library = pytest.importorskip("jax")
+    library = package("jax")
     library.config.update("jax_enable_x64", True)
     # What is compiled for one call is not worth optimizing, and emitting fused loops takes twice the
     # rest; in one module, what all modules need is compiled once.
@@ -251,7 +252,7 @@ def moved(function, arrays, switches, name):
     }
     values[name] = several.reshape(values[name].shape)
     # Map it over the rows: a value that is traced may leave its range, and a direction the sphere.
-    torch = pytest.importorskip("torch")
+    torch = package("torch")
     row = torch.func.vmap(
         lambda *a: scalar(function(**dict(zip(values, a, strict=True)), **switches), 0)
     )
@@ -443,13 +444,13 @@ def test_one_rounding_beyond_an_edge_counts_as_the_edge(library):
 
 
 def test_arrays_of_two_libraries_do_not_mix():
-    tensor, array = pytest.importorskip("torch").ones(1), pytest.importorskip("jax").numpy.ones(1)
+    tensor, array = package("torch").ones(1), package("jax").numpy.ones(1)
     with pytest.raises(ValueError, match="^arrays must be of one library; got jax and torch"):
         fon_albedo_dir(tensor, array)
 
 
 def test_arrays_of_jax_without_numbers_are_refused():
-    library = pytest.importorskip("jax")
+    library = package("jax")
     deleted = library.numpy.asarray([0.0, 0.6, 0.8])
     deleted.delete()
     for array, rule in (
@@ -462,7 +463,7 @@ def test_arrays_of_jax_without_numbers_are_refused():
 
 @pytest.mark.parametrize("name", ("torch", "jax"))
 def test_the_examples_of_the_page_run(name):
-    pytest.importorskip(name)
+    package(name)
     blocks = re.findall(r"```python\n(.*?)```", table.PAGE.read_text(encoding="utf-8"), re.DOTALL)
     chosen = [each for each in blocks if f"import {name}" in each]
     assert chosen

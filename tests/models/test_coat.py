@@ -20,6 +20,7 @@ from mxeon.models import (
 from mxeon.models.coat import constant_coat
 from mxeon.models.microfacet import slopes
 from mxeon.models.microfacet.fresnel import dielectric
+from tests.support.availability import package
 from tests.support.hemispheres import gauss_legendre, hemisphere, uniforms, view
 from tests.support.tolerances import COAT, COAT_INTEGRAL
 
@@ -128,14 +129,14 @@ def test_openpbrs_base_by_name_has_the_names_of_openpbr_and_of_a_fit():
 
 
 def test_a_coat_each_is_refused_for_other_arrays():
-    torch = pytest.importorskip("torch")
+    torch = package("torch")
     row, alpha = mxeon.model("dielectric_over_eon"), torch.tensor([0.1, 0.3])
     with pytest.raises(ValueError, match="^alpha must be one number"):
         row.brdf(view(0.5), view(0.7), alpha=alpha)
 
 
 def test_gradients_by_the_coat_are_those_of_differences():
-    torch = pytest.importorskip("torch")
+    torch = package("torch")
     wo, u = view(0.6), uniforms(4, 1)
     functions = (
         dielectric_over_eon_albedo_avg,

@@ -15,6 +15,7 @@ from mxeon.models.hair import (
     longitudinal,
 )
 from mxeon.models.nodes.lobes import FORMS, READINGS, TILTED, materialx_longitudinal
+from tests.support.availability import package
 from tests.support.hemispheres import sphere
 
 ROUND = 1e-14  # 45 roundings of float64
@@ -124,7 +125,7 @@ def test_each_form_has_other_values(form):
 @pytest.mark.parametrize("tilt", [0.0, 3.0])
 def test_mitsuba_has_the_values_of_the_model(tilt):
     """Its hair is that of [Chiang2016]: without the factor 1/pi, and with the viewer tilted."""
-    mi = pytest.importorskip("mitsuba")
+    mi = package("mitsuba")
     mi.set_variant("scalar_rgb")
     absorption, beta = (0.1, 0.2, 0.3), 0.6
     v, s = (0.726 * beta + 0.812 * beta**2 + 3.7 * beta**20) ** 2, 0.265 * beta + 1.194 * beta**2

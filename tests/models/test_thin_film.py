@@ -25,6 +25,7 @@ from mxeon.models.thin_film import (
     film_spectrum_xyz,
 )
 from tests.models.test_pbrlib import directions, inputs
+from tests.support.availability import package
 
 MU = np.linspace(0.05, 1.0, 40)
 GOLD = (0.183, 0.421, 1.373), (3.424, 2.346, 1.770)
@@ -173,7 +174,7 @@ def test_tristimulus_values_stay_in_0_to_1_with_all_orders():
 def test_the_matrix_is_the_printed_one_after_a_bradford_adaptation():
     d65 = np.linalg.solve(XYZ_TO_REC709, np.ones(3))
     with np.printoptions():  # it changes how arrays print, in every doctest of the process
-        colour = pytest.importorskip("colour")  # slow, in every process that collects tests
+        colour = package("colour")  # slow, in every process that collects tests
     adaptation = colour.adaptation.matrix_chromatic_adaptation_VonKries(np.ones(3), d65, "Bradford")
     np.testing.assert_allclose(XYZ_TO_REC709_E, XYZ_TO_REC709 @ adaptation, atol=5e-8)
     np.testing.assert_allclose(XYZ_TO_REC709_E.sum(axis=1), 1.0, atol=3e-7)

@@ -14,6 +14,7 @@ import pytest
 import mxeon
 from mxeon.models import model_names
 from mxeon.models.core.arguments import RANGES
+from tests.support.availability import package
 from tests.support.tracing import untraced
 
 SEED, ROWS = 5, 3
@@ -126,7 +127,7 @@ def assert_slopes(function, inputs, found):
 
 @pytest.mark.parametrize(("name", "function"), FUNCTIONS)
 def test_torch_differentiates_and_maps_every_function_of_every_model(name, function):
-    torch = pytest.importorskip("torch")
+    torch = package("torch")
     row = mxeon.model(name)
     model = getattr(row, function)
 
@@ -167,7 +168,7 @@ def test_jax_traces_derivatives_of_every_function_of_a_model(name, function):
 
     Forwards, in a third of the time: backwards, JAX transposes its own steps, as where gradients have values.
     """
-    jax = pytest.importorskip("jax")
+    jax = package("jax")
     jax.config.update("jax_enable_x64", True)
     row = mxeon.model(name)
     given, inputs = vectors(row, function), inside(row)
@@ -185,7 +186,7 @@ def test_jax_traces_derivatives_of_every_function_of_a_model(name, function):
 
 @pytest.mark.parametrize("name", COMPILED)
 def test_jax_compiles_gradients_of_a_model(name):
-    jax = pytest.importorskip("jax")
+    jax = package("jax")
     jax.config.update("jax_enable_x64", True)
     jax.config.update("jax_disable_most_optimizations", True)
     row, inputs = mxeon.model(name), inside(mxeon.model(name))
@@ -200,7 +201,7 @@ def test_jax_compiles_gradients_of_a_model(name):
 
 
 def test_a_gradient_of_jax_needs_no_array_and_no_context():
-    jax = pytest.importorskip("jax")
+    jax = package("jax")
     row, pair = mxeon.model("eon"), ([0.6, 0.0, 0.8], [0.0, 0.6, 0.8])
     slope = jax.grad(lambda r: row.brdf(*pair, [0.7, 0.35, 0.12], r).sum())(0.5)
     ends = [row.brdf(*pair, [0.7, 0.35, 0.12], 0.5 + h).sum() for h in (STEP, -STEP)]
@@ -209,7 +210,7 @@ def test_a_gradient_of_jax_needs_no_array_and_no_context():
 
 @pytest.mark.filterwarnings("ignore::UserWarning", "ignore::DeprecationWarning")
 def test_torch_compiles_a_model():
-    torch = pytest.importorskip("torch")
+    torch = package("torch")
     row = mxeon.model("eon")
     wo, wi = map(torch.tensor, vectors(row, "bsdf"))
     compiled = torch.compile(lambda r: row.brdf(wo, wi, 0.5, r), backend="eager")

@@ -18,7 +18,7 @@ from mxeon.models.transmission import (
     transmission_half_vector,
 )
 from tests.support import tolerances
-from tests.support.availability import available
+from tests.support.availability import available, package
 from tests.support.hemispheres import view
 
 INDICES = (0.7, 1.2, 1.5, 3.0)
@@ -210,7 +210,7 @@ def test_one_index_for_all_channels_is_that_of_the_mean():
 @pytest.mark.parametrize("mode", ["Radiance", "Importance"])
 def test_mitsuba_agrees_but_for_the_masking_function(mode):
     with available("mitsuba"):
-        mi = pytest.importorskip("mitsuba")
+        mi = package("mitsuba")
         mi.set_variant("scalar_rgb")
         bsdf = mi.load_dict(
             {

@@ -21,6 +21,7 @@ from mxeon.models.microfacet.fresnel import (
 from mxeon.models.microfacet.ggx import glossiness_anisotropy, roughness_anisotropy, roughness_dual
 from mxeon.models.nodes.utilities import UTILITIES, node
 from mxeon.shaders.library import load_library
+from tests.support.availability import package
 
 RNG = np.random.default_rng(1)
 SHARES = RNG.random((2, 10_000))
@@ -77,7 +78,7 @@ def test_planck_radiance_integrates_to_the_stefan_boltzmann_law():
 
 def test_a_blackbody_has_luminance_1_and_the_colors_of_a_library():
     with np.printoptions():  # it changes how arrays print, in every doctest of the process
-        colour = pytest.importorskip("colour")
+        colour = package("colour")
     shape = colour.SpectralShape(360, 830, 1)
     observer = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"].copy().align(shape)
     for kelvin in (800.0, 1667.0, 4000.0, 25000.0):

@@ -20,7 +20,7 @@ from mxeon.shaders.generation import TARGETS, ApproximationWarning, generate
 from mxeon.shaders.generators import ERROR, lines_left_out
 from mxeon.shaders.library import examples_folder, load_library, source_folder
 from mxeon.shaders.nodes import EON, OREN_NAYAR
-from tests.support.availability import available, required
+from tests.support.availability import available, program, required
 from tests.support.documents import COMPENSATED, lobe, material
 
 EXAMPLES = sorted(examples_folder().glob("*.mtlx"))
@@ -96,7 +96,7 @@ def validate(shader, target, folder):
     for stage, suffix in (("pixel", "frag"), ("vertex", "vert")):
         files.append(folder / f"{shader.name}.{suffix}")
         files[-1].write_text(shader.stages[stage])
-    command = ["glslangValidator", *VALIDATED[target], *files]
+    command = [program("glslangValidator"), *VALIDATED[target], *files]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout
 

@@ -11,6 +11,7 @@ import mxeon
 from mxeon.cli import main
 from mxeon.shaders.library import SOURCE_FOLDERS, TESTED, data_folder
 from mxeon.shaders.library_export import export_library, recipes
+from tests.support.availability import program
 from tests.support.verdicts import PASSED
 from tests.support.wheels import run_with, verdicts_with
 
@@ -68,7 +69,7 @@ def test_the_shaders_of_every_node_of_a_copy_compile(copy, tmp_path, version):
     run_with(version, "tests.support.client", copy, tmp_path)
     shaders = sorted(tmp_path.glob("*.frag"))
     assert len(shaders) == 23
-    done = subprocess.run(["glslangValidator", *shaders], capture_output=True, text=True)
+    done = subprocess.run([program("glslangValidator"), *shaders], capture_output=True, text=True)
     assert done.returncode == 0, done.stdout
 
 

@@ -16,6 +16,7 @@ from mxeon.conformance.checks.paths import deviation, paths, random, refracted
 from mxeon.errors import InputError, InterfaceError
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import connection_text, document_text, input_text, material_text, node_text
+from tests.support.availability import program
 from tests.support.cases import direction
 from tests.support.verdicts import PASSED
 from tests.support.wrong_libraries import copy_of_eonlib
@@ -260,13 +261,13 @@ VERSIONS = {
 
 def validated(folder, text, *options):
     """What glslangValidator says of a pixel stage that it refuses."""
-    validator = shutil.which("glslangValidator")
-    if not validator:
-        pytest.skip("needs glslangValidator")
     file = folder / "path.frag"
     file.write_text(text, encoding="utf-8")
     done = subprocess.run(
-        [validator, *options, str(file)], capture_output=True, text=True, check=False
+        [program("glslangValidator"), *options, str(file)],
+        capture_output=True,
+        text=True,
+        check=False,
     )
     return done.stdout if done.returncode else ""
 

@@ -23,14 +23,27 @@ from typing import NoReturn
 REPLIES = os.fdopen(os.dup(1), "w", buffering=1)
 os.dup2(2, 1)
 
+REMEDY = "on Debian: apt-get install libgl1 libsm6 libx11-6 xvfb"
+
+
+def fail(reason: str) -> NoReturn:
+    """Say in one line why nothing can be drawn, and end the process."""
+    print(json.dumps({"error": reason}), file=REPLIES)
+    sys.exit(1)
+
+
 sys.path[:0] = filter(None, [os.environ.get("MXEON_MATERIALX")])
 import MaterialX as mx  # noqa: E402
 import MaterialX.PyMaterialXGenGlsl as mx_glsl  # noqa: E402
 import MaterialX.PyMaterialXGenShader as mx_gen  # noqa: E402
-import MaterialX.PyMaterialXRender as mx_render  # noqa: E402
-import MaterialX.PyMaterialXRenderGlsl as mx_render_glsl  # noqa: E402
 import numpy as np  # noqa: E402
 from numpy.typing import NDArray  # noqa: E402
+
+try:
+    import MaterialX.PyMaterialXRender as mx_render
+    import MaterialX.PyMaterialXRenderGlsl as mx_render_glsl
+except ImportError as error:
+    fail(f"MaterialX's renderer does not load ({error}); {REMEDY}")
 
 FAR = 1e6  # of the camera; the shader computes the view from its position
 DIRECTIONS = 256  # directions over which microfacet shaders sum the environment
@@ -39,6 +52,10 @@ ANISOTROPY = ("GL_ARB_texture_filter_anisotropic", "GL_EXT_texture_filter_anisot
 SCREEN = ("-screen", "0", "64x64x24", "-nolisten", "tcp")
 DIES_WITH_PARENT = 1  # PR_SET_PDEATHSIG of prctl
 RENDERER = 0x1F01  # of glGetString
+OPENGL = {
+    "darwin": "/System/Library/Frameworks/OpenGL.framework/OpenGL",
+    "win32": "opengl32",
+}
 SEARCH_PATH = mx.getDefaultDataSearchPath()
 if sys.argv[1]:
     SEARCH_PATH = mx.FileSearchPath(sys.argv[1])
@@ -47,13 +64,11 @@ ERRORS = (mx.Exception, mx_render.ExceptionRenderError, LookupError)
 
 def open_display() -> None:
     """Make DISPLAY name a display: the existing one, or an Xvfb that ends with this process."""
-    if os.environ.get("DISPLAY"):
+    if sys.platform != "linux" or os.environ.get("DISPLAY"):
         return
     program = shutil.which("Xvfb")
     if program is None:
-        fail(
-            "no display: DISPLAY is not set, and there is no Xvfb; on Debian: apt-get install xvfb"
-        )
+        fail(f"no display: DISPLAY is not set, and there is no Xvfb; {REMEDY}")
     prctl = ctypes.CDLL(None).prctl
     read, write = os.pipe()
     subprocess.Popen(
@@ -67,12 +82,6 @@ def open_display() -> None:
     if not number:
         fail("no display: Xvfb does not start")
     os.environ["DISPLAY"] = f":{number}"
-
-
-def fail(reason: str) -> NoReturn:
-    """Say in one line why nothing can be drawn, and end the process."""
-    print(json.dumps({"error": reason}), file=REPLIES)
-    sys.exit(1)
 
 
 class ShownElement:
@@ -187,7 +196,7 @@ def obj_file(path: str) -> str:
     ]
     corners = np.arange(1, len(data["position"]) + 1).reshape(-1, 4).tolist()
     lines += [f"f {' '.join(f'{each}/{each}/{each}' for each in quad)}" for quad in corners]
-    target.write_text("\n".join(lines) + "\n")
+    target.write_text("\n".join(lines) + "\n", encoding="ascii")
     return str(target)
 
 
@@ -202,7 +211,7 @@ def pixels(image: mx_render.Image) -> NDArray[np.float32]:
 def device(renderer: mx_render_glsl.GlslRenderer) -> str:
     """Name of the device, from the context of a renderer."""
     renderer.setSize(1, 1)  # which makes it the current one
-    function = ctypes.CDLL("libGL.so.1").glGetString
+    function = ctypes.CDLL(OPENGL.get(sys.platform, "libGL.so.1")).glGetString
     function.restype = ctypes.c_char_p
     return str(function(RENDERER).decode())
 
