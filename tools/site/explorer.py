@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Make `docs/explore.html`, and its picture on the page about it: `python -m tools.site.explorer`."""
 
-import os
-
 from mxeon.explorer import page, page_data
-from mxeon.hosts.webgl import FLAGS, program
+from mxeon.hosts.webgl import FLAGS, is_root, program
 from mxeon.io.files import write_text
 from tools.site import DOCS
 
@@ -21,7 +19,7 @@ def main() -> None:
     write_text(PAGE, page(page_data(pages=PAGES)))
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(
-            executable_path=program(), args=FLAGS, chromium_sandbox=os.geteuid() != 0
+            executable_path=program(), args=FLAGS, chromium_sandbox=not is_root()
         )
         sheet = browser.new_page(viewport=SIZE)
         sheet.goto(PAGE.as_uri())

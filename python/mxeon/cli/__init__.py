@@ -6,7 +6,6 @@ A sub-command imports what it needs when it runs, so that `mxeon --help` answers
 
 import argparse
 import re
-import resource
 import sys
 import traceback
 import warnings
@@ -61,10 +60,7 @@ def _run(arguments: Sequence[str]) -> int:
     try:
         _check_encoding(arguments)
         options = parser().parse_args(arguments)
-        limit, _ = resource.getrlimit(resource.RLIMIT_AS)
-        if limit != resource.RLIM_INFINITY and limit < LEAST_MEMORY:
-            rule = f"address space must be at least {LEAST_MEMORY} bytes; got {limit}"
-            raise NotRun(f"{rule}: raise it by ulimit -v")
+        _check_memory()
         use_materialx(getattr(options, "materialx", None))
         with warnings.catch_warnings():
             warnings.showwarning = show_warning
@@ -81,6 +77,18 @@ def _run(arguments: Sequence[str]) -> int:
     except Exception:  # a bug of ours
         traceback.print_exc()
         return NOT_RUN
+
+
+def _check_memory() -> None:
+    """Raise NotRun if a limit of the process leaves too little memory; Windows has no such limit."""
+    if sys.platform == "win32":
+        return
+    import resource
+
+    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
+    if limit != resource.RLIM_INFINITY and limit < LEAST_MEMORY:
+        rule = f"address space must be at least {LEAST_MEMORY} bytes; got {limit}"
+        raise NotRun(f"{rule}: raise it by ulimit -v")
 
 
 def _check_encoding(arguments: Sequence[str]) -> None:

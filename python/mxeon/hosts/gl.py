@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import lru_cache, partial, wraps
-from typing import Concatenate, ParamSpec, TypeVar, cast
+from typing import Any, Concatenate, ParamSpec, TypeVar, cast
 
 import moderngl
 import numpy as np
@@ -22,6 +23,11 @@ PROGRAMS = 4  # to keep, of 10 MB each: a document's scenes and a node's checks 
 ROWS = 256  # of a texture that are copied at a time
 CONSTANTS = 64  # textures of one value to keep: most inputs are the same for all pixels
 POINTS = 4  # textures of points to keep: most materials have the same vertex stage
+REMEDIES = {
+    "linux": "on Debian: apt-get install libegl1 libgl1-mesa-dri",
+    "darwin": "macOS ends at OpenGL 4.1: use --host wgsl or --host webgl",
+    "win32": "install the driver of a GPU, or use --host wgsl or --host webgl",
+}
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -51,17 +57,12 @@ class Host(FragmentHost):
     draws_images = True
 
     def __init__(self) -> None:
+        backend: Any = {"backend": "egl"} if sys.platform == "linux" else {}
         try:
-            self._context = moderngl.create_context(
-                require=430,
-                standalone=True,
-                backend="egl",  # type: ignore[arg-type]
-            )
+            self._context = moderngl.create_context(require=430, standalone=True, **backend)
         except Exception as error:  # moderngl and glcontext raise bare Exception
-            raise NotRun(
-                f"gl: no OpenGL 4.3 through EGL ({str(error).strip()}); on Debian: "
-                "apt-get install libegl1 libgl1-mesa-dri"
-            ) from None
+            remedy = REMEDIES.get(sys.platform, REMEDIES["linux"])
+            raise NotRun(f"gl: no OpenGL 4.3 ({str(error).strip()}); {remedy}") from None
         self._context.gc_mode = "context_gc"
         self._program = lru_cache(maxsize=PROGRAMS)(partial(_program, self._context))
         self._constant = lru_cache(maxsize=CONSTANTS)(self._filled)

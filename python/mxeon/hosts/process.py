@@ -56,7 +56,7 @@ class Worker:
             return
         self._end()
         self._read = 0
-        with self.log.open("w") as log:
+        with self.log.open("wb") as log:
             self._process = Popen(
                 self._command,
                 stdin=PIPE,

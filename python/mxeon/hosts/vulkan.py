@@ -69,8 +69,9 @@ class Host(FragmentHost):
 
     name = "vulkan"
     target = "vulkan"
-    path: ClassVar[str] = "Vulkan"  # of a text to the device
+    path: ClassVar[str] = ""  # converter of a text for the device
     programs: ClassVar[tuple[str, ...]] = (COMPILER[0], REMOVER[0])
+    interfaces: ClassVar[tuple[str, ...]] = ("Vulkan",)  # of the system's drivers, in wgpu's words
 
     def __init__(self) -> None:
         if wgpu is None:
@@ -81,17 +82,19 @@ class Host(FragmentHost):
                     f"{self.name}: no program {program!r}; on Debian: apt-get install glslang-tools"
                 )
         adapters = wgpu.gpu.enumerate_adapters_sync()
-        found = [each for each in adapters if each.info["backend_type"] == "Vulkan"]
+        found = [each for each in adapters if each.info["backend_type"] in self.interfaces]
         if not found:
             remedy = "on Debian: apt-get install mesa-vulkan-drivers"
-            raise NotRun(f"{self.name}: no Vulkan device; {remedy}")
+            raise NotRun(f"{self.name}: no {' or '.join(self.interfaces)} device; {remedy}")
         self._adapter = found[0]
         self._device = self._adapter.request_device_sync()
         self._programs: dict[str, tuple[tuple[Resource, ...], Resource]] = {}
 
     def identity(self) -> Identity:
         info = self._adapter.info
-        version = f"{self.path}, {info['description']}; wgpu {wgpu.__version__}"
+        version = (
+            f"{self.path}{info['backend_type']}, {info['description']}; wgpu {wgpu.__version__}"
+        )
         return Identity(self.name, version, info["device"])
 
     def close(self) -> None:

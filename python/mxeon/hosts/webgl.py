@@ -12,6 +12,7 @@ import base64
 import os
 import re
 import shutil
+import sys
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
@@ -116,7 +117,7 @@ class Chromium:
         playwright = self._stack.enter_context(sync_api.sync_playwright())
         browser = self._stack.enter_context(
             playwright.chromium.launch(
-                executable_path=self._program, args=self.flags, chromium_sandbox=os.geteuid() != 0
+                executable_path=self._program, args=self.flags, chromium_sandbox=not is_root()
             )
         )
         self._page = browser.new_page()
@@ -217,13 +218,19 @@ class Host(Chromium, FragmentHost):
         return base64.b64decode(answer["bytes"])
 
 
+def is_root() -> bool:
+    """Whether the user is root, for whom Chromium has no sandbox; Windows has no such user."""
+    return sys.platform != "win32" and os.geteuid() == 0
+
+
 def program(host: str = "webgl") -> str:
+    """Path of the browser."""
     name = os.environ.get(PROGRAM) or "chromium"
     path = shutil.which(name)
     if path is None:
         raise NotRun(
             f"{host}: no program {name!r}; on Debian: apt-get install chromium, "
-            f"or name another Chromium in {PROGRAM}"
+            f"or name a Chromium, Chrome or Edge in {PROGRAM}"
         )
     return path
 

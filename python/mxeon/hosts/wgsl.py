@@ -15,12 +15,13 @@ BLOCK = re.compile(r"^layout \(location = 0\) in (\w+\s*\{[^}]*\} \w+;)", re.MUL
 
 
 class Host(vulkan.Host):
-    """The first Vulkan adapter that wgpu finds, with naga instead of glslang."""
+    """The first adapter that wgpu finds, with naga instead of glslang."""
 
     name = "wgsl"
     target = "wgsl"
-    path = "naga, Vulkan"
+    path = "naga, "
     programs = ()
+    interfaces = ("Vulkan", "Metal", "D3D12")
 
     def _vertex(self, pixel: str) -> str:
         """A vertex stage with the pixel stage's block, all 0.

@@ -5,6 +5,7 @@ import errno
 import hashlib
 import os
 import stat
+import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from functools import cache
@@ -14,6 +15,7 @@ from secrets import token_hex
 from mxeon.errors import InputError
 
 AnyPath = str | os.PathLike[str]
+BINARY: int = getattr(os, "O_BINARY", 0)  # Windows would write "\r\n" without it
 TEMPORARY = ".mxeon-"  # prefix of files and folders that are not complete yet
 
 
@@ -101,7 +103,7 @@ def replacing(path: AnyPath) -> Iterator[Path]:
         os.close(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
         try:
             yield beside
-            with beside.open("rb") as file:
+            with beside.open("r+b") as file:  # Windows flushes only what may be written
                 os.fsync(file.fileno())  # some file systems report a full disk only here
             os.replace(beside, path)
         finally:
@@ -126,11 +128,13 @@ def write_text(path: AnyPath, text: str) -> None:
     A lone surrogate, which a file name can contain and UTF-8 cannot, becomes "?".
     """
     with replacing(path) as beside:
-        beside.write_text(text, encoding="utf-8", errors="replace")
+        beside.write_text(text, encoding="utf-8", errors="replace", newline="\n")
 
 
 def sync(folder: AnyPath) -> None:
-    """Flush the names in a folder to disk."""
+    """Flush the names in a folder to disk; Windows opens no folder."""
+    if sys.platform == "win32":
+        return
     file = os.open(folder, os.O_RDONLY)
     try:
         os.fsync(file)
@@ -143,7 +147,7 @@ def regular(path: AnyPath, flags: int) -> int:
 
     A pipe or a device may have no end, and opening a pipe without a writer blocks.
     """
-    file = os.open(path, flags | os.O_NONBLOCK)
+    file = os.open(path, flags | getattr(os, "O_NONBLOCK", 0))  # Windows has no such flag
     if not stat.S_ISREG(os.fstat(file).st_mode):
         os.close(file)
         raise OSError(errno.EINVAL, "not a regular file", os.fspath(path))

@@ -12,6 +12,7 @@ from collections import deque
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from multiprocessing import resource_tracker
 from pathlib import Path
@@ -169,7 +170,8 @@ def _serve(
 
     Each worker is its own pool, so items can be assigned to it.
     """
-    pools = [ProcessPool(1, initializer=_prepare, context=Context()) for _ in range(workers)]
+    context: Any = Context()
+    pools = [ProcessPool(1, initializer=_prepare, context=context) for _ in range(workers)]
     running: list[dict[Future[Any], Attempt]] = [{} for _ in pools]
     try:
         active = all([_start(pool) for pool in pools])
@@ -191,7 +193,10 @@ def _serve(
                     waiting.put(again)
                 else:
                     yield attempt.index, outcome
-                Path(attempt.log).unlink(missing_ok=True)
+                with suppress(
+                    PermissionError
+                ):  # Windows: the worker writes to it until its next item
+                    Path(attempt.log).unlink(missing_ok=True)
             if not done:
                 return
     finally:
@@ -211,7 +216,8 @@ def _start(pool: ProcessPool) -> bool:
         with block_signals(), safe_path():
             if QUIET not in sys.warnoptions:
                 sys.warnoptions.append(QUIET)  # which the tracker's process inherits
-            resource_tracker.ensure_running()  # else the first process does, and unblocks signals
+            if sys.platform != "win32":
+                resource_tracker.ensure_running()  # else the first process does, and unblocks signals
         with block_signals():
             return bool(pool.active)
     except (OSError, RuntimeError) as error:
@@ -241,7 +247,7 @@ def _outcome(future: Future[Any], attempt: Attempt, timeout: float) -> Outcome:
         log_bug(error)
     end = f"{type(error).__name__}: {error}" if raised else _end(error, timeout)
     path = Path(attempt.log)
-    lines = path.read_text(errors="replace").split("\n") if path.exists() else []
+    lines = path.read_text("utf-8", "replace").split("\n") if path.exists() else []
     last = " | ".join([line.strip() for line in lines if line.strip()][-LAST_LINES:]) or "none"
     return Outcome(None, f"{' '.join(end.split())}; last output: {last}", attempt.number)
 

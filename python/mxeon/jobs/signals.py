@@ -2,16 +2,23 @@
 """The signals that end a command: Ctrl-C, `kill`, a terminal that is closed, and timers."""
 
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from tempfile import TemporaryDirectory
 from types import FrameType
 
-TERMINAL = (signal.SIGINT, signal.SIGHUP)  # reach all processes of a terminal
+
+def _existing(*names: str) -> tuple[signal.Signals, ...]:
+    """The signals that this platform has."""
+    return tuple(signal.Signals[name] for name in names if hasattr(signal, name))
+
+
+TERMINAL = _existing("SIGINT", "SIGHUP", "SIGBREAK")  # reach all processes of a terminal
 ENDING = (*TERMINAL, signal.SIGTERM)
 # Signals that end a process without a handler.
-OTHERS = (signal.SIGALRM, signal.SIGUSR1, signal.SIGUSR2, signal.SIGXCPU)
+OTHERS = _existing("SIGALRM", "SIGUSR1", "SIGUSR2", "SIGXCPU")
 
 _pending: list[int] | None = None  # numbers of the signals that came while blocked
 
@@ -53,16 +60,18 @@ def block_signals() -> Iterator[None]:
     """Block the signals of a terminal, so that child processes inherit the blocked mask.
 
     This process ends them with SIGTERM, which must reach them at any time. Signals that came
-    in the meantime are raised at the end.
+    in the meantime are raised at the end. Windows has no masks to inherit.
     """
     global _pending
     _pending = []
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, TERMINAL)
+    if sys.platform != "win32":
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, TERMINAL)
     try:
         yield
     finally:
         pending, _pending = _pending, None
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        if sys.platform != "win32":
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
         if pending:
             raise SignalExit(pending[0])
 

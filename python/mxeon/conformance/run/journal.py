@@ -25,7 +25,7 @@ from mxeon.conformance.results import JUNIT, PAGE, RESULTS, Picture, counted, li
 from mxeon.conformance.results.records import StoredImage, images_of, make_converter
 from mxeon.conformance.run.plan import Findings, Plan
 from mxeon.errors import InputError
-from mxeon.io.files import below, regular, replacing, sync
+from mxeon.io.files import BINARY, below, regular, replacing, sync
 from mxeon.io.records import ERRORS
 
 FORMAT = 8
@@ -114,7 +114,7 @@ class Journal:
                     beside.write_bytes(_line(header))
                 sync(self._path.parent)
                 sync(self._folder)
-            self._file = os.open(self._path, os.O_WRONLY | os.O_APPEND)
+            self._file = os.open(self._path, os.O_WRONLY | os.O_APPEND | BINARY)
             stack.callback(os.close, self._file)
             self._exit = stack.pop_all()
 

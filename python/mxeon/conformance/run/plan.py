@@ -410,4 +410,4 @@ def _examples(library: str) -> list[Path]:
     """The bundled documents, except those with a node that the library lacks."""
     files = sorted(examples_folder().glob("*.mtlx"))
     missing = [spec.node for spec in DIFFUSE if spec not in diffuse_specs(library)]
-    return [file for file in files if not any(node in file.read_text() for node in missing)]
+    return [file for file in files if not any(node in file.read_text("utf-8") for node in missing)]

@@ -169,7 +169,7 @@ class Host(PairHost):
 
     def _render(self, folder: Path, text: str, **frame: object) -> Array:
         shader = folder / "shader.osl"
-        shader.write_text(text)
+        shader.write_text(text, encoding="utf-8")
         return self._request(folder, shader=str(shader), **frame)
 
     def _request(self, folder: Path, **request: object) -> Array:
