@@ -11,7 +11,7 @@ import pytest
 from mxeon.hosts import host_rows
 
 ROOT = Path(__file__).parents[1]
-SAY = '#!/bin/sh\necho "$(basename "$0") $*"\n'
+SAY = '#!/bin/sh\necho "${0##*/} $*"\n'
 PYTHON = """#!/bin/sh
 [ "$2" = venv ] || exit 0
 mkdir -p "$3/bin"
@@ -79,9 +79,32 @@ def test_the_tests_complete_the_environment_of_the_demo_which_keeps_it(run):
     assert "pip" not in "".join(run("demo"))
 
 
+def test_the_default_tests_find_no_program_that_their_job_does_not_install(run, tmp_path):
+    run("test", "-x")  # installs
+    python = tmp_path / ".venv" / "bin" / "python"
+    python.write_text('#!/bin/sh\necho "$PATH"\n')
+    _, path, _ = run("test")
+    assert path == str(tmp_path / "out" / "bare")
+    [engines] = re.findall(r'^engines="(.*)"', (ROOT / "run").read_text(), re.MULTILINE)
+    assert "glslang-tools" in engines and shutil.which("glslangValidator", path=path) is None
+    assert shutil.which("git", path=path) and shutil.which("sh", path=path)
+    assert "/usr/bin" in run("test", "-x")[1]
+
+
+def test_a_missing_job_is_answered_by_a_line_for_each(run):
+    with pytest.raises(subprocess.CalledProcessError) as ended:
+        run()
+    jobs = re.findall(r"^  (\w+) ", ended.value.stderr, re.MULTILINE)
+    assert ended.value.returncode == 2 and ended.value.stdout == ""
+    assert jobs == re.findall(r"^([a-z]+)\)$", (ROOT / "run").read_text(), re.MULTILINE)
+
+
 def test_all_tests_require_every_host_that_they_install():
     names = re.search(r"MXEON_REQUIRE=\$\{MXEON_REQUIRE-([\w,-]+)\}", (ROOT / "run").read_text())
-    assert set(names[1].split(",")) == {row.name for row in host_rows() if row.module} - {
+    assert set(names[1].split(",")) == {
+        "packages",
+        *(row.name for row in host_rows() if row.module),
+    } - {
         "eevee",  # its checks take minutes on a software driver
         "luxcore",  # its package brings 200 MB for GPUs
         "testrender",
