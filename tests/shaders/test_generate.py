@@ -20,7 +20,7 @@ from mxeon.shaders.generation import TARGETS, ApproximationWarning, generate
 from mxeon.shaders.generators import ERROR, lines_left_out
 from mxeon.shaders.library import examples_folder, load_library, source_folder
 from mxeon.shaders.nodes import EON, OREN_NAYAR
-from tests.support.availability import available, program, required
+from tests.support.availability import available, program
 from tests.support.documents import COMPENSATED, lobe, material
 
 EXAMPLES = sorted(examples_folder().glob("*.mtlx"))
@@ -157,21 +157,19 @@ def test_our_nodes_compile_together_with_every_bsdf_node_of_pbrlib(target, tmp_p
 
 def translated(source, language, folder):
     """What spirv-cross says of a pixel stage that it cannot translate, or glslang of the HLSL; empty if neither."""
-    if missing := [each for each in ("glslangValidator", "spirv-cross") if not shutil.which(each)]:
-        message = f"needs the program {missing[0]}"
-        pytest.fail(message) if "vulkan" in required() else pytest.skip(message)
+    compiler, translator = program("glslangValidator"), program("spirv-cross")
     glsl, module, text = (folder / f"pixel.{suffix}" for suffix in ("frag", "spv", language))
     glsl.write_text(source, encoding="utf-8")
     steps = [
-        ["glslangValidator", "-V", "--quiet", "-o", module, glsl],
-        ["spirv-cross", module, f"--{language}", "--output", text],
+        [compiler, "-V", "--quiet", "-o", module, glsl],
+        [translator, module, f"--{language}", "--output", text],
     ]
     if language == "hlsl":
         steps[1] += ["--shader-model", "50"]
         parsed = folder / "parsed.spv"
         steps += [
             [
-                "glslangValidator",
+                compiler,
                 "-D",
                 "-V",
                 "--quiet",
