@@ -12,6 +12,8 @@ import pytest
 from mxeon.jobs.signals import ENDING, OTHERS, SignalExit, block_signals, raise_signals
 from tests.support.command import DEADLINE, PLASTER, wait_for
 
+GENERATE = [sys.executable, "-m", "mxeon", "generate", PLASTER, "--target", "osl"]
+GENERATE += ["--outputPath", "out", "--workers", "1"]
 CHECK = ["check", PLASTER, "--workers", "1", "--report", "report"]
 
 
@@ -43,6 +45,18 @@ def test_a_signal_ends_the_command_in_one_line_and_nothing_stays(tmp_path, numbe
     assert (process.returncode, errors) == (128 + number, f"mxeon: {line}\n")
     assert not list((tmp_path / "tmp").iterdir())
     assert not list(tmp_path.rglob(".mxeon*"))
+
+
+def test_a_killed_command_leaves_its_folder_to_the_next_one(tmp_path):
+    process = start(tmp_path, *CHECK)
+    folder = tmp_path / "tmp"
+    wait_for(lambda: list(folder.glob("mxeon-pool-*/.lock")), process)
+    alive = subprocess.run(GENERATE, cwd=tmp_path, env=os.environ | {"TMPDIR": str(folder)})
+    assert alive.returncode == 0 and list(folder.glob("mxeon-pool-*"))  # in use
+    process.kill()
+    process.communicate(timeout=DEADLINE)
+    after = subprocess.run(GENERATE, cwd=tmp_path, env=os.environ | {"TMPDIR": str(folder)})
+    assert after.returncode == 0 and not list(folder.iterdir())
 
 
 def test_a_signal_before_the_workers_work_ends_them_too(tmp_path):

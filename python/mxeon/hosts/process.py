@@ -20,6 +20,7 @@ from threading import Timer
 from typing import TypeAlias
 
 from mxeon.errors import NotRun
+from mxeon.jobs.signals import Temporary
 
 Reply: TypeAlias = dict[str, str]  # of a renderer's process
 
@@ -38,7 +39,7 @@ class Worker:
     ) -> None:
         self._name = name
         self._command: list[str | Path] = [python, "-I", "-W", "ignore", script, *arguments]
-        self._temporary = TemporaryDirectory(prefix=f"mxeon-{name}-")
+        self._temporary = Temporary(f"mxeon-{name}-")
         self.folder = Path(self._temporary.name)
         self.log = self.folder / "log.txt"
         self.limit = limit

@@ -7,7 +7,6 @@ Each pixel of a picture shows its own pair of directions; see `testrender_scene`
 from __future__ import annotations
 
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,6 +27,7 @@ from mxeon.hosts.osl.points import (
 )
 from mxeon.hosts.pairs import LAMP, SKY, PairHost
 from mxeon.io.images import read_image
+from mxeon.jobs.signals import Temporary
 from mxeon.shaders.generation import Shader
 
 HELPERS = {
@@ -46,7 +46,7 @@ class Host(PairHost):
     def __init__(self) -> None:
         self._oslc, self._testrender = map(find_program, ("oslc", "testrender"))
         self._version = version(self._oslc)
-        self._temporary = TemporaryDirectory(prefix="mxeon-testrender-")
+        self._temporary = Temporary("mxeon-testrender-")
         self._folder = Path(self._temporary.name)
         self._compiled: dict[str, str] = {}
 

@@ -14,7 +14,6 @@ import subprocess
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
@@ -23,6 +22,7 @@ from mxeon.errors import NotRun, install, refused
 from mxeon.hosts import fragment, raster
 from mxeon.hosts.base import TURN, Array, Identity
 from mxeon.hosts.raster import FragmentHost
+from mxeon.jobs.signals import Temporary
 
 try:
     import wgpu
@@ -232,7 +232,7 @@ class Host(FragmentHost):
 
 @lru_cache(maxsize=8)  # the vertex stage is always the same
 def _spirv(stage: str, text: str) -> bytes:
-    with TemporaryDirectory(prefix="mxeon-vulkan-") as folder:
+    with Temporary("mxeon-vulkan-") as folder:
         whole, used = str(Path(folder, "whole")), Path(folder, "used")
         _run([*COMPILER, "-S", stage, "-o", whole], text)
         _run([*REMOVER, whole, "-o", str(used)])

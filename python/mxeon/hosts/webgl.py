@@ -18,7 +18,6 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from functools import lru_cache
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
@@ -29,6 +28,7 @@ from mxeon.hosts import fragment, points, raster
 from mxeon.hosts.base import TURN, Array, Identity
 from mxeon.hosts.calls import PLACED
 from mxeon.hosts.raster import FragmentHost
+from mxeon.jobs.signals import Temporary
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.scene import Scene
 
@@ -210,7 +210,7 @@ class Host(Chromium, FragmentHost):
         self, function: str, job: Mapping[str, object], arrays: Mapping[str, Mapping[str, Array]]
     ) -> bytes:
         """Bytes that a function of the page returns for a job and arrays."""
-        with TemporaryDirectory(prefix="mxeon-webgl-") as folder:
+        with Temporary("mxeon-webgl-") as folder:
             file = Path(folder, "arrays")
             answer = self._ask(function, {**job, **_write(file, arrays)}, file)
         if "refused" in answer:

@@ -31,7 +31,7 @@ import MaterialX as mx
 
 from mxeon.errors import InputError
 from mxeon.io.files import AnyPath, regular
-from mxeon.jobs.signals import block_signals
+from mxeon.jobs.signals import Temporary, block_signals
 
 # eonlib as a whole, its diffuse nodes alone, and MaterialX as it comes.
 LIBRARIES = ("eonlib", "diffuse", "stock")
@@ -157,7 +157,7 @@ def root(library: str) -> str:
 @cache
 def _root(library: str) -> str:
     with block_signals():
-        _KEPT[library] = TemporaryDirectory(prefix="mxeon-library-")
+        _KEPT[library] = Temporary("mxeon-library-")
     temporary = os.path.realpath(_KEPT[library].name)
     for path, file in tree(library).links.items():
         link = Path(temporary, "libraries", path)

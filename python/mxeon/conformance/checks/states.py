@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 from functools import cache, lru_cache, partial
 from itertools import combinations, product
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -34,6 +33,7 @@ from mxeon.conformance.spec import LobeSpec, broadcast_inputs
 from mxeon.conformance.tolerance import Compared
 from mxeon.hosts.calls import LIGHTS, LIT, NORMAL, SECOND_LIGHT, SKY, TANGENT
 from mxeon.io.images import FAST_EXR, write_image
+from mxeon.jobs.signals import Temporary
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.nodes import with_images
 
@@ -295,7 +295,7 @@ def states(case: Case) -> Iterator[Compared]:
         key = pixels.second is not None, "uneven" * (pixels.sky == "uneven"), pixels.image, alone
         frames.setdefault(key, []).append(number)
     measured: dict[int, Array] = {}
-    with TemporaryDirectory(prefix="mxeon-") as folder:
+    with Temporary("mxeon-states-") as folder:
         file = Path(folder, "inputs.exr")
         from_image = partial(imaged, case, cache(partial(compile_imaged, case, file)), file)
         for (two, uneven, image, _), numbers in frames.items():

@@ -19,6 +19,7 @@ from mxeon.hosts.cycles.process import interpreter
 from mxeon.hosts.osl.carriers import DEBUG, HOLDOUT
 from mxeon.hosts.osl.points import side
 from mxeon.hosts.process import Worker
+from mxeon.jobs.signals import Temporary
 
 VARIABLES = {"oslc": "MXEON_OSLC", "testrender": "MXEON_TESTRENDER", "testshade": "MXEON_TESTSHADE"}
 TIMEOUT = 300.0  # seconds for one of them
@@ -132,7 +133,7 @@ class Testshade:
         self._programs = find_program("oslc", HOST), find_program("testshade", HOST)
         words = version(self._programs[0]).split()[-1]
         self.rooted = tuple(map(int, words.split(".")[:3])) >= ROOTED
-        self._temporary = TemporaryDirectory(prefix="mxeon-osl-")
+        self._temporary = Temporary("mxeon-osl-")
 
     def folder(self) -> TemporaryDirectory[str]:
         return TemporaryDirectory(dir=self._temporary.name)
