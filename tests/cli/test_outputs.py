@@ -2,18 +2,21 @@
 """Outputs that would replace what is read, or files that nobody named."""
 
 import os
+import re
+import shlex
 
 import pytest
 
 from mxeon import check, report
 from mxeon.cli import main
+from mxeon.conformance.results import JUNIT, PAGE, RESULTS
 from mxeon.errors import MISUSE, PASSED
 from mxeon.kit.export import DESCRIPTION, export_kit, kit_node
 from mxeon.shaders.library_export import export_library
 from mxeon.shaders.nodes import OREN_NAYAR
-from tests.support.command import one_line
+from tests.support.command import PLASTER, one_line
 from tests.support.documents import lobe, material, textured
-from tests.support.results import Run
+from tests.support.results import PREVIOUS, Run
 
 # The files of `inputs`, by what they are for a command.
 FILES = {
@@ -144,6 +147,72 @@ def test_a_report_goes_to_no_folder_that_holds_what_is_read(
         folder = "there"
     line = refused([*command.split(), folder], inputs, capsys)
     assert "must be a folder without files that are read" in line
+
+
+LOOK = f"{FILES['document']} --workers 0"
+# Outputs that cannot be written, and options that are wrong: said before any engine starts.
+WRONG = {
+    f"render {LOOK} --integrator path --output out.jpg": "output must end in .exr or .png; got",
+    f"render {LOOK} --integrator path --output folder.png": "folder.png: must be accessible; not a re",
+    f"explore {LOOK} --output out.txt": "output must end in .html; got 'out.txt'",
+    "report field run --output out.txt": "output must end in .html; got 'out.txt'",
+    "doc nodes.md --output kit": "kit: must be accessible; not a regular file",
+    f"check {LOOK} --report nodes.md": "nodes.md: must be a folder; File exists",
+    f"check {LOOK} --report nodes.md/out": "nodes.md: must be a folder; File exists",
+    "kit check kit --report nodes.md": "nodes.md: must be a folder; File exists",
+    "kit export nodes.md": "nodes.md: must be a folder; File exists",
+    "figures nodes.md": "nodes.md: must be a folder; File exists",
+    f"generate {LOOK} --target osl --outputPath nodes.md": "nodes.md: must be a folder; File exists",
+    f"check {LOOK} --report ''": "arguments must not be empty; got 'check' 'look.mtlx'",
+    f"check {LOOK} --report=": "arguments must not be empty",
+    f"generate {LOOK} --target osl --outputPath ''": "arguments must not be empty",
+    "library --export ''": "arguments must not be empty",
+    "kit export ''": "arguments must not be empty",
+    "figures ''": "arguments must not be empty",
+}
+
+
+@pytest.mark.parametrize("command, words", WRONG.items())
+def test_what_is_wrong_is_said_first(command, words, inputs, capsys):
+    (inputs / "folder.png").mkdir()
+    assert words in refused(shlex.split(command), inputs, capsys)
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "check look.mtlx --host nosuch",
+        "check nowhere",
+        "check look.mtlx --seed -1",
+        "kit check kit",
+    ],
+)
+def test_a_refused_run_leaves_no_results_of_an_older_one(command, inputs, capsys):
+    (inputs / "out" / "pictures").mkdir(parents=True)
+    old = {inputs / "out" / name: name.encode() for name in (RESULTS, JUNIT, PAGE)}
+    for path, data in (old | {inputs / "out" / "pictures" / "mine.png": b"mine"}).items():
+        path.write_bytes(data)
+    assert main([*command.split(), "--report", "out"]) == MISUSE
+    assert not any(path.exists() and path.read_bytes() == data for path, data in old.items())
+    assert (inputs / "out" / "pictures" / "mine.png").exists()
+    assert {each.name: each.read_bytes() for each in (inputs / "out" / PREVIOUS).iterdir()} == {
+        path.name: data for path, data in old.items()
+    }
+
+
+STEERING = "::error::a\x1b[31m\nb"  # a name that commands a runner and a terminal
+
+
+@pytest.mark.parametrize(
+    "command",
+    [f"generate {PLASTER} --workers 0 --target osl --outputPath", "kit export", "library --export"],
+)
+def test_names_of_outputs_steer_no_terminal_and_no_runner(command, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main([*command.split(), STEERING]) == PASSED
+    printed = capsys.readouterr().out
+    assert os.path.isdir(STEERING) and "error::a\ufffd[31m\ufffdb" in printed
+    assert not re.search("^(::|b)|\x1b", printed, re.MULTILINE)
 
 
 def test_functions_that_write_refuse_likewise(inputs):

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """OpenGL pictures: exact points, the right way up, and light as it is asked for."""
 
+import subprocess
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -78,3 +80,21 @@ def test_an_environment_image_lights_by_its_irradiance(gl, tmp_path):
     top, bottom = image[1, SIZE // 2], image[-2, SIZE // 2]
     assert np.allclose(top, [0.2, 0.4, 1.0], atol=0.02) and bottom.max() < 0.02
     assert irradiance(read_latlong(0.5)).max() == 0.5
+
+
+FORKED = """import os
+from mxeon import check
+from mxeon.hosts import open_engine
+engine = open_engine("gl")
+if os.fork() == 0:
+    run = check(nodes=["sheen_bsdf"], compared=["eonlib"])
+    print({each.reason for each in run.results if each.host == "gl"})
+    os._exit(0)
+os.wait()
+"""
+
+
+def test_a_forked_process_says_that_an_engine_of_its_parent_hangs(gl):
+    done = subprocess.run([sys.executable, "-c", FORKED], capture_output=True, text=True)
+    assert "gl: this process was forked from one that had opened an engine" in done.stdout
+    assert len(done.stdout.splitlines()) == 1 and "pass workers=1" in done.stdout

@@ -127,6 +127,12 @@ def folder(run, tmp_path_factory):
     return folder
 
 
+def test_no_date_of_the_environment_is_in_a_page(run, monkeypatch):
+    page = page_of(run)
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "abc")  # no number, which stops matplotlib's savefig
+    assert page_of(run) == page
+
+
 def test_page_runs_its_own_script_alone_and_escapes_what_it_was_given(page, run):
     assert not {"iframe", "object", "link", "base", "form"} & set(page.tags)
     assert page.tags.count("script") == 1

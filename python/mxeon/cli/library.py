@@ -5,7 +5,7 @@ import argparse
 from pathlib import Path
 
 from mxeon.cli import arguments
-from mxeon.cli.output import show
+from mxeon.cli.output import on_one_line, show
 from mxeon.errors import PASSED
 
 
@@ -64,5 +64,4 @@ def _explain(folder: Path, documents: Path) -> None:
 
     show(f"folder                {folder}")
     show(f"diffuse nodes alone   {documents / 'diffuse'}")
-    for line in recipes(folder).split("\n"):
-        show(line)
+    print(recipes(on_one_line(folder)))

@@ -69,8 +69,13 @@ def fail(status: int, *messages: object) -> int:
 
 
 def show(name: object) -> None:
-    """Print the name of an output on one line that steers no terminal and no runner."""
-    print(re.sub(r"[\t\n\r]", "\ufffd", printable(str(name))))
+    """Print the name of an output; see `on_one_line`."""
+    print(on_one_line(name))
+
+
+def on_one_line(name: object) -> str:
+    """The name of an output, with U+FFFD for what ends a line or steers a terminal or a runner."""
+    return re.sub(r"[\t\n\r]", "\ufffd", printable(str(name)))
 
 
 def warn(message: object) -> None:

@@ -304,6 +304,7 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, 
             compared=[
                 (name, worst(each for each in run.results if each.library == name))
                 for name in run.compared
+                if any(each.library == name for each in run.results)
             ],
             counted=counted,
             COUNTS=COUNTS,

@@ -126,7 +126,9 @@ def albedo_plot(curves: Sequence[AlbedoCurve], markers: Sequence[str], prefix: s
         axes.set(xlim=(-0.03, 1.03), xlabel="cosine of the polar angle", ylabel="albedo")
         axes.margins(y=0.15)
         axes.set_facecolor("none")
-        # Not savefig, whose dry run without the metadata reads SOURCE_DATE_EPOCH, maybe no number.
+        # The layout of an SVG canvas and savefig read SOURCE_DATE_EPOCH, which may be no number.
+        figure.draw_without_rendering()
+        figure.set_layout_engine("none")
         canvas: Any = FigureCanvasSVG(figure)
         canvas.print_svg(buffer, metadata=NO_METADATA)
     svg = buffer.getvalue()
