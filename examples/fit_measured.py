@@ -13,11 +13,11 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 
+import mxeon
 from mxeon.fit import fit_brdf, merl_directions, read_merl
 from mxeon.fit.measured import MERL_CELLS, MERL_SCALES
-from mxeon.models import dielectric_over_eon_brdf
 
-CLAY = {"rho": [0.55, 0.28, 0.18], "roughness": 0.7, "alpha": 0.25, "ior": 1.45}
+CLAY = {"color": [0.55, 0.28, 0.18], "roughness": 0.7, "alpha": 0.25, "ior": 1.45}
 NOISE, FLOOR, SEED = 0.03, 1e-4, 20261122  # relative, and in 1/sr
 STEP = 9  # every ninth cell of each angle
 VIEW = np.radians(50.0)
@@ -30,7 +30,7 @@ def write_clay(path):
     h, d, phi = ((each.ravel() + 0.5) / n for each, n in zip(cells, MERL_CELLS, strict=True))
     wo, wi = merl_directions(0.5 * np.pi * h**2, 0.5 * np.pi * d, np.pi * phi)
     seen = (wo[:, 2] > 0.0) & (wi[:, 2] > 0.0)
-    clay = dielectric_over_eon_brdf(wo[seen], wi[seen], **CLAY)
+    clay = mxeon.model("dielectric_over_eon").brdf(wo[seen], wi[seen], **CLAY)
     clay = clay + (NOISE * clay + FLOOR) * rng.normal(size=clay.shape)
     values[:, *(each.ravel()[seen] for each in cells)] = (clay / MERL_SCALES).T
     path.write_bytes(np.array(MERL_CELLS, "<i4").tobytes() + values.astype("<f8").tobytes())

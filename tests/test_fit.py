@@ -11,8 +11,9 @@ import matplotlib
 import numpy as np
 import pytest
 
+import mxeon
 from mxeon.errors import InputError, PackageError
-from mxeon.fit import FIT_MODELS, MeasuredBrdf, fit_brdf, merl_directions, read_merl
+from mxeon.fit import MeasuredBrdf, fit_brdf, merl_directions, read_merl
 from mxeon.fit.measured import MERL_CELLS, MERL_SCALES
 from mxeon.models import eon_brdf
 from tests.support.availability import available, package
@@ -20,10 +21,16 @@ from tools.site import research
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "fit_measured.py"
 SEED = 5
-CLAY = {"rho": np.array([0.7, 0.35, 0.12]), "roughness": 0.62}
+CLAY = {"color": np.array([0.7, 0.35, 0.12]), "roughness": 0.62}
 COATED = CLAY | {"alpha": 0.3, "ior": 1.5}
-BASE = CLAY | {"specular_roughness": 0.5, "specular_ior": 1.6, "metalness": 0.3}
-PAGE_COAT = {"rho": [0.55, 0.28, 0.18], "roughness": 0.7, "alpha": 0.25, "ior": 1.45}
+BASE = {
+    "base_color": CLAY["color"],
+    "base_diffuse_roughness": CLAY["roughness"],
+    "specular_roughness": 0.5,
+    "specular_ior": 1.6,
+    "base_metalness": 0.3,
+}
+PAGE_COAT = {"color": [0.55, 0.28, 0.18], "roughness": 0.7, "alpha": 0.25, "ior": 1.45}
 NOISE = 0.05
 # Of 4 or 6 normal deviates of 24 fits, one is beyond 4.5 once in 1200 runs. The spread of 96 deviates is
 # off by more than 30 % once in 10,000 runs.
@@ -39,7 +46,7 @@ def directions(rng, count):
 def noisy(rng, model, parameters, count=200, known=True):
     """A measured BRDF of a model, with normal noise, whose size the measurement knows or not."""
     wo, wi = directions(rng, count), directions(rng, count)
-    value = FIT_MODELS[model].value(wo, wi, **parameters)
+    value = mxeon.model(model).brdf(wo, wi, **parameters)
     error = NOISE * (value if known else np.full_like(value, 0.2))
     return MeasuredBrdf(
         wo, wi, value + error * rng.normal(size=value.shape), error if known else None
@@ -83,10 +90,11 @@ def test_the_parameters_of_lobes_over_eon_lie_within_their_errors(model, paramet
 def test_a_fit_says_its_parameters_and_evaluates_its_model():
     data = noisy(np.random.default_rng(SEED), "eon", CLAY)
     fit = fit_brdf(data)
-    title, rho, roughness = str(fit).splitlines()
-    assert title.startswith("eon, scatter ") and rho.count("+-") == 3 and "roughness" in roughness
-    expected = eon_brdf(data.wo, data.wi, fit.values["rho"], fit.values["roughness"])
+    title, color, roughness = str(fit).splitlines()
+    assert title.startswith("eon, scatter ") and color.count("+-") == 3 and "roughness" in roughness
+    expected = eon_brdf(data.wo, data.wi, fit.values["color"], fit.values["roughness"])
     assert np.array_equal(fit.brdf(data.wo, data.wi), expected)
+    assert np.array_equal(mxeon.model(fit.model).brdf(data.wo, data.wi, **fit.values), expected)
     one = fit.brdf(data.wo[0], data.wi[0])
     assert one.shape == (3,) and np.array_equal(one, expected[0])
     assert fit.brdf(data.wo[0], data.wi).shape == expected.shape
@@ -103,7 +111,7 @@ ONE = MeasuredBrdf(SIDES[:1], SIDES[1:2], np.array([[0.2, 0.1, 0.05]]), np.array
         (ONE, 0),  # three values of four parameters
         (replace(ONE, error=None), 0),
         (MeasuredBrdf(*(np.repeat(each, 2, 0) for each in (ONE.wo, ONE.wi, ONE.value))), 0),
-        (MeasuredBrdf(SIDES, SIDES[::-1], np.zeros((3, 1)), 0.001), 1),  # black: rho alone
+        (MeasuredBrdf(SIDES, SIDES[::-1], np.zeros((3, 1)), 0.001), 1),  # black: the color alone
     ),
 )
 def test_a_parameter_that_the_data_do_not_determine_has_no_number(data, numbers):
@@ -126,11 +134,11 @@ def merl_file(path, value, cells=MERL_CELLS):
 
 
 def test_a_file_of_merl_is_read_and_fitted(tmp_path):
-    path = merl_file(tmp_path / "clay.binary", lambda wo, wi: eon_brdf(wo, wi, **CLAY))
+    path = merl_file(tmp_path / "clay.binary", lambda wo, wi: eon_brdf(wo, wi, *CLAY.values()))
     data = read_merl(path, 15)
     assert len(data.wo) > 200 and (data.wo[:, 2] > 0.0).all()
     fit = fit_brdf(data)
-    assert fit.values["rho"] == pytest.approx(CLAY["rho"], abs=1e-6)
+    assert fit.values["color"] == pytest.approx(CLAY["color"], abs=1e-6)
     assert fit.values["roughness"] == pytest.approx(CLAY["roughness"], abs=1e-6)
 
 
@@ -192,11 +200,11 @@ def test_the_blocks_of_the_page_run_one_after_another(tmp_path, monkeypatch, cap
             weights.append(names["weight"].mean(axis=0))
     fitted = names["fit"].values
     by_gradients = names["torch"].sigmoid(names["x"]).tolist()
-    assert by_gradients == pytest.approx([*fitted["rho"], fitted["roughness"]], abs=1e-5)
+    assert by_gradients == pytest.approx([*fitted["color"], fitted["roughness"]], abs=1e-5)
     J, errors = names["J"].numpy(), names["fit"].errors
     found = np.sqrt(np.linalg.inv(J.T @ J).diagonal())
-    assert found == pytest.approx([*errors["rho"], errors["roughness"]], rel=1e-3)
-    albedo = names["eon_albedo_dir"](0.8, fitted["rho"], fitted["roughness"])
+    assert found == pytest.approx([*errors["color"], errors["roughness"]], rel=1e-3)
+    albedo = names["eon_albedo_dir"](0.8, fitted["color"], fitted["roughness"])
     assert weights[0] == pytest.approx(albedo, rel=0.02)  # of deviates of 0.4 %
     coated = names["coated"]
     assert np.abs(deviates(coated, PAGE_COAT)).max() < LARGEST_DEVIATE and coated.fits

@@ -10,7 +10,7 @@ NONE: Mapping[str, str] = {}
 
 
 def meant(
-    name: object, known: Iterable[str], alike: float = 0.6, titles: Mapping[str, str] = NONE
+    name: object, known: Iterable[str], alike: float = 0.65, titles: Mapping[str, str] = NONE
 ) -> str:
     """The end of a message on an unknown name: the known ones that it may stand for, or "".
 
@@ -27,12 +27,26 @@ def meant(
     return f": did you mean {' or '.join(near)}?" if near else ""
 
 
-def unknown(rule: str, name: object, known: Iterable[str], titles: Mapping[str, str] = NONE) -> str:
-    """The message that a name is none of the known, which are listed unless one of many is near; or ""."""
+def unknown(
+    rule: str,
+    name: object,
+    known: Iterable[str],
+    titles: Mapping[str, str] = NONE,
+    listing: str = "",
+) -> str:
+    """The message that a name is none of the known; "" if it is one.
+
+    It lists them, unless one of many is near or `listing` says where they are listed.
+
+    >>> unknown("model", "nope", ("eon", "fon"), listing="mxeon.model_names()")
+    "no model 'nope'; see mxeon.model_names()"
+    """
     names = tuple(known)
     if isinstance(name, str) and name in names:
         return ""
     near = meant(name, names, titles=titles)
+    if listing:
+        return f"no {rule} {name!r}{near or ';'} see {listing}"
     if near and len(names) > LISTED:
         return f"{rule} must be one of {len(names)} names; got {name!r}{near}"
     return f"{rule} must be one of {', '.join(names)}; got {name!r}{near}"

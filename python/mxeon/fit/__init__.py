@@ -24,12 +24,13 @@ LEAST_ALPHA = 0.02  # below, a lobe is narrower than what is measured
 
 @dataclass(frozen=True)
 class FitModel:
-    """A model to fit: `value(wo, wi, rho, **scalars)`, shape (N, C)."""
+    """A model to fit: `value(wo, wi, color, *scalars)`, shape (N, C); named as `mxeon.model` names them."""
 
     value: Callable[..., Array]
     scalars: Mapping[
         str, tuple[float, ...]
     ]  # least and largest value, and those a search starts from
+    color: str = "color"
 
     @property
     def bounds(self) -> dict[str, tuple[float, float]]:
@@ -42,16 +43,16 @@ COAT = {
     "ior": (1.0, 4.0, 1.5),
 }
 BASE = {
-    "roughness": (0.0, 1.0, 0.5),
+    "base_diffuse_roughness": (0.0, 1.0, 0.5),
     "specular_roughness": (np.sqrt(LEAST_ALPHA), 1.0, 0.4),
     "specular_ior": (1.0, 4.0, 1.5),
-    "metalness": (0.0, 1.0, 0.1, 0.9),
+    "base_metalness": (0.0, 1.0, 0.1, 0.9),
 }
 FIT_MODELS = {
     "eon": FitModel(eon_brdf, {"roughness": (0.0, 1.0, 0.2, 0.8)}),
     "dielectric_over_eon": FitModel(dielectric_over_eon_brdf, COAT),
     "varnished": FitModel(varnished_brdf, COAT),
-    "openpbr_base": FitModel(openpbr_base_brdf, BASE),
+    "openpbr_base": FitModel(openpbr_base_brdf, BASE, "base_color"),
 }
 
 
@@ -74,8 +75,9 @@ UNDETERMINED = "not determined by the data"  # whose error is the parameter's wh
 class Fit:
     """Parameters of a model that fit a measured BRDF best, with their standard deviations.
 
-    - `values`, `errors`: By parameter: `rho` (C,), and numbers.
-    - `covariance`: (P, P). Of rho's channels and then the others, in the order of `values`; infinite where
+    - `values`, `errors`: By input of `mxeon.model(fit.model)`, which takes `**fit.values`: the color (C,),
+      and numbers.
+    - `covariance`: (P, P). Of the color's channels and then the others, in the order of `values`; infinite where
       the data do not determine a parameter.
     - `scatter`: Root of the mean squared difference from the data, per degree of freedom: in units
       of `error`, about 1 where model and errors are right; in 1/sr without errors.
@@ -102,7 +104,7 @@ class Fit:
         """Values of the fitted model in 1/sr, shape (..., C), for directions (..., 3) that broadcast."""
         views, lights = np.broadcast_arrays(*(np.asarray(w, np.float64) for w in (wo, wi)))
         rows = (each.reshape(-1, 3) for each in (views, lights))
-        value = FIT_MODELS[self.model].value(*rows, **self.values)
+        value = FIT_MODELS[self.model].value(*rows, *self.values.values())
         return value.reshape(*views.shape[:-1], -1)
 
     def __str__(self) -> str:
@@ -120,16 +122,16 @@ class Fit:
 def fit_brdf(measurement: MeasuredBrdf, model: str = "eon") -> Fit:
     """Parameters of a model that fit a measured BRDF best, by least squares.
 
-    - `model`: "eon", with `rho` and `roughness`; "varnished", EON below a rough dielectric
+    - `model`: "eon", with `color` and `roughness`; "varnished", EON below a rough dielectric
       interface, with `alpha` and `ior` besides; "dielectric_over_eon", MaterialX's `layer` with
-      the same parameters, whose `rho` is smaller than that of a pigment under varnish; or
-      "openpbr_base", mixed with a metal.
+      the same parameters, whose `color` is smaller than that of a pigment under varnish; or
+      "openpbr_base", mixed with a metal, with `base_color` and other inputs.
 
     Returns the best one of several starts. Raises InputError if the model is unknown; PackageError if scipy, of the `fit` extra, is not
     installed.
 
     Errors of the data that are set from the measured values, such as 2 % of each, bias the fit: a value
-    counts for more, the more noise has lowered it, and rho comes out too small by about twice the square of
+    counts for more, the more noise has lowered it, and the color comes out too small by about twice the square of
     the relative error, which can be one standard deviation. Fit twice, the second time with the same part
     of the first fit's `brdf`.
 
@@ -157,10 +159,12 @@ def fit_brdf(measurement: MeasuredBrdf, model: str = "eon") -> Fit:
     channels, scale = data.value.shape[1], 1.0 if data.error is None else data.error
 
     def parameters(x: Array) -> dict[str, Array]:
-        return {"rho": x[:channels], **dict(zip(row.bounds, x[channels:], strict=True))}
+        return {row.color: x[:channels], **dict(zip(row.bounds, x[channels:], strict=True))}
 
     def residuals(x: Array) -> Array:
-        difference: Array = (row.value(data.wo, data.wi, **parameters(x)) - data.value) / scale
+        difference: Array = (
+            row.value(data.wo, data.wi, x[:channels], *x[channels:]) - data.value
+        ) / scale
         return difference.ravel()
 
     lows, highs = zip(*([(0.0, 1.0)] * channels + list(row.bounds.values())), strict=True)

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from mxeon.errors import InputError
+from mxeon.io.files import AnyPath, one_name
 from mxeon.models.core.arrays import Array, Numbers
 
 # A file of MERL: cells of theta_h, theta_d and phi_d, and the scale of each channel: [Matusik2003].
@@ -61,7 +62,7 @@ def _require(rule: str, array: Numbers, valid: Numbers) -> None:
         raise InputError(f"{rule}; got {array[index]}{place}")
 
 
-def read_merl(path: str | Path, step: int = 6) -> MeasuredBrdf:
+def read_merl(path: AnyPath, step: int = 6) -> MeasuredBrdf:
     """Values of a file of the MERL database, in red, green and blue.
 
     - `path`: Binary file: three integers, and 90 x 90 x 180 numbers for each channel.
@@ -73,6 +74,7 @@ def read_merl(path: str | Path, step: int = 6) -> MeasuredBrdf:
 
     [Matusik2003]; [Rusinkiewicz1998] for the angles.
     """
+    path = one_name("path", path)
     raw = Path(path).read_bytes()
     start, size = np.array(MERL_CELLS, "<i4").tobytes(), 12 + 3 * 8 * int(np.prod(MERL_CELLS))
     if len(raw) != size or raw[:12] != start:

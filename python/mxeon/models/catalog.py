@@ -91,6 +91,13 @@ NODES_BY_CATEGORY = {
 }
 
 
+# Other names of models, which messages about an unknown name suggest.
+ALSO = {
+    **dict.fromkeys(("dielectric", "conductor", "schlick"), "ggx"),
+    "burley": "disney",
+    "conty_kulla": "charlie imageworks",
+}
+
 Edf: TypeAlias = Literal["uniform_edf", "conical_edf", "generalized_schlick_edf"]
 Vdf: TypeAlias = Literal["absorption_vdf", "anisotropic_vdf"]
 
@@ -124,8 +131,8 @@ def model(name: str) -> NodeModel:
         >>> gold.brdf([0.6, 0.0, 0.8], [-0.6, 0.0, 0.8], roughness=0.3).round(4)
         array([1.4723, 1.1829, 0.5437])
     """
-    titles = {each.name: each.title for each in MODELS.values()}
-    checked_choice("model", name, (*MODELS, *NODES_BY_CATEGORY), titles)
+    titles = {each.name: f"{each.title} {ALSO.get(each.name, '')}" for each in MODELS.values()}
+    checked_choice("model", name, (*MODELS, *NODES_BY_CATEGORY), titles, "mxeon.model_names()")
     return MODELS[NODES_BY_CATEGORY.get(name, name)]
 
 

@@ -57,7 +57,7 @@ def model(name: str) -> Model:
     'roughness'
     """
     rows = {row.name: row for row in MODELS + KNOWN_DEFECTS + OTHERS + PARAMETRIZATIONS}
-    return rows[checked_choice("model", name, rows)]
+    return rows[checked_choice("model", name, rows, listing="mxeon.models.table.MODELS")]
 
 
 @any_array

@@ -289,10 +289,14 @@ def checked_count(name: str, value: int) -> int:
 
 
 def checked_choice(
-    name: str, value: str, known: Iterable[str], titles: Mapping[str, str] = NONE
+    name: str,
+    value: str,
+    known: Iterable[str],
+    titles: Mapping[str, str] = NONE,
+    listing: str = "",
 ) -> str:
     """Argument that is one of the known words, which may have titles; see `mxeon.names.unknown`."""
-    if message := unknown(name, value, known, titles):
+    if message := unknown(name, value, known, titles, listing):
         raise ValueError(message)
     return value
 
