@@ -8,8 +8,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:  # for type checkers and the API reference, which run no code
+    from mxeon.conformance.results import Run
     from mxeon.conformance.run import check
-    from mxeon.models.catalog import model
+    from mxeon.models.catalog import model, model_names
     from mxeon.shaders.generation import Shader, generate
     from mxeon.shaders.library import load_library
     from mxeon.survey.callables import brdf_test, check_brdf
@@ -18,6 +19,7 @@ __version__ = "0.1.0"
 
 # Public name -> the module that defines it.
 _HOMES = {
+    "Run": "mxeon.conformance.results",
     "Shader": "mxeon.shaders.generation",
     "brdf_test": "mxeon.survey.callables",
     "check": "mxeon.conformance.run",
@@ -25,8 +27,10 @@ _HOMES = {
     "generate": "mxeon.shaders.generation",
     "load_library": "mxeon.shaders.library",
     "model": "mxeon.models.catalog",
+    "model_names": "mxeon.models.catalog",
 }
 __all__ = [
+    "Run",
     "Shader",
     "__version__",
     "brdf_test",
@@ -35,6 +39,7 @@ __all__ = [
     "generate",
     "load_library",
     "model",
+    "model_names",
 ]
 
 
@@ -45,4 +50,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return sorted(__all__)

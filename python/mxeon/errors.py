@@ -5,7 +5,7 @@ Every other exception is a bug of mxeon and prints its traceback.
 """
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 
 from mxeon.names import unknown
 
@@ -45,9 +45,7 @@ class DocumentError(InputError):
     """A document that no shader can be generated from; its arguments are its faults, a line each."""
 
     def __init__(self, *faults: str) -> None:
-        if len(faults) > MOST + 1:
-            faults = (*faults[:MOST], f"and {len(faults) - MOST} more faults")
-        super().__init__(*map(one_line, faults))
+        super().__init__(*_some(faults, "faults"))
 
     def __str__(self) -> str:
         return "\n".join(self.args)
@@ -55,6 +53,20 @@ class DocumentError(InputError):
 
 class ImageError(InputError):
     """An image that cannot be used."""
+
+
+class CheckError(MxeonError, RuntimeError):
+    """A run that did not pass; its arguments are lines: the verdict, and what was refused or failed.
+
+    - `status`: The exit status of the run.
+    """
+
+    def __init__(self, *lines: str, status: int = FAILED) -> None:
+        super().__init__(*_some(lines, "lines"))
+        self.status = status
+
+    def __str__(self) -> str:
+        return "\n".join(self.args)
 
 
 class PackageError(MxeonError, ImportError):
@@ -115,6 +127,13 @@ class OutsideModel(NotRun):
 
 class InterfaceError(NotRun):
     """A MaterialX that calls closures in another way than eonlib's sources define them."""
+
+
+def _some(lines: Sequence[str], noun: str) -> Iterator[str]:
+    """The first lines, and the number of the others."""
+    if len(lines) > MOST + 1:
+        lines = (*lines[:MOST], f"and {len(lines) - MOST} more {noun}")
+    return map(one_line, lines)
 
 
 def assert_known(rule: str, name: object, known: Iterable[str]) -> None:

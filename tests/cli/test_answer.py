@@ -180,8 +180,8 @@ def test_every_document_appears_those_that_look_wrong_first():
     ],
 )
 def test_the_verdict_is_the_worst_and_counts_what_did_not_pass(results, verdict, sentence):
-    summary = made_run(*results).summary
-    assert (summary.verdict, summary.sentence) == (verdict, sentence)
+    run = made_run(*results)
+    assert (run.verdict, run.sentence) == (verdict, sentence)
 
 
 # --- what is judged -------------------------------------------------------------------------------

@@ -13,9 +13,9 @@ from tests.support.verdicts import NOT_RUN, PASSED, SHADER_FUNCTIONS
 
 
 def test_a_named_node_is_judged_alone_and_with_its_draws():
-    results = check((), ["gl"], nodes=["conical_edf"]).results
+    results = check(None, ["gl"], nodes=["conical_edf"]).results
     assert {each.subject for each in results} == {"conical_edf"}
-    drawn = check((), ["gl"], nodes=["translucent_bsdf"]).results
+    drawn = check(None, ["gl"], nodes=["translucent_bsdf"]).results
     assert {"pdf", "sample"} <= {each.check for each in drawn}
 
 
@@ -34,7 +34,7 @@ def test_a_named_node_is_judged_alone_and_with_its_draws():
 )  # fmt: skip
 def test_a_node_that_is_judged_nowhere_is_refused(host, node, message):
     with pytest.raises(InputError, match=message):
-        check((), [host], nodes=[node])
+        check(None, [host], nodes=[node])
 
 
 def test_texts_are_judged_by_values_and_where_a_host_runs_them_by_the_host(run):

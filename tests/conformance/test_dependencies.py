@@ -50,7 +50,7 @@ def run(tmp_path, monkeypatch):
 def refusal(folder, files, **options):
     """What has changed since a run."""
     with pytest.raises(InputError, match="--resume needs the same run") as error:
-        check(files, folder=folder, resume=True, **{"policy": CODE} | options)
+        check(files or None, folder=folder, resume=True, **{"policy": CODE} | options)
     return str(error.value).partition("changed: ")[2]
 
 
@@ -97,7 +97,7 @@ def test_a_folder_that_is_a_library_is_a_dependency(tmp_path, monkeypatch):
     keep_checks(monkeypatch, "host")
     library = copy_of_eonlib(tmp_path)
     options = {"hosts": ["msl"], "libraries": [library], "policy": CODE}
-    check((), folder=tmp_path / "run", **options)
+    check(None, folder=tmp_path / "run", **options)
     source = tmp_path / "genglsl" / "lib" / "eon.glsl"
     source.write_text(f"{source.read_text()}\n")
     assert refusal(tmp_path / "run", (), **options) == str(source)

@@ -30,8 +30,8 @@ def verdicts(run):
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_another_seed_gives_the_same_verdicts_and_catches_every_control(seed):
-    again = mxeon.check((), ["gl"], LIBRARIES, nodes=NODES, seed=seed)
-    assert verdicts(again) == verdicts(mxeon.check((), ["gl"], LIBRARIES, nodes=NODES))
+    again = mxeon.check(None, ["gl"], LIBRARIES, nodes=NODES, seed=seed)
+    assert verdicts(again) == verdicts(mxeon.check(None, ["gl"], LIBRARIES, nodes=NODES))
 
 
 @pytest.mark.whole
@@ -70,7 +70,7 @@ def test_the_command_takes_a_seed_and_refuses_one_below_0():
     told = command.run("check", "--node", node, "--seed", 7, "--json").stdout
     [seven] = [each["worst"] for each in json.loads(told)["results"] if each["check"] == "value"]
     for seed in (7, 8):
-        results = mxeon.check((), ["gl"], nodes=[node], seed=seed).results
+        results = mxeon.check(None, ["gl"], nodes=[node], seed=seed).results
         [worst] = [each.worst for each in results if each.check == "value"]
         assert (worst == seven) == (seed == 7)
     with pytest.raises(InputError, match="seed must be at least 0; got -1"):

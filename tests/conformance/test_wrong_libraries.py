@@ -189,7 +189,7 @@ def test_a_definition_that_the_documents_do_not_fit_is_named_before_they_are_ref
     keep_checks(monkeypatch, "definition", "value")
     old = 'energy_compensation" type="boolean"'
     library = copy(DEFINITIONS, old, old.replace("tion", "ton"))
-    wrong = [row for row in check([], ["gl"], [library]).results if row.verdict == FAILED]
+    wrong = [row for row in check(None, ["gl"], [library]).results if row.verdict == FAILED]
     assert wrong[0].check == "definition"
     assert "normal, energy_compensaton; pbrlib says" in wrong[0].diagnosis
     assert any(

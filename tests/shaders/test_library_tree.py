@@ -24,7 +24,7 @@ PARTS = {"pbrlib": ["pbrlib"], "a node and its lib": BURLEY, "a file of lib": BU
 
 def findings(libraries, nodes, hosts=("gl",)):
     """By library: verdict, error, diagnosis and pages of each check."""
-    run = mxeon.check((), hosts, libraries, nodes=nodes)
+    run = mxeon.check(None, hosts, libraries, nodes=nodes)
     found = {library: {} for library in libraries}
     for each in run.results:
         key = each.host, each.check, each.subject

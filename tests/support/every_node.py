@@ -16,7 +16,7 @@ KEYS = ("value", "environment", "transmitted", "combination", "radiance", "trans
 
 def main(library, *nodes):
     keep(builtins, lambda task: (task.host, task.check in KEYS) == ("gl", True))
-    run = mxeon.check((), ["gl"], [library], nodes=nodes or ["all"])
+    run = mxeon.check(None, ["gl"], [library], nodes=nodes or ["all"])
     print(json.dumps({f"{each.check}, {each.subject}": each.verdict for each in run.results}))
 
 

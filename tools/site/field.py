@@ -39,7 +39,7 @@ def main(folder: str = "") -> None:
                 )
                 if any(e.host == row.name and e.verdict != NOT_RUN for e in run.results):
                     report.write(run, Path(new, row.name))
-                print(row.name, run.summary.sentence, flush=True)
+                print(row.name, run.sentence, flush=True)
         write_field(read_field([new]), PAGE, PAGES)
 
 

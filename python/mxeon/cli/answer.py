@@ -10,7 +10,6 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from mxeon import errors
 from mxeon.cli.output import fail, show
 from mxeon.conformance.pictures import DOCUMENT_KEY
 from mxeon.conformance.results import (
@@ -43,7 +42,6 @@ UNBOUNDED = 1e3  # larger errors are described in words
 NOTICED = 0.01  # of white: a larger difference is told, even within a tolerance
 AS_SPECIFIED = "looks as specified"
 OWN_INPUT = re.compile('(input "[^"]*") must lie in ')  # whose value the document has
-STATUSES = {PASSED: errors.PASSED, FAILED: errors.FAILED, NOT_RUN: errors.NOT_RUN}
 LETTERS = re.compile(r"\(([A-Z]+)\)$")  # of a model, behind its name
 REFUSED = "refused"
 NO_REFERENCE = "no reference"  # whose pixels are numbers
@@ -76,9 +74,7 @@ def show_run(run: Run, options: argparse.Namespace, said: Collection[str] = ()) 
         print(printable("\n".join([*checks, *answer(run, options.full)])))
         if page:
             show(f"report: {page}")
-    if run.refused:
-        return fail(errors.MISUSE, *(each for each in run.errors if each not in said))
-    return STATUSES[run.summary.verdict]
+    return fail(run.exit_status, *(each for each in run.errors if each not in said))
 
 
 def _line(result: Result) -> str:
@@ -108,7 +104,7 @@ def answer(run: Run, full: bool = False) -> list[str]:
     idle = _not_run(run, full, [] if many else looks)
     first = list(map(one_line, [*run.origins, *idle]))
     # The verdict comes first if there are no documents, or something was not judged.
-    begins = run.refused or run.summary.verdict == NOT_RUN or not run.contents
+    begins = run.refused or run.verdict == NOT_RUN or not run.contents
     alone = len(run.contents) == 1
     seen = max(1, LOOKS - len(first)) if alone and not full else len(looks)
     # The verdict and the number of omitted lines take a line each.
@@ -121,7 +117,7 @@ def answer(run: Run, full: bool = False) -> list[str]:
     noted = len(notes) if full else max(1, room - len(table) - len(failures[:told]))
     after = [*failures[:told], *notes[:noted]]
     lines = [*first, *looks[:seen], *table, *map(one_line, after)]
-    lines.insert(0 if begins else len(lines), one_line(run.sentence))
+    lines.insert(0 if begins else len(lines), one_line(run.summary))
     counts = len(looks) - seen, len(rows) - kept, len(failures) - told, len(notes) - noted
     cut = zip(("material", "node", "cause", "note"), counts, strict=True)
     if more := [counted(count, f"more {name}") for name, count in cut if count > 0]:

@@ -95,10 +95,6 @@ def run(options: argparse.Namespace) -> int:
             "--materialx does not reach the workers of a --scheduler; start them with that package "
             "on PYTHONPATH"
         )
-    hosts, nodes = options.host or ("gl",), options.node or ()
-    # Documents are judged as MaterialX ships them too, unless libraries are named.
-    compared = ("stock",) if options.files and not options.library else ()
-    libraries = options.library or ("eonlib", *compared)
     refused: list[str] = []
 
     def refuse(error: str) -> None:
@@ -107,9 +103,9 @@ def run(options: argparse.Namespace) -> int:
 
     try:
         result = check(
-            options.files,
-            host_names() if "all" in hosts else hosts,
-            libraries,
+            options.files or None,
+            options.host or "gl",
+            options.library or "eonlib",
             workers=options.workers,
             timeout=options.timeout,
             folder=options.report,
@@ -117,10 +113,11 @@ def run(options: argparse.Namespace) -> int:
             scheduler=options.scheduler,
             wait=options.waitForWorkers,
             policy=arguments.policy(options),
-            nodes=nodes,
+            nodes=options.node,
             progress=_importing(progress) if options.report else progress,
             refuse=refuse,
-            compared=compared,
+            # Documents are judged as MaterialX ships them too, unless libraries are named.
+            compared="stock" if options.files and not options.library else (),
             seed=options.seed,
         )
     except SignalExit as end:

@@ -11,12 +11,39 @@ from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
 from secrets import token_hex
+from typing import TypeAlias
 
 from mxeon.errors import InputError
 
 AnyPath = str | os.PathLike[str]
 BINARY: int = getattr(os, "O_BINARY", 0)  # Windows would write "\r\n" without it
+Names: TypeAlias = AnyPath | Iterable[AnyPath]  # one name or path, or several
 TEMPORARY = ".mxeon-"  # prefix of files and folders that are not complete yet
+
+
+def one_name(parameter: str, given: object) -> str:
+    """A name or path as text; raise InputError for anything else, such as a list of them."""
+    name = os.fspath(given) if isinstance(given, str | os.PathLike) else given
+    if not isinstance(name, str):
+        raise InputError(f"{parameter} must be one name or path; got {given!r}")
+    return name
+
+
+def names_of(parameter: str, given: object, least: int = 1) -> tuple[str, ...]:
+    """One name or path, or several, as texts: a str is one name, not its characters.
+
+    >>> names_of("hosts", "gl"), names_of("files", [Path("a.mtlx"), "b.mtlx"])
+    (('gl',), ('a.mtlx', 'b.mtlx'))
+    """
+    several = [given] if isinstance(given, str | bytes | os.PathLike) else given
+    if not isinstance(several, Iterable):
+        raise InputError(f"{parameter} must be a name or path, or several; got {given!r}")
+    names = tuple(
+        one_name(f"each of {parameter}" if several is given else parameter, n) for n in several
+    )
+    if len(names) < least:
+        raise InputError(f"{parameter} must be a name or path, or several; got none")
+    return names
 
 
 def below(folder: AnyPath, name: AnyPath) -> Path:

@@ -22,7 +22,7 @@ from mxeon.conformance.results import JUNIT, PAGE, REPORT, RESULTS, Picture, Run
 from mxeon.conformance.results.known_issues import issues_of
 from mxeon.conformance.results.records import StoredImage, images_of, make_converter
 from mxeon.errors import PackageError, install
-from mxeon.io.files import AnyPath, below, check_output, replacing, write_text
+from mxeon.io.files import AnyPath, below, check_output, one_name, replacing, write_text
 from mxeon.io.images import without_threads, write_exr, write_png
 from mxeon.report.formats import page_file
 from mxeon.report.junit import to_junit
@@ -46,7 +46,8 @@ def to_json(run: Run) -> str:
     - format: this layout's number, raised when a key changes or goes.
     - verdict: "passed", "failed" or "not run", and "differs" of a check where the
       specification leaves the difference open; counts: the number of checks with each.
-    - sentence: the same in words; seconds: that the run took, or null.
+    - passed: whether all that was requested ran and nothing failed; exit_status: of `mxeon check`.
+    - sentence: the verdict in words; seconds: that the run took, or null.
     - missing: texts, the items that an interrupted run has not finished.
     - refused: texts, the documents that were refused; errors: texts, their faults.
     - compared: names of libraries judged for comparison, which verdict, counts and sentence ignore.
@@ -63,12 +64,13 @@ def to_json(run: Run) -> str:
       from it, or null without one.
     - curves: objects with the fields of `mxeon.conformance.results.AlbedoCurve`.
     """
-    summary = run.summary
     data = {
         "format": JSON_FORMAT,
-        "verdict": summary.verdict,
-        "counts": summary.counts,
-        "sentence": summary.sentence,
+        "verdict": run.verdict,
+        "passed": run.passed,
+        "exit_status": run.exit_status,
+        "counts": run.counts,
+        "sentence": run.sentence,
         "seconds": run.seconds,
         "missing": run.missing,
         "compared": run.compared,
@@ -146,8 +148,8 @@ def write(run: Run, folder: str | PathLike[str]) -> Path:
     journal of the run; OSError if a file cannot be written, and ImportError if jinja2 or matplotlib, the
     `report` extra, is not installed.
     """
+    folder = Path(one_name("folder", folder))
     check_output(folder, _inputs(run), replaced=REPORT)
-    folder = Path(folder)
     write_text(below(folder, RESULTS), to_json(run))
     write_text(below(folder, JUNIT), to_junit(run))
     pictures = _with_references(run.pictures)

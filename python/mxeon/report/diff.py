@@ -105,6 +105,8 @@ class Report:
 
     format: int
     verdict: Verdict
+    passed: bool
+    exit_status: int
     counts: dict[Verdict, int]
     sentence: str
     missing: tuple[str, ...]

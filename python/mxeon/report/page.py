@@ -287,7 +287,6 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, 
             judged=list(
                 dict.fromkeys(each.library for each in asked if each.library not in run.compared)
             ),
-            summary=run.summary,
             every=every,
             located=checks_by_place(run.results),
             places=places,

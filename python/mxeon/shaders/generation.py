@@ -13,7 +13,7 @@ import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
 
 from mxeon.errors import DocumentError, InputError, InterfaceError, assert_known
-from mxeon.io.files import AnyPath
+from mxeon.io.files import AnyPath, one_name
 from mxeon.shaders import path_tracing
 from mxeon.shaders.closure_calls import check_closure_calls, leftover
 from mxeon.shaders.document.notes import CodeWarning, warn_of_files, warn_of_names
@@ -100,11 +100,11 @@ class Shader:
     name: str
     element: str
     target: str
-    stages: Mapping[str, str]
-    inputs: tuple[Input, ...]
+    stages: Mapping[str, str] = field(repr=False)
+    inputs: tuple[Input, ...] = field(repr=False)
     document: mx.Document = field(repr=False, compare=False)
-    folders: tuple[str, ...] = ()
-    root: str = ""
+    folders: tuple[str, ...] = field(default=(), repr=False)
+    root: str = field(default="", repr=False)
 
 
 def generate(
@@ -112,11 +112,11 @@ def generate(
     target: str,
     element: str | None = None,
     *,
-    library: str = "eonlib",
+    library: AnyPath = "eonlib",
     profile: str | None = None,
     lights: bool = False,
     uniforms: bool = False,
-    policy: Policy = DEFAULT,
+    policy: Policy | None = None,
 ) -> tuple[Shader, ...]:
     """Shaders of a document, one for each renderable element.
 
@@ -130,7 +130,7 @@ def generate(
     - `lights`: Whether a shader of a rasterized target gets MaterialX's directional light, as
       light type 1.
     - `uniforms`: Whether inputs stay uniforms with the profile "path", whose text has literals.
-    - `policy`: Permissions, limits and search path.
+    - `policy`: Permissions, limits and search path; None for `Policy()`.
 
     Raises ValueError if the target, the library, the profile or the element is unknown; DocumentError if
     no shader can be generated from the document; InterfaceError if this MaterialX calls closures in
@@ -154,6 +154,7 @@ def generate(
         >>> [shader.name for shader in generate(text, "osl")]
         ['look']
     """
+    policy, library = policy or DEFAULT, one_name("library", library)
     assert_known("target", target, TARGETS)
     if os.path.isdir(library) and root(library):
         check_generator(library, target)

@@ -19,7 +19,7 @@ import MaterialX.PyMaterialXGenShader as mx_gen
 
 import mxeon
 from mxeon.errors import InputError, LibraryError, PackageError, assert_known
-from mxeon.io.files import AnyPath
+from mxeon.io.files import AnyPath, Names, names_of, one_name
 from mxeon.names import meant
 from mxeon.shaders.library_tree import (
     DOCUMENT,
@@ -174,7 +174,7 @@ def library_name(library: str | os.PathLike[str]) -> str:
 
 
 def load_library(
-    library: str = "eonlib", profile: str | None = None, definitions: tuple[str, ...] = ()
+    library: AnyPath = "eonlib", profile: str | None = None, definitions: Names = ()
 ) -> mx.Document:
     """A MaterialX document holding the standard libraries, with eonlib in front.
 
@@ -184,8 +184,7 @@ def load_library(
       a part of them, which it replaces, or others, which are loaded first; see
       `mxeon.shaders.library_tree`.
     - `profile`: "cycles" for the OSL implementations that eonlib has for Blender's Cycles.
-    - `definitions`: Folders of further definitions, as absolute paths, which replace none of the
-      library's.
+    - `definitions`: One folder of further definitions, or several, which replace none of the library's.
 
     Raises ValueError if the library or the profile is unknown, or a folder holds no definitions or
     replaces some of the library's; ImportError if this MaterialX is too
@@ -194,9 +193,12 @@ def load_library(
 
     Warns UntestedVersionWarning if this MaterialX is none of TESTED.
     """
+    library = one_name("library", library)
     if library not in LIBRARIES and os.path.isdir(library):
         library = os.path.abspath(library)
-    return read_library(library, profile, definitions)
+    profile = profile if profile is None else one_name("profile", profile)
+    folders = map(os.path.abspath, names_of("definitions", definitions, least=0))
+    return read_library(library, profile, tuple(folders))
 
 
 @lru_cache(maxsize=LOADED)

@@ -14,7 +14,8 @@ from typing import Final, Literal, TypeAlias, TypedDict, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.errors import InputError
+from mxeon import errors
+from mxeon.errors import CheckError, InputError
 from mxeon.hosts.base import Identity
 from mxeon.io.files import AnyPath
 from mxeon.io.images import difference
@@ -25,6 +26,7 @@ DIFFERS: Final = "differs"
 FAILED: Final = "failed"
 NOT_RUN: Final = "not run"
 VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
+STATUSES = {PASSED: errors.PASSED, FAILED: errors.FAILED, NOT_RUN: errors.NOT_RUN}  # of a run
 # In the place of a document: one material of each node, as every host shows it.
 PORTRAIT = "portrait"
 UNJUDGED = "nodes without a model"  # beside the files of a library
@@ -92,7 +94,7 @@ class Result:
     """
 
     check: str
-    claim: str
+    claim: str = field(repr=False)
     subject: str
     host: str
     library: str
@@ -100,17 +102,17 @@ class Result:
     error: float | None = None
     unit: str = ""
     tolerance: float | None = None
-    derivation: str = ""
-    worst: dict[str, list[float]] = field(default_factory=dict)
+    derivation: str = field(default="", repr=False)
+    worst: dict[str, list[float]] = field(default_factory=dict, repr=False)
     diagnosis: str = ""
-    distances: dict[str, float] = field(default_factory=dict)
-    control: Control | None = None
+    distances: dict[str, float] = field(default_factory=dict, repr=False)
+    control: Control | None = field(default=None, repr=False)
     reason: str = ""
-    claimed: str = ""
-    model: str = ""
-    measured: tuple[str, ...] = ()
+    claimed: str = field(default="", repr=False)
+    model: str = field(default="", repr=False)
+    measured: tuple[str, ...] = field(default=(), repr=False)
     pages: tuple[str, ...] = ()
-    seconds: float | None = field(default=None, compare=False)
+    seconds: float | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         assert_verdict(self.verdict)
@@ -195,10 +197,10 @@ class Picture:
     host: str
     library: str
     scene: str  # the light
-    image: NDArray[np.floating]
-    reference: NDArray[np.floating] | None
-    metadata: dict[str, str]
-    judged: NDArray[np.floating] | None = None
+    image: NDArray[np.floating] = field(repr=False)
+    reference: NDArray[np.floating] | None = field(repr=False)
+    metadata: dict[str, str] = field(repr=False)
+    judged: NDArray[np.floating] | None = field(default=None, repr=False)
 
     def difference(self) -> NDArray[np.float64]:
         """Difference from the reference, (size, size): infinite where a value is not finite.
@@ -230,19 +232,9 @@ class AlbedoCurve:
     library: str
     rho: tuple[float, float, float]
     roughness: float
-    mu: NDArray[np.float64]
-    measured: NDArray[np.float64]
-    expected: NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Summary:
-    """The verdict on a whole run."""
-
-    # FAILED if any check failed, else NOT_RUN if any or all did not run or are missing, else PASSED.
-    verdict: Verdict
-    counts: dict[Verdict, int]  # number of checks that ended with each of VERDICTS
-    sentence: str
+    mu: NDArray[np.float64] = field(repr=False)
+    measured: NDArray[np.float64] = field(repr=False)
+    expected: NDArray[np.float64] = field(repr=False)
 
 
 def listed(names: Sequence[str]) -> str:
@@ -299,7 +291,10 @@ class Scope:
 
 @dataclass(frozen=True)
 class Run(Scope):
-    """Everything that one `mxeon check` measured.
+    """Everything that one `mxeon check` measured, and whether it passed.
+
+    `passed` is the answer. Do not compute it from `results`: they lack documents that were refused, and
+    hold the failures of libraries that are judged for comparison.
 
     - `notes`: Warnings that a reader has to see, e.g. what a host cannot express.
     - `missing`: Tasks that are not done yet, where the run was interrupted.
@@ -313,9 +308,53 @@ class Run(Scope):
     missing: tuple[str, ...] = ()
     seconds: float | None = field(default=None, compare=False)
 
+    def __repr__(self) -> str:
+        return f"<Run: {self.summary}>"
+
+    @property
+    def passed(self) -> bool:
+        """Whether everything that was requested ran and nothing failed or was refused."""
+        return self.exit_status == errors.PASSED
+
+    @property
+    def exit_status(self) -> int:
+        """The exit status of `mxeon check`: 0 passed, 1 failed, 2 a document was refused, 3 not run."""
+        return errors.MISUSE if self.refused else STATUSES[self.verdict]
+
+    def raise_for_failure(self) -> None:
+        """Raise `mxeon.errors.CheckError` unless the run passed, with the verdict and its causes."""
+        if self.passed:
+            return
+        judged = [each for each in self.results if each.library not in self.compared]
+        causes = [
+            f"{each.verdict}: {each.location}, {each.check}, {each.subject}: "
+            + (each.reason or each.explanation)
+            for verdict in (FAILED, NOT_RUN)
+            for each in judged
+            if each.verdict == verdict
+        ]
+        raise CheckError(self.sentence, *self.errors, *causes, status=self.exit_status)
+
+    @property
+    def verdict(self) -> Verdict:
+        """FAILED if a check failed, else NOT_RUN if one is missing or anything was refused, else PASSED.
+
+        Libraries that are judged for comparison do not count.
+        """
+        return self._outcome[0]
+
+    @property
+    def counts(self) -> dict[Verdict, int]:
+        """The number of checks with each verdict, without libraries judged for comparison."""
+        return self._outcome[1]
+
+    @property
+    def sentence(self) -> str:
+        """The verdict in words."""
+        return self._outcome[2]
+
     @cached_property
-    def summary(self) -> Summary:
-        """The verdict on the results of all libraries that are not judged for comparison."""
+    def _outcome(self) -> tuple[Verdict, dict[Verdict, int], str]:
         results = [each for each in self.results if each.library not in self.compared]
         tally = Counter(result.verdict for result in results)
         counts = {verdict: tally[verdict] for verdict in VERDICTS}
@@ -362,7 +401,7 @@ class Run(Scope):
             ran = len(other) - other.count(NOT_RUN)
             words = f" For comparison, {other.count(FAILED)} of {ran} failed with {library}."
             sentence += words * bool(ran)
-        return Summary(verdict, counts, sentence)
+        return verdict, counts, sentence
 
     @cached_property
     def differences(self) -> dict[tuple[str, str, str], float]:
@@ -396,12 +435,12 @@ class Run(Scope):
         )
 
     @property
-    def sentence(self) -> str:
-        """The verdict, the MaterialX that was judged, with its folder unless it is installed, and the time."""
+    def summary(self) -> str:
+        """The verdict in words, the MaterialX that was judged, with its folder unless it is installed, and the time."""
         version, folder = (self.software.get(name) for name in ("MaterialX", "MaterialX folder"))
         judged = f" MaterialX {version}{f', from {folder}' if folder else ''}." if version else ""
         time = "" if self.seconds is None else f" Finished in {self.seconds:.1f} s."
-        return self.summary.sentence + judged + time
+        return self.sentence + judged + time
 
     @property
     def origins(self) -> tuple[str, ...]:

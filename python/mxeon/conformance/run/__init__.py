@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A conformance run: tasks are planned, worked on in processes, and kept in a journal."""
 
+from __future__ import annotations
+
 import os
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -24,8 +26,8 @@ from mxeon.conformance.run.plan import (
     survey_documents,
 )
 from mxeon.errors import InputError, InterfaceError, NotRun
-from mxeon.hosts import HOSTS, host_row
-from mxeon.io.files import AnyPath, check_output
+from mxeon.hosts import HOSTS, host_names, host_row
+from mxeon.io.files import AnyPath, Names, check_output, names_of, one_name
 from mxeon.jobs import TIMEOUT, WAIT, check_timeout, dask, pool
 from mxeon.jobs.pool import by_group
 from mxeon.shaders.document.policy import DEFAULT, Policy
@@ -38,34 +40,35 @@ __all__ = ["check", "read_run", "to_run", "work"]
 
 EVALUATING = tuple(row.name for row in HOSTS if row.way == "pairs")  # texts of any library
 
+Outcomes = Iterable[tuple[int, Findings]]
 Executor = Callable[[Sequence[Task]], Iterable[tuple[int, pool.Outcome]]]
 
 
 def check(
-    files: Sequence[str | os.PathLike[str]] = (),
-    hosts: Sequence[str] = ("gl",),
-    libraries: Sequence[str] = ("eonlib",),
+    files: Names | None = None,
+    hosts: Names = "gl",
+    libraries: Names = "eonlib",
     *,
     workers: int = 0,
     timeout: float = TIMEOUT,
-    folder: str | os.PathLike[str] | None = None,
+    folder: AnyPath | None = None,
     resume: bool = False,
     scheduler: str | None = None,
     wait: float = WAIT,
-    policy: Policy = DEFAULT,
-    nodes: Sequence[str] = (),
-    progress: Callable[
-        [Iterable[tuple[int, Findings]], int], Iterable[tuple[int, Findings]]
-    ] = lambda tasks, total: tasks,
-    refuse: Callable[[str], None] = lambda error: None,
-    compared: Sequence[str] = (),
+    policy: Policy | None = None,
+    nodes: Names | None = None,
+    progress: Callable[[Outcomes, int], Outcomes] | None = None,
+    refuse: Callable[[str], None] | None = None,
+    compared: Names = (),
     seed: int = 1,
 ) -> Run:
     """Run every check on every host, and compare pictures of documents with the reference's.
 
-    - `files`: MaterialX documents, and folders for all documents below them; none for the bundled
-      examples.
-    - `hosts`: Hosts to judge; `mxeon.hosts.host_names` lists them.
+    Parameters of type `Names` take one name or path, or several.
+
+    - `files`: MaterialX documents, and folders for all documents below them; None for the library's common
+      nodes and the bundled examples.
+    - `hosts`: Hosts to judge, or "all"; `mxeon.hosts.host_names` lists them.
     - `libraries`: "eonlib", "stock" for MaterialX as it comes, and folders of MaterialX documents.
     - `workers`: Processes that share the work, each of which may crash or hang; 0 to work in this
       one.
@@ -76,29 +79,42 @@ def check(
     - `resume`: Continue the run in `folder`.
     - `scheduler`, `wait`: Address of a Dask scheduler whose workers do the work, and seconds to
       wait for one that fits.
-    - `policy`: Permissions and limits of documents.
+    - `policy`: Permissions and limits of documents; None for `Policy()`.
     - `nodes`: Categories of nodes to judge; "all", or "common" for those of an audit. None for the
       nodes of `files`, or the common ones without files.
-    - `progress`: Wraps the iteration over the tasks, whose number it takes; a progress bar, for
-      example.
+    - `progress`: Called as `progress(tasks, total)`; returns the tasks as an iterator that shows its
+      progress, such as `lambda tasks, total: tqdm(tasks, total=total)`.
     - `refuse`: Called with each fault of each document that cannot be read, before any other work.
-    - `compared`: Those of `libraries` whose failures and refusals do not change the verdict.
+    - `compared`: Further libraries, judged for comparison: what fails with them does not change the
+      verdict. `compared="stock"` does what the command does with documents.
     - `seed`: Seed of the samples, at least 0; verdicts should not depend on it.
 
-    A document that cannot be judged is among those refused; the others are judged.
+    A document that cannot be judged is among those refused; the others are judged. The run has then not
+    passed: see `mxeon.conformance.results.Run.passed`.
 
     Raises ValueError if a name or number is wrong, the run to resume is another one, or no
     scheduler answers; NotRun if no process can start, or the cluster has no workers for too long.
     """
     begin = time.monotonic()
+    policy = policy or DEFAULT
+    folder = None if folder is None else one_name("folder", folder)
+    given = () if files is None else names_of("files", files)
+    engines = names_of("hosts", hosts)
+    engines = host_names() if "all" in engines else engines
+    categories = () if nodes is None else names_of("nodes", nodes)
+    judged, others = names_of("libraries", libraries), names_of("compared", compared, least=0)
     if folder is not None:
-        check_output(folder, _inputs(files, libraries, policy), replaced=REPORT, apart=True)
+        inputs = _inputs(given, (*judged, *others), policy)
+        check_output(folder, inputs, replaced=REPORT, apart=True)
     with nullcontext() if folder is None else Journal(folder, resume) as journal:
-        assert_known_names(hosts, nodes)
-        files = documents_in(files)
-        libraries = tuple(dict.fromkeys(map(library_name, libraries)))
-        for library in filter(root, libraries):
-            for target in {host_row(host).target for host in hosts} & {*TARGETS}:
+        assert_known_names(engines, categories)
+        documents = documents_in(given)
+        judged, others = (tuple(map(library_name, each)) for each in (judged, others))
+        if both := [each for each in others if each in judged]:
+            raise InputError(f"compared must be other libraries than those judged; got {both[0]!r}")
+        loaded = tuple(dict.fromkeys((*judged, *others)))
+        for library in filter(root, loaded):
+            for target in {host_row(host).target for host in engines} & {*TARGETS}:
                 try:
                     check_generator(library, target)
                 except InterfaceError as reason:  # nothing would run
@@ -108,11 +124,14 @@ def check(
         if seed < 0:
             raise InputError(f"seed must be at least 0; got {seed}")
         check_timeout(timeout)
-        survey = survey_documents(list(map(str, files)), libraries, policy, workers, timeout)
+        survey = survey_documents(documents, loaded, policy, workers, timeout)
         keep = folder is not None
-        planned = make_plan(files, hosts, libraries, policy, keep, nodes, survey, compared, seed)
-        for line in chain.from_iterable(to_run(planned, {}).refused.values()):
-            refuse(line)
+        planned = make_plan(
+            documents, engines, loaded, policy, keep, categories, survey, others, seed
+        )
+        if refuse:
+            for line in chain.from_iterable(to_run(planned, {}).refused.values()):
+                refuse(line)
         with _executor(policy, workers, timeout, scheduler, wait) as executor:
             if journal:
                 journal.begin(planned)
@@ -131,7 +150,9 @@ def check(
                 for position, outcome in executor(waiting)
             )
             with closing(found) as outcomes:  # processes work until then
-                for position, findings in progress(outcomes, len(waiting)):
+                for position, findings in (
+                    progress(outcomes, len(waiting)) if progress else outcomes
+                ):
                     if differences := [
                         f"host {before.name} ({before.version}, {before.device}, now {host.version}, {host.device})"
                         for host in findings.hosts
@@ -156,7 +177,7 @@ def _inputs(files: Sequence[AnyPath], libraries: Iterable[str], policy: Policy) 
     yield from files_read(documents, policy, libraries).values()
 
 
-def read_run(folder: str | os.PathLike[str]) -> Run:
+def read_run(folder: AnyPath) -> Run:
     """The run in a folder, as far as it is done; ValueError if it holds no journal of this version."""
     return to_run(*read_journal(folder))
 

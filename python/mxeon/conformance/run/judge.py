@@ -38,6 +38,7 @@ from mxeon.conformance.run.plan import (
     CURVE,
     DEFINITION,
     DOCUMENT,
+    EVERY_NODE,
     FUNCTIONS,
     HOST,
     PICTURE,
@@ -131,7 +132,8 @@ class Judge:
             return self._document(task)
         host = self._host(task.host)
         if task.check == HOST:
-            raise NotRun(f"{task.host}: this host judges nothing that was requested")
+            asked = "" if task.subject == EVERY_NODE else f": {task.subject} with {task.library}"
+            raise NotRun(f"{task.host}: this host judges nothing that was requested{asked}")
         return replace(self._on_host(task, host), hosts=(host.identity(),))
 
     def _on_host(self, task: Task, host: Engine) -> Findings:

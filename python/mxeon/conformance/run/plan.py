@@ -213,6 +213,11 @@ def node_names() -> tuple[str, ...]:
     return tuple(dict.fromkeys(row.node for row in ALL_SPECS))
 
 
+def _titles(*nodes: str) -> set[str]:
+    """Titles of nodes, one for each mode, by their categories."""
+    return {row.title for row in ALL_SPECS if row.node in nodes}
+
+
 def _selected(
     tasks: Sequence[Task], files: Sequence[str], nodes: Sequence[str], survey: Survey
 ) -> list[Task]:
@@ -220,7 +225,7 @@ def _selected(
 
     Raise InputError if none of the nodes is judged.
     """
-    titles = {row.title for row in ALL_SPECS if row.node in nodes}
+    titles = _titles(*nodes)
     rare = {each.title for each in PBRLIB} - {each.title for each in COMMON_SPECS}
     audit = COMMON in nodes or not (nodes or files)
     by_name = {each.key for each in CHECKS if each.profile}
@@ -307,6 +312,12 @@ def make_plan(
     }
     silent = [host for host in hosts if tasks and host not in telling]
     tasks += [Task(HOST, EVERY_NODE, host, libraries[0]) for host in silent]
+    # So does a node that no host judges, beside others that are judged.
+    subjects = {task.subject for task in tasks}
+    lost = [
+        each for each in nodes if each not in (ALL, COMMON) and subjects.isdisjoint(_titles(each))
+    ]
+    tasks += [Task(HOST, node, hosts[0], libraries[0]) for node in lost if len(silent) < len(hosts)]
     if not files and nodes and {ALL, COMMON}.isdisjoint(nodes):
         documents = []
     return Plan(

@@ -5,6 +5,7 @@ import os
 from dataclasses import dataclass, field
 
 from mxeon.errors import DocumentError, InputError
+from mxeon.io.files import names_of
 
 SEARCH_PATH = "MATERIALX_SEARCH_PATH"  # environment variable, MaterialX's own
 
@@ -39,8 +40,8 @@ class Policy:
 
     - `outside`: Whether it may name files outside its own folder and the libraries.
     - `code`: Whether it may contain its own shader code, in text or in files.
-    - `definitions`: Folders of definitions that it may use in addition to its library, as
-      absolute paths. They are trusted as the library is.
+    - `definitions`: Folders of definitions that it may use in addition to its library. They are
+      trusted as the library is.
     - `path`: Folders, searched after its own, in which it may name files too; by default those of
       the environment variable MATERIALX_SEARCH_PATH.
     - the others: Limits of what LIMITS says. `size` and `includes` hold for the document's
@@ -89,6 +90,9 @@ class Policy:
     texels: int = 64 * 2**20
 
     def __post_init__(self) -> None:
+        for name in ("path", "definitions"):
+            folders = tuple(map(os.path.abspath, names_of(name, getattr(self, name), least=0)))
+            object.__setattr__(self, name, folders)
         for name in LIMITS:
             if getattr(self, name) < 0:
                 raise InputError(f"{name} must be at least 0; got {getattr(self, name)}")

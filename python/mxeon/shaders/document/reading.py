@@ -70,6 +70,8 @@ def read_document(
     """
     data = load_library(library, profile, policy.definitions)
     content = mx.createDocument()
+    if not isinstance(source, str | os.PathLike | mx.Document):
+        raise DocumentError(f"document must be a file, XML text or a document; got {source!r}")
     if isinstance(source, mx.Document):
         content.copyContentFrom(source)
         content.setSourceUri(source.getSourceUri())

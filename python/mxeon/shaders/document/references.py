@@ -192,7 +192,7 @@ def _paths(name: str, folders: Iterable[Path]) -> Iterator[str]:
         yield from map(os.path.realpath, filter(os.path.isfile, paths))
 
 
-def documents_in(files: Iterable[str | os.PathLike[str]]) -> tuple[str, ...]:
+def documents_in(files: Iterable[AnyPath]) -> tuple[str, ...]:
     """Files, and the documents in folders and below them, in order.
 
     Raise ValueError if a folder holds no document.
