@@ -10,16 +10,20 @@ import warnings
 from dataclasses import replace
 
 import MaterialX as mx
+import MaterialX.PyMaterialXGenGlsl as mx_glsl
 import MaterialX.PyMaterialXGenShader as mx_gen
 import pytest
 
 from mxeon.conformance.specs import ABSENT, ALL
+from mxeon.errors import InputError, NotRun
 from mxeon.hosts.cycles.process import interpreter
 from mxeon.shaders.document.reading import read_document
 from mxeon.shaders.generation import TARGETS, ApproximationWarning, generate
 from mxeon.shaders.generators import ERROR, lines_left_out
 from mxeon.shaders.library import examples_folder, load_library, source_folder
+from mxeon.shaders.methods import Methods
 from mxeon.shaders.nodes import EON, OREN_NAYAR
+from mxeon.shaders.options import unbound_members
 from tests.support.availability import available, program
 from tests.support.documents import COMPENSATED, lobe, material
 
@@ -353,3 +357,36 @@ def test_lines_with_the_words_are_left_out_of_what_libraries_print(capfd):
     assert capfd.readouterr().err == "this is\n"
     generate(material(lobe()), "wgsl")  # whose flag is a boolean
     assert capfd.readouterr().err == ""
+
+
+@pytest.mark.parametrize("target", RASTERISED)
+def test_the_methods_of_a_client_are_those_of_the_text(target):
+    glass = material(lobe("dielectric_bsdf", scatter_mode="RT"))
+    methods = Methods("prefilter", "opacity", "monteCarlo", 6, False)
+    text = generate(glass, target, methods=methods)[0].stages["pixel"]
+    assert "#define DIRECTIONAL_ALBEDO_METHOD 2\n" in text
+    assert "#define AIRY_FRESNEL_ITERATIONS 6\n" in text
+    assert "mx_latlong_alpha_to_lod(" in text
+    assert re.search(r"transparency \+= \w+\.response", text)
+    default = generate(glass, target)[0].stages["pixel"]
+    assert "transparency +=" not in default
+    assert generate(glass, target, methods=Methods("fis"))[0].stages["pixel"] == default
+    with pytest.raises(NotRun, match="reads .*refractionTwoSided, which it does not declare"):
+        generate(glass, target, methods=Methods("none"))
+
+
+def test_a_method_that_the_text_does_not_have_is_refused(monkeypatch):
+    glass = material(lobe("dielectric_bsdf", scatter_mode="RT"))
+    monkeypatch.setattr("mxeon.shaders.generators.set_options", lambda options, **chosen: None)
+    for methods in (Methods("prefilter"), Methods("", "opacity"), Methods(albedo="table")):
+        with pytest.raises(NotRun, match="MaterialX's generator wrote"):
+            generate(glass, "glsl", methods=methods)
+    with pytest.raises(InputError, match="only rasterized targets have methods"):
+        generate(glass, "osl", methods=Methods("fis"))
+
+
+def test_options_of_another_layout_are_refused():
+    context = mx_gen.GenContext(mx_glsl.GlslShaderGenerator.create())
+    unbound_members(context.getOptions())[2] = 3
+    with pytest.raises(LookupError, match="keeps options without a Python binding elsewhere"):
+        unbound_members(context.getOptions())

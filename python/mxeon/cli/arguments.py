@@ -7,6 +7,7 @@ import os
 import sys
 import textwrap
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import fields
 from importlib import import_module
 from typing import Any, NoReturn
 
@@ -15,6 +16,7 @@ from mxeon.io.files import AnyPath
 from mxeon.jobs import TIMEOUT
 from mxeon.names import meant
 from mxeon.shaders.document.policy import LIMITS, SEARCH_PATH, Policy, environment_path
+from mxeon.shaders.methods import CHOICES, OPTIONS, Methods
 
 STATUS = """exit status: 0 success, 1 a check, a comparison or a shader failed, 2 misuse or bad
 input, 3 something did not run; if several apply, the first of 2, 1 and 3"""
@@ -240,6 +242,35 @@ def add_policy(command: argparse.ArgumentParser, runs_code: bool = False, **defa
             metavar="N",
             help=f"at most N {meaning} (default: %(default)s)",
         )
+
+
+METHODS = "methods of generated shaders"  # heading of the options of `add_methods`
+HELP = {
+    "environment": "how specular light of an environment is found",
+    "transmission": "what passes a surface: the refracted environment, or what is behind it",
+    "albedo": "directional albedos of MaterialX's own functions",
+}
+
+
+def add_methods(command: argparse.ArgumentParser) -> None:
+    """Add the options of `mxeon.shaders.methods.Methods`; without them, each host has its own methods."""
+    group = command.add_argument_group(METHODS)
+    for name, choices in CHOICES.items():
+        words = f"{HELP[name]}: {', '.join(choices)}"
+        group.add_argument(OPTIONS[name], default="", metavar="NAME", help=words, dest=name)
+    words = "iterations of MaterialX's own thin films"
+    group.add_argument(OPTIONS["airy"], type=int, default=0, metavar="N", help=words, dest="airy")
+    for name, words in (
+        ("premultiplied", "whether mix folds its weight into those of its lobes"),
+        ("distributed", "whether layer is distributed over mix"),
+    ):
+        action = argparse.BooleanOptionalAction
+        group.add_argument(OPTIONS[name], action=action, help=words, dest=name)
+
+
+def methods(options: argparse.Namespace) -> Methods:
+    """The methods that the options choose."""
+    return Methods(**{each.name: getattr(options, each.name) for each in fields(Methods)})
 
 
 def policy(options: argparse.Namespace) -> Policy:

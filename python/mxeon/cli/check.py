@@ -76,6 +76,7 @@ def add_parser(commands: arguments.Commands) -> None:
         metavar="SECONDS",
         help="how long to wait for a worker of the cluster (default: %(default)g)",
     )
+    arguments.add_methods(command)
     arguments.add_shared(command, "--materialx")
     arguments.add_policy(command, runs_code=True)
 
@@ -119,6 +120,7 @@ def run(options: argparse.Namespace) -> int:
             # Documents are judged as MaterialX ships them too, unless libraries are named.
             compared="stock" if options.files and not options.library else (),
             seed=options.seed,
+            methods=arguments.methods(options),
         )
     except SignalExit as end:
         if options.report and Path(options.report, JOURNAL).exists():

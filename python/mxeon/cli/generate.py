@@ -47,6 +47,7 @@ def add_parser(commands: arguments.Commands) -> None:
     )
     names = "--library", "--materialx", "--json", "--workers", "--timeout"
     arguments.add_shared(command, *names)
+    arguments.add_methods(command)
     arguments.add_policy(command)
 
 
@@ -63,6 +64,7 @@ def run(options: argparse.Namespace) -> int:
         element=options.element,
         library=options.library,
         profile=options.profile,
+        methods=arguments.methods(options),
         policy=arguments.policy(options),
     )
     written: list[str] = []

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.errors import InputError, Unsupported
+from mxeon.errors import InputError, NotRun, Unsupported
 from mxeon.shaders.document.policy import DEFAULT, Policy
+from mxeon.shaders.methods import UNCHOSEN, Methods
 from mxeon.shaders.scene import Paths, Scene
 
 if TYPE_CHECKING:
@@ -55,6 +56,11 @@ class Engine(ABC):
 
     name: str
     draws_images: ClassVar[bool] = False  # whether the environment of its pictures may be an image
+
+    def choose(self, methods: Methods) -> None:
+        """Use the methods that a client chooses, or raise NotRun."""
+        if methods != UNCHOSEN:
+            raise NotRun(f"{self.name}: its methods cannot be chosen; got {methods}")
 
     @abstractmethod
     def identity(self) -> Identity:
@@ -109,6 +115,11 @@ class Host(Engine):
     profile: ClassVar[str | None] = None
     language: ClassVar[str] = "glsl"
     reads_images: ClassVar[bool] = False  # whether its evaluations read a document's images
+    default: ClassVar[Methods] = (
+        UNCHOSEN  # its methods unless others are chosen; UNCHOSEN: it has none
+    )
+    fixed: ClassVar[bool] = False  # whether it has its own methods alone
+    methods: Methods = UNCHOSEN  # chosen for all shaders
 
     def compile(
         self,
@@ -116,10 +127,12 @@ class Host(Engine):
         element: str | None = None,
         *,
         library: str = "eonlib",
+        methods: Methods = UNCHOSEN,
         policy: Policy = DEFAULT,
     ) -> tuple[Shader, ...]:
         """Shaders of a document for this host; arguments and errors as for `mxeon.generate`.
 
+        `methods` are those of these shaders where they differ from the host's.
         Images that are too large in total are refused, too; see `mxeon.hosts.raster.check_images`.
         """
         from mxeon.hosts.raster import check_images
@@ -132,10 +145,26 @@ class Host(Engine):
             library=library,
             profile=self.profile,
             lights=True,
+            methods=UNCHOSEN if self.fixed else methods.over(self.methods),
             policy=policy,
         )
         check_images(shaders, policy)
         return shaders
+
+    def choose(self, methods: Methods) -> None:
+        offered = dict(self.default.chosen())
+        for name, value in methods.chosen():
+            if self.default == UNCHOSEN:
+                raise NotRun(f"{self.name}: {self.target} has no choice of {name}; got {value}")
+            if self.fixed and offered.get(name) != value:
+                only = offered.get(name, "MaterialX's default")
+                raise NotRun(f"{self.name}: {name} is always {only}; got {value}")
+        self.methods = UNCHOSEN if self.fixed else methods
+
+    @property
+    def active(self) -> Methods:
+        """The methods of its shaders."""
+        return self.methods.over(self.default)
 
     def picture(self, shader: Shader, scene: Scene) -> Array:
         """Picture of the unit sphere with a shader on it: linear, row 0 at the top, 0 off the sphere.

@@ -24,6 +24,7 @@ from mxeon.hosts import base, raster
 from mxeon.hosts.base import Array, Identity
 from mxeon.hosts.process import Worker
 from mxeon.shaders.generation import Shader
+from mxeon.shaders.methods import UNCHOSEN, Methods
 from mxeon.shaders.scene import Scene, sphere
 
 SPREAD = 1.0 / 64.0  # of the texture coordinates within a quad
@@ -111,7 +112,8 @@ class DocumentHost(base.Host):
             self._folders = folders
             self.worker = self._worker()
         blocks = self._needs_blocks(shader)
-        return self._picture(*self._document(shader), scene, self._folders, blocks)
+        text, element = self._document(shader)
+        return self._picture(text, element, scene, self._folders, blocks, shader.methods)
 
     def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
         return (*raster.approximations(shader), *filter(None, [self.unread(shader)]))
@@ -137,7 +139,13 @@ class DocumentHost(base.Host):
         return Worker(self.name, self._python, script, self._limit, *self._folders)
 
     def _drawn(
-        self, text: str, element: str, scene: Scene, folders: tuple[str, ...], blocks: bool
+        self,
+        text: str,
+        element: str,
+        scene: Scene,
+        folders: tuple[str, ...],
+        blocks: bool,
+        methods: Methods,
     ) -> Array:
         # Write the document under a new name: OpenUSD caches files.
         folder = self.worker.folder
@@ -152,6 +160,7 @@ class DocumentHost(base.Host):
             size=scene.size * (BLOCK if blocks else 1),
             light=scene.light,
             environment=scene.environment,
+            **({"methods": dict(methods.chosen())} if methods != UNCHOSEN else {}),
         )
         self._check(reply.get("error", ""), self.worker.printed())
         pixels = np.load(output)

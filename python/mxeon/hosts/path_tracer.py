@@ -11,6 +11,7 @@ from mxeon.hosts import Row, gl, raster
 from mxeon.hosts.base import Array
 from mxeon.hosts.textures import read_latlong
 from mxeon.shaders.generation import Shader
+from mxeon.shaders.methods import UNCHOSEN
 from mxeon.shaders.scene import Scene
 from mxeon.shaders.shader_ball import BELT, OBJECT
 
@@ -39,6 +40,7 @@ class Host(gl.Host):
 
     name = "path"
     profile: ClassVar[str | None] = "path"
+    default = UNCHOSEN
 
     def picture(self, shader: Shader, scene: Scene) -> Array:
         samples, bounces = scene.paths.samples or SAMPLES, scene.paths.bounces or BOUNCES

@@ -22,6 +22,7 @@ from mxeon.shaders.document.references import files
 from mxeon.shaders.document.values import Plain, flat, label
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import SUBSURFACE, TRANSMISSION, VOLUME, inner_lobes
+from mxeon.shaders.methods import GENERATED
 from mxeon.shaders.scene import SIDE, Scene
 
 Uniforms: TypeAlias = dict[str, Plain]  # values by name
@@ -165,6 +166,7 @@ class FragmentHost(base.Host):
     """
 
     reads_images = True
+    default = GENERATED
 
     def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
         return approximations(shader)

@@ -22,6 +22,7 @@ from mxeon.errors import NotRun, install, refused
 from mxeon.hosts import base, calls, fragment, raster
 from mxeon.hosts.base import TURN, Array, Identity, Query
 from mxeon.shaders import functions
+from mxeon.shaders.methods import GENERATED
 
 Resource: TypeAlias = Any  # an object of slangpy, whose types are known where it is installed
 
@@ -104,6 +105,7 @@ class Host(base.Host):
 
     name = "slang"
     target = "slang"
+    default = GENERATED
 
     def __init__(self) -> None:
         if slangpy is None:

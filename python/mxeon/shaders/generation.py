@@ -23,6 +23,7 @@ from mxeon.shaders.document.sources import copied_sources
 from mxeon.shaders.document.values import Plain, label, plain
 from mxeon.shaders.generators import (
     GENERATORS,
+    HARDWARE,
     TARGETS,
     context_of,
     generated,
@@ -31,6 +32,7 @@ from mxeon.shaders.generators import (
 )
 from mxeon.shaders.library import has_profile, load_library, own_folders
 from mxeon.shaders.library_tree import in_words, root
+from mxeon.shaders.methods import UNCHOSEN, Methods, assert_generated
 
 __all__ = [
     "GENERATORS",
@@ -95,6 +97,7 @@ class Shader:
     - `document`: The checked document that it was generated from, with its data library.
     - `folders`: Folders of that library which are loaded before MaterialX's own.
     - `root`: Folder whose `libraries` replace MaterialX's own; "" for the installed ones.
+    - `methods`: The generator's methods that were chosen.
     """
 
     name: str
@@ -105,6 +108,7 @@ class Shader:
     document: mx.Document = field(repr=False, compare=False)
     folders: tuple[str, ...] = field(default=(), repr=False)
     root: str = field(default="", repr=False)
+    methods: Methods = UNCHOSEN
 
 
 def generate(
@@ -116,6 +120,7 @@ def generate(
     profile: str | None = None,
     lights: bool = False,
     uniforms: bool = False,
+    methods: Methods | None = None,
     policy: Policy | None = None,
 ) -> tuple[Shader, ...]:
     """Shaders of a document, one for each renderable element.
@@ -130,6 +135,7 @@ def generate(
     - `lights`: Whether a shader of a rasterized target gets MaterialX's directional light, as
       light type 1.
     - `uniforms`: Whether inputs stay uniforms with the profile "path", whose text has literals.
+    - `methods`: How a shader of a rasterized target finds light; None for MaterialX's defaults.
     - `policy`: Permissions, limits and search path; None for `Policy()`.
 
     Raises ValueError if the target, the library, the profile or the element is unknown; DocumentError if
@@ -155,9 +161,12 @@ def generate(
         ['look']
     """
     policy, library = policy or DEFAULT, one_name("library", library)
+    methods = methods or UNCHOSEN
     assert_known("target", target, TARGETS)
     if os.path.isdir(library) and root(library):
         check_generator(library, target)
+    if methods != UNCHOSEN and (target not in HARDWARE or profile):
+        raise InputError(f"{target}: only rasterized targets have methods; got {methods}")
     if profile == "path":
         assert_known("target of the profile path", target, path_tracing.TARGETS)
         if not has_profile(library, profile):
@@ -168,7 +177,7 @@ def generate(
     content, names = checked.content, shader_names(checked.renderables)
     generator = generator_of(content, target, library, profile, policy.definitions)
     context = context_of(
-        content, target, generator, library, lights, policy.path, profile, uniforms
+        content, target, generator, library, lights, policy.path, profile, uniforms, methods
     )
     elements: Sequence[mx.TypedElement] = checked.renderables
     if element is not None:
@@ -196,6 +205,8 @@ def generate(
             stages = MappingProxyType(
                 {stage: source.getSourceCode(stage) for stage in STAGES if source.hasStage(stage)}
             )
+            if methods != UNCHOSEN:
+                assert_generated(stages["pixel"], methods)
             if token := leftover("\n".join(stages.values())):
                 raise InterfaceError(
                     f"{target}: the generator of MaterialX {mx.getVersionString()} does not replace "
@@ -206,7 +217,8 @@ def generate(
                 stages = MappingProxyType(
                     {"pixel": path_tracing.path_text(stages["pixel"], target, each, library)}
                 )
-            shader = Shader(name, path, target, stages, inputs, content, folders, root(library))
+            copy = root(library)
+            shader = Shader(name, path, target, stages, inputs, content, folders, copy, methods)
             shaders.append(shader)
     inputs_of_all = [port for shader in shaders for port in shader.inputs]
     files = [

@@ -12,8 +12,11 @@ from importlib import import_module
 import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
 
+from mxeon.errors import NotRun
 from mxeon.shaders.library import LOADED, load_library
 from mxeon.shaders.library_tree import search_path
+from mxeon.shaders.methods import UNCHOSEN, Methods
+from mxeon.shaders.options import set_options
 from mxeon.shaders.targets import CLASSES
 
 GENERATORS: dict[str, type[mx_gen.ShaderGenerator]] = {}
@@ -21,6 +24,9 @@ for _target, (_module, _name) in CLASSES.items():
     with suppress(ModuleNotFoundError, AttributeError):
         GENERATORS[_target] = getattr(import_module(f"MaterialX.PyMaterialX{_module}"), _name)
 TARGETS = tuple(GENERATORS)
+HARDWARE = tuple(
+    target for target, each in GENERATORS.items() if issubclass(each, mx_gen.HwShaderGenerator)
+)
 
 BOOLEANS = "WGSL does not allow boolean types"  # printed for each, though the text has an integer
 
@@ -72,6 +78,7 @@ def context_of(
     path: Iterable[str],
     profile: str | None = None,
     uniforms: bool = False,
+    methods: Methods = UNCHOSEN,
 ) -> mx_gen.GenContext:
     """A context for one document only, as it keeps implementations by name.
 
@@ -93,6 +100,11 @@ def context_of(
             context.getOptions().shaderInterfaceType = (
                 mx_gen.ShaderInterfaceType.SHADER_INTERFACE_REDUCED
             )
+    if methods != UNCHOSEN:
+        try:
+            set_options(context.getOptions(), **dict(methods.chosen()))  # type: ignore[arg-type]
+        except LookupError as error:
+            raise NotRun(str(error)) from None
     if lights and isinstance(generator, mx_gen.HwShaderGenerator):
         light = document.getNodeDef("ND_directional_light")
         mx_gen.HwShaderGenerator.bindLightShader(light, 1, context)

@@ -35,6 +35,7 @@ from mxeon.shaders.document.references import documents_in, files_read
 from mxeon.shaders.generation import TARGETS, check_generator
 from mxeon.shaders.library import examples_folder, library_name, untested
 from mxeon.shaders.library_tree import root
+from mxeon.shaders.methods import UNCHOSEN, Methods
 
 __all__ = ["check", "read_run", "to_run", "work"]
 
@@ -61,6 +62,7 @@ def check(
     refuse: Callable[[str], None] | None = None,
     compared: Names = (),
     seed: int = 1,
+    methods: Methods | None = None,
 ) -> Run:
     """Run every check on every host, and compare pictures of documents with the reference's.
 
@@ -88,6 +90,7 @@ def check(
     - `compared`: Further libraries, judged for comparison: what fails with them does not change the
       verdict. `compared="stock"` does what the command does with documents.
     - `seed`: Seed of the samples, at least 0; verdicts should not depend on it.
+    - `methods`: How generated shaders find light; None for each host's own methods.
 
     A document that cannot be judged is among those refused; the others are judged. The run has then not
     passed: see `mxeon.conformance.results.Run.passed`.
@@ -127,7 +130,16 @@ def check(
         survey = survey_documents(documents, loaded, policy, workers, timeout)
         keep = folder is not None
         planned = make_plan(
-            documents, engines, loaded, policy, keep, categories, survey, others, seed
+            documents,
+            engines,
+            loaded,
+            policy,
+            keep,
+            categories,
+            survey,
+            others,
+            seed,
+            methods or UNCHOSEN,
         )
         if refuse:
             for line in chain.from_iterable(to_run(planned, {}).refused.values()):

@@ -57,6 +57,7 @@ from mxeon.hosts.base import Engine, Host
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.library_tree import root
+from mxeon.shaders.methods import Methods
 
 CURVE_COLOR, CURVE_ROUGHNESS = (0.8, 0.4, 0.1), 1.0
 CURVE_COSINES = np.linspace(0.05, 1.0, 20)
@@ -131,6 +132,7 @@ class Judge:
         if task.check == DOCUMENT:
             return self._document(task)
         host = self._host(task.host)
+        host.choose(task.methods)
         if task.check == HOST:
             asked = "" if task.subject == EVERY_NODE else f": {task.subject} with {task.library}"
             raise NotRun(f"{task.host}: this host judges nothing that was requested{asked}")
@@ -142,7 +144,7 @@ class Judge:
                 return self._document(task, host)
             if task.check == FUNCTIONS:
                 return Findings(judge_functions(host, task.library))
-        case = self._case(host, task.subject, task.library, task.seed)
+        case = self._case(host, task.subject, task.library, task.seed, task.methods)
         if task.check == CURVE:
             wo = directions_at(CURVE_COSINES, 0.0)
             views = Batch(wo, wo, {"color": CURVE_COLOR, "roughness": CURVE_ROUGHNESS})
@@ -178,7 +180,7 @@ class Judge:
         return Findings(results, pictures, notes=notes)
 
 
-def _case(host: Engine, title: str, library: str, seed: int) -> Case:
+def _case(host: Engine, title: str, library: str, seed: int, methods: Methods) -> Case:
     spec = next(each for each in own_nodes(host.name) or ALL if each.title == title)
     backend = backend_of(host.name, spec)
     assert backend is not None  # or there were no task

@@ -62,6 +62,7 @@ from mxeon.shaders.library import (
     load_library,
 )
 from mxeon.shaders.library_tree import LIBRARIES, OVERLAY, origins
+from mxeon.shaders.methods import UNCHOSEN, Methods
 
 Source = tuple[str, str]  # a file, and the library that it is read with
 
@@ -158,6 +159,7 @@ class Task:
     host: str
     library: str
     seed: int = 1  # of its samples
+    methods: Methods = UNCHOSEN  # that the client chooses
 
     def __str__(self) -> str:
         return f"{self.host}, {self.check}, {self.subject}, {self.library}"
@@ -274,6 +276,7 @@ def make_plan(
     survey: Survey = EMPTY,
     compared: Sequence[str] = (),
     seed: int = 1,
+    methods: Methods = UNCHOSEN,
 ) -> Plan:
     """The tasks of a run, those of one host and library beside each other.
 
@@ -323,7 +326,7 @@ def make_plan(
     return Plan(
         version=mxeon.__version__,
         software=_software(),
-        tasks=tuple(replace(task, seed=seed) for task in tasks),
+        tasks=tuple(replace(task, seed=seed, methods=methods) for task in tasks),
         documents=tuple(map(Path, dict.fromkeys(documents))),
         contents={file: survey.contents.get(file, ()) for file in documents} if files else {},
         unreached=survey.unreached if files and not nodes else {},
@@ -332,7 +335,7 @@ def make_plan(
             each: origins(each) | unjudged(each) for each in libraries if each not in LIBRARIES
         },
         compared=tuple(compared),
-        options=policy.options | {"--seed": str(seed)},
+        options=policy.options | {"--seed": str(seed)} | methods.options,
         files=digests(dict.fromkeys(documents), policy, (*libraries, *policy.definitions))
         if resumable
         else {},

@@ -14,12 +14,14 @@ from pathlib import Path
 
 from mxeon.errors import ShaderError
 from mxeon.hosts.documents import DocumentHost
+from mxeon.shaders.methods import GENERATED
 
 
 class Host(DocumentHost):
     """The GlslRenderer of this MaterialX, in float32; see `DocumentHost`."""
 
     name = "materialx"
+    default = GENERATED
 
     def _interpreter(self) -> Path:
         return Path(sys.executable)

@@ -18,7 +18,8 @@ import sys
 from functools import lru_cache, partial
 from itertools import product
 from pathlib import Path
-from typing import NoReturn
+from runpy import run_path
+from typing import NoReturn, TypeAlias
 
 REPLIES = os.fdopen(os.dup(1), "w", buffering=1)
 os.dup2(2, 1)
@@ -45,6 +46,7 @@ try:
 except ImportError as error:
     fail(f"MaterialX's renderer does not load ({error}); {REMEDY}")
 
+Chosen: TypeAlias = tuple[tuple[str, str | int | bool], ...]
 FAR = 1e6  # of the camera; the shader computes the view from its position
 DIRECTIONS = 256  # directions over which microfacet shaders sum the environment
 PICTURES = 8  # renderers to keep, each with the program of a document
@@ -59,6 +61,8 @@ OPENGL = {
 SEARCH_PATH = mx.getDefaultDataSearchPath()
 if sys.argv[1]:
     SEARCH_PATH = mx.FileSearchPath(sys.argv[1])
+# The generator's options, of a module that imports MaterialX alone.
+set_options = run_path(str(Path(__file__).parents[2] / "shaders" / "options.py"))["set_options"]
 ERRORS = (mx.Exception, mx_render.ExceptionRenderError, LookupError)
 
 
@@ -85,7 +89,7 @@ def open_display() -> None:
 
 
 class ShownElement:
-    def __init__(self, library: mx.Document, document: str, element: str) -> None:
+    def __init__(self, library: mx.Document, document: str, element: str, methods: Chosen) -> None:
         content = mx.createDocument()
         mx.readFromXmlFile(content, document)
         content.setDataLibrary(library)
@@ -99,6 +103,7 @@ class ShownElement:
         context = mx_gen.GenContext(generator)
         context.registerSourceCodeSearchPath(SEARCH_PATH)
         context.getOptions().targetDistanceUnit = "meter"
+        set_options(context.getOptions(), **dict(methods))
         context.getOptions().fileTextureVerticalFlip = True
         self._lights.registerLights(content, [self._sun], context)
         shader = generator.generate("shader", content.getDescendant(element), context)
@@ -225,7 +230,8 @@ def main() -> None:
         request = json.loads(line)
         output = request.pop("output")
         try:
-            shown = picture(request.pop("document"), request.pop("element"))
+            methods = tuple(request.pop("methods", {}).items())
+            shown = picture(request.pop("document"), request.pop("element"), methods)
             np.save(output, shown.draw(**request))
             reply = {}
         except ERRORS as error:

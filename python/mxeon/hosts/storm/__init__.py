@@ -17,6 +17,7 @@ from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts.cycles.process import interpreter
 from mxeon.hosts.documents import DocumentHost
 from mxeon.shaders.generation import Shader
+from mxeon.shaders.methods import STORM
 
 REPORT = re.compile(r"^(?:Warning|Error)\b.*? in file .* : (.*)|^(?:Warning|Error)\b.*? -- (.*)")
 COMPILE = "Failed to compile shader"  # the beginning of such a report
@@ -27,6 +28,7 @@ class Host(DocumentHost):
     """Storm on OpenGL without a window. Its pictures are half floats; see `DocumentHost`."""
 
     name = "storm"
+    default, fixed = STORM, True
 
     def unread(self, shader: Shader) -> str:
         """The enumerated inputs of closures: Storm takes their defaults."""

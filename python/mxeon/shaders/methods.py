@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What MaterialX's generators for rasterizers let a client choose: one value, from the command to the generator."""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, fields, replace
+
+from mxeon.errors import InputError, NotRun, assert_known
+
+CHOICES = {
+    "environment": ("fis", "prefilter", "none"),
+    "transmission": ("refraction", "opacity"),
+    "albedo": ("analytic", "table", "monteCarlo"),
+}
+MOST_ITERATIONS = 64
+# Options of the command.
+OPTIONS = {
+    "environment": "--environment",
+    "transmission": "--transmission",
+    "albedo": "--albedo",
+    "airy": "--airyIterations",
+    "premultiplied": "--premultipliedAdd",
+    "distributed": "--distributeLayers",
+}
+
+
+@dataclass(frozen=True)
+class Methods:
+    """A client's methods; "", 0 and None leave the choice to the host.
+
+    - `environment`: How specular light of an environment is found: "fis", "prefilter" or "none".
+    - `transmission`: What passes a surface: "refraction" of the environment, or "opacity".
+    - `albedo`: Directional albedos of MaterialX's own functions: "analytic", "table" or "monteCarlo".
+    - `airy`: Iterations of MaterialX's own thin films.
+    - `premultiplied`: Whether `mix` folds its weight into its lobes' weights (premultipliedBsdfAdd).
+    - `distributed`: Whether `layer` is distributed over `mix` (distributeLayerOverBsdfMix).
+    """
+
+    environment: str = ""
+    transmission: str = ""
+    albedo: str = ""
+    airy: int = 0
+    premultiplied: bool | None = None
+    distributed: bool | None = None
+
+    def __post_init__(self) -> None:
+        for name, known in CHOICES.items():
+            if value := getattr(self, name):
+                assert_known(name, value, known)
+        if not 0 <= self.airy <= MOST_ITERATIONS:
+            raise InputError(f"airy must lie in [1, {MOST_ITERATIONS}]; got {self.airy}")
+
+    def over(self, host: "Methods") -> "Methods":
+        """The same with a host's methods where nothing is chosen."""
+        return replace(host, **dict(self.chosen()))  # type: ignore[arg-type]
+
+    def chosen(self) -> Iterator[tuple[str, str | int | bool]]:
+        """Names and values of what is chosen."""
+        for each in fields(self):
+            value = getattr(self, each.name)
+            if value is not None and (value or isinstance(value, bool)):
+                yield each.name, value
+
+    @property
+    def options(self) -> dict[str, str]:
+        """What is chosen, by the option of the command."""
+        return {OPTIONS[name]: str(value).lower() for name, value in self.chosen()}
+
+    def __str__(self) -> str:
+        return ", ".join(f"{name} {str(value).lower()}" for name, value in self.chosen())
+
+
+UNCHOSEN = Methods()  # nothing is chosen
+GENERATED = Methods("fis", "refraction", "analytic", 2)  # the defaults of MaterialX's generators
+STORM = Methods("prefilter", "opacity", "analytic", 2)  # hard-coded in hdSt/materialXFilter.cpp
+
+# How MaterialX's text declares each method.
+ALBEDO = re.compile(r"^#define DIRECTIONAL_ALBEDO_METHOD (\d+)$", re.MULTILINE)
+ITERATIONS = re.compile(r"^#define AIRY_FRESNEL_ITERATIONS (\d+)$", re.MULTILINE)
+REFRACTS = re.compile(r"if \((\w*refractionTwoSided)\)")  # in the text of refraction alone
+
+
+def assert_generated(text: str, methods: Methods) -> None:
+    """Raise NotRun unless the text of a pixel stage has the methods that were chosen, and is complete."""
+    found: dict[str, str | int] = {}
+    if numbers := ALBEDO.findall(text):
+        found["albedo"] = CHOICES["albedo"][int(numbers[0])]
+    if numbers := ITERATIONS.findall(text):
+        found["airy"] = int(numbers[0])
+    two_sided = REFRACTS.search(text)
+    if "mx_surface_transmission(" in text:
+        found["transmission"] = "refraction" if two_sided else "opacity"
+    if "mx_environment_radiance(" in text:
+        prefiltered, sampled = "mx_latlong_alpha_to_lod(" in text, "lod = mx_latlong_compute_lod("
+        found["environment"] = "prefilter" if prefiltered else "fis" if sampled in text else "none"
+    chosen = methods.over(GENERATED)
+    for name, value in found.items():
+        if value != getattr(chosen, name):
+            raise NotRun(f"{name}: MaterialX's generator wrote {value} instead of {methods}")
+    if two_sided and len(re.findall(rf"\b{two_sided[1]}\b", text)) == 1:
+        raise NotRun(
+            "environment none with transmission refraction: MaterialX's text reads "
+            f"{two_sided[1]}, which it does not declare"
+        )

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Options of MaterialX's generators for rasterizers, also those without a Python binding.
+
+MaterialX 1.39.5 binds neither the transmission method, nor that of directional albedos, nor the number of Airy
+iterations. They are the three integers that follow `hwSpecularEnvironmentMethod` in the C++ object, whose place
+is found by changing that member through its binding. They are written only where all three hold their defaults,
+and `mxeon.shaders.methods.assert_generated` compares the generated text with what was chosen: another layout
+refuses the option instead of returning another shader.
+
+This module imports MaterialX alone; the worker of the host `materialx` loads it by its path.
+"""
+
+import ctypes
+
+import MaterialX as mx
+import MaterialX.PyMaterialXGenShader as mx_gen
+
+ENVIRONMENTS = ("none", "fis", "prefilter")  # in the order of MaterialX's enumerations
+ALBEDOS = ("analytic", "table", "monteCarlo")
+TRANSMISSIONS = ("refraction", "opacity")
+DEFAULTS = [0, 0, 2]  # analytic albedos, refraction, two Airy iterations
+BOUND = {
+    "premultiplied": "premultipliedBsdfAdd",
+    "distributed": "distributeLayerOverBsdfMix",
+}
+SIZE = 512  # bytes in which the members are searched; the options are part of a larger object
+VALUE = 2 * ctypes.sizeof(ctypes.c_void_p)  # place of pybind11's pointer in a Python object
+
+
+def set_options(
+    options: mx_gen.GenOptions,
+    environment: str = "fis",
+    transmission: str = "refraction",
+    albedo: str = "analytic",
+    airy: int = 2,
+    **bound: bool,
+) -> None:
+    """Set the options of `mxeon.shaders.methods.Methods`; LookupError if this MaterialX lacks one."""
+    for name, value in bound.items():
+        if not hasattr(options, BOUND[name]):
+            raise LookupError(f"MaterialX {mx.getVersionString()} has no option {BOUND[name]}")
+        setattr(options, BOUND[name], value)
+    values = [ALBEDOS.index(albedo), TRANSMISSIONS.index(transmission), airy]
+    if values != DEFAULTS:
+        members = unbound_members(options)
+        for place, number in enumerate(values):
+            members[place] = number
+    method = mx_gen.HwSpecularEnvironmentMethod(ENVIRONMENTS.index(environment))
+    options.hwSpecularEnvironmentMethod = method
+
+
+def unbound_members(options: mx_gen.GenOptions) -> "ctypes.Array[ctypes.c_int]":
+    """The members that follow hwSpecularEnvironmentMethod; LookupError unless they hold their defaults."""
+    address = ctypes.c_void_p.from_address(id(options) + VALUE).value or 0
+    memory = (ctypes.c_int * (SIZE // ctypes.sizeof(ctypes.c_int))).from_address(address)
+    states = []
+    for value in range(len(ENVIRONMENTS)):
+        options.hwSpecularEnvironmentMethod = mx_gen.HwSpecularEnvironmentMethod(value)
+        states.append(tuple(memory))
+    places = [n for n, each in enumerate(zip(*states, strict=True)) if each == (0, 1, 2)]
+    first = places[0] + 1 if len(places) == 1 else len(memory)
+    if list(memory[first : first + len(DEFAULTS)]) != DEFAULTS:
+        raise LookupError(
+            f"MaterialX {mx.getVersionString()} keeps options without a Python binding elsewhere"
+        )
+    place = address + first * ctypes.sizeof(ctypes.c_int)
+    return (ctypes.c_int * len(DEFAULTS)).from_address(place)
