@@ -93,7 +93,7 @@ def check(
     - `methods`: How generated shaders find light; None for each host's own methods.
 
     A document that cannot be judged is among those refused; the others are judged. The run has then not
-    passed: see `mxeon.conformance.results.Run.passed`.
+    passed: see `mxeon.Run`.
 
     Raises ValueError if a name or number is wrong, the run to resume is another one, or no
     scheduler answers; NotRun if no process can start, or the cluster has no workers for too long.
