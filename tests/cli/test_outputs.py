@@ -163,6 +163,7 @@ WRONG = {
     "kit export nodes.md": "nodes.md: must be a folder; File exists",
     "figures nodes.md": "nodes.md: must be a folder; File exists",
     f"generate {LOOK} --target osl --outputPath nodes.md": "nodes.md: must be a folder; File exists",
+    f"check {LOOK} --waitForWorkers -1": "waitForWorkers must be positive and at most 1e+06 s; got -1",
     f"check {LOOK} --report ''": "arguments must not be empty; got 'check' 'look.mtlx'",
     f"check {LOOK} --report=": "arguments must not be empty",
     f"generate {LOOK} --target osl --outputPath ''": "arguments must not be empty",

@@ -127,6 +127,7 @@ def check(
         if seed < 0:
             raise InputError(f"seed must be at least 0; got {seed}")
         check_timeout(timeout)
+        check_timeout(wait, "waitForWorkers")
         survey = survey_documents(documents, loaded, policy, workers, timeout)
         keep = folder is not None
         planned = make_plan(
