@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node conductor_bsdf, which lets nothing through: scatter_mode R, 0.
+// Entry point of the node conductor_bsdf, which is opaque: scatter_mode R, 0.
 
 #include "lib/microfacet_film.glsl"
 #include "lib/fresnel_conductor.glsl"
@@ -20,7 +20,7 @@ void conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 extinc
         microfacet_film(lobe, fd, F);
         microfacet_bsdf(closureData, lobe, fd, F, vec3(1.0), weight, distribution, 0, bsdf);
     }
-    bsdf.throughput = vec3(0.0);
+    bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // opaque, where it is
 }
 
 // As MaterialX before 1.39.5 calls it, which has no retroreflection.

@@ -9,7 +9,7 @@
 void subsurface_bsdf(ClosureData closureData, float weight, vec3 color, vec3 radius,
                      float anisotropy, vec3 N, inout BSDF bsdf)
 {
-    bsdf.throughput = vec3(0.0);
+    bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // opaque, where it is
 
     // The normal as it comes: turned to the viewer, it would jump where the surface turns away. Where nothing
     // changes from pixel to pixel, the surface is flat. Derivatives are defined where all pixels come along.

@@ -12,7 +12,7 @@
 void oren_nayar_lobe(ClosureData closureData, float weight, vec3 color, float roughness,
                      vec3 N, bool energy_compensation, inout BSDF bsdf)
 {
-    bsdf.throughput = vec3(0.0);
+    bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // opaque, where it is
 
     // A lobe that is switched off costs nothing; a negative weight, never valid, counts as 0.
     if (weight <= 0.0)

@@ -65,6 +65,7 @@ def film(choices):
     }
 
 
+HIDING = {"throughput": "throughput 0 with a weight other than 1 (branches: direct, "}
 SURFACE = dict.fromkeys(("lobes_albedo", "lobes_mean", "lobes_furnace", "lobes_energy"), LOBES)
 SURFACE |= {"lobes": "no single lobe explains it"}
 FILMS = {"lobes_film": LOBES}
@@ -74,15 +75,15 @@ SPHERE = {
 PASSED_THROUGH = {"transmitted": UNSHADOWED, "transmitted_finite": NAN}
 # By title, what does not pass with stock MaterialX, and words of each diagnosis.
 STOCK = {
-    EON: {"value": CLAMPED, "integral": CLAMPED, "environment": ""},
-    QON: {"environment": "QON with MaterialX's fit of its albedo"},
+    EON: {"value": CLAMPED, "integral": CLAMPED, "environment": "", **HIDING},
+    QON: {"environment": "QON with MaterialX's fit of its albedo", **HIDING},
     f"{EON}, mdl": {"closure": "FON + white lobe"},
     "open_pbr_surface": {"lobe": CLAMPED},
     "open_pbr_surface, thin-walled": {"lobe": "QON tinted twice"},
     "plaster.mtlx: ochre_plaster": {"picture": "% of white too bright in light from behind"},
     "openpbr_rough_base.mtlx: concrete": {"picture": "% of white too bright in light from behind"},
-    "burley_diffuse_bsdf": {"environment": FIT},
-    "translucent_bsdf": {"frame": AWAY, "surroundings": AWAY},
+    "burley_diffuse_bsdf": {"environment": FIT, **HIDING},
+    "translucent_bsdf": {"frame": AWAY, "surroundings": AWAY, **HIDING},
     SHEEN: {
         "value": "not accurate enough", "environment": FIT, "transmission": "all light passes (rms 0)",
         **dict.fromkeys(("layering", "layer"), "MaterialX's fit of its albedo without the color (rms "),
@@ -97,7 +98,7 @@ STOCK = {
         "finite": NAN, "lossless": HALF, "anisotropic_albedo": G_1,
     },
     "conductor_bsdf": {
-        **OPEN, **dict.fromkeys(("lossless", "energy"), HALF), "anisotropic_albedo": G_1, "finite": OPPOSITE,
+        **OPEN, **dict.fromkeys(("lossless", "energy"), HALF), "anisotropic_albedo": G_1, "finite": OPPOSITE, **HIDING,
     },
     "generalized_schlick_bsdf, scatter_mode R": {
         **OPEN, **dict.fromkeys(("layering", "transmission", "layer", "dip"), AVERAGED),
@@ -110,6 +111,11 @@ STOCK = {
     "mix, of a layer under a sum": {"combined_throughput": ENDED, **SPHERE},
     "layer, under a mix of a sum": {
         "combination": ENDED, "combined_throughput": ENDED, "combined_albedo": "", **SPHERE,
+    },
+    "layer, under connected masks": {
+        "combination": "opaque lobes that hide their base at any weight", "combined_albedo": "",
+        "combined_throughput": "opaque lobes that hide their base at any weight",
+        "inputs": "inputs without effect: base/roughness", **SPHERE,
     },
     # Stock's sheen passes light by its albedo without the color.
     "layer, under a colored sum": dict.fromkeys(
@@ -138,7 +144,7 @@ STOCK = {
     },
     "subsurface_bsdf": {
         **dict.fromkeys(("value", "integral", "energy"), f"{BLUR}100"),
-        **dict.fromkeys(("sphere", "sphere_mean"), f"{BLUR}1 "),
+        **dict.fromkeys(("sphere", "sphere_mean"), f"{BLUR}1 "), **HIDING,
     },
     "dielectric_bsdf, thin film": film(CHOICES) | {"layering": f"{CHOICES}: {BARE}"},
     "conductor_bsdf, thin film": film(CHOICES),

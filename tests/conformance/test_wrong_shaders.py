@@ -23,8 +23,10 @@ WRONG = {
          "fault: the weight is ignored"),
         (LOBE, "mx_environment_irradiance(N) * weight", "OLD * closureData.occlusion", "environment",
          "fault: the occlusion is applied here and again by the caller (rms "),
-        (LOBE, "bsdf.throughput = vec3(0.0);", "", "throughput",
-         "throughput 1 (branches: direct, environment, transmission, emission)"),
+        (LOBE, "bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));", "", "throughput",
+         "throughput 1 with a weight above 0 (branches: direct, environment, transmission, emission)"),
+        (LOBE, "1.0 - clamp(weight, 0.0, 1.0)", "0.0", "throughput",
+         "throughput 0 with a weight other than 1 (branches: direct, environment, transmission, emission)"),
         (LOBE, "N = mx_forward_facing_normal(N, wo);", "", "frame",
          "all where the normal faces away from the viewer"),
         (LOBE, "bsdf.response = brdf", "if (mu_o == 1.0) brdf *= 2.0;\n        OLD", "value",
@@ -420,7 +422,11 @@ WITHOUT = {
     "old, check, words",
     [
         ("N = mx_forward_facing_normal(N, wo);", "frame", "where the normal faces away"),
-        ("bsdf.throughput = vec3(0.0);", "throughput", "throughput 1 (branches: direct, "),
+        (
+            "bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));",
+            "throughput",
+            "throughput 1 with a weight above 0 (branches: direct, ",
+        ),
     ],
 )
 def test_the_other_hosts_see_what_is_around_the_model(judged, tmp_path, host, old, check, words):

@@ -266,6 +266,7 @@ def check_generator(library: str, target: str) -> None:
 
 
 def _inputs(shader: mx_gen.Shader, document: mx.Document) -> tuple[Input, ...]:
+    """Inputs of a shader; those of nodes that the generator adds are not in the document, and go by their names."""
     stage = shader.getStage("pixel")
     blocks = stage.getUniformBlocks() | stage.getInputBlocks()  # MDL has them as inputs
     return tuple(
@@ -273,7 +274,8 @@ def _inputs(shader: mx_gen.Shader, document: mx.Document) -> tuple[Input, ...]:
         for name, block in blocks.items()
         if name != "PrivateUniforms"
         for port in block
-        if (path := port.getPath()) and not (kind := port.getType()).isClosure()
+        if (path := port.getPath() or (name == "PublicUniforms" and port.getVariable()))
+        and not (kind := port.getType()).isClosure()
     )
 
 

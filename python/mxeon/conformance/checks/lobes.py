@@ -67,6 +67,7 @@ from mxeon.conformance.tolerance import (
     count_not_finite,
     count_of,
     given,
+    roundings,
     scaled,
     sum_in,
 )
@@ -88,7 +89,7 @@ SURROUNDINGS = sum_in(
     Term(2.0**-11, "half floats"),
 )
 ZERO = given(0.0, "pi f cos", "a product with 0 is 0 in any precision")
-OPAQUE = given(0.0, "throughput", "a constant has no roundings")
+OPAQUE = sum_in("throughput", roundings(1, "of 1 - weight"))
 
 
 ROUGH = ("eon", "eon_fitted", "qon", "fon")
@@ -285,14 +286,18 @@ def color_space() -> None:
     """A color in sRGB has the value of the linear color that it stands for."""
 
 
-# Outputs that an opaque node has none of, and their branches.
+# Outputs that an opaque node of weight 1 has none of, and their branches.
 NOTHING = (*product(["throughput"], BRANCHES), *product(["response"], ["transmission", "emission"]))
 
 
 def opaque_values(case: Case, output: str, branch: str) -> Iterator[Compared]:
+    """An output of an opaque node, whose throughput is 1 - weight; hair has no weight."""
     for batch in case.few:
         values = case.evaluating.evaluate(case.inputs(batch), branch, output)
-        yield Compared(batch, case.throughputs(batch, values), np.zeros((len(batch.wo), 3)))
+        weight = np.broadcast_to(batch.inputs.get("weight", 1.0), len(batch.wo))
+        left = 1.0 - np.clip(weight, 0.0, 1.0) if output == "throughput" else 0.0 * weight
+        expected = np.repeat(left[:, np.newaxis], 3, axis=1)
+        yield Compared(batch, case.throughputs(batch, values), expected)
 
 
 @check(
@@ -306,7 +311,7 @@ def opaque_values(case: Case, output: str, branch: str) -> Iterator[Compared]:
     ),
 )
 def throughput(case: Case) -> Iterator[Compared]:
-    """No light from below passes in any branch, nor comes any through the node, for every weight."""
+    """An opaque node passes 1 - weight of the light from below in every branch, and no other light."""
     return (each for row in NOTHING for each in opaque_values(case, *row))
 
 

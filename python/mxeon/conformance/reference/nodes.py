@@ -333,8 +333,7 @@ def node_lobe(
     if (beyond := weight[~((weight >= 0.0) & (weight <= 1.0))]).size:
         raise _outside(node, f"weight must lie in [0, 1]; got {beyond[0]:g}")
     if not weight.any():
-        layerable = any(row.layerable for row in LOBES[node.getCategory()])
-        return Bsdf(np.zeros(3), np.full(3, 1.0 if layerable else 0.0))
+        return Bsdf(np.zeros(3), np.ones(3))
     row = _row(node, inputs)
     if row in INNER_NODES and not points.round:
         raise NotRun(f"reference: there is no model for this mode of node {node.getCategory()!r}")
@@ -351,9 +350,7 @@ def node_lobe(
     except ValueError as error:
         words = str(error).replace("rho must", "color must").replace("sigma must", "roughness must")
         raise _outside(node, words) from None
-    # What hides its base does so at any weight.
-    left = 1.0 - weight * (1.0 - values.throughput) if row.layerable else values.throughput
-    return Bsdf(values.value * weight, left)
+    return Bsdf(values.value * weight, 1.0 - weight * (1.0 - values.throughput))
 
 
 def _outside(node: mx.Node, words: str) -> OutsideModel:

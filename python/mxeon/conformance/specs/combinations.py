@@ -3,6 +3,8 @@
 
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from mxeon.conformance.samples import (
     LEAST_SHEEN,
     Batch,
@@ -22,11 +24,19 @@ from mxeon.models.nodes.combinations import (
     COLORS,
     COMBINATIONS,
     FACTOR,
+    MASKS,
     NESTED,
     ROUGHNESS,
 )
 from mxeon.models.nodes.node import PbrNode
-from mxeon.shaders.nodes import SURFACE, Node, document_text, input_text, network_text
+from mxeon.shaders.nodes import (
+    SURFACE,
+    Node,
+    connection_text,
+    document_text,
+    input_text,
+    network_text,
+)
 
 VALUE = sum_of(
     ZELTNER_VALUE.term("two values", 2.0), CLOSED_ALBEDO.term("a throughput between them")
@@ -57,6 +67,15 @@ def over(category: str, *lobes: str) -> Node:
 SHEEN = Node("sheen_bsdf", "BSDF", text=input_text("mode", "string", "zeltner"))
 LOBES = {"top": SHEEN, "base": SHEEN}
 SUM = {"sum": over("add", "top", "base")}
+WHITE = input_text("color", "color3", np.ones(3))
+# Opaque lobes and shares of mixes that are connected, which MaterialX folds into the weights of the lobes.
+MASKED = {
+    **dict.fromkeys(("white", "other"), Node("oren_nayar_diffuse_bsdf", "BSDF", text=WHITE)),
+    **dict.fromkeys(("inner", "outer"), Node("multiply", "float")),
+    "masked": over("mix", "white", "top")._replace(text=connection_text("mix", "float", "inner")),
+    "both": over("mix", "masked", "other")._replace(text=connection_text("mix", "float", "outer")),
+    "lobe": over("layer", "both", "base"),
+}
 # By the name of the row: its title, and the nodes over both lobes.
 NODES: dict[str, tuple[str, dict[str, Node]]] = {
     "layer": ("layer", {"lobe": over("layer", "top", "base")}),
@@ -74,6 +93,7 @@ NODES: dict[str, tuple[str, dict[str, Node]]] = {
         "mix, of a layer under a sum",
         {**SUM, "layered": over("layer", "sum", "base"), "lobe": over("mix", "layered", "top")},
     ),
+    "layer_masked": ("layer, under connected masks", MASKED),
     "layer_colored": ("layer, under a colored sum", {**SUM, "lobe": over("layer", "sum", "base")}),
 }
 SINGLE = ("multiply_float", "multiply_color3")  # rows of `top` alone
@@ -105,7 +125,7 @@ class CombinedSpec(PbrSpec):
 def _spec(row: PbrNode) -> CombinedSpec:
     known = (
         *(Input(name, low=LEAST_SHEEN, change=0.4, default=0.3) for name in ROUGHNESS),
-        *(Input(name, change=0.3, default=0.5) for name in (AMOUNT, AMOUNT_ABOVE)),
+        *(Input(name, change=0.3, default=0.5) for name in (AMOUNT, AMOUNT_ABOVE, *MASKS)),
         *(color(name, edges=()) for name in COLORS),
         color(FACTOR, edges=()) if row.name in COLORED else Input(FACTOR, change=0.3),
     )

@@ -21,7 +21,7 @@ class Bsdf:
 
     - `value`: BSDF in 1/sr, with or without the cosine.
     - `throughput`: 1 - E, per channel, dimensionless: the part of the light that reaches what lies
-      below, none where it is negative. A lobe that hides its base has 0, whatever it reflects.
+      below, none where it is negative. An opaque lobe of weight w has 1 - w, whatever it reflects.
     """
 
     value: Array

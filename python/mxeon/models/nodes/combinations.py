@@ -30,6 +30,10 @@ COLORS = ("top/color", "base/color")
 AMOUNT = "lobe/mix"  # share of `top`, or of the sum
 AMOUNT_ABOVE = "mixed/mix"  # share of the sum in a mix that is the top of a layer
 FACTOR = "lobe/in2"  # of `top`, or of the sum
+MASKS = (
+    "inner/in1",
+    "outer/in1",
+)  # shares of a white opaque lobe over `top`, and of both over another
 Sheen = Callable[[Array, Array, Array, Array], Bsdf]  # of wo, wi, roughness and color
 Combine = Callable[[Bsdf, Bsdf, Inputs], Bsdf]
 Finish = Callable[[Bsdf], Bsdf]
@@ -108,6 +112,18 @@ def _sum_layered(top: Bsdf, base: Bsdf, inputs: Inputs, finish: Finish = lambda 
 def _layer_mixed(top: Bsdf, base: Bsdf, inputs: Inputs, finish: Finish = lambda lobe: lobe) -> Bsdf:
     layered = layering.layer(finish(layering.add(top, base)), base)
     return layering.mix(layered, top, column(inputs, AMOUNT))
+
+
+def _masked(top: Bsdf, base: Bsdf, inputs: Inputs, finish: Finish = lambda lobe: lobe) -> Bsdf:
+    white = Bsdf(np.full(top.value.shape, 1.0 / np.pi), np.zeros(1))
+    inner = layering.mix(white, top, column(inputs, MASKS[0]))
+    return layering.layer(finish(layering.mix(inner, white, column(inputs, MASKS[1]))), base)
+
+
+def _hiding() -> tuple[Variant[Scattering], ...]:
+    """Opaque lobes that hide their base whatever their weight, as MaterialX's do."""
+    hidden = partial(_masked, finish=lambda lobe: replace(lobe, throughput=0.0 * lobe.throughput))
+    return (Variant("opaque lobes that hide their base at any weight", *_values(hidden)),)
 
 
 def _unscaled(combine: Combine) -> tuple[Variant[Scattering], ...]:
@@ -189,6 +205,7 @@ COMBINATIONS = (
         lambda top, base, i: layering.layer(layering.add(top, base), base),
         COLORS,
     ),
+    _combined("layer_masked", "a layer under masks", "layer", _masked, MASKS, _hiding()),
 )
 # Rows of combinations of a sum.
-NESTED = ("multiply_sum", "mix_sum", "layer_sum", "mix_layer", "layer_colored")
+NESTED = ("multiply_sum", "mix_sum", "layer_sum", "mix_layer", "layer_colored", "layer_masked")

@@ -144,8 +144,8 @@ class PbrNode(Node[Scattering]):
       Of anisotropic microfacets it is that at the geometric mean of both alphas, as G2 is.
     - `integral`: The integral of its values, where that is another number for some inputs.
     - `fixed`: Inputs that select the mode.
-    - `layerable`: Whether it lets 1 - E through to what lies below; another node lets nothing
-      through.
+    - `layerable`: Whether it lets 1 - E through to what lies below; an opaque node of weight 1
+      lets nothing through.
     - `transmits`: Whether it scatters light from below the horizon instead of light from above.
     - `mirror`: Inputs with which it reflects all light; none if there are none.
     """

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: Apache-2.0
+"""White lobes over a white base reflect all light, whatever masks mix them and however the generator writes a mix."""
+
+import numpy as np
+import pytest
+
+from mxeon.hosts import open_host
+from mxeon.shaders import generation
+from mxeon.shaders.nodes import (
+    SURFACE,
+    Node,
+    connection_text,
+    document_text,
+    input_text,
+    network_text,
+)
+from tests.support.availability import available
+
+MU = np.array([0.05, 0.2, 0.5, 0.9])
+FIT = 5.1e-3  # of the albedo of a dielectric, docs/loading.md
+WHITE = input_text("color", "color3", np.ones(3))
+OPAQUE = ("oren_nayar_diffuse_bsdf", "translucent_bsdf", "subsurface_bsdf")
+ROUGH = input_text("roughness", "vector2", (0.3, 0.3))
+
+
+def lobes(opaque):
+    """White opaque lobes and dielectrics, each for one use, and connected shares."""
+    return {
+        **{f"white{number}": Node(opaque, "BSDF", text=WHITE) for number in range(4)},
+        **{f"clear{number}": Node("dielectric_bsdf", "BSDF", text=ROUGH) for number in range(2)},
+        "half": Node("multiply", "float", text=input_text("in1", "float", 0.5)),
+        "third": Node("multiply", "float", text=input_text("in1", "float", 0.3)),
+    }
+
+
+def mix(first, second, share="half"):
+    return Node("mix", "BSDF", (first, second), connection_text("mix", "float", share))
+
+
+def layer(top, base):
+    return Node("layer", "BSDF", (top, base))
+
+
+SCALED = Node("multiply", "BSDF", ("mask",), input_text("in2", "float", 0.4))
+MASK = {"mask": mix("white0", "clear0")}
+NESTED = {
+    "layer(mix(white, clear), white)": {**MASK, "lobe": layer("mask", "white1")},
+    "layer(mix(clear, white), white)": {"mask": mix("clear0", "white0"), "lobe": layer("mask", "white1")},
+    "layer(mix(mix(white, clear), white), white)": {
+        **MASK, "both": mix("mask", "white1", "third"), "lobe": layer("both", "white2"),
+    },
+    "layer(mix(layer(clear, white), clear), white)": {
+        "in": layer("clear0", "white0"), "mask": mix("in", "clear1"), "lobe": layer("mask", "white1"),
+    },
+    "mix(layer(mix(white, clear), white), white)": {
+        **MASK, "in": layer("mask", "white1"), "lobe": mix("in", "white2", "third"),
+    },
+    "layer(multiply(mix(white, clear)), white)": {**MASK, "scaled": SCALED, "lobe": layer("scaled", "white1")},
+    "layer(mix(white, clear), mix(white, layer(clear, white)))": {
+        **MASK, "in": layer("clear1", "white1"), "below": mix("white2", "in", "third"), "lobe": layer("mask", "below"),
+    },
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def gl():
+    with available("gl"), open_host("gl") as host:
+        yield host
+
+
+def furnace(gl, monkeypatch, library, folded, opaque, nodes):
+    """What a material reflects of a white environment, where the generator folds shares into weights, or not."""
+    context_of = generation.context_of
+
+    def context(*arguments):
+        made = context_of(*arguments)
+        made.getOptions().premultipliedBsdfAdd = folded
+        return made
+
+    monkeypatch.setattr(generation, "context_of", context)
+    [shader] = gl.compile(
+        document_text(network_text(lobes(opaque) | nodes) + SURFACE), library=library
+    )
+    assert ("lobe_add" in shader.stages["pixel"] or "mask_add" in shader.stages["pixel"]) == folded
+    wo = np.stack([np.sqrt(1.0 - MU**2), 0.0 * MU, MU], axis=-1)
+    return gl.evaluate(shader, wo, wo, {}, "environment")
+
+
+@pytest.mark.parametrize("folded", [True, False], ids=["folded", "mixed"])
+@pytest.mark.parametrize("opaque", OPAQUE)
+@pytest.mark.parametrize("name", NESTED)
+def test_white_masks_over_white_reflect_all_light(gl, monkeypatch, name, opaque, folded):
+    total = furnace(gl, monkeypatch, "eonlib", folded, opaque, NESTED[name])
+    np.testing.assert_allclose(total, 1.0, atol=2 * FIT)  # of two dielectrics
+
+
+def test_of_stock_they_lose_light_where_the_generator_folds(gl, monkeypatch):
+    [(_, nodes), *_] = NESTED.items()
+    folded, mixed = (
+        furnace(gl, monkeypatch, "stock", each, OPAQUE[0], nodes) for each in (True, False)
+    )
+    assert np.all(folded < 0.6) and np.all(mixed > 0.97)
