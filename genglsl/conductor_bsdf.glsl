@@ -4,12 +4,16 @@
 #include "lib/microfacet_film.glsl"
 #include "lib/fresnel_conductor.glsl"
 
+// Index and extinction 0 reflect everything; along the normal MaterialX's curve then divides 0 by 0.
+#define CONDUCTOR_LEAST_INDEX 1e-8
+
 void conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 extinction,
                     vec2 roughness, bool retroreflective, float thinfilm_thickness,
                     float thinfilm_ior, vec3 N, vec3 X, int distribution, inout BSDF bsdf)
 {
     if (weight > 0.0 && closureData.closureType != CLOSURE_TYPE_TRANSMISSION)
     {
+        ior = max(ior, CONDUCTOR_LEAST_INDEX);
         MicrofacetLobe lobe = microfacet_lobe(closureData, N, X, roughness, retroreflective);
         FresnelData fd = mx_init_fresnel_conductor(ior, extinction, thinfilm_thickness,
                                                    thinfilm_ior);

@@ -98,7 +98,7 @@ STOCK = {
         "finite": NAN, "lossless": HALF, "anisotropic_albedo": G_1,
     },
     "conductor_bsdf": {
-        **OPEN, **dict.fromkeys(("lossless", "energy"), HALF), "anisotropic_albedo": G_1, "finite": OPPOSITE, **HIDING,
+        **OPEN, **dict.fromkeys(("lossless", "energy"), HALF), "anisotropic_albedo": G_1, "finite": NAN, **HIDING,
     },
     "generalized_schlick_bsdf, scatter_mode R": {
         **OPEN, **dict.fromkeys(("layering", "transmission", "layer", "dip"), AVERAGED),

@@ -66,6 +66,8 @@ def lobe_errors(
     }
 
 
+EXTINCTIONS = (("extinction", 0, 6), ("extinction", 1, 6))  # edges without and with an index
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ScatteringSpec(RowSpec, LobeSpec):
     """A node that scatters light as a row says."""
@@ -209,7 +211,7 @@ class PbrSpec(ScatteringSpec):
         rng = generator()
         wo, wi = special_directions(rng)
         inputs = self.random_inputs(rng, len(wo), edged=True)
-        for name, start, step in (("roughness", 0, 4), ("ior", 0, 3), ("extinction", 1, 6)):
+        for name, start, step in (("roughness", 0, 4), ("ior", 0, 3), *EXTINCTIONS):
             if name in inputs:
                 inputs[name][start::step] = 0.0
         wi = wi * [1.0, 1.0, self.side]
