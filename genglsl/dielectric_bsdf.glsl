@@ -14,15 +14,10 @@ void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior
     }
     MicrofacetLobe lobe = microfacet_lobe(closureData, N, X, roughness, retroreflective);
     FresnelData fd = mx_init_fresnel_dielectric(ior, thinfilm_thickness, thinfilm_ior);
-    float mu_visible = ggx_cosine_dielectric(lobe.mu_o, lobe.alpha, ior);
     MicrofacetFresnel F;
     F.value = vec3(eonlib_fresnel_dielectric(lobe.mu_h, ior));
     F.average = vec3(eonlib_fresnel_dielectric_avg(ior));
-    F.visible = vec3(eonlib_fresnel_dielectric(mu_visible, ior));
-    if (ior < 1.0)
-    {
-        F.visible = vec3(eonlib_fresnel_dielectric_inside(lobe.mu_o, lobe.alpha, ior));
-    }
+    F.visible = vec3(eonlib_fresnel_dielectric_visible(lobe.mu_o, lobe.alpha, ior));
     microfacet_film(lobe, fd, F);
     microfacet_bsdf(closureData, lobe, fd, F, max(tint, 0.0), weight, distribution, scatter_mode,
                     bsdf);

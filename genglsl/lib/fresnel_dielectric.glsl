@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fresnel reflectance of a dielectric; F_ss, its cosine-weighted average over the hemisphere; and its average over
-// the visible facets of GGX: from an index of 1 on, the cosine at which the curve has that average, below 1, the
-// average itself. mu is the cosine of wo with the normal.
+// the visible facets of GGX: from an index of 1 on, at the cosine at which the curve has that average, below 1 by a fit
+// of its own. mu is the cosine of wo with the normal.
 
 // 1 - F_ss of a dielectric is t N / D, t = 1 / ior. Source: tools/fits/fresnel_average.py.
 // Domain: ior >= 1. Largest absolute error: 5.3e-5.
@@ -135,4 +135,18 @@ float eonlib_fresnel_dielectric_inside(float mu, float alpha, float ior)
     float typical = sinh(log(t * exp(0.326707 / p) - 1.0) / g) / k;  // ln(tau^2 / tau_m^2)
     float cosine = 1.0 / sqrt(1.0 + exp(-typical) / median2);
     return 1.0 - (1.0 - eonlib_fresnel_dielectric(cosine, ior)) / pow(t, p);
+}
+
+// Average over the visible facets. Near index 1 the curve depends on the cosine over sqrt(n^2 - 1) alone, and only
+// grazing facets reflect: an index below 1.03 has the average of 1.03 for k times mu and alpha, at most 1.
+// Largest absolute error of the albedo below index 1.03, where k alpha exceeds 1: 9.3e-3.
+float eonlib_fresnel_dielectric_visible(float mu, float alpha, float ior)
+{
+    if (ior < 1.0)
+    {
+        return eonlib_fresnel_dielectric_inside(mu, alpha, ior);
+    }
+    float k = sqrt(max(0.0609 / max((ior - 1.0) * (ior + 1.0), 1e-9), 1.0));
+    float cosine = ggx_cosine_dielectric(min(k * mu, 1.0), min(k * alpha, 1.0), ior) / k;
+    return eonlib_fresnel_dielectric(cosine, ior);
 }

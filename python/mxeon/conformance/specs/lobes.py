@@ -68,6 +68,7 @@ def lobe_errors(
 
 EXTINCTIONS = (("extinction", 0, 6), ("extinction", 1, 6))  # edges without and with an index
 
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ScatteringSpec(RowSpec, LobeSpec):
     """A node that scatters light as a row says."""
