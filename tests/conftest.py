@@ -6,7 +6,7 @@ import gc
 import os
 import signal
 import tempfile
-from contextlib import nullcontext
+from contextlib import ExitStack, nullcontext
 from importlib import import_module
 from pkgutil import walk_packages
 
@@ -111,9 +111,11 @@ def hosts():
 
     def host(name):
         if name not in opened:
-            with available(name):
-                opened[name] = open_engine(name, reference_host.ROW)
-                opened[name].identity()
+            with available(name), ExitStack() as failed:
+                engine = failed.enter_context(open_engine(name, reference_host.ROW))
+                engine.identity()  # some engines start only now
+                failed.pop_all()
+                opened[name] = engine
         return opened[name]
 
     yield host
