@@ -22,6 +22,7 @@ vec3 path_u;
 bool path_inside;
 bool path_thin;
 float path_eta; // index of the lobe below relative to that above
+vec3 path_facet; // of the lobe: the one that is drawn, or that joins both directions
 vec3 path_root; // answer of the closure called last, which is that of the material
 
 #define u_numActiveLightSources 1

@@ -2,8 +2,10 @@
 // The microfacet lobes for path tracers, drawn by visible normals. eonlib's nodes call two functions of
 // microfacet_lobe.glsl, which macros replace here.
 //
-// Transmission: the light that is not reflected passes the visible facets, refracted by the index, each alike as in
-// MaterialX's own transmission of an environment. Into a thinner medium some reflect totally, and F tells them apart.
+// A facet is drawn first, and then reflects or refracts in proportion to what it would return by either, so no draw
+// weighs much more than the lobe's albedo. Transmission: the light that is not reflected passes the visible facets,
+// refracted by the index, each alike as in MaterialX's own transmission of an environment. Into a thinner medium some
+// reflect totally, and F tells them apart.
 
 #include "lib/questions.glsl"
 #include "../lib/microfacet_film.glsl"
@@ -26,8 +28,14 @@ vec3 path_mirrored(vec3 w, vec3 N)
     return w - 2.0 * dot(w, N) * N;
 }
 
+// Half a turn about N, which takes a view to the view of a retroreflective lobe.
+vec3 path_turned(vec3 w, vec3 N)
+{
+    return 2.0 * dot(w, N) * N - w;
+}
+
 // The facet that reflects wo into wi, or refracts it below the surface; a thin wall bends nothing.
-vec3 path_facet(vec3 wo, vec3 wi, vec3 N)
+vec3 path_facet_between(vec3 wo, vec3 wi, vec3 N)
 {
     bool through = dot(N, wi) < 0.0;
     if (through && !path_thin)
@@ -43,7 +51,18 @@ MicrofacetLobe path_microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec
     roughness = max(roughness, vec2(PATH_LEAST_ALPHA));
     MicrofacetLobe lobe = microfacet_lobe(closureData, N, X, roughness, retroreflective);
     lobe.X = normalize(X - dot(X, lobe.N) * lobe.N);
-    lobe.mu_h = clamp(dot(lobe.wo, path_facet(lobe.wo, lobe.wi, lobe.N)), M_FLOAT_EPS, 1.0);
+    if (retroreflective && dot(lobe.N, lobe.wi) < 0.0)
+    {
+        lobe.wi = path_turned(lobe.wi, lobe.N);  // transmission has the view itself
+    }
+    path_facet = path_facet_between(lobe.wo, lobe.wi, lobe.N);
+    if (path_asked == PATH_DRAW)
+    {
+        vec3 wo = path_local(lobe.wo, lobe.X, lobe.N);
+        wo.z = lobe.mu_o;
+        path_facet = path_world(mx_ggx_importance_sample_VNDF(path_u.xy, wo, lobe.roughness), lobe.X, lobe.N);
+    }
+    lobe.mu_h = clamp(dot(lobe.wo, path_facet), M_FLOAT_EPS, 1.0);
     return lobe;
 }
 
@@ -56,7 +75,7 @@ float path_facet_pdf(MicrofacetLobe lobe, bool through)
         return 0.0;
     }
     vec3 wo = path_local(lobe.wo, lobe.X, lobe.N);
-    vec3 H = path_facet(lobe.wo, lobe.wi, lobe.N);
+    vec3 H = path_facet;
     vec2 stretched = lobe.roughness * wo.xy;
     float visible = mx_ggx_NDF(path_local(H, lobe.X, lobe.N), lobe.roughness)
                     / (lobe.mu_o + sqrt(dot(stretched, stretched) + lobe.mu_o * lobe.mu_o));
@@ -71,12 +90,10 @@ float path_facet_pdf(MicrofacetLobe lobe, bool through)
     return cosine_o > 0.0 && cosine_i > 0.0 ? 2.0 * visible * cosine_o * jacobian : 0.0;
 }
 
-// Draws a facet, and the direction into which it reflects or refracts, packed.
-vec2 path_facet_draw(MicrofacetLobe lobe, bool through)
+// The direction into which the drawn facet reflects or refracts, packed.
+vec2 path_facet_draw(MicrofacetLobe lobe, bool through, bool retroreflective)
 {
-    vec3 wo = path_local(lobe.wo, lobe.X, lobe.N);
-    wo.z = lobe.mu_o;
-    vec3 H = path_world(mx_ggx_importance_sample_VNDF(path_u.xy, wo, lobe.roughness), lobe.X, lobe.N);
+    vec3 H = path_facet;
     float cosine = dot(lobe.wo, H);
     vec3 wi = 2.0 * cosine * H - lobe.wo;
     if (through && path_thin)
@@ -89,34 +106,40 @@ vec2 path_facet_draw(MicrofacetLobe lobe, bool through)
         wi = squared > 0.0 ? (cosine / path_eta - sqrt(squared)) * H - lobe.wo / path_eta : lobe.N;
     }
     bool below = dot(lobe.N, wi) < 0.0;
+    wi = below && retroreflective ? path_turned(wi, lobe.N) : wi;
     return below == through ? path_packed(normalize(wi)) : PATH_WASTED;
 }
 
 void path_microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelData fd, MicrofacetFresnel F, vec3 tint,
                           float weight, int distribution, int scatter_mode, inout BSDF bsdf)
 {
-    // 0: reflection, 1: transmission, 2: both.
+    // 0: reflection, 1: transmission, 2: both. A lobe that transmits alone also draws what its facets reflect, since
+    // it lies below one that reflects; else such draws weigh nothing.
+    vec3 scale = tint * weight;
     vec3 compensation = 1.0 + F.average * ((1.0 - lobe.albedo) / lobe.albedo);
     vec3 albedo = lobe.albedo * F.visible * compensation;
-    vec3 reflected = scatter_mode == 1 ? vec3(0.0) : albedo * tint * weight;
-    vec3 passed = scatter_mode == 0 ? vec3(0.0) : max(1.0 - albedo, 0.0) * tint * weight;
+    vec3 passed = scatter_mode == 0 ? vec3(0.0) : max(1.0 - albedo, 0.0);
+    vec3 share = path_eta < 1.0 ? max(1.0 - F.value, 0.0) / max(1.0 - F.visible, 1e-6) : vec3(1.0);
     if (scatter_mode != 1)
     {
         microfacet_bsdf(closureData, lobe, fd, F, tint, weight, distribution, 0, bsdf);
     }
     if (path_asked == PATH_VALUE)
     {
-        vec3 share = path_eta < 1.0 ? max(1.0 - F.value, 0.0) / max(1.0 - F.visible, 1e-6) : vec3(1.0);
-        bsdf.response += passed * share * path_facet_pdf(lobe, true);
+        bsdf.response += passed * share * scale * path_facet_pdf(lobe, true);
     }
     else
     {
-        bool draws = path_asked == PATH_DRAW;
-        vec3 up = path_answer(path_mean(reflected), draws ? path_facet_draw(lobe, false) : PATH_WASTED,
-                              path_facet_pdf(lobe, false));
-        vec3 down = path_answer(path_mean(passed), draws ? path_facet_draw(lobe, true) : PATH_WASTED,
-                                path_facet_pdf(lobe, true));
-        bsdf.response = path_either(up, down);
+        float reflects = path_mean(F.value * compensation * scale);
+        float refracts = path_mean(passed * share * scale);
+        reflects = refracts > 0.0 ? reflects / (reflects + refracts) : 1.0;
+        bool drawn = path_asked == PATH_DRAW;
+        bool through = drawn ? path_u.z >= reflects : dot(lobe.N, lobe.wi) < 0.0;
+        float part = through ? 1.0 - reflects : reflects;
+        path_u.z = drawn ? (through ? path_u.z - reflects : path_u.z) / part : path_u.z;
+        bsdf.response = path_answer(path_mean((albedo + passed) * scale),
+                                    drawn ? path_facet_draw(lobe, through, distance(lobe.wo, closureData.V) > 0.0) : PATH_WASTED,
+                                    part * path_facet_pdf(lobe, through));
     }
 }
 
@@ -143,7 +166,7 @@ void path_dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, floa
     if (path_is_asked(closureData))
     {
         path_eta = path_eta_of(ior);
-        dielectric_bsdf(path_question(closureData), weight, tint, path_inside ? path_eta : ior, roughness,
+        dielectric_bsdf(path_question_of_value(closureData), weight, tint, path_inside ? path_eta : ior, roughness,
                         retroreflective, thinfilm_thickness, thinfilm_ior, N, X, distribution, scatter_mode, bsdf);
         path_end(bsdf);
     }
@@ -169,7 +192,7 @@ void path_generalized_schlick_bsdf(ClosureData closureData, float weight, vec3 c
     if (path_is_asked(closureData))
     {
         path_eta = path_eta_of(mx_f0_to_ior(path_mean(color0)));
-        generalized_schlick_bsdf(path_question(closureData), weight, color0, color82, color90, exponent, roughness,
+        generalized_schlick_bsdf(path_question_of_value(closureData), weight, color0, color82, color90, exponent, roughness,
                                  retroreflective, thinfilm_thickness, thinfilm_ior, N, X, distribution, scatter_mode,
                                  bsdf);
         path_end(bsdf);

@@ -19,13 +19,21 @@ bool path_is_asked(ClosureData closureData)
     return closureData.closureType == CLOSURE_TYPE_REFLECTION && path_asked != PATH_NOTHING;
 }
 
-// The question as eonlib's own function understands it: of a value, or of the albedo.
-ClosureData path_question(ClosureData closureData)
+// The question as eonlib's own function understands it: of a value, which also has the curve at the half vector.
+ClosureData path_question_of_value(ClosureData closureData)
 {
-    closureData.closureType = path_asked == PATH_VALUE ? CLOSURE_TYPE_REFLECTION : CLOSURE_TYPE_INDIRECT;
+    closureData.closureType = CLOSURE_TYPE_REFLECTION;
     closureData.L = path_wi;
     closureData.V = path_wo;
     closureData.occlusion = 1.0;
+    return closureData;
+}
+
+// The same: of a value, or of the albedo.
+ClosureData path_question(ClosureData closureData)
+{
+    closureData = path_question_of_value(closureData);
+    closureData.closureType = path_asked == PATH_VALUE ? CLOSURE_TYPE_REFLECTION : CLOSURE_TYPE_INDIRECT;
     return closureData;
 }
 
