@@ -331,8 +331,33 @@ WRONG = {
          ""),
     ),
 }  # fmt: skip
+ASKED, PATH = "genglsl/path/interface.glsl", "genglsl/path/microfacets.glsl"
+QUESTIONS = "genglsl/path/lib/questions.glsl"
+RT, GLASS = "dielectric_bsdf, scatter_mode RT", "open_pbr_surface, every lobe"
+STANDARD = "standard_surface, every lobe"
+INSIDE = "light inside a solid is not that outside of one of the inverse index"
+SHARE = "path_eta < 1.0 ? max(1.0 - F.value, 0.0) / max(1.0 - F.visible, 1e-6) : vec3(1.0)"
+# Of the text for path tracers: the title, and a row as above.
+PATHS = (
+    (RT, ASKED, "pdf = path_root.y * path_out.a;", "pdf = 3.0 * path_root.y * path_out.a;", "sample",
+     "the density of material_sample is not material_pdf's, from outside; the density of material_sample is not material_pdf's, from inside"),
+    (RT, ASKED, "weight = path_root", "weight = 1.0015 * path_root", "sample",
+     "the weight times density is not material_evaluate's value, from outside; the weight times"),
+    (STANDARD, ASKED, "weight = path_root", "weight = 1.0015 * path_root", "sample", "the weight times density"),
+    (RT, PATH, "path_inside ? 1.0 / max(ior, PATH_LEAST_BEND) : ior", "ior", "path_inside", INSIDE),
+    (GLASS, PATH, "path_inside ? 1.0 / max(ior, PATH_LEAST_BEND) : ior", "ior", "path_inside", INSIDE),
+    (RT, PATH, SHARE, "vec3(path_inside ? 3.0 : 1.0)", "path_inside", INSIDE),
+    (RT, PATH, "scatter_mode == 0 ? vec3(0.0)", "scatter_mode == 0 || path_inside ? vec3(0.0)", "path_inside", INSIDE),
+    (RT, PATH, "below && retroreflective", "false", "pdf", "another density than that of material_pdf, from outside"),
+    ("conductor_bsdf", PATH, "wo.z = lobe.mu_o;", "wo = path_local(closureData.V, lobe.X, lobe.N);\n        OLD", "pdf", ""),
+    ("conductor_bsdf", ASKED, "path_wi = ", "if (wi.z > 0.9) wi = p.normal;\n    OLD", "path_value", "another value than a rasterizer"),
+    ("burley_diffuse_bsdf", QUESTIONS, "V = path_wo;", "V = vec3(path_wo.xy, abs(path_wo.z));", "path_value", ""),
+    (STANDARD, ASKED, "return path_root * path_out.a;", "return path_root;", "path_value", ""),
+    (STANDARD, ASKED, "return path_out.a;", "return 1.0 - path_out.a;", "path_value", ""),
+    (STANDARD, ASKED, "return path_out.rgb;", "return path_out.rgb * path_out.a;", "path_value", ""),
+)  # fmt: skip
 DIFFUSE = next(iter(WRONG))
-ROWS = [(title, *row) for title, rows in WRONG.items() for row in rows]
+ROWS = [(title, *row) for title, rows in WRONG.items() for row in rows] + list(PATHS)
 WHOLE = pytest.mark.whole  # films, a twelfth of the rows, take half of the time
 
 
@@ -403,17 +428,15 @@ def test_every_check_of_a_node_has_a_shader_that_it_fails(stock, run):
     assert asked - failing == WITHOUT
 
 
-# Of shader functions, which `test_wrong_libraries.py` breaks; of graphs, which `test_graphs.py` does; of draws, which
-# `test_path_tracing.py` does; of a color space, by the test above; and that no input is dead.
+# Of shader functions, which `test_wrong_libraries.py` breaks; of graphs, which `test_graphs.py` does; of a
+# color space, by the test above; and that no input is dead.
 WITHOUT = {
     "color_space",
     "densities",
     "graph",
     "loss",
     "parts",
-    "pdf",
     "reach",
-    "sample",
     "samples",
     "twins",
 }

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Text for path tracers: values are the rasterizer's, densities those of what is drawn, for nodes and surface shaders.
 
-The checks `pdf` and `sample` of `mxeon check` judge draws of every node; here are other views, materials and numbers.
+The checks `pdf`, `sample`, `path_value` and `path_inside` of `mxeon check` judge every node; here are other materials
+and numbers.
 """
 
 import re
@@ -127,7 +128,11 @@ def leaves(material, mu, count, nodes=8, **options):
     if material.ask("opacity", wo)[0, 0] < 1.0:  # what passes straight on has no density
         drawn = drawn * (np.linalg.norm(drawn + wo, axis=1, keepdims=True) >= 1e-6)
     return deviation(
-        drawn, lambda w: material.ask("pdf", wo, w, **options)[:, 0], refracted(wo), nodes
+        drawn,
+        lambda w: material.ask("pdf", wo, w, **options)[:, 0],
+        refracted(wo, 1.0 / 1.5 if options else 1.5),
+        wo * [-1.0, -1.0, 1.0],
+        nodes,
     )
 
 

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of the text for path tracers: what it draws has the density that it states, and the weight of its value.
+"""Checks of the text for path tracers: draws have the density that it states, and the weight of their value.
 
-What smooth transmission draws is nearly one direction, about which draws are counted.
+Views are from both sides of the surface. What smooth transmission draws is nearly one direction, about which draws are
+counted; and so is what it reflects.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,21 +17,22 @@ from mxeon.conformance.cache import Recent, contents
 from mxeon.conformance.case import Case
 from mxeon.conformance.check import check, scale, with_values
 from mxeon.conformance.diagnosis import Diagnosis
-from mxeon.conformance.samples import Array, Batch, generator
+from mxeon.conformance.samples import Array, Batch, Values, float32, generator
 from mxeon.conformance.spec import LobeSpec, Spec, materials
 from mxeon.conformance.specs.diffuse import SurfaceLobe
+from mxeon.conformance.specs.microfacets import LEAST_TANGENT_COSINE, TransmissionSpec
 from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
-from mxeon.conformance.tolerance import Compared, Measurement, Term, given, sum_of
+from mxeon.conformance.tolerance import Compared, Measurement, given, roundings, sum_of
 from mxeon.hosts import host_row
 from mxeon.hosts.base import Host
 
 CALL = """
-vec3 path_tracer(float what, vec3 wo, vec3 wi, vec3 u, float inside)
+vec3 path_tracer(float what, vec3 wo, vec3 wi, vec3 u, float inside, vec3 normal, vec3 tangent)
 {{
     Point p;
     p.position = vec3(0.0);
-    p.normal = vec3(0.0, 0.0, 1.0);
-    p.tangent = vec3(1.0, 0.0, 0.0);
+    p.normal = normal;
+    p.tangent = tangent;
     p.texcoord = vec3(0.3, 0.4, 0.0).xy;
     p.inside = inside > 0.5;
     {answer}
@@ -49,9 +52,36 @@ SCATTERED = """if (what < 0.5)
 PASSED = "return what < 5.5 ? vec3(material_shadow(p, wo)) : material_emitted(p, wo);"
 ASKED = ("evaluate", "pdf", "wi", "weight", "density", "opacity", "emission")
 TARGETS = ("glsl", "essl", "vulkan", "slang")  # of mxeon.shaders.path_tracing
-DRAWS, WEIGHED = 1 << 15, 1 << 12
-ANSWERS = Recent[Array](4)  # to what a check and its control ask
-VIEW = np.array([0.7642691, 0.2364137, 0.6])
+DRAWS, WEIGHED, PAIRS = 1 << 16, 1 << 12, 1 << 12
+ANSWERS = Recent[Array](64)  # to what a check and its control ask
+# Two views whose facets below the critical angle are many and few, and one from which a smooth solid lets no light out.
+VIEWS = np.array([[0.7642691, 0.2364137, 0.6], [-0.19, 0.25, 0.9495], [0.3, -0.9367497, 0.18]])
+VIEWS /= np.linalg.norm(VIEWS, axis=1, keepdims=True)
+UPRIGHT = np.eye(3)
+TURNED = np.array(
+    [[0.6, 0.64, -0.48], [-0.8, 0.48, -0.36], [0.0, 0.6, 0.8]]
+)  # tangent, bitangent, normal
+# Of the all-lobes materials: alpha below 1, and an emission.
+MEAN_WEIGHT = 0.3333  # of a channel in the mean by which MaterialX turns a transparency into alpha
+THIN: dict[str, Any] = {
+    "opacity": 0.6,
+    "geometry_opacity": 0.6,
+    "alpha": 0.6,
+    "alpha_mode": "2",
+    "emission": 0.3,
+    "emission_luminance": 0.3,
+    "emissive": 0.3,
+    "emissiveColor": 0.3,
+}
+
+# Glass, and the name of its index of refraction.
+GLASS: dict[str, tuple[str, Values]] = {
+    "dielectric_bsdf": ("ior", {"tint": (0.9, 0.8, 0.7), "roughness": (0.3, 0.2)}),
+    "standard_surface": ("specular_IOR", {"transmission": 1.0, "specular_roughness": 0.5}),
+    "open_pbr_surface": ("specular_ior", {"transmission_weight": 1.0, "specular_roughness": 0.5}),
+    "UsdPreviewSurface": ("ior", {"opacity": 0.0, "roughness": 0.5}),
+}
+INDEX = 2.0  # whose inverse is exact
 
 
 @dataclass(frozen=True)
@@ -68,10 +98,15 @@ class Paths:
         wi: ArrayLike = (0.0, 0.0, 1.0),
         u: ArrayLike = (0.0, 0.0, 0.0),
         inside: bool = False,
+        frame: Array = UPRIGHT,
     ) -> Array:
-        """Answers (N, 3) of a function, one of ASKED; 0 where nothing is drawn."""
+        """Answers (N, 3) of a function, one of ASKED; 0 where nothing is drawn.
+
+        - `frame`: Tangent, bitangent and normal of the surface; directions are those of the world.
+        """
         number = ASKED.index(what)
-        rows = [np.atleast_2d(each) for each in (float(number), wo, wi, u, float(inside))]
+        values = (float(number), wo, wi, u, float(inside), frame[2], frame[0])
+        rows = [np.atleast_2d(each) for each in values]
         text = self.text + CALL.format(answer=SCATTERED if number < 5 else PASSED)
         return ANSWERS.value(
             (self, *map(contents, rows)),
@@ -79,7 +114,7 @@ class Paths:
         )
 
 
-@lru_cache(maxsize=2)
+@lru_cache(maxsize=4)
 def paths(host: Host, document: str, library: str = "eonlib") -> Paths:
     from mxeon.shaders.generation import generate
 
@@ -87,15 +122,36 @@ def paths(host: Host, document: str, library: str = "eonlib") -> Paths:
     return Paths(host, shader.stages["pixel"])
 
 
-def paths_of(case: Case) -> Paths:
-    """The material that has another value than the default in each input but switches; all lobes of a surface shader."""
-    spec = case.spec
+def documents(spec: LobeSpec) -> tuple[str, ...]:
+    """Materials that have another value than the default in each input; all lobes of a surface shader.
+
+    Of a node there are two: one with a normal and a tangent of its own, one with switches.
+    """
     if isinstance(spec, SurfaceShaderSpec):
         values, _ = materials(*spec.judged, *spec.others)
-    else:
-        changes = {each.name: each.change for each in spec.inputs if each.type != "boolean"}
-        values = {name: value for name, value in changes.items() if value is not None}
-    return paths(case.host, spec.document(values), case.library)
+        thin = {
+            name: (value,) * 3 if spec.types[name] == "color3" else value
+            for name, value in THIN.items()
+            if name in spec.types and name not in values
+        }
+        return (spec.document({**values, **thin}),)
+    changed = [(each, each.change) for each in spec.inputs if each.change is not None]
+    own = {each.name: change for each, change in changed if each.type != "boolean"}
+    switched = {
+        each.name: change
+        for each, change in changed
+        if each.type != "vector3" and each.name not in spec.mode
+    }
+    return spec.document(own), spec.document(switched)
+
+
+def texts_of(case: Case) -> Iterator[Paths]:
+    return (paths(case.host, each, case.library) for each in documents(case.lobe))
+
+
+def sides(spec: Spec) -> tuple[bool, ...]:
+    """Whether a view is inside a solid: of what transmits there are both."""
+    return (False, True) if is_glass(spec) else (False,)
 
 
 def random(count: int, rng: np.random.Generator) -> Array:
@@ -104,17 +160,59 @@ def random(count: int, rng: np.random.Generator) -> Array:
 
 
 def refracted(wo: Array, index: float = 1.5) -> Array:
-    """Where the smooth transmission of UsdPreviewSurface goes."""
+    """Where the smooth transmission of UsdPreviewSurface goes; straight on beyond the critical angle."""
     x, y, _ = -wo / index
-    return np.array([x, y, -np.sqrt(1.0 - x * x - y * y)])
+    return np.array([x, y, -np.sqrt(1.0 - x * x - y * y)]) if x * x + y * y < 1.0 else -wo
 
 
 def is_drawn(spec: Spec) -> bool:
     return isinstance(spec, LobeSpec) and not isinstance(spec, SurfaceLobe)
 
 
+def reflects(spec: Spec) -> bool:
+    """Whether it returns light to the side of the view."""
+    return is_drawn(spec) and not (isinstance(spec, TransmissionSpec) and not spec.reflects)
+
+
+def is_glass(spec: Spec) -> bool:
+    """Whether it lets light into a solid, and out of it."""
+    return isinstance(spec, (TransmissionSpec, SurfaceShaderSpec))
+
+
 def has_paths(spec: Spec, host: str) -> bool:
     return host_row(host).target in TARGETS
+
+
+def steepness(density: Array) -> Array:
+    """What a rounding of a direction is multiplied by: 1 and the inverse of alpha of a lobe of that density.
+
+    GGX facets reflect into 1 / (4 pi alpha^2) at most, whose slope is about the inverse of alpha.
+    """
+    return 1.0 + np.sqrt(4.0 * np.pi * density)
+
+
+def place(inside: bool) -> str:
+    return "inside" if inside else "outside"
+
+
+def scores(case: Case) -> Iterator[tuple[float, bool, Array]]:
+    """Standard deviations by which draws leave their density, at each view."""
+    u = random(DRAWS, generator())
+    for text in texts_of(case):
+        for inside in sides(case.spec):
+            for view in VIEWS:
+
+                def density(w: Array, text: Paths = text, inside: bool = inside) -> Array:
+                    batch = Batch(np.broadcast_to(view, w.shape), w, {})  # noqa: B023
+                    return case.measured(
+                        lambda each: text.ask("pdf", each.wo[:1], each.wi, inside=inside), batch
+                    )[:, 0]
+
+                drawn = text.ask("wi", view, u=u, inside=inside)
+                straight = np.linalg.norm(drawn + view, axis=1, keepdims=True) < 1e-6
+                pole = refracted(view, 1.0 / 1.5 if inside else 1.5)
+                mirror = view * [-1.0, -1.0, 1.0]
+                yield deviation(drawn * ~straight, density, pole, mirror), inside, view
 
 
 @check(
@@ -129,40 +227,156 @@ def has_paths(spec: Spec, host: str) -> bool:
     pairs=True,
     profile="path",
     hosts=has_paths,
-    diagnose=lambda case: Diagnosis("what is drawn has another density than the one stated"),
+    diagnose=lambda case: Diagnosis(
+        "what is drawn has another density than that of material_pdf, from "
+        + " and ".join(
+            dict.fromkeys(place(inside) for score, inside, _ in scores(case) if score > 6.0)
+        )
+    ),
 )
 def pdf(case: Case) -> Measurement:
     """What a path tracer draws has the density that it is told, which integrates to the share of draws kept."""
-    text, draws = paths_of(case), random(DRAWS, generator())
+    score, inside, view = max(scores(case), key=lambda each: each[0])
+    return Measurement(score, {"wo": view.tolist(), "inside": [float(inside)]})
 
-    def density(w: Array) -> Array:
-        batch = Batch(np.broadcast_to(VIEW, w.shape), w, {})
-        return case.measured(lambda each: text.ask("pdf", VIEW, each.wi), batch)[:, 0]
 
-    return Measurement(deviation(text.ask("wi", VIEW, u=draws), density, refracted(VIEW)), {})
+def halves(case: Case) -> Iterator[tuple[bool, Compared, Compared]]:
+    """Weights times densities against values, and densities against those of material_pdf, over what each is."""
+    u = random(WEIGHED, generator())
+    for text in texts_of(case):
+        for inside in sides(case.spec):
+            for view in VIEWS:
+                wi, weight, density = (
+                    text.ask(what, view, u=u, inside=inside) for what in ("wi", "weight", "density")
+                )
+                kept = density[:, 0] > 0.0
+                if not kept.any():
+                    continue
+                batch = Batch(np.broadcast_to(view, wi.shape), wi, {}).where(kept)
+                value = text.ask("evaluate", view, batch.wi, inside=inside)
+                stated = text.ask("pdf", view, batch.wi, inside=inside)[:, :1]
+                size = value.max(axis=1, keepdims=True)
+                size[size <= 0.0] = 1.0
+                steep = steepness(stated)
+                found = case.outputs(batch, (weight * density)[kept]) / size
+                right, one = value / size, np.ones_like(stated)
+                ratio = density[kept, :1] / np.maximum(stated, 1e-30)
+                yield (
+                    inside,
+                    Compared(batch, right + (found - right) / steep, right),
+                    Compared(batch, one + (ratio - one) / steep, one),
+                )
+
+
+SAMPLE = sum_of(
+    roundings(16, "of a weight and a density, times 1 + the inverse of the lobe's own alpha"),
+    unit="of the value, over the slope of the lobe",
+)
+
+
+def _wrong_half(case: Case) -> Diagnosis:
+    """Which of the two is wrong, and from where."""
+    words: dict[str, None] = {}
+    for inside, weights, densities in halves(case):
+        for name, compared in (
+            ("weight times density is not material_evaluate's value", weights),
+            ("density of material_sample is not material_pdf's", densities),
+        ):
+            if SAMPLE.wrong(compared).any():
+                words[f"the {name}, from {place(inside)}"] = None
+    return Diagnosis("; ".join(words))
 
 
 @check(
     is_drawn,
-    scale("weights are 1 % too large", 1.01),
+    scale("weights are 0.01 % too large", 1.0001),
+    tolerance=SAMPLE,
+    pairs=True,
+    profile="path",
+    hosts=has_paths,
+    diagnose=_wrong_half,
+)
+def sample(case: Case) -> Iterator[Compared]:
+    """A draw's weight times its density is the value in its direction, and its density that of material_pdf."""
+    for _, weights, densities in halves(case):
+        yield weights
+        yield densities
+
+
+def random_directions(rng: np.random.Generator, count: int) -> Array:
+    w = rng.normal(size=(count, 3))
+    return float32(w / np.linalg.norm(w, axis=1, keepdims=True))
+
+
+@check(
+    reflects,
+    scale("values are 0.1 % too large", 1.001),
     tolerance=sum_of(
-        Term(2e-3, "a direction's rounding of 6e-8, times the slope of a lobe of alpha 1e-4"),
-        unit="of the value",
+        roundings(
+            64, "of two directions and their frame, times 1 + the inverse of the lobe's own alpha"
+        )
     ),
     pairs=True,
     profile="path",
     hosts=has_paths,
-    diagnose=lambda case: Diagnosis("the weight of a draw is not its value over its density"),
+    diagnose="a path tracer gets another value than a rasterizer",
 )
-def sample(case: Case) -> Compared:
-    """A draw's weight times its density is the value in its direction."""
-    text, u = paths_of(case), random(WEIGHED, generator())
-    wi, weight, density = (text.ask(what, VIEW, u=u) for what in ("wi", "weight", "density"))
-    kept = density[:, 0] > 0.0
-    batch = Batch(np.broadcast_to(VIEW, wi.shape), wi, {}).where(kept)
-    expected = text.ask("evaluate", VIEW, batch.wi)
-    size = expected.max(axis=1, keepdims=True)
-    return Compared(batch, case.outputs(batch, (weight * density)[kept]) / size, expected / size)
+def path_value(case: Case) -> Iterator[Compared]:
+    """A path tracer's value, opacity and emission are the rasterizer's, in any frame."""
+    document, rng = documents(case.lobe)[-1], generator()
+    text, [shader] = (
+        paths(case.host, document, case.library),
+        case.host.compile(document, library=case.library),
+    )
+    wo, wi = random_directions(rng, PAIRS), random_directions(rng, PAIRS)
+    high = np.minimum(abs(wo[:, 2]), abs(wi[:, 2])) > LEAST_TANGENT_COSINE
+    wo, wi = wo[high], wi[high]
+    wi[:8] = wo[:8]
+    if is_glass(case.spec):  # light from behind is not the rasterizer's
+        wi[:, 2] = np.copysign(wi[:, 2], wo[:, 2])
+    world = {"wo": wo @ TURNED, "wi": wi @ TURNED, "frame": TURNED}
+    thin = isinstance(case.spec, SurfaceShaderSpec) and case.spec.node != "UsdPreviewSurface"
+    share = THIN["opacity"] if thin else 1.0
+    opacity = 1.0 - 3.0 * MEAN_WEIGHT * (1.0 - share)
+    batch, steep = Batch(wo, wi, {}), steepness(text.ask("pdf", **world)[:, :1])
+    value = case.host.evaluate(shader, wo, wi, {}, "direct")
+    found = case.outputs(batch, text.ask("evaluate", **world))
+    yield Compared(batch, np.pi * found / steep, opacity * np.pi * value / steep)
+    yield Compared(batch, text.ask("opacity", **world), np.full((len(wo), 1), opacity))
+    emitted = np.zeros((len(wo), 3))
+    if isinstance(case.spec, SurfaceShaderSpec):
+        emitted = case.host.evaluate(shader, wo, wi, {}, "emission", output="radiance")
+    yield Compared(batch, text.ask("emission", **world), share * emitted)
+
+
+@check(
+    lambda spec: spec.node in GLASS and is_glass(spec),
+    scale("values are 0.1 % too large", 1.001),
+    tolerance=sum_of(
+        roundings(256, "of an index that OpenPBR takes from its reflectance, near a critical angle")
+    ),
+    pairs=True,
+    profile="path",
+    hosts=has_paths,
+    diagnose="light inside a solid is not that outside of one of the inverse index",
+)
+def path_inside(case: Case) -> Iterator[Compared]:
+    """Light inside a solid is reflected and refracted as outside of one of the inverse index."""
+    name, values = GLASS[case.spec.node]
+    solid, inverse = (
+        paths(case.host, case.spec.document({**values, name: index}), case.library)
+        for index in (INDEX, 1.0 / INDEX)
+    )
+    u = random(PAIRS, generator())
+    for view in VIEWS:
+        wi = inverse.ask("wi", view, u=u)
+        batch = Batch(np.broadcast_to(view, wi.shape), wi, {}).where(np.any(wi != 0.0, axis=1))
+        steep = steepness(inverse.ask("pdf", view, batch.wi)[:, :1])
+        for what in ("evaluate", "pdf"):
+            found = solid.ask(what, view, batch.wi, inside=True)
+            expected = inverse.ask(what, view, batch.wi)
+            scale = steep * np.maximum(1.0, expected.max(axis=1, keepdims=True))
+            yield Compared(batch, case.outputs(batch, found) / scale, expected / scale)
 
 
 # --- directions against a density: a chi-square test on the sphere -------------------------------
@@ -170,14 +384,18 @@ def sample(case: Case) -> Compared:
 # Cells divide the angle from a pole, and the azimuth about it. The first ring is narrow, for a lobe that is
 # nearly a single direction: let the pole be that direction.
 CELLS = 32  # of the angle, and of the azimuth
-NODES = 8  # of the quadrature of a cell, on each axis
+NODES = 12  # of the quadrature of a cell, on each axis
 CONE = 0.02  # radian, the first ring
 LEAST = 1e-7  # radian, below which a density is constant
 RARE = 10.0  # expected draws, below which cells are put together
 
 
 def deviation(
-    draws: Array, density: Callable[[Array], Array], pole: Array, nodes: int = NODES
+    draws: Array,
+    density: Callable[[Array], Array],
+    pole: Array,
+    other: Array | None = None,
+    nodes: int = NODES,
 ) -> float:
     """Standard deviations by which the counts of draws leave a density, 0 for any less than chance brings.
 
@@ -187,11 +405,23 @@ def deviation(
 
     - `draws`: Unit vectors, (N, 3); zeros for draws that are lost, whose share is 1 minus the integral.
     - `density`: Of unit vectors (M, 3), in 1/sr, (M,).
+    - `pole`, `other`: Directions about which nearly all draws of a smooth lobe may lie. A cone about
+      the other is one cell, if it lies apart.
     """
     w, area, cells = quadrature(tuple(pole), nodes)
-    shares = np.bincount(cells, density(w) * area, minlength=(CELLS + 1) * CELLS)
+    count = (CELLS + 1) * CELLS
+    if other is not None and pole @ other < np.cos(2.0 * CONE):
+        rest = w @ other < np.cos(CONE)
+        near, small, ring = quadrature(tuple(other), nodes)
+        near, small = near[ring < CELLS], small[ring < CELLS]
+        w, area = np.concatenate([w[rest], near]), np.append(area[rest], small)
+        cells = np.append(cells[rest], np.full(len(near), count))
+    shares = np.bincount(cells, density(w) * area, minlength=count + 1)
     kept = np.linalg.norm(draws, axis=1) > 0.5
-    counts = np.bincount(cell(draws[kept], pole), minlength=len(shares))
+    found = cell(draws[kept], pole)
+    if other is not None:
+        found[(draws[kept] @ other >= np.cos(CONE)) & (found >= CELLS)] = count
+    counts = np.bincount(found, minlength=len(shares))
     mean = len(draws) * np.append(shares, 1.0 - shares.sum())
     observed = np.append(counts, len(draws) - kept.sum())
     rare = mean < RARE
@@ -221,7 +451,7 @@ def cell(w: Array, pole: Array) -> NDArray[np.int64]:
     return number
 
 
-@lru_cache(maxsize=1)
+@lru_cache(maxsize=8)
 def quadrature(pole: tuple[float, ...], nodes: int) -> tuple[Array, Array, NDArray[np.int64]]:
     """Directions, solid angles and cells of a midpoint rule; in the first ring its steps grow by a factor."""
     inner = np.append(0.0, np.geomspace(LEAST, CONE, 8 * nodes))

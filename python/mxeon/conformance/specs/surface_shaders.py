@@ -155,10 +155,16 @@ class SurfaceShaderSpec(LobeSpec):
     def within(self, library: str) -> SurfaceShaderSpec:
         return replace(self, library=library)
 
+    @property
+    def types(self) -> dict[str, str]:
+        from mxeon.shaders.library import load_library
+
+        [definition, *_] = load_library("stock").getMatchingNodeDefs(self.node)
+        return {port.getName(): port.getType() for port in definition.getActiveInputs()}
+
     def document(self, inputs: Values | None = None) -> str:
         ports = (
-            input_text(name, "color3" if np.ndim(value) else "float", value)
-            for name, value in (inputs or {}).items()
+            input_text(name, self.types[name], value) for name, value in (inputs or {}).items()
         )
         return document_text(node_text(self.node, "surfaceshader", "shading", "".join(ports)))
 
