@@ -66,7 +66,9 @@ def film(choices):
 
 
 HIDING = {"throughput": "throughput 0 with a weight other than 1 (branches: direct, "}
-SURFACE = dict.fromkeys(("lobes_albedo", "lobes_mean", "lobes_furnace", "lobes_energy"), LOBES)
+SURFACE = dict.fromkeys(
+    ("lobes_albedo", "lobes_mean", "lobes_furnace", "lobes_energy", "glass"), LOBES
+)
 SURFACE |= {"lobes": "no single lobe explains it"}
 FILMS = {"lobes_film": LOBES}
 SPHERE = {

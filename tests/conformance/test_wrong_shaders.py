@@ -325,6 +325,8 @@ WRONG = {
     ),
     "open_pbr_surface, every lobe": (
         (FILM, "4.0e-9 * M_PI", "4.0e-10 * M_PI", "lobes_film", ""),
+        (FACETS, "max(1.0 - lobe.albedo * F.visible * compensation, 0.0)", "vec3(1.0)", "glass", ""),
+        (FACETS, "bsdf.throughput = max(1.0 - lobe.albedo", "bsdf.throughput = max(1.05 - lobe.albedo", "glass", ""),
     ),
     "UsdPreviewSurface, every lobe": (
         (FACETS, "bsdf.throughput = max(1.0 - lobe.albedo", "bsdf.throughput = max(1.002 - lobe.albedo", "lobes_mean",

@@ -101,6 +101,18 @@ def lobes_energy(case: Case) -> Compared:
     return Compared(batch, np.maximum(case.albedo(batch), 1.0), np.ones((1, 3)))
 
 
+@check(is_shader, scale("values are 5 % too large", 1.05), lit=True, diagnose=SUM)
+def glass(case: Case) -> Iterator[Compared]:
+    """Clear glass reflects and transmits the shares of a white environment that its lobes have by the layer equation."""
+    spec, methods = case.of(SurfaceShaderSpec), case.host.active
+    batch = spec.clear(case.samples.views[0])
+    through = spec.transmitted(batch, methods.transmission == "opacity")
+    measured = case.transmitted(batch)
+    yield Compared(batch, measured, through)
+    if methods.environment == "fis":  # others reflect by MaterialX's fit of the albedo, or nothing
+        yield Compared(batch, measured + case.albedo(batch), through + case.expected_albedo(batch))
+
+
 def diagnose_graph(case: Case) -> Diagnosis:
     text, permitted = case.of(SurfaceShaderSpec).graphs.difference
     return Diagnosis(text, permitted=permitted)

@@ -151,19 +151,22 @@ class Host(base.Host):
     def _values(self, query: Query) -> NDArray[np.float64]:
         """Array of the document's lobes; see `mxeon.hosts.base.Host.evaluate`.
 
-        Raise NotRun unless the response to a light or to a uniform environment is asked for.
+        The branch "opacity" is "transmission" by that method of MaterialX. Raise NotRun unless the response to a
+        light or to a uniform environment, or the share of that which is transmitted, is asked for.
         """
         shader, wo, wi, inputs, branch, output, irradiance = query
         if (
             output != "response"
             or irradiance is not None
-            or branch not in ("direct", "environment")
+            or branch not in ("direct", "environment", "transmission", "opacity")
         ):
             raise NotRun(
                 "reference: only the response to a light or a uniform environment is known"
             )
         normal, tangent = (np.broadcast_to(axis, wo.shape) for axis in ((0, 0, 1.0), (1.0, 0, 0)))
         points = ShadingPoints(wo, wi if branch == "direct" else None, 1.0, normal, tangent)
+        opaque = branch == "opacity"
+        points = replace(points, behind=opaque or branch == "transmission", opacity=opaque)
         values = Graph(shader.document, points, inputs, emits=False).element(shader.element)
         return np.array(np.broadcast_to(values, wo.shape), np.float64)
 

@@ -169,6 +169,7 @@ class ShadingPoints:
     most: float = np.inf
     round: bool = False  # whether these are points of the unit sphere
     behind: bool = False  # whether light that is transmitted is asked for, and no other
+    opacity: bool = False  # whether lobes that only transmit pass all light, and their tops take what they reflect
 
     def lobe(
         self, node: PbrNode, inputs: Inputs, layered: bool, normal: Array, tangent: Array
@@ -197,6 +198,8 @@ class ShadingPoints:
         """
         if wi is None:
             share = LET_THROUGH.get(node.name) if self.behind else node.integral or node.albedo
+            if self.opacity and node.fixed.get("scatter_mode") == "T":
+                return np.broadcast_to(inputs.get("tint", np.ones(3)), wo.shape)
             return self._albedo(share, node, wo, inputs) if share else np.zeros(wo.shape)
         if node in AROUND:
             return np.asarray(node.value(wo, wi, inputs))
@@ -335,7 +338,8 @@ def node_lobe(
     if not weight.any():
         return Bsdf(np.zeros(3), np.ones(3))
     row = _row(node, inputs)
-    if row in INNER_NODES and not points.round:
+    uniform = points.wi is None and row.name in LET_THROUGH
+    if row in INNER_NODES and not (points.round or uniform):
         raise NotRun(f"reference: there is no model for this mode of node {node.getCategory()!r}")
     _assert_known(node, row, inputs)
     film = FILM if np.any(inputs.get(FILM[0], 0.0)) else ()

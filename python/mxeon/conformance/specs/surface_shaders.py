@@ -24,7 +24,7 @@ from mxeon.conformance.samples import (
 )
 from mxeon.conformance.spec import CHANGED_COLOR, Input, LobeSpec, ValueSpec, color, draw, materials
 from mxeon.conformance.specs.lobes import LEAST_VIEW
-from mxeon.conformance.specs.microfacets import FILM_ERRORS, reflected, sum_over
+from mxeon.conformance.specs.microfacets import FILM_ERRORS, LOBE_FIT, reflected, sum_over
 from mxeon.conformance.tolerance import Term, mean_scaled, roundings, sum_in, sum_of
 from mxeon.shaders.nodes import document_text, input_text, node_text
 
@@ -83,6 +83,12 @@ MEAN = sum_of(
     unit="pi f cos, relative above 1, or albedo, mean",
     metric=mean_scaled,
 )
+# Of R over T, whose light is (1 - E)^2: slopes by E of at most 2 in what passes, and of 1 in the sum.
+GLASS = sum_in(
+    "albedo",
+    Term(2.0 * LOBE_FIT, "the fit of a lobe's albedo, which what passes it has twice"),
+    Term(2.0 * sum_over(1024).value, "two sums over 1024 directions"),
+)
 FILM = sum_of(VALUE.term("all lobes of a material"), FILM_ERRORS["value"].term("a film"))
 STATES = sum_of(roundings(32, "of the same parts in two programs"))
 
@@ -99,6 +105,8 @@ class SurfaceShaderSpec(LobeSpec):
     # surface_inputs.md says why.
     without_effect: tuple[str, ...]
     white: Values  # a material that loses no light, by the layer equation
+    glass: Values  # a clear one, of any of `finish`
+    finish: tuple[str, ...]  # roughness and index of its interface
     # What else the material has where an input is changed.
     needs: Mapping[str, Values] = field(default_factory=dict)
     # Inputs that are asked of no value: an opacity blends what lies behind with the whole surface, not with a lobe,
@@ -175,6 +183,16 @@ class SurfaceShaderSpec(LobeSpec):
 
     def albedo(self, batch: Batch) -> Array:
         return self._reference(batch, "environment")
+
+    def transmitted(self, batch: Batch, opacity: bool) -> Array:
+        """The share of a uniform environment that is transmitted, by refraction or as opacity."""
+        return self._reference(batch, "opacity" if opacity else "transmission")
+
+    def clear(self, batch: Batch) -> Batch:
+        """The same views of glass, with the roughness and the index of the materials."""
+        return replace(
+            batch, inputs={**{name: batch.inputs[name] for name in self.finish}, **self.glass}
+        )
 
     @cached_property
     def _shader(self) -> Shader:
@@ -279,6 +297,7 @@ def _spec(
             "value": VALUE,
             "albedo": ALBEDO,
             "lobes_mean": MEAN,
+            "glass": GLASS,
             "states": STATES,
             "lobes_film": FILM,
         },
@@ -312,6 +331,8 @@ SURFACE_SHADERS = (
         ),
         needs={"emission_color": {"emission": 1.0}},
         unseen=("opacity",),
+        glass={"transmission": 1.0, "base": 0.0},
+        finish=("specular_roughness", "specular_IOR"),
         white={**_whole("base base_color sheen coat"), "specular_roughness": 0.4},
     ),
     _spec(
@@ -340,6 +361,8 @@ SURFACE_SHADERS = (
             "emission_color": {"emission_luminance": 1000.0},
         },
         unseen=("geometry_opacity",),
+        glass={"transmission_weight": 1.0},
+        finish=("specular_roughness", "specular_ior"),
         white={
             **_whole("base_weight base_color coat_weight fuzz_weight fuzz_color"),
             "base_diffuse_roughness": 0.5,
@@ -362,6 +385,8 @@ SURFACE_SHADERS = (
         without_effect=("thickness", "attenuation_distance", "attenuation_color", "dispersion"),
         needs={"emissive_strength": {"emissive": CHANGED_COLOR}},
         unseen=("occlusion", "alpha", "alpha_mode", "alpha_cutoff"),
+        glass={"transmission": 1.0, "metallic": 0.0, "base_color": WHITE},
+        finish=("roughness", "ior"),
         white={
             **_whole("base_color sheen_color clearcoat"),
             "metallic": 0.0,
@@ -380,6 +405,8 @@ SURFACE_SHADERS = (
         ),
         _ports(share="opacity"),
         without_effect=("displacement",),
+        glass={"opacity": 0.0, "diffuseColor": WHITE},
+        finish=("roughness", "ior"),
         white={**_whole("diffuseColor clearcoat"), "clearcoatRoughness": 0.4},
         needs={"specularColor": {"useSpecularWorkflow": 1}},
         unseen=("occlusion",),
