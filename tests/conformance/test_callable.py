@@ -10,7 +10,7 @@ import mxeon
 from mxeon.models import table as reference
 from mxeon.models.diffuse import eon_brdf
 
-PARAMETRIC = [row for row in reference.MODELS if row.parameter and row.name != "eon_approx"]
+PARAMETRIC = [row for row in reference.DIFFUSE_MODELS if row.parameter and row.name != "eon_approx"]
 SEES_ONLY = {"eon_clamped": {"value", "integral"}, "eon_rho_cubed": {"value", "integral"}}
 
 # Five lines: what a renderer's own suite would hold.
@@ -28,7 +28,7 @@ def test_each_model_passes_as_itself(row):
 
 @pytest.mark.parametrize("name", SEES_ONLY)
 def test_a_known_defect_is_named(name):
-    row = reference.model(name)
+    row = reference.diffuse_model(name)
     run = mxeon.check_brdf(row.brdf, "eon", "theirs")
     assert failed(run) == SEES_ONLY[name]
     diagnoses = {result.diagnosis for result in run.results if result.check == "value"}
@@ -78,13 +78,14 @@ def test_values_that_a_check_cannot_tell_from_wrong_ones_are_said_to_be():
 
 def test_a_model_that_is_nearly_named_is_suggested():
     with pytest.raises(
-        ValueError, match="no model 'eom': did you mean eon[?] see mxeon.models.table.MODELS$"
+        ValueError,
+        match="no model 'eom': did you mean eon[?] see mxeon.models.table.DIFFUSE_MODELS$",
     ):
         mxeon.check_brdf(eon_brdf, "eom")
 
 
 def test_a_failing_test_says_figure_and_nearest_model():
-    test = mxeon.brdf_test(reference.model("eon_rho_cubed").brdf)
+    test = mxeon.brdf_test(reference.diffuse_model("eon_rho_cubed").brdf)
     (value,) = [each for each in test.pytestmark[0].args[1] if each.key == "value"]
     with pytest.raises(AssertionError, match="0.0409 > 2e-06 pi f cos; best match: EON"):
         test(value)

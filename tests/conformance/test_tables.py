@@ -31,7 +31,7 @@ class Host(base.Host):
     def evaluate(self, shader, wo, wi, inputs, branch, **options):
         rho = np.broadcast_to(inputs["color"], wo.shape)
         above = wi * np.where(wi[:, 2:] < 0.0, [1.0, 1.0, -1.0], 1.0)
-        brdf = table.model("eon").brdf(wo, above, rho, np.minimum(inputs["roughness"], 1.0))
+        brdf = table.diffuse_model("eon").brdf(wo, above, rho, np.minimum(inputs["roughness"], 1.0))
         factor = np.maximum(inputs.get("weight", 1.0), 0.0) * inputs.get("occlusion", 1.0)
         return brdf * np.clip(wi[:, 2:], 0.0, 1.0) * np.reshape(factor, (-1, 1))
 
@@ -77,8 +77,8 @@ def toy_brdf(wo, wi, rho, roughness):
 @pytest.fixture
 def toy_model(monkeypatch):
     """The table of models with one more row."""
-    row = table.Model("toy", "a toy model", toy_brdf, "roughness")
-    monkeypatch.setattr(table, "MODELS", (*table.MODELS, row))
+    row = table.row("toy", "a toy model", toy_brdf, "roughness")
+    monkeypatch.setattr(table, "DIFFUSE_MODELS", (*table.DIFFUSE_MODELS, row))
 
 
 def test_a_new_model_is_one_row_by_which_functions_are_judged(toy_model):

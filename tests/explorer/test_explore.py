@@ -16,7 +16,7 @@ from mxeon.explorer import PARAGRAPH, TEXTS, documents, page, page_data
 from mxeon.explorer.documents import document_sources
 from mxeon.hosts.textures import read_texture
 from mxeon.io.images import write_image
-from mxeon.models.table import model
+from mxeon.models.table import diffuse_model
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 from tests.explorer.browser import judged, opened, until
@@ -98,7 +98,7 @@ def test_code_of_a_document_needs_a_permission(tmp_path, capsys):
 
 def result(host, subject, verdict, **distances):
     """A result of the check of values with stock MaterialX."""
-    titles = {model(name).title: distance for name, distance in distances.items()}
+    titles = {diffuse_model(name).title: distance for name, distance in distances.items()}
     return Result("value", "claim", subject, host, "stock", verdict, distances=titles)
 
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from mxeon.models.core.quadrature import albedo_dir_quadrature
-from mxeon.models.table import KNOWN_DEFECTS, MODELS, model
+from mxeon.models.table import DIFFUSE_MODELS, KNOWN_DEFECTS, diffuse_model
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 from mxeon.shaders.scene import VIEW, Scene, local_directions, sphere
 from tests.explorer.stage import (
@@ -23,7 +23,7 @@ from tests.support.tolerances import TWIN_ALBEDO, TWIN_VALUE
 
 DOCUMENTS = ("brick", "mixed_lobes")
 PLAIN = 48 * 2.0**-24  # 16 roundings of a point, and 32 in the value
-ROWS = MODELS + KNOWN_DEFECTS
+ROWS = DIFFUSE_MODELS + KNOWN_DEFECTS
 
 
 @pytest.fixture(scope="module")
@@ -79,7 +79,7 @@ def white(row, mu):
 
 @pytest.mark.parametrize("name", ["eon", "qon", "fon_white_lobe", "eon_clamped"])
 def test_in_uniform_surroundings_pixels_are_the_albedo(stage, sources, name):
-    row = model(name)
+    row = diffuse_model(name)
     view(stage, side(sources[row.name]), light=None, surroundings="uniform")
     measured = picture(stage)
     points = sphere(len(measured))

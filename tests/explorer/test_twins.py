@@ -7,10 +7,10 @@ import pytest
 from mxeon.models.core.quadrature import albedo_dir_quadrature
 from mxeon.models.diffuse import eon_rho_from_albedo_avg, eon_rho_from_albedo_normal
 from mxeon.models.sampling import uniform_sample
-from mxeon.models.table import KNOWN_DEFECTS, MODELS
+from mxeon.models.table import DIFFUSE_MODELS, KNOWN_DEFECTS
 from tests.support.hemispheres import uniforms
 
-ROWS = MODELS + KNOWN_DEFECTS
+ROWS = DIFFUSE_MODELS + KNOWN_DEFECTS
 # A sine, an arc tangent or a square root of the browser's may differ from NumPy's by some units in
 # the last place, 2^-52, of the largest value of a sum; 2^12 of them are 1e-12.
 TWINS = 2**12 * 2**-52

@@ -19,7 +19,7 @@ from mxeon.models import table as reference
 
 SIZE = 64
 VIEWS = {view.name: view for view in views(SIZE)}
-EON, QON, CUBED = (reference.model(name).title for name in ("eon", "qon", "eon_rho_cubed"))
+EON, QON, CUBED = (reference.diffuse_model(name).title for name in ("eon", "qon", "eon_rho_cubed"))
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -37,7 +37,7 @@ def remembered():
 @cache
 def means(model, name):
     """A model's means of the judged pixels of a view."""
-    return pixel_means(reference.model(model), VIEWS[name])
+    return pixel_means(reference.diffuse_model(model), VIEWS[name])
 
 
 EXPORTED = {}  # the files of a kit by their names, exported once

@@ -98,7 +98,7 @@ FALSE = ("lambert", "oren_nayar", "qon", "qon_footnote", "qon_fujii")
 )
 def test_each_model_is_named_whatever_the_noise(tmp_path, flag, name, noise):
     write_pictures(tmp_path, **{flag: name}, noise=noise)
-    found, title = names(check_kit(tmp_path)), reference.model(name).title
+    found, title = names(check_kit(tmp_path)), reference.diffuse_model(name).title
     assert found[f"energy_compensation {flag}, distant light"] == title
     assert flag == "false" or found["energy_compensation true, environment"] == title
 
@@ -175,7 +175,7 @@ FAULTS = {
 @pytest.mark.parametrize("words", FAULTS)
 def test_what_is_wrong_with_light_or_encoding_is_named(words):
     view = VIEWS[SETUP.name]
-    model, mask = expected(reference.model("lambert"), view, 0.0), judged(view.scene)
+    model, mask = expected(reference.diffuse_model("lambert"), view, 0.0), judged(view.scene)
     image = np.zeros((SIZE, SIZE, 3))
     image[mask] = model.value
     assert fault(FAULTS[words](image), model, mask) == words

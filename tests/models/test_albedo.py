@@ -18,7 +18,7 @@ from mxeon.models.diffuse import (
     qon_albedo_avg,
     qon_albedo_dir,
 )
-from mxeon.models.table import KNOWN_DEFECTS, MODELS, model
+from mxeon.models.table import DIFFUSE_MODELS, KNOWN_DEFECTS, diffuse_model
 from tests.support import oracle, tolerances
 from tests.support.cases import parameter
 
@@ -34,7 +34,7 @@ MU = np.unique(
 )
 RHO = np.array([0.0, 0.2, 0.5, 0.8, 1.0])
 FRACTIONS = (0.0, 0.1, 0.5, 1.0)
-CLOSED = [row for row in MODELS if row.albedo_dir]
+CLOSED = [row for row in DIFFUSE_MODELS if row.albedo_dir]
 
 
 def named(rows):
@@ -140,7 +140,9 @@ def test_average_albedo_agrees_with_quadrature_of_the_directional_one(row, fract
     assert np.abs(average - row.albedo_avg(RHO, *extra)).max() <= tolerances.QUADRATURE
 
 
-@named([row for row in MODELS + KNOWN_DEFECTS if row.name not in ("eon_approx", "eon_clamped")])
+@named(
+    [row for row in DIFFUSE_MODELS + KNOWN_DEFECTS if row.name not in ("eon_approx", "eon_clamped")]
+)
 def test_quadrature_has_converged(row):
     mu, extra = [0.0, 1e-6, 1e-3, 0.1, 0.9], parameter(row, 1.0)
     fewer = albedo_dir_quadrature(row.brdf, mu, RHO, *extra)
@@ -170,7 +172,7 @@ def test_loss_keeps_its_digits_down_to_grazing():
 
 @pytest.mark.parametrize("name", ["qon", "fon", "eon"])
 def test_albedos_agree_with_fifty_digits_of_the_printed_equations(name):
-    row = model(name)
+    row = diffuse_model(name)
     rng = np.random.default_rng(1)
     exact_of = getattr(oracle, f"{name}_albedo_dir")
     for mu, rho, fraction in [*rng.random((100, 3)), (0.0, 0.5, 1.0), (1e-9, 0.5, 1.0)]:

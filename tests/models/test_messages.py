@@ -12,9 +12,8 @@ import pytest
 from mxeon import albedo, models, sampling
 from mxeon.models.core.layering import Bsdf, mix, multiply, throughput
 from mxeon.models.nodes.utilities import node
-from mxeon.models.table import KNOWN_DEFECTS, MODELS, OTHERS, PARAMETRIZATIONS, model
+from mxeon.models.table import diffuse_model
 
-ROWS = (*MODELS, *KNOWN_DEFECTS, *OTHERS, *PARAMETRIZATIONS)
 UP, A = [0.0, 0.0, 1.0], [0.5, 0.5]
 BELOW = [UP, [0.6, 0.0, -0.8]]
 SOAP = {"tint": 1.0, "ior": 1.5, "roughness": A, "thinfilm_thickness": -1.0, "thinfilm_ior": 1.3}
@@ -105,9 +104,7 @@ RULES = {
     ),
     "form must be a Form; got 'x'": lambda: models.film_dielectric(0.5, 5.0, 1.5, 1.5, form="x"),
     "reading must be one of text, unclamped": lambda: models.schlick_ior(0.5, "mean"),
-    f"model must be one of {', '.join(row.name for row in ROWS)}; got 'phong'": lambda: model(
-        "phong"
-    ),
+    "no model 'phong'; see mxeon.models.table.DIFFUSE_MODELS": lambda: diffuse_model("phong"),
     "category must be one of roughness_anisotropy, ": lambda: node("nothing"),
     # Shapes.
     "wo must have shape (..., 3); got shape (2,)": lambda: models.lambert_brdf([1.0, 0.0], UP, 1.0),

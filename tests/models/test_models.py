@@ -17,11 +17,11 @@ from mxeon.models.diffuse import (
     lambert_brdf,
     oren_nayar_brdf,
 )
-from mxeon.models.table import KNOWN_DEFECTS, MODELS, model
+from mxeon.models.table import DIFFUSE_MODELS, KNOWN_DEFECTS, diffuse_model
 from tests.support import oracle, tolerances
 from tests.support.cases import direction, pairs, parameter
 
-ALL = MODELS + KNOWN_DEFECTS
+ALL = DIFFUSE_MODELS + KNOWN_DEFECTS
 
 
 def named(rows):
@@ -49,13 +49,13 @@ def assert_same(value, again, wo, wi):
 # --- limits ----------------------------------------------------------------------------------
 
 
-@named([row for row in MODELS if row.parameter])
+@named([row for row in DIFFUSE_MODELS if row.parameter])
 def test_roughness_zero_is_lambert_to_the_last_bit(row):
     wo, wi, rho, _ = pairs(1000, seed=1)
     assert np.array_equal(row.brdf(wo, wi, rho, 0.0), rho / np.pi)
 
 
-@named(MODELS)
+@named(DIFFUSE_MODELS)
 def test_black_reflects_nothing(row):
     wo, wi, _, fraction = pairs(1000, seed=2)
     assert not row.brdf(wo, wi, 0.0, *parameter(row, fraction)).any()
@@ -89,7 +89,7 @@ def test_model_does_not_change_when_the_pair_turns_about_the_normal(row):
     assert (np.pi * np.abs(change) / scale).max() <= tolerances.ROTATION
 
 
-@named([row for row in MODELS if row.name != "oren_nayar"])
+@named([row for row in DIFFUSE_MODELS if row.name != "oren_nayar"])
 def test_model_is_never_negative(row):
     wo, wi, rho, fraction = pairs(20000, seed=5)
     assert row.brdf(wo, wi, rho, *parameter(row, fraction)).min() >= 0.0
@@ -120,7 +120,7 @@ def test_back_lit_pairs_see_a_signed_s():
 # --- agreement -------------------------------------------------------------------------------
 
 
-@named(MODELS)
+@named(DIFFUSE_MODELS)
 def test_model_agrees_with_fifty_digits_of_the_printed_equations(row):
     wo, wi, rho, fraction = pairs(300, seed=7)
     values = row.brdf(wo, wi, rho[:, :1], *parameter(row, fraction))[:, 0]
@@ -134,7 +134,9 @@ def test_model_agrees_with_fifty_digits_of_the_printed_equations(row):
 
 def test_quartic_agrees_with_eon_to_its_documented_error():
     wo, wi, rho, r = pairs(20000, seed=8)
-    error = np.pi * np.abs(model("eon_approx").brdf(wo, wi, rho, r) - eon_brdf(wo, wi, rho, r))
+    error = np.pi * np.abs(
+        diffuse_model("eon_approx").brdf(wo, wi, rho, r) - eon_brdf(wo, wi, rho, r)
+    )
     assert error.max() <= tolerances.QUARTIC_BRDF
 
 
@@ -148,7 +150,7 @@ def test_quartic_differs_from_the_listing_by_its_epsilon_alone():
     average = average[:, np.newaxis]
     listing = fon_brdf(wo, wi, rho, r)
     listing += rho**2 * average / (1.0 - rho * (1.0 - average)) / np.pi * lobe
-    error = np.pi * np.abs(listing - model("eon_approx").brdf(wo, wi, rho, r))
+    error = np.pi * np.abs(listing - diffuse_model("eon_approx").brdf(wo, wi, rho, r))
     scale = largest_quotient(wo, wi)[:, np.newaxis]
     assert (error <= tolerances.LISTING_EPSILON + tolerances.BRDF * scale).all()
 
@@ -200,7 +202,7 @@ SHAPES = (
 )
 
 
-@named(MODELS)
+@named(DIFFUSE_MODELS)
 @pytest.mark.parametrize("shapes", SHAPES, ids=str)
 def test_arguments_broadcast_as_if_each_pair_stood_alone(row, shapes):
     rng = np.random.default_rng(10)
@@ -226,7 +228,7 @@ def test_many_pairs_have_the_values_of_their_parts(row):
         assert_same(alone, whole[part], *np.broadcast_arrays(wo[part, np.newaxis], wi))
 
 
-@named([model("oren_nayar"), model("eon")])
+@named([diffuse_model("oren_nayar"), diffuse_model("eon")])
 def test_memory_beyond_arguments_and_result_stays_below_64_mebibytes_on_four_threads(row):
     wo, wi, rho, fraction = pairs(800_000, seed=14)
     tracemalloc.start()
@@ -290,7 +292,7 @@ def test_a_number_is_one_channel():
 # --- the table -------------------------------------------------------------------------------
 
 
-@named([row for row in MODELS if row.parameter])
+@named([row for row in DIFFUSE_MODELS if row.parameter])
 def test_row_knows_the_interval_of_its_parameter(row):
     wo = [0, 0, 1]
     for end in row.interval:
@@ -302,14 +304,14 @@ def test_row_knows_the_interval_of_its_parameter(row):
 
 
 def test_lambert_has_no_interval():
-    assert model("lambert").interval is None
-    assert model("lambert").largest == 1.0
+    assert diffuse_model("lambert").interval is None
+    assert diffuse_model("lambert").largest == 1.0
 
 
 def test_a_model_gives_the_closed_form_of_its_albedo_or_refuses():
-    assert model("eon").closed_albedo_dir is model("eon").albedo_dir
+    assert diffuse_model("eon").closed_albedo_dir is diffuse_model("eon").albedo_dir
     with pytest.raises(ValueError, match="closed form of its albedo; got 'oren_nayar'"):
-        _ = model("oren_nayar").closed_albedo_dir
+        _ = diffuse_model("oren_nayar").closed_albedo_dir
 
 
 # --- known wrong variants --------------------------------------------------------------------
@@ -326,7 +328,7 @@ def test_defect_is_right_on_white_front_lit_pairs_and_wrong_elsewhere(row):
 
 
 def test_eon_floor_is_the_quartic_but_for_dark_reflectances():
-    row, right = model("eon_floor"), model("eon_approx").brdf
+    row, right = diffuse_model("eon_floor"), diffuse_model("eon_approx").brdf
     wo, wi, _, r = pairs(2000, seed=15)
     assert np.array_equal(row.brdf(wo, wi, [0.1, 0.5, 1.0], r), right(wo, wi, [0.1, 0.5, 1.0], r))
     assert not row.brdf(wo, wi, 0.0, r).any()
@@ -335,15 +337,15 @@ def test_eon_floor_is_the_quartic_but_for_dark_reflectances():
 
 
 def test_qon_tinted_twice_is_right_where_it_is_white():
-    row = model("qon_tinted_twice")
+    row = diffuse_model("qon_tinted_twice")
     wo, wi, rho, sigma = pairs(2000, seed=14)
-    right = model("qon").brdf
+    right = diffuse_model("qon").brdf
     assert np.array_equal(row.brdf(wo, wi, 1.0, sigma), right(wo, wi, 1.0, sigma))
     assert np.array_equal(row.brdf(wo, wi, rho, sigma), rho * right(wo, wi, rho, sigma))
 
 
 def test_fitted_albedo_of_qon_is_lambert_when_smooth_and_off_when_rough():
-    fitted, exact = model("qon_fitted").albedo_dir, model("qon").albedo_dir
+    fitted, exact = diffuse_model("qon_fitted").albedo_dir, diffuse_model("qon").albedo_dir
     mu = np.linspace(0.0, 1.0, 101)
     assert np.array_equal(fitted(mu, [0.3, 1.0], 0.0), np.tile([0.3, 1.0], (101, 1)))
     assert 0.05 < np.abs(fitted(mu, 1.0, 0.5 * np.pi) - exact(mu, 1.0, 0.5 * np.pi)).max() < 0.07

@@ -13,7 +13,7 @@ from mxeon.models.diffuse import (
     qon_degrees_albedo_dir,
     qon_degrees_brdf,
 )
-from mxeon.models.table import OTHERS, PARAMETRIZATIONS, model
+from mxeon.models.table import OTHERS, PARAMETRIZATIONS, diffuse_model
 from tests.support import tolerances
 
 
@@ -35,7 +35,7 @@ PARAMETERS = {"half_pi": 0.3 * np.pi, "slope": 0.6 / np.sqrt(2.0), "squared": 0.
 @pytest.mark.parametrize("row", PARAMETRIZATIONS, ids=lambda row: row.name)
 def test_a_model_of_another_roughness_is_the_model_of_its_parameter(row):
     [(word, parameter)] = [pair for pair in PARAMETERS.items() if row.name.endswith(pair[0])]
-    base = model(row.name.removesuffix(f"_{word}"))
+    base = diffuse_model(row.name.removesuffix(f"_{word}"))
     rho = [0.8, 0.2]
     np.testing.assert_allclose(row.brdf(WO, WI, rho, 0.6), base.brdf(WO, WI, rho, parameter))
     assert bool(row.albedo_dir) == bool(base.albedo_dir)
@@ -46,7 +46,7 @@ def test_a_model_of_another_roughness_is_the_model_of_its_parameter(row):
 
 @pytest.mark.parametrize("row", OTHERS, ids=lambda row: row.name)
 def test_a_row_is_found_by_its_name_and_vanishes_on_black_unless_it_has_facets(row):
-    assert model(row.name) is row
+    assert diffuse_model(row.name) is row
     assert row.brdf(WO, WI, 0.0, 0.5).any() == (row.name in COATED)
 
 

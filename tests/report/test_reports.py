@@ -260,7 +260,7 @@ def test_a_library_that_lies_elsewhere_is_the_same_one(before, after):
 
 
 EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
-TITLE = reference.model("eon").title
+TITLE = reference.diffuse_model("eon").title
 TOLERANCE = 1e-6
 
 

@@ -18,7 +18,7 @@ from mxeon.models.diffuse import (
     qon_albedo_dir,
     qon_brdf,
 )
-from mxeon.models.table import MODELS, model
+from mxeon.models.table import DIFFUSE_MODELS, diffuse_model
 from tools.paper.sheet import Sheet
 
 DEGREES = np.linspace(0.0, 90.0, 181)
@@ -43,7 +43,7 @@ INDISTINGUISHABLE = "eon_approx"
 
 def label(name: str) -> str:
     """A model's short name, or its title if it has none."""
-    return SHORT.get(name) or model(name).title
+    return SHORT.get(name) or diffuse_model(name).title
 
 
 def cosine(degrees: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -65,7 +65,7 @@ def comparison(sheet: Sheet) -> None:
     for row, phi in enumerate((0.0, 90.0, 180.0)):
         for column, theta_i in enumerate((15.0, 45.0, 75.0)):
             wo, wi = directions(DEGREES, phi), directions(theta_i, 0.0)
-            for each in MODELS:
+            for each in DIFFUSE_MODELS:
                 if each.name == INDISTINGUISHABLE:
                     continue
                 parameter = [0.5 * each.largest] if each.parameter else []

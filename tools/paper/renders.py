@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.models.table import model
+from mxeon.models.table import diffuse_model
 from tools.paper.curves import label
 from tools.paper.sheet import Sheet
 
@@ -40,7 +40,7 @@ FURNACE_SHOWN, LOBES_SHOWN = 0.8, 0.75
 
 def look(name: str, part: float = 1.0) -> dict[str, Any]:
     """A model at a part of its largest roughness, and the sampler that suits it."""
-    row = model(name)
+    row = diffuse_model(name)
     if not row.parameter:
         return {"model": name, "parameter": 0.0, "sampler": "cosine"}
     sampler = "eon" if name in ("eon", "eon_approx") else "eon_cltc"

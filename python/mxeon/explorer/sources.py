@@ -26,7 +26,7 @@ from mxeon.hosts import open_host
 from mxeon.hosts.base import Inputs
 from mxeon.io.images import write_png
 from mxeon.jobs.signals import temporary_folder
-from mxeon.models.table import KNOWN_DEFECTS, MODELS, model
+from mxeon.models.table import DIFFUSE_MODELS, KNOWN_DEFECTS, diffuse_model
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import (
     FLAG,
@@ -132,7 +132,7 @@ def measured_models(library: str, node: str) -> Models | None:
 
 def _nearest(case: Case) -> str:
     """Name of the model nearest to a case's values, told by its albedo from others of its BRDF."""
-    rows = {row.title: row for row in KNOWN_DEFECTS + MODELS}
+    rows = {row.title: row for row in KNOWN_DEFECTS + DIFFUSE_MODELS}
     value, albedo = (
         min(diagnosis.distances.items(), key=lambda item: item[1], default=("", float("inf")))
         for diagnosis in (VALUE.diagnose(case), ALBEDO.diagnose(case))
@@ -199,12 +199,15 @@ def _material_sources(material: ComparedMaterial) -> tuple[ShaderSource, ...]:
 
 def model_sources() -> tuple[ModelSource, ...]:
     """Every model of the family, and every renderer's variant."""
-    names = [*FIRST, *(row.name for row in MODELS if row.name not in FIRST)]
-    family = (ModelSource(f"model/{name}", model(name).title, FAMILY, name, name) for name in names)
+    names = [*FIRST, *(row.name for row in DIFFUSE_MODELS if row.name not in FIRST)]
+    family = (
+        ModelSource(f"model/{name}", diffuse_model(name).title, FAMILY, name, name)
+        for name in names
+    )
     variants = (
         ModelSource(
             f"variant/{page}/{position}",
-            f"{title}: {model(name).title}",
+            f"{title}: {diffuse_model(name).title}",
             VARIANTS,
             name,
             meant,
@@ -217,7 +220,7 @@ def model_sources() -> tuple[ModelSource, ...]:
 
 def run_sources(results: Iterable[Result]) -> tuple[ModelSource, ...]:
     """The model nearest to each failure of a run that a diagnosis explains."""
-    names = {row.title: row.name for row in KNOWN_DEFECTS + MODELS}
+    names = {row.title: row.name for row in KNOWN_DEFECTS + DIFFUSE_MODELS}
     sources: dict[tuple[str, str, str], ModelSource] = {}
     for result in results:
         key = (result.host, result.library, result.subject)
@@ -227,7 +230,7 @@ def run_sources(results: Iterable[Result]) -> tuple[ModelSource, ...]:
         name = names[min(known, key=known.__getitem__)]
         sources[key] = ModelSource(
             f"run/{len(sources)}",
-            f"{result.location}, {result.subject}: {model(name).title}",
+            f"{result.location}, {result.subject}: {diffuse_model(name).title}",
             RUN,
             name,
             _meant(result.subject, name),
@@ -257,7 +260,7 @@ def stills() -> tuple[Still, ...]:
             path = Path(folder, "still.png")
             write_png(path, picture(name).astype(np.float32), {})
             address = f"data:image/png;base64,{b64encode(path.read_bytes()).decode()}"
-        found.append(Still(model(name).title, address))
+        found.append(Still(diffuse_model(name).title, address))
     return tuple(found)
 
 
@@ -267,7 +270,7 @@ def picture(name: str) -> NDArray[np.float64]:
     normals = points.normal[points.mask]
     wo, wi = (local_directions(normals, each) for each in (VIEW, LIGHT))
     lit = wi[:, 2] > 0.0
-    row = model(name)
+    row = diffuse_model(name)
     parameter = [1.0] if row.parameter else []
     values = np.zeros((len(normals), 3))
     values[lit] = np.pi * row.brdf(wo[lit], wi[lit], COLOR, *parameter) * wi[lit, 2:]

@@ -156,7 +156,7 @@ def _pictures(
             metadata = {"version": mxeon.__version__, "scene": view.scene.name}
             mask = judged(view.scene)
             reference = np.zeros((*mask.shape, 3))
-            reference[mask] = pixel_means(table.model(claims or view.material.model), view)
+            reference[mask] = pixel_means(table.diffuse_model(claims or view.material.model), view)
             yield Picture(
                 document=f"{view.material.name}.mtlx",
                 element=view.material.name,

@@ -39,7 +39,7 @@ class ModelDistance:
 
 def candidates(pictures: Sequence[JudgedPicture], depth: float) -> list[ModelDistance]:
     """Every known model and defect, nearest first; models with the same values once."""
-    rows = reference.KNOWN_DEFECTS + reference.MODELS + reference.PARAMETRIZATIONS
+    rows = reference.KNOWN_DEFECTS + reference.DIFFUSE_MODELS + reference.PARAMETRIZATIONS
     rows = tuple(row for row in rows if row.name not in TOO_NEAR)
     if all(case.view.scene.light for case in pictures):
         rows = tuple({row.brdf: row for row in rows}.values())  # some differ in their albedo alone
@@ -106,7 +106,7 @@ class Question:
         return f"{name}, {'distant light' if self.lit else 'environment'}"
 
     def row(self, view: View) -> reference.Model:
-        return reference.model(self.model or view.material.model)
+        return reference.diffuse_model(self.model or view.material.model)
 
     def includes(self, view: View) -> bool:
         return view.material in self.materials and (view.scene.light is not None) == self.lit
@@ -121,7 +121,7 @@ class JudgedPicture:
 
 def _of(name: str, factor: float = 1.0) -> Callable[[View], NDArray[np.float64]]:
     """A variant: values of a model, times a factor."""
-    return lambda view: factor * pixel_means(reference.model(name), view)
+    return lambda view: factor * pixel_means(reference.diffuse_model(name), view)
 
 
 SETUP_RIGHT = "Lambert under a distant light has the right light, orientation and encoding."

@@ -14,7 +14,6 @@ import numpy as np
 from mxeon.models import coat, sampling, table
 from mxeon.models.core.arguments import checked_choice, checked_directions
 from mxeon.models.core.arrays import Array, any_array, array_namespace, cosine, library
-from mxeon.models.core.quadrature import albedo_dir_quadrature
 from mxeon.models.media import hg_pdf, hg_sample
 from mxeon.models.nodes import NODES
 from mxeon.models.nodes.emissions import EMISSIONS, Emission
@@ -156,15 +155,16 @@ def _about(row: Emission | Medium) -> tuple[str, str, str, tuple[Parameter, ...]
 
 
 def _of_node(row: PbrNode) -> ShadingModel:
-    """The model of a row of pbrlib's nodes."""
+    """The model of a row of the tables."""
     lights = "back" if row.transmits else "front"
     return ShadingModel(
         row.name,
         row.title,
         row.category,
-        _inputs(row.category, row.inputs),
+        row.parameters or _inputs(row.category, row.inputs),
         row.value,
         row.integral or row.albedo,
+        row.average,
         sampler=SAMPLERS.get(row.name, COSINE),
         lights="all sides" if row is HAIR_NODE else lights,
         by_name=BY_NAME.get(row.category, ("weight", "normal")),
@@ -198,29 +198,6 @@ def _of_transmission(row: PbrNode) -> ShadingModel:
     return ShadingModel(
         row.name, title, row.category, inputs, value, albedo, lights=lights, by_name=frame
     )
-
-
-def _of_table(row: table.Model) -> ShadingModel:
-    """The model of a row of the table of rough diffuse models."""
-    node = "burley_diffuse_bsdf" if row.name.startswith("burley") else "oren_nayar_diffuse_bsdf"
-    inputs = [parameter(node, "color", "rho")]
-    if row.parameter:
-        inputs.append(parameter(node, "roughness", row.parameter))
-    names = [each.name for each in inputs]
-
-    def value(wo: Array, wi: Array, values: Inputs) -> Array:
-        return row.brdf(wo, wi, *(values[name] for name in names))
-
-    def albedo(wo: Array, values: Inputs) -> Array:
-        closed = row.albedo_dir or (lambda *given: albedo_dir_quadrature(row.brdf, *given))
-        return closed(cosine(wo[:, 2]), *(values[name] for name in names))
-
-    def average(values: Inputs) -> Array:
-        assert row.albedo_avg
-        return row.albedo_avg(*(values[name] for name in names))
-
-    known, sampler = average if row.albedo_avg else None, SAMPLERS.get(row.name, COSINE)
-    return ShadingModel(row.name, row.title, node, tuple(inputs), value, albedo, known, sampler)
 
 
 def _over_eon(name: str, title: str) -> ShadingModel:
@@ -313,8 +290,8 @@ def _pair(result: Array | tuple[Array, Array]) -> tuple[Array, Array]:
 MODELS: dict[str, NodeModel] = {
     each.name: each
     for each in (
-        *map(_of_table, (*table.MODELS, *table.KNOWN_DEFECTS, *table.OTHERS)),
-        *map(_of_table, table.PARAMETRIZATIONS),
+        *map(_of_node, table.DIFFUSE_MODELS + table.KNOWN_DEFECTS),
+        *map(_of_node, table.OTHERS + table.PARAMETRIZATIONS),
         _over_eon("dielectric_over_eon", "dielectric over EON"),
         _over_eon("varnished", "EON under a varnish"),
         _of_openpbr(),

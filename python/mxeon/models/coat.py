@@ -95,7 +95,6 @@ from mxeon.models.core.arrays import (
     like,
     magnitude,
     root,
-    with_arguments,
 )
 from mxeon.models.core.chebyshev import chebyshev_coefficients, chebyshev_nodes, chebyshev_sum
 from mxeon.models.core.evaluation import evaluate
@@ -221,7 +220,6 @@ def of_one_coat(function: Callable[P, R]) -> Callable[P, R]:
         brought = dict(zip(call, any_array(lambda *each: each)(*call.values()), strict=True))
         return cast(Callable[..., R], function)(**brought, **plain)
 
-    wrapper.__doc__ = with_arguments(function.__doc__, function.__module__, list(types))
     return wrapper
 
 

@@ -12,25 +12,27 @@ import numpy as np
 
 from mxeon.models import coat, diffuse
 from mxeon.models.core.arguments import RANGES, checked, checked_choice, checked_colors
-from mxeon.models.core.arrays import Array, ArrayLike, Numbers, any_array
+from mxeon.models.core.arrays import Array, ArrayLike, Numbers, any_array, cosine
+from mxeon.models.core.quadrature import albedo_dir_quadrature
+from mxeon.models.nodes.node import Inputs, PbrNode
+from mxeon.models.nodes.node import parameter as node_parameter
 
 
-@dataclass(frozen=True)
-class Model:
-    """A reflection model and its closed forms.
+@dataclass(frozen=True, kw_only=True)
+class Model(PbrNode):
+    """The row of a rough diffuse node that scatters by a model, and the model's closed forms.
 
-    - `name`, `title`: Prefix of its functions, and name in print.
     - `brdf`: `brdf(wo, wi, rho, *parameter)` in 1/sr, shape (..., C); Lambert has no parameter.
     - `albedo_dir`: `albedo_dir(mu, rho, *parameter)`, shape (..., C), where a closed form is known.
     - `albedo_avg`: `albedo_avg(rho, *parameter)`, shape (..., C), where a closed form is known.
+    - `brdf_of`: Name of the model whose `brdf` this is; only the albedo differs.
     """
 
-    name: str
-    title: str
     brdf: Callable[..., Array]
     parameter: str | None  # "sigma", in radian in [0, pi/2]; "roughness", in [0, 1]; or None
     albedo_dir: Callable[..., Array] | None = None
     albedo_avg: Callable[..., Array] | None = None
+    brdf_of: str
 
     @property
     def interval(self) -> tuple[float, float] | None:
@@ -50,14 +52,56 @@ class Model:
         return self.albedo_dir
 
 
-def model(name: str) -> Model:
-    """The row of `MODELS`, `KNOWN_DEFECTS`, `OTHERS` or `PARAMETRIZATIONS` with this name.
+def row(
+    name: str,
+    title: str,
+    brdf: Callable[..., Array],
+    parameter: str | None,
+    albedo_dir: Callable[..., Array] | None = None,
+    albedo_avg: Callable[..., Array] | None = None,
+    brdf_of: str = "",
+) -> Model:
+    """The row of a model with these functions of reflectance and parameter."""
+    category = "burley_diffuse_bsdf" if name.startswith("burley") else "oren_nayar_diffuse_bsdf"
+    parameters = [node_parameter(category, "color", "rho")]
+    if parameter:
+        parameters.append(node_parameter(category, "roughness", parameter))
 
-    >>> model("eon").parameter
+    def own(inputs: Inputs) -> list[Array]:
+        return [inputs[each.name] for each in parameters]
+
+    def value(wo: Array, wi: Array, inputs: Inputs) -> Array:
+        return brdf(wo, wi, *own(inputs))
+
+    def albedo(wo: Array, inputs: Inputs) -> Array:
+        closed = albedo_dir or (lambda *given: albedo_dir_quadrature(brdf, *given))
+        return closed(cosine(wo[:, 2]), *own(inputs))
+
+    return Model(
+        name,
+        title,
+        category,
+        ("color", "roughness"),
+        value,
+        albedo,
+        parameters=tuple(parameters),
+        average=albedo_avg and (lambda inputs: albedo_avg(*own(inputs))),
+        brdf=brdf,
+        parameter=parameter,
+        albedo_dir=albedo_dir,
+        albedo_avg=albedo_avg,
+        brdf_of=brdf_of or name,
+    )
+
+
+def diffuse_model(name: str) -> Model:
+    """The row of a rough diffuse model, known defect or other parametrization with this name.
+
+    >>> diffuse_model("eon").parameter
     'roughness'
     """
-    rows = {row.name: row for row in MODELS + KNOWN_DEFECTS + OTHERS + PARAMETRIZATIONS}
-    return rows[checked_choice("model", name, rows, listing="mxeon.models.table.MODELS")]
+    rows = {each.name: each for each in DIFFUSE_MODELS + KNOWN_DEFECTS + OTHERS + PARAMETRIZATIONS}
+    return rows[checked_choice("model", name, rows, listing="mxeon.models.table.DIFFUSE_MODELS")]
 
 
 @any_array
@@ -91,36 +135,35 @@ def _named(name: str, title: str, parameter: str) -> Model:
     functions = (f"{name}_{each}" for each in ("brdf", "albedo_dir", "albedo_avg"))
     brdf, *albedos = (getattr(diffuse, each, None) for each in functions)
     assert brdf, f"{name}_brdf is not in mxeon.models.diffuse"
-    tinted = (
+    albedo_dir, albedo_avg = (
         each if each is None or "rho" in signature(each).parameters else _tinted(each)
         for each in albedos
     )
-    return Model(name, title, brdf, parameter, *tinted)
+    return row(name, title, brdf, parameter, albedo_dir, albedo_avg)
 
 
-MODELS = (
-    Model(
-        "lambert", "Lambert", diffuse.lambert_brdf, None, _lambert_albedo_dir, _lambert_albedo_avg
-    ),
+DIFFUSE_MODELS = (
+    row("lambert", "Lambert", diffuse.lambert_brdf, None, _lambert_albedo_dir, _lambert_albedo_avg),
     _named("oren_nayar", "full Oren-Nayar", "sigma"),
     _named("qon", "qualitative Oren-Nayar (QON)", "sigma"),
     _named("qon_footnote", "QON with the footnote's constant", "sigma"),
     _named("qon_fujii", "QON with Fujii's coefficients", "sigma"),
     _named("fon", "Fujii Oren-Nayar (FON)", "roughness"),
     _named("eon", "energy-preserving Oren-Nayar (EON)", "roughness"),
-    Model("eon_approx", "EON with the paper's quartic", diffuse.eon_brdf_approx, "roughness"),
+    row("eon_approx", "EON with the paper's quartic", diffuse.eon_brdf_approx, "roughness"),
 )
 
 KNOWN_DEFECTS = (
     _named("eon_clamped", "EON with clamped dot(wo, wi)", "roughness"),
     _named("eon_rho_cubed", "EON with rho^3", "roughness"),
     _named("fon_white_lobe", "FON + white lobe", "roughness"),
-    Model(
+    row(
         "qon_fitted",
         "QON with MaterialX's fit of its albedo",
         diffuse.qon_brdf,
         "sigma",
         diffuse.qon_fitted_albedo_dir,
+        brdf_of="qon",
     ),
     _named("qon_tinted_twice", "QON tinted twice", "sigma"),
 )
@@ -133,21 +176,23 @@ HALF_METAL = {"specular_roughness": 0.75, "specular_ior": 1.5, "metalness": 0.5}
 # What renderers' own nodes have beside those: EON with the quartic also in surroundings, a defect of
 # it, Burley's model, EON under a coat or a varnish, and OpenPBR's base. Shaders that are generated have none of them.
 OTHERS = (
-    Model(
+    row(
         "eon_fitted",
         "EON with the paper's quartic",
         diffuse.eon_brdf_approx,
         "roughness",
         diffuse.eon_albedo_dir_approx,
+        brdf_of="eon_approx",
     ),
     _named("eon_floor", "EON with a reflectance of at least 0.1", "roughness"),
     _named("burley", "Burley's diffuse model", "roughness"),
-    Model(
+    row(
         "burley_lambert",
         "Burley's diffuse model with Lambert in surroundings",
         diffuse.burley_brdf,
         "roughness",
         lambda mu, rho, roughness: _lambert_albedo_dir(mu, rho),
+        brdf_of="burley",
     ),
     _named(
         "burley_cosine", "Burley with squared roughness, times the cosine once more", "roughness"
@@ -157,7 +202,7 @@ OTHERS = (
         "Burley with Schlick's weight for the cosine of retro-reflection",
         "roughness",
     ),
-    Model(
+    row(
         "eon_coated",
         "EON under a dielectric of alpha 0.5 and index 1.5",
         partial(coat.dielectric_over_eon_brdf, **COATED),
@@ -165,7 +210,7 @@ OTHERS = (
         partial(coat.dielectric_over_eon_albedo_dir, **COATED),
         partial(coat.dielectric_over_eon_albedo_avg, **COATED),
     ),
-    Model(
+    row(
         "eon_varnished",
         "EON under a varnish of alpha 0.5 and index 1.5",
         partial(coat.varnished_brdf, **COATED),
@@ -173,7 +218,7 @@ OTHERS = (
         partial(coat.varnished_albedo_dir, **COATED),
         partial(coat.varnished_albedo_avg, **COATED),
     ),
-    Model(
+    row(
         "openpbr_half_metal",
         "OpenPBR's base, half of it metal, of specular roughness 0.75 and index 1.5",
         partial(coat.openpbr_base_brdf, **HALF_METAL),
@@ -188,17 +233,17 @@ def _reparametrized(
     name: str, title: str, base: str, parameter: Callable[[Numbers], Numbers]
 ) -> Model:
     """A model as a function of another roughness, from which its own parameter follows."""
-    row = next(each for each in MODELS if each.name == base)
+    base_model = next(each for each in DIFFUSE_MODELS if each.name == base)
 
     @any_array
     def brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-        return row.brdf(wo, wi, rho, parameter(checked("roughness", roughness)))
+        return base_model.brdf(wo, wi, rho, parameter(checked("roughness", roughness)))
 
     @any_array
     def albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-        return row.closed_albedo_dir(mu, rho, parameter(checked("roughness", roughness)))
+        return base_model.closed_albedo_dir(mu, rho, parameter(checked("roughness", roughness)))
 
-    return Model(name, title, brdf, "roughness", albedo_dir if row.albedo_dir else None)
+    return row(name, title, brdf, "roughness", albedo_dir if base_model.albedo_dir else None)
 
 
 def _square(roughness: Numbers) -> Numbers:

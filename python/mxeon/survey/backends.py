@@ -116,7 +116,7 @@ class Native(CyclesPictures):
     def claims(self) -> Claims:
         """Titles of the model that the node claims, and of its form that is checked."""
         claimed, *_ = self.node.forms or (self.node.model,)
-        title, own = (reference.model(name).title for name in (claimed, self.node.model))
+        title, own = (reference.diffuse_model(name).title for name in (claimed, self.node.model))
         return {"claimed": title, "model": own}
 
     def picture(self, batch: Batch) -> Array:
@@ -160,7 +160,7 @@ class Exact(Native):
         values = self.direct(batch)
         errors = {
             form: float(np.abs(values - form.value(batch)).max())
-            for form in (replace(self.node, model=each) for each in self.node.forms)
+            for form in (self.node.of_model(each) for each in self.node.forms)
         }
         return min(errors, key=errors.__getitem__)
 

@@ -32,7 +32,7 @@ from mxeon.conformance.samples import (
     generator,
     special_directions,
 )
-from mxeon.conformance.specs.diffuse import ERRORS, DiffuseModelSpec, inputs_of
+from mxeon.conformance.specs.diffuse import ERRORS, DiffuseModelSpec, inputs_of, model_row
 from mxeon.conformance.tolerance import Compared, absolute, point_of
 from mxeon.errors import InputError, assert_known
 from mxeon.hosts.base import Host, Identity
@@ -60,10 +60,6 @@ class CallableHost(Host):
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ClaimedModel(DiffuseModelSpec):
     """The model that a function claims to be; it stands for a node."""
-
-    @property
-    def other_models(self) -> tuple[reference.Model, ...]:
-        return reference.PARAMETRIZATIONS
 
     def document(self, inputs: Values | None = None) -> str:
         return ""  # a function needs none
@@ -173,7 +169,7 @@ def check_brdf(brdf: Brdf, model: str = "eon", name: str | None = None) -> Run:
       and values (N, 3) in 1/sr, without the cosine. The directions leave the surface, in the local
       frame with the normal +z; roughness lies in [0, 1], or is sigma, in radian, in [0, pi/2] for
       models that have one: `mxeon.models.table`.
-    - `model`: The model that it has to be: a row of `mxeon.models.table.MODELS` with a parameter.
+    - `model`: The model that it has to be: a row of `mxeon.models.table.DIFFUSE_MODELS` with a parameter.
     - `name`: Its name in the report; None for the function's own name.
 
     Values that are not finite fail one check; the others judge the rest. `mxeon.report.write` makes a
@@ -219,10 +215,12 @@ def brdf_test(brdf: Brdf, model: str = "eon", name: str | None = None) -> Callab
 
 def _case(brdf: Brdf, model: str, name: str | None) -> Case:
     title = name or str(getattr(brdf, "__name__", type(brdf).__name__))
+    node = "a function"
     spec = ClaimedModel(
-        title=reference.model(model).title,
-        node="a function",
+        title=reference.diffuse_model(model).title,
+        node=node,
         model=model,
+        row=model_row(model, node, reference.PARAMETRIZATIONS),
         inputs=inputs_of("color", "roughness"),
         errors=ERRORS,
     )
@@ -232,9 +230,11 @@ def _case(brdf: Brdf, model: str, name: str | None) -> Case:
 
 def _checks(model: str) -> tuple[Check, ...]:
     """Rows of the table that check values of any model."""
-    row = reference.model(model)
+    row = reference.diffuse_model(model)
     if not row.parameter:
-        assert_known("model", model, (row.name for row in reference.MODELS if row.parameter))
+        assert_known(
+            "model", model, (row.name for row in reference.DIFFUSE_MODELS if row.parameter)
+        )
     return tuple(
         _of_rest(check)
         for check in CHECKS

@@ -162,7 +162,7 @@ def _entries(report: Report, folder: Path) -> Iterator[Entry]:
 def claim(spec: Spec) -> str:
     """Title of the model that a node claims: of its first published form, if there are several."""
     forms = spec.forms if isinstance(spec, RendererSpec) else ()
-    return reference.model((*forms, spec.model)[0]).title
+    return reference.diffuse_model((*forms, spec.model)[0]).title
 
 
 def _portraits(report: Report, place: Place, folder: Path) -> Iterator[Portrait]:

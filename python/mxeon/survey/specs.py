@@ -5,12 +5,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any, TypeAlias
+from dataclasses import dataclass, field, replace
+from typing import Any, Self, TypeAlias
 
 from mxeon.conformance.samples import Values
-from mxeon.conformance.specs.diffuse import DiffuseModelSpec, inputs_of
-from mxeon.models.table import OTHERS, Model
+from mxeon.conformance.specs.diffuse import DiffuseModelSpec, inputs_of, model_row
+from mxeon.models.nodes.node import PbrNode
+from mxeon.models.table import OTHERS
 
 Material: TypeAlias = Mapping[str, Any]  # properties of a renderer's material
 
@@ -31,12 +32,9 @@ class RendererSpec(DiffuseModelSpec):
     forms: tuple[str, ...] = ()  # published; the nearest to what is measured is judged
     sampled: bool = False  # whether the function that draws its directions can be called
 
-    @property
-    def other_models(self) -> tuple[Model, ...]:
-        """Models of renderers' own nodes; Burley's with the albedo that the node's own has."""
-        name = self.model if self.model.startswith("burley") else "burley"
-        left_out = {"burley", "burley_lambert"} - {name}
-        return tuple(row for row in OTHERS if row.name not in left_out)
+    def of_model(self, model: str) -> Self:
+        """The same node, judged as another model."""
+        return replace(self, model=model, row=_row(model, self.node))
 
     def document(self, inputs: Values | None = None) -> str:
         """None: nothing is generated."""
@@ -59,5 +57,19 @@ def node(
     title: str, model: str, material: Material, ports: tuple[str, ...] = BOTH, **more: Any
 ) -> RendererSpec:
     return RendererSpec(
-        title=title, node=title, model=model, material=material, inputs=inputs_of(*ports), **more
+        title=title,
+        node=title,
+        model=model,
+        row=_row(model, title),
+        material=material,
+        inputs=inputs_of(*ports),
+        **more,
     )
+
+
+def _row(model: str, node: str) -> PbrNode:
+    """The row of a renderer's node; among its variants, Burley's has the albedo that the node has."""
+    name = model if model.startswith("burley") else "burley"
+    left_out = {"burley", "burley_lambert"} - {name}
+    others = tuple(each for each in OTHERS if each.name not in left_out)
+    return model_row(model, node, others)

@@ -196,7 +196,7 @@ def _model(
             f", as with {FLAG} {str(spec.flag).lower()}"
             for spec in DIFFUSE
             if spec.node == case.spec.node and spec.title != case.spec.title
-            if reference.model(spec.model).title == first
+            if reference.diffuse_model(spec.model).title == first
         )
         return sentence(ranking) + next(flags, "")
     # Its own model is correct except in a region or for a range of an input, or not accurate enough.

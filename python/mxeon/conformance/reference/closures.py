@@ -168,7 +168,7 @@ def _mixed(first: Callable[[], Bsdf], second: Callable[[], Bsdf], share: Array) 
 def _inputs(closure: ClosureTree, row: PbrNode) -> Arguments:
     given = {key: value for key, value in closure.arguments.items() if not isinstance(value, str)}
     if closure.name == OREN_NAYAR:
-        given["roughness"] = np.minimum(given["roughness"], table.model(row.name).largest)
+        given["roughness"] = np.minimum(given["roughness"], table.diffuse_model(row.name).largest)
     if closure.name == HAIR:
         for name in ROUGHNESSES:
             lobe = name.removeprefix("roughness_")

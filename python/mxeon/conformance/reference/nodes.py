@@ -26,16 +26,17 @@ from mxeon.errors import NotRun, OutsideModel
 from mxeon.models.core import layering
 from mxeon.models.core.layering import Bsdf, throughput
 from mxeon.models.media import diffusion_blur, transmittance
-from mxeon.models.nodes import NODES, diffuse_node
+from mxeon.models.nodes import NODES
 from mxeon.models.nodes.lobes import HAIR_NODE, SUBSURFACE_NODE
 from mxeon.models.nodes.media import METER
 from mxeon.models.nodes.microfacets import TRANSMISSION_NODES, TRANSMISSIONS, isotropic
 from mxeon.models.nodes.node import Inputs, PbrNode
 from mxeon.models.shading_model import ALONG, UP
+from mxeon.models.table import diffuse_model
 from mxeon.models.thin_film import FILM
 from mxeon.shaders.document.notes import out_of_range
 from mxeon.shaders.document.values import Plain, label
-from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG, OREN_NAYAR, value_text
+from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG, value_text
 
 Albedo: TypeAlias = Callable[[Array, Inputs], Array]
 
@@ -301,7 +302,10 @@ def _within(axes: Array, directions: Array) -> Array:
     return np.asarray(local / np.linalg.norm(local, axis=1, keepdims=True), np.float64)
 
 
-DIFFUSE = {False: diffuse_node("qon", OREN_NAYAR), True: diffuse_node("eon", EON)}
+DIFFUSE = {
+    False: diffuse_model("qon"),
+    True: replace(diffuse_model("eon"), category=EON),
+}
 ROWS = (*NODES, *INNER_NODES)
 LOBES = {
     category: tuple(row for row in ROWS if row.category == category)

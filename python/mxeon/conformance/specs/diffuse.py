@@ -3,8 +3,7 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
@@ -15,7 +14,6 @@ from mxeon.conformance.specs.lobes import ScatteringSpec
 from mxeon.conformance.tolerance import Term, roundings, sum_in
 from mxeon.models import table as reference
 from mxeon.models.core.quadrature import hemisphere_nodes
-from mxeon.models.nodes import diffuse_node
 from mxeon.models.nodes.node import PbrNode, Variant
 from mxeon.models.table import Model
 from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, document_text, input_text, node_text
@@ -73,24 +71,14 @@ def inputs_of(*names: str) -> tuple[Input, ...]:
 class DiffuseModelSpec(ScatteringSpec):
     """What has to be a rough diffuse model: a row of `mxeon.models.table`."""
 
-    row: PbrNode = field(init=False)
     counts: Counts = COUNTS
     flat: bool = True
     beside: bool = False  # whether lobes that ignore the color lie beside it
 
-    def __post_init__(self) -> None:
-        others = self.other_models + reference.KNOWN_DEFECTS + reference.MODELS
-        object.__setattr__(self, "row", _row(self.model, self.node, others))
-
-    @property
-    def other_models(self) -> tuple[Model, ...]:
-        """Models beside the common ones that it may be."""
-        return ()
-
     @property
     def drawn(self) -> tuple[Input, Input]:
         """Its inputs; no roughness exceeds the model's largest by a rounding."""
-        largest = reference.model(self.model).largest
+        largest = reference.diffuse_model(self.model).largest
         most = np.float32(largest)
         high = float(most if most <= largest else np.nextafter(most, np.float32(0.0)))
         edges = tuple(high * each for each in EDGES)
@@ -118,18 +106,19 @@ class DiffuseModelSpec(ScatteringSpec):
         return directions_at(wi[..., 2], azimuth), weights / (np.pi * wi[..., 2])
 
 
-@lru_cache(maxsize=32)
-def _row(model: str, node: str, others: tuple[Model, ...]) -> PbrNode:
-    """A model as the row of a node, with all others that it may be."""
-    rows = {each.name: each for each in others}
-    owners = {each.brdf: each.name for each in (*rows.values(), reference.model(model))}
+def model_row(model: str, node: str, others: tuple[Model, ...] = ()) -> PbrNode:
+    """The row of a node that has to be a model; its variants are all models that it may be instead."""
+    known = others + reference.KNOWN_DEFECTS + reference.DIFFUSE_MODELS
+    rows = {each.name: each for each in known}
+    own = reference.diffuse_model(model)
+    owners = {each.brdf_of: each.name for each in (*rows.values(), own)}
     variants = []
     for each in rows.values():
-        row, most = diffuse_node(each.name, node), each.largest
-        value = _limited(row.value, most) if owners[each.brdf] == each.name else None
-        albedo = _limited(row.albedo, most) if each.albedo_dir else None
+        most = each.largest
+        value = _limited(each.value, most) if owners[each.brdf_of] == each.name else None
+        albedo = _limited(each.albedo, most) if each.albedo_dir else None
         variants += [Variant(each.title, value, albedo)] * (each.name != model)
-    return replace(diffuse_node(model, node), variants=tuple(variants))
+    return replace(own, category=node, variants=tuple(variants))
 
 
 def _limited(function: Callable[..., Array], most: float) -> Callable[..., Array]:
@@ -152,6 +141,7 @@ def _diffuse(node: str, flag: bool | None, model: str) -> DiffuseSpec:
         title=node + words,
         node=node,
         model=model,
+        row=model_row(model, node),
         flag=flag,
         inputs=INPUTS if flag is None else (*INPUTS, Input(FLAG, "boolean", change=not flag)),
         fixed={} if flag is None else {FLAG: flag},
@@ -201,10 +191,12 @@ def _lobe(
     *set_inputs: tuple[str, str, str],
     libraries: tuple[str, ...] = (),
 ) -> SurfaceLobe:
+    node = title.split(",")[0]
     return SurfaceLobe(
         title=title,
-        node=title.split(",")[0],
+        node=node,
         model=model,
+        row=model_row(model, node),
         color=color,
         roughness=roughness,
         set_inputs=set_inputs,

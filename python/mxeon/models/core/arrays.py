@@ -12,14 +12,11 @@ from a branch of its own, and its derivative there is the one of its docstring.
 
 from __future__ import annotations
 
-import re
-import sys
 from collections.abc import Callable, Mapping, Sequence
 from functools import wraps
 from importlib import import_module
 from inspect import signature
 from itertools import chain
-from textwrap import dedent, indent
 from typing import Any, ParamSpec, Protocol, TypeAlias, TypeVar, cast
 
 import numpy as np
@@ -106,28 +103,7 @@ def any_array(function: Callable[P, R]) -> Callable[P, R]:
         named = {name: convert(each) for name, each in left.items()}
         return cast(Callable[..., R], function)(*map(convert, args), **named)
 
-    wrapper.__doc__ = with_arguments(function.__doc__, function.__module__, names)
     return wrapper
-
-
-# A line of a list of arguments, and the lines that continue it.
-ARGUMENTS = re.compile(r"^- ((?:`\w+`(?:, )?)+).*\n(?:  .*\n)*", re.MULTILINE)
-
-
-def with_arguments(text: str | None, module: str, names: Sequence[str]) -> str | None:
-    """Docstring of a function with what the page of its family says of its arguments, for `help`."""
-    page = sys.modules[module].__doc__
-    if not text or not page:
-        return text
-    own = {
-        name for each in ARGUMENTS.finditer(dedent(text)) for name in re.findall(r"\w+", each[1])
-    }
-    told = [
-        each[0]
-        for each in ARGUMENTS.finditer(page)
-        if set(re.findall(r"\w+", each[1])) & set(names) - own
-    ]
-    return text.rstrip() + "\n\n" + indent("".join(told), "    ")
 
 
 def _converter(others: Sequence[object]) -> Callable[[object], object]:

@@ -148,6 +148,8 @@ class PbrNode(Node[Scattering]):
       lets nothing through.
     - `transmits`: Whether it scatters light from below the horizon instead of light from above.
     - `mirror`: Inputs with which it reflects all light; none if there are none.
+    - `parameters`: Its inputs where they differ from those of the category, or have other quantities.
+    - `average`: Average albedo, where a closed form is known.
     """
 
     albedo: Callable[[Array, Inputs], Array]
@@ -158,6 +160,8 @@ class PbrNode(Node[Scattering]):
     fitted: bool = False  # whether a shader needs a fit for its albedo
     reciprocal: bool = True  # whether exchanging the directions does not change the value
     mirror: Mapping[str, ArrayLike] = field(default_factory=dict, hash=False)
+    parameters: tuple[Parameter, ...] = ()
+    average: Callable[[Inputs], Array] | None = None
 
 
 def column(inputs: Inputs, name: str) -> Array:
