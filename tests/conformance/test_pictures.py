@@ -12,6 +12,7 @@ from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import EON, SURFACE, document_text
 from mxeon.shaders.scene import FRONT, FURNACE, SIDE, Scene, sphere
 from tests.support.documents import lobe, material
+from tests.support.wrong_libraries import wrong_copy
 
 
 @pytest.fixture
@@ -213,6 +214,16 @@ def test_a_wrong_lobe_below_the_surface_is_found(shown, node):
     lobes = {"dielectric_bsdf": glass, "subsurface_bsdf": f'<{node} name="lobe" type="BSDF"/>'}
     result, *_ = shown(material(lobes[node]), "stock")
     assert (result.check, result.verdict) == ("picture", "failed")
+
+
+def test_a_zeltner_sheen_has_no_tolerance_of_microfacets(shown, tmp_path):
+    text = material(
+        '<sheen_bsdf name="lobe" type="BSDF"><input name="mode" type="string" value="zeltner"/></sheen_bsdf>'
+    )
+    right, *_ = shown(text)
+    old, new = "bsdf.response = lobe * color", "bsdf.response = 1.001 * lobe * color"
+    wrong, *_ = shown(text, wrong_copy(tmp_path, old, new, "genglsl/sheen_bsdf.glsl"))
+    assert (right.verdict, wrong.verdict) == ("passed", "failed") and right.tolerance < 2e-5
 
 
 # --- what the models do not cover --------------------------------------------------------------

@@ -24,6 +24,7 @@ from mxeon.conformance.samples import Batch, Values
 from mxeon.conformance.specs import surface_shaders as surfaces
 from mxeon.conformance.specs.diffuse import DiffuseModelSpec, SurfaceLobe
 from mxeon.conformance.specs.hair import lobe_terms
+from mxeon.conformance.specs.lobes import CLOSED_ALBEDO
 from mxeon.conformance.specs.microfacets import ERRORS as FACET_ERRORS
 from mxeon.conformance.specs.microfacets import (
     FILM_ALBEDO,
@@ -32,6 +33,7 @@ from mxeon.conformance.specs.microfacets import (
     MEAN,
     sum_over,
 )
+from mxeon.conformance.specs.sheen import ZELTNER_VALUE
 from mxeon.conformance.specs.subsurface import RINGS
 from mxeon.conformance.specs.utilities import BLACKBODY
 from mxeon.conformance.tolerance import (
@@ -62,7 +64,7 @@ from mxeon.shaders.scene import BACK, SIDE, Scene, sphere
 
 # Nodes whose shaders take an albedo from a fit.
 FITTED_NODES = {row.category for row in NODES if row.fitted or row.mirror}
-HAIR = "chiang_hair_bsdf"
+HAIR, SHEEN = "chiang_hair_bsdf", "sheen_bsdf"
 COSINES = 256  # of views, among which a sheen's albedo is largest
 
 # Errors are taken times cos(theta_o): the normal changes by its inverse from pixel to pixel.
@@ -90,10 +92,13 @@ def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe], host: Host) -> Tole
 
     An image's filter works on codes, before a decoding.
     """
-    nodes = list(inner_nodes(shader.document))
-    if categories(shader.document.traverseTree()) & FITTED_NODES:
+    nodes, lobes = list(inner_nodes(shader.document)), tuple(lobes)
+    fitted = FITTED_NODES & {lobe.category for lobe in lobes}
+    modes = {lobe.inputs.get("mode") for lobe in lobes if lobe.category == SHEEN}
+    zeltner = fitted == {SHEEN} and modes == {"zeltner"}  # whose albedo has a closed form
+    if not zeltner and categories(shader.document.traverseTree()) & FITTED_NODES:
         tolerance = FITTED
-    elif categories(nodes) & FITTED_NODES:
+    elif not zeltner and categories(nodes) & FITTED_NODES:
         tolerance = SHADED
     elif any(port.type == "filename" and port.value for port in shader.inputs):
         files = (each for each in nodes if each.isA(mx.Input) and each.getType() == "filename")
@@ -104,7 +109,11 @@ def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe], host: Host) -> Tole
     rings = RINGS.term("subsurface scattering in six circles")
     others = [rings] * (SUBSURFACE in inner_lobes(shader))
     others += BLACKBODY.terms * ("blackbody" in categories(nodes))
-    others += _others(tuple(lobes))
+    others += [
+        ZELTNER_VALUE.term("Zeltner's sheens"),
+        CLOSED_ALBEDO.term("their albedos"),
+    ] * zeltner
+    others += _others(lobes)
     rounding = host_row(host.name).rounding
     others += [Term(rounding, "the pixels' own rounding")] * bool(rounding)
     return replace(tolerance.plus(*others), unit=RELATIVE) if others else tolerance
