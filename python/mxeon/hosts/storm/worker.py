@@ -36,6 +36,7 @@ ANGLE = 0.1  # degrees, of the distant light: with 0 it is black
 # Storm sums a dome's irradiance over a right angle in 64 steps. 64 of them in float32 add up to less
 # than the angle, so it takes a 65th and divides by 65: a white dome gives this much light.
 WHITE_DOME = math.pi / 130.0 / math.tan(math.pi / 128.0)
+CARD = 2.0  # distance of a white card that emits, behind the picture
 # A white pixel in Radiance's format: a dome without a texture is black.
 WHITE = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\x80\x80\x80\x81"
 
@@ -125,6 +126,22 @@ class Stage:
         white.write_bytes(WHITE)
         self._dome = usd.UsdLux.DomeLight.Define(self._stage, "/dome")
         self._dome.CreateTextureFileAttr(str(white))
+        self._card = usd.UsdGeom.Mesh.Define(self._stage, "/card")
+        self._card.CreateSubdivisionSchemeAttr("none")
+        corners = [(x, y, -CARD) for x, y in ((-2, -2), (2, -2), (2, 2), (-2, 2))]
+        self._card.CreatePointsAttr(usd.Vt.Vec3fArray(corners))
+        self._card.CreateFaceVertexCountsAttr([4])
+        self._card.CreateFaceVertexIndicesAttr([0, 1, 2, 3])
+        white_look = usd.UsdShade.Material.Define(self._stage, "/white")
+        shader = usd.UsdShade.Shader.Define(self._stage, "/white/shader")
+        shader.CreateIdAttr("UsdPreviewSurface")
+        color = usd.Sdf.ValueTypeNames.Color3f
+        shader.CreateInput("emissiveColor", color).Set((1.0, 1.0, 1.0))
+        shader.CreateInput("diffuseColor", color).Set((0.0, 0.0, 0.0))
+        shader.CreateInput("roughness", usd.Sdf.ValueTypeNames.Float).Set(1.0)
+        shader.CreateInput("useSpecularWorkflow", usd.Sdf.ValueTypeNames.Int).Set(1)
+        white_look.CreateSurfaceOutput().ConnectToSource(shader.ConnectableAPI(), "surface")
+        usd.UsdShade.MaterialBindingAPI.Apply(self._card.GetPrim()).Bind(white_look)
         self._engine = usd.UsdImagingGL.Engine()
         self._engine.SetRendererAov("color")
 
@@ -136,11 +153,13 @@ class Stage:
         size: int,
         light: tuple[float, float, float] | None,
         environment: float | None,
+        card: bool = False,
     ) -> Pixels:
         """Picture of the square [-1, 1]^2, seen along -z."""
         self._set_mesh(mesh)
         self._set_material(document, element)
         self._set_lights(light, environment)
+        self._card.GetPrim().SetActive(card)
         frustum = usd.Gf.Frustum()
         frustum.projectionType = usd.Gf.Frustum.Orthographic
         frustum.window = usd.Gf.Range2d((-1.0, -1.0), (1.0, 1.0))
