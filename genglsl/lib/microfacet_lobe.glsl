@@ -112,14 +112,31 @@ vec3 microfacet_environment(MicrofacetLobe lobe, int distribution, FresnelData f
     return radiance * (drawn / (lobe.mu_o + sqrt(alpha2 + (1.0 - alpha2) * mu2)));
 }
 
-// Light through a surface that reflects nothing, along the view refracted twice, as by a solid sphere.
+// A Fresnel curve by which each of MaterialX's sums over a refracted environment, whose cosine with the
+// view is mu, transmits the same share. It is F0 at all facets but those along the view's horizon.
+//   sampled: (1 - F0) / G_1(mu)           prefiltered: 1 - (A F0 + B F90), with MaterialX's fits A and B
+// The least B keeps F90 finite where there is no table of fits.
+FresnelData microfacet_share_curve(float mu, float alpha, vec3 share)
+{
+#ifdef MX_REFRACTION_UNMASKED // the sampled sum has no division: patch 0009
+    vec3 F0 = 1.0 - share;
+#else
+    vec3 F0 = 1.0 - mx_ggx_smith_G1(mu, alpha) * share;
+#endif
+    vec3 AB = mx_ggx_dir_albedo(mu, alpha, vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0));
+    vec3 F90 = (1.0 - share - AB.x * F0) / max(AB.y, 1e-6);
+    return mx_init_fresnel_schlick(F0, vec3(1.0), F90, 1e9, 0.0, 1.0);
+}
+
+// Light through a surface that transmits a share of it, along the view refracted twice, as by a solid sphere;
+// or, where MaterialX renders transmission as opacity, the tint.
 //
 // The ray leaves the sphere at the cosine c at which it met the facet. MaterialX computes c^2 anew, as
 // 1 - n^2 (1 - q^2) from the cosine q inside, and where its rounding exceeds c^2, nothing leaves: 0 / 0. A view
 // longer by d adds 8 d q^2 / n^2 to it, here 8e-6 n^2, three times the roundings of seven operations, and
 // otherwise changes nothing above d. Near n = 1 and above 4, d is too large: rough surfaces refract as with 1.001
 // and with 4. A smooth one, whose facets are one, keeps its n above 4, and refracts as with a larger c.
-vec3 microfacet_transmitted(MicrofacetLobe lobe, int distribution, vec3 ior, vec3 tint)
+vec3 microfacet_transmitted(MicrofacetLobe lobe, int distribution, vec3 ior, vec3 share, vec3 tint)
 {
     float n = max(ior.x, MICROFACET_LEAST_INDEX);
     vec3 wo = lobe.wo;
@@ -135,12 +152,10 @@ vec3 microfacet_transmitted(MicrofacetLobe lobe, int distribution, vec3 ior, vec
         float n2 = n * n;
         wo *= 1.0 + 1e-6 * n2 * n2 * n2 / (n2 - 1.0);
     }
-    FresnelData clear = mx_init_fresnel_schlick(vec3(0.0), vec3(1.0), vec3(0.0), 5.0, 0.0, 1.0);
-    clear.ior = vec3(n);
-
-    // MaterialX divides the sum by G_1, for a shadowing that it does not have.
-    return mx_ggx_smith_G1(lobe.mu_o, lobe.alpha)
-           * mx_surface_transmission(lobe.N, wo, lobe.X, lobe.roughness, distribution, clear, tint);
+    float mu = clamp(dot(lobe.N, wo), M_FLOAT_EPS, 1.0);
+    FresnelData curve = microfacet_share_curve(mu, lobe.alpha, share);
+    curve.ior = vec3(n);
+    return mx_surface_transmission(lobe.N, wo, lobe.X, lobe.roughness, distribution, curve, tint);
 }
 
 // Response and throughput of a lobe with its reflectances F: [MaterialX2026], Energy Compensation,
@@ -159,8 +174,11 @@ void microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelData f
     }
     else if (lobe.closure == CLOSURE_TYPE_TRANSMISSION && scatter_mode != 0)
     {
+        // As opacity, a lobe that only transmits passes all light: what lies over it takes away what it reflects.
         vec3 passed = max(1.0 - lobe.albedo * F.visible * compensation, 0.0);
-        bsdf.response = microfacet_transmitted(lobe, distribution, fd.ior, tint) * passed * weight;
+        bool below = scatter_mode == 1;
+        vec3 through = microfacet_transmitted(lobe, distribution, fd.ior, below ? passed : vec3(1.0), tint);
+        bsdf.response = through * (below ? vec3(1.0) : passed) * weight;
     }
     else if (lobe.closure == CLOSURE_TYPE_INDIRECT)
     {
