@@ -41,7 +41,7 @@ from mxeon.conformance.specs.diffuse import LOBE_VALUE, DiffuseModelSpec, Diffus
 from mxeon.conformance.specs.emission import AbsentSpec, EmissionSpec, EmittingSurface, MediumSpec
 from mxeon.conformance.specs.hair import HairSpec
 from mxeon.conformance.specs.lobes import PbrSpec, ScatteringSpec
-from mxeon.conformance.specs.microfacets import FilmSpec, TransmissionSpec
+from mxeon.conformance.specs.microfacets import LEAST_FIT, FilmSpec, TransmissionSpec
 from mxeon.conformance.specs.subsurface import SubsurfaceSpec
 from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
 from mxeon.conformance.specs.utilities import UtilitySpec
@@ -125,6 +125,8 @@ class Samples:
     @cached_property
     def views(self) -> tuple[Batch, ...]:
         views: tuple[Batch, ...] = self.spec.views(self.batches, self.counts)
+        if self.backend.prefiltered:
+            return tuple(map(isotropic, views))
         return views
 
     @cached_property
@@ -155,6 +157,18 @@ class Samples:
         return dict(inputs)
 
 
+def isotropic(batch: Batch) -> Batch:
+    """The same with the mean alpha in all directions: a prefiltered environment has one roughness."""
+    inputs: dict[str, Array] = {}
+    for name, value in batch.inputs.items():
+        if name == "roughness" and np.shape(value)[-1:] == (2,):
+            mean = np.sqrt(np.prod(np.asarray(value), axis=-1, keepdims=True))
+            inputs[name] = np.broadcast_to(mean, np.shape(value))
+        elif name.endswith("anisotropy"):
+            inputs[name] = np.zeros_like(value)
+    return batch.altered(**inputs)
+
+
 class Backend(ABC):
     """A way of asking an engine about one node: its shader, and values of it."""
 
@@ -181,6 +195,10 @@ class Backend(ABC):
     def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
         """The largest error of a quantity, engine functions apart; None where it is not asked."""
         return spec.errors.get(quantity)
+
+    @property
+    def prefiltered(self) -> bool:
+        return self.host.active.environment == "prefilter"
 
     def implemented(self, text: str) -> Shader:
         """Shader of a document; NotRun where the target has no implementation of an optional node."""
@@ -251,7 +269,12 @@ class Evaluating(Backend):
             colors, power = float32(np.linspace(0.09, 1.0, POWERS)), float32(np.full(POWERS, 2.4))
             error = POWER.error(lambda: (colors, power))(self.host)
             return (Term(2.0 * error, "pow() as measured there, times 2"),)
-        return () if isinstance(self.spec, self.unlit) else self.spec.engine(quantity, self.host)
+        if isinstance(self.spec, self.unlit):
+            return ()
+        terms = self.spec.engine(quantity, self.host)
+        if quantity == "value" and self.prefiltered and isinstance(self.spec, TransmissionSpec):
+            terms += (Term(LEAST_FIT, "MaterialX's fit of prefiltered light"),)
+        return terms
 
     @cached_property
     def shader(self) -> Shader:
@@ -307,7 +330,8 @@ class Evaluating(Backend):
             asked = shader or self.shader, wo, wi, inputs, branch
             return self.asked(asked, output, irradiance).astype(np.float64)
 
-        rest = branch, output, shader and shader.element, contents(irradiance)
+        which = shader and (shader.element, shader.methods)
+        rest = branch, output, which, contents(irradiance)
         return self._evaluations.value((*parts(batch), *rest), evaluated)
 
 

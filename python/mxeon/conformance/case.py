@@ -18,6 +18,7 @@ from mxeon.conformance.backends import Backend, Evaluating, Samples
 from mxeon.conformance.cache import Remembered
 from mxeon.conformance.samples import Array, Batch, Candidate, Changes
 from mxeon.conformance.spec import LobeSpec, Spec, ValueSpec
+from mxeon.conformance.specs.microfacets import FacetSpec
 from mxeon.conformance.tolerance import Compared, Tolerance
 from mxeon.hosts.base import Engine, Host
 
@@ -66,6 +67,11 @@ class Case:
         """The spec of a case that a check asks of one family alone."""
         assert isinstance(self.spec, family), f"{self.spec.title} is no {family.__name__}"
         return self.spec
+
+    @property
+    def opaque(self) -> bool:
+        """Whether transmission is rendered as opacity, for which nothing is looked up."""
+        return self.host.active.transmission == "opacity"
 
     @property
     def lobe(self) -> LobeSpec:
@@ -166,9 +172,12 @@ def values(case: Case) -> Iterator[Compared]:
 
 
 def albedos(case: Case) -> Iterator[Compared]:
-    """The environment branch against the directional albedo."""
+    """The environment branch against the directional albedo, or MaterialX's fit of it."""
+    spec, fitted = case.spec, case.backend.prefiltered
     for batch in case.views:
-        yield Compared(batch, case.albedo(batch), case.expected_albedo(batch))
+        by_fit = fitted and isinstance(spec, FacetSpec)
+        expected = spec.prefiltered(batch) if by_fit else case.expected_albedo(batch)
+        yield Compared(batch, case.albedo(batch), expected)
 
 
 def throughputs(case: Case, *branches: str) -> Iterator[Compared]:

@@ -26,6 +26,7 @@ from mxeon.conformance.spec import Spec
 from mxeon.conformance.tolerance import Compared, Measurement, Metric, Tolerance, worst_of
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts.base import RendererWarning
+from mxeon.shaders.methods import GENERATED, Methods
 
 Measure: TypeAlias = Callable[[Case], Compared | Iterable[Compared] | Measurement]
 
@@ -65,6 +66,8 @@ class Check:
     open: bool = False
     # Whether it can be asked on the host of a name.
     hosts: Callable[[Spec, str], bool] = lambda spec, host: True
+    # Whether it can be asked with a client's methods.
+    methods: Callable[[Spec, Methods], bool] = lambda spec, methods: True
 
     def measured(self, case: Case, metric: Metric) -> Measurement:
         """The worst error of a case."""
@@ -73,9 +76,11 @@ class Check:
             return found
         return worst_of(metric, [found] if isinstance(found, Compared) else found)
 
-    def applies_to(self, spec: Spec, backend: type[Backend], host: str) -> bool:
-        """Whether it is asked about a node on a host, by one of its backends."""
-        if not (self.applies(spec) and self.hosts(spec, host)):
+    def applies_to(
+        self, spec: Spec, backend: type[Backend], host: str, methods: Methods = GENERATED
+    ) -> bool:
+        """Whether it is asked about a node on a host, by one of its backends, with a client's methods."""
+        if not (self.applies(spec) and self.hosts(spec, host) and self.methods(spec, methods)):
             return False
         if (self.pairs and not backend.any_pairs) or (self.lit and isinstance(spec, backend.unlit)):
             return False

@@ -56,6 +56,13 @@ class Engine(ABC):
 
     name: str
     draws_images: ClassVar[bool] = False  # whether the environment of its pictures may be an image
+    default: ClassVar[Methods] = UNCHOSEN  # its methods unless others are chosen, if it has any
+    methods: Methods = UNCHOSEN  # chosen for all shaders
+
+    @property
+    def active(self) -> Methods:
+        """The methods of its shaders."""
+        return self.methods.over(self.default)
 
     def choose(self, methods: Methods) -> None:
         """Use the methods that a client chooses, or raise NotRun."""
@@ -119,7 +126,6 @@ class Host(Engine):
         UNCHOSEN  # its methods unless others are chosen; UNCHOSEN: it has none
     )
     fixed: ClassVar[bool] = False  # whether it has its own methods alone
-    methods: Methods = UNCHOSEN  # chosen for all shaders
 
     def compile(
         self,
@@ -160,11 +166,6 @@ class Host(Engine):
                 only = offered.get(name, "MaterialX's default")
                 raise NotRun(f"{self.name}: {name} is always {only}; got {value}")
         self.methods = UNCHOSEN if self.fixed else methods
-
-    @property
-    def active(self) -> Methods:
-        """The methods of its shaders."""
-        return self.methods.over(self.default)
 
     def picture(self, shader: Shader, scene: Scene) -> Array:
         """Picture of the unit sphere with a shader on it: linear, row 0 at the top, 0 off the sphere.

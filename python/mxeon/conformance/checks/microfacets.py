@@ -67,6 +67,7 @@ from mxeon.conformance.tolerance import (
 )
 from mxeon.models.microfacet.ggx import smith_g1, smith_lambda
 from mxeon.models.transmission import refraction_direction
+from mxeon.shaders.methods import GENERATED, Methods
 
 PAIRS = 1 << 12  # near the mirror direction
 LEAST_DIVIDED = 1.2  # index of a dielectric whose values are divided
@@ -168,6 +169,7 @@ def anisotropy(case: Case) -> Compared:
     lit=True,
     diagnose=lambda case: diagnose_sky(case),
     key="sky",
+    methods=lambda spec, methods: with_directions(spec, methods),
 )
 def reflected_sky(case: Case) -> Iterator[Compared]:
     """The reflection of an uneven environment is the integral of the values over it, also for retroreflection.
@@ -210,7 +212,14 @@ def diagnose_stretched(case: Case) -> Diagnosis:
     return Diagnosis(at_mean if scaled < NEAR * plain else UNKNOWN)
 
 
-@check(is_facets, isotropic, pairs=True, lit=True, diagnose=diagnose_stretched)
+@check(
+    is_facets,
+    isotropic,
+    pairs=True,
+    lit=True,
+    diagnose=diagnose_stretched,
+    methods=lambda spec, methods: with_directions(spec, methods),
+)
 def anisotropic_albedo(case: Case) -> Compared:
     """The environment branch of an anisotropic lobe returns the integral of its values."""
     batch, expected = case.samples.take(case.of(FacetSpec).stretched)
@@ -233,6 +242,16 @@ NORMAL = (0.0, 0.0, 1.0)
 ONE = np.ones((1, 3))
 
 is_transmitting = of_family(TransmissionSpec)
+
+
+def by_itself(spec: Spec) -> bool:
+    """Whether a lobe reflects what it does not transmit: no layer over it does."""
+    return isinstance(spec, TransmissionSpec) and spec.reflects
+
+
+def with_directions(spec: Spec, methods: Methods) -> bool:
+    """Whether an environment is summed over directions: a prefiltered map is read once, times a fit."""
+    return methods.environment == "fis"
 
 
 def diagnose_transmitted(case: Case) -> Diagnosis:
@@ -269,15 +288,23 @@ def transmitted(case: Case) -> Iterator[Compared]:
 
     One is what the BTDF passes, without compensation; the other all that is not reflected, with tint and
     weight. The first is the larger for some colors of Schlick's curve, of which the text compensates too
-    much; and the most exceeds 1 where the node's own curve is below 0.
+    much; and the most exceeds 1 where the node's own curve is below 0. As opacity, a lobe that only transmits
+    passes its tint: a layer over it takes away what it reflects.
     """
-    functions = case.of(TransmissionSpec).functions
+    spec = case.of(TransmissionSpec)
     for batch in case.views:
-        measured = case.transmitted(batch)
-        rest = functions.tint(batch.inputs) * (1.0 - functions.reflected(batch.wo, batch.inputs))
-        ends = np.maximum(rest, 0.0), functions.passed(batch.wo, batch.inputs, True)
-        least, most = (batch.strength * each for each in (np.minimum(*ends), np.maximum(*ends)))
-        yield Compared(batch, measured, np.clip(measured, least, most))
+        yield limited(spec, batch, case.transmitted(batch), case.opaque)
+
+
+def limited(spec: TransmissionSpec, batch: Batch, measured: Array, opaque: bool) -> Compared:
+    """Light through the surface against the nearest value inside the limits."""
+    functions = spec.functions
+    if opaque and not spec.reflects:
+        return Compared(batch, measured, batch.strength * functions.tint(batch.inputs))
+    rest = functions.tint(batch.inputs) * (1.0 - functions.reflected(batch.wo, batch.inputs))
+    ends = np.maximum(rest, 0.0), functions.passed(batch.wo, batch.inputs, True)
+    least, most = (batch.strength * each for each in (np.minimum(*ends), np.maximum(*ends)))
+    return Compared(batch, measured, np.clip(measured, least, most))
 
 
 @check(
@@ -285,12 +312,52 @@ def transmitted(case: Case) -> Iterator[Compared]:
     scale("values are 5 % too large", 1.05),
     "light",
     diagnose=diagnose_transmitted,
+    methods=with_directions,
 )
 def clear(case: Case) -> Iterator[Compared]:
     """A white lobe that reflects and transmits returns all light of a uniform environment."""
     for batch in case.views:
         white = batch.altered(tint=(1.0, 1.0, 1.0), weight=1.0)
         yield Compared(white, case.albedo(white) + case.transmitted(white), ONE)
+
+
+# Methods of clients: Storm's, and a prefiltered environment with refraction, as MaterialXView has it.
+OTHERS = (Methods("prefilter", "opacity"), Methods("prefilter", "refraction"))
+
+
+def shares(case: Case, methods: Methods) -> Iterator[Compared]:
+    """Light through the surface with a client's methods, against the nearest value inside the limits."""
+    spec = case.of(TransmissionSpec)
+    [shader] = case.host.compile(spec.document(), library=case.library, methods=methods)
+    for batch in case.views:
+        found = case.evaluating.evaluate(case.inputs(batch), "transmission", shader=shader)
+        yield limited(spec, batch, case.outputs(batch, found), methods.transmission == "opacity")
+
+
+def diagnose_methods(case: Case) -> Diagnosis:
+    tolerance = case.tolerance("methods")
+    wrong = [
+        str(methods)
+        for methods in OTHERS
+        if any(
+            (tolerance.metric(*each[1:]) > tolerance.value).any() for each in shares(case, methods)
+        )
+    ]
+    return Diagnosis(f"with {' and with '.join(wrong)}" if wrong else UNKNOWN)
+
+
+@check(
+    is_transmitting,
+    scale("values are 10 % too large", 1.1),
+    pairs=True,
+    lit=True,
+    diagnose=diagnose_methods,
+    methods=lambda spec, methods: methods == GENERATED,
+)
+def methods(case: Case) -> Iterator[Compared]:
+    """With a prefiltered environment, and as opacity, the light that passes lies between the same limits."""
+    for each in OTHERS:
+        yield from shares(case, each)
 
 
 def diagnose_kept(case: Case) -> Diagnosis:
@@ -330,7 +397,12 @@ def _modes(case: Case) -> Iterator[tuple[str, Compared]]:
 DENSER = with_inputs("the index is different", ior=2.5, color0=(0.5, 0.5, 0.5))
 
 
-@check(is_transmitting, DENSER, diagnose=diagnose_transmitted)
+@check(
+    is_transmitting,
+    DENSER,
+    diagnose=diagnose_transmitted,
+    methods=lambda spec, methods: methods.transmission == "refraction" or by_itself(spec),
+)
 def critical(case: Case) -> Compared:
     """A smooth surface transmits 1 - F, and nothing beyond the critical angle."""
     batch = _smooth(case)
@@ -342,7 +414,14 @@ def critical(case: Case) -> Compared:
     return Compared(batch, case.transmitted(batch), batch.strength * passed)
 
 
-@check(is_transmitting, DENSER, tolerance=REFRACTED, lit=True, diagnose=UNKNOWN)
+@check(
+    is_transmitting,
+    DENSER,
+    tolerance=REFRACTED,
+    lit=True,
+    diagnose=UNKNOWN,
+    methods=lambda spec, methods: methods.transmission == "refraction",
+)
 def refraction(case: Case) -> Compared:
     """An uneven environment is looked up along the ray that a solid sphere refracts."""
     index = case.of(TransmissionSpec).functions.ior
@@ -416,11 +495,17 @@ def transmitted_inputs(case: Case) -> Measurement:
 def wrong_inputs(case: Case) -> list[str]:
     """Inputs that change no light through the surface, and those that must not.
 
-    The retroreflective mode is of the reflection alone.
+    The retroreflective mode is of the reflection alone. A prefiltered environment has no tangent, and opacity
+    none either; a lobe that only transmits passes its tint as opacity.
     """
     batch = case.few[0].first(CHANGED_VIEWS)
     dead = dead_inputs(case, batch, lambda each: case.transmitted(each, sky_map()))
-    return [each for each in case.changes if (each in dead) != (each == "retroreflective")]
+    unread = {"retroreflective"}
+    if case.opaque and not by_itself(case.spec):
+        unread |= case.changes.keys() - {"weight", "tint"}
+    elif case.opaque or case.backend.prefiltered:
+        unread.add("tangent")
+    return [each for each in case.changes if (each in dead) != (each in unread)]
 
 
 # --- thin films -----------------------------------------------------------------------------------
@@ -562,13 +647,13 @@ def diagnose_visible(case: Case) -> Diagnosis:
     return explained if RIGHT not in explained.text else Diagnosis(UNMASKED)
 
 
-@check(is_film, dropped, lit=True, open=True, diagnose=diagnose_visible)
+@check(is_film, dropped, lit=True, open=True, diagnose=diagnose_visible, methods=with_directions)
 def film_visible(case: Case) -> Compared:
     """The albedo averages the film's reflectance over the visible, lit facets."""
     return _visible(case, film_views(case.of(FilmSpec), STEEP))
 
 
-@check(is_film, dropped, lit=True, open=True, diagnose=diagnose_visible)
+@check(is_film, dropped, lit=True, open=True, diagnose=diagnose_visible, methods=with_directions)
 def film_glossy(case: Case) -> Compared:
     """On glossy lobes, too, the albedo averages the film's reflectance over the visible facets."""
     return _visible(case, film_views(case.of(FilmSpec), GLOSSY))

@@ -30,6 +30,7 @@ from mxeon.conformance.samples import (
     sky_map,
 )
 from mxeon.conformance.spec import LobeSpec, broadcast_inputs
+from mxeon.conformance.specs.microfacets import TransmissionSpec
 from mxeon.conformance.tolerance import Compared
 from mxeon.hosts.calls import LIGHTS, LIT, NORMAL, SECOND_LIGHT, SKY, TANGENT
 from mxeon.io.images import FAST_EXR, write_image
@@ -283,6 +284,10 @@ exchanged = with_batch(
     exchanged,
     pairs=True,
     diagnose=lambda case: diagnose(case),
+    # As opacity, such a lobe is its tint: no control could show a wrong view.
+    methods=lambda spec, methods: (
+        not isinstance(spec, TransmissionSpec) or spec.reflects or methods.transmission != "opacity"
+    ),
 )
 def states(case: Case) -> Iterator[Compared]:
     """Lights, environments and lobes add up in a pixel, in every frame, whether inputs vary or not."""

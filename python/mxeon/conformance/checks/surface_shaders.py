@@ -10,6 +10,7 @@ import numpy as np
 from mxeon.conformance.backends import joined
 from mxeon.conformance.case import SCATTERING, Case
 from mxeon.conformance.check import check, control, of_family, scale, shifted
+from mxeon.conformance.checks.lobes import finds_albedo
 from mxeon.conformance.diagnosis import ALBEDO, VALUE, Diagnosis
 from mxeon.conformance.specs.surface_shaders import VALUE as VALUE_ERROR
 from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
@@ -75,19 +76,32 @@ def lobes_film(case: Case) -> Compared:
     return Compared(batch, case.direct(batch), case.expected(batch))
 
 
-@check(is_shader, shifted, ALBEDO, diagnose=SUM)
+@check(is_shader, shifted, ALBEDO, diagnose=SUM, methods=finds_albedo)
 def lobes_albedo() -> None:
     """The environment branch returns the albedo of all lobes by the layer equation."""
 
 
-@check(is_shader, scale("every value is 1 % too low", 0.99), lit=True, diagnose=SUM)
+@check(
+    is_shader,
+    scale("every value is 1 % too low", 0.99),
+    lit=True,
+    diagnose=SUM,
+    methods=finds_albedo,
+)
 def lobes_mean(case: Case) -> Iterator[Compared]:
     """Averaged over many materials and views, the shader returns as much light as its lobes."""
     yield from VALUE(case)
     yield from ALBEDO(case)
 
 
-@check(is_shader, scale("every value is 10 % too low", 0.9), "albedo", lit=True, diagnose=SUM)
+@check(
+    is_shader,
+    scale("every value is 10 % too low", 0.9),
+    "albedo",
+    lit=True,
+    diagnose=SUM,
+    methods=finds_albedo,
+)
 def lobes_furnace(case: Case) -> Compared:
     """A white material with many lobes disappears in a white environment."""
     white = replace(case.samples.views[0], inputs=case.of(SurfaceShaderSpec).white)

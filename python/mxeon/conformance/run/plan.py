@@ -62,7 +62,7 @@ from mxeon.shaders.library import (
     load_library,
 )
 from mxeon.shaders.library_tree import LIBRARIES, OVERLAY, origins
-from mxeon.shaders.methods import UNCHOSEN, Methods
+from mxeon.shaders.methods import GENERATED, UNCHOSEN, Methods
 
 Source = tuple[str, str]  # a file, and the library that it is read with
 
@@ -304,7 +304,7 @@ def make_plan(
         for host in hosts:
             if not host_row(host).scenes:
                 tasks += [Task(DOCUMENT, file, host, library) for file in readable]
-            tasks += _on_host(host, library, paths, everywhere)
+            tasks += _on_host(host, library, paths, everywhere, methods.over(GENERATED))
     for host in hosts:  # nodes of a renderer's own, which use no library of ours
         for spec in own_nodes(host):
             tasks += _checks_of(spec, host, RENDERER_NODES)
@@ -360,7 +360,11 @@ def diffuse_specs(library: str) -> list[DiffuseSpec]:
 
 
 def _on_host(
-    host: str, library: str, files: Iterable[Path], everywhere: bool = False
+    host: str,
+    library: str,
+    files: Iterable[Path],
+    everywhere: bool = False,
+    methods: Methods = GENERATED,
 ) -> Iterator[Task]:
     """Tasks of one host with one library, for files and nodes of pbrlib, or those it repairs."""
     ways, row = ways_of(host), host_row(host)
@@ -374,7 +378,7 @@ def _on_host(
     ):
         yield Task(FUNCTIONS, SHADER_FUNCTIONS, host, library)
     for spec in diffuse_specs(library):
-        yield from _checks_of(spec, host, library)
+        yield from _checks_of(spec, host, library, methods)
         if evaluates:
             yield Task(CURVE, spec.title, host, library)
     defines = load_library(library).getMatchingNodeDefs
@@ -387,22 +391,22 @@ def _on_host(
         if not (left or missing) and (
             everywhere or kind in (OVERLAY, *(each.libraries or LIBRARIES))
         ):
-            yield from _checks_of(each, host, library)
+            yield from _checks_of(each, host, library, methods)
     if row.surfaces:
         for lobe in SURFACE_LOBES:
             listed = lobe.libraries or LIBRARIES
             if everywhere or ("eonlib" if kind == OVERLAY else kind) in listed:
-                yield from _checks_of(lobe, host, library)
+                yield from _checks_of(lobe, host, library, methods)
     if row.scenes:
         yield from (Task(PICTURE, str(file), host, library) for file in files)
 
 
-def _checks_of(spec: Spec, host: str, library: str) -> Iterator[Task]:
+def _checks_of(spec: Spec, host: str, library: str, methods: Methods = GENERATED) -> Iterator[Task]:
     backend = backend_of(host, spec)
     for check in CHECKS:
         if check.profile and not has_profile(library, check.profile):
             continue
-        if backend and check.applies_to(spec, backend, host):
+        if backend and check.applies_to(spec, backend, host, methods):
             yield Task(check.key, spec.title, host, library)
 
 

@@ -86,6 +86,16 @@ class MicrofacetLobe:
         """Albedo as MaterialX's throughput takes it, per channel and without a tint."""
         return layer_albedo(wo, inputs, *self.ends(wo, inputs), self._at_view(wo, inputs))
 
+    def prefiltered(self, wo: Array, inputs: Inputs) -> Array:
+        """Albedo by MaterialX's fit, as its prefiltered environment has it, with the exact compensation."""
+        single = self.albedo(wo, isotropic(inputs), compensate=False)
+        lit = single > 0.0
+        ratio = np.divide(
+            self.isotropic_albedo(wo, inputs), single, out=np.ones(single.shape), where=lit
+        )
+        fit = layer_albedo(wo, inputs, *self.ends(wo, inputs), np.zeros(3))
+        return np.asarray(fit * ratio * inputs.get("tint", np.ones(3)))
+
     def indirect(self, wo: Array, inputs: Inputs) -> Array:
         """Albedo with the compensation of MaterialX's indirect branch: F at the view direction."""
         return self._compensated(wo, inputs, self._at_view(wo, inputs))
@@ -138,6 +148,8 @@ SCHLICK = MicrofacetLobe(
     lambda mu, i: fresnel_schlick(mu, *_schlick(i), i["exponent"]),
     edge="color90",
 )
+
+LOBES = {each.category: each for each in (DIELECTRIC, CONDUCTOR, SCHLICK)}
 
 
 def _row(
