@@ -175,8 +175,10 @@ def albedos(case: Case) -> Iterator[Compared]:
     """The environment branch against the directional albedo, or MaterialX's fit of it."""
     spec, fitted = case.spec, case.backend.prefiltered
     for batch in case.views:
-        by_fit = fitted and isinstance(spec, FacetSpec)
-        expected = spec.prefiltered(batch) if by_fit else case.expected_albedo(batch)
+        if fitted and isinstance(spec, FacetSpec):
+            expected = spec.prefiltered(batch)
+        else:
+            expected = case.expected_albedo(batch)
         yield Compared(batch, case.albedo(batch), expected)
 
 
