@@ -88,6 +88,41 @@ def test_stock_is_wrong_from_behind(host, judged):
     assert result.pages == ("genglsl_clamped_dot",)
 
 
+GLASS = """<materialx version="1.39">
+  <open_pbr_surface name="shading" type="surfaceshader">
+    <input name="transmission_weight" type="float" value="1"/>
+    <input name="specular_roughness" type="float" value="0.8"/>
+  </open_pbr_surface>
+  <surfacematerial name="look" type="material">
+    <input name="surfaceshader" type="surfaceshader" nodename="shading"/>
+  </surfacematerial>
+</materialx>"""
+# In opacity, R over T counts what is reflected once.
+BELOW = (
+    "bool below = scatter_mode == 1;",
+    "bool below = false;",
+    "genglsl/lib/microfacet_lobe.glsl",
+)
+
+
+def test_a_card_shows_through_rough_glass_in_storm(on_storm, gl, tmp_path):
+    points = sphere(16)
+    facing = points.mask & (points.normal[..., 2] > 0.05)
+    normal = points.normal[facing]
+    view = np.stack([np.hypot(normal[:, 0], normal[:, 1]), 0.0 * normal[:, 0], normal[:, 2]], 1)
+
+    def through(library):
+        [shader] = on_storm.compile(GLASS, library=library)
+        return on_storm.transmitted(shader, 16)[facing]
+
+    [shader] = gl.compile(GLASS, methods=on_storm.active)
+    expected = gl.evaluate(shader, view, view, {}, "transmission")
+    found = through("eonlib")
+    assert np.abs(found - expected).max() <= 2 * HALF
+    assert found.min() >= 0.88
+    assert through(wrong_copy(tmp_path, *BELOW)).min() < 0.86
+
+
 def test_a_wrong_copy_of_eonlib_fails(judged, tmp_path):
     assert judged("value", EON, "storm", wrong_copy(tmp_path, *SIGN)).verdict == FAILED
 

@@ -166,7 +166,9 @@ class Host(Engine):
                 only = offered.get(name, "MaterialX's default")
                 raise NotRun(f"{self.name}: {name} is always {only}; got {value}")
         if methods.albedo == "table":
-            raise NotRun(f"{self.name}: albedo table: clients draw the table themselves, mxeon does not")
+            raise NotRun(
+                f"{self.name}: albedo table: clients draw the table themselves, mxeon does not"
+            )
         self.methods = UNCHOSEN if self.fixed else methods
 
     def picture(self, shader: Shader, scene: Scene) -> Array:

@@ -106,6 +106,9 @@ class DocumentHost(base.Host):
         self.refuse_shape(scene)
         if isinstance(scene.environment, (str, Path)):
             raise NotRun(f"{self.name}: environment must be uniform; got an image")
+        return self._shown(shader, scene)
+
+    def _shown(self, shader: Shader, scene: Scene, card: bool = False) -> Array:
         folders = (shader.root, *shader.folders)
         if folders != self._folders:
             self.worker.close()
@@ -113,7 +116,7 @@ class DocumentHost(base.Host):
             self.worker = self._worker()
         blocks = self._needs_blocks(shader)
         text, element = self._document(shader)
-        return self._picture(text, element, scene, self._folders, blocks, shader.methods)
+        return self._picture(text, element, scene, self._folders, blocks, shader.methods, card)
 
     def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
         return (*raster.approximations(shader), *filter(None, [self.unread(shader)]))
@@ -146,6 +149,7 @@ class DocumentHost(base.Host):
         folders: tuple[str, ...],
         blocks: bool,
         methods: Methods,
+        card: bool,
     ) -> Array:
         # Write the document under a new name: OpenUSD caches files.
         folder = self.worker.folder
@@ -161,6 +165,7 @@ class DocumentHost(base.Host):
             light=scene.light,
             environment=scene.environment,
             **({"methods": dict(methods.chosen())} if methods != UNCHOSEN else {}),
+            **({"card": True} if card else {}),
         )
         self._check(reply.get("error", ""), self.worker.printed())
         pixels = np.load(output)

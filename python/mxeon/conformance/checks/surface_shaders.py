@@ -108,7 +108,14 @@ def lobes_furnace(case: Case) -> Compared:
     return Compared(white, case.albedo(white), np.ones((1, 3)))
 
 
-@check(is_shader, scale("every value is 50 % too high", 1.5), "albedo", lit=True, diagnose=SUM)
+@check(
+    is_shader,
+    scale("every value is 50 % too high", 1.5),
+    "albedo",
+    lit=True,
+    diagnose=SUM,
+    methods=finds_albedo,
+)
 def lobes_energy(case: Case) -> Compared:
     """No material with these lobes reflects and transmits more light than it receives."""
     batch = case.samples.edges
@@ -150,9 +157,15 @@ def graph(case: Case) -> Compared:
 
 def misplaced(case: Case) -> list[str]:
     """Inputs that change something where the page says nothing, or the reverse."""
-    known = case.of(SurfaceShaderSpec).without_effect
-    wrong = set(known).symmetric_difference(without_effect(case))
+    wrong = set(expected_dead(case)).symmetric_difference(without_effect(case))
     return sorted(wrong.difference(case.backend.unset))
+
+
+def expected_dead(case: Case) -> tuple[str, ...]:
+    """Inputs that may change nothing; as opacity, light has no roughness."""
+    spec = case.of(SurfaceShaderSpec)
+    blur = ("transmission_extra_roughness",)
+    return (*spec.without_effect, *(blur if case.opaque and blur[0] in spec.names else ()))
 
 
 def without_effect(case: Case) -> list[str]:
@@ -193,7 +206,7 @@ def ignore_changes(case: Case) -> Case:
 
 def diagnose_reach(case: Case) -> Diagnosis:
     """The inputs."""
-    known, wrong = case.of(SurfaceShaderSpec).without_effect, misplaced(case)
+    known, wrong = expected_dead(case), misplaced(case)
     groups = {
         verb: [name for name in wrong if (name in known) == effective]
         for verb, effective in (("changes nothing", False), ("changes something", True))

@@ -12,12 +12,15 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import MaterialX as mx
+import numpy as np
 
 from mxeon.errors import NotRun, ShaderError
+from mxeon.hosts.base import Array
 from mxeon.hosts.cycles.process import interpreter
 from mxeon.hosts.documents import DocumentHost
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.methods import STORM
+from mxeon.shaders.scene import Scene
 
 REPORT = re.compile(r"^(?:Warning|Error)\b.*? in file .* : (.*)|^(?:Warning|Error)\b.*? -- (.*)")
 COMPILE = "Failed to compile shader"  # the beginning of such a report
@@ -29,6 +32,11 @@ class Host(DocumentHost):
 
     name = "storm"
     default, fixed = STORM, True
+
+    def transmitted(self, shader: Shader, size: int) -> Array:
+        """Share of a white card's light that passes the sphere of a picture, row 0 at the top."""
+        dark = Scene("dark", size=size)
+        return np.asarray(self._shown(shader, dark, card=True) - self._shown(shader, dark))
 
     def unread(self, shader: Shader) -> str:
         """The enumerated inputs of closures: Storm takes their defaults."""
