@@ -29,8 +29,7 @@ from mxeon.explorer.data import (
 )
 from mxeon.explorer.references import LOBES, lobes_of, reference_of
 from mxeon.hosts import open_host
-from mxeon.hosts.raster import check_images, image_files
-from mxeon.hosts.textures import read_texture
+from mxeon.hosts.textures import check_images, image_files, read_texture
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.document.values import Plain, flat
 from mxeon.shaders.generation import Input, Shader, generate

@@ -139,9 +139,9 @@ class Host(Engine):
         """Shaders of a document for this host; arguments and errors as for `mxeon.generate`.
 
         `methods` are those of these shaders where they differ from the host's.
-        Images that are too large in total are refused, too; see `mxeon.hosts.raster.check_images`.
+        Images that are too large in total are refused, too; see `mxeon.hosts.textures.check_images`.
         """
-        from mxeon.hosts.raster import check_images
+        from mxeon.hosts.textures import check_images
         from mxeon.shaders.generation import generate
 
         shaders = generate(

@@ -4,9 +4,8 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from functools import lru_cache
-from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
@@ -15,11 +14,9 @@ from numpy.typing import ArrayLike
 from mxeon.hosts import base, fragment
 from mxeon.hosts.base import Array, Query
 from mxeon.hosts.points import visible
-from mxeon.hosts.textures import irradiance, read_latlong, read_texture, texels_of
+from mxeon.hosts.textures import image_files, irradiance, read_latlong, read_texture
 from mxeon.shaders import functions
-from mxeon.shaders.document.policy import Policy
-from mxeon.shaders.document.references import files
-from mxeon.shaders.document.values import Plain, flat, label
+from mxeon.shaders.document.values import Plain, flat
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import SUBSURFACE, TRANSMISSION, VOLUME, inner_lobes
 from mxeon.shaders.methods import GENERATED
@@ -66,26 +63,6 @@ def textures(shader: Shader, scene: Scene) -> dict[str, Array]:
     """
     radiance = read_latlong(scene.environment)
     return images(shader) | {"u_envRadiance": radiance, "u_envIrradiance": irradiance(radiance)}
-
-
-def image_files(shaders: Iterable[Shader]) -> tuple[str, ...]:
-    """Names of the images that shaders read, each once."""
-    inputs = (port for shader in shaders for port in shader.inputs)
-    names = (str(port.value) for port in inputs if port.type == "filename" and port.value)
-    return tuple(dict.fromkeys(names))
-
-
-def check_images(shaders: Iterable[Shader], policy: Policy) -> None:
-    """Refuse images of a document that are too large in total, before any of them is read.
-
-    Raises DocumentError if they have more pixels than the policy permits; ImageError if one is no
-    image, or has more channels than a color.
-    """
-    shaders, texels = tuple(shaders), 0
-    for file in {file for name in image_files(shaders) for file in files(Path(name))}:
-        texels += texels_of(file)
-        rule = f"{label(shaders[0].document)}: images must have"
-        policy.check_limit("texels", texels, rule, "pixels together")
 
 
 def images(shader: Shader) -> dict[str, Array]:

@@ -5,15 +5,23 @@ Read with OpenImageIO, as float32 arrays (height, width, channels), linear or as
 transforms are the shader's.
 """
 
+from __future__ import annotations
+
 import warnings
+from collections.abc import Iterable
 from functools import lru_cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.errors import ImageError
 from mxeon.io.images import ImageWarning, open_image, read_image
+
+if TYPE_CHECKING:
+    from mxeon.shaders.document.policy import Policy
+    from mxeon.shaders.generation import Shader
 
 IRRADIANCE_SIZE = 32  # rows of an irradiance map: a cosine lobe has no finer detail
 FIRST_TILE = {"<UDIM>": "1001", "<UVTILE>": "u1_v1"}  # MaterialX's names of it
@@ -119,3 +127,26 @@ def latlong_directions(rows: int, columns: int) -> tuple[NDArray[np.float64], ND
     x, z = np.sin(polar) * np.sin(azimuth), -np.sin(polar) * np.cos(azimuth)
     directions = np.stack([x, np.cos(polar), z], axis=-1).reshape(-1, 3)
     return directions, np.sin(polar).reshape(-1)
+
+
+def image_files(shaders: Iterable[Shader]) -> tuple[str, ...]:
+    """Names of the images that shaders read, each once."""
+    inputs = (port for shader in shaders for port in shader.inputs)
+    names = (str(port.value) for port in inputs if port.type == "filename" and port.value)
+    return tuple(dict.fromkeys(names))
+
+
+def check_images(shaders: Iterable[Shader], policy: Policy) -> None:
+    """Refuse images of a document that are too large in total, before any of them is read.
+
+    Raises DocumentError if they have more pixels than the policy permits; ImageError if one is no
+    image, or has more channels than a color.
+    """
+    from mxeon.shaders.document.references import files
+    from mxeon.shaders.document.values import label
+
+    shaders, texels = tuple(shaders), 0
+    for file in {file for name in image_files(shaders) for file in files(Path(name))}:
+        texels += texels_of(file)
+        rule = f"{label(shaders[0].document)}: images must have"
+        policy.check_limit("texels", texels, rule, "pixels together")

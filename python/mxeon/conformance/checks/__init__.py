@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All checks, in the order in which they are made."""
-
-from importlib import import_module
+"""All checks, in the order in which they are made: each module adds its own."""
 
 from mxeon.conformance.check import CHECKS as CHECKS
 from mxeon.conformance.check import Check as Check
 
-_NAMES = "lobes states microfacets other_nodes surface_shaders paths"
-for _name in _NAMES.split():  # each adds its own
-    import_module(f"{__name__}.{_name}")
+# isort: off
+from mxeon.conformance.checks import lobes as lobes
+from mxeon.conformance.checks import states as states
+from mxeon.conformance.checks import microfacets as microfacets
+from mxeon.conformance.checks import other_nodes as other_nodes
+from mxeon.conformance.checks import surface_shaders as surface_shaders
+from mxeon.conformance.checks import paths as paths
