@@ -384,7 +384,7 @@ def path_inside(case: Case) -> Iterator[Compared]:
 # Cells divide the angle from a pole, and the azimuth about it. The first ring is narrow, for a lobe that is
 # nearly a single direction: let the pole be that direction.
 CELLS = 32  # of the angle, and of the azimuth
-NODES = 12  # of the quadrature of a cell, on each axis
+NODES = 8  # of the quadrature of a cell, on each axis
 CONE = 0.02  # radian, the first ring
 LEAST = 1e-7  # radian, below which a density is constant
 RARE = 10.0  # expected draws, below which cells are put together
