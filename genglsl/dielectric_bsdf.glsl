@@ -17,7 +17,7 @@ void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior
     MicrofacetFresnel F;
     F.value = vec3(eonlib_fresnel_dielectric(lobe.mu_h, ior));
     F.average = vec3(eonlib_fresnel_dielectric_avg(ior));
-    F.visible = vec3(eonlib_fresnel_dielectric_visible(lobe.mu_o, lobe.alpha, ior));
+    F.visible = vec3(eonlib_fresnel_dielectric_visible(lobe.visible.x, lobe.visible.y, ior));
     microfacet_film(lobe, fd, F);
     microfacet_bsdf(closureData, lobe, fd, F, max(tint, 0.0), weight, distribution, scatter_mode,
                     bsdf);

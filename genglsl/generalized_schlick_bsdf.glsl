@@ -7,10 +7,10 @@
 // Average of the Fresnel curve over the visible facets; a color82 of 1 has no dip.
 vec3 generalized_schlick_visible(MicrofacetLobe lobe, FresnelData fd, vec3 dip)
 {
-    float m = 1.0 - ggx_cosine_schlick(lobe.mu_o, lobe.alpha, fd.exponent);
+    float m = 1.0 - ggx_cosine_schlick(lobe.visible.x, lobe.visible.y, fd.exponent);
     vec3 average = mix(fd.F0, fd.F90, pow(m, fd.exponent));
     bool dips = dot(abs(dip), vec3(1.0)) > 0.0;
-    return dips ? average - dip * ggx_dip(lobe.mu_o, lobe.alpha) : average;
+    return dips ? average - dip * ggx_dip(lobe.visible.x, lobe.visible.y) : average;
 }
 
 void generalized_schlick_bsdf(ClosureData closureData, float weight, vec3 color0, vec3 color82,

@@ -25,6 +25,7 @@ from tools.fits import (
     fon_loss,
     fresnel_average,
     ggx_albedo,
+    ggx_anisotropic,
     ggx_cosine,
     ggx_inside,
     thin_film,
@@ -87,6 +88,18 @@ def conty_kulla_error(coefficients):
 def test_a_fit_has_the_error_that_stands_beside_it(stem, prefix, error, stated):
     first, *others = shipped_coefficients(stem, prefix)
     assert error((first, *others)) <= stated < error((first + 1e-2, *others))
+
+
+def test_anisotropic_facets_have_the_errors_that_their_tolerances_state():
+    stated = microfacets.ANISOTROPIC_FIT
+    assert (
+        ggx_anisotropic.largest_error()
+        <= stated
+        < ggx_anisotropic.largest_error(coefficients=(*ggx_anisotropic.MISSED[:3], 0.0))
+    )
+    assert ggx_anisotropic.largest_visible_error() <= microfacets.ANISOTROPIC_LOBE_FIT
+    text = source_file("glsl", "ggx_anisotropic").read_text()
+    assert all(f"{abs(each):g}" in text for each in (*ggx_anisotropic.MISSED, 0.7, 0.35))
 
 
 def test_the_albedo_of_smooth_ggx_has_the_error_that_its_tolerance_states():

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directional albedo of GGX microfacets with height-correlated Smith shadowing.
+// Directional albedo of isotropic GGX microfacets with height-correlated Smith shadowing; of anisotropic ones
+// see ggx_anisotropic.glsl.
 //
-// mu is the cosine of wo with the normal, alpha the roughness of GGX, of anisotropic ones
-// sqrt(alpha_x alpha_y). Both lie in [1e-8, 1].
+// mu is the cosine of wo with the normal, alpha the roughness of GGX. Both lie in [1e-8, 1].
 
 // Source: tools/fits/ggx_albedo.py. Domain: mu and alpha in [1e-4, 1]. Largest absolute error: 4.92e-4.
 #define GGX_ALBEDO_N00 0.12888349
@@ -26,9 +26,9 @@
 #define GGX_ALBEDO_D22 -1.0114147
 #define GGX_ALBEDO_D30 7.5515813
 
-// E_ss of [MaterialX2026], Energy Compensation: the albedo where every facet reflects everything.
-//   E_ss = 1 - z^2 N / D,  z = sqrt(mu / (mu + alpha))
-float ggx_albedo_dir(float mu, float alpha)
+// 1 - E_ss of [MaterialX2026], Energy Compensation, what the albedo lacks where every facet reflects everything:
+//   1 - E_ss = z^2 N / D,  z = sqrt(mu / (mu + alpha))
+float ggx_missing(float mu, float alpha)
 {
     float z2 = mu / (mu + alpha);
     float z = sqrt(z2);
@@ -42,5 +42,10 @@ float ggx_albedo_dir(float mu, float alpha)
     float D2 = GGX_ALBEDO_D20 + alpha * GGX_ALBEDO_D21 + a2 * GGX_ALBEDO_D22;
     float N = N0 + z * (N1 + z * (N2 + z * N3));
     float D = D0 + z * (D1 + z * (D2 + z * GGX_ALBEDO_D30));
-    return 1.0 - z2 * N / D;
+    return z2 * N / D;
+}
+
+float ggx_albedo_dir(float mu, float alpha)
+{
+    return 1.0 - ggx_missing(mu, alpha);
 }

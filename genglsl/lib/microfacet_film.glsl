@@ -65,7 +65,7 @@ void microfacet_film(MicrofacetLobe lobe, FresnelData fd, inout MicrofacetFresne
     F.outside = vec3(1.0);
     if (fd.airy)
     {
-        vec3 facets = microfacet_film_facets(lobe.mu_o, lobe.alpha);
+        vec3 facets = microfacet_film_facets(lobe.visible.x, lobe.visible.y);
         bool is_lit = lobe.closure == CLOSURE_TYPE_REFLECTION;
         int i = is_lit && fd.model == FRESNEL_MODEL_CONDUCTOR ? 3 : 0;
         int end = is_lit ? 7 : 6;

@@ -3,7 +3,7 @@
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
-#include "ggx_albedo.glsl"
+#include "ggx_anisotropic.glsl"
 #include "half_vector.glsl"
 
 // Least index of refraction for MaterialX's own curve: along the normal it divides 0 by 0 where
@@ -23,7 +23,8 @@ struct MicrofacetLobe
     float mu_o;
     float mu_h; // cosine of wo and wi with the half vector
     vec2 roughness;
-    float alpha;
+    float alpha;    // geometric mean, by which MaterialX masks facets
+    vec2 visible;   // cosine and alpha for averages over the visible facets
     float albedo; // E_ss
     int closure;
 };
@@ -47,6 +48,19 @@ bool microfacet_is_off(ClosureData closureData, float weight, int scatter_mode)
     return weight <= 0.0 || (scatter_mode == 1 && !transmission);
 }
 
+// A direction in the frame of tangent, bitangent and normal.
+vec3 microfacet_local(MicrofacetLobe lobe, vec3 w)
+{
+    vec3 X = normalize(lobe.X - dot(lobe.X, lobe.N) * lobe.N);
+    return vec3(dot(w, X), dot(w, cross(lobe.N, X)), dot(w, lobe.N));
+}
+
+// |(alpha_x x, alpha_y y, z)|: [Heitz2014], Eq. (86).
+float microfacet_stretched(MicrofacetLobe lobe, vec3 w)
+{
+    return length(microfacet_local(lobe, w) * vec3(lobe.roughness, 1.0));
+}
+
 // Cosines and roughness of 0 would divide by 0. Retroreflection mirrors wo at the normal.
 MicrofacetLobe microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec2 roughness,
                                bool retroreflective)
@@ -62,20 +76,29 @@ MicrofacetLobe microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec2 rou
     lobe.mu_h = clamp(dot(lobe.wo, eonlib_half_vector(lobe.wo, lobe.wi, lobe.N)), M_FLOAT_EPS, 1.0);
     lobe.roughness = clamp(roughness, M_FLOAT_EPS, 1.0);
     lobe.alpha = mx_average_alpha(lobe.roughness);
-    lobe.albedo = ggx_albedo_dir(lobe.mu_o, lobe.alpha);
+    lobe.visible = vec2(lobe.mu_o, lobe.alpha);
+    vec3 lossless = vec3(lobe.visible, 1.0);
+    if (lobe.roughness.x != lobe.roughness.y)
+    {
+        lossless = ggx_facets(microfacet_local(lobe, lobe.wo), lobe.roughness, lobe.visible);
+    }
+    lobe.albedo = 1.0 - ggx_missing(lossless.x, lossless.y) * lossless.z;
     return lobe;
 }
 
-// D G_2 / (4 mu_o), the value of facets that reflect everything, times mu_i: 0 below the horizon.
+// D G_2 / (4 mu_o), the value of facets that reflect everything, times mu_i: 0 below the horizon. [MaterialX2026],
+// Height-Correlated Smith Masking-Shadowing, as corrected in July 2026: G_2 = 2 mu_o mu_i / (l_o mu_i + l_i mu_o).
 float microfacet_lossless(MicrofacetLobe lobe)
 {
-    vec3 X = normalize(lobe.X - dot(lobe.X, lobe.N) * lobe.N);
-    vec3 Y = cross(lobe.N, X);
     vec3 H = eonlib_half_vector(lobe.wo, lobe.wi, lobe.N);
-    vec3 local = vec3(dot(H, X), dot(H, Y), dot(H, lobe.N));
     float mu_i = clamp(dot(lobe.N, lobe.wi), 0.0, 1.0);
-    return mx_ggx_NDF(local, lobe.roughness) * mx_ggx_smith_G2(mu_i, lobe.mu_o, lobe.alpha)
-           / (4.0 * lobe.mu_o);
+    float G2 = mx_ggx_smith_G2(mu_i, lobe.mu_o, lobe.alpha);
+    if (lobe.roughness.x != lobe.roughness.y)
+    {
+        G2 = 2.0 * mu_i * lobe.mu_o
+             / (microfacet_stretched(lobe, lobe.wi) * lobe.mu_o + microfacet_stretched(lobe, lobe.wo) * mu_i);
+    }
+    return mx_ggx_NDF(microfacet_local(lobe, H), lobe.roughness) * G2 / (4.0 * lobe.mu_o);
 }
 
 // The curve that MaterialX sums over the facets of an environment. Under a film they reflect everything.
@@ -96,20 +119,11 @@ FresnelData microfacet_environment_curve(FresnelData fd)
     return fd;
 }
 
-// Light of an environment. MaterialX draws anisotropic visible normals and divides by G_1 at the
-// mean alpha; the factor puts the G_1 of the normals in its place. It is 1 where both alphas are
-// the same.
+// Light of an environment, whose sum MaterialX weights by the masking of the mean alpha.
 vec3 microfacet_environment(MicrofacetLobe lobe, int distribution, FresnelData fd)
 {
     FresnelData curve = microfacet_environment_curve(fd);
-    vec3 radiance = mx_environment_radiance(lobe.N, lobe.wo, lobe.X, lobe.roughness, distribution,
-                                            curve);
-    vec3 X = normalize(lobe.X - dot(lobe.X, lobe.N) * lobe.N);
-    vec2 across = vec2(dot(lobe.wo, X), dot(lobe.wo, cross(lobe.N, X))) * lobe.roughness;
-    float mu2 = lobe.mu_o * lobe.mu_o;
-    float alpha2 = lobe.alpha * lobe.alpha;
-    float drawn = lobe.mu_o + sqrt(dot(across, across) + mu2);
-    return radiance * (drawn / (lobe.mu_o + sqrt(alpha2 + (1.0 - alpha2) * mu2)));
+    return mx_environment_radiance(lobe.N, lobe.wo, lobe.X, lobe.roughness, distribution, curve);
 }
 
 // A Fresnel curve by which each of MaterialX's sums over a refracted environment, whose cosine with the

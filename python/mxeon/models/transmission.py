@@ -194,7 +194,8 @@ def evaluate_btdf(
     def value(wo: Array, wi: Array, roughness: Array, ior: Array, **material: Array) -> Array:
         facet = Facet.of(wo, wi, ior)
         F = at(facet.cosine_o, ior=ior, **material)
-        G2 = ggx.visibility(wo[2], -wi[2], ggx.mean_alpha(roughness))
+        above = array_namespace(wi).stack([wi[0], wi[1], -wi[2]])
+        G2 = ggx.visibility_anisotropic(wo, above, roughness)
         lobe = ggx.ndf(facet.normal, roughness) * G2
         if radiance:
             bends = ior > max(LEAST, least_normal(wo))  # nothing passes an index of 0
@@ -213,7 +214,8 @@ def evaluate_btdf(
 NODES, BLOCK = 48, 2**4  # nodes in height and in azimuth of the cap of normals; views per block
 MOST_SQUARED = 1.0 - 1e-15  # of a sine: below an index of 3e-8 next to nothing passes
 
-Nodes: TypeAlias = tuple[Array, Array, Array]  # cosines wo . h and of wi, and weights
+# Cosines wo . h and of wi, length of wi stretched by the roughness, and weights.
+Nodes: TypeAlias = tuple[Array, Array, Array, Array]
 
 
 @any_array
@@ -259,14 +261,14 @@ def evaluate_transmittance(
     def total(
         wo: Array, roughness: Array, material: dict[str, Array], nodes: Nodes, axes: int
     ) -> Array:
-        cosine, mu_i, weight = nodes
+        cosine, mu_i, length_i, weight = nodes
         new = (slice(None), *(np.newaxis,) * axes)
         spread = {k: v[new] if k in vectors else v for k, v in material.items()}
         passed = (1.0 - at(cosine, **spread)) * weight
         if shadow:
             # G2 / G1(wo), whose limits at grazing are finite; 1 at alpha 0.
-            visibility = ggx.visibility(wo[2], within(mu_i), ggx.mean_alpha(roughness))
-            length = ggx.stretched_length(wo, roughness)
+            mu_i, length = within(mu_i), ggx.stretched_length(wo, roughness)
+            visibility = ggx.reciprocal(2.0 * (length * mu_i + length_i * wo[2]))
             passed = passed * (2.0 * mu_i * visibility * (wo[2] + length))
         T: Array = array_namespace(passed).sum(passed, axis=tuple(range(1, 1 + axes)))
         return T
@@ -290,12 +292,14 @@ def _visible(wo: Array, roughness: Array, ior: Array) -> Nodes:
     xp, (height, turn, weight) = array_namespace(wo), (like(each, wo) for each in _nodes(wo.ndim))
     view = wo[:, np.newaxis]
     wh = visible_normal(view, height, turn, roughness[:, np.newaxis])
-    mu_i = -refracted(view, wh, ior)[2]
-    return within(xp.sum(view * wh, axis=0)), mu_i, weight * xp.where(mu_i > 0.0, 1.0, 0.0)
+    wi = refracted(view, wh, ior)
+    length_i, mu_i = ggx.stretched_length(wi, roughness[:, np.newaxis]), -wi[2]
+    weight = weight * xp.where(mu_i > 0.0, 1.0, 0.0)
+    return within(xp.sum(view * wh, axis=0)), mu_i, length_i, weight
 
 
 @lru_cache(maxsize=2)
-def _nodes(axes: int) -> Nodes:
+def _nodes(axes: int) -> tuple[Array, Array, Array]:
     """Random numbers of the visible normals, and weights, along an axis before those of the views."""
     x, w = np.polynomial.legendre.leggauss(NODES)
     around = (np.arange(NODES) + 0.5) / NODES

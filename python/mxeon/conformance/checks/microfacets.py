@@ -179,7 +179,7 @@ def reflected_sky(case: Case) -> Iterator[Compared]:
     views = case.samples.take(case.of(FacetSpec).stretched)[0].first(SKIES)
     part, weights = case.of(FacetSpec).lit(views, case.samples.counts.nodes)
     shape = (*weights.shape, 3)
-    values = case.lobe.value(part).reshape(shape) * weights[:, :, np.newaxis]
+    values = case.of(FacetSpec).summed(part).reshape(shape) * weights[:, :, np.newaxis]
     albedo = values.sum(axis=1)
     bright = albedo.min(axis=1) > LEAST_VALUE
     seen = (values * sky(part.wi).reshape(shape)).sum(axis=1)
@@ -197,33 +197,40 @@ def diagnose_sky(case: Case) -> Diagnosis:
     return Diagnosis("retroreflective is ignored or wrong in an environment")
 
 
-def diagnose_stretched(case: Case) -> Diagnosis:
-    """Whether directions of visible normals are weighted by G_1 at the mean alpha."""
-    batch, measured, expected = anisotropic_albedo(case)
-    view, alpha = batch.wo, batch.inputs["roughness"]
-    mu2, mean2 = view[:, 2] ** 2, alpha.prod(axis=1)
-    drawn = np.sqrt((alpha**2 * view[:, :2] ** 2).sum(axis=1) + mu2)
-    factor = (view[:, 2] + np.sqrt(mean2 + (1.0 - mean2) * mu2)) / (view[:, 2] + drawn)
-    scaled, plain = (
-        np.sqrt(np.mean((measured - scale * expected) ** 2))
-        for scale in (factor[:, np.newaxis], 1.0)
-    )
-    at_mean = "anisotropic visible normals are weighted by G_1 at the mean alpha"
-    return Diagnosis(at_mean if scaled < NEAR * plain else UNKNOWN)
-
-
 @check(
     is_facets,
     isotropic,
     pairs=True,
     lit=True,
-    diagnose=diagnose_stretched,
+    diagnose=UNKNOWN,
     methods=lambda spec, methods: with_directions(spec, methods),
 )
 def anisotropic_albedo(case: Case) -> Compared:
-    """The environment branch of an anisotropic lobe returns the integral of its values."""
+    """The environment branch of an anisotropic lobe returns MaterialX's sum of its values, masked by the mean alpha."""
     batch, expected = case.samples.take(case.of(FacetSpec).stretched)
     return Compared(batch, case.albedo(batch), expected)
+
+
+@check(is_facets, isotropic, pairs=True, open=True)
+def anisotropic_value(case: Case) -> Compared:
+    """The value of a lobe with two alphas matches the model."""
+    batch = case.samples.take(case.of(FacetSpec).anisotropic)
+    return Compared(batch, case.direct(batch), case.expected(batch))
+
+
+@check(
+    lambda spec: is_facets(spec) and "scatter_mode" in spec.fixed,
+    isotropic,
+    pairs=True,
+    lit=True,
+    diagnose=UNKNOWN,
+)
+def anisotropic_throughput(case: Case) -> Iterator[Compared]:
+    """A lobe with two alphas passes to its base what it does not reflect."""
+    batch = case.samples.take(case.of(FacetSpec).stretched)[0]
+    passed = np.maximum(1.0 - case.of(FacetSpec).integral(batch), 0.0)
+    for branch in SCATTERING:
+        yield Compared(batch, case.throughput(batch, branch), passed)
 
 
 # --- light that is transmitted, in the branch that looks up an environment ------------------------

@@ -40,6 +40,7 @@ from mxeon.conformance.tolerance import (
     sum_in,
     sum_of,
 )
+from mxeon.models.microfacet.ggx import smith_g1, smith_g2, smith_g2_anisotropic
 from mxeon.models.nodes.microfacets import (
     FILM_NODES,
     LOBES,
@@ -177,6 +178,11 @@ def sum_over(directions: int) -> Term:
     return Term(1.7 / directions, f"a sum over {directions} directions of an environment")
 
 
+# ggx_anisotropic.py: E_ss, relative, and a dielectric's albedo, where one alpha is up to LARGEST_RATIO times the other.
+ANISOTROPIC_FIT, ANISOTROPIC_LOBE_FIT = 2.5e-2, 3.4e-2
+LARGEST_RATIO, LEAST_ANISOTROPIC_COSINE = 50.0, 0.01
+ANISOTROPIC = Term(ANISOTROPIC_FIT, "the fit of E_ss of two alphas")
+ANISOTROPIC_LOBE = Term(ANISOTROPIC_LOBE_FIT, "the fit of the lobe's albedo of two alphas")
 ESS = Term(ESS_FIT / LEAST_ESS, "the fit of E_ss over the least, 0.31")
 COMPENSATION = (ESS, Term(METAL_FIT * (1.0 - LEAST_ESS), "the fit of F_ss, times 1 - E_ss"))
 LOBE = Term(LOBE_FIT, "the fit of the lobe's albedo")
@@ -191,6 +197,7 @@ def compensated(average: float, words: str) -> Tolerance:
 
 
 VALUE = compensated(METAL_FIT, "the fit of F_ss")
+ANISOTROPIC_VALUE = VALUE.plus(ANISOTROPIC)
 MEAN = sum_in(
     "albedo",
     ESS,
@@ -231,7 +238,8 @@ BEYOND: tuple[tuple[str, str, float, float, str], ...] = (
 )
 ERRORS = {
     "picture albedo": sum_in("albedo", *COMPENSATION, sum_over(256)),
-    "anisotropic_albedo": sum_of(*COMPENSATION, sum_over(1024), unit="albedo"),
+    "anisotropic_albedo": sum_of(*COMPENSATION, ANISOTROPIC, sum_over(1024), unit="albedo"),
+    "anisotropic_value": ANISOTROPIC_VALUE,
     # The half vector of exact directions has no other errors.
     "shape": sum_in("relative", roundings(2 * 64, "of two values")),
     # One function of the same numbers but for signs.
@@ -276,6 +284,7 @@ def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
         **own,
         **dict.fromkeys(("value", "reciprocity"), VALUE),
         "throughput": throughput,
+        "anisotropic_throughput": throughput.plus(ANISOTROPIC, ANISOTROPIC_LOBE),
         "light": light,
         "lossless": own["integral"],
         "sky": seen,
@@ -295,9 +304,17 @@ class FacetSpec(PbrSpec):
         return batch.strength * LOBES[self.node].prefiltered(batch.wo, batch.inputs)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Those of any lobe, and lights near the mirror direction."""
+        """Those of any lobe, and lights near the mirror direction; two alphas are another check."""
         others = (batch.where(_has_curve(batch)) for batch in super().batches(counts))
-        return *others, self.mirrored(counts)[0]
+        return tuple(_with_one_alpha(batch) for batch in (*others, self.mirrored(counts)[0]))
+
+    def anisotropic(self, counts: Counts) -> Batch:
+        """Lights near the mirror direction of materials whose alphas differ, in the domain of the fits."""
+        batch = self.mirrored(counts)[0]
+        alpha = batch.inputs["roughness"]
+        least = alpha.max(axis=1, keepdims=True) / LARGEST_RATIO
+        batch = batch.altered(roughness=np.maximum(alpha, least))
+        return batch.where(batch.wo[:, 2] >= LEAST_ANISOTROPIC_COSINE)
 
     def few(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
         return *super().few(batches, counts), batches[-1].first(counts.few)
@@ -323,13 +340,28 @@ class FacetSpec(PbrSpec):
         return batches[0].where(known), batches[1].where(known)
 
     def stretched(self, counts: Counts) -> tuple[Batch, Array]:
-        """Views of materials whose roughness has a direction, and the integrals of their values."""
+        """Views of materials whose roughness has a direction, and the sums of their values over an environment.
+
+        MaterialX's sum over visible normals masks by the geometric mean of the alphas: G_2 / G_1 of it is in the place
+        of that of the lobe.
+        """
         rng, count = generator(), counts.materials
         inputs = simple(self.random_inputs(rng, count))
         inputs["roughness"] = rounded(LEAST_STRETCHED ** rng.random((2, count)))
         batch = Batch(directions(rng, count), directions(rng, count), inputs)
         batch = batch.where(batch.wo[:, 2] >= LEAST_STRETCHED)
-        return batch, self.integral(batch)
+        pairs, weights = self.lit(batch, counts.nodes)
+        values = self.summed(pairs).reshape(*weights.shape, 3)
+        return batch, (values * weights[:, :, np.newaxis]).sum(axis=1)
+
+    def summed(self, pairs: Batch) -> Array:
+        """Values as MaterialX's sum over visible normals weights them, by G_2 / G_1 of the mean alpha."""
+        alpha = pairs.inputs["roughness"]
+        mean = np.sqrt(alpha.prod(axis=1))
+        weight = smith_g2(pairs.wo[:, 2], pairs.wi[:, 2], mean)
+        weight = weight / smith_g1(pairs.wo, np.stack([mean, mean], axis=1))
+        weight *= smith_g1(pairs.wo, alpha) / smith_g2_anisotropic(pairs.wo, pairs.wi, alpha)
+        return np.asarray(self.value(pairs) * weight[:, np.newaxis])
 
     def turned(self, counts: Counts) -> Batch:
         """Pairs in frames of their own, none with a sharp lobe, whose place would be uncertain.
@@ -378,6 +410,12 @@ def simple(inputs: Mapping[str, Array]) -> dict[str, Array]:
     if "color82" in inputs:
         changed["color82"] = np.maximum(inputs["color82"], LEAST_COLOR82)
     return changed
+
+
+def _with_one_alpha(batch: Batch) -> Batch:
+    """A batch whose lobes are isotropic."""
+    alpha = np.broadcast_to(batch.inputs["roughness"], (len(batch.wo), 2))
+    return batch.altered(roughness=np.repeat(alpha[:, :1], 2, axis=1))
 
 
 def _has_curve(batch: Batch) -> Mask:

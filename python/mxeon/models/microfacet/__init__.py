@@ -42,6 +42,7 @@ from mxeon.models.core.arguments import (
     refuse_ambiguous,
 )
 from mxeon.models.core.arrays import (
+    NUMPY,
     Array,
     ArrayLike,
     Numbers,
@@ -53,7 +54,7 @@ from mxeon.models.core.arrays import (
 )
 from mxeon.models.core.evaluation import evaluate_material, evaluate_number
 from mxeon.models.microfacet import fresnel, ggx
-from mxeon.models.microfacet.ggx import albedo, mean_alpha, missing_light
+from mxeon.models.microfacet.ggx import albedo, missing_light
 from mxeon.models.microfacet.slopes import slope_nodes, transmitting_nodes
 
 
@@ -104,13 +105,38 @@ def uncompensated(pair: Pair) -> float:
 
 
 def visibility(pair: Pair) -> Array:
-    """G2 / (4 mu_o mu_i) at sqrt(alpha_x alpha_y), of the specification."""
-    return ggx.visibility(pair.wo[2], pair.wi[2], ggx.mean_alpha(pair.roughness))
+    """G2 / (4 mu_o mu_i) of the specification since July 2026."""
+    return ggx.visibility_anisotropic(pair.wo, pair.wi, pair.roughness)
 
 
 def missing(pair: Pair) -> Array:
-    """(1 - E_ss) / E_ss at alpha = sqrt(alpha_x alpha_y), to 1e-10."""
-    return missing_light(pair.wo[2], ggx.mean_alpha(pair.roughness))
+    """(1 - E_ss) / E_ss, to 1e-10 where both alphas are the same, elsewhere as `ggx_albedo_dir_anisotropic`."""
+    return missing_of(pair.wo, pair.roughness)
+
+
+def missing_of(wo: Array, roughness: Array) -> Array:
+    """(1 - E_ss) / E_ss on valid float64 arrays, components first."""
+    isotropic = missing_light(wo[2], ggx.mean_alpha(roughness))
+    if array_namespace(wo, roughness) is NUMPY:
+        unequal = roughness[0] != roughness[1]
+        if not np.any(unequal):
+            return isotropic
+        # Pairs that share a view and a roughness, as those of one integral, share the quadrature.
+        total = np.broadcast_to(isotropic, np.broadcast_shapes(wo.shape[1:], unequal.shape)).copy()
+        chosen = np.broadcast_to(unequal, total.shape)
+        rows = np.stack([np.broadcast_to(each, total.shape)[chosen] for each in (*wo, *roughness)])
+        rows, indices = np.unique(rows, axis=1, return_inverse=True)
+        E = evaluate_number(
+            lambda wo, roughness: slope_nodes(wo, roughness)[1].sum(axis=(0, 1)),
+            {"wo": rows[:3].T, "roughness": rows[3:].T},
+            {},
+            BLOCK,
+        )
+        total[chosen] = ((1.0 - E) / E)[indices.reshape(-1)]
+        return total
+    E = array_namespace(wo, roughness).sum(slope_nodes(wo, roughness)[1], axis=(0, 1))
+    equal = roughness[0] == roughness[1]
+    return array_namespace(E).where(equal, isotropic, (1.0 - E) / E)
 
 
 @dataclass(frozen=True)
@@ -361,14 +387,11 @@ def generalized_schlick_albedo_dir(
 def ggx_albedo_dir_anisotropic(wo: ArrayLike, roughness: ArrayLike) -> Array:
     """Directional albedo of anisotropic GGX at unit Fresnel reflectance, by quadrature.
 
-    It exceeds 1 where alpha_x and alpha_y differ: the specification's masking at sqrt(alpha_x alpha_y) does not belong
-    to the anisotropic distribution. At grazing it falls far below 1 along the smoother direction and exceeds 1 along the
-    rougher one, 30 at mu_o = 0.001 for roughness (0.001, 1). Accuracy: error below 5e-6 of the larger of 1 and the
-    albedo for mu_o >= 1e-4 and roughness >= 1e-4. Cosines below 1e-12 count as 1e-12. [MaterialX2026], Energy
-    Compensation; Height-Correlated Smith Masking-Shadowing.
+    Accuracy: error below 5e-6 for mu_o >= 1e-4 and roughness >= 1e-4. Cosines below 1e-12 count as 1e-12.
+    [MaterialX2026], Energy Compensation; Height-Correlated Smith Masking-Shadowing.
 
         >>> ggx_albedo_dir_anisotropic([[0.6, 0.0, 0.8], [0.0, 0.6, 0.8]], [0.1, 0.5]).round(6)
-        array([0.837774, 0.874089])
+        array([0.815356, 0.804722])
     """
     wo, roughness = checked_directions("wo", wo), checked_roughness(roughness)
     lead_shape({"wo": wo, "roughness": roughness}, {})
@@ -415,12 +438,7 @@ def lobe_albedo(
     channels = channel_count(vectors)
     unseen, average = np.zeros(()), np.zeros(1)
     if compensate:
-        E_ss = evaluate_number(
-            lambda mu, roughness: albedo(mu, mean_alpha(roughness)),
-            {"roughness": roughness},
-            {"mu": wo[..., 2]},
-        )
-        unseen = (1.0 - E_ss) / E_ss
+        unseen = evaluate_number(missing_of, {"wo": wo, "roughness": roughness}, {})
         average = evaluate_material(curve.average, vectors, numbers, channels)
     arguments["average"] = average
     return evaluate_material(value, arguments, {"unseen": unseen, **numbers}, channels, BLOCK)

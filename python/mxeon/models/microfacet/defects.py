@@ -9,7 +9,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mxeon.models.core.arrays import Array
-from mxeon.models.microfacet import Lobe, Pair, compensation, ggx, missing, uncompensated
+from mxeon.models.microfacet import (
+    Lobe,
+    Pair,
+    compensation,
+    ggx,
+    missing,
+    uncompensated,
+    visibility,
+)
 from mxeon.models.microfacet.ggx import missing_light
 
 # MaterialX 1.39.5, rational fit of the GGX albedo A F0 + B F90 in x = mu, y = alpha; up to 0.14 off
@@ -113,9 +121,15 @@ def _separable(pair: Pair) -> Array:
     return ggx.reciprocal(length_o * length_i)
 
 
-def _anisotropic(pair: Pair) -> Array:
-    """G2 / (4 mu_o mu_i) that belongs to the anisotropic distribution."""
-    return ggx.visibility_anisotropic(pair.wo, pair.wi, pair.roughness)
+def _at_the_mean(pair: Pair) -> Array:
+    """G2 / (4 mu_o mu_i) at sqrt(alpha_x alpha_y), of the specification of June 2026."""
+    return ggx.visibility(pair.wo[2], pair.wi[2], ggx.mean_alpha(pair.roughness))
+
+
+def _june(pair: Pair) -> Array:
+    """The compensation of the specification of June 2026, whose E_ss is that of the mean alpha."""
+    lost = missing_light(pair.wo[2], ggx.mean_alpha(pair.roughness))
+    return 1.0 + pair.curve.average(**pair.material) * lost
 
 
 MICROFACET_DEFECTS = (
@@ -161,41 +175,54 @@ MICROFACET_DEFECTS = (
         "smith_separable", "masking and shadowing uncorrelated", Lobe(visibility=_separable)
     ),
     MicrofacetDefect(
-        "smith_anisotropic",
-        "masking of the anisotropic distribution (Heitz 2014)",
-        Lobe(visibility=_anisotropic),
+        "smith_mean",
+        "Smith at the geometric mean",
+        Lobe(_june, _at_the_mean),
     ),
     MicrofacetDefect("alpha_squared", "roughness squared once more", Lobe(alpha=np.square)),
     MicrofacetDefect("alpha_root", "square root of the roughness as alpha", Lobe(alpha=np.sqrt)),
     MicrofacetDefect("no_factor_4", "no factor 4 in the denominator", Lobe(scale=4.0)),
 )
-# Those beside MaterialX's compensation, as one slip in a copy of its shaders gives them.
-FITTED_DEFECTS = tuple(
-    MicrofacetDefect(
-        f"{each.name}_fitted",
-        f"{each.title}, and MaterialX's compensation",
-        replace(each.lobe, factor=fitted_half),
-    )
-    for each in MICROFACET_DEFECTS
-    if each.lobe.factor is compensation
+# MaterialX's lobes: 1.39.5, and after it.
+FITTED = Lobe(fitted_half, _at_the_mean)
+AVERAGED = Lobe(averaged_fitted, _at_the_mean)
+MEAN_TITLE = "Smith at the geometric mean, and MaterialX's compensation"
+# MaterialX's lobe, and one slip in a copy of its shaders.
+FITTED_DEFECTS = (
+    MicrofacetDefect("smith_mean_fitted", MEAN_TITLE, FITTED),
+    MicrofacetDefect("smith_mean_average", f"{MEAN_TITLE} by F0 and F90", AVERAGED),
+    *(
+        MicrofacetDefect(
+            f"{each.name}_fitted",
+            f"{each.title}, and MaterialX's compensation",
+            replace(
+                each.lobe,
+                factor=fitted_half,
+                visibility=_at_the_mean
+                if each.lobe.visibility is visibility
+                else each.lobe.visibility,
+            ),
+        )
+        for each in MICROFACET_DEFECTS
+        if each.lobe.factor is compensation
+    ),
 )
 # Of OSL's own renderer, which its closures are compared with alone: E_ss is at the arithmetic mean of both alphas.
 BSDL = MicrofacetDefect(
     "bsdl",
-    "BSDL's lobe: compensation with F at the half vector, masking of the anisotropic distribution",
+    "BSDL's lobe: compensation with F at the half vector",
     Lobe(
         _compensated(
             _half,
             lambda pair: missing_light(pair.wo[2], 0.5 * (pair.roughness[0] + pair.roughness[1])),
         ),
-        _anisotropic,
     ),
 )
 # Of Blender's Cycles, whose closures do not compensate.
 SINGLE = MicrofacetDefect(
     "single",
-    "single scattering alone, masking of the anisotropic distribution",
-    Lobe(uncompensated, _anisotropic),
+    "single scattering alone",
+    Lobe(uncompensated),
 )
 
 

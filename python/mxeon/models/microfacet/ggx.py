@@ -83,7 +83,7 @@ def smith_lambda(mu: Array, alpha: Array) -> Array:
 
 
 def mean_alpha(roughness: Array) -> Array:
-    """alpha = sqrt(alpha_x alpha_y): Height-Correlated Smith Masking-Shadowing."""
+    """alpha = sqrt(alpha_x alpha_y): the specification of June 2026, and MaterialX's shaders."""
     return root(roughness[0]) * root(roughness[1])
 
 
@@ -164,12 +164,13 @@ def smith_g1(wo: ArrayLike, roughness: ArrayLike) -> Array:
 
 @any_array
 def smith_g2(mu_o: ArrayLike, mu_i: ArrayLike, alpha: ArrayLike) -> Array:
-    """Masking and shadowing G2 of the specification, height-correlated Smith; 0 where a direction grazes.
+    """Masking and shadowing G2 of isotropic GGX, height-correlated Smith; 0 where a direction grazes.
 
         G2 = 2 mu_o mu_i / (lambda_o mu_i + lambda_i mu_o),
         lambda = sqrt(alpha^2 + (1 - alpha^2) mu^2)
 
-    - `mu_o`, `mu_i`, `alpha`: Cosines of the polar angles, in [0, 1]; of anisotropic roughness sqrt(alpha_x alpha_y).
+    - `mu_o`, `mu_i`, `alpha`: Cosines of the polar angles, in [0, 1]. The specification of June 2026 has
+      sqrt(alpha_x alpha_y) of an anisotropic roughness.
 
     [MaterialX2026], Height-Correlated Smith Masking-Shadowing.
 
@@ -189,9 +190,8 @@ def smith_g2_anisotropic(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> 
 
         G2 = 2 mu_o mu_i / (l_o mu_i + l_i mu_o),  l = |(alpha_x x, alpha_y y, z)|
 
-    Result (...): in [0, 1]; 0 where a direction grazes. The specification takes `smith_g2` at
-    sqrt(alpha_x alpha_y) instead. Both agree where alpha_x and alpha_y do. [Heitz2014], Eqs. (86),
-    (99).
+    Result (...): in [0, 1]; 0 where a direction grazes. It is that of the specification since July 2026 (pull
+    request 3015 of MaterialX), and `smith_g2` where alpha_x and alpha_y agree. [Heitz2014], Eqs. (86), (99).
 
         >>> smith_g2_anisotropic([0.6, 0.0, 0.8], [[0.0, 0.8, 0.6], [1.0, 0.0, 0.0]], [0.5, 0.25]).round(6)
         array([0.942466, 0.      ])
@@ -283,7 +283,7 @@ def ggx_albedo_dir(mu: ArrayLike, alpha: ArrayLike) -> Array:
 
         E_ss(mu) = integral of D G2 / (4 mu mu_i) mu_i over the hemisphere of wi
 
-    - `mu`, `alpha`: Cosine of the polar angle and GGX roughness, in [0, 1]; of anisotropic nodes sqrt(alpha_x alpha_y).
+    - `mu`, `alpha`: Cosine of the polar angle and GGX roughness, in [0, 1].
 
     Accuracy: absolute error below 1e-10 for alpha >= 1e-4 and every mu, 2e-8 below; 1 for the mirror, the limit at
     every mu > 0. With u = |wo + wi|^2 = a + b cos(phi) and h_z^2 = (mu + mu_i)^2 / u, the azimuth integral of

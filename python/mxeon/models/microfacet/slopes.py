@@ -31,7 +31,6 @@ from mxeon.models.core.arrays import (
     within,
 )
 from mxeon.models.core.quadrature import unit_rule
-from mxeon.models.microfacet.ggx import mean_alpha, smith_lambda
 
 # Gauss-Legendre nodes in r per panel, panels, and nodes per quadrant of phi.
 NODES, PANELS, QUADRANT = 20, 3, 20
@@ -50,11 +49,12 @@ FARTHEST_R = 1e12
 class Slopes:
     """Slopes that a direction sees, in polar coordinates r and omega, of which 0 is its own azimuth.
 
-    - `mu_o`, `alpha`: Cosine of the direction, and the mean of its two roughnesses.
+    - `mu_o`: Cosine of the direction.
+    - `stretched`: (alpha_x x, alpha_y y) of the direction.
     """
 
     mu_o: Array
-    alpha: Array
+    stretched: tuple[Array, Array]
     steepness: Array  # A: wo . h / h_z = mu_o + r A cos(omega)
     axis: tuple[Array, Array]  # cosine and sine of phi at omega 0
     roughness: Array
@@ -70,7 +70,7 @@ class Slopes:
             xp.where(tilted, y * alpha_y, 0.0) / length,
         )
         mu_o = at_most(xp.maximum(wo[2], LEAST_MU), 1.0)
-        return cls(mu_o, mean_alpha(roughness), A, axis, roughness)
+        return cls(mu_o, (x * alpha_x, y * alpha_y), A, axis, roughness)
 
     @property
     def scale(self) -> Array:
@@ -84,8 +84,8 @@ class Slopes:
         known = array_namespace(self.roughness) is NUMPY
         return known and bool(np.all(self.roughness[0] == self.roughness[1]))
 
-    def rays(self, omega: Array) -> tuple[Array, Array, Array]:
-        """Of each azimuth: B and g, with the slope's squared length g r^2, and the last r.
+    def rays(self, omega: Array) -> tuple[Array, Array, tuple[Array, Array]]:
+        """Of each azimuth: B, the last r, and the slope (alpha_x cos(phi), alpha_y sin(phi)) at r = 1.
 
         phi = omega + phi_0, tan(phi_0) = alpha_y y / (alpha_x x), joins the azimuths of h and of slopes:
 
@@ -99,24 +99,38 @@ class Slopes:
         (cos_0, sin_0), (alpha_x, alpha_y) = self.axis, self.roughness
         xp = array_namespace(omega)
         cosine, sine = xp.cos(omega), xp.sin(omega)
-        g = (alpha_x * (cos_0 * cosine - sin_0 * sine)) ** 2
-        g = g + (alpha_y * (sin_0 * cosine + cos_0 * sine)) ** 2
+        slope = (
+            alpha_x * (cos_0 * cosine - sin_0 * sine),
+            alpha_y * (sin_0 * cosine + cos_0 * sine),
+        )
+        g = _squared(slope)
         B = self.steepness * cosine
         ahead = xp.abs(B) + root(B * B + self.mu_o * self.mu_o * g)
         ahead = xp.maximum(ahead, self.mu_o / LARGEST_R)
         beyond = ahead / xp.maximum(self.mu_o * g, ahead / LARGEST_R)
-        return B, g, xp.where(B < 0.0, self.mu_o / ahead, beyond)
+        return B, xp.where(B < 0.0, self.mu_o / ahead, beyond), slope
 
-    def facets(self, r: Array, B: Array, g: Array) -> tuple[Array, Array]:
+    def facets(self, r: Array, B: Array, slope: tuple[Array, Array]) -> tuple[Array, Array]:
         """Cosine wo . h, and the integrand without F."""
-        xp = array_namespace(r, B, g)
+        xp = array_namespace(r, B)
         lean = at_least_0(B * r + self.mu_o)
-        stretch = 1.0 + g * r * r
-        mu_i = at_most(at_least_0(2.0 * lean / stretch - self.mu_o), 1.0)
-        smith = smith_lambda(self.mu_o, self.alpha) * mu_i
-        smith = smith + smith_lambda(mu_i, self.alpha) * self.mu_o
+        stretch = 1.0 + _squared(slope) * r * r
+        double = 2.0 * lean / stretch
+        mu_i = at_most(at_least_0(double - self.mu_o), 1.0)
+        # wi = 2 (wo . h) h - wo, stretched along tangent and bitangent as in `ggx.stretched_length`.
+        along, across = (
+            alpha * double * r * each - of_wo
+            for alpha, each, of_wo in zip(self.roughness, slope, self.stretched, strict=True)
+        )
+        length_i = xp.sqrt(along * along + across * across + mu_i * mu_i)
+        smith = hypot(self.mu_o, self.steepness) * mu_i + length_i * self.mu_o
         cosine = at_most(lean / xp.sqrt(stretch), 1.0)
         return cosine, _density(r) * 2.0 * mu_i * lean / smith
+
+
+def _squared(slope: tuple[Array, Array]) -> Array:
+    """g of a slope at r = 1."""
+    return slope[0] ** 2 + slope[1] ** 2
 
 
 def _density(r: Array) -> Array:
@@ -132,9 +146,9 @@ def slope_nodes(wo: Array, roughness: Array, isotropic: bool = False) -> tuple[A
     slopes = Slopes.seen(wo, roughness)
     scale = array_namespace(slopes.scale).maximum(slopes.scale, LEAST_SCALE)
     omega, weight_omega = _quadrants(scale, isotropic or slopes.isotropic)
-    B, g, limit = slopes.rays(omega)
+    B, limit, slope = slopes.rays(omega)
     r, weight = _graded(scale, limit)
-    cosine, values = slopes.facets(r, B, g)
+    cosine, values = slopes.facets(r, B, slope)
     return cosine, weight * weight_omega * values
 
 
@@ -148,30 +162,33 @@ def transmitting_nodes(wo: Array, roughness: Array, squared: Array) -> tuple[Arr
     slopes = Slopes.seen(wo, roughness)
     # Azimuth from wo of h on the critical cone around wo whose wi, reflected, is at the horizon.
     mu_o, xp = slopes.mu_o, array_namespace(slopes.mu_o, squared)
-    slope = root(at_least_0(4.0 * squared / mu_o**2 - 1.0))
-    length = root((1.0 - mu_o) * (1.0 + mu_o)) * slope
+    steep = root(at_least_0(4.0 * squared / mu_o**2 - 1.0))
+    length = root((1.0 - mu_o) * (1.0 + mu_o)) * steep
     cosine = (2.0 * squared / mu_o - mu_o) / xp.where(length > 0.0, length, 1.0)
     meeting = arccosine(xp.where(length > 0.0, cosine, 0.0))
     omega, weight_omega = _split_azimuths(slopes, wo, squared, meeting)
-    B, g, limit = slopes.rays(omega)
-    low, high = _transmitting(mu_o, B, g, squared)
+    B, limit, slope = slopes.rays(omega)
+    low, high = _transmitting(mu_o, B, _squared(slope), squared)
     high = xp.minimum(high, limit)
     r, weight = _between(slopes.scale, xp.minimum(low, high), high)
-    cosine, values = slopes.facets(r, B, g)
+    cosine, values = slopes.facets(r, B, slope)
     return cosine, weight * weight_omega * values
 
 
-def refracting_nodes(wo: Array, roughness: Array, squared: Array) -> tuple[Array, Array, Array]:
-    """Cosines wo . h, cosines of the refracted wi, and weights of the facets that wo sees.
+def refracting_nodes(
+    wo: Array, roughness: Array, squared: Array
+) -> tuple[Array, Array, Array, Array]:
+    """Cosines wo . h and of the refracted wi, its stretched length, and weights of the facets that wo sees.
 
-    wi has the cosine (mu_o - h_z L) / n, n^2 = 1 - squared and L = |wo + n wi|. It is above the
+    wi = (L h - wo) / n, below the horizon, n^2 = 1 - squared and L = |wo + n wi|. It is above the
     horizon below the r of mu_o^2 g r^2 - 2 mu_o B r + squared = mu_o^2.
     """
     # Split the azimuths where h on the critical cone lies at the horizon itself.
     slopes = Slopes.seen(wo, roughness)
     mu_o = slopes.mu_o
     omega, weight_omega = _split_azimuths(slopes, wo, squared, _cone_azimuth(mu_o, squared))
-    B, g, _ = slopes.rays(omega)
+    B, _, slope = slopes.rays(omega)
+    g = _squared(slope)
     # Begin where wi leaves the horizon, end where light is reflected totally.
     low, high = _transmitting(mu_o, B, g, squared)
     xp = array_namespace(mu_o, high)
@@ -185,9 +202,16 @@ def refracting_nodes(wo: Array, roughness: Array, squared: Array) -> tuple[Array
     cosine = at_most(lean / xp.sqrt(stretch), 1.0)
     total = cosine + root(at_least_0(cosine * cosine - squared))
     length = squared / guarded(total, total > 0.0, 1.0)
-    mu_i = within((mu_o - length / xp.sqrt(stretch)) / xp.sqrt(1.0 - squared))
+    inverse = 1.0 / xp.sqrt(1.0 - squared)
+    vertical = length / xp.sqrt(stretch)
+    mu_i = within((mu_o - vertical) * inverse)
+    along, across = (
+        (alpha * vertical * r * each - of_wo) * inverse
+        for alpha, each, of_wo in zip(roughness, slope, slopes.stretched, strict=True)
+    )
+    length_i = xp.sqrt(along * along + across * across + mu_i * mu_i)
     seen = 2.0 * lean / (mu_o + hypot(mu_o, slopes.steepness))
-    return cosine, mu_i, weight * weight_omega * _density(r) * seen
+    return cosine, mu_i, length_i, weight * weight_omega * _density(r) * seen
 
 
 def _transmitting(mu_o: Array, B: Array, g: Array, squared: Array) -> tuple[Array, Array]:

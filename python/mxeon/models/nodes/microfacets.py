@@ -18,12 +18,12 @@ from mxeon.models.core.arrays import Array, library
 from mxeon.models.core.colorimetry import XYZ_TO_REC709
 from mxeon.models.microfacet import NODES, Lobe, node_albedo, node_brdf
 from mxeon.models.microfacet.defects import (
+    AVERAGED,
+    FITTED,
     FITTED_DEFECTS,
     MICROFACET_DEFECTS,
     averaged_channels,
-    averaged_fitted,
     fitted_compensation,
-    fitted_half,
     layer_albedo,
     schlick_average,
 )
@@ -49,10 +49,11 @@ from mxeon.models.transmission import (
     schlick_ior,
 )
 
-# Forms of the energy compensation, which the text leaves open.
+# Forms of the energy compensation, which the text leaves open, and MaterialX's masking of anisotropic facets, of which
+# an implementation note of the text speaks since July 2026.
 OPEN = [
     f"compensation_{each}" for each in ["half", "f0", "view", "fitted", "average", "average_fitted"]
-]
+] + ["smith_mean", "smith_mean_fitted", "smith_mean_average"]
 WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
 REFLECTION, NONE = {"scatter_mode": "R"}, dict[str, str]()
 
@@ -236,8 +237,6 @@ MICROFACET_NODES = (
 )
 
 
-FITTED = Lobe(fitted_half)  # MaterialX's compensation
-AVERAGED = Lobe(averaged_fitted)  # that of MaterialX after 1.39.5
 OWN_MATRIX = Form(tuple(map(tuple, XYZ_TO_REC709.tolist())))
 STOCK = Form(
     CIE_RGB, 2, True, 1.0, 0.01

@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Isotropic facets that stand for anisotropic ones in the shaders' fits of E_ss and of Fresnel averages.
+
+With r^2 = (alpha_x^2 + alpha_y^2) / 2, the squared roughness along the azimuth of wo and across it are
+
+    v^2 = (alpha_x x)^2 + (alpha_y y)^2 + (r z)^2,  u^2 = 2 r^2 - v^2,
+
+and the slopes along and across are correlated by c, c^2 = 1 - (alpha_x alpha_y)^2 / (u v)^2. The light that the lobe
+misses is that of isotropic facets of alpha r at the cosine z r / v, times
+
+    1 + C_0 c^2 + C_1 d + C_2 t + C_3 c^2 t,  d = 1 - (alpha_x alpha_y)^2 / r^4,  t = v^2 / r^2 - 1,
+
+of the least largest relative error of E_ss. A Fresnel curve has the average over isotropic facets of alpha
+v k(0.7 + c^2) at the cosine z k(0.35 c^2), k(p) = min((1 + p v) / (1 + p u), 1).
+
+    python -m tools.fits.ggx_anisotropic
+"""
+
+import numpy as np
+from scipy.optimize import linprog
+
+from mxeon.models.microfacet.fresnel import dielectric
+from mxeon.models.microfacet.slopes import slope_nodes
+from tools.fits.ggx_albedo import fitted
+from tools.fits.minimax import shipped
+
+MISSED = (-0.1268, 0.074, -0.0792, 0.0696)
+LARGEST = (1.0, 0.6, 0.3, 0.1, 0.05)
+RATIOS = (1.3, 2.0, 3.0, 4.0, 8.0, 16.0, 30.0, 50.0)
+COSINES = (0.01, 0.02, 0.04, 0.07, 0.12, 0.2, 0.35, 0.5, 0.7, 0.9, 0.99)
+AZIMUTHS = np.radians((0.0, 5.0, 12.0, 25.0, 45.0, 65.0, 80.0, 90.0))
+
+
+def points(ratios=RATIOS):
+    """Directions (3, N) and alphas (2, N) of a grid, each alpha at least 1e-3."""
+    a, ratio, mu, phi = (
+        each.ravel() for each in np.meshgrid(LARGEST, ratios, COSINES, AZIMUTHS, indexing="ij")
+    )
+    s = np.sqrt(1.0 - mu * mu)
+    keep = a / ratio >= 1e-3
+    return np.stack([s * np.cos(phi), s * np.sin(phi), mu])[:, keep], np.stack([a, a / ratio])[
+        :, keep
+    ]
+
+
+def exact(wo, alpha, ior=None, block=64):
+    """E_ss by quadrature, or the albedo of a dielectric."""
+    parts = []
+    for start in range(0, wo.shape[1], block):
+        c, weight = slope_nodes(wo[:, start : start + block], alpha[:, start : start + block])
+        F = 1.0 if ior is None else dielectric(c, np.full(c.shape[-1], ior))
+        parts.append(np.sum(F * weight, axis=(0, 1)))
+    return np.concatenate(parts)
+
+
+def terms(wo, alpha):
+    """Isotropic cosine and alpha, and factors of the four coefficients."""
+    (x2, y2, z2), (a2, b2) = wo**2, alpha**2
+    r2 = 0.5 * (a2 + b2)
+    v2 = a2 * x2 + b2 * y2 + r2 * z2
+    c2 = np.maximum(1.0 - a2 * b2 / (v2 * (2.0 * r2 - v2)), 0.0)
+    t, d = v2 / r2 - 1.0, 1.0 - a2 * b2 / r2**2
+    return (wo[2] / np.sqrt(1.0 + t), np.sqrt(r2)), np.stack([c2, d, t, c2 * t])
+
+
+def missed(wo, alpha):
+    """1 - E_ss of the isotropic facets, by the shaders' fit."""
+    return 1.0 - fitted(*terms(wo, alpha)[0], shipped("ggx_albedo", "GGX_ALBEDO"))
+
+
+def visible(wo, alpha):
+    """Cosine and alpha of isotropic facets for Fresnel averages."""
+    r2 = 0.5 * np.sum(alpha**2, axis=0)
+    v2 = np.sum((alpha * wo[:2]) ** 2, axis=0) + r2 * wo[2] ** 2
+    v, u = np.sqrt(v2), np.sqrt(2.0 * r2 - v2)
+    c2 = terms(wo, alpha)[1][0]
+    k = [np.minimum((1.0 + p * v) / (1.0 + p * u), 1.0) for p in (0.35 * c2, 0.7 + c2)]
+    return wo[2] * k[0], v * k[1]
+
+
+def fit(wo, alpha):
+    """The four coefficients, and the largest error."""
+    E, lost, factors = exact(wo, alpha), missed(wo, alpha), terms(wo, alpha)[1]
+    slope, offset = -(lost / E * factors).T, (1.0 - lost) / E - 1.0
+    one = np.ones((len(offset), 1))
+    found = linprog(
+        [0.0] * 4 + [1.0],
+        A_ub=np.block([[slope, -one], [-slope, -one]]),
+        b_ub=np.concatenate([-offset, offset]),
+        bounds=[(None, None)] * 4 + [(0.0, None)],
+    )
+    return found.x[:4], found.x[4]
+
+
+def largest_error(ratios=RATIOS, coefficients=MISSED):
+    """Largest relative error of E_ss up to the last of these ratios."""
+    wo, alpha = points(ratios)
+    E = 1.0 - missed(wo, alpha) * (1.0 + np.tensordot(coefficients, terms(wo, alpha)[1], axes=1))
+    return float(np.max(np.abs(E / exact(wo, alpha) - 1.0)))
+
+
+def largest_visible_error(ratios=RATIOS, ior=1.5):
+    """Largest error of a dielectric's albedo, with E_ss exact."""
+    wo, alpha = points(ratios)
+    mu, own = visible(wo, alpha)
+    view = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu])
+    isotropic = np.stack([own, own])
+    average = exact(view, isotropic, ior) / exact(view, isotropic)
+    return float(np.max(np.abs(average * exact(wo, alpha) - exact(wo, alpha, ior))))
+
+
+def main():
+    """Print the coefficients and the errors."""
+    found, error = fit(*points())
+    print("1 - E_ss:", *found.round(4), f"error {error:.3g}")
+    for last in (4, 8):
+        print(
+            f"up to a ratio of {RATIOS[last - 1]:g}: E_ss {largest_error(RATIOS[:last]):.3g}, "
+            f"albedo of a dielectric {largest_visible_error(RATIOS[:last]):.3g}"
+        )
+
+
+if __name__ == "__main__":
+    main()
