@@ -219,7 +219,7 @@ def anisotropic_value(case: Case) -> Compared:
 
 
 @check(
-    lambda spec: is_facets(spec) and "scatter_mode" in spec.fixed,
+    lambda spec: isinstance(spec, FacetSpec) and spec.row.layerable,
     isotropic,
     pairs=True,
     lit=True,
