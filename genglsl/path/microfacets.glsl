@@ -166,7 +166,7 @@ void path_dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, floa
     if (path_is_asked(closureData))
     {
         path_eta = path_eta_of(ior);
-        dielectric_bsdf(path_question_of_value(closureData), weight, tint, path_inside ? path_eta : ior, roughness,
+        dielectric_bsdf(path_question_in_direct_light(closureData), weight, tint, path_inside ? path_eta : ior, roughness,
                         retroreflective, thinfilm_thickness, thinfilm_ior, N, X, distribution, scatter_mode, bsdf);
         path_end(bsdf);
     }
@@ -192,7 +192,7 @@ void path_generalized_schlick_bsdf(ClosureData closureData, float weight, vec3 c
     if (path_is_asked(closureData))
     {
         path_eta = path_eta_of(mx_f0_to_ior(path_mean(color0)));
-        generalized_schlick_bsdf(path_question_of_value(closureData), weight, color0, color82, color90, exponent, roughness,
+        generalized_schlick_bsdf(path_question_in_direct_light(closureData), weight, color0, color82, color90, exponent, roughness,
                                  retroreflective, thinfilm_thickness, thinfilm_ior, N, X, distribution, scatter_mode,
                                  bsdf);
         path_end(bsdf);

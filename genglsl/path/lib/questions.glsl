@@ -20,7 +20,7 @@ bool path_is_asked(ClosureData closureData)
 }
 
 // The question as eonlib's own function understands it: of a value, which also has the curve at the half vector.
-ClosureData path_question_of_value(ClosureData closureData)
+ClosureData path_question_in_direct_light(ClosureData closureData)
 {
     closureData.closureType = CLOSURE_TYPE_REFLECTION;
     closureData.L = path_wi;
@@ -32,7 +32,7 @@ ClosureData path_question_of_value(ClosureData closureData)
 // The same: of a value, or of the albedo.
 ClosureData path_question(ClosureData closureData)
 {
-    closureData = path_question_of_value(closureData);
+    closureData = path_question_in_direct_light(closureData);
     closureData.closureType = path_asked == PATH_VALUE ? CLOSURE_TYPE_REFLECTION : CLOSURE_TYPE_INDIRECT;
     return closureData;
 }
