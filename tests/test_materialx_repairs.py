@@ -26,14 +26,14 @@ pytestmark = pytest.mark.whole
 JUDGE = """
 import json, sys
 from mxeon.errors import NotRun
-from tests.support.verdicts import NOT_RUN, SOURCE, Verdicts
+from tests.support.verdicts import NOT_RUN, SOURCE, Verdicts, said
 judged = Verdicts()
 results = {}
 for check, subject, host in json.loads(sys.argv[1]):
     text, key = host == SOURCE, "|".join((check, subject, host))
     try:
         result = judged.texts(check, "stock")[subject] if text else judged(check, subject, host, "stock")
-        results[key] = result.verdict, result.diagnosis, result.pages
+        results[key] = result.verdict, said(result), result.pages
     except NotRun as reason:
         results[key] = NOT_RUN, str(reason), ()
 print(json.dumps(results))

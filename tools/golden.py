@@ -6,12 +6,11 @@
     python tools/golden.py compare out/before.jsonl out/after.jsonl
 
 A line is one check: host, library, subject and key; its verdict, tolerance, whether its control was
-caught, diagnosis and pages. Distances in a diagnosis keep two digits, since engines differ in the rest.
+caught, diagnosis and pages. Numbers in a diagnosis keep two digits, since engines differ in the rest.
 """
 
 import argparse
 import json
-import re
 import subprocess
 import sys
 from itertools import product
@@ -22,7 +21,6 @@ from mxeon.hosts import host_rows
 LIBRARIES = ("eonlib", "stock", "diffuse")
 PLACE = ("host", "library", "subject", "check")
 SAME = ("verdict", "tolerance", "caught", "diagnosis", "pages", "reason")
-NUMBER = re.compile(r"\d+(\.\d+)?(e[-+]?\d+)?")
 Line = dict[str, object]
 
 
@@ -39,13 +37,21 @@ def lines(host: str, library: str) -> list[Line]:
 
 def line(result: Line) -> Line:
     control, tolerance = result["control"], result["tolerance"]
-    diagnosis = NUMBER.sub(lambda found: f"{float(found[0]):.2g}", str(result["diagnosis"]))
     return {
         **{key: result[key] for key in (*PLACE, "verdict", "pages", "reason")},
         "tolerance": None if tolerance is None else float(f"{tolerance:.3g}"),
         "caught": control["caught"] if isinstance(control, dict) else None,
-        "diagnosis": diagnosis,
+        "diagnosis": rounded(result["diagnosis"]),
     }
+
+
+def rounded(value: object) -> object:
+    """Fields of JSON with two digits of each number that is not whole."""
+    if isinstance(value, dict):
+        return {name: rounded(each) for name, each in value.items()}
+    if isinstance(value, list):
+        return [rounded(each) for each in value]
+    return float(f"{value:.2g}") if isinstance(value, float) else value
 
 
 def compare(before: Path, after: Path) -> int:

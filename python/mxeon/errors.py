@@ -121,8 +121,16 @@ class Unsupported(NotRun):
     """A verb that a host does not have."""
 
 
+class Implied(NotRun):
+    """What cannot be asked since something else fails, which is told by itself."""
+
+
 class OutsideModel(NotRun):
-    """A value outside the range that a model is defined on."""
+    """A value outside the range that a model is defined on; `input` is the document's, by its path."""
+
+    def __init__(self, message: str, input: str = "") -> None:
+        super().__init__(message)
+        self.input = input
 
 
 class InterfaceError(NotRun):

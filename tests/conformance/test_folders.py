@@ -8,7 +8,7 @@ from mxeon.cli import main
 from mxeon.cli.answer import MANY, summary_by_cause
 from mxeon.errors import MISUSE
 from tests.support.command import CLAY
-from tests.support.results import Identity, Result, Run
+from tests.support.results import Identity, Result, Run, quoted
 from tests.support.verdicts import FAILED, PASSED
 
 NAMES = ("a/clay.mtlx", "a/glass.mtlx", "b/noise.mtlx", "light.mtlx")
@@ -25,7 +25,9 @@ RUN = Run(
     (
         result("clay.mtlx: look"),
         result("clay.mtlx: other"),
-        result("glass.mtlx: look", "finite", diagnosis="reference: there is no model for 'x/y'"),
+        result(
+            "glass.mtlx: look", "finite", diagnosis=quoted("reference: there is no model for 'x/y'")
+        ),
         result("noise.mtlx: look", measured=("lobe.color",)),
         result("noise.mtlx: node", "value", verdict=FAILED),
     ),

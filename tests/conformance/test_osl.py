@@ -11,7 +11,7 @@ from mxeon.conformance.reference.closures import evaluate
 from mxeon.shaders.generation import generate
 from mxeon.shaders.library import examples_folder
 from tests.support.cases import directions_32
-from tests.support.verdicts import FAILED, PASSED, Verdicts
+from tests.support.verdicts import FAILED, PASSED, Verdicts, said
 
 # Bundled documents without images, which the reference reads on a sphere alone.
 EXAMPLES = (
@@ -104,13 +104,13 @@ def changed(hosts):
 @pytest.mark.parametrize(("title", "check"), RIGHT)
 def test_the_closures_of_eonlib_are_those_of_the_equations(judged, title, check):
     result = judged(check, title, "osl")
-    assert result.verdict == PASSED and result.control.caught, result.diagnosis
+    assert result.verdict == PASSED and result.control.caught, said(result)
 
 
 @pytest.mark.parametrize(("title", "check", "old", "new"), ROWS)
 def test_a_wrong_text_is_noticed_and_named(changed, title, check, old, new):
     result = changed(old, new)(check, title, "osl")
-    assert result.verdict == FAILED and NAMED.get((title, check), "") in result.diagnosis
+    assert result.verdict == FAILED and NAMED.get((title, check), "") in said(result)
 
 
 def test_the_repair_on_its_page_gives_a_sheen_its_mode(judged, changed):

@@ -12,6 +12,7 @@ from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import EON, SURFACE, document_text
 from mxeon.shaders.scene import FRONT, FURNACE, SIDE, Scene, sphere
 from tests.support.documents import lobe, material
+from tests.support.verdicts import has
 from tests.support.wrong_libraries import wrong_copy
 
 
@@ -82,7 +83,7 @@ def test_a_truth_value_is_drawn_white_or_black(shown):
 def test_nodes_of_one_name_in_two_nodegraphs_are_named(shown):
     result, _, notes = shown(colors("tint", "tint"))
     assert result.verdict == "failed"
-    assert 'nodes "red/tint" and "green/tint" have the values of one' in result.diagnosis
+    assert has(result, "same_names", '"red/tint" and "green/tint"')
     assert any("must have different names" in text for text, _ in notes)
 
 
@@ -263,4 +264,5 @@ def test_a_value_outside_its_model_is_not_judged(shown, name, value, high):
     result, pictures, notes = shown(material(lobe(**{name: value})))
     assert result.verdict == "not run" and not pictures
     rule = f"must lie in [0, {high}], where its model is defined; got {value}"
-    assert result.reason == f'input "lobe/{name}" {rule}' and notes[0][0].endswith(result.reason)
+    assert result.reason == f'input "lobe/{name}" {rule}' and not notes
+    assert has(result, "input", f"lobe/{name}")

@@ -8,7 +8,7 @@ from mxeon.hosts import open_engine
 from mxeon.survey import browser
 from mxeon.survey.browser import babylon, pathtracer, three
 from tests.support.availability import available
-from tests.support.verdicts import FAILED, NOT_RUN, PASSED, RENDERER_NODES, Verdicts
+from tests.support.verdicts import FAILED, NOT_RUN, PASSED, RENDERER_NODES, Verdicts, said
 from tests.test_upstream import same_record
 from tools.site import ledger
 from tools.site.ledger import measure
@@ -86,7 +86,7 @@ def repaired(tmp_path_factory):
 def test_a_repair_makes_the_checks_pass_that_show_the_defect(repaired, issue):
     for check, title in issue.rows:
         result = repaired[issue.host](check, title, issue.host, RENDERER_NODES)
-        assert result.verdict == PASSED and result.control.caught, result.explanation
+        assert result.verdict == PASSED and result.control.caught, said(result)
 
 
 def test_a_page_that_throws_goes_on_and_one_that_hangs_is_ended(tmp_path):

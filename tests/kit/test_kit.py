@@ -14,6 +14,7 @@ import OpenImageIO as oiio
 import pytest
 
 from mxeon.cli import main
+from mxeon.conformance import words as sentences
 from mxeon.errors import MISUSE, PASSED
 from mxeon.hosts.cycles.process import interpreter
 from mxeon.io.images import write_exr
@@ -40,6 +41,7 @@ from tests.kit.conftest import (
 )
 from tests.support.availability import available
 from tests.support.tolerances import KIT_FALSE_ALARMS
+from tests.support.verdicts import has, said
 
 EXTERNAL_RENDERER = Path(__file__).parents[1] / "support" / "external_renderer.py"
 
@@ -178,14 +180,15 @@ def test_what_is_wrong_with_light_or_encoding_is_named(words):
     model, mask = expected(reference.diffuse_model("lambert"), view, 0.0), judged(view.scene)
     image = np.zeros((SIZE, SIZE, 3))
     image[mask] = model.value
-    assert fault(FAULTS[words](image), model, mask) == words
+    found = sentences.diagnosis(fault("shown", FAULTS[words](image), model, mask))
+    assert found == (words and f"shown is {words}")
 
 
 def test_where_the_encoding_is_wrong_no_model_is_named(kit):
     for name in VIEWS:
         write_exr(render(kit, name), srgb(read(render(kit, name))), {})
     run = check_kit(kit)
-    assert result_of(run, "setup", "lambert").diagnosis == "lambert_side is sRGB-encoded"
+    assert has(result_of(run, "setup", "lambert"), "picture_srgb", "lambert_side")
     result = result_of(run, "model", "energy_compensation true, distant light")
     assert result.reason == "lambert_side is sRGB-encoded"
     assert names(run) == {}
@@ -354,7 +357,7 @@ def test_each_unusable_picture_costs_itself_alone_and_is_diagnosed(kit):
     run = check_kit(kit)
     for name, (_, words) in SPOILED.items():
         result = result_of(run, "file", name)
-        assert result.verdict == "failed" and re.search(f"{name}.*{words}", result.diagnosis)
+        assert result.verdict == "failed" and re.search(f"{name}.*{words}", said(result))
     assert [each.check for each in run.results].count("file") == len(SPOILED)
     assert result_of(run, "setup", "lambert").verdict == "passed"
 

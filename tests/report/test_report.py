@@ -21,7 +21,16 @@ from mxeon.io.srgb import srgb_encoded
 from mxeon.models import eon_brdf
 from mxeon.report import html, to_json, to_junit, write
 from mxeon.shaders.scene import sphere
-from tests.support.results import AlbedoCurve, Control, Identity, Picture, Result, Run
+from tests.support.results import (
+    AlbedoCurve,
+    Control,
+    Identity,
+    Picture,
+    Result,
+    Run,
+    caused,
+    quoted,
+)
 from tests.support.verdicts import FAILED, NOT_RUN, PASSED
 
 HOSTILE = "<script>alert('\x08')</script>\"><img src=x onerror=y>&{{ 7 * 7 }}$"
@@ -47,12 +56,12 @@ def made_result(verdict, **changes):
     return replace(ran, **changes)
 
 
-FAILURE = made_result(FAILED, library="stock", error=math.inf, diagnosis="nearest model: QON")
+FAILURE = made_result(FAILED, library="stock", error=math.inf, diagnosis=caused("model", "QON"))
 MISSING = made_result(
     NOT_RUN, host="cycles", error=None, control=None, worst={}, reason="Blender is not here"
 )
 ATTACK = made_result(
-    FAILED, error=math.nan, subject=HOSTILE, diagnosis=HOSTILE, unit=HOSTILE, claim=HOSTILE,
+    FAILED, error=math.nan, subject=HOSTILE, diagnosis=quoted(HOSTILE), unit=HOSTILE, claim=HOSTILE,
     derivation=HOSTILE, worst={HOSTILE: [1.0]}, control=Control(HOSTILE, 0.0, caught=False),
 )  # fmt: skip
 
@@ -167,7 +176,7 @@ def test_page_has_unique_identifiers_and_no_loose_link(page):
         "With eonlib on gl: differs from the reference by up to",
         "Two roundings of 6e-8 each.",
         "wo (0, 0.6, 0.8)",
-        "nearest model: QON",
+        "best match: QON",
         "s clamped; its error of 0.35 is caught",
         "not caught",
         "Blender is not here",
@@ -204,7 +213,7 @@ EXACT = made_picture("clay").reference
         ({"verdict": FAILED}, {}, "differs from the reference by up to 25 % of white."),
         ({"verdict": FAILED}, {"image": EXACT + np.inf}, "has pixels that are infinite or not a"),
         (
-            {"check": "finite", "diagnosis": "no model of fur"},
+            {"check": "finite", "diagnosis": quoted("no model of fur")},
             {"reference": None},
             "no reference: no model of fur; every pixel is finite.",
         ),
@@ -283,11 +292,11 @@ def test_junit_counts_and_explains(run):
     assert suites[2].find("testcase/skipped").get("message") == "Blender is not here"
     failure = suites[1].find("testcase/failure")
     assert failure.get("message").endswith("inf > 2e-06 1/pi")
-    assert failure.text == "nearest model: QON\nworst point: wo (0, 0.6, 0.8), roughness 1"
+    assert failure.text == "best match: QON\nworst point: wo (0, 0.6, 0.8), roughness 1"
 
 
 KNOWN = {"pages": ("genglsl_clamped_dot",), "worst": {}}
-SYNTAX = {"error": None, "diagnosis": "GLSL: no", "worst": {}}
+SYNTAX = {"error": None, "diagnosis": quoted("GLSL: no"), "worst": {}}
 
 
 @pytest.mark.parametrize(

@@ -13,9 +13,9 @@ import pytest
 from mxeon.cli import main
 from mxeon.models import table as reference
 from mxeon.report import to_json, write
-from mxeon.report.diff import BETTER, LOST, OTHER, WORSE, WRONG_INSIDE, compare, read_results
+from mxeon.report.diff import BETTER, LOST, OTHER, WORSE, compare, read_results
 from mxeon.survey.field import read_field
-from tests.support.results import Control, Identity, Picture, Result, Run
+from tests.support.results import Control, Identity, Picture, Result, Run, caused
 from tests.support.verdicts import DIFFERS, FAILED, NOT_RUN, PASSED
 
 PLACE = "gl, eonlib, value, clay"
@@ -101,7 +101,9 @@ def test_each_kind_of_change_is_told(row):
     assert changes(before, after) == expected
 
 
-QON, FON = (f"best match: {name} (rms 1e-9), then EON (rms 1)" for name in ("QON", "FON"))
+QON, FON = (
+    caused("model", name, rms=1e-9, distances={name: 1e-9, "EON": 1.0}) for name in ("QON", "FON")
+)
 
 
 @pytest.mark.parametrize(
@@ -125,13 +127,13 @@ QON, FON = (f"best match: {name} (rms 1e-9), then EON (rms 1)" for name in ("QON
             {"diagnosis": QON},
             {"error": 0.31, "diagnosis": FON},
             WORSE,
-            "is best match: FON (rms 1e-9)",
+            "is best match: FON (rms 1e-09)",
         ),
         ({"diagnosis": QON}, {"diagnosis": FON}, OTHER, "diagnosis was best match: QON"),
         ({"pages": ("a",)}, {}, OTHER, "a no longer explains it"),
         ({}, {"verdict": NOT_RUN, "reason": "timed out"}, LOST, "failed at 0.3 -> not run; timed"),
         ({"verdict": NOT_RUN, "reason": "timed out"}, {}, WORSE, "not run -> failed at 0.3"),
-        ({"verdict": NOT_RUN, "reason": f"x {WRONG_INSIDE}"}, {}, OTHER, "not run -> failed"),
+        ({"verdict": NOT_RUN, "diagnosis": caused("follows")}, {}, OTHER, "not run -> failed"),
     ],
 )
 def test_a_failure_that_changes_is_worse_better_or_lost(
@@ -275,7 +277,7 @@ def made(check, error, **changes):
 
 
 WRONG = (
-    made("value", 0.4, diagnosis="best match: QON (rms 1e-9), then FON", pages=("a",)),
+    made("value", 0.4, diagnosis=QON, pages=("a",)),
     made("environment", 1e-7),
     made("furnace", 1e-7),
     made("integral", 0.3, pages=("a", "b")),

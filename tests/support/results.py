@@ -7,14 +7,25 @@ from pathlib import Path
 
 import numpy as np
 
-from mxeon.conformance.results import AlbedoCurve, Control, Picture, Result, Run
+from mxeon.conformance.results import (
+    AlbedoCurve,
+    Cause,
+    Control,
+    Diagnosis,
+    Kind,
+    Picture,
+    Region,
+    Result,
+    Run,
+    quoted,
+)
 from mxeon.conformance.run import read_run, to_run
 from mxeon.conformance.run.journal import JOURNAL, LOCK, PREVIOUS, Journal, read_journal
 from mxeon.conformance.run.plan import Findings, Plan, Task
 from mxeon.hosts.base import Identity
 from tests.support.verdicts import FAILED
 
-__all__ = ["AlbedoCurve", "Control", "Identity", "Picture", "Result", "Run"]
+__all__ = ["AlbedoCurve", "Control", "Identity", "Picture", "Region", "Result", "Run", "quoted"]
 __all__ += ["JOURNAL", "LOCK", "PREVIOUS", "read_journal", "read_run", "to_run"]
 
 TASKS = tuple(Task("value", name, "gl", "eonlib") for name in "abc")
@@ -46,6 +57,11 @@ FINDINGS = Findings(
     errors=("broken",),
     hosts=(Identity("gl", "4.5", "device"),),
 )
+
+
+def caused(kind, key="", *names, distances=None, **fields):
+    """A diagnosis of one cause."""
+    return Diagnosis((Cause(Kind(kind), key, names, **fields),), distances or {})
 
 
 @contextmanager

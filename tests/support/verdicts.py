@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """One check of one node, or one document, as a run judges it; and the words of results."""
 
+from mxeon.conformance import words
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import EVERY_NODE, Task
 from mxeon.hosts import open_engine
@@ -39,3 +40,32 @@ class Verdicts:
 
     def _work(self, check, subject, host, library, seed=1):
         return self._judge.work(Task(check, subject, host, library, seed))
+
+
+def has(result, *wanted):
+    """Whether one cause of a result has all of these: kind, key, branch, region, names and numbers.
+
+    A text with spaces may be a part of a title or of a name; numbers are compared to two digits.
+    """
+    return not wanted or any(
+        all(any(_matches(each, field) for field in _fields(cause)) for each in wanted)
+        for cause in result.diagnosis.causes
+    )
+
+
+def said(result):
+    """The diagnosis of a result in words, for tests of the words."""
+    return words.diagnosis(result.diagnosis)
+
+
+def _fields(cause):
+    region = cause.region
+    place = (region.name, region.part, region.low, region.high, *region.channels) if region else ()
+    return (cause.kind.value, cause.key, cause.branch, *cause.names, *cause.values, *place)
+
+
+def _matches(wanted, field):
+    if isinstance(wanted, str) and isinstance(field, str):
+        return wanted == field or (" " in wanted and wanted in field)
+    numbers = isinstance(wanted, float) and isinstance(field, float)
+    return numbers and abs(wanted - field) <= 0.05 * abs(wanted)

@@ -11,24 +11,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 from mxeon.cli.output import fail, show
+from mxeon.conformance import words
 from mxeon.conformance.pictures import DOCUMENT_KEY
-from mxeon.conformance.results import (
-    DIFFERS,
-    DIRECT,
-    FAILED,
-    LIGHTS,
-    NOT_RUN,
-    PASSED,
-    WRONG_INSIDE,
-    Result,
-    Run,
-    counted,
-    listed,
-    of_white,
-)
+from mxeon.conformance.results import DIFFERS, DIRECT, FAILED, NOT_RUN, PASSED, Kind, Result, Run
 from mxeon.conformance.results.known_issues import issues_of
 from mxeon.conformance.spec import ValueSpec
 from mxeon.conformance.specs import ALL
+from mxeon.conformance.words import counted, listed, of_white
 from mxeon.errors import as_output, one_line, printable
 from mxeon.report.formats import link
 from mxeon.shaders.library import eonlib_folder
@@ -41,14 +30,12 @@ FEWEST = 3  # nodes and causes on several documents, and reasons why checks did 
 UNBOUNDED = 1e3  # larger errors are described in words
 NOTICED = 0.01  # of white: a larger difference is told, even within a tolerance
 AS_SPECIFIED = "looks as specified"
-OWN_INPUT = re.compile('(input "[^"]*") must lie in ')  # whose value the document has
 LETTERS = re.compile(r"\(([A-Z]+)\)$")  # of a model, behind its name
 REFUSED = "refused"
 NO_REFERENCE = "no reference"  # whose pixels are numbers
 # The first decides about a document.
 STATES = (FAILED, NOT_RUN, REFUSED, DIFFERS, NO_REFERENCE, PASSED)
 QUOTED = re.compile(r"'[^']*/[^']*'|\"[^\"]*\"")  # names of one document in a reason
-SHARE = re.compile(r"(up to|less than) [\d.,]+ % of white ")  # which no two documents share
 KEYS = ("picture", "finite", DOCUMENT_KEY)
 INDIRECT = ("environment", "layering", "transmission", "integral")  # checks in a white environment
 
@@ -79,7 +66,7 @@ def show_run(run: Run, options: argparse.Namespace, said: Collection[str] = ()) 
 
 def _line(result: Result) -> str:
     """A check with its error and tolerance, or why it did not pass."""
-    numbers = result.reason or result.explanation
+    numbers = result.reason or words.explanation(result)
     if result.verdict == PASSED:
         error, tolerance = result.error or 0.0, result.tolerance or 0.0
         numbers = f"{error:.3g} <= {tolerance:.3g} {result.unit}" if tolerance else ""
@@ -93,16 +80,9 @@ def answer(run: Run, full: bool = False) -> list[str]:
     looks = summary_by_cause(run) if many else list(map(one_line, _looks(run)))
     rows = {} if many else _rows(run)
     remedy, failures = [one_line(line) for line in _remedy(run)], list(_failures(run))
-    # Notes, but for those that a diagnosis or the reason of a picture repeats.
-    said = tuple({each.diagnosis for each in run.results if each.diagnosis})
-    reasons = {each.reason for each in run.results if OWN_INPUT.match(each.reason)}
-    notes = [
-        f"note: {note}"
-        for note in run.notes
-        if not (note.endswith(said) or any(reason in note for reason in reasons))
-    ]
+    notes = [f"note: {note}" for note in run.notes]
     idle = _not_run(run, full, [] if many else looks)
-    first = list(map(one_line, [*run.origins, *idle]))
+    first = list(map(one_line, [*words.origins(run), *idle]))
     # The verdict comes first if there are no documents, or something was not judged.
     begins = run.refused or run.verdict == NOT_RUN or not run.contents
     alone = len(run.contents) == 1
@@ -156,8 +136,8 @@ def summary_by_cause(run: Run) -> list[str]:
         for key in sorted(groups, key=lambda key: (STATES.index(key[0]), -len(groups[key]))):
             (verdict, cause), (first, *others) = key, groups[key]
             more = f" and {len(others)} more" if others else ""
-            words = f"{verdict}{place}: {cause} ({first}{more})"
-            lines.append(f"  {1 + len(others):4} {one_line(words)}")
+            line = one_line(f"{verdict}{place}: {cause} ({first}{more})")
+            lines.append(f"  {1 + len(others):4} {line}")
     return lines
 
 
@@ -188,9 +168,12 @@ def _cause(result: Result, measured: bool) -> str:
         return f"matches the reference{', with inputs that the host computed' * measured}"
     if result.verdict == PASSED and result.check == DOCUMENT_KEY:
         return "shaders are generated"
-    reason = (result.reason or result.diagnosis).split("; last output:")[0]
-    reason = SHARE.sub("", reason.removeprefix("reference: "))
-    return QUOTED.sub("...", reason) or result.excess
+    # Without its size, which no two documents share.
+    if result.diagnosis.kind is Kind.PICTURE:
+        return words.appearance(result.diagnosis.first)
+    reason = result.reason or words.diagnosis(result.diagnosis)
+    reason = reason.split("; last output:")[0].removeprefix("reference: ")
+    return QUOTED.sub("...", reason) or words.excess(result)
 
 
 def _refused(document: str, lines: Sequence[str]) -> DocumentVerdict:
@@ -234,17 +217,17 @@ def _looks(run: Run) -> Iterator[str]:
 
 def _look(run: Run, document: str, results: Sequence[Result]) -> str:
     """How a material looks on one host with each library."""
-    words: dict[str, list[str]] = {}
+    looks: dict[str, list[str]] = {}
     for each in results:
-        words.setdefault(_appearance(run, document, each), []).append(_title(run, each.library))
+        looks.setdefault(_appearance(run, document, each), []).append(_title(run, each.library))
     drawn = {each.library for each in results}
     for library in _unique([*(each.library for each in run.results), *run.compared]):
         refused = is_refused(run, document, library)
         if library not in drawn and (refused or library in run.compared):
-            words.setdefault(REFUSED if refused else "not judged", []).append(_title(run, library))
-    right = words.pop(AS_SPECIFIED, [])
+            looks.setdefault(REFUSED if refused else "not judged", []).append(_title(run, library))
+    right = looks.pop(AS_SPECIFIED, [])
     parts = [f"{AS_SPECIFIED} with {' and '.join(right)}"] * bool(right)
-    parts += [f"with {' and '.join(names)}, {each}" for each, names in words.items()]
+    parts += [f"with {' and '.join(names)}, {each}" for each, names in looks.items()]
     return "; ".join(parts)
 
 
@@ -253,9 +236,9 @@ def _appearance(run: Run, document: str, result: Result) -> str:
     if result.verdict == NOT_RUN:
         return f"not judged: {result.reason}"
     if result.verdict == FAILED:
-        return result.diagnosis or result.explanation
+        return words.diagnosis(result.diagnosis) or words.explanation(result)
     if result.check == "finite":
-        return f"there is no reference ({result.diagnosis}); every pixel is finite"
+        return f"there is no reference ({words.diagnosis(result.diagnosis)}); every pixel is finite"
     if result.check != "picture":
         return "shaders are generated, not run"
     if (apart := _difference(run, result)) > NOTICED:
@@ -352,15 +335,16 @@ def _cell(run: Run, results: Sequence[Result]) -> str:
     shown = max(
         chosen or direct or results, key=lambda each: (each.error or 0.0) / (each.tolerance or 1.0)
     )
-    words = {WRONG: "wrong", ELSEWHERE: "wrong for other inputs"}.get(rank, model_of(shown.subject))
+    cell = {WRONG: "wrong", ELSEWHERE: "wrong for other inputs"}.get(rank, model_of(shown.subject))
     if rank == RIGHT and any(each.verdict == DIFFERS for each in results):
-        words += ", differs as permitted"
+        cell += ", differs as permitted"
     if not shown.tolerance or shown.error is None:
-        return words
+        return cell
     if shown.error > UNBOUNDED and not shown.unit.startswith("times "):
         view = f"at a view cosine of {shown.worst['wo'][2]:.2g}" if "wo" in shown.worst else ""
-        return f"{words}, unbounded {shown.diagnosis.partition(', all ')[2] or view}".rstrip()
-    return f"{words}, error {shown.error:.2g}, tolerance {shown.tolerance:.2g}"
+        place = words.region(shown.diagnosis.region) if shown.diagnosis.region else view
+        return f"{cell}, unbounded {place}".rstrip()
+    return f"{cell}, error {shown.error:.2g}, tolerance {shown.tolerance:.2g}"
 
 
 def model_of(title: str) -> str:
@@ -380,7 +364,7 @@ def _not_run(run: Run, full: bool, looks: Sequence[str]) -> Iterator[str]:
     reasons = Counter(
         (each.location, each.reason)
         for each in run.results
-        if each.verdict == NOT_RUN and not each.reason.endswith(WRONG_INSIDE)
+        if each.verdict == NOT_RUN and not each.follows
         if not (each.check in KEYS and any(one_line(each.reason) in look for look in looks))
     )
     shown = len(reasons) if full else FEWEST
@@ -395,7 +379,8 @@ def _remedy(run: Run) -> Iterator[str]:
     shown = [each for each in run.results if each.check in KEYS]
     if not run.contents:
         return
-    if inputs := _unique(found[1] for each in shown if (found := OWN_INPUT.match(each.reason))):
+    own = (each.diagnosis.first for each in shown)
+    if inputs := _unique(f'input "{c.names[0]}"' for c in own if c.kind is Kind.INPUT):
         yield f"To fix it, correct {listed(inputs)}"
         return
     judged = {each.library for each in shown if each.check == "picture" and each.error is not None}
@@ -436,8 +421,8 @@ def _failures(run: Run) -> Iterator[str]:
     """
     groups: dict[tuple[str, str], list[Result]] = {}
     failures = [each for each in run.results if each.verdict == FAILED]
-    seen = next((each.diagnosis for each in failures if each.check == "picture"), "")
-    white = seen.endswith(LIGHTS["furnace"])
+    scenes = (each.diagnosis.first.key for each in failures if each.check == "picture")
+    white = next(scenes, "") == "furnace"
 
     def order(result: Result) -> tuple[bool, bool, bool, bool, float]:
         lit = result.check in (INDIRECT if white else DIRECT)
@@ -450,7 +435,7 @@ def _failures(run: Run) -> Iterator[str]:
         kind = "cause" if each.library in run.compared else "failed"
         other = ", for inputs that no document uses" * run.is_elsewhere(each)
         place = f"{kind}: {each.location}{other}"
-        groups.setdefault((place, " ".join(each.pages) or each.explanation), []).append(each)
+        groups.setdefault((place, " ".join(each.pages) or words.explanation(each)), []).append(each)
     # Nodes explain pictures.
     of_nodes = {key for key, row in groups.items() if any(each.check not in KEYS for each in row)}
     places = {place for place, _ in of_nodes}
@@ -467,7 +452,7 @@ def _sentence(results: Sequence[Result]) -> str:
     about = f"{subjects[0] if len(subjects) == 1 else listed(nodes)} ({keys})"
     if issues := issues_of(results[0]):
         return f"{about}: {'; '.join(f'{issue.title}: {link(issue)}' for issue in issues)}"
-    return f"{about}: {results[0].explanation}"
+    return f"{about}: {words.explanation(results[0])}"
 
 
 def _unique(names: Iterable[str]) -> list[str]:

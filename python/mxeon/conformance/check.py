@@ -18,19 +18,28 @@ from numpy.typing import ArrayLike
 
 from mxeon.conformance.backends import Backend
 from mxeon.conformance.case import Case
-from mxeon.conformance.diagnosis import UNTOLD, VALUE, Comparison, Diagnosis, searched
-from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Result
+from mxeon.conformance.diagnosis import UNTOLD, VALUE, Comparison, searched
+from mxeon.conformance.results import (
+    DIFFERS,
+    FAILED,
+    NOT_RUN,
+    PASSED,
+    Cause,
+    Diagnosis,
+    Kind,
+    Result,
+    quoted,
+)
 from mxeon.conformance.results import Control as Caught
 from mxeon.conformance.samples import Array, Batch
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.tolerance import Compared, Measurement, Metric, Tolerance, worst_of
-from mxeon.errors import NotRun, ShaderError
+from mxeon.errors import Implied, NotRun, OutsideModel, ShaderError
 from mxeon.hosts.base import RendererWarning
 from mxeon.shaders.methods import GENERATED, Methods
 
 Measure: TypeAlias = Callable[[Case], Compared | Iterable[Compared] | Measurement]
 
-CANNOT_TELL = "inconclusive: the values are right, but the control passed too:"
 M = TypeVar("M", bound=Callable[..., Any])
 
 
@@ -94,11 +103,13 @@ class Check:
 
         def diagnose() -> Diagnosis:
             diagnosis = self.diagnose(case)  # a permitted function excuses an open check alone
-            text = diagnosis.text
-            if text in UNTOLD and not isinstance(found := self.measure(case), Measurement):
+            causes = diagnosis.causes
+            if diagnosis.first in UNTOLD and not isinstance(
+                found := self.measure(case), Measurement
+            ):
                 compared = [found] if isinstance(found, Compared) else list(found)
-                text = searched(text, compared, tolerance)
-            return replace(diagnosis, text=text, permitted=self.open and diagnosis.permitted)
+                causes = (searched(diagnosis.first, compared, tolerance),)
+            return replace(diagnosis, causes=causes, permitted=self.open and diagnosis.permitted)
 
         return judge(
             place,
@@ -135,7 +146,11 @@ def judge(
         else:
             warnings.showwarning(record.message, record.category, record.filename, record.lineno)
     caught, passed = wrong.error > tolerance.value, right.error <= tolerance.value
-    text = "; ".join([diagnosis.text, *notes]) if diagnosis.text else ""
+    if passed and not caught:
+        diagnosis = Diagnosis((Cause(Kind.CONTROL),), diagnosis.distances)
+    elif diagnosis.causes:
+        own = tuple(Cause(Kind.TEXT, text=each) for each in notes)
+        diagnosis = replace(diagnosis, causes=diagnosis.causes + own)
     return replace(
         place,
         verdict=PASSED if passed and caught else DIFFERS if diagnosis.permitted else FAILED,
@@ -144,17 +159,21 @@ def judge(
         tolerance=tolerance.value,
         derivation=tolerance.derivation,
         worst=right.worst,
-        diagnosis=f"{CANNOT_TELL} {variant}" if passed and not caught else text,
-        distances=diagnosis.distances,
+        diagnosis=diagnosis,
         control=Caught(variant, wrong.error, caught),
     )
 
 
 def not_measured(place: Result, error: NotRun | ShaderError) -> Result:
     """The result of a check without a measurement: not run, or failed by a shader error."""
-    if isinstance(error, NotRun):
-        return replace(place, reason=str(error))
-    return replace(place, verdict=FAILED, diagnosis=str(error))
+    if isinstance(error, ShaderError):
+        return replace(place, verdict=FAILED, diagnosis=quoted(str(error)))
+    causes: tuple[Cause, ...] = ()
+    if isinstance(error, Implied):
+        causes = (Cause(Kind.FOLLOWS),)
+    if isinstance(error, OutsideModel) and error.input:
+        causes = (Cause(Kind.INPUT, names=(error.input,)),)
+    return replace(place, reason=str(error), diagnosis=Diagnosis(causes))
 
 
 def of_family(*kinds: type[Spec]) -> Callable[[Spec], bool]:
@@ -171,14 +190,13 @@ def check(
     judged: str | Comparison = "",
     key: str = "",
     claim: str = "",
-    diagnose: Callable[[Case], Diagnosis] | str = "",
+    diagnose: Callable[[Case], Diagnosis] | Diagnosis | None = None,
     **rest: Any,
 ) -> Callable[[M], M]:
     """Make a function that measures a case a check: its name is the key, its first line the claim.
 
     It is judged by the error of a quantity, which has its key's name unless given; or judged and explained as a
-    comparison is, which also measures if the function takes no case. A diagnosis may be the same words for all
-    failures.
+    comparison is, which also measures if the function takes no case. A diagnosis may be the same for all failures.
     """
 
     def add(measure: M) -> M:
@@ -188,8 +206,8 @@ def check(
         asks = own if own and not signature(measure).parameters else measure
         quantity = own.quantity if own else str(judged or name)
         explain = diagnose or (own or VALUE).diagnose
-        if isinstance(explain, str):
-            always = Diagnosis(explain)
+        if isinstance(explain, Diagnosis):
+            always = explain
             explain = lambda case: always  # noqa: E731
         CHECKS.append(Check(name, words, applies, asks, control, quantity, explain, **rest))
         return measure

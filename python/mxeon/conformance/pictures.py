@@ -15,11 +15,21 @@ import mxeon
 from mxeon.conformance.backends import Rendered, picture_pairs
 from mxeon.conformance.case import Case
 from mxeon.conformance.check import judge, not_measured
-from mxeon.conformance.diagnosis import Diagnosis
+from mxeon.conformance.diagnosis import defect
 from mxeon.conformance.reference import ExpectedPicture, HostValues
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.reference.nodes import ShownLobe
-from mxeon.conformance.results import FAILED, LIGHTS, NOT_RUN, PORTRAIT, Picture, Result, of_white
+from mxeon.conformance.results import (
+    FAILED,
+    NOT_RUN,
+    PORTRAIT,
+    Cause,
+    Diagnosis,
+    Kind,
+    Picture,
+    Result,
+    quoted,
+)
 from mxeon.conformance.samples import Batch, Values
 from mxeon.conformance.specs import surface_shaders as surfaces
 from mxeon.conformance.specs.diffuse import DiffuseModelSpec, SurfaceLobe
@@ -55,7 +65,12 @@ from mxeon.models.hair import ROUGHNESSES
 from mxeon.models.nodes import NODES
 from mxeon.models.sheen import conty_kulla_albedo_dir
 from mxeon.shaders.document.graphs import categories, inner_nodes
-from mxeon.shaders.document.notes import DocumentWarning, MissingFileWarning, same_names
+from mxeon.shaders.document.notes import (
+    DocumentWarning,
+    MissingFileWarning,
+    RangeWarning,
+    same_names,
+)
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.generation import TARGETS, ApproximationWarning, CodeWarning, Shader, generate
 from mxeon.shaders.inner_lobes import SUBSURFACE, inner_lobes
@@ -159,16 +174,12 @@ Pixel: TypeAlias = tuple[float, dict[str, list[float]], float]
 Note: TypeAlias = tuple[str, str]  # a warning, and what it is about
 
 MATCH = "Every pixel matches the reference."
-SAME_NAMES = "nodes {} have the values of one of them; see docs/upstream/same_names.md"
-DEFINED_MATERIAL = (
-    "a material that a nodegraph defines is not generated; see docs/upstream/material_graphs.md"
-)
 
 
 def _read(
     file: Path, make: Callable[[], tuple[Shader, ...]]
-) -> tuple[tuple[Shader, ...], dict[str, str], list[Note]]:
-    """Shaders of a document, their approximations by element, and notes with their location."""
+) -> tuple[tuple[Shader, ...], dict[str, str], list[CodeWarning | DocumentWarning]]:
+    """Shaders of a document, their approximations by element, and what else a reader has to know."""
     with warnings.catch_warnings(record=True) as records:
         warnings.simplefilter("always")
         warnings.simplefilter("error", MissingFileWarning)
@@ -179,8 +190,8 @@ def _read(
         for message in messages
         if isinstance(message, ApproximationWarning)
     }
-    others = (each for each in messages if isinstance(each, (CodeWarning, DocumentWarning)))
-    return shaders, approximations, [(str(each), file.name) for each in others]
+    others = [each for each in messages if isinstance(each, (CodeWarning, DocumentWarning))]
+    return shaders, approximations, others
 
 
 def judge_document(
@@ -209,7 +220,14 @@ def judge_document(
         for scene in host_row(host.name).scenes
         for text in host.approximations(shader, scene)
     )
-    return tuple(results), tuple(pictures), (*notes, *others)
+    # A result names the input itself.
+    told_inputs = any(each.diagnosis.kind is Kind.INPUT for each in results)
+    notes += [
+        (str(each), file.name)
+        for each in others
+        if not (told_inputs and isinstance(each, RangeWarning))
+    ]
+    return tuple(results), tuple(pictures), tuple(notes)
 
 
 def _judge_material(
@@ -266,14 +284,14 @@ def _judge_material(
     return result, tuple(map(picture, scenes, images, references))
 
 
-def _known(shader: Shader) -> str:
-    """What MaterialX is known to make of a document like that of a shader; "" for nothing."""
+def _known(shader: Shader) -> Diagnosis | None:
+    """What MaterialX is known to make of a document like that of a shader; None for nothing."""
     element = shader.document.getDescendant(shader.element)
     if names := same_names(element):
-        return SAME_NAMES.format(names[0])
+        return defect("same_names", names[0])
     graph = element.getImplementation() if element.isA(mx.Node) else None
     defined = element.getType() == "material" and graph and graph.isA(mx.NodeGraph)
-    return DEFINED_MATERIAL if defined else ""
+    return defect("material_graph") if defined else None
 
 
 def _assert_judged(shader: Shader, host: Host) -> None:
@@ -299,7 +317,7 @@ def _judge_finite(place: Result, images: Sequence[Pixels], reason: str) -> Resul
 
     place = replace(place, check="finite", claim="Every pixel is finite.")
     result = judge(place, count_of("pixels"), measure, "one channel is not a number", Diagnosis)
-    return replace(result, diagnosis=reason)
+    return replace(result, diagnosis=quoted(reason))
 
 
 def _judge_match(place: Result, cases: Sequence[Shown], tolerance: Tolerance) -> Result:
@@ -316,14 +334,11 @@ def _judge_match(place: Result, cases: Sequence[Shown], tolerance: Tolerance) ->
         return Measurement(_worst_pixel((first, brighter, expected), metric)[0], {})
 
     def appearance() -> Diagnosis:
-        """The largest difference of the pictures, in the words of those who look at them."""
+        """The largest difference of the pictures, and the scene that shows it."""
         sizes = [abs(each) if np.isfinite(each) else np.inf for _, _, each in pixels]
         worst = int(np.argmax(sizes))
-        light = LIGHTS.get(name := cases[worst][0].name, name)
-        if not np.isfinite(sizes[worst]):
-            return Diagnosis(f"has pixels that are infinite or not a number in {light}")
-        sign = "bright" if pixels[worst][2] > 0 else "dark"
-        return Diagnosis(f"{of_white(sizes[worst])} too {sign} in {light}")
+        cause = Cause(Kind.PICTURE, cases[worst][0].name, values=(pixels[worst][2],))
+        return Diagnosis((cause,))
 
     words = "the picture is brighter by three tolerances"
     result = judge(place, tolerance, measure, words, appearance)
@@ -402,7 +417,7 @@ def generate_document(
         "half of the document is cut off",
         Diagnosis,
     )
-    return (result,), tuple(notes)
+    return (result,), tuple((str(each), file.name) for each in notes)
 
 
 # --- one material of each node, for the page on which hosts stand together ------------------------

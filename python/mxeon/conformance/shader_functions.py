@@ -16,8 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mxeon.conformance.check import judge, not_measured
-from mxeon.conformance.diagnosis import Diagnosis
-from mxeon.conformance.results import NOT_RUN, SHADER_FUNCTIONS, Result
+from mxeon.conformance.results import NOT_RUN, SHADER_FUNCTIONS, Cause, Diagnosis, Kind, Result
 from mxeon.conformance.samples import GRAZING, Array, directions, float32, generator
 from mxeon.conformance.spec import TURN
 from mxeon.conformance.specs.diffuse import LOSS_FIT
@@ -312,7 +311,7 @@ def _judged(check: FunctionCheck, probe: FunctionProbe) -> Result:
     return judge(place, tolerance, measure, words, lambda: Diagnosis(_causes(check, probe)))
 
 
-def _causes(check: FunctionCheck, probe: FunctionProbe) -> str:
+def _causes(check: FunctionCheck, probe: FunctionProbe) -> tuple[Cause, ...]:
     """The functions that are wrong by themselves, and those of the row that use them."""
     values = probe.values[False]
     errors = {name: _error(name, each) for name, each in values.items()}
@@ -323,7 +322,8 @@ def _causes(check: FunctionCheck, probe: FunctionProbe) -> str:
     reached = {*affected}.union(*(uses[each] for each in affected))
     own = [name for name in causes if name in reached]
     users = [name for name in affected if name not in own]
-    parts = [f"{name} is not defined as eonlib has it" for name in probe.missing_functions]
-    parts += [f"{name} is off by {errors[name]:.2g}" for name in own]
-    parts += [f"with it {', '.join(users)}"] if users else []
-    return "; ".join(parts)
+    return (
+        *(Cause(Kind.DEFECT, "not_defined", (name,)) for name in probe.missing_functions),
+        *(Cause(Kind.DEFECT, "function_off", (name,), (errors[name],)) for name in own),
+        *[Cause(Kind.DEFECT, "functions_that_use_it", tuple(users))] * bool(users),
+    )

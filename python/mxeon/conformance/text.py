@@ -14,8 +14,7 @@ import MaterialX as mx
 import numpy as np
 
 from mxeon.conformance.check import judge, not_measured
-from mxeon.conformance.diagnosis import Diagnosis
-from mxeon.conformance.results import NOT_RUN, SOURCE, Result
+from mxeon.conformance.results import NOT_RUN, SOURCE, Cause, Diagnosis, Kind, Result
 from mxeon.conformance.samples import generator
 from mxeon.conformance.specs import PLAIN_LOBES
 from mxeon.conformance.specs.diffuse import DiffuseSpec
@@ -33,7 +32,7 @@ from mxeon.shaders.nodes import EON, FLAG, INVERSIONS, OREN_NAYAR
 
 # --- checks --------------------------------------------------------------------------------------
 
-Faults = Callable[..., tuple[list[str], int]]  # in words, and the number that the control has
+Faults = Callable[..., tuple[list[Cause], int]]  # and the number that the control has
 Inputs = Mapping[str, Array]
 # By check: its claim, what it counts, and the error that its control makes.
 CLAIMS = {
@@ -72,7 +71,7 @@ def check_texts(subjects: Iterable[DiffuseSpec], library: str) -> tuple[Result, 
         ours, *others = map(parts, (glsl, osl, re.sub(r"\b\d+\.\d+\b", "777.0", osl, count=1)))
         found, control = (
             [
-                f"{name} is different in OSL"
+                Cause(Kind.DEFECT, "different_in_osl", (name,))
                 for name in ours | each
                 if ours.get(name) != each.get(name)
             ]
@@ -106,7 +105,7 @@ def _judged(check: str, subject: str, library: str, faults: Faults, *of: Any) ->
     def measure(wrong: bool) -> Measurement:
         return Measurement(control if wrong else len(found), {})
 
-    return judge(place, count_of(unit), measure, variant, lambda: Diagnosis("; ".join(found)))
+    return judge(place, count_of(unit), measure, variant, lambda: Diagnosis(tuple(found)))
 
 
 # --- definitions ----------------------------------------------------------------------------------
@@ -150,13 +149,19 @@ def check_definitions(library: str) -> tuple[Result, ...]:
     return tuple(results)
 
 
-def _definition_faults(definition: mx.NodeDef, specification: mx.NodeDef) -> tuple[list[str], int]:
+def _definition_faults(
+    definition: mx.NodeDef, specification: mx.NodeDef
+) -> tuple[list[Cause], int]:
     author = specification.getName().rstrip("12")
     found, expected = _facts(definition), _facts(specification)
 
-    def differences(facts: Mapping[str, str]) -> list[str]:
+    def differences(facts: Mapping[str, str]) -> list[Cause]:
         return [
-            f"{name} is {facts[name] or 'missing'}; {author} says {right or 'none'}"
+            Cause(
+                Kind.DEFECT,
+                "definition",
+                (name, facts[name] or "missing", author, right or "none"),
+            )
             for name, right in expected.items()
             if name in facts
             and _plain(facts[name]) != _plain(right)
@@ -222,7 +227,7 @@ def _evaluated(expression: str, inputs: Inputs, functions: Mapping[str, Any]) ->
     return evaluate(expression, {"closureData": (), **variables, **functions})
 
 
-def _dropped(subject: DiffuseSpec | PbrSpec, target: str, library: str) -> tuple[list[str], int]:
+def _dropped(subject: DiffuseSpec | PbrSpec, target: str, library: str) -> tuple[list[Cause], int]:
     """Inputs whose values, which no text holds by itself, are no arguments of a call."""
     expression = _expression(source(subject, target, library))
     names = tuple(subject.types) if isinstance(subject, PbrSpec) else subject.names
@@ -240,7 +245,8 @@ def _dropped(subject: DiffuseSpec | PbrSpec, target: str, library: str) -> tuple
         return [name for name, value in inputs.items() if value.item() not in passed]
 
     noticed = [name in missing({**inputs, name: np.zeros((1, 1))}) for name in names]
-    return [f"{name} is never passed" for name in missing(inputs)], len(names) * all(noticed)
+    causes = [Cause(Kind.DEFECT, "never_passed", (name,)) for name in missing(inputs)]
+    return causes, len(names) * all(noticed)
 
 
 # --- closures: the node's arguments for random materials, in MDL -----------------------------------
@@ -248,12 +254,7 @@ def _dropped(subject: DiffuseSpec | PbrSpec, target: str, library: str) -> tuple
 MATERIALS = 256
 ROUNDED = 1e-12  # 4500 roundings of float64: no text has as many
 TINT = "multiscatter_tint"
-TINTS = {
-    "eon": "that of EON, rho^2 <E> / (1 - rho (1 - <E>))",
-    "qon": "black, as without energy_compensation",
-}
 PBRLIB = "materialx::pbrlib_1_10::mx_oren_nayar_diffuse_bsdf"
-WHITE_LOBE = "FON + white lobe, as MDL's module pbrlib_1_10 defines this node; read, not run"
 UP = np.array([[0.0, 0.0, 1.0]])  # the normal of the surface, which is not the node's
 Closure = dict[str, Any]  # arguments by the names of the node's inputs, its weight among them
 
@@ -288,7 +289,7 @@ FUNCTIONS: Mapping[str, Any] = {
 }
 
 
-def _closure_faults(subject: DiffuseSpec, library: str) -> tuple[list[str], int]:
+def _closure_faults(subject: DiffuseSpec, library: str) -> tuple[list[Cause], int]:
     """Arguments of the closure that are not the node's inputs, and their number without the weight."""
     expression = _expression(source(subject, "mdl", library))
     rng = generator()
@@ -305,24 +306,25 @@ def _closure_faults(subject: DiffuseSpec, library: str) -> tuple[list[str], int]
     expected = {**rows, TINT: tint if subject.model == "eon" else np.zeros((MATERIALS, 3))}
     flag = {FLAG: np.array([[int(subject.flag is not False)]])}
 
-    def faults(given: Inputs) -> Iterator[str]:
+    def faults(given: Inputs) -> Iterator[Cause]:
         closure = _evaluated(expression, {**given, **flag}, FUNCTIONS)
         if not isinstance(closure, dict):
             raise ShaderError("the lobe is no closure")
         for name, value in expected.items():
             if closure.get(name) is None:
-                yield f"{name} is not passed"
+                yield Cause(Kind.DEFECT, "not_passed", (name,))
                 continue
             measured = np.array(closure[name], np.float64, ndmin=2)
             if measured.shape[1] > value.shape[1]:
-                yield f"{name} is a float but receives a color or vector"
+                yield Cause(Kind.DEFECT, "float_for_vector", (name,))
             elif not (error := float(np.abs(measured - value).max())) <= ROUNDED:
-                wanted = TINTS[subject.model] if name == TINT else f"the node's {name}"
+                key = f"tint_is_not_{subject.model}" if name == TINT else "is_not_the_node_s"
                 constant = np.ptp(measured, axis=0).max() <= ROUNDED
-                instead = f", but {measured.flat[0]:.3g}" if constant else ""
-                yield f"{name} is not {wanted}{instead}: off by up to {error:.2g}"
+                instead = (float(measured.flat[0]),) if constant else ()
+                yield Cause(Kind.DEFECT, key, (name,), (error, *instead))
 
     found = list(faults(rows))
     if PBRLIB in expression and subject.flag:
-        found = [WHITE_LOBE if TINT in each else each for each in found]
+        white = Cause(Kind.DEFECT, "white_lobe")
+        found = [white if TINT in each.names else each for each in found]
     return found, len(list(faults({**rows, "weight": np.ones((1, 1))})))

@@ -14,6 +14,7 @@ from xml.etree import ElementTree
 import MaterialX as mx
 import numpy as np
 
+from mxeon.conformance import words
 from mxeon.conformance.pictures import judge_document
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.results import PASSED, Result
@@ -111,13 +112,13 @@ def _checked(file: str, library: str, policy: Policy) -> dict[str, Checked]:
 def _words(result: Result) -> Checked:
     """The outcome of a check of pictures, for readers."""
     if result.check != "picture" or result.error is None:
-        reason = (result.diagnosis or result.reason).removeprefix("reference: ")
+        reason = (words.diagnosis(result.diagnosis) or result.reason).removeprefix("reference: ")
         return Checked("unknown", f"No reference: {reason}.")
     error = f"{result.error:.2g}"
     judge = f"mxeon check, tolerance {result.tolerance:.2g}"
     if result.verdict == PASSED:
         return Checked("correct", f"Within {error} of the reference ({judge}).")
-    place = f", {result.diagnosis}" if result.diagnosis else ""
+    place = "".join(f", {each}" for each in [words.diagnosis(result.diagnosis)] if each)
     return Checked("wrong", f"Off by up to {error}{place} ({judge}).")
 
 

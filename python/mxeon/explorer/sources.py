@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from mxeon.conformance import words
 from mxeon.conformance.backends import Evaluating
 from mxeon.conformance.case import Case, make_case
 from mxeon.conformance.diagnosis import ALBEDO, INEXACT, VALUE
@@ -224,7 +225,7 @@ def run_sources(results: Iterable[Result]) -> tuple[ModelSource, ...]:
     sources: dict[tuple[str, str, str], ModelSource] = {}
     for result in results:
         key = (result.host, result.library, result.subject)
-        known = {title: far for title, far in result.distances.items() if title in names}
+        known = {title: far for title, far in result.diagnosis.distances.items() if title in names}
         if result.verdict != FAILED or not known or key in sources:
             continue
         name = names[min(known, key=known.__getitem__)]
@@ -234,7 +235,7 @@ def run_sources(results: Iterable[Result]) -> tuple[ModelSource, ...]:
             RUN,
             name,
             _meant(result.subject, name),
-            result.explanation,
+            words.explanation(result),
         )
     return tuple(sources.values())
 

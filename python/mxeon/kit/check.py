@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import mxeon
-from mxeon.conformance.results import FAILED, NOT_RUN, Picture, Result, Run
+from mxeon.conformance import words
+from mxeon.conformance.results import FAILED, NOT_RUN, Diagnosis, Picture, Result, Run, quoted
 from mxeon.errors import InputError, NotRun
 from mxeon.hosts.base import Identity
 from mxeon.io.files import regular
@@ -59,15 +60,15 @@ def check_kit(
             f"{folder / 'README.md'} describes"
         )
     # Answer the questions, in an order in which each needs the one before.
-    notes, obstacle = [], ""
+    notes, obstacle = [], Diagnosis()
     for question in progress(asked):
         # If light or encoding are wrong, no model can be told.
-        result, words = answer(question, pictures, images, depth, place, obstacle)
+        result, shown = answer(question, pictures, images, depth, place, obstacle)
         results.append(result)
         if question.key == "setup":
-            obstacle = words
-        if words:
-            notes.append(f"{question.title}: {words}")
+            obstacle = shown
+        if shown.causes:
+            notes.append(f"{question.title}: {words.diagnosis(shown)}")
     # Where a model is another one, say whether all pictures show the same.
     wrong = any(each.check == "model" and each.verdict == FAILED for each in results)
     if wrong and (title := one_model(asked, pictures, images, depth)):
@@ -140,7 +141,7 @@ def _read(
         except Missing as error:
             results.append(Result(**about, verdict=NOT_RUN, reason=str(error)))
         except Unusable as error:
-            results.append(Result(**about, verdict=FAILED, diagnosis=str(error)))
+            results.append(Result(**about, verdict=FAILED, diagnosis=quoted(str(error))))
     return images, results
 
 

@@ -7,6 +7,7 @@ They are determined on Lambert under a distant light, whose values every model s
 import numpy as np
 from numpy.typing import NDArray
 
+from mxeon.conformance.results import Cause, Diagnosis, Kind
 from mxeon.io.srgb import srgb_decoded
 from mxeon.kit.expected import Expected
 from mxeon.kit.noise import tiles
@@ -20,36 +21,39 @@ def _tone_mapped_back(image: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.divide(image, 1.0 - image, out=np.full_like(image, np.inf), where=image < 1.0)
 
 
-# Each fault in words, and the function that undoes it.
+# Each fault, by its row of `mxeon.conformance.words.DEFECTS`, and the function that undoes it.
 FAULTS = (
-    ("", lambda image: image),
-    ("sRGB-encoded", lambda image: srgb_decoded(np.clip(image, 0.0, None))),
-    ("encoded with a power of 1/2.2", lambda image: np.clip(image, 0.0, None) ** 2.2),
-    ("tone-mapped by x / (1 + x)", _tone_mapped_back),
-    ("upside down", lambda image: image[::-1]),
-    ("mirrored left to right", lambda image: image[:, ::-1]),
-    ("rotated by 180 degrees", lambda image: image[::-1, ::-1]),
+    ("scaled", lambda image: image),
+    ("srgb", lambda image: srgb_decoded(np.clip(image, 0.0, None))),
+    ("power", lambda image: np.clip(image, 0.0, None) ** 2.2),
+    ("tone_mapped", _tone_mapped_back),
+    ("upside_down", lambda image: image[::-1]),
+    ("mirrored", lambda image: image[:, ::-1]),
+    ("rotated", lambda image: image[::-1, ::-1]),
 )
-FACTORS = ((np.pi, "pi"), (1.0 / np.pi, "1/pi"), (np.pi**2, "pi^2"), (2.0, "2"), (0.5, "1/2"))
 
 
-def fault(image: NDArray[np.float64], model: Expected, mask: NDArray[np.bool_]) -> str:
-    """The fault that explains how a picture differs from the model, in words; "" within LIKENESS."""
+def fault(
+    name: str, image: NDArray[np.float64], model: Expected, mask: NDArray[np.bool_]
+) -> Diagnosis:
+    """The fault that explains how a picture of a name differs from the model; none within LIKENESS."""
+
+    def found(key: str, *factors: float) -> Diagnosis:
+        return Diagnosis((Cause(Kind.DEFECT, f"picture_{key}", (name,), factors),))
+
     if not image[mask].any():
-        return "black"
-    likeness = {words: _likeness(undo(image)[mask], model, mask) for words, undo in FAULTS}
-    words = min(likeness, key=lambda each: likeness[each][1])
-    factor, miss = likeness[words]
+        return found("black")
+    likeness = {key: _likeness(undo(image)[mask], model, mask) for key, undo in FAULTS}
+    key = min(likeness, key=lambda each: likeness[each][1])
+    factor, miss = likeness[key]
     if miss <= LIKENESS:
-        known = (name for each, name in FACTORS if abs(factor / each - 1.0) <= SAME_SCALE)
-        times = next(known, f"{factor:.3g}")
-        scale = "" if abs(factor - 1.0) <= SAME_SCALE else f"{times} times as bright"
-        return " and ".join(filter(None, (words, scale)))
+        if abs(factor - 1.0) > SAME_SCALE:
+            return found(key, factor)
+        return Diagnosis() if key == "scaled" else found(key)
     # Many pixels share one largest value although their expected values differ.
     top = image[mask] >= image[mask].max() - 1e-6
-    if top.sum() > 20 and np.ptp(model.value[top]) > 0.02:
-        return "clipped"
-    return "not Lambert's cosine in any known encoding: tone-mapped, or lit otherwise"
+    clipped = top.sum() > 20 and np.ptp(model.value[top]) > 0.02
+    return found("clipped" if clipped else "unknown")
 
 
 def _likeness(

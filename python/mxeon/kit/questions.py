@@ -14,8 +14,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.conformance.diagnosis import sentence
-from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Control, Result
+from mxeon.conformance import words
+from mxeon.conformance.results import (
+    FAILED,
+    NO_DIAGNOSIS,
+    NOT_RUN,
+    PASSED,
+    Cause,
+    Control,
+    Diagnosis,
+    Kind,
+    Result,
+)
 from mxeon.errors import assert_known
 from mxeon.kit.encoding import fault
 from mxeon.kit.expected import Expected, expected, judged, pixel_means
@@ -65,17 +75,15 @@ def _candidate(
     return ModelDistance(row.title, float(np.sqrt(np.mean(means**2))), ratio(errors))
 
 
-def ranking_sentence(ranking: Sequence[ModelDistance]) -> str:
-    """The nearest model and the second best, in words.
-
-    Names the models that the pictures cannot tell from the nearest one, at the confidence of
-    `mxeon.kit.noise`.
-    """
-    text = sentence([(one.title, one.distance) for one in ranking])
+def nearest(ranking: Sequence[ModelDistance]) -> Diagnosis:
+    """The nearest model, and those that the pictures cannot tell from it, at the confidence of `mxeon.kit.noise`."""
+    causes = [Cause(Kind.MODEL, ranking[0].title, rms=ranking[0].distance)]
+    also = tuple(each.title for each in ranking[1:] if each.ratio <= 1.0)
     if ranking[0].ratio > 1.0:
-        return f"{text}; neither fits"
-    also = [each.title for each in ranking[1:] if each.ratio <= 1.0]
-    return f"{text}; cannot be told from {' and '.join(also)}" if also else text
+        causes.append(Cause(Kind.DEFECT, "neither_fits"))
+    elif also:
+        causes.append(Cause(Kind.DEFECT, "cannot_be_told_from", also))
+    return Diagnosis(tuple(causes), {each.title: each.distance for each in ranking})
 
 
 UNIT = "times what noise, pixels and the mesh allow"
@@ -182,18 +190,18 @@ def answer(
     images: Mapping[str, NDArray[np.float64]],
     depth: float,
     place: Mapping[str, Any],
-    obstacle: str = "",
-) -> tuple[Result, str]:
+    obstacle: Diagnosis = NO_DIAGNOSIS,
+) -> tuple[Result, Diagnosis]:
     """The result of a question, and the model or fault that the pictures show, if it determines one.
 
-    `obstacle` is the reason why nothing can be judged, or "".
+    `obstacle` is the cause why nothing can be judged, if there is one.
     """
     chosen = [view for view in views if question.includes(view)]
     place = {"check": question.key, "claim": question.claim, "subject": question.title, **place}
     missing = [view.name for view in chosen if view.name not in images]
-    if obstacle or missing:
-        reason = obstacle or f"no usable picture: {', '.join(missing)}"
-        return Result(**place, verdict=NOT_RUN, reason=reason), ""
+    if obstacle.causes or missing:
+        reason = words.diagnosis(obstacle) or f"no usable picture: {', '.join(missing)}"
+        return Result(**place, verdict=NOT_RUN, reason=reason), NO_DIAGNOSIS
     cases = _judged(chosen, images)
     models = [expected(question.row(view), view, depth) for view in chosen]
     errors = _tiles(cases, models)
@@ -206,13 +214,12 @@ def answer(
             f"too noisy to detect that {question.variant}: {noise:.2g} rms per pixel; "
             "render with more samples"
         )
-        return Result(**place, verdict=NOT_RUN, reason=reason), ""
+        return Result(**place, verdict=NOT_RUN, reason=reason), NO_DIAGNOSIS
     ranking = candidates(cases, depth) if question.key == "model" else []
-    words = ranking_sentence(ranking) if ranking else ""
+    shown = nearest(ranking) if ranking else Diagnosis()
     if question.key == "setup" and error > 1.0:
         name = cases[0].view.name
-        words = fault(images[name], models[0], cases[0].mask)
-        words = words and f"{name} is {words}"
+        shown = fault(name, images[name], models[0], cases[0].mask)
     return Result(
         **place,
         verdict=PASSED if error <= 1.0 < wrong else FAILED,
@@ -221,10 +228,9 @@ def answer(
         tolerance=1.0,
         derivation=DERIVATION,
         worst={"noise of a pixel, rms": [noise]},
-        diagnosis=words if error > 1.0 else "",
-        distances={each.title: each.distance for each in ranking},
+        diagnosis=shown if error > 1.0 else Diagnosis(distances=shown.distances),
         control=Control(question.variant, wrong, wrong > 1.0),
-    ), words
+    ), shown
 
 
 def _judged(

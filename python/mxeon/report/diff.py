@@ -3,7 +3,6 @@
 
 import json
 import math
-import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
@@ -12,6 +11,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
+from mxeon.conformance import words
 from mxeon.conformance.results import (
     DIFFERS,
     FAILED,
@@ -19,13 +19,11 @@ from mxeon.conformance.results import (
     PASSED,
     PORTRAIT,
     VERDICTS,
-    WRONG_INSIDE,
+    Diagnosis,
     Result,
     Verdict,
-    in_words,
-    listed,
 )
-from mxeon.conformance.results.known_issues import SPREAD, says_first
+from mxeon.conformance.results.known_issues import SPREAD
 from mxeon.conformance.results.records import make_converter
 from mxeon.errors import InputError, one_line
 from mxeon.hosts.base import Identity
@@ -36,7 +34,6 @@ from mxeon.report import JSON_FORMAT
 WORSE, LOST, BETTER, OTHER = KINDS = ("worse", "not run any longer", "better", "other")
 RANKS = (PASSED, DIFFERS, FAILED)
 PLACE = ("host", "library", "check", "subject")
-MODEL = re.compile("best match: |fault: |no known model ")  # a diagnosis that names one, or none
 SHOWN = ("host", "library", "subject", "scene")
 
 
@@ -67,8 +64,8 @@ class Change:
     def __str__(self) -> str:
         factor = max(self.growth, 1.0 / self.growth if self.growth else math.inf)
         larger = "larger" if self.growth > 1.0 else "smaller"
-        words = f"{in_words(factor)} times {larger}" if SPREAD < factor < math.inf else ""
-        after = "; ".join(filter(None, (self.after, words, self.reason)))
+        times = f"{words.in_words(factor)} times {larger}" * (SPREAD < factor < math.inf)
+        after = "; ".join(filter(None, (self.after, times, self.reason)))
         return f"{self.item}: {self.before} -> {after}"
 
 
@@ -270,7 +267,7 @@ def _change(old: Result, new: Result) -> tuple[str, str]:
         if old.verdict == new.verdict:
             return "", ""
         # The failure that keeps a check from running is compared itself.
-        if WRONG_INSIDE in old.reason + new.reason:
+        if old.follows or new.follows:
             return OTHER, old.reason or new.reason
         if new.verdict == NOT_RUN:
             return LOST, new.reason
@@ -285,12 +282,16 @@ def _change(old: Result, new: Result) -> tuple[str, str]:
     lost, found = sorted({*old.pages} - {*new.pages}), sorted({*new.pages} - {*old.pages})
     kind, reason = "", ""
     if lost:
-        kind, reason = WORSE, f"{listed(lost)} no longer explains it"
-    elif MODEL.match(new.diagnosis) and says_first(old.diagnosis) != says_first(new.diagnosis):
-        was, now = (re.split("; |, then ", each.diagnosis)[0] or "none" for each in (old, new))
+        kind, reason = WORSE, f"{words.listed(lost)} no longer explains it"
+    elif (
+        new.diagnosis.names_a_cause and old.diagnosis.first.identity != new.diagnosis.first.identity
+    ):
+        was, now = (
+            words.diagnosis(Diagnosis((each.diagnosis.first,))) or "none" for each in (old, new)
+        )
         kind, reason = WORSE, f"diagnosis was {was}, is {now}"
     elif found:
-        kind, reason = BETTER, f"{listed(found)} explains it"
+        kind, reason = BETTER, f"{words.listed(found)} explains it"
     # The same failure in other words is neither.
     return OTHER if kind and _number(old.error) == _number(new.error) else kind, reason
 

@@ -12,7 +12,8 @@ import numpy as np
 from markupsafe import Markup
 from numpy.typing import ArrayLike
 
-from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Result, in_words
+from mxeon.conformance import words
+from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Result
 from mxeon.conformance.results.known_issues import Issue, issues_of
 
 # CSS class of each verdict, and a sign for readers who cannot see the color.
@@ -53,12 +54,12 @@ def of_white(value: float) -> str:
     """Linear radiance as a share of a white, matte surface in full light; at least 0.001 %."""
     if not math.isfinite(value):
         return "not finite"
-    return f"{in_words(max(100.0 * value, 0.001))}\N{NO-BREAK SPACE}% of white"
+    return f"{words.in_words(max(100.0 * value, 0.001))}\N{NO-BREAK SPACE}% of white"
 
 
 def unit_meaning(unit: str) -> str:
     """What a unit's parts mean, for the caption of a table; "" for plain counts."""
-    return "; ".join(words for part, words in UNITS.items() if part in unit)
+    return "; ".join(meaning for part, meaning in UNITS.items() if part in unit)
 
 
 def nearest(distances: Mapping[str, float], count: int = 5) -> list[tuple[str, float, float]]:
@@ -68,11 +69,14 @@ def nearest(distances: Mapping[str, float], count: int = 5) -> list[tuple[str, f
     return [(title, distance, distance / largest) for title, distance in rows]
 
 
-def linked(result: Result, excess: str = "") -> Markup:
-    """What explains a result, as HTML: words, its diagnosis, and links to its known issues."""
+def linked(result: Result) -> Markup:
+    """What explains a result, as HTML: a control that passed, its diagnosis, and links to its known issues."""
+    excess = words.excess(result) if result.within and result.verdict != PASSED else ""
     see = Markup('see <a href="{}">{}</a>')
     links = [see.format(page_address(issue), issue.title) for issue in issues_of(result)]
-    return Markup("; ").join([each for each in (excess, result.diagnosis, *links) if each])
+    return Markup("; ").join(
+        [each for each in (excess, words.diagnosis(result.diagnosis), *links) if each]
+    )
 
 
 def page_address(issue: Issue) -> str:
@@ -109,5 +113,5 @@ def _site() -> str:
 
 def vector(values: ArrayLike) -> str:
     """One or more numbers as text: "1" or "(0.5, 0.25)"."""
-    words = [number(float(value), 4) for value in np.ravel(values)]
-    return words[0] if len(words) == 1 else f"({', '.join(words)})"
+    numbers = [number(float(value), 4) for value in np.ravel(values)]
+    return numbers[0] if len(numbers) == 1 else f"({', '.join(numbers)})"

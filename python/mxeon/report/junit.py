@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
+from mxeon.conformance import words
 from mxeon.conformance.results import FAILED, NOT_RUN, Result, Run
 from mxeon.conformance.results.known_issues import issues_of
 from mxeon.errors import one_line
@@ -32,7 +33,7 @@ def to_junit(run: Run) -> str:
     for place in dict.fromkeys(result.location for result in run.results):
         # What fails with a library that does not count was not run.
         results = [
-            replace(each, verdict=NOT_RUN, reason=f"for comparison: {each.explanation}")
+            replace(each, verdict=NOT_RUN, reason=f"for comparison: {words.explanation(each)}")
             if each.verdict == FAILED and each.library in run.compared
             else each
             for each in run.results
@@ -41,11 +42,11 @@ def to_junit(run: Run) -> str:
         counts = Counter(result.verdict for result in results)
         totals = {"tests": len(results), "failures": counts[FAILED], "errors": 0}
         totals["skipped"] = counts[NOT_RUN]
-        words = {key: str(value) for key, value in totals.items()}
-        words["time"] = f"{sum(each.seconds or 0.0 for each in results):.3f}"
+        counted = {key: str(value) for key, value in totals.items()}
+        counted["time"] = f"{sum(each.seconds or 0.0 for each in results):.3f}"
         host, library = results[0].host, names[results[0].library]
         name = _xml(f"{host} with {library}")
-        suite = ElementTree.SubElement(root, "testsuite", {"name": name} | words)
+        suite = ElementTree.SubElement(root, "testsuite", {"name": name} | counted)
         properties = ElementTree.SubElement(suite, "properties")
         versions = {"mxeon": run.version} | run.software
         for identity in run.hosts:
@@ -83,11 +84,12 @@ def _add_case(suite: ElementTree.Element, result: Result, name: str) -> None:
     if result.verdict == NOT_RUN:
         ElementTree.SubElement(case, "skipped", message=_xml(result.reason))
     if result.verdict == FAILED:
-        message = one_line(f"{result.claim} {result.excess or result.diagnosis}")
+        found = words.diagnosis(result.diagnosis)
+        message = one_line(f"{result.claim} {words.excess(result) or found}")
         kind = "known" if result.pages else "new"
         failure = ElementTree.SubElement(case, "failure", type=kind, message=_xml(message))
         pages = (f"see {page_address(issue)}" for issue in issues_of(result))
-        text = "; ".join(filter(None, (result.diagnosis, *pages)))
+        text = "; ".join(filter(None, (found, *pages)))
         if result.worst:
             worst = (f"{name} {vector(values)}" for name, values in result.worst.items())
             text += f"\nworst point: {', '.join(worst)}"

@@ -10,12 +10,12 @@ import numpy as np
 from markupsafe import Markup
 from numpy.typing import NDArray
 
+from mxeon.conformance import words
 from mxeon.conformance.results import (
     COUNTS,
     DIFFERS,
     DIRECT,
     FAILED,
-    LIGHTS,
     NOT_RUN,
     PASSED,
     PORTRAIT,
@@ -26,7 +26,6 @@ from mxeon.conformance.results import (
     Result,
     Run,
     Verdict,
-    counted,
 )
 from mxeon.io.images import difference_scale
 from mxeon.io.srgb import srgb_encoded
@@ -170,10 +169,10 @@ def material(verdicts: Verdicts, pictures: Sequence[Picture]) -> dict[str, Any]:
 def _sentence(result: Result | None, largest: Mapping[str, float]) -> str:
     """How a material looks on one host with one library; `largest` by scene, where it has a reference."""
     if not largest:
-        reason = result and (result.reason or result.diagnosis)
+        reason = result and (result.reason or words.diagnosis(result.diagnosis))
         checked = result and result.check == "finite" and result.verdict == PASSED
-        words = "no reference" + (f": {reason}" if reason else "")
-        return words + ("; every pixel is finite" if checked else "")
+        sentence = "no reference" + (f": {reason}" if reason else "")
+        return sentence + ("; every pixel is finite" if checked else "")
     scene = max(largest, key=lambda each: largest[each])
     if result and result.verdict == PASSED:
         names = ", ".join(result.measured)
@@ -216,7 +215,7 @@ def _row(pictures: Sequence[Picture], tolerance: float) -> dict[str, Any]:
             note += f" at the {np.count_nonzero(one.judged):,} pixels that were compared"
         pixels = difference_pixels(values, scale)
         shown.append(_figure("difference", f"Difference, {one.library}", note, pixels))
-    scene = LIGHTS.get(pictures[0].scene, pictures[0].scene)
+    scene = words.LIGHTS.get(pictures[0].scene, pictures[0].scene)
     common = {"host": pictures[0].host, "scene": scene}
     return common | {"figures": shown, "largest": largest, "scale": scale}
 
@@ -270,10 +269,10 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, 
     at_once = [each for each in shown if not is_portrait(each)][:OPEN_MATERIALS] or shown[:1]
     nodes = sum(map(is_portrait, shown[len(at_once) :]))
     others = len(shown) - len(at_once) - nodes
-    folded = [counted(others, "more material")] * bool(others)
-    folded += [f"{counted(nodes, 'node')} rendered without a document, as pictures only"] * bool(
-        nodes
-    )
+    folded = [words.counted(others, "more material")] * bool(others)
+    folded += [
+        f"{words.counted(nodes, 'node')} rendered without a document, as pictures only"
+    ] * bool(nodes)
     filters: dict[str, Callable[..., Any]] = {"vector": vector, "linked": linked, "tally": tally}
     filters |= {"nearest": nearest, "of_white": of_white, "meaning": unit_meaning}
     filters |= {"title": title_of, "worst": worst}
@@ -305,7 +304,8 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, 
                 for name in run.compared
                 if any(each.library == name for each in run.results)
             ],
-            counted=counted,
+            counted=words.counted,
+            sentences=words,
             COUNTS=COUNTS,
             gradient=Markup(difference_gradient()),
             plots=plots(run.curves),

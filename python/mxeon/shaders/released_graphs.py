@@ -82,12 +82,11 @@ def digest(parts: Mapping[str, str]) -> str:
     return sha256(repr(sorted(parts.items())).encode()).hexdigest()[:16]
 
 
-def differences(own: Mapping[str, str], right: Mapping[str, str]) -> str:
-    """The parts in which two graphs differ, in words."""
-    found = [
-        f"{name} is {own.get(name, 'missing')} instead of {right.get(name, 'missing')}"
+def differences(own: Mapping[str, str], right: Mapping[str, str]) -> tuple[str, ...]:
+    """The parts in which two graphs differ: three texts each, its name and what both say."""
+    return tuple(
+        text
         for name in {**right, **own}
         if own.get(name) != right.get(name)
-    ]
-    more = f", and {len(found) - PARTS} more differences" if len(found) > PARTS else ""
-    return f"{', '.join(found[:PARTS])}{more}"
+        for text in (name, own.get(name, "missing"), right.get(name, "missing"))
+    )

@@ -14,14 +14,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import mxeon
+from mxeon.conformance import words
 from mxeon.conformance.backends import Backend, Samples
 from mxeon.conformance.cache import parts
 from mxeon.conformance.case import Case, edge_values
 from mxeon.conformance.check import Check
 from mxeon.conformance.checks import CHECKS
-from mxeon.conformance.diagnosis import VALUE, Diagnosis
-from mxeon.conformance.diagnosis.regions import EXACT, smallest, unbounded
-from mxeon.conformance.results import PASSED, Run
+from mxeon.conformance.diagnosis import VALUE
+from mxeon.conformance.diagnosis.regions import EXACT, correct_except, smallest, unbounded
+from mxeon.conformance.results import PASSED, Diagnosis, Kind, Run
 from mxeon.conformance.samples import (
     PAIRS,
     Array,
@@ -141,13 +142,9 @@ VALUE_OF_REST = replace(VALUE, compared=lambda case: _finite_rows(VALUE(case)))
 def _explain_not_finite(case: Case) -> Diagnosis:
     """How many values are not finite, where, and the arguments of the first."""
     found = unbounded(edge_values(case))
-    wrong, place = EXACT.wrong(found), smallest([found], EXACT)
-    point = point_of(found.batch, int(wrong.argmax()))
-    wo, wi, rho, roughness = (", ".join(f"{x:.6g}" for x in each) for each in point.values())
-    return Diagnosis(
-        f"{wrong.sum()} of {len(wrong)} values are not finite{place and f', all {place}'}; the "
-        f"first for wo = ({wo}), wi = ({wi}), rho = ({rho}), roughness = {roughness}"
-    )
+    wrong = correct_except([found], EXACT, smallest([found], EXACT))
+    point = point_of(found.batch, int(EXACT.wrong(found).argmax()))
+    return Diagnosis((replace(wrong, kind=Kind.NOT_FINITE, point=point),))
 
 
 def _of_rest(check: Check) -> Check:
@@ -208,7 +205,7 @@ def brdf_test(brdf: Brdf, model: str = "eon", name: str | None = None) -> Callab
     @pytest.mark.parametrize("check", _checks(model), ids=lambda check: check.key)
     def test_brdf(check: Check) -> None:
         result = check.judge(case)
-        assert result.verdict == PASSED, f"{check.claim} {result.explanation}"
+        assert result.verdict == PASSED, f"{check.claim} {words.explanation(result)}"
 
     return cast(Callable[..., None], test_brdf)
 

@@ -9,7 +9,7 @@ import numpy as np
 from mxeon.conformance.case import Case
 from mxeon.conformance.check import check, with_inputs
 from mxeon.conformance.checks.paths import deviation
-from mxeon.conformance.diagnosis import Diagnosis
+from mxeon.conformance.diagnosis import defect
 from mxeon.conformance.samples import Array, Batch, generator
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.tolerance import Compared, Measurement, given, roundings, sum_of
@@ -38,7 +38,7 @@ def is_sampled(spec: Spec) -> bool:
     is_sampled,
     with_inputs("roughness is dropped", roughness=0.0),
     tolerance=OWN_DENSITY,
-    diagnose=lambda case: Diagnosis("the density differs from the paper's listings"),
+    diagnose=defect("density_differs"),
 )
 def density(case: Case) -> Iterator[Compared]:
     """The sampling density is the paper's."""
@@ -58,7 +58,7 @@ def _density(case: Case, batch: Batch) -> Array:
     is_sampled,
     with_inputs("the density is that of roughness 0", roughness=0.0),
     tolerance=CHI_SQUARE,
-    diagnose=lambda case: Diagnosis("the samples do not follow the density"),
+    diagnose=defect("samples_differ"),
 )
 def samples(case: Case) -> Measurement:
     """Samples follow the density that is returned with them.

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the reports of any number of runs say about each renderer's nodes, side by side."""
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 from typing import TypeAlias
 
+from mxeon.conformance import words
 from mxeon.conformance.backends import own_nodes
 from mxeon.conformance.results import (
     DIRECT,
@@ -16,6 +16,8 @@ from mxeon.conformance.results import (
     PASSED,
     PORTRAIT,
     RESULTS,
+    Diagnosis,
+    Kind,
     Result,
     Verdict,
     report_files,
@@ -42,7 +44,6 @@ CHECKS = {
     "black": ("black",),
     "back": (),
 }
-NEAREST = re.compile(r"best match: (.+?) \(rms")
 
 
 @dataclass(frozen=True)
@@ -92,13 +93,14 @@ class Entry:
 
 
 def model_of(result: Result, expected: str) -> str:
-    """The model that a result shows, or what its diagnosis says first."""
+    """The model that a result shows, or its first cause in words."""
     if result.verdict == PASSED:
         return expected
     if result.verdict == NOT_RUN:
         return "not run"
-    nearest = NEAREST.search(result.diagnosis)
-    return nearest[1] if nearest else result.diagnosis.partition(";")[0]
+    models = (each.key for each in result.diagnosis.causes if each.kind is Kind.MODEL)
+    first = Diagnosis((result.diagnosis.first,), result.diagnosis.distances)
+    return next(models, "") or words.diagnosis(first)
 
 
 def reports_in(folder: AnyPath) -> list[Path]:
@@ -150,8 +152,8 @@ def _entries(report: Report, folder: Path) -> Iterator[Entry]:
             if BACK in portraits:
                 error, allowed = portraits[BACK].difference, direct.tolerance or 0.0
                 verdict: Verdict = PASSED if error <= allowed else FAILED
-                words = PORTRAIT, "Light from behind, at the points of a sphere."
-                about = *words, direct.subject, direct.host, direct.library
+                claim_of_back = PORTRAIT, "Light from behind, at the points of a sphere."
+                about = *claim_of_back, direct.subject, direct.host, direct.library
                 cells[BACK] = Result(*about, verdict, error, direct.unit, allowed)
             pages = tuple(dict.fromkeys(page for each in results.values() for page in each.pages))
             hosts = {each.name: (each.version, each.device) for each in report.hosts}

@@ -20,6 +20,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 from xml.etree import ElementTree
 
+from mxeon.conformance import words
 from mxeon.conformance.results import PASSED, SOURCE, Result
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import CURVE, PICTURE, Task, make_plan
@@ -135,8 +136,8 @@ def ordered(failures: list[Result]) -> list[dict[str, str]]:
             "check": each.check,
             "subject": Path(each.subject).name if each.subject.startswith("/") else each.subject,
             "host": each.host,
-            "excess": each.excess,
-            "diagnosis": first_line(each.diagnosis or f"not run: {each.reason}"),
+            "excess": words.excess(each),
+            "diagnosis": first_line(words.diagnosis(each.diagnosis) or f"not run: {each.reason}"),
         }
         for each in sorted(failures, key=ratio, reverse=True)
     ]

@@ -9,7 +9,8 @@ from typing import Any
 
 import MaterialX as mx
 
-from mxeon.conformance.results import SOURCE, Result
+from mxeon.conformance import words
+from mxeon.conformance.results import SOURCE, Cause, Result
 from mxeon.conformance.results.known_issues import ISSUES, RENDERERS, STOCK, Issue
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import ALL, make_plan
@@ -57,9 +58,23 @@ def record(issue: Issue, results: Sequence[Result], place: str) -> dict[str, Any
         ]
         for each in shown
     ]
-    # Without page, and without distances, which depend on the driver.
-    says = re.sub(r" \((?:rms )?\d[\d.e+-]*\)", "", shown[0].diagnosis.split("; see ")[0])
-    return {"rows": rows, "place": place, "says": says}
+    # Without distances, which depend on the driver.
+    found_words = words.diagnosis(shown[0].diagnosis)
+    says = re.sub(r" \((?:rms )?\d[\d.e+-]*\)", "", found_words)
+    return {"rows": rows, "place": place, "says": says, "cause": identity(shown[0].diagnosis.first)}
+
+
+def identity(cause: Cause) -> dict[str, Any]:
+    """What `mxeon.conformance.results.known_issues` compares of a cause: its fields but the numbers."""
+    fields: dict[str, Any] = {"kind": cause.kind.value, "key": cause.key}
+    if cause.names:
+        fields["names"] = list(cause.names)
+    if cause.branch:
+        fields["branch"] = cause.branch
+    if place := cause.region:
+        channels = list(place.channels)
+        fields["region"] = {"name": place.name, "part": place.part, "channels": channels}
+    return fields
 
 
 def main(hosts: Sequence[str]) -> None:

@@ -8,7 +8,8 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from mxeon.conformance.results import COUNTS, counted
+from mxeon.conformance.results import COUNTS
+from mxeon.conformance.words import counted
 from mxeon.io.files import write_text
 from tools.site.ledger import (
     FOLDER,

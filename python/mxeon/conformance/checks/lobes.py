@@ -33,11 +33,11 @@ from mxeon.conformance.diagnosis import (
     TRANSMISSION,
     VALUE,
     Comparison,
-    Diagnosis,
+    defect,
     explain,
 )
 from mxeon.conformance.diagnosis.faults import DIRECT_FAULTS
-from mxeon.conformance.results import WRONG_INSIDE
+from mxeon.conformance.results import Cause, Diagnosis, Kind
 from mxeon.conformance.samples import (
     LEAST_COLOR82,
     SKY_ROWS,
@@ -72,7 +72,7 @@ from mxeon.conformance.tolerance import (
     scaled,
     sum_in,
 )
-from mxeon.errors import NotRun
+from mxeon.errors import Implied
 from mxeon.hosts import HOSTS, front_lit_only
 from mxeon.hosts.calls import NORMAL
 from mxeon.io.srgb import srgb_decoded
@@ -506,7 +506,7 @@ def combined_throughput(case: Case) -> Iterator[Compared]:
     ),
     pairs=True,
     open=True,
-    diagnose=lambda case: Diagnosis("the factor is not clamped", permitted=True),
+    diagnose=replace(defect("factor_not_clamped"), permitted=True),
 )
 def factor(case: Case) -> Iterator[Compared]:
     """Factors are clamped to [0, 1]."""
@@ -592,7 +592,8 @@ def outside(case: Case) -> Iterator[tuple[str, str, float, Compared]]:
         if scaled(measured, expected).max() > case.tolerance(name).value
     }
     if len(wrong) == 2 + is_layer(spec):
-        raise NotRun(f"{case.host.name}: not measured, since {spec.title} {WRONG_INSIDE}")
+        inside = f"{spec.title} already fails inside its inputs' usual ranges"
+        raise Implied(f"{case.host.name}: not measured, since {inside}")
     batch = views.first(PAIRS)
     for each in spec.bounded:
         for value in each.beyond:
@@ -613,11 +614,12 @@ def diagnose_domain(case: Case) -> Diagnosis:
     for quantity, name, value, compared in outside(case):
         if absolute(*compared[1:]).max() > TOLERANCES.value:
             wrong.setdefault((name, quantity), []).append(value)
-    texts = (
-        f"the {quantity} is wrong with {name} {', '.join(f'{value:g}' for value in values)}"
-        for (name, quantity), values in wrong.items()
+    return Diagnosis(
+        tuple(
+            Cause(Kind.DEFECT, f"{quantity}_outside", (name,), tuple(values))
+            for (name, quantity), values in wrong.items()
+        )
     )
-    return Diagnosis("; ".join(texts))
 
 
 @check(

@@ -25,11 +25,13 @@ from mxeon.conformance.diagnosis import (
     ALBEDO,
     NEAR,
     OTHER_AVERAGE,
+    SINGLY_RIGHT,
     UNKNOWN,
     UNMASKED,
-    Diagnosis,
+    defect,
     not_finite,
 )
+from mxeon.conformance.results import Cause, Diagnosis, Kind
 from mxeon.conformance.samples import (
     LEAST_COLOR82,
     Array,
@@ -193,8 +195,8 @@ def diagnose_sky(case: Case) -> Diagnosis:
     """Whether the mirror lobe is wrong, or the retroreflective one alone."""
     tolerance, first = case.tolerance("sky"), next(reflected_sky(case))
     if tolerance.metric(*first[1:]).max() > tolerance.value:
-        return Diagnosis("the environment is looked up in other directions, or with other weights")
-    return Diagnosis("retroreflective is ignored or wrong in an environment")
+        return defect("other_directions")
+    return defect("retroreflective_environment")
 
 
 @check(
@@ -202,7 +204,7 @@ def diagnose_sky(case: Case) -> Diagnosis:
     isotropic,
     pairs=True,
     lit=True,
-    diagnose=UNKNOWN,
+    diagnose=Diagnosis((UNKNOWN,)),
     methods=lambda spec, methods: with_directions(spec, methods),
 )
 def anisotropic_albedo(case: Case) -> Compared:
@@ -223,7 +225,7 @@ def anisotropic_value(case: Case) -> Compared:
     isotropic,
     pairs=True,
     lit=True,
-    diagnose=UNKNOWN,
+    diagnose=Diagnosis((UNKNOWN,)),
 )
 def anisotropic_throughput(case: Case) -> Iterator[Compared]:
     """A lobe with two alphas passes to its base what it does not reflect."""
@@ -235,7 +237,6 @@ def anisotropic_throughput(case: Case) -> Iterator[Compared]:
 
 # --- light that is transmitted, in the branch that looks up an environment ------------------------
 
-SEEN = "the mean of 1 - F over the visible normals"
 SUMMED = 1e-3  # rms by which a sum over the normals of an engine differs from it
 SMOOTH_VIEWS = 1 << 9  # of smooth surfaces
 CHANGED_VIEWS = 1 << 6  # whose inputs are changed
@@ -270,13 +271,13 @@ def diagnose_transmitted(case: Case) -> Diagnosis:
         return float(np.sqrt(np.mean(np.concatenate(errors) ** 2)))
 
     distances = {
-        f"{SEEN}, divided by G_1 of the view": distance(lambda c: _seen(spec, c.batch, True)),
-        SEEN: distance(lambda c: _seen(spec, c.batch)),
+        "seen_over_masking": distance(lambda c: _seen(spec, c.batch, True)),
+        "seen": distance(lambda c: _seen(spec, c.batch)),
     }
-    words = min(distances, key=lambda name: distances[name])
-    known = distances[words] < max(NEAR * distance(lambda c: c.expected), SUMMED)
-    found = filter(None, (words if known else "", not_finite(compared)))
-    return Diagnosis("; ".join(found) or UNKNOWN)
+    key = min(distances, key=lambda name: distances[name])
+    known = distances[key] < max(NEAR * distance(lambda c: c.expected), SUMMED)
+    causes = defect(key).causes if known else ()
+    return Diagnosis((*causes, *not_finite(compared)) or (UNKNOWN,))
 
 
 def _seen(spec: TransmissionSpec, batch: Batch, masked: bool = False) -> Array:
@@ -350,7 +351,7 @@ def diagnose_methods(case: Case) -> Diagnosis:
             (tolerance.metric(*each[1:]) > tolerance.value).any() for each in shares(case, methods)
         )
     ]
-    return Diagnosis(f"with {' and with '.join(wrong)}" if wrong else UNKNOWN)
+    return defect("wrong_with_methods", *wrong) if wrong else Diagnosis((UNKNOWN,))
 
 
 @check(
@@ -369,12 +370,11 @@ def methods(case: Case) -> Iterator[Compared]:
 
 def diagnose_kept(case: Case) -> Diagnosis:
     tolerance = case.tolerance("kept")
-    wrong = (
-        words
-        for words, (_, *values) in _modes(case)
-        if tolerance.metric(*values).max() > tolerance.value
-    )
-    return Diagnosis("; ".join(dict.fromkeys(wrong)))
+    causes: list[Cause] = []
+    for cause, (_, *values) in _modes(case):
+        if tolerance.metric(*values).max() > tolerance.value and cause not in causes:
+            causes.append(cause)
+    return Diagnosis(tuple(causes))
 
 
 @check(is_transmitting, offset, diagnose=diagnose_kept)
@@ -383,22 +383,26 @@ def kept(case: Case) -> Iterator[Compared]:
     return (compared for _, compared in _modes(case))
 
 
-def _modes(case: Case) -> Iterator[tuple[str, Compared]]:
-    """Values of a mode against those of mode R, or none, and of mode R against none, with words for an error."""
+def _modes(case: Case) -> Iterator[tuple[Cause, Compared]]:
+    """Values of a mode against those of mode R, or none, and of mode R against none, with the cause of an error."""
     spec = case.of(TransmissionSpec)
     only = case.another(spec.reflection) if spec.reflects else None
-    none, words = 0.0 * ONE, "reflects {}, unlike mode R" if only else "reflects {}"
+    none, unlike = 0.0 * ONE, "_unlike_R" * bool(only)
+
+    def cause(key: str, branch: str = "") -> Cause:
+        return Cause(Kind.DEFECT, key, branch=branch)
+
     for batch in case.views:
         reflected = only.direct(batch) if only else none
-        yield words.format("a light"), Compared(batch, case.direct(batch), reflected)
+        yield cause(f"reflects_light{unlike}"), Compared(batch, case.direct(batch), reflected)
         reflected = only.albedo(batch) if only else none
-        yield words.format("an environment"), Compared(batch, case.albedo(batch), reflected)
+        yield cause(f"reflects_environment{unlike}"), Compared(batch, case.albedo(batch), reflected)
         for branch in SCATTERING if only else SCATTERING[:2]:
             expected = only.throughput(batch, branch) if only else ONE
             compared = Compared(batch, case.throughput(batch, branch), expected)
-            yield f"passes other light to its base (branch {branch})", compared
+            yield cause("passes_other_light", branch), compared
         if only:
-            yield "mode R transmits light", Compared(batch, only.transmitted(batch), none)
+            yield cause("mode_R_transmits"), Compared(batch, only.transmitted(batch), none)
 
 
 DENSER = with_inputs("the index is different", ior=2.5, color0=(0.5, 0.5, 0.5))
@@ -426,7 +430,7 @@ def critical(case: Case) -> Compared:
     DENSER,
     tolerance=REFRACTED,
     lit=True,
-    diagnose=UNKNOWN,
+    diagnose=Diagnosis((UNKNOWN,)),
     methods=lambda spec, methods: methods.transmission == "refraction",
 )
 def refraction(case: Case) -> Compared:
@@ -492,7 +496,7 @@ def transmitted_finite(case: Case) -> Measurement:
     drop_changes,
     tolerance=count_of("inputs"),
     lit=True,
-    diagnose=lambda case: Diagnosis(f"no effect, or a wrong one: {', '.join(wrong_inputs(case))}"),
+    diagnose=lambda case: defect("wrong_effect", *wrong_inputs(case)),
 )
 def transmitted_inputs(case: Case) -> Measurement:
     """Every input except retroreflective changes the light through the surface."""
@@ -521,7 +525,6 @@ Function = Callable[[Batch], Array]
 MIRRORED = (-1.0, -1.0, 1.0)
 ROUGHNESSES = (1.0, 0.3)  # with much and with little compensation
 SMOOTH = (0.04, 0.005)  # with next to none, for whose average a shader may take fewer cosines
-RIGHT = "each value on its own is within tolerance"  # of an explanation that found nothing
 LEAST_F = 0.01  # of a curve by which its averages are divided
 THIN_LIMIT = 1e-3  # thickness in nm of a film that changes nothing
 SLANT = 2.0 / 3.0  # mean cosine of a hemisphere, weighted by the cosine
@@ -608,15 +611,14 @@ def diagnose_average(case: Case) -> Diagnosis:
     view = np.broadcast_to([np.sqrt(1.0 - SLANT * SLANT), 0.0, SLANT], batch.wo.shape)
     slanted = replace(batch, wo=view, wi=view * MIRRORED)
     others = {
-        "at the half vector": _averages(case, case.direct, batch)[0],
-        "at the cosine 2/3": _averages(case, case.expected, slanted)[0],
+        "average_at_half_vector": _averages(case, case.direct, batch)[0],
+        "average_at_two_thirds": _averages(case, case.expected, slanted)[0],
     }
-    errors = {words: np.sqrt(np.mean((measured - each) ** 2)) for words, each in others.items()}
-    words = min(errors, key=errors.__getitem__)
-    if not errors[words] < NEAR * np.sqrt(np.mean((measured - expected) ** 2)):
-        return Diagnosis(OTHER_AVERAGE)
-    text = f"the compensation uses F {words} instead of its average"
-    return Diagnosis(text, permitted=words == "at the half vector")
+    errors = {key: np.sqrt(np.mean((measured - each) ** 2)) for key, each in others.items()}
+    key = min(errors, key=errors.__getitem__)
+    if not errors[key] < NEAR * np.sqrt(np.mean((measured - expected) ** 2)):
+        return Diagnosis((OTHER_AVERAGE,))
+    return replace(defect(key), permitted=key == "average_at_half_vector")
 
 
 @check(is_film, dropped, lit=True, open=True, diagnose=diagnose_average)
@@ -651,7 +653,7 @@ def film_smooth(case: Case) -> Compared:
 def diagnose_visible(case: Case) -> Diagnosis:
     """The explanation of a film's albedo, or the weights of the facets where that is right."""
     explained = ALBEDO.diagnose(case)
-    return explained if RIGHT not in explained.text else Diagnosis(UNMASKED)
+    return explained if SINGLY_RIGHT not in explained.causes else Diagnosis((UNMASKED,))
 
 
 @check(is_film, dropped, lit=True, open=True, diagnose=diagnose_visible, methods=with_directions)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of the nodes that scatter nothing: those that emit light, media, and utility nodes."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from mxeon.conformance.backends import implementation
@@ -15,8 +17,9 @@ from mxeon.conformance.check import (
     shifted,
     with_inputs,
 )
-from mxeon.conformance.diagnosis import BACK, OUTPUT, TRANSMITTANCE, VALUE, Diagnosis
-from mxeon.conformance.diagnosis.regions import EXACT, span, unbounded
+from mxeon.conformance.diagnosis import BACK, OUTPUT, TRANSMITTANCE, VALUE, defect
+from mxeon.conformance.diagnosis.regions import EXACT, correct_except, span, unbounded
+from mxeon.conformance.results import Diagnosis, Kind
 from mxeon.conformance.specs.emission import (
     OPACITY,
     UNIMPLEMENTED,
@@ -40,9 +43,7 @@ unimplemented = Control(
     of_family(EmissionSpec, MediumSpec, AbsentSpec),
     unimplemented,
     tolerance=count_of("nodes"),
-    diagnose=lambda case: Diagnosis(
-        f"{case.host.target} has no implementation of {case.spec.title}"
-    ),
+    diagnose=lambda case: defect("not_implemented", case.host.target, case.spec.title),
 )
 def implemented(case: Case) -> Measurement:
     """The target implements the node."""
@@ -71,7 +72,7 @@ def diagnose_opacity(case: Case) -> Diagnosis:
         OPACITY.metric(each.measured, case.expected(each.batch.altered(opacity=1.0))).max()
         for each in VALUE(case)
     )
-    return Diagnosis("the opacity is ignored" if full <= OPACITY.value else "")
+    return defect("input_ignored", "opacity") if full <= OPACITY.value else Diagnosis()
 
 
 @check(
@@ -103,9 +104,8 @@ def outside(case: Case) -> Compared:
 def explained_finite(case: Case) -> Diagnosis:
     """How many outputs are not finite, and the range of an input that has all of them."""
     compared = unbounded(outside(case))
-    wrong, place = EXACT.wrong(compared), span([compared], EXACT)
-    share = f"{wrong.sum()} of {len(wrong)} outputs are not finite"
-    return Diagnosis(f"{share}, all {place}" if place else share)
+    share = correct_except([compared], EXACT, span([compared], EXACT))
+    return Diagnosis((replace(share, kind=Kind.NOT_FINITE),))
 
 
 @check(

@@ -16,7 +16,8 @@ from numpy.typing import ArrayLike, NDArray
 from mxeon.conformance.cache import Recent, contents
 from mxeon.conformance.case import Case
 from mxeon.conformance.check import check, scale, with_values
-from mxeon.conformance.diagnosis import Diagnosis
+from mxeon.conformance.diagnosis import defect
+from mxeon.conformance.results import Cause, Diagnosis, Kind
 from mxeon.conformance.samples import Array, Batch, Values, float32, generator
 from mxeon.conformance.spec import LobeSpec, Spec, materials
 from mxeon.conformance.specs.diffuse import SurfaceLobe
@@ -227,11 +228,9 @@ def scores(case: Case) -> Iterator[tuple[float, bool, Array]]:
     pairs=True,
     profile="path",
     hosts=has_paths,
-    diagnose=lambda case: Diagnosis(
-        "what is drawn has another density than that of material_pdf, from "
-        + " and ".join(
-            dict.fromkeys(place(inside) for score, inside, _ in scores(case) if score > 6.0)
-        )
+    diagnose=lambda case: defect(
+        "drawn_density",
+        *dict.fromkeys(place(inside) for score, inside, _ in scores(case) if score > 6.0),
     ),
 )
 def pdf(case: Case) -> Measurement:
@@ -276,15 +275,12 @@ SAMPLE = sum_of(
 
 def _wrong_half(case: Case) -> Diagnosis:
     """Which of the two is wrong, and from where."""
-    words: dict[str, None] = {}
+    causes: dict[Cause, None] = {}
     for inside, weights, densities in halves(case):
-        for name, compared in (
-            ("weight times density is not material_evaluate's value", weights),
-            ("density of material_sample is not material_pdf's", densities),
-        ):
+        for key, compared in (("drawn_weight", weights), ("sampled_density", densities)):
             if SAMPLE.wrong(compared).any():
-                words[f"the {name}, from {place(inside)}"] = None
-    return Diagnosis("; ".join(words))
+                causes[Cause(Kind.DEFECT, key, (place(inside),))] = None
+    return Diagnosis(tuple(causes))
 
 
 @check(
@@ -319,7 +315,7 @@ def random_directions(rng: np.random.Generator, count: int) -> Array:
     pairs=True,
     profile="path",
     hosts=has_paths,
-    diagnose="a path tracer gets another value than a rasterizer",
+    diagnose=defect("other_path_value"),
 )
 def path_value(case: Case) -> Iterator[Compared]:
     """A path tracer's value, opacity and emission are the rasterizer's, in any frame."""
@@ -358,7 +354,7 @@ def path_value(case: Case) -> Iterator[Compared]:
     pairs=True,
     profile="path",
     hosts=has_paths,
-    diagnose="light inside a solid is not that outside of one of the inverse index",
+    diagnose=defect("inside_is_not_outside"),
 )
 def path_inside(case: Case) -> Iterator[Compared]:
     """Light inside a solid is reflected and refracted as outside of one of the inverse index."""

@@ -18,10 +18,12 @@ from numpy.typing import NDArray
 from mxeon.conformance.backends import joined
 from mxeon.conformance.case import Case
 from mxeon.conformance.check import check, with_batch
-from mxeon.conformance.diagnosis import Diagnosis, not_finite
+from mxeon.conformance.diagnosis import not_finite
+from mxeon.conformance.results import Cause, Diagnosis, Kind
 from mxeon.conformance.samples import (
     Array,
     Batch,
+    Mask,
     Values,
     aimed,
     float32,
@@ -421,25 +423,30 @@ def diagnose(case: Case) -> Diagnosis:
     bad = np.concatenate([tolerance.metric(*each[1:]) > tolerance.value for each in compared])
     pixels = [words for each in pixels_of(case) for words in _words(each)]
     names = sorted(set().union(*pixels))
-    found = {name: np.array([name in each for each in pixels]) for name in names}
-    pairs = list(combinations(names, 2))
+    found: dict[tuple[str, ...], Mask] = {
+        (name,): np.array([name in each for each in pixels]) for name in names
+    }
+    pairs: list[tuple[str, ...]] = list(combinations(names, 2))
     sets = (
         found,
-        {" and ".join(pair): found[pair[0]] & found[pair[1]] for pair in pairs},
-        {" or ".join(pair): found[pair[0]] | found[pair[1]] for pair in pairs},
+        {pair: found[pair[:1]] & found[pair[1:]] for pair in pairs},
+        {pair: found[pair[:1]] | found[pair[1:]] for pair in pairs},
     )
     one, both, either = (
         min(
-            (int(mask.sum()), words)
-            for words, mask in {**each, "": bad | True}.items()
+            (int(mask.sum()), names)
+            for names, mask in {**each, (): bad | True}.items()
             if mask[bad].all()
         )
         for each in sets
     )
-    words = (both if both[0] < CLEARER * one[0] else min(one, either))[1]
-    wrong = not_finite(compared) or f"{bad.sum()} of {len(bad)} sums are wrong"
-    place = f", all with {words}" if words else ""
-    return Diagnosis(f"each part is right by itself, but {wrong}{place}")
+    key, common = "state", one[1]
+    if both[0] < CLEARER * one[0]:
+        key, common = "both_states", both[1]
+    elif either < one:
+        key, common = "either_state", either[1]
+    sums = Cause(Kind.DEFECT, key, common, wrong=int(bad.sum()), of=len(bad))
+    return Diagnosis((sums, *not_finite(compared)))
 
 
 def _words(pixels: Pixels) -> Iterator[set[str]]:

@@ -11,7 +11,8 @@ from mxeon.conformance.backends import joined
 from mxeon.conformance.case import SCATTERING, Case
 from mxeon.conformance.check import check, control, of_family, scale, shifted
 from mxeon.conformance.checks.lobes import finds_albedo
-from mxeon.conformance.diagnosis import ALBEDO, VALUE, Diagnosis
+from mxeon.conformance.diagnosis import ALBEDO, VALUE, defect
+from mxeon.conformance.results import Cause, Diagnosis, Kind
 from mxeon.conformance.specs.surface_shaders import VALUE as VALUE_ERROR
 from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
 from mxeon.conformance.tolerance import (
@@ -51,12 +52,11 @@ def diagnose_lobes(case: Case) -> Diagnosis:
             errors[lobe] = float(scaled(case.direct(plain), case.expected(plain)).max())
     lobe = min(errors, key=errors.__getitem__)
     if errors[lobe] <= VALUE_ERROR.value:
-        return Diagnosis(f"the layer equation holds without the {lobe}")
-    least = " and ".join(sorted(errors, key=errors.__getitem__)[:2])
-    return Diagnosis(f"no single lobe explains it; the error is smallest without {least}")
+        return defect("right_without", lobe)
+    return defect("no_single_lobe", *sorted(errors, key=errors.__getitem__)[:2])
 
 
-SUM = "see the checks of each lobe and of `layer`"
+SUM = defect("sum_of_lobes")
 
 
 @check(is_shader, shifted, VALUE, diagnose=diagnose_lobes)
@@ -135,8 +135,10 @@ def glass(case: Case) -> Iterator[Compared]:
 
 
 def diagnose_graph(case: Case) -> Diagnosis:
-    text, permitted = case.of(SurfaceShaderSpec).graphs.difference
-    return Diagnosis(text, permitted=permitted)
+    graphs = case.of(SurfaceShaderSpec).graphs
+    causes = [Cause(Kind.DEFECT, key, names) for key, names in graphs.difference.items()]
+    # A graph of another release, or of another version of the node, is permitted.
+    return Diagnosis(tuple(causes), permitted=len(causes) > 1)
 
 
 @check(
@@ -208,11 +210,11 @@ def diagnose_reach(case: Case) -> Diagnosis:
     """The inputs."""
     known, wrong = expected_dead(case), misplaced(case)
     groups = {
-        verb: [name for name in wrong if (name in known) == effective]
-        for verb, effective in (("changes nothing", False), ("changes something", True))
+        key: [name for name in wrong if (name in known) == effective]
+        for key, effective in (("changes_nothing", False), ("changes_something", True))
     }
-    texts = (f"{', '.join(names)} {verb}" for verb, names in groups.items() if names)
-    return Diagnosis("; ".join(texts))
+    causes = (Cause(Kind.DEFECT, key, tuple(names)) for key, names in groups.items() if names)
+    return Diagnosis(tuple(causes))
 
 
 @check(is_shader, ignore_changes, tolerance=count_of("inputs"), diagnose=diagnose_reach)

@@ -2,7 +2,7 @@
 """The explanation of a failure: the known model, defect or fault that gives the values, or their place."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from operator import attrgetter
 from typing import TypeAlias
@@ -24,6 +24,7 @@ from mxeon.conformance.diagnosis.faults import (
     COLOR_FAULTS,
     DIRECT_FAULTS,
     ENVIRONMENT_FAULTS,
+    NO_FAULT,
     Fault,
     exchanges,
     normal_ignored,
@@ -34,12 +35,11 @@ from mxeon.conformance.diagnosis.regions import (
     WEAK,
     correct_except,
     place_of,
-    region,
-    share,
     smallest,
     span,
     unbounded,
 )
+from mxeon.conformance.results import Cause, Diagnosis, Kind
 from mxeon.conformance.samples import Array, Batch, Candidate, sky
 from mxeon.conformance.spec import COMPONENTS
 from mxeon.conformance.specs.diffuse import DIFFUSE
@@ -56,17 +56,14 @@ from mxeon.conformance.tolerance import (
 )
 from mxeon.models import table as reference
 from mxeon.models.shading_model import UP
-from mxeon.shaders.nodes import FLAG
 
 Measure: TypeAlias = Callable[[Case], Iterable[Compared]]
 
 PLACELESS = (MediumSpec, UtilitySpec)  # nodes without a view and a light
-SINGLY_RIGHT = "each value on its own is within tolerance"
-UNKNOWN = "the cause is unknown"
-OTHER_AVERAGE = "the compensation uses a different average of the film's reflectance"
-UNMASKED = "the visible facets are not weighted by masking and shadowing"
-# Diagnoses after which the values of the check itself are searched for a range of an input.
-UNTOLD = (SINGLY_RIGHT, UNKNOWN, OTHER_AVERAGE, UNMASKED)
+# Causes after which the values of the check itself are searched for a range of an input.
+SINGLY_RIGHT, UNKNOWN, OTHER_AVERAGE, UNMASKED = UNTOLD = tuple(
+    Cause(Kind.UNKNOWN, key) for key in ("singly_right", "unknown", "other_average", "unmasked")
+)
 WORST = 32  # pairs of which one input is changed, and the fewest that have to be wrong
 CURES = 2  # inputs that are named
 DIMMING = ("weight", "occlusion")  # inputs that make any error small
@@ -79,27 +76,9 @@ INEXACT = 30.0  # tolerances up to which the right model is called inexact, and 
 LEAST_LIGHT = 1e-3  # cosine of the light up to which factors of it cannot be told apart
 
 
-@dataclass(frozen=True)
-class Diagnosis:
-    """The explanation of some values."""
-
-    text: str = ""  # the model, defect or fault that explains them; or where they are wrong
-    # Root-mean-square distance to every model and defect, by title, in units of pi f cos.
-    distances: dict[str, float] = field(default_factory=dict)
-    permitted: bool = (
-        False  # whether a function that the specification leaves open gives all values
-    )
-
-
-def sentence(distances: Sequence[tuple[str, float]]) -> str:
-    """The nearest models in words, of titles and root-mean-square distances, nearest first.
-
-    >>> sentence([("Lambert", 0.001), ("EON", 0.25)])
-    'best match: Lambert (rms 0.001), then EON (0.25)'
-    """
-    (first, least), *others = distances[:2]
-    then = "".join(f", then {second} ({next_least:.2g})" for second, next_least in others)
-    return f"best match: {first} (rms {least:.2g}){then}"
+def defect(key: str, *names: str) -> Diagnosis:
+    """The diagnosis of a row of `mxeon.conformance.words.DEFECTS`."""
+    return Diagnosis((Cause(Kind.DEFECT, key, names),))
 
 
 def explain(
@@ -115,14 +94,14 @@ def explain(
     `candidates` are functions that may give the values, its own model first; a value is right up to the
     tolerance. `measure` compares the values of a case.
     """
-    if text := not_finite(cases):  # it has no distance to anything
-        return Diagnosis(text)
+    if infinite := not_finite(cases):  # it has no distance to anything
+        return Diagnosis(infinite)
     few = case.samples.counts.diagnosed
     short = [Compared(batch.first(few), *(each[:few] for each in rest)) for batch, *rest in cases]
     # Many a fault leaves the inputs of the own model alone.
     own = replace(candidates[0], values=Remembered(candidates[0].values))
     candidates = [own, *candidates[1:]]
-    models = {each.title: _distance(short, each, Fault(""), tolerance) for each in candidates}
+    models = {each.title: _distance(short, each, NO_FAULT, tolerance) for each in candidates}
     ranking = sorted(models.items(), key=lambda item: item[1])
     # Look for a fault of the first where no other explains the values.
     if ranking[0][0] == own.title or ranking[0][1] > tolerance.value:
@@ -134,12 +113,13 @@ def explain(
         products = sum(np.sum(each.expected * each.measured / scale) for each, scale in weighed)
         factor = float(products / squares) if squares else 1.0
         faults = (*faults, *exchanged, scaled_by(factor))
-        distances = {fault.text: _distance(short, own, fault, tolerance) for fault in faults}
-        (text, least), *others = sorted(distances.items(), key=lambda item: item[1])
-        rival = min([*models.values(), *(distance for _, distance in others)])
+        distances = [_distance(short, own, fault, tolerance) for fault in faults]
+        order = np.argsort(distances, kind="stable")
+        least, others = distances[order[0]], [distances[each] for each in order[1:]]
+        rival = min([*models.values(), *others])
         enough = max(SAME * rival, tolerance.value)
         if least <= SAME * models[own.title] and least <= enough:
-            return Diagnosis(f"fault: {text} (rms {least:.2g})", models)
+            return Diagnosis((faults[order[0]].cause(least),), models)
     nearest = next(each for each in candidates if each.title == ranking[0][0])
     # What is near on average may be far off where values are wrong.
     near, far = (
@@ -147,11 +127,11 @@ def explain(
         for model in (nearest, own)
     )
     explains = nearest is not own and near <= max(tolerance.value, SAME * far)
-    text = _model(case, cases, ranking, own.title, tolerance, measure, explains)
+    causes = _model(case, cases, ranking, own.title, tolerance, measure, explains)
     permitted = nearest.permitted and not any(
         tolerance.wrong(each._replace(expected=nearest.values(each.batch))).any() for each in cases
     )
-    return Diagnosis(text, models, permitted)
+    return Diagnosis(causes, models, permitted)
 
 
 def _distance(
@@ -186,73 +166,74 @@ def _model(
     tolerance: Tolerance,
     measure: Measure | None,
     explains: bool,
-) -> str:
+) -> tuple[Cause, ...]:
     """The closest model, which may explain every wrong value, the region that is wrong, or that no model is close."""
     wrong = np.concatenate(list(map(tolerance.wrong, cases)))
     (first, least), (_, rival) = ranking[:2]
     # Another model explains all.
     if explains and least <= max(tolerance.value, SAME * rival):
         flags = (
-            f", as with {FLAG} {str(spec.flag).lower()}"
+            (float(spec.flag),)
             for spec in DIFFUSE
             if spec.node == case.spec.node and spec.title != case.spec.title
-            if reference.diffuse_model(spec.model).title == first
+            if spec.flag is not None and reference.diffuse_model(spec.model).title == first
         )
-        return sentence(ranking) + next(flags, "")
+        return (Cause(Kind.MODEL, first, values=next(flags, ()), rms=least),)
     # Its own model is correct except in a region or for a range of an input, or not accurate enough.
-    if (place := region(cases, tolerance)) or not wrong.any():
-        return place or SINGLY_RIGHT
-    place, values, mostly = span(cases, tolerance), "", wrong.mean() < 0.5
+    if not wrong.any():
+        return (SINGLY_RIGHT,)
+    if place := smallest(cases, tolerance):
+        return (correct_except(cases, tolerance, place),)
+    place, mostly = span(cases, tolerance), wrong.mean() < 0.5
     if first != own and least <= NEAR * rival:
-        few = f"{correct_except(cases, tolerance, place)}; " if place and mostly else ""
-        return few + sentence(ranking)
+        part = (correct_except(cases, tolerance, place),) if place and mostly else ()
+        return *part, Cause(Kind.MODEL, first, rms=least)
+    cures: dict[str, float] = {}
     if not place and measure and np.count_nonzero(wrong) >= WORST and mostly:
         cures = _cures(case, cases, tolerance, measure)
-        weak = span(cases, tolerance, WEAK) if len(cures) == 1 else ""
-        place = weak if weak and cures[0].split()[0] in weak.split() else ""
-        values = " or ".join(cures[:CURES])
+        weak = span(cases, tolerance, WEAK) if len(cures) == 1 else None
+        place = weak if weak and weak.name in cures else None
+    few = dict(list(cures.items())[:CURES])
+    right = (Cause(Kind.CURE, "inputs", tuple(few), tuple(few.values())),) if cures else ()
     if place:
-        return correct_except(cases, tolerance, place)
+        return (correct_except(cases, tolerance, place),)
     errors = [tolerance.metric(each.measured, each.expected) for each in cases]
     if first == own and max(map(np.max, errors)) <= INEXACT * tolerance.value:
-        right = f"; the worst are right with {values}" if values else ""
-        return f"right model, {own} (rms {least:.2g}), but not accurate enough{right}"
-    if values:
-        return f"{correct_except(cases, tolerance)}; the worst are right with {values}"
-    part = f"{100.0 * wrong.mean():.3g} % of the pairs"
+        return Cause(Kind.ACCURACY, own, rms=least), *right
+    share = correct_except(cases, tolerance)
+    if right:
+        return share, *right
     index = int(np.argmax(list(map(np.max, errors))))
     row, batch = int(errors[index].argmax()), cases[index].batch
-    lit = "albedo" not in tolerance.unit and not isinstance(case.spec, EmissionSpec)
-    light = f" and a light cosine of {batch.wi[row, 2]:.2g}" * lit
-    place = f"at a view cosine of {batch.wo[row, 2]:.2g}{light}"
     if measure and case.backend.any_pairs:
         same = measure(replace(case, asked=(batch.where(np.full(4, row)),)))
         if not any(tolerance.wrong(each).any() for each in same):
-            return f"wrong for {part}; the worst are right beside pixels with the same inputs"
+            return replace(share, key="wrong"), Cause(Kind.CURE, "beside_equal_pixels")
+    point = point_of(batch, row)
     if isinstance(case.spec, PLACELESS):
-        point = point_of(batch, row)
-        numbers = (
-            f"{port.name} {' '.join(f'{each:.3g}' for each in point[port.name])}"
-            for port in case.spec.inputs
-            if port.name in point
-        )
-        place = f"with {', '.join(numbers)}"
+        point = {port.name: point[port.name] for port in case.spec.inputs if port.name in point}
+    elif "albedo" in tolerance.unit or isinstance(case.spec, EmissionSpec):
+        point = {"wo": point["wo"]}
+    else:
+        point = {name: point[name] for name in ("wo", "wi")}
     if first == own and mostly:
-        return f"correct except for {part}; worst {place}"
+        return (replace(share, point=point),)
     # What is off by as much as black would be resembles nothing.
     black = Candidate("", lambda batch: np.zeros((len(batch.wo), 1)))
-    near = least < NAMED * _distance(cases, black, Fault(""), tolerance)
-    closest = f", the closest is {first} (rms {least:.2g})" if near else ""
-    return f"no known model matches{closest}; wrong for {part}, worst {place}"
+    near = least < NAMED * _distance(cases, black, NO_FAULT, tolerance)
+    unlike = Cause(Kind.UNKNOWN, "no_model")
+    if near:
+        unlike = replace(unlike, names=(first,), rms=least)
+    return unlike, replace(share, key="wrong", point=point)
 
 
-def searched(text: str, cases: Sequence[Compared], tolerance: Tolerance) -> str:
-    """A diagnosis that names no cause, or the region or the range of an input that holds all wrong values."""
+def searched(cause: Cause, cases: Sequence[Compared], tolerance: Tolerance) -> Cause:
+    """A cause that is not known, or the region or the range of an input that holds all wrong values."""
     if place := place_of(cases, tolerance):
         return correct_except(cases, tolerance, place)
-    if text == SINGLY_RIGHT and tolerance.metric in (absolute, relative, scaled):
-        return f"wrong for {share(cases, tolerance)}"
-    return text
+    if cause == SINGLY_RIGHT and tolerance.metric in (absolute, relative, scaled):
+        return replace(correct_except(cases, tolerance), key="wrong")
+    return cause
 
 
 def _cures(
@@ -260,11 +241,11 @@ def _cures(
     cases: Sequence[Compared],
     tolerance: Tolerance,
     measure: Measure,
-) -> list[str]:
+) -> dict[str, float]:
     """Values of single inputs with which the worst values are right."""
     most = max(cases, key=lambda each: np.count_nonzero(tolerance.wrong(each)))
     worst = np.argsort(tolerance.metric(most.measured, most.expected))[-WORST:]
-    batch, found = most.batch.where(worst), []
+    batch, found = most.batch.where(worst), {}
     # An input that only darkens what should be dark cures nothing.
     light = np.maximum(np.abs(most.expected), np.abs(most.measured))[worst]
     least = SHOWN * min(float(light.mean()), 1.0)
@@ -277,17 +258,17 @@ def _cures(
             compared = list(measure(replace(case, asked=(changed,))))
             wrong = any(tolerance.wrong(each).any() for each in compared)
             if not wrong and min(float(np.abs(each.expected).mean()) for each in compared) >= least:
-                found.append(f"{port.name} {value:g}")
+                found[port.name] = value
                 break
     return found
 
 
-def not_finite(cases: Sequence[Compared]) -> str:
-    """Where values are not finite; "" if all are."""
+def not_finite(cases: Sequence[Compared]) -> tuple[Cause, ...]:
+    """Where values are not finite; none if all are."""
     zeros = list(map(unbounded, cases))
     if not any(EXACT.wrong(each).any() for each in zeros):
-        return ""
-    return f"NaN or infinity {place_of(zeros, EXACT)}".rstrip()
+        return ()
+    return (Cause(Kind.NOT_FINITE, region=place_of(zeros, EXACT)),)
 
 
 # What is compared with what, by quantity.
@@ -376,27 +357,23 @@ TRANSMITTANCE = Comparison("value", _transmittances, VALUES)
 
 # The irradiance that a wrong look-up finds, by what it does.
 LOOKUPS: dict[str, Callable[[Batch], Array]] = {
-    "opposite to the normal": lambda batch: sky(-batch.normal),
-    "toward the viewer": lambda batch: sky(batch.world(batch.wo)),
-    "away from the viewer": lambda batch: sky(-batch.world(batch.wo)),
-    "toward the light": lambda batch: sky(batch.world(batch.wi)),
-    "along the mirror direction": lambda batch: sky(batch.world(batch.wo * [-1.0, -1.0, 1.0])),
-    "along the surface's normal instead of the node's": lambda batch: sky(
-        np.broadcast_to(UP, batch.wo.shape)
-    ),
-    "along the surface's normal turned toward the viewer, instead of the node's": lambda batch: sky(
+    "opposite": lambda batch: sky(-batch.normal),
+    "viewer": lambda batch: sky(batch.world(batch.wo)),
+    "from_viewer": lambda batch: sky(-batch.world(batch.wo)),
+    "light": lambda batch: sky(batch.world(batch.wi)),
+    "mirror": lambda batch: sky(batch.world(batch.wo * [-1.0, -1.0, 1.0])),
+    "surface_normal": lambda batch: sky(np.broadcast_to(UP, batch.wo.shape)),
+    "facing_surface_normal": lambda batch: sky(
         np.where(batch.world(batch.wo)[:, 2:] < 0.0, -1.0, 1.0) * UP
     ),
-    "along a normal that is not turned toward the viewer": lambda batch: sky(
-        batch.inputs["normal"]
-    ),
-    "in the map of radiances": lambda batch: np.ones_like(batch.wo),
-    "nowhere: it is black": lambda batch: np.zeros_like(batch.wo),
+    "not_facing": lambda batch: sky(batch.inputs["normal"]),
+    "radiances": lambda batch: np.ones_like(batch.wo),
+    "black": lambda batch: np.zeros_like(batch.wo),
 }
 
 
 def diagnose_inputs(case: Case) -> Diagnosis:
-    return Diagnosis(f"inputs without effect: {', '.join(dead_inputs(case))}")
+    return defect("inputs_without_effect", *dead_inputs(case))
 
 
 def diagnose_finite(case: Case) -> Diagnosis:
@@ -404,16 +381,16 @@ def diagnose_finite(case: Case) -> Diagnosis:
 
 
 def diagnose_throughput(passed: Mapping[tuple[str, str], Sequence[Compared]]) -> Diagnosis:
-    """The outputs that are not 0, with their values and branches."""
-    branches: dict[str, list[str]] = {}
+    """The outputs that are not 0, with their values, regions and branches."""
+    found: dict[Cause, list[str]] = {}
     for (output, branch), compared in passed.items():
         values = np.concatenate([each.measured[EXACT.wrong(each)] for each in compared])
         if len(values):
-            number = f"{values.flat[0]:.3g}" if np.ptp(values) == 0.0 else "not 0"
+            number = (float(values.flat[0]),) if np.ptp(values) == 0.0 else ()
             place = smallest(compared, EXACT)
-            branches.setdefault(f"{output} {number} {place}".rstrip(), []).append(branch)
-    texts = (f"{text} (branches: {', '.join(each)})" for text, each in branches.items())
-    return Diagnosis("; ".join(texts))
+            cause = Cause(Kind.DEFECT, "not_zero", (output,), number, region=place)
+            found.setdefault(cause, []).append(branch)
+    return Diagnosis(tuple(replace(each, names=(*each.names, *found[each])) for each in found))
 
 
 def diagnose_frame(case: Case) -> Diagnosis:
@@ -425,37 +402,44 @@ def diagnose_frame(case: Case) -> Diagnosis:
         expected = case.expected if branch == "direct" else case.expected_albedo
         dropped = compared._replace(expected=expected(normal_ignored(compared.batch)))
         if not tolerance.wrong(dropped).any():
-            text = "the node's normal is ignored; the surface's is used instead"
+            causes = defect("normal_of_surface").causes
         else:
             # Where it is wrong, or which axis has no effect.
-            text = not_finite([compared]) or region([compared], tolerance)
-            text = text or without_effect(case, "normal") or without_effect(case, "tangent")
-            text = text or without_effect(case, "curve_direction") or UNKNOWN
-        return Diagnosis(f"branch {branch}: {text}")
-    return Diagnosis(UNKNOWN)
+            causes = not_finite([compared]) or _region([compared], tolerance)
+            axes = ("normal", "tangent", "curve_direction")
+            dead = (found for name in axes for found in without_effect(case, name))
+            causes = causes or tuple(dead)[:1] or (UNKNOWN,)
+        return Diagnosis((replace(causes[0], branch=branch),))
+    return Diagnosis((UNKNOWN,))
+
+
+def _region(cases: Sequence[Compared], tolerance: Tolerance) -> tuple[Cause, ...]:
+    """The region that holds all wrong pairs, with its share; none without one."""
+    place = smallest(cases, tolerance)
+    return (correct_except(cases, tolerance, place),) if place else ()
 
 
 def ignored(name: str) -> Callable[[Case], Diagnosis]:
     """Whether an input is dropped, or else the explanation of the values."""
-    return lambda case: Diagnosis(without_effect(case, name) or VALUE.diagnose(case).text)
+    return lambda case: Diagnosis(without_effect(case, name) or VALUE.diagnose(case).causes)
 
 
-def without_effect(case: Case, name: str) -> str:
-    """Words on an input that changes nothing; "" if it does, or there is none."""
+def without_effect(case: Case, name: str) -> tuple[Cause, ...]:
+    """That an input changes nothing; none if it does, or there is none."""
     dead = name in case.changes and name in dead_inputs(case)
-    return f"{name} is ignored" if dead else ""
+    return defect("input_ignored", name).causes if dead else ()
 
 
 def diagnose_surroundings(compared: Compared, tolerance: Tolerance) -> Diagnosis:
     """The direction at which the environment is looked up."""
     batch, measured, expected = compared
     irradiances = {
-        **{words: found(batch) for words, found in LOOKUPS.items()},
+        **{key: found(batch) for key, found in LOOKUPS.items()},
         # With every normal turned around the sky is 1 minus itself.
-        "on the other side of the surface": 1.0 - expected,
-        "on the viewer's side alone": sky(batch.normal),
+        "other_side": 1.0 - expected,
+        "viewer_side": sky(batch.normal),
     }
-    for words, irradiance in irradiances.items():
+    for key, irradiance in irradiances.items():
         if np.sqrt(np.mean((measured - irradiance) ** 2)) <= tolerance.value:
-            return Diagnosis(f"the environment is looked up {words}")
-    return Diagnosis(not_finite([compared]) or region([compared], tolerance) or UNKNOWN)
+            return defect(f"lookup_{key}")
+    return Diagnosis(not_finite([compared]) or _region([compared], tolerance) or (UNKNOWN,))

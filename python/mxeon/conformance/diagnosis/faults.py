@@ -9,6 +9,7 @@ from operator import itemgetter
 
 import numpy as np
 
+from mxeon.conformance.results import Cause, Kind
 from mxeon.conformance.samples import Array, Batch
 
 CHANNELS = ("red", "green", "blue")
@@ -19,9 +20,18 @@ CONSTANTS = (0.1, 0.25, 0.3, 0.5, 0.75, 1.0)  # roughness that may be wired in
 class Fault:
     """A fault, as it changes what a model gives: its batch on the way in, its values on the way out."""
 
-    text: str
+    key: str  # of a row of `mxeon.conformance.words.FAULTS`
     batch: Callable[[Batch], Batch] = lambda batch: batch
     values: Callable[[Batch, Array], Array] = lambda batch, values: values
+    names: tuple[str, ...] = ()  # that it is about, as the numbers
+    numbers: tuple[float, ...] = ()
+
+    def cause(self, rms: float) -> Cause:
+        """This fault as the cause of values, at a distance from those that it gives."""
+        return Cause(Kind.FAULT, self.key, self.names, self.numbers, rms=rms)
+
+
+NO_FAULT = Fault("")
 
 
 def _input(name: str, change: Callable[[Array], Array]) -> Callable[[Batch], Batch]:
@@ -52,60 +62,54 @@ def _column(name: str) -> Callable[[Batch], Array]:
 
 def _of_colors() -> Iterator[Fault]:
     for order in permutations(range(3)):
-        words = ", ".join(CHANNELS[channel] for channel in order)
         yield Fault(
-            f"the color channels are exchanged: they arrive as {words}",
+            "channels_exchanged",
             _input("color", itemgetter((..., list(order)))),
+            names=tuple(CHANNELS[channel] for channel in order),
         )
     for channel, name in enumerate(CHANNELS):
-        yield Fault(
-            f"every channel takes the {name} of the color",
-            _input("color", itemgetter((..., [channel] * 3))),
-        )
+        take = itemgetter((..., [channel] * 3))
+        yield Fault("one_channel", _input("color", take), names=(name,))
     yield Fault(
-        "every channel takes the mean of the color",
+        "mean_color",
         _input("color", lambda color: color.mean(axis=-1, keepdims=True) * np.ones(3)),
     )
-    yield Fault(
-        "the color is ignored; 0.18 is used instead",
-        _input("color", lambda color: np.full_like(color, 0.18)),
-    )
-    yield Fault("the color is clamped to 1", _input("color", lambda color: np.minimum(color, 1.0)))
-    yield Fault("the color is squared", _input("color", np.square))
-    yield Fault("the color is replaced by its square root", _input("color", np.sqrt))
+    gray = _input("color", lambda color: np.full_like(color, 0.18))
+    yield Fault("color_ignored", gray, numbers=(0.18,))
+    yield Fault("color_clamped", _input("color", lambda color: np.minimum(color, 1.0)))
+    yield Fault("color_squared", _input("color", np.square))
+    yield Fault("color_square_root", _input("color", np.sqrt))
 
 
 def _of_roughness() -> Iterator[Fault]:
-    yield Fault("the roughness is squared", _input("roughness", np.square))
-    yield Fault("the roughness is replaced by its square root", _input("roughness", np.sqrt))
+    yield Fault("roughness_squared", _input("roughness", np.square))
+    yield Fault("roughness_square_root", _input("roughness", np.sqrt))
     yield Fault(
-        "tangent and bitangent are exchanged",
+        "tangents_exchanged",
         _input(
             "roughness", lambda roughness: roughness[:, ::-1] if roughness.ndim > 1 else roughness
         ),
     )
-    yield Fault("the roughness is halved", _input("roughness", lambda roughness: 0.5 * roughness))
+    yield Fault("roughness_halved", _input("roughness", lambda roughness: 0.5 * roughness))
     for constant in CONSTANTS:
         change = partial(np.full_like, fill_value=constant)
-        yield Fault(
-            f"the roughness is ignored; {constant:g} is used instead", _input("roughness", change)
-        )
+        yield Fault("roughness_ignored", _input("roughness", change), numbers=(constant,))
 
 
 def _of_weight() -> Iterator[Fault]:
     occlusion = _input("occlusion", np.ones_like)
     ways: tuple[tuple[str, Callable[[Array], Array]], ...] = (
-        ("", np.ones_like),
-        (" but for 0 and below", lambda weight: np.where(weight > 0.0, 1.0, 0.0)),
+        ("weight_ignored", np.ones_like),
+        ("weight_ignored_above_0", lambda weight: np.where(weight > 0.0, 1.0, 0.0)),
     )
-    for but, change in ways:
+    for key, change in ways:
         weight = _input("weight", change)
-        yield Fault(f"the weight is ignored{but}", weight)
+        yield Fault(key, weight)
         yield Fault(
-            f"the occlusion is ignored, and the weight{but}",
+            f"occlusion_and_{key}",
             lambda batch, weight=weight: weight(occlusion(batch)),  # type: ignore[misc]
         )
-    yield Fault("the weight is applied twice", values=_scaled(_column("weight")))
+    yield Fault("weight_twice", values=_scaled(_column("weight")))
 
 
 COLOR_FAULTS = tuple(_of_colors())
@@ -113,20 +117,20 @@ INPUT_FAULTS = (*_of_weight(), *COLOR_FAULTS, *_of_roughness())
 
 DIRECT_FAULTS = (
     *INPUT_FAULTS,
-    Fault("the occlusion is ignored", _input("occlusion", np.ones_like)),
-    Fault("the occlusion is applied once too often", values=_scaled(_column("occlusion"))),
-    Fault("the cosine of the light is missing", values=_scaled(lambda batch: 1.0 / batch.wi[:, 2])),
-    Fault("the cosine of the light is applied twice", values=_scaled(lambda batch: batch.wi[:, 2])),
+    Fault("occlusion_ignored", _input("occlusion", np.ones_like)),
+    Fault("occlusion_twice", values=_scaled(_column("occlusion"))),
+    Fault("cosine_missing", values=_scaled(lambda batch: 1.0 / batch.wi[:, 2])),
+    Fault("cosine_twice", values=_scaled(lambda batch: batch.wi[:, 2])),
     Fault(
-        "the cosine is the viewer's instead of the light's: the directions are swapped",
+        "directions_swapped",
         values=_scaled(lambda batch: batch.wo[:, 2] / batch.wi[:, 2]),
     ),
     Fault(
-        "the light is mirrored about the normal: s has the wrong sign",
+        "light_mirrored",
         lambda batch: replace(batch, wi=batch.wi * [-1.0, -1.0, 1.0]),
     ),
     Fault(
-        "light from below the horizon is reflected as if it came from above",
+        "light_from_below",
         lambda batch: replace(batch, wi=np.where([False, False, True], abs(batch.wi), batch.wi)),
     ),
 )
@@ -134,11 +138,11 @@ DIRECT_FAULTS = (
 ENVIRONMENT_FAULTS = (
     *INPUT_FAULTS,
     Fault(
-        "the occlusion is applied here and again by the caller",
+        "occlusion_by_caller",
         values=_scaled(_column("occlusion")),
     ),
     Fault(
-        "the albedo is the one at normal incidence",
+        "normal_incidence",
         lambda batch: replace(batch, wo=np.broadcast_to([0.0, 0.0, 1.0], batch.wo.shape)),
     ),
 )
@@ -147,7 +151,7 @@ ENVIRONMENT_FAULTS = (
 def exchanges(names: Iterable[str]) -> Iterator[Fault]:
     """Two inputs in each other's place, or all those of two nodes, whose names are before a slash."""
     for pair in combinations(dict.fromkeys(name.split("/")[0] for name in names), 2):
-        yield Fault(f"{pair[0]} and {pair[1]} are exchanged", partial(_exchanged, *pair))
+        yield Fault("inputs_exchanged", partial(_exchanged, *pair), names=pair)
 
 
 def _exchanged(one: str, other: str, batch: Batch) -> Batch:
@@ -162,12 +166,10 @@ def _exchanged(one: str, other: str, batch: Batch) -> Batch:
 
 def scaled_by(factor: float) -> Fault:
     """The fault of values that carry a factor."""
-    text = f"every value is {factor:.6g} times the right one"
-    if np.isclose(factor, np.pi, rtol=1e-5):
-        text = "the factor 1/pi is missing"
-    if np.isclose(factor, 1.0 / np.pi, rtol=1e-5):
-        text = "the factor 1/pi is applied twice"
-    return Fault(text, values=lambda batch, values: factor * values)
+    for key, known in (("pi_missing", np.pi), ("pi_twice", 1.0 / np.pi)):
+        if np.isclose(factor, known, rtol=1e-5):
+            return Fault(key, values=lambda batch, values: factor * values)
+    return Fault("scaled", values=lambda batch, values: factor * values, numbers=(factor,))
 
 
 def normal_ignored(batch: Batch) -> Batch:

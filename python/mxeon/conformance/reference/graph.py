@@ -446,15 +446,14 @@ class Graphs:
         return np.array(np.broadcast_to(found, batch.wo.shape))
 
     @property
-    def difference(self) -> tuple[str, bool]:
-        """Where the graph differs, and whether it is that of another release, or of another version of the node."""
+    def difference(self) -> dict[str, tuple[str, ...]]:
+        """Which graph it is, if that is known, and where it differs, by the keys of `conformance.words.DEFECTS`."""
         version, other = (
             each.getNode(SHADER).getNodeDef().getVersionString() for each in (self.own, self.right)
         )
-        parts = differences(self._said, self._says(self.right))
-        text = f"differs from the graph that is installed: {parts}"
+        found: dict[str, tuple[str, ...]] = {}
         if self._known:
-            text = f"the graph of MaterialX {' and '.join(self._known)}; it {text}"
+            found["graph_of_release"] = self._known
         elif version != other:
-            text = f"the graph of version {version} of the node; it {text}, of version {other}"
-        return text, bool(self._known) or version != other
+            found["graph_of_version"] = version, other
+        return found | {"graph_differs": differences(self._said, self._says(self.right))}

@@ -364,8 +364,9 @@ def node_lobe(
 def _outside(node: mx.Node, words: str) -> OutsideModel:
     """The error for a value outside of a node's model: the note on its input, where the document has the value."""
     document = f"{label(node.getDocument())}: "
-    for text in filter(None, map(out_of_range, node.getInputs())):
-        return OutsideModel(text.removeprefix(document))
+    for port in node.getInputs():
+        if text := out_of_range(port):
+            return OutsideModel(text.removeprefix(document), port.getNamePath())
     return OutsideModel(f"reference: node {node.getNamePath()!r}: {words}")
 
 

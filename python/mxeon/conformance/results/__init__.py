@@ -1,14 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The results of a conformance run as plain data: checks, pictures, albedos, and the verdict on all."""
+"""The results of a conformance run as plain data: checks, pictures, albedos, and the verdict on all.
+
+`mxeon.conformance.words` makes sentences of them; nothing reads a sentence.
+"""
 
 from __future__ import annotations
 
-import math
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import KW_ONLY, dataclass, field
+from enum import Enum
 from functools import cached_property
 from pathlib import Path
+from types import ModuleType
 from typing import Final, Literal, TypeAlias, TypedDict, get_args
 
 import numpy as np
@@ -33,16 +37,6 @@ UNJUDGED = "nodes without a model"  # beside the files of a library
 SOURCE = "source"  # in the place of a host, for what none has to run
 SHADER_FUNCTIONS = "shader twins"  # in the place of a node, for the functions of a library
 COUNTS = ("inputs", "values", "faults", "differences", "nodes")  # units of checks that count
-WRONG_INSIDE = (
-    "already fails inside its inputs' usual ranges"  # a reason that follows from a failure
-)
-NAMED = 3  # names in a list, before the number of the others
-LIGHTS = {
-    "side": "light from the side",
-    "front": "light from the front",
-    "back": "light from behind",
-    "furnace": "a white environment",
-}
 RESULTS, JUNIT, PAGE = "results.json", "junit.xml", "report.html"
 REPORT = (RESULTS, JUNIT, PAGE, "pictures/*", "upstream/*")  # patterns of the files of a report
 DIRECT = ("value", "lobe")  # the checks of a node in direct light, of which it has one
@@ -62,6 +56,118 @@ class Control:
     caught: bool
 
 
+class Kind(Enum):
+    """What a cause is."""
+
+    NONE = ""
+    MODEL = "model"  # a known model or defect, the nearest to the values
+    FAULT = "fault"  # a fault between the inputs and the right model, which gives the values
+    ACCURACY = "accuracy"  # the right model, not accurate enough
+    REGION = "region"  # where values are wrong
+    NOT_FINITE = "not finite"  # where values are not finite
+    CURE = "cure"  # inputs and values with which the worst values are right
+    DEFECT = "defect"  # another defect that is known
+    UNKNOWN = "unknown"
+    PICTURE = "picture"  # how a picture differs from the reference
+    TEXT = "text"  # the words of a compiler, a renderer or a document
+    FOLLOWS = "follows"  # from another failure, which has a result of its own
+    INPUT = "input"  # a value of the document outside its model
+    CONTROL = "control"  # the negative control passed
+
+
+@dataclass(frozen=True)
+class Region:
+    """A set of pairs and inputs.
+
+    - `name`: Of a row of `mxeon.conformance.words.REGIONS`, or of an input.
+    - `part`: Of the input whose range it is, a row of `words.PARTS`; "" for a row of `REGIONS`.
+    - `low`, `high`: Ends of the range; None where it has none.
+    - `channels`: Of a color, where the others are right; () for all.
+    """
+
+    name: str
+    part: str = ""
+    low: float | None = None
+    high: float | None = None
+    channels: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Cause:
+    """One thing that is known of wrong values.
+
+    - `key`: Title of a model, or key of a row of the tables in `mxeon.conformance.words`.
+    - `names`, `values`: The inputs, functions or files that it is about, and numbers.
+    - `branch`: Of the light, where it is wrong in one alone.
+    - `region`: Where it holds; None for everywhere.
+    - `wrong`, `of`: Number of wrong pairs, and of all.
+    - `rms`: Root-mean-square distance of the values from those that it gives.
+    - `point`: Directions and inputs at the worst point, by name.
+    - `text`: Words of another program.
+    """
+
+    kind: Kind
+    key: str = ""
+    names: tuple[str, ...] = ()
+    values: tuple[float, ...] = ()
+    branch: str = ""
+    region: Region | None = None
+    wrong: int | None = None
+    of: int | None = None
+    rms: float | None = None
+    point: dict[str, list[float]] = field(default_factory=dict, hash=False)
+    text: str = ""
+
+    @property
+    def identity(self) -> tuple[object, ...]:
+        """What two causes that differ in numbers alone have in common."""
+        region = self.region and (self.region.name, self.region.part, self.region.channels)
+        return self.kind, self.key, self.names, self.branch, region
+
+
+NO_CAUSE = Cause(Kind.NONE)
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """The explanation of a failure.
+
+    - `causes`: What is known, the cause that explains most first.
+    - `distances`: Root-mean-square distance to every known model and defect, by title.
+    - `permitted`: Whether a function that the specification leaves open gives all values.
+    """
+
+    causes: tuple[Cause, ...] = ()
+    distances: dict[str, float] = field(default_factory=dict, repr=False)
+    permitted: bool = False
+
+    @property
+    def first(self) -> Cause:
+        return self.causes[0] if self.causes else NO_CAUSE
+
+    @property
+    def kind(self) -> Kind:
+        return self.first.kind
+
+    @property
+    def region(self) -> Region | None:
+        """The region of the first cause."""
+        return self.first.region
+
+    @property
+    def names_a_cause(self) -> bool:
+        """Whether it names a model or a fault, or that no known model is near."""
+        return self.kind in (Kind.MODEL, Kind.FAULT) or self.first.key == "no_model"
+
+
+NO_DIAGNOSIS = Diagnosis()
+
+
+def quoted(text: str) -> Diagnosis:
+    """The diagnosis that quotes another program."""
+    return Diagnosis((Cause(Kind.TEXT, text=text),))
+
+
 class Claims(TypedDict, total=False):
     """What a result says of a renderer's own node beside its verdict; see Result."""
 
@@ -79,8 +185,7 @@ class Result:
     - `error`, `tolerance`, `unit`: Measured and allowed; a check passes at error <= tolerance.
     - `derivation`: That of the tolerance.
     - `worst`: The inputs and values at the worst point, by name.
-    - `diagnosis`: The best-matching model with its distance, or another cause of a failure.
-    - `distances`: Root-mean-square distance to each known model and defect, where diagnosed.
+    - `diagnosis`: What explains a failure.
     - `control`: None only where the check did not run.
     - `reason`: Why it did not run.
     - `claimed`, `model`: Titles of the model that a renderer's own node claims, and of its published
@@ -104,8 +209,7 @@ class Result:
     tolerance: float | None = None
     derivation: str = field(default="", repr=False)
     worst: dict[str, list[float]] = field(default_factory=dict, repr=False)
-    diagnosis: str = ""
-    distances: dict[str, float] = field(default_factory=dict, repr=False)
+    diagnosis: Diagnosis = NO_DIAGNOSIS
     control: Control | None = field(default=None, repr=False)
     reason: str = ""
     claimed: str = field(default="", repr=False)
@@ -127,32 +231,23 @@ class Result:
 
     @property
     def location(self) -> str:
-        """Host and library, in words."""
+        """Host and library."""
         return f"{self.host} with {self.library}"
 
     @property
-    def excess(self) -> str:
-        """The error that is too large, or the control that passed; "" for neither."""
-        control = self.control
-        if self.error is not None and not self.error <= (self.tolerance or 0.0):
-            if self.unit in COUNTS and math.isfinite(self.error):
-                return counted(int(self.error), self.unit.removesuffix("s"))
-            if self.unit.startswith("times "):
-                return f"the error is {in_words(self.error)} {self.unit}"
-            return f"{self.error:.3g} > {self.tolerance:.3g} {self.unit}".rstrip()
-        if control and not control.caught:
-            return f"the negative control is not caught: {control.variant}, {control.error:.3g}"
-        return ""
-
-    @property
     def explanation(self) -> str:
-        """The reason for a failure: the excess, the diagnosis, and where the defect is described."""
-        return "; ".join(filter(None, (self.excess, self.diagnosis, self.references)))
+        """The reason for a failure in words: its size, the diagnosis, and where the defect is described."""
+        return str(_words().explanation(self))
 
     @property
-    def references(self) -> str:
-        """Where the defects that it shows are described, in words; "" for none."""
-        return "; ".join(f"see docs/upstream/{page}.md" for page in self.pages)
+    def follows(self) -> bool:
+        """Whether a failure that has a result of its own kept it from running."""
+        return self.diagnosis.kind is Kind.FOLLOWS
+
+    @property
+    def within(self) -> bool:
+        """Whether there is an error, which is at most the tolerance."""
+        return self.error is not None and self.error <= (self.tolerance or 0.0)
 
 
 def assert_verdict(word: object) -> Verdict:
@@ -161,25 +256,6 @@ def assert_verdict(word: object) -> Verdict:
         if word == verdict:
             return verdict
     raise InputError(f"verdict must be one of {', '.join(VERDICTS)}; got {word!r}")
-
-
-def of_white(radiance: float) -> str:
-    """A difference as a share of the radiance of a white, matte surface that faces the light.
-
-    >>> of_white(0.2035), of_white(1e-7)
-    ('up to 20 % of white', 'less than 0.1 % of white')
-    """
-    share = 100.0 * radiance
-    return f"up to {in_words(share)} % of white" if share >= 0.1 else "less than 0.1 % of white"
-
-
-def in_words(number: float) -> str:
-    """A number of two digits, without a power of ten.
-
-    >>> in_words(1.234), in_words(1234.5)
-    ('1.2', '1,200')
-    """
-    return f"{float(f'{number:.2g}'):,.10g}"
 
 
 @dataclass(frozen=True)
@@ -237,29 +313,10 @@ class AlbedoCurve:
     expected: NDArray[np.float64] = field(repr=False)
 
 
-def listed(names: Sequence[str]) -> str:
-    """The first names of a list, and the number of the others.
-
-    >>> listed(["a", "b", "c", "d"])
-    'a, b, c and 1 more'
-    """
-    more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
-    return ", ".join(names[:NAMED]) + more
-
-
 def report_files(folder: AnyPath) -> Iterator[Path]:
     """The files of the report in a folder, and of its journal."""
     for pattern in (*REPORT, "journal/*"):
         yield from Path(folder).glob(pattern)
-
-
-def counted(count: int, noun: str) -> str:
-    """A number of things.
-
-    >>> counted(1, "check"), counted(2, "check")
-    ('1 check', '2 checks')
-    """
-    return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
 @dataclass(frozen=True)
@@ -268,8 +325,7 @@ class Scope:
 
     - `version`, `software`: That of mxeon, and those of what takes part: Python, NumPy, MaterialX, ...
     - `contents`: Titles of the nodes of each document that the user gave, by its path.
-    - `unreached`: For each of these, by title of a node, the regions that its inputs are not in, as
-      diagnoses name them.
+    - `unreached`: For each of these, by title of a node, the regions that its inputs are not in.
     - `refused`: The faults of each document that could not be judged, by its path; if other libraries
       can read it, the key names the library behind it: "clay.mtlx with stock".
     - `libraries`: By folder that was judged as a library: its files, under "folder", and those of
@@ -283,7 +339,7 @@ class Scope:
     _: KW_ONLY
     documents: tuple[Path, ...] = ()
     contents: dict[str, tuple[str, ...]] = field(default_factory=dict)
-    unreached: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
+    unreached: dict[str, dict[str, tuple[Region, ...]]] = field(default_factory=dict)
     refused: dict[str, tuple[str, ...]] = field(default_factory=dict)
     libraries: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
     compared: tuple[str, ...] = ()
@@ -325,12 +381,11 @@ class Run(Scope):
         """Raise `mxeon.errors.CheckError` unless the run passed, with the verdict and its causes."""
         if self.passed:
             return
-        judged = [each for each in self.results if each.library not in self.compared]
         causes = [
             f"{each.verdict}: {each.location}, {each.check}, {each.subject}: "
             + (each.reason or each.explanation)
             for verdict in (FAILED, NOT_RUN)
-            for each in judged
+            for each in self.judged
             if each.verdict == verdict
         ]
         raise CheckError(self.sentence, *self.errors, *causes, status=self.exit_status)
@@ -341,67 +396,27 @@ class Run(Scope):
 
         Libraries that are judged for comparison do not count.
         """
-        return self._outcome[0]
+        if self.counts[FAILED]:
+            return FAILED
+        # Without what is not there nothing has passed.
+        missing = self.counts[NOT_RUN] or not self.judged or self.missing or self.refused
+        return NOT_RUN if missing else PASSED
 
-    @property
+    @cached_property
     def counts(self) -> dict[Verdict, int]:
         """The number of checks with each verdict, without libraries judged for comparison."""
-        return self._outcome[1]
+        tally = Counter(each.verdict for each in self.judged)
+        return {verdict: tally[verdict] for verdict in VERDICTS}
 
     @property
     def sentence(self) -> str:
         """The verdict in words."""
-        return self._outcome[2]
+        return str(_words().sentence(self))
 
-    @cached_property
-    def _outcome(self) -> tuple[Verdict, dict[Verdict, int], str]:
-        results = [each for each in self.results if each.library not in self.compared]
-        tally = Counter(result.verdict for result in results)
-        counts = {verdict: tally[verdict] for verdict in VERDICTS}
-        total = counted(len(results), "check")
-        hosts = " and ".join(dict.fromkeys(result.location for result in results))
-        differ = ""
-        if counts[DIFFERS]:
-            verb = "differs" if counts[DIFFERS] == 1 else "differ"
-            differ = f"; {counts[DIFFERS]} {verb} where the specification leaves it open"
-        verdict: Verdict = PASSED
-        # Those that a failure keeps from running are part of it.
-        idle = sum(
-            each.verdict == NOT_RUN and not each.reason.endswith(WRONG_INSIDE) for each in results
-        )
-        missed = f"; {idle} did not run" if idle else ""
-        if counts[FAILED]:
-            failed = Counter(result.location for result in results if result.verdict == FAILED)
-            places = [f"{count} on {location}" for location, count in failed.items()]
-            where = f": {', '.join(places)}" if len(failed) > 1 else f" on {next(iter(failed))}"
-            verdict = FAILED
-            sentence = f"{counts[FAILED]} of {total} failed{where}{missed}{differ}."
-        elif not counts[PASSED] + counts[DIFFERS]:
-            verdict, sentence = NOT_RUN, "No check ran."
-        elif counts[NOT_RUN]:
-            verdict = NOT_RUN
-            sentence = f"Nothing failed, but {counts[NOT_RUN]} of {total} did not run{differ}."
-        elif differ:
-            sentence = f"{counts[PASSED]} of {total} passed on {hosts}{differ}."
-        else:
-            passed = "The check" if len(results) == 1 else f"All {len(results)} checks"
-            sentence = f"{passed} passed on {hosts}."
-        if elsewhere := sum(map(self.is_elsewhere, results)):
-            sentence += f" {elsewhere} of them for inputs that no document uses."
-        if self.missing:
-            verb = "is" if len(self.missing) == 1 else "are"
-            items = counted(len(self.missing), "item")
-            sentence += f" The run is not finished: {items} {verb} missing."
-        if self.refused:
-            sentence = f"Refused and not judged: {listed(tuple(self.refused))}. {sentence}"
-        if (self.missing or self.refused) and verdict != FAILED:
-            verdict = NOT_RUN  # without what is not there nothing has passed
-        for library in self.compared:
-            other = [each.verdict for each in self.results if each.library == library]
-            ran = len(other) - other.count(NOT_RUN)
-            words = f" For comparison, {other.count(FAILED)} of {ran} failed with {library}."
-            sentence += words * bool(ran)
-        return verdict, counts, sentence
+    @property
+    def judged(self) -> tuple[Result, ...]:
+        """Results of all libraries that are not judged for comparison."""
+        return tuple(each for each in self.results if each.library not in self.compared)
 
     @cached_property
     def differences(self) -> dict[tuple[str, str, str], float]:
@@ -422,37 +437,24 @@ class Run(Scope):
 
     def is_elsewhere(self, result: Result, *documents: str) -> bool:
         """Whether a check fails for inputs alone that no document has that shows its node."""
-        region = result.diagnosis.split(";")[0]
+        region = result.diagnosis.region
         shown = [
             self.unreached.get(each, {}).get(result.subject, ())
             for each in documents or self.contents
             if result.subject in self.contents[each]
         ]
         return (
-            result.verdict == FAILED
-            and bool(shown)
-            and all(any(region.endswith(name) for name in names) for names in shown)
+            result.verdict == FAILED and bool(shown) and all(region in regions for regions in shown)
         )
 
     @property
     def summary(self) -> str:
         """The verdict in words, the MaterialX that was judged, with its folder unless it is installed, and the time."""
-        version, folder = (self.software.get(name) for name in ("MaterialX", "MaterialX folder"))
-        judged = f" MaterialX {version}{f', from {folder}' if folder else ''}." if version else ""
-        time = "" if self.seconds is None else f" Finished in {self.seconds:.1f} s."
-        return self.sentence + judged + time
+        return str(_words().summary(self))
 
-    @property
-    def origins(self) -> tuple[str, ...]:
-        """For each folder judged as a library: its files, MaterialX's, and the lobes that have no model."""
-        return tuple(
-            f"library {folder}: {counted(len(files['folder']), 'file')} from the folder, "
-            + (
-                f"{len(files['MaterialX']) or 'none'} from"
-                if "MaterialX" in files
-                else "loaded before"
-            )
-            + f" MaterialX {self.software['MaterialX']}"
-            + (f"; no model judges its {listed(files[UNJUDGED])}" if UNJUDGED in files else "")
-            for folder, files in self.libraries.items()
-        )
+
+def _words() -> ModuleType:
+    """The module that makes sentences of results, which imports this one."""
+    from mxeon.conformance import words
+
+    return words

@@ -21,9 +21,10 @@ from typing import Any, Self, cast
 import numpy as np
 from filelock import FileLock, Timeout
 
-from mxeon.conformance.results import JUNIT, PAGE, RESULTS, Picture, counted, listed
+from mxeon.conformance.results import JUNIT, PAGE, RESULTS, Picture
 from mxeon.conformance.results.records import StoredImage, images_of, make_converter
 from mxeon.conformance.run.plan import Findings, Plan
+from mxeon.conformance.words import counted, listed
 from mxeon.errors import InputError
 from mxeon.io.files import BINARY, below, regular, replacing, sync
 from mxeon.io.records import ERRORS

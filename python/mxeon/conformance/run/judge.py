@@ -26,9 +26,13 @@ from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.results import (
     DIRECT,
     FAILED,
+    NO_DIAGNOSIS,
     NOT_RUN,
     SOURCE,
     AlbedoCurve,
+    Cause,
+    Diagnosis,
+    Kind,
     Picture,
     Result,
     Verdict,
@@ -72,10 +76,12 @@ CLAIMS = {check.key: check.claim for check in CHECKS} | {
 }
 
 
-def one_result(task: Task, verdict: Verdict, **words: str) -> Findings:
+def one_result(
+    task: Task, verdict: Verdict, reason: str = "", diagnosis: Diagnosis = NO_DIAGNOSIS
+) -> Findings:
     """Findings of a task that measured nothing, by the reason or the diagnosis."""
     place = (task.check, CLAIMS[task.check], task.subject, task.host, task.library)
-    return Findings((Result(*place, verdict, **words),))  # type: ignore[arg-type]
+    return Findings((Result(*place, verdict, reason=reason, diagnosis=diagnosis),))
 
 
 class Judge:
@@ -104,8 +110,8 @@ class Judge:
         except InterfaceError as reason:
             return one_result(task, NOT_RUN, reason=str(reason))
         except DocumentError as reason:  # a document of ours
-            meaning = f"the library refuses a document of mxeon's own: {reason}"
-            return one_result(task, FAILED, diagnosis=meaning)
+            refused = Cause(Kind.DEFECT, "own_document_refused", text=str(reason))
+            return one_result(task, FAILED, diagnosis=Diagnosis((refused,)))
 
     def close(self) -> None:
         for host in self._hosts.values():

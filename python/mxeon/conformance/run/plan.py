@@ -33,6 +33,7 @@ from mxeon.conformance.results import (
     UNJUDGED,
     AlbedoCurve,
     Picture,
+    Region,
     Result,
     Scope,
 )
@@ -71,7 +72,7 @@ class Survey(NamedTuple):
     """What the documents of a run contain; see `mxeon.conformance.results.Scope`."""
 
     contents: dict[str, tuple[str, ...]]
-    unreached: dict[str, dict[str, tuple[str, ...]]]
+    unreached: dict[str, dict[str, tuple[Region, ...]]]
     refused: dict[str, tuple[str, ...]]
 
 
@@ -85,7 +86,7 @@ def survey_documents(
     Raise MxeonError if a library cannot be used.
     """
     sources = [(file, library) for file in dict.fromkeys(files) for library in libraries]
-    titles: dict[str, dict[str, set[str]]] = {file: {} for file in files}
+    titles: dict[str, dict[str, set[Region]]] = {file: {} for file in files}
     faults: dict[Source, tuple[str, ...]] = {}
     with closing(_answers(sources, policy, workers, timeout)) as answers:
         for (file, library), answer in zip(sources, answers, strict=True):
@@ -112,7 +113,7 @@ def survey_documents(
     return Survey(
         {file: tuple(each) for file, each in titles.items()},
         {
-            file: {title: tuple(sorted(each)) for title, each in found.items() if each}
+            file: {title: tuple(sorted(each, key=repr)) for title, each in found.items() if each}
             for file, found in titles.items()
         },
         refused,

@@ -25,6 +25,10 @@ class DocumentWarning(UserWarning):
         super().__init__(one_line(message))
 
 
+class RangeWarning(DocumentWarning):
+    """A value for which the model of its node is not defined."""
+
+
 class CodeWarning(UserWarning):
     """Shader code in a document."""
 
@@ -43,8 +47,12 @@ def numbers(element: mx.ValueElement) -> tuple[float, ...]:
 def warn_of_elements(document: mx.Document, elements: Iterable[mx.Element]) -> None:
     """Warn about values that MaterialX misreads or that are outside a model's range, and about code."""
     values = [each for each in elements if each.isA(mx.ValueElement) and each.getValueString()]
-    for note in (_misread, out_of_range, _unknown_space):
-        _warn(DocumentWarning, [text for text in map(note, values) if text])
+    for kind, note in (
+        (DocumentWarning, _misread),
+        (RangeWarning, out_of_range),
+        (DocumentWarning, _unknown_space),
+    ):
+        _warn(kind, [text for text in map(note, values) if text])
     _warn(DocumentWarning, [text for text in map(_unconnected, elements) if text])
     if names := ", ".join(each.getName() for each in foreign_code(document)):
         _warn(CodeWarning, [f"{label(document)}: contains its own code: {names}"])

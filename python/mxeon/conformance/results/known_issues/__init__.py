@@ -3,15 +3,15 @@
 
 import json
 import math
-import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
 from itertools import chain
 from pathlib import Path
+from typing import Any
 
-from mxeon.conformance.results import DIFFERS, FAILED, PASSED, Result
+from mxeon.conformance.results import DIFFERS, FAILED, PASSED, Cause, Kind, Region, Result
 
 STOCK = "stock"
 RENDERER_NODES = "its own nodes"  # in the place of a library
@@ -31,7 +31,7 @@ class Issue:
     library: str = STOCK  # the library that has it; RENDERER_NODES for a renderer's own nodes
     unavoidable: bool = False  # each library has it: no text can repair it, or none of ours does
     differs: bool = False  # the text leaves the choice
-    says: str = ""  # the diagnosis of the first of `rows`, as the page has it
+    cause: Cause | None = None  # the first one of the diagnosis of the first of `rows`
     patch: tuple[str, ...] = ()  # a file of MaterialX, and a text of it before and after
     repaired: tuple[Row, ...] = ()  # results that it explains no longer once it is patched
     # The largest errors that were measured.
@@ -51,7 +51,7 @@ def read_issues() -> tuple[Issue, ...]:
             also=tuple(entry.get("also", ())),
             implied=_pairs(entry.get("implied", {})),
             repaired=_pairs(entry.get("repaired", {}), *entry.get("remains", {}).values()),
-            says=found.get(page, {}).get("says", ""),
+            cause=cause_of(found.get(page, {}).get("cause")),
             patch=tuple(found.get(page, {}).get("patch", ())),
             sizes={
                 (check, subject): size
@@ -62,6 +62,16 @@ def read_issues() -> tuple[Issue, ...]:
         for page, entry in tomllib.loads(text).items()
         if "host" in entry
     )
+
+
+def cause_of(fields: dict[str, Any] | None) -> Cause | None:
+    """A cause of what `measured.json` has of it, its identity."""
+    if not fields:
+        return None
+    region, names = fields.get("region"), tuple(fields.get("names", ()))
+    place = Region(**region | {"channels": tuple(region["channels"])}) if region else None
+    kind, key, branch = Kind(fields["kind"]), fields["key"], fields.get("branch", "")
+    return Cause(kind, key, names, branch=branch, region=place)
 
 
 def _pairs(*groups: Mapping[str, Sequence[str]]) -> tuple[Row, ...]:
@@ -138,20 +148,15 @@ def _explains(issue: Issue, result: Result, materialx: str) -> bool:
     if sized and (result.error or 0.0) > SPREAD * size:
         return False
     # Where the node's own model is nearest, a defect many times as large is mended; what is left has another cause.
-    own, *others = result.distances.values() or (math.inf,)
+    own, *others = result.diagnosis.distances.values() or (math.inf,)
     if sized and own < min(others, default=own) and (result.error or 0.0) < size / LEFT:
         return False
     gone = row in issue.repaired or set(issue.rows) <= set(issue.repaired)
-    if result.diagnosis.startswith("fault: ") or (gone and _is_repaired(issue, materialx)):
+    if result.diagnosis.kind is Kind.FAULT or (gone and _is_repaired(issue, materialx)):
         return False
     first = result.host == issue.host and issue.rows[:1] == (row,)
-    stated = issue.says if first and result.diagnosis else ""
-    return not stated or says_first(result.diagnosis) == says_first(stated)
-
-
-def says_first(diagnosis: str) -> str:
-    """What a diagnosis says first, without its figures."""
-    return re.split(r", then| \(|;", re.sub(r"\d[\d.e+-]*", "", diagnosis))[0]
+    known = issue.cause if first and result.diagnosis.causes else None
+    return not known or result.diagnosis.first.identity == known.identity
 
 
 @cache

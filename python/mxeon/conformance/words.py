@@ -1,0 +1,529 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Sentences about results, made of their fields: the only place where one is made. Nothing reads one."""
+
+import math
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+
+from mxeon.conformance.results import (
+    COUNTS,
+    DIFFERS,
+    FAILED,
+    NOT_RUN,
+    PASSED,
+    UNJUDGED,
+    Cause,
+    Diagnosis,
+    Kind,
+    Region,
+    Result,
+    Run,
+)
+from mxeon.shaders.nodes import FLAG
+
+NAMED = 3  # names in a list, before the number of the others
+PARTS_SHOWN = 3  # of two graphs that differ
+
+# --- numbers and lists -----------------------------------------------------------------------------
+
+
+def in_words(number: float) -> str:
+    """A number of two digits, without a power of ten.
+
+    >>> in_words(1.234), in_words(1234.5)
+    ('1.2', '1,200')
+    """
+    return f"{float(f'{number:.2g}'):,.10g}"
+
+
+def of_white(radiance: float) -> str:
+    """A difference as a share of the radiance of a white, matte surface that faces the light.
+
+    >>> of_white(0.2035), of_white(1e-7)
+    ('up to 20 % of white', 'less than 0.1 % of white')
+    """
+    share = 100.0 * radiance
+    return f"up to {in_words(share)} % of white" if share >= 0.1 else "less than 0.1 % of white"
+
+
+def listed(names: Sequence[str]) -> str:
+    """The first names of a list, and the number of the others.
+
+    >>> listed(["a", "b", "c", "d"])
+    'a, b, c and 1 more'
+    """
+    more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
+    return ", ".join(names[:NAMED]) + more
+
+
+def counted(count: int, noun: str) -> str:
+    """A number of things.
+
+    >>> counted(1, "check"), counted(2, "check")
+    ('1 check', '2 checks')
+    """
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
+def _short(number: float, digits: int = 2) -> str:
+    return f"{float(f'{number:.{digits}g}'):g}"
+
+
+# --- tables: names of scenes, regions, models' faults and other defects ------------------------------
+
+LIGHTS = {
+    "side": "light from the side",
+    "front": "light from the front",
+    "back": "light from behind",
+    "furnace": "a white environment",
+}
+# Named sets of pairs and inputs, see `mxeon.conformance.diagnosis.regions`.
+REGIONS = {
+    "viewer_above_1": "with dot(N, V) rounded above 1",
+    "light_above_1": "with dot(N, L) rounded above 1",
+    "both_on_horizon": "with both directions on the horizon",
+    "retro_reflection": "in exact retro-reflection (L = V)",
+    "opposite": "with the light opposite the view (L = -V)",
+    "mirror": "in the mirror direction",
+    "half_vector_upright": "with the half vector along the normal",
+    "viewer_along_tangent": "with the viewer along the tangent",
+    "viewer_along_normal": "with the viewer along the normal",
+    "light_along_normal": "with the light along the normal",
+    "viewer_cosine_above": "with the viewer's cosine above {low:g}",
+    "light_cosine_above": "with the light's cosine above {low:g}",
+    "viewer_on_horizon": "with the viewer on the horizon",
+    "light_on_horizon": "with the light on the horizon",
+    "viewer_cosine_within": "with the viewer's cosine in [{low:g}, {high:g}]",
+    "light_cosine_within": "with the light's cosine in [{low:g}, {high:g}]",
+    "viewer_cosine_below": "with the viewer's cosine {high:g} or below",
+    "light_cosine_below": "with the light's cosine {high:g} or below",
+    "cosines_within": "with both cosines in [{low:g}, {high:g}]",
+    "light_below_horizon": "with light from below the horizon",
+    "light_above_horizon": "with light from above the horizon",
+    "dot_above": "with dot(V, L) above {low:g}",
+    "dot_negative": "with dot(V, L) below 0",
+    "s_negative": "with s below 0",
+    "s_positive": "with s above 0",
+    "weight_negative": "with a negative weight",
+    "weight_zero": "with weight 0",
+    "weight_not_positive": "with weight 0 or below",
+    "weight_within": "with a weight in ({low:g}, {high:g}]",
+    "weight_not_1": "with a weight other than 1",
+    "occlusion_zero": "with occlusion 0",
+    "occlusion_not_1": "with an occlusion other than 1",
+    "roughness_zero": "with roughness 0",
+    "roughness_up_to": "with a roughness in [{low:g}, {high:g}]",
+    "roughness_within": "with a roughness in ({low:g}, {high:g}]",
+    "roughness_largest": "with the largest roughness",
+    "roughness_above_1": "with a roughness above 1",
+    "roughness_positive": "with a roughness above 0",
+    "index_zero": "with an index of refraction of 0",
+    "extinction_zero": "with an extinction of 0",
+    "cuticle_tilted": "with a tilted cuticle",
+    "color_white": "with a white color",
+    "color_black": "with a black color",
+    "color_gray": "with a gray color",
+    "color_channel_zero": "with a color channel at 0",
+    "color_channel_within": "with a color channel in [{low:g}, {high:g}]",
+    "color_channel_1": "with a color channel at 1",
+    "color_channel_above": "with a color channel above {low:g}",
+    "normal_away": "where the normal faces away from the viewer",
+}
+# Of an input, those whose range is a region.
+PARTS = {
+    "value": "{}",
+    "first": "the first component of {}",
+    "second": "the second component of {}",
+    "smaller": "the smaller component of {}",
+    "larger": "the larger component of {}",
+    "difference": "a difference between the components of {} of",
+}
+# Faults between the inputs and a model: {0}, {1} are names, {x} is the first number.
+FAULTS = {
+    "channels_exchanged": "the color channels are exchanged: they arrive as {0}, {1}, {2}",
+    "one_channel": "every channel takes the {0} of the color",
+    "mean_color": "every channel takes the mean of the color",
+    "color_ignored": "the color is ignored; {x:g} is used instead",
+    "color_clamped": "the color is clamped to 1",
+    "color_squared": "the color is squared",
+    "color_square_root": "the color is replaced by its square root",
+    "roughness_squared": "the roughness is squared",
+    "roughness_square_root": "the roughness is replaced by its square root",
+    "tangents_exchanged": "tangent and bitangent are exchanged",
+    "roughness_halved": "the roughness is halved",
+    "roughness_ignored": "the roughness is ignored; {x:g} is used instead",
+    "weight_ignored": "the weight is ignored",
+    "weight_ignored_above_0": "the weight is ignored but for 0 and below",
+    "occlusion_and_weight_ignored": "the occlusion is ignored, and the weight",
+    "occlusion_and_weight_ignored_above_0": "the occlusion is ignored, and the weight but for 0 "
+    "and below",
+    "weight_twice": "the weight is applied twice",
+    "occlusion_ignored": "the occlusion is ignored",
+    "occlusion_twice": "the occlusion is applied once too often",
+    "occlusion_by_caller": "the occlusion is applied here and again by the caller",
+    "cosine_missing": "the cosine of the light is missing",
+    "cosine_twice": "the cosine of the light is applied twice",
+    "directions_swapped": "the cosine is the viewer's instead of the light's: the directions are "
+    "swapped",
+    "light_mirrored": "the light is mirrored about the normal: s has the wrong sign",
+    "light_from_below": "light from below the horizon is reflected as if it came from above",
+    "normal_incidence": "the albedo is the one at normal incidence",
+    "inputs_exchanged": "{0} and {1} are exchanged",
+    "scaled": "every value is {x:.6g} times the right one",
+    "pi_missing": "the factor 1/pi is missing",
+    "pi_twice": "the factor 1/pi is applied twice",
+}
+# How the states of pixels are joined that all wrong sums have.
+STATES = {"state": "", "both_states": " and ", "either_state": " or "}
+SUMS = "each part is right by itself, but {share} sums are wrong{states}"
+# Other defects, with what `_filled` has in braces.
+DEFECTS = {
+    "average_at_half_vector": "the compensation uses F at the half vector instead of its average",
+    "average_at_two_thirds": "the compensation uses F at the cosine 2/3 instead of its average",
+    "mean_alpha_masking": "anisotropic visible normals are weighted by G_1 at the mean alpha",
+    "seen": "the mean of 1 - F over the visible normals",
+    "seen_over_masking": "the mean of 1 - F over the visible normals, divided by G_1 of the view",
+    "wrong_with_methods": "with {methods}",
+    "other_directions": "the environment is looked up in other directions, or with other weights",
+    "retroreflective_environment": "retroreflective is ignored or wrong in an environment",
+    "reflects_light": "reflects a light",
+    "reflects_light_unlike_R": "reflects a light, unlike mode R",
+    "reflects_environment": "reflects an environment",
+    "reflects_environment_unlike_R": "reflects an environment, unlike mode R",
+    "passes_other_light": "passes other light to its base (branch {branch})",
+    "mode_R_transmits": "mode R transmits light",
+    "wrong_effect": "no effect, or a wrong one: {all}",
+    "inputs_without_effect": "inputs without effect: {all}",
+    "input_ignored": "{0} is ignored",
+    "not_zero": "{0} {constant}{place} (branches: {rest})",
+    **dict.fromkeys(STATES, SUMS),
+    "changes_nothing": "{all} changes nothing",
+    "changes_something": "{all} changes something",
+    "normal_of_surface": "the node's normal is ignored; the surface's is used instead",
+    "not_implemented": "{0} has no implementation of {1}",
+    "factor_not_clamped": "the factor is not clamped",
+    "value_outside": "the value is wrong with {0} {numbers}",
+    "albedo_outside": "the albedo is wrong with {0} {numbers}",
+    "throughput_outside": "the throughput is wrong with {0} {numbers}",
+    "right_without": "the layer equation holds without the {0}",
+    "no_single_lobe": "no single lobe explains it; the error is smallest without {0} and {1}",
+    "sum_of_lobes": "see the checks of each lobe and of `layer`",
+    "graph_of_release": "the graph of MaterialX {any}",
+    "graph_of_version": "the graph of version {0} of the node, where version {1} is installed",
+    "graph_differs": "it differs from the graph that is installed: {differences}",
+    "drawn_density": "what is drawn has another density than that of material_pdf, from {any}",
+    "drawn_weight": "the weight times density is not material_evaluate's value, from {0}",
+    "sampled_density": "the density of material_sample is not material_pdf's, from {0}",
+    "other_path_value": "a path tracer gets another value than a rasterizer",
+    "inside_is_not_outside": "light inside a solid is not that outside of one of the inverse index",
+    "density_differs": "the density differs from the paper's listings",
+    "samples_differ": "the samples do not follow the density",
+    "lookup_opposite": "the environment is looked up opposite to the normal",
+    "lookup_viewer": "the environment is looked up toward the viewer",
+    "lookup_from_viewer": "the environment is looked up away from the viewer",
+    "lookup_light": "the environment is looked up toward the light",
+    "lookup_mirror": "the environment is looked up along the mirror direction",
+    "lookup_surface_normal": "the environment is looked up along the surface's normal instead of "
+    "the node's",
+    "lookup_facing_surface_normal": "the environment is looked up along the surface's normal "
+    "turned toward the viewer, instead of the node's",
+    "lookup_not_facing": "the environment is looked up along a normal that is not turned toward "
+    "the viewer",
+    "lookup_radiances": "the environment is looked up in the map of radiances",
+    "lookup_black": "the environment is looked up nowhere: it is black",
+    "lookup_other_side": "the environment is looked up on the other side of the surface",
+    "lookup_viewer_side": "the environment is looked up on the viewer's side alone",
+    "same_names": "nodes {0} have the values of one of them; see docs/upstream/same_names.md",
+    "material_graph": "a material that a nodegraph defines is not generated; see "
+    "docs/upstream/material_graphs.md",
+    "own_document_refused": "the library refuses a document of mxeon's own: {text}",
+    "different_in_osl": "{0} is different in OSL",
+    "definition": "{0} is {1}; {2} says {3}",
+    "never_passed": "{0} is never passed",
+    "not_passed": "{0} is not passed",
+    "float_for_vector": "{0} is a float but receives a color or vector",
+    "tint_is_not_eon": "{0} is not that of EON, rho^2 <E> / (1 - rho (1 - <E>)){instead}: off by "
+    "up to {x:.2g}",
+    "tint_is_not_qon": "{0} is not black, as without energy_compensation{instead}: off by up to "
+    "{x:.2g}",
+    "is_not_the_node_s": "{0} is not the node's {0}{instead}: off by up to {x:.2g}",
+    "white_lobe": "FON + white lobe, as MDL's module pbrlib_1_10 defines this node; read, not run",
+    "not_defined": "{0} is not defined as eonlib has it",
+    "function_off": "{0} is off by {x:.2g}",
+    "functions_that_use_it": "with it {all}",
+    "cannot_be_told_from": "cannot be told from {any}",
+    "neither_fits": "neither fits",
+    "picture_black": "{0} is black",
+    "picture_clipped": "{0} is clipped",
+    "picture_scaled": "{0} is {times} times as bright",
+    "picture_srgb": "{0} is sRGB-encoded{also}",
+    "picture_power": "{0} is encoded with a power of 1/2.2{also}",
+    "picture_tone_mapped": "{0} is tone-mapped by x / (1 + x){also}",
+    "picture_upside_down": "{0} is upside down{also}",
+    "picture_mirrored": "{0} is mirrored left to right{also}",
+    "picture_rotated": "{0} is rotated by 180 degrees{also}",
+    "picture_unknown": "{0} is not Lambert's cosine in any known encoding: tone-mapped, or lit "
+    "otherwise",
+}
+FACTORS = {"pi": math.pi, "1/pi": 1.0 / math.pi, "pi^2": math.pi**2, "2": 2.0, "1/2": 0.5}
+SAME_FACTOR = 0.005
+UNKNOWN = {
+    "unknown": "the cause is unknown",
+    "no_model": "no known model matches",
+    "singly_right": "each value on its own is within tolerance",
+    "other_average": "the compensation uses a different average of the film's reflectance",
+    "unmasked": "the visible facets are not weighted by masking and shadowing",
+}
+# --- diagnoses -------------------------------------------------------------------------------------
+
+
+def region(place: Region) -> str:
+    """Where values are wrong.
+
+    >>> region(Region("roughness", "value", high=0.25))
+    'with roughness 0.25 or below'
+    """
+    if not place.part:
+        return REGIONS[place.name].format(low=place.low, high=place.high)
+    low, high = place.low, place.high
+    if low is None or high is None:
+        ends = f"{_short(high)} or below" if high is not None else f"{_short(low or 0.0)} or above"
+    elif low == high:
+        ends = _short(low)
+    else:
+        digits = 2 if _short(low) != _short(high) else 4  # as many as tell them apart
+        ends = f"between {_short(low, digits)} and {_short(high, digits)}"
+    alone = f", in {' and '.join(place.channels)} alone" * bool(place.channels)
+    return f"with {PARTS[place.part].format(place.name)} {ends}{alone}"
+
+
+def diagnosis(found: Diagnosis) -> str:
+    """What explains a failure: each cause in turn."""
+    return "; ".join(filter(None, (_cause(each, found.distances) for each in found.causes)))
+
+
+def _cause(cause: Cause, distances: Mapping[str, float]) -> str:
+    place = f"branch {cause.branch}: " * bool(cause.branch and cause.key != "passes_other_light")
+    return place + SENTENCES[cause.kind](cause, distances)
+
+
+def _rms(cause: Cause) -> str:
+    return "" if cause.rms is None else f" (rms {cause.rms:.2g})"
+
+
+def _model(cause: Cause, distances: Mapping[str, float]) -> str:
+    """The nearest model, and the next one.
+
+    >>> _model(Cause(Kind.MODEL, "Lambert", rms=0.001), {"EON": 0.25, "Lambert": 0.001})
+    'best match: Lambert (rms 0.001), then EON (0.25)'
+    """
+    others = {title: far for title, far in distances.items() if title != cause.key}
+    second = min(others, key=others.__getitem__, default="")
+    then = f", then {second} ({others[second]:.2g})" if second else ""
+    flags = (f", as with {FLAG} {str(bool(each)).lower()}" for each in cause.values)
+    return f"best match: {cause.key}{_rms(cause)}{then}{''.join(flags)}"
+
+
+def _fault(cause: Cause, distances: Mapping[str, float]) -> str:
+    return f"fault: {_filled(FAULTS[cause.key], cause)}{_rms(cause)}"
+
+
+def _accuracy(cause: Cause, distances: Mapping[str, float]) -> str:
+    return f"right model, {cause.key}{_rms(cause)}, but not accurate enough"
+
+
+def _region(cause: Cause, distances: Mapping[str, float]) -> str:
+    """How many pairs are wrong, and their region or the worst of them."""
+    begins = "wrong for" if cause.key == "wrong" else "correct except for"
+    wrong, count = cause.wrong or 0, cause.of or 1
+    if cause.region:
+        return f"{begins} {wrong} of {count} pairs, all {region(cause.region)}"
+    if not cause.point:
+        return f"{begins} {wrong} of {count} pairs"
+    joint = ", worst" if cause.key == "wrong" else "; worst"
+    return f"{begins} {100.0 * wrong / count:.3g} % of the pairs{joint} {_point(cause.point)}"
+
+
+def _point(point: Mapping[str, Sequence[float]]) -> str:
+    if "wo" in point:
+        light = f" and a light cosine of {point['wi'][2]:.2g}" if "wi" in point else ""
+        return f"at a view cosine of {point['wo'][2]:.2g}{light}"
+    numbers = (f"{name} {' '.join(f'{x:.3g}' for x in each)}" for name, each in point.items())
+    return f"with {', '.join(numbers)}"
+
+
+def _not_finite(cause: Cause, distances: Mapping[str, float]) -> str:
+    place = region(cause.region) if cause.region else ""
+    if cause.wrong is None:
+        return f"NaN or infinity {place}".rstrip()
+    pairs = (f"{name} {' '.join(f'{x:.6g}' for x in each)}" for name, each in cause.point.items())
+    first = f"; the first for {', '.join(pairs)}" if cause.point else ""
+    share = f"{cause.wrong} of {cause.of} values are not finite"
+    return f"{share}{place and f', all {place}'}{first}"
+
+
+def _cure(cause: Cause, distances: Mapping[str, float]) -> str:
+    if cause.key == "beside_equal_pixels":
+        return "the worst are right beside pixels with the same inputs"
+    pairs = (f"{name} {x:g}" for name, x in zip(cause.names, cause.values, strict=True))
+    return f"the worst are right with {' or '.join(pairs)}"
+
+
+def _unknown(cause: Cause, distances: Mapping[str, float]) -> str:
+    near = (f", the closest is {name}{_rms(cause)}" for name in cause.names)
+    return f"{UNKNOWN[cause.key]}{''.join(near)}"
+
+
+def _picture(cause: Cause, distances: Mapping[str, float]) -> str:
+    apart = abs(cause.values[0])
+    return f"{of_white(apart)} " * math.isfinite(apart) + appearance(cause)
+
+
+def appearance(cause: Cause) -> str:
+    """How a picture differs from the reference, without the size."""
+    light, [apart] = LIGHTS.get(cause.key, cause.key), cause.values
+    if not math.isfinite(apart):
+        return f"has pixels that are infinite or not a number in {light}"
+    return f"too {'bright' if apart > 0.0 else 'dark'} in {light}"
+
+
+def _defect(cause: Cause, distances: Mapping[str, float]) -> str:
+    return _filled(DEFECTS[cause.key], cause)
+
+
+def _filled(text: str, cause: Cause) -> str:
+    """A text with the names and numbers of a cause in its braces."""
+    factor = cause.values[0] if cause.values else math.nan
+    known = (name for name, x in FACTORS.items() if abs(factor / x - 1.0) <= SAME_FACTOR)
+    times = next(known, f"{factor:.3g}") if cause.values else ""
+    several = {
+        "all": ", ".join(cause.names),
+        "methods": " and with ".join(cause.names),
+        "any": " and ".join(cause.names),
+        "rest": ", ".join(cause.names[1:]),
+        "numbers": ", ".join(f"{each:g}" for each in cause.values),
+        "place": f" {region(cause.region)}" if cause.region else "",
+        "instead": "".join(f", but {each:.3g}" for each in cause.values[1:]),
+        "differences": _differences(cause.names),
+        "share": f"{cause.wrong} of {cause.of}",
+        "states": f", all with {STATES.get(cause.key, '').join(cause.names)}" * bool(cause.names),
+        "constant": f"{cause.values[0]:.3g}" if cause.values else "not 0",
+        "times": times,
+        "also": f" and {times} times as bright" * bool(times),
+    }
+    return text.format(*cause.names, x=factor, text=cause.text, branch=cause.branch, **several)
+
+
+def _differences(names: Sequence[str]) -> str:
+    """The first parts in which two graphs differ: three texts each, its name and what both say."""
+    parts = [
+        f"{name} is {own} instead of {right}"
+        for name, own, right in zip(names[::3], names[1::3], names[2::3], strict=False)
+    ]
+    more = f", and {len(parts) - PARTS_SHOWN} more differences" * (len(parts) > PARTS_SHOWN)
+    return f"{', '.join(parts[:PARTS_SHOWN])}{more}"
+
+
+SENTENCES: Mapping[Kind, Callable[[Cause, Mapping[str, float]], str]] = {
+    Kind.MODEL: _model,
+    Kind.FAULT: _fault,
+    Kind.ACCURACY: _accuracy,
+    Kind.REGION: _region,
+    Kind.NOT_FINITE: _not_finite,
+    Kind.CURE: _cure,
+    Kind.DEFECT: _defect,
+    Kind.UNKNOWN: _unknown,
+    Kind.PICTURE: _picture,
+    Kind.TEXT: lambda cause, distances: cause.text,
+    Kind.CONTROL: lambda cause, distances: (
+        "inconclusive: the values are right, but the control passed too"
+    ),
+    # The reason of a result that was not run says it.
+    **dict.fromkeys((Kind.NONE, Kind.FOLLOWS, Kind.INPUT), lambda cause, distances: ""),
+}
+
+# --- results ---------------------------------------------------------------------------------------
+
+
+def excess(result: Result) -> str:
+    """The error that is too large, or the control that passed; "" for neither."""
+    control = result.control
+    if result.error is not None and not result.within:
+        if result.unit in COUNTS and math.isfinite(result.error):
+            return counted(int(result.error), result.unit.removesuffix("s"))
+        if result.unit.startswith("times "):
+            return f"the error is {in_words(result.error)} {result.unit}"
+        return f"{result.error:.3g} > {result.tolerance:.3g} {result.unit}".rstrip()
+    if control and not control.caught:
+        return f"the negative control is not caught: {control.variant}, {control.error:.3g}"
+    return ""
+
+
+def explanation(result: Result) -> str:
+    """The reason for a failure: the excess, the diagnosis, and where the defect is described."""
+    pages = (f"see docs/upstream/{page}.md" for page in result.pages)
+    return "; ".join(filter(None, (excess(result), diagnosis(result.diagnosis), *pages)))
+
+
+# --- runs ------------------------------------------------------------------------------------------
+
+
+def sentence(run: Run) -> str:
+    """The verdict on the results of all libraries that are not judged for comparison."""
+    results, counts = run.judged, run.counts
+    total = counted(len(results), "check")
+    hosts = " and ".join(dict.fromkeys(result.location for result in results))
+    differ = ""
+    if counts[DIFFERS]:
+        verb = "differs" if counts[DIFFERS] == 1 else "differ"
+        differ = f"; {counts[DIFFERS]} {verb} where the specification leaves it open"
+    # Those that a failure keeps from running are part of it.
+    idle = sum(each.verdict == NOT_RUN and not each.follows for each in results)
+    missed = f"; {idle} did not run" if idle else ""
+    if counts[FAILED]:
+        failed = Counter(result.location for result in results if result.verdict == FAILED)
+        places = [f"{count} on {location}" for location, count in failed.items()]
+        where = f": {', '.join(places)}" if len(failed) > 1 else f" on {next(iter(failed))}"
+        text = f"{counts[FAILED]} of {total} failed{where}{missed}{differ}."
+    elif not counts[PASSED] + counts[DIFFERS]:
+        text = "No check ran."
+    elif counts[NOT_RUN]:
+        text = f"Nothing failed, but {counts[NOT_RUN]} of {total} did not run{differ}."
+    elif differ:
+        text = f"{counts[PASSED]} of {total} passed on {hosts}{differ}."
+    else:
+        passed = "The check" if len(results) == 1 else f"All {len(results)} checks"
+        text = f"{passed} passed on {hosts}."
+    if elsewhere := sum(map(run.is_elsewhere, results)):
+        text += f" {elsewhere} of them for inputs that no document uses."
+    if run.missing:
+        verb = "is" if len(run.missing) == 1 else "are"
+        items = counted(len(run.missing), "item")
+        text += f" The run is not finished: {items} {verb} missing."
+    if run.refused:
+        text = f"Refused and not judged: {listed(tuple(run.refused))}. {text}"
+    for library in run.compared:
+        other = [each.verdict for each in run.results if each.library == library]
+        ran = len(other) - other.count(NOT_RUN)
+        words = f" For comparison, {other.count(FAILED)} of {ran} failed with {library}."
+        text += words * bool(ran)
+    return text
+
+
+def summary(run: Run) -> str:
+    """The verdict, the MaterialX that was judged, with its folder unless it is installed, and the time."""
+    version, folder = (run.software.get(name) for name in ("MaterialX", "MaterialX folder"))
+    judged = f" MaterialX {version}{f', from {folder}' if folder else ''}." if version else ""
+    time = "" if run.seconds is None else f" Finished in {run.seconds:.1f} s."
+    return sentence(run) + judged + time
+
+
+def origins(run: Run) -> tuple[str, ...]:
+    """For each folder judged as a library: its files, MaterialX's, and the lobes that have no model."""
+    return tuple(
+        f"library {folder}: {counted(len(files['folder']), 'file')} from the folder, "
+        + (f"{len(files['MaterialX']) or 'none'} from" if "MaterialX" in files else "loaded before")
+        + f" MaterialX {run.software['MaterialX']}"
+        + (f"; no model judges its {listed(files[UNJUDGED])}" if UNJUDGED in files else "")
+        for folder, files in run.libraries.items()
+    )
