@@ -190,7 +190,7 @@ def energy_rows():
     yield "", "times 1 + F_ss (1 - E_ss) / E_ss", whole
     yield (
         "alpha 0.001 and 1",
-        "masking at the mean alpha",
+        "masking by direction, as corrected in July 2026",
         ggx_albedo_dir_anisotropic(around, [0.001, 1.0]),
     )
     yield "Microfacet BTDF, rough glass, alpha 1", "R compensated, T as printed", R + T
