@@ -138,7 +138,8 @@ float eonlib_fresnel_dielectric_inside(float mu, float alpha, float ior)
 }
 
 // Average over the visible facets. Near index 1 the curve depends on the cosine over sqrt(n^2 - 1) alone, and only
-// grazing facets reflect: an index below 1.03 has the average of 1.03 for k times mu and alpha, at most 1.
+// grazing facets reflect: an index below 1.03 has the average of 1.03 for k times mu and alpha, at most 1. Where k mu
+// exceeds 1, the cosine grows with mu, and a smooth surface has that of the view.
 // Largest absolute error of the albedo below index 1.03, where k alpha exceeds 1: 9.3e-3.
 float eonlib_fresnel_dielectric_visible(float mu, float alpha, float ior)
 {
@@ -147,6 +148,6 @@ float eonlib_fresnel_dielectric_visible(float mu, float alpha, float ior)
         return eonlib_fresnel_dielectric_inside(mu, alpha, ior);
     }
     float k = sqrt(max(0.0609 / max((ior - 1.0) * (ior + 1.0), 1e-9), 1.0));
-    float cosine = ggx_cosine_dielectric(min(k * mu, 1.0), min(k * alpha, 1.0), ior) / k;
+    float cosine = ggx_cosine_dielectric(min(k * mu, 1.0), min(k * alpha, 1.0), ior) * max(mu, 1.0 / k);
     return eonlib_fresnel_dielectric(cosine, ior);
 }

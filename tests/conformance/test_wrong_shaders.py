@@ -256,6 +256,7 @@ WRONG = {
         ("mx_dielectric_bsdf.glsl", "mx_surface_transmission(N, V, X, safeAlpha, distribution, fd, safeTint)",
          "mx_surface_transmission(N, V, X, safeAlpha, distribution, mx_init_fresnel_dielectric(1.0, thinfilm_thickness, thinfilm_ior), safeTint)",
          "critical", ()),
+        ("genglsl/lib/fresnel_dielectric.glsl", "* max(mu, 1.0 / k)", "/ k", "critical", ()),
         ("mx_dielectric_bsdf.glsl", "mx_surface_transmission(N, V, X, safeAlpha, distribution, fd, safeTint)",
          "mx_surface_transmission(N, V, X, safeAlpha, distribution, mx_init_fresnel_dielectric(1.0 / ior, thinfilm_thickness, thinfilm_ior), safeTint)",
          "refraction", ()),
