@@ -174,7 +174,8 @@ def test_invert_prints_rho(option, function, capsys):
 
 
 COMMANDS = ("check", "generate", "render", "explore", "library", "invert", "figures", "doc")
-COMMANDS += ("report make", "report diff", "report field", "kit export", "kit check")
+COMMANDS += ("report make", "report diff", "report field", "report schema")
+COMMANDS += ("kit export", "kit check")
 
 
 @pytest.mark.parametrize("command", ["", "report", "kit", *COMMANDS])

@@ -265,7 +265,7 @@ def strict_json(text):
 
 def test_json_is_strict_and_has_the_documented_keys(run):
     data = strict_json(to_json(run))
-    documented = re.findall(r"(?:- |; )(\w+):", to_json.__doc__.split("Keys:")[1])
+    documented = re.findall(r"(?:- |; )([$\w]+):", to_json.__doc__.split("Keys:")[1])
     assert set(data) == set(documented)
     assert data["results"][1]["error"] == "Infinity"
     assert data["results"][3]["error"] == "NaN"

@@ -3,7 +3,9 @@
 
 import json
 import math
+import re
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -11,11 +13,23 @@ import numpy as np
 import pytest
 
 from mxeon.cli import main
+from mxeon.conformance.results import Cause, Diagnosis, Kind
+from mxeon.conformance.results.records import make_converter
 from mxeon.models import table as reference
 from mxeon.report import to_json, write
 from mxeon.report.diff import BETTER, LOST, OTHER, WORSE, compare, read_results
 from mxeon.survey.field import read_field
-from tests.support.results import Control, Identity, Picture, Result, Run, caused
+from tests.support.availability import package
+from tests.support.results import (
+    AlbedoCurve,
+    Control,
+    Identity,
+    Picture,
+    Region,
+    Result,
+    Run,
+    caused,
+)
 from tests.support.verdicts import DIFFERS, FAILED, NOT_RUN, PASSED
 
 PLACE = "gl, eonlib, value, clay"
@@ -176,12 +190,65 @@ def test_lines_name_host_and_library_once_and_come_largest_first(tmp_path, capsy
         ("[", "must be the results.json of a report; "),
         ("{}", "must be the results.json of a report; lacks 'format'"),
         ('{"format": 2}', "must be the results.json of a report; lacks "),
-        ('{"format": 0}', "format must be 2; got 0; write the report again"),
+        ('{"format": 1}', "format must be 2; got 1; run the check again with this mxeon"),
+        ('{"format": 2, "$schema": "x"}', "$schema must be urn:mxeon:results:2; got 'x'"),
+        ("[]", "must be the results.json of a report; it must be an object"),
     ],
 )
 def test_what_is_no_report_is_one_line(tmp_path, capsys, text, words):
     (tmp_path / "results.json").write_text(text)
     assert words in refusal_of(tmp_path, capsys)
+    assert main(["report", "field", str(tmp_path), "--output", str(tmp_path / "f.html")]) == 2
+    assert words in capsys.readouterr().err
+
+
+# What the schema cannot state, in the words of the reader.
+TOGETHER = re.compile("counts must be |must have a tolerance|must be at least 0|inhomogeneous")
+
+
+def replacements(value, replace_it):
+    """A JSON value, changed in one place by one of a few wrong or right values, or without a key."""
+    for other in (None, True, 7.5, "text", [[]], [True], {"more": [[]]}):
+        yield replace_it(other)
+    is_list = isinstance(value, list)
+    for place in value if isinstance(value, dict) else range(len(value)) if is_list else ():
+
+        def replace_inner(other, place=place):
+            inner = value.copy()
+            inner[place] = other
+            return replace_it(inner)
+
+        yield from replacements(value[place], replace_inner)
+    if isinstance(value, dict):
+        yield from (replace_it({k: v for k, v in value.items() if k != key}) for key in value)
+        yield replace_it(value | {"more": 1})
+
+
+def test_the_schema_and_the_reader_accept_the_same_reports(tmp_path, capsys, monkeypatch):
+    jsonschema = package("jsonschema")
+    assert main(["report", "schema"]) == 0
+    valid = jsonschema.Draft202012Validator(json.loads(capsys.readouterr().out)).is_valid
+    cause = Cause(Kind.REGION, "key", ("a",), (1.0,), "b", Region("a", "b", 0.5, 1.0, ("r",)), 1, 2)
+    fields = {"worst": {"a": [math.nan]}, "measured": ("a",), "pages": ("a",), "seconds": 1.0}
+    diagnosis = Diagnosis((replace(cause, rms=math.inf, point={"a": [1.0]}),), {"a": 0.5})
+    run = made_run(FAILED, diagnosis=diagnosis, control=Control("a", 1.0, True), **fields)
+    curve = AlbedoCurve("a", "gl", "eonlib", (1.0, 1.0, 1.0), 0.5, *np.ones((3, 2)))
+    run = replace(run, curves=(curve,), libraries={"a": {"folder": ("b",)}}, seconds=1.0)
+    content = json.loads(to_json(run))
+    content["elsewhere"] = [dict.fromkeys(("document", "check", "subject", "host", "library"), "a")]
+    monkeypatch.setattr("mxeon.report.diff.make_converter", cache(make_converter))
+    file, accepted = tmp_path / "results.json", []
+    for changed in (content, *replacements(content, lambda other: other)):
+        file.write_text(json.dumps(changed))
+        try:
+            read_results(file)
+            accepted.append(True)
+        except ValueError as error:
+            accepted.append(False)
+            if TOGETHER.search(str(error)):
+                continue
+        assert valid(changed) == accepted[-1], changed
+    assert accepted[0] and accepted.count(True) > 50 and accepted.count(False) > 500
 
 
 def refusal_of(folder, capsys):

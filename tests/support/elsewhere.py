@@ -42,6 +42,7 @@ COMMANDS = (
     "check {examples}/clay.mtlx --host msl --workers 0 --report after",
     "report make after",
     "report diff before after",
+    "report schema",
 )
 NOT_RUN = ("check", "report make")  # exit status 3: the text of msl is checked, and nothing runs
 

@@ -15,6 +15,7 @@ def add_parser(commands: arguments.Commands) -> None:
         "report make out  # even if the run was interrupted",
         "report diff before after  # what became better or worse",
         "report field out/*  # all renderers on one page",
+        "report schema  # the JSON Schema of results.json",
     )
     summary = "write the report of a run, compare two runs, or show many renderers on one page"
     group = arguments.add_command(commands, "report", summary, None, *examples)
@@ -36,6 +37,8 @@ def add_parser(commands: arguments.Commands) -> None:
     field.add_argument(
         "--output", metavar="FILE", default="field.html", help="the page (default: %(default)s)"
     )
+    summary = "print the JSON Schema of the results of a report"
+    arguments.add_command(actions, "schema", summary, run_schema, examples[3])
 
 
 def run_make(options: argparse.Namespace) -> int:
@@ -60,6 +63,14 @@ def run_field(options: argparse.Namespace) -> int:
     entries = read_field(options.reports)
     page = write_field(entries, options.output)
     show(f"field: {page}, {len(entries)} rows")
+    return PASSED
+
+
+def run_schema(options: argparse.Namespace) -> int:
+    """Print the JSON Schema of results.json; return PASSED."""
+    from mxeon.report.schema import schema
+
+    print(as_output(json.dumps(schema(), indent=1)))
     return PASSED
 
 

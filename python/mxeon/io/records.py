@@ -8,6 +8,7 @@ from typing import Any, TypeAlias, TypeVar, get_origin
 import cattrs
 import numpy as np
 from cattrs.gen import make_dict_structure_fn, make_dict_unstructure_fn
+from numpy.typing import NDArray
 
 from mxeon.errors import InputError
 
@@ -39,7 +40,7 @@ def strict_converter(fields: Mapping[Any, Overrides]) -> cattrs.Converter:
         converter.register_structure_hook(kind, _exactly(kind, words))
     converter.register_structure_hook(float, _number)
     converter.register_unstructure_hook(float, spelled)
-    converter.register_structure_hook_func(_is_array, lambda rows, _: np.array(rows, dtype=float))
+    converter.register_structure_hook_func(_is_array, _array)
     converter.register_unstructure_hook_func(_is_array, lambda array: array.tolist())
     for record, own in fields.items():
         to_json: Any = make_dict_unstructure_fn(record, converter, **own)
@@ -76,6 +77,18 @@ def spelled(number: float) -> float | str:
 
 def _is_array(kind: object) -> bool:
     return (get_origin(kind) or kind) is np.ndarray
+
+
+def _array(rows: object, _: type) -> NDArray[np.float64]:
+    if not _are_rows(rows):
+        raise InputError(f"must be numbers in arrays; got {rows!r}")
+    return np.array(rows, dtype=float)
+
+
+def _are_rows(value: object) -> bool:
+    return type(value) is list and all(
+        type(each) in (int, float) or _are_rows(each) for each in value
+    )
 
 
 def _exactly(kind: type[T], words: str) -> Callable[[object, type], T]:

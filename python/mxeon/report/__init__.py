@@ -30,6 +30,7 @@ from mxeon.report.junit import to_junit
 PAGES = "upstream"  # folder beside the report with the pages on defects
 
 JSON_FORMAT = 2
+SCHEMA = f"urn:mxeon:results:{JSON_FORMAT}"  # identifies `mxeon.report.schema.schema()`
 
 NOT_PLAIN = re.compile("[^A-Za-z0-9]+")
 REFERENCE = "reference"
@@ -43,6 +44,7 @@ def to_json(run: Run) -> str:
     A number that is not finite is the string "NaN", "Infinity" or "-Infinity"; what is missing is null.
     Keys:
 
+    - $schema: the identifier of the JSON Schema, which `mxeon report schema` prints.
     - format: this layout's number, raised when a key changes or goes.
     - verdict: "passed", "failed" or "not run", and "differs" of a check where the
       specification leaves the difference open; counts: the number of checks with each.
@@ -66,6 +68,7 @@ def to_json(run: Run) -> str:
     - curves: objects with the fields of `mxeon.conformance.results.AlbedoCurve`.
     """
     data = {
+        "$schema": SCHEMA,
         "format": JSON_FORMAT,
         "verdict": run.verdict,
         "passed": run.passed,

@@ -19,6 +19,7 @@ from mxeon.conformance.results import (
     PASSED,
     PORTRAIT,
     VERDICTS,
+    AlbedoCurve,
     Diagnosis,
     Result,
     Verdict,
@@ -29,7 +30,7 @@ from mxeon.errors import InputError, one_line
 from mxeon.hosts.base import Identity
 from mxeon.io.files import regular
 from mxeon.io.records import ERRORS, read_strictly, spelled
-from mxeon.report import JSON_FORMAT
+from mxeon.report import JSON_FORMAT, SCHEMA
 
 WORSE, LOST, BETTER, OTHER = KINDS = ("worse", "not run any longer", "better", "other")
 RANKS = (PASSED, DIFFERS, FAILED)
@@ -97,8 +98,19 @@ class ShownPicture:
 
 
 @dataclass(frozen=True)
+class Elsewhere:
+    """A failure for inputs that a document does not have."""
+
+    document: str
+    check: str
+    subject: str
+    host: str
+    library: str
+
+
+@dataclass(frozen=True)
 class Report:
-    """Content of results.json; see `mxeon.report.to_json`."""
+    """Content of results.json but $schema; see `mxeon.report.to_json`."""
 
     format: int
     verdict: Verdict
@@ -115,9 +127,9 @@ class Report:
     hosts: tuple[Identity, ...]
     results: tuple[Result, ...]
     pictures: tuple[ShownPicture, ...]
-    curves: Any
+    curves: tuple[AlbedoCurve, ...]
     refused: tuple[str, ...]
-    elsewhere: tuple[dict[str, str], ...]
+    elsewhere: tuple[Elsewhere, ...]
     libraries: dict[str, dict[str, tuple[str, ...]]]
     compared: tuple[str, ...]
     seconds: float | None
@@ -139,7 +151,11 @@ def read_results(folder: str | PathLike[str]) -> Report:
     try:
         with open(path, encoding="utf-8", opener=regular) as file:
             content = json.load(file)
+        if not isinstance(content, dict):
+            raise InputError("it must be an object")
         if (written := content["format"]) == JSON_FORMAT:
+            if (named := content.pop("$schema")) != SCHEMA:
+                raise InputError(f"$schema must be {SCHEMA}; got {named!r}")
             return read_strictly(make_converter(), content, Report)
     except OSError as error:
         raise InputError(f"{rule}; {error.strerror}") from None
@@ -147,7 +163,7 @@ def read_results(folder: str | PathLike[str]) -> Report:
         reason = f"lacks {error}" if isinstance(error, KeyError) else error
         raise InputError(f"{rule}; {reason}") from None
     raise InputError(
-        f"{path}: format must be {JSON_FORMAT}; got {written!r}; write the report again"
+        f"{path}: format must be {JSON_FORMAT}; got {written!r}; run the check again with this mxeon"
     )
 
 
