@@ -279,8 +279,11 @@ def test_an_albedo_without_a_closed_form_is_the_integral():
 
 
 def test_an_anisotropic_albedo_depends_on_the_azimuth():
-    albedo = mxeon.model("schlick").albedo_dir(0.3, roughness=[0.1, 0.5], azimuth=[0.0, np.pi / 2])
+    inputs = {"roughness": [0.1, 0.5], "azimuth": [0.0, np.pi / 2]}
+    albedo = mxeon.model("schlick").albedo_dir(0.3, color0=0.04, **inputs)
     assert abs(albedo[0] - albedo[1]).min() > 0.01
+    white = mxeon.model("schlick").albedo_dir(0.3, **inputs)
+    assert abs(white - 1.0).max() < 1e-9  # all facets reflect everything
 
 
 def test_numbers_have_no_channels_and_colors_keep_theirs():

@@ -18,7 +18,7 @@ from tests.support.availability import package
 from tests.support.tracing import untraced
 
 SEED, ROWS = 5, 3
-STEP, SLOPE = 1e-4, 3e-5  # of central differences, and their truncation
+STEP, SLOPE = 1e-5, 3e-5  # of central differences, and their truncation beside a kink of a curve
 VALUE = 1e-11  # of the larger of 1 and the value
 # Where inputs lie, by quantity, and their ends; others lie in [0.3, 0.7] and end at 0 and 1.
 INSIDE = {"ior": (1.2, 2.0), "extinction": (1.0, 3.0), "thinfilm_thickness": (200.0, 900.0)}

@@ -134,9 +134,14 @@ def missing_of(wo: Array, roughness: Array) -> Array:
         )
         total[chosen] = ((1.0 - E) / E)[indices.reshape(-1)]
         return total
-    E = array_namespace(wo, roughness).sum(slope_nodes(wo, roughness)[1], axis=(0, 1))
-    equal = roughness[0] == roughness[1]
-    return array_namespace(E).where(equal, isotropic, (1.0 - E) / E)
+    # Where both alphas are the same, the difference is 0 and its gradient is that by each alpha alone.
+    mean = ggx.mean_alpha(roughness)
+    xp = array_namespace(wo, roughness)
+    unlike, alike = (
+        1.0 / xp.sum(slope_nodes(wo, alphas)[1], axis=(0, 1)) - 1.0
+        for alphas in (roughness, xp.stack([mean, mean]))
+    )
+    return xp.where(roughness[0] == roughness[1], isotropic + (unlike - alike), unlike)
 
 
 @dataclass(frozen=True)
