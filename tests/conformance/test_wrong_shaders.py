@@ -330,6 +330,10 @@ WRONG = {
         (FACETS, "max(1.0 - lobe.albedo * F.visible * compensation, 0.0)", "vec3(1.0)", "glass", ()),
         (FACETS, "bsdf.throughput = max(1.0 - lobe.albedo", "bsdf.throughput = max(1.05 - lobe.albedo", "glass", ()),
     ),
+    "standard_surface, every lobe": (
+        (FACETS, "if (lobe.roughness.x != lobe.roughness.y)\n    {\n        G2", "if (false)\n    {\n        G2",
+         "lobes", ()),
+    ),
     "UsdPreviewSurface, every lobe": (
         (FACETS, "bsdf.throughput = max(1.0 - lobe.albedo", "bsdf.throughput = max(1.002 - lobe.albedo", "lobes_mean",
          ()),

@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from mxeon.conformance.samples import (
     Array,
@@ -69,16 +69,18 @@ SPREAD = 0.3  # alpha of the lobe in which half of the lights lie about the mirr
 STRETCHED = "anisotropy"  # in the names of inputs: an environment is summed too coarsely for them
 # Largest errors by the fits of all lobes of a material, of 32 sets of the size that a check asks for, with
 # the layer equation in float64: tools/fits/surface_shaders.py. They are a third of the sum of what each lobe's
-# fits change at most, since no material has the worst of all.
+# fits change at most, since no material has the worst of all. The fits of two alphas change the mean of a set by up to
+# 2.7e-3.
 VALUE = sum_of(Term(3.5e-3, "the fits of all lobes of a material, over 32 sets of 256 pairs"))
 ALBEDO = sum_in(
     "albedo",
-    Term(2.6e-3, "the fits of all lobes of a material, over 32 sets of 64 views"),
+    Term(2.7e-3, "the fits of all lobes of a material, over 32 sets of 64 views"),
     sum_over(1024),
 )
+STRETCHED_FIT = 0.26  # largest error of a value by the fits of two alphas
 # The sums of 64 views err independently of each other.
 MEAN = sum_of(
-    Term(2.2e-4, "the mean of the errors by fits, over 32 sets of 64 views"),
+    Term(2.4e-4, "the mean of the errors by fits, over 32 sets of 64 views"),
     Term(sum_over(1024).value / 8.0, "sums over 1024 directions, over the root of 64 views"),
     unit="pi f cos, relative above 1, or albedo, mean",
     metric=mean_scaled,
@@ -228,7 +230,13 @@ class SurfaceShaderSpec(LobeSpec):
         near = reflected(wo, alpha, rng.random(count), rng.random(count))
         kept = (np.arange(count) % 2 == 0) & (near[:, 2] > 0.0)
         wi = np.where(kept[:, np.newaxis], near, wi)
-        return (Batch(wo, wi, self.random_inputs(rng, count)),)
+        batch = Batch(wo, wi, self.random_inputs(rng, count))
+        turned = np.arange(count) % 4 < 2
+        return (
+            batch.altered(
+                **{name: np.where(turned, 0.0, batch.inputs[name]) for name in _stretching(batch)}
+            ),
+        )
 
     few = ValueSpec.few
 
@@ -264,8 +272,8 @@ class SurfaceShaderSpec(LobeSpec):
         return replace(pairs, inputs=inputs)
 
     def films(self, counts: Counts) -> Batch:
-        """Some of the pairs, under random films."""
-        batch = self.batches(counts)[0].first(counts.albedos)
+        """Some of the pairs, of lobes with one alpha, under random films."""
+        batch = _isotropic(self.batches(counts)[0])
         return batch.altered(**draw(generator(), len(batch.wo), self.film))
 
 
@@ -277,11 +285,20 @@ def _views(rng: np.random.Generator, count: int) -> Array:
     return wo
 
 
+def _stretching(batch: Batch) -> list[str]:
+    """The inputs that give a lobe two alphas."""
+    return [name for name in batch.inputs if STRETCHED in name and "rotation" not in name]
+
+
+def stretched(batch: Batch) -> NDArray[np.bool_]:
+    """Whether a lobe of a pair has two alphas."""
+    count = np.zeros(len(batch.wo), int)
+    return np.asarray(sum((batch.inputs[name] != 0.0 for name in _stretching(batch)), count) > 0)
+
+
 def _isotropic(batch: Batch) -> Batch:
     """The same pairs with lobes that are not stretched."""
-    return batch.altered(
-        **{name: np.zeros(len(batch.wo)) for name in batch.inputs if STRETCHED in name}
-    )
+    return batch.altered(**{name: np.zeros(len(batch.wo)) for name in _stretching(batch)})
 
 
 def _spec(
