@@ -35,7 +35,7 @@ SHEEN = "sheen_bsdf, mode conty_kulla"
 HALF = ("model", "compensation with F at the half vector and MaterialX's fit of E_ss")
 VIEW = ("model", "compensation with F at the view direction and MaterialX's fit of E_ss")
 OPEN = {"value": HALF, "integral": HALF, "shape": HALF, "environment": VIEW}  # they differ
-G_1 = ("mean_alpha_masking",)
+MEAN = ("model", "Smith at the geometric mean, and MaterialX's compensation")
 UNTINTED = ("model", "MaterialX's fit of its albedo without a tint")
 AVERAGED = ("model", "MaterialX's fit of its albedo, averaged over the channels")
 CLAMPED_TITLE = "EON with clamped dot(wo, wi)"
@@ -108,14 +108,16 @@ STOCK = {
     **dict.fromkeys(("layer", "mix", "add"), SPHERE),
     "dielectric_bsdf, scatter_mode R": {
         **OPEN, **dict.fromkeys(("layering", "transmission", "layer", "denser"), UNTINTED),
-        "finite": NAN, "lossless": HALF, "anisotropic_albedo": G_1,
+        "finite": NAN, "lossless": HALF, "anisotropic_value": MEAN, "anisotropic_throughput": (),
     },
     "conductor_bsdf": {
-        **OPEN, **dict.fromkeys(("lossless", "energy"), HALF), "anisotropic_albedo": G_1, "finite": NAN, **HIDING,
+        **OPEN, **dict.fromkeys(("lossless", "energy"), HALF), "finite": NAN, **HIDING,
+        "anisotropic_albedo": (), "anisotropic_value": MEAN,
     },
     "generalized_schlick_bsdf, scatter_mode R": {
         **OPEN, **dict.fromkeys(("layering", "transmission", "layer", "dip"), AVERAGED),
-        **dict.fromkeys(("lossless", "energy"), HALF), "anisotropic_albedo": G_1, "finite": OPPOSITE,
+        **dict.fromkeys(("lossless", "energy"), HALF), "finite": OPPOSITE,
+        "anisotropic_albedo": (), "anisotropic_value": MEAN, "anisotropic_throughput": (),
     },
     "multiply, in2 float": {"combined_throughput": UNSCALED, **SPHERE},
     "multiply, in2 color3": {"combined_throughput": UNSCALED, **SPHERE},
@@ -176,6 +178,7 @@ FREE = {
     *((title, key) for title in ("dielectric_bsdf, thin film", "conductor_bsdf, thin film") for key in film("")),
     *(("generalized_schlick_bsdf, thin film", key) for key in ("film_average", "film_smooth")),
     *((title, "combined_throughput") for title in STOCK if title.startswith("multiply, ")),
+    *((title, "anisotropic_value") for title in STOCK if "anisotropic_value" in STOCK[title]),
 }  # fmt: skip
 
 

@@ -180,7 +180,6 @@ SUMS = "each part is right by itself, but {share} sums are wrong{states}"
 DEFECTS = {
     "average_at_half_vector": "the compensation uses F at the half vector instead of its average",
     "average_at_two_thirds": "the compensation uses F at the cosine 2/3 instead of its average",
-    "mean_alpha_masking": "anisotropic visible normals are weighted by G_1 at the mean alpha",
     "seen": "the mean of 1 - F over the visible normals",
     "seen_over_masking": "the mean of 1 - F over the visible normals, divided by G_1 of the view",
     "wrong_with_methods": "with {methods}",

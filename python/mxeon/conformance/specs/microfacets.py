@@ -17,6 +17,7 @@ from mxeon.conformance.samples import (
     TURNED,
     Array,
     Batch,
+    Candidate,
     Counts,
     Mask,
     Values,
@@ -40,6 +41,7 @@ from mxeon.conformance.tolerance import (
     sum_in,
     sum_of,
 )
+from mxeon.models.microfacet.defects import MEAN_ALPHA
 from mxeon.models.microfacet.ggx import smith_g1, smith_g2, smith_g2_anisotropic
 from mxeon.models.nodes.microfacets import (
     FILM_NODES,
@@ -307,6 +309,16 @@ class FacetSpec(PbrSpec):
         """Those of any lobe, and lights near the mirror direction; two alphas are another check."""
         others = (batch.where(_has_curve(batch)) for batch in super().batches(counts))
         return tuple(_with_one_alpha(batch) for batch in (*others, self.mirrored(counts)[0]))
+
+    @property
+    def value_candidates(self) -> tuple[Candidate, ...]:
+        """Those of the row without masking at the mean alpha, which is its own where both alphas are one."""
+        return tuple(each for each in self.all_candidates if not each.title.startswith(MEAN_ALPHA))
+
+    @property
+    def all_candidates(self) -> tuple[Candidate, ...]:
+        """All functions that may explain values of two alphas."""
+        return super().value_candidates
 
     def anisotropic(self, counts: Counts) -> Batch:
         """Lights near the mirror direction of materials whose alphas differ, in the domain of the fits."""

@@ -132,6 +132,7 @@ def _june(pair: Pair) -> Array:
     return 1.0 + pair.curve.average(**pair.material) * lost
 
 
+MEAN_ALPHA = "Smith at the geometric mean"
 MICROFACET_DEFECTS = (
     MicrofacetDefect("no_compensation", "no energy compensation", Lobe(uncompensated)),
     MicrofacetDefect(
@@ -176,7 +177,7 @@ MICROFACET_DEFECTS = (
     ),
     MicrofacetDefect(
         "smith_mean",
-        "Smith at the geometric mean",
+        MEAN_ALPHA,
         Lobe(_june, _at_the_mean),
     ),
     MicrofacetDefect("alpha_squared", "roughness squared once more", Lobe(alpha=np.square)),
@@ -186,7 +187,7 @@ MICROFACET_DEFECTS = (
 # MaterialX's lobes: 1.39.5, and after it.
 FITTED = Lobe(fitted_half, _at_the_mean)
 AVERAGED = Lobe(averaged_fitted, _at_the_mean)
-MEAN_TITLE = "Smith at the geometric mean, and MaterialX's compensation"
+MEAN_TITLE = f"{MEAN_ALPHA}, and MaterialX's compensation"
 # MaterialX's lobe, and one slip in a copy of its shaders.
 FITTED_DEFECTS = (
     MicrofacetDefect("smith_mean_fitted", MEAN_TITLE, FITTED),
