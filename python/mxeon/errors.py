@@ -122,7 +122,7 @@ class Unsupported(NotRun):
 
 
 class Implied(NotRun):
-    """What cannot be asked since something else fails, which is told by itself."""
+    """A measurement that a failure with its own result makes impossible."""
 
 
 class OutsideModel(NotRun):

@@ -58,8 +58,8 @@ def to_json(run: Run) -> str:
       under "nodes without a model" the lobes that it adds.
     - hosts: objects of name, version, device.
     - results: objects with the fields of `mxeon.conformance.results.Result`; control is null or an
-      object of variant, error, caught; diagnosis has causes, the first of which explains most, and
-      distances to the known models. A reader compares their kinds, keys and regions, not sentences.
+      object of variant, error, caught; diagnosis has causes, in the order of what they explain, and
+      distances to the known models. Scripts should compare kinds, keys and regions, not sentences.
     - elsewhere: objects of document, check, subject, host, library: failures for inputs that the
       document does not have.
     - pictures: objects of document, element, host, library, scene; exr and png, paths
