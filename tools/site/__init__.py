@@ -8,7 +8,7 @@
 | `... documents run FOLDER DIR`, `... page DIR` | tables of documents.md; four minutes |
 | `... field` | field.html, from every host that runs here |
 | `... versions` | versions.md and the ledger's lines on versions; a quarter of an hour |
-| `... gallery`, `... explorer`, `... note` | pictures of these pages |
+| `... gallery`, `... brushed`, `... explorer`, `... note` | pictures of these pages |
 | `... ledger`, `... ledger.measure [HOST ...]`, `... ledger.pictures` | docs/upstream; its tables; its pictures |
 """
 

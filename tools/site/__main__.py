@@ -9,13 +9,13 @@ from pathlib import Path
 
 from mxeon.explorer import page, page_data
 from mxeon.io.files import write_text
-from tools.site import arrays, explorer, gallery, note, research, twins, versions
+from tools.site import arrays, brushed, explorer, gallery, note, research, twins, versions
 from tools.site.ledger import pages
 
 
 def made() -> dict[Path, str]:
     """The text of each file, by its path."""
-    tables = {each.PAGE: each.page for each in (arrays, research, note, versions)}
+    tables = {each.PAGE: each.page for each in (arrays, brushed, research, note, versions)}
     return {
         **{twins.path(stem): twins.osl_text(stem) for stem in twins.STEMS},
         **{path: of(path.read_text(encoding="utf-8")) for path, of in tables.items()},

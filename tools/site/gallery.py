@@ -49,6 +49,10 @@ The materials in `examples/` on a shader ball in a studio, rendered on the `gl` 
 eonlib on the right, the largest difference first. Furnace documents show a sphere in a white environment, where
 it vanishes if no energy is lost or gained. Nothing casts a shadow, except in the [path-traced pictures](#path-traced).
 
+[![Brushed aluminium: stock, June 2026, eonlib and exact](images/brushed/aluminium.webp)](brushed_metal.md)
+
+*[Brushed metal](brushed_metal.md) under direct light: aluminium with four kinds of masking, and what differs from exact.*
+
 """
 
 TRACED = """
