@@ -168,8 +168,7 @@ def spheres(host, name):
     judged = expected.judged[points.mask]
     own = points.value(np.array(SIDE.light))[1].T[judged]
     right = expected.image[expected.judged]
-    if name != "vinyl":  # the reference layers by the albedo at the mean alpha
-        assert np.allclose(own, right, rtol=1e-4, atol=1e-6), name
+    assert np.allclose(own, right, rtol=1e-4, atol=1e-6), name
 
     total = np.zeros((4, SIZE, SIZE, 3))
     for direction, power in zip(*lights(), strict=True):

@@ -80,10 +80,7 @@ def values(case: Case) -> Compared:
 
 @check(is_shader, shifted, "value", diagnose=diagnose_lobes)
 def lobes(case: Case) -> Compared:
-    """In direct light, the material is the sum of its lobes by the layer equation.
-
-    Where light through a coat of two alphas is little, their fits change it by up to a quarter.
-    """
+    """In direct light, the material is the sum of its lobes by the layer equation."""
     return values(case)
 
 

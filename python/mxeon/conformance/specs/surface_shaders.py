@@ -70,14 +70,14 @@ STRETCHED = "anisotropy"  # in the names of inputs: an environment is summed too
 # Largest errors by the fits of all lobes of a material, of 32 sets of the size that a check asks for, with
 # the layer equation in float64: tools/fits/surface_shaders.py. They are a third of the sum of what each lobe's
 # fits change at most, since no material has the worst of all. The fits of two alphas change the mean of a set by up to
-# 2.7e-3.
+# 4e-4.
 VALUE = sum_of(Term(3.5e-3, "the fits of all lobes of a material, over 32 sets of 256 pairs"))
 ALBEDO = sum_in(
     "albedo",
     Term(2.7e-3, "the fits of all lobes of a material, over 32 sets of 64 views"),
     sum_over(1024),
 )
-STRETCHED_FIT = 0.26  # largest error of a value by the fits of two alphas
+STRETCHED_FIT = 0.019  # largest error of a value by the fits of two alphas
 # The sums of 64 views err independently of each other.
 MEAN = sum_of(
     Term(2.4e-4, "the mean of the errors by fits, over 32 sets of 64 views"),

@@ -177,7 +177,7 @@ def _row(
         lobe.category,
         (*colors, *numbers, "roughness"),
         lobe.value,
-        lobe.isotropic_albedo,
+        lobe.albedo,
         lobe.albedo,
         fixed=fixed,
         layerable=bool(fixed),
@@ -208,7 +208,7 @@ MICROFACET_NODES = (
         DIELECTRIC,
         Variant(
             "its albedo without the tint",
-            albedo=lambda wo, inputs: DIELECTRIC.isotropic_albedo(wo, white(inputs)),
+            albedo=lambda wo, inputs: DIELECTRIC.albedo(wo, white(inputs)),
         ),
         fixed=REFLECTION,
         mirror={"ior": 0.0, "tint": WHITE},
@@ -221,11 +221,11 @@ MICROFACET_NODES = (
         Variant(
             "color82 counts as 1",
             lambda wo, wi, inputs: SCHLICK.value(wo, wi, undipped(inputs)),
-            lambda wo, inputs: SCHLICK.isotropic_albedo(wo, undipped(inputs)),
+            lambda wo, inputs: SCHLICK.albedo(wo, undipped(inputs)),
         ),
         Variant(
             "its albedo, averaged over the channels",
-            albedo=lambda wo, inputs: averaged_channels(SCHLICK.isotropic_albedo(wo, inputs)),
+            albedo=lambda wo, inputs: averaged_channels(SCHLICK.albedo(wo, inputs)),
         ),
         Variant(
             "MaterialX's fit of its albedo, averaged over the channels",

@@ -141,7 +141,6 @@ class PbrNode(Node[Scattering]):
 
     - `value`: BSDF in 1/sr without the cosine, for weight 1.
     - `albedo`: Directional albedo E for weight 1, with all tints; 1 where its integral exceeds 1.
-      Of anisotropic microfacets it is that at the geometric mean of both alphas, as G2 is.
     - `integral`: The integral of its values, where that is another number for some inputs.
     - `fixed`: Inputs that select the mode.
     - `layerable`: Whether it lets 1 - E through to what lies below; an opaque node of weight 1
