@@ -85,7 +85,7 @@ SURFACE = dict.fromkeys(
 SURFACE |= {"lobes": ("no_single_lobe",)}
 FILMS = {"lobes_film": LOBES}
 SPHERE = {"states": ("a surface that bends: a sphere",)}  # Zeltner's lobe, seen along the normal
-PASSED_THROUGH = {"transmitted": UNSHADOWED, "transmitted_finite": NAN}
+PASSED_THROUGH = {"transmitted": UNSHADOWED, "transmitted_finite": NAN, "methods": ()}
 # By title, what does not pass with stock MaterialX, and what a cause of each diagnosis has.
 STOCK = {
     EON: {"value": CLAMPED, "integral": CLAMPED, "environment": (), **HIDING},
