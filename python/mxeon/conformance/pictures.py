@@ -102,9 +102,6 @@ FITTED, SHADED = (
 )
 
 
-MICROFACETS = {"dielectric_bsdf", "conductor_bsdf", "generalized_schlick_bsdf"}
-
-
 def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe], host: Host) -> Tolerance:
     """Tolerance of a material's pictures: of its lobes' fits or of images, and what else adds to it.
 
@@ -159,16 +156,6 @@ def _others(lobes: tuple[ShownLobe, ...]) -> list[Term]:
         for name in ROUGHNESSES
         if lobe.category == HAIR
     ]
-    ratios = [
-        float((alpha.max(axis=-1) / np.maximum(alpha.min(axis=-1), 1e-8)).max())
-        for lobe in lobes
-        if lobe.category in MICROFACETS
-        for alpha in [np.reshape(lobe.inputs["roughness"], (-1, 2))]
-    ]
-    if (ratio := max(ratios, default=1.0)) > 1.0:
-        # The largest differences from the lobe's albedo, measured for ratios up to 4 and up to 50.
-        error = 0.13 if ratio <= 4.0 else 0.29
-        others.append(Term(error, "MaterialX's sum over an environment, masked by the mean alpha"))
     if hairs:
         others += lobe_terms(*np.min(hairs, axis=0))
     sheens = (lobe for lobe in lobes if lobe.inputs.get("mode") == "conty_kulla")
