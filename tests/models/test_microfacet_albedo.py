@@ -20,10 +20,11 @@ from mxeon.models import (
     fresnel_dielectric,
     generalized_schlick_brdf,
 )
+from mxeon.models.microfacet import ggx, slopes
 from mxeon.models.microfacet import ggx as ggx_albedo
 from mxeon.models.microfacet import ggx as missing
-from mxeon.models.microfacet import slopes
 from mxeon.models.microfacet.ggx import missing_light
+from mxeon.models.sampling import ggx_sample
 from tests.support import tolerances
 from tests.support.cases import direction as unit
 from tests.support.hemispheres import hemisphere
@@ -244,3 +245,20 @@ def test_albedos_are_finite_on_the_closed_domain(name):
     ends = np.array([0.0, 5e-324, 1e-160, 1e-4, 1.0])
     E = NODES[name][1](unit(mu)[:, None, None], np.stack(np.meshgrid(ends, ends), axis=-1))
     assert np.isfinite(E).all() and (E >= 0.0).all()
+
+
+def test_a_sum_over_visible_normals_is_the_albedo_but_for_its_masking():
+    rng, count = np.random.default_rng(7), 1 << 18
+    wo, same, other = np.array(unit(0.4, 0.7)), np.array([0.3, 0.3]), np.array([0.2, 0.6])
+    for alpha in (same, other):
+        wi, _ = ggx_sample(np.broadcast_to(wo, (count, 3)), rng.random((count, 2)), alpha)
+        mean = np.full(2, np.sqrt(alpha.prod()))
+        lit = wi[:, 2] > 0.0
+        # The density is D G_1 / (4 mu_o); the sum weighs each normal by G_2 / G_1 of the mean alpha.
+        weight = np.where(lit, ggx.smith_g2(wo[2], np.abs(wi[:, 2]), mean[0]), 0.0)
+        weight = weight / ggx.smith_g1(wo[np.newaxis], mean[np.newaxis])
+        found = slopes.sum_nodes(wo[:, np.newaxis], alpha[:, np.newaxis])[1].sum()
+        assert abs(found - weight.mean()) < 5.0 * weight.std() / np.sqrt(count)
+    exact = slopes.slope_nodes(wo[:, np.newaxis], same[:, np.newaxis])[1].sum()
+    found = slopes.sum_nodes(wo[:, np.newaxis], same[:, np.newaxis])[1].sum()
+    assert abs(found - exact) < 1e-12

@@ -35,14 +35,15 @@ from mxeon.conformance.specs import surface_shaders as surfaces
 from mxeon.conformance.specs.diffuse import DiffuseModelSpec, SurfaceLobe
 from mxeon.conformance.specs.hair import lobe_terms
 from mxeon.conformance.specs.lobes import CLOSED_ALBEDO
-from mxeon.conformance.specs.microfacets import ERRORS as FACET_ERRORS
 from mxeon.conformance.specs.microfacets import (
+    ANISOTROPIC,
     FILM_ALBEDO,
     FILM_TRAPPED,
     LEAST_FILM,
     MEAN,
     sum_over,
 )
+from mxeon.conformance.specs.microfacets import ERRORS as FACET_ERRORS
 from mxeon.conformance.specs.sheen import ZELTNER_VALUE
 from mxeon.conformance.specs.subsurface import RINGS
 from mxeon.conformance.specs.utilities import BLACKBODY
@@ -63,6 +64,7 @@ from mxeon.hosts.base import Host
 from mxeon.io.srgb import SLOPE
 from mxeon.models.hair import ROUGHNESSES
 from mxeon.models.nodes import NODES
+from mxeon.models.nodes.microfacets import LOBES as MICROFACETS
 from mxeon.models.sheen import conty_kulla_albedo_dir
 from mxeon.shaders.document.graphs import categories, inner_nodes
 from mxeon.shaders.document.notes import (
@@ -156,6 +158,12 @@ def _others(lobes: tuple[ShownLobe, ...]) -> list[Term]:
         for name in ROUGHNESSES
         if lobe.category == HAIR
     ]
+    stretched = (
+        np.ptp(np.reshape(lobe.inputs["roughness"], (-1, 2)), axis=1).any()
+        for lobe in lobes
+        if lobe.category in MICROFACETS
+    )
+    others += [ANISOTROPIC] * any(stretched)
     if hairs:
         others += lobe_terms(*np.min(hairs, axis=0))
     sheens = (lobe for lobe in lobes if lobe.inputs.get("mode") == "conty_kulla")

@@ -31,6 +31,7 @@ from mxeon.models.core.arrays import (
     within,
 )
 from mxeon.models.core.quadrature import unit_rule
+from mxeon.models.microfacet.ggx import mean_alpha, smith_lambda
 
 # Gauss-Legendre nodes in r per panel, panels, and nodes per quadrant of phi.
 NODES, PANELS, QUADRANT = 20, 3, 20
@@ -150,6 +151,29 @@ def slope_nodes(wo: Array, roughness: Array, isotropic: bool = False) -> tuple[A
     r, weight = _graded(scale, limit)
     cosine, values = slopes.facets(r, B, slope)
     return cosine, weight * weight_omega * values
+
+
+def sum_nodes(wo: Array, roughness: Array) -> tuple[Array, Array]:
+    """As `slope_nodes`, weighted as MaterialX sums an environment over visible normals.
+
+    The weight of a normal is G_2 / G_1 of the geometric mean of both alphas instead of the lobe's own.
+    """
+    slopes = Slopes.seen(wo, roughness)
+    mu_o = slopes.mu_o
+    xp = array_namespace(mu_o)
+    scale = xp.maximum(slopes.scale, LEAST_SCALE)
+    omega, weight_omega = _quadrants(scale, slopes.isotropic)
+    B, limit, slope = slopes.rays(omega)
+    r, weight = _graded(scale, limit)
+    lean = at_least_0(B * r + mu_o)
+    stretch = 1.0 + _squared(slope) * r * r
+    mu_i = at_most(at_least_0(2.0 * lean / stretch - mu_o), 1.0)
+    alpha = mean_alpha(roughness)
+    length_o, length_i = smith_lambda(mu_o, alpha), smith_lambda(mu_i, alpha)
+    masking = mu_i * (mu_o + length_o) / (length_o * mu_i + length_i * mu_o)
+    seen = 2.0 * lean / (mu_o + hypot(mu_o, slopes.steepness))
+    cosine = at_most(lean / xp.sqrt(stretch), 1.0)
+    return cosine, _density(r) * seen * masking * weight * weight_omega
 
 
 def transmitting_nodes(wo: Array, roughness: Array, squared: Array) -> tuple[Array, Array]:
