@@ -28,6 +28,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -114,6 +115,18 @@ def missing(pair: Pair) -> Array:
     return missing_of(pair.wo, pair.roughness)
 
 
+@lru_cache(maxsize=8)
+def _anisotropic_albedos(rows: bytes) -> Array:
+    """E_ss of float64 rows x, y, z of views, then both alphas, each of shape (N,)."""
+    columns = np.frombuffer(rows).reshape(5, -1)
+    return evaluate_number(
+        lambda wo, roughness: slope_nodes(wo, roughness)[1].sum(axis=(0, 1)),
+        {"wo": columns[:3].T, "roughness": columns[3:].T},
+        {},
+        BLOCK,
+    )
+
+
 def missing_of(wo: Array, roughness: Array) -> Array:
     """(1 - E_ss) / E_ss on valid float64 arrays, components first."""
     isotropic = missing_light(wo[2], ggx.mean_alpha(roughness))
@@ -124,14 +137,13 @@ def missing_of(wo: Array, roughness: Array) -> Array:
         # Pairs that share a view and a roughness, as those of one integral, share the quadrature.
         total = np.broadcast_to(isotropic, np.broadcast_shapes(wo.shape[1:], unequal.shape)).copy()
         chosen = np.broadcast_to(unequal, total.shape)
-        rows = np.stack([np.broadcast_to(each, total.shape)[chosen] for each in (*wo, *roughness)])
-        rows, indices = np.unique(rows, axis=1, return_inverse=True)
-        E = evaluate_number(
-            lambda wo, roughness: slope_nodes(wo, roughness)[1].sum(axis=(0, 1)),
-            {"wo": rows[:3].T, "roughness": rows[3:].T},
-            {},
-            BLOCK,
+        # E_ss is the same for mirrored views, and for the lights and curves of one picture.
+        views = (abs(wo[0]), abs(wo[1]), wo[2])
+        rows = np.stack(
+            [np.broadcast_to(each, total.shape)[chosen] for each in (*views, *roughness)]
         )
+        rows, indices = np.unique(rows, axis=1, return_inverse=True)
+        E = _anisotropic_albedos(rows.tobytes())
         total[chosen] = ((1.0 - E) / E)[indices.reshape(-1)]
         return total
     # Where both alphas are the same, the difference is 0 and its gradient is that by each alpha alone.
