@@ -19,6 +19,7 @@ from mxeon.models.diffuse import eon_brdf
 from mxeon.shaders.document.policy import Policy
 from tests.cli.test_answer import made, made_run
 from tests.support.plans import keep_checks
+from tests.support.results import caused
 from tests.support.verdicts import DIFFERS, FAILED, NOT_RUN, PASSED
 
 ROOT = Path(__file__).parents[1]
@@ -107,7 +108,12 @@ REFUSED = {"refused": {"cut.mtlx": ("cut.mtlx: must be XML",)}}
         ([made(), made(FAILED, library="stock")], {"compared": ("stock",)}, 0, ""),
         ([], {}, 3, "No check ran."),
         ([made(library="stock")], {"compared": ("stock",)}, 3, "No check ran."),
-        ([made(FAILED, diagnosis="fault: dark")], {}, 1, "failed: gl with eonlib, value, .*dark"),
+        (
+            [made(FAILED, diagnosis=caused("defect", "other_directions"))],
+            {},
+            1,
+            "failed: gl with eonlib, value, .*in other directions",
+        ),
         ([made(), made(NOT_RUN, reason="no GPU")], {}, 3, "not run: gl with eonlib, .*: no GPU"),
         ([made()], {"missing": ("gl, value",)}, 3, "not finished: 1 item is missing"),
         ([], REFUSED, 2, "cut.mtlx: must be XML"),
@@ -149,7 +155,11 @@ def test_no_repr_prints_arrays_or_text_of_shaders(monkeypatch):
     [shader, *_] = mxeon.generate(CLAY, "glsl")
     for each in (
         Picture("a.mtlx", "clay", "gl", "eonlib", "side", pixels, pixels, {"device": "x"}),
-        made(FAILED, distances={"eon": 0.1}, worst={"wo": [0.0, 0.0, 1.0]}),
+        made(
+            FAILED,
+            diagnosis=caused("model", "EON", distances={"EON": 0.1}),
+            worst={"wo": [0.0, 0.0, 1.0]},
+        ),
         made_run(*[made()] * 20),
         shader,
     ):

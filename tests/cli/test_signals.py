@@ -51,10 +51,14 @@ def test_a_killed_command_leaves_its_folder_to_the_next_one(tmp_path):
     process = start(tmp_path, *CHECK)
     folder = tmp_path / "tmp"
     wait_for(lambda: list(folder.glob("mxeon-pool-*/.lock")), process)
+    [made] = folder.glob("mxeon-pool-*")
+    os.utime(made, (0, 0))  # folders of the last minute stay
     alive = subprocess.run(GENERATE, cwd=tmp_path, env=os.environ | {"TMPDIR": str(folder)})
     assert alive.returncode == 0 and list(folder.glob("mxeon-pool-*"))  # in use
     process.kill()
     process.communicate(timeout=DEADLINE)
+    for each in folder.iterdir():
+        os.utime(each, (0, 0))
     after = subprocess.run(GENERATE, cwd=tmp_path, env=os.environ | {"TMPDIR": str(folder)})
     assert after.returncode == 0 and not list(folder.iterdir())
 

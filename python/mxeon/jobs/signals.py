@@ -6,6 +6,7 @@ import shutil
 import signal
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from functools import cache
@@ -25,6 +26,7 @@ ENDING = (*TERMINAL, signal.SIGTERM)
 OTHERS = _existing("SIGALRM", "SIGUSR1", "SIGUSR2", "SIGXCPU")
 
 LOCK = ".lock"  # in a temporary folder
+YOUNG = 60.0  # age in seconds below which a folder may not be locked yet
 
 _pending: list[int] | None = None  # numbers of the signals that came while blocked
 
@@ -107,6 +109,9 @@ def _remove_abandoned() -> None:
     from filelock import FileLock, Timeout
 
     for folder in Path(gettempdir()).glob("mxeon-*"):
+        with suppress(OSError):
+            if time.time() - folder.stat().st_mtime < YOUNG:
+                continue
         with suppress(OSError, Timeout):
             own = not hasattr(os, "getuid") or folder.lstat().st_uid == os.getuid()
             if own and (folder / LOCK).is_file() and not folder.is_symlink():
