@@ -72,7 +72,7 @@ export function python_line(of: Model, { wo, wi }: Pair, state: State): string {
   const parameter = of.parameter ? `, ${state.roughness}` : "";
   const list = (values: readonly number[]): string => `[${values.join(", ")}]`;
   return (
-    "from math import pi; from mxeon.models.table import model; " +
+    "from math import pi; from mxeon import model; " +
     `print(*(pi * ${wi[2]} * model("${of.name}")` +
     `.brdf(${list(wo)}, ${list(wi)}, ${list(state.color)}${parameter})))`
   );

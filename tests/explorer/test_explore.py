@@ -21,7 +21,7 @@ from mxeon.shaders.library import examples_folder
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 from tests.explorer.browser import judged, opened, until
 from tests.support.documents import textured
-from tests.support.results import Result, kept
+from tests.support.results import Diagnosis, Result, kept
 from tests.support.verdicts import FAILED, NOT_RUN, PASSED
 
 LARGEST = 2 * 2**20  # bytes of the page without documents
@@ -99,7 +99,8 @@ def test_code_of_a_document_needs_a_permission(tmp_path, capsys):
 def result(host, subject, verdict, **distances):
     """A result of the check of values with stock MaterialX."""
     titles = {diffuse_model(name).title: distance for name, distance in distances.items()}
-    return Result("value", "claim", subject, host, "stock", verdict, distances=titles)
+    diagnosis = Diagnosis((), titles)
+    return Result("value", "claim", subject, host, "stock", verdict, diagnosis=diagnosis)
 
 
 def test_the_diagnoses_of_a_run_can_be_chosen(tmp_path):
