@@ -4,6 +4,7 @@
 import os
 import re
 import shlex
+import sys
 
 import pytest
 
@@ -162,7 +163,9 @@ WRONG = {
     "kit check kit --report nodes.md": "nodes.md: must be a folder; File exists",
     "kit export nodes.md": "nodes.md: must be a folder; File exists",
     "figures nodes.md": "nodes.md: must be a folder; File exists",
+    "library --export lib": "lib: must be a new or empty folder",
     f"generate {LOOK} --target osl --outputPath nodes.md": "nodes.md: must be a folder; File exists",
+    f"render {LOOK} --integrator path --library nosuch --output out.png": "or a folder that exists; got 'nosuch'",
     f"check {LOOK} --waitForWorkers -1": "waitForWorkers must be positive and at most 1e+06 s; got -1",
     f"check {LOOK} --report ''": "arguments must not be empty; got 'check' 'look.mtlx'",
     f"check {LOOK} --report=": "arguments must not be empty",
@@ -177,6 +180,17 @@ WRONG = {
 def test_what_is_wrong_is_said_first(command, words, inputs, capsys):
     (inputs / "folder.png").mkdir()
     assert words in refused(shlex.split(command), inputs, capsys)
+
+
+@pytest.mark.parametrize("package", ["jinja2", "matplotlib"])
+@pytest.mark.parametrize(
+    "command", [f"check {LOOK} --report out", "report make run", "report field run --output f.html"]
+)
+def test_a_page_without_its_packages_is_refused_first(
+    package, command, inputs, monkeypatch, capsys
+):
+    monkeypatch.setitem(sys.modules, package, None)
+    assert f"needs {package}: pip install '.[report]'" in refused(command.split(), inputs, capsys)
 
 
 @pytest.mark.parametrize(

@@ -91,6 +91,10 @@ def run(options: argparse.Namespace) -> int:
 
     if options.resume and not options.report:
         raise InputError("--resume needs the folder of the run to continue; pass --report DIR")
+    if options.report:
+        from mxeon.report import require_extra
+
+        require_extra("--report")
     if options.scheduler and options.materialx:
         raise InputError(
             "--materialx does not reach the workers of a --scheduler; start them with that package "

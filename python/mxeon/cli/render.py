@@ -84,12 +84,14 @@ def run(options: argparse.Namespace) -> int:
     """Write a picture and print its path; return the exit status."""
     from mxeon.io.files import check_output
     from mxeon.io.images import PICTURES, write_picture
+    from mxeon.shaders.library import library_name
 
     inputs = arguments.inputs(options, [options.file], options.environment)
     check_output(options.output, inputs, PICTURES)
     if not os.path.isdir(folder := os.path.dirname(os.path.abspath(options.output))):
         rule = "output must lie in a folder that exists"
         raise InputError(f"{rule}; got {options.output}: make {folder} first")
+    library_name(options.library)
     names = ("host", "scene", "environment", "size", "shape", "element", "library")
     known = {name: getattr(options, name) for name in names}
     if options.integrator == "path" and options.host != "gl":

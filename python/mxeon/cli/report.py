@@ -45,7 +45,9 @@ def run_make(options: argparse.Namespace) -> int:
     """Write the report of a run; return the exit status of the run."""
     from mxeon.cli.answer import show_run
     from mxeon.conformance.run import read_run
+    from mxeon.report import require_extra
 
+    require_extra("report.html")
     return show_run(read_run(options.report), options)
 
 
@@ -53,8 +55,10 @@ def run_field(options: argparse.Namespace) -> int:
     """Write the page that compares renderers; return PASSED: the page shows what failed."""
     from mxeon.conformance.results import report_files
     from mxeon.io.files import check_output
+    from mxeon.report import require_extra
     from mxeon.survey.field import read_field, reports_in, write_field
 
+    require_extra("the page that compares renderers")
     reports = (each for folder in options.reports for each in reports_in(folder))
     read = (file for each in reports for file in report_files(each))
     check_output(options.output, read, [".html"])

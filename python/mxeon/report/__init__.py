@@ -11,6 +11,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import closing, contextmanager
 from dataclasses import replace
 from functools import partial
+from importlib.util import find_spec
 from itertools import islice
 from os import PathLike
 from pathlib import Path
@@ -197,16 +198,11 @@ def _write_picture(folder: Path, place: tuple[Picture, str]) -> None:
     write_png(below(folder, f"{name}.png"), image, picture.metadata)
 
 
-@contextmanager
-def needing_extra(name: str) -> Iterator[None]:
-    """Raise PackageError if an import needs a package of the `report` extra, for what has a name."""
-    try:
-        yield
-    except ModuleNotFoundError as error:
-        if error.name in ("jinja2", "matplotlib"):
-            remedy = install("report")
-            raise PackageError(f"{name} needs {error.name}: {remedy}") from error
-        raise
+def require_extra(name: str) -> None:
+    """Raise PackageError unless the packages of the `report` extra, which `name` needs, are installed."""
+    for package in ("jinja2", "matplotlib"):
+        if find_spec(package) is None:
+            raise PackageError(f"{name} needs {package}: {install('report')}")
 
 
 def html(run: Run) -> Generator[str, None, None]:
@@ -214,8 +210,9 @@ def html(run: Run) -> Generator[str, None, None]:
 
     Threads draw the pictures until it is closed.
     """
-    with needing_extra("report.html"):
-        from mxeon.report.page import render
+    require_extra("report.html")
+    from mxeon.report.page import render
+
     files = {
         id(each): stem for each, stem in zip(run.pictures, image_names(run.pictures), strict=True)
     }

@@ -30,7 +30,7 @@ from mxeon.shaders.generators import (
     generator_of,
     tokens_of,
 )
-from mxeon.shaders.library import has_profile, load_library, own_folders
+from mxeon.shaders.library import has_profile, library_name, load_library, own_folders
 from mxeon.shaders.library_tree import in_words, root
 from mxeon.shaders.methods import UNCHOSEN, Methods, assert_generated
 
@@ -169,7 +169,7 @@ def generate(
         raise InputError(f"{target}: only rasterized targets have methods; got {methods}")
     if profile == "path":
         assert_known("target of the profile path", target, path_tracing.TARGETS)
-        if not has_profile(library, profile):
+        if not has_profile(library_name(library), profile):
             raise InputError(
                 f"library {library}: must have genglsl/path for the profile path; use --library eonlib"
             )
