@@ -8,7 +8,7 @@ what the page shows in `ledger/versions.json`; `python -m tools.site` writes the
 import json
 from collections import Counter, defaultdict
 
-from mxeon.conformance.results import PASSED
+from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED
 from mxeon.io.files import write_text
 from mxeon.shaders.library import TESTED
 from tests.support.wheels import MAIN, run, wheel
@@ -67,24 +67,27 @@ def page(text):
     """The page with its tables from the record."""
     known = json.loads(RECORD.read_text(encoding="utf-8"))
     commit, date = known["commit"]
-    columns = [(library, name) for name in VERSIONS for library in LIBRARIES]
     nodes = [
         f"*Main* is the data of MaterialX's main branch at commit {commit}, of {date}, with the code of {TESTED[-1]}.",
         "",
-        f"| node | {' | '.join(f'{library}, {name}' for library, name in columns)} |",
-        f"|---|{len(columns) * '---|'}",
+        "| MaterialX | library | passed | differ | failed | not run |",
+        "|---|---|---|---|---|---|",
     ]
-    for node in known["nodes"]["eonlib"][VERSIONS[-1]]:
-        cells = []
-        for library, name in columns:
-            counts = Counter(known["nodes"][library][name].get(node, {}))
-            differs = f" + {counts['differs']}" if counts["differs"] else ""
-            share = f"{counts['passed']}{differs} of {counts.total()}"
-            cells.append(share if counts else "none")
-        nodes.append(f"| {node} | {' | '.join(cells)} |")
+    for name in VERSIONS:
+        for library in LIBRARIES:
+            counts = sum(map(Counter, known["nodes"][library][name].values()), Counter())
+            cells = (str(counts[verdict]) for verdict in (PASSED, DIFFERS, FAILED, NOT_RUN))
+            nodes.append(f"| {name} | {library} | {' | '.join(cells)} |")
     left = []
     for name, found in known["open"].items():
-        words = "; ".join(f"{check}: {'; '.join(each)}" for check, each in found.items())
+        nodes_of = defaultdict(set)
+        for check, subjects in found.items():
+            for subject in subjects:
+                nodes_of[subject.split(",")[0]].add(check.split()[0])
+        checks_of = defaultdict(list)
+        for node, checks in sorted(nodes_of.items()):
+            checks_of[", ".join(sorted(checks))].append(node)
+        words = "; ".join(f"{', '.join(each)}: {checks}" for checks, each in checks_of.items())
         left.append(f"- {name}: {words or 'nothing'}.")
     text = with_block(text, "nodes", "\n".join([*nodes, ""]))
     return with_block(text, "open", "\n".join([*left, ""]))
