@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The table of the page on arrays: which functions take those of other libraries."""
+"""The page on arrays: which functions do not take those of other libraries."""
 
 import inspect
 import re
@@ -34,14 +34,12 @@ def takes_any(function):
 
 
 def page(text):
-    """The page with its table, and its list of the other functions, as they are now."""
-    lines = ["| function | array arguments, each differentiable |", "|---|---|"]
-    others = []
-    for name, function in public().items():
-        if takes_any(function):
-            taken = ", ".join(f"`{each}`" for each in arrays(function))
-            lines.append(f"| `{name.removeprefix('mxeon.')}` | {taken} |")
-        else:
-            others.append(f"`{name.rpartition('.')[2]}`")
-    lines += ["", f"{' and '.join(others)} take lobes, whose arrays may be of any library.", ""]
-    return with_block(text, "functions", "\n".join(lines))
+    """The page with the list of the functions that take no arrays of other libraries, as they are now."""
+    functions = public().items()
+    others = [f"`{name.rpartition('.')[2]}`" for name, each in functions if not takes_any(each)]
+    line = (
+        "Every public function of arrays in `mxeon.models`, `mxeon.albedo`, `mxeon.inversion` and `mxeon.sampling` takes them, "
+        "and\nhas gradients with respect to every argument of the type `ArrayLike`. "
+        f"Only {' and '.join(others)} take lobes,\nwhose arrays may be of any library.\n"
+    )
+    return with_block(text, "functions", line)
