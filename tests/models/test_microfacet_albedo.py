@@ -247,6 +247,19 @@ def test_albedos_are_finite_on_the_closed_domain(name):
     assert np.isfinite(E).all() and (E >= 0.0).all()
 
 
+@pytest.mark.parametrize("alpha", [(0.3, 0.12), (0.3, 0.6), (0.01, 0.004), (0.02, 1.0)])
+def test_many_views_of_two_alphas_share_a_polynomial_that_follows_the_quadrature(alpha):
+    mu, phi = np.random.default_rng(3).random((2, 600)) * [[1.0], [2.0 * np.pi]]
+    wo = np.concatenate([unit(mu**2, phi), unit(np.array([1e-4, 1.0]), 0.0)])
+    few = wo[::10]
+    shared, own = (
+        conductor_brdf(each, each, alpha, 0.0, 3.0)
+        / conductor_brdf(each, each, alpha, 0.0, 3.0, compensate=False)
+        for each in (wo, few)
+    )
+    np.testing.assert_allclose(shared[::10], own, rtol=tolerances.SLOPES)
+
+
 def test_a_sum_over_visible_normals_is_the_albedo_but_for_its_masking():
     rng, count = np.random.default_rng(7), 1 << 18
     wo, same, other = np.array(unit(0.4, 0.7)), np.array([0.3, 0.3]), np.array([0.2, 0.6])

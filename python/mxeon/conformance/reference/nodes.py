@@ -26,11 +26,10 @@ from mxeon.errors import NotRun, OutsideModel
 from mxeon.models.core import layering
 from mxeon.models.core.layering import Bsdf, throughput
 from mxeon.models.media import diffusion_blur, transmittance
-from mxeon.models.microfacet.slopes import slope_nodes, sum_nodes
+from mxeon.models.microfacet import node_albedo
 from mxeon.models.nodes import NODES
 from mxeon.models.nodes.lobes import HAIR_NODE, SUBSURFACE_NODE
 from mxeon.models.nodes.media import METER
-from mxeon.models.nodes.microfacets import LOBES as MICROFACETS
 from mxeon.models.nodes.microfacets import (
     MICROFACET_NODES,
     TRANSMISSION_NODES,
@@ -47,11 +46,11 @@ from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG, value_text
 
 Albedo: TypeAlias = Callable[[Array, Inputs], Array]
 
-# An albedo is interpolated over a picture if its last coefficients are below this, far below a host's
-# rounding: degrees in sqrt(mu) and in cos(2 phi).
-TAIL = 2e-7
+# An albedo is interpolated over a picture if its last coefficients are below this, far below the errors
+# of fits: degrees in sqrt(mu) and in cos(2 phi).
+TAIL = 1e-6
 ISOTROPIC = ((32, 0), (64, 0), (128, 0), (256, 0))
-ANISOTROPIC = ((32, 16), (48, 32))
+ANISOTROPIC = ((24, 12), (48, 32))
 AT_ONCE = 1 << 12  # arguments of a series at once
 KEPT = 4  # lobes of the pictures of a scene, of up to 2.5 megabytes each
 SEPARATE = 1000  # directions, whose albedos are as soon computed one by one
@@ -144,6 +143,10 @@ def _blur(reach: float) -> Array:
 LET_THROUGH: dict[str, Callable[[Array, Inputs], Array]] = {
     row.name: partial(_not_reflected, row.category) for row in TRANSMISSION_NODES
 }
+# Share of a white environment that a lobe of two alphas reflects by MaterialX's sum, by its category.
+SUMS: dict[str, Callable[[Array, Inputs], Array]] = {
+    row.category: partial(node_albedo, row.category, summed=True) for row in MICROFACET_NODES
+}
 # What takes light from all sides, without a cosine.
 AROUND = (
     replace(SUBSURFACE_NODE, inputs=("color", "radius", "anisotropy"), value=_spread),
@@ -209,7 +212,7 @@ class ShadingPoints:
             if self.opacity and node.fixed.get("scatter_mode") == "T":
                 return np.broadcast_to(inputs.get("tint", np.ones(3)), wo.shape)
             if node in MICROFACET_NODES and np.ptp(inputs["roughness"], axis=-1).any():
-                share = SUMS[node.name]
+                share = SUMS[node.category]
             return self._albedo(share, node, wo, inputs) if share else np.zeros(wo.shape)
         if node in AROUND:
             return np.asarray(node.value(wo, wi, inputs))
@@ -287,27 +290,6 @@ class ShadingPoints:
         axes = np.stack(np.broadcast_arrays(x, np.cross(z, x), z), axis=1)
         with np.errstate(invalid="ignore"):  # a tangent along the normal shows in the values
             return np.asarray(axes / np.linalg.norm(axes, axis=2, keepdims=True))
-
-
-def _sum(node: PbrNode, wo: Array, inputs: Inputs) -> Array:
-    """Share of a white environment that a lobe of two alphas reflects by MaterialX's sum, (N, 3)."""
-    curve, share = MICROFACETS[node.category].fresnel, node.albedo(wo, inputs).copy()
-    for part in np.array_split(np.arange(len(wo)), max(1, len(wo) // BLOCK)):
-        views, some = wo[part], at(inputs, part)
-        alpha = np.broadcast_to(some["roughness"], (len(part), 2)).T
-        cosine, own = slope_nodes(views.T, alpha)
-        places = np.broadcast_to(np.arange(len(part)), cosine.shape).ravel()
-        F = np.broadcast_to(curve(cosine.ravel(), at(some, places)), (cosine.size, 3))
-        F = F.reshape(*cosine.shape, 3)
-        summed, whole = (
-            np.einsum("rpn,rpnc->nc", weights, F) for weights in (sum_nodes(views.T, alpha)[1], own)
-        )
-        share[part] *= np.where(whole > 0.0, summed / np.where(whole > 0.0, whole, 1.0), 1.0)
-    return np.asarray(share)
-
-
-BLOCK = 32  # views whose normals are summed at once
-SUMS = {node.name: partial(_sum, node) for node in MICROFACET_NODES}
 
 
 def at(inputs: Inputs, points: NDArray[np.intp]) -> dict[str, Array]:

@@ -53,10 +53,11 @@ from mxeon.models.core.arrays import (
     library,
     like,
 )
+from mxeon.models.core.chebyshev import chebyshev_coefficients, chebyshev_nodes, chebyshev_sum
 from mxeon.models.core.evaluation import evaluate_material, evaluate_number
 from mxeon.models.microfacet import fresnel, ggx
 from mxeon.models.microfacet.ggx import albedo, missing_light
-from mxeon.models.microfacet.slopes import slope_nodes, transmitting_nodes
+from mxeon.models.microfacet.slopes import slope_nodes, sum_nodes, transmitting_nodes
 
 
 @dataclass(frozen=True)
@@ -115,16 +116,59 @@ def missing(pair: Pair) -> Array:
     return missing_of(pair.wo, pair.roughness)
 
 
+# Degrees of the polynomial that many views of one roughness share, whose last coefficients have to be below TAIL: it is
+# then as exact as the quadrature. The axes of very anisotropic surfaces need more.
+DEGREES, TAIL = (32, 16), 5e-6
+MANY = (DEGREES[0] + 1) * (DEGREES[1] + 1)
+
+
 @lru_cache(maxsize=8)
-def _anisotropic_albedos(rows: bytes) -> Array:
-    """E_ss of float64 rows x, y, z of views, then both alphas, each of shape (N,)."""
+def _anisotropic_missing(rows: bytes) -> Array:
+    """(1 - E_ss) / E_ss of float64 rows x, y, z of views, then both alphas, each of shape (N,)."""
     columns = np.frombuffer(rows).reshape(5, -1)
-    return evaluate_number(
+    E = evaluate_number(
         lambda wo, roughness: slope_nodes(wo, roughness)[1].sum(axis=(0, 1)),
         {"wo": columns[:3].T, "roughness": columns[3:].T},
         {},
         BLOCK,
     )
+    return np.asarray((1.0 - E) / E)
+
+
+@lru_cache(maxsize=8)
+def _series(roughness: tuple[float, float]) -> Array | None:
+    """Chebyshev coefficients of (1 - E_ss) / E_ss in `_place`, or None where they fall too slowly."""
+    s, turn = np.meshgrid(*(chebyshev_nodes(degree + 1) for degree in DEGREES), indexing="ij")
+    squares = turn / roughness[0], (1.0 - turn) / roughness[1]
+    cos_phi, sin_phi = (np.sqrt(each / sum(squares)) for each in squares)
+    alpha = np.hypot(roughness[0] * cos_phi, roughness[1] * sin_phi)
+    mu = s**3 * alpha / (1.0 + alpha - s**3)
+    sine = np.sqrt((1.0 - mu) * (1.0 + mu))
+    rows = np.broadcast_arrays(sine * cos_phi, sine * sin_phi, mu, *roughness)
+    values = _anisotropic_missing(np.stack(rows).tobytes()).reshape(s.shape)
+    series = chebyshev_coefficients(chebyshev_coefficients(values).T).T
+    return series if max(abs(series[-4:]).max(), abs(series[:, -2:]).max()) < TAIL else None
+
+
+def _place(wo: Array, roughness: Array) -> tuple[Array, Array]:
+    """Cube root of mu (1 + a) / (mu + a), a the alpha at the azimuth of wo, and the azimuth from 0 to 1."""
+    x, y = (np.square(wo[k]) * roughness[k] for k in (0, 1))
+    sine = np.maximum(np.hypot(wo[0], wo[1]), 1e-150)
+    alpha = np.hypot(wo[0] * roughness[0], wo[1] * roughness[1]) / sine
+    s = np.minimum(wo[2] * (1.0 + alpha) / np.maximum(wo[2] + alpha, 1e-300), 1.0)
+    return np.cbrt(s), x / np.maximum(x + y, 1e-300)
+
+
+def _of_unlike(rows: Array) -> Array:
+    """(1 - E_ss) / E_ss of rows as `_anisotropic_missing` takes them; those that are alike count once."""
+    wo, alphas = rows[:3], rows[3:]
+    one = rows.shape[1] >= MANY and not np.ptp(alphas, axis=1).any() and alphas.all()
+    if one and (series := _series((float(alphas[0, 0]), float(alphas[1, 0])))) is not None:
+        s, turn = _place(wo, alphas[:, 0])
+        lines = chebyshev_sum(series[:, :, np.newaxis], s)
+        return np.asarray(np.maximum(chebyshev_sum(lines, turn), 0.0))
+    each, indices = np.unique(rows, axis=1, return_inverse=True)
+    return _anisotropic_missing(each.tobytes())[indices.reshape(-1)]
 
 
 def missing_of(wo: Array, roughness: Array) -> Array:
@@ -139,12 +183,8 @@ def missing_of(wo: Array, roughness: Array) -> Array:
         chosen = np.broadcast_to(unequal, total.shape)
         # E_ss is the same for mirrored views, and for the lights and curves of one picture.
         views = (abs(wo[0]), abs(wo[1]), wo[2])
-        rows = np.stack(
-            [np.broadcast_to(each, total.shape)[chosen] for each in (*views, *roughness)]
-        )
-        rows, indices = np.unique(rows, axis=1, return_inverse=True)
-        E = _anisotropic_albedos(rows.tobytes())
-        total[chosen] = ((1.0 - E) / E)[indices.reshape(-1)]
+        rows = [np.broadcast_to(each, total.shape)[chosen] for each in (*views, *roughness)]
+        total[chosen] = _of_unlike(np.stack(rows))
         return total
     # Where both alphas are the same, the difference is 0 and its gradient is that by each alpha alone.
     mean = ggx.mean_alpha(roughness)
@@ -247,11 +287,15 @@ def node_brdf(
 
 @any_array
 def node_albedo(
-    category: str, wo: ArrayLike, inputs: Mapping[str, ArrayLike], compensate: bool = True
+    category: str,
+    wo: ArrayLike,
+    inputs: Mapping[str, ArrayLike],
+    compensate: bool = True,
+    summed: bool = False,
 ) -> Array:
-    """Directional albedo of `node_brdf`."""
+    """Directional albedo of `node_brdf`; `summed`: with the weights of `sum_nodes`."""
     curve, vectors, numbers = _material(category, inputs)
-    return lobe_albedo(curve, wo, inputs["roughness"], vectors, numbers, compensate)
+    return lobe_albedo(curve, wo, inputs["roughness"], vectors, numbers, compensate, summed)
 
 
 @any_array
@@ -422,6 +466,7 @@ def lobe_albedo(
     vectors: Mapping[str, Numbers],
     numbers: Mapping[str, Numbers],
     compensate: bool,
+    summed: bool = False,
 ) -> Array:
     """Albedo of a lobe with this Fresnel curve, whose checked inputs `vectors` and `numbers` are."""
     wo, roughness = checked_directions("wo", wo), checked_roughness(roughness)
@@ -430,14 +475,14 @@ def lobe_albedo(
     def value(
         wo: Array, roughness: Array, unseen: Array, average: Array, **material: Array
     ) -> Array:
-        c, weight = slope_nodes(wo, roughness)
+        c, weight = sum_nodes(wo, roughness) if summed else slope_nodes(wo, roughness)
         spread = {
             k: v[:, np.newaxis, np.newaxis] if k in vectors else v for k, v in material.items()
         }
         xp = array_namespace(c)
         E = xp.sum(curve.at(c, **spread) * weight, axis=(1, 2))
         squared = curve.critical(**material)
-        if library(squared) or np.any(squared > 0.0):
+        if not summed and (library(squared) or np.any(squared > 0.0)):
             # All light, but what passes above the critical angle.
             alpha, isotropic = 0.5 * (roughness[0] + roughness[1]), roughness[0] == roughness[1]
             lossless = xp.where(isotropic, albedo(wo[2], alpha), xp.sum(weight, axis=(0, 1)))
