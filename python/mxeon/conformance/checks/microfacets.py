@@ -108,7 +108,7 @@ def shape(case: Case) -> Compared:
     Compensation cancels in the ratio.
     """
     batch, other = (_clear(each.first(PAIRS)) for each in case.samples.mirrored)
-    first, second = case.expected(batch), case.expected(other)
+    first, second = (case.of(FacetSpec).single(each) for each in (batch, other))
     lit = np.asarray((np.minimum(first, second) > LEAST_VALUE).any(axis=1))
     least = np.minimum(batch.wo[:, 2], np.minimum(batch.wi[:, 2], other.wi[:, 2]))
     lit &= least >= LEAST_TANGENT_COSINE

@@ -4,6 +4,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -41,6 +42,7 @@ from mxeon.conformance.tolerance import (
     sum_in,
     sum_of,
 )
+from mxeon.models.microfacet import Lobe, node_albedo, uncompensated
 from mxeon.models.microfacet.defects import MEAN_ALPHA
 from mxeon.models.microfacet.ggx import smith_g1, smith_g2, smith_g2_anisotropic
 from mxeon.models.nodes.microfacets import (
@@ -362,18 +364,21 @@ class FacetSpec(PbrSpec):
         inputs["roughness"] = rounded(LEAST_STRETCHED ** rng.random((2, count)))
         batch = Batch(directions(rng, count), directions(rng, count), inputs)
         batch = batch.where(batch.wo[:, 2] >= LEAST_STRETCHED)
-        pairs, weights = self.lit(batch, counts.nodes)
-        values = self.summed(pairs).reshape(*weights.shape, 3)
-        return batch, (values * weights[:, :, np.newaxis]).sum(axis=1)
+        albedo = node_albedo(self.node, batch.wo, batch.inputs, summed=True)
+        return batch, batch.strength * albedo
+
+    def single(self, batch: Batch) -> Array:
+        """Values without compensation, which cancels in ratios for one view."""
+        return self.values(partial(LOBES[self.node].value, terms=Lobe(uncompensated)), batch)
 
     def summed(self, pairs: Batch) -> Array:
-        """Values as MaterialX's sum over visible normals weights them, by G_2 / G_1 of the mean alpha."""
+        """`single` as the sum over visible normals weights it, by G_2 / G_1 of the mean alpha."""
         alpha = pairs.inputs["roughness"]
         mean = np.sqrt(alpha.prod(axis=1))
         weight = smith_g2(pairs.wo[:, 2], pairs.wi[:, 2], mean)
         weight = weight / smith_g1(pairs.wo, np.stack([mean, mean], axis=1))
         weight *= smith_g1(pairs.wo, alpha) / smith_g2_anisotropic(pairs.wo, pairs.wi, alpha)
-        return np.asarray(self.value(pairs) * weight[:, np.newaxis])
+        return np.asarray(self.single(pairs) * weight[:, np.newaxis])
 
     def turned(self, counts: Counts) -> Batch:
         """Pairs in frames of their own, none with a sharp lobe, whose place would be uncertain.
