@@ -76,12 +76,13 @@ MicrofacetLobe microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec2 rou
     lobe.mu_h = clamp(dot(lobe.wo, eonlib_half_vector(lobe.wo, lobe.wi, lobe.N)), M_FLOAT_EPS, 1.0);
     lobe.roughness = clamp(roughness, M_FLOAT_EPS, 1.0);
     lobe.alpha = mx_average_alpha(lobe.roughness);
-    lobe.visible = vec2(lobe.mu_o, lobe.alpha);
-    vec3 lossless = vec3(lobe.visible, 1.0);
+    vec2 visible = vec2(lobe.mu_o, lobe.alpha);  // naga takes no member of a structure as an output
+    vec3 lossless = vec3(visible, 1.0);
     if (lobe.roughness.x != lobe.roughness.y)
     {
-        lossless = ggx_facets(microfacet_local(lobe, lobe.wo), lobe.roughness, lobe.visible);
+        lossless = ggx_facets(microfacet_local(lobe, lobe.wo), lobe.roughness, visible);
     }
+    lobe.visible = visible;
     lobe.albedo = 1.0 - ggx_missing(lossless.x, lossless.y) * lossless.z;
     return lobe;
 }
