@@ -5,7 +5,6 @@
 |---|---|
 | `python -m tools.site` | OSL twins, explorer, ledger, and tables of pages that need no engine; a minute |
 | `... specification [HOST ...]` | table of results.md, from gl, and out/specification.json; some minutes |
-| `... documents run FOLDER DIR`, `... page DIR` | tables of documents.md; four minutes |
 | `... field` | field.html, from every host that runs here |
 | `... versions` | versions.md and the ledger's lines on versions; a quarter of an hour |
 | `... gallery`, `... brushed`, `... explorer`, `... note` | pictures of these pages |

@@ -2,7 +2,7 @@
 """Writes every generated file that needs no engine and no other version of MaterialX: `python -m tools.site`.
 
 These are the OSL twins, the explorer, the ledger, and the tables of other pages. What is measured on hosts
-(`specification`, `field`, `documents`, `versions`, `ledger.measure`, pictures) has its own command.
+(`specification`, `field`, `versions`, `ledger.measure`, pictures) has its own command.
 """
 
 from pathlib import Path
