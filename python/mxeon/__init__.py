@@ -15,7 +15,7 @@ if TYPE_CHECKING:  # for type checkers and the API reference, which run no code
     from mxeon.shaders.library import load_library
     from mxeon.survey.callables import brdf_test, check_brdf
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 # Public name -> the module that defines it.
 _HOMES = {
