@@ -17,9 +17,9 @@ unless stated otherwise. Equations, figures and listings have the numbers of [Po
 2025 edition ([bibliography](bibliography.md)). The figures follow the claims; their data are in the
 folder `figures`.
 
-A claim *holds* if all of its measured values meet the limit in the column *required*, holds *in part* if
-some do, and *fails* if none does; NaN meets no limit. The last table is about MaterialX's text, not the
-paper.
+A claim *holds* if all of its measured values meet its limit, holds *in part* if some do, and *fails* if none
+does; NaN meets no limit. The tables have the claims that do not hold, with the limit in the column *required*.
+The last section is about MaterialX's text, not the paper.
 """
 TALLY = "{count} claims; verdicts: {holds} holds, {part} holds in part, {fails} fails."
 
@@ -108,8 +108,11 @@ def page(sections: Sequence[Section]) -> str:
             part=verdicts.count(IN_PART),
             fails=verdicts.count(FAILS),
         )
-        lines = [f"| {' | '.join(cells)} |" for cells in (COLUMNS, *rows)]
+        wrong = [row for row in rows if row[-1] != HOLDS]
+        lines = [f"| {' | '.join(cells)} |" for cells in (COLUMNS, *wrong)]
         lines.insert(1, "|---" * len(COLUMNS) + "|")
+        lines += ["", "These hold:", ""]
+        lines += [f"- {row[0]}: {row[1]} ({row[2]})." for row in rows if row[-1] == HOLDS]
         remark = [section.remark, ""] if section.remark else []
         parts.append("\n".join([f"## {section.heading}", "", tally, "", *lines, "", *remark]))
     return "\n".join(parts)
