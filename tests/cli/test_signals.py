@@ -30,14 +30,19 @@ def start(folder, *arguments, code="from mxeon.__main__ import main; sys.exit(ma
     )
 
 
+def wait_for_results(folder, process):
+    """Wait until a command that checks with a report in `folder` has written results."""
+    journal = folder / "report" / "journal" / "items.jsonl"
+    wait_for(lambda: journal.exists() and journal.read_bytes().count(b"\n") > 1, process)
+
+
 @pytest.mark.parametrize(
     ("number", "to"),
     [(signal.SIGTERM, "command"), (signal.SIGINT, "terminal")],
 )
 def test_a_signal_ends_the_command_in_one_line_and_nothing_stays(tmp_path, number, to):
     process = start(tmp_path, *CHECK)
-    journal = tmp_path / "report" / "journal" / "items.jsonl"
-    wait_for(lambda: journal.exists() and journal.read_bytes().count(b"\n") > 1, process)
+    wait_for_results(tmp_path, process)
     (os.kill if to == "command" else os.killpg)(process.pid, number)
     _, errors = process.communicate(timeout=DEADLINE)
     line = "interrupted" if number == signal.SIGINT else f"ended by {number.name}"
@@ -50,7 +55,8 @@ def test_a_signal_ends_the_command_in_one_line_and_nothing_stays(tmp_path, numbe
 def test_a_killed_command_leaves_its_folder_to_the_next_one(tmp_path):
     process = start(tmp_path, *CHECK)
     folder = tmp_path / "tmp"
-    wait_for(lambda: list(folder.glob("mxeon-pool-*/.lock")), process)
+    wait_for_results(tmp_path, process)
+    process.send_signal(signal.SIGSTOP)  # it would end, and remove its folder
     [made] = folder.glob("mxeon-pool-*")
     os.utime(made, (0, 0))  # folders of the last minute stay
     alive = subprocess.run(GENERATE, cwd=tmp_path, env=os.environ | {"TMPDIR": str(folder)})

@@ -88,7 +88,7 @@ from mxeon.hosts import open_engine
 engine = open_engine("gl")
 if os.fork() == 0:
     run = check(nodes=["sheen_bsdf"])
-    print({each.reason for each in run.results if each.host == "gl"})
+    print({each.reason for each in run.results if each.host == "gl"}, flush=True)
     os._exit(0)
 os.wait()
 """
