@@ -106,6 +106,5 @@ def test_all_tests_require_every_host_that_they_install():
         *(row.name for row in host_rows() if row.module),
     } - {
         "eevee",  # its checks take minutes on a software driver
-        "luxcore",  # its package brings 200 MB for GPUs
         "testrender",
     }

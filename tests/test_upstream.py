@@ -18,7 +18,7 @@ from tools.site.ledger import FOLDER, completed, entries, measure, measured, pat
 MEASURED = measured()
 OF_A_DRIVER = "genglsl_albedo_acos"  # its figure is the error of the driver that its page names
 # Those of three.js and Babylon.js are measured in tests/hosts/test_browser.py.
-ISSUES = [each for each in measure.CHECKED if each.host not in ("three", "babylon")]
+ISSUES = [each for each in measure.CHECKED if each.host not in ("three", "babylon", "luxcore")]
 
 
 def test_what_is_measured_is_complete():

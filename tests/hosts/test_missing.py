@@ -23,7 +23,6 @@ ENVIRONMENTS = [  # host, its environment, and the words
     ("storm", {BLENDER: NOWHERE}, f"no interpreter {NOWHERE}; pip install bpy"),
     ("storm", {BLENDER: sys.executable}, "no package bpy; pip install bpy==.* in the env"),
     ("mitsuba", {"MXEON_MITSUBA_PYTHON": NOWHERE}, r"not installed: pip install '\.\[mitsuba\]'"),
-    ("luxcore", {"MXEON_LUXCORE_PYTHON": NOWHERE}, r"not installed: pip install '\.\[luxcore\]'"),
     ("three", {browser.MODULES: "/nowhere"}, f"no package three in /nowhere; {NPM}"),
     ("babylon", {browser.MODULES: "/nowhere"}, f"no package @babylonjs/core in /nowhere; {NPM}"),
     ("three-gpu-pathtracer", {browser.MODULES: "/nowhere"}, f"no package .* in /nowhere; {NPM}"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Mitsuba and LuxCoreRender: their own nodes, and pictures of facets."""
+"""Mitsuba: its own BSDFs, and pictures of facets."""
 
 from dataclasses import replace
 
@@ -10,19 +10,18 @@ from mxeon import check
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.scene import BACK, FRONT, SIDE, VIEW, local_directions
 from mxeon.survey.facets import facet_points
-from mxeon.survey.polyhedron import luxcore, mitsuba
+from mxeon.survey.polyhedron import mitsuba
 from tests.support.availability import available
 from tests.support.plans import keep_host
 from tests.support.verdicts import PASSED, RENDERER_NODES
 
 EXAMPLE = examples_folder() / "plaster.mtlx"
-MODULES = {"mitsuba": mitsuba, "luxcore": luxcore}
 FACETS = 7e-5  # relative errors of pictures of facets, times the light's cosine
 
 
-@pytest.fixture(scope="module", params=MODULES)
-def host(request):
-    with available(request.param), MODULES[request.param].Host() as host:
+@pytest.fixture(scope="module")
+def host():
+    with available("mitsuba"), mitsuba.Host() as host:
         host.identity()
         yield host
 
@@ -42,7 +41,7 @@ def test_mitsuba_has_the_models_that_it_documents(monkeypatch):
 def test_pictures_are_linear_and_have_float_precision(host, scene):
     """A dark color beside a bright one: 8 bits or a tone curve would be off by far more."""
     scene = replace(scene, size=64)
-    material = MODULES[host.name].NODES[0].made((1.0, 0.02, 1e-4), 0.0)
+    material = mitsuba.NODES[0].made((1.0, 0.02, 1e-4), 0.0)
     picture = host.node(material, scene)[facet_points(64).mask]
     normal = facet_points(scene.size).normal[facet_points(scene.size).mask]
     wo, wi = (local_directions(normal, each) for each in (VIEW, scene.light))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A renderer's own process, which answers one request after the other.
 
-The other end of the pipe is a script of the host, started by its path. It reads one JSON object per line
-on standard input and answers each with one on standard output, the first one with its version. The process
-ends when standard input does.
+The other end of the pipe is `serve.py` with a script of the host. It reads one JSON object per line on standard
+input and answers each with one on standard output, the first one with its version. The process ends when standard
+input does.
 """
 
 from __future__ import annotations
@@ -22,23 +22,22 @@ from typing import TypeAlias
 from mxeon.errors import NotRun
 from mxeon.jobs.signals import Temporary
 
-Reply: TypeAlias = dict[str, str]  # of a renderer's process
+Reply: TypeAlias = dict[str, str]
+SERVE = Path(__file__).with_name("serve.py")
 
 
 class Worker:
     """The process of a script, started by the first request and again after a crash.
 
-    The script prints `{"version": ...}`, then one JSON object for each that it reads; or `{"error": ...}`,
-    and ends. What the renderer prints goes to the file `log`, in `folder`, which is deleted at the end. A
-    request may take `limit` seconds; then the process is killed. Once it runs, `version` and `device` are
-    those that it printed.
+    Whatever the renderer prints goes to the file `log` in `folder`, which is deleted at the end. A request that takes
+    more than `limit` seconds kills the process. `version` and `device` come from the process's greeting.
     """
 
     def __init__(
         self, name: str, python: Path, script: Path, limit: float, *arguments: str
     ) -> None:
         self._name = name
-        self._command: list[str | Path] = [python, "-I", "-W", "ignore", script, *arguments]
+        self._command: list[str | Path] = [python, "-I", "-W", "ignore", SERVE, script, *arguments]
         self._temporary = Temporary(f"mxeon-{name}-")
         self.folder = Path(self._temporary.name)
         self.log = self.folder / "log.txt"
@@ -74,7 +73,7 @@ class Worker:
         self.version, self.device = greeting["version"], greeting.get("device", "")
 
     def ask(self, **request: object) -> Reply:
-        """The reply to a request; NotRun, with the last lines printed, if the process ends or is silent."""
+        """The reply to a request; NotRun, with the last lines printed, if the process ends or hangs."""
         self.start()
         self._read = self.log.stat().st_size
         assert self._process

@@ -685,7 +685,6 @@ def _polynomial(color: ArrayLike, roughness: ArrayLike, slope: float, zero: floa
 
 
 # Wrong variants that renderers implement, to recognize them by.
-DEGREE = 180.0 / np.pi
 FLOOR = 0.1  # least reflectance that Babylon.js passes to EON
 
 
@@ -704,18 +703,6 @@ def eon_clamped_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: Ar
         return eon_brdf_mu(mu_o, mu_i, s, rho, roughness)
 
     return evaluate(of_cosines(formula), wo, wi, rho, roughness=roughness)
-
-
-@any_array
-def burley_cosine_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-    """Reflection of Burley's diffuse model at roughness^2, multiplied by mu_i.
-
-    Result (..., C): in 1/sr; not reciprocal, and a white surface reflects two thirds of the light.
-    LuxCoreRender's disney: `DisneyDiffuse` squares the roughness, and both `Evaluate` and
-    `DisneyEvaluate` multiply by the cosine of the light.
-    """
-    value = burley_brdf(wo, wi, rho, checked("roughness", roughness) ** 2)
-    return value * checked_triples("wi", wi)[..., 2:]
 
 
 @any_array
@@ -804,33 +791,10 @@ def qon_tinted_twice_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: A
 
 
 @any_array
-def qon_degrees_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
-    """Reflection of QON that takes the number of degrees for radians.
-
-    `sigma` is in radian, and 180 sigma / pi enters. From a few degrees on it is the limit of large sigma, and correct at
-    0. LuxCoreRender's roughmatte: its manual has degrees, its code radians.
-    """
-
-    def formula(mu_o: Array, mu_i: Array, s: Array, rho: Array, sigma: Array) -> Array:
-        return qon_brdf_mu(mu_o, mu_i, s, rho, DEGREE * sigma)
-
-    return evaluate(of_cosines(formula), wo, wi, rho, sigma=sigma)
-
-
-@any_array
 def qon_tinted_twice_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
     """Directional albedo of `qon_tinted_twice_brdf`."""
     (color,), (m, s) = checked_colors({"rho": rho}, mu=mu, sigma=sigma)
     return color * color * qon_albedo_dir(m, s)
-
-
-@any_array
-def qon_degrees_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
-    """Directional albedo of `qon_degrees_brdf`."""
-    (color,), (m, s) = checked_colors({"rho": rho}, mu=mu, sigma=sigma)
-    rough = 0.5 * np.pi
-    lobe = (qon_albedo_dir(m, rough) - qon_aq(rough)) / qon_bq(rough)
-    return (qon_aq(DEGREE * s) + qon_bq(DEGREE * s) * lobe) * color
 
 
 @any_array

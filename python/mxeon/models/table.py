@@ -5,12 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 from inspect import signature
 
 import numpy as np
 
-from mxeon.models import coat, diffuse
+from mxeon.models import diffuse
 from mxeon.models.core.arguments import RANGES, checked, checked_choice, checked_colors
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers, any_array, cosine
 from mxeon.models.core.quadrature import albedo_dir_quadrature
@@ -168,13 +167,7 @@ KNOWN_DEFECTS = (
     _named("qon_tinted_twice", "QON tinted twice", "sigma"),
 )
 
-# The interface of the coats that are judged in a renderer.
-COATED = {"alpha": 0.5, "ior": 1.5}
-# OpenPBR's base that is judged there, whose facets have alpha 0.5625.
-HALF_METAL = {"specular_roughness": 0.75, "specular_ior": 1.5, "metalness": 0.5}
-
-# What renderers' own nodes have beside those: EON with the quartic also in surroundings, a defect of
-# it, Burley's model, EON under a coat or a varnish, and OpenPBR's base. Shaders that are generated have none of them.
+# Further models of renderers' own nodes, which generated shaders never have.
 OTHERS = (
     row(
         "eon_fitted",
@@ -195,37 +188,10 @@ OTHERS = (
         brdf_of="burley",
     ),
     _named(
-        "burley_cosine", "Burley with squared roughness, times the cosine once more", "roughness"
-    ),
-    _named(
         "burley_schlick",
         "Burley with Schlick's weight for the cosine of retro-reflection",
         "roughness",
     ),
-    row(
-        "eon_coated",
-        "EON under a dielectric of alpha 0.5 and index 1.5",
-        partial(coat.dielectric_over_eon_brdf, **COATED),
-        "roughness",
-        partial(coat.dielectric_over_eon_albedo_dir, **COATED),
-        partial(coat.dielectric_over_eon_albedo_avg, **COATED),
-    ),
-    row(
-        "eon_varnished",
-        "EON under a varnish of alpha 0.5 and index 1.5",
-        partial(coat.varnished_brdf, **COATED),
-        "roughness",
-        partial(coat.varnished_albedo_dir, **COATED),
-        partial(coat.varnished_albedo_avg, **COATED),
-    ),
-    row(
-        "openpbr_half_metal",
-        "OpenPBR's base, half of it metal, of specular roughness 0.75 and index 1.5",
-        partial(coat.openpbr_base_brdf, **HALF_METAL),
-        "roughness",
-        partial(coat.openpbr_base_albedo_dir, **HALF_METAL),
-    ),
-    _named("qon_degrees", "QON that takes degrees for radians", "sigma"),
 )
 
 

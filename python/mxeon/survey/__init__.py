@@ -14,5 +14,4 @@ ROWS = (
     Row("three-gpu-pathtracer", "", "mxeon.survey.browser.pathtracer", "facet pairs"),
     Row("mitsuba", "", "mxeon.survey.polyhedron.mitsuba", "facet pairs"),
     Row("eevee", "", "mxeon.survey.polyhedron.eevee", "coarse facets"),
-    Row("luxcore", "", "mxeon.survey.polyhedron.luxcore", "facets"),
 )

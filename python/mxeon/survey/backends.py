@@ -41,10 +41,9 @@ from mxeon.conformance.spec import Spec
 from mxeon.conformance.tolerance import Term, Tolerance, mean_error, roundings, sum_in, sum_of
 from mxeon.models import table as reference
 from mxeon.shaders.scene import FURNACE, Scene, sphere
-from mxeon.survey.facets import NARROWEST, facet_points
+from mxeon.survey.facets import facet_points
 from mxeon.survey.specs import Material, RendererSpec
 
-BLACK = (0.0, 0.0, 0.0)
 FACET_PIXELS = 7169  # of a picture of the polyhedron that lie in one facet and are judged
 FEW_CALLS = Counts(1 << 13)  # a renderer's own function is called for each
 SHORTEST = 2.0**-10  # wo + wi of special pairs: Fresnel's formulas square its cosine, and round it
@@ -54,11 +53,6 @@ EXACT_INPUTS: tuple[Values, ...] = (  # from dark to white and from rough to smo
     {"color": (1.0, 0.8, 0.0), "roughness": 0.75},
     {"color": (0.8, 0.4, 0.1), "roughness": 0.5},
     {"color": (0.5, 0.2, 1.0), "roughness": 0.1},
-)
-# The normal of a facet: three float32 vertices, over the narrowest edge, twice for its two ends.
-FACETS = sum_in(
-    "pi f cos",
-    roundings(8 * 2.0 * math.sqrt(3.0) / NARROWEST, "of a facet's vertices, times the slope 8"),
 )
 # EEVEE keeps light in 32 bits for three channels; blue has the fewest.
 COARSE_FACETS = sum_in(
@@ -181,8 +175,6 @@ class FacetSamples(FormSamples):
 class Facets(Exact):
     """A node on a polyhedron, with noise under an environment."""
 
-    errors = errors_of(FACETS, FACET_NOISE)
-
     sampled = FacetSamples
 
     @property
@@ -191,13 +183,6 @@ class Facets(Exact):
 
     def points(self, scene: Scene) -> Pairs:
         return facet_pairs(scene)
-
-    def picture(self, batch: Batch) -> Array:
-        """Values at the points of a batch, minus those of a black lobe if the material has other lobes."""
-        values = super().picture(batch)
-        if self.node.beside:
-            values = values - super().picture(batch.altered(color=BLACK))
-        return values
 
     def seen(self, scene: Scene) -> Mask:
         return facet_points(scene.size).mask
@@ -266,7 +251,6 @@ def facet_pairs(scene: Scene) -> Pairs:
 BACKENDS |= {
     "native": (Native,),
     "exact": (Exact,),
-    "facets": (Facets,),
     "coarse facets": (CoarseFacets,),
     "facet pairs": (FacetPairs,),
 }

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 RINGS, SECTORS = 20, 40  # facets from pole to pole, and around
 AXIS = (0.48, 0.6, 0.64)  # from pole to pole: tilted, so that facets differ in both cosines
-NARROWEST = 2.0 * np.sin(np.pi / RINGS) * np.sin(np.pi / SECTORS)  # edge, at the poles
 MARGIN = 1.05  # half width of the square that must lie in one facet, in half widths of a pixel
 
 

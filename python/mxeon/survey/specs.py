@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Self, TypeAlias
@@ -24,8 +23,8 @@ PUBLISHED = ("eon", "eon_fitted")  # the paper prints EON with the exact albedo,
 class RendererSpec(DiffuseModelSpec):
     """A renderer's own node, and the model that its documentation claims.
 
-    In `material`, "{color}", "{roughness}" and "{degrees}" stand for the inputs; nothing but the diffuse
-    lobe may depend on them.
+    In `material`, "{color}" and "{roughness}" stand for the inputs; nothing but the diffuse lobe may depend on
+    them.
     """
 
     material: Material = field(default_factory=dict)
@@ -45,7 +44,6 @@ class RendererSpec(DiffuseModelSpec):
         inputs = {
             "{color}": tuple(map(float, color)),
             "{roughness}": float(roughness),
-            "{degrees}": math.degrees(roughness),
         }
         return {
             name: inputs.get(value, value) if isinstance(value, str) else value

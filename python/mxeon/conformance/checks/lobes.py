@@ -97,7 +97,6 @@ OPAQUE = sum_in("throughput", roundings(1, "of 1 - weight"))
 ROUGH = ("eon", "eon_fitted", "qon", "fon")
 MODES = ("eon", "eon_fitted", "qon")  # of which a node is one
 EON = ("eon", "eon_fitted")
-COATED = ("eon_coated", "eon_varnished", "openpbr_half_metal")  # which a renderer has
 BURLEY = ("burley", "burley_lambert")
 
 
@@ -117,7 +116,7 @@ def is_lobe(spec: Spec) -> bool:
 
 def is_judged(spec: Spec) -> bool:
     """Whether a spec is one lobe of a node or of a renderer, also under a film."""
-    return is_lobe(spec) or isinstance(spec, FilmSpec) or is_model(spec, *ROUGH, *COATED)
+    return is_lobe(spec) or isinstance(spec, FilmSpec) or is_model(spec, *ROUGH)
 
 
 def is_node(spec: Spec) -> bool:
@@ -178,7 +177,7 @@ def environment() -> None:
 
 
 @check(
-    lambda spec: is_model(spec, *EON, *COATED),
+    lambda spec: is_model(spec, *EON),
     with_inputs("reflectance is 0.99", color=(0.99, 0.99, 0.99)),
     ALBEDO,
     hosts=has_environment,
@@ -194,7 +193,7 @@ def furnace(case: Case) -> Iterator[Compared]:
 @check(
     lambda spec: (
         (is_plain(spec) and bool(spec.black))
-        or (is_model(spec, *ROUGH, "lambert", "burley") and is_node(spec) and not spec.beside)
+        or (is_model(spec, *ROUGH, "lambert", "burley") and is_node(spec))
     ),
     offset,
     tolerance=ZERO,
@@ -353,7 +352,7 @@ def lambert(case: Case) -> Iterator[Compared]:
 
 @check(
     lambda spec: (
-        (is_node(spec) and (is_lobe(spec) or is_model(spec, *ROUGH, "lambert", *COATED)))
+        (is_node(spec) and (is_lobe(spec) or is_model(spec, *ROUGH, "lambert")))
         or isinstance(spec, (CombinedSpec, EmissionSpec, MediumSpec, UtilitySpec))
     ),
     drop_changes,

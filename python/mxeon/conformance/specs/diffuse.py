@@ -73,7 +73,6 @@ class DiffuseModelSpec(ScatteringSpec):
 
     counts: Counts = COUNTS
     flat: bool = True
-    beside: bool = False  # whether lobes that ignore the color lie beside it
 
     @property
     def drawn(self) -> tuple[Input, Input]:

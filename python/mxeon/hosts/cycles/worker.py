@@ -1,31 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The half of the hosts `cycles`, `osl` and `eevee` that runs in Blender's Python; see `mxeon.hosts.process`.
-
-A reply is `{}` or `{"error": ...}`. Output of Blender and of the OSL compiler goes to standard error.
-"""
+"""The half of the hosts `cycles`, `osl` and `eevee` that runs in Blender's Python; see `mxeon.hosts.process`."""
 
 from __future__ import annotations
 
-import json
 import math
 import os
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeAlias
 
-# Blender prints to standard output as soon as it is imported; redirect that to standard error.
-REPLIES = os.fdopen(os.dup(1), "w", buffering=1)
-os.dup2(2, 1)
+import bpy  # only then can Blender's other modules be found
 
-# bpy comes first: only then can Blender's other modules be found.
-import bpy  # noqa: E402, I001
-import _cycles  # noqa: E402
-import bmesh  # noqa: E402
-import numpy as np  # noqa: E402
-from mathutils import Vector  # noqa: E402
+# isort: split
+import _cycles
+import bmesh
+import numpy as np
+from mathutils import Vector
 
 Blender: TypeAlias = Any  # an object of bpy, which has no types
-JsonObject: TypeAlias = dict[str, Any]  # of a request
+JsonObject: TypeAlias = dict[str, Any]
 
 # Script nodes read their sockets with `oslquery` from Blender's own Python folder.
 BUNDLED = Path(bpy.utils.resource_path("LOCAL"), "python", "lib")
@@ -205,12 +199,12 @@ def render(
     width: float = 2.0,
     triangles: str | None = None,
     lamp: float | None = None,
-) -> dict[str, str]:
-    """Render the OSL file `shader`, or a Blender node, on one of BODIES or on triangles; return the reply."""
+) -> None:
+    """Render the OSL file `shader`, or a Blender node, on one of BODIES or on triangles."""
     if shader:
         compiled = os.path.splitext(shader)[0] + ".oso"
         if not _cycles.osl_compile(shader, compiled):
-            return {"error": "compile"}
+            raise SyntaxError(shader)
     scene = unit_scene(2.0 * radius)
     set_output(scene, output, size)
     set_sampling(scene, samples, bounces, osl=native is None)
@@ -226,7 +220,6 @@ def render(
     if environment:
         add_environment(scene, environment)
     bpy.ops.render.render(write_still=True)
-    return {}
 
 
 def draw(
@@ -237,7 +230,7 @@ def draw(
     light: tuple[float, float, float] | None,
     environment: float | None,
     samples: int,
-) -> dict[str, str]:
+) -> None:
     """Draw the mesh in a file with EEVEE and a node; write the pixels, row 0 at the top."""
     path, data, scene = f"{output}.exr", np.load(mesh), unit_scene(2.0)
     set_output(scene, path, size)
@@ -261,17 +254,12 @@ def draw(
     pixels = np.zeros(4 * size * size, np.float32)
     image.pixels.foreach_get(pixels)
     np.save(output, pixels.reshape(size, size, 4)[::-1, :, :3])
-    return {}
 
 
-def main() -> None:
+def start() -> tuple[dict[str, str], Callable[..., None], tuple[type[Exception], ...]]:
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    print(json.dumps({"version": bpy.app.version_string}), file=REPLIES)
-    for line in sys.stdin:
-        request = json.loads(line)
-        reply = draw(**request) if "mesh" in request else render(**request)
-        print(json.dumps(reply), file=REPLIES)
 
+    def answer(**request: Any) -> None:
+        draw(**request) if "mesh" in request else render(**request)
 
-if __name__ == "__main__":
-    main()
+    return {"version": bpy.app.version_string}, answer, (SyntaxError,)

@@ -1,37 +1,27 @@
 # SPDX-License-Identifier: Apache-2.0
 """The half of the `materialx` host in which MaterialX's renderer runs; see `mxeon.hosts.process`.
 
-Its arguments are the folder whose `libraries` replace MaterialX's own, or "", and those of other
-libraries. A reply is `{}` or `{"error": ...}`. Its display ends with the process.
+Its arguments are the folder whose `libraries` replace MaterialX's own, or "", and the folders of other libraries. Its
+display ends with the process.
 """
 
 from __future__ import annotations
 
 import ctypes
-import json
 import math
 import os
 import shutil
 import signal
 import subprocess
 import sys
+from collections.abc import Callable
 from functools import lru_cache, partial
 from itertools import product
 from pathlib import Path
 from runpy import run_path
-from typing import NoReturn, TypeAlias
-
-REPLIES = os.fdopen(os.dup(1), "w", buffering=1)
-os.dup2(2, 1)
+from typing import Any, TypeAlias
 
 REMEDY = "on Debian: apt-get install libgl1 libsm6 libx11-6 xvfb"
-
-
-def fail(reason: str) -> NoReturn:
-    """Say in one line why nothing can be drawn, and end the process."""
-    print(json.dumps({"error": reason}), file=REPLIES)
-    sys.exit(1)
-
 
 sys.path[:0] = filter(None, [os.environ.get("MXEON_MATERIALX")])
 import MaterialX as mx  # noqa: E402
@@ -44,7 +34,7 @@ try:
     import MaterialX.PyMaterialXRender as mx_render
     import MaterialX.PyMaterialXRenderGlsl as mx_render_glsl
 except ImportError as error:
-    fail(f"MaterialX's renderer does not load ({error}); {REMEDY}")
+    sys.exit(f"MaterialX's renderer does not load ({error}); {REMEDY}")
 
 Chosen: TypeAlias = tuple[tuple[str, str | int | bool], ...]
 FAR = 1e6  # of the camera; the shader computes the view from its position
@@ -59,9 +49,7 @@ OPENGL = {
     "win32": "opengl32",
 }
 SEARCH_PATH = mx.getDefaultDataSearchPath()
-if sys.argv[1]:
-    SEARCH_PATH = mx.FileSearchPath(sys.argv[1])
-# The generator's options, of a module that imports MaterialX alone.
+# The module of the generator's options imports only MaterialX.
 set_options = run_path(str(Path(__file__).parents[2] / "shaders" / "options.py"))["set_options"]
 ERRORS = (mx.Exception, mx_render.ExceptionRenderError, LookupError)
 
@@ -72,7 +60,7 @@ def open_display() -> None:
         return
     program = shutil.which("Xvfb")
     if program is None:
-        fail(f"no display: DISPLAY is not set, and there is no Xvfb; {REMEDY}")
+        sys.exit(f"no display: DISPLAY is not set, and there is no Xvfb; {REMEDY}")
     prctl = ctypes.CDLL(None).prctl
     read, write = os.pipe()
     subprocess.Popen(
@@ -84,7 +72,7 @@ def open_display() -> None:
     with os.fdopen(read) as pipe:
         number = pipe.readline().strip()
     if not number:
-        fail("no display: Xvfb does not start")
+        sys.exit("no display: Xvfb does not start")
     os.environ["DISPLAY"] = f":{number}"
 
 
@@ -164,13 +152,6 @@ def viewer_generator(document: mx.Document, library: mx.Document) -> mx_gen.Shad
     return generator
 
 
-def load(folders: list[str]) -> mx.Document:
-    """The libraries in folders, before MaterialX's own."""
-    library = mx.createDocument()
-    mx.loadLibraries([*folders, *mx.getDefaultDataLibraryFolders()], SEARCH_PATH, library)
-    return library
-
-
 @lru_cache(maxsize=1)
 def camera() -> mx_render.Camera:
     """A camera that sees the square [-1, 1]^2 from far away, along -z."""
@@ -221,26 +202,25 @@ def device(renderer: mx_render_glsl.GlslRenderer) -> str:
     return str(function(RENDERER).decode())
 
 
-def main() -> None:
-    library, first = load(sys.argv[2:]), open_renderer()
-    picture = lru_cache(maxsize=PICTURES)(partial(ShownElement, library))
-    version = f"MaterialX {mx.getVersionString()}"
-    print(json.dumps({"version": version, "device": device(first)}), file=REPLIES)
-    for line in sys.stdin:
-        request = json.loads(line)
-        output = request.pop("output")
-        try:
-            methods = tuple(request.pop("methods", {}).items())
-            shown = picture(request.pop("document"), request.pop("element"), methods)
-            np.save(output, shown.draw(**request))
-            reply = {}
-        except ERRORS as error:
-            reply = {"error": " ".join(str(error).split())}
-        print(json.dumps(reply), file=REPLIES)
-
-
-if __name__ == "__main__":
+def start(
+    root: str, *folders: str
+) -> tuple[dict[str, str], Callable[..., None], tuple[type[Exception], ...]]:
+    global SEARCH_PATH
     # MaterialX reads textures anisotropically, and Mesa's filter for that blurs.
     os.environ["MESA_EXTENSION_OVERRIDE"] = " ".join(f"-{each}" for each in ANISOTROPY)
     open_display()
-    main()
+    if root:
+        SEARCH_PATH = mx.FileSearchPath(root)
+    library = mx.createDocument()
+    mx.loadLibraries([*folders, *mx.getDefaultDataLibraryFolders()], SEARCH_PATH, library)
+    first = open_renderer()
+    picture = lru_cache(maxsize=PICTURES)(partial(ShownElement, library))
+
+    def answer(
+        output: str, document: str, element: str, methods: dict[str, Any] | None = None, **draw: Any
+    ) -> None:
+        shown = picture(document, element, tuple((methods or {}).items()))
+        np.save(output, shown.draw(**draw))
+
+    greeting = {"version": f"MaterialX {mx.getVersionString()}", "device": device(first)}
+    return greeting, answer, ERRORS

@@ -1,29 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
 """The half of the `storm` host that runs in Blender's Python; see `mxeon.hosts.process`.
 
-Its arguments are the folder whose `libraries` replace those of Blender's MaterialX, or "", and those of
-other libraries. A reply is `{}` or `{"error": ...}`. What OpenUSD prints goes to standard error.
+Its arguments are the folder whose `libraries` replace those of Blender's MaterialX, or "", and the folders of other
+libraries.
 """
 
 from __future__ import annotations
 
 import ctypes
-import json
 import math
 import os
 import sys
+from collections.abc import Callable
 from ctypes import byref, c_char_p, c_double, c_float, c_int, c_uint, c_void_p
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any, NoReturn, TypeAlias
+from typing import Any, TypeAlias
 
-# OpenUSD prints to standard output, too; redirect that to standard error.
-REPLIES = os.fdopen(os.dup(1), "w", buffering=1)
-os.dup2(2, 1)
-
-import numpy as np  # noqa: E402
-from numpy.typing import NDArray  # noqa: E402
+import numpy as np
+from numpy.typing import NDArray
 
 Foreign: TypeAlias = Any  # an object of OpenUSD, or what a function of a library returns
 Pixels: TypeAlias = NDArray[np.float32]
@@ -48,6 +44,7 @@ CONTEXT = (c_int * 7)(0x3098, 4, 0x30FB, 5, 0x30FD, 2, 0x3038)
 FRAME, BUFFER, COLOR, DEPTH = 0x8D40, 0x8D41, 0x8CE0, 0x8D00
 RGBA32F, DEPTH32F, RGBA, FLOAT = 0x8814, 0x8CAC, 0x1908, 0x1406
 BOTH, RENDERER = 0x4100, 0x1F01
+usd: Foreign = None  # OpenUSD, imported by `start`
 
 
 class Handle(c_void_p):
@@ -228,36 +225,28 @@ def import_usd(root: str, libraries: str) -> Foreign:
     return import_module("pxr")
 
 
-def main() -> None:
-    stage = Stage(canvas)
-    _, minor, patch = usd.Usd.GetVersion()
-    version = f"OpenUSD {minor}.{patch}, MaterialX {materialx}"
-    print(json.dumps({"version": version, "device": canvas.device}), file=REPLIES)
-    for line in sys.stdin:
-        request = json.loads(line)
-        output = request.pop("output")
-        try:
-            np.save(output, stage.render(**request))
-            reply = {}
-        except (LookupError, usd.Tf.ErrorException) as error:
-            reply = {"error": str(error)}
-        print(json.dumps(reply), file=REPLIES)
-
-
-def fail(reason: str) -> NoReturn:
-    """Say in one line why nothing can be drawn, and end the process."""
-    print(json.dumps({"error": reason}), file=REPLIES)
-    sys.exit(1)
-
-
-if __name__ == "__main__":
+def start(
+    root: str, *libraries: str
+) -> tuple[dict[str, str], Callable[..., None], tuple[type[Exception], ...]]:
+    global usd
     try:
         canvas = Canvas()
     except OSError as error:
-        fail(f"no OpenGL 4.5 through EGL ({error}); on Debian: {DEBIAN}")
+        sys.exit(f"no OpenGL 4.5 through EGL ({error}); on Debian: {DEBIAN}")
     try:
-        usd = import_usd(sys.argv[1], os.pathsep.join(sys.argv[2:]))
+        usd = import_usd(root, os.pathsep.join(libraries))
         materialx = import_module("MaterialX").getVersionString()
     except ImportError as error:
-        fail(f"{error}; {INSTALL} in the environment of {sys.executable}")
-    main()
+        sys.exit(f"{error}; {INSTALL} in the environment of {sys.executable}")
+    stage = Stage(canvas)
+    _, minor, patch = usd.Usd.GetVersion()
+    version = f"OpenUSD {minor}.{patch}, MaterialX {materialx}"
+
+    def answer(output: str, **request: Any) -> None:
+        np.save(output, stage.render(**request))
+
+    return (
+        {"version": version, "device": canvas.device},
+        answer,
+        (LookupError, usd.Tf.ErrorException),
+    )

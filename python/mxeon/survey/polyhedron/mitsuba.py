@@ -18,23 +18,6 @@ PRINCIPLED = {
     "roughness": "{roughness}",
     "specular": 0.0,
 }
-# The interface of the models "eon_coated" and "eon_varnished".
-COATED = {
-    "type": "dielectric_over_eon",
-    "reflectance": "{color}",
-    "roughness": "{roughness}",
-    "alpha": 0.5,
-    "ior": 1.5,
-}
-# The numbers of the model "openpbr_half_metal".
-BASE = {
-    "type": "openpbr_base",
-    "base_color": "{color}",
-    "base_diffuse_roughness": "{roughness}",
-    "base_metalness": 0.5,
-    "specular_roughness": 0.75,
-    "specular_ior": 1.5,
-}
 NODES = (
     node("diffuse", "lambert", {"type": "diffuse", "reflectance": "{color}"}, COLOR),
     node("principled", "burley", PRINCIPLED),
@@ -46,9 +29,6 @@ NODES = (
         )
         for model, name in (("eon", "roughness"), ("fon", "roughness"), ("qon", "sigma"))
     ),
-    node("dielectric_over_eon of mxeon.mitsuba", "eon_coated", COATED),
-    node("varnished of mxeon.mitsuba", "eon_varnished", COATED | {"type": "varnished"}),
-    node("openpbr_base of mxeon.mitsuba", "openpbr_half_metal", BASE),
 )
 
 

@@ -3,37 +3,25 @@
 
 from __future__ import annotations
 
-import json
 import math
-import os
-import sys
+from collections.abc import Callable
 from importlib import import_module
 from typing import Any, TypeAlias
 
-REPLIES = os.fdopen(os.dup(1), "w", buffering=1)
-os.dup2(2, 1)
+import numpy as np
 
-import numpy as np  # noqa: E402
+Mitsuba: TypeAlias = Any  # an object of Mitsuba, whose types depend on the variant
+JsonObject: TypeAlias = dict[str, Any]
 
-Mitsuba: TypeAlias = Any  # an object of Mitsuba, whose types are those of another variant
-JsonObject: TypeAlias = dict[str, Any]  # of a request
+# The BSDFs of `mxeon.mitsuba`.
+PLUGINS = ("eon", "fon", "qon")
 
-# Of `mxeon.mitsuba`.
-PLUGINS = ("eon", "fon", "qon", "dielectric_over_eon", "varnished", "openpbr_base")
-
-# Variants of Mitsuba's own BSDFs, and of those of `mxeon.mitsuba`, which Python is too slow for one by one.
+# Mitsuba's own BSDFs run in a scalar variant; PLUGINS are compiled, since Python is too slow for single values.
 OWN, COMPILED = "scalar_rgb", "llvm_ad_rgb"
 
 mi: Mitsuba = import_module("mitsuba")
 mi.set_variant(OWN)
 mi.set_log_level(mi.LogLevel.Warn)
-
-
-def set_variant(material: JsonObject) -> None:
-    """Set the variant of a material, with the plugins of mxeon if it is one of these."""
-    mi.set_variant(COMPILED if material["type"] in PLUGINS else OWN)
-    if material["type"] in PLUGINS:
-        import_module("mxeon.mitsuba").register()
 
 
 def bsdf(material: JsonObject, **inputs: object) -> JsonObject:
@@ -154,16 +142,12 @@ def polyhedron(path: str, material: JsonObject) -> Mitsuba:
     return mesh
 
 
-def main() -> None:
-    print(json.dumps({"version": mi.__version__}), file=REPLIES)
-    for line in sys.stdin:
-        request = json.loads(line)
-        output = request.pop("output")
-        set_variant(request["material"])
+def start() -> tuple[dict[str, str], Callable[..., None], tuple[type[Exception], ...]]:
+    def answer(output: str, material: JsonObject, **request: Any) -> None:
+        mi.set_variant(COMPILED if material["type"] in PLUGINS else OWN)
+        if material["type"] in PLUGINS:
+            import_module("mxeon.mitsuba").register()
         work = evaluate if "pairs" in request else render
-        np.save(output, work(**request))
-        print("{}", file=REPLIES)
+        np.save(output, work(material, **request))
 
-
-if __name__ == "__main__":
-    main()
+    return {"version": mi.__version__}, answer, ()
