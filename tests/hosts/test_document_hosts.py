@@ -9,7 +9,7 @@ import pytest
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import host_row, materialx, storm
 from mxeon.shaders.library import examples_folder
-from mxeon.shaders.nodes import OREN_NAYAR, material_text
+from mxeon.shaders.nodes import OREN_NAYAR, document_text, input_text, material_text, node_text
 from mxeon.shaders.scene import FRONT, FURNACE, SIDE, sphere
 from tests.support.documents import lobe, material
 from tests.support.verdicts import FAILED, PASSED, has
@@ -88,15 +88,15 @@ def test_stock_is_wrong_from_behind(host, judged):
     assert result.pages == ("genglsl_clamped_dot",)
 
 
-GLASS = """<materialx version="1.39">
-  <open_pbr_surface name="shading" type="surfaceshader">
-    <input name="transmission_weight" type="float" value="1"/>
-    <input name="specular_roughness" type="float" value="0.8"/>
-  </open_pbr_surface>
-  <surfacematerial name="look" type="material">
-    <input name="surfaceshader" type="surfaceshader" nodename="shading"/>
-  </surfacematerial>
-</materialx>"""
+GLASS = document_text(
+    node_text(
+        "open_pbr_surface",
+        "surfaceshader",
+        "shading",
+        input_text("transmission_weight", "float", 1.0)
+        + input_text("specular_roughness", "float", 0.8),
+    )
+)
 # In opacity, R over T counts what is reflected once.
 BELOW = (
     "bool below = scatter_mode == 1;",
