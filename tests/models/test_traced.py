@@ -38,10 +38,6 @@ FUNCTIONS = [
     for function in mxeon.model(name).functions
     if function not in ("plot", "brdf")  # of which bsdf is the other name
 ]
-# What JAX compiles in a second; the others are sums over many nodes, or polynomials.
-COMPILED = ("lambert", "oren_nayar", "qon", "fon", "eon", "burley", "translucent", "subsurface")
-COMPILED += ("zeltner", "conty_kulla", "uniform_edf", "conical_edf", "anisotropic_vdf")
-LONG = ("oren_nayar", "conty_kulla")  # whose albedo is such a sum
 # JAX traces the sums of one film for seconds; the curves of the others are compiled in test_arrays.py.
 OTHER_FILMS = ("conductor_film", "schlick_film")
 
@@ -182,22 +178,6 @@ def test_jax_traces_derivatives_of_every_function_of_a_model(name, function):
     with untraced():  # PyTorch reaches the same lines
         found = jax.eval_shape(jax.vmap(change, in_axes=(0, axes)), given, inputs)
     assert [each.shape for each in found] == [(ROWS,)] * 2
-
-
-@pytest.mark.parametrize("name", COMPILED)
-def test_jax_compiles_gradients_of_a_model(name):
-    jax = package("jax")
-    jax.config.update("jax_enable_x64", True)
-    jax.config.update("jax_disable_most_optimizations", True)
-    row, inputs = mxeon.model(name), inside(mxeon.model(name))
-    for function in (each for owner, each in FUNCTIONS if owner == name):
-        if function == "albedo_dir" and name in LONG:
-            continue
-        model = partial(getattr(row, function), *vectors(row, function))
-        total = jax.value_and_grad(lambda inputs, model=model: numbers(model(**inputs)).sum())
-        value, found = jax.jit(total)(inputs)
-        assert value == pytest.approx(numbers(model(**inputs)).sum(), rel=VALUE)
-        assert_slopes(model, inputs, {key: np.asarray(each) for key, each in found.items()})
 
 
 def test_a_gradient_of_jax_needs_no_array_and_no_context():

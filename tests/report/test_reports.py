@@ -280,13 +280,6 @@ def test_a_value_that_no_report_has_is_named_with_its_place(tmp_path, capsys, ke
 
 
 REPORT = to_json(made_run())
-of_each_key = pytest.mark.parametrize("key", list(json.loads(REPORT)))
-
-
-@of_each_key
-def test_a_report_without_a_key_is_one_line(tmp_path, capsys, key):
-    edit(tmp_path, lambda content: content.pop(key))
-    refusal_of(tmp_path, capsys)
 
 
 def edit(folder, change):
