@@ -305,8 +305,11 @@ NOTHING = (*product(["throughput"], BRANCHES), *product(["response"], ["transmis
 def opaque_values(case: Case, output: str, branch: str) -> Iterator[Compared]:
     """An output of an opaque node, whose throughput is 1 - weight; hair has no weight."""
     for batch in case.few:
+        weight = np.array(np.broadcast_to(batch.inputs.get("weight", 1.0), len(batch.wo)))
+        if "weight" in batch.inputs:
+            weight[0] = 2.0  # above 1 a lobe is opaque, and no more
+            batch = batch.altered(weight=weight)
         values = case.evaluating.evaluate(case.inputs(batch), branch, output)
-        weight = np.broadcast_to(batch.inputs.get("weight", 1.0), len(batch.wo))
         left = 1.0 - np.clip(weight, 0.0, 1.0) if output == "throughput" else 0.0 * weight
         expected = np.repeat(left[:, np.newaxis], 3, axis=1)
         yield Compared(batch, case.throughputs(batch, values), expected)
