@@ -46,6 +46,10 @@ __all__ = [
 def __getattr__(name: str) -> Any:
     if name not in _HOMES:
         raise AttributeError(f"module 'mxeon' has no attribute {name!r}")
+    if name == "check":
+        from mxeon import hosts, survey
+
+        hosts.register(*survey.ROWS)
     return getattr(import_module(_HOMES[name]), name)
 
 

@@ -64,7 +64,7 @@ def test_a_host_that_is_missing_is_reported_as_not_run(monkeypatch):
     assert all(each.reason.startswith("cycles: ") for each in results)
 
 
-@pytest.mark.parametrize("host", [row.name for row in HOSTS if not row.module])
+@pytest.mark.parametrize("host", [row.name for row in HOSTS if row.needs])
 def test_a_target_of_which_only_the_text_can_be_checked_is_not_run(host):
     run = check(EXAMPLES[:1], [host], nodes=["common"])
     (result,) = [each for each in run.results if (each.host, each.check) == (host, "host")]

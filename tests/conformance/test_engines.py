@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from mxeon.errors import NotRun, ShaderError
-from mxeon.hosts.gl import Host
+from mxeon.hosts.gl import GlHost
 from tests.support.verdicts import FAILED, NOT_RUN, SHADER_FUNCTIONS, Verdicts, has, said
 
 EON, SHADER = "oren_nayar_diffuse_bsdf, energy_compensation true", "standard_surface, every lobe"
@@ -25,23 +25,23 @@ def judged_by(gl):
         host.close()
 
 
-class Turned(Host):
+class Turned(GlHost):
     def evaluate(self, shader, wo, wi, *rest, **options):
         return super().evaluate(shader, wo, wi[:, [1, 0, 2]] * [-1, 1, 1], *rest, **options)
 
 
-class Swapped(Host):
+class Swapped(GlHost):
     def evaluate(self, shader, wo, wi, *rest, **options):
         return super().evaluate(shader, wi, wo, *rest, **options)
 
 
-class Uncoated(Host):
+class Uncoated(GlHost):
     def evaluate(self, shader, wo, wi, inputs, *rest, **options):
         bare = {**inputs, "coat": 0.0 * inputs["coat"]}
         return super().evaluate(shader, wo, wi, bare, *rest, **options)
 
 
-class WithoutNumbers(Host):
+class WithoutNumbers(GlHost):
     def evaluate(self, shader, wo, *rest, **options):
         return np.full(wo.shape, np.nan)
 
@@ -61,7 +61,7 @@ def test_a_host_that_mistakes_its_arguments_fails(judged_by, kind, check, title,
     assert (result.error == np.inf) == (kind is WithoutNumbers)
 
 
-class Failing(Host):
+class Failing(GlHost):
     error = NotRun
 
     def evaluate(self, *arguments, **options):
@@ -85,7 +85,7 @@ def test_what_does_not_run_is_never_passed(judged_by, kind, verdict, check, titl
     assert all("0:1(1): error: here" in each.reason + said(each) for each in results)
 
 
-class Rounding(Host):
+class Rounding(GlHost):
     """Its power and exponential are off."""
 
     def execute(self, source, name, *arguments):

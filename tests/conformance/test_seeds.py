@@ -7,7 +7,7 @@ import pytest
 
 import mxeon
 from mxeon.errors import InputError
-from mxeon.hosts.gl import Host
+from mxeon.hosts.gl import GlHost
 from tests.support import command
 from tests.support.sharing import EXAMPLES
 from tests.support.verdicts import Verdicts
@@ -45,7 +45,7 @@ def test_every_check_of_every_node_has_the_same_verdict_with_another_seed(
     assert len(found) > 400 and found.items() <= known.items()
 
 
-class Counting(Host):
+class Counting(GlHost):
     """Counts the pairs that it is asked for at once."""
 
     largest = 0

@@ -93,7 +93,7 @@ def test_a_page_that_throws_goes_on_and_one_that_hangs_is_ended(tmp_path):
     script = tmp_path / "page.js"
     script.write_text(PAGE)
     with available("three"):
-        page = three.Host()
+        page = three.ThreeHost()
     page._script = script
     with pytest.raises(NotRun, match="^three: no such material$"):
         page.ask({"task": "throw"})

@@ -72,7 +72,7 @@ def sources(tmp_path_factory):
 @pytest.fixture(scope="module")
 def host(sources):
     with available("cycles"):
-        host = cycles.Host(sources)
+        host = cycles.CyclesHost(sources)
         host.identity()
     with host:
         yield host
@@ -133,7 +133,7 @@ def test_a_hang_is_not_run_and_the_next_picture_is(host):
 
 
 def test_nothing_is_left_behind(sources, host):
-    with cycles.Host(sources) as other:
+    with cycles.CyclesHost(sources) as other:
         other.worker.start()
         pid = other.worker.pid
         log = other.worker.log

@@ -15,7 +15,7 @@ from tests.support.documents import lobe, material
 from tests.support.verdicts import FAILED, PASSED, has
 from tests.support.wrong_libraries import wrong_copy
 
-HOSTS = {"storm": storm.Host, "materialx": materialx.Host}
+HOSTS = {"storm": storm.StormHost, "materialx": materialx.MaterialXHost}
 DOCUMENT = examples_folder() / "eon_node.mtlx"
 SMALL = replace(FRONT, size=16)
 EON = "oren_nayar_diffuse_bsdf, energy_compensation true"

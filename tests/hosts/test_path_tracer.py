@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mxeon.errors import MISUSE, PASSED
-from mxeon.hosts.path_tracer import Host, NoiseNote
+from mxeon.hosts.path_tracer import NoiseNote, PathTracerHost
 from mxeon.shaders.nodes import material_text
 from mxeon.shaders.scene import FURNACE, SIDE, Paths, sphere
 from tests.support.command import PLASTER, run
@@ -21,7 +21,7 @@ SIZE = 32
 @pytest.fixture(scope="module")
 def tracer(hosts):
     hosts("gl")  # or the test is skipped
-    host = Host()
+    host = PathTracerHost()
     yield host
     host.close()
 

@@ -21,13 +21,13 @@ FACETS = 7e-5  # relative errors of pictures of facets, times the light's cosine
 
 @pytest.fixture(scope="module")
 def host():
-    with available("mitsuba"), mitsuba.Host() as host:
+    with available("mitsuba"), mitsuba.MitsubaHost() as host:
         host.identity()
         yield host
 
 
 def test_mitsuba_has_the_models_that_it_documents(monkeypatch):
-    with available("mitsuba"), mitsuba.Host() as host:
+    with available("mitsuba"), mitsuba.MitsubaHost() as host:
         host.identity()  # a run would only say that Mitsuba is missing
     keep_host(monkeypatch, "mitsuba")
     report = check([EXAMPLE], ["mitsuba"], nodes=["common"])

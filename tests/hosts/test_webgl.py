@@ -18,7 +18,7 @@ MU = np.array([0.5])
 
 def started(**options):
     with available("webgl"):
-        return webgl.Host(**options)
+        return webgl.WebGlHost(**options)
 
 
 def test_a_browser_that_hangs_is_not_run_and_the_next_one_works():

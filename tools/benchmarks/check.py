@@ -24,7 +24,7 @@ from tools.site.field import DIFFUSE, EXAMPLE
 BOTH = ("--library", "eonlib", "--library", "stock")
 # The field as tools/site/field.py asks it: the diffuse nodes on hosts, and all common ones of renderers' own.
 FIELD = {
-    "hosts": ([row.name for row in HOSTS if row.module], DIFFUSE),
+    "hosts": ([row.name for row in HOSTS if not row.needs], DIFFUSE),
     "renderers": ([row.name for row in ROWS], ("common",)),
 }
 LONGEST = 240.0  # seconds of each half of the field, which is stopped then

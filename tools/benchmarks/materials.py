@@ -144,7 +144,7 @@ class Run:
 
 def run(node, size, libraries):
     """The `Run` of a material, the libraries in this order."""
-    host = gl.Host()
+    host = gl.GlHost()
     device = host.identity().device
     clock = clock_of(device)
     first, *shaders = (

@@ -256,7 +256,7 @@ def path_times(host, rounds, stills):
 
 def measure(rounds=15, size=128, pictures=48, spokes=20):
     """The `Group` of all lights."""
-    host = gl.Host()
+    host = gl.GlHost()
     device = host.identity().device
     paths, bounces = (
         {name: replace(each, size=size) for name, each in stills.items()}

@@ -8,7 +8,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from mxeon.hosts.gl import Host
+from mxeon.hosts.gl import GlHost
 from mxeon.io.files import write_text
 from tools.paper import claims, curves, renders, weights
 from tools.paper.claims import inversion as claims_inversion
@@ -47,7 +47,7 @@ def figures(
 ) -> Path:
     """Write every figure to `folder`/figures, and `folder`/paper_checked.md."""
     folder = Path(folder)
-    sheet = replace(Sheet(folder / "figures", Host()), **work)
+    sheet = replace(Sheet(folder / "figures", GlHost()), **work)
     page = folder / "paper_checked.md"
     with styled():
         for step in progress((*FIGURES, claims.page)):

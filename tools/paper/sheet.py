@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.rcsetup import cycler
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.hosts.gl import Host
+from mxeon.hosts.gl import GlHost
 from mxeon.io.files import replacing, write_text
 from mxeon.io.images import write_exr
 from mxeon.io.srgb import srgb_encoded
@@ -52,7 +52,7 @@ class Sheet:
     """A folder for figures, and the resolution and samples of each."""
 
     folder: Path
-    host: Host  # traces the pictures
+    host: GlHost  # traces the pictures
     size: int = 256  # pixels on a side of a traced picture
     samples: int = 128  # paths per pixel
     draws: int = 1_000_000  # random directions for each point of a statistic

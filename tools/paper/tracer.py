@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.errors import InputError
-from mxeon.hosts.gl import Host
+from mxeon.hosts.gl import GlHost
 from mxeon.shaders import functions as twins
 
 # Calls of a sample and its density, by the sampler's name.
@@ -87,7 +87,7 @@ def program(model: str, sampler: str) -> str:
 
 
 def trace(
-    host: Host, picture: Trace, progress: Callable[[range], Iterable[int]] = iter
+    host: GlHost, picture: Trace, progress: Callable[[range], Iterable[int]] = iter
 ) -> NDArray[np.float32]:
     """Linear radiance that arrives at the viewer."""
     uniforms = {f"tracer_{name}": getattr(picture, name) for name in UNIFORMS}

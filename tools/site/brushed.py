@@ -15,8 +15,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 from scipy.interpolate import RectBivariateSpline
 
-from mxeon.conformance.reference import Host as Reference
-from mxeon.conformance.reference import HostValues
+from mxeon.conformance.reference import HostValues, Reference
 from mxeon.hosts import open_host
 from mxeon.io.srgb import srgb_encoded
 from mxeon.models.microfacet import (

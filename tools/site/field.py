@@ -8,9 +8,8 @@ import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from mxeon import report
+from mxeon import check, report
 from mxeon.conformance.results import NOT_RUN
-from mxeon.conformance.run import check
 from mxeon.conformance.specs.diffuse import DIFFUSE as DIFFUSE_SPECS
 from mxeon.conformance.specs.diffuse import SURFACE_LOBES
 from mxeon.hosts import host_rows
@@ -32,7 +31,7 @@ def main(folder: str = "") -> None:
         return
     with TemporaryDirectory(prefix="mxeon-field-") as new:
         for row in host_rows():
-            if row.module:
+            if not row.needs:
                 nodes = DIFFUSE if row.target else ("common",)
                 run = check(
                     [EXAMPLE], [row.name], LIBRARIES, workers=1, timeout=TIMEOUT, nodes=nodes

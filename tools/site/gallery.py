@@ -17,7 +17,7 @@ from xml.etree import ElementTree
 import numpy as np
 from PIL import Image
 
-from mxeon.conformance.reference import Host as Reference
+from mxeon.conformance.reference import Reference
 from mxeon.errors import DocumentError
 from mxeon.hosts import open_host, path_tracer
 from mxeon.hosts.points import visible
@@ -137,7 +137,7 @@ def trace(folder):
     """Write the path-traced pictures of a folder's documents, and what is said of their noise."""
     said, paths = {}, Paths(SAMPLES)
     even, ball = Scene("even", SIDE.light, 0.5, TRACED_SIZE), replace(STUDIO, size=TRACED_SIZE)
-    with open_host("gl") as host, closing(path_tracer.Host()) as tracer:
+    with open_host("gl") as host, closing(path_tracer.PathTracerHost()) as tracer:
         for document in sorted(folder.glob("*.mtlx")):
             [flat], [path] = host.compile(document), tracer.compile(document)
             with warnings.catch_warnings(record=True) as notes:

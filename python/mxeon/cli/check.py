@@ -4,14 +4,14 @@
 import argparse
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
-from importlib import import_module
 from pathlib import Path
 from typing import Any, TypeVar
 
+from mxeon import survey
 from mxeon.cli import arguments
 from mxeon.cli.output import Progress, fail
 from mxeon.errors import MISUSE, InputError
-from mxeon.hosts import host_names
+from mxeon.hosts import host_names, register
 from mxeon.jobs import WAIT
 from mxeon.jobs.signals import SignalExit, block_signals
 
@@ -19,6 +19,7 @@ T = TypeVar("T")
 
 
 def add_parser(commands: arguments.Commands) -> None:
+    register(*survey.ROWS)
     default, *others = host_names()
     command = arguments.add_command(
         commands,
@@ -144,7 +145,7 @@ def _importing(progress: Progress) -> Callable[[Iterable[T], int], Iterator[T]]:
             yield outcome
             # Making the page says what is missing. An import would swallow a signal.
             with block_signals(), suppress(ImportError):
-                import_module("mxeon.report.page")
+                import mxeon.report.page as _  # noqa: F401
 
     return steps
 

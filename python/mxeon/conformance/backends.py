@@ -13,7 +13,6 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, lru_cache
-from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias, TypeVar, cast
 
 import numpy as np
@@ -960,16 +959,14 @@ BACKENDS: dict[str, tuple[type[Backend], ...]] = {
 
 def ways_of(host: str) -> tuple[type[Backend], ...]:
     """How a host is asked; () where only the text of its target is checked."""
-    row = host_row(host)
-    if not row.target:
-        import_module("mxeon.survey.checks")
-    return BACKENDS.get(row.way, ())
+    own_nodes(host)  # adds a renderer's backends
+    return BACKENDS.get(host_row(host).way, ())
 
 
 def own_nodes(host: str) -> tuple[Spec, ...]:
     """Nodes of a host's own that are judged; none for a host of generated shaders."""
-    row = host_row(host)
-    return () if row.target else import_module(row.module).NODES
+    nodes = host_row(host).nodes
+    return tuple(nodes(host)) if nodes else ()
 
 
 def backend_of(host: str, spec: Spec) -> type[Backend] | None:

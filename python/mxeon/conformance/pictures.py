@@ -16,8 +16,7 @@ from mxeon.conformance.backends import Rendered, picture_pairs
 from mxeon.conformance.case import Case
 from mxeon.conformance.check import judge, not_measured
 from mxeon.conformance.diagnosis import defect
-from mxeon.conformance.reference import ExpectedPicture, HostValues
-from mxeon.conformance.reference import Host as Reference
+from mxeon.conformance.reference import ExpectedPicture, HostValues, Reference
 from mxeon.conformance.reference.nodes import ShownLobe
 from mxeon.conformance.results import (
     FAILED,

@@ -198,7 +198,7 @@ def _plain(text: str) -> tuple[object, ...]:
 
 # --- generated sources ----------------------------------------------------------------------------
 
-TEXT_ONLY = tuple(row.target for row in HOSTS if not row.module)  # targets that no host runs
+TEXT_ONLY = tuple(row.target for row in HOSTS if row.needs)  # targets that no host runs
 # The call of a function that fills a node's lobe, or the expression that the lobe is.
 FILLED = re.compile(r"\b(\w+\([^;]*), lobe_out\);")
 ASSIGNED = re.compile(r"\b(?:BSDF|material) lobe_out = ([^;]*);")

@@ -16,7 +16,7 @@ import numpy as np
 
 from mxeon.conformance import words
 from mxeon.conformance.pictures import judge_document
-from mxeon.conformance.reference import Host as Reference
+from mxeon.conformance.reference import Reference
 from mxeon.conformance.results import PASSED, Result
 from mxeon.errors import InterfaceError, MxeonError, printable
 from mxeon.explorer.data import (

@@ -109,7 +109,7 @@ def _rows(node: mx.Node) -> tuple[PbrSpec, ...]:
 
 def _values(shader: Shader) -> tuple[Array, Array]:
     """pi f cos(theta_i) of the pairs, and what comes back of white surroundings."""
-    host = reference.Host()
+    host = reference.Reference()
     direct = np.pi * host.evaluate(shader, WO, WI, {}, "direct")
     return direct, host.evaluate(shader, SEEN, SEEN, {}, "environment")
 

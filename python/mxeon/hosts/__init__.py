@@ -4,26 +4,77 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from importlib import import_module
-from typing import cast
+from typing import Any
 
 from mxeon.errors import NotRun, Unsupported, assert_known
 from mxeon.hosts.base import Engine, Host
 from mxeon.shaders.scene import BACK, FURNACE, SIDE, Scene
 
 
+def start(name: str) -> Engine:
+    """Start the engine of a row of `HOSTS`; each is imported only where it runs."""
+    match name:
+        case "gl":
+            from mxeon.hosts.gl import GlHost
+
+            return GlHost()
+        case "webgl":
+            from mxeon.hosts.webgl import WebGlHost
+
+            return WebGlHost()
+        case "vulkan":
+            from mxeon.hosts.vulkan import VulkanHost
+
+            return VulkanHost()
+        case "wgsl":
+            from mxeon.hosts.wgsl import WgslHost
+
+            return WgslHost()
+        case "slang":
+            from mxeon.hosts.slang import SlangHost
+
+            return SlangHost()
+        case "osl":
+            from mxeon.hosts.osl import OslHost
+
+            return OslHost()
+        case "materialx":
+            from mxeon.hosts.materialx import MaterialXHost
+
+            return MaterialXHost()
+        case "storm":
+            from mxeon.hosts.storm import StormHost
+
+            return StormHost()
+        case "cycles":
+            from mxeon.hosts.cycles import CyclesHost
+
+            return CyclesHost()
+        case _:
+            from mxeon.hosts.testrender import TestrenderHost
+
+            return TestrenderHost()
+
+
 @dataclass(frozen=True)
 class Row:
+    """A host, and what is judged on it.
+
+    - `nodes`: The specs of a renderer's own nodes by its name; the call also adds its backends and checks.
+    """
+
     name: str
     target: str  # of its shaders; "" for a renderer that only has its own materials
-    module: str = ""  # with its class `Host`; "" where only the text of the target is checked
     way: str = ""  # its backends: a key of `mxeon.conformance.backends.BACKENDS`; "" for none
     needs: str = ""  # what running it would take, where only its text is checked
     scenes: tuple[Scene, ...] = ()  # lights under which it renders the materials of documents
     surfaces: bool = False  # whether surface shaders are checked on it
     rounding: float = 0.0  # relative, of its pixels, in addition to float32's
     front_lit: tuple[str, ...] = ()  # models that it only has for s >= 0
+    start: Callable[[str], Engine] = start
+    nodes: Callable[[str], Sequence[Any]] | None = None
 
 
 # A sum over the environment for each pixel: half as wide as the others, as all of it is smooth.
@@ -31,16 +82,15 @@ WHITE = replace(FURNACE, size=128)
 
 HOSTS = (
     # Its pictures are exact and take no time.
-    Row("gl", "glsl", "mxeon.hosts.gl", "pairs", scenes=(SIDE, BACK, WHITE), surfaces=True),
-    Row("webgl", "essl", "mxeon.hosts.webgl", "pairs", scenes=(SIDE, BACK, WHITE)),
-    Row("vulkan", "vulkan", "mxeon.hosts.vulkan", "pairs"),
-    Row("wgsl", "wgsl", "mxeon.hosts.wgsl", "pairs"),
-    Row("slang", "slang", "mxeon.hosts.slang", "pairs"),
-    Row("osl", "osl", "mxeon.hosts.osl", "closures"),
+    Row("gl", "glsl", "pairs", scenes=(SIDE, BACK, WHITE), surfaces=True),
+    Row("webgl", "essl", "pairs", scenes=(SIDE, BACK, WHITE)),
+    Row("vulkan", "vulkan", "pairs"),
+    Row("wgsl", "wgsl", "pairs"),
+    Row("slang", "slang", "pairs"),
+    Row("osl", "osl", "closures"),
     Row(
         "materialx",
         "glsl",
-        "mxeon.hosts.materialx",
         "drawn pictures",
         scenes=(SIDE, BACK, WHITE),
         surfaces=True,
@@ -49,24 +99,35 @@ HOSTS = (
     Row(
         "storm",
         "glsl",
-        "mxeon.hosts.storm",
         "half pictures",
         scenes=(SIDE, BACK),
         surfaces=True,
         rounding=2.0**-10,  # half floats, truncated
     ),
     # Its environment has noise. No closure of Cycles is QON for s < 0.
-    Row("cycles", "osl", "mxeon.hosts.cycles", "pictures", scenes=(SIDE, BACK), front_lit=("qon",)),
-    Row("testrender", "osl", "mxeon.hosts.testrender", "rendered", surfaces=True),
+    Row("cycles", "osl", "pictures", scenes=(SIDE, BACK), front_lit=("qon",)),
+    Row("testrender", "osl", "rendered", surfaces=True),
     Row("msl", "msl", needs="Metal, which macOS alone has"),
     Row("mdl", "mdl", needs="a renderer that compiles MDL"),
 )
 
 
+_REGISTERED: dict[str, Row] = {}
+
+
+def register(*rows: Row) -> None:
+    """Add rows of renderers with their own materials, as `mxeon.survey` does."""
+    _REGISTERED.update({row.name: row for row in rows})
+
+
+def registered() -> tuple[Row, ...]:
+    """The rows that were added; workers need them too."""
+    return tuple(_REGISTERED.values())
+
+
 def host_rows() -> tuple[Row, ...]:
-    """The table, and the rows of `mxeon.survey`: renderers with their own materials."""
-    renderers: tuple[Row, ...] = import_module("mxeon.survey").ROWS
-    return HOSTS + renderers
+    """The table, and the rows that were added."""
+    return HOSTS + registered()
 
 
 def host_names() -> tuple[str, ...]:
@@ -107,7 +168,7 @@ def open_engine(name: str, *others: Row) -> Engine:
             f"{name}: this process was forked from one that had opened an engine, whose threads are "
             "missing here: pass workers=1, or start processes by the method spawn"
         )
-    if not row.module:
+    if row.needs:
         raise NotRun(f"{name}: running it needs {row.needs}; its text is checked")
     if row.target and row.target not in TARGETS:
         import MaterialX as mx
@@ -119,4 +180,4 @@ def open_engine(name: str, *others: Row) -> Engine:
             f"pip install materialx=={TESTED[-1]}"
         )
     _OPENED.add(os.getpid())
-    return cast(Engine, import_module(row.module).Host())
+    return row.start(name)

@@ -33,7 +33,7 @@ P = ParamSpec("P")
 T = TypeVar("T")
 
 
-def _current(verb: Callable[Concatenate[Host, P], T]) -> Callable[Concatenate[Host, P], T]:
+def _current(verb: Callable[Concatenate[GlHost, P], T]) -> Callable[Concatenate[GlHost, P], T]:
     """Make the host's context current for a verb: other hosts of the process have their own.
 
     An object of OpenGL is a number that each context counts itself. What Python drops at any
@@ -41,7 +41,7 @@ def _current(verb: Callable[Concatenate[Host, P], T]) -> Callable[Concatenate[Ho
     """
 
     @wraps(verb)
-    def wrapped(self: Host, /, *arguments: P.args, **options: P.kwargs) -> T:
+    def wrapped(self: GlHost, /, *arguments: P.args, **options: P.kwargs) -> T:
         with self._context:
             try:
                 return verb(self, *arguments, **options)
@@ -51,7 +51,7 @@ def _current(verb: Callable[Concatenate[Host, P], T]) -> Callable[Concatenate[Ho
     return wrapped
 
 
-class Host(FragmentHost):
+class GlHost(FragmentHost):
     name = "gl"
     target = "glsl"
     draws_images = True

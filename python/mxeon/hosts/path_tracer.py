@@ -35,7 +35,7 @@ class NoiseNote(UserWarning):
     """How far a picture is from a converged one."""
 
 
-class Host(gl.Host):
+class PathTracerHost(gl.GlHost):
     """A path tracer on OpenGL; a picture reports its noise as a NoiseNote."""
 
     name = "path"
@@ -73,4 +73,4 @@ class Host(gl.Host):
         return ()
 
 
-ROW = Row("path", "glsl", "mxeon.hosts.path_tracer")
+ROW = Row("path", "glsl", start=lambda name: PathTracerHost())

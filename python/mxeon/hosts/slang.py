@@ -100,7 +100,7 @@ void {ENTRY}(uint3 mxeon_thread : SV_DispatchThreadID)
 """
 
 
-class Host(base.Host):
+class SlangHost(base.Host):
     """The first of DEVICES on which slangpy runs a kernel."""
 
     name = "slang"

@@ -38,7 +38,7 @@ HELPERS = {
 OPTIONS = ("--center", "-d", "float", CALL, "-o", "result")  # a function at every point of the grid
 
 
-class Host(PairHost):
+class TestrenderHost(PairHost):
     """oslc, testrender and testshade, on PATH or named by variables; see `mxeon.hosts.osl.engines.VARIABLES`."""
 
     name = "testrender"

@@ -64,7 +64,7 @@ Kind: TypeAlias = Mapping[str, object]  # of a resource, as wgpu wants it
 Bindings: TypeAlias = dict[int, tuple[Kind, Resource]]  # by number
 
 
-class Host(FragmentHost):
+class VulkanHost(FragmentHost):
     """The first Vulkan adapter that wgpu finds."""
 
     name = "vulkan"

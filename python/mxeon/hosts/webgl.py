@@ -128,7 +128,7 @@ class Chromium:
         self._stack.close()
 
 
-class Host(Chromium, FragmentHost):
+class WebGlHost(Chromium, FragmentHost):
     """WebGL2 in a browser; a frame may take `limit` seconds."""
 
     name = "webgl"

@@ -14,7 +14,7 @@ from mxeon.hosts import vulkan
 BLOCK = re.compile(r"^layout \(location = 0\) in (\w+\s*\{[^}]*\} \w+;)", re.MULTILINE)
 
 
-class Host(vulkan.Host):
+class WgslHost(vulkan.VulkanHost):
     """The first adapter that wgpu finds, with naga instead of glslang."""
 
     name = "wgsl"

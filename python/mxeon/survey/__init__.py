@@ -1,17 +1,72 @@
 # SPDX-License-Identifier: Apache-2.0
 """Renderers with their own materials: their engines, nodes and checks, and the page that compares them.
 
-`mxeon.hosts` and `mxeon.conformance` name no renderer: they take `ROWS`, and from the module of a row its
-`Host` and its `NODES`. `checks` and `backends` add themselves to those of `mxeon.conformance`.
+`mxeon.hosts` and `mxeon.conformance` name no renderer: `mxeon.check` and the command register `ROWS`.
 """
 
-from mxeon.hosts import Row
+from collections.abc import Sequence
+from functools import partial
+from typing import TYPE_CHECKING
 
+from mxeon.hosts import Row
+from mxeon.hosts.base import Engine
+
+if TYPE_CHECKING:
+    from mxeon.survey.specs import RendererSpec
+
+
+def start(name: str) -> Engine:
+    """Start the renderer of a row of `ROWS`; each is imported only where it runs."""
+    match name:
+        case "cycles-native":
+            from mxeon.survey.cycles_native import CyclesNativeHost
+
+            return CyclesNativeHost()
+        case "three":
+            from mxeon.survey.browser.three import ThreeHost
+
+            return ThreeHost()
+        case "babylon":
+            from mxeon.survey.browser.babylon import BabylonHost
+
+            return BabylonHost()
+        case "three-gpu-pathtracer":
+            from mxeon.survey.browser.pathtracer import GpuPathTracerHost
+
+            return GpuPathTracerHost()
+        case "mitsuba":
+            from mxeon.survey.polyhedron.mitsuba import MitsubaHost
+
+            return MitsubaHost()
+        case _:
+            from mxeon.survey.polyhedron.eevee import EeveeHost
+
+            return EeveeHost()
+
+
+def nodes(name: str) -> Sequence["RendererSpec"]:
+    """The nodes of a renderer that are judged; the checks and backends of renderers are imported."""
+    from mxeon.survey import checks as checks
+    from mxeon.survey import cycles_native
+    from mxeon.survey.browser import babylon, pathtracer, three
+    from mxeon.survey.polyhedron import eevee, mitsuba
+
+    return {
+        "cycles-native": cycles_native.NODES,
+        "three": three.NODES,
+        "babylon": babylon.NODES,
+        "three-gpu-pathtracer": pathtracer.NODES,
+        "mitsuba": mitsuba.NODES,
+        "eevee": eevee.NODES,
+    }[name]
+
+
+_row = partial(Row, target="", start=start, nodes=nodes)
 ROWS = (
-    Row("cycles-native", "", "mxeon.survey.cycles_native", "native"),
-    Row("three", "", "mxeon.survey.browser.three", "exact"),
-    Row("babylon", "", "mxeon.survey.browser.babylon", "exact"),
-    Row("three-gpu-pathtracer", "", "mxeon.survey.browser.pathtracer", "facet pairs"),
-    Row("mitsuba", "", "mxeon.survey.polyhedron.mitsuba", "facet pairs"),
-    Row("eevee", "", "mxeon.survey.polyhedron.eevee", "coarse facets"),
+    _row("cycles-native", way="native"),
+    _row("three", way="exact"),
+    _row("babylon", way="exact"),
+    _row("three-gpu-pathtracer", way="facet pairs"),
+    _row("mitsuba", way="facet pairs"),
+    _row("eevee", way="coarse facets"),
 )

@@ -26,11 +26,11 @@ MATERIALS: dict[str, Material] = {
 NODES = tuple(node(title, "eon", material) for title, material in MATERIALS.items())
 
 
-class Host(Engine):
+class CyclesNativeHost(Engine):
     name = "cycles-native"
 
     def __init__(self) -> None:
-        self._cycles = cycles.Host()
+        self._cycles = cycles.CyclesHost()
 
     def identity(self) -> Identity:
         return Identity(self.name, self._cycles.identity().version, "CPU, SVM")

@@ -12,7 +12,7 @@ import numpy as np
 
 from mxeon.hosts import testrender_scene as scenes
 from mxeon.hosts.osl.engines import VARIABLES
-from mxeon.hosts.testrender import Host
+from mxeon.hosts.testrender import TestrenderHost
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 
@@ -65,7 +65,7 @@ def write_replay(folder):
 
 def record():
     """Record the picture again; TITLE is the first line of `oslc --help`."""
-    with Host() as host:
+    with TestrenderHost() as host:
         values(host)
         folder = host._folder
         for name in (scenes.SCENE, scenes.POINTS, scenes.LIGHT):

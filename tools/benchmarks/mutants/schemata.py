@@ -162,7 +162,7 @@ def instrumented(text: str, mutants: Mapping[int, Mutant]) -> str:
     return "".join(parts)
 
 
-class Host(gl.Host):
+class SchemataHost(gl.GlHost):
     """The gl host, whose shaders have the mutants `alive`, of which `mutant` is there; 0 for none."""
 
     def __init__(self) -> None:
@@ -273,7 +273,7 @@ def trials(mutants: Sequence[Mutant]) -> dict[str, str]:
     mutants = [each for each in own if not each.file.startswith(APART)]
     found = {each.name: SURVIVED for each in mutants}
     numbered = list(enumerate(mutants, 1))
-    with closing(Host()) as host, np.errstate(all="ignore"), warnings.catch_warnings():
+    with closing(SchemataHost()) as host, np.errstate(all="ignore"), warnings.catch_warnings():
         warnings.simplefilter("ignore")
         asked = list(subjects(host))
         for start in range(0, len(mutants), GROUP):
@@ -291,7 +291,7 @@ def is_another_text(mutant: Mutant) -> bool:
     return glsl != osl
 
 
-def noticed(host: Host, asked: Sequence[Subject]) -> Iterator[tuple[int, str]]:
+def noticed(host: SchemataHost, asked: Sequence[Subject]) -> Iterator[tuple[int, str]]:
     """The numbers of mutants that are noticed, which are alive no more, and by what."""
     seen: set[int] = set()
     for title, composed, text, ask in asked:
@@ -307,7 +307,7 @@ def noticed(host: Host, asked: Sequence[Subject]) -> Iterator[tuple[int, str]]:
         host.mutant = 0
 
 
-def subjects(host: Host) -> Iterator[Subject]:
+def subjects(host: SchemataHost) -> Iterator[Subject]:
     """What has mutants: a title, whether it is composed of others, its text, and what asks its checks."""
     functions = Functions(host)
     yield "functions", False, functions.text, functions
@@ -320,7 +320,7 @@ def subjects(host: Host) -> Iterator[Subject]:
             yield case.spec.title, composed, text, partial(node, case, _rows(case, turn))
 
 
-def _case(host: Host, spec: Spec) -> Case:
+def _case(host: SchemataHost, spec: Spec) -> Case:
     """A node with a subset of its samples."""
     return replace(make_case(Evaluating, host, spec, "eonlib"), control=True)
 
@@ -341,9 +341,9 @@ def _rows(case: Case, turn: int) -> Callable[[], list[tuple[Check, Tolerance]]]:
 class Functions:
     """The shader functions, all by one call, at some of the points at which they are judged."""
 
-    def __init__(self, host: Host) -> None:
+    def __init__(self, host: SchemataHost) -> None:
         self._host, self.language = host, host.language
-        probe = FunctionProbe(cast(gl.Host, self), "eonlib")
+        probe = FunctionProbe(cast(gl.GlHost, self), "eonlib")
         self.text, self._rows = probe.text, []
         names = list(probe._values(1.0))
         for name in names:

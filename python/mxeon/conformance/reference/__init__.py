@@ -10,12 +10,11 @@ import MaterialX as mx
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon import hosts
 from mxeon.conformance.reference.graph import DRAWN, Graph
 from mxeon.conformance.reference.nodes import ManyMaterialsError, ShadingPoints, ShownLobe
 from mxeon.conformance.samples import Array
 from mxeon.errors import DocumentError, NotRun
-from mxeon.hosts import base
+from mxeon.hosts import Row, base
 from mxeon.hosts.base import Identity, Query
 from mxeon.shaders.document.drawn_values import (
     LIT,
@@ -36,9 +35,6 @@ MOST = 2000  # pixels of which all are judged then: an integral takes about a mi
 
 PATTERNS = (*DRAWN, "boolean", "color4", "vector4")  # of which a generator draws three components
 TARGETS = ("glsl", "essl", "vulkan", "wgsl")  # whose shaders of an output draw its value
-
-# Any target will do: the document behind the shader is what is evaluated.
-ROW = hosts.Row("reference", target="glsl", module=__name__)
 
 
 class HostValues:
@@ -91,11 +87,10 @@ class ExpectedPicture:
     lobes: tuple[ShownLobe, ...] = ()  # the lobes that it shows
 
 
-class Host(base.Host):
+class Reference(base.Host):
     """The models of `mxeon.models.table` and the nodes of `mxeon.models.nodes`."""
 
-    name = ROW.name
-    target = ROW.target
+    name, target = "reference", "glsl"
 
     def identity(self) -> Identity:
         return Identity(self.name, f"NumPy {np.__version__}", "CPU, float64")
@@ -194,3 +189,7 @@ def _shown(scene: Scene, stride: int, most: float) -> ShadingPoints:
         raise NotRun("reference: environment must be uniform; got an image")
     wo = np.broadcast_to(VIEW, normal.shape)
     return ShadingPoints(wo, wi, strength, normal, tangents(normal), texcoord, most, True)
+
+
+# Any target will do: the document behind the shader is what is evaluated.
+ROW = Row("reference", target=Reference.target, start=lambda name: Reference())

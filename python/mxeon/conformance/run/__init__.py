@@ -26,7 +26,7 @@ from mxeon.conformance.run.plan import (
     survey_documents,
 )
 from mxeon.errors import InputError, InterfaceError, NotRun
-from mxeon.hosts import HOSTS, host_names, host_row
+from mxeon.hosts import HOSTS, Row, host_names, host_row, register, registered
 from mxeon.io.files import AnyPath, Names, check_output, names_of, one_name
 from mxeon.jobs import TIMEOUT, WAIT, check_timeout, dask, pool
 from mxeon.jobs.pool import by_group
@@ -195,15 +195,24 @@ def read_run(folder: AnyPath) -> Run:
     return to_run(*read_journal(folder))
 
 
-def work(policy: Policy, task: Task) -> Findings:
-    """Findings of a task; runs in workers. Raise NotRun if the host cannot be opened here."""
+def work(policy: Policy, rows: Sequence[Row], task: Task) -> Findings:
+    """Findings of a task; runs in workers, to which it brings the rows of renderers.
+
+    Raise NotRun if the host cannot be opened here.
+    """
+    register(*rows)
     return _judge(policy).work(task)
 
 
-def work_or_not_run(policy: Policy, task: Task, judge: Judge | None = None) -> Findings:
-    """Findings of a task; those that say "not run" where the host cannot be opened here."""
+def work_or_not_run(policy: Policy, rows: Sequence[Row], task: Task) -> Findings:
+    """The same; "not run" where the host cannot be opened here."""
+    register(*rows)
+    return _or_not_run(_judge(policy), task)
+
+
+def _or_not_run(judge: Judge, task: Task) -> Findings:
     try:
-        return (judge or _judge(policy)).work(task)
+        return judge.work(task)
     except NotRun as reason:
         return one_result(task, NOT_RUN, reason=str(reason))
 
@@ -258,10 +267,10 @@ def _executor(
     """The executor: maps tasks to their outcomes."""
     if scheduler is not None:
         with dask.connect(scheduler, wait) as remote:
-            job = partial(work, policy)
+            job = partial(work, policy, registered())
             yield partial(dask.run, job, workers=remote, timeout=timeout, unavailable=NotRun)
     elif workers:
-        job = partial(work_or_not_run, policy)
+        job = partial(work_or_not_run, policy, registered())
         yield partial(pool.run, job, workers=workers, timeout=timeout, group=_subject)
     else:
         yield partial(_run_inline, policy)
@@ -278,4 +287,4 @@ def _subject(task: Task) -> tuple[str, str, str]:
 def _run_inline(policy: Policy, tasks: Sequence[Task]) -> Iterator[tuple[int, pool.Outcome]]:
     with closing(Judge(policy)) as judge:
         for position in by_group(list(map(_subject, tasks))):
-            yield position, pool.Outcome(work_or_not_run(policy, tasks[position], judge))
+            yield position, pool.Outcome(_or_not_run(judge, tasks[position]))

@@ -22,7 +22,7 @@ from mxeon.conformance.pictures import (
     generate_document,
     judge_document,
 )
-from mxeon.conformance.reference import Host as Reference
+from mxeon.conformance.reference import Reference
 from mxeon.conformance.results import (
     DIRECT,
     FAILED,

@@ -210,7 +210,7 @@ class SurfaceShaderSpec(LobeSpec):
         return Graphs(self._shader.document, self.document())
 
     def _reference(self, batch: Batch, branch: str) -> Array:
-        from mxeon.conformance.reference import Host as Reference
+        from mxeon.conformance.reference import Reference
 
         return Reference().evaluate(self._shader, batch.wo, batch.wi, batch.inputs, branch)
 

@@ -58,7 +58,7 @@ SKY_SAMPLES = 64  # paths per pixel under a sky
 GRAPH_FUNCTION = "mxeon_graph"
 
 
-class Host(PairHost):
+class CyclesHost(PairHost):
     """Blender's Cycles, with its process and a temporary folder.
 
     `sources` is the folder of the OSL files whose functions `call` executes, eonlib's unless given;

@@ -17,7 +17,7 @@ from mxeon.hosts.documents import DocumentHost
 from mxeon.shaders.methods import GENERATED
 
 
-class Host(DocumentHost):
+class MaterialXHost(DocumentHost):
     """The GlslRenderer of this MaterialX, in float32; see `DocumentHost`."""
 
     name = "materialx"

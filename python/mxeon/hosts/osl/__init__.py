@@ -53,7 +53,7 @@ SHADERS = 8  # with the names of their variables, whose closures are kept
 PRINT = f'printf("mxeon %d {ROOT} %s\\n", MXEON_ROW, mxeon_text({{0}}));'
 
 
-class Host(base.Host):
+class OslHost(base.Host):
     """Blender's OSL, or a build's testshade that MXEON_TESTSHADE names; with a temporary folder."""
 
     name = "osl"

@@ -27,7 +27,7 @@ COMPILE = "Failed to compile shader"  # the beginning of such a report
 CLOSURES = ("BSDF", "EDF", "VDF")
 
 
-class Host(DocumentHost):
+class StormHost(DocumentHost):
     """Storm on OpenGL without a window. Its pictures are half floats; see `DocumentHost`."""
 
     name = "storm"

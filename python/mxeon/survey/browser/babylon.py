@@ -34,6 +34,6 @@ NODES = tuple(
 )
 
 
-class Host(browser.PackageHost):
+class BabylonHost(browser.PackageHost):
     name, title, package = "babylon", "Babylon.js", PACKAGE
     imports, assets = IMPORTS, ASSETS

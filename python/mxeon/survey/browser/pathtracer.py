@@ -51,14 +51,14 @@ vec3 diffuse_value(vec3 wo, vec3 wi, vec3 rho, float roughness, float scale)
 """
 
 
-class Host(browser.PackageHost):
+class GpuPathTracerHost(browser.PackageHost):
     name = title = package = PACKAGE
     imports = IMPORTS
     backends = ("",)
 
     @cached_property
-    def _webgl(self) -> webgl.Host:
-        return webgl.Host()
+    def _webgl(self) -> webgl.WebGlHost:
+        return webgl.WebGlHost()
 
     def pairs(
         self, material: Material, wo: Array, wi: Array, color: Array, roughness: Array

@@ -44,7 +44,7 @@ NODES = (
 )
 
 
-class Host(browser.PackageHost):
+class ThreeHost(browser.PackageHost):
     name = title = package = PACKAGE
     imports = IMPORTS
 

@@ -14,7 +14,7 @@ from mxeon.survey.specs import COLOR, node
 NODES = tuple(node(title, "lambert", material, COLOR) for title, material in MATERIALS.items())
 
 
-class Host(PolyhedronHost):
+class EeveeHost(PolyhedronHost):
     name = "eevee"
     script = Path(process.__file__).with_name("worker.py")
     samples = 1  # it has no noise

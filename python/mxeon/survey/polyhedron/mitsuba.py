@@ -32,7 +32,7 @@ NODES = (
 )
 
 
-class Host(PolyhedronHost):
+class MitsubaHost(PolyhedronHost):
     """Mitsuba with its own BSDFs, which it evaluates for any pair of directions."""
 
     name = "mitsuba"
