@@ -162,7 +162,6 @@ WRONG = {
     f"check {LOOK} --report nodes.md/out": "nodes.md: must be a folder; File exists",
     "kit check kit --report nodes.md": "nodes.md: must be a folder; File exists",
     "kit export nodes.md": "nodes.md: must be a folder; File exists",
-    "figures nodes.md": "nodes.md: must be a folder; File exists",
     "library --export lib": "lib: must be a new or empty folder",
     f"generate {LOOK} --target osl --outputPath nodes.md": "nodes.md: must be a folder; File exists",
     f"render {LOOK} --integrator path --library nosuch --output out.png": "or a folder that exists; got 'nosuch'",
@@ -172,7 +171,6 @@ WRONG = {
     f"generate {LOOK} --target osl --outputPath ''": "arguments must not be empty",
     "library --export ''": "arguments must not be empty",
     "kit export ''": "arguments must not be empty",
-    "figures ''": "arguments must not be empty",
 }
 
 

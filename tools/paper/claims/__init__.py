@@ -12,7 +12,7 @@ COLUMNS = ("where", "claim", "measured", "required", "verdict")
 
 HEAD = """# The paper, checked
 
-Does the EON paper say what is true? `mxeon figures` measures its claims and writes this page, in float64
+Does the EON paper say what is true? `python -m tools.paper DIR` measures its claims and writes this page, in float64
 unless stated otherwise. Equations, figures and listings have the numbers of [Portsmouth2025], the JCGT
 2025 edition ([bibliography](bibliography.md)). The figures follow the claims; their data are in the
 folder `figures`.
