@@ -14,7 +14,7 @@ import mxeon
 ROOT = Path(__file__).parents[1]
 SUPPORT = str(ROOT / "tests" / "support")
 NUMPY_ALONE = (
-    *("mxeon", "mxeon.models", "mxeon.albedo", "mxeon.inversion", "mxeon.sampling"),
+    *("mxeon", "mxeon.models", "mxeon.models.sampling"),
     *("mxeon.models.table", "mxeon.hosts", "mxeon.hosts.base", "mxeon.conformance.results"),
 )
 NEW_MODULES = """

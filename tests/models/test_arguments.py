@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 
 from mxeon.models.core.arguments import RANGES
-from mxeon.models.microfacet.fresnel import artistic_ior, artistic_parameters
 from mxeon.models.sheen import conty_kulla_albedo_dir
 from mxeon.models.transmission import refraction_direction
 from tests.fuzz import arguments
@@ -104,17 +103,6 @@ def test_every_function_computes_in_float64_whatever_the_type_of_its_arguments(k
 @pytest.mark.parametrize("roughness", (5e-324, 1e-320, 1e-300))
 def test_conty_kulla_has_no_albedo_away_from_grazing_at_the_least_roughness(roughness):
     assert conty_kulla_albedo_dir(0.5, roughness) == 0.0
-
-
-def test_edge_color_of_an_index_of_zero_is_its_limit():
-    near, at = artistic_parameters([1e-12, 0.0], 1.5)[1]
-    assert at == 1.0
-    assert near == pytest.approx(1.0, abs=1e-11)
-
-
-def test_edge_color_of_no_reflection_is_one_that_gives_it_back():
-    index = artistic_ior(*artistic_parameters(1.0, 0.0))
-    assert [float(part) for part in index] == [1.0, 0.0]
 
 
 @pytest.mark.parametrize("ior", (5e-324, 1e-160, 1e-51))

@@ -5,15 +5,16 @@ import numpy as np
 import pytest
 
 import mxeon
-from mxeon.albedo import eon_albedo_avg, ggx_albedo_dir
 from mxeon.models import (
     dielectric_over_eon_albedo_avg,
     dielectric_over_eon_albedo_dir,
     dielectric_over_eon_brdf,
     dielectric_over_eon_sample,
+    eon_albedo_avg,
     fresnel_dielectric_avg,
     generalized_schlick_albedo_dir,
     generalized_schlick_brdf,
+    ggx_albedo_dir,
     openpbr_base_albedo_dir,
     openpbr_base_brdf,
 )

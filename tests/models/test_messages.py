@@ -9,7 +9,7 @@ import re
 import numpy as np
 import pytest
 
-from mxeon import albedo, models, sampling
+from mxeon import models
 from mxeon.models.core.layering import Bsdf, mix, multiply, throughput
 from mxeon.models.nodes.utilities import node
 from mxeon.models.table import diffuse_model
@@ -42,12 +42,12 @@ RULES = {
     ),
     "rho must lie in [0, 1]; got nan": lambda: models.eon_brdf(UP, UP, np.nan, 1.0),
     "sigma must lie in [0, pi/2]; got 1.6": lambda: models.qon_brdf(UP, UP, 1.0, 1.6),
-    "mu must lie in [0, 1]; got 2.0 at index (1,)": lambda: albedo.fon_albedo_dir([0.5, 2.0], 1.0),
+    "mu must lie in [0, 1]; got 2.0 at index (1,)": lambda: models.fon_albedo_dir([0.5, 2.0], 1.0),
     "extinction must lie in [0, 1e50]; got -1.0 at index (1,)": lambda: models.fresnel_conductor(
         0.5, 1.0, [0.0, -1.0]
     ),
     "ior must lie in [0, 1e50]; got inf": lambda: models.fresnel_dielectric_avg(np.inf),
-    "u must lie in [0, 1); got 1.0 at index (1, 0)": lambda: sampling.eon_sample(
+    "u must lie in [0, 1); got 1.0 at index (1, 0)": lambda: models.eon_sample(
         UP, [[0.0, 0.0], [1.0, 0.0]], 0.5
     ),
     "color must lie in [0, 1]; got 1.2 at index (2,)": lambda: models.eon_rho_from_albedo_normal(
@@ -79,10 +79,10 @@ RULES = {
         UP, [1e200, 0.0, 0.0], 1.0
     ),
     "wi must not point below the horizon (z >= 0); got z = -0.8 at index (1,)": (
-        lambda: sampling.cosine_pdf(BELOW)
+        lambda: models.cosine_pdf(BELOW)
     ),
     "wo must not point below the horizon (z >= 0); got z = -0.8 at index (1,)": (
-        lambda: sampling.eon_sample(BELOW, A, 0.5)
+        lambda: models.eon_sample(BELOW, A, 0.5)
     ),
     "wi must not point above the horizon (z <= 0); got z = 0.8": lambda: models.translucent_btdf(
         UP, [0.6, 0, 0.8], 1.0
@@ -109,7 +109,7 @@ RULES = {
     # Shapes.
     "wo must have shape (..., 3); got shape (2,)": lambda: models.lambert_brdf([1.0, 0.0], UP, 1.0),
     "wi must have shape (..., 3); got shape ()": lambda: models.lambert_brdf(UP, 1.0, 1.0),
-    "u must have shape (..., 2); got shape (3,)": lambda: sampling.cosine_sample([0.1, 0.2, 0.3]),
+    "u must have shape (..., 2); got shape (3,)": lambda: models.cosine_sample([0.1, 0.2, 0.3]),
     "roughness must be a number or have shape (..., 2); got shape (3,): write roughness[..., np": (
         lambda: models.smith_g1(UP, [0.5, 0.5, 0.5])
     ),
@@ -126,16 +126,16 @@ RULES = {
     "wo, wi, rho, roughness must broadcast (last axis of wo, wi, rho apart); "
     "got shapes (2, 3), (3, 3), (1,), ()": lambda: models.eon_brdf([UP] * 2, [UP] * 3, 1.0, 1.0),
     "rho, roughness, mu must broadcast (last axis of rho apart); got shapes (4, 3), (5,), ()": (
-        lambda: albedo.eon_albedo_dir(0.5, np.full((4, 3), 0.5), [0.5] * 5)
+        lambda: models.eon_albedo_dir(0.5, np.full((4, 3), 0.5), [0.5] * 5)
     ),
     "rho, mu, parameter 0 must broadcast (last axis of rho apart); got shapes (1,), (4,), (5,)": (
-        lambda: albedo.albedo_dir_quadrature(models.eon_brdf, [0.5] * 4, 0.5, [0.5] * 5)
+        lambda: models.albedo_dir_quadrature(models.eon_brdf, [0.5] * 4, 0.5, [0.5] * 5)
     ),
     "wo, wi, roughness, ior, extinction must broadcast": lambda: models.conductor_brdf(
         UP, UP, [A] * 2, np.ones((3, 1)), 1.0
     ),
     "wo, u, roughness must broadcast (last axis of wo, u apart); got shapes (4, 3), (2,), (5,)": (
-        lambda: sampling.ltc_sample([UP] * 4, A, [0.5] * 5)
+        lambda: models.ltc_sample([UP] * 4, A, [0.5] * 5)
     ),
     "wo, radiance, inner_angle, outer_angle must broadcast": lambda: models.conical_edf(
         [UP] * 2, [1.0], np.ones(3), 1.0

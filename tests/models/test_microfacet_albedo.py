@@ -7,18 +7,16 @@ import numpy as np
 import pytest
 from scipy.integrate import dblquad, quad
 
-from mxeon.albedo import (
-    conductor_albedo_dir,
-    dielectric_albedo_dir,
-    generalized_schlick_albedo_dir,
-    ggx_albedo_dir,
-    ggx_albedo_dir_anisotropic,
-)
 from mxeon.models import (
+    conductor_albedo_dir,
     conductor_brdf,
+    dielectric_albedo_dir,
     dielectric_brdf,
     fresnel_dielectric,
+    generalized_schlick_albedo_dir,
     generalized_schlick_brdf,
+    ggx_albedo_dir,
+    ggx_albedo_dir_anisotropic,
 )
 from mxeon.models.microfacet import ggx, slopes
 from mxeon.models.microfacet import ggx as ggx_albedo

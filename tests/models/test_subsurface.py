@@ -5,26 +5,20 @@ import numpy as np
 import pytest
 
 from mxeon.models.media import (
-    GAIN,
     LINEAR,
-    LOSS,
     SQUARED,
     diffusion_blur,
-    diffusion_cdf,
     diffusion_profile,
-    diffusion_sample,
     subsurface_albedo,
     subsurface_coefficients,
-    subsurface_reflectance,
 )
 from tests.models.random_walk import distances, reflectance_of_h
-from tests.support.tolerances import (
-    SUBSURFACE_FIT,
-    SUBSURFACE_PEAK,
-    SUBSURFACE_ROUNDED,
-    SUBSURFACE_SIMILARITY,
-)
+from tests.support.tolerances import SUBSURFACE_FIT, SUBSURFACE_PEAK, SUBSURFACE_SIMILARITY
 
+LOSS, GAIN = (
+    0.139,
+    1.17,
+)  # of [vandeHulst1974]: rho = (1 - s) (1 - LOSS s) / (1 + GAIN s), s^2 = 1 - w
 COLORS = np.linspace(0.0, 1.0, 1001)
 PATHS = 20_000
 DEVIATIONS = 5.0  # standard errors: one false alarm in 190,000 runs of the nine walks
@@ -37,14 +31,6 @@ def test_the_inversion_solves_van_de_hulsts_fit():
     square = (exact[0] ** 2 - 2.0 * half, 2.0 * exact[0] * exact[1] + 2.0 * half, exact[1] ** 2)
     np.testing.assert_allclose(LINEAR, exact, atol=5e-6)
     np.testing.assert_allclose(SQUARED, square, rtol=1e-6)
-
-
-@pytest.mark.parametrize("anisotropy", [-1.0, -0.5, 0.0, 0.5, 0.9])
-def test_albedo_and_reflectance_are_inverse(anisotropy):
-    albedo = subsurface_albedo(COLORS, anisotropy)
-    assert ((albedo > 0.0) & (albedo < 1.0)).all()
-    back = subsurface_reflectance(albedo, anisotropy)
-    assert np.abs(back - COLORS).max() < SUBSURFACE_ROUNDED
 
 
 def test_the_albedo_rises_with_the_color_up_to_its_peak():
@@ -92,19 +78,6 @@ def test_the_profile_integrates_to_1_over_the_plane(radius):
     ring = 2.0 * np.pi * r * diffusion_profile(r, radius) * np.exp(x) * 3.0 * radius
     assert (w * ring).sum() == pytest.approx(1.0, abs=1e-9)
     assert (w * ring * r).sum() == pytest.approx(2.5 * radius, rel=1e-9)
-
-
-def test_the_cdf_is_the_integral_of_the_profile():
-    r, step = np.linspace(0.1, 10.0, 50), 1e-5
-    slope = (diffusion_cdf(r + step, 0.7) - diffusion_cdf(r - step, 0.7)) / (2.0 * step)
-    np.testing.assert_allclose(slope, 2.0 * np.pi * r * diffusion_profile(r, 0.7), atol=1e-9)
-    assert diffusion_cdf(1e3, 1.0) == 1.0 and diffusion_cdf(1e-9, 1.0) < 1e-9
-
-
-def test_samples_have_the_cdf():
-    u = np.linspace(1e-6, 1.0 - 1e-9, 1001)
-    np.testing.assert_allclose(diffusion_cdf(diffusion_sample(u, 0.3), 0.3), u, atol=1e-14)
-    assert diffusion_sample(0.0, 0.3) < 1e-15
 
 
 @pytest.mark.parametrize("reach", [0.05, 0.4, 3.0])

@@ -21,11 +21,10 @@ from mxeon.models.thin_film import (
     film_curve,
     film_dielectric,
     film_schlick,
-    film_spectrum,
-    film_spectrum_xyz,
 )
 from tests.models.test_pbrlib import directions, inputs
 from tests.support.availability import package
+from tests.support.films import film_spectrum, film_spectrum_xyz
 
 MU = np.linspace(0.05, 1.0, 40)
 GOLD = (0.183, 0.421, 1.373), (3.424, 2.346, 1.770)

@@ -10,10 +10,10 @@ import pytest
 from scipy import special
 
 import mxeon
-from mxeon.albedo import eon_albedo_avg
 from mxeon.fit import MeasuredBrdf, fit_brdf
 from mxeon.models import (
     dielectric_over_eon_albedo_dir,
+    eon_albedo_avg,
     eon_albedo_dir,
     eon_brdf,
     varnished_albedo_avg,

@@ -67,11 +67,9 @@ EON_DENSITY = 1.3e-5
 EON_WEIGHT = 5e-5
 EON_VARIANCE = 1e-9
 
-# Polynomials for rho, absolute: the two of the paper and our two.
+# The two polynomials of the paper for rho, absolute.
 EQUATION_32 = 4.41e-3
 EQUATION_34 = 2.84e-3
-NORMAL_REFIT = 2.96e-3
-AVERAGE_REFIT = 1.86e-3
 
 # Arc tangent below tan(pi / 8), relative: the polynomial's 1.9e-8, and half a unit of the eighth
 # decimal in each of five coefficients, which count as the powers of 0.172: 0.6e-8.
@@ -220,9 +218,7 @@ TRANSMITTANCE_CRITICAL = 1e-8
 # Mitsuba's values are float32: 64 roundings, the fourth power of D by alpha 0.3 among them.
 MITSUBA_BTDF = 64 * 2.0**-24 / 0.3
 
-# Of subsurface scattering, each measured over the whole range of colors. The printed digits of the
-# inversion are rounded at 5e-6, which moves d by that and the color by 2.3 times as much at 1: 1.2e-5.
-SUBSURFACE_ROUNDED = 1.3e-5
+# Of subsurface scattering, each measured over the whole range of colors.
 SUBSURFACE_PEAK = 1.3e-5  # where d is 0, below color 1
 # van de Hulst's fit of a half space, against the H function: 0.00206 at color 0.18.
 SUBSURFACE_FIT = 0.0021

@@ -16,7 +16,6 @@ from functools import partial
 
 import numpy as np
 
-from mxeon.albedo import ggx_albedo_dir
 from mxeon.errors import NotRun, PackageError
 from mxeon.models import (
     conductor_brdf,
@@ -24,6 +23,7 @@ from mxeon.models import (
     eon_brdf,
     fresnel_conductor_avg,
     generalized_schlick_brdf,
+    ggx_albedo_dir,
     threads,
     zeltner_brdf,
 )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fit of the polynomials of `mxeon.inversion` for rho; prints coefficients and errors.
+"""Fit of the polynomials of `tools.paper.claims.inversion` for rho; prints coefficients and errors.
 
     python -m tools.fits.eon_inversion
 
@@ -46,6 +46,6 @@ def average():
 
 if __name__ == "__main__":
     pair, largest = normal()
-    print(f"NORMAL_REFIT = ({pair[0]:.7f}, {pair[1]:.7f})\nlargest error {largest:.3g}")
+    print(f"normal: ({pair[0]:.7f}, {pair[1]:.7f})\nlargest error {largest:.3g}")
     one, largest = average()
-    print(f"AVERAGE_REFIT = {one:.7f}\nlargest error {largest:.3g}")
+    print(f"avg: {one:.7f}\nlargest error {largest:.3g}")

@@ -19,7 +19,7 @@ from mxeon.models import (
     varnished_brdf,
 )
 from mxeon.models.microfacet.fresnel import dielectric
-from mxeon.sampling import eon_sample
+from mxeon.models.sampling import eon_sample
 
 SEED, PATHS = 1, 1 << 18
 FAINT = 1e-5  # weight at which a path ends

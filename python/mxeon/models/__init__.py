@@ -35,15 +35,9 @@ from mxeon.models.diffuse import eon_brdf as eon_brdf
 from mxeon.models.diffuse import eon_brdf_approx as eon_brdf_approx
 from mxeon.models.diffuse import eon_rho_from_albedo_avg as eon_rho_from_albedo_avg
 from mxeon.models.diffuse import eon_rho_from_albedo_avg_approx as eon_rho_from_albedo_avg_approx
-from mxeon.models.diffuse import (
-    eon_rho_from_albedo_avg_refit_approx as eon_rho_from_albedo_avg_refit_approx,
-)
 from mxeon.models.diffuse import eon_rho_from_albedo_normal as eon_rho_from_albedo_normal
 from mxeon.models.diffuse import (
     eon_rho_from_albedo_normal_approx as eon_rho_from_albedo_normal_approx,
-)
-from mxeon.models.diffuse import (
-    eon_rho_from_albedo_normal_refit_approx as eon_rho_from_albedo_normal_refit_approx,
 )
 from mxeon.models.diffuse import fon_albedo_avg as fon_albedo_avg
 from mxeon.models.diffuse import fon_albedo_dir as fon_albedo_dir
@@ -70,9 +64,7 @@ from mxeon.models.media import blackbody_xyz as blackbody_xyz
 from mxeon.models.media import conical_edf as conical_edf
 from mxeon.models.media import conical_exitance as conical_exitance
 from mxeon.models.media import diffusion_blur as diffusion_blur
-from mxeon.models.media import diffusion_cdf as diffusion_cdf
 from mxeon.models.media import diffusion_profile as diffusion_profile
-from mxeon.models.media import diffusion_sample as diffusion_sample
 from mxeon.models.media import extinction as extinction
 from mxeon.models.media import generalized_schlick_edf as generalized_schlick_edf
 from mxeon.models.media import generalized_schlick_exitance as generalized_schlick_exitance
@@ -80,11 +72,9 @@ from mxeon.models.media import hg_pdf as hg_pdf
 from mxeon.models.media import hg_phase as hg_phase
 from mxeon.models.media import hg_sample as hg_sample
 from mxeon.models.media import light_radiance as light_radiance
-from mxeon.models.media import planck_radiance as planck_radiance
 from mxeon.models.media import single_scattering_albedo as single_scattering_albedo
 from mxeon.models.media import subsurface_albedo as subsurface_albedo
 from mxeon.models.media import subsurface_coefficients as subsurface_coefficients
-from mxeon.models.media import subsurface_reflectance as subsurface_reflectance
 from mxeon.models.media import surface_radiance as surface_radiance
 from mxeon.models.media import transmittance as transmittance
 from mxeon.models.media import uniform_edf as uniform_edf
@@ -98,7 +88,6 @@ from mxeon.models.microfacet import generalized_schlick_albedo_dir as generalize
 from mxeon.models.microfacet import generalized_schlick_brdf as generalized_schlick_brdf
 from mxeon.models.microfacet import ggx_albedo_dir_anisotropic as ggx_albedo_dir_anisotropic
 from mxeon.models.microfacet.fresnel import artistic_ior as artistic_ior
-from mxeon.models.microfacet.fresnel import artistic_parameters as artistic_parameters
 from mxeon.models.microfacet.fresnel import fresnel_conductor as fresnel_conductor
 from mxeon.models.microfacet.fresnel import fresnel_conductor_avg as fresnel_conductor_avg
 from mxeon.models.microfacet.fresnel import fresnel_dielectric as fresnel_dielectric
@@ -129,8 +118,6 @@ from mxeon.models.thin_film import film_brdf as film_brdf
 from mxeon.models.thin_film import film_conductor as film_conductor
 from mxeon.models.thin_film import film_dielectric as film_dielectric
 from mxeon.models.thin_film import film_schlick as film_schlick
-from mxeon.models.thin_film import film_spectrum as film_spectrum
-from mxeon.models.thin_film import film_spectrum_xyz as film_spectrum_xyz
 from mxeon.models.transmission import dielectric_btdf as dielectric_btdf
 from mxeon.models.transmission import dielectric_transmittance_dir as dielectric_transmittance_dir
 from mxeon.models.transmission import generalized_schlick_btdf as generalized_schlick_btdf

@@ -584,10 +584,6 @@ def qon_albedo_avg(sigma: ArrayLike) -> Array:
 NORMAL = (0.258831, 0.98995)
 AVERAGE = 0.189468
 
-# Our fits to the same forms, tools/fits/eon_inversion.py; largest error of rho 2.96e-3 and 1.86e-3.
-NORMAL_REFIT = (0.2531091, 0.9883170)
-AVERAGE_REFIT = 0.1843278
-
 
 @any_array
 def eon_rho_from_albedo_normal(color: ArrayLike, roughness: ArrayLike) -> Array:
@@ -641,19 +637,6 @@ def eon_rho_from_albedo_normal_approx(color: ArrayLike, roughness: ArrayLike) ->
 
 
 @any_array
-def eon_rho_from_albedo_normal_refit_approx(color: ArrayLike, roughness: ArrayLike) -> Array:
-    """`eon_rho_from_albedo_normal` by a polynomial of the paper's form with new coefficients.
-
-    Accuracy: error at most 2.96e-3, the least that this form can have. A color of 1 gives
-    1 - 0.00296 r. tools/fits/eon_inversion.py; the form is [Portsmouth2025], Eq. (32).
-
-        >>> eon_rho_from_albedo_normal_refit_approx([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
-        array([0.      , 0.216827, 0.838132, 0.997043])
-    """
-    return _polynomial(color, roughness, *NORMAL_REFIT)
-
-
-@any_array
 def eon_rho_from_albedo_avg_approx(color: ArrayLike, roughness: ArrayLike) -> Array:
     """`eon_rho_from_albedo_avg` by the paper's polynomial.
 
@@ -663,19 +646,6 @@ def eon_rho_from_albedo_avg_approx(color: ArrayLike, roughness: ArrayLike) -> Ar
         array([0.      , 0.207965, 0.830315, 1.      ])
     """
     return _polynomial(color, roughness, AVERAGE, 1.0)
-
-
-@any_array
-def eon_rho_from_albedo_avg_refit_approx(color: ArrayLike, roughness: ArrayLike) -> Array:
-    """`eon_rho_from_albedo_avg` by a polynomial of the paper's form with a new coefficient.
-
-    Accuracy: error at most 1.86e-3, the least that this form can have; 0 at colors 0 and 1.
-    tools/fits/eon_inversion.py; the form is [Portsmouth2025], Eq. (34).
-
-        >>> eon_rho_from_albedo_avg_refit_approx([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
-        array([0.      , 0.207207, 0.829492, 1.      ])
-    """
-    return _polynomial(color, roughness, AVERAGE_REFIT, 1.0)
 
 
 def _polynomial(color: ArrayLike, roughness: ArrayLike, slope: float, zero: float) -> Array:

@@ -421,7 +421,6 @@ def volume_radiance(
 LINEAR = (4.09712, 4.20863)
 SQUARED = (9.59217, 41.6808, 17.7126)
 NODES, PANELS = 50, 40  # of the quadrature of the blur, whose integrand has a kink
-LOSS, GAIN = 0.139, 1.17  # of van de Hulst's fit
 FAR = 3.0  # length of the profile's second exponential over that of the first
 
 
@@ -448,26 +447,6 @@ def _single_scatter(color: Array, g: Array) -> Array:
     d = LINEAR[0] + LINEAR[1] * color - array_namespace(color).sqrt(polynomial)
     isotropic = 1.0 - d * d
     return isotropic / (1.0 - g * d * d)
-
-
-@any_array
-def subsurface_reflectance(single_scatter: ArrayLike, scatter_anisotropy: ArrayLike = 0.0) -> Array:
-    """Diffuse reflectance of a half space without a surface under a uniform sky, by van de Hulst's fit.
-
-        s^2 = (1 - w) / (1 - g w),  rho = (1 - s) (1 - 0.139 s) / (1 + 1.17 s)
-
-    - `single_scatter`: Single-scattering albedo w, in [0, 1].
-    - `scatter_anisotropy`: Mean cosine g of a scattering, in [-1, 1).
-
-    Accuracy: within 0.0021 for g = 0. Inverse of `subsurface_albedo` within 1.3e-5. [vandeHulst1974].
-
-        >>> subsurface_reflectance(0.911709).round(4).item()
-        0.5
-    """
-    w, g = checked_numbers(single_scatter=single_scatter, scatter_anisotropy=scatter_anisotropy)
-    xp, lost = array_namespace(w, g), w < 1.0
-    s = root(xp.where(lost, (1.0 - w) / xp.where(lost, 1.0 - g * w, 1.0), 0.0))
-    return (1.0 - s) * (1.0 - LOSS * s) / (1.0 + GAIN * s)
 
 
 @any_array
@@ -505,35 +484,6 @@ def diffusion_profile(separation: ArrayLike, radius: ArrayLike) -> Array:
     r, length = checked_numbers(separation=separation, radius=radius)
     exp = array_namespace(r, length).exp
     return (exp(-r / length) + exp(-r / (3.0 * length))) / (8.0 * np.pi * length * r)
-
-
-@any_array
-def diffusion_cdf(separation: ArrayLike, radius: ArrayLike) -> Array:
-    """Share of the light that leaves a plane within a distance of where it enters.
-
-    C(r) = 1 - exp(-r / l) / 4 - 3 exp(-r / (3 l)) / 4
-
-    >>> diffusion_cdf(2.5, 1.0).round(6).item()
-    0.65353
-    """
-    r, length = checked_numbers(separation=separation, radius=radius)
-    expm1, x = array_namespace(r, length).expm1, r / length
-    return -0.25 * expm1(-x) - 0.75 * expm1(-x / 3.0)
-
-
-@any_array
-def diffusion_sample(u: ArrayLike, radius: ArrayLike) -> Array:
-    """Distance within which the share u, in [0, 1), of the light leaves: the inverse of `diffusion_cdf`.
-
-    t = exp(-r / (3 l)) solves t^3 + 3 t = 4 (1 - u), so t = 2 sinh(asinh(2 (1 - u)) / 3).
-
-        >>> diffusion_sample(0.65353, 1.0).round(4).item()
-        2.5
-    """
-    share, length = checked_numbers(u=u, radius=radius)
-    xp = array_namespace(share, length)
-    logarithm = xp.log(2.0 * xp.sinh(xp.asinh(2.0 * (1.0 - share)) / 3.0))
-    return 3.0 * length * at_least_0(-logarithm)
 
 
 @any_array
@@ -579,10 +529,8 @@ def _exponential(mu: Array, reach: Array) -> tuple[Array, Array]:
     return xp.sum(weights * circle, axis=-1), share[..., 0]
 
 
-# Constants of radiation of the SI of 2019, which are exact: c1 = 2 h c^2 and c2 = h c / k_B.
-PLANCK, LIGHT, BOLTZMANN = 6.62607015e-34, 299792458.0, 1.380649e-23  # J s, m/s, J/K
-FIRST = 2.0 * PLANCK * LIGHT**2  # W m^2 / sr
-SECOND = PLANCK * LIGHT / BOLTZMANN  # m K
+# h c / k_B of the SI of 2019, which is exact, in m K.
+SECOND = 6.62607015e-34 * 299792458.0 / 1.380649e-23
 NANOMETER = 1e-9  # m
 LUMINANCE = np.linalg.inv(XYZ_TO_REC709)[1]  # Y of linear Rec. 709
 
@@ -597,25 +545,6 @@ KANG_Y = (
     (-0.9549476, -1.37418593, 2.09137015, -0.16748867),
     (3.0817580, -5.87338670, 3.75112997, -0.37001483),
 )
-
-
-@any_array
-def planck_radiance(wavelength: ArrayLike, temperature: ArrayLike) -> Array:
-    """Spectral radiance of a black body.
-
-        L = c1 / (lambda^5 (exp(c2 / (lambda T)) - 1))
-
-    - `wavelength`: In nm, in [1, 1e9]; broadcasts with the temperature.
-
-    Result: in W / (m^2 sr nm); 0 where it is less than float64 holds. [Planck1901].
-
-        >>> round(float(planck_radiance(500.0, 6504.0)), 2)
-        46224.39
-    """
-    length, kelvin = checked_numbers(wavelength=wavelength, temperature=temperature)
-    xp, length = array_namespace(length, kelvin), NANOMETER * length
-    x = SECOND / (length * kelvin)
-    return FIRST * NANOMETER / length**5 * xp.exp(-x) / -xp.expm1(-x)  # which does not overflow
 
 
 @any_array

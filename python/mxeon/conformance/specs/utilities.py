@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon import inversion
 from mxeon.conformance.samples import Array, Batch, Counts, Values, float32, generator
 from mxeon.conformance.spec import (
     COMPONENTS,
@@ -37,6 +36,7 @@ from mxeon.conformance.tolerance import (
     sum_of,
 )
 from mxeon.hosts.calls import GRAPH
+from mxeon.models import diffuse
 from mxeon.models.nodes.node import Variant
 from mxeon.models.nodes.utilities import LARGEST_REFLECTIVITY, UTILITIES, Outputs, UtilityNode
 from mxeon.shaders.nodes import (
@@ -215,14 +215,14 @@ def _inversion(node: str) -> UtilityNode:
     """A node of eonlib, with the other inversions that it may be instead, and its input as it is."""
 
     def output(name: str) -> Outputs:
-        function = getattr(inversion, name)
+        function = getattr(diffuse, name)
         return lambda inputs: {"out": function(inputs["color"], inputs["roughness"])}
 
     variants = [Variant("the color itself", lambda inputs: {"out": inputs["color"]})]
     variants += [
         Variant(name, output(name))
-        for name in dir(inversion)
-        if name.startswith("eon_") and name != node
+        for name in dir(diffuse)
+        if name.startswith("eon_rho_from") and name != node
     ]
     inputs: dict[str, float | tuple[float, ...]]
     inputs = {"color": (0.18, 0.18, 0.18), "roughness": 0.0}

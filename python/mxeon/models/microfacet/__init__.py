@@ -4,7 +4,7 @@
 All functions broadcast, work on the closed domain and evaluate in blocks. alpha 0 is a mirror: a delta function, which
 has no value; it counts as 0, and its albedo is F(mu_o). Where both directions graze the surface the value grows beyond
 bounds and counts as 0; value times cosine is 0 there for any finite choice. The compensation takes (1 - E_ss) / E_ss
-from a table that the first call computes, to 1e-10; the exact quadrature is `mxeon.albedo.ggx_albedo_dir`. Albedos are
+from a table that the first call computes, to 1e-10; the exact quadrature is `mxeon.models.ggx_albedo_dir`. Albedos are
 quadratures over slopes; their accuracy is that of `ggx_albedo_dir_anisotropic`. In retroreflective mode wo is replaced
 by its mirror image about the normal; the albedo is the same, since half a turn keeps the surface.
 

@@ -415,30 +415,6 @@ def artistic_ior(reflectivity: ArrayLike, edge_color: ArrayLike) -> tuple[Array,
     return ior, root(at_least_0(square))
 
 
-@any_array
-def artistic_parameters(ior: ArrayLike, extinction: ArrayLike) -> tuple[Array, Array]:
-    """Reflectivity and edge color of a complex index of refraction.
-
-        r = ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2),  g = (n_max - n) / (n_max - n_min)
-
-    `reflectivity`, `edge_color` (...): r in [0, 1]. The edge color lies in [0, 1] for metals that
-    the parameterization reaches, those with n >= (1 - r) / (1 + r); it is above 1 for others, and 0
-    at r = 0, where n is 1 for every edge color. [Gulbrandsen2014].
-
-        >>> r, g = artistic_parameters(*artistic_ior(0.9, 0.25))
-        >>> round(float(r), 9), round(float(g), 9)
-        (0.9, 0.25)
-    """
-    n, k = checked_numbers(ior=ior, extinction=extinction)
-    r = normal_reflectance(n, k)
-    # With 1 - r = 4 n / S, S = (n + 1)^2 + k^2, both extremes times n have no pole at r = 1.
-    xp, S = array_namespace(n, k), (n + 1.0) ** 2 + k**2
-    largest = (1.0 + root(r)) ** 2 * S / 4.0
-    width = largest - 4.0 * n**2 / (S * (1.0 + r))
-    edge = (largest - n**2) / xp.where(width > 0.0, width, 1.0)
-    return r, xp.where(width > 0.0, edge, 0.0)
-
-
 def normal_reflectance(ior: Array, extinction: Array) -> Array:
     """Fresnel reflectance at normal incidence, without a check of the arguments."""
     square = extinction**2

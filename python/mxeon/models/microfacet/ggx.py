@@ -394,7 +394,7 @@ def missing_light(mu: Array, alpha: Array) -> Array:
     """(1 - E_ss) / E_ss on valid float64 arrays, which broadcast.
 
     Accuracy: absolute error below 1e-10 for every mu and alpha in [0, 1], against the quadrature of
-    `mxeon.albedo.ggx_albedo_dir` with twice its panels. One alpha for all cosines costs the least:
+    `mxeon.models.ggx_albedo_dir` with twice its panels. One alpha for all cosines costs the least:
     many of them share cubics in its place.
     """
     if array_namespace(mu, alpha) is NUMPY and alpha.size == 1 and mu.size >= MANY:
