@@ -47,9 +47,7 @@ def __getattr__(name: str) -> Any:
     if name not in _HOMES:
         raise AttributeError(f"module 'mxeon' has no attribute {name!r}")
     if name == "check":
-        from mxeon import hosts, survey
-
-        hosts.register(*survey.ROWS)
+        import_module("mxeon.hosts").register(*import_module("mxeon.survey").ROWS)
     return getattr(import_module(_HOMES[name]), name)
 
 
