@@ -14,7 +14,8 @@ from mxeon.conformance.specs.diffuse import DIFFUSE as DIFFUSE_SPECS
 from mxeon.conformance.specs.diffuse import SURFACE_LOBES
 from mxeon.hosts import host_rows
 from mxeon.shaders.library import examples_folder
-from mxeon.survey.field import read_field, write_field
+from mxeon.survey.field import read_field
+from mxeon.survey.field_page import write_field
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "field.html"
 PAGES = "upstream/{}.md"  # in the checkout; the site has pages in their place, see hooks.py

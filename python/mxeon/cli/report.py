@@ -56,9 +56,11 @@ def run_field(options: argparse.Namespace) -> int:
     from mxeon.conformance.results import report_files
     from mxeon.io.files import check_output
     from mxeon.report import require_extra
-    from mxeon.survey.field import read_field, reports_in, write_field
+    from mxeon.survey.field import read_field, reports_in
 
     require_extra("the page that compares renderers")
+    from mxeon.survey.field_page import write_field
+
     reports = (each for folder in options.reports for each in reports_in(folder))
     read = (file for each in reports for file in report_files(each))
     check_output(options.output, read, [".html"])

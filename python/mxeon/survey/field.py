@@ -20,14 +20,12 @@ from mxeon.conformance.results import (
     Kind,
     Result,
     Verdict,
-    report_files,
 )
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs.diffuse import DIFFUSE, SURFACE_LOBES
 from mxeon.errors import InputError
-from mxeon.io.files import AnyPath, check_output, replacing
+from mxeon.io.files import AnyPath
 from mxeon.models import table as reference
-from mxeon.report import require_extra
 from mxeon.report.diff import Report, read_results
 from mxeon.survey import ROWS
 from mxeon.survey.specs import RendererSpec
@@ -177,15 +175,3 @@ def _portraits(report: Report, place: Place, folder: Path) -> Iterator[Portrait]
                 folder / "pictures" / Path(file).name for file in (each.exr, each.reference)
             )
             yield Portrait(each.scene, image, model, each.largest_difference)
-
-
-def write_field(entries: Sequence[Entry], file: str | PathLike[str], pages: str = "") -> Path:
-    """Write the page that compares renderers, and return its path; see `mxeon.survey.field_page.render`."""
-    read = (each for entry in entries for each in report_files(entry.report))
-    check_output(file, read, [".html"])
-    require_extra("the page that compares renderers")
-    from mxeon.survey.field_page import render
-
-    with replacing(Path(file)) as beside, open(beside, "w", encoding="utf-8") as page:
-        page.writelines(render(entries, pages))
-    return Path(file)

@@ -4,13 +4,16 @@
 import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from os import PathLike
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from markupsafe import Markup
 
 import mxeon
-from mxeon.conformance.results import Result
+from mxeon.conformance.results import Result, report_files
+from mxeon.io.files import check_output, replacing
 from mxeon.io.images import difference, difference_scale, read_image
 from mxeon.io.srgb import srgb_encoded
 from mxeon.report.formats import share, vector
@@ -28,6 +31,15 @@ HEADINGS = {
 }
 SCENES = {"side": "light from the side", "back": "light from behind"}
 INPUTS = ("color", "roughness", "wo", "wi", "measured", "expected")
+
+
+def write_field(entries: Sequence[Entry], file: str | PathLike[str], pages: str = "") -> Path:
+    """Write the page that compares renderers, and return its path; see `render`."""
+    read = (each for entry in entries for each in report_files(entry.report))
+    check_output(file, read, [".html"])
+    with replacing(Path(file)) as beside, open(beside, "w", encoding="utf-8") as page:
+        page.writelines(render(entries, pages))
+    return Path(file)
 
 
 def render(entries: Sequence[Entry], pages: str = "") -> Iterator[str]:
