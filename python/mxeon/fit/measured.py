@@ -17,7 +17,7 @@ MERL_CELLS = (90, 90, 180)
 MERL_SCALES = (1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0)
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class MeasuredBrdf:
     """Measured values of a BRDF.
 
@@ -35,9 +35,11 @@ class MeasuredBrdf:
     error: Array | None = None
 
     def __post_init__(self) -> None:
-        for name in ("wo", "wi", "value", "error"):
-            if getattr(self, name) is not None:
-                object.__setattr__(self, name, np.asarray(getattr(self, name), np.float64))
+        self.wo, self.wi, self.value = (
+            np.asarray(each, np.float64) for each in (self.wo, self.wi, self.value)
+        )
+        if self.error is not None:
+            self.error = np.asarray(self.error, np.float64)
         count = len(np.atleast_1d(self.wo))
         if self.wo.shape != (count, 3) or self.wi.shape != (count, 3) or not count:
             raise InputError(f"wo, wi must have shape (N, 3); got {self.wo.shape}, {self.wi.shape}")

@@ -34,7 +34,7 @@ def environment_path() -> tuple[str, ...]:
     return tuple(os.path.abspath(name) for name in names if name)
 
 
-@dataclass(frozen=True)
+@dataclass(unsafe_hash=True)  # nothing changes it once it is made
 class Policy:
     """Permissions and limits of a document; plain data, so it can be pickled.
 
@@ -90,9 +90,10 @@ class Policy:
     texels: int = 64 * 2**20
 
     def __post_init__(self) -> None:
-        for name in ("path", "definitions"):
-            folders = tuple(map(os.path.abspath, names_of(name, getattr(self, name), least=0)))
-            object.__setattr__(self, name, folders)
+        self.path, self.definitions = (
+            tuple(map(os.path.abspath, names_of(name, folders, least=0)))
+            for name, folders in (("path", self.path), ("definitions", self.definitions))
+        )
         for name in LIMITS:
             if getattr(self, name) < 0:
                 raise InputError(f"{name} must be at least 0; got {getattr(self, name)}")
