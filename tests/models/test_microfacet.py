@@ -17,7 +17,7 @@ from mxeon.models import (
     smith_g2,
     smith_g2_anisotropic,
 )
-from mxeon.models.microfacet import NODES, ggx_albedo_dir_anisotropic, node_brdf
+from mxeon.models.microfacet import CATEGORIES, ggx_albedo_dir_anisotropic, node_brdf
 from mxeon.models.microfacet.defects import MICROFACET_DEFECTS, averaged_channels
 from mxeon.models.microfacet.ggx import ggx_albedo_dir
 from mxeon.models.nodes.microfacets import MICROFACET_NODES
@@ -231,4 +231,4 @@ def test_defects_agree_with_the_specification_where_they_should():
 
 def test_an_averaged_albedo_has_the_mean_of_its_channels():
     assert averaged_channels(np.array([[0.3, 0.6, 0.0]])).round(12).tolist() == [[0.3, 0.3, 0.3]]
-    assert set(NODES) == set(BRDFS)
+    assert set(CATEGORIES) == set(BRDFS)

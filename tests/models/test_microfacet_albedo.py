@@ -63,7 +63,7 @@ def test_the_albedo_is_converged(monkeypatch):
 
 
 def test_the_albedo_agrees_with_a_quadrature_over_slopes(monkeypatch):
-    monkeypatch.setattr(slopes, "NODES", 32)
+    monkeypatch.setattr(slopes, "SLOPE_NODES", 32)
     monkeypatch.setattr(slopes, "QUADRANT", 48)
     alpha, mu = np.array([0.03, 0.1, 0.3, 1.0]), np.array([1e-3, 0.1, 0.7])[:, None]
     E = ggx_albedo_dir_anisotropic(unit(mu), np.stack([alpha, alpha], axis=-1))
@@ -150,7 +150,7 @@ def test_the_albedo_is_converged_over_slopes(name, monkeypatch):
         [[1e-4, 1e-4], [1e-3, 1e-3], [0.02, 0.02], [0.3, 0.3], [1.0, 1.0], [0.05, 0.6]]
     )
     values = albedo(wo, alpha)
-    monkeypatch.setattr(slopes, "NODES", 32)
+    monkeypatch.setattr(slopes, "SLOPE_NODES", 32)
     monkeypatch.setattr(slopes, "QUADRANT", 32)
     more = albedo(wo, alpha)
     assert (np.abs(values - more) / np.maximum(more, 1.0)).max() < tolerances.SLOPES

@@ -144,7 +144,7 @@ def _nearest(case: Case) -> str:
     return rows[albedo[0] if same else value[0]].name
 
 
-NODES = "Generated shaders"
+GENERATED = "Generated shaders"
 FAMILY = "Models, eonlib's functions"
 VARIANTS = "What renderers do instead"
 RUN = "What the run found"
@@ -187,7 +187,7 @@ def _material_sources(material: ComparedMaterial) -> tuple[ShaderSource, ...]:
                 material.text,
                 f"{material.key}/{library}",
                 f"{material.title}, {'stock MaterialX' if library == 'stock' else library}",
-                NODES,
+                GENERATED,
                 library,
             ),
             reference=reference,

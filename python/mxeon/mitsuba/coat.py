@@ -20,12 +20,12 @@ from mxeon.models import coat as openpbr
 from mxeon.models.coat import (
     Coat,
     Varnish,
-    albedo,
+    base_under_varnish,
     constant_coat,
     constant_varnish,
-    cut,
+    nonnegative,
     nonzero,
-    under,
+    varnish_albedo,
 )
 from mxeon.models.core.arguments import RANGES
 from mxeon.models.core.arrays import Array
@@ -230,14 +230,15 @@ class VarnishPlugin(CoatPlugin):
         color, amount = self.reflectance.eval(si, active), self.amount.eval_1(si, active)
         (facets, c), (spread, *_) = self._facets(si.wi, wo), self._means()
         ior, s = self._dielectric()[1], si.wi.x * wo.x + si.wi.y * wo.y
-        above, below = (cut(self._curves(w.z)) for w in (si.wi, wo))
+        above, below = (nonnegative(self._curves(w.z)) for w in (si.wi, wo))
         passed = (1.0 - above[0] - above[1]) * (1.0 - below[0] - below[1]) / ior**2
         several = above[1] * below[1] / (np.pi * nonzero(spread))
         given = (si.wi.z, wo.z), s, (above[2], below[2]), ior, self._means()
         channels = [
             self.mi.Float(
                 is_glossy * facets * dielectric(c, ior)
-                + is_diffuse * (several + passed * under(*given, rho, self._clipped(amount)))
+                + is_diffuse
+                * (several + passed * base_under_varnish(*given, rho, self._clipped(amount)))
             )
             for rho in color
         ]
@@ -250,8 +251,8 @@ class VarnishPlugin(CoatPlugin):
         enabled = self._enabled(context)
         if not all(enabled):
             return self.mi.Float(enabled[0])
-        curves, ior = cut(self._curves(si.wi.z)), self._dielectric()[1]
-        total = albedo(si.wi.z, curves, ior, self._means(), rho, amount)
+        curves, ior = nonnegative(self._curves(si.wi.z)), self._dielectric()[1]
+        total = varnish_albedo(si.wi.z, curves, ior, self._means(), rho, amount)
         return self.mi.Float(curves[0]) / self.dr.maximum(self.mi.Float(total), 1e-30)
 
     def _means(self) -> list[Mitsuba]:

@@ -117,7 +117,7 @@ from mxeon.models.sampling import (
 P = ParamSpec("P")
 R = TypeVar("R")
 
-NODES = 40  # of the curves, in the cube root of a logarithmic scale of the cosine
+CURVE_NODES = 40  # of the curves, in the cube root of a logarithmic scale of the cosine
 KEPT = 64  # interfaces that are kept
 
 
@@ -148,24 +148,27 @@ class Coat:
 
     def _sums(self, mu: Array, *curves: list[float] | Array) -> list[Array]:
         """Curves at these cosines, not below 0."""
-        x = place(mu, self.alpha)
+        x = scaled_cosine(mu, self.alpha)
         return [at_least_0(chebyshev_sum(cast(Array, each), x)) for each in curves]
 
 
-def place(mu: Array, alpha: float | Array) -> Array:
-    """Cosine on the scale of the curves, in [0, 1]: the cube root spreads terms like mu log(mu) at 0."""
+def scaled_cosine(mu: Array, alpha: float | Array) -> Array:
+    """Cosine on the scale of the curves, x = (asinh(mu / alpha) / asinh(1 / alpha))^(1/3) in [0, 1].
+
+    The cube root spreads terms like mu log(mu) at 0.
+    """
     extent = array_namespace(alpha).asinh(1.0 / alpha)
     return fractional_power(array_namespace(mu, alpha).asinh(mu / alpha) / extent, 1.0 / 3.0)
 
 
-def curves(alpha: Array, ior: Array) -> Array:
-    """Coefficients of the curves of a `Coat`, shape (NODES, 3).
+def coat_curves(alpha: Array, ior: Array) -> Array:
+    """Coefficients of the curves of a `Coat`, shape (CURVE_NODES, 3).
 
     Accuracy: error of the curves below 2e-7 for alpha >= 0.01 and ior in [1, 4], 5e-8 of it that of
     the slopes at grazing.
     """
-    xp, x = array_namespace(alpha), like(chebyshev_nodes(NODES), alpha)
-    mu, _ = nodes(alpha, x)
+    xp, x = array_namespace(alpha), like(chebyshev_nodes(CURVE_NODES), alpha)
+    mu, _ = cosine_at(alpha, x)
     zero = 0.0 * mu
     wo = xp.stack([root((1.0 - mu) * (1.0 + mu)), zero, mu])
     c, weight = slope_nodes(wo, xp.stack([zero + alpha, zero + alpha]), isotropic=True)
@@ -173,7 +176,7 @@ def curves(alpha: Array, ior: Array) -> Array:
     single = xp.sum(dielectric(c, zero + ior) * weight, axis=(0, 1))
     edge = xp.sum((1.0 - c) ** 5 * weight, axis=(0, 1))
     values = xp.stack([missing, single * (1.0 + dielectric_avg(ior) * missing), edge], axis=-1)
-    matrix = like(chebyshev_coefficients(np.eye(NODES)), mu)
+    matrix = like(chebyshev_coefficients(np.eye(CURVE_NODES)), mu)
     return xp.tensordot(matrix, values, axes=1)
 
 
@@ -181,7 +184,9 @@ def curves(alpha: Array, ior: Array) -> Array:
 def constant_coat(alpha: float, ior: float) -> Coat:
     """Curves of a dielectric that does not change."""
     index = np.asarray(ior)
-    return Coat(alpha, float(dielectric_avg(index)), *curves(np.asarray(alpha), index).T.tolist())
+    return Coat(
+        alpha, float(dielectric_avg(index)), *coat_curves(np.asarray(alpha), index).T.tolist()
+    )
 
 
 @any_array
@@ -190,7 +195,7 @@ def coat_of(alpha: float, ior: float) -> Coat:
     numbers = checked_scalar("alpha", alpha, "coat_alpha"), checked_scalar("ior", ior, "coat_ior")
     if not library(numbers[0]):
         return constant_coat(*map(float, numbers))
-    rows = curves(*numbers)
+    rows = coat_curves(*numbers)
     return Coat(numbers[0], dielectric_avg(numbers[1]), rows[:, 0], rows[:, 1], rows[:, 2])
 
 
@@ -290,7 +295,7 @@ def dielectric_over_eon_albedo_avg(
     xp, (x, weight) = array_namespace(number), unit_rule(AVERAGED)
     if library(number):
         x, weight = like(x, cast(Array, number)), like(weight, cast(Array, number))
-    mu, step = nodes(cast(Array, number), x)
+    mu, step = cosine_at(cast(Array, number), x)
     weight = weight * 2.0 * mu * step
     reflected = coat.at(mu)[1]
     passed = xp.sum(weight * (1.0 - reflected))
@@ -500,7 +505,7 @@ def _facet_share(wo: ArrayLike, rho: ArrayLike, roughness: ArrayLike, of: Coat) 
     return reflected / nonzero(reflected + (1.0 - reflected) * base)
 
 
-TERMS, SMOOTH = 24, 16  # coefficients of E_single and of the other curves, over `place`
+TERMS, SMOOTH = 24, 16  # coefficients of E_single and of the other curves, over `scaled_cosine`
 FINE, BELOW = 48, 24  # nodes of integrals over what E_r returns, and beyond the critical angle
 
 
@@ -519,36 +524,52 @@ class Varnish:
 
     def at(self, mu: Array) -> list[Array]:
         """E_single, D, and b mu' / S'; the sums that stand for the first two may fall below 0."""
-        x = place(mu, self.alpha)
+        x = scaled_cosine(mu, self.alpha)
         return [chebyshev_sum(cast(Array, each), x) for each in self.curves]
 
 
-def cut(curves: Sequence[Array]) -> tuple[Array, Array, Array]:
-    """E_single and D, not below 0, and b mu' / S'."""
+def nonnegative(curves: Sequence[Array]) -> tuple[Array, Array, Array]:
+    """Curves of `Varnish.at` with E_single and D not below 0."""
     single, several, turned = curves
     return at_least_0(single), at_least_0(several), turned
 
 
-def inner(mu: Array, ior: float | Array) -> Array:
-    """mu', which at index 1 is mu to the last bit."""
+def refracted_cosine(mu: Array, ior: float | Array) -> Array:
+    """Cosine of the refracted direction; at index 1 it is mu to the last bit.
+
+    mu'^2 = mu^2 + (1 - mu^2) (1 - 1 / n^2)
+    """
     return root(mu * mu + (1.0 - mu) * (1.0 + mu) * (1.0 - 1.0 / ior**2))
 
 
-def shape(mu: Array, turned: Array, ior: float | Array, r: Array) -> tuple[Array, Array, Array]:
-    """mu', 1 + r b and H(mu'): k = rho A (1 + r b + W <H>_R H)."""
-    m = inner(mu, ior)
+def mean_parts(
+    mu: Array, turned: Array, ior: float | Array, r: Array
+) -> tuple[Array, Array, Array]:
+    """The parts mu', 1 + r b and H(mu') of the mean k of EON's value over the light that returns.
+
+        k = rho A (1 + r b(mu) + W H(mu') <H>_R)
+
+    `turned` is b mu' / S'.
+    """
+    m = refracted_cosine(mu, ior)
     return m, 1.0 + r * turned * root((1.0 - m) * (1.0 + m)) / nonzero(m), fon_loss_mu(m)
 
 
-def absorbed(means: Sequence[float | Array], rho: Array, r: Array) -> Array:
-    """1 - R `<k>`, as 1 - R + R (1 - `<k>`) without ones that cancel: (1 + c1 r) A is 1."""
+def absorbed_share(means: Sequence[float | Array], rho: Array, r: Array) -> Array:
+    """Share of the light between EON and the interface that a pass does not return, 1 - R <k>.
+
+        1 - R <k> = (1 - R) + R (1 - <k>)
+        1 - <k> = 1 - rho + rho A (r (c1 - <b>_R) - W <H>_R^2)
+
+    The second line has no ones that cancel, as (1 + c1 r) A is 1.
+    """
     _, exits, loss, turn = means
     weight = formulas.eon_multiple_ratio(rho, r)
     lost = 1.0 - rho + rho * formulas.fon_af(r) * (r * (C1 - turn) - weight * loss**2)
     return exits + (1.0 - exits) * lost
 
 
-def under(
+def base_under_varnish(
     mu: tuple[Array, Array],
     s: Array,
     turned: tuple[Array, Array],
@@ -557,23 +578,26 @@ def under(
     rho: Array,
     r: Array,
 ) -> Array:
-    """The brackets of (1): EON itself at index 1, to the last bit.
+    """Value of EON under the interface: the bracket of (1).
 
-    k k is expanded into powers of W, so that products with channels are few where the material is one.
+        f_b(wo', wi') + R k(mu_o) k(mu_i) / (pi (1 - R <k>))
+
+    At index 1 it is EON's value to the last bit. k k is expanded into powers of W, so that products with channels are
+    few where the material is one.
     """
     (m_o, p_o, H_o), (m_i, p_i, H_i) = (
-        shape(*each, ior, r) for each in zip(mu, turned, strict=True)
+        mean_parts(*each, ior, r) for each in zip(mu, turned, strict=True)
     )
     single = 1.0 + r * formulas.fon_quotient(m_o, m_i, s / ior**2)
     weight = formulas.eon_multiple_ratio(rho, r)
-    again = rho * formulas.fon_af(r) * (1.0 - means[1]) / absorbed(means, rho, r)
+    again = rho * formulas.fon_af(r) * (1.0 - means[1]) / absorbed_share(means, rho, r)
     mixed = again * weight * means[2]
     several = (weight + mixed * weight * means[2]) * (H_o * H_i)
     several = several + mixed * (p_o * H_i + p_i * H_o) + again * (p_o * p_i)
     return formulas.fon_lambert(rho, r) * (single + several)
 
 
-def albedo(
+def varnish_albedo(
     mu: Array,
     curves: Sequence[Array],
     ior: float | Array,
@@ -581,11 +605,14 @@ def albedo(
     rho: Array,
     r: Array,
 ) -> Array:
-    """(2)."""
+    """Directional albedo of EON under a varnish, (2).
+
+    E = E_r + T [E_b(mu') - R k (1 - <E_b>_R) / (1 - R <k>)],  T = 1 - E_r,  E_r = E_single + D
+    """
     (single, several, turned), (_, exits, loss, _) = curves, means
-    _, p, H = shape(mu, turned, ior, r)
+    _, p, H = mean_parts(mu, turned, ior, r)
     k = rho * formulas.fon_af(r) * (p + formulas.eon_multiple_ratio(rho, r) * (loss * H))
-    kept = (1.0 - exits) * (1.0 - eon_albedo(loss, rho, r)) / absorbed(means, rho, r)
+    kept = (1.0 - exits) * (1.0 - eon_albedo(loss, rho, r)) / absorbed_share(means, rho, r)
     return single + several + (1.0 - single - several) * (eon_albedo(H, rho, r) - k * kept)
 
 
@@ -595,8 +622,8 @@ def nonzero(x: float | Array) -> Array:
     return xp.where(zero, 1.0, x)
 
 
-def nodes(alpha: Array, x: Array) -> tuple[Array, Array]:
-    """Cosine at these places, and its derivative by them."""
+def cosine_at(alpha: Array, x: Array) -> tuple[Array, Array]:
+    """The inverse of `scaled_cosine`, mu = alpha sinh(x^3 asinh(1 / alpha)), and its derivative."""
     xp = array_namespace(alpha)
     extent = xp.asinh(1.0 / alpha)
     mu = at_most(alpha * xp.sinh(extent * x**3), 1.0)
@@ -604,11 +631,11 @@ def nodes(alpha: Array, x: Array) -> tuple[Array, Array]:
 
 
 @lru_cache(maxsize=1)
-def running() -> tuple[Array, Array, Array, Array]:
+def integral_matrices() -> tuple[Array, Array, Array, Array]:
     """Places of the nodes of integrals, dx/dy there, and integrals of what has given values there.
 
     The places are x = 1 - (1 - y)^2, so that sqrt(1 - mu^2) is smooth in y, whose Chebyshev nodes they have.
-    The integrals go from 0 to the nodes of the curves, (NODES, FINE), and to these and 1, (FINE + 1, FINE).
+    The integrals go from 0 to the nodes of the curves, (CURVE_NODES, FINE), and to these and 1, (FINE + 1, FINE).
     """
     y = chebyshev_nodes(FINE)
     integral = chebint(chebyshev_coefficients(np.eye(FINE)), lbnd=-1.0, scl=0.5)
@@ -617,24 +644,24 @@ def running() -> tuple[Array, Array, Array, Array]:
     return y * (2.0 - y), 2.0 - 2.0 * y, cast(Array, to_curves), cast(Array, to_nodes)
 
 
-def integrated(alpha: Array, ior: Array) -> tuple[list[Array], Array]:
+def varnish_curves(alpha: Array, ior: Array) -> tuple[list[Array], Array]:
     """Coefficients of the curves of a `Varnish`, and its means, shape (4,)."""
     xp, coat = array_namespace(alpha, ior), coat_of(cast(float, alpha), cast(float, ior))
-    places, slope, to_curves, to_nodes = (like(each, alpha) for each in running())
+    places, slope, to_curves, to_nodes = (like(each, alpha) for each in integral_matrices())
     matrix = like(chebyshev_coefficients(np.eye(TERMS)), alpha)
 
     # The facets: E_single, and D.
-    mu, _ = nodes(alpha, like(chebyshev_nodes(TERMS), alpha))
+    mu, _ = cosine_at(alpha, like(chebyshev_nodes(TERMS), alpha))
     missing, reflected = coat.at(mu)
     single = reflected / (1.0 + coat.average * missing)
     several = single * single * missing * (1.0 + missing)
     facets = xp.tensordot(matrix, single, axes=1), xp.tensordot(matrix, several, axes=1)[:SMOOTH]
 
     # What they return: E_r 2 mu' dmu' at the nodes of integrals, and the part beyond the critical angle.
-    fine, step = nodes(alpha, places)
+    fine, step = cosine_at(alpha, places)
     single, several = (at_least_0(chebyshev_sum(each, places)) for each in facets)
     area = 2.0 * fine * step * slope
-    share, m = (single + several) * area / ior**2, inner(fine, ior)
+    share, m = (single + several) * area / ior**2, refracted_cosine(fine, ior)
     total = to_nodes[-1]
     squared = 1.0 - 1.0 / ior**2
     x, weight = (like(each, alpha) for each in unit_rule(BELOW))
@@ -649,7 +676,7 @@ def integrated(alpha: Array, ior: Array) -> tuple[list[Array], Array]:
     sine = root((1.0 - beyond) * (1.0 + beyond))
     below = (1.0 - ior**-3) / 3.0
     near, far = 0.5 * share * S, 0.5 * share * S * (1.0 / nonzero(m) - 1.0)
-    m_curve = inner(mu, ior)
+    m_curve = refracted_cosine(mu, ior)
     turned = (1.0 - m_curve) * (below + xp.tensordot(to_curves, near, axes=1))
     turned = turned + m_curve * (xp.sum(total * far) - xp.tensordot(to_curves, far, axes=1))
     turn = xp.sum(weight * sine * (1.0 / nonzero(beyond) - 1.0) * (1.0 - sine**3)) / 6.0
@@ -669,7 +696,7 @@ def integrated(alpha: Array, ior: Array) -> tuple[list[Array], Array]:
 @lru_cache(maxsize=KEPT)
 def constant_varnish(alpha: float, ior: float) -> Varnish:
     """An interface that does not change."""
-    curves, means = integrated(np.asarray(alpha), np.asarray(ior))
+    curves, means = varnish_curves(np.asarray(alpha), np.asarray(ior))
     return Varnish(alpha, ior, [each.tolist() for each in curves], means.tolist())
 
 
@@ -679,7 +706,7 @@ def varnish_of(alpha: float, ior: float) -> Varnish:
     coat_of(alpha, ior)
     if not library(alpha):
         return constant_varnish(float(alpha), float(ior))
-    curves, means = integrated(cast(Array, alpha), cast(Array, ior))
+    curves, means = varnish_curves(cast(Array, alpha), cast(Array, ior))
     return Varnish(alpha, ior, curves, list(means))
 
 
@@ -704,11 +731,13 @@ def varnished_brdf(
 
     def base(wo: Array, wi: Array, color: Array, r: Array) -> Array:
         mu_o, mu_i, s = formulas.cosines(wo, wi)
-        single_o, several_o, turned_o = cut(varnish.at(mu_o))
-        single_i, several_i, turned_i = cut(varnish.at(mu_i))
+        single_o, several_o, turned_o = nonnegative(varnish.at(mu_o))
+        single_i, several_i, turned_i = nonnegative(varnish.at(mu_i))
         passed = (1.0 - single_o - several_o) * (1.0 - single_i - several_i) / n**2
         several = several_o * several_i / (np.pi * nonzero(means[0]))
-        return several + passed * under((mu_o, mu_i), s, (turned_o, turned_i), n, means, color, r)
+        return several + passed * base_under_varnish(
+            (mu_o, mu_i), s, (turned_o, turned_i), n, means, color, r
+        )
 
     facets = dielectric_brdf(wo, wi, 1.0, alpha, ior, compensate=False)
     return facets + any_array(evaluate)(base, wo, wi, rho, roughness=roughness)
@@ -742,7 +771,7 @@ def varnished_albedo_avg(rho: ArrayLike, roughness: ArrayLike, alpha: float, ior
     (color,), (r,) = any_array(checked_colors)({"rho": rho}, roughness=roughness)
     varnish = varnish_of(alpha, ior)
     _, exits, loss, _ = varnish.means
-    lost = absorbed(varnish.means, color, r)
+    lost = absorbed_share(varnish.means, color, r)
     mean, within = eon_albedo(C1 - C2, color, r), eon_albedo(loss, color, r)
     again = (1.0 - exits) * (within - 1.0 + lost) * (1.0 - within) / lost
     return 1.0 - varnish.ior**2 * (exits - mean + (1.0 - exits) * within + again)
@@ -798,8 +827,8 @@ def _albedo(
     """E_single and E, (..., C)."""
     (color,), (r, height) = checked_colors({"rho": rho}, roughness=roughness, mu=mu)
     varnish = varnish_of(alpha, ior)
-    curves = cut(varnish.at(height))
-    return curves[0], albedo(height, curves, varnish.ior, varnish.means, color, r)
+    curves = nonnegative(varnish.at(height))
+    return curves[0], varnish_albedo(height, curves, varnish.ior, varnish.means, color, r)
 
 
 def _share(wo: ArrayLike, rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float) -> Array:

@@ -420,7 +420,7 @@ def volume_radiance(
 # Of the text's inversion, with its digits: the quotients of van de Hulst's fit, rounded.
 LINEAR = (4.09712, 4.20863)
 SQUARED = (9.59217, 41.6808, 17.7126)
-NODES, PANELS = 50, 40  # of the quadrature of the blur, whose integrand has a kink
+BLUR_NODES, PANELS = 50, 40  # of the quadrature of the blur, whose integrand has a kink
 FAR = 3.0  # length of the profile's second exponential over that of the first
 
 
@@ -516,7 +516,7 @@ def blur_to(mu: Array, reach: Array, far: float) -> Array:
 
 def _exponential(mu: Array, reach: Array) -> tuple[Array, Array]:
     """Mean over the circles of one exponential of the profile, and its share on the sphere."""
-    xp, rule = array_namespace(mu, reach), unit_rule(NODES, PANELS)
+    xp, rule = array_namespace(mu, reach), unit_rule(BLUR_NODES, PANELS)
     u, weights = (like(each, reach) for each in rule)
     share = -xp.expm1(-2.0 / reach)
     distance = xp.minimum(-reach * xp.log1p(-u * share), 2.0)

@@ -67,7 +67,7 @@ from mxeon.models.core.arrays import (
 from mxeon.models.core.chebyshev import chebyshev_coefficients, chebyshev_nodes, chebyshev_sum
 from mxeon.models.core.colorimetry import XYZ_TO_REC709, XYZ_TO_REC709_E
 from mxeon.models.core.evaluation import evaluate_material
-from mxeon.models.microfacet import NODES, Curve, Lobe, evaluate_lobe, fresnel, lobe_albedo
+from mxeon.models.microfacet import CATEGORIES, Curve, Lobe, evaluate_lobe, fresnel, lobe_albedo
 
 Complex: TypeAlias = tuple[Array, Array]  # real and imaginary part
 
@@ -335,7 +335,7 @@ def film_curve(category: str, form: Form = TEXT) -> Curve:
 
     Where the thickness is 0 it is the node's own.
     """
-    bare = NODES[category][0]
+    bare = CATEGORIES[category][0]
 
     def at(
         mu: Array, *, thinfilm_thickness: Array, thinfilm_ior: Array, **material: Array
@@ -372,7 +372,7 @@ def _fine(
 ) -> Array:
     """The curve at the cosines of a fine rule from those of nodes, shape (FINE, 3, ...), all at once."""
     mu, between, _ = (like(each, film[1]) for each in _rule())
-    channels = {k for k, v in material.items() if k in NODES[category][1]}
+    channels = {k for k, v in material.items() if k in CATEGORIES[category][1]}
     axes = max((v.ndim - 1 for k, v in material.items() if k in channels), default=film[0].ndim)
     spread = {k: v[:, np.newaxis] if k in channels else v for k, v in material.items()}
     nodes = array_namespace(mu).reshape(mu, (-1, *(1,) * max(axes, film[0].ndim, film[1].ndim)))
@@ -599,7 +599,7 @@ def _material(
     category: str, inputs: Mapping[str, ArrayLike], wo: ArrayLike
 ) -> tuple[dict[str, Numbers], dict[str, Numbers]]:
     """Checked inputs with channels and without."""
-    _, colors, numbers = NODES[checked_choice("category", category, NODES)]
+    _, colors, numbers = CATEGORIES[checked_choice("category", category, CATEGORIES)]
     if not isinstance(inputs, Mapping):
         raise ValueError(f"inputs must be a mapping of names to values; got {inputs!r}")
     if missing := {"roughness", *colors, *numbers, *FILM} - set(inputs):
@@ -626,7 +626,7 @@ class PolynomialCurve:
     """Curve of a film, by a polynomial in the cosine for each material."""
 
     def __init__(self, category: str, form: Form) -> None:
-        self._bare = NODES[category][0].at
+        self._bare = CATEGORIES[category][0].at
         self._curve = film_curve(category, replace(form, clamped=False)).at
 
     def __call__(self, mu: Array, **material: Array) -> Array:

@@ -211,7 +211,7 @@ def evaluate_btdf(
     )
 
 
-NODES, BLOCK = 48, 2**4  # nodes in height and in azimuth of the cap of normals; views per block
+CAP_NODES, BLOCK = 48, 2**4  # nodes in height and in azimuth of the cap of normals; views per block
 MOST_SQUARED = 1.0 - 1e-15  # of a sine: below an index of 3e-8 next to nothing passes
 
 # Cosines wo . h and of wi, length of wi stretched by the roughness, and weights.
@@ -301,10 +301,10 @@ def _visible(wo: Array, roughness: Array, ior: Array) -> Nodes:
 @lru_cache(maxsize=2)
 def _nodes(axes: int) -> tuple[Array, Array, Array]:
     """Random numbers of the visible normals, and weights, along an axis before those of the views."""
-    x, w = np.polynomial.legendre.leggauss(NODES)
-    around = (np.arange(NODES) + 0.5) / NODES
+    x, w = np.polynomial.legendre.leggauss(CAP_NODES)
+    around = (np.arange(CAP_NODES) + 0.5) / CAP_NODES
     height, turn = np.meshgrid(0.5 * (x + 1.0), around, indexing="ij")
-    weight = np.repeat(0.5 * w / NODES, NODES)
+    weight = np.repeat(0.5 * w / CAP_NODES, CAP_NODES)
     shape = (-1, *(1,) * (axes - 1))
     return height.reshape(shape), turn.reshape(shape), weight.reshape(shape)
 

@@ -249,7 +249,7 @@ Color = tuple[float, float, float]
 ONE: Color = (1.0, 1.0, 1.0)
 GOLD: dict[str, Color] = {"ior": (0.183, 0.421, 1.373), "extinction": (3.424, 2.346, 1.770)}
 # Of each node: its Fresnel curve, its inputs with channels, and those without, with their defaults.
-NODES: dict[str, tuple[Curve, dict[str, Color], dict[str, float]]] = {
+CATEGORIES: dict[str, tuple[Curve, dict[str, Color], dict[str, float]]] = {
     "dielectric_bsdf": (DIELECTRIC, {"tint": ONE}, {"ior": 1.5}),
     "conductor_bsdf": (CONDUCTOR, GOLD, {}),
     "generalized_schlick_bsdf": (
@@ -264,7 +264,7 @@ def _material(
     category: str, inputs: Mapping[str, ArrayLike]
 ) -> tuple[Curve, dict[str, Numbers], dict[str, Numbers]]:
     """Curve of a node, and its checked inputs with channels and without."""
-    curve, colors, numbers = NODES[category]
+    curve, colors, numbers = CATEGORIES[category]
     vectors = checked_vectors({name: inputs[name] for name in colors})
     return curve, vectors, checked_all({name: inputs[name] for name in numbers})
 
@@ -278,7 +278,7 @@ def node_brdf(
     lobe: Lobe | None = None,
     retroreflective: bool = False,
 ) -> Array:
-    """BRDF of a node, a key of NODES, by its inputs; others are ignored."""
+    """BRDF of a node, a key of CATEGORIES, by its inputs; others are ignored."""
     material = _material(category, inputs)
     return evaluate_lobe(
         lobe or Lobe(), material[0], wo, wi, inputs["roughness"], *material[1:], retroreflective

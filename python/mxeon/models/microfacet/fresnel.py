@@ -52,7 +52,7 @@ GROUP = 2**12  # values of the integrand at once
 
 # Gauss-Legendre nodes of curves that have no singularity within the ellipse with foci 0 and 1 and this
 # sum of half axes, in halves: what is left falls as its power -56, 1e-13.
-NODES, ELLIPSE = 28, 1.7
+AVERAGE_NODES, ELLIPSE = 28, 1.7
 
 
 def dielectric(mu: Array, ior: Array) -> Array:
@@ -192,7 +192,7 @@ def _smooth_avg(ior: Array, extinction: Array) -> Array:
     """
     real, squared = (ior - 1.0) * (ior + 1.0) - extinction**2, (2.0 * ior * extinction) ** 2
     total = np.zeros(len(ior))
-    for c, weight in zip(*unit_rule(NODES), strict=True):
+    for c, weight in zip(*unit_rule(AVERAGE_NODES), strict=True):
         x = c * c
         part = real + x
         m = np.sqrt(part * part + squared)

@@ -261,8 +261,8 @@ def glossiness_anisotropy(glossiness: ArrayLike, anisotropy: ArrayLike) -> Array
 
 
 # Gauss-Legendre nodes per panel, panels between wo and the normal, and elements per block.
-NODES, PANELS, ALBEDO_BLOCK = 28, 3, 2**10
-RULE = np.polynomial.legendre.leggauss(NODES)
+RULE_NODES, PANELS, ALBEDO_BLOCK = 28, 3, 2**10
+RULE = np.polynomial.legendre.leggauss(RULE_NODES)
 
 # Least scale of the nodes and least elevation of wo, in radian: nothing changes by more than 1e-10.
 LEAST_SCALE, LEAST_ELEVATION = 1e-8, 1e-200

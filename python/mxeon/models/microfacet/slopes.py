@@ -34,7 +34,7 @@ from mxeon.models.core.quadrature import unit_rule
 from mxeon.models.microfacet.ggx import mean_alpha, smith_lambda
 
 # Gauss-Legendre nodes in r per panel, panels, and nodes per quadrant of phi.
-NODES, PANELS, QUADRANT = 20, 3, 20
+SLOPE_NODES, PANELS, QUADRANT = 20, 3, 20
 # Those of facets above a critical angle: per panel, and per part of a half plane.
 SPLIT_NODES, SPLIT_PART = 28, 32
 
@@ -346,7 +346,7 @@ def _quadrants(scale: Array, isotropic: bool) -> tuple[Array, Array]:
 def _graded(scale: Array, length: Array) -> tuple[Array, Array]:
     """Nodes and weights of [0, length], denser towards 0 from `scale` on, along the first axis."""
     xp, shape = array_namespace(length), (-1, *(1,) * (length.ndim - 1))
-    x, weight = (like(each.reshape(shape), length) for each in unit_rule(NODES, PANELS))
+    x, weight = (like(each.reshape(shape), length) for each in unit_rule(SLOPE_NODES, PANELS))
     extent = xp.asinh(length / scale)
     rise = xp.exp(extent * x)
     fall = 1.0 / rise

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from mxeon.models.core.arrays import Array, library
 from mxeon.models.core.colorimetry import XYZ_TO_REC709
-from mxeon.models.microfacet import NODES, Lobe, node_albedo, node_brdf
+from mxeon.models.microfacet import CATEGORIES, Lobe, node_albedo, node_brdf
 from mxeon.models.microfacet.defects import (
     AVERAGED,
     FITTED,
@@ -162,7 +162,7 @@ def _row(
     mirror: dict[str, ArrayLike],
 ) -> PbrNode:
     """Row of a node, which lets light through to what lies below if it has scatter modes."""
-    _, colors, numbers = NODES[lobe.category]
+    _, colors, numbers = CATEGORIES[lobe.category]
     known = (
         Variant(
             each.title,

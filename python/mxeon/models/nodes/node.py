@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from mxeon.models.core.arguments import RANGES
 from mxeon.models.core.arrays import Array
 from mxeon.models.hair import DEFAULTS as HAIR
-from mxeon.models.microfacet import NODES
+from mxeon.models.microfacet import CATEGORIES
 
 Value = float | tuple[float, ...]
 WHITE, GRAY, BLACK = (1.0,) * 3, (0.18,) * 3, (0.0,) * 3
@@ -34,7 +34,7 @@ DEFAULTS: dict[str, dict[str, Value]] = {
     "translucent_bsdf": {"color": WHITE},
     "subsurface_bsdf": {"color": GRAY, "radius": WHITE},
     "sheen_bsdf": {"color": WHITE, "roughness": 0.3},
-    **{name: {**colors, **numbers, **FACETS} for name, (_, colors, numbers) in NODES.items()},
+    **{name: {**colors, **numbers, **FACETS} for name, (_, colors, numbers) in CATEGORIES.items()},
     "chiang_hair_bsdf": HAIR,
     "uniform_edf": {"color": WHITE},
     "conical_edf": {"color": WHITE, "inner_angle": 60.0, "outer_angle": 0.0},
@@ -45,7 +45,7 @@ DEFAULTS: dict[str, dict[str, Value]] = {
 FRAME = ("weight", "normal", "tangent", "retroreflective")
 # Inputs of a lobe's weight, frame and mirror, which a call takes by name alone; others have ("weight", "normal").
 BY_NAME = {
-    **dict.fromkeys(NODES, FRAME),
+    **dict.fromkeys(CATEGORIES, FRAME),
     "chiang_hair_bsdf": ("normal", "curve_direction"),
 }
 # What an input is, where functions of `mxeon.models` have another name for it.
