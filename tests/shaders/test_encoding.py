@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Text of documents: what MaterialX reads is read alike, in one line what it cannot."""
+"""Text of documents: UTF-8 is read as MaterialX reads it, and anything else is refused in one line."""
+
+import re
 
 import MaterialX as mx
 import pytest
@@ -14,18 +16,11 @@ DECLARED = '<?xml version="1.0" encoding="{}"?>\n'
 READ = {
     "UTF-8": ("UTF-8", "utf-8", WORDS),
     "UTF-8 with its mark": ("utf-8", "utf-8-sig", WORDS),
-    "UTF-16": ("UTF-16", "utf-16", WORDS),
-    "UTF-16 without a mark": ("UTF-16", "utf-16-le", WORDS),
-    "UTF-16, high bytes first": ("UTF-16BE", "utf-16-be", WORDS),
-    "UTF-16 in name alone": ("utf-16", "utf-8", WORDS),
-    "UTF-32": ("UTF-32", "utf-32", WORDS),
-    "UTF-32, high bytes first": ("UTF-32", "utf-32-be", WORDS),
-    "ISO-8859-1": ("ISO-8859-1", "latin-1", "löök"),
-    "Latin1": ("Latin1", "latin-1", "löök"),
     "Windows, but ASCII": ("windows-1252", "ascii", "look"),
     "ASCII": ("us-ascii", "ascii", "look"),
+    "ASCII by another name": ("UTF-16", "ascii", "look"),
 }
-REFUSED = ["ebcdic", "UCS-4", "zlib", "rot13", "unicode_escape", "utf-7", "cp037"]
+REFUSED = ("utf-16", "utf-16-le", "utf-32", "utf-32-be", "latin-1")
 
 
 def stock(path):
@@ -50,19 +45,21 @@ def test_an_encoding_is_read_as_materialx_reads_it(tmp_path, name, encoding, wor
     assert mx.writeToXmlString(document) == stock(path)
 
 
-@pytest.mark.parametrize("name", [*REFUSED, "a" * 5000])
-def test_an_encoding_that_is_not_read_is_refused_in_one_line(tmp_path, name):
-    path = written(tmp_path, (DECLARED.format(name) + TEXT.format("look")).encode())
-    with pytest.raises(DocumentError) as refused:
-        read_document(path)
-    said = f"{path}: must be in an encoding that MaterialX reads, UTF-8, UTF-16, UTF-32 or ISO"
-    assert str(refused.value).startswith(said) and "\n" not in str(refused.value)
+@pytest.mark.parametrize("encoding", REFUSED)
+def test_other_encodings_are_refused_in_one_line(tmp_path, encoding):
+    text = DECLARED.format(encoding) + TEXT.format("löök")
+    for data in (text.encode(encoding), text.encode()):
+        with pytest.raises(DocumentError) as refused:
+            read_document(written(tmp_path, data))
+        assert re.search(
+            "must be (a MaterialX document )?in UTF-8; |XML parse error", str(refused.value)
+        )
+        assert "\n" not in str(refused.value)
 
 
-@pytest.mark.parametrize("encoding", ["utf-8", "utf-16", "utf-32"])
-def test_bytes_that_are_no_text_are_refused_with_their_place(tmp_path, encoding):
-    data = TEXT.format("löök").encode(encoding) + b"\xff\xff\xff"
-    with pytest.raises(DocumentError, match=r"must be a MaterialX document in UTF.*byte \d"):
+def test_bytes_that_are_no_text_are_refused_with_their_place(tmp_path):
+    data = TEXT.format("löök").encode() + b"\xff\xff\xff"
+    with pytest.raises(DocumentError, match=r"must be a MaterialX document in UTF-8.*byte \d"):
         read_document(written(tmp_path, data))
 
 

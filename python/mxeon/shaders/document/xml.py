@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Text of a document: decoded as MaterialX reads it, made XML, and checked before MaterialX reads it.
+"""Text of a document: decoded, made XML, and checked before MaterialX reads it.
 
 MaterialX takes more than XML allows: `<` and `&` in attributes, `--` in comments, a declaration
 after blank lines. Here that becomes XML, once, so that the checked text is the text that is read.
@@ -7,7 +7,6 @@ MaterialX keeps what it reads in memory and follows every include at once, so si
 number are counted here, by a parser that keeps nothing.
 """
 
-import codecs
 import os
 import re
 from collections.abc import Mapping
@@ -19,22 +18,8 @@ from mxeon.errors import STEERING, DocumentError
 from mxeon.io.files import AnyPath
 from mxeon.shaders.document.policy import Policy
 
-# First bytes of a document and their encoding, in the order in which MaterialX compares.
-STARTS = (
-    (codecs.BOM_UTF32_BE, "utf-32-be"),
-    (codecs.BOM_UTF32_LE, "utf-32-le"),
-    (codecs.BOM_UTF16_BE, "utf-16-be"),
-    (codecs.BOM_UTF16_LE, "utf-16-le"),
-    (b"\0\0\0<", "utf-32-be"),
-    (b"<\0\0\0", "utf-32-le"),
-    (b"\0<", "utf-16-be"),
-    (b"<\0", "utf-16-le"),
-)
-LONGEST_DECLARATION = 65_536  # bytes
+LONGEST_DECLARATION = 65_536  # characters
 DECLARED = re.compile(r"\s*<\?xml\s[^>]*?\sencoding\s*=\s*[\"']([^\"']*)[\"']")
-DECODED = re.compile(r"utf-?(8|16|32)([bl]e|-[bl]e)?", re.IGNORECASE)
-LATIN = ("iso-8859-1", "latin1")
-ASCII = rb'<x a="+AGE-\x41~{.xn--a">'  # characters that some encodings read otherwise
 
 PIECE = re.compile(
     r"<!--.*?(?:-->|\Z)"
@@ -48,46 +33,22 @@ AMPERSAND = re.compile(r"&(?!(?:lt|gt|amp|quot|apos|#[0-9]+|#x[0-9a-fA-F]+);)")
 
 
 def decode(data: bytes, location: str) -> str:
-    """Text of a document from its bytes, as MaterialX decodes it.
-
-    DocumentError unless it is in UTF-8, UTF-16, UTF-32 or ISO-8859-1, or in ASCII under any name of an
-    encoding that has it.
-    """
-    encoding = next((name for start, name in STARTS if data.startswith(start)), "utf-8")
-    if data.startswith(b"<?xml"):
-        declared = DECLARED.match(data[:LONGEST_DECLARATION].decode("latin-1"))
-        if declared and declared[1].lower() in LATIN:
-            encoding = "iso-8859-1"
+    """Text of a document, which must be in UTF-8, or in ASCII whatever it declares."""
     try:
-        text = data.decode(encoding).removeprefix("\ufeff")
+        text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise DocumentError(
-            f"{location}: must be a MaterialX document in {encoding.upper()}; {error.reason} at byte "
-            f"{error.start}"
+            f"{location}: must be a MaterialX document in UTF-8; {error.reason} at byte {error.start}"
         ) from None
-    if declared := DECLARED.match(text[:LONGEST_DECLARATION]):
-        _check_declared(declared[1], text, location)
+    declared = DECLARED.match(text[:LONGEST_DECLARATION])
+    if declared and declared[1].lower() not in ("utf-8", "utf8") and not text.isascii():
+        raise DocumentError(f"{location}: must be in UTF-8; got encoding {declared[1]!r}")
     return text
 
 
 def strict(text: str) -> str:
     """A document's text as XML without comments and declaration; its lines keep their numbers."""
     return PIECE.sub(_strict_piece, text)
-
-
-def _check_declared(name: str, text: str, location: str) -> None:
-    """Raise DocumentError if a text would differ in the encoding that it declares."""
-    if DECODED.fullmatch(name) or name.lower() in LATIN:
-        return
-    try:
-        same = text.isascii() and ASCII.decode(name) == ASCII.decode()
-    except (LookupError, ValueError):  # unknown, no encoding of text, or not of this one
-        same = False
-    if not same:
-        raise DocumentError(
-            f"{location}: must be in an encoding that MaterialX reads, UTF-8, UTF-16, UTF-32 or "
-            f"ISO-8859-1; got {name!r}"
-        )
 
 
 def _strict_piece(piece: re.Match[str]) -> str:
