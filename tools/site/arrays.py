@@ -38,8 +38,7 @@ def page(text):
     functions = public().items()
     others = [f"`{name.rpartition('.')[2]}`" for name, each in functions if not takes_any(each)]
     line = (
-        "Every public function of arrays in `mxeon.models`, `mxeon.albedo`, `mxeon.inversion` and `mxeon.sampling` takes them, "
-        "and\nhas gradients with respect to every argument of the type `ArrayLike`. "
+        "Every public function of arrays in `mxeon.models` takes them, and\nhas gradients with respect to every argument of the type `ArrayLike`. "
         f"Only {' and '.join(others)} take lobes,\nwhose arrays may be of any library.\n"
     )
     return with_block(text, "functions", line)
