@@ -8,7 +8,7 @@ from mxeon.models import sampling as cltc
 from mxeon.models import sampling as eon_sampling
 from mxeon.models import sampling as ltc
 from mxeon.models.diffuse import C1, eon_albedo_dir, eon_brdf, fon_brdf
-from mxeon.models.sampling import SAMPLERS, cosine_pdf, eon_cltc_sample, eon_pdf, eon_sample
+from mxeon.models.sampling import cosine_pdf, eon_cltc_sample, eon_pdf, eon_sample
 from tests.support import tolerances
 from tests.support.hemispheres import (
     BY_NAME,
@@ -19,6 +19,7 @@ from tests.support.hemispheres import (
     uniforms,
     view,
 )
+from tools.paper.samplers import SAMPLERS
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy import special  # scipy.stats is slow to import
 
-from mxeon.models.sampling import SAMPLERS, Sampler, eon_pdf, eon_sample
+from mxeon.models.sampling import eon_pdf, eon_sample
 from tests.support.hemispheres import (
     BY_NAME,
     COSINES,
@@ -22,6 +22,7 @@ from tests.support.hemispheres import (
     uniforms,
     view,
 )
+from tools.paper.samplers import SAMPLERS, Sampler
 
 FALSE_ALARM = 1e-4
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy import special  # scipy.stats is slow to import
 
-from mxeon.models.sampling import SAMPLERS
 from tests.support.cases import direction as view
+from tools.paper.samplers import SAMPLERS
 
 COSINES = (1.0, 0.9, 0.5, 0.1, 1e-3, 0.0)
 ROUGHNESS = (0.0, 0.01, 0.4, 1.0)

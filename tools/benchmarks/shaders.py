@@ -19,9 +19,9 @@ import numpy as np
 
 from mxeon.conformance.specs import diffuse
 from mxeon.models.diffuse import eon_brdf
-from mxeon.models.sampling import SAMPLERS
 from mxeon.shaders import functions as twins
 from tools.benchmarks.rounds import Check, Group, clock_of, figure, interleave
+from tools.paper.samplers import SAMPLERS
 
 PRINTED = Path(__file__).with_name("printed.glsl")
 CALLS, INVOCATIONS = 256, 2**14

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from mxeon.models.core.quadrature import hemisphere_nodes
 from mxeon.models.diffuse import eon_brdf
-from mxeon.models.sampling import SAMPLERS
 from tools.paper.curves import directions
+from tools.paper.samplers import SAMPLERS
 from tools.paper.sheet import Sheet
 
 ANGLES = np.append(np.linspace(0.0, 85.0, 18), [87.0, 88.5, 89.5, 90.0])

@@ -104,7 +104,6 @@ from mxeon.models.microfacet.ggx import smith_g2 as smith_g2
 from mxeon.models.microfacet.ggx import smith_g2_anisotropic as smith_g2_anisotropic
 from mxeon.models.nodes.node import Parameter as Parameter
 from mxeon.models.sampling import *  # noqa: F403
-from mxeon.models.sampling import SAMPLERS as SAMPLERS
 from mxeon.models.shading_model import EmissionModel as EmissionModel
 from mxeon.models.shading_model import MediumModel as MediumModel
 from mxeon.models.shading_model import ShadingModel as ShadingModel
@@ -128,6 +127,6 @@ from mxeon.models.transmission import refraction_direction as refraction_directi
 from mxeon.models.transmission import schlick_ior as schlick_ior
 from mxeon.models.transmission import transmission_half_vector as transmission_half_vector
 
-__all__ = ["SAMPLERS"] + [
+__all__ = [
     name for name, value in globals().items() if callable(value) and not name.startswith("_")
 ]

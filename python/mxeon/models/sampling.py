@@ -48,9 +48,6 @@ and the value times the cosine over the density is color E(mu_o) for every sampl
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-
 import numpy as np
 
 from mxeon.models.core.arguments import (
@@ -724,8 +721,6 @@ def zeltner_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
 
 
 __all__ = [
-    "SAMPLERS",
-    "Sampler",
     "cltc_pdf",
     "cltc_sample",
     "cosine_pdf",
@@ -745,40 +740,3 @@ __all__ = [
     "zeltner_pdf",
     "zeltner_sample",
 ]
-
-
-@dataclass(frozen=True)
-class Sampler:
-    """A sampler and its density, under one signature.
-
-    - `name`: The x of x_sample and x_pdf.
-    - `sample`: sample(wo, u, roughness) -> wi, pdf.
-    - `pdf`: pdf(wo, wi, roughness).
-    - `title`: For plots and tables.
-    """
-
-    name: str
-    sample: Callable[..., tuple[Array, Array]]
-    pdf: Callable[..., Array]
-    title: str
-
-
-SAMPLERS = (
-    Sampler(
-        "uniform",
-        lambda wo, u, roughness: uniform_sample(u),
-        lambda wo, wi, roughness: uniform_pdf(wi),
-        "uniform",
-    ),
-    Sampler(
-        "cosine",
-        lambda wo, u, roughness: cosine_sample(u),
-        lambda wo, wi, roughness: cosine_pdf(wi),
-        "cosine",
-    ),
-    Sampler("ltc0", ltc0_sample, ltc0_pdf, "LTC, d = 0"),
-    Sampler("ltc", ltc_sample, ltc_pdf, "LTC"),
-    Sampler("cltc", cltc_sample, cltc_pdf, "CLTC"),
-    Sampler("eon_cltc", eon_cltc_sample, eon_cltc_pdf, "CLTC + uniform"),
-    Sampler("eon", eon_sample, eon_pdf, "exact"),
-)
