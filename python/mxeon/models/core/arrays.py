@@ -223,13 +223,18 @@ def within(x: Array, low: float = 0.0, high: float = 1.0) -> Array:
     return np.clip(x, low, high) if xp is NUMPY else xp.where(x < low, low, at_most(x, high))
 
 
+def except_where(
+    edge: Array, value: Array | float, formula: Callable[[Array], Array], x: Array, inside: float
+) -> Array:
+    """formula(x), and `value` with derivative 0 on the edge, where the formula takes `inside` instead of x."""
+    where = array_namespace(x).where
+    return where(edge, value, formula(where(edge, inside, x)))
+
+
 def root(x: Array) -> Array:
     """Square root; where x is 0 its derivative counts as 0."""
     xp = array_namespace(x)
-    if xp is NUMPY:
-        return xp.sqrt(x)
-    positive = x > 0.0
-    return xp.where(positive, xp.sqrt(xp.where(positive, x, 1.0)), 0.0)
+    return xp.sqrt(x) if xp is NUMPY else except_where(~(x > 0.0), 0.0, xp.sqrt, x, 1.0)
 
 
 def hypot(x: Array, y: Array) -> Array:
@@ -237,8 +242,7 @@ def hypot(x: Array, y: Array) -> Array:
     xp = array_namespace(x, y)
     if xp is NUMPY:
         return xp.hypot(x, y)
-    zero = (x == 0.0) & (y == 0.0)
-    return xp.where(zero, 0.0, xp.hypot(xp.where(zero, 1.0, x), y))
+    return except_where((x == 0.0) & (y == 0.0), 0.0, lambda x: xp.hypot(x, y), x, 1.0)
 
 
 def arcsine(x: Array) -> Array:
@@ -246,9 +250,8 @@ def arcsine(x: Array) -> Array:
     xp = array_namespace(x)
     if xp is NUMPY:
         return xp.asin(xp.minimum(xp.maximum(x, -1.0), 1.0))
-    inside = xp.abs(x) < 1.0
-    end = xp.where(x < 0.0, -0.5 * np.pi, 0.5 * np.pi)
-    return xp.where(inside, xp.asin(xp.where(inside, x, 0.0)), end)
+    end = 0.5 * np.pi * xp.sign(x)
+    return except_where(~(xp.abs(x) < 1.0), end, xp.asin, x, 0.0)
 
 
 def arccosine(x: Array) -> Array:
@@ -271,10 +274,7 @@ def angle(y: Array, x: Array) -> Array:
 def except_at_1(formula: Callable[[Array], Array], x: Array, value: float) -> Array:
     """formula(x), and `value` with derivative 0 where x is 1 or a rounding more."""
     xp = array_namespace(x)
-    if xp is NUMPY:
-        return formula(x)
-    edge = x >= 1.0
-    return xp.where(edge, value, formula(xp.where(edge, INSIDE, x)))
+    return formula(x) if xp is NUMPY else except_where(x >= 1.0, value, formula, x, INSIDE)
 
 
 def power(base: Array, exponent: Array) -> Array:
@@ -284,7 +284,7 @@ def power(base: Array, exponent: Array) -> Array:
         return base**exponent
     steep = (base == 0.0) & (exponent < 1.0)
     flat = xp.where(exponent == 0.0, 1.0, 0.0)
-    return xp.where(steep, flat, xp.where(steep, 1.0, base) ** exponent)
+    return except_where(steep, flat, lambda base: base**exponent, base, 1.0)
 
 
 def fractional_power(x: Array, exponent: float) -> Array:
@@ -292,8 +292,7 @@ def fractional_power(x: Array, exponent: float) -> Array:
     xp = array_namespace(x)
     if xp is NUMPY:
         return x**exponent
-    positive = x > 0.0
-    return xp.where(positive, xp.where(positive, x, 1.0) ** exponent, 0.0)
+    return except_where(~(x > 0.0), 0.0, lambda x: x**exponent, x, 1.0)
 
 
 def below_1(x: Array) -> float:
