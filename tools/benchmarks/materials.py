@@ -98,7 +98,7 @@ class Frame:
         gl._set(program, raster.light(SIDE))
         for unit, name in enumerate(("u_envRadiance", "u_envIrradiance")):
             if name in program:
-                host._texture(raster.WHITE, False).use(location=unit)
+                host._texture(raster.WHITE_TEXELS, False).use(location=unit)
                 program[name].value = unit
         # Vertices at the pixel centers of a small picture and beyond, and two triangles between four.
         width = MESH + 2 * points.MARGIN

@@ -78,12 +78,12 @@ class Row:
 
 
 # A sum over the environment for each pixel: half as wide as the others, as all of it is smooth.
-WHITE = replace(FURNACE, size=128)
+WHITE_LIGHT = replace(FURNACE, size=128)
 
 HOSTS = (
     # Its pictures are exact and take no time.
-    Row("gl", "glsl", "pairs", scenes=(SIDE, BACK, WHITE), surfaces=True),
-    Row("webgl", "essl", "pairs", scenes=(SIDE, BACK, WHITE)),
+    Row("gl", "glsl", "pairs", scenes=(SIDE, BACK, WHITE_LIGHT), surfaces=True),
+    Row("webgl", "essl", "pairs", scenes=(SIDE, BACK, WHITE_LIGHT)),
     Row("vulkan", "vulkan", "pairs"),
     Row("wgsl", "wgsl", "pairs"),
     Row("slang", "slang", "pairs"),
@@ -92,7 +92,7 @@ HOSTS = (
         "materialx",
         "glsl",
         "drawn pictures",
-        scenes=(SIDE, BACK, WHITE),
+        scenes=(SIDE, BACK, WHITE_LIGHT),
         surfaces=True,
     ),
     # Its furnace sums microfacets over other directions.

@@ -73,7 +73,7 @@ def quad_file(folder: Path, size: int, place: tuple[float, float] = (0.0, 0.0)) 
 
 # Pixels along a quad where blocks of 2 x 2 have to lie in one of its two triangles, and the place of the
 # pixel that is read: right of the diagonal and below the middle.
-BLOCK, PLACE = 4, (0.25, -0.25)
+PIXEL_BLOCK, PLACE = 4, (0.25, -0.25)
 PICTURES = 64  # to keep: the checks of a node request some of them again
 
 
@@ -161,7 +161,7 @@ class DocumentHost(base.Host):
             mesh=str(quad_file(folder, scene.size, PLACE if blocks else (0.0, 0.0))),
             document=str(document),
             element=element,
-            size=scene.size * (BLOCK if blocks else 1),
+            size=scene.size * (PIXEL_BLOCK if blocks else 1),
             light=scene.light,
             environment=scene.environment,
             **({"methods": dict(methods.chosen())} if methods != UNCHOSEN else {}),
@@ -170,7 +170,7 @@ class DocumentHost(base.Host):
         self._check(reply.get("error", ""), self.worker.printed())
         pixels = np.load(output)
         if blocks:
-            pixels = pixels[BLOCK // 2 :: BLOCK, BLOCK // 2 :: BLOCK]
+            pixels = pixels[PIXEL_BLOCK // 2 :: PIXEL_BLOCK, PIXEL_BLOCK // 2 :: PIXEL_BLOCK]
         image = np.where(sphere(scene.size).mask[..., None], pixels, np.float32(0.0))
         image.flags.writeable = False  # shared by all callers
         return image

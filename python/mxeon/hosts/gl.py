@@ -137,7 +137,7 @@ class GlHost(FragmentHost):
         textures: Mapping[str, Array],
     ) -> Array:
         program = self._program(vertex, pixel)
-        _set(program, raster.FRAME)
+        _set(program, raster.FRAME_UNIFORMS)
         own = self._textures(program, textures)
         parts = fragment.parts(arguments)
         return np.concatenate([self._part(program, each, own) for each in parts])
@@ -195,7 +195,7 @@ class GlHost(FragmentHost):
                 key = id(values), name == "u_envRadiance"
                 own[name] = made[key] = made.get(key) or self._texture(values, key[1])
         for name in own.keys() & {"u_envRadiance", "u_envIrradiance"}:
-            own[name].repeat_y = texels[name].shape[0] <= len(raster.WHITE)
+            own[name].repeat_y = texels[name].shape[0] <= len(raster.WHITE_TEXELS)
         return own
 
     def _argument(self, rows: Array, size: tuple[int, int]) -> moderngl.Texture:

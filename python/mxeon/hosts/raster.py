@@ -29,7 +29,7 @@ Rectangle: TypeAlias = tuple[int, int, int, int]  # left, lowest row, width, hei
 BAND = 4  # rows of a picture that are drawn together, as wide as the shape
 VIEW_DISTANCE = 1e8  # makes normalize(u_viewPosition - positionWorld) the z axis, in float32
 # Not of one texel, which has no mipmaps: Mesa would compile a program once more for an uneven environment.
-WHITE = np.ones((2, 2, 3), dtype=np.float32)
+WHITE_TEXELS = np.ones((2, 2, 3), dtype=np.float32)
 
 # Directions over which a shader of microfacets sums its environment: see docs/hosts.md for the error
 # of each number, and its cost. Of the environment's mipmaps they read the first alone.
@@ -78,7 +78,7 @@ def images(shader: Shader) -> dict[str, Array]:
 def environment(irradiance: Array | None) -> dict[str, Array]:
     """Texels of the environment of an evaluation; see `mxeon.hosts.base.Host.evaluate`."""
     return dict.fromkeys(
-        ("u_envRadiance", "u_envIrradiance"), WHITE if irradiance is None else irradiance
+        ("u_envRadiance", "u_envIrradiance"), WHITE_TEXELS if irradiance is None else irradiance
     )
 
 
@@ -133,7 +133,9 @@ def picture(image: Array, scene: Scene) -> Array:
 
 
 # Of two lights in the middle of an animation: an evaluation looks like any frame to its shader.
-FRAME = light(SIDE) | {"u_numActiveLightSources": 2, "u_frame": 24.0, "u_time": 1.0} | EVALUATION
+FRAME_UNIFORMS = (
+    light(SIDE) | {"u_numActiveLightSources": 2, "u_frame": 24.0, "u_time": 1.0} | EVALUATION
+)
 
 
 class FragmentHost(base.Host):

@@ -37,7 +37,7 @@ TIMEOUT = 60.0  # seconds for one of them
 FILTERED = {"texture": {"sample_type": "float"}}
 UNFILTERED = {"texture": {"sample_type": "unfilterable-float"}}
 SAMPLER = {"sampler": {"type": "filtering"}}
-BLOCK = {"buffer": {"type": "uniform"}}
+UNIFORM_BINDING = {"buffer": {"type": "uniform"}}
 
 # Bindings of a generated text.
 DECLARATION = re.compile(
@@ -55,7 +55,7 @@ BLOCK_SIZE = 1 << 14
 
 FORMATS = {"uint8": "rgba8unorm", "float16": "rgba16float"}  # which can be filtered
 FLOATS = {1: "r32float", 2: "rg32float", 4: "rgba32float"}  # components -> format
-WHITE = np.full((1, 1, 4), 255, dtype=np.uint8)
+WHITE_TEXEL = np.full((1, 1, 4), 255, dtype=np.uint8)
 
 PROGRAMS = 8  # to keep: the checks of a node evaluate one shader many times
 
@@ -210,10 +210,10 @@ class VulkanHost(FragmentHost):
         """Kind and resource of a declaration; a separate texture's name ends in _texture."""
         if declaration["block"] is not None:
             data = _std140(declaration["block"])
-            return BLOCK, self._device.create_buffer_with_data(data=data, usage="UNIFORM")
+            return UNIFORM_BINDING, self._device.create_buffer_with_data(data=data, usage="UNIFORM")
         if declaration["kind"] == "sampler":
             return SAMPLER, self._device.create_sampler()
-        texels = textures.get(declaration["name"].removesuffix("_texture"), WHITE)
+        texels = textures.get(declaration["name"].removesuffix("_texture"), WHITE_TEXEL)
         return FILTERED, self._texture(texels)
 
     def _texture(self, texels: Array) -> Resource:

@@ -174,7 +174,7 @@ class WebGlHost(Chromium, FragmentHost):
         count, size = fragment.frame(arguments)
         own = {name: fragment.texels(rows, size) for name, rows in arguments.items()}
         stages = {"vertex": vertex, "pixel": pixel}
-        frame = self._draw(stages, UNIFORMS | raster.FRAME, {**own, **textures}, size)
+        frame = self._draw(stages, UNIFORMS | raster.FRAME_UNIFORMS, {**own, **textures}, size)
         return frame.reshape(-1, 3)[:count]
 
     def _draw(

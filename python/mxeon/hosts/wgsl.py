@@ -11,7 +11,7 @@ import re
 
 from mxeon.hosts import vulkan
 
-BLOCK = re.compile(r"^layout \(location = 0\) in (\w+\s*\{[^}]*\} \w+;)", re.MULTILINE)
+INPUT_BLOCK = re.compile(r"^layout \(location = 0\) in (\w+\s*\{[^}]*\} \w+;)", re.MULTILINE)
 
 
 class WgslHost(vulkan.VulkanHost):
@@ -29,7 +29,7 @@ class WgslHost(vulkan.VulkanHost):
         naga keeps what an evaluation does not use, and wgpu requires it.
         """
         head, rest = super()._vertex(pixel).split("\n", 1)
-        outputs = [f"layout (location = 0) out {block}\n" for block in BLOCK.findall(pixel)]
+        outputs = [f"layout (location = 0) out {block}\n" for block in INPUT_BLOCK.findall(pixel)]
         return "".join([f"{head}\n", *outputs, rest])
 
     def _code(self, stage: str, text: str) -> str:

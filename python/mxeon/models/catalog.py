@@ -20,7 +20,15 @@ from mxeon.models.nodes.emissions import EMISSIONS, Emission
 from mxeon.models.nodes.lobes import HAIR_NODE, SUBSURFACE_NODE
 from mxeon.models.nodes.media import MEDIA, Medium
 from mxeon.models.nodes.microfacets import FILM_NODES, TRANSMISSION_NODES, TRANSMISSIONS
-from mxeon.models.nodes.node import BY_NAME, DEFAULTS, FRAME, Inputs, Parameter, PbrNode, parameter
+from mxeon.models.nodes.node import (
+    BY_NAME,
+    DEFAULTS,
+    NAMED_INPUTS,
+    Inputs,
+    Parameter,
+    PbrNode,
+    parameter,
+)
 from mxeon.models.shading_model import (
     EmissionModel,
     MediumModel,
@@ -28,7 +36,7 @@ from mxeon.models.shading_model import (
     NodeModel,
     ShadingModel,
 )
-from mxeon.models.transmission import LEAST
+from mxeon.models.transmission import LEAST_IOR
 
 
 def _cosine_sample(wo: Array, u: Array, inputs: Inputs) -> tuple[Array, Array]:
@@ -188,13 +196,13 @@ def _of_transmission(row: PbrNode) -> ShadingModel:
     # A BTDF of radiance integrates to the transmitted share over the squared index.
     def albedo(wo: Array, inputs: Inputs) -> Array:
         ior = passing.ior(inputs)[:, np.newaxis]
-        ior = array_namespace(ior).maximum(ior, LEAST)
+        ior = array_namespace(ior).maximum(ior, LEAST_IOR)
         passed: Array = passing.passed(wo, inputs, True) / ior**2
         return passed if mode == "T" else passed + reflected(wo, inputs)
 
     inputs = _inputs(row.category, row.inputs)
     lights = "back" if mode == "T" else "all sides"
-    title, frame = f"{row.title}, scatter mode {mode}", FRAME[:-1]
+    title, frame = f"{row.title}, scatter mode {mode}", NAMED_INPUTS[:-1]
     return ShadingModel(
         row.name, title, row.category, inputs, value, albedo, lights=lights, by_name=frame
     )

@@ -55,7 +55,7 @@ from mxeon.models.microfacet import fresnel as fresnel_formulas
 
 LOBES = ("R", "TT", "TRT", "TRRT+")
 SCALE = np.sqrt(np.pi / 8.0)  # of the logistic distribution: Azimuthal Scattering
-LEAST = 1e-300  # of numbers that divide, lest a quotient overflow by itself
+LEAST_DIVISOR = 1e-300  # of numbers that divide, lest a quotient overflow by itself
 
 # Coefficients of (x / 20)^(2 k) in the power series of I_0, which has positive terms alone, and of (20 / x)^k in
 # the asymptotic one, as exact beyond x = 20, its least term being exp(-2 x). Both end where a term is below 2^-53.
@@ -162,12 +162,12 @@ def section(wo: Array, ior: Array) -> tuple[Section, Array]:
     of the point whose normal is +z. A view along the fiber has none, and counts as h = 0. Below
     index 1, where no ray enters, F is 1 and gamma_t has no effect.
     """
-    xp, least = array_namespace(wo, ior), max(LEAST, least_normal(wo))
+    xp, least = array_namespace(wo, ior), max(LEAST_DIVISOR, least_normal(wo))
     sin_o, cos_o = wo[0], hypot(wo[1], wo[2])
     inside = root(xp.maximum(xp.square(ior) - xp.square(sin_o), 0.0))
-    effective = inside / xp.maximum(guarded(cos_o, cos_o > least, 1.0), LEAST)
+    effective = inside / xp.maximum(guarded(cos_o, cos_o > least, 1.0), LEAST_DIVISOR)
     gamma_o = angle(-wo[1], xp.where(cos_o > 0.0, wo[2], 1.0))
-    sin_t = -wo[1] / xp.maximum(guarded(inside, inside > least, 1.0), LEAST)
+    sin_t = -wo[1] / xp.maximum(guarded(inside, inside > least, 1.0), LEAST_DIVISOR)
     return Section(sin_o, cos_o, gamma_o, arcsine(sin_t)), effective
 
 
@@ -175,17 +175,19 @@ def attenuations(
     view: Section, effective: Array, ior: Array, absorption: Array, form: HairForm
 ) -> Array:
     """A_p of a view, (4, C, ...), of absorptions (C, ...)."""
-    xp, least = array_namespace(view.sin_o, ior, absorption), max(LEAST, least_normal(ior))
+    xp, least = array_namespace(view.sin_o, ior, absorption), max(LEAST_DIVISOR, least_normal(ior))
     cos_gamma = xp.cos(view.gamma_o)
     if form.effective:
         F = fresnel_formulas.dielectric(cos_gamma, xp.minimum(effective, 1e50))
     else:
         F = fresnel_formulas.dielectric(view.cos_o * cos_gamma, ior)
     bends = ior > least
-    sin_t = at_most(xp.abs(view.sin_o) / xp.maximum(guarded(ior, bends, least), LEAST), 1.0)
+    sin_t = at_most(xp.abs(view.sin_o) / xp.maximum(guarded(ior, bends, least), LEAST_DIVISOR), 1.0)
     cos_t = root((1.0 - sin_t) * (1.0 + sin_t))
     passes, path = cos_t > least, 2.0 * xp.cos(view.gamma_t)
-    path = xp.where(passes, path / xp.maximum(guarded(cos_t, passes, 1.0), LEAST), path / least)
+    path = xp.where(
+        passes, path / xp.maximum(guarded(cos_t, passes, 1.0), LEAST_DIVISOR), path / least
+    )
     return attenuation(F, xp.exp(-absorption * path))
 
 
@@ -219,7 +221,7 @@ def distribution(
     return M * azimuthal(phi - exit_angle, s)
 
 
-BLOCK = 4096  # elements at a time: a lobe keeps many numbers for each
+HAIR_BLOCK = 4096  # elements at a time: a lobe keeps many numbers for each
 TINTS, ROUGHNESSES = (
     tuple(f"{prefix}_{lobe}" for lobe in ("R", "TT", "TRT")) for prefix in ("tint", "roughness")
 )
@@ -262,7 +264,7 @@ def chiang_hair_bcsdf(wo: ArrayLike, wi: ArrayLike, **inputs: Any) -> Array:
         ]
         return form.factor * sum(lobes[1:], lobes[0])
 
-    return evaluate_material(formula, vectors | values, numbers, channel_count(colors), BLOCK)
+    return evaluate_material(formula, vectors | values, numbers, channel_count(colors), HAIR_BLOCK)
 
 
 @any_array
@@ -290,7 +292,9 @@ def chiang_hair_attenuation(
         rows = [factors[lobe, c] for c in range(channels) for lobe in range(len(LOBES))]
         return array_namespace(factors).stack(rows)
 
-    values = evaluate_material(formula, vectors, {"ior": checked("ior", ior)}, 4 * channels, BLOCK)
+    values = evaluate_material(
+        formula, vectors, {"ior": checked("ior", ior)}, 4 * channels, HAIR_BLOCK
+    )
     return array_namespace(values).reshape(values, (*values.shape[:-1], channels, 4))
 
 

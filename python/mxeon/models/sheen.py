@@ -59,7 +59,7 @@ from mxeon.models.diffuse import cosines
 ZELTNER_LEAST_ROUGHNESS = 0.01
 
 # Roughness and sum of cosines that divide are at least this, lest a quotient overflow by itself.
-LEAST = 1e-300
+LEAST_DIVISOR = 1e-300
 
 
 @any_array
@@ -138,7 +138,7 @@ def _tinted(
 def _conty_kulla_formula(wo: Array, wi: Array, tint: Array, roughness: Array) -> Array:
     """Conty and Kulla's lobe, (C, ...), on valid arrays."""
     xp = array_namespace(wo, wi, roughness)
-    least = max(LEAST, least_normal(wo))  # that of float32 is larger
+    least = max(LEAST_DIVISOR, least_normal(wo))  # that of float32 is larger
     mu_o, mu_i, _ = cosines(wo, wi)
     flat = xp.square(wo[..., 0] + wi[..., 0]) + xp.square(wo[..., 1] + wi[..., 1])
     upright = xp.square(mu_o + mu_i)
@@ -191,7 +191,7 @@ def _zeltner_albedo(mu: Array, roughness: Array) -> Array:
 # Above this cosine the closed form of the inner integral cancels, and Gauss-Legendre serves.
 STEEP = 0.25
 
-BLOCK = 2**8  # elements at once
+SHEEN_BLOCK = 2**8  # elements at once
 ALONG = 1e-8  # distance from 1 of a cosine that counts as the normal's for derivatives
 
 
@@ -209,7 +209,9 @@ def conty_kulla_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
         >>> round(float(conty_kulla_albedo_dir(1.0, 0.5)), 12)
         0.083333333333
     """
-    return evaluate_number(_albedo, {}, checked_all({"mu": mu, "roughness": roughness}), BLOCK)
+    return evaluate_number(
+        _albedo, {}, checked_all({"mu": mu, "roughness": roughness}), SHEEN_BLOCK
+    )
 
 
 def _albedo(mu: Array, roughness: Array) -> Array:
@@ -220,7 +222,7 @@ def _albedo(mu: Array, roughness: Array) -> Array:
         albedo = np.zeros(mu.shape)
         for steep in (False, True):
             rows = ((mu > STEEP) == steep) & (roughness > 0.0)
-            albedo[rows] = _integral(mu[rows], np.maximum(roughness[rows], LEAST), steep)
+            albedo[rows] = _integral(mu[rows], np.maximum(roughness[rows], LEAST_DIVISOR), steep)
         return albedo
     above, rough = mu > STEEP, roughness > 0.0
     r = guarded(roughness, rough, 1.0)

@@ -96,7 +96,7 @@ SAME = 2.0**-20  # relative distance of indices that are roundings of the same n
 # Weights of its nodes from the center on, and of all of them.
 HEIGHTS = STEP * np.exp(-0.5 * (STEP * np.arange(STEPS + 1)) ** 2) / np.sqrt(2.0 * np.pi)
 HEIGHT = 2.0 * float(HEIGHTS.sum()) - float(HEIGHTS[0])
-BLOCK = 2**13  # elements at once
+FILM_BLOCK = 2**13  # elements at once
 
 
 class Interface(NamedTuple):
@@ -165,7 +165,7 @@ def over_schlick(
 def index_of(color0: Array) -> Array:
     """Index of refraction whose reflectance along the normal is color0; unbounded at 1."""
     amplitude = root(color0)
-    least = array_namespace(color0).maximum(1.0 - amplitude, fresnel.LEAST)
+    least = array_namespace(color0).maximum(1.0 - amplitude, fresnel.LEAST_IOR)
     return (1.0 + amplitude) / least
 
 
@@ -192,8 +192,8 @@ def tristimulus(interface: Interface, opd: Array, orders: int | None = None) -> 
     x, y, phi = (xp.broadcast_to(each, shape) for each in values)
     if xp is NUMPY:
         sums = np.empty((len(GAUSSIANS), x.size))
-        for start in range(0, x.size, BLOCK):
-            rows = slice(start, start + BLOCK)
+        for start in range(0, x.size, FILM_BLOCK):
+            rows = slice(start, start + FILM_BLOCK)
             _fill(sums[:, rows], x.ravel()[rows], y.ravel()[rows], phi.ravel()[rows], orders)
         sums = sums.reshape(len(GAUSSIANS), *shape)
     else:

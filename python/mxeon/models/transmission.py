@@ -69,7 +69,7 @@ from mxeon.models.microfacet import DIELECTRIC, fresnel, ggx
 from mxeon.models.microfacet.slopes import refracting_nodes
 from mxeon.models.sampling import visible_normal
 
-LEAST = 1e-50  # index below which all light counts as reflected; its square divides
+LEAST_IOR = 1e-50  # index below which all light counts as reflected; its square divides
 
 
 @any_array
@@ -113,8 +113,8 @@ def transmission_half_vector(wo: ArrayLike, wi: ArrayLike, ior: ArrayLike) -> Ar
 def refracted(wo: Array, normal: Array, ior: Array) -> Array:
     """`refraction_direction` on float64 arrays, components first."""
     xp = array_namespace(wo, normal, ior)
-    bends = ior > max(LEAST, least_normal(wo))
-    inverse = 1.0 / guarded(xp.maximum(ior, LEAST), bends, 1.0)
+    bends = ior > max(LEAST_IOR, least_normal(wo))
+    inverse = 1.0 / guarded(xp.maximum(ior, LEAST_IOR), bends, 1.0)
     cosine = xp.sum(wo * normal, axis=0)
     squared = 1.0 - inverse * inverse * (1.0 - cosine) * (1.0 + cosine)
     passes = (squared > 0.0) & (cosine > 0.0) & bends
@@ -198,8 +198,8 @@ def evaluate_btdf(
         G2 = ggx.visibility_anisotropic(wo, above, roughness)
         lobe = ggx.ndf(facet.normal, roughness) * G2
         if radiance:
-            bends = ior > max(LEAST, least_normal(wo))  # nothing passes an index of 0
-            lobe = lobe / guarded(array_namespace(ior).maximum(ior, LEAST), bends, 1.0) ** 2
+            bends = ior > max(LEAST_IOR, least_normal(wo))  # nothing passes an index of 0
+            lobe = lobe / guarded(array_namespace(ior).maximum(ior, LEAST_IOR), bends, 1.0) ** 2
         f = (1.0 - F) * (4.0 * lobe * facet.cosine_o * facet.jacobian)
         return f * material["tint"] if "tint" in material else f
 
@@ -211,7 +211,10 @@ def evaluate_btdf(
     )
 
 
-CAP_NODES, BLOCK = 48, 2**4  # nodes in height and in azimuth of the cap of normals; views per block
+CAP_NODES, CAP_BLOCK = (
+    48,
+    2**4,
+)  # nodes in height and in azimuth of the cap of normals; views per block
 MOST_SQUARED = 1.0 - 1e-15  # of a sine: below an index of 3e-8 next to nothing passes
 
 # Cosines wo . h and of wi, length of wi stretched by the roughness, and weights.
@@ -284,7 +287,7 @@ def evaluate_transmittance(
         return T * material["tint"] if "tint" in material else T
 
     arguments = {**directions, **pairs, **vectors}
-    return evaluate_material(value, arguments, numbers, channel_count(vectors), BLOCK)
+    return evaluate_material(value, arguments, numbers, channel_count(vectors), CAP_BLOCK)
 
 
 def _visible(wo: Array, roughness: Array, ior: Array) -> Nodes:

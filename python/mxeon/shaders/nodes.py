@@ -51,7 +51,7 @@ DOCUMENT = """<?xml version="1.0"?>
 """
 
 
-FRAME = ("normal", "tangent", "curve_direction")  # inputs that are vectors of the surface
+FRAME_INPUTS = ("normal", "tangent", "curve_direction")  # inputs that are vectors of the surface
 
 
 @cache
@@ -144,7 +144,7 @@ def lobe_text(
     kinds = input_types(category) if types is None else types
     text = constants = ""
     for each, value in inputs.items():
-        if each in FRAME:
+        if each in FRAME_INPUTS:
             source = f"{name}_{each}"
             constants += vector_text(source, value)
             text += connection_text(each, "vector3", source)

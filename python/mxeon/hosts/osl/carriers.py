@@ -27,7 +27,7 @@ class Signature:
     kind: str = "float"  # of their values; OSL drops a keyword whose value has another type
 
 
-FRAME = {"normal": "normal", "tangent": "vector"}
+FRAME_TYPES = {"normal": "normal", "tangent": "vector"}
 TINTS = {"reflection_tint": "color", "transmission_tint": "color"}
 ALPHAS = {"roughness_x": "float", "roughness_y": "float"}
 ROUGH = {"normal": "normal", "color": "color", "roughness": "float"}
@@ -42,12 +42,14 @@ CLOSURES = {
     "subsurface_bssrdf": Signature(
         {"normal": "normal", "color": "color", "radius": "color", "anisotropy": "float"}
     ),
-    "dielectric_bsdf": Signature(FRAME | TINTS | ALPHAS | {"ior": "float"} | DISTRIBUTION, FILM),
+    "dielectric_bsdf": Signature(
+        FRAME_TYPES | TINTS | ALPHAS | {"ior": "float"} | DISTRIBUTION, FILM
+    ),
     "conductor_bsdf": Signature(
-        FRAME | ALPHAS | {"ior": "color", "extinction": "color"} | DISTRIBUTION, FILM
+        FRAME_TYPES | ALPHAS | {"ior": "color", "extinction": "color"} | DISTRIBUTION, FILM
     ),
     "generalized_schlick_bsdf": Signature(
-        FRAME
+        FRAME_TYPES
         | TINTS
         | ALPHAS
         | {"color0": "color", "color90": "color", "exponent": "float"}

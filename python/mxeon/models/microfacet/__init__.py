@@ -81,7 +81,7 @@ DIELECTRIC = Curve(
 )
 CONDUCTOR = Curve(fresnel.conductor, fresnel.conductor_avg)
 SCHLICK = Curve(fresnel.schlick, fresnel.schlick_avg)
-WHITE = Curve(lambda c, tint: 1.0 + 0.0 * c[np.newaxis], lambda tint: np.ones(1))
+WHITE_CURVE = Curve(lambda c, tint: 1.0 + 0.0 * c[np.newaxis], lambda tint: np.ones(1))
 
 
 @dataclass(frozen=True)
@@ -130,7 +130,7 @@ def _anisotropic_missing(rows: bytes) -> Array:
         lambda wo, roughness: slope_nodes(wo, roughness)[1].sum(axis=(0, 1)),
         {"wo": columns[:3].T, "roughness": columns[3:].T},
         {},
-        BLOCK,
+        QUADRATURE_BLOCK,
     )
     return np.asarray((1.0 - E) / E)
 
@@ -380,7 +380,7 @@ def _lobe(compensate: bool) -> Lobe:
     return Lobe() if checked_switch("compensate", compensate) else Lobe(factor=uncompensated)
 
 
-BLOCK = 2**3  # elements at once
+QUADRATURE_BLOCK = 2**3  # elements at once
 
 
 @any_array
@@ -456,7 +456,9 @@ def ggx_albedo_dir_anisotropic(wo: ArrayLike, roughness: ArrayLike) -> Array:
     """
     wo, roughness = checked_directions("wo", wo), checked_roughness(roughness)
     lead_shape({"wo": wo, "roughness": roughness}, {})
-    return lobe_albedo(WHITE, wo, roughness, {"tint": like(np.ones(1), wo)}, {}, False)[..., 0][()]
+    return lobe_albedo(WHITE_CURVE, wo, roughness, {"tint": like(np.ones(1), wo)}, {}, False)[
+        ..., 0
+    ][()]
 
 
 def lobe_albedo(
@@ -503,4 +505,6 @@ def lobe_albedo(
         unseen = evaluate_number(missing_of, {"wo": wo, "roughness": roughness}, {})
         average = evaluate_material(curve.average, vectors, numbers, channels)
     arguments["average"] = average
-    return evaluate_material(value, arguments, {"unseen": unseen, **numbers}, channels, BLOCK)
+    return evaluate_material(
+        value, arguments, {"unseen": unseen, **numbers}, channels, QUADRATURE_BLOCK
+    )

@@ -40,7 +40,7 @@ ALBEDO_FIT = np.array(
 
 # Least cosine and alpha of that fit. The shaders clamp both to M_FLOAT_EPS, 1e-8 in 1.39.5; between the two
 # limits the fit changes by less than 2e-5.
-LEAST = 1e-6
+CLAMP = 1e-6
 
 
 @dataclass(frozen=True)
@@ -97,8 +97,8 @@ def _averaged(pair: Pair) -> Array:
 
 def _missing_by_fit(pair: Pair) -> Array:
     """(1 - E_ss) / E_ss by the fit of MaterialX 1.39.5."""
-    alpha = np.maximum(ggx.mean_alpha(pair.roughness), LEAST)
-    E = fitted_albedo(np.clip(pair.wo[2], LEAST, 1.0), alpha, 1.0, 1.0)
+    alpha = np.maximum(ggx.mean_alpha(pair.roughness), CLAMP)
+    E = fitted_albedo(np.clip(pair.wo[2], CLAMP, 1.0), alpha, 1.0, 1.0)
     return (1.0 - E) / E
 
 
@@ -264,6 +264,6 @@ def fitted_compensation(wo: Array, inputs: Mapping[str, Array], F: Array) -> Arr
 
 
 def _arguments(wo: Array, inputs: Mapping[str, Array]) -> tuple[Array, Array]:
-    """Cosine and alpha, at least LEAST."""
-    alpha = np.sqrt(np.maximum(inputs["roughness"], LEAST).prod(axis=-1))
-    return np.clip(wo[:, 2], LEAST, 1.0), alpha
+    """Cosine and alpha, at least CLAMP."""
+    alpha = np.sqrt(np.maximum(inputs["roughness"], CLAMP).prod(axis=-1))
+    return np.clip(wo[:, 2], CLAMP, 1.0), alpha

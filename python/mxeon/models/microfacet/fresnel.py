@@ -43,7 +43,7 @@ from mxeon.models.core.quadrature import unit_rule
 COS_THETA_MAX = 1.0 / 7.0
 
 # Indices below count as this one where 1 / n enters: F_ss is 1 to rounding, and n^3 stays finite.
-LEAST = 1e-50
+LEAST_IOR = 1e-50
 
 # Double-exponential rule: c = X^2 / (X^2 + 1/X^2), X = exp(pi/4 sinh(t)), |t| < 3.2.
 # The weights beyond are below 1e-15.
@@ -146,7 +146,7 @@ def dielectric_avg(ior: Array) -> Array:
     """
     xp = array_namespace(ior)
     inside = ior < 1.0
-    gap = xp.where(inside, (1.0 - ior) / xp.maximum(ior, LEAST), ior - 1.0)
+    gap = xp.where(inside, (1.0 - ior) / xp.maximum(ior, LEAST_IOR), ior - 1.0)
     F = _external_avg(xp.maximum(gap, 0.0))
     return xp.where(inside, (1.0 - ior) * (1.0 + ior) + ior * ior * F, F)
 

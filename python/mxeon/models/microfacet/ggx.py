@@ -58,7 +58,7 @@ from mxeon.models.core.chebyshev import (
 from mxeon.models.core.evaluation import evaluate_number
 
 # Sums of cosines below count as 0: D alone is at most 1e162.
-LEAST = 1e-140
+LEAST_DIVISOR = 1e-140
 
 
 def ndf(wh: Array, roughness: Array) -> Array:
@@ -120,7 +120,7 @@ def half_vector(wo: Array, wi: Array) -> tuple[Array, Array]:
 def reciprocal(x: Array) -> Array:
     """1 / x, and 0 where x is so small that a product with D could overflow."""
     xp = array_namespace(x)
-    large = x > max(LEAST, least_normal(x))  # that of float32 is larger
+    large = x > max(LEAST_DIVISOR, least_normal(x))  # that of float32 is larger
     return xp.where(large, 1.0 / xp.where(large, x, 1.0), 0.0)
 
 
@@ -383,7 +383,7 @@ def _density(e_o: Array, e_i: Array, d: Array, alpha: Array) -> Array:
 
 # Nodes in the cube root of s and in the square root of alpha, panels for one of the quadrature that
 # fills the table, and elements at once.
-NODES_S, NODES_ALPHA, REFINED, BLOCK = 80, 28, 2, 2**12
+NODES_S, NODES_ALPHA, REFINED, TABLE_BLOCK = 80, 28, 2, 2**12
 
 # Cosines of one alpha from which on cubics take the place of the polynomials, the number of their cells,
 # and the alphas that are kept. The cubics are within 3e-14 of the polynomials.
@@ -399,7 +399,7 @@ def missing_light(mu: Array, alpha: Array) -> Array:
     """
     if array_namespace(mu, alpha) is NUMPY and alpha.size == 1 and mu.size >= MANY:
         return _of_one_alpha(mu, float(alpha.item()))
-    return evaluate_number(_interpolated, {}, {"mu": mu, "alpha": alpha}, BLOCK)
+    return evaluate_number(_interpolated, {}, {"mu": mu, "alpha": alpha}, TABLE_BLOCK)
 
 
 def _interpolated(mu: Array, alpha: Array) -> Array:

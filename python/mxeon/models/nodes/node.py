@@ -42,10 +42,10 @@ DEFAULTS: dict[str, dict[str, Value]] = {
     "absorption_vdf": {"absorption": BLACK},
     "anisotropic_vdf": {"absorption": BLACK, "scattering": BLACK, "anisotropy": 0.0},
 }
-FRAME = ("weight", "normal", "tangent", "retroreflective")
+NAMED_INPUTS = ("weight", "normal", "tangent", "retroreflective")
 # Inputs of a lobe's weight, frame and mirror, which a call takes by name alone; others have ("weight", "normal").
 BY_NAME = {
-    **dict.fromkeys(CATEGORIES, FRAME),
+    **dict.fromkeys(CATEGORIES, NAMED_INPUTS),
     "chiang_hair_bsdf": ("normal", "curve_direction"),
 }
 # What an input is, where functions of `mxeon.models` have another name for it.
