@@ -157,12 +157,7 @@ def _others(lobes: tuple[ShownLobe, ...]) -> list[Term]:
         for name in ROUGHNESSES
         if lobe.category == HAIR
     ]
-    stretched = (
-        np.ptp(np.reshape(lobe.inputs["roughness"], (-1, 2)), axis=1).any()
-        for lobe in lobes
-        if lobe.category in MICROFACETS
-    )
-    others += [ANISOTROPIC] * any(stretched)
+    others += [ANISOTROPIC] * _stretched(lobes)
     if hairs:
         others += lobe_terms(*np.min(hairs, axis=0))
     sheens = (lobe for lobe in lobes if lobe.inputs.get("mode") == "conty_kulla")
@@ -173,6 +168,15 @@ def _others(lobes: tuple[ShownLobe, ...]) -> list[Term]:
         if excess > 0.0:
             others.append(Term(excess, "what a narrow sheen returns beyond all light"))
     return others
+
+
+def _stretched(lobes: Iterable[ShownLobe]) -> bool:
+    """Whether a microfacet lobe has two different alphas."""
+    return any(
+        bool(np.ptp(np.reshape(lobe.inputs["roughness"], (-1, 2)), axis=1).any())
+        for lobe in lobes
+        if lobe.category in MICROFACETS
+    )
 
 
 Pixels: TypeAlias = NDArray[np.floating]
@@ -224,7 +228,7 @@ def judge_document(
     notes += dict.fromkeys(
         (text, f"{file.name}: {shader.element}")
         for shader in shaders
-        for scene in host_row(host.name).scenes
+        for scene in _scenes(host)
         for text in host.approximations(shader, scene)
     )
     # A result names the input itself.
@@ -237,11 +241,19 @@ def judge_document(
     return tuple(results), tuple(pictures), tuple(notes)
 
 
+def _scenes(host: Host) -> tuple[Scene, ...]:
+    """Scenes of a host; without an environment those with a light."""
+    scenes = host_row(host.name).scenes
+    if host.active.environment == "none":
+        scenes = tuple(each for each in scenes if each.environment is None)
+    return scenes
+
+
 def _judge_material(
     file: Path, shader: Shader, host: Host, judge: Reference, values: HostValues, front_lit: bool
 ) -> tuple[Result, tuple[Picture, ...]]:
     """One material; `front_lit` where the host has its model for s >= 0 only."""
-    scenes, library = host_row(host.name).scenes, values.library
+    scenes, library = _scenes(host), values.library
     subject = f"{file.name}: {shader.element}"
     place = Result("picture", MATCH, subject, host.name, library, NOT_RUN)
     try:
@@ -262,7 +274,9 @@ def _judge_material(
     else:
         references = [*expected]
         cases = list(zip(scenes, images, expected, strict=True))
-        lobes = (lobe for each in expected for lobe in each.lobes)
+        lobes = [lobe for each in expected for lobe in each.lobes]
+        if host.active.environment == "prefilter" and _stretched(lobes):  # its maps have one alpha
+            cases = [each for each in cases if each[0].environment is None]
         result = _judge_match(place, cases, tolerance_of(shader, lobes, host))
         if result.verdict == FAILED and (known := _known(shader)):
             result = replace(result, diagnosis=known)

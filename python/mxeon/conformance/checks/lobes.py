@@ -229,6 +229,7 @@ def diagnose_surroundings(case: Case) -> Diagnosis:
     pairs=True,
     lit=True,
     diagnose=diagnose_surroundings,
+    methods=lambda spec, methods: methods.environment != "none",
 )
 def surroundings(case: Case) -> Compared:
     """An uneven environment is looked up along the viewer-facing normal, or along its opposite for translucent nodes."""

@@ -517,16 +517,14 @@ def transmitted_inputs(case: Case) -> Measurement:
 def wrong_inputs(case: Case) -> list[str]:
     """Inputs that change no light through the surface, and those that must not.
 
-    The retroreflective mode is of the reflection alone. A prefiltered environment has no tangent, and opacity
-    none either; a lobe that only transmits passes its tint as opacity.
+    The retroreflective mode is of the reflection alone. As opacity, a lobe that only transmits passes its tint.
+    By every other method, the albedo of two alphas depends on the tangent.
     """
     batch = case.few[0].first(CHANGED_VIEWS)
     dead = dead_inputs(case, batch, lambda each: case.transmitted(each, sky_map()))
     unread = {"retroreflective"}
     if case.opaque and not by_itself(case.spec):
         unread |= case.changes.keys() - {"weight", "tint"}
-    elif case.opaque or case.backend.prefiltered:
-        unread.add("tangent")
     return [each for each in case.changes if (each in dead) != (each in unread)]
 
 
