@@ -21,6 +21,11 @@ void conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 extinc
         F.value = mx_fresnel_conductor(lobe.mu_h, ior, extinction);
         F.average = eonlib_fresnel_conductor_avg(ior, extinction);
         F.visible = vec3(1.0);  // nothing lies below
+#ifdef EONLIB_PREFILTERED
+        vec3 F0 = mx_fresnel_conductor(1.0, ior, extinction);
+        F.visible = mx_ggx_dir_albedo(lobe.mu_o, lobe.alpha, F0, vec3(1.0))
+                    / mx_ggx_dir_albedo(lobe.mu_o, lobe.alpha, vec3(1.0), vec3(1.0));
+#endif
         microfacet_film(lobe, fd, F);
         microfacet_bsdf(closureData, lobe, fd, F, vec3(1.0), weight, distribution, 0, bsdf);
     }

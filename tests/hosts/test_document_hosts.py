@@ -124,6 +124,37 @@ def test_a_card_shows_through_rough_glass_in_storm(on_storm, gl, tmp_path):
     assert np.abs(wrong - expected).max() > 20 * HALF
 
 
+COAT = """<dielectric_bsdf name="coat" type="BSDF">
+  <input name="roughness" type="vector2" value="0.1, 0.1"/>
+</dielectric_bsdf>
+<oren_nayar_diffuse_bsdf name="base" type="BSDF">
+  <input name="color" type="color3" value="1, 1, 1"/>
+</oren_nayar_diffuse_bsdf>
+<layer name="lobe" type="BSDF">
+  <input name="top" type="BSDF" nodename="coat"/>
+  <input name="base" type="BSDF" nodename="base"/>
+</layer>"""
+METAL = """<generalized_schlick_bsdf name="lobe" type="BSDF">
+  <input name="color0" type="color3" value="1, 1, 1"/>
+  <input name="color82" type="color3" value="1, 1, 1"/>
+  <input name="roughness" type="vector2" value="0.8, 0.8"/>
+</generalized_schlick_bsdf>"""
+
+
+@pytest.mark.parametrize("text", [COAT, METAL], ids=["coat", "metal"])
+def test_white_microfacets_vanish_in_the_dome_of_storm(on_storm, text):
+    """The host brightens the dome for diffuse lobes alone, by 1 / 0.984."""
+    facing = sphere(16).mask & (sphere(16).normal[..., 2] > 0.05)
+
+    def picture(library):
+        [shader] = on_storm.compile(material(text), library=library)
+        return on_storm.picture(shader, replace(FURNACE, size=16))[facing]
+
+    found = picture("eonlib")
+    assert found.min() >= 1.0 - 4e-3 and found.max() <= 1.0 / 0.984 + 4e-3
+    assert picture("stock").max() >= 1.04
+
+
 def test_a_wrong_copy_of_eonlib_fails(judged, tmp_path):
     assert judged("value", EON, "storm", wrong_copy(tmp_path, *SIGN)).verdict == FAILED
 

@@ -31,14 +31,15 @@ CLIENTS = {
     "C++": 'mx::loadLibraries({{"{}", "libraries"}}, mx::getDefaultDataSearchPath(), library);',
     "generateshader": "generateshader --library {} --target glsl FILE",
     "MaterialX's viewer": "MaterialXView --library {}",
-    "USD": "export PXR_MTLX_PLUGIN_SEARCH_PATHS={}",
+    "USD": "export PXR_MTLX_PLUGIN_SEARCH_PATHS={0}:{1}/genglsl/prefilter",
     "Blender's Cycles": "mxeon generate --library {} --profile cycles --target osl --outputPath DIR FILE",
 }
 
 
 def recipes(folder: AnyPath) -> str:
     """How each client loads a folder of eonlib, a line each."""
-    return "\n".join(f"{client:<21} {text.format(folder)}" for client, text in CLIENTS.items())
+    sources = source_folder(os.fspath(folder))
+    return "\n".join(f"{name:<21} {text.format(folder, sources)}" for name, text in CLIENTS.items())
 
 
 def export_library(path: AnyPath) -> Path:

@@ -80,11 +80,13 @@ def _tree(folder: str) -> Tree:
         }
         return Tree(folder, WHOLE, "", named, tuple(missing), missing | own)
     place = _place(folder, named, installed)
-    # No source may look like another's replacement and be none.
+    # No source may look like another's replacement and be none, unless a search path finds it below `libraries`.
     known = {PurePosixPath(each).name: each for each in installed if each.endswith(CODE)}
     for each in named:
         other = known.get(PurePosixPath(each).name)
-        if other and (place is None or place + each not in installed):
+        if not other or each.endswith(f"/libraries/{other}"):
+            continue
+        if place is None or place + each not in installed:
             raise InputError(
                 f"library {folder}: {each} must lie at {other}, as MaterialX's file of that name, to "
                 "replace it; or rename it"

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import MaterialX as mx
@@ -19,11 +20,13 @@ from mxeon.hosts.base import Array
 from mxeon.hosts.cycles.process import interpreter
 from mxeon.hosts.documents import DocumentHost
 from mxeon.shaders.generation import Shader
+from mxeon.shaders.library import source_folder
 from mxeon.shaders.methods import STORM
 from mxeon.shaders.scene import Scene
 
 REPORT = re.compile(r"^(?:Warning|Error)\b.*? in file .* : (.*)|^(?:Warning|Error)\b.*? -- (.*)")
 COMPILE = "Failed to compile shader"  # the beginning of such a report
+PREFILTER = "genglsl/prefilter"  # eonlib's lookup of a prefiltered environment
 CLOSURES = ("BSDF", "EDF", "VDF")
 
 
@@ -37,6 +40,11 @@ class StormHost(DocumentHost):
         """Share of a white card's light that passes the sphere of a picture, row 0 at the top."""
         dark = Scene("dark", size=size)
         return np.asarray(self._shown(shader, dark, card=True) - self._shown(shader, dark))
+
+    def _shown(self, shader: Shader, scene: Scene, card: bool = False) -> Array:
+        own = [source_folder(each) / PREFILTER for each in shader.folders]
+        folders = (*shader.folders, *(str(each) for each in own if each.is_dir()))
+        return super()._shown(replace(shader, folders=folders), scene, card)
 
     def unread(self, shader: Shader) -> str:
         """The enumerated inputs of closures: Storm takes their defaults."""

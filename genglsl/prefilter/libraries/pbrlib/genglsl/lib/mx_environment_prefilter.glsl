@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// A prefiltered environment with MaterialX's lookup and, for eonlib's microfacets, their own albedo. It replaces
+// MaterialX's file where a client searches `genglsl/prefilter` before MaterialX's data.
+
+#include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
+
+#define EONLIB_PREFILTERED
+
+// The mip level of an alpha.
+float mx_latlong_alpha_to_lod(float alpha)
+{
+    float lodBias = (alpha < 0.25) ? sqrt(alpha) : 0.5 * alpha + 0.375;
+    return lodBias * float($envRadianceMips - 1);
+}
+
+// The environment's mean over a lobe of mirrored or refracted directions.
+vec3 eonlib_prefiltered_light(vec3 N, vec3 V, vec2 alpha, FresnelData fd)
+{
+    vec3 L = fd.refraction ? mx_refraction_solid_sphere(-V, N, fd.ior.x) : -reflect(V, N);
+    float lod = mx_latlong_alpha_to_lod(mx_average_alpha(alpha));
+    return mx_latlong_map_lookup(L, $envMatrix, lod, $envRadiance) * $envLightIntensity;
+}
+
+// That light times the share that facets reflect or transmit, by MaterialX's fit of their albedo, in its form for
+// every version.
+vec3 mx_environment_radiance(vec3 N, vec3 V, vec3 X, vec2 alpha, int distribution, FresnelData fd)
+{
+    N = mx_forward_facing_normal(N, V);
+    float mu = clamp(dot(N, V), M_FLOAT_EPS, 1.0);
+    vec3 F0 = mx_compute_fresnel(1.0, fd);
+    vec3 F90 = mx_compute_fresnel(0.0, fd);
+    vec3 share = mx_ggx_dir_albedo(mu, mx_average_alpha(alpha), F0, F90);
+    return eonlib_prefiltered_light(N, V, alpha, fd) * (fd.refraction ? vec3(1.0) - share : share);
+}
+
+vec3 mx_environment_irradiance(vec3 N)
+{
+    return mx_latlong_map_lookup(N, $envMatrix, 0.0, $envIrradiance) * $envLightIntensity;
+}
