@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Changed from MaterialX's file of this name: Copyright Contributors to the MaterialX Project.
 // A prefiltered environment with MaterialX's lookup and, for eonlib's microfacets, their own albedo. It replaces
 // MaterialX's file where a client searches `genglsl/prefilter` before MaterialX's data.
 
