@@ -17,6 +17,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.io.srgb import srgb_encoded
 from mxeon.models import eon_brdf
 from mxeon.report import html, to_json, to_junit, write
@@ -46,7 +47,7 @@ def made_result(verdict, **changes):
         library="eonlib",
         verdict=verdict,
         error=1.25e-7,
-        unit="1/pi",
+        quantity=Quantity.VALUE,
         tolerance=2e-6,
         derivation="Two roundings of 6e-8 each.",
         worst={"wo": [0.0, 0.6, 0.8], "roughness": [1.0]},
@@ -61,7 +62,7 @@ MISSING = made_result(
     NOT_RUN, host="cycles", error=None, control=None, worst={}, reason="Blender is not here"
 )
 ATTACK = made_result(
-    FAILED, error=math.nan, subject=HOSTILE, diagnosis=quoted(HOSTILE), unit=HOSTILE, claim=HOSTILE,
+    FAILED, error=math.nan, subject=HOSTILE, diagnosis=quoted(HOSTILE), claim=HOSTILE,
     derivation=HOSTILE, worst={HOSTILE: [1.0]}, control=Control(HOSTILE, 0.0, caught=False),
 )  # fmt: skip
 

@@ -189,9 +189,9 @@ def test_lines_name_host_and_library_once_and_come_largest_first(tmp_path, capsy
     [
         ("[", "must be the results.json of a report; "),
         ("{}", "must be the results.json of a report; lacks 'format'"),
-        ('{"format": 2}', "must be the results.json of a report; lacks "),
-        ('{"format": 1}', "format must be 2; got 1; run the check again with this mxeon"),
-        ('{"format": 2, "$schema": "x"}', "$schema must be urn:mxeon:results:2; got 'x'"),
+        ('{"format": 3}', "must be the results.json of a report; lacks "),
+        ('{"format": 1}', "format must be 3; got 1; run the check again with this mxeon"),
+        ('{"format": 3, "$schema": "x"}', "$schema must be urn:mxeon:results:3; got 'x'"),
         ("[]", "must be the results.json of a report; it must be an object"),
     ],
 )

@@ -15,6 +15,7 @@ from mxeon.conformance import words
 from mxeon.conformance.pictures import DOCUMENT_KEY
 from mxeon.conformance.results import DIFFERS, DIRECT, FAILED, NOT_RUN, PASSED, Kind, Result, Run
 from mxeon.conformance.results.known_issues import issues_of
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.spec import ValueSpec
 from mxeon.conformance.specs import ALL
 from mxeon.conformance.words import counted, listed, of_white
@@ -340,7 +341,7 @@ def _cell(run: Run, results: Sequence[Result]) -> str:
         cell += ", differs as permitted"
     if not shown.tolerance or shown.error is None:
         return cell
-    if shown.error > UNBOUNDED and not shown.unit.startswith("times "):
+    if shown.error > UNBOUNDED and shown.quantity is not Quantity.KIT:
         view = f"at a view cosine of {shown.worst['wo'][2]:.2g}" if "wo" in shown.worst else ""
         place = words.region(shown.diagnosis.region) if shown.diagnosis.region else view
         return f"{cell}, unbounded {place}".rstrip()

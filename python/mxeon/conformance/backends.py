@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from mxeon.conformance.cache import EVALUATIONS, Recent, contents, parts
 from mxeon.conformance.results import Claims
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import (
     LEAST_TURNED,
     LOBE_RIM,
@@ -485,19 +486,21 @@ BELOW = sum_of(
 )
 VIEWS, PIXELS = 8, 1 << 12  # of a case, and of a picture of them
 NOISE = sum_in(
-    "albedo",
+    Quantity.ALBEDO,
     Term(
         5.0 * 0.01 / math.sqrt(PIXELS / VIEWS),
         "five standard errors of the mean of 512 pixels of 64 paths, each off by 0.01 rms",
     ),
 )
-PASSED = given(2e-3, "albedo", "testrender's tables of albedos, off by 1e-3 for a white dielectric")
+PASSED = given(
+    2e-3, Quantity.ALBEDO, "testrender's tables of albedos, off by 1e-3 for a white dielectric"
+)
 INTEGRAL = sum_in(
-    "albedo",
+    Quantity.ALBEDO,
     SHARP.term("an average of values"),
     Term(1.2e-3, "32 x 32 nodes, those next to the view moved by up to 0.08"),
 )
-LIGHT = sum_in("light", INTEGRAL.term("an integral of values"), PASSED.term("a throughput"))
+LIGHT = sum_in(Quantity.LIGHT, INTEGRAL.term("an integral of values"), PASSED.term("a throughput"))
 
 
 class RenderedSamples(Samples):
@@ -675,14 +678,14 @@ HALF_CUT = Term(2.0**-10, "half floats, cut off")  # as llvmpipe does
 LOBE_SLOPE = 2.0 / 0.4 + 3.0
 # In each of two cosines of at least 0.05 five roundings, times 20 by s / t, and times 2 by s and the cosine.
 EXACT = sum_in(
-    "pi f cos",
+    Quantity.DIFFERENCE,
     roundings(28, "(14, of numbers up to 2)"),
     roundings(2 * 5 * (1.0 / RIM + 2.0), "(five in each of two cosines, times 22)"),
 )
-EXACT_ALBEDO = sum_in("albedo", roundings(21 * 1.02, "of numbers up to 1.02"))
+EXACT_ALBEDO = sum_in(Quantity.ALBEDO, roundings(21 * 1.02, "of numbers up to 1.02"))
 HALF = Tolerance((HALF_CUT, *EXACT.terms), "relative", relative, exact=True)
 HALF_ALBEDO = sum_in(
-    "albedo",
+    Quantity.ALBEDO,
     Term(2.0 * HALF_CUT.value, "half floats of map and picture, cut off"),
     EXACT_ALBEDO.term("roundings"),
     exact=True,
@@ -692,7 +695,7 @@ DRAWN_LOBE = LOBE_VALUE.plus(
 )
 HALF_FOUR = "half floats in four pictures, 48 times as large, half of them alike"
 HALF_LOBE = sum_in(
-    "pi f cos", Term(96.0 * HALF_CUT.value, HALF_FOUR), *DRAWN_LOBE.terms, exact=True
+    Quantity.DIFFERENCE, Term(96.0 * HALF_CUT.value, HALF_FOUR), *DRAWN_LOBE.terms, exact=True
 )
 
 
@@ -701,7 +704,7 @@ HALF_LOBE = sum_in(
 CYCLES_RAY = sum_of(
     roundings(3.0 * 2.0 / RIM**2, "of a pixel's point, over the least cosine squared"),
     Term(1e-5, "a roughness that counts as 0"),
-    unit="relative",
+    quantity=Quantity.RELATIVE,
     metric=relative,
 )
 # Of 256 samples each. Measured over seeds 0 to 15 at roughness 1 and reflectance 1: a pixel is off by 1.3e-3
@@ -711,7 +714,7 @@ CYCLES_NOISE = sum_of(
         4.0 * 1.4 * 1.3e-3 / math.sqrt(12_836),
         "four standard errors of the mean of 12836 pixels, each off by 1.3e-3, times 1.4",
     ),
-    unit="mean albedo",
+    quantity=Quantity.MEAN_ALBEDO,
     metric=mean_error,
 )
 
@@ -871,7 +874,7 @@ class Drawn(Pictures):
     def drawn(cls, error: Tolerance) -> Tolerance:
         """Error of a node's picture with exact points, of its value or albedo."""
         points = roundings(LOBE_SLOPE * 2 * 5 / RIM, "of two cosines of at least 0.05, times 8")
-        return sum_of(error.term("a number"), points, unit=error.unit)
+        return sum_of(error.term("a number"), points, quantity=error.quantity)
 
 
 class Half(Drawn):
@@ -905,7 +908,7 @@ class Half(Drawn):
 PICTURE_RADIANCE = sum_of(
     roundings(5 * 6 / RIM, "of a pixel's point, over the least cosine, times the slope 5"),
     roundings(8),
-    unit="radiance",
+    quantity=Quantity.RADIANCE,
 )
 
 

@@ -155,7 +155,7 @@ def judge(
         place,
         verdict=PASSED if passed and caught else DIFFERS if diagnosis.permitted else FAILED,
         error=right.error,
-        unit=tolerance.unit,
+        quantity=tolerance.quantity,
         tolerance=tolerance.value,
         derivation=tolerance.derivation,
         worst=right.worst,

@@ -29,6 +29,7 @@ from mxeon.conformance.results import (
     Result,
     quoted,
 )
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Batch, Values
 from mxeon.conformance.specs import surface_shaders as surfaces
 from mxeon.conformance.specs.diffuse import DiffuseModelSpec, SurfaceLobe
@@ -51,11 +52,11 @@ from mxeon.conformance.tolerance import (
     Metric,
     Term,
     Tolerance,
-    absolute,
     count_of,
     given,
     roundings,
     scaled,
+    sum_in,
 )
 from mxeon.errors import DocumentError, NotRun, OutsideModel, ShaderError
 from mxeon.hosts import host_row
@@ -84,18 +85,19 @@ HAIR, SHEEN = "chiang_hair_bsdf", "sheen_bsdf"
 COSINES = 256  # of views, among which a sheen's albedo is largest
 
 # Errors are taken times cos(theta_o): the normal changes by its inverse from pixel to pixel.
-UNIT = "pi f cos, times cos(theta_o)"
-RELATIVE = "pi f cos, relative above 1, times cos(theta_o)"
-PLAIN = Tolerance(
-    (roundings(16, "of a pixel's point"), roundings(32, "in the value")), UNIT, absolute, exact=True
+PLAIN = sum_in(
+    Quantity.PICTURE,
+    roundings(16, "of a pixel's point"),
+    roundings(32, "in the value"),
+    exact=True,
 )
 # The least OpenGL asks for; texels differ by 1 at most.
-TEXTURED = given(2.0**-8, UNIT, "a filter's weights of 8 bits")
+TEXTURED = given(2.0**-8, Quantity.PICTURE, "a filter's weights of 8 bits")
 ENCODED = given(
-    SLOPE * TEXTURED.value, UNIT, f"filtered codes of sRGB, times its slope {SLOPE:.3g}"
+    SLOPE * TEXTURED.value, Quantity.PICTURE, f"filtered codes of sRGB, times its slope {SLOPE:.3g}"
 )
 FITTED, SHADED = (
-    Tolerance((each, sum_over(256)), RELATIVE, absolute, exact=True)
+    Tolerance((each, sum_over(256)), Quantity.FITTED_PICTURE, scaled, exact=True)
     for each in (
         MEAN.term("the fits of microfacets"),
         surfaces.ALBEDO.term("all lobes of a surface shader"),
@@ -132,7 +134,10 @@ def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe], host: Host) -> Tole
     others += _others(lobes)
     rounding = host_row(host.name).rounding
     others += [Term(rounding, "the pixels' own rounding")] * bool(rounding)
-    return replace(tolerance.plus(*others), unit=RELATIVE) if others else tolerance
+    if others:
+        added = tolerance.plus(*others)
+        return replace(added, quantity=Quantity.FITTED_PICTURE, metric=scaled)
+    return tolerance
 
 
 def _others(lobes: tuple[ShownLobe, ...]) -> list[Term]:
@@ -337,14 +342,15 @@ def _judge_finite(place: Result, images: Sequence[Pixels], reason: str) -> Resul
         )
 
     place = replace(place, check="finite", claim="Every pixel is finite.")
-    result = judge(place, count_of("pixels"), measure, "one channel is not a number", Diagnosis)
+    result = judge(
+        place, count_of(Quantity.PIXELS), measure, "one channel is not a number", Diagnosis
+    )
     return replace(result, diagnosis=quoted(reason))
 
 
 def _judge_match(place: Result, cases: Sequence[Shown], tolerance: Tolerance) -> Result:
     """Result for a material that the models cover: its pixels have to be the reference's."""
-    metric = scaled if tolerance.unit == RELATIVE else absolute
-    pixels = [_worst_pixel(case, metric) for case in cases]
+    pixels = [_worst_pixel(case, tolerance.metric) for case in cases]
     error, worst, _ = max(pixels, key=lambda entry: entry[0])
     first, image, expected = cases[0]
 
@@ -352,7 +358,7 @@ def _judge_match(place: Result, cases: Sequence[Shown], tolerance: Tolerance) ->
         if not wrong:
             return Measurement(error, worst)
         brighter = image + np.float32(3.0 * tolerance.value) * np.maximum(1.0, image)
-        return Measurement(_worst_pixel((first, brighter, expected), metric)[0], {})
+        return Measurement(_worst_pixel((first, brighter, expected), tolerance.metric)[0], {})
 
     def appearance() -> Diagnosis:
         """The largest difference of the pictures, and the scene that shows it."""
@@ -433,7 +439,7 @@ def generate_document(
     place = Result(DOCUMENT_KEY, DOCUMENT_CLAIM, file.name, host, library, NOT_RUN)
     result = judge(
         place,
-        count_of("documents without a shader"),
+        count_of(Quantity.DOCUMENTS),
         lambda wrong: Measurement(float(caught if wrong else not shaders), {}),
         "half of the document is cut off",
         Diagnosis,

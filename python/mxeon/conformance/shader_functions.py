@@ -17,6 +17,7 @@ import numpy as np
 
 from mxeon.conformance.check import judge, not_measured
 from mxeon.conformance.results import NOT_RUN, SHADER_FUNCTIONS, Cause, Diagnosis, Kind, Result
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import GRAZING, Array, directions, float32, generator
 from mxeon.conformance.spec import TURN
 from mxeon.conformance.specs.diffuse import LOSS_FIT
@@ -37,8 +38,7 @@ from mxeon.shaders import functions
 
 KINDS = ("pairs", "pictures", "rendered")  # of probes whose hosts evaluate functions
 STEP = 2.0**-22  # of the arguments by which a function's condition is measured
-CONDITIONED = "over 1, the value, and its change with each argument"
-PART = sum_in(CONDITIONED, roundings(16))
+PART = sum_in(Quantity.CONDITIONED, roundings(16))
 
 
 class FunctionCheck(NamedTuple):
@@ -62,7 +62,12 @@ FUNCTION_CHECKS = (
         "loss",
         "1 - E keeps its relative accuracy down to a cosine of 1e-6.",
         "fon_loss",
-        sum_of(Term(LOSS_FIT, "the fit of H"), roundings(12), unit="relative", metric=relative),
+        sum_of(
+            Term(LOSS_FIT, "the fit of H"),
+            roundings(12),
+            quantity=Quantity.RELATIVE,
+            metric=relative,
+        ),
     ),
     FunctionCheck(
         "samples",
@@ -76,7 +81,7 @@ FUNCTION_CHECKS = (
         "The sampling densities and the matrix of linearly transformed cosines match NumPy's.",
         r"\w+_pdf|ltc_(density|m[abcd])",
         # An inverse fourth power takes the 8 of an entry of a matrix four times, and 16 beside them.
-        sum_in(CONDITIONED, roundings(48, "four times the 8 of a matrix entry, and 16")),
+        sum_in(Quantity.CONDITIONED, roundings(48, "four times the 8 of a matrix entry, and 16")),
     ),
     FunctionCheck(
         "parts",
@@ -106,7 +111,7 @@ def exact(function: str) -> tuple[Array, Array]:
     """
     columns = random_columns()
     values = _expected(function, columns)
-    if row_of(function).error.unit != CONDITIONED:
+    if row_of(function).error.quantity is not Quantity.CONDITIONED:
         brdf = "_brdf" in function
         return values, np.pi * columns["mu_i"][:, np.newaxis] if brdf else np.ones((1, 1))
     total: Array = np.maximum(1.0, np.abs(values).max(axis=1))

@@ -15,6 +15,7 @@ import numpy as np
 
 from mxeon.conformance.check import judge, not_measured
 from mxeon.conformance.results import NOT_RUN, SOURCE, Cause, Diagnosis, Kind, Result
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import generator
 from mxeon.conformance.specs import PLAIN_LOBES
 from mxeon.conformance.specs.diffuse import DiffuseSpec
@@ -38,22 +39,22 @@ Inputs = Mapping[str, Array]
 CLAIMS = {
     "definition": (
         "The node's inputs and output match its specification.",
-        "differences",
+        Quantity.DIFFERENCES,
         "the default of roughness is 0.3",
     ),
     "languages": (
         "The shader functions are identical in OSL and GLSL, apart from type names.",
-        "functions",
+        Quantity.FUNCTIONS,
         "the first number of the OSL text is different",
     ),
     "source": (
         "The generated source passes every input of the node to the function it calls.",
-        "inputs",
+        Quantity.INPUTS,
         "each input in turn is 0",
     ),
     "closure": (
         "The generated source calls the node's closure, with the right arguments and value.",
-        "faults",
+        Quantity.FAULTS,
         "the weight of the lobe is dropped",
     ),
 }
@@ -93,7 +94,7 @@ def check_texts(subjects: Iterable[DiffuseSpec], library: str) -> tuple[Result, 
 
 def _judged(check: str, subject: str, library: str, faults: Faults, *of: Any) -> Result:
     """Result of the faults of something."""
-    claim, unit, variant = CLAIMS[check]
+    claim, quantity, variant = CLAIMS[check]
     place = Result(check, claim, subject, SOURCE, library, NOT_RUN)
     try:
         found, control = faults(*of)
@@ -105,7 +106,7 @@ def _judged(check: str, subject: str, library: str, faults: Faults, *of: Any) ->
     def measure(wrong: bool) -> Measurement:
         return Measurement(control if wrong else len(found), {})
 
-    return judge(place, count_of(unit), measure, variant, lambda: Diagnosis(tuple(found)))
+    return judge(place, count_of(quantity), measure, variant, lambda: Diagnosis(tuple(found)))
 
 
 # --- definitions ----------------------------------------------------------------------------------

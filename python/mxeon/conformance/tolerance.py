@@ -10,11 +10,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Mask, Values
 
 Metric = Callable[[Array, Array], Array]  # of measured and expected values: error of each row
 
-SCALED = "pi f cos, relative above 1"
 ROUNDING = 2.0**-24  # unit roundoff of float32
 
 
@@ -138,7 +138,7 @@ class Tolerance:
     """The largest error that passes: a sum of terms, rounded up to one digit unless it is `exact`."""
 
     terms: tuple[Term, ...]
-    unit: str = SCALED
+    quantity: Quantity = Quantity.VALUE
     metric: Metric = scaled  # error of each row
     exact: bool = False
 
@@ -173,24 +173,27 @@ class Tolerance:
 
 
 def sum_of(
-    *terms: Term, unit: str = SCALED, metric: Metric = scaled, exact: bool = False
+    *terms: Term,
+    quantity: Quantity = Quantity.VALUE,
+    metric: Metric = scaled,
+    exact: bool = False,
 ) -> Tolerance:
-    return Tolerance(terms, unit, metric, exact)
+    return Tolerance(terms, quantity, metric, exact)
 
 
-def sum_in(unit: str, *terms: Term, exact: bool = False) -> Tolerance:
+def sum_in(quantity: Quantity, *terms: Term, exact: bool = False) -> Tolerance:
     """A tolerance of absolute errors."""
-    return Tolerance(terms, unit, absolute, exact)
+    return Tolerance(terms, quantity, absolute, exact)
 
 
-def given(value: float, unit: str, words: str, metric: Metric = absolute) -> Tolerance:
+def given(value: float, quantity: Quantity, words: str, metric: Metric = absolute) -> Tolerance:
     """A tolerance of one term, taken as it is."""
-    return Tolerance((Term(value, words),), unit, metric, exact=True)
+    return Tolerance((Term(value, words),), quantity, metric, exact=True)
 
 
-def count_of(unit: str) -> Tolerance:
+def count_of(quantity: Quantity) -> Tolerance:
     """The tolerance of a count, which must be 0."""
-    return given(0.0, unit, "a count")
+    return given(0.0, quantity, "a count")
 
 
 def largest(*tolerances: Tolerance) -> Tolerance:

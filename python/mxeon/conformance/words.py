@@ -6,7 +6,6 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 
 from mxeon.conformance.results import (
-    COUNTS,
     DIFFERS,
     FAILED,
     NOT_RUN,
@@ -19,6 +18,7 @@ from mxeon.conformance.results import (
     Result,
     Run,
 )
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.shaders.nodes import FLAG
 
 NAMED = 3  # names in a list, before the number of the others
@@ -448,9 +448,9 @@ def excess(result: Result) -> str:
     """The error that is too large, or the control that passed; "" for neither."""
     control = result.control
     if result.error is not None and not result.within:
-        if result.unit in COUNTS and math.isfinite(result.error):
+        if result.quantity and result.quantity.counted and math.isfinite(result.error):
             return counted(int(result.error), result.unit.removesuffix("s"))
-        if result.unit.startswith("times "):
+        if result.quantity is Quantity.KIT:
             return f"the error is {in_words(result.error)} {result.unit}"
         return f"{result.error:.3g} > {result.tolerance:.3g} {result.unit}".rstrip()
     if control and not control.caught:

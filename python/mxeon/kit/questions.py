@@ -26,6 +26,7 @@ from mxeon.conformance.results import (
     Kind,
     Result,
 )
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.errors import assert_known
 from mxeon.kit.encoding import fault
 from mxeon.kit.expected import Expected, expected, judged, pixel_means
@@ -86,7 +87,6 @@ def nearest(ranking: Sequence[ModelDistance]) -> Diagnosis:
     return Diagnosis(tuple(causes), {each.title: each.distance for each in ranking})
 
 
-UNIT = "times what noise, pixels and the mesh allow"
 DERIVATION = (
     "Student's t of each tile's mean error over its noise, Bonferroni over all tiles, channels and "
     f"questions: a kit of correct pictures fails with probability {1.0 - CONFIDENCE:.1g}; added are "
@@ -224,7 +224,7 @@ def answer(
         **place,
         verdict=PASSED if error <= 1.0 < wrong else FAILED,
         error=error,
-        unit=UNIT,
+        quantity=Quantity.KIT,
         tolerance=1.0,
         derivation=DERIVATION,
         worst={"noise of a pixel, rms": [noise]},

@@ -30,7 +30,7 @@ from mxeon.report.junit import to_junit
 
 PAGES = "upstream"  # folder beside the report with the pages on defects
 
-JSON_FORMAT = 2
+JSON_FORMAT = 3
 SCHEMA = f"urn:mxeon:results:{JSON_FORMAT}"  # identifies `mxeon.report.schema.schema()`
 
 NOT_PLAIN = re.compile("[^A-Za-z0-9]+")
@@ -59,7 +59,7 @@ def to_json(run: Run) -> str:
       under "nodes without a model" the lobes that it adds.
     - hosts: objects of name, version, device.
     - results: objects with the fields of `mxeon.conformance.results.Result`; control is null or an
-      object of variant, error, caught; diagnosis has causes, in the order of what they explain, and
+      object of variant, error, caught; quantity is null where nothing was measured; diagnosis has causes, in the order of what they explain, and
       distances to the known models. Scripts should compare kinds, keys and regions, not sentences.
     - elsewhere: objects of document, check, subject, host, library: failures for inputs that the
       document does not have.

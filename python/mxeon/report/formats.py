@@ -23,16 +23,6 @@ LOOKS = {
     FAILED: ("failed", "✗"),
     NOT_RUN: ("not-run", "–"),
 }
-# Part of a unit -> what a reader has to know of it.
-UNITS = {
-    "pi f cos": "1 is a white, matte surface that faces the light",
-    "relative above 1": "errors of values above 1 are divided by the value",
-    "times cos(theta_o)": "weighted by the cosine of the viewing angle, so the rim counts less",
-    "albedo": "an albedo of 1 returns all light",
-    "irradiance": "1 is a white environment",
-    "throughput": "a throughput of 1 passes all light",
-    "light": "1 is all of the light",
-}
 
 
 def share(result: Result) -> float:
@@ -55,11 +45,6 @@ def of_white(value: float) -> str:
     if not math.isfinite(value):
         return "not finite"
     return f"{words.in_words(max(100.0 * value, 0.001))}\N{NO-BREAK SPACE}% of white"
-
-
-def unit_meaning(unit: str) -> str:
-    """What a unit's parts mean, for the caption of a table; "" for plain counts."""
-    return "; ".join(meaning for part, meaning in UNITS.items() if part in unit)
 
 
 def nearest(distances: Mapping[str, float], count: int = 5) -> list[tuple[str, float, float]]:

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from mxeon.conformance import words
 from mxeon.conformance.results import (
-    COUNTS,
     DIFFERS,
     DIRECT,
     FAILED,
@@ -27,10 +26,11 @@ from mxeon.conformance.results import (
     Run,
     Verdict,
 )
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.io.images import difference_scale
 from mxeon.io.srgb import srgb_encoded
 from mxeon.report import in_threads
-from mxeon.report.formats import linked, nearest, of_white, unit_meaning, vector
+from mxeon.report.formats import linked, nearest, of_white, vector
 from mxeon.report.plots import (
     albedo_plot,
     difference_gradient,
@@ -66,11 +66,11 @@ class CheckResults:
         return worst(self.results)
 
     @property
-    def tables(self) -> dict[str, list[Result]]:
-        """Results by unit, the worst first."""
-        tables: dict[str, list[Result]] = {}
+    def tables(self) -> dict[Quantity | None, list[Result]]:
+        """Results by quantity, the worst first."""
+        tables: dict[Quantity | None, list[Result]] = {}
         for each in sorted(self.results, key=lambda each: WORST_FIRST.index(each.verdict)):
-            tables.setdefault(each.unit, []).append(each)
+            tables.setdefault(each.quantity, []).append(each)
         return tables
 
 
@@ -274,7 +274,7 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, 
         f"{words.counted(nodes, 'node')} rendered without a document, as pictures only"
     ] * bool(nodes)
     filters: dict[str, Callable[..., Any]] = {"vector": vector, "linked": linked, "tally": tally}
-    filters |= {"nearest": nearest, "of_white": of_white, "meaning": unit_meaning}
+    filters |= {"nearest": nearest, "of_white": of_white}
     filters |= {"title": title_of, "worst": worst}
     with in_threads(partial(material, verdicts), shown) as drawn:
         yield from generate_page(
@@ -306,7 +306,6 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, 
             ],
             counted=words.counted,
             sentences=words,
-            COUNTS=COUNTS,
             gradient=Markup(difference_gradient()),
             plots=plots(run.curves),
             FAILED=FAILED,

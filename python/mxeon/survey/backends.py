@@ -26,6 +26,7 @@ from mxeon.conformance.backends import (
     scene_of,
 )
 from mxeon.conformance.results import Claims
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import (
     Array,
     Batch,
@@ -56,7 +57,7 @@ EXACT_INPUTS: tuple[Values, ...] = (  # from dark to white and from rough to smo
 )
 # EEVEE keeps light in 32 bits for three channels; blue has the fewest.
 COARSE_FACETS = sum_in(
-    "pi f cos or albedo",
+    Quantity.VALUE_OR_ALBEDO,
     Term(2.0**-6, "five bits below the leading one, cut off"),
     Term(2.4e-3, "packed normals, measured"),
 )
@@ -65,11 +66,11 @@ FACET_NOISE = sum_of(
         4.0 * 0.0716 / math.sqrt(FACET_PIXELS),
         "four standard errors of the mean of 7169 pixels of 64 paths, each off by 0.0716 rms",
     ),
-    unit="mean albedo",
+    quantity=Quantity.MEAN_ALBEDO,
     metric=mean_error,
 )
 # Burley's two factors have a product of at most 25/4; the coats and facets that are judged have less.
-FACET_PAIRS = sum_in("pi f cos", roundings(16 * 2.5**2, "of numbers up to 25/4"))
+FACET_PAIRS = sum_in(Quantity.DIFFERENCE, roundings(16 * 2.5**2, "of numbers up to 25/4"))
 
 
 class Renderer(Protocol):

@@ -10,6 +10,7 @@ from mxeon.conformance.case import Case
 from mxeon.conformance.check import check, with_inputs
 from mxeon.conformance.checks.paths import deviation
 from mxeon.conformance.diagnosis import defect
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, generator
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.tolerance import Compared, Measurement, given, roundings, sum_of
@@ -18,10 +19,10 @@ from mxeon.survey.backends import Renderer
 from mxeon.survey.specs import RendererSpec
 
 # A right sampler exceeds them once in 3.5 million times.
-CHI_SQUARE = given(5.0, "standard deviations", "five standard deviations")
+CHI_SQUARE = given(5.0, Quantity.DEVIATIONS, "five standard deviations")
 # The differences in the transformed direction, whose fourth power the density has, lose up to three bits.
 OWN_DENSITY = sum_of(
-    roundings(48 * 2.0**3, "of a density, three bits of it lost"), unit="1/sr, relative above 1"
+    roundings(48 * 2.0**3, "of a density, three bits of it lost"), quantity=Quantity.DENSITY
 )
 COSINES = (0.05, 0.3, 0.7, 0.99)  # of the viewer
 SAMPLES = 1 << 15

@@ -152,7 +152,7 @@ def _entries(report: Report, folder: Path) -> Iterator[Entry]:
                 verdict: Verdict = PASSED if error <= allowed else FAILED
                 claim_of_back = PORTRAIT, "Light from behind, at the points of a sphere."
                 about = *claim_of_back, direct.subject, direct.host, direct.library
-                cells[BACK] = Result(*about, verdict, error, direct.unit, allowed)
+                cells[BACK] = Result(*about, verdict, error, direct.quantity, allowed)
             pages = tuple(dict.fromkeys(page for each in results.values() for page in each.pages))
             hosts = {each.name: (each.version, each.device) for each in report.hosts}
             names = (*place, *hosts.get(direct.host, ("", "")), claimed, direct.model)

@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from mxeon.conformance.results import Result, known_issues
+from mxeon.conformance.results.quantities import Quantity
 from tools.site import DOCS, ROOT
 
 FOLDER, PATCHES = DOCS / "upstream", ROOT / "patches"
@@ -145,7 +146,7 @@ def _shortest_change(patch: str) -> tuple[str, str, str]:
 
 def figure(result: Result) -> str:
     """The error of a result in print."""
-    return f"{result.error:.0f}" if result.unit == "values" else f"{result.error:.2g}"
+    return f"{result.error:.0f}" if result.quantity is Quantity.VALUES else f"{result.error:.2g}"
 
 
 def pairs(subjects: Subjects) -> list[tuple[str, str]]:

@@ -54,7 +54,7 @@ def record(issue: Issue, results: Sequence[Result], place: str) -> dict[str, Any
             each.subject,
             figure(each),
             f"{each.tolerance:.2g}",
-            each.unit,
+            each.quantity and each.quantity.value,
         ]
         for each in shown
     ]

@@ -8,7 +8,7 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from mxeon.conformance.results import COUNTS
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.words import counted
 from mxeon.io.files import write_text
 from tools.site.ledger import (
@@ -180,10 +180,11 @@ def table(project: str, known: dict[str, Entry], found: dict[str, Any]) -> list[
         measures = found.get(page, {}).get("rows", [])
         chosen = [row for row in measures if any(row[1] in e.get(row[0], []) for e in repaired)]
         figures = [
-            counted(int(figure), unit.removesuffix("s"))
-            if unit in COUNTS
-            else f"{figure} {unit}, tolerance {tolerance}"
-            for _, _, figure, tolerance, unit in (*chosen, *measures)
+            counted(int(figure), quantity.unit.removesuffix("s"))
+            if quantity.counted
+            else f"{figure} {quantity.unit}, tolerance {tolerance}"
+            for _, _, figure, tolerance, key in (*chosen, *measures)
+            for quantity in [Quantity(key)]
         ]
         needs = ", ".join(sorted(files[each].name[:4] for each in entry.needs if each in files))
         rows.append(

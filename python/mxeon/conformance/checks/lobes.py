@@ -38,6 +38,7 @@ from mxeon.conformance.diagnosis import (
 )
 from mxeon.conformance.diagnosis.faults import DIRECT_FAULTS
 from mxeon.conformance.results import Cause, Diagnosis, Kind
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import (
     LEAST_COLOR82,
     SKY_ROWS,
@@ -85,13 +86,13 @@ LEAST_LIGHT = 0.01  # of a uniform environment, where the place of an uneven one
 TEXEL = math.sqrt(2.0) * math.pi / SKY_ROWS * 2.0**-8
 ARC_SINE = 4e-4  # largest error of an engine's arc sine: llvmpipe's, ten times that of others
 SURROUNDINGS = sum_in(
-    "irradiance",
+    Quantity.IRRADIANCE,
     Term(SLOPE * TEXEL, "2^-8 of a texel, times the slope of the map, 1/2"),
     Term(SLOPE * ARC_SINE, "an engine's arc sine, times the slope"),
     Term(2.0**-11, "half floats"),
 )
-ZERO = given(0.0, "pi f cos", "a product with 0 is 0 in any precision")
-OPAQUE = sum_in("throughput", roundings(1, "of 1 - weight"))
+ZERO = given(0.0, Quantity.DIFFERENCE, "a product with 0 is 0 in any precision")
+OPAQUE = sum_in(Quantity.THROUGHPUT, roundings(1, "of 1 - weight"))
 
 
 ROUGH = ("eon", "eon_fitted", "qon", "fon")
@@ -360,7 +361,7 @@ def lambert(case: Case) -> Iterator[Compared]:
         or isinstance(spec, (CombinedSpec, EmissionSpec, MediumSpec, UtilitySpec))
     ),
     drop_changes,
-    tolerance=count_of("inputs"),
+    tolerance=count_of(Quantity.INPUTS),
     diagnose=diagnosis.diagnose_inputs,
 )
 def inputs(case: Case) -> Measurement:
@@ -371,7 +372,7 @@ def inputs(case: Case) -> Measurement:
 @check(
     lambda spec: is_lobe(spec) or is_model(spec, *MODES) or isinstance(spec, FilmSpec),
     scale_cosine("the value is divided by cos(theta_o)", -1),
-    tolerance=count_of("values"),
+    tolerance=count_of(Quantity.VALUES),
     pairs=True,
     hosts=shows_exactly,
     diagnose=diagnosis.diagnose_finite,
@@ -562,7 +563,7 @@ for _key, _row in REGIONS.items():
 
 PAIRS = 16  # of each value
 LEAST_WEIGHT = 0.3  # of weights and occlusions, so that each pair shows it
-TOLERANCES = given(1.0, "tolerances", "the tolerance of each quantity")
+TOLERANCES = given(1.0, Quantity.TOLERANCES, "the tolerance of each quantity")
 
 
 def quantities(case: Case, batch: Batch, right: Batch) -> Iterator[tuple[str, Compared]]:

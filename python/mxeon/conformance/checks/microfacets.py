@@ -33,6 +33,7 @@ from mxeon.conformance.diagnosis import (
     not_finite,
 )
 from mxeon.conformance.results import Cause, Diagnosis, Kind
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import (
     LEAST_COLOR82,
     Array,
@@ -494,7 +495,7 @@ def _edges(case: Case) -> Compared:
 @check(
     is_transmitting,
     no_number,
-    tolerance=count_of("values"),
+    tolerance=count_of(Quantity.VALUES),
     diagnose=lambda case: Diagnosis(not_finite([_edges(case)])),
 )
 def transmitted_finite(case: Case) -> Measurement:
@@ -505,7 +506,7 @@ def transmitted_finite(case: Case) -> Measurement:
 @check(
     is_transmitting,
     drop_changes,
-    tolerance=count_of("inputs"),
+    tolerance=count_of(Quantity.INPUTS),
     lit=True,
     diagnose=lambda case: defect("wrong_effect", *wrong_inputs(case)),
 )

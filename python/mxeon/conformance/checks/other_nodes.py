@@ -20,6 +20,7 @@ from mxeon.conformance.check import (
 from mxeon.conformance.diagnosis import BACK, OUTPUT, TRANSMITTANCE, VALUE, defect
 from mxeon.conformance.diagnosis.regions import EXACT, correct_except, span, unbounded
 from mxeon.conformance.results import Diagnosis, Kind
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.specs.emission import (
     OPACITY,
     UNIMPLEMENTED,
@@ -42,7 +43,7 @@ unimplemented = Control(
 @check(
     of_family(EmissionSpec, MediumSpec, AbsentSpec),
     unimplemented,
-    tolerance=count_of("nodes"),
+    tolerance=count_of(Quantity.NODES),
     diagnose=lambda case: defect("not_implemented", case.host.target, case.spec.title),
 )
 def implemented(case: Case) -> Measurement:
@@ -111,7 +112,7 @@ def explained_finite(case: Case) -> Diagnosis:
 @check(
     lambda spec: is_utility(spec) and not spec.libraries,
     no_number,
-    tolerance=count_of("values"),
+    tolerance=count_of(Quantity.VALUES),
     pairs=True,
     diagnose=explained_finite,
 )

@@ -18,6 +18,7 @@ from mxeon.conformance.case import Case
 from mxeon.conformance.check import check, scale, with_values
 from mxeon.conformance.diagnosis import defect
 from mxeon.conformance.results import Cause, Diagnosis, Kind
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Values, float32, generator
 from mxeon.conformance.spec import LobeSpec, Spec, materials
 from mxeon.conformance.specs.diffuse import SurfaceLobe
@@ -223,7 +224,7 @@ def scores(case: Case) -> Iterator[tuple[float, bool, Array]]:
         lambda batch, values: 0.9 * values + 0.1 / (4.0 * np.pi),
     ),
     tolerance=given(
-        6.0, "standard deviations", "chance reaches 6 once in 10^7 draws of a chi-square"
+        6.0, Quantity.DEVIATIONS, "chance reaches 6 once in 10^7 draws of a chi-square"
     ),
     pairs=True,
     profile="path",
@@ -269,7 +270,7 @@ def halves(case: Case) -> Iterator[tuple[bool, Compared, Compared]]:
 
 SAMPLE = sum_of(
     roundings(16, "of a weight and a density, times 1 + the inverse of the lobe's own alpha"),
-    unit="of the value, over the slope of the lobe",
+    quantity=Quantity.DRAWN,
 )
 
 

@@ -13,6 +13,7 @@ from mxeon.conformance.check import check, control, of_family, scale, shifted
 from mxeon.conformance.checks.lobes import finds_albedo
 from mxeon.conformance.diagnosis import ALBEDO, defect
 from mxeon.conformance.results import Cause, Diagnosis, Kind
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.specs.surface_shaders import STRETCHED_FIT, SurfaceShaderSpec, stretched
 from mxeon.conformance.specs.surface_shaders import VALUE as VALUE_ERROR
 from mxeon.conformance.tolerance import (
@@ -165,7 +166,7 @@ def diagnose_graph(case: Case) -> Diagnosis:
 @check(
     is_shader,
     shifted,
-    tolerance=sum_of(roundings(16, "of the numbers in a graph"), unit="numbers for lobes, 0 to 1"),
+    tolerance=sum_of(roundings(16, "of the numbers in a graph"), quantity=Quantity.LOBE_INPUTS),
     open=True,
     diagnose=diagnose_graph,
 )
@@ -238,7 +239,7 @@ def diagnose_reach(case: Case) -> Diagnosis:
     return Diagnosis(tuple(causes))
 
 
-@check(is_shader, ignore_changes, tolerance=count_of("inputs"), diagnose=diagnose_reach)
+@check(is_shader, ignore_changes, tolerance=count_of(Quantity.INPUTS), diagnose=diagnose_reach)
 def reach(case: Case) -> Measurement:
     """Every input changes a value, except those that are known to change nothing."""
     return count_named(misplaced(case))

@@ -149,7 +149,7 @@ def _distance(
         except ValueError:  # inputs that are exchanged may lie outside each other's domain
             return float("inf")
         kept = case.batch.rough <= 1.0
-        if "albedo" not in tolerance.unit:
+        if not tolerance.quantity.of_views:
             kept &= np.abs(case.batch.wi[:, 2]) > LEAST_LIGHT
         error = ((case.measured - values) / tolerance.scale(case.expected))[kept]
         errors.append(
@@ -212,7 +212,7 @@ def _model(
     point = point_of(batch, row)
     if isinstance(case.spec, PLACELESS):
         point = {port.name: point[port.name] for port in case.spec.inputs if port.name in point}
-    elif "albedo" in tolerance.unit or isinstance(case.spec, EmissionSpec):
+    elif tolerance.quantity.of_views or isinstance(case.spec, EmissionSpec):
         point = {"wo": point["wo"]}
     else:
         point = {name: point[name] for name in ("wo", "wi")}

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mxeon.conformance.results import Cause, Kind, Region
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Mask
 from mxeon.conformance.tolerance import Compared, Tolerance, count_of, relative
 
@@ -24,7 +25,7 @@ ABOUT = {
 FRAME = ("normal", "tangent", "curve_direction", "position")  # inputs whose ranges say nothing
 USUAL = {"weight": 1.0, "occlusion": 1.0}  # where a batch has none
 CHANNELS = "red", "green", "blue"
-EXACT = count_of("values")
+EXACT = count_of(Quantity.VALUES)
 # Largest share of the right values in a range of an input that has all wrong ones, and in one of an input that is
 # known to be the cause.
 RIGHT, WEAK = 0.4, 0.7

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon import errors
+from mxeon.conformance.results.quantities import Quantity as Quantity
 from mxeon.errors import CheckError, InputError
 from mxeon.hosts.base import Identity
 from mxeon.io.files import AnyPath
@@ -36,7 +37,6 @@ PORTRAIT = "portrait"
 UNJUDGED = "nodes without a model"  # beside the files of a library
 SOURCE = "source"  # in the place of a host, for what none has to run
 SHADER_FUNCTIONS = "shader twins"  # in the place of a node, for the functions of a library
-COUNTS = ("inputs", "values", "faults", "differences", "nodes")  # units of checks that count
 RESULTS, JUNIT, PAGE = "results.json", "junit.xml", "report.html"
 REPORT = (RESULTS, JUNIT, PAGE, "pictures/*", "upstream/*")  # patterns of the files of a report
 DIRECT = ("value", "lobe")  # the checks of a node in direct light, of which it has one
@@ -196,7 +196,8 @@ class Result(BriefRepr):
     - `check`, `claim`: Key of the check and the sentence that it tests.
     - `subject`: A node and its flag, or a document and its element.
     - `verdict`: PASSED, FAILED or NOT_RUN; DIFFERS where the specification leaves the error open.
-    - `error`, `tolerance`, `unit`: Measured and allowed; a check passes at error <= tolerance.
+    - `error`, `tolerance`: Measured and allowed; a check passes at error <= tolerance.
+    - `quantity`: What was measured, with its unit; None where nothing was.
     - `derivation`: That of the tolerance.
     - `worst`: The inputs and values at the worst point, by name.
     - `diagnosis`: What explains a failure.
@@ -219,7 +220,7 @@ class Result(BriefRepr):
     library: str
     verdict: Verdict
     error: float | None = None
-    unit: str = ""
+    quantity: Quantity | None = None
     tolerance: float | None = None
     derivation: str = field(default="", repr=False)
     worst: dict[str, list[float]] = field(default_factory=dict, repr=False)
@@ -242,6 +243,11 @@ class Result(BriefRepr):
             raise InputError(
                 f"error and tolerance must be at least 0; got {self.error} and {self.tolerance}"
             )
+
+    @property
+    def unit(self) -> str:
+        """The unit of the error."""
+        return self.quantity.unit if self.quantity else ""
 
     @property
     def location(self) -> str:

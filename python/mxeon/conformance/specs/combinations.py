@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import (
     LEAST_SHEEN,
     Batch,
@@ -43,7 +44,7 @@ VALUE = sum_of(
 )
 # Of a sum in a mix over a base too: the slopes of its albedo by the two are at most 1 and 2.
 ALBEDO = sum_of(
-    CLOSED_ALBEDO.term("two albedos, and a throughput between them", 3.0), unit="albedo"
+    CLOSED_ALBEDO.term("two albedos, and a throughput between them", 3.0), quantity=Quantity.ALBEDO
 )
 NESTED_VALUE = sum_of(
     VALUE.term("two values and a throughput"),

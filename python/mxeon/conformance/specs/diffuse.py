@@ -8,6 +8,7 @@ from itertools import product
 
 import numpy as np
 
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import TURNED, Array, Batch, Counts, Values, directions_at
 from mxeon.conformance.spec import CHANGED_COLOR, Input, color
 from mxeon.conformance.specs.lobes import ScatteringSpec
@@ -19,36 +20,35 @@ from mxeon.models.table import Model
 from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, document_text, input_text, node_text
 
 EDGES = (0.0, 1e-6, 1e-3, 1.0)  # of a color channel, and of the roughness in units of the largest
-UNIT = "pi f cos"
 COUNTS = Counts(nodes=16)  # which reach 2e-8, the rounding of directions
 LOSS_FIT = 2.7e-7  # relative error of the fit of FON's loss H: tools/fits
 
 VALUE = sum_in(
-    UNIT,
+    Quantity.DIFFERENCE,
     roundings(28, "(14, of numbers up to 2)"),
     Term(LOSS_FIT, "two fits of H, times a multiple-scattering part of at most 1/2"),
 )
 # 12 in the longest chain, two in the cosine, and two for the fit of H, which enters times 0.29.
 ENVIRONMENT = sum_in(
-    "albedo", roundings(16 * 1.02, "of numbers up to 1.02, the fit of H among them")
+    Quantity.ALBEDO, roundings(16 * 1.02, "of numbers up to 1.02, the fit of H among them")
 )
 # In each of two cosines of at least 1/4 five, times 4 by s / t, 3 by a sine, and 2 by s and the cosine.
 FRAME = sum_in(
-    "pi f cos or albedo",
+    Quantity.VALUE_OR_ALBEDO,
     roundings(2 * 28, "of two values"),
     roundings(2 * 5 * (1.0 / TURNED[0] + 5.0), "(five in each of two cosines, times 9)"),
 )
-LAMBERT = sum_in(UNIT, roundings(8))
+LAMBERT = sum_in(Quantity.DIFFERENCE, roundings(8))
 ERRORS = {
     "value": VALUE,
     "albedo": ENVIRONMENT,
     "frame": FRAME,
-    "integral": sum_in("albedo", VALUE.term("an average of values"), exact=True),
-    "reciprocity": sum_in("pi f cos cos", *VALUE.terms),
+    "integral": sum_in(Quantity.ALBEDO, VALUE.term("an average of values"), exact=True),
+    "reciprocity": sum_in(Quantity.RECIPROCITY, *VALUE.terms),
     "lambert": LAMBERT,
 }
 LOBE_VALUE = sum_in(
-    UNIT,
+    Quantity.DIFFERENCE,
     roundings(32, "in the lobe"),
     roundings(4 * 48, "in sums that other lobes make 48 times as large"),
     exact=True,

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import (
     GRID,
     Array,
@@ -133,7 +134,6 @@ FACTORS = {
     (MEDIUM_FACTOR, "color3"): replace(color(MEDIUM_FACTOR, edges=()), high=3.0),
 }
 
-UNIT = "radiance"
 # Cosine from a hard edge within which the engine's own cosine decides; of narrow cones, half of 1 - cos.
 EDGE = 1e-3
 SMALL = Scene("dark", size=8)
@@ -145,16 +145,16 @@ ERRORS = {
     # Ten roundings of 1 - cos of both angles, of which a view takes 1 - mu in all, and two of differences.
     "conical": sum_of(
         roundings(2 * 12, "relative to 1 and the slope, of colors up to 2"),
-        unit="radiance and its slope",
+        quantity=Quantity.RADIANCE_SLOPE,
     ),
     "schlick_emission": sum_of(
         roundings(2 * 8),
         roundings(2 * EXPONENTS[1], "of a color of 2 to the power of 20"),
-        unit=UNIT,
+        quantity=Quantity.RADIANCE,
     ),
 }
-UNIFORM = sum_of(roundings(6, "three of each emission and its factor"), unit=UNIT)
-OPACITY = sum_of(roundings(3), unit=UNIT)
+UNIFORM = sum_of(roundings(6, "three of each emission and its factor"), quantity=Quantity.RADIANCE)
+OPACITY = sum_of(roundings(3), quantity=Quantity.RADIANCE)
 
 
 def _powers() -> tuple[Array, Array]:
@@ -346,7 +346,7 @@ EMISSION_SPECS = tuple(map(_spec, (*EMISSIONS, *COMBINED_EMISSIONS)))
 # --- media: the VDF nodes, below a surface that lets light through --------------------------------
 
 # Of the exponential of a rounded sum, of a product and of the quotient of two such values.
-TRANSMITTANCE = sum_of(roundings(12), unit="transmittance")
+TRANSMITTANCE = sum_of(roundings(12), quantity=Quantity.TRANSMITTANCE)
 INTERFACE = lobe_text(
     "dielectric_bsdf",
     {"weight": 1.0, "scatter_mode": "T"},

@@ -7,6 +7,7 @@ from functools import partial
 
 import numpy as np
 
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import (
     LEAST_TURNED,
     Array,
@@ -56,7 +57,6 @@ INPUTS = (
     Input("curve_direction", "vector3", change=(0.6, 0.8, 0.0), variable="tangent"),
 )
 
-UNIT = "pi f, relative above 1"
 REACH = math.sqrt(
     2.0 * math.log(1e5)
 )  # times sqrt(v): from the largest pi f, 1e5, a lobe falls to 1
@@ -75,19 +75,21 @@ def lobe_terms(variance: float, scale: float, angle: float = ANGLE) -> tuple[Ter
     return roundings(slope * angle, f"({words})"), roundings(CHAIN)
 
 
-VALUE = sum_of(*lobe_terms(LEAST_VARIANCE, LEAST_SCALE), unit=UNIT)
+VALUE = sum_of(*lobe_terms(LEAST_VARIANCE, LEAST_SCALE), quantity=Quantity.FULL_SPHERE)
 # Two values, in which five roundings of each product of turned vectors come to those of an angle.
-FRAME = sum_of(*lobe_terms(LEAST_TURNED**2, LEAST_TURNED, 2 * (ANGLE + 5)), unit=UNIT)
+FRAME = sum_of(
+    *lobe_terms(LEAST_TURNED**2, LEAST_TURNED, 2 * (ANGLE + 5)), quantity=Quantity.FULL_SPHERE
+)
 # Mean slopes of the logarithms of a Gaussian and of a logistic function.
 MEAN_SLOPE = math.sqrt(2.0 / (math.pi * WIDE_VARIANCE)) + 0.5 / (SCALE * WIDE_SCALE)
 MEAN = sum_of(
     roundings(MEAN_SLOPE * ANGLE, "(12 of an angle, times the mean slope of the logarithm)"),
     roundings(CHAIN),
-    unit=UNIT,
+    quantity=Quantity.FULL_SPHERE,
 )
-ALBEDO = sum_in("albedo", roundings(CHAIN, "of numbers up to 1"))
+ALBEDO = sum_in(Quantity.ALBEDO, roundings(CHAIN, "of numbers up to 1"))
 REGION = sum_in(
-    "pi f and its slopes",
+    Quantity.SLOPES,
     Term(5e-7, "the fit of I_0"),  # [AbramowitzStegun1964], 9.8.1 and 9.8.2
     roundings(12 + 4, "of factors and exponents, and of each angle"),
 )

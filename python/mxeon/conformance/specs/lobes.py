@@ -9,6 +9,7 @@ from typing import Any, Self
 
 import numpy as np
 
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import (
     LEAST_SHEEN,
     TURNED,
@@ -42,7 +43,7 @@ NORMAL = Input("normal", "vector3", change=(0.0, 0.6, 0.8))
 
 CLOSED_ALBEDO = sum_of(
     roundings(32, "of the albedo or 1: 20 in an exponent, times 0.6, and 20 beside it"),
-    unit="albedo",
+    quantity=Quantity.ALBEDO,
 )
 # Five roundings in each of three cosines, over the least of them.
 FLAT_FRAME = sum_of(roundings(15 / TURNED[0], "of three cosines of at least 1/4, five in each"))
@@ -53,7 +54,7 @@ def lobe_errors(
 ) -> dict[str, Tolerance]:
     """Errors of a lobe whose integrals are off by the quadrature on the equations."""
     integral = sum_in(
-        "albedo",
+        Quantity.ALBEDO,
         value.term("an average of values"),
         Term(quadrature, "the quadrature on the equations"),
     )
@@ -62,7 +63,7 @@ def lobe_errors(
         **dict.fromkeys(("albedo", "throughput"), albedo),
         "frame": frame,
         "integral": integral,
-        "light": sum_in("light", integral.term("an albedo"), albedo.term("a throughput")),
+        "light": sum_in(Quantity.LIGHT, integral.term("an albedo"), albedo.term("a throughput")),
     }
 
 

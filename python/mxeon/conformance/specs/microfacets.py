@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import (
     GRAZING,
     LEAST_COLOR82,
@@ -203,16 +204,20 @@ def compensated(average: float, words: str) -> Tolerance:
 VALUE = compensated(METAL_FIT, "the fit of F_ss")
 ANISOTROPIC_VALUE = VALUE.plus(ANISOTROPIC)
 MEAN = sum_in(
-    "albedo",
+    Quantity.ALBEDO,
     ESS,
     Term(METAL_FIT * (1.0 - LEAST_ESS) / LEAST_ESS, "the fit of F_ss, times (1 - E_ss) / E_ss"),
 )
 # Of lobes that lose little, a sum of directions; of others the fits too, and a sum for alpha from 0.3 on.
 ENVIRONMENT = largest(
-    sum_in("albedo", sum_over(1024)),
-    sum_in("albedo", *COMPENSATION, Term(5e-4, "a sum over 1024 directions for alpha from 0.3 on")),
+    sum_in(Quantity.ALBEDO, sum_over(1024)),
+    sum_in(
+        Quantity.ALBEDO,
+        *COMPENSATION,
+        Term(5e-4, "a sum over 1024 directions for alpha from 0.3 on"),
+    ),
 )
-THROUGHPUT = sum_in("albedo", ESS, LOBE)
+THROUGHPUT = sum_in(Quantity.ALBEDO, ESS, LOBE)
 SCHLICK_THROUGHPUT = THROUGHPUT.plus(HALF_DIP)
 # Twice the largest slope of the distribution, q^-4 of q^2 = h_z^2 + (h_x / a_x)^2 + (h_y / a_y)^2.
 FRAME = sum_of(
@@ -241,11 +246,13 @@ BEYOND: tuple[tuple[str, str, float, float, str], ...] = (
     ("albedo", "ior", 0.2, 7e-3, "a sum over 1024 directions, across a critical angle"),
 )
 ERRORS = {
-    "picture albedo": sum_in("albedo", *COMPENSATION, sum_over(256)),
-    "anisotropic_albedo": sum_of(*COMPENSATION, ANISOTROPIC, sum_over(1024), unit="albedo"),
+    "picture albedo": sum_in(Quantity.ALBEDO, *COMPENSATION, sum_over(256)),
+    "anisotropic_albedo": sum_of(
+        *COMPENSATION, ANISOTROPIC, sum_over(1024), quantity=Quantity.ALBEDO
+    ),
     "anisotropic_value": ANISOTROPIC_VALUE,
     # The half vector of exact directions has no other errors.
-    "shape": sum_in("relative", roundings(2 * 64, "of two values")),
+    "shape": sum_in(Quantity.RELATIVE, roundings(2 * 64, "of two values")),
     # One function of the same numbers but for signs.
     "retroreflection": BURLEY_VALUE,
     "anisotropy": sum_of(
@@ -257,11 +264,11 @@ ERRORS = {
     **{
         f"{quantity} with {name} {value:g}": compensated(error, words)
         if quantity == "value"
-        else given(error, "albedo", words)
+        else given(error, Quantity.ALBEDO, words)
         for quantity, name, value, error, words in BEYOND
     },
-    "dip": sum_in("albedo", HALF_DIP),
-    "denser": sum_in("albedo", INSIDE, ESS),
+    "dip": sum_in(Quantity.ALBEDO, HALF_DIP),
+    "denser": sum_in(Quantity.ALBEDO, INSIDE, ESS),
 }
 QUADRATURE = 6e-4  # on the equations
 
@@ -269,11 +276,11 @@ QUADRATURE = 6e-4  # on the equations
 def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
     # The fit of E_ss takes from a throughput what it adds to values.
     light = sum_in(
-        "light", *throughput.terms[1:], Term(QUADRATURE, "the quadrature on the equations")
+        Quantity.LIGHT, *throughput.terms[1:], Term(QUADRATURE, "the quadrature on the equations")
     )
     own = lobe_errors(MEAN, ENVIRONMENT, FRAME, QUADRATURE)
     seen = sum_in(
-        "irradiance",
+        Quantity.IRRADIANCE,
         Term(
             2.0 * QUADRATURE,
             "the quadrature on the equations, of a value and of its share of the sky",
@@ -478,12 +485,12 @@ def transmission_errors(passed: Tolerance) -> dict[str, Tolerance]:
         "methods": passed.plus(Term(LEAST_FIT, "MaterialX's fit of prefiltered light")),
         "value": passed,  # light that passes
         "light": sum_in(
-            "light", ENVIRONMENT.term("a reflected albedo"), passed.term("light that passes")
+            Quantity.LIGHT, ENVIRONMENT.term("a reflected albedo"), passed.term("light that passes")
         ),
         "kept": BURLEY_VALUE,  # one function of the same numbers
         "states": sum_of(roundings(32, "of the same parts in two programs")),
         "critical": sum_in(
-            "albedo",
+            Quantity.ALBEDO,
             Term(SMOOTH_ESS_FIT, "the fit of E_ss of smooth lobes"),
             roundings(4 * FRESNEL_SLOPE, "of a cosine, times a Fresnel curve's largest slope, 7.3"),
             roundings(16),
@@ -538,17 +545,17 @@ CURVE_ROUNDINGS = (
 )  # ten in a phase, times the slope of a curve in its logarithm, and 16
 
 FILM_ALBEDO = sum_in(
-    "albedo",
+    Quantity.ALBEDO,
     Term(FILM_OILED, "the mean over visible facets and F_ss, in three cosines each"),
     Term(ESS_FIT, "the fit of E_ss"),
 )
 # A metal of a lower index reflects totally below such a film, in fringes that few cosines do not see.
-FILM_TRAPPED = given(FILM_SEEN - FILM_OILED, "albedo", "films of a lower index than 1.25")
+FILM_TRAPPED = given(FILM_SEEN - FILM_OILED, Quantity.ALBEDO, "films of a lower index than 1.25")
 
 
 def _mean(value: float, words: str) -> Tolerance:
     """The largest error of 64 sets of 64 films, by tools/fits/thin_film_sets.py."""
-    return given(value, "reflectance, rms", words, root_mean_square)
+    return given(value, Quantity.REFLECTANCE_RMS, words, root_mean_square)
 
 
 FILM_ERRORS = {
@@ -560,7 +567,7 @@ FILM_ERRORS = {
     "albedo": FILM_ALBEDO,
     "throughput": FILM_ALBEDO,
     "film_curve": sum_in(
-        "reflectance",
+        Quantity.REFLECTANCE,
         Term(2.4e-6, "orders that are not summed, from 200 nm and a cosine of 0.3 on"),
         Term(0.65 * 2.8e-5, "the fit of E_ss at alpha 1e-3, times F (1 - F_ss)"),
         roundings(CURVE_ROUNDINGS, "of phases, times the slope 9.5, and 16"),
@@ -568,7 +575,7 @@ FILM_ERRORS = {
     "film_orders": sum_of(
         Term(8.7e-7, "orders that are not summed, rms over 1024 films of 40 to 100 nm"),
         Term(1.5e-4, "the fit of E_ss at alpha 1e-3 and cosines of 0.1 to 0.2"),
-        unit="reflectance, rms",
+        quantity=Quantity.REFLECTANCE_RMS,
         metric=root_mean_square,
     ),
     # F_ss under a film that changes nothing, against the fit of it without one.

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import LEAST_SHEEN, float32, generator
 from mxeon.conformance.spec import ARGUMENTS, POWER, EngineError
 from mxeon.conformance.specs.lobes import (
@@ -41,7 +42,7 @@ def conty_kulla_value(logarithm: float) -> Tolerance:
 
 
 CONTY_KULLA_ALBEDO = sum_in(
-    "albedo",
+    Quantity.ALBEDO,
     Term(1.53e-3, "the fit of the albedo"),  # tools/fits/conty_kulla_albedo.py
     CLOSED_ALBEDO.term("roundings of an albedo in closed form"),
     exact=True,

@@ -7,6 +7,7 @@ from functools import lru_cache, partial
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Candidate, Counts, Values
 from mxeon.conformance.spec import ZERO, Input, broadcast_inputs
 from mxeon.conformance.specs.lobes import COLOR, FLAT_ERRORS, NORMAL, WEIGHT, PbrSpec
@@ -29,9 +30,9 @@ EVEN = (0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.0)
 FARTHER = (1.0, 1.5, 2.0, 2.5, 4.0, 5.0, 6.0, 9.0, 12.0)
 
 # Straight towards or away from the light a whole circle comes into light at once: 9.3e-3 at most.
-RINGS = given(0.01, "pi f cos", "six circles instead of the profile's integral")
+RINGS = given(0.01, Quantity.DIFFERENCE, "six circles instead of the profile's integral")
 RINGS_MEAN = given(
-    0.003, "pi f cos, mean", "twice the mean over a sphere of the errors of six circles", mean_error
+    0.003, Quantity.MEAN, "twice the mean over a sphere of the errors of six circles", mean_error
 )
 
 

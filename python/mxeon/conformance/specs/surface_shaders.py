@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import (
     Array,
     Batch,
@@ -73,7 +74,7 @@ STRETCHED = "anisotropy"  # in the names of inputs: an environment is summed too
 # 4e-4.
 VALUE = sum_of(Term(3.5e-3, "the fits of all lobes of a material, over 32 sets of 256 pairs"))
 ALBEDO = sum_in(
-    "albedo",
+    Quantity.ALBEDO,
     Term(2.7e-3, "the fits of all lobes of a material, over 32 sets of 64 views"),
     sum_over(1024),
 )
@@ -82,12 +83,12 @@ STRETCHED_FIT = 0.019  # largest error of a value by the fits of two alphas
 MEAN = sum_of(
     Term(2.4e-4, "the mean of the errors by fits, over 32 sets of 64 views"),
     Term(sum_over(1024).value / 8.0, "sums over 1024 directions, over the root of 64 views"),
-    unit="pi f cos, relative above 1, or albedo, mean",
+    quantity=Quantity.MATERIAL_MEAN,
     metric=mean_scaled,
 )
 # Of R over T, whose light is (1 - E)^2: slopes by E of at most 2 in what passes, and of 1 in the sum.
 GLASS = sum_in(
-    "albedo",
+    Quantity.ALBEDO,
     Term(2.0 * LOBE_FIT, "the fit of a lobe's albedo, which what passes it has twice"),
     Term(2.0 * sum_over(1024).value, "two sums over 1024 directions"),
 )

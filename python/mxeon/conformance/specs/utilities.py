@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Counts, Values, float32, generator
 from mxeon.conformance.spec import (
     COMPONENTS,
@@ -73,14 +74,16 @@ INPUTS = {
     )
 }
 
-UNIT = "relative above 1"
 # 0.98 is rounded by half of one, over 2 (1 - 0.98) in the aspect; the least alpha, 1e-8, is less than either.
-ALPHA = sum_in("alpha", roundings(12), roundings(0.25 / 0.02, "(half of one of 0.98, over 0.04)"))
+ALPHA = sum_in(
+    Quantity.ALPHA, roundings(12), roundings(0.25 / 0.02, "(half of one of 0.98, over 0.04)")
+)
 BLACKBODY = sum_of(
-    Term(1.9e-4, "the fits of X and Z: 1.2e-4 in red, 7e-5 in a clipped luminance"), unit=UNIT
+    Term(1.9e-4, "the fits of X and Z: 1.2e-4 in red, 7e-5 in a clipped luminance"),
+    quantity=Quantity.OUTPUT,
 )
 REFLECTANCE = sum_in(
-    "reflectance",
+    Quantity.REFLECTANCE,
     Term(3 * 5e-7, "three constants of six decimals"),
     roundings(12, "of numbers up to 1"),
 )
@@ -88,25 +91,27 @@ REFLECTANCE = sum_in(
 VALUES: Mapping[str, Tolerance] = {
     **dict.fromkeys(INVERSIONS, REFLECTANCE),
     **dict.fromkeys(("roughness_anisotropy", "glossiness_anisotropy"), ALPHA),
-    "roughness_dual": sum_in("alpha", roundings(2)),
+    "roughness_dual": sum_in(Quantity.ALPHA, roundings(2)),
     # n_max is 1 in this unit at most.
     "artistic_ior, ior": sum_in(
-        "n (1 - sqrt(r))^2", roundings(16, "four over 1 - sqrt(r), six beside, six in the mix")
+        Quantity.INDEX, roundings(16, "four over 1 - sqrt(r), six beside, six in the mix")
     ),
     "artistic_ior, extinction": sum_in(
-        "k^2 (1 - r) / (n_max + 1)^2",
+        Quantity.EXTINCTION,
         roundings(8 + 16 + 4, "8 of the terms of k^2, 16 of n, 4 of 1 - r and the root"),
     ),
     "blackbody": BLACKBODY,
-    "chiang_hair_roughness": sum_of(roundings(24), unit=UNIT),
-    "deon_hair_absorption_from_melanin": sum_of(roundings(16), unit=UNIT),
-    "chiang_hair_absorption_from_color": sum_of(roundings(2 * 12, "of a square"), unit=UNIT),
+    "chiang_hair_roughness": sum_of(roundings(24), quantity=Quantity.OUTPUT),
+    "deon_hair_absorption_from_melanin": sum_of(roundings(16), quantity=Quantity.OUTPUT),
+    "chiang_hair_absorption_from_color": sum_of(
+        roundings(2 * 12, "of a square"), quantity=Quantity.OUTPUT
+    ),
 }
 OTHERS: Mapping[str, dict[str, Tolerance]] = {
     "blackbody": {
         "value in OSL": given(
             4e-3,
-            UNIT,
+            Quantity.OUTPUT,
             "OSL's blackbody() has an observer from 380 nm to 780 nm, its own table and primaries",
             scaled,
         )

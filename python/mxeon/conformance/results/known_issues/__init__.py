@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED, Cause, Kind, Region, Result
+from mxeon.conformance.results.quantities import Quantity
 
 STOCK = "stock"
 RENDERER_NODES = "its own nodes"  # in the place of a library
@@ -141,7 +142,7 @@ def _explains(issue: Issue, result: Result, materialx: str) -> bool:
     """Whether an issue explains what was measured, by its size, its diagnosis and its text."""
     row = result.check, result.subject
     # Hosts that show pictures alone measure relative errors, which have no size in another unit.
-    sized = result.host == issue.host or result.unit != "relative"
+    sized = result.host == issue.host or result.quantity is not Quantity.RELATIVE
     if result.error is None and issue.sizes:  # as of a shader that does not compile
         return False
     size = issue.sizes.get(row, math.inf)

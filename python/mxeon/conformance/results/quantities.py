@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The quantities whose errors are measured, each with its unit and what a reader has to know of it."""
+
+from enum import Enum
+
+_WHITE = "1 is a white, matte surface that faces the light"
+_LARGE = f"{_WHITE}; errors of values above 1 are divided by the value"
+_RIM = "weighted by the cosine of the viewing angle, so the rim counts less"
+_ALL = "an albedo of 1 returns all light"
+
+
+class Quantity(Enum):
+    """A quantity: its key in results.json, its unit, and the meaning of the unit; "" where it says all itself."""
+
+    # Values in direct light.
+    VALUE = "value", "pi f cos, relative above 1", _LARGE
+    DIFFERENCE = "difference", "pi f cos", _WHITE
+    RELATIVE = "relative", "relative"
+    MEAN = "mean", "pi f cos, mean", _WHITE
+    RECIPROCITY = "reciprocity", "pi f cos cos", _WHITE
+    FULL_SPHERE = "full_sphere", "pi f, relative above 1"
+    SLOPES = "slopes", "pi f and its slopes"
+    PICTURE = "picture", "pi f cos, times cos(theta_o)", f"{_WHITE}; {_RIM}"
+    FITTED_PICTURE = (
+        "fitted_picture",
+        "pi f cos, relative above 1, times cos(theta_o)",
+        f"{_LARGE}; {_RIM}",
+    )
+    KIT = "kit", "times what noise, pixels and the mesh allow"
+    # What a view alone sees.
+    ALBEDO = "albedo", "albedo", _ALL
+    MEAN_ALBEDO = "mean_albedo", "mean albedo", _ALL
+    VALUE_OR_ALBEDO = "value_or_albedo", "pi f cos or albedo", f"{_WHITE}; {_ALL}"
+    MATERIAL_MEAN = (
+        "material_mean",
+        "pi f cos, relative above 1, or albedo, mean",
+        f"{_LARGE}; {_ALL}",
+    )
+    REFLECTANCE = "reflectance", "reflectance"
+    REFLECTANCE_RMS = "reflectance_rms", "reflectance, rms"
+    # Light that passes, arrives or is emitted.
+    LIGHT = "light", "light", "1 is all of the light"
+    THROUGHPUT = "throughput", "throughput", "a throughput of 1 passes all light"
+    TRANSMITTANCE = "transmittance", "transmittance"
+    IRRADIANCE = "irradiance", "irradiance", "1 is a white environment"
+    RADIANCE = "radiance", "radiance"
+    RADIANCE_SLOPE = "radiance_slope", "radiance and its slope"
+    # Outputs, inputs of lobes, samples, and functions.
+    OUTPUT = "output", "relative above 1", "errors of values above 1 are divided by the value"
+    ALPHA = "alpha", "alpha"
+    INDEX = "index", "n (1 - sqrt(r))^2"
+    EXTINCTION = "extinction", "k^2 (1 - r) / (n_max + 1)^2"
+    LOBE_INPUTS = "lobe_inputs", "numbers for lobes, 0 to 1"
+    DENSITY = "density", "1/sr, relative above 1"
+    DEVIATIONS = "deviations", "standard deviations"
+    DRAWN = "drawn", "of the value, over the slope of the lobe"
+    CONDITIONED = "conditioned", "over 1, the value, and its change with each argument"
+    TOLERANCES = "tolerances", "tolerances"
+    # Counts of what is wrong.
+    INPUTS = "inputs", "inputs"
+    VALUES = "values", "values"
+    FAULTS = "faults", "faults"
+    DIFFERENCES = "differences", "differences"
+    NODES = "nodes", "nodes"
+    FUNCTIONS = "functions", "functions"
+    PIXELS = "pixels", "pixels"
+    DOCUMENTS = "documents", "documents"
+
+    unit: str
+    meaning: str
+
+    def __new__(cls, key: str, unit: str, meaning: str = "") -> "Quantity":
+        member = object.__new__(cls)
+        member._value_, member.unit, member.meaning = key, unit, meaning
+        return member
+
+    @property
+    def counted(self) -> bool:
+        """Whether it is a number of wrong things, none of which is allowed."""
+        return self in COUNTS
+
+    @property
+    def of_views(self) -> bool:
+        """Whether the light's direction has no part in it."""
+        return self in ALBEDOS
+
+
+COUNTS = frozenset(
+    map(
+        Quantity,
+        ("inputs", "values", "faults", "differences", "nodes", "functions", "pixels", "documents"),
+    )
+)
+ALBEDOS = frozenset(map(Quantity, ("albedo", "mean_albedo", "value_or_albedo", "material_mean")))
