@@ -155,7 +155,7 @@ def _of_rest(check: Check) -> Check:
         return check
     measure = cast(Callable[[Case], Iterable[Compared]], check.measure)
     return replace(
-        check, measure=lambda case: _finite_rows(measure(case)), diagnose=VALUE_OF_REST.diagnose
+        check, measure=lambda case: _finite_rows(measure(case)), explain=VALUE_OF_REST.diagnose
     )
 
 

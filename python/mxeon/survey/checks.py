@@ -6,8 +6,10 @@ from typing import cast
 
 import numpy as np
 
+from mxeon.conformance import controls
 from mxeon.conformance.case import Case
-from mxeon.conformance.check import check, with_inputs
+from mxeon.conformance.check import Check, Specs, always
+from mxeon.conformance.checks import CHECKS
 from mxeon.conformance.checks.paths import deviation
 from mxeon.conformance.diagnosis import defect
 from mxeon.conformance.results.quantities import Quantity
@@ -35,14 +37,7 @@ def is_sampled(spec: Spec) -> bool:
     return own and spec.model in ("eon", "eon_fitted")
 
 
-@check(
-    is_sampled,
-    with_inputs("roughness is dropped", roughness=0.0),
-    tolerance=OWN_DENSITY,
-    diagnose=defect("density_differs"),
-)
 def density(case: Case) -> Iterator[Compared]:
-    """The sampling density is the paper's."""
     for batch in case.few:
         batch = batch.where(batch.wi[:, 2] > 0.0)
         expected = eon_cltc_pdf(batch.wo, batch.wi, batch.inputs["roughness"])[:, np.newaxis]
@@ -55,16 +50,8 @@ def _density(case: Case, batch: Batch) -> Array:
     return cast(Renderer, case.host).density(batch.wo, batch.wi, roughness).astype(np.float64)
 
 
-@check(
-    is_sampled,
-    with_inputs("the density is that of roughness 0", roughness=0.0),
-    tolerance=CHI_SQUARE,
-    diagnose=defect("samples_differ"),
-)
 def samples(case: Case) -> Measurement:
-    """Samples follow the density that is returned with them.
-
-    Deviation of the chi-square of directions against their own density, in standard deviations.
+    """Deviation of the chi-square of directions against their own density, in standard deviations.
 
     Drawn for COSINES at ROUGHNESS; a control that fails for one is enough.
     """
@@ -85,3 +72,25 @@ def _deviation(case: Case, mu: float) -> float:
         return np.where(w[:, 2] > 0.0, _density(case, batch), 0.0)
 
     return deviation(np.where(wi[:, 2:] > 0.0, wi, 0.0), density, pole)
+
+
+CHECKS += (
+    Check(
+        key="density",
+        claim="The sampling density is the paper's.",
+        applies=Specs(is_sampled),
+        measure=density,
+        tolerance=OWN_DENSITY,
+        control=controls.with_inputs("roughness is dropped", roughness=0.0),
+        explain=always(defect("density_differs")),
+    ),
+    Check(
+        key="samples",
+        claim="Samples follow the density that is returned with them.",
+        applies=Specs(is_sampled),
+        measure=samples,
+        tolerance=CHI_SQUARE,
+        control=controls.with_inputs("the density is that of roughness 0", roughness=0.0),
+        explain=always(defect("samples_differ")),
+    ),
+)

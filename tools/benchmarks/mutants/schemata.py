@@ -333,7 +333,7 @@ def _rows(case: Case, turn: int) -> Callable[[], list[tuple[Check, Tolerance]]]:
         own = [each for each in CHECKS if not each.profile]
         own = [each for each in own if (each.key not in FIRST) + (each.key in LAST) == turn]
         own = [each for each in own if each.applies_to(case.spec, Evaluating, "gl")]
-        return [(each, each.tolerance or case.tolerance(each.quantity)) for each in own]
+        return [(each, each.allowed(case)) for each in own]
 
     return rows
 

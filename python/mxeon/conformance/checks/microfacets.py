@@ -3,24 +3,16 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.conformance import diagnosis
+from mxeon.conformance import controls, diagnosis
 from mxeon.conformance.case import SCATTERING, Case, dead_inputs
-from mxeon.conformance.check import (
-    check,
-    drop_changes,
-    no_number,
-    of_family,
-    offset,
-    scale,
-    with_batch,
-    with_inputs,
-    with_values,
-)
-from mxeon.conformance.checks.lobes import SURROUNDINGS, is_plain, shows_exactly, summed
+from mxeon.conformance.check import Check, always, family
+from mxeon.conformance.checks import lobes
+from mxeon.conformance.checks.lobes import FILMS, TRANSMITTING
 from mxeon.conformance.diagnosis import (
     ALBEDO,
     NEAR,
@@ -28,6 +20,7 @@ from mxeon.conformance.diagnosis import (
     SINGLY_RIGHT,
     UNKNOWN,
     UNMASKED,
+    VALUE,
     Comparison,
     defect,
     not_finite,
@@ -57,18 +50,12 @@ from mxeon.conformance.specs.microfacets import (
     SHARP,
     STEEP,
     FacetSpec,
+    Films,
     FilmSpec,
     TransmissionSpec,
     film_views,
 )
-from mxeon.conformance.tolerance import (
-    Compared,
-    Measurement,
-    count_named,
-    count_not_finite,
-    count_of,
-    roundings,
-)
+from mxeon.conformance.tolerance import Compared, count_named, count_not_finite, count_of, roundings
 from mxeon.models.microfacet.ggx import smith_g1, smith_lambda
 from mxeon.models.transmission import refraction_direction
 from mxeon.shaders.methods import GENERATED, Methods
@@ -79,35 +66,26 @@ SKIES = 8  # lobes that are asked for the mean of an uneven sky
 LEAST_VALUE = 1e-3  # pi f cos of values whose ratio is asked
 
 
-def is_facets(spec: Spec) -> bool:
-    return is_plain(spec) and isinstance(spec, FacetSpec)
-
-
-rougher = with_batch(
+FACETS = lobes.PLAIN & lobes.FACETS  # by themselves
+rougher = controls.with_batch(
     "the roughness is 10 % larger",
     lambda batch: batch.altered(roughness=np.minimum(1.1 * batch.inputs["roughness"], 1.0)),
 )
-isotropic = with_batch(
+isotropic = controls.with_batch(
     "the roughness is the same in both directions",
     lambda batch: batch.altered(roughness=np.repeat(batch.inputs["roughness"][:, :1], 2, axis=1)),
 )
 
 
-@check(is_facets, scale("values are 2 % too large", 1.02), "integral")
 def lossless(case: Case) -> Compared:
-    """A lossless lobe returns all light at every roughness."""
     batch, weights = case.samples.integrated
     mirror = batch.altered(**case.of(PbrSpec).row.mirror)
-    views, albedo = summed(case, mirror, weights)
+    views, albedo = lobes.summed(case, mirror, weights)
     return Compared(views, albedo, np.ones_like(albedo))
 
 
-@check(is_facets, rougher, pairs=True, open=True, hosts=shows_exactly)
 def shape(case: Case) -> Compared:
-    """For one view, the values for two lights have the same ratio as the products D F G2.
-
-    Compensation cancels in the ratio.
-    """
+    """Compensation cancels in the ratio."""
     batch, other = (_clear(each.first(PAIRS)) for each in case.samples.mirrored)
     first, second = (case.of(FacetSpec).single(each) for each in (batch, other))
     lit = np.asarray((np.minimum(first, second) > LEAST_VALUE).any(axis=1))
@@ -133,28 +111,14 @@ def _clear(batch: Batch, index: float = LEAST_DIVIDED, least_82: float = LEAST_C
     return batch.altered(**changes)
 
 
-@check(
-    lambda spec: is_facets(spec) or isinstance(spec, FilmSpec),
-    with_inputs("the flag is dropped", retroreflective=False),
-    pairs=True,
-    diagnose=diagnosis.ignored("retroreflective"),
-)
 def retroreflection(case: Case) -> Iterator[Compared]:
-    """The retroreflective lobe equals the mirror lobe for the mirrored view."""
     for batch in case.few:
         mirrored = replace(batch, wo=batch.wo * [-1.0, -1.0, 1.0])
         measured = case.direct(batch.altered(retroreflective=True))
         yield Compared(batch, measured, case.direct(mirrored.altered(retroreflective=False)))
 
 
-@check(
-    is_facets,
-    with_inputs("the tangent is dropped", tangent=(1.0, 0.0, 0.0)),
-    pairs=True,
-    diagnose=diagnosis.ignored("tangent"),
-)
 def anisotropy(case: Case) -> Compared:
-    """The lobe turns with the tangent."""
     batch = case.samples.mirrored[0].first(PAIRS)
     batch = batch.where(np.minimum(batch.wo[:, 2], batch.wi[:, 2]) >= LEAST_TANGENT_COSINE)
     batch = batch.altered(roughness=np.maximum(batch.inputs["roughness"], LEAST_TANGENT_ALPHA))
@@ -166,20 +130,8 @@ def anisotropy(case: Case) -> Compared:
     return Compared(turned, case.direct(turned), case.direct(local))
 
 
-@check(
-    is_facets,
-    with_inputs("the flag is dropped", retroreflective=False),
-    pairs=True,
-    lit=True,
-    diagnose=lambda case: diagnose_sky(case),
-    key="sky",
-    methods=lambda spec, methods: with_directions(spec, methods),
-)
 def reflected_sky(case: Case) -> Iterator[Compared]:
-    """The reflection of an uneven environment is the integral of the values over it, also for retroreflection.
-
-    Means of the sky under each lobe, which one for a mirrored view has by retroreflection; factors cancel.
-    """
+    """Means of the sky under each lobe, which one for a mirrored view has by retroreflection; factors cancel."""
     views = case.samples.take(case.of(FacetSpec).stretched)[0].first(SKIES)
     part, weights = case.of(FacetSpec).lit(views, case.samples.counts.nodes)
     shape = (*weights.shape, 3)
@@ -195,22 +147,12 @@ def reflected_sky(case: Case) -> Iterator[Compared]:
 
 def diagnose_sky(case: Case) -> Diagnosis:
     """Whether the mirror lobe is wrong, or the retroreflective one alone."""
-    tolerance, first = case.tolerance("sky"), next(reflected_sky(case))
-    if tolerance.metric(*first[1:]).max() > tolerance.value:
+    if case.tolerance("sky").wrong(next(reflected_sky(case))).any():
         return defect("other_directions")
     return defect("retroreflective_environment")
 
 
-@check(
-    is_facets,
-    isotropic,
-    pairs=True,
-    lit=True,
-    diagnose=Diagnosis((UNKNOWN,)),
-    methods=lambda spec, methods: with_directions(spec, methods),
-)
 def anisotropic_albedo(case: Case) -> Compared:
-    """The environment branch of an anisotropic lobe returns MaterialX's sum of its values, masked by the mean alpha."""
     batch, expected = case.samples.take(case.of(FacetSpec).stretched)
     return Compared(batch, case.albedo(batch), expected)
 
@@ -226,21 +168,7 @@ STRETCHED = Comparison(
 )
 
 
-@check(is_facets, isotropic, pairs=True, open=True, diagnose=STRETCHED.diagnose)
-def anisotropic_value(case: Case) -> Iterator[Compared]:
-    """The value of a lobe with two alphas matches the model."""
-    return stretched_values(case)
-
-
-@check(
-    lambda spec: isinstance(spec, FacetSpec) and spec.row.layerable,
-    isotropic,
-    pairs=True,
-    lit=True,
-    diagnose=Diagnosis((UNKNOWN,)),
-)
 def anisotropic_throughput(case: Case) -> Iterator[Compared]:
-    """A lobe with two alphas passes to its base what it does not reflect."""
     batch = case.samples.take(case.of(FacetSpec).stretched)[0]
     passed = np.maximum(1.0 - case.of(FacetSpec).integral(batch), 0.0)
     for branch in SCATTERING:
@@ -257,11 +185,9 @@ CRITICAL = 0.05  # distance from the critical angle, in its cosine: F has an inf
 LEAST_PASSED = 0.01  # light of which the place is asked
 # Slope of a refracted ray in a cosine, index^2 / cosine, above which errors count relative to it.
 BENT = 1000.0
-REFRACTED = SURROUNDINGS.plus(roundings(4 * BENT, "four of a cosine, times a slope of 1000"))
+REFRACTED = lobes.SURROUNDINGS.plus(roundings(4 * BENT, "four of a cosine, times a slope of 1000"))
 NORMAL = (0.0, 0.0, 1.0)
 ONE = np.ones((1, 3))
-
-is_transmitting = of_family(TransmissionSpec)
 
 
 def by_itself(spec: Spec) -> bool:
@@ -298,13 +224,8 @@ def _seen(spec: TransmissionSpec, batch: Batch, masked: bool = False) -> Array:
     return value / smith_g1(batch.wo, batch.inputs["roughness"])[:, np.newaxis] if masked else value
 
 
-@check(
-    is_transmitting, scale("values are twice as large", 2.0), "value", diagnose=diagnose_transmitted
-)
 def transmitted(case: Case) -> Iterator[Compared]:
-    """In a uniform environment, the light that passes lies between the BTDF's share and all that is not reflected.
-
-    Light of a uniform environment through the surface, against the nearest value inside the limits.
+    """Light of a uniform environment through the surface, against the nearest value inside the limits.
 
     One is what the BTDF passes, without compensation; the other all that is not reflected, with tint and
     weight. The first is the larger for some colors of Schlick's curve, of which the text compensates too
@@ -327,15 +248,7 @@ def limited(spec: TransmissionSpec, batch: Batch, measured: Array, opaque: bool)
     return Compared(batch, measured, np.clip(measured, least, most))
 
 
-@check(
-    lambda spec: isinstance(spec, TransmissionSpec) and spec.reflects,
-    scale("values are 5 % too large", 1.05),
-    "light",
-    diagnose=diagnose_transmitted,
-    methods=with_directions,
-)
 def clear(case: Case) -> Iterator[Compared]:
-    """A white lobe that reflects and transmits returns all light of a uniform environment."""
     for batch in case.views:
         white = batch.altered(tint=(1.0, 1.0, 1.0), weight=1.0)
         yield Compared(white, case.albedo(white) + case.transmitted(white), ONE)
@@ -359,43 +272,21 @@ def diagnose_methods(case: Case) -> Diagnosis:
     wrong = [
         str(methods)
         for methods in OTHERS
-        if any(
-            (tolerance.metric(*each[1:]) > tolerance.value).any() for each in shares(case, methods)
-        )
+        if any(tolerance.wrong(each).any() for each in shares(case, methods))
     ]
     return defect("wrong_with_methods", *wrong) if wrong else Diagnosis((UNKNOWN,))
-
-
-@check(
-    is_transmitting,
-    scale("values are 10 % too large", 1.1),
-    pairs=True,
-    lit=True,
-    diagnose=diagnose_methods,
-    methods=lambda spec, methods: methods == GENERATED,
-)
-def methods(case: Case) -> Iterator[Compared]:
-    """With a prefiltered environment, and as opacity, the light that passes lies between the same limits."""
-    for each in OTHERS:
-        yield from shares(case, each)
 
 
 def diagnose_kept(case: Case) -> Diagnosis:
     tolerance = case.tolerance("kept")
     causes: list[Cause] = []
-    for cause, (_, *values) in _modes(case):
-        if tolerance.metric(*values).max() > tolerance.value and cause not in causes:
+    for cause, compared in modes(case):
+        if tolerance.wrong(compared).any() and cause not in causes:
             causes.append(cause)
     return Diagnosis(tuple(causes))
 
 
-@check(is_transmitting, offset, diagnose=diagnose_kept)
-def kept(case: Case) -> Iterator[Compared]:
-    """Modes R and RT reflect, and pass to their base, the same light; mode T reflects nothing; mode R transmits nothing."""
-    return (compared for _, compared in _modes(case))
-
-
-def _modes(case: Case) -> Iterator[tuple[Cause, Compared]]:
+def modes(case: Case) -> Iterator[tuple[Cause, Compared]]:
     """Values of a mode against those of mode R, or none, and of mode R against none, with the cause of an error."""
     spec = case.of(TransmissionSpec)
     only = case.another(spec.reflection) if spec.reflects else None
@@ -417,17 +308,10 @@ def _modes(case: Case) -> Iterator[tuple[Cause, Compared]]:
             yield cause("mode_R_transmits"), Compared(batch, only.transmitted(batch), none)
 
 
-DENSER = with_inputs("the index is different", ior=2.5, color0=(0.5, 0.5, 0.5))
+DENSER = controls.with_inputs("the index is different", ior=2.5, color0=(0.5, 0.5, 0.5))
 
 
-@check(
-    is_transmitting,
-    DENSER,
-    diagnose=diagnose_transmitted,
-    methods=lambda spec, methods: methods.transmission == "refraction" or by_itself(spec),
-)
 def critical(case: Case) -> Compared:
-    """A smooth surface transmits 1 - F, and nothing beyond the critical angle."""
     batch = _smooth(case)
     functions = case.of(TransmissionSpec).functions
     index, mu = functions.ior(batch.inputs), np.minimum(batch.wo[:, 2], 1.0)
@@ -437,16 +321,7 @@ def critical(case: Case) -> Compared:
     return Compared(batch, case.transmitted(batch), batch.strength * passed)
 
 
-@check(
-    is_transmitting,
-    DENSER,
-    tolerance=REFRACTED,
-    lit=True,
-    diagnose=Diagnosis((UNKNOWN,)),
-    methods=lambda spec, methods: methods.transmission == "refraction",
-)
 def refraction(case: Case) -> Compared:
-    """An uneven environment is looked up along the ray that a solid sphere refracts."""
     index = case.of(TransmissionSpec).functions.ior
     batch = _smooth(case)
     # Views in frames from which a sphere refracts them to middles of texels of the sky.
@@ -492,29 +367,6 @@ def _edges(case: Case) -> Compared:
     return Compared(batch, case.transmitted(batch), np.zeros((1, 3)))
 
 
-@check(
-    is_transmitting,
-    no_number,
-    tolerance=count_of(Quantity.VALUES),
-    diagnose=lambda case: Diagnosis(not_finite([_edges(case)])),
-)
-def transmitted_finite(case: Case) -> Measurement:
-    """All light through the surface is finite at the edges of the domain."""
-    return count_not_finite(_edges(case))
-
-
-@check(
-    is_transmitting,
-    drop_changes,
-    tolerance=count_of(Quantity.INPUTS),
-    lit=True,
-    diagnose=lambda case: defect("wrong_effect", *wrong_inputs(case)),
-)
-def transmitted_inputs(case: Case) -> Measurement:
-    """Every input except retroreflective changes the light through the surface."""
-    return count_named(wrong_inputs(case))
-
-
 def wrong_inputs(case: Case) -> list[str]:
     """Inputs that change no light through the surface, and those that must not.
 
@@ -540,52 +392,27 @@ THIN_LIMIT = 1e-3  # thickness in nm of a film that changes nothing
 SLANT = 2.0 / 3.0  # mean cosine of a hemisphere, weighted by the cosine
 RARE = 0.5  # index of a film that MaterialX counts as vacuum
 
-is_film = of_family(FilmSpec)
-
-
-dropped = with_inputs("the film is dropped", thinfilm_thickness=0.0)
+dropped = controls.with_inputs("the film is dropped", thinfilm_thickness=0.0)
 
 
 def brighter(batch: Batch, values: Array) -> Array:
     return values * np.where(np.any(batch.inputs["thinfilm_thickness"]), 100.0, 1.0)
 
 
-@check(is_film, dropped, lit=True, open=True)
-def film_curve(case: Case) -> Compared:
-    """Under a film, a smooth lobe reflects the Airy reflectance at the cosine of the view.
-
-    The first orders alone count.
-    """
-    return _curves(case, film_views(case.of(FilmSpec), SHARP))
-
-
-@check(is_film, dropped, open=True)
-def film_orders(case: Case) -> Compared:
-    """At grazing angles, a thin film reflects the sum of all orders.
-
-    So they do for thin films, whose orders all count.
-    """
-    return _curves(case, film_views(case.of(FilmSpec), ORDERED))
-
-
-def _curves(case: Case, batch: Batch) -> Compared:
+def curves(films: Films, case: Case) -> Compared:
     """Curves: values in mirrored lights over those of a mirror.
 
     The lobes are so smooth that their compensation is 1, whatever average it has.
     """
+    batch = film_views(case.of(FilmSpec), films)
     (measured, mirror), (expected, white) = (
         (direct(batch), direct(_mirror(case, batch))) for direct in (case.direct, case.expected)
     )
     return Compared(batch, measured / mirror, expected / white)
 
 
-@check(
-    is_film, with_inputs("every film has an index of 1.5", thinfilm_ior=1.5), lit=True, open=True
-)
 def film_limit(case: Case) -> list[Compared]:
-    """A film with an index of 1 or less, or with almost no thickness, leaves the lobe unchanged.
-
-    Values under a film of index 1, and under one of THIN_LIMIT, against those without.
+    """Values under a film of index 1, and under one of THIN_LIMIT, against those without.
 
     A film of an index below that of vacuum counts as one of index 1, whatever that one does. Under a thin
     one the sensitivities count, of five digits, whose sum is not 1: as much as in the equations is right.
@@ -604,9 +431,7 @@ def film_limit(case: Case) -> list[Compared]:
     return cases
 
 
-@check(is_film, with_values("values under a film are 100 times as large", brighter), lit=True)
 def film_energy(case: Case) -> list[Compared]:
-    """No film reflects more than a lobe that reflects everything."""
     cases = []
     for batch in case.few[::2]:  # a mirror of index 0 is another check where directions are exact
         mirror = batch.altered(thinfilm_thickness=0.0, **case.of(FilmSpec).row.mirror)
@@ -631,12 +456,8 @@ def diagnose_average(case: Case) -> Diagnosis:
     return replace(defect(key), permitted=key == "average_at_half_vector")
 
 
-@check(is_film, dropped, lit=True, open=True, diagnose=diagnose_average)
 def film_average(case: Case) -> Compared:
-    """The compensation uses the film's reflectance averaged over the hemisphere.
-
-    F_ss of films whose curve is not next to 0.
-    """
+    """F_ss of films whose curve is not next to 0."""
     batch = film_views(case.of(FilmSpec), FRINGED)
     (_, measured), (F, expected) = (
         _averages(case, each, batch) for each in (case.direct, case.expected)
@@ -644,11 +465,8 @@ def film_average(case: Case) -> Compared:
     return Compared(batch, measured, expected).where(F.min(axis=1) > LEAST_F)
 
 
-@check(is_film, dropped, lit=True, open=True, diagnose=diagnose_average)
 def film_smooth(case: Case) -> Compared:
-    """On smooth lobes, too, the compensation uses the film's average.
-
-    Values F (1 + F_ss k) of lobes that lose little, against those of lobes that lose less. F and k are the host's,
+    """Values F (1 + F_ss k) of lobes that lose little, against those of lobes that lose less. F and k are the host's,
     and F_ss that of the equations.
     """
     batch = film_views(case.of(FilmSpec), FRINGED)
@@ -666,23 +484,12 @@ def diagnose_visible(case: Case) -> Diagnosis:
     return explained if SINGLY_RIGHT not in explained.causes else Diagnosis((UNMASKED,))
 
 
-@check(is_film, dropped, lit=True, open=True, diagnose=diagnose_visible, methods=with_directions)
-def film_visible(case: Case) -> Compared:
-    """The albedo averages the film's reflectance over the visible, lit facets."""
-    return _visible(case, film_views(case.of(FilmSpec), STEEP))
-
-
-@check(is_film, dropped, lit=True, open=True, diagnose=diagnose_visible, methods=with_directions)
-def film_glossy(case: Case) -> Compared:
-    """On glossy lobes, too, the albedo averages the film's reflectance over the visible facets."""
-    return _visible(case, film_views(case.of(FilmSpec), GLOSSY))
-
-
-def _visible(case: Case, batch: Batch) -> Compared:
+def visible(films: Films, case: Case) -> Compared:
     """Means F_o over the visible facets of films whose curve is not next to 0, by albedos E_ss F_o (1 + F_ss k).
 
     An albedo counts over the one of a mirror, E_ss (1 + k) = 1.
     """
+    batch = film_views(case.of(FilmSpec), films)
 
     def mean(direct: Function, albedo: Array) -> tuple[Array, Array]:
         F, F_ss = _averages(case, direct, batch)
@@ -717,3 +524,262 @@ def _parts(case: Case, direct: Function, batch: Batch) -> tuple[Array, Array]:
 def _mirror(case: Case, batch: Batch) -> Batch:
     """The same pairs with a lobe that reflects everything."""
     return batch.altered(thinfilm_thickness=0.0, **case.of(FilmSpec).row.mirror)
+
+
+ROWS = (
+    Check(
+        key="lossless",
+        claim="A lossless lobe returns all light at every roughness.",
+        applies=FACETS,
+        measure=lossless,
+        tolerance="integral",
+        control=controls.scale("values are 2 % too large", 1.02),
+        explain=VALUE.diagnose,
+    ),
+    Check(
+        key="shape",
+        claim="For one view, the values for two lights have the same ratio as the products D F G2.",
+        applies=FACETS,
+        measure=shape,
+        tolerance="shape",
+        control=rougher,
+        explain=VALUE.diagnose,
+        pairs=True,
+        open=True,
+        hosts=lobes.shows_exactly,
+    ),
+    Check(
+        key="retroreflection",
+        claim="The retroreflective lobe equals the mirror lobe for the mirrored view.",
+        applies=FACETS | FILMS,
+        measure=retroreflection,
+        tolerance="retroreflection",
+        control=controls.with_inputs("the flag is dropped", retroreflective=False),
+        explain=diagnosis.ignored("retroreflective"),
+        pairs=True,
+    ),
+    Check(
+        key="anisotropy",
+        claim="The lobe turns with the tangent.",
+        applies=FACETS,
+        measure=anisotropy,
+        tolerance="anisotropy",
+        control=controls.with_inputs("the tangent is dropped", tangent=(1.0, 0.0, 0.0)),
+        explain=diagnosis.ignored("tangent"),
+        pairs=True,
+    ),
+    Check(
+        key="sky",
+        claim="The reflection of an uneven environment is the integral of the values over it, also for retroreflection.",
+        applies=FACETS,
+        measure=reflected_sky,
+        tolerance="sky",
+        control=controls.with_inputs("the flag is dropped", retroreflective=False),
+        explain=diagnose_sky,
+        pairs=True,
+        lit=True,
+        methods=with_directions,
+    ),
+    Check(
+        key="anisotropic_albedo",
+        claim="The environment branch of an anisotropic lobe returns MaterialX's sum of its values, masked by the mean alpha.",
+        applies=FACETS,
+        measure=anisotropic_albedo,
+        tolerance="anisotropic_albedo",
+        control=isotropic,
+        explain=always(Diagnosis((UNKNOWN,))),
+        pairs=True,
+        lit=True,
+        methods=with_directions,
+    ),
+    Check(
+        key="anisotropic_value",
+        claim="The value of a lobe with two alphas matches the model.",
+        applies=FACETS,
+        measure=STRETCHED,
+        tolerance="anisotropic_value",
+        control=isotropic,
+        explain=STRETCHED.diagnose,
+        pairs=True,
+        open=True,
+    ),
+    Check(
+        key="anisotropic_throughput",
+        claim="A lobe with two alphas passes to its base what it does not reflect.",
+        applies=family(FacetSpec, lambda spec: spec.row.layerable),
+        measure=anisotropic_throughput,
+        tolerance="anisotropic_throughput",
+        control=isotropic,
+        explain=always(Diagnosis((UNKNOWN,))),
+        pairs=True,
+        lit=True,
+    ),
+    Check(
+        key="transmitted",
+        claim="In a uniform environment, the light that passes lies between the BTDF's share and all that is not reflected.",
+        applies=TRANSMITTING,
+        measure=transmitted,
+        tolerance="value",
+        control=controls.scale("values are twice as large", 2.0),
+        explain=diagnose_transmitted,
+    ),
+    Check(
+        key="clear",
+        claim="A white lobe that reflects and transmits returns all light of a uniform environment.",
+        applies=family(TransmissionSpec, lambda spec: spec.reflects),
+        measure=clear,
+        tolerance="light",
+        control=controls.scale("values are 5 % too large", 1.05),
+        explain=diagnose_transmitted,
+        methods=with_directions,
+    ),
+    Check(
+        key="methods",
+        claim="With a prefiltered environment, and as opacity, the light that passes lies between the same limits.",
+        applies=TRANSMITTING,
+        measure=lambda case: (each for other in OTHERS for each in shares(case, other)),
+        tolerance="methods",
+        control=controls.scale("values are 10 % too large", 1.1),
+        explain=diagnose_methods,
+        pairs=True,
+        lit=True,
+        methods=lambda spec, methods: methods == GENERATED,
+    ),
+    Check(
+        key="kept",
+        claim="Modes R and RT reflect, and pass to their base, the same light; mode T reflects nothing; mode R transmits nothing.",
+        applies=TRANSMITTING,
+        measure=lambda case: (compared for _, compared in modes(case)),
+        tolerance="kept",
+        control=controls.offset,
+        explain=diagnose_kept,
+    ),
+    Check(
+        key="critical",
+        claim="A smooth surface transmits 1 - F, and nothing beyond the critical angle.",
+        applies=TRANSMITTING,
+        measure=critical,
+        tolerance="critical",
+        control=DENSER,
+        explain=diagnose_transmitted,
+        methods=lambda spec, methods: methods.transmission == "refraction" or by_itself(spec),
+    ),
+    Check(
+        key="refraction",
+        claim="An uneven environment is looked up along the ray that a solid sphere refracts.",
+        applies=TRANSMITTING,
+        measure=refraction,
+        tolerance=REFRACTED,
+        control=DENSER,
+        explain=always(Diagnosis((UNKNOWN,))),
+        lit=True,
+        methods=lambda spec, methods: methods.transmission == "refraction",
+    ),
+    Check(
+        key="transmitted_finite",
+        claim="All light through the surface is finite at the edges of the domain.",
+        applies=TRANSMITTING,
+        measure=lambda case: count_not_finite(_edges(case)),
+        tolerance=count_of(Quantity.VALUES),
+        control=controls.no_number,
+        explain=lambda case: Diagnosis(not_finite([_edges(case)])),
+    ),
+    Check(
+        key="transmitted_inputs",
+        claim="Every input except retroreflective changes the light through the surface.",
+        applies=TRANSMITTING,
+        measure=lambda case: count_named(wrong_inputs(case)),
+        tolerance=count_of(Quantity.INPUTS),
+        control=controls.drop_changes,
+        explain=lambda case: defect("wrong_effect", *wrong_inputs(case)),
+        lit=True,
+    ),
+    Check(
+        key="film_curve",
+        claim="Under a film, a smooth lobe reflects the Airy reflectance at the cosine of the view.",
+        applies=FILMS,
+        measure=partial(curves, SHARP),
+        tolerance="film_curve",
+        control=dropped,
+        explain=VALUE.diagnose,
+        lit=True,
+        open=True,
+    ),
+    Check(
+        key="film_orders",
+        claim="At grazing angles, a thin film reflects the sum of all orders.",
+        applies=FILMS,
+        measure=partial(curves, ORDERED),
+        tolerance="film_orders",
+        control=dropped,
+        explain=VALUE.diagnose,
+        open=True,
+    ),
+    Check(
+        key="film_limit",
+        claim="A film with an index of 1 or less, or with almost no thickness, leaves the lobe unchanged.",
+        applies=FILMS,
+        measure=film_limit,
+        tolerance="film_limit",
+        control=controls.with_inputs("every film has an index of 1.5", thinfilm_ior=1.5),
+        explain=VALUE.diagnose,
+        lit=True,
+        open=True,
+    ),
+    Check(
+        key="film_energy",
+        claim="No film reflects more than a lobe that reflects everything.",
+        applies=FILMS,
+        measure=film_energy,
+        tolerance="film_energy",
+        control=controls.with_values("values under a film are 100 times as large", brighter),
+        explain=VALUE.diagnose,
+        lit=True,
+    ),
+    Check(
+        key="film_average",
+        claim="The compensation uses the film's reflectance averaged over the hemisphere.",
+        applies=FILMS,
+        measure=film_average,
+        tolerance="film_average",
+        control=dropped,
+        explain=diagnose_average,
+        lit=True,
+        open=True,
+    ),
+    Check(
+        key="film_smooth",
+        claim="On smooth lobes, too, the compensation uses the film's average.",
+        applies=FILMS,
+        measure=film_smooth,
+        tolerance="film_smooth",
+        control=dropped,
+        explain=diagnose_average,
+        lit=True,
+        open=True,
+    ),
+    Check(
+        key="film_visible",
+        claim="The albedo averages the film's reflectance over the visible, lit facets.",
+        applies=FILMS,
+        measure=partial(visible, STEEP),
+        tolerance="film_visible",
+        control=dropped,
+        explain=diagnose_visible,
+        lit=True,
+        open=True,
+        methods=with_directions,
+    ),
+    Check(
+        key="film_glossy",
+        claim="On glossy lobes, too, the albedo averages the film's reflectance over the visible facets.",
+        applies=FILMS,
+        measure=partial(visible, GLOSSY),
+        tolerance="film_glossy",
+        control=dropped,
+        explain=diagnose_visible,
+        lit=True,
+        open=True,
+        methods=with_directions,
+    ),
+)

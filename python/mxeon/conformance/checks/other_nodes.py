@@ -5,18 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from mxeon.conformance import controls
 from mxeon.conformance.backends import implementation
 from mxeon.conformance.case import Case
-from mxeon.conformance.check import (
-    Control,
-    check,
-    gray,
-    no_number,
-    of_family,
-    offset,
-    shifted,
-    with_inputs,
-)
+from mxeon.conformance.check import Check, family
 from mxeon.conformance.diagnosis import BACK, OUTPUT, TRANSMITTANCE, VALUE, defect
 from mxeon.conformance.diagnosis.regions import EXACT, correct_except, span, unbounded
 from mxeon.conformance.results import Diagnosis, Kind
@@ -32,39 +24,15 @@ from mxeon.conformance.specs.emission import (
 from mxeon.conformance.specs.utilities import UtilitySpec
 from mxeon.conformance.tolerance import Compared, Measurement, count_not_finite, count_of
 
-is_emission = of_family(EmissionSpec)
-
-
-unimplemented = Control(
+EMISSIONS, MEDIA = family(EmissionSpec), family(MediumSpec)
+unimplemented = controls.Control(
     "the node is one that nothing implements", lambda case: case.another(UNIMPLEMENTED)
 )
 
 
-@check(
-    of_family(EmissionSpec, MediumSpec, AbsentSpec),
-    unimplemented,
-    tolerance=count_of(Quantity.NODES),
-    diagnose=lambda case: defect("not_implemented", case.host.target, case.spec.title),
-)
 def implemented(case: Case) -> Measurement:
-    """The target implements the node."""
     shader = implementation(case.host, case.spec.document(), case.library)
     return Measurement(float(shader is None), {})
-
-
-@check(is_emission, gray, OUTPUT)
-def radiance() -> None:
-    """The radiance matches the node's equation for every view from the front."""
-
-
-@check(is_emission, offset, BACK, pairs=True, open=True)
-def back() -> None:
-    """The back of the surface emits what the equation gives."""
-
-
-@check(of_family(MediumSpec), shifted, TRANSMITTANCE)
-def transmittance() -> None:
-    """Over one meter, a medium transmits what its coefficients give."""
 
 
 def diagnose_opacity(case: Case) -> Diagnosis:
@@ -76,24 +44,7 @@ def diagnose_opacity(case: Case) -> Diagnosis:
     return defect("input_ignored", "opacity") if full <= OPACITY.value else Diagnosis()
 
 
-@check(
-    of_family(EmittingSurface),
-    with_inputs("the opacity is 1", opacity=1.0),
-    VALUE,
-    diagnose=diagnose_opacity,
-)
-def opacity() -> None:
-    """The light that a surface emits is scaled by its opacity."""
-
-
 # --- utility nodes, in units in which the roundings of their values are alike ---------------------
-
-is_utility = of_family(UtilitySpec)
-
-
-@check(is_utility, shifted, OUTPUT, open=True)
-def output() -> None:
-    """The output of the utility node matches its equations."""
 
 
 def outside(case: Case) -> Compared:
@@ -109,13 +60,76 @@ def explained_finite(case: Case) -> Diagnosis:
     return Diagnosis((replace(share, kind=Kind.NOT_FINITE),))
 
 
-@check(
-    lambda spec: is_utility(spec) and not spec.libraries,
-    no_number,
-    tolerance=count_of(Quantity.VALUES),
-    pairs=True,
-    diagnose=explained_finite,
-)
 def output_finite(case: Case) -> Measurement:
-    """Every output is finite, at the ends of the ranges and beyond."""
     return count_not_finite(outside(case))
+
+
+ROWS = (
+    Check(
+        key="implemented",
+        claim="The target implements the node.",
+        applies=EMISSIONS | MEDIA | family(AbsentSpec),
+        measure=implemented,
+        tolerance=count_of(Quantity.NODES),
+        control=unimplemented,
+        explain=lambda case: defect("not_implemented", case.host.target, case.spec.title),
+    ),
+    Check(
+        key="radiance",
+        claim="The radiance matches the node's equation for every view from the front.",
+        applies=EMISSIONS,
+        measure=OUTPUT,
+        tolerance="value",
+        control=controls.gray,
+        explain=OUTPUT.diagnose,
+    ),
+    Check(
+        key="back",
+        claim="The back of the surface emits what the equation gives.",
+        applies=EMISSIONS,
+        measure=BACK,
+        tolerance="value",
+        control=controls.offset,
+        explain=BACK.diagnose,
+        pairs=True,
+        open=True,
+    ),
+    Check(
+        key="transmittance",
+        claim="Over one meter, a medium transmits what its coefficients give.",
+        applies=MEDIA,
+        measure=TRANSMITTANCE,
+        tolerance="value",
+        control=controls.shifted,
+        explain=TRANSMITTANCE.diagnose,
+    ),
+    Check(
+        key="opacity",
+        claim="The light that a surface emits is scaled by its opacity.",
+        applies=family(EmittingSurface),
+        measure=VALUE,
+        tolerance="value",
+        control=controls.with_inputs("the opacity is 1", opacity=1.0),
+        explain=diagnose_opacity,
+    ),
+    Check(
+        key="output",
+        claim="The output of the utility node matches its equations.",
+        applies=family(UtilitySpec),
+        measure=OUTPUT,
+        tolerance="value",
+        control=controls.shifted,
+        explain=OUTPUT.diagnose,
+        open=True,
+    ),
+    Check(
+        key="output_finite",
+        claim="Every output is finite, at the ends of the ranges and beyond.",
+        applies=family(UtilitySpec, lambda spec: not spec.libraries),
+        measure=output_finite,
+        tolerance=count_of(Quantity.VALUES),
+        control=controls.no_number,
+        explain=explained_finite,
+        pairs=True,
+    ),
+)

@@ -13,9 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mxeon.conformance import controls
 from mxeon.conformance.cache import Recent, contents
 from mxeon.conformance.case import Case
-from mxeon.conformance.check import check, scale, with_values
+from mxeon.conformance.check import Check, Specs, always
 from mxeon.conformance.diagnosis import defect
 from mxeon.conformance.results import Cause, Diagnosis, Kind
 from mxeon.conformance.results.quantities import Quantity
@@ -217,25 +218,7 @@ def scores(case: Case) -> Iterator[tuple[float, bool, Array]]:
                 yield deviation(drawn * ~straight, density, pole, mirror), inside, view
 
 
-@check(
-    is_drawn,
-    with_values(
-        "a tenth of the density is that of a lobe, even in all directions, that is never drawn",
-        lambda batch, values: 0.9 * values + 0.1 / (4.0 * np.pi),
-    ),
-    tolerance=given(
-        6.0, Quantity.DEVIATIONS, "chance reaches 6 once in 10^7 draws of a chi-square"
-    ),
-    pairs=True,
-    profile="path",
-    hosts=has_paths,
-    diagnose=lambda case: defect(
-        "drawn_density",
-        *dict.fromkeys(place(inside) for score, inside, _ in scores(case) if score > 6.0),
-    ),
-)
 def pdf(case: Case) -> Measurement:
-    """What a path tracer draws has the density that it is told, which integrates to the share of draws kept."""
     score, inside, view = max(scores(case), key=lambda each: each[0])
     return Measurement(score, {"wo": view.tolist(), "inside": [float(inside)]})
 
@@ -284,17 +267,7 @@ def _wrong_half(case: Case) -> Diagnosis:
     return Diagnosis(tuple(causes))
 
 
-@check(
-    is_drawn,
-    scale("weights are 0.01 % too large", 1.0001),
-    tolerance=SAMPLE,
-    pairs=True,
-    profile="path",
-    hosts=has_paths,
-    diagnose=_wrong_half,
-)
 def sample(case: Case) -> Iterator[Compared]:
-    """A draw's weight times its density is the value in its direction, and its density that of material_pdf."""
     for _, weights, densities in halves(case):
         yield weights
         yield densities
@@ -305,21 +278,7 @@ def random_directions(rng: np.random.Generator, count: int) -> Array:
     return float32(w / np.linalg.norm(w, axis=1, keepdims=True))
 
 
-@check(
-    reflects,
-    scale("values are 0.1 % too large", 1.001),
-    tolerance=sum_of(
-        roundings(
-            64, "of two directions and their frame, times 1 + the inverse of the lobe's own alpha"
-        )
-    ),
-    pairs=True,
-    profile="path",
-    hosts=has_paths,
-    diagnose=defect("other_path_value"),
-)
 def path_value(case: Case) -> Iterator[Compared]:
-    """A path tracer's value, opacity and emission are the rasterizer's, in any frame."""
     document, rng = documents(case.lobe)[-1], generator()
     text, [shader] = (
         paths(case.host, document, case.library),
@@ -346,19 +305,7 @@ def path_value(case: Case) -> Iterator[Compared]:
     yield Compared(batch, text.ask("emission", **world), share * emitted)
 
 
-@check(
-    lambda spec: spec.node in GLASS and is_glass(spec),
-    scale("values are 0.1 % too large", 1.001),
-    tolerance=sum_of(
-        roundings(256, "of an index that OpenPBR takes from its reflectance, near a critical angle")
-    ),
-    pairs=True,
-    profile="path",
-    hosts=has_paths,
-    diagnose=defect("inside_is_not_outside"),
-)
 def path_inside(case: Case) -> Iterator[Compared]:
-    """Light inside a solid is reflected and refracted as outside of one of the inverse index."""
     name, values = GLASS[case.spec.node]
     solid, inverse = (
         paths(case.host, case.spec.document({**values, name: index}), case.library)
@@ -462,3 +409,72 @@ def quadrature(pole: tuple[float, ...], nodes: int) -> tuple[Array, Array, NDArr
     area = 2.0 * np.sin(angle) * np.sin(height) * turn
     w = local.reshape(-1, 3) @ axes(np.array(pole))
     return w, np.repeat(area, len(azimuth)), cell(w, np.array(pole))
+
+
+ROWS = (
+    Check(
+        key="pdf",
+        claim="What a path tracer draws has the density that it is told, which integrates to the share of draws kept.",
+        applies=Specs(is_drawn),
+        measure=pdf,
+        tolerance=given(
+            6.0, Quantity.DEVIATIONS, "chance reaches 6 once in 10^7 draws of a chi-square"
+        ),
+        control=controls.with_values(
+            "a tenth of the density is that of a lobe, even in all directions, that is never drawn",
+            lambda batch, values: 0.9 * values + 0.1 / (4.0 * np.pi),
+        ),
+        explain=lambda case: defect(
+            "drawn_density",
+            *dict.fromkeys(place(inside) for score, inside, _ in scores(case) if score > 6.0),
+        ),
+        pairs=True,
+        profile="path",
+        hosts=has_paths,
+    ),
+    Check(
+        key="sample",
+        claim="A draw's weight times its density is the value in its direction, and its density that of material_pdf.",
+        applies=Specs(is_drawn),
+        measure=sample,
+        tolerance=SAMPLE,
+        control=controls.scale("weights are 0.01 % too large", 1.0001),
+        explain=_wrong_half,
+        pairs=True,
+        profile="path",
+        hosts=has_paths,
+    ),
+    Check(
+        key="path_value",
+        claim="A path tracer's value, opacity and emission are the rasterizer's, in any frame.",
+        applies=Specs(reflects),
+        measure=path_value,
+        tolerance=sum_of(
+            roundings(
+                64,
+                "of two directions and their frame, times 1 + the inverse of the lobe's own alpha",
+            )
+        ),
+        control=controls.scale("values are 0.1 % too large", 1.001),
+        explain=always(defect("other_path_value")),
+        pairs=True,
+        profile="path",
+        hosts=has_paths,
+    ),
+    Check(
+        key="path_inside",
+        claim="Light inside a solid is reflected and refracted as outside of one of the inverse index.",
+        applies=Specs(lambda spec: spec.node in GLASS and is_glass(spec)),
+        measure=path_inside,
+        tolerance=sum_of(
+            roundings(
+                256, "of an index that OpenPBR takes from its reflectance, near a critical angle"
+            )
+        ),
+        control=controls.scale("values are 0.1 % too large", 1.001),
+        explain=always(defect("inside_is_not_outside")),
+        pairs=True,
+        profile="path",
+        hosts=has_paths,
+    ),
+)

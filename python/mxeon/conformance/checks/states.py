@@ -15,9 +15,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from mxeon.conformance import controls
 from mxeon.conformance.backends import joined
 from mxeon.conformance.case import Case
-from mxeon.conformance.check import check, with_batch
+from mxeon.conformance.check import Check, family
 from mxeon.conformance.diagnosis import not_finite
 from mxeon.conformance.results import Cause, Diagnosis, Kind
 from mxeon.conformance.samples import (
@@ -275,24 +276,13 @@ def pixels_of(case: Case) -> list[Pixels]:
     return found
 
 
-exchanged = with_batch(
+exchanged = controls.with_batch(
     "each pixel has the view and the light of another",
     lambda batch: replace(batch, wo=np.roll(batch.wo, 1, axis=0), wi=np.roll(batch.wi, 1, axis=0)),
 )
 
 
-@check(
-    lambda spec: isinstance(spec, LobeSpec),
-    exchanged,
-    pairs=True,
-    diagnose=lambda case: diagnose(case),
-    # As opacity, such a lobe is its tint: no control could show a wrong view.
-    methods=lambda spec, methods: (
-        not isinstance(spec, TransmissionSpec) or spec.reflects or methods.transmission != "opacity"
-    ),
-)
 def states(case: Case) -> Iterator[Compared]:
-    """Lights, environments and lobes add up in a pixel, in every frame, whether inputs vary or not."""
     groups = pixels_of(case)
     if case.control:
         groups = [each for each in groups if not each.image][:FEW]
@@ -420,7 +410,7 @@ def sums(case: Case, groups: Sequence[Pixels]) -> list[Array]:
 def diagnose(case: Case) -> Diagnosis:
     """The states in which all wrong pixels are: one, two that meet in them, or either of two."""
     tolerance, compared = case.tolerance("states"), list(states(case))
-    bad = np.concatenate([tolerance.metric(*each[1:]) > tolerance.value for each in compared])
+    bad = np.concatenate(list(map(tolerance.wrong, compared)))
     pixels = [words for each in pixels_of(case) for words in _words(each)]
     names = sorted(set().union(*pixels))
     found: dict[tuple[str, ...], Mask] = {
@@ -456,3 +446,22 @@ def _words(pixels: Pixels) -> Iterator[set[str]]:
     common = {":".join(each[: count + 1]) for each in parts for count in range(len(each))}
     for name in pixels.differ or ("",) * EACH:
         yield common | ({f"two lobes that differ in {name}"} if name else set())
+
+
+ROWS = (
+    Check(
+        key="states",
+        claim="Lights, environments and lobes add up in a pixel, in every frame, whether inputs vary or not.",
+        applies=family(LobeSpec),
+        measure=states,
+        tolerance="states",
+        control=exchanged,
+        explain=diagnose,
+        pairs=True,
+        methods=lambda spec, methods: (
+            not isinstance(spec, TransmissionSpec)
+            or spec.reflects
+            or methods.transmission != "opacity"
+        ),
+    ),
+)

@@ -7,9 +7,10 @@ from functools import partial
 
 import numpy as np
 
+from mxeon.conformance import controls
 from mxeon.conformance.backends import joined
 from mxeon.conformance.case import SCATTERING, Case
-from mxeon.conformance.check import check, control, of_family, scale, shifted
+from mxeon.conformance.check import Check, always, family
 from mxeon.conformance.checks.lobes import finds_albedo
 from mxeon.conformance.diagnosis import ALBEDO, defect
 from mxeon.conformance.results import Cause, Diagnosis, Kind
@@ -38,8 +39,6 @@ LOBE_INPUTS = {
     "specular reflection": ("specular", "specular_weight"),
 }
 
-is_shader = of_family(SurfaceShaderSpec)
-
 
 def diagnose_lobes(case: Case) -> Diagnosis:
     """The lobe whose absence leaves the smallest error of the worst pairs."""
@@ -61,7 +60,7 @@ def diagnose_lobes(case: Case) -> Diagnosis:
     return defect("no_single_lobe", *sorted(errors, key=errors.__getitem__)[:2])
 
 
-SUM = defect("sum_of_lobes")
+MATERIALS, SUM = family(SurfaceShaderSpec), always(defect("sum_of_lobes"))
 
 
 def values(case: Case) -> Compared:
@@ -79,74 +78,28 @@ def values(case: Case) -> Compared:
     return Compared(batch, expected + errors * scale, expected)
 
 
-@check(is_shader, shifted, "value", diagnose=diagnose_lobes)
-def lobes(case: Case) -> Compared:
-    """In direct light, the material is the sum of its lobes by the layer equation."""
-    return values(case)
-
-
-@check(
-    lambda spec: isinstance(spec, SurfaceShaderSpec) and bool(spec.film),
-    shifted,
-    lit=True,
-    diagnose=SUM,
-)
 def lobes_film(case: Case) -> Compared:
-    """Under a thin film, too, the material is the sum of its lobes."""
     batch = case.samples.take(case.of(SurfaceShaderSpec).films)
     return Compared(batch, case.direct(batch), case.expected(batch))
 
 
-@check(is_shader, shifted, ALBEDO, diagnose=SUM, methods=finds_albedo)
-def lobes_albedo() -> None:
-    """The environment branch returns the albedo of all lobes by the layer equation."""
-
-
-@check(
-    is_shader,
-    scale("every value is 1 % too low", 0.99),
-    lit=True,
-    diagnose=SUM,
-    methods=finds_albedo,
-)
 def lobes_mean(case: Case) -> Iterator[Compared]:
-    """Averaged over many materials and views, the shader returns as much light as its lobes."""
     compared = values(case)
     yield compared.where(~stretched(compared.batch))
     yield from ALBEDO(case)
 
 
-@check(
-    is_shader,
-    scale("every value is 10 % too low", 0.9),
-    "albedo",
-    lit=True,
-    diagnose=SUM,
-    methods=finds_albedo,
-)
 def lobes_furnace(case: Case) -> Compared:
-    """A white material with many lobes disappears in a white environment."""
     white = replace(case.samples.views[0], inputs=case.of(SurfaceShaderSpec).white)
     return Compared(white, case.albedo(white), np.ones((1, 3)))
 
 
-@check(
-    is_shader,
-    scale("every value is 50 % too high", 1.5),
-    "albedo",
-    lit=True,
-    diagnose=SUM,
-    methods=finds_albedo,
-)
 def lobes_energy(case: Case) -> Compared:
-    """No material with these lobes reflects and transmits more light than it receives."""
     batch = case.samples.edges
     return Compared(batch, np.maximum(case.albedo(batch), 1.0), np.ones((1, 3)))
 
 
-@check(is_shader, scale("values are 5 % too large", 1.05), lit=True, diagnose=SUM)
 def glass(case: Case) -> Iterator[Compared]:
-    """Clear glass reflects and transmits the shares of a white environment that its lobes have by the layer equation."""
     spec, methods = case.of(SurfaceShaderSpec), case.host.active
     batch = spec.clear(case.samples.views[0])
     through = spec.transmitted(batch, methods.transmission == "opacity")
@@ -163,15 +116,7 @@ def diagnose_graph(case: Case) -> Diagnosis:
     return Diagnosis(tuple(causes), permitted=len(causes) > 1)
 
 
-@check(
-    is_shader,
-    shifted,
-    tolerance=sum_of(roundings(16, "of the numbers in a graph"), quantity=Quantity.LOBE_INPUTS),
-    open=True,
-    diagnose=diagnose_graph,
-)
 def graph(case: Case) -> Compared:
-    """The graph gives every lobe the inputs that it has in the graph that MaterialX released, for every default."""
     spec = case.of(SurfaceShaderSpec)
     graphs, batch = spec.graphs, case.samples.take(spec.drawn)
     expected = graphs.values(batch, right=True)
@@ -218,14 +163,15 @@ def without_effect(case: Case) -> list[str]:
     return [name for name, each in zip(spec.names, effective, strict=True) if not each]
 
 
-@control("every change is dropped")
-def ignore_changes(case: Case) -> Case:
-    """The host sees the first pair only."""
-    return replace(
+# The host sees the first pair only.
+ignore_changes = controls.Control(
+    "every change is dropped",
+    lambda case: replace(
         case,
         inputs=lambda batch: batch.first(1),
         outputs=lambda batch, found: np.repeat(found, len(batch.wo), axis=0),
-    )
+    ),
+)
 
 
 def diagnose_reach(case: Case) -> Diagnosis:
@@ -239,7 +185,100 @@ def diagnose_reach(case: Case) -> Diagnosis:
     return Diagnosis(tuple(causes))
 
 
-@check(is_shader, ignore_changes, tolerance=count_of(Quantity.INPUTS), diagnose=diagnose_reach)
 def reach(case: Case) -> Measurement:
-    """Every input changes a value, except those that are known to change nothing."""
     return count_named(misplaced(case))
+
+
+ROWS = (
+    Check(
+        key="lobes",
+        claim="In direct light, the material is the sum of its lobes by the layer equation.",
+        applies=MATERIALS,
+        measure=values,
+        tolerance="value",
+        control=controls.shifted,
+        explain=diagnose_lobes,
+    ),
+    Check(
+        key="lobes_film",
+        claim="Under a thin film, too, the material is the sum of its lobes.",
+        applies=family(SurfaceShaderSpec, lambda spec: bool(spec.film)),
+        measure=lobes_film,
+        tolerance="lobes_film",
+        control=controls.shifted,
+        explain=SUM,
+        lit=True,
+    ),
+    Check(
+        key="lobes_albedo",
+        claim="The environment branch returns the albedo of all lobes by the layer equation.",
+        applies=MATERIALS,
+        measure=ALBEDO,
+        tolerance="albedo",
+        control=controls.shifted,
+        explain=SUM,
+        methods=finds_albedo,
+    ),
+    Check(
+        key="lobes_mean",
+        claim="Averaged over many materials and views, the shader returns as much light as its lobes.",
+        applies=MATERIALS,
+        measure=lobes_mean,
+        tolerance="lobes_mean",
+        control=controls.scale("every value is 1 % too low", 0.99),
+        explain=SUM,
+        lit=True,
+        methods=finds_albedo,
+    ),
+    Check(
+        key="lobes_furnace",
+        claim="A white material with many lobes disappears in a white environment.",
+        applies=MATERIALS,
+        measure=lobes_furnace,
+        tolerance="albedo",
+        control=controls.scale("every value is 10 % too low", 0.9),
+        explain=SUM,
+        lit=True,
+        methods=finds_albedo,
+    ),
+    Check(
+        key="lobes_energy",
+        claim="No material with these lobes reflects and transmits more light than it receives.",
+        applies=MATERIALS,
+        measure=lobes_energy,
+        tolerance="albedo",
+        control=controls.scale("every value is 50 % too high", 1.5),
+        explain=SUM,
+        lit=True,
+        methods=finds_albedo,
+    ),
+    Check(
+        key="glass",
+        claim="Clear glass reflects and transmits the shares of a white environment that its lobes have by the layer equation.",
+        applies=MATERIALS,
+        measure=glass,
+        tolerance="glass",
+        control=controls.scale("values are 5 % too large", 1.05),
+        explain=SUM,
+        lit=True,
+    ),
+    Check(
+        key="graph",
+        claim="The graph gives every lobe the inputs that it has in the graph that MaterialX released, for every default.",
+        applies=MATERIALS,
+        measure=graph,
+        tolerance=sum_of(roundings(16, "of the numbers in a graph"), quantity=Quantity.LOBE_INPUTS),
+        control=controls.shifted,
+        explain=diagnose_graph,
+        open=True,
+    ),
+    Check(
+        key="reach",
+        claim="Every input changes a value, except those that are known to change nothing.",
+        applies=MATERIALS,
+        measure=reach,
+        tolerance=count_of(Quantity.INPUTS),
+        control=ignore_changes,
+        explain=diagnose_reach,
+    ),
+)
