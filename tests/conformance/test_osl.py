@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from mxeon.conformance.reference.closures import evaluate
+from mxeon.hosts.base import Query
 from mxeon.shaders.generation import generate
 from mxeon.shaders.library import examples_folder
 from tests.support.cases import directions_32
@@ -127,6 +128,8 @@ def test_an_example_is_what_its_document_says(hosts, reference, name):
     wo, wi = (directions_32(np.random.default_rng(seed), 16) for seed in (1, 2))
     for osl, other in zip(generate(file, "osl"), generate(file, "glsl"), strict=True):
         expected = np.pi * reference.evaluate(other, wo, wi, {}, "direct")
-        error = np.abs(np.pi * evaluate(host, osl, wo, wi, {}, "direct", "response") - expected)
+        error = np.abs(
+            np.pi * evaluate(host, Query(osl, wo, wi, {}, "direct", "response", None)) - expected
+        )
         largest = (error / np.maximum(np.abs(expected), 1.0)).max()
         assert (largest <= GRAPH) == (osl.name not in COLOR82)

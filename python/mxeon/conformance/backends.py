@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The ways of asking an engine for values of a node: what each supports, takes, and adds to an error.
+"""The ways of evaluating a node on an engine: what each supports, its samples, and what it adds to an error.
 
 An engine evaluates any pairs of directions, returns closures, lights a point by a camera and a light, or
 renders pictures of a sphere. Each returns its values in the same form, so that a check is written once.
@@ -13,38 +13,20 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias, TypeVar, cast
+from typing import TYPE_CHECKING, ClassVar, TypeAlias, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mxeon.conformance import samples
 from mxeon.conformance.cache import EVALUATIONS, Recent, contents, parts
 from mxeon.conformance.results import Claims
 from mxeon.conformance.results.quantities import Quantity
-from mxeon.conformance.samples import (
-    LEAST_TURNED,
-    LOBE_RIM,
-    RIM,
-    Array,
-    Batch,
-    Counts,
-    Mask,
-    Values,
-    directions,
-    float32,
-    generator,
-    rounded,
-)
-from mxeon.conformance.spec import POWER, LobeSpec, Spec, broadcast_inputs
-from mxeon.conformance.specs.combinations import CombinedSpec
-from mxeon.conformance.specs.diffuse import LOBE_VALUE, DiffuseModelSpec, DiffuseSpec, SurfaceLobe
-from mxeon.conformance.specs.emission import AbsentSpec, EmissionSpec, EmittingSurface, MediumSpec
-from mxeon.conformance.specs.hair import HairSpec
+from mxeon.conformance.samples import LOBE_RIM, RIM, Array, Batch, Counts, Mask, Values
+from mxeon.conformance.spec import POWER, Ability, LobeSpec, Spec, ValueSpec, broadcast_inputs
+from mxeon.conformance.specs.diffuse import LOBE_VALUE, SurfaceLobe
 from mxeon.conformance.specs.lobes import PbrSpec, ScatteringSpec
-from mxeon.conformance.specs.microfacets import LEAST_FIT, FilmSpec, TransmissionSpec
-from mxeon.conformance.specs.subsurface import SubsurfaceSpec
-from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
-from mxeon.conformance.specs.utilities import UtilitySpec
+from mxeon.conformance.specs.microfacets import FacetSpec
 from mxeon.conformance.tolerance import (
     ROUNDING,
     Term,
@@ -59,7 +41,7 @@ from mxeon.conformance.tolerance import (
 )
 from mxeon.errors import DocumentError, NotRun
 from mxeon.hosts import front_lit_only, host_row
-from mxeon.hosts.base import Host
+from mxeon.hosts.base import Host, Query
 from mxeon.hosts.calls import LIT
 from mxeon.hosts.pairs import DISTANCE, JITTER, PIXEL, apart, visible
 from mxeon.hosts.testrender_scene import EYE, NEAREST
@@ -76,8 +58,7 @@ LINEAR, SRGB_COLOR = 'colorspace="lin_rec709" version="', 'name="color" colorspa
 POWERS = 1 << 12  # colors whose powers are measured
 NO_IMPLEMENTATION = "Could not find a matching implementation"
 Pairs: TypeAlias = tuple[Array, Array, Mask]  # wo, wi, and which of them are judged
-Families: TypeAlias = tuple[type[Spec], ...]
-Asked: TypeAlias = "tuple[Shader, Array, Array, Values, str]"  # for pairs, in a branch
+Errors: TypeAlias = Mapping[str, Tolerance | None]  # by quantity; None where none is measured
 T = TypeVar("T")
 
 
@@ -91,110 +72,31 @@ def implementation(host: Host, text: str, library: str) -> Shader | None:
         return None
 
 
-class Samples:
-    """The samples of a spec that a backend takes, each drawn once."""
-
-    whole: ClassVar[bool] = False  # whether controls and what takes long get all of them
-
-    def __init__(self, backend: Backend) -> None:
-        self.backend: Any = backend
-        self.spec: Any = backend.spec  # of a family that has what is taken of it
-        counts = backend.fewer or self.spec.counts, self.spec.counts
-        self.counts: Counts = min(counts, key=lambda each: each.pairs).varied()
-        self._drawn: dict[str, object] = {}
-
-    def take(self, draw: Callable[[Counts], T]) -> T:
-        """What a method of the spec draws."""
-        if draw.__qualname__ not in self._drawn:
-            self._drawn[draw.__qualname__] = draw(self.counts)
-        return cast(T, self._drawn[draw.__qualname__])
-
-    @cached_property
-    def batches(self) -> tuple[Batch, ...]:
-        batches: tuple[Batch, ...] = self.spec.batches(self.counts)
-        return batches
-
-    @cached_property
-    def few(self) -> tuple[Batch, ...]:
-        """Some of them, for what takes long and for controls."""
-        if self.whole:
-            return self.batches
-        few: tuple[Batch, ...] = self.spec.few(self.batches, self.counts)
-        return few
-
-    @cached_property
-    def views(self) -> tuple[Batch, ...]:
-        views: tuple[Batch, ...] = self.spec.views(self.batches, self.counts)
-        if self.backend.prefiltered:
-            return tuple(map(isotropic, views))
-        return views
-
-    @cached_property
-    def edges(self) -> Batch:
-        return cast(Batch, self.spec.edges(self.counts))
-
-    @cached_property
-    def turned(self) -> Batch:
-        return cast(Batch, self.spec.turned(self.counts))
-
-    @cached_property
-    def mirrored(self) -> tuple[Batch, Batch]:
-        return cast(tuple[Batch, Batch], self.spec.mirrored(self.counts))
-
-    @cached_property
-    def integrated(self) -> tuple[Batch, Array]:
-        return cast(tuple[Batch, Array], self.spec.integrated(self.counts, self.taken))
-
-    @cached_property
-    def integrals(self) -> Array:
-        """Integrals of the values of the integrated materials, by the equations, (N, 3)."""
-        batch, weights = self.integrated
-        views = batch.where(np.arange(len(weights)) * weights.shape[1])
-        return cast(Array, self.spec.integral(views))
-
-    def taken(self, inputs: Mapping[str, Array]) -> dict[str, Array]:
-        """Inputs that the backend takes."""
-        return dict(inputs)
-
-
-def isotropic(batch: Batch) -> Batch:
-    """The same with the mean alpha in all directions: a prefiltered environment has one roughness."""
-    inputs: dict[str, Array] = {}
-    for name, value in batch.inputs.items():
-        if name == "roughness" and np.shape(value)[-1:] == (2,):
-            mean = np.sqrt(np.prod(np.asarray(value), axis=-1, keepdims=True))
-            inputs[name] = np.broadcast_to(mean, np.shape(value))
-        elif name.endswith("anisotropy"):
-            inputs[name] = np.zeros_like(value)
-    return batch.altered(**inputs)
-
-
 class Backend(ABC):
-    """A way of asking an engine about one node: its shader, and values of it."""
+    """A way of evaluating one node on an engine: its samples, its shader, and values of it."""
 
-    families: ClassVar[Families] = ()  # of nodes of which it has values
-    others: ClassVar[Families] = ()  # of these, families of which it has none
+    abilities: ClassVar[Ability]  # nodes whose values it has, and what checks need
     # Axes of `checks.states` of which it has the first state alone.
     plain: ClassVar[tuple[str, ...]] = ()
-    any_pairs: ClassVar[bool] = True  # those at the edges of the domain, too
-    # Families of nodes of which the host itself finds no light and lets none pass.
-    unlit: ClassVar[Families] = ()
-    sampled: ClassVar[type[Samples]] = Samples
+    whole: ClassVar[bool] = False  # whether controls and what takes long get all samples
     fewer: ClassVar[Counts | None] = None  # counts of samples where a spec has more
 
     def __init__(self, host: Host, spec: Spec, library: str) -> None:
         self.host, self.spec, self.library = host, spec, library
+        counts = self.fewer or spec.counts, spec.counts
+        self.counts: Counts = min(counts, key=lambda each: each.pairs).varied()
         self._evaluations = Recent[Array](EVALUATIONS)
+        self._drawn: dict[str, object] = {}
 
     @classmethod
     def supports(cls, spec: Spec) -> bool:
-        """Whether an engine that is asked in this way has values of a node."""
-        return isinstance(spec, cls.families) and not isinstance(spec, cls.others)
+        """Whether it has values of a node."""
+        return spec.requires in cls.abilities
 
     @classmethod
-    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
-        """The largest error of a quantity, engine functions apart; None where it is not asked."""
-        return spec.errors.get(quantity)
+    def errors(cls, spec: Spec) -> Errors:
+        """The largest error of each quantity, engine functions apart."""
+        return spec.errors
 
     @property
     def prefiltered(self) -> bool:
@@ -227,10 +129,73 @@ class Backend(ABC):
         """The spec with what the engine may have instead of its model, or in the form nearest to what is measured."""
         return self.spec
 
+    # Samples, each drawn once.
+
+    def take(self, draw: Callable[[Counts], T]) -> T:
+        """What a method of the spec draws."""
+        if draw.__qualname__ not in self._drawn:
+            self._drawn[draw.__qualname__] = draw(self.counts)
+        return cast(T, self._drawn[draw.__qualname__])
+
+    @property
+    def valued(self) -> ValueSpec:
+        return cast(ValueSpec, self.spec)
+
+    @property
+    def lobe(self) -> LobeSpec:
+        return cast(LobeSpec, self.spec)
+
+    @property
+    def facets(self) -> FacetSpec:
+        return cast(FacetSpec, self.spec)
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        return self.valued.batches(self.counts)
+
+    @cached_property
+    def few(self) -> tuple[Batch, ...]:
+        """Some of them, for what takes long and for controls."""
+        return self.batches if self.whole else self.valued.few(self.batches, self.counts)
+
+    @cached_property
+    def views(self) -> tuple[Batch, ...]:
+        views = self.lobe.views(self.batches, self.counts)
+        return tuple(map(isotropic, views)) if self.prefiltered else views
+
+    @cached_property
+    def edges(self) -> Batch:
+        return self.lobe.edges(self.counts)
+
+    @cached_property
+    def turned(self) -> Batch:
+        return self.lobe.turned(self.counts)
+
+    @cached_property
+    def mirrored(self) -> tuple[Batch, Batch]:
+        return self.facets.mirrored(self.counts)
+
+    @cached_property
+    def integrated(self) -> tuple[Batch, Array]:
+        return cast(ScatteringSpec, self.spec).integrated(self.counts, self.taken)
+
+    @cached_property
+    def integrals(self) -> Array:
+        """Integrals of the values of the integrated materials, by the equations, (N, 3)."""
+        batch, weights = self.integrated
+        views = batch.where(np.arange(len(weights)) * weights.shape[1])
+        return cast(ScatteringSpec, self.spec).integral(views)
+
+    def taken(self, inputs: Mapping[str, Array]) -> dict[str, Array]:
+        """Inputs as the backend takes them."""
+        return dict(inputs)
+
     def portrait(self, scene: Scene) -> tuple[Array, Array, Mask, Mask]:
         """Pairs at the points of a picture, which are judged, and the pixels of the points."""
         wo, wi, judged = picture_pairs(scene)
-        return rounded(wo.T), rounded(wi.T), judged, sphere(scene.size).mask
+        return samples.rounded(wo.T), samples.rounded(wi.T), judged, sphere(scene.size).mask
+
+    # Values.
 
     @abstractmethod
     def direct(self, batch: Batch) -> Array:
@@ -241,47 +206,61 @@ class Backend(ABC):
         """Values of the environment branch, (N, 3); the environment is uniform unless given."""
 
 
+def isotropic(batch: Batch) -> Batch:
+    """The same with the mean alpha in all directions: a prefiltered environment has one roughness."""
+    inputs: dict[str, Array] = {}
+    for name, value in batch.inputs.items():
+        if name == "roughness" and np.shape(value)[-1:] == (2,):
+            mean = np.sqrt(np.prod(np.asarray(value), axis=-1, keepdims=True))
+            inputs[name] = np.broadcast_to(mean, np.shape(value))
+        elif name.endswith("anisotropy"):
+            inputs[name] = np.zeros_like(value)
+    return batch.altered(**inputs)
+
+
 # Hosts that evaluate any pairs of directions.
 
 
 class Evaluating(Backend):
     """An engine that runs the generated shader for any pairs."""
 
-    families: ClassVar[Families] = (Spec,)
-    others: ClassVar[Families] = (SurfaceLobe, EmittingSurface)
+    abilities = ~(Ability.BELOW | Ability.SURFACE)
 
     @classmethod
-    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
-        if quantity == "color_space":
-            return sum_of(roundings(2 * 16, "of a color and the value it has, times the slope 2"))
-        if quantity == "states" and "frame" in spec.errors:
+    def errors(cls, spec: Spec) -> Errors:
+        own: dict[str, Tolerance | None] = {
+            **spec.errors,
+            "color_space": sum_of(
+                roundings(2 * 16, "of a color and the value it has, times the slope 2")
+            ),
+        }
+        if frame := spec.errors.get("frame"):
             angle = 2.0 * spec.along * math.sqrt(2.0 * ROUNDING)
             words = f"two slopes {spec.along:g} at the normal, times the angle of a rounded cosine"
-            return sum_of(
-                spec.errors["frame"].term("a part in another frame"),
+            own["states"] = sum_of(
+                frame.term("a part in another frame"),
                 roundings(12, "of six parts"),
                 *((Term(angle, words),) if angle else ()),
             )
-        return super().error(spec, quantity)
+        return own
 
     def precision(self, quantity: str) -> tuple[Term, ...]:
         if quantity == "color_space":
-            colors, power = float32(np.linspace(0.09, 1.0, POWERS)), float32(np.full(POWERS, 2.4))
+            colors = samples.float32(np.linspace(0.09, 1.0, POWERS))
+            power = samples.float32(np.full(POWERS, 2.4))
             error = POWER.error(lambda: (colors, power))(self.host)
             return (Term(2.0 * error, "pow() as measured there, times 2"),)
-        if isinstance(self.spec, self.unlit):
+        if Ability.LIGHT not in self.abilities and self.spec.requires & Ability.SCATTERS:
             return ()
-        terms = self.spec.engine(quantity, self.host)
-        if quantity == "value" and self.prefiltered and isinstance(self.spec, TransmissionSpec):
-            terms += (Term(LEAST_FIT, "MaterialX's fit of prefiltered light"),)
-        return terms
+        fits = self.spec.prefiltered_fits if self.prefiltered else {}
+        return *self.spec.engine(quantity, self.host), *fits.get(quantity, ())
 
     @cached_property
     def shader(self) -> Shader:
         return self.implemented(self.spec.document())
 
     def direct(self, batch: Batch) -> Array:
-        branch, output, factor = self.spec.asked
+        branch, output, factor = self.spec.evaluated
         return factor * self.evaluate(batch, branch, output)
 
     def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
@@ -298,8 +277,7 @@ class Evaluating(Backend):
     @cached_property
     def two(self) -> Shader:
         """A shader of two lobes in one pixel."""
-        text = cast(LobeSpec, self.spec).two_lobes()
-        return self.host.compile(text, library=self.library)[0]
+        return self.host.compile(self.lobe.two_lobes(), library=self.library)[0]
 
     @cached_property
     def decoded(self) -> Shader:
@@ -312,9 +290,9 @@ class Evaluating(Backend):
         shader = self.two if two else self.shader
         return self.evaluate(batch, LIT, irradiance=irradiance, shader=shader)
 
-    def asked(self, asked: Asked, output: str, irradiance: NDArray[np.float32] | None) -> Array:
-        """The host's values for a shader, directions, inputs and a branch."""
-        return self.host.evaluate(*asked, output=output, irradiance=irradiance)
+    def answer(self, query: Query) -> Array:
+        """The host's values for a query."""
+        return self.host.evaluate(*query[:5], output=query.output, irradiance=query.irradiance)
 
     def evaluate(
         self,
@@ -326,9 +304,9 @@ class Evaluating(Backend):
     ) -> Array:
         def evaluated() -> Array:
             inputs = {**self.spec.fixed, **batch.inputs}
-            wo, wi = batch.world(batch.wo), batch.world(batch.wi)
-            asked = shader or self.shader, wo, wi, inputs, branch
-            return self.asked(asked, output, irradiance).astype(np.float64)
+            pairs = batch.world(batch.wo), batch.world(batch.wi)
+            query = Query(shader or self.shader, *pairs, inputs, branch, output, irradiance)
+            return self.answer(query).astype(np.float64)
 
         which = shader and (shader.element, shader.methods)
         rest = branch, output, which, contents(irradiance)
@@ -338,7 +316,7 @@ class Evaluating(Backend):
 class InTheDark(Evaluating):
     """The same of media, and of nodes whose implementation alone is judged, on a renderer."""
 
-    families = (MediumSpec, AbsentSpec)
+    abilities = Ability.MEDIUM | Ability.IMPLEMENTATION | Ability.PAIRS | Ability.LIGHT
 
 
 # OSL: closures are trees of arguments and weights, which the models evaluate in float64.
@@ -347,9 +325,7 @@ class InTheDark(Evaluating):
 FEW_CLOSURES = Counts(1 << 11, 1 << 6, 1 << 8, albedos=16, materials=8, mirrored=1 << 8)
 SOME = 1 << 8  # pairs of every kind but the random ones
 # The models round in float64, 2^-53, and the sharpest lobe, of alpha 1e-4, takes that 1e8 times.
-ARGUMENTS = Tolerance(
-    (roundings(1, "of arguments with nine digits, evaluated in float64"),), exact=True
-)
+ARGUMENTS = sum_of(roundings(1, "of arguments with nine digits, evaluated in float64"), exact=True)
 GRAPH = sum_of(
     roundings(
         4 * 16, "from an input to an argument, 16 times 4: a distribution's log grows 4 times"
@@ -357,11 +333,52 @@ GRAPH = sum_of(
 )
 
 
-class ClosureSamples(Samples):
-    """Fewer samples, with weights of at least 0: OSL multiplies a closure by any number.
+def joined(batches: Sequence[Batch]) -> Batch:
+    """One batch of all pairs, whose inputs have the same names."""
+    if len(batches) == 1:
+        return batches[0]
+    wo, wi = (np.concatenate(each) for each in ([b.wo for b in batches], [b.wi for b in batches]))
+    rows = list(map(broadcast_inputs, batches))
+    inputs = {name: np.concatenate([each[name] for each in rows]) for name in rows[0]}
+    frames = [batch.frame for batch in batches if batch.frame is not None]
+    return Batch(wo, wi, inputs, frame=np.concatenate(frames) if frames else None)
 
-    Some dielectrics have the index 0, for which a shader may make another closure.
-    """
+
+def _altered(batch: Batch) -> Batch:
+    """The batch with weights of at least 0, by which OSL multiplies closures, and some dielectrics of index 0."""
+    changes: dict[str, Array] = {}
+    if "weight" in batch.inputs:
+        changes["weight"] = np.maximum(batch.inputs["weight"], 0.0)
+    if {"tint", "ior"} <= batch.inputs.keys():
+        index = broadcast_inputs(batch)["ior"]
+        changes["ior"] = np.where(np.arange(len(index)) % 7 == 3, 0.0, index)
+    return batch.altered(**changes)
+
+
+class Closures(Evaluating):
+    """A host that returns closures; arguments have no errors, and no closure finds light."""
+
+    abilities = Evaluating.abilities & ~Ability.LIGHT
+    plain = ("lights", "environment", "shape", "inputs")
+    fewer = FEW_CLOSURES
+
+    @classmethod
+    def errors(cls, spec: Spec) -> Errors:
+        own = super().errors(spec)
+        if not spec.requires & Ability.SCATTERS:
+            return own
+        exact = GRAPH if Ability.MATERIAL in spec.requires else ARGUMENTS
+        absent = ["integral", "light", "reciprocity"]
+        if Ability.TRANSMISSION in spec.requires:
+            absent.append("states")  # a light shows nothing of what it transmits
+        if Ability.FILM in spec.requires:  # no closure has the flag, and none finds light
+            absent += ["retroreflection", "albedo", "throughput"]
+        return {
+            **own,
+            **dict.fromkeys(("value", "albedo"), exact),
+            **{name: exact for name in ("throughput", "lambert") if own.get(name)},
+            **dict.fromkeys(absent),
+        }
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
@@ -384,69 +401,25 @@ class ClosureSamples(Samples):
     @cached_property
     def edges(self) -> Batch:
         edges = super().edges
-        return edges.where(generator().permutation(len(edges.wo))[:SOME])
+        return edges.where(samples.generator().permutation(len(edges.wo))[:SOME])
 
-
-def joined(batches: Sequence[Batch]) -> Batch:
-    """One batch of all pairs, whose inputs have the same names."""
-    if len(batches) == 1:
-        return batches[0]
-    wo, wi = (np.concatenate(each) for each in ([b.wo for b in batches], [b.wi for b in batches]))
-    rows = list(map(broadcast_inputs, batches))
-    inputs = {name: np.concatenate([each[name] for each in rows]) for name in rows[0]}
-    frames = [batch.frame for batch in batches if batch.frame is not None]
-    return Batch(wo, wi, inputs, frame=np.concatenate(frames) if frames else None)
-
-
-def _altered(batch: Batch) -> Batch:
-    changes: dict[str, Array] = {}
-    if "weight" in batch.inputs:
-        changes["weight"] = np.maximum(batch.inputs["weight"], 0.0)
-    if {"tint", "ior"} <= batch.inputs.keys():
-        index = broadcast_inputs(batch)["ior"]
-        changes["ior"] = np.where(np.arange(len(index)) % 7 == 3, 0.0, index)
-    return batch.altered(**changes)
-
-
-class Closures(Evaluating):
-    """A host that returns closures; arguments have no errors, and no closure finds light."""
-
-    plain = ("lights", "environment", "shape", "inputs")
-    sampled, fewer, unlit = ClosureSamples, FEW_CLOSURES, (LobeSpec,)
-
-    def asked(self, asked: Asked, output: str, irradiance: NDArray[np.float32] | None) -> Array:
+    def answer(self, query: Query) -> Array:
         from mxeon.conformance.reference.closures import evaluate
 
-        assert irradiance is None, "closures look no environment up"
-        shader, wo, wi, inputs, branch = asked
-        if shader is self.shader and isinstance(self.spec, (DiffuseSpec, PbrSpec)):
+        assert query.irradiance is None, "closures look no environment up"
+        if query.shader is self.shader and self.spec.requires & (Ability.DIFFUSE | Ability.LOBE):
             # A constant that is not the surface's own frame is the node's input, of its document.
             frame = {
-                name: inputs[name]
+                name: query.inputs[name]
                 for name, axis in (("normal", UP), ("tangent", ALONG))
-                if name in self.spec.types and np.ndim(inputs.get(name, 0.0)) == 1
-                if not np.array_equal(inputs[name], axis)
+                if name in self.lobe.types and np.ndim(query.inputs.get(name, 0.0)) == 1
+                if not np.array_equal(query.inputs[name], axis)
             }
-            shader = self.implemented(self.spec.document(frame)) if frame else shader
-            inputs = {name: value for name, value in inputs.items() if name not in frame}
-        return evaluate(self.host, shader, wo, wi, inputs, branch, output)
-
-    @classmethod
-    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
-        own = super().error(spec, quantity)
-        if quantity == "states" and isinstance(spec, TransmissionSpec):
-            return None  # a light shows nothing of what it transmits
-        if isinstance(spec, FilmSpec) and quantity in ("retroreflection", "albedo", "throughput"):
-            return None  # no closure has the flag, and none finds light
-        if not isinstance(spec, LobeSpec):
-            return own
-        exact = GRAPH if isinstance(spec, SurfaceShaderSpec) else ARGUMENTS
-        told: dict[str, Tolerance | None] = {
-            **dict.fromkeys(("value", "albedo"), exact),
-            **dict.fromkeys(("throughput", "lambert"), own and exact),
-            **dict.fromkeys(("integral", "light", "reciprocity"), None),
-        }
-        return told.get(quantity, own)
+            if frame:
+                left = {name: each for name, each in query.inputs.items() if name not in frame}
+                shader = self.implemented(self.spec.document(frame))
+                query = query._replace(shader=shader, inputs=left)
+        return evaluate(self.host, query)
 
     def together(self, batch: Batch, irradiance: NDArray[np.float32] | None, two: bool) -> Array:
         return np.pi * self.evaluate(batch, "direct", shader=self.two if two else self.shader)
@@ -454,7 +427,7 @@ class Closures(Evaluating):
     @property
     def unset(self) -> tuple[str, ...]:
         """Frames of a surface shader's lobes: its text takes them from the surface, and has no input."""
-        names = self.spec.names if isinstance(self.spec, SurfaceShaderSpec) else ()
+        names = self.spec.names if Ability.MATERIAL in self.spec.requires else ()
         return tuple(each for each in names if each.endswith(("normal", "tangent")))
 
 
@@ -468,7 +441,7 @@ FAST_ARC_COSINE = Term(4.6e-5, "OpenImageIO's fast arc cosine")  # by its source
 POINT = 3.0 * EYE / NEAREST  # roundings of a point at the distance 40, seen from a light 1/2 away
 FLAT_SLOPE = 8.0  # largest of the diffuse models
 SHARP_SLOPE = (
-    2.0 / LEAST_TURNED + 3.0
+    2.0 / samples.LEAST_TURNED + 3.0
 )  # twice over the least alpha, and 3 for Fresnel and shadowing
 FLAT, SHARP = (
     sum_of(roundings(each * POINT, f"of a point, times the slope {each:g}"), FAST_ARC_COSINE)
@@ -503,12 +476,20 @@ INTEGRAL = sum_in(
 LIGHT = sum_in(Quantity.LIGHT, INTEGRAL.term("an integral of values"), PASSED.term("a throughput"))
 
 
-class RenderedSamples(Samples):
-    """Pairs that a renderer shows, and inputs that it takes.
+def _is_shown(batch: Batch, rim: float = RIM) -> Mask:
+    """Which pairs of a batch a renderer shows."""
+    least = np.minimum(batch.wo[:, 2], np.abs(batch.wi[:, 2]))
+    return np.asarray(visible(batch.wo, batch.wi) & (least >= rim))
+
+
+class Shown(Evaluating):
+    """A renderer, or a host that is given the pairs and inputs that renderers take.
 
     Both cosines are at least RIM, and no lobe is so sharp that the place of a pixel counts. A roughness is at
     most 1, as OSL's stdosl.h has it, a weight is not negative, and there is no occlusion.
     """
+
+    fewer = FEW_RENDERED
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
@@ -545,7 +526,7 @@ class RenderedSamples(Samples):
         taken.pop("occlusion", None)
         if "weight" in taken:
             taken["weight"] = np.maximum(taken["weight"], 0.0)
-        least = 0.0 if self.spec.model in SMOOTH else LEAST_TURNED
+        least = 0.0 if self.spec.model in SMOOTH else samples.LEAST_TURNED
         rough = [name for name in taken if name.endswith("roughness")]
         return taken | {name: np.clip(taken[name], least, 1.0) for name in rough}
 
@@ -553,45 +534,32 @@ class RenderedSamples(Samples):
         return replace(batch, inputs=self.taken(batch.inputs))
 
 
-class LobeSamples(RenderedSamples):
-    """Random pairs far from the rim, with colors and roughnesses of a lobe below others."""
-
-    whole = True
-
-    @cached_property
-    def batches(self) -> tuple[Batch, ...]:
-        rng, count = generator(), self.counts.few
-        inputs = self.taken(self.spec.random_inputs(rng, count))
-        batch = Batch(directions(rng, count), directions(rng, count), inputs)
-        return (batch.where(_is_shown(batch, LOBE_RIM)),)
-
-
-# Nodes of pbrlib without a closure of their own in renderers.
-WITHOUT_CLOSURE = (HairSpec, SubsurfaceSpec, FilmSpec, TransmissionSpec)
-
-
-class Rendered(Evaluating):
+class Rendered(Shown):
     """OSL's testrender, whose own closures light a point."""
 
-    families: ClassVar[Families] = (DiffuseSpec, PbrSpec)
-    others: ClassVar[Families] = (HairSpec, FilmSpec, TransmissionSpec)
-    sampled, fewer, unlit = RenderedSamples, FEW_RENDERED, (Spec,)
+    abilities = (
+        Ability.DIFFUSE | Ability.LOBE | Ability.SUBSURFACE | Ability.COMBINATION | Ability.PAIRS
+    )
     variants: ClassVar[Mapping[str, tuple[Variant[Scattering], ...]]] = BSDL_VARIANTS
     flat: ClassVar[Tolerance] = FLAT
     sharp: ClassVar[Tolerance] = SHARP
+    place: ClassVar[Tolerance | None] = None  # error of values of microfacets by a pixel's place
 
     def judged(self) -> Spec:
         return _with_variants(type(self), self.spec)
 
     @classmethod
-    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
-        flat = isinstance(spec, ScatteringSpec) and spec.flat
-        value = cls.flat if flat else cls.sharp
-        if quantity in ("retroreflection", "anisotropy"):
-            return largest(spec.errors[quantity], cls.place) if cls.place else spec.errors[quantity]
-        own = {
-            "value": value,
-            "reciprocity": value,
+    def errors(cls, spec: Spec) -> Errors:
+        turned = {
+            name: largest(spec.errors[name], cls.place or spec.errors[name])
+            for name in ("retroreflection", "anisotropy")
+            if name in spec.errors
+        }
+        value = cls.flat if spec.flat else cls.sharp
+        return {
+            **spec.errors,
+            **turned,
+            **dict.fromkeys(("value", "reciprocity"), value),
             "albedo": NOISE,
             "throughput": PASSED,
             "integral": INTEGRAL,
@@ -599,9 +567,6 @@ class Rendered(Evaluating):
             "lambert": cls.flat,
             "frame": None,
         }
-        return own.get(quantity, spec.errors.get(quantity))
-
-    place: ClassVar[Tolerance | None] = None  # error of values of microfacets by a pixel's place
 
     def direct(self, batch: Batch) -> Array:
         """Values, where need be of a pair that is shown next to the one that is not."""
@@ -611,23 +576,31 @@ class Rendered(Evaluating):
 class Traced(Rendered):
     """Cycles, whose closures of pbrlib's nodes light a point; pictures show the diffuse ones."""
 
-    families, others = (PbrSpec,), WITHOUT_CLOSURE
+    abilities = Ability.LOBE | Ability.COMBINATION | Ability.PAIRS
     variants = CYCLES_VARIANTS
     flat, sharp, place = TRACED_FLAT, TRACED_SHARP, TRACED_SHARP
 
 
-class LobesBelow(Evaluating):
+class LobesBelow(Shown):
     """The diffuse lobe of a surface shader, told apart from what lies over it; see SurfaceLobe."""
 
-    families, others = (SurfaceLobe,), ()
-    sampled, fewer, any_pairs = LobeSamples, FEW_RENDERED, False
+    abilities = Ability.BELOW | Ability.LIGHT
+    whole = True
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        """Random pairs far from the rim, with colors and roughnesses of a lobe below others."""
+        rng, count = samples.generator(), self.counts.few
+        inputs = self.taken(self.lobe.random_inputs(rng, count))
+        wo, wi = samples.directions(rng, count), samples.directions(rng, count)
+        batch = Batch(wo, wi, inputs)
+        return (batch.where(_is_shown(batch, LOBE_RIM)),)
 
     def direct(self, batch: Batch) -> Array:
-        assert isinstance(self.spec, SurfaceLobe)
-        ports = {name: port for name, port in self.spec.ports.items() if port}
+        ports = cast(SurfaceLobe, self.spec).ports
 
         def lit(batch: Batch) -> Array:
-            inputs = {port: batch.inputs[name] for name, port in ports.items()}
+            inputs = {port: batch.inputs[name] for name, port in ports.items() if port}
             return self.evaluate(replace(batch, inputs=inputs), "direct")
 
         return diffuse_alone(lit, batch)
@@ -637,8 +610,8 @@ class RenderedLobes(LobesBelow):
     """The same on testrender."""
 
     @classmethod
-    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
-        return BELOW if quantity == "value" else None
+    def errors(cls, spec: Spec) -> Errors:
+        return {"value": BELOW}
 
 
 def diffuse_alone(show: Callable[[Batch], Array], batch: Batch) -> Array:
@@ -658,19 +631,8 @@ def _with_variants(backend: type[Rendered], spec: Spec) -> Spec:
     return replace(spec, row=replace(spec.row, variants=variants))
 
 
-def _is_shown(batch: Batch, rim: float = RIM) -> Mask:
-    """Which pairs of a batch a renderer shows."""
-    least = np.minimum(batch.wo[:, 2], np.abs(batch.wi[:, 2]))
-    return np.asarray(visible(batch.wo, batch.wi) & (least >= rim))
-
-
 # Hosts that render pictures: the lit points of a sphere are the pairs.
 
-# Colors and roughnesses of the pictures that stand for a rough diffuse node.
-PICTURE_INPUTS: tuple[Values, ...] = (
-    {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
-    {"color": (0.8, 0.4, 0.1), "roughness": 0.5, "weight": 0.5},
-)
 PICTURE_SIZE = 128
 HALF_CUT = Term(2.0**-10, "half floats, cut off")  # as llvmpipe does
 # A ray's point is off by an angle, by which the logarithm of a lobe changes at most so many times as fast:
@@ -683,7 +645,7 @@ EXACT = sum_in(
     roundings(2 * 5 * (1.0 / RIM + 2.0), "(five in each of two cosines, times 22)"),
 )
 EXACT_ALBEDO = sum_in(Quantity.ALBEDO, roundings(21 * 1.02, "of numbers up to 1.02"))
-HALF = Tolerance((HALF_CUT, *EXACT.terms), "relative", relative, exact=True)
+HALF = Tolerance((HALF_CUT, *EXACT.terms), Quantity.RELATIVE, relative, exact=True)
 HALF_ALBEDO = sum_in(
     Quantity.ALBEDO,
     Term(2.0 * HALF_CUT.value, "half floats of map and picture, cut off"),
@@ -719,83 +681,24 @@ CYCLES_NOISE = sum_of(
 )
 
 
-class PictureSamples(Samples):
-    """The lit points of a sphere away from rim and terminator, for each light and material."""
-
-    whole = True
-
-    @cached_property
-    def batches(self) -> tuple[Batch, ...]:
-        pictures = self.backend
-        batches = (
-            pictures.batch(replace(scene, size=pictures.size), inputs)
-            for scene in pictures.scenes
-            for inputs in pictures.materials
-        )
-        return tuple(batch for batch in batches if len(batch.wo))
-
-    @cached_property
-    def views(self) -> tuple[Batch, ...]:
-        """The points in a white environment."""
-        scene = replace(FURNACE, size=self.backend.size)
-        return tuple(self.backend.batch(scene, inputs) for inputs in self.backend.materials)
-
-
-def errors_of(value: Tolerance, albedo: Tolerance) -> Mapping[str, Tolerance]:
-    """Errors of pictures of a rough diffuse node."""
-    return {
-        "value": value,
-        "albedo": albedo,
-        "lambert": value,
-    }
-
-
 class Pictures(Backend):
     """A host that renders pictures of a sphere."""
 
-    errors: ClassVar[Mapping[str, Tolerance]] = {}  # instead of those of the spec, if there are any
-    scenes: ClassVar[tuple[Scene, ...]] = (SIDE, FRONT, BACK)
-    sampled: ClassVar[type[Samples]] = PictureSamples
-    any_pairs = False
-
-    @classmethod
-    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
-        return (cls.errors or spec.errors).get(quantity)
-
     @property
     def size(self) -> int:
-        if isinstance(self.spec, (SurfaceLobe, EmissionSpec)):
-            return PICTURE_SIZE // 4  # the shaders are long, or every pixel of one view is alike
-        return PICTURE_SIZE // 2 if isinstance(self.spec, PbrSpec) else PICTURE_SIZE
-
-    @property
-    def materials(self) -> Sequence[Values]:
-        if isinstance(self.spec, (PbrSpec, EmissionSpec)):
-            return self.spec.materials
-        names = {"color", "roughness", *self.spec.names}
-        return [
-            {name: value for name, value in inputs.items() if name in names}
-            for inputs in PICTURE_INPUTS
-        ]
-
-    def batch(self, scene: Scene, inputs: Values) -> Batch:
-        wo, wi, mask = self.points(scene)
-        return Batch(wo[mask], wi[mask], inputs, scene)
+        return PICTURE_SIZE // self.spec.coarse
 
     def points(self, scene: Scene) -> Pairs:
         """Directions at the points of a picture, and the mask of the points to judge."""
-        wo, wi, mask = picture_pairs(scene)
-        if isinstance(self.spec, LobeSpec) and self.spec.side < 0.0 and scene.light is not None:
-            mask = (wo[:, 2] >= RIM) & (wi[:, 2] <= -RIM)
-        if isinstance(self.spec, SurfaceLobe):  # an error in position is divided twice
-            mask = mask & (np.minimum(wo[:, 2], wi[:, 2]) >= LOBE_RIM)
-        return wo, wi, mask
+        wo, wi, _ = picture_pairs(scene)
+        lit = wi[:, 2] * (1.0 if scene.light is None else self.spec.side)
+        return wo, wi, np.minimum(wo[:, 2], lit) >= self.spec.rim
 
     def portrait(self, scene: Scene) -> tuple[Array, Array, Mask, Mask]:
         return *self.points(scene), sphere(scene.size).mask
 
     def direct(self, batch: Batch) -> Array:
-        alone = isinstance(self.spec, SurfaceLobe)
+        alone = Ability.BELOW in self.spec.requires
         return diffuse_alone(self.picture, batch) if alone else self.picture(batch)
 
     def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
@@ -809,6 +712,36 @@ class Pictures(Backend):
 
     def shader_of(self, inputs: Values) -> Shader:
         return _compile(self.host, self.spec.document(inputs), self.library)
+
+
+class Spheres(Pictures):
+    """Pictures whose lit points, away from rim and terminator, are the samples, for each light and material."""
+
+    scenes: ClassVar[tuple[Scene, ...]] = (SIDE, FRONT, BACK)
+    whole = True
+
+    @property
+    def materials(self) -> Sequence[Values]:
+        return self.spec.materials
+
+    def batch(self, scene: Scene, inputs: Values) -> Batch:
+        wo, wi, mask = self.points(scene)
+        return Batch(wo[mask], wi[mask], inputs, scene)
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        batches = (
+            self.batch(replace(scene, size=self.size), inputs)
+            for scene in self.scenes
+            for inputs in self.materials
+        )
+        return tuple(batch for batch in batches if len(batch.wo))
+
+    @cached_property
+    def views(self) -> tuple[Batch, ...]:
+        """The points in a white environment."""
+        scene = replace(FURNACE, size=self.size)
+        return tuple(self.batch(scene, inputs) for inputs in self.materials)
 
 
 @lru_cache(maxsize=8)  # a check makes many pictures of a few documents
@@ -839,11 +772,14 @@ def lit_pairs(normal: Array, scene: Scene) -> Pairs:
     return wo, wi, (wo[:, 2] >= RIM) & (wi[:, 2] >= RIM)
 
 
-class CyclesPictures(Pictures):
+class CyclesPictures(Spheres):
     """Cycles's pictures of a rough diffuse node, whose closure is its own."""
 
-    errors = errors_of(CYCLES_RAY, CYCLES_NOISE)
-    families = (DiffuseSpec,)
+    abilities = Ability.DIFFUSE | Ability.LIGHT
+
+    @classmethod
+    def errors(cls, spec: Spec) -> Errors:
+        return {"value": CYCLES_RAY, "albedo": CYCLES_NOISE, "lambert": CYCLES_RAY}
 
     def points(self, scene: Scene) -> Pairs:
         """The points for which the host has a closure that can be the model."""
@@ -853,22 +789,23 @@ class CyclesPictures(Pictures):
         return wo, wi, mask
 
 
-class Drawn(Pictures):
+class Drawn(Spheres):
     """Pictures of a sphere whose points and light have no error but rounding."""
 
-    families = (PbrSpec, DiffuseSpec, SurfaceLobe)
-    others = (*WITHOUT_CLOSURE, CombinedSpec)
-    errors = errors_of(EXACT, EXACT_ALBEDO)
-    lobe: ClassVar[Tolerance] = DRAWN_LOBE
+    abilities = Ability.LOBE | Ability.DIFFUSE | Ability.BELOW | Ability.LIGHT
+    exact: ClassVar[Errors] = {"value": EXACT, "albedo": EXACT_ALBEDO, "lambert": EXACT}
+    lobe_error: ClassVar[Tolerance] = DRAWN_LOBE
 
     @classmethod
-    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
-        if isinstance(spec, DiffuseModelSpec):
-            own = {"value": cls.lobe} if isinstance(spec, SurfaceLobe) else cls.errors
-            return own.get(quantity)
-        if quantity not in ("value", "albedo"):
-            return None
-        return cls.drawn(spec.errors.get(f"picture {quantity}", spec.errors[quantity]))
+    def errors(cls, spec: Spec) -> Errors:
+        if Ability.BELOW in spec.requires:
+            return {"value": cls.lobe_error}
+        if Ability.DIFFUSE in spec.requires:
+            return cls.exact
+        return {
+            name: cls.drawn(spec.errors.get(f"picture {name}", spec.errors[name]))
+            for name in ("value", "albedo")
+        }
 
     @classmethod
     def drawn(cls, error: Tolerance) -> Tolerance:
@@ -880,18 +817,18 @@ class Drawn(Pictures):
 class Half(Drawn):
     """The same on a host that keeps colors as half floats: Storm, whose modes are the default ones."""
 
-    errors = errors_of(HALF, HALF_ALBEDO)
-    lobe: ClassVar[Tolerance] = HALF_LOBE
+    exact: ClassVar[Errors] = {"value": HALF, "albedo": HALF_ALBEDO, "lambert": HALF}
+    lobe_error = HALF_LOBE
 
     @classmethod
     def supports(cls, spec: Spec) -> bool:
         return super().supports(spec) and spec.model != "zeltner"
 
     @classmethod
-    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
-        if quantity == "albedo" and isinstance(spec, PbrSpec):
-            return None  # its furnace has another sum of directions
-        return super().error(spec, quantity)
+    def errors(cls, spec: Spec) -> Errors:
+        """Those of pictures; the furnace of a node of pbrlib has another sum of directions."""
+        own = super().errors(spec)
+        return {**own, "albedo": None} if Ability.LOBE in spec.requires else own
 
     @classmethod
     def drawn(cls, error: Tolerance) -> Tolerance:
@@ -915,40 +852,41 @@ PICTURE_RADIANCE = sum_of(
 class DarkPictures(Pictures):
     """An emitting surface in the dark, one picture for each material of its samples."""
 
-    families, sampled = (EmittingSurface,), Samples
+    abilities = Ability.SURFACE | Ability.LIGHT
 
 
-class EmissionPictures(Pictures):
+class EmissionPictures(Spheres):
     """An EDF node on a sphere in the dark."""
 
-    scenes, families = (Scene("dark"),), (EmissionSpec,)
-    errors: ClassVar[Mapping[str, Tolerance]] = {"value": PICTURE_RADIANCE}
+    abilities = Ability.EMISSION | Ability.LIGHT
+    scenes = (Scene("dark"),)
+
+    @classmethod
+    def errors(cls, spec: Spec) -> Errors:
+        return {"value": PICTURE_RADIANCE}
 
     def shader_of(self, inputs: Values) -> Shader:
         return self.implemented(self.spec.document(inputs))
 
 
-class UtilitySamples(Samples):
-    """All samples in one batch, which takes a renderer one run."""
+class UtilityOsl(Evaluating):
+    """Outputs of a utility node on a renderer with OSL, which has mathematics of its own."""
 
+    abilities = Ability.OUTPUT | Ability.LIGHT
     whole = True
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
+        """All samples in one batch, which takes a renderer one run."""
         return (joined(super().batches),)
 
-
-class UtilityOsl(Evaluating):
-    """Outputs of a utility node on a renderer with OSL, which has mathematics of its own."""
-
-    families, sampled, any_pairs = (UtilitySpec,), UtilitySamples, False
-
     @classmethod
-    def error(cls, spec: Spec, quantity: str) -> Tolerance | None:
-        return spec.errors.get(f"{quantity} in OSL", spec.errors.get(quantity))
+    def errors(cls, spec: Spec) -> Errors:
+        osl = spec.errors.get("value in OSL")
+        return {**spec.errors, "value": osl} if osl else spec.errors
 
 
-# By the word of a host's row for how it is asked; the first that supports a spec asks for it. `mxeon.survey`
+# By the word of a host's row for how it is evaluated; the first that supports a spec evaluates it. `mxeon.survey`
 # adds those of renderers with materials of their own.
 BACKENDS: dict[str, tuple[type[Backend], ...]] = {
     "pairs": (Evaluating, LobesBelow, DarkPictures),
@@ -961,7 +899,7 @@ BACKENDS: dict[str, tuple[type[Backend], ...]] = {
 
 
 def ways_of(host: str) -> tuple[type[Backend], ...]:
-    """How a host is asked; () where only the text of its target is checked."""
+    """The backends of a host; () where only the text of its target is checked."""
     own_nodes(host)  # adds a renderer's backends
     return BACKENDS.get(host_row(host).way, ())
 
@@ -973,5 +911,5 @@ def own_nodes(host: str) -> tuple[Spec, ...]:
 
 
 def backend_of(host: str, spec: Spec) -> type[Backend] | None:
-    """How a host is asked about a node; None if it is not."""
+    """The backend that evaluates a node on a host; None if none does."""
     return next((way for way in ways_of(host) if way.supports(spec)), None)

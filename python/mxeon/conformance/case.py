@@ -14,7 +14,7 @@ from typing import Any, TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.conformance.backends import Backend, Evaluating, Samples
+from mxeon.conformance.backends import Backend, Evaluating
 from mxeon.conformance.cache import Remembered
 from mxeon.conformance.samples import Array, Batch, Candidate, Changes
 from mxeon.conformance.spec import LobeSpec, Spec, ValueSpec
@@ -47,12 +47,11 @@ class Case:
 
     spec: Spec
     backend: Backend
-    samples: Samples
     inputs: Callable[[Batch], Batch] = lambda batch: batch
     outputs: Change = lambda batch, values: values
     throughputs: Change = lambda batch, values: values
     control: bool = False  # on a subset: one failing sample is enough
-    asked: tuple[Batch, ...] = ()  # by a diagnosis, instead of the samples
+    chosen: tuple[Batch, ...] = ()  # by a diagnosis, instead of the samples
     explained: dict[Any, Any] = field(default_factory=dict, init=False)  # diagnoses by comparison
 
     @property
@@ -89,15 +88,15 @@ class Case:
 
     @property
     def batches(self) -> tuple[Batch, ...]:
-        return self.asked or (self.samples.few if self.control else self.samples.batches)
+        return self.chosen or (self.backend.few if self.control else self.backend.batches)
 
     @property
     def few(self) -> tuple[Batch, ...]:
-        return self.asked or self.samples.few
+        return self.chosen or self.backend.few
 
     @property
     def views(self) -> tuple[Batch, ...]:
-        return self.asked or self.samples.views[: 1 if self.control else None]
+        return self.chosen or self.backend.views[: 1 if self.control else None]
 
     # Values of the engine.
 
@@ -117,9 +116,9 @@ class Case:
         """The share of the light from below that passes the node, in a branch, (N, 3)."""
         return self.throughputs(batch, self.evaluating.throughput(self.inputs(batch), branch))
 
-    def measured(self, ask: Callable[[Batch], Array], batch: Batch) -> Array:
+    def measured(self, evaluate: Callable[[Batch], Array], batch: Batch) -> Array:
         """What a function of the engine returns for a batch."""
-        return self.outputs(batch, ask(self.inputs(batch)))
+        return self.outputs(batch, evaluate(self.inputs(batch)))
 
     @property
     def evaluating(self) -> Evaluating:
@@ -146,8 +145,9 @@ class Case:
 
     def tolerance(self, *quantities: str) -> Tolerance:
         """The error in the first of these quantities that the spec has, and what the engine adds."""
+        errors = self.backend.errors(self.spec)
         for quantity in quantities:
-            if error := self.backend.error(self.spec, quantity):
+            if error := errors.get(quantity):
                 return error.plus(*self.backend.precision(quantity))
         raise LookupError(f"{self.spec.title} has no {quantities[-1]}")
 
@@ -157,7 +157,7 @@ def make_case(backend: type[Backend], host: Engine, spec: Spec, library: str) ->
     made = backend(cast(Host, host), spec, library)
     if (form := made.judged()) is not spec:
         made = backend(cast(Host, host), form, library)
-    return Case(made.spec, made, made.sampled(made))
+    return Case(made.spec, made)
 
 
 SCATTERING = ("direct", "environment", "transmission")  # branches of light that is scattered
@@ -192,7 +192,7 @@ def throughputs(case: Case, *branches: str) -> Iterator[Compared]:
 
 def frames(case: Case) -> Iterator[Compared]:
     """Values in turned frames, half of them with a normal that faces away, against those in none."""
-    turned = case.samples.turned
+    turned = case.backend.turned
     # A sum over the environment for each: one of five, of both sides.
     for output, batch in ((case.direct, turned), (case.albedo, turned.where(slice(None, None, 5)))):
         local = replace(batch.altered(normal=(0.0, 0.0, 1.0), tangent=(1.0, 0.0, 0.0)), frame=None)
@@ -215,6 +215,6 @@ def dead_inputs(
 
 def edge_values(case: Case) -> Compared:
     """Values and albedos at the edges of the domain, beside 0."""
-    batch = case.samples.edges
+    batch = case.backend.edges
     found = np.concatenate([case.direct(batch), case.albedo(batch)], axis=1)
     return Compared(batch, found, np.zeros_like(found))

@@ -16,7 +16,7 @@ from mxeon.conformance.case import Case
 from mxeon.conformance.controls import Control
 from mxeon.conformance.diagnosis import UNTOLD, searched
 from mxeon.conformance.results import Cause, Diagnosis, Kind, Result
-from mxeon.conformance.spec import Spec
+from mxeon.conformance.spec import NO_ABILITY, Ability, Spec
 from mxeon.conformance.tolerance import Compared, Measurement, Metric, Tolerance, worst_of
 from mxeon.errors import Implied, NotRun, OutsideModel, ShaderError
 from mxeon.hosts.base import RendererWarning
@@ -67,9 +67,7 @@ class Check:
     tolerance: str | Tolerance  # an error of the spec, by its name, or the same for all
     control: Control
     explain: Explain
-    pairs: bool = False  # whether it needs pairs of directions that not every host has
-    # Whether it is about how light is found, summed or let through, unlike closures.
-    lit: bool = False
+    requires: Ability = NO_ABILITY  # of a backend, beside the node's values
     # Profile of the generated text, if not the rasterizer's; only for nodes that the user names.
     profile: str = ""
     # Whether an error differs, and does not fail, where a permitted function explains it.
@@ -91,10 +89,9 @@ class Check:
         """Whether a node is judged by it on a host, by one of its backends, with a client's methods."""
         if not (self.applies(spec) and self.hosts(spec, host) and self.methods(spec, methods)):
             return False
-        if (self.pairs and not backend.any_pairs) or (self.lit and isinstance(spec, backend.unlit)):
-            return False
         own = self.tolerance
-        return isinstance(own, Tolerance) or backend.error(spec, own) is not None
+        judged = isinstance(own, Tolerance) or backend.errors(spec).get(own) is not None
+        return judged and self.requires in backend.abilities
 
     def allowed(self, case: Case) -> Tolerance:
         """The largest error of a case that passes."""

@@ -34,7 +34,6 @@ from mxeon.conformance.samples import Batch, Values
 from mxeon.conformance.specs import surface_shaders as surfaces
 from mxeon.conformance.specs.diffuse import DiffuseModelSpec, SurfaceLobe
 from mxeon.conformance.specs.hair import lobe_terms
-from mxeon.conformance.specs.lobes import CLOSED_ALBEDO
 from mxeon.conformance.specs.microfacets import (
     ANISOTROPIC,
     FILM_ALBEDO,
@@ -44,7 +43,7 @@ from mxeon.conformance.specs.microfacets import (
     sum_over,
 )
 from mxeon.conformance.specs.microfacets import ERRORS as FACET_ERRORS
-from mxeon.conformance.specs.sheen import ZELTNER_VALUE
+from mxeon.conformance.specs.sheen import ZELTNER_ALBEDO, ZELTNER_VALUE
 from mxeon.conformance.specs.subsurface import RINGS
 from mxeon.conformance.specs.utilities import BLACKBODY
 from mxeon.conformance.tolerance import (
@@ -129,7 +128,7 @@ def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe], host: Host) -> Tole
     others += BLACKBODY.terms * ("blackbody" in categories(nodes))
     others += [
         ZELTNER_VALUE.term("Zeltner's sheens"),
-        CLOSED_ALBEDO.term("their albedos"),
+        ZELTNER_ALBEDO.term("their albedos"),
     ] * zeltner
     others += _others(lobes)
     rounding = host_row(host.name).rounding

@@ -7,6 +7,7 @@ A family of nodes is one file under `specs`. How an engine is asked about it is 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from enum import Flag, auto
 from functools import lru_cache, partial
 from typing import Any, ClassVar, NamedTuple, Self
 
@@ -16,6 +17,7 @@ from numpy.typing import ArrayLike
 from mxeon.conformance.samples import (
     FRAMES,
     LEAN,
+    RIM,
     Array,
     Batch,
     Candidate,
@@ -111,6 +113,34 @@ def broadcast_inputs(batch: Batch) -> dict[str, Array]:
     }
 
 
+class Ability(Flag):
+    """What a backend can do, and a node or a check needs."""
+
+    # Nodes whose values it has: rough diffuse ones, a renderer's own, and lobes of pbrlib.
+    DIFFUSE = auto()
+    BELOW = auto()  # a diffuse lobe below others
+    OWN = auto()
+    LOBE = auto()
+    HAIR = auto()
+    SUBSURFACE = auto()
+    FILM = auto()
+    TRANSMISSION = auto()
+    COMBINATION = auto()
+    MATERIAL = auto()  # a surface shader with all of its lobes
+    SCATTERS = DIFFUSE | BELOW | OWN | LOBE | MATERIAL
+    EMISSION = auto()
+    SURFACE = auto()  # one that emits
+    MEDIUM = auto()
+    IMPLEMENTATION = auto()  # of nodes without values
+    OUTPUT = auto()
+    # For checks: pairs at the edges of the domain, too; how light is found, summed or let through.
+    PAIRS = auto()
+    LIGHT = auto()
+
+
+NO_ABILITY = Ability(0)
+
+
 class EngineError(NamedTuple):
     """A term by a function that engines have themselves, measured on each."""
 
@@ -132,6 +162,10 @@ ZERO = Candidate("zero", lambda batch: np.zeros((len(batch.wo), 3)))
 class Spec(ABC):
     """A node in one mode."""
 
+    requires: ClassVar[Ability]
+    coarse: ClassVar[int] = 1  # by which its pictures are smaller
+    rim: ClassVar[float] = RIM  # least cosines that are judged in a picture
+
     title: str  # in reports; unique
     node: str  # category
     model: str = ""  # name of the model that it has to be; "" for none
@@ -142,17 +176,30 @@ class Spec(ABC):
     counts: Counts = USUAL
     # Inputs that an evaluation sets unless a batch does.
     fixed: Values = field(default_factory=dict)
-    # How a host that evaluates is asked for a value: branch, output, and the factor of what it returns.
-    asked: tuple[str, str, float] = ("direct", "response", np.pi)
+    # What is evaluated for a value: a branch, an output, and the factor of what a host returns.
+    evaluated: tuple[str, str, float] = ("direct", "response", np.pi)
+    flat: bool = False  # whether its values have no peak
     # Slope of values or albedos by the angle from a view along the normal, which no cosine near 1 tells.
     along: float = 0.0
     optional: bool = False  # whether a target may lack the node, so that it is not run there
     # What functions of an engine's own, measured there, add to the error of a quantity.
     engines: Mapping[str, tuple[EngineError, ...]] = field(default_factory=dict)
+    # What MaterialX's fit of prefiltered light adds to the error of a quantity.
+    prefiltered_fits: Mapping[str, tuple[Term, ...]] = field(default_factory=dict)
 
     @abstractmethod
     def document(self, inputs: Values | None = None) -> str:
         """MaterialX text of a material of this node alone, with these inputs."""
+
+    @property
+    def side(self) -> float:
+        """-1 where it scatters light from below the horizon, else 1."""
+        return 1.0
+
+    @property
+    def materials(self) -> tuple[Values, ...]:
+        """The materials that stand for the node in pictures."""
+        return materials(*self.inputs)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -209,11 +256,6 @@ class LobeSpec(ValueSpec):
     curved: ClassVar[bool] = False  # whether they depend on how the surface bends
     # Axes of `checks.states` of which it has the first state alone, and states that it lacks.
     plain: ClassVar[tuple[str, ...]] = ()
-
-    @property
-    def side(self) -> float:
-        """-1 where it scatters light from below the horizon, else 1."""
-        return 1.0
 
     @property
     def mode(self) -> Values:
@@ -313,10 +355,6 @@ class RowSpec(ValueSpec):
         """The inputs that its functions read."""
         inputs = {each.name: each for each in self.inputs}
         return tuple(inputs[name] for name in self.row.inputs)
-
-    @property
-    def materials(self) -> tuple[Values, ...]:
-        return materials(*self.inputs)
 
     @abstractmethod
     def values(self, function: Any, batch: Batch) -> Array:

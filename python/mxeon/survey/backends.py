@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property, lru_cache
-from typing import ClassVar, Protocol, cast
+from typing import Protocol, cast
 
 import numpy as np
 
@@ -15,13 +15,11 @@ from mxeon.conformance.backends import (
     BACKENDS,
     EXACT,
     EXACT_ALBEDO,
-    PICTURE_INPUTS,
     PICTURE_SIZE,
     Backend,
     CyclesPictures,
+    Errors,
     Pairs,
-    PictureSamples,
-    errors_of,
     lit_pairs,
     scene_of,
 )
@@ -38,8 +36,9 @@ from mxeon.conformance.samples import (
     outside_directions,
     special_directions,
 )
-from mxeon.conformance.spec import Spec
-from mxeon.conformance.tolerance import Term, Tolerance, mean_error, roundings, sum_in, sum_of
+from mxeon.conformance.spec import Ability, Spec
+from mxeon.conformance.specs.diffuse import PICTURE_INPUTS
+from mxeon.conformance.tolerance import Term, mean_error, roundings, sum_in, sum_of
 from mxeon.models import table as reference
 from mxeon.shaders.scene import FURNACE, Scene, sphere
 from mxeon.survey.facets import facet_points
@@ -94,9 +93,7 @@ class Renderer(Protocol):
 class Native(CyclesPictures):
     """A renderer's own node, on a sphere."""
 
-    @classmethod
-    def supports(cls, spec: Spec) -> bool:
-        return isinstance(spec, RendererSpec)
+    abilities = Ability.OWN | Ability.LIGHT
 
     @property
     def renderer(self) -> Renderer:
@@ -124,20 +121,17 @@ class Native(CyclesPictures):
         return sphere(scene.size).mask
 
 
-class FormSamples(PictureSamples):
-    """Pictures of several materials; one light is enough for a control."""
-
-    @cached_property
-    def few(self) -> tuple[Batch, ...]:
-        return self.batches[:: len(EXACT_INPUTS)]
-
-
 class Exact(Native):
     """A node on a sphere whose points and light are exact up to rounding."""
 
-    errors = errors_of(EXACT, EXACT_ALBEDO)
+    @classmethod
+    def errors(cls, spec: Spec) -> Errors:
+        return {"value": EXACT, "albedo": EXACT_ALBEDO, "lambert": EXACT}
 
-    sampled = FormSamples
+    @cached_property
+    def few(self) -> tuple[Batch, ...]:
+        """One light is enough for a control."""
+        return self.batches[:: len(EXACT_INPUTS)]
 
     @property
     def size(self) -> int:
@@ -151,7 +145,7 @@ class Exact(Native):
         """The spec of the published form of the model that is nearest to what is measured."""
         if not self.node.forms:
             return self.node
-        batch = self.sampled(self).batches[0]
+        batch = self.batches[0]
         values = self.direct(batch)
         errors = {
             form: float(np.abs(values - form.value(batch)).max())
@@ -160,23 +154,17 @@ class Exact(Native):
         return min(errors, key=errors.__getitem__)
 
 
-class FacetSamples(FormSamples):
-    """Points in a white environment, for two materials only, because they take long."""
-
-    @cached_property
-    def views(self) -> tuple[Batch, ...]:
-        scene = replace(FURNACE, size=self.backend.size)
-        names = ("color", "roughness")
-        return tuple(
-            self.backend.batch(scene, {name: inputs[name] for name in names})
-            for inputs in PICTURE_INPUTS
-        )
-
-
 class Facets(Exact):
     """A node on a polyhedron, with noise under an environment."""
 
-    sampled = FacetSamples
+    @cached_property
+    def views(self) -> tuple[Batch, ...]:
+        """Points in a white environment, for two materials only, because they take long."""
+        scene = replace(FURNACE, size=self.size)
+        names = ("color", "roughness")
+        return tuple(
+            self.batch(scene, {name: inputs[name] for name in names}) for inputs in PICTURE_INPUTS
+        )
 
     @property
     def size(self) -> int:
@@ -195,15 +183,22 @@ class Facets(Exact):
 class CoarseFacets(Facets):
     """A node on the polyhedron, by a renderer that keeps light in a few bits."""
 
-    errors: ClassVar[Mapping[str, Tolerance]] = {"value": COARSE_FACETS, "albedo": COARSE_FACETS}
+    @classmethod
+    def errors(cls, spec: Spec) -> Errors:
+        return {"value": COARSE_FACETS, "albedo": COARSE_FACETS}
 
 
-class FacetPairSamples(FacetSamples):
-    """Random pairs, a quarter of each direction grazing; special ones; and outside ones."""
+class FacetPairs(Facets):
+    """A node that its renderer evaluates for any pairs; the polyhedron shows its environment."""
+
+    @classmethod
+    def errors(cls, spec: Spec) -> Errors:
+        return {"value": FACET_PAIRS, "albedo": FACET_NOISE, "reciprocity": FACET_PAIRS}
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        rng, spec, count = generator(), self.spec, FEW_CALLS.pairs
+        """Random pairs, a quarter of each direction grazing; special ones; and outside ones."""
+        rng, spec, count = generator(), self.node, FEW_CALLS.pairs
         random = directions(rng, count), directions(rng, count)
         special = Batch(*special_directions(rng), {})
         half = np.linalg.norm(special.wo + special.wi, axis=1)
@@ -218,18 +213,6 @@ class FacetPairSamples(FacetSamples):
     @cached_property
     def few(self) -> tuple[Batch, ...]:
         return self.batches[:2]
-
-
-class FacetPairs(Facets):
-    """A node that its renderer evaluates for any pairs; the polyhedron shows its environment."""
-
-    errors: ClassVar[Mapping[str, Tolerance]] = {
-        "value": FACET_PAIRS,
-        "albedo": FACET_NOISE,
-        "reciprocity": FACET_PAIRS,
-    }
-
-    sampled = FacetPairSamples
 
     def portrait(self, scene: Scene) -> tuple[Array, Array, Mask, Mask]:
         return Backend.portrait(self, scene)

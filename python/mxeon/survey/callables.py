@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 import mxeon
 from mxeon.conformance import words
-from mxeon.conformance.backends import Backend, Samples
+from mxeon.conformance.backends import Backend
 from mxeon.conformance.cache import parts
 from mxeon.conformance.case import Case, edge_values
 from mxeon.conformance.check import Check
@@ -33,6 +33,7 @@ from mxeon.conformance.samples import (
     generator,
     special_directions,
 )
+from mxeon.conformance.spec import Ability
 from mxeon.conformance.specs.diffuse import ERRORS, DiffuseModelSpec, inputs_of, model_row
 from mxeon.conformance.tolerance import Compared, absolute, point_of
 from mxeon.errors import InputError, assert_known
@@ -73,33 +74,29 @@ class ClaimedModel(DiffuseModelSpec):
         return Batch(wo, wi, self.random_inputs(rng, PAIRS)), special
 
 
-class CallableSamples(Samples):
-    """All samples of all checks are at the edges of the domain, where values must be finite."""
-
-    @cached_property
-    def edges(self) -> Batch:
-        """Pairs and inputs at the edges of the domain, then all others that a check uses."""
-        asked = [self.spec.edges(self.counts)]
-
-        def note(batch: Batch) -> Batch:
-            asked.append(batch)
-            return batch
-
-        noted = Case(self.spec, self.backend, self, inputs=note, control=True)
-        for check in _checks(self.spec.model):
-            if check.key != "finite":
-                check.measured(noted, absolute)
-        columns = zip(*map(_arguments, asked), strict=True)
-        wo, wi, rho, roughness = map(np.concatenate, columns)
-        return Batch(wo, wi, {"color": rho, "roughness": roughness})
-
-
 class Function(Backend):
     """A function evaluated for pairs."""
 
     host: CallableHost
 
-    families, sampled = (ClaimedModel,), CallableSamples
+    abilities = Ability.OWN | Ability.PAIRS | Ability.LIGHT
+
+    @cached_property
+    def edges(self) -> Batch:
+        """Pairs and inputs at the edges of the domain, then all others that a check uses: their values must be finite."""
+        used = [super().edges]
+
+        def note(batch: Batch) -> Batch:
+            used.append(batch)
+            return batch
+
+        noted = Case(self.spec, self, inputs=note, control=True)
+        for check in _checks(self.spec.model):
+            if check.key != "finite":
+                check.measured(noted, absolute)
+        columns = zip(*map(_arguments, used), strict=True)
+        wo, wi, rho, roughness = map(np.concatenate, columns)
+        return Batch(wo, wi, {"color": rho, "roughness": roughness})
 
     def direct(self, batch: Batch) -> Array:
         """pi f cos(theta_i), (N, 3); NaN in every channel where one is not finite."""
@@ -150,7 +147,7 @@ def _explain_not_finite(case: Case) -> Diagnosis:
 def _of_rest(check: Check) -> Check:
     """A check of the finite values; "finite" reports where the others are."""
     if check.key == "finite":
-        return replace(check, diagnose=_explain_not_finite)
+        return replace(check, explain=_explain_not_finite)
     if check.key == "inputs":
         return check
     measure = cast(Callable[[Case], Iterable[Compared]], check.measure)
@@ -222,7 +219,7 @@ def _case(brdf: Brdf, model: str, name: str | None) -> Case:
         errors=ERRORS,
     )
     function = Function(CallableHost(title, brdf), spec, LIBRARY)
-    return Case(spec, function, function.sampled(function))
+    return Case(spec, function)
 
 
 def _checks(model: str) -> tuple[Check, ...]:

@@ -17,7 +17,7 @@ from mxeon.conformance.diagnosis.faults import DIRECT_FAULTS
 from mxeon.conformance.results import Cause, Diagnosis, Kind
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Candidate, Values
-from mxeon.conformance.spec import Spec
+from mxeon.conformance.spec import Ability, Spec
 from mxeon.conformance.specs.combinations import SINGLE, CombinedSpec
 from mxeon.conformance.specs.diffuse import DiffuseModelSpec, SurfaceLobe
 from mxeon.conformance.specs.emission import EmissionSpec, MediumSpec
@@ -67,8 +67,9 @@ def of_model(*names: str) -> Specs:
 
 
 # Sets of nodes that rows apply to.
-FILMS, TRANSMITTING, COMBINED = map(family, (FilmSpec, TransmissionSpec, CombinedSpec))
-SUBSURFACE, FACETS, BELOW = map(family, (SubsurfaceSpec, FacetSpec, SurfaceLobe))
+FILMS, TRANSMITTING = family(FilmSpec), family(TransmissionSpec)
+COMBINED, SUBSURFACE = family(CombinedSpec), family(SubsurfaceSpec)
+FACETS, BELOW = family(FacetSpec), family(SurfaceLobe)
 PLAIN = family(PbrSpec) - COMBINED - FILMS - TRANSMITTING  # one lobe of pbrlib by itself
 LAYERS = PLAIN & family(PbrSpec, lambda spec: spec.row.layerable)  # which let 1 - E through
 RECIPROCAL = PLAIN & family(PbrSpec, lambda spec: spec.row.reciprocal)
@@ -118,7 +119,7 @@ def diagnose_surroundings(case: Case) -> Diagnosis:
 
 
 def surroundings(case: Case) -> Compared:
-    batch = case.samples.turned
+    batch = case.backend.turned
     if "color" in batch.inputs:
         batch = batch.altered(color=backends.WHITE)
     level = case.albedo(batch)
@@ -146,13 +147,13 @@ def sphere(case: Case) -> Iterator[Compared]:
         [shader] = case.host.compile(case.spec.document(batch.inputs), library=case.library)
         return case.host.picture(shader, scene)[inner(scene.size)].astype(np.float64)
 
-    for batch in case.samples.take(case.of(SubsurfaceSpec).spheres):
+    for batch in case.backend.take(case.of(SubsurfaceSpec).spheres):
         yield Compared(batch, case.measured(picture, batch), spread(batch))
 
 
 def in_srgb(case: Case) -> Iterator[Compared]:
     """Values of colors in sRGB, against the engine's own of what they stand for."""
-    batch, evaluating = case.few[0].first(case.samples.counts.albedos), case.evaluating
+    batch, evaluating = case.few[0].first(case.backend.counts.albedos), case.evaluating
     ask = partial(evaluating.evaluate, branch="direct", shader=evaluating.decoded)
     yield Compared(batch, np.pi * case.measured(ask, batch), of_decoded(case, batch))
 
@@ -242,24 +243,24 @@ def layer(case: Case) -> Compared:
     total = albedo + case.throughput(views, "direct")
     # Where the equations gain energy by themselves, no throughput makes up for it.
     own = case.lobe.albedo(views)
-    sound = np.asarray((case.samples.integrals <= own + ROUNDED).all(axis=1))
+    sound = np.asarray((case.backend.integrals <= own + ROUNDED).all(axis=1))
     return Compared(views, total, np.ones_like(total)).where(sound)
 
 
 def integral(case: Case) -> Compared:
     views, albedo = integrals(case)
-    return Compared(views, albedo, case.samples.integrals)
+    return Compared(views, albedo, case.backend.integrals)
 
 
 def energy(case: Case) -> Compared:
     views, albedo = integrals(case)
-    allowed = np.maximum(1.0, case.samples.integrals)
+    allowed = np.maximum(1.0, case.backend.integrals)
     return Compared(views, np.maximum(albedo, allowed), allowed)
 
 
 def integrals(case: Case) -> tuple[Batch, Array]:
     """Views of the integrated materials, and their albedos from the host's values, (N, 3)."""
-    return summed(case, *case.samples.integrated)
+    return summed(case, *case.backend.integrated)
 
 
 def summed(case: Case, batch: Batch, weights: Array) -> tuple[Batch, Array]:
@@ -295,7 +296,7 @@ def factor(case: Case) -> Iterator[Compared]:
 
 def region_values(key: str, case: Case) -> Compared:
     """Values of a region, and the expected ones."""
-    batch = case.of(HairSpec).region(key, case.samples.counts.few)
+    batch = case.of(HairSpec).region(key, case.backend.counts.few)
     return Compared(batch, case.direct(batch), case.expected(batch))
 
 
@@ -336,7 +337,7 @@ def outside(case: Case) -> Iterator[tuple[str, str, float, Compared]]:
 
     Values are divided by the largest error that passes.
     """
-    spec, views = case.of(PbrSpec), case.samples.views[0]
+    spec, views = case.of(PbrSpec), case.backend.views[0]
     row, names = np.arange(len(views.wo))[:, np.newaxis], {"weight", "occlusion"}
     wo = np.where(row == 1, NORMAL, views.wo)
     wi = np.where(row % 2 == 1, wo * [-1.0, -1.0, spec.side], views.wi)  # microfacets reflect most
@@ -451,8 +452,7 @@ ROWS = (
         tolerance=SURROUNDINGS,
         control=controls.drop_normal,
         explain=diagnose_surroundings,
-        pairs=True,
-        lit=True,
+        requires=Ability.PAIRS | Ability.LIGHT,
     ),
     Check(
         key="sphere_mean",
@@ -462,7 +462,7 @@ ROWS = (
         tolerance="sphere_mean",
         control=ON_SPHERE,
         explain=diagnose_sphere,
-        lit=True,
+        requires=Ability.LIGHT,
     ),
     Check(
         key="sphere",
@@ -472,7 +472,7 @@ ROWS = (
         tolerance="sphere",
         control=ON_SPHERE,
         explain=diagnose_sphere,
-        lit=True,
+        requires=Ability.LIGHT,
     ),
     Check(
         key="color_space",
@@ -482,7 +482,7 @@ ROWS = (
         tolerance="color_space",
         control=controls.gray,
         explain=COLOR_SPACE.diagnose,
-        pairs=True,
+        requires=Ability.PAIRS,
     ),
     Check(
         key="throughput",
@@ -494,8 +494,7 @@ ROWS = (
         explain=lambda case: diagnosis.diagnose_throughput(
             {each: list(opaque_values(case, *each)) for each in NOTHING}
         ),
-        pairs=True,
-        lit=True,
+        requires=Ability.PAIRS | Ability.LIGHT,
     ),
     Check(
         key="reciprocity",
@@ -533,7 +532,7 @@ ROWS = (
         tolerance=count_of(Quantity.VALUES),
         control=controls.scale_cosine("the value is divided by cos(theta_o)", -1),
         explain=diagnosis.diagnose_finite,
-        pairs=True,
+        requires=Ability.PAIRS,
         hosts=shows_exactly,
     ),
     Check(
@@ -562,8 +561,7 @@ ROWS = (
         tolerance="dip",
         control=controls.pass_all,
         explain=THROUGHPUT.diagnose,
-        pairs=True,
-        lit=True,
+        requires=Ability.PAIRS | Ability.LIGHT,
     ),
     Check(
         key="denser",
@@ -573,8 +571,7 @@ ROWS = (
         tolerance="denser",
         control=controls.pass_all,
         explain=THROUGHPUT.diagnose,
-        pairs=True,
-        lit=True,
+        requires=Ability.PAIRS | Ability.LIGHT,
     ),
     Check(
         key="layer",
@@ -612,7 +609,7 @@ ROWS = (
         tolerance="value",
         control=controls.shifted,
         explain=VALUE.diagnose,
-        pairs=True,
+        requires=Ability.PAIRS,
     ),
     Check(
         key="combined_albedo",
@@ -622,7 +619,7 @@ ROWS = (
         tolerance="albedo",
         control=controls.shifted,
         explain=ALBEDO.diagnose,
-        pairs=True,
+        requires=Ability.PAIRS,
         methods=finds_albedo,
     ),
     Check(
@@ -646,7 +643,7 @@ ROWS = (
             lambda batch, values: values * np.reshape(batch.inputs[FACTOR], (len(values), -1)),
         ),
         explain=always(replace(defect("factor_not_clamped"), permitted=True)),
-        pairs=True,
+        requires=Ability.PAIRS,
         open=True,
     ),
     *(
@@ -660,7 +657,7 @@ ROWS = (
                 "the normal is turned about the fiber by a tenth", normal=(0.0, 0.1, 0.995)
             ),
             explain=partial(explain_region, key),
-            lit=True,
+            requires=Ability.LIGHT,
             open=True,
         )
         for key, row in REGIONS.items()
@@ -673,7 +670,6 @@ ROWS = (
         tolerance=TOLERANCES,
         control=controls.scale("values are 30 % too large", 1.3),
         explain=diagnose_domain,
-        pairs=True,
-        lit=True,
+        requires=Ability.PAIRS | Ability.LIGHT,
     ),
 )

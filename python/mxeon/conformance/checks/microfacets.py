@@ -38,7 +38,7 @@ from mxeon.conformance.samples import (
     sky_map,
     texel_middles,
 )
-from mxeon.conformance.spec import Spec
+from mxeon.conformance.spec import Ability, Spec
 from mxeon.conformance.specs.lobes import PbrSpec
 from mxeon.conformance.specs.microfacets import (
     FRINGED,
@@ -78,7 +78,7 @@ isotropic = controls.with_batch(
 
 
 def lossless(case: Case) -> Compared:
-    batch, weights = case.samples.integrated
+    batch, weights = case.backend.integrated
     mirror = batch.altered(**case.of(PbrSpec).row.mirror)
     views, albedo = lobes.summed(case, mirror, weights)
     return Compared(views, albedo, np.ones_like(albedo))
@@ -86,7 +86,7 @@ def lossless(case: Case) -> Compared:
 
 def shape(case: Case) -> Compared:
     """Compensation cancels in the ratio."""
-    batch, other = (_clear(each.first(PAIRS)) for each in case.samples.mirrored)
+    batch, other = (_clear(each.first(PAIRS)) for each in case.backend.mirrored)
     first, second = (case.of(FacetSpec).single(each) for each in (batch, other))
     lit = np.asarray((np.minimum(first, second) > LEAST_VALUE).any(axis=1))
     least = np.minimum(batch.wo[:, 2], np.minimum(batch.wi[:, 2], other.wi[:, 2]))
@@ -119,7 +119,7 @@ def retroreflection(case: Case) -> Iterator[Compared]:
 
 
 def anisotropy(case: Case) -> Compared:
-    batch = case.samples.mirrored[0].first(PAIRS)
+    batch = case.backend.mirrored[0].first(PAIRS)
     batch = batch.where(np.minimum(batch.wo[:, 2], batch.wi[:, 2]) >= LEAST_TANGENT_COSINE)
     batch = batch.altered(roughness=np.maximum(batch.inputs["roughness"], LEAST_TANGENT_ALPHA))
     angle = np.linspace(0.0, 2.0 * np.pi, len(batch.wo))
@@ -132,8 +132,8 @@ def anisotropy(case: Case) -> Compared:
 
 def reflected_sky(case: Case) -> Iterator[Compared]:
     """Means of the sky under each lobe, which one for a mirrored view has by retroreflection; factors cancel."""
-    views = case.samples.take(case.of(FacetSpec).stretched)[0].first(SKIES)
-    part, weights = case.of(FacetSpec).lit(views, case.samples.counts.nodes)
+    views = case.backend.take(case.of(FacetSpec).stretched)[0].first(SKIES)
+    part, weights = case.of(FacetSpec).lit(views, case.backend.counts.nodes)
     shape = (*weights.shape, 3)
     values = case.of(FacetSpec).summed(part).reshape(shape) * weights[:, :, np.newaxis]
     albedo = values.sum(axis=1)
@@ -153,13 +153,13 @@ def diagnose_sky(case: Case) -> Diagnosis:
 
 
 def anisotropic_albedo(case: Case) -> Compared:
-    batch, expected = case.samples.take(case.of(FacetSpec).stretched)
+    batch, expected = case.backend.take(case.of(FacetSpec).stretched)
     return Compared(batch, case.albedo(batch), expected)
 
 
 def stretched_values(case: Case) -> Iterator[Compared]:
     """Values of lobes with two alphas against the model's."""
-    for batch in case.asked or (case.samples.take(case.of(FacetSpec).anisotropic),):
+    for batch in case.chosen or (case.backend.take(case.of(FacetSpec).anisotropic),):
         yield Compared(batch, case.direct(batch), case.expected(batch))
 
 
@@ -169,7 +169,7 @@ STRETCHED = Comparison(
 
 
 def anisotropic_throughput(case: Case) -> Iterator[Compared]:
-    batch = case.samples.take(case.of(FacetSpec).stretched)[0]
+    batch = case.backend.take(case.of(FacetSpec).stretched)[0]
     passed = np.maximum(1.0 - case.of(FacetSpec).integral(batch), 0.0)
     for branch in SCATTERING:
         yield Compared(batch, case.throughput(batch, branch), passed)
@@ -362,7 +362,7 @@ def _smooth(case: Case) -> Batch:
 
 def _edges(case: Case) -> Compared:
     """Light at the edges of the domain, of every fifth pair: each costs a sum over directions."""
-    batch = case.samples.edges
+    batch = case.backend.edges
     batch = batch.where(np.arange(len(batch.wo)) % 5 == 0)
     return Compared(batch, case.transmitted(batch), np.zeros((1, 3)))
 
@@ -418,7 +418,7 @@ def film_limit(case: Case) -> list[Compared]:
     one the sensitivities count, of five digits, whose sum is not 1: as much as in the equations is right.
     """
     # Under a film Schlick's curve has no dip: where that is negative, a film's counts as 0.
-    batch = case.samples.mirrored[0].first(case.samples.counts.few)  # where most of a film shows
+    batch = case.backend.mirrored[0].first(case.backend.counts.few)  # where most of a film shows
     batch = _clear(batch, LEAST_INDEX, 1.0).altered(thinfilm_thickness=300.0)
     without = batch.altered(thinfilm_thickness=0.0)
     bare = case.direct(without)
@@ -544,7 +544,7 @@ ROWS = (
         tolerance="shape",
         control=rougher,
         explain=VALUE.diagnose,
-        pairs=True,
+        requires=Ability.PAIRS,
         open=True,
         hosts=lobes.shows_exactly,
     ),
@@ -556,7 +556,7 @@ ROWS = (
         tolerance="retroreflection",
         control=controls.with_inputs("the flag is dropped", retroreflective=False),
         explain=diagnosis.ignored("retroreflective"),
-        pairs=True,
+        requires=Ability.PAIRS,
     ),
     Check(
         key="anisotropy",
@@ -566,7 +566,7 @@ ROWS = (
         tolerance="anisotropy",
         control=controls.with_inputs("the tangent is dropped", tangent=(1.0, 0.0, 0.0)),
         explain=diagnosis.ignored("tangent"),
-        pairs=True,
+        requires=Ability.PAIRS,
     ),
     Check(
         key="sky",
@@ -576,8 +576,7 @@ ROWS = (
         tolerance="sky",
         control=controls.with_inputs("the flag is dropped", retroreflective=False),
         explain=diagnose_sky,
-        pairs=True,
-        lit=True,
+        requires=Ability.PAIRS | Ability.LIGHT,
         methods=with_directions,
     ),
     Check(
@@ -588,8 +587,7 @@ ROWS = (
         tolerance="anisotropic_albedo",
         control=isotropic,
         explain=always(Diagnosis((UNKNOWN,))),
-        pairs=True,
-        lit=True,
+        requires=Ability.PAIRS | Ability.LIGHT,
         methods=with_directions,
     ),
     Check(
@@ -600,7 +598,7 @@ ROWS = (
         tolerance="anisotropic_value",
         control=isotropic,
         explain=STRETCHED.diagnose,
-        pairs=True,
+        requires=Ability.PAIRS,
         open=True,
     ),
     Check(
@@ -611,8 +609,7 @@ ROWS = (
         tolerance="anisotropic_throughput",
         control=isotropic,
         explain=always(Diagnosis((UNKNOWN,))),
-        pairs=True,
-        lit=True,
+        requires=Ability.PAIRS | Ability.LIGHT,
     ),
     Check(
         key="transmitted",
@@ -641,8 +638,7 @@ ROWS = (
         tolerance="methods",
         control=controls.scale("values are 10 % too large", 1.1),
         explain=diagnose_methods,
-        pairs=True,
-        lit=True,
+        requires=Ability.PAIRS | Ability.LIGHT,
         methods=lambda spec, methods: methods == GENERATED,
     ),
     Check(
@@ -672,7 +668,7 @@ ROWS = (
         tolerance=REFRACTED,
         control=DENSER,
         explain=always(Diagnosis((UNKNOWN,))),
-        lit=True,
+        requires=Ability.LIGHT,
         methods=lambda spec, methods: methods.transmission == "refraction",
     ),
     Check(
@@ -692,7 +688,7 @@ ROWS = (
         tolerance=count_of(Quantity.INPUTS),
         control=controls.drop_changes,
         explain=lambda case: defect("wrong_effect", *wrong_inputs(case)),
-        lit=True,
+        requires=Ability.LIGHT,
     ),
     Check(
         key="film_curve",
@@ -702,7 +698,7 @@ ROWS = (
         tolerance="film_curve",
         control=dropped,
         explain=VALUE.diagnose,
-        lit=True,
+        requires=Ability.LIGHT,
         open=True,
     ),
     Check(
@@ -723,7 +719,7 @@ ROWS = (
         tolerance="film_limit",
         control=controls.with_inputs("every film has an index of 1.5", thinfilm_ior=1.5),
         explain=VALUE.diagnose,
-        lit=True,
+        requires=Ability.LIGHT,
         open=True,
     ),
     Check(
@@ -734,7 +730,7 @@ ROWS = (
         tolerance="film_energy",
         control=controls.with_values("values under a film are 100 times as large", brighter),
         explain=VALUE.diagnose,
-        lit=True,
+        requires=Ability.LIGHT,
     ),
     Check(
         key="film_average",
@@ -744,7 +740,7 @@ ROWS = (
         tolerance="film_average",
         control=dropped,
         explain=diagnose_average,
-        lit=True,
+        requires=Ability.LIGHT,
         open=True,
     ),
     Check(
@@ -755,7 +751,7 @@ ROWS = (
         tolerance="film_smooth",
         control=dropped,
         explain=diagnose_average,
-        lit=True,
+        requires=Ability.LIGHT,
         open=True,
     ),
     Check(
@@ -766,7 +762,7 @@ ROWS = (
         tolerance="film_visible",
         control=dropped,
         explain=diagnose_visible,
-        lit=True,
+        requires=Ability.LIGHT,
         open=True,
         methods=with_directions,
     ),
@@ -778,7 +774,7 @@ ROWS = (
         tolerance="film_glossy",
         control=dropped,
         explain=diagnose_visible,
-        lit=True,
+        requires=Ability.LIGHT,
         open=True,
         methods=with_directions,
     ),

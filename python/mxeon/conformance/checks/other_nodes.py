@@ -13,6 +13,7 @@ from mxeon.conformance.diagnosis import BACK, OUTPUT, TRANSMITTANCE, VALUE, defe
 from mxeon.conformance.diagnosis.regions import EXACT, correct_except, span, unbounded
 from mxeon.conformance.results import Diagnosis, Kind
 from mxeon.conformance.results.quantities import Quantity
+from mxeon.conformance.spec import Ability
 from mxeon.conformance.specs.emission import (
     OPACITY,
     UNIMPLEMENTED,
@@ -49,7 +50,7 @@ def diagnose_opacity(case: Case) -> Diagnosis:
 
 def outside(case: Case) -> Compared:
     """Outputs at the ends of the ranges and beyond, beside 0."""
-    batch = case.samples.take(case.of(UtilitySpec).outside)
+    batch = case.backend.take(case.of(UtilitySpec).outside)
     return Compared(batch, case.direct(batch), np.zeros((1, 3)))
 
 
@@ -91,7 +92,7 @@ ROWS = (
         tolerance="value",
         control=controls.offset,
         explain=BACK.diagnose,
-        pairs=True,
+        requires=Ability.PAIRS,
         open=True,
     ),
     Check(
@@ -130,6 +131,6 @@ ROWS = (
         tolerance=count_of(Quantity.VALUES),
         control=controls.no_number,
         explain=explained_finite,
-        pairs=True,
+        requires=Ability.PAIRS,
     ),
 )

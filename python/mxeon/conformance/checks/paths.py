@@ -21,7 +21,7 @@ from mxeon.conformance.diagnosis import defect
 from mxeon.conformance.results import Cause, Diagnosis, Kind
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Values, float32, generator
-from mxeon.conformance.spec import LobeSpec, Spec, materials
+from mxeon.conformance.spec import Ability, LobeSpec, Spec, materials
 from mxeon.conformance.specs.diffuse import SurfaceLobe
 from mxeon.conformance.specs.microfacets import LEAST_TANGENT_COSINE, TransmissionSpec
 from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
@@ -428,7 +428,7 @@ ROWS = (
             "drawn_density",
             *dict.fromkeys(place(inside) for score, inside, _ in scores(case) if score > 6.0),
         ),
-        pairs=True,
+        requires=Ability.PAIRS,
         profile="path",
         hosts=has_paths,
     ),
@@ -440,7 +440,7 @@ ROWS = (
         tolerance=SAMPLE,
         control=controls.scale("weights are 0.01 % too large", 1.0001),
         explain=_wrong_half,
-        pairs=True,
+        requires=Ability.PAIRS,
         profile="path",
         hosts=has_paths,
     ),
@@ -457,7 +457,7 @@ ROWS = (
         ),
         control=controls.scale("values are 0.1 % too large", 1.001),
         explain=always(defect("other_path_value")),
-        pairs=True,
+        requires=Ability.PAIRS,
         profile="path",
         hosts=has_paths,
     ),
@@ -473,7 +473,7 @@ ROWS = (
         ),
         control=controls.scale("values are 0.1 % too large", 1.001),
         explain=always(defect("inside_is_not_outside")),
-        pairs=True,
+        requires=Ability.PAIRS,
         profile="path",
         hosts=has_paths,
     ),

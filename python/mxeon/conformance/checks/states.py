@@ -32,7 +32,7 @@ from mxeon.conformance.samples import (
     rounded,
     sky_map,
 )
-from mxeon.conformance.spec import LobeSpec, broadcast_inputs
+from mxeon.conformance.spec import Ability, LobeSpec, broadcast_inputs
 from mxeon.conformance.specs.microfacets import TransmissionSpec
 from mxeon.conformance.tolerance import Compared
 from mxeon.hosts.calls import LIGHTS, LIT, NORMAL, SECOND_LIGHT, SKY, TANGENT
@@ -259,7 +259,7 @@ def pixels_of(case: Case) -> list[Pixels]:
         for name, each in AXES.items()
     )
     rows = covering(axes)
-    turned = case.samples.turned
+    turned = case.backend.turned
     batch = turned.where(np.arange(EACH * len(rows)) % len(turned.wo))
     if case.lobe.curved:  # else no light leaves elsewhere
         batch = batch.altered(**case.lobe.random_inputs(rng, len(batch.wo)))
@@ -296,7 +296,7 @@ def states(case: Case) -> Iterator[Compared]:
         file = Path(folder, "inputs.exr")
         from_image = partial(imaged, case, cache(partial(compile_imaged, case, file)), file)
         for (two, uneven, image, _), numbers in frames.items():
-            batch = joined([asked(groups[number]) for number in numbers])
+            batch = joined([batch_of(groups[number]) for number in numbers])
             ask = partial(
                 from_image if image else case.evaluating.together,
                 irradiance=sky_map() if uneven else None,
@@ -355,8 +355,8 @@ def compile_imaged(
     return case.host.compile(document, library=case.library, policy=policy)[0]
 
 
-def asked(pixels: Pixels) -> Batch:
-    """The batch of pixels with all that a host is told of their states."""
+def batch_of(pixels: Pixels) -> Batch:
+    """The batch of pixels with the inputs of all their states."""
     batch, count = pixels.batch, len(pixels.batch.wo)
     inputs: Values = {
         LIGHTS: np.full(count, float(pixels.lights)),
@@ -457,7 +457,7 @@ ROWS = (
         tolerance="states",
         control=exchanged,
         explain=diagnose,
-        pairs=True,
+        requires=Ability.PAIRS,
         methods=lambda spec, methods: (
             not isinstance(spec, TransmissionSpec)
             or spec.reflects

@@ -15,6 +15,7 @@ from mxeon.conformance.checks.lobes import finds_albedo
 from mxeon.conformance.diagnosis import ALBEDO, defect
 from mxeon.conformance.results import Cause, Diagnosis, Kind
 from mxeon.conformance.results.quantities import Quantity
+from mxeon.conformance.spec import Ability
 from mxeon.conformance.specs.surface_shaders import STRETCHED_FIT, SurfaceShaderSpec, stretched
 from mxeon.conformance.specs.surface_shaders import VALUE as VALUE_ERROR
 from mxeon.conformance.tolerance import (
@@ -79,7 +80,7 @@ def values(case: Case) -> Compared:
 
 
 def lobes_film(case: Case) -> Compared:
-    batch = case.samples.take(case.of(SurfaceShaderSpec).films)
+    batch = case.backend.take(case.of(SurfaceShaderSpec).films)
     return Compared(batch, case.direct(batch), case.expected(batch))
 
 
@@ -90,18 +91,18 @@ def lobes_mean(case: Case) -> Iterator[Compared]:
 
 
 def lobes_furnace(case: Case) -> Compared:
-    white = replace(case.samples.views[0], inputs=case.of(SurfaceShaderSpec).white)
+    white = replace(case.backend.views[0], inputs=case.of(SurfaceShaderSpec).white)
     return Compared(white, case.albedo(white), np.ones((1, 3)))
 
 
 def lobes_energy(case: Case) -> Compared:
-    batch = case.samples.edges
+    batch = case.backend.edges
     return Compared(batch, np.maximum(case.albedo(batch), 1.0), np.ones((1, 3)))
 
 
 def glass(case: Case) -> Iterator[Compared]:
     spec, methods = case.of(SurfaceShaderSpec), case.host.active
-    batch = spec.clear(case.samples.views[0])
+    batch = spec.clear(case.backend.views[0])
     through = spec.transmitted(batch, methods.transmission == "opacity")
     measured = case.transmitted(batch)
     yield Compared(batch, measured, through)
@@ -118,7 +119,7 @@ def diagnose_graph(case: Case) -> Diagnosis:
 
 def graph(case: Case) -> Compared:
     spec = case.of(SurfaceShaderSpec)
-    graphs, batch = spec.graphs, case.samples.take(spec.drawn)
+    graphs, batch = spec.graphs, case.backend.take(spec.drawn)
     expected = graphs.values(batch, right=True)
     known = graphs.same and not case.control
     return Compared(batch, expected if known else case.measured(graphs.values, batch), expected)
@@ -151,7 +152,7 @@ def without_effect(case: Case) -> list[str]:
             f"{spec.node} of this MaterialX lacks an input that is varied: {', '.join(missing)}"
         )
     few = replace(
-        case.samples.batches[0].first(CHANGED), inputs={name: given[name] for name in names}
+        case.backend.batches[0].first(CHANGED), inputs={name: given[name] for name in names}
     )
     batch = joined([few.altered(**row) for row in rows])
     effective = np.zeros(len(spec.names), bool)
@@ -207,7 +208,7 @@ ROWS = (
         tolerance="lobes_film",
         control=controls.shifted,
         explain=SUM,
-        lit=True,
+        requires=Ability.LIGHT,
     ),
     Check(
         key="lobes_albedo",
@@ -227,7 +228,7 @@ ROWS = (
         tolerance="lobes_mean",
         control=controls.scale("every value is 1 % too low", 0.99),
         explain=SUM,
-        lit=True,
+        requires=Ability.LIGHT,
         methods=finds_albedo,
     ),
     Check(
@@ -238,7 +239,7 @@ ROWS = (
         tolerance="albedo",
         control=controls.scale("every value is 10 % too low", 0.9),
         explain=SUM,
-        lit=True,
+        requires=Ability.LIGHT,
         methods=finds_albedo,
     ),
     Check(
@@ -249,7 +250,7 @@ ROWS = (
         tolerance="albedo",
         control=controls.scale("every value is 50 % too high", 1.5),
         explain=SUM,
-        lit=True,
+        requires=Ability.LIGHT,
         methods=finds_albedo,
     ),
     Check(
@@ -260,7 +261,7 @@ ROWS = (
         tolerance="glass",
         control=controls.scale("values are 5 % too large", 1.05),
         explain=SUM,
-        lit=True,
+        requires=Ability.LIGHT,
     ),
     Check(
         key="graph",

@@ -41,7 +41,7 @@ from mxeon.conformance.diagnosis.regions import (
 )
 from mxeon.conformance.results import Cause, Diagnosis, Kind
 from mxeon.conformance.samples import Array, Batch, Candidate, sky
-from mxeon.conformance.spec import COMPONENTS
+from mxeon.conformance.spec import COMPONENTS, Ability
 from mxeon.conformance.specs.diffuse import DIFFUSE
 from mxeon.conformance.specs.emission import EmissionSpec, MediumSpec
 from mxeon.conformance.specs.utilities import UtilitySpec
@@ -96,7 +96,7 @@ def explain(
     """
     if infinite := not_finite(cases):  # it has no distance to anything
         return Diagnosis(infinite)
-    few = case.samples.counts.diagnosed
+    few = case.backend.counts.diagnosed
     short = [Compared(batch.first(few), *(each[:few] for each in rest)) for batch, *rest in cases]
     # Many a fault leaves the inputs of the own model alone.
     own = replace(candidates[0], values=Remembered(candidates[0].values))
@@ -205,8 +205,8 @@ def _model(
         return share, *right
     index = int(np.argmax(list(map(np.max, errors))))
     row, batch = int(errors[index].argmax()), cases[index].batch
-    if measure and case.backend.any_pairs:
-        same = measure(replace(case, asked=(batch.where(np.full(4, row)),)))
+    if measure and Ability.PAIRS in case.backend.abilities:
+        same = measure(replace(case, chosen=(batch.where(np.full(4, row)),)))
         if not any(tolerance.wrong(each).any() for each in same):
             return replace(share, key="wrong"), Cause(Kind.CURE, "beside_equal_pixels")
     point = point_of(batch, row)
@@ -255,7 +255,7 @@ def _cures(
         ends = (port.high, *port.edges, port.low) if np.ndim(port.high) == 0 else ()
         for value in dict.fromkeys(float(np.ravel(end)[0]) for end in ends):
             changed = batch.altered(**{port.name: np.full_like(batch.inputs[port.name], value)})
-            compared = list(measure(replace(case, asked=(changed,))))
+            compared = list(measure(replace(case, chosen=(changed,))))
             wrong = any(tolerance.wrong(each).any() for each in compared)
             if not wrong and min(float(np.abs(each.expected).mean()) for each in compared) >= least:
                 found[port.name] = value
@@ -311,7 +311,7 @@ def _rests(case: Case) -> Sequence[Candidate]:
 
 def _backs(case: Case) -> Iterator[Compared]:
     """Radiance towards views from the back."""
-    batch = case.samples.take(case.of(EmissionSpec).backs)
+    batch = case.backend.take(case.of(EmissionSpec).backs)
     yield case.valued.alike(Compared(batch, case.direct(batch), case.expected(batch)))
 
 

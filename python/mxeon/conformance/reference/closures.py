@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from mxeon.conformance.reference.nodes import DIFFUSE, NOTHING, ShadingPoints, albedo_at
 from mxeon.conformance.samples import Array
 from mxeon.errors import OutsideModel, ShaderError
-from mxeon.hosts.base import Host, Inputs
+from mxeon.hosts.base import Host, Query
 from mxeon.hosts.osl.carriers import LAYER, MIX, OPERATIONS, SUM
 from mxeon.hosts.osl.trees import ClosureTree
 from mxeon.models import table
@@ -28,7 +28,6 @@ from mxeon.models.nodes.media import METER
 from mxeon.models.nodes.microfacets import TRANSMISSIONS
 from mxeon.models.nodes.node import PbrNode
 from mxeon.models.shading_model import ALONG, UP
-from mxeon.shaders.generation import Shader
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR
 
 Arguments: TypeAlias = Mapping[str, Array]
@@ -192,10 +191,9 @@ def column(values: ArrayLike) -> Array:
     return array if array.ndim == 2 else array.reshape(-1, 1)
 
 
-def evaluate(
-    host: Host, shader: Shader, wo: Array, wi: Array, inputs: Inputs, branch: str, output: str
-) -> Array:
+def evaluate(host: Host, query: Query) -> Array:
     """Values of the closures that a host's shader makes, in a uniform environment; see `Host.evaluate`."""
+    shader, wo, wi, inputs, branch, output, _ = query
     values = np.zeros((len(wo), 3))
     normal = np.broadcast_to(np.asarray(inputs.get("normal", UP), np.float64), wo.shape)
     occlusion = np.broadcast_to(column(inputs.get("occlusion", 1.0)), (len(wo), 1))

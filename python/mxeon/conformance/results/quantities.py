@@ -85,10 +85,7 @@ class Quantity(Enum):
         return self in ALBEDOS
 
 
-COUNTS = frozenset(
-    map(
-        Quantity,
-        ("inputs", "values", "faults", "differences", "nodes", "functions", "pixels", "documents"),
-    )
-)
-ALBEDOS = frozenset(map(Quantity, ("albedo", "mean_albedo", "value_or_albedo", "material_mean")))
+COUNTED = "inputs values faults differences nodes functions pixels documents"
+COUNTS = frozenset(Quantity(each) for each in COUNTED.split())
+VIEWED = "albedo mean_albedo value_or_albedo material_mean"
+ALBEDOS = frozenset(Quantity(each) for each in VIEWED.split())

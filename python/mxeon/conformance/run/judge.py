@@ -154,7 +154,7 @@ class Judge:
         if task.check == CURVE:
             wo = directions_at(CURVE_COSINES, 0.0)
             views = Batch(wo, wo, {"color": CURVE_COLOR, "roughness": CURVE_ROUGHNESS})
-            pairs = case.of(DiffuseSpec).lit(views, case.samples.counts.nodes)
+            pairs = case.of(DiffuseSpec).lit(views, case.backend.counts.nodes)
             views, measured = summed(case, *pairs)
             place, expected = (task.subject, task.host, task.library), case.expected_albedo(views)
             inputs = CURVE_COLOR, CURVE_ROUGHNESS, CURVE_COSINES

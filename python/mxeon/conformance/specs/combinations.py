@@ -15,9 +15,9 @@ from mxeon.conformance.samples import (
     generator,
     special_directions,
 )
-from mxeon.conformance.spec import Input, color, ports
-from mxeon.conformance.specs.lobes import CLOSED_ALBEDO, FLAT_FRAME, PbrSpec
-from mxeon.conformance.specs.sheen import ZELTNER_VALUE
+from mxeon.conformance.spec import Ability, Input, color, ports
+from mxeon.conformance.specs.lobes import FLAT_FRAME, PbrSpec
+from mxeon.conformance.specs.sheen import ZELTNER_ALBEDO, ZELTNER_THROUGHPUT, ZELTNER_VALUE
 from mxeon.conformance.tolerance import ROUNDING, Term, sum_of
 from mxeon.models.nodes.combinations import (
     AMOUNT,
@@ -40,16 +40,16 @@ from mxeon.shaders.nodes import (
 )
 
 VALUE = sum_of(
-    ZELTNER_VALUE.term("two values", 2.0), CLOSED_ALBEDO.term("a throughput between them")
+    ZELTNER_VALUE.term("two values", 2.0), ZELTNER_THROUGHPUT.term("a throughput between them")
 )
 # Of a sum in a mix over a base too: the slopes of its albedo by the two are at most 1 and 2.
 ALBEDO = sum_of(
-    CLOSED_ALBEDO.term("two albedos, and a throughput between them", 3.0), quantity=Quantity.ALBEDO
+    ZELTNER_ALBEDO.term("two albedos, and a throughput between them", 3.0), quantity=Quantity.ALBEDO
 )
 NESTED_VALUE = sum_of(
     VALUE.term("two values and a throughput"),
     ZELTNER_VALUE.term("a third value"),
-    CLOSED_ALBEDO.term("its throughput"),
+    ZELTNER_THROUGHPUT.term("its throughput"),
     exact=True,
 )
 ERRORS = {
@@ -105,6 +105,7 @@ COLORED = ("multiply_color3", "multiply_sum")  # rows whose factor is a color
 class CombinedSpec(PbrSpec):
     """A node of `mxeon.models.nodes.combinations`, whose weights stay 1."""
 
+    requires = Ability.LOBE | Ability.COMBINATION
     # MaterialX scales a lobe by the share of a mix that is connected wherever the lobe is used.
     plain = ("lobes", "inputs from an image")
 

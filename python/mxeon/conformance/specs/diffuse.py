@@ -9,8 +9,8 @@ from itertools import product
 import numpy as np
 
 from mxeon.conformance.results.quantities import Quantity
-from mxeon.conformance.samples import TURNED, Array, Batch, Counts, Values, directions_at
-from mxeon.conformance.spec import CHANGED_COLOR, Input, color
+from mxeon.conformance.samples import LOBE_RIM, TURNED, Array, Batch, Counts, Values, directions_at
+from mxeon.conformance.spec import CHANGED_COLOR, Ability, Input, color
 from mxeon.conformance.specs.lobes import ScatteringSpec
 from mxeon.conformance.tolerance import Term, roundings, sum_in
 from mxeon.models import table as reference
@@ -20,6 +20,11 @@ from mxeon.models.table import Model
 from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, document_text, input_text, node_text
 
 EDGES = (0.0, 1e-6, 1e-3, 1.0)  # of a color channel, and of the roughness in units of the largest
+# Colors and roughnesses of the pictures that stand for a rough diffuse node.
+PICTURE_INPUTS: tuple[Values, ...] = (
+    {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
+    {"color": (0.8, 0.4, 0.1), "roughness": 0.5, "weight": 0.5},
+)
 COUNTS = Counts(nodes=16)  # which reach 2e-8, the rounding of directions
 LOSS_FIT = 2.7e-7  # relative error of the fit of FON's loss H: tools/fits
 
@@ -71,6 +76,8 @@ def inputs_of(*names: str) -> tuple[Input, ...]:
 class DiffuseModelSpec(ScatteringSpec):
     """What has to be a rough diffuse model: a row of `mxeon.models.table`."""
 
+    requires = Ability.OWN  # unless it is a node of a library
+
     counts: Counts = COUNTS
     flat: bool = True
 
@@ -82,6 +89,14 @@ class DiffuseModelSpec(ScatteringSpec):
         high = float(most if most <= largest else np.nextafter(most, np.float32(0.0)))
         edges = tuple(high * each for each in EDGES)
         return color("color", edges=EDGES), Input("roughness", high=high, edges=edges)
+
+    @property
+    def materials(self) -> tuple[Values, ...]:
+        names = {"color", "roughness", *self.names}
+        return tuple(
+            {name: value for name, value in inputs.items() if name in names}
+            for inputs in PICTURE_INPUTS
+        )
 
     def random_inputs(
         self, rng: np.random.Generator, count: int, edged: bool = False
@@ -131,6 +146,8 @@ def _limited(function: Callable[..., Array], most: float) -> Callable[..., Array
 class DiffuseSpec(DiffuseModelSpec):
     """A rough diffuse node with its flag."""
 
+    requires = Ability.DIFFUSE
+
     flag: bool | None  # energy_compensation, or None where the node has no such input
 
 
@@ -164,6 +181,10 @@ class SurfaceLobe(DiffuseModelSpec):
     apart: a black lobe leaves the other lobes, and a white one at roughness 0, which is Lambert in every
     model, gives how much of the light reaches the lobe and comes back.
     """
+
+    requires = Ability.BELOW
+    coarse = 4  # the shaders are long
+    rim = LOBE_RIM  # an error in position is divided twice
 
     color: str  # names of the inputs of the lobe
     roughness: str = ""  # "" for none

@@ -27,6 +27,7 @@ from mxeon.conformance.spec import (
     EXPONENTIAL,
     POWER,
     ZERO,
+    Ability,
     EngineError,
     Input,
     RowSpec,
@@ -169,6 +170,9 @@ power_error = POWER.error(_powers)
 class EmissionSpec(RowSpec):
     """A row of `mxeon.models.nodes.emissions`."""
 
+    requires = Ability.EMISSION
+    coarse = 4  # every pixel of one view is alike
+
     row: Emission
 
     def document(self, inputs: Values | None = None) -> str:
@@ -260,6 +264,8 @@ def _edge(angle: Array) -> Array:
 class AbsentSpec(Spec):
     """A node that no library of ours has: only its implementation is judged."""
 
+    requires = Ability.IMPLEMENTATION
+
     text: str  # XML of a document's nodes that use it
 
     def document(self, inputs: Values | None = None) -> str:
@@ -290,6 +296,8 @@ ABSENT = (
 @dataclass(frozen=True, eq=False, kw_only=True)
 class EmittingSurface(ValueSpec):
     """The node `surface` with an emission, in the dark, one picture for each of OPACITIES."""
+
+    requires = Ability.SURFACE
 
     has_bsdf: bool
 
@@ -334,7 +342,7 @@ def _spec(row: Emission) -> EmissionSpec:
         title=title_of(row, "EDF"),
         closure=not cone,
         counts=Counts(1 << 12, 1 << 10),
-        asked=("emission", "radiance", 1.0),
+        evaluated=("emission", "radiance", 1.0),
         optional=True,
         engines={"value": power} if row.name == "schlick_emission" else {},
     )
@@ -359,6 +367,8 @@ PORTS = connection_text("top", "BSDF", "top") + connection_text("base", "VDF", "
 @dataclass(frozen=True, eq=False, kw_only=True)
 class MediumSpec(RowSpec):
     """A row of `mxeon.models.nodes.media`."""
+
+    requires = Ability.MEDIUM
 
     row: Medium
 
@@ -404,7 +414,7 @@ def _medium_spec(row: Medium) -> MediumSpec:
         title=title_of(row, "VDF"),
         counts=Counts(1 << 8),
         fixed={"top/weight": 0.0},
-        asked=("transmission", "throughput", 1.0),
+        evaluated=("transmission", "throughput", 1.0),
         optional=True,
         engines={"value": ENGINE if combined else ENGINE[:1]},
     )

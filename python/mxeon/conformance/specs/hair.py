@@ -20,7 +20,7 @@ from mxeon.conformance.samples import (
     sky,
     special_directions,
 )
-from mxeon.conformance.spec import Input, broadcast_inputs, color
+from mxeon.conformance.spec import Ability, Input, broadcast_inputs, color
 from mxeon.conformance.specs.lobes import NORMAL, PbrSpec, lobe_errors
 from mxeon.conformance.tolerance import Compared, Term, roundings, sum_in, sum_of
 from mxeon.models.hair import ROUGHNESSES, SCALE, TINTS, chiang_hair_attenuation, section
@@ -142,7 +142,7 @@ REGIONS = {
     ),
 }
 ERRORS = {
-    **lobe_errors(MEAN, ALBEDO, FRAME, quadrature=5e-6),
+    **lobe_errors(MEAN, ALBEDO, ALBEDO, FRAME, quadrature=5e-6),
     **dict.fromkeys(("value", "reciprocity"), VALUE),
     **dict.fromkeys(REGIONS, REGION),
 }
@@ -151,6 +151,8 @@ ERRORS = {
 @dataclass(frozen=True, eq=False, kw_only=True)
 class HairSpec(PbrSpec):
     """The hair node. Light comes from the whole sphere, and its values take no cosine."""
+
+    requires = Ability.LOBE | Ability.HAIR
 
     counts: Counts = COUNTS
 

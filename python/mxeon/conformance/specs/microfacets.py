@@ -30,7 +30,7 @@ from mxeon.conformance.samples import (
     rounded,
     special_directions,
 )
-from mxeon.conformance.spec import ARGUMENTS, WAVE, EngineError, Input, ValueSpec, color
+from mxeon.conformance.spec import ARGUMENTS, WAVE, Ability, EngineError, Input, ValueSpec, color
 from mxeon.conformance.specs.lobes import BURLEY_VALUE, NORMAL, WEIGHT, PbrSpec, lobe_errors
 from mxeon.conformance.specs.sheen import FIT_COSINE
 from mxeon.conformance.tolerance import (
@@ -278,7 +278,7 @@ def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
     light = sum_in(
         Quantity.LIGHT, *throughput.terms[1:], Term(QUADRATURE, "the quadrature on the equations")
     )
-    own = lobe_errors(MEAN, ENVIRONMENT, FRAME, QUADRATURE)
+    own = lobe_errors(MEAN, ENVIRONMENT, throughput, FRAME, QUADRATURE)
     seen = sum_in(
         Quantity.IRRADIANCE,
         Term(
@@ -294,7 +294,6 @@ def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
         **ERRORS,
         **own,
         **dict.fromkeys(("value", "reciprocity"), VALUE),
-        "throughput": throughput,
         "anisotropic_throughput": throughput.plus(ANISOTROPIC, ANISOTROPIC_LOBE),
         "light": light,
         "lossless": own["integral"],
@@ -477,12 +476,12 @@ FRESNEL_SLOPE = 7.3
 
 
 # Where MaterialX's fit B is 0, no curve moves its prefiltered sum, and its fit A is this far below 1.
-LEAST_FIT = 5.06e-2
+PREFILTERED = Term(5.06e-2, "MaterialX's fit of prefiltered light")
 
 
 def transmission_errors(passed: Tolerance) -> dict[str, Tolerance]:
     return {
-        "methods": passed.plus(Term(LEAST_FIT, "MaterialX's fit of prefiltered light")),
+        "methods": passed.plus(PREFILTERED),
         "value": passed,  # light that passes
         "light": sum_in(
             Quantity.LIGHT, ENVIRONMENT.term("a reflected albedo"), passed.term("light that passes")
@@ -502,6 +501,7 @@ def transmission_errors(passed: Tolerance) -> dict[str, Tolerance]:
 class TransmissionSpec(FacetSpec):
     """A node of `mxeon.models.nodes.microfacets`."""
 
+    requires = Ability.LOBE | Ability.TRANSMISSION
     # In another frame a rounding decides about what total reflection takes from a sum of refractions.
     plain = ("frame", "shape")
 
@@ -526,6 +526,7 @@ TRANSMISSION_SPECS = tuple(
         row,
         INPUTS[row.category],
         transmission_errors(THROUGHPUT if "tint" in row.inputs else SCHLICK_THROUGHPUT),
+        prefiltered_fits={"value": (PREFILTERED,)},
     )
     for row in TRANSMISSION_NODES
 )
@@ -623,6 +624,8 @@ THICK = (0.0, 1.0, 100.0, 1e4)  # thicknesses at the edges of the domain
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FilmSpec(FacetSpec):
     """A microfacet node under a thin film."""
+
+    requires = Ability.LOBE | Ability.FILM
 
     counts: Counts = FILM_COUNTS
 

@@ -9,7 +9,6 @@ from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import LEAST_SHEEN, float32, generator
 from mxeon.conformance.spec import ARGUMENTS, POWER, EngineError
 from mxeon.conformance.specs.lobes import (
-    CLOSED_ALBEDO,
     COLOR,
     FLAT_FRAME,
     NORMAL,
@@ -33,6 +32,10 @@ ZELTNER_VALUE = sum_of(
     roundings(48, "of the value or 1: an inverse fourth power takes the 8 of a length four times"),
     roundings(10 * 11.6, "in the exponent of the albedo, 11.6 where values are about 1"),
 )
+# The albedo, which an environment returns, and 1 - E, which passes to the base.
+CLOSED = roundings(32, "of the albedo or 1: 20 in an exponent, times 0.6, and 20 beside it")
+ZELTNER_ALBEDO = sum_of(CLOSED, quantity=Quantity.ALBEDO)
+ZELTNER_THROUGHPUT = sum_of(CLOSED, quantity=Quantity.ALBEDO)
 LOGARITHM = 4 * 0.5 / LEAST_SHEEN  # four roundings of a logarithm, over twice the roughness
 
 
@@ -41,12 +44,12 @@ def conty_kulla_value(logarithm: float) -> Tolerance:
     return sum_of(roundings(32), roundings(logarithm, words))
 
 
-CONTY_KULLA_ALBEDO = sum_in(
-    Quantity.ALBEDO,
+FIT = (
     Term(1.53e-3, "the fit of the albedo"),  # tools/fits/conty_kulla_albedo.py
-    CLOSED_ALBEDO.term("roundings of an albedo in closed form"),
-    exact=True,
+    ZELTNER_ALBEDO.term("roundings of an albedo in closed form"),
 )
+CONTY_KULLA_ALBEDO = sum_in(Quantity.ALBEDO, *FIT, exact=True)
+CONTY_KULLA_THROUGHPUT = sum_in(Quantity.ALBEDO, *FIT, exact=True)
 
 
 def power_error(host: Host) -> float:
@@ -67,7 +70,7 @@ def power_error(host: Host) -> float:
 ZELTNER = PbrSpec.of(
     node("zeltner"),
     ZELTNER_INPUTS,
-    lobe_errors(ZELTNER_VALUE, CLOSED_ALBEDO, FLAT_FRAME, quadrature=1e-8),
+    lobe_errors(ZELTNER_VALUE, ZELTNER_ALBEDO, ZELTNER_THROUGHPUT, FLAT_FRAME, quadrature=1e-8),
     along=0.03,
 )
 CONTY_KULLA = PbrSpec.of(
@@ -75,7 +78,11 @@ CONTY_KULLA = PbrSpec.of(
     INPUTS,
     {
         **lobe_errors(
-            conty_kulla_value(LOGARITHM), CONTY_KULLA_ALBEDO, FLAT_FRAME, quadrature=2e-4
+            conty_kulla_value(LOGARITHM),
+            CONTY_KULLA_ALBEDO,
+            CONTY_KULLA_THROUGHPUT,
+            FLAT_FRAME,
+            quadrature=2e-4,
         ),
         # The half vector has the same digits, and so has its power.
         "reciprocity": sum_of(roundings(32)),

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Candidate, Counts, Values
-from mxeon.conformance.spec import ZERO, Input, broadcast_inputs
+from mxeon.conformance.spec import ZERO, Ability, Input, broadcast_inputs
 from mxeon.conformance.specs.lobes import COLOR, FLAT_ERRORS, NORMAL, WEIGHT, PbrSpec
 from mxeon.conformance.tolerance import given, mean_error
 from mxeon.models.media import FAR, blur_to
@@ -39,6 +39,7 @@ RINGS_MEAN = given(
 class SubsurfaceSpec(PbrSpec):
     """The node on a plane, where its radius and its anisotropy have no effect, and on a sphere."""
 
+    requires = Ability.LOBE | Ability.SUBSURFACE
     curved = True
 
     @property

@@ -23,7 +23,16 @@ from mxeon.conformance.samples import (
     float32,
     generator,
 )
-from mxeon.conformance.spec import CHANGED_COLOR, Input, LobeSpec, ValueSpec, color, draw, materials
+from mxeon.conformance.spec import (
+    CHANGED_COLOR,
+    Ability,
+    Input,
+    LobeSpec,
+    ValueSpec,
+    color,
+    draw,
+    materials,
+)
 from mxeon.conformance.specs.lobes import LEAST_VIEW
 from mxeon.conformance.specs.microfacets import FILM_ERRORS, LOBE_FIT, reflected, sum_over
 from mxeon.conformance.tolerance import Term, mean_scaled, roundings, sum_in, sum_of
@@ -100,6 +109,7 @@ STATES = sum_of(roundings(32, "of the same parts in two programs"))
 class SurfaceShaderSpec(LobeSpec):
     """A surface shader with every lobe on."""
 
+    requires = Ability.MATERIAL
     plain = ("frame", "shape", "lobes", "inputs from an image")
 
     judged: tuple[Input, ...]  # those whose values have a reference

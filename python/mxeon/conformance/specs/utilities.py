@@ -19,6 +19,7 @@ from mxeon.conformance.spec import (
     COMPONENTS,
     LOGARITHM,
     POWER,
+    Ability,
     EngineError,
     Input,
     RowSpec,
@@ -149,6 +150,8 @@ ENGINE = {
 class UtilitySpec(RowSpec):
     """An output of a node of `mxeon.models.nodes.utilities`."""
 
+    requires = Ability.OUTPUT
+
     row: UtilityNode
     output: str
 
@@ -260,7 +263,7 @@ def _spec(row: UtilityNode, output: str, *libraries: str) -> UtilitySpec:
         libraries=libraries,
         closure=False,
         counts=Counts(1 << 12, 1 << 9, 1 << 9),
-        asked=(GRAPH, "response", 1.0),
+        evaluated=(GRAPH, "response", 1.0),
     )
 
 
