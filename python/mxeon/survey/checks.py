@@ -74,23 +74,15 @@ def _deviation(case: Case, mu: float) -> float:
     return deviation(np.where(wi[:, 2:] > 0.0, wi, 0.0), density, pole)
 
 
+# fmt: off
 CHECKS += (
-    Check(
-        key="density",
-        claim="The sampling density is the paper's.",
-        applies=Specs(is_sampled),
-        measure=density,
-        tolerance=OWN_DENSITY,
-        control=controls.with_inputs("roughness is dropped", roughness=0.0),
-        explain=always(defect("density_differs")),
-    ),
-    Check(
-        key="samples",
-        claim="Samples follow the density that is returned with them.",
-        applies=Specs(is_sampled),
-        measure=samples,
-        tolerance=CHI_SQUARE,
-        control=controls.with_inputs("the density is that of roughness 0", roughness=0.0),
-        explain=always(defect("samples_differ")),
-    ),
+    Check(key="density", claim="The sampling density is the paper's.",
+          applies=Specs(is_sampled), measure=density, tolerance=OWN_DENSITY,
+          control=controls.with_inputs("roughness is dropped", roughness=0.0),
+          explain=always(defect("density_differs"))),
+    Check(key="samples", claim="Samples follow the density that is returned with them.",
+          applies=Specs(is_sampled), measure=samples, tolerance=CHI_SQUARE,
+          control=controls.with_inputs("the density is that of roughness 0", roughness=0.0),
+          explain=always(defect("samples_differ"))),
 )
+# fmt: on

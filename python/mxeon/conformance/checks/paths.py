@@ -411,70 +411,40 @@ def quadrature(pole: tuple[float, ...], nodes: int) -> tuple[Array, Array, NDArr
     return w, np.repeat(area, len(azimuth)), cell(w, np.array(pole))
 
 
+# fmt: off
 ROWS = (
-    Check(
-        key="pdf",
-        claim="What a path tracer draws has the density that it is told, which integrates to the share of draws kept.",
-        applies=Specs(is_drawn),
-        measure=pdf,
-        tolerance=given(
-            6.0, Quantity.DEVIATIONS, "chance reaches 6 once in 10^7 draws of a chi-square"
-        ),
-        control=controls.with_values(
-            "a tenth of the density is that of a lobe, even in all directions, that is never drawn",
-            lambda batch, values: 0.9 * values + 0.1 / (4.0 * np.pi),
-        ),
-        explain=lambda case: defect(
-            "drawn_density",
-            *dict.fromkeys(place(inside) for score, inside, _ in scores(case) if score > 6.0),
-        ),
-        requires=Ability.PAIRS,
-        profile="path",
-        hosts=has_paths,
-    ),
-    Check(
-        key="sample",
-        claim="A draw's weight times its density is the value in its direction, and its density that of material_pdf.",
-        applies=Specs(is_drawn),
-        measure=sample,
-        tolerance=SAMPLE,
-        control=controls.scale("weights are 0.01 % too large", 1.0001),
-        explain=_wrong_half,
-        requires=Ability.PAIRS,
-        profile="path",
-        hosts=has_paths,
-    ),
-    Check(
-        key="path_value",
-        claim="A path tracer's value, opacity and emission are the rasterizer's, in any frame.",
-        applies=Specs(reflects),
-        measure=path_value,
-        tolerance=sum_of(
-            roundings(
-                64,
-                "of two directions and their frame, times 1 + the inverse of the lobe's own alpha",
-            )
-        ),
-        control=controls.scale("values are 0.1 % too large", 1.001),
-        explain=always(defect("other_path_value")),
-        requires=Ability.PAIRS,
-        profile="path",
-        hosts=has_paths,
-    ),
-    Check(
-        key="path_inside",
-        claim="Light inside a solid is reflected and refracted as outside of one of the inverse index.",
-        applies=Specs(lambda spec: spec.node in GLASS and is_glass(spec)),
-        measure=path_inside,
-        tolerance=sum_of(
-            roundings(
-                256, "of an index that OpenPBR takes from its reflectance, near a critical angle"
-            )
-        ),
-        control=controls.scale("values are 0.1 % too large", 1.001),
-        explain=always(defect("inside_is_not_outside")),
-        requires=Ability.PAIRS,
-        profile="path",
-        hosts=has_paths,
-    ),
+    Check(key="pdf",
+          claim="What a path tracer draws has the density that it is told, which integrates to the share of draws kept.",
+          applies=Specs(is_drawn), measure=pdf,
+          tolerance=given(
+              6.0, Quantity.DEVIATIONS, "chance reaches 6 once in 10^7 draws of a chi-square"),
+          control=controls.with_values(
+              "a tenth of the density is that of a lobe, even in all directions, that is never drawn",
+              lambda batch, values: 0.9 * values + 0.1 / (4.0 * np.pi)),
+          explain=lambda case: defect(
+              "drawn_density",
+              *dict.fromkeys(place(inside) for score, inside, _ in scores(case) if score > 6.0)),
+          requires=Ability.PAIRS, profile="path", hosts=has_paths),
+    Check(key="sample",
+          claim="A draw's weight times its density is the value in its direction, and its density that of material_pdf.",
+          applies=Specs(is_drawn), measure=sample, tolerance=SAMPLE,
+          control=controls.scale("weights are 0.01 % too large", 1.0001), explain=_wrong_half,
+          requires=Ability.PAIRS, profile="path", hosts=has_paths),
+    Check(key="path_value",
+          claim="A path tracer's value, opacity and emission are the rasterizer's, in any frame.",
+          applies=Specs(reflects), measure=path_value,
+          tolerance=sum_of(roundings(
+              64, "of two directions and their frame, times 1 + the inverse of the lobe's own alpha")),
+          control=controls.scale("values are 0.1 % too large", 1.001),
+          explain=always(defect("other_path_value")), requires=Ability.PAIRS, profile="path",
+          hosts=has_paths),
+    Check(key="path_inside",
+          claim="Light inside a solid is reflected and refracted as outside of one of the inverse index.",
+          applies=Specs(lambda spec: spec.node in GLASS and is_glass(spec)), measure=path_inside,
+          tolerance=sum_of(roundings(
+              256, "of an index that OpenPBR takes from its reflectance, near a critical angle")),
+          control=controls.scale("values are 0.1 % too large", 1.001),
+          explain=always(defect("inside_is_not_outside")), requires=Ability.PAIRS, profile="path",
+          hosts=has_paths),
 )
+# fmt: on

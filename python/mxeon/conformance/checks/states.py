@@ -448,20 +448,15 @@ def _words(pixels: Pixels) -> Iterator[set[str]]:
         yield common | ({f"two lobes that differ in {name}"} if name else set())
 
 
+# fmt: off
 ROWS = (
-    Check(
-        key="states",
-        claim="Lights, environments and lobes add up in a pixel, in every frame, whether inputs vary or not.",
-        applies=family(LobeSpec),
-        measure=states,
-        tolerance="states",
-        control=exchanged,
-        explain=diagnose,
-        requires=Ability.PAIRS,
-        methods=lambda spec, methods: (
-            not isinstance(spec, TransmissionSpec)
-            or spec.reflects
-            or methods.transmission != "opacity"
-        ),
-    ),
+    Check(key="states",
+          claim="Lights, environments and lobes add up in a pixel, in every frame, whether inputs vary or not.",
+          applies=family(LobeSpec), measure=states, tolerance="states", control=exchanged,
+          explain=diagnose, requires=Ability.PAIRS,
+          # As opacity, such a lobe is its tint: no control could show a wrong view.
+          methods=lambda spec, methods: (
+              not isinstance(spec, TransmissionSpec)
+              or spec.reflects or methods.transmission != "opacity")),
 )
+# fmt: on
