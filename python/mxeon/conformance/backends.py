@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, ClassVar, TypeAlias, TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.conformance import samples
+from mxeon.conformance import samples, tolerance
 from mxeon.conformance.cache import EVALUATIONS, Recent, contents, parts
 from mxeon.conformance.results import Claims
 from mxeon.conformance.results.quantities import Quantity
@@ -27,18 +27,7 @@ from mxeon.conformance.spec import POWER, Ability, LobeSpec, Spec, ValueSpec, br
 from mxeon.conformance.specs.diffuse import LOBE_VALUE, SurfaceLobe
 from mxeon.conformance.specs.lobes import PbrSpec, ScatteringSpec
 from mxeon.conformance.specs.microfacets import FacetSpec
-from mxeon.conformance.tolerance import (
-    ROUNDING,
-    Term,
-    Tolerance,
-    given,
-    largest,
-    mean_error,
-    relative,
-    roundings,
-    sum_in,
-    sum_of,
-)
+from mxeon.conformance.tolerance import Term, Tolerance, given, relative, roundings, sum_in, sum_of
 from mxeon.errors import DocumentError, NotRun
 from mxeon.hosts import front_lit_only, host_row
 from mxeon.hosts.base import Host, Query
@@ -235,7 +224,7 @@ class Evaluating(Backend):
             ),
         }
         if frame := spec.errors.get("frame"):
-            angle = 2.0 * spec.along * math.sqrt(2.0 * ROUNDING)
+            angle = 2.0 * spec.along * math.sqrt(2.0 * tolerance.ROUNDING)
             words = f"two slopes {spec.along:g} at the normal, times the angle of a rounded cosine"
             own["states"] = sum_of(
                 frame.term("a part in another frame"),
@@ -551,7 +540,7 @@ class Rendered(Shown):
     @classmethod
     def errors(cls, spec: Spec) -> Errors:
         turned = {
-            name: largest(spec.errors[name], cls.place or spec.errors[name])
+            name: tolerance.largest(spec.errors[name], cls.place or spec.errors[name])
             for name in ("retroreflection", "anisotropy")
             if name in spec.errors
         }
@@ -677,7 +666,7 @@ CYCLES_NOISE = sum_of(
         "four standard errors of the mean of 12836 pixels, each off by 1.3e-3, times 1.4",
     ),
     quantity=Quantity.MEAN_ALBEDO,
-    metric=mean_error,
+    metric=tolerance.mean_error,
 )
 
 

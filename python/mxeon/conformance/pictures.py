@@ -31,17 +31,11 @@ from mxeon.conformance.results import (
 )
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Batch, Values
+from mxeon.conformance.specs import microfacets
 from mxeon.conformance.specs import surface_shaders as surfaces
 from mxeon.conformance.specs.diffuse import DiffuseModelSpec, SurfaceLobe
 from mxeon.conformance.specs.hair import lobe_terms
-from mxeon.conformance.specs.microfacets import (
-    ANISOTROPIC,
-    FILM_ALBEDO,
-    FILM_TRAPPED,
-    LEAST_FILM,
-    MEAN,
-    sum_over,
-)
+from mxeon.conformance.specs.microfacets import ANISOTROPIC, FILM_ALBEDO, FILM_TRAPPED, LEAST_FILM
 from mxeon.conformance.specs.microfacets import ERRORS as FACET_ERRORS
 from mxeon.conformance.specs.sheen import ZELTNER_ALBEDO, ZELTNER_VALUE
 from mxeon.conformance.specs.subsurface import RINGS
@@ -96,9 +90,9 @@ ENCODED = given(
     SLOPE * TEXTURED.value, Quantity.PICTURE, f"filtered codes of sRGB, times its slope {SLOPE:.3g}"
 )
 FITTED, SHADED = (
-    Tolerance((each, sum_over(256)), Quantity.FITTED_PICTURE, scaled, exact=True)
+    Tolerance((each, microfacets.sum_over(256)), Quantity.FITTED_PICTURE, scaled, exact=True)
     for each in (
-        MEAN.term("the fits of microfacets"),
+        microfacets.MEAN.term("the fits of microfacets"),
         surfaces.ALBEDO.term("all lobes of a surface shader"),
     )
 )

@@ -14,27 +14,8 @@ from typing import Any, ClassVar, NamedTuple, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.conformance.samples import (
-    FRAMES,
-    LEAN,
-    RIM,
-    Array,
-    Batch,
-    Candidate,
-    Changes,
-    Counts,
-    Values,
-    directions,
-    float32,
-    generator,
-    node_inputs,
-    outside_directions,
-    rounded,
-    special_directions,
-    turned_directions,
-    turned_frames,
-    with_edges,
-)
+from mxeon.conformance import samples
+from mxeon.conformance.samples import Array, Batch, Candidate, Counts, Values, directions, generator
 from mxeon.conformance.tolerance import ROUNDING, Compared, Term, Tolerance
 from mxeon.hosts.base import Host
 from mxeon.shaders.nodes import SURFACE, Node, document_text, input_types, lobe_text, network_text
@@ -95,10 +76,10 @@ def draw(
             values[::2] = each.often
         if each.equal:
             values[::2] = values[::2, :1]
-        drawn[each.name] = float32(values)
+        drawn[each.name] = samples.float32(values)
     for each in inputs:
         if edged and each.edges:
-            drawn[each.name] = with_edges(rng, drawn[each.name], each.edges)
+            drawn[each.name] = samples.with_edges(rng, drawn[each.name], each.edges)
     return drawn
 
 
@@ -164,7 +145,7 @@ class Spec(ABC):
 
     requires: ClassVar[Ability]
     coarse: ClassVar[int] = 1  # by which its pictures are smaller
-    rim: ClassVar[float] = RIM  # least cosines that are judged in a picture
+    rim: ClassVar[float] = samples.RIM  # least cosines that are judged in a picture
 
     title: str  # in reports; unique
     node: str  # category
@@ -207,7 +188,7 @@ class Spec(ABC):
         return tuple(each.name for each in self.inputs)
 
     @property
-    def changes(self) -> Mapping[str, Changes]:
+    def changes(self) -> Mapping[str, samples.Changes]:
         """For each input: inputs without and with a change of it alone."""
         return {
             each.name: (each.needs, {**each.needs, each.variable or each.name: each.change})
@@ -298,8 +279,8 @@ class LobeSpec(ValueSpec):
         pairs = directions(rng, count), directions(rng, count)
         return (
             self._batch(rng, pairs),
-            self._batch(rng, special_directions(rng), edged=True),
-            self._batch(rng, outside_directions(rng)),
+            self._batch(rng, samples.special_directions(rng), edged=True),
+            self._batch(rng, samples.outside_directions(rng)),
         )
 
     def few(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
@@ -317,14 +298,14 @@ class LobeSpec(ValueSpec):
         as those of a geometry do where a picture turns the normal.
         """
         rng = generator()
-        frames = turned_frames(rng, FRAMES)
+        frames = samples.turned_frames(rng, samples.FRAMES)
         count = len(frames)
-        wo, wi = turned_directions(rng, count), turned_directions(rng, count)
+        wo, wi = samples.turned_directions(rng, count), samples.turned_directions(rng, count)
         facing = np.where(np.arange(count) % 2, 1.0, -1.0)[:, np.newaxis]
-        normal = facing * rounded(frames[:, :, 2].T)
-        lean = LEAN * np.linspace(-1.0, 1.0, count)[:, np.newaxis]
+        normal = facing * samples.rounded(frames[:, :, 2].T)
+        lean = samples.LEAN * np.linspace(-1.0, 1.0, count)[:, np.newaxis]
         tangent = frames[:, :, 0] + lean * frames[:, :, 2]
-        axes = {"normal": normal, "tangent": rounded(tangent.T)}
+        axes = {"normal": normal, "tangent": samples.rounded(tangent.T)}
         inputs = {**self.random_inputs(rng, count), **axes}
         return Batch(wo, wi * [1.0, 1.0, self.side], inputs, frame=frames)
 
@@ -333,7 +314,7 @@ class LobeSpec(ValueSpec):
     ) -> Batch:
         """Pairs with random inputs, weights and occlusions, lit from the side that it scatters."""
         wo, wi = pairs
-        inputs = {**self.random_inputs(rng, len(wo), edged), **node_inputs(rng, len(wo))}
+        inputs = {**self.random_inputs(rng, len(wo), edged), **samples.node_inputs(rng, len(wo))}
         return Batch(wo, wi * [1.0, 1.0, self.side], inputs)
 
 

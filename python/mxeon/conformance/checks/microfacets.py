@@ -8,53 +8,19 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.conformance import controls, diagnosis
+from mxeon.conformance import controls, diagnosis, samples
 from mxeon.conformance.case import SCATTERING, Case, dead_inputs
 from mxeon.conformance.check import Check, always, family
 from mxeon.conformance.checks import lobes
 from mxeon.conformance.checks.lobes import FILMS, TRANSMITTING
-from mxeon.conformance.diagnosis import (
-    ALBEDO,
-    NEAR,
-    OTHER_AVERAGE,
-    SINGLY_RIGHT,
-    UNKNOWN,
-    UNMASKED,
-    VALUE,
-    Comparison,
-    defect,
-    not_finite,
-)
+from mxeon.conformance.diagnosis import ALBEDO, NEAR, UNKNOWN, UNMASKED, VALUE, defect, not_finite
 from mxeon.conformance.results import Cause, Diagnosis, Kind
 from mxeon.conformance.results.quantities import Quantity
-from mxeon.conformance.samples import (
-    LEAST_COLOR82,
-    Array,
-    Batch,
-    aimed,
-    directions_at,
-    rounded,
-    sky,
-    sky_map,
-    texel_middles,
-)
+from mxeon.conformance.samples import LEAST_COLOR82, Array, Batch, aimed, rounded, sky, sky_map
 from mxeon.conformance.spec import Ability, Spec
+from mxeon.conformance.specs import microfacets
 from mxeon.conformance.specs.lobes import PbrSpec
-from mxeon.conformance.specs.microfacets import (
-    FRINGED,
-    GLOSSY,
-    LEAST_INDEX,
-    LEAST_TANGENT_ALPHA,
-    LEAST_TANGENT_COSINE,
-    ORDERED,
-    SHARP,
-    STEEP,
-    FacetSpec,
-    Films,
-    FilmSpec,
-    TransmissionSpec,
-    film_views,
-)
+from mxeon.conformance.specs.microfacets import FacetSpec, FilmSpec, TransmissionSpec, film_views
 from mxeon.conformance.tolerance import Compared, count_named, count_not_finite, count_of, roundings
 from mxeon.models.microfacet.ggx import smith_g1, smith_lambda
 from mxeon.models.transmission import refraction_direction
@@ -90,7 +56,7 @@ def shape(case: Case) -> Compared:
     first, second = (case.of(FacetSpec).single(each) for each in (batch, other))
     lit = np.asarray((np.minimum(first, second) > LEAST_VALUE).any(axis=1))
     least = np.minimum(batch.wo[:, 2], np.minimum(batch.wi[:, 2], other.wi[:, 2]))
-    lit &= least >= LEAST_TANGENT_COSINE
+    lit &= least >= microfacets.LEAST_TANGENT_COSINE
     scale = (first * second).max(axis=1, keepdims=True)
     with np.errstate(invalid="ignore"):
         measured = case.direct(batch) * second / scale
@@ -120,8 +86,12 @@ def retroreflection(case: Case) -> Iterator[Compared]:
 
 def anisotropy(case: Case) -> Compared:
     batch = case.backend.mirrored[0].first(PAIRS)
-    batch = batch.where(np.minimum(batch.wo[:, 2], batch.wi[:, 2]) >= LEAST_TANGENT_COSINE)
-    batch = batch.altered(roughness=np.maximum(batch.inputs["roughness"], LEAST_TANGENT_ALPHA))
+    batch = batch.where(
+        np.minimum(batch.wo[:, 2], batch.wi[:, 2]) >= microfacets.LEAST_TANGENT_COSINE
+    )
+    batch = batch.altered(
+        roughness=np.maximum(batch.inputs["roughness"], microfacets.LEAST_TANGENT_ALPHA)
+    )
     angle = np.linspace(0.0, 2.0 * np.pi, len(batch.wo))
     x, y, zero = np.cos(angle), np.sin(angle), np.zeros(len(angle))
     axes = np.array([[x, -y, zero], [y, x, zero], [zero, zero, zero + 1.0]]).transpose(2, 0, 1)
@@ -163,7 +133,7 @@ def stretched_values(case: Case) -> Iterator[Compared]:
         yield Compared(batch, case.direct(batch), case.expected(batch))
 
 
-STRETCHED = Comparison(
+STRETCHED = diagnosis.Comparison(
     "anisotropic_value", stretched_values, lambda case: case.of(FacetSpec).all_candidates
 )
 
@@ -326,7 +296,7 @@ def refraction(case: Case) -> Compared:
     batch = _smooth(case)
     # Views in frames from which a sphere refracts them to middles of texels of the sky.
     out = through_sphere(batch.wo, index(batch.inputs))
-    place = texel_middles(out)
+    place = samples.texel_middles(out)
     frames = aimed(np.broadcast_to(np.eye(3), (len(out), 3, 3)), out, place)
     axes = {"tangent": rounded(frames[:, :, 0].T), "normal": rounded(frames[:, :, 2].T)}
     batch = replace(batch.altered(**axes), frame=frames)
@@ -355,7 +325,7 @@ def _smooth(case: Case) -> Batch:
     """Views of smooth surfaces of all indices, with the node's colors."""
     batch = case.few[0].first(SMOOTH_VIEWS)
     if "color0" in batch.inputs:  # as clear as a curve may be, whose index is the highest
-        batch = batch.with_row(0, directions_at(0.1, 0.5), weight=1.0, color0=0.99)
+        batch = batch.with_row(0, samples.directions_at(0.1, 0.5), weight=1.0, color0=0.99)
     batch = batch.where(batch.wo[:, 2] >= LEAST_SEEN)
     return batch.altered(roughness=(0.0, 0.0))
 
@@ -399,7 +369,7 @@ def brighter(batch: Batch, values: Array) -> Array:
     return values * np.where(np.any(batch.inputs["thinfilm_thickness"]), 100.0, 1.0)
 
 
-def curves(films: Films, case: Case) -> Compared:
+def curves(films: microfacets.Films, case: Case) -> Compared:
     """Curves: values in mirrored lights over those of a mirror.
 
     The lobes are so smooth that their compensation is 1, whatever average it has.
@@ -419,7 +389,7 @@ def film_limit(case: Case) -> list[Compared]:
     """
     # Under a film Schlick's curve has no dip: where that is negative, a film's counts as 0.
     batch = case.backend.mirrored[0].first(case.backend.counts.few)  # where most of a film shows
-    batch = _clear(batch, LEAST_INDEX, 1.0).altered(thinfilm_thickness=300.0)
+    batch = _clear(batch, microfacets.LEAST_INDEX, 1.0).altered(thinfilm_thickness=300.0)
     without = batch.altered(thinfilm_thickness=0.0)
     bare = case.direct(without)
     empty, rare = (case.direct(batch.altered(thinfilm_ior=index)) for index in (1.0, RARE))
@@ -452,13 +422,13 @@ def diagnose_average(case: Case) -> Diagnosis:
     errors = {key: np.sqrt(np.mean((measured - each) ** 2)) for key, each in others.items()}
     key = min(errors, key=errors.__getitem__)
     if not errors[key] < NEAR * np.sqrt(np.mean((measured - expected) ** 2)):
-        return Diagnosis((OTHER_AVERAGE,))
+        return Diagnosis((diagnosis.OTHER_AVERAGE,))
     return replace(defect(key), permitted=key == "average_at_half_vector")
 
 
 def film_average(case: Case) -> Compared:
     """F_ss of films whose curve is not next to 0."""
-    batch = film_views(case.of(FilmSpec), FRINGED)
+    batch = film_views(case.of(FilmSpec), microfacets.FRINGED)
     (_, measured), (F, expected) = (
         _averages(case, each, batch) for each in (case.direct, case.expected)
     )
@@ -469,7 +439,7 @@ def film_smooth(case: Case) -> Compared:
     """Values F (1 + F_ss k) of lobes that lose little, against those of lobes that lose less. F and k are the host's,
     and F_ss that of the equations.
     """
-    batch = film_views(case.of(FilmSpec), FRINGED)
+    batch = film_views(case.of(FilmSpec), microfacets.FRINGED)
     F, F_ss = _averages(case, case.expected, batch)
     (first, k), (second, other_k) = (
         _parts(case, case.direct, batch.altered(roughness=(alpha, alpha))) for alpha in SMOOTH
@@ -481,10 +451,10 @@ def film_smooth(case: Case) -> Compared:
 def diagnose_visible(case: Case) -> Diagnosis:
     """The explanation of a film's albedo, or the weights of the facets where that is right."""
     explained = ALBEDO.diagnose(case)
-    return explained if SINGLY_RIGHT not in explained.causes else Diagnosis((UNMASKED,))
+    return explained if diagnosis.SINGLY_RIGHT not in explained.causes else Diagnosis((UNMASKED,))
 
 
-def visible(films: Films, case: Case) -> Compared:
+def visible(films: microfacets.Films, case: Case) -> Compared:
     """Means F_o over the visible facets of films whose curve is not next to 0, by albedos E_ss F_o (1 + F_ss k).
 
     An albedo counts over the one of a mirror, E_ss (1 + k) = 1.
@@ -604,10 +574,10 @@ ROWS = (
           explain=lambda case: defect("wrong_effect", *wrong_inputs(case)), requires=Ability.LIGHT),
     Check(key="film_curve",
           claim="Under a film, a smooth lobe reflects the Airy reflectance at the cosine of the view.",
-          applies=FILMS, measure=partial(curves, SHARP), tolerance="film_curve", control=dropped,
+          applies=FILMS, measure=partial(curves, microfacets.SHARP), tolerance="film_curve", control=dropped,
           explain=VALUE.diagnose, requires=Ability.LIGHT, open=True),
     Check(key="film_orders", claim="At grazing angles, a thin film reflects the sum of all orders.",
-          applies=FILMS, measure=partial(curves, ORDERED), tolerance="film_orders", control=dropped,
+          applies=FILMS, measure=partial(curves, microfacets.ORDERED), tolerance="film_orders", control=dropped,
           explain=VALUE.diagnose, open=True),
     Check(key="film_limit",
           claim="A film with an index of 1 or less, or with almost no thickness, leaves the lobe unchanged.",
@@ -628,11 +598,11 @@ ROWS = (
           explain=diagnose_average, requires=Ability.LIGHT, open=True),
     Check(key="film_visible",
           claim="The albedo averages the film's reflectance over the visible, lit facets.",
-          applies=FILMS, measure=partial(visible, STEEP), tolerance="film_visible", control=dropped,
+          applies=FILMS, measure=partial(visible, microfacets.STEEP), tolerance="film_visible", control=dropped,
           explain=diagnose_visible, requires=Ability.LIGHT, open=True, methods=with_directions),
     Check(key="film_glossy",
           claim="On glossy lobes, too, the albedo averages the film's reflectance over the visible facets.",
-          applies=FILMS, measure=partial(visible, GLOSSY), tolerance="film_glossy", control=dropped,
+          applies=FILMS, measure=partial(visible, microfacets.GLOSSY), tolerance="film_glossy", control=dropped,
           explain=diagnose_visible, requires=Ability.LIGHT, open=True, methods=with_directions),
 )
 # fmt: on

@@ -14,18 +14,12 @@ from mxeon.conformance.diagnosis.regions import EXACT, correct_except, span, unb
 from mxeon.conformance.results import Diagnosis, Kind
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.spec import Ability
-from mxeon.conformance.specs.emission import (
-    OPACITY,
-    UNIMPLEMENTED,
-    AbsentSpec,
-    EmissionSpec,
-    EmittingSurface,
-    MediumSpec,
-)
+from mxeon.conformance.specs import emission
+from mxeon.conformance.specs.emission import OPACITY, UNIMPLEMENTED, AbsentSpec, EmissionSpec
 from mxeon.conformance.specs.utilities import UtilitySpec
 from mxeon.conformance.tolerance import Compared, Measurement, count_not_finite, count_of
 
-EMISSIONS, MEDIA = family(EmissionSpec), family(MediumSpec)
+EMISSIONS, MEDIA = family(EmissionSpec), family(emission.MediumSpec)
 unimplemented = controls.Control(
     "the node is one that nothing implements", lambda case: case.another(UNIMPLEMENTED)
 )
@@ -83,7 +77,7 @@ ROWS = (
           applies=MEDIA, measure=TRANSMITTANCE, tolerance="value", control=controls.shifted,
           explain=TRANSMITTANCE.diagnose),
     Check(key="opacity", claim="The light that a surface emits is scaled by its opacity.",
-          applies=family(EmittingSurface), measure=VALUE, tolerance="value",
+          applies=family(emission.EmittingSurface), measure=VALUE, tolerance="value",
           control=controls.with_inputs("the opacity is 1", opacity=1.0), explain=diagnose_opacity),
     Check(key="output", claim="The output of the utility node matches its equations.",
           applies=family(UtilitySpec), measure=OUTPUT, tolerance="value", control=controls.shifted,

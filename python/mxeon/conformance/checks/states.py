@@ -15,23 +15,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.conformance import controls
+from mxeon.conformance import controls, samples
 from mxeon.conformance.backends import joined
 from mxeon.conformance.case import Case
 from mxeon.conformance.check import Check, family
 from mxeon.conformance.diagnosis import not_finite
 from mxeon.conformance.results import Cause, Diagnosis, Kind
-from mxeon.conformance.samples import (
-    Array,
-    Batch,
-    Mask,
-    Values,
-    aimed,
-    float32,
-    generator,
-    rounded,
-    sky_map,
-)
+from mxeon.conformance.samples import Array, Batch, Mask, Values, aimed, float32, rounded, sky_map
 from mxeon.conformance.spec import Ability, LobeSpec, broadcast_inputs
 from mxeon.conformance.specs.microfacets import TransmissionSpec
 from mxeon.conformance.tolerance import Compared
@@ -251,7 +241,7 @@ def covering(axes: tuple[tuple[str, ...], ...]) -> tuple[tuple[str, ...], ...]:
 
 def pixels_of(case: Case) -> list[Pixels]:
     """Pixels of combinations of the states that the node and the engine can have."""
-    rng, plain = generator(), {*case.lobe.plain, *case.backend.plain}
+    rng, plain = samples.generator(), {*case.lobe.plain, *case.backend.plain}
     if not case.host.reads_images:
         plain.add("inputs from an image")
     axes = tuple(

@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from mxeon.conformance import controls
+from mxeon.conformance import controls, tolerance
 from mxeon.conformance.backends import joined
 from mxeon.conformance.case import SCATTERING, Case
 from mxeon.conformance.check import Check, always, family
@@ -18,15 +18,7 @@ from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.spec import Ability
 from mxeon.conformance.specs.surface_shaders import STRETCHED_FIT, SurfaceShaderSpec, stretched
 from mxeon.conformance.specs.surface_shaders import VALUE as VALUE_ERROR
-from mxeon.conformance.tolerance import (
-    Compared,
-    Measurement,
-    count_named,
-    count_of,
-    roundings,
-    scaled,
-    sum_of,
-)
+from mxeon.conformance.tolerance import Compared, Measurement, count_named, count_of, scaled, sum_of
 from mxeon.errors import NotRun
 from mxeon.hosts.calls import NORMAL, TANGENT
 
@@ -226,7 +218,7 @@ ROWS = (
     Check(key="graph",
           claim="The graph gives every lobe the inputs that it has in the graph that MaterialX released, for every default.",
           applies=MATERIALS, measure=graph,
-          tolerance=sum_of(roundings(16, "of the numbers in a graph"), quantity=Quantity.LOBE_INPUTS),
+          tolerance=sum_of(tolerance.roundings(16, "of the numbers in a graph"), quantity=Quantity.LOBE_INPUTS),
           control=controls.shifted, explain=diagnose_graph, open=True),
     Check(key="reach",
           claim="Every input changes a value, except those that are known to change nothing.",

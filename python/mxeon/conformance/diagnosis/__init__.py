@@ -20,6 +20,7 @@ from mxeon.conformance.case import (
     throughputs,
     values,
 )
+from mxeon.conformance.diagnosis import regions
 from mxeon.conformance.diagnosis.faults import (
     COLOR_FAULTS,
     DIRECT_FAULTS,
@@ -30,15 +31,7 @@ from mxeon.conformance.diagnosis.faults import (
     normal_ignored,
     scaled_by,
 )
-from mxeon.conformance.diagnosis.regions import (
-    EXACT,
-    WEAK,
-    correct_except,
-    place_of,
-    smallest,
-    span,
-    unbounded,
-)
+from mxeon.conformance.diagnosis.regions import EXACT, correct_except, place_of, smallest, span
 from mxeon.conformance.results import Cause, Diagnosis, Kind
 from mxeon.conformance.samples import Array, Batch, Candidate, sky
 from mxeon.conformance.spec import COMPONENTS, Ability
@@ -191,7 +184,7 @@ def _model(
     cures: dict[str, float] = {}
     if not place and measure and np.count_nonzero(wrong) >= WORST and mostly:
         cures = _cures(case, cases, tolerance, measure)
-        weak = span(cases, tolerance, WEAK) if len(cures) == 1 else None
+        weak = span(cases, tolerance, regions.WEAK) if len(cures) == 1 else None
         place = weak if weak and weak.name in cures else None
     few = dict(list(cures.items())[:CURES])
     right = (Cause(Kind.CURE, "inputs", tuple(few), tuple(few.values())),) if cures else ()
@@ -265,7 +258,7 @@ def _cures(
 
 def not_finite(cases: Sequence[Compared]) -> tuple[Cause, ...]:
     """Where values are not finite; none if all are."""
-    zeros = list(map(unbounded, cases))
+    zeros = list(map(regions.unbounded, cases))
     if not any(EXACT.wrong(each).any() for each in zeros):
         return ()
     return (Cause(Kind.NOT_FINITE, region=place_of(zeros, EXACT)),)

@@ -16,13 +16,8 @@ from mxeon.conformance.samples import Array
 from mxeon.errors import DocumentError, NotRun
 from mxeon.hosts import Row, base
 from mxeon.hosts.base import Identity, Query
-from mxeon.shaders.document.drawn_values import (
-    LIT,
-    NAME,
-    Elements,
-    emission_document,
-    value_document,
-)
+from mxeon.shaders.document import drawn_values
+from mxeon.shaders.document.drawn_values import LIT, NAME, Elements, emission_document
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import TRANSMISSION, inner_lobes
@@ -64,7 +59,7 @@ class HostValues:
             if shown.isA(mx.Output):
                 document, path = emission_document(document, shown)
             else:
-                document, path = value_document(document, elements, kind, output)
+                document, path = drawn_values.value_document(document, elements, kind, output)
             try:
                 [shader] = self._host.compile(
                     document, path, library=self.library, policy=self._policy

@@ -21,22 +21,8 @@ import MaterialX as mx
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.conformance.reference.nodes import (
-    COMBINATIONS,
-    LOBES,
-    NOTHING,
-    OPERATIONS,
-    VOLUMES,
-    WIDTHS,
-    Operation,
-    ShadingPoints,
-    ShownLobe,
-    Value,
-    fitted,
-    node_lobe,
-    plain,
-    same,
-)
+from mxeon.conformance.reference import nodes
+from mxeon.conformance.reference.nodes import COMBINATIONS, LOBES, ShadingPoints, Value, plain, same
 from mxeon.conformance.samples import Array, Batch
 from mxeon.errors import NotRun, OutsideModel
 from mxeon.hosts.calls import NORMAL, TANGENT
@@ -59,7 +45,7 @@ Step: TypeAlias = tuple[Callable[..., Value], tuple[Path, ...]]
 
 # Where nothing is connected: black, and for a lobe zero, which hides nothing.
 UNCONNECTED: dict[str, Value] = {
-    "BSDF": NOTHING,
+    "BSDF": nodes.NOTHING,
     "EDF": np.zeros(3),
     "surfaceshader": np.zeros(3),
     "VDF": None,
@@ -86,7 +72,7 @@ class Graph(Nodes):
         self._document, self._points, self._inputs = document, points, inputs or {}
         self._emits, self._measure, self._marked = emits, measure, marked
         self.measured: dict[str, None] = {}  # inputs, each behind the name of its node
-        self.lobes: list[ShownLobe] = []
+        self.lobes: list[nodes.ShownLobe] = []
         self._shader: Path | None = None  # the surface shader that is a nodegraph
         self._tops: list[Path] = []  # of layers: their throughputs are needed
         self._hiding: set[Path] = set()  # and those of what they are made of
@@ -106,7 +92,7 @@ class Graph(Nodes):
             path = find(around, element)
             self._parts([path])
             self._hiding.update(self._parts(self._tops))
-            return np.asarray(fitted("color3", self._evaluate(path)), np.float64)
+            return np.asarray(nodes.fitted("color3", self._evaluate(path)), np.float64)
 
     def _parts(self, roots: Iterable[Path]) -> dict[Path, tuple[Path, ...]]:
         return reachable(roots, lambda path: self._step(path)[1])
@@ -140,21 +126,21 @@ class Graph(Nodes):
         if category == "image":
             value = self._image(node)
             return lambda: value, ()
-        if self._marked and category in VOLUMES:
+        if self._marked and category in nodes.VOLUMES:
             names = tuple(port.getName() for port in node.getNodeDef().getActiveInputs())
             return partial(_marks, node, names), self._sources(path, names)
         if category in self._operations:
             ports, operation = self._operations[category]
             sources = self._sources(path, ports)
-            return lambda *values: fitted(kind, operation(*values)), sources
+            return lambda *values: nodes.fitted(kind, operation(*values)), sources
         if kind == "surfaceshader" and self._shader is None:
             self._shader = path
         return same, (self._inside(path, node),)
 
     @cached_property
-    def _operations(self) -> dict[str, Operation]:
+    def _operations(self) -> dict[str, nodes.Operation]:
         """Nodes that compute numbers or colors, some of them by the points: inputs and function."""
-        known = OPERATIONS | VOLUMES | {"surfacematerial": (("surfaceshader",), same)}
+        known = nodes.OPERATIONS | nodes.VOLUMES | {"surfacematerial": (("surfaceshader",), same)}
         for row in EMISSIONS:
             ports = tuple("base" if name == BASE else name for name in row.inputs)
             known[row.category] = ports, partial(_radiance, row, ports, self._points)
@@ -193,8 +179,8 @@ class Graph(Nodes):
                 shown = weight * np.where(weight, _marks(node, names, *values), 0.0)
                 return Bsdf(shown, 1.0 - shown[..., ::-1])
             if np.any(inputs.get("weight", 1.0)):
-                self.lobes.append(ShownLobe(node.getCategory(), inputs))
-            return node_lobe(node, inputs, self._points, path in self._hiding)
+                self.lobes.append(nodes.ShownLobe(node.getCategory(), inputs))
+            return nodes.node_lobe(node, inputs, self._points, path in self._hiding)
 
         return lobe, self._sources(path, names)
 
@@ -249,7 +235,11 @@ class Graph(Nodes):
         if name not in self._inputs or not (path == self._shader if self._shader else lobe):
             return None
         value = np.asarray(self._inputs[name])
-        return value if self._port(path, name).getType() in WIDTHS else np.reshape(value, (-1, 1))
+        return (
+            value
+            if self._port(path, name).getType() in nodes.WIDTHS
+            else np.reshape(value, (-1, 1))
+        )
 
     def _connected(self, around: Path, port: mx.PortElement, shown: str = "") -> Path:
         """Path of what an input or output within another path is connected to.
@@ -419,7 +409,7 @@ class Graphs:
 
     @staticmethod
     def _says(document: mx.Document) -> dict[str, str]:
-        return said(document.getNode(SHADER), OPERATIONS)
+        return said(document.getNode(SHADER), nodes.OPERATIONS)
 
     @cached_property
     def same(self) -> bool:

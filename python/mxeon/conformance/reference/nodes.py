@@ -27,15 +27,10 @@ from mxeon.models.core import layering
 from mxeon.models.core.layering import Bsdf, throughput
 from mxeon.models.media import diffusion_blur, transmittance
 from mxeon.models.microfacet import node_albedo
-from mxeon.models.nodes import NODES
+from mxeon.models.nodes import NODES, microfacets
 from mxeon.models.nodes.lobes import HAIR_NODE, SUBSURFACE_NODE
 from mxeon.models.nodes.media import METER
-from mxeon.models.nodes.microfacets import (
-    MICROFACET_NODES,
-    TRANSMISSION_NODES,
-    TRANSMISSIONS,
-    isotropic,
-)
+from mxeon.models.nodes.microfacets import MICROFACET_NODES, TRANSMISSION_NODES, TRANSMISSIONS
 from mxeon.models.nodes.node import Inputs, PbrNode
 from mxeon.models.shading_model import ALONG, UP
 from mxeon.models.table import diffuse_model
@@ -114,7 +109,7 @@ def _dark(wo: Array, *_: object) -> Array:
 def _not_reflected(category: str, wo: Array, inputs: Inputs) -> Array:
     """Share of a uniform environment that passes microfacets."""
     functions = TRANSMISSIONS[category]
-    rest = 1.0 - functions.reflected(wo, isotropic(inputs))
+    rest = 1.0 - functions.reflected(wo, microfacets.isotropic(inputs))
     return np.asarray(functions.tint(inputs) * np.maximum(rest, 0.0))
 
 

@@ -15,16 +15,10 @@ from typing import cast
 
 from mxeon.conformance.results import NOT_RUN, REPORT, Run, Scope
 from mxeon.conformance.results.known_issues import repaired
+from mxeon.conformance.run import plan
 from mxeon.conformance.run.journal import Journal, read_journal, refusal
 from mxeon.conformance.run.judge import Judge, one_result
-from mxeon.conformance.run.plan import (
-    Findings,
-    Plan,
-    Task,
-    assert_known_names,
-    make_plan,
-    survey_documents,
-)
+from mxeon.conformance.run.plan import Findings, Plan, Task, assert_known_names, make_plan
 from mxeon.errors import InputError, InterfaceError, NotRun
 from mxeon.hosts import HOSTS, Row, host_names, host_row, register, registered
 from mxeon.io.files import AnyPath, Names, check_output, names_of, one_name
@@ -128,7 +122,7 @@ def check(
             raise InputError(f"seed must be at least 0; got {seed}")
         check_timeout(timeout)
         check_timeout(wait, "waitForWorkers")
-        survey = survey_documents(documents, loaded, policy, workers, timeout)
+        survey = plan.survey_documents(documents, loaded, policy, workers, timeout)
         keep = folder is not None
         planned = make_plan(
             documents,

@@ -38,18 +38,8 @@ from mxeon.conformance.results import (
     Verdict,
 )
 from mxeon.conformance.results.known_issues import with_pages
-from mxeon.conformance.run.plan import (
-    CURVE,
-    DEFINITION,
-    DOCUMENT,
-    EVERY_NODE,
-    FUNCTIONS,
-    HOST,
-    PICTURE,
-    Findings,
-    Task,
-    diffuse_specs,
-)
+from mxeon.conformance.run import plan
+from mxeon.conformance.run.plan import CURVE, DEFINITION, DOCUMENT, FUNCTIONS, HOST, Findings, Task
 from mxeon.conformance.samples import SEED, Batch, directions_at
 from mxeon.conformance.shader_functions import judge_functions
 from mxeon.conformance.specs import ALL
@@ -72,7 +62,7 @@ CLAIMS = {check.key: check.claim for check in CHECKS} | {
     DOCUMENT: DOCUMENT_CLAIM,
     FUNCTIONS: "The shader functions match NumPy's.",
     CURVE: "The albedo was measured over the cosine.",
-    PICTURE: MATCH,
+    plan.PICTURE: MATCH,
 }
 
 
@@ -134,19 +124,21 @@ class Judge:
         if task.check == DEFINITION:
             return Findings(check_definitions(task.library))
         if task.check == SOURCE:
-            return Findings(check_texts(diffuse_specs(task.library), task.library))
+            return Findings(check_texts(plan.diffuse_specs(task.library), task.library))
         if task.check == DOCUMENT:
             return self._document(task)
         host = self._host(task.host)
         host.choose(task.methods)
         if task.check == HOST:
-            asked = "" if task.subject == EVERY_NODE else f": {task.subject} with {task.library}"
+            asked = (
+                "" if task.subject == plan.EVERY_NODE else f": {task.subject} with {task.library}"
+            )
             raise NotRun(f"{task.host}: this host judges nothing that was requested{asked}")
         return replace(self._on_host(task, host), hosts=(host.identity(),))
 
     def _on_host(self, task: Task, host: Engine) -> Findings:
         if isinstance(host, Host):
-            if task.check == PICTURE:
+            if task.check == plan.PICTURE:
                 return self._document(task, host)
             if task.check == FUNCTIONS:
                 return Findings(judge_functions(host, task.library))

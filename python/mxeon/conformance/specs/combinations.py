@@ -5,30 +5,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from mxeon.conformance import samples
 from mxeon.conformance.results.quantities import Quantity
-from mxeon.conformance.samples import (
-    LEAST_SHEEN,
-    Batch,
-    Counts,
-    Values,
-    directions,
-    generator,
-    special_directions,
-)
+from mxeon.conformance.samples import LEAST_SHEEN, Batch, Counts, Values, directions, generator
 from mxeon.conformance.spec import Ability, Input, color, ports
 from mxeon.conformance.specs.lobes import FLAT_FRAME, PbrSpec
 from mxeon.conformance.specs.sheen import ZELTNER_ALBEDO, ZELTNER_THROUGHPUT, ZELTNER_VALUE
 from mxeon.conformance.tolerance import ROUNDING, Term, sum_of
-from mxeon.models.nodes.combinations import (
-    AMOUNT,
-    AMOUNT_ABOVE,
-    COLORS,
-    COMBINATIONS,
-    FACTOR,
-    MASKS,
-    NESTED,
-    ROUGHNESS,
-)
+from mxeon.models.nodes import combinations
+from mxeon.models.nodes.combinations import AMOUNT, AMOUNT_ABOVE, COLORS, FACTOR, MASKS, ROUGHNESS
 from mxeon.models.nodes.node import PbrNode
 from mxeon.shaders.nodes import (
     SURFACE,
@@ -113,7 +98,7 @@ class CombinedSpec(PbrSpec):
         """Random pairs and special ones; those outside are judged with the lobes."""
         rng, count = generator(), counts.pairs
         wo, wi = directions(rng, count), directions(rng, count)
-        special = special_directions(rng)
+        special = samples.special_directions(rng)
         return (
             Batch(wo, wi, self.random_inputs(rng, count)),
             Batch(*special, self.random_inputs(rng, len(special[0]))),
@@ -137,9 +122,9 @@ def _spec(row: PbrNode) -> CombinedSpec:
     return CombinedSpec.of(
         row,
         tuple(inputs[name] for name in row.inputs),
-        {"value": NESTED_VALUE if row.name in NESTED else VALUE, **ERRORS},
+        {"value": NESTED_VALUE if row.name in combinations.NESTED else VALUE, **ERRORS},
         title=NODES[row.name][0],
     )
 
 
-COMBINED_SPECS = tuple(map(_spec, COMBINATIONS))
+COMBINED_SPECS = tuple(map(_spec, combinations.COMBINATIONS))

@@ -5,52 +5,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from mxeon.conformance import samples, spec
 from mxeon.conformance.results.quantities import Quantity
-from mxeon.conformance.samples import (
-    GRID,
-    Array,
-    Batch,
-    Candidate,
-    Counts,
-    Values,
-    directions,
-    directions_at,
-    float32,
-    generator,
-    rounded,
-    turned_directions,
-    turned_frames,
-)
-from mxeon.conformance.spec import (
-    ARGUMENTS,
-    CHANGED_COLOR,
-    EXPONENTIAL,
-    POWER,
-    ZERO,
-    Ability,
-    EngineError,
-    Input,
-    RowSpec,
-    Spec,
-    ValueSpec,
-    broadcast_inputs,
-    color,
-    draw,
-    ports,
-)
+from mxeon.conformance.samples import Array, Batch, Counts, Values, directions, float32, generator
+from mxeon.conformance.spec import ARGUMENTS, Ability, EngineError, Input, RowSpec, color, ports
 from mxeon.conformance.tolerance import Compared, roundings, sum_of
 from mxeon.models.media import cone_cosine, cone_width, surface_radiance
-from mxeon.models.nodes.emissions import (
-    AMOUNT,
-    BASE,
-    COMBINED_EMISSIONS,
-    EMISSIONS,
-    FACTOR,
-    FIRST,
-    SECOND,
-    Emission,
-    Value,
-)
+from mxeon.models.nodes import emissions
+from mxeon.models.nodes.emissions import AMOUNT, BASE, COMBINED_EMISSIONS, FACTOR, FIRST, Emission
 from mxeon.models.nodes.media import AMOUNT as MEDIUM_AMOUNT
 from mxeon.models.nodes.media import COMBINED_MEDIA, MEDIA, Medium
 from mxeon.models.nodes.media import FACTOR as MEDIUM_FACTOR
@@ -112,7 +74,7 @@ INPUTS = {
             replace(color(name, BLUE, ORANGE, edges=()), high=2.0)
             for name in ("color", BASE, FIRST)
         ),
-        color(SECOND, (0.9, 0.1, 0.3), (0.1, 0.2, 0.3), edges=()),
+        color(emissions.SECOND, (0.9, 0.1, 0.3), (0.1, 0.2, 0.3), edges=()),
         Input(AMOUNT, change=0.3, materials=(0.25, 0.75), default=0.5),
         color("color0", (0.1, 0.4, 0.9), (0.8, 0.5, 0.2), edges=()),
         color("color90", (0.9, 0.8, 0.6), (1.0, 1.0, 1.0), edges=()),
@@ -121,7 +83,7 @@ INPUTS = {
         Input(OUTER, change=150.0, materials=(140.0, 150.0), default=90.0),
         # Of a medium: from one that hardly shows to one that hides nearly all.
         *(
-            Input(name, "vector3", LEAST, LARGEST, change=CHANGED_COLOR, logarithmic=True)
+            Input(name, "vector3", LEAST, LARGEST, change=spec.CHANGED_COLOR, logarithmic=True)
             for name in ("absorption", "scattering", MEDIUM_FIRST, MEDIUM_SECOND)
         ),
         Input(MEDIUM_AMOUNT, change=0.3, default=0.5),
@@ -163,7 +125,7 @@ def _powers() -> tuple[Array, Array]:
     return float32(rng.random(ARGUMENTS)), float32(rng.uniform(*EXPONENTS, ARGUMENTS))
 
 
-power_error = POWER.error(_powers)
+power_error = spec.POWER.error(_powers)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -185,18 +147,18 @@ class EmissionSpec(RowSpec):
         text = axis + network_text(nodes, ports(self.drawn, inputs)) + EMITTING_TEXT
         return document_text(text, "look")
 
-    def values(self, function: Value, batch: Batch) -> Array:
+    def values(self, function: emissions.Value, batch: Batch) -> Array:
         """Radiance, (N, 3), of views whose cosines do not exceed 1 by a rounding."""
-        return function(np.clip(batch.wo, -1.0, 1.0), broadcast_inputs(batch))
+        return function(np.clip(batch.wo, -1.0, 1.0), spec.broadcast_inputs(batch))
 
     @property
-    def others(self) -> tuple[Candidate, ...]:
-        return (ZERO,)
+    def others(self) -> tuple[samples.Candidate, ...]:
+        return (spec.ZERO,)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         """Random views from the front, and cosines from 1 to grazing."""
         rng = generator()
-        special = directions_at(np.repeat(GRID, 64), 0.0)
+        special = samples.directions_at(np.repeat(samples.GRID, 64), 0.0)
         return (self.views(rng, directions(rng, counts.pairs)), self.views(rng, special))
 
     def backs(self, counts: Counts) -> Batch:
@@ -230,10 +192,10 @@ class ConeSpec(EmissionSpec):
         inputs = self.random_inputs(rng, count)
         angle = np.where(np.arange(count) % 2, inputs[INNER], inputs[OUTER])
         step = np.where(rng.random(count) < 0.5, -2.0, 2.0) * _edge(angle)
-        wo = directions_at(np.clip(cone_cosine(angle) + step, 0.0, 1.0), 0.0)
-        frames = turned_frames(rng, count)
-        view = turned_directions(rng, len(frames))
-        axes = self.random_inputs(rng, len(frames)) | {"normal": rounded(frames[:, :, 2].T)}
+        wo = samples.directions_at(np.clip(cone_cosine(angle) + step, 0.0, 1.0), 0.0)
+        frames = samples.turned_frames(rng, count)
+        view = samples.turned_directions(rng, len(frames))
+        axes = self.random_inputs(rng, len(frames)) | {"normal": samples.rounded(frames[:, :, 2].T)}
         near, turned = Batch(wo, wo, inputs), Batch(view, view, axes, frame=frames)
         return *super().batches(counts), _away(near), _away(turned)
 
@@ -261,7 +223,7 @@ def _edge(angle: Array) -> Array:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class AbsentSpec(Spec):
+class AbsentSpec(spec.Spec):
     """A node that no library of ours has: only its implementation is judged."""
 
     requires = Ability.IMPLEMENTATION
@@ -294,7 +256,7 @@ ABSENT = (
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class EmittingSurface(ValueSpec):
+class EmittingSurface(spec.ValueSpec):
     """The node `surface` with an emission, in the dark, one picture for each of OPACITIES."""
 
     requires = Ability.SURFACE
@@ -348,7 +310,7 @@ def _spec(row: Emission) -> EmissionSpec:
     )
 
 
-EMISSION_SPECS = tuple(map(_spec, (*EMISSIONS, *COMBINED_EMISSIONS)))
+EMISSION_SPECS = tuple(map(_spec, (*emissions.EMISSIONS, *COMBINED_EMISSIONS)))
 
 
 # --- media: the VDF nodes, below a surface that lets light through --------------------------------
@@ -381,22 +343,22 @@ class MediumSpec(RowSpec):
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         """Random views, none at grazing where refraction may fail instead, and random inputs of the node."""
         rng, count = generator(), counts.pairs
-        wo = turned_directions(rng, count)
+        wo = samples.turned_directions(rng, count)
         return (Batch(wo, wo * [1.0, 1.0, -1.0], self.random_inputs(rng, count)),)
 
     def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
         """Random coefficients, an eighth of them 0, shares and factors."""
-        inputs = draw(rng, count, self.inputs)
+        inputs = spec.draw(rng, count, self.inputs)
         for each in self.inputs:
             if each.type == "vector3":
                 inputs[each.name][::8] = 0.0
         return inputs
 
     def values(self, function: Transmittance, batch: Batch) -> Array:
-        return np.asarray(function(broadcast_inputs(batch)))
+        return np.asarray(function(spec.broadcast_inputs(batch)))
 
 
-exponential_error = EXPONENTIAL.error(lambda: [float32(np.linspace(0.0, 8.0, ARGUMENTS))])
+exponential_error = spec.EXPONENTIAL.error(lambda: [float32(np.linspace(0.0, 8.0, ARGUMENTS))])
 ENGINE = (
     EngineError("the engine's exp(), twice", exponential_error, 2.0),
     EngineError("the engine's pow(), twice", power_error, 2.0),

@@ -7,19 +7,9 @@ from functools import partial
 
 import numpy as np
 
+from mxeon.conformance import samples
 from mxeon.conformance.results.quantities import Quantity
-from mxeon.conformance.samples import (
-    LEAST_TURNED,
-    Array,
-    Batch,
-    Counts,
-    Values,
-    directions,
-    generator,
-    rounded,
-    sky,
-    special_directions,
-)
+from mxeon.conformance.samples import LEAST_TURNED, Array, Batch, Counts, Values, generator, rounded
 from mxeon.conformance.spec import Ability, Input, broadcast_inputs, color
 from mxeon.conformance.specs.lobes import NORMAL, PbrSpec, lobe_errors
 from mxeon.conformance.tolerance import Compared, Term, roundings, sum_in, sum_of
@@ -167,7 +157,9 @@ class HairSpec(PbrSpec):
         A = chiang_hair_attenuation(batch.wo, inputs["ior"], inputs["absorption_coefficient"])
         shares = A * np.stack([inputs[name] for name in (*TINTS, TINTS[-1])], axis=-1)
         front = shares @ FRONT / shares.sum(axis=-1)
-        return np.asarray(front * sky(batch.normal) + (1.0 - front) * sky(-batch.normal))
+        return np.asarray(
+            front * samples.sky(batch.normal) + (1.0 - front) * samples.sky(-batch.normal)
+        )
 
     def alike(self, compared: Compared) -> Compared:
         """Values over themselves, or LEAST, and their slopes in inclination and azimuth of both directions."""
@@ -186,9 +178,9 @@ class HairSpec(PbrSpec):
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         """Random pairs, as many in the lobes, and special ones, with roughness above 0."""
         rng, count = generator(), counts.pairs
-        wo, inputs = directions(rng, count), self.random_inputs(rng, count)
-        free = directions(rng, count) * _sides(rng, count)
-        view, light = special_directions(rng)
+        wo, inputs = samples.directions(rng, count), self.random_inputs(rng, count)
+        free = samples.directions(rng, count) * _sides(rng, count)
+        view, light = samples.special_directions(rng)
         return (
             Batch(wo, free, {**inputs, "occlusion": np.round(rng.random(count), 2)}),
             Batch(wo, in_lobes(rng, wo, inputs), inputs),
@@ -204,7 +196,10 @@ class HairSpec(PbrSpec):
         rng = generator()
         along = np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
         pairs = np.repeat(along, 4, axis=0), np.tile(along, (4, 1))
-        wo, wi = (np.concatenate(each) for each in zip(special_directions(rng), pairs, strict=True))
+        wo, wi = (
+            np.concatenate(each)
+            for each in zip(samples.special_directions(rng), pairs, strict=True)
+        )
         wi = wi * _sides(rng, len(wi))
         return Batch(wo, wi, self.random_inputs(rng, len(wo), edged=True))
 

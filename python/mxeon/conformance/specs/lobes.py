@@ -9,30 +9,10 @@ from typing import Any, Self
 
 import numpy as np
 
+from mxeon.conformance import samples, spec
 from mxeon.conformance.results.quantities import Quantity
-from mxeon.conformance.samples import (
-    LEAST_SHEEN,
-    TURNED,
-    Array,
-    Batch,
-    Candidate,
-    Counts,
-    Values,
-    directions_at,
-    generator,
-    sky,
-    special_directions,
-)
-from mxeon.conformance.spec import (
-    ZERO,
-    Ability,
-    Input,
-    LobeSpec,
-    RowSpec,
-    broadcast_inputs,
-    color,
-    draw,
-)
+from mxeon.conformance.samples import TURNED, Array, Batch, Candidate, Counts, Values, directions_at
+from mxeon.conformance.spec import ZERO, Ability, Input, LobeSpec, RowSpec, broadcast_inputs, color
 from mxeon.conformance.tolerance import Term, Tolerance, roundings, sum_in, sum_of
 from mxeon.models.hair import TINTS
 from mxeon.models.nodes import node
@@ -45,7 +25,7 @@ LEAST_VIEW = 0.02  # cosine of the views whose values are integrated
 WEIGHT = Input("weight", change=0.5, materials=(1.0, 0.5))
 # Of lobes that are no microfacets.
 ROUGHNESS = Input(
-    "roughness", low=LEAST_SHEEN, edges=(0.01, 0.05, 1.0), change=0.3, materials=(0.8, 0.4)
+    "roughness", low=samples.LEAST_SHEEN, edges=(0.01, 0.05, 1.0), change=0.3, materials=(0.8, 0.4)
 )
 COLOR = color("color", (0.2, 0.5, 0.8), (0.8, 0.4, 0.1))
 NORMAL = Input("normal", "vector3", change=(0.0, 0.6, 0.8))
@@ -117,7 +97,7 @@ class ScatteringSpec(RowSpec, LobeSpec):
 
     def sky(self, batch: Batch) -> Array:
         """Mean of the uneven sky that it scatters, (N, 3)."""
-        return sky(self.side * batch.normal)
+        return samples.sky(self.side * batch.normal)
 
     def integral(self, batch: Batch) -> Array:
         """Integral of the values with weight, (N, 3)."""
@@ -138,7 +118,7 @@ class ScatteringSpec(RowSpec, LobeSpec):
     def random_inputs(
         self, rng: np.random.Generator, count: int, edged: bool = False
     ) -> dict[str, Array]:
-        return draw(rng, count, self.drawn, edged)
+        return spec.draw(rng, count, self.drawn, edged)
 
     def integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
         """The inputs of which a quadrature has all light."""
@@ -148,7 +128,7 @@ class ScatteringSpec(RowSpec, LobeSpec):
         self, counts: Counts, taken: Callable[[dict[str, Array]], dict[str, Array]]
     ) -> tuple[Batch, Array]:
         """Materials, each lit from the directions of a quadrature, and the weights of their values."""
-        rng, count = generator(), counts.materials
+        rng, count = samples.generator(), counts.materials
         mu = LEAST_VIEW + (1.0 - LEAST_VIEW) * rng.random(count)
         inputs = self.random_inputs(rng, count)
         if self.row.mirror:  # a rough one: a fit of a compensation makes most light of it
@@ -224,8 +204,8 @@ class PbrSpec(ScatteringSpec):
 
     def edges(self, counts: Counts) -> Batch:
         """Exact directions, some of light opposite the view; edges of inputs, roughness and index 0 among them."""
-        rng = generator()
-        wo, wi = special_directions(rng)
+        rng = samples.generator()
+        wo, wi = samples.special_directions(rng)
         inputs = self.random_inputs(rng, len(wo), edged=True)
         for name, start, step in (("roughness", 0, 4), ("ior", 0, 3), *EXTINCTIONS):
             if name in inputs:

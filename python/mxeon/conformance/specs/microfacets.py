@@ -9,51 +9,18 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mxeon.conformance import samples, tolerance
 from mxeon.conformance.results.quantities import Quantity
-from mxeon.conformance.samples import (
-    GRAZING,
-    LEAST_COLOR82,
-    LEAST_TURNED,
-    SKY_ROWS,
-    SLOPE,
-    TURNED,
-    Array,
-    Batch,
-    Candidate,
-    Counts,
-    Mask,
-    Values,
-    directions,
-    directions_at,
-    float32,
-    generator,
-    rounded,
-    special_directions,
-)
+from mxeon.conformance.samples import Array, Batch, Counts, Values, directions, generator, rounded
 from mxeon.conformance.spec import ARGUMENTS, WAVE, Ability, EngineError, Input, ValueSpec, color
 from mxeon.conformance.specs.lobes import BURLEY_VALUE, NORMAL, WEIGHT, PbrSpec, lobe_errors
 from mxeon.conformance.specs.sheen import FIT_COSINE
-from mxeon.conformance.tolerance import (
-    Term,
-    Tolerance,
-    given,
-    largest,
-    root_mean_square,
-    roundings,
-    sum_in,
-    sum_of,
-)
+from mxeon.conformance.tolerance import Term, Tolerance, given, largest, roundings, sum_in, sum_of
 from mxeon.models.microfacet import Lobe, node_albedo, uncompensated
 from mxeon.models.microfacet.defects import MEAN_ALPHA
 from mxeon.models.microfacet.ggx import smith_g1, smith_g2, smith_g2_anisotropic
-from mxeon.models.nodes.microfacets import (
-    FILM_NODES,
-    LOBES,
-    MICROFACET_NODES,
-    TRANSMISSION_NODES,
-    TRANSMISSIONS,
-    Transmission,
-)
+from mxeon.models.nodes import microfacets
+from mxeon.models.nodes.microfacets import FILM_NODES, LOBES, MICROFACET_NODES, TRANSMISSION_NODES
 from mxeon.models.sampling import ggx_pdf, ggx_sample
 
 COUNTS = replace(PbrSpec.counts, diagnosed=1 << 8)  # references take long
@@ -192,7 +159,7 @@ ESS = Term(ESS_FIT / LEAST_ESS, "the fit of E_ss over the least, 0.31")
 COMPENSATION = (ESS, Term(METAL_FIT * (1.0 - LEAST_ESS), "the fit of F_ss, times 1 - E_ss"))
 LOBE = Term(LOBE_FIT, "the fit of the lobe's albedo")
 INSIDE = Term(INSIDE_FIT, "the fit of the albedo of an index below 1")
-HALF_DIP = Term((1.0 - LEAST_COLOR82) * DIP_FIT, "half of the fit of the dip at 82 degrees")
+HALF_DIP = Term((1.0 - samples.LEAST_COLOR82) * DIP_FIT, "half of the fit of the dip at 82 degrees")
 
 
 def compensated(average: float, words: str) -> Tolerance:
@@ -222,7 +189,7 @@ SCHLICK_THROUGHPUT = THROUGHPUT.plus(HALF_DIP)
 # Twice the largest slope of the distribution, q^-4 of q^2 = h_z^2 + (h_x / a_x)^2 + (h_y / a_y)^2.
 FRAME = sum_of(
     roundings(
-        2 * 2 * 5 / (2 * TURNED[0] * LEAST_TURNED),
+        2 * 2 * 5 / (2 * samples.TURNED[0] * samples.LEAST_TURNED),
         "of two directions, five each, over twice the least cosine and the least alpha",
     )
 )
@@ -287,7 +254,8 @@ def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
         ),
         sum_over(1024),
         Term(
-            SLOPE * math.sqrt(2.0) * math.pi / (2 * SKY_ROWS), "the nearest texel, half of one away"
+            samples.SLOPE * math.sqrt(2.0) * math.pi / (2 * samples.SKY_ROWS),
+            "the nearest texel, half of one away",
         ),
     )
     return {
@@ -319,12 +287,12 @@ class FacetSpec(PbrSpec):
         return tuple(_with_one_alpha(batch) for batch in (*others, self.mirrored(counts)[0]))
 
     @property
-    def value_candidates(self) -> tuple[Candidate, ...]:
+    def value_candidates(self) -> tuple[samples.Candidate, ...]:
         """Those of the row without masking at the mean alpha, which is its own where both alphas are one."""
         return tuple(each for each in self.all_candidates if not each.title.startswith(MEAN_ALPHA))
 
     @property
-    def all_candidates(self) -> tuple[Candidate, ...]:
+    def all_candidates(self) -> tuple[samples.Candidate, ...]:
         """All functions that may explain values of two alphas."""
         return super().value_candidates
 
@@ -392,7 +360,7 @@ class FacetSpec(PbrSpec):
         Dielectrics are denser than air: at a critical angle their curve has an infinite slope.
         """
         batch = super().turned(counts)
-        changes = {"roughness": np.maximum(batch.inputs["roughness"], LEAST_TURNED)}
+        changes = {"roughness": np.maximum(batch.inputs["roughness"], samples.LEAST_TURNED)}
         if "tint" in batch.inputs:
             index = np.maximum(batch.inputs["ior"], LEAST_INVERTED)
             changes["ior"] = np.maximum(index, 1.0 / index)
@@ -431,7 +399,7 @@ def simple(inputs: Mapping[str, Array]) -> dict[str, Array]:
         index = np.asarray(inputs["ior"])
         changed["ior"] = np.where(index > 1.0, np.maximum(index, LEAST_INDEX), 1.0)
     if "color82" in inputs:
-        changed["color82"] = np.maximum(inputs["color82"], LEAST_COLOR82)
+        changed["color82"] = np.maximum(inputs["color82"], samples.LEAST_COLOR82)
     return changed
 
 
@@ -441,7 +409,7 @@ def _with_one_alpha(batch: Batch) -> Batch:
     return batch.altered(roughness=np.repeat(alpha[:, :1], 2, axis=1))
 
 
-def _has_curve(batch: Batch) -> Mask:
+def _has_curve(batch: Batch) -> samples.Mask:
     """Pairs for which float32 holds the Fresnel curve.
 
     Lengths of directions differ from 1 by a rounding, and the cosines of both with the half vector by that
@@ -452,7 +420,7 @@ def _has_curve(batch: Batch) -> Mask:
     half = np.linalg.norm(batch.wo + batch.wi, axis=1)
     apart = np.abs((batch.wo**2).sum(axis=1) - (batch.wi**2).sum(axis=1))
     bright = np.max(batch.inputs.get("color90", np.ones((1, 3))), axis=1) >= RIM_COLOR
-    known = (apart <= COSINE_STEP * half) & (half >= 2.0 * GRAZING)
+    known = (apart <= COSINE_STEP * half) & (half >= 2.0 * samples.GRAZING)
     return np.asarray(known & (bright | (half >= RIM_COLOR)))
 
 
@@ -506,8 +474,8 @@ class TransmissionSpec(FacetSpec):
     plain = ("frame", "shape")
 
     @property
-    def functions(self) -> Transmission:
-        return TRANSMISSIONS[self.node]
+    def functions(self) -> microfacets.Transmission:
+        return microfacets.TRANSMISSIONS[self.node]
 
     @property
     def reflects(self) -> bool:
@@ -556,7 +524,7 @@ FILM_TRAPPED = given(FILM_SEEN - FILM_OILED, Quantity.ALBEDO, "films of a lower 
 
 def _mean(value: float, words: str) -> Tolerance:
     """The largest error of 64 sets of 64 films, by tools/fits/thin_film_sets.py."""
-    return given(value, Quantity.REFLECTANCE_RMS, words, root_mean_square)
+    return given(value, Quantity.REFLECTANCE_RMS, words, tolerance.root_mean_square)
 
 
 FILM_ERRORS = {
@@ -577,7 +545,7 @@ FILM_ERRORS = {
         Term(8.7e-7, "orders that are not summed, rms over 1024 films of 40 to 100 nm"),
         Term(1.5e-4, "the fit of E_ss at alpha 1e-3 and cosines of 0.1 to 0.2"),
         quantity=Quantity.REFLECTANCE_RMS,
-        metric=root_mean_square,
+        metric=tolerance.root_mean_square,
     ),
     # F_ss under a film that changes nothing, against the fit of it without one.
     "film_limit": sum_of(Term(4.4e-3 * COMPENSATED, "F_ss in three cosines, times 0.6")),
@@ -670,7 +638,7 @@ class FilmSpec(FacetSpec):
         easy = batch.first(counts.albedos)
         easy = replace(easy, inputs=simple(easy.inputs))
         if "tint" in easy.inputs:
-            easy = easy.with_row(BUBBLE_ROW, directions_at(0.9, 0.0), **BUBBLE)
+            easy = easy.with_row(BUBBLE_ROW, samples.directions_at(0.9, 0.0), **BUBBLE)
         hard = Films(counts.albedos, (0.08, 0.8), (0.1, 0.35), (200.0, 1000.0))
         return tuple(
             batch.altered(thinfilm_ior=np.maximum(batch.inputs["thinfilm_ior"], LEAST_FILM))
@@ -688,7 +656,7 @@ class FilmSpec(FacetSpec):
 
 
 def _some_special(rng: np.random.Generator, count: int) -> tuple[Array, Array]:
-    wo, wi = special_directions(rng)
+    wo, wi = samples.special_directions(rng)
     picked = rng.permutation(len(wo))[:count]
     return wo[picked], wi[picked]
 
@@ -697,7 +665,7 @@ def film_views(spec: PbrSpec, films: Films) -> Batch:
     """Views of films in ranges, and mirrored lights."""
     rng, (count, *ranges) = generator(), films
     alpha, mu, thickness = (low + (high - low) * rng.random(count) for low, high in ranges)
-    wo = directions_at(mu, 2.0 * np.pi * rng.random(count))
+    wo = samples.directions_at(mu, 2.0 * np.pi * rng.random(count))
     inputs = simple(spec.random_inputs(rng, count))
     inputs["thinfilm_ior"] = np.maximum(inputs["thinfilm_ior"], LEAST_OIL)
     inputs["roughness"] = rounded([alpha, alpha])
@@ -718,7 +686,7 @@ def _steep(batch: Batch) -> np.ndarray:
 # Of the phases of a film, beyond two roundings. The slope of curves of films from 200 nm in cosines and sines is 2.
 WAVE_ERROR = EngineError(
     "the engine's own cosine and sine, times 2",
-    WAVE.error(lambda: [float32(np.linspace(0.0, FILM_PHASE, ARGUMENTS))], 2.0),
+    WAVE.error(lambda: [samples.float32(np.linspace(0.0, FILM_PHASE, ARGUMENTS))], 2.0),
     2.0,
 )
 FILM_SPECS = tuple(

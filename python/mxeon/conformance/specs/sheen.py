@@ -8,21 +8,14 @@ import numpy as np
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import LEAST_SHEEN, float32, generator
 from mxeon.conformance.spec import ARGUMENTS, POWER, EngineError
-from mxeon.conformance.specs.lobes import (
-    COLOR,
-    FLAT_FRAME,
-    NORMAL,
-    ROUGHNESS,
-    WEIGHT,
-    PbrSpec,
-    lobe_errors,
-)
+from mxeon.conformance.specs import lobes
+from mxeon.conformance.specs.lobes import COLOR, FLAT_FRAME, NORMAL, ROUGHNESS, PbrSpec, lobe_errors
 from mxeon.conformance.tolerance import ROUNDING, Term, Tolerance, roundings, sum_in, sum_of
 from mxeon.hosts.base import Host
 from mxeon.models.nodes import node
 
 INPUTS, ZELTNER_INPUTS = (
-    (WEIGHT, COLOR, replace(ROUGHNESS, beyond=beyond, ends=(least, 1.0)), NORMAL)
+    (lobes.WEIGHT, COLOR, replace(ROUGHNESS, beyond=beyond, ends=(least, 1.0)), NORMAL)
     for beyond, least in (((1e-3, 1e-4, 2.0), 1e-4), ((0.0, 1e-3, 2.0), 0.01))
 )
 FIT_COSINE = 1e-4  # least cosine of the domain of the fits

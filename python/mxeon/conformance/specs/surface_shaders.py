@@ -11,28 +11,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mxeon.conformance import samples, spec
 from mxeon.conformance.results.quantities import Quantity
-from mxeon.conformance.samples import (
-    Array,
-    Batch,
-    Changes,
-    Counts,
-    Values,
-    directions,
-    directions_at,
-    float32,
-    generator,
-)
-from mxeon.conformance.spec import (
-    CHANGED_COLOR,
-    Ability,
-    Input,
-    LobeSpec,
-    ValueSpec,
-    color,
-    draw,
-    materials,
-)
+from mxeon.conformance.samples import Array, Batch, Changes, Counts, Values, directions, generator
+from mxeon.conformance.spec import CHANGED_COLOR, Ability, Input, LobeSpec, ValueSpec, color, draw
 from mxeon.conformance.specs.lobes import LEAST_VIEW
 from mxeon.conformance.specs.microfacets import FILM_ERRORS, LOBE_FIT, reflected, sum_over
 from mxeon.conformance.tolerance import Term, mean_scaled, roundings, sum_in, sum_of
@@ -166,7 +148,7 @@ class SurfaceShaderSpec(LobeSpec):
     @property
     def changes(self) -> Mapping[str, Changes]:
         """Of the material with every lobe."""
-        seen, _ = materials(*self.judged, *self.others)
+        seen, _ = spec.materials(*self.judged, *self.others)
         wholes = {name: {**seen, **self.needs.get(name, {})} for name in self.names}
         return {
             name: (whole, {**whole, name: self.changed_inputs[name]})
@@ -291,8 +273,8 @@ class SurfaceShaderSpec(LobeSpec):
 def _views(rng: np.random.Generator, count: int) -> Array:
     """Random directions, none so grazing that a sheen's own equations gain energy, and one that just is not."""
     wo = directions(rng, count)
-    wo = float32(np.where(wo[:, 2:] < LEAST_VIEW, [0.6, 0.0, 0.8], wo))
-    wo[0] = directions_at(LEAST_VIEW, 0.0)
+    wo = samples.float32(np.where(wo[:, 2:] < LEAST_VIEW, [0.6, 0.0, 0.8], wo))
+    wo[0] = samples.directions_at(LEAST_VIEW, 0.0)
     return wo
 
 

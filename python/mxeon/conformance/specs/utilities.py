@@ -13,42 +13,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from mxeon.conformance import spec, tolerance
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Counts, Values, float32, generator
-from mxeon.conformance.spec import (
-    COMPONENTS,
-    LOGARITHM,
-    POWER,
-    Ability,
-    EngineError,
-    Input,
-    RowSpec,
-    broadcast_inputs,
-    draw,
-    ports,
-)
-from mxeon.conformance.tolerance import (
-    Compared,
-    Term,
-    Tolerance,
-    given,
-    roundings,
-    scaled,
-    sum_in,
-    sum_of,
-)
+from mxeon.conformance.spec import COMPONENTS, LOGARITHM, POWER, Ability, EngineError, Input, draw
+from mxeon.conformance.tolerance import Compared, Term, Tolerance, given, roundings, sum_in, sum_of
 from mxeon.hosts.calls import GRAPH
 from mxeon.models import diffuse
 from mxeon.models.nodes.node import Variant
 from mxeon.models.nodes.utilities import LARGEST_REFLECTIVITY, UTILITIES, Outputs, UtilityNode
-from mxeon.shaders.nodes import (
-    INVERSIONS,
-    Node,
-    connection_text,
-    document_text,
-    network_text,
-    node_text,
-)
+from mxeon.shaders import nodes
+from mxeon.shaders.nodes import INVERSIONS, Node, connection_text, document_text, node_text
 
 NAME, COLOR = "value", "color"  # of the node in its document, and of its conversion to a color
 TYPES = {(): "float", (2,): "vector2", (3,): "color3"}  # types of the inputs by shape
@@ -114,7 +89,7 @@ OTHERS: Mapping[str, dict[str, Tolerance]] = {
             4e-3,
             Quantity.OUTPUT,
             "OSL's blackbody() has an observer from 380 nm to 780 nm, its own table and primaries",
-            scaled,
+            tolerance.scaled,
         )
     },
 }
@@ -147,7 +122,7 @@ ENGINE = {
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class UtilitySpec(RowSpec):
+class UtilitySpec(spec.RowSpec):
     """An output of a node of `mxeon.models.nodes.utilities`."""
 
     requires = Ability.OUTPUT
@@ -166,7 +141,7 @@ class UtilitySpec(RowSpec):
     def document(self, inputs: Values | None = None) -> str:
         kind, single = self.row.outputs[self.output], len(self.row.outputs) == 1
         node = Node(self.node, kind if single else "multioutput")
-        text = network_text({NAME: node}, ports(self.inputs, inputs))
+        text = nodes.network_text({NAME: node}, spec.ports(self.inputs, inputs))
         source, port = NAME, "" if single else self.output
         if kind != "color3":
             text += node_text("convert", "color3", COLOR, connection_text("in", kind, NAME, port))
@@ -191,7 +166,7 @@ class UtilitySpec(RowSpec):
 
     def values(self, function: Outputs, batch: Batch) -> Array:
         """The output as a color, whose missing channels are 0, (N, 3)."""
-        output = np.asarray(function(broadcast_inputs(batch))[self.output])
+        output = np.asarray(function(spec.broadcast_inputs(batch))[self.output])
         color = np.zeros((len(batch.wo), 3))
         color[:, : output.shape[-1]] = output
         return color
