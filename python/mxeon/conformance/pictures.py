@@ -79,10 +79,7 @@ COSINES = 256  # of views, among which a sheen's albedo is largest
 
 # Errors are taken times cos(theta_o): the normal changes by its inverse from pixel to pixel.
 PLAIN = sum_in(
-    Quantity.PICTURE,
-    roundings(16, "of a pixel's point"),
-    roundings(32, "in the value"),
-    exact=True,
+    Quantity.PICTURE, roundings(16, "of a pixel's point"), roundings(32, "in the value"), exact=True
 )
 # The least OpenGL asks for; texels differ by 1 at most.
 TEXTURED = given(2.0**-8, Quantity.PICTURE, "a filter's weights of 8 bits")

@@ -159,9 +159,7 @@ def _definition_faults(
     def differences(facts: Mapping[str, str]) -> list[Cause]:
         return [
             Cause(
-                Kind.DEFECT,
-                "definition",
-                (name, facts[name] or "missing", author, right or "none"),
+                Kind.DEFECT, "definition", (name, facts[name] or "missing", author, right or "none")
             )
             for name, right in expected.items()
             if name in facts

@@ -173,10 +173,7 @@ class Tolerance:
 
 
 def sum_of(
-    *terms: Term,
-    quantity: Quantity = Quantity.VALUE,
-    metric: Metric = scaled,
-    exact: bool = False,
+    *terms: Term, quantity: Quantity = Quantity.VALUE, metric: Metric = scaled, exact: bool = False
 ) -> Tolerance:
     return Tolerance(terms, quantity, metric, exact)
 

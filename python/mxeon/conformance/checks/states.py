@@ -129,11 +129,7 @@ def bent(pixels: Pixels, rng: Random, columns: float = 0.0, rows: float = 0.0) -
 
 
 def doubled(
-    pixels: Pixels,
-    rng: Random,
-    component: bool = False,
-    differ: bool = True,
-    swapped: bool = False,
+    pixels: Pixels, rng: Random, component: bool = False, differ: bool = True, swapped: bool = False
 ) -> Pixels:
     """Another lobe, which differs in one input of each pixel, or in one component of it."""
     first = broadcast_inputs(pixels.batch)

@@ -230,10 +230,7 @@ def searched(cause: Cause, cases: Sequence[Compared], tolerance: Tolerance) -> C
 
 
 def _cures(
-    case: Case,
-    cases: Sequence[Compared],
-    tolerance: Tolerance,
-    measure: Measure,
+    case: Case, cases: Sequence[Compared], tolerance: Tolerance, measure: Measure
 ) -> dict[str, float]:
     """Values of single inputs with which the worst values are right."""
     most = max(cases, key=lambda each: np.count_nonzero(tolerance.wrong(each)))

@@ -71,8 +71,7 @@ def _of_colors() -> Iterator[Fault]:
         take = itemgetter((..., [channel] * 3))
         yield Fault("one_channel", _input("color", take), names=(name,))
     yield Fault(
-        "mean_color",
-        _input("color", lambda color: color.mean(axis=-1, keepdims=True) * np.ones(3)),
+        "mean_color", _input("color", lambda color: color.mean(axis=-1, keepdims=True) * np.ones(3))
     )
     gray = _input("color", lambda color: np.full_like(color, 0.18))
     yield Fault("color_ignored", gray, numbers=(0.18,))
@@ -121,14 +120,8 @@ DIRECT_FAULTS = (
     Fault("occlusion_twice", values=_scaled(_column("occlusion"))),
     Fault("cosine_missing", values=_scaled(lambda batch: 1.0 / batch.wi[:, 2])),
     Fault("cosine_twice", values=_scaled(lambda batch: batch.wi[:, 2])),
-    Fault(
-        "directions_swapped",
-        values=_scaled(lambda batch: batch.wo[:, 2] / batch.wi[:, 2]),
-    ),
-    Fault(
-        "light_mirrored",
-        lambda batch: replace(batch, wi=batch.wi * [-1.0, -1.0, 1.0]),
-    ),
+    Fault("directions_swapped", values=_scaled(lambda batch: batch.wo[:, 2] / batch.wi[:, 2])),
+    Fault("light_mirrored", lambda batch: replace(batch, wi=batch.wi * [-1.0, -1.0, 1.0])),
     Fault(
         "light_from_below",
         lambda batch: replace(batch, wi=np.where([False, False, True], abs(batch.wi), batch.wi)),
@@ -137,10 +130,7 @@ DIRECT_FAULTS = (
 
 ENVIRONMENT_FAULTS = (
     *INPUT_FAULTS,
-    Fault(
-        "occlusion_by_caller",
-        values=_scaled(_column("occlusion")),
-    ),
+    Fault("occlusion_by_caller", values=_scaled(_column("occlusion"))),
     Fault(
         "normal_incidence",
         lambda batch: replace(batch, wo=np.broadcast_to([0.0, 0.0, 1.0], batch.wo.shape)),

@@ -309,10 +309,7 @@ def _within(axes: Array, directions: Array) -> Array:
     return np.asarray(local / np.linalg.norm(local, axis=1, keepdims=True), np.float64)
 
 
-DIFFUSE = {
-    False: diffuse_model("qon"),
-    True: replace(diffuse_model("eon"), category=EON),
-}
+DIFFUSE = {False: diffuse_model("qon"), True: replace(diffuse_model("eon"), category=EON)}
 ROWS = (*NODES, *INNER_NODES)
 LOBES = {
     category: tuple(row for row in ROWS if row.category == category)

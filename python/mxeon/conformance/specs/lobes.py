@@ -35,11 +35,7 @@ FLAT_FRAME = sum_of(roundings(15 / TURNED[0], "of three cosines of at least 1/4,
 
 
 def lobe_errors(
-    value: Tolerance,
-    albedo: Tolerance,
-    throughput: Tolerance,
-    frame: Tolerance,
-    quadrature: float,
+    value: Tolerance, albedo: Tolerance, throughput: Tolerance, frame: Tolerance, quadrature: float
 ) -> dict[str, Tolerance]:
     """Errors of a lobe whose integrals are off by the quadrature on the equations."""
     integral = sum_in(

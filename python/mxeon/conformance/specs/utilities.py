@@ -91,7 +91,7 @@ OTHERS: Mapping[str, dict[str, Tolerance]] = {
             "OSL's blackbody() has an observer from 380 nm to 780 nm, its own table and primaries",
             tolerance.scaled,
         )
-    },
+    }
 }
 FEWER = 1 << 12  # arguments of an engine's functions
 LEAST_LOGARITHM = 1e-4  # number whose logarithm is measured
