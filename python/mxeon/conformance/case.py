@@ -9,13 +9,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from typing import Any, TypeVar, cast
+from typing import TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.conformance.backends import Backend, Evaluating
 from mxeon.conformance.cache import Remembered
+from mxeon.conformance.results import Diagnosis
 from mxeon.conformance.samples import Array, Batch, Candidate, Changes
 from mxeon.conformance.spec import LobeSpec, Spec, ValueSpec
 from mxeon.conformance.specs.microfacets import FacetSpec
@@ -52,7 +53,7 @@ class Case:
     throughputs: Change = lambda batch, values: values
     control: bool = False  # on a subset: one failing sample is enough
     chosen: tuple[Batch, ...] = ()  # by a diagnosis, instead of the samples
-    explained: dict[Any, Any] = field(default_factory=dict, init=False)  # diagnoses by comparison
+    explained: dict[object, Diagnosis] = field(default_factory=dict, init=False)  # by comparison
 
     @property
     def host(self) -> Host:

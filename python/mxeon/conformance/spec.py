@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Flag, auto
 from functools import lru_cache, partial
-from typing import Any, ClassVar, NamedTuple, Self
+from typing import ClassVar, Generic, NamedTuple, Protocol, TypedDict, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,10 +18,12 @@ from mxeon.conformance import samples
 from mxeon.conformance.samples import Array, Batch, Candidate, Counts, Values, directions, generator
 from mxeon.conformance.tolerance import ROUNDING, Compared, Term, Tolerance
 from mxeon.hosts.base import Host
+from mxeon.models.nodes.node import Function, Variant
 from mxeon.shaders.nodes import SURFACE, Node, document_text, input_types, lobe_text, network_text
 
 COMPONENTS = {"float": (), "vector2": (2,), "vector3": (3,), "color3": (3,)}  # shape by type
 CHANGED_COLOR = (0.9, 0.1, 0.6)
+F = TypeVar("F")  # a function of a row
 
 
 @dataclass(frozen=True)
@@ -318,18 +320,40 @@ class LobeSpec(ValueSpec):
         return Batch(wo, wi * [1.0, 1.0, self.side], inputs)
 
 
+class Row(Protocol[Function]):
+    """A row of `mxeon.models.nodes`."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def title(self) -> str: ...
+    @property
+    def category(self) -> str: ...
+    @property
+    def inputs(self) -> Iterable[str]: ...
+    @property
+    def value(self) -> Function: ...
+    @property
+    def variants(self) -> tuple[Variant[Function], ...]: ...
+
+
+class Names(TypedDict):
+    """What a spec takes from its row by name."""
+
+    title: str
+    node: str
+    model: str
+
+
+def named(row: Row[object], title: str = "") -> Names:
+    return {"title": title or row.category, "node": row.category, "model": row.name}
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
-class RowSpec(ValueSpec):
-    """A node whose functions are those of a row of `mxeon.models.nodes`."""
+class RowSpec(ValueSpec, Generic[F]):
+    """A node whose functions are those of a row."""
 
-    row: Any
-
-    @classmethod
-    def of(
-        cls, row: Any, inputs: tuple[Input, ...], errors: Mapping[str, Tolerance], **rest: Any
-    ) -> Self:
-        own = {"title": row.category, "node": row.category, "model": row.name}
-        return cls(row=row, inputs=inputs, errors=errors, **(own | rest))
+    row: Row[F]
 
     @property
     def drawn(self) -> tuple[Input, ...]:
@@ -338,7 +362,7 @@ class RowSpec(ValueSpec):
         return tuple(inputs[name] for name in self.row.inputs)
 
     @abstractmethod
-    def values(self, function: Any, batch: Batch) -> Array:
+    def values(self, function: F, batch: Batch) -> Array:
         """Values of a function of the row, (N, 3)."""
 
     def value(self, batch: Batch) -> Array:

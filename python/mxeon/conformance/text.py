@@ -8,10 +8,12 @@ What a renderer's closure does with its arguments is taken from its documentatio
 import re
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import Any
+from functools import partial
+from typing import TypeAlias
 
 import MaterialX as mx
 import numpy as np
+from numpy.typing import ArrayLike
 
 from mxeon.conformance.check import judge, not_measured
 from mxeon.conformance.results import NOT_RUN, SOURCE, Cause, Diagnosis, Kind, Result
@@ -33,7 +35,7 @@ from mxeon.shaders.nodes import EON, FLAG, INVERSIONS, OREN_NAYAR
 
 # --- checks --------------------------------------------------------------------------------------
 
-Faults = Callable[..., tuple[list[Cause], int]]  # and the number that the control has
+Faults: TypeAlias = tuple[list[Cause], int]  # and the number that the control has
 Inputs = Mapping[str, Array]
 # By check: its claim, what it counts, and the error that its control makes.
 CLAIMS = {
@@ -64,7 +66,7 @@ def check_texts(subjects: Iterable[DiffuseSpec], library: str) -> tuple[Result, 
     """Results of all checks of generated text and of functions for the nodes of a library."""
     subjects = tuple(subjects)
     results = [
-        _judged("closure", f"{each.title}, mdl", library, _closure_faults, each, library)
+        _judged("closure", f"{each.title}, mdl", library, partial(_closure_faults, each, library))
         for each in subjects
     ]
     if all(has_functions(library, language) for language in LANGUAGES):
@@ -83,7 +85,12 @@ def check_texts(subjects: Iterable[DiffuseSpec], library: str) -> tuple[Result, 
     return (
         *results,
         *(
-            _judged("source", f"{each.title}, {target}", library, _dropped, each, target, library)
+            _judged(
+                "source",
+                f"{each.title}, {target}",
+                library,
+                partial(_dropped, each, target, library),
+            )
             for each in (*subjects, *PLAIN_LOBES)
             for target in TARGETS
             # Of MDL's rough diffuse nodes the check of closures compares every argument.
@@ -92,12 +99,12 @@ def check_texts(subjects: Iterable[DiffuseSpec], library: str) -> tuple[Result, 
     )
 
 
-def _judged(check: str, subject: str, library: str, faults: Faults, *of: Any) -> Result:
+def _judged(check: str, subject: str, library: str, faults: Callable[[], Faults]) -> Result:
     """Result of the faults of something."""
     claim, quantity, variant = CLAIMS[check]
     place = Result(check, claim, subject, SOURCE, library, NOT_RUN)
     try:
-        found, control = faults(*of)
+        found, control = faults()
     except NotRun as error:
         return not_measured(place, error)
     except ShaderError as error:
@@ -145,14 +152,14 @@ def check_definitions(library: str) -> tuple[Result, ...]:
         for each in [*document.getMatchingNodeDefs(node), *others]:
             title = f"{node}, definition"
             results.append(
-                _judged("definition", title, library, _definition_faults, each, specification)
+                _judged(
+                    "definition", title, library, partial(_definition_faults, each, specification)
+                )
             )
     return tuple(results)
 
 
-def _definition_faults(
-    definition: mx.NodeDef, specification: mx.NodeDef
-) -> tuple[list[Cause], int]:
+def _definition_faults(definition: mx.NodeDef, specification: mx.NodeDef) -> Faults:
     author = specification.getName().rstrip("12")
     found, expected = _facts(definition), _facts(specification)
 
@@ -221,21 +228,21 @@ def _expression(text: str) -> str:
     raise NotRun("the expression of the lobe is not supported")
 
 
-def _evaluated(expression: str, inputs: Inputs, functions: Mapping[str, Any]) -> Any:
+def _evaluated(expression: str, inputs: Inputs, functions: Mapping[str, object]) -> object:
     variables = {f"lobe_{name}": value for name, value in inputs.items()}
     return evaluate(expression, {"closureData": (), **variables, **functions})
 
 
-def _dropped(subject: DiffuseSpec | PbrSpec, target: str, library: str) -> tuple[list[Cause], int]:
+def _dropped(subject: DiffuseSpec | PbrSpec, target: str, library: str) -> Faults:
     """Inputs whose values, which no text holds by itself, are no arguments of a call."""
     expression = _expression(source(subject, target, library))
     names = tuple(subject.types) if isinstance(subject, PbrSpec) else subject.names
     inputs = {name: np.array([[0.371 + index]]) for index, name in enumerate(names)}
 
     def missing(given: Inputs) -> list[str]:
-        seen: list[Any] = []
+        seen: list[Array] = []
 
-        def called(*values: Any, **named: Any) -> tuple[()]:
+        def called(*values: ArrayLike, **named: ArrayLike) -> tuple[()]:
             seen.extend(np.ravel(each) for each in (*values, *named.values()))
             return ()
 
@@ -255,23 +262,27 @@ ROUNDED = 1e-12  # 4500 roundings of float64: no text has as many
 TINT = "multiscatter_tint"
 PBRLIB = "materialx::pbrlib_1_10::mx_oren_nayar_diffuse_bsdf"
 UP = np.array([[0.0, 0.0, 1.0]])  # the normal of the surface, which is not the node's
-Closure = dict[str, Any]  # arguments by the names of the node's inputs, its weight among them
+Closure: TypeAlias = dict[
+    str, ArrayLike
+]  # arguments by the names of the node's inputs, its weight among them
 
 
 # The functions below take what MDL's documentation says.
 def diffuse_reflection_bsdf(
-    tint: Any = 1.0, roughness: Any = 0.0, multiscatter_tint: Any = 0.0
+    tint: ArrayLike = 1.0, roughness: ArrayLike = 0.0, multiscatter_tint: ArrayLike = 0.0
 ) -> Closure:
     return {"weight": 1.0, "color": tint, "roughness": roughness, TINT: multiscatter_tint}
 
 
-def weighted_layer(weight: Any, layer: Closure, base: Any = (), normal: Any = None) -> Closure:
+def weighted_layer(
+    weight: ArrayLike, layer: Closure, base: Closure | tuple[()] = (), normal: ArrayLike = ()
+) -> Closure:
     if base:
         raise NotRun("a base below the layer is not supported")
-    return {**layer, "normal": normal, "weight": layer["weight"] * weight}
+    return {**layer, "normal": normal, "weight": np.multiply(layer["weight"], weight)}
 
 
-FUNCTIONS: Mapping[str, Any] = {
+FUNCTIONS: Mapping[str, object] = {
     "state::normal": lambda: UP,
     "material": lambda *, surface: surface,
     "material_surface": lambda *, scattering: scattering,
@@ -288,7 +299,7 @@ FUNCTIONS: Mapping[str, Any] = {
 }
 
 
-def _closure_faults(subject: DiffuseSpec, library: str) -> tuple[list[Cause], int]:
+def _closure_faults(subject: DiffuseSpec, library: str) -> Faults:
     """Arguments of the closure that are not the node's inputs, and their number without the weight."""
     expression = _expression(source(subject, "mdl", library))
     rng = generator()
@@ -310,7 +321,7 @@ def _closure_faults(subject: DiffuseSpec, library: str) -> tuple[list[Cause], in
         if not isinstance(closure, dict):
             raise ShaderError("the lobe is no closure")
         for name, value in expected.items():
-            if closure.get(name) is None:
+            if not np.size(closure.get(name, ())):
                 yield Cause(Kind.DEFECT, "not_passed", (name,))
                 continue
             measured = np.array(closure[name], np.float64, ndmin=2)

@@ -8,7 +8,6 @@ counted; and so is what it reflects.
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -66,7 +65,7 @@ TURNED = np.array(
 )  # tangent, bitangent, normal
 # Of the all-lobes materials: alpha below 1, and an emission.
 MEAN_WEIGHT = 0.3333  # of a channel in the mean by which MaterialX turns a transparency into alpha
-THIN: dict[str, Any] = {
+THIN: dict[str, ArrayLike] = {
     "opacity": 0.6,
     "geometry_opacity": 0.6,
     "alpha": 0.6,

@@ -9,7 +9,7 @@ from mxeon.conformance import samples
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import LEAST_SHEEN, Batch, Counts, Values, directions, generator
 from mxeon.conformance.spec import Ability, Input, color, ports
-from mxeon.conformance.specs.lobes import FLAT_FRAME, PbrSpec
+from mxeon.conformance.specs.lobes import FLAT_FRAME, PbrSpec, named_mode
 from mxeon.conformance.specs.sheen import ZELTNER_ALBEDO, ZELTNER_THROUGHPUT, ZELTNER_VALUE
 from mxeon.conformance.tolerance import ROUNDING, Term, sum_of
 from mxeon.models.nodes import combinations
@@ -119,11 +119,11 @@ def _spec(row: PbrNode) -> CombinedSpec:
     inputs = {each.name: each for each in known}
     if row.name in SINGLE:  # the functions read the other lobe, too
         inputs[ROUGHNESS[1]] = replace(inputs[ROUGHNESS[1]], change=None)
-    return CombinedSpec.of(
-        row,
-        tuple(inputs[name] for name in row.inputs),
-        {"value": NESTED_VALUE if row.name in combinations.NESTED else VALUE, **ERRORS},
-        title=NODES[row.name][0],
+    return CombinedSpec(
+        **named_mode(row, NODES[row.name][0]),
+        row=row,
+        inputs=tuple(inputs[name] for name in row.inputs),
+        errors={"value": NESTED_VALUE if row.name in combinations.NESTED else VALUE, **ERRORS},
     )
 
 

@@ -8,7 +8,16 @@ import numpy as np
 from mxeon.conformance import samples, spec
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Counts, Values, directions, float32, generator
-from mxeon.conformance.spec import ARGUMENTS, Ability, EngineError, Input, RowSpec, color, ports
+from mxeon.conformance.spec import (
+    ARGUMENTS,
+    Ability,
+    EngineError,
+    Input,
+    RowSpec,
+    color,
+    named,
+    ports,
+)
 from mxeon.conformance.tolerance import Compared, roundings, sum_of
 from mxeon.models.media import cone_cosine, cone_width, surface_radiance
 from mxeon.models.nodes import emissions
@@ -129,7 +138,7 @@ power_error = spec.POWER.error(_powers)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class EmissionSpec(RowSpec):
+class EmissionSpec(RowSpec[emissions.Value]):
     """A row of `mxeon.models.nodes.emissions`."""
 
     requires = Ability.EMISSION
@@ -297,11 +306,11 @@ EMITTING_SURFACES = tuple(
 def _spec(row: Emission) -> EmissionSpec:
     drawn, cone = inputs_of(row), row.name == "conical"
     power = (EngineError("the engine's pow()", power_error),)
-    return (ConeSpec if cone else EmissionSpec).of(
-        row,
-        (*drawn, NORMAL) if cone else drawn,
-        {"value": ERRORS.get(row.name, UNIFORM)},
-        title=title_of(row, "EDF"),
+    return (ConeSpec if cone else EmissionSpec)(
+        **named(row, title_of(row, "EDF")),
+        row=row,
+        inputs=(*drawn, NORMAL) if cone else drawn,
+        errors={"value": ERRORS.get(row.name, UNIFORM)},
         closure=not cone,
         counts=Counts(1 << 12, 1 << 10),
         evaluated=("emission", "radiance", 1.0),
@@ -327,7 +336,7 @@ PORTS = connection_text("top", "BSDF", "top") + connection_text("base", "VDF", "
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class MediumSpec(RowSpec):
+class MediumSpec(RowSpec[Transmittance]):
     """A row of `mxeon.models.nodes.media`."""
 
     requires = Ability.MEDIUM
@@ -369,11 +378,11 @@ ANISOTROPY = Input("anisotropy", low=-0.9, high=0.9, default=0.5)
 
 def _medium_spec(row: Medium) -> MediumSpec:
     inputs, combined = inputs_of(row), row in COMBINED_MEDIA
-    return MediumSpec.of(
-        row,
-        (*inputs, ANISOTROPY) if row.category == "anisotropic_vdf" else inputs,
-        {"value": TRANSMITTANCE},
-        title=title_of(row, "VDF"),
+    return MediumSpec(
+        **named(row, title_of(row, "VDF")),
+        row=row,
+        inputs=(*inputs, ANISOTROPY) if row.category == "anisotropic_vdf" else inputs,
+        errors={"value": TRANSMITTANCE},
         counts=Counts(1 << 8),
         fixed={"top/weight": 0.0},
         evaluated=("transmission", "throughput", 1.0),

@@ -11,7 +11,7 @@ from mxeon.conformance import samples
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import LEAST_TURNED, Array, Batch, Counts, Values, generator, rounded
 from mxeon.conformance.spec import Ability, Input, broadcast_inputs, color
-from mxeon.conformance.specs.lobes import NORMAL, PbrSpec, lobe_errors
+from mxeon.conformance.specs.lobes import NORMAL, PbrSpec, lobe_errors, named_mode
 from mxeon.conformance.tolerance import Compared, Term, roundings, sum_in, sum_of
 from mxeon.models.hair import ROUGHNESSES, SCALE, TINTS, chiang_hair_attenuation, section
 from mxeon.models.nodes.lobes import BESSEL, CLAMPED, HAIR_NODE, UNIFORM
@@ -281,4 +281,4 @@ def in_lobes(rng: np.random.Generator, wo: Array, inputs: dict[str, Array]) -> A
     return rounded([np.sin(theta), cosine * np.cos(phi), cosine * np.sin(phi)])
 
 
-HAIR = HairSpec.of(HAIR_NODE, INPUTS, ERRORS)
+HAIR = HairSpec(**named_mode(HAIR_NODE), row=HAIR_NODE, inputs=INPUTS, errors=ERRORS)

@@ -2,17 +2,26 @@
 """A mode of a BSDF node of `mxeon.models.nodes`, and the terms of errors that such nodes share."""
 
 from abc import abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, Self
 
 import numpy as np
 
 from mxeon.conformance import samples, spec
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import TURNED, Array, Batch, Candidate, Counts, Values, directions_at
-from mxeon.conformance.spec import ZERO, Ability, Input, LobeSpec, RowSpec, broadcast_inputs, color
+from mxeon.conformance.spec import (
+    ZERO,
+    Ability,
+    Input,
+    LobeSpec,
+    Names,
+    RowSpec,
+    broadcast_inputs,
+    color,
+    named,
+)
 from mxeon.conformance.tolerance import Term, Tolerance, roundings, sum_in, sum_of
 from mxeon.models.hair import TINTS
 from mxeon.models.nodes import node
@@ -59,7 +68,7 @@ EXTINCTIONS = (("extinction", 0, 6), ("extinction", 1, 6))  # edges without and 
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class ScatteringSpec(RowSpec, LobeSpec):
+class ScatteringSpec(RowSpec[Scattering], LobeSpec):
     """A node that scatters light as a row says."""
 
     row: PbrNode
@@ -148,6 +157,12 @@ class ScatteringSpec(RowSpec, LobeSpec):
         """Directions (M, K, 3) and weights (M, K) of a quadrature over each view's hemisphere."""
 
 
+def named_mode(row: PbrNode, title: str = "") -> Names:
+    """The names of a mode, whose title has the inputs that select it."""
+    words = [row.category, *(f"{name} {value}" for name, value in row.fixed.items())]
+    return named(row, title or ", ".join(words))
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PbrSpec(ScatteringSpec):
     """A mode of a BSDF node: a row of `mxeon.models.nodes`."""
@@ -158,13 +173,6 @@ class PbrSpec(ScatteringSpec):
     counts: Counts = COUNTS
 
     least_cosine: float = 0.0  # of a view whose albedo is compared
-
-    @classmethod
-    def of(
-        cls, row: PbrNode, inputs: tuple[Input, ...], errors: Mapping[str, Tolerance], **rest: Any
-    ) -> Self:
-        words = [row.category, *(f"{name} {value}" for name, value in row.fixed.items())]
-        return super().of(row, inputs, errors, **{"title": ", ".join(words), **rest})
 
     @property
     def bounded(self) -> tuple[Input, ...]:
@@ -237,10 +245,17 @@ FLAT_ALBEDO = sum_of(roundings(32, "of the albedo or 1"), quantity=Quantity.ALBE
 FLAT_ERRORS = lobe_errors(BURLEY_VALUE, FLAT_ALBEDO, FLAT_ALBEDO, FLAT_FRAME, quadrature=1e-8)
 
 
-BURLEY = PbrSpec.of(
-    node("burley"),
-    (WEIGHT, COLOR, replace(ROUGHNESS, low=0.0, edges=(0.0, 0.05, 1.0)), NORMAL),
-    FLAT_ERRORS,
+BURLEY = PbrSpec(
+    **named_mode(node("burley")),
+    row=node("burley"),
+    inputs=(WEIGHT, COLOR, replace(ROUGHNESS, low=0.0, edges=(0.0, 0.05, 1.0)), NORMAL),
+    errors=FLAT_ERRORS,
     flat=True,
 )
-TRANSLUCENT = PbrSpec.of(node("translucent"), (WEIGHT, COLOR, NORMAL), FLAT_ERRORS, flat=True)
+TRANSLUCENT = PbrSpec(
+    **named_mode(node("translucent")),
+    row=node("translucent"),
+    inputs=(WEIGHT, COLOR, NORMAL),
+    errors=FLAT_ERRORS,
+    flat=True,
+)

@@ -13,7 +13,14 @@ from mxeon.conformance import samples, tolerance
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Counts, Values, directions, generator, rounded
 from mxeon.conformance.spec import ARGUMENTS, WAVE, Ability, EngineError, Input, ValueSpec, color
-from mxeon.conformance.specs.lobes import BURLEY_VALUE, NORMAL, WEIGHT, PbrSpec, lobe_errors
+from mxeon.conformance.specs.lobes import (
+    BURLEY_VALUE,
+    NORMAL,
+    WEIGHT,
+    PbrSpec,
+    lobe_errors,
+    named_mode,
+)
 from mxeon.conformance.specs.sheen import FIT_COSINE
 from mxeon.conformance.tolerance import Term, Tolerance, given, largest, roundings, sum_in, sum_of
 from mxeon.models.microfacet import Lobe, node_albedo, uncompensated
@@ -430,10 +437,11 @@ def reflected(wo: Array, alpha: Array, height: Array, around: Array) -> Array:
 
 
 FACET_SPECS = tuple(
-    FacetSpec.of(
-        row,
-        INPUTS[row.category],
-        facet_errors(SCHLICK_THROUGHPUT if row.name == "schlick" else THROUGHPUT),
+    FacetSpec(
+        **named_mode(row),
+        row=row,
+        inputs=INPUTS[row.category],
+        errors=facet_errors(SCHLICK_THROUGHPUT if row.name == "schlick" else THROUGHPUT),
     )
     for row in MICROFACET_NODES
 )
@@ -486,14 +494,18 @@ class TransmissionSpec(FacetSpec):
     def reflection(self) -> FacetSpec:
         """The node where it only reflects."""
         row = replace(self.row, fixed={"scatter_mode": "R"})
-        return FacetSpec.of(row, self.inputs, self.errors, counts=self.counts)
+        inputs, errors = self.inputs, self.errors
+        return FacetSpec(
+            **named_mode(row), row=row, inputs=inputs, errors=errors, counts=self.counts
+        )
 
 
 TRANSMISSION_SPECS = tuple(
-    TransmissionSpec.of(
-        row,
-        INPUTS[row.category],
-        transmission_errors(THROUGHPUT if "tint" in row.inputs else SCHLICK_THROUGHPUT),
+    TransmissionSpec(
+        **named_mode(row),
+        row=row,
+        inputs=INPUTS[row.category],
+        errors=transmission_errors(THROUGHPUT if "tint" in row.inputs else SCHLICK_THROUGHPUT),
         prefiltered_fits={"value": (PREFILTERED,)},
     )
     for row in TRANSMISSION_NODES
@@ -690,11 +702,11 @@ WAVE_ERROR = EngineError(
     2.0,
 )
 FILM_SPECS = tuple(
-    FilmSpec.of(
-        row,
-        INPUTS[row.category],
-        FILM_ERRORS,
-        title=f"{row.category}, thin film",
+    FilmSpec(
+        **named_mode(row, f"{row.category}, thin film"),
+        row=row,
+        inputs=INPUTS[row.category],
+        errors=FILM_ERRORS,
         engines={"film_curve": (WAVE_ERROR,)},
     )
     for row in FILM_NODES

@@ -9,7 +9,15 @@ from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import LEAST_SHEEN, float32, generator
 from mxeon.conformance.spec import ARGUMENTS, POWER, EngineError
 from mxeon.conformance.specs import lobes
-from mxeon.conformance.specs.lobes import COLOR, FLAT_FRAME, NORMAL, ROUGHNESS, PbrSpec, lobe_errors
+from mxeon.conformance.specs.lobes import (
+    COLOR,
+    FLAT_FRAME,
+    NORMAL,
+    ROUGHNESS,
+    PbrSpec,
+    lobe_errors,
+    named_mode,
+)
 from mxeon.conformance.tolerance import ROUNDING, Term, Tolerance, roundings, sum_in, sum_of
 from mxeon.hosts.base import Host
 from mxeon.models.nodes import node
@@ -60,16 +68,20 @@ def power_error(host: Host) -> float:
     return max(float(error) + (EXPONENT - LOGARITHM) * ROUNDING, 0.0)
 
 
-ZELTNER = PbrSpec.of(
-    node("zeltner"),
-    ZELTNER_INPUTS,
-    lobe_errors(ZELTNER_VALUE, ZELTNER_ALBEDO, ZELTNER_THROUGHPUT, FLAT_FRAME, quadrature=1e-8),
+ZELTNER = PbrSpec(
+    **named_mode(node("zeltner")),
+    row=node("zeltner"),
+    inputs=ZELTNER_INPUTS,
+    errors=lobe_errors(
+        ZELTNER_VALUE, ZELTNER_ALBEDO, ZELTNER_THROUGHPUT, FLAT_FRAME, quadrature=1e-8
+    ),
     along=0.03,
 )
-CONTY_KULLA = PbrSpec.of(
-    node("conty_kulla"),
-    INPUTS,
-    {
+CONTY_KULLA = PbrSpec(
+    **named_mode(node("conty_kulla")),
+    row=node("conty_kulla"),
+    inputs=INPUTS,
+    errors={
         **lobe_errors(
             conty_kulla_value(LOGARITHM),
             CONTY_KULLA_ALBEDO,

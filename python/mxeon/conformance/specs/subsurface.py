@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Candidate, Counts, Values
 from mxeon.conformance.spec import ZERO, Ability, Input, broadcast_inputs
-from mxeon.conformance.specs.lobes import COLOR, FLAT_ERRORS, NORMAL, WEIGHT, PbrSpec
+from mxeon.conformance.specs.lobes import COLOR, FLAT_ERRORS, NORMAL, WEIGHT, PbrSpec, named_mode
 from mxeon.conformance.tolerance import given, mean_error
 from mxeon.models.media import FAR, blur_to
 from mxeon.models.nodes.lobes import SUBSURFACE_NODE, circle_blur
@@ -69,10 +69,11 @@ def _blurred(batch: Batch) -> Array:
     return np.asarray(batch.strength * inputs["color"] * light * lit)
 
 
-SUBSURFACE = SubsurfaceSpec.of(
-    SUBSURFACE_NODE,
-    (WEIGHT, COLOR, Input("radius", "color3", high=2.0), NORMAL),
-    {**FLAT_ERRORS, "sphere": RINGS, "sphere_mean": RINGS_MEAN},
+SUBSURFACE = SubsurfaceSpec(
+    **named_mode(SUBSURFACE_NODE),
+    row=SUBSURFACE_NODE,
+    inputs=(WEIGHT, COLOR, Input("radius", "color3", high=2.0), NORMAL),
+    errors={**FLAT_ERRORS, "sphere": RINGS, "sphere_mean": RINGS_MEAN},
     flat=True,
 )
 

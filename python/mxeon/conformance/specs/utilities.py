@@ -16,7 +16,16 @@ from numpy.typing import ArrayLike
 from mxeon.conformance import spec, tolerance
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Counts, Values, float32, generator
-from mxeon.conformance.spec import COMPONENTS, LOGARITHM, POWER, Ability, EngineError, Input, draw
+from mxeon.conformance.spec import (
+    COMPONENTS,
+    LOGARITHM,
+    POWER,
+    Ability,
+    EngineError,
+    Input,
+    draw,
+    named,
+)
 from mxeon.conformance.tolerance import Compared, Term, Tolerance, given, roundings, sum_in, sum_of
 from mxeon.hosts.calls import GRAPH
 from mxeon.models import diffuse
@@ -122,7 +131,7 @@ ENGINE = {
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class UtilitySpec(spec.RowSpec):
+class UtilitySpec(spec.RowSpec[Outputs]):
     """An output of a node of `mxeon.models.nodes.utilities`."""
 
     requires = Ability.OUTPUT
@@ -228,11 +237,11 @@ def _spec(row: UtilityNode, output: str, *libraries: str) -> UtilitySpec:
         replace(each, change=filled(each, each.change), needs=whole, beyond=each.beyond or BEYOND)
         for each in rows
     )
-    return UtilitySpec.of(
-        row,
-        inputs,
-        {"value": VALUES.get(title) or VALUES[row.category], **OTHERS.get(title, {})},
-        title=title,
+    return UtilitySpec(
+        **named(row, title),
+        row=row,
+        inputs=inputs,
+        errors={"value": VALUES.get(title) or VALUES[row.category], **OTHERS.get(title, {})},
         output=output,
         engines={"value": (ENGINE[row.category],)} if row.category in ENGINE else {},
         libraries=libraries,

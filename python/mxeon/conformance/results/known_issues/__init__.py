@@ -65,7 +65,7 @@ def read_issues() -> tuple[Issue, ...]:
     )
 
 
-def cause_of(fields: dict[str, Any] | None) -> Cause | None:
+def cause_of(fields: Mapping[str, Any] | None) -> Cause | None:
     """A cause of what `measured.json` has of it, its identity."""
     if not fields:
         return None
