@@ -69,7 +69,7 @@ class Quantity(Enum):
     unit: str
     meaning: str
 
-    def __new__(cls, key: str, unit: str, meaning: str = "") -> "Quantity":
+    def __new__(cls, key: str, unit: str = "", meaning: str = "") -> "Quantity":
         member = object.__new__(cls)
         member._value_, member.unit, member.meaning = key, unit, meaning
         return member
