@@ -75,11 +75,11 @@ class Case:
 
     @property
     def lobe(self) -> LobeSpec:
-        return self.of(LobeSpec)  # type: ignore[type-abstract]
+        return self.of(LobeSpec)
 
     @property
     def valued(self) -> ValueSpec:
-        return self.of(ValueSpec)  # type: ignore[type-abstract]
+        return self.of(ValueSpec)
 
     def another(self, spec: Spec) -> Case:
         """The same engine and library for another spec."""

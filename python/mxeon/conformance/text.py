@@ -21,7 +21,7 @@ from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import generator
 from mxeon.conformance.specs import PLAIN_LOBES
 from mxeon.conformance.specs.diffuse import DiffuseSpec
-from mxeon.conformance.specs.lobes import PbrSpec
+from mxeon.conformance.specs.lobes import PbrSpec, ScatteringSpec
 from mxeon.conformance.tolerance import Measurement, count_of
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import HOSTS
@@ -211,7 +211,7 @@ ASSIGNED = re.compile(r"\b(?:BSDF|material) lobe_out = ([^;]*);")
 CALLEE = re.compile(r"(?:\w+::)*\w+(?=\()")
 
 
-def source(subject: DiffuseSpec | PbrSpec, target: str, library: str) -> str:
+def source(subject: ScatteringSpec, target: str, library: str) -> str:
     """Pixel stage of a subject; the variable of an input is `lobe_` and its name."""
     frame = {"normal": (0.0, 0.6, 0.8), "tangent": (1.0, 0.0, 0.0)}
     document = subject.document({name: frame[name] for name in frame if name in subject.names})
@@ -233,7 +233,7 @@ def _evaluated(expression: str, inputs: Inputs, functions: Mapping[str, object])
     return evaluate(expression, {"closureData": (), **variables, **functions})
 
 
-def _dropped(subject: DiffuseSpec | PbrSpec, target: str, library: str) -> Faults:
+def _dropped(subject: ScatteringSpec, target: str, library: str) -> Faults:
     """Inputs whose values, which no text holds by itself, are no arguments of a call."""
     expression = _expression(source(subject, target, library))
     names = tuple(subject.types) if isinstance(subject, PbrSpec) else subject.names

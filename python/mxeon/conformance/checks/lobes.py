@@ -108,7 +108,7 @@ def furnace(case: Case) -> Iterator[Compared]:
 
 
 def black(case: Case) -> Iterator[Compared]:
-    spec = case.of(ScatteringSpec)  # type: ignore[type-abstract]
+    spec = case.of(ScatteringSpec)
     for batch in case.few:
         batch = batch.altered(**spec.black)
         yield Compared(batch, case.direct(batch), np.zeros((1, 3)))
@@ -128,7 +128,7 @@ def surroundings(case: Case) -> Compared:
         batch, level = batch.where(bright), level[bright]
     with np.errstate(divide="ignore", invalid="ignore"):
         measured = case.albedo(batch, samples.sky_map()) / level
-    spec = case.of(ScatteringSpec)  # type: ignore[type-abstract]
+    spec = case.of(ScatteringSpec)
     return Compared(batch, measured, spec.sky(batch))
 
 

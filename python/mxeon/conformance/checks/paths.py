@@ -65,15 +65,11 @@ TURNED = np.array(
 )  # tangent, bitangent, normal
 # Of the all-lobes materials: alpha below 1, and an emission.
 MEAN_WEIGHT = 0.3333  # of a channel in the mean by which MaterialX turns a transparency into alpha
-THIN: dict[str, ArrayLike] = {
-    "opacity": 0.6,
-    "geometry_opacity": 0.6,
-    "alpha": 0.6,
+OPACITY, EMISSION = 0.6, 0.3
+THIN: dict[str, float | str] = {
+    **dict.fromkeys(("opacity", "geometry_opacity", "alpha"), OPACITY),
+    **dict.fromkeys(("emission", "emission_luminance", "emissive", "emissiveColor"), EMISSION),
     "alpha_mode": "2",
-    "emission": 0.3,
-    "emission_luminance": 0.3,
-    "emissive": 0.3,
-    "emissiveColor": 0.3,
 }
 
 # Glass, and the name of its index of refraction.
@@ -131,7 +127,7 @@ def documents(spec: LobeSpec) -> tuple[str, ...]:
     """
     if isinstance(spec, SurfaceShaderSpec):
         values, _ = materials(*spec.judged, *spec.others)
-        thin = {
+        thin: dict[str, ArrayLike] = {
             name: (value,) * 3 if spec.types[name] == "color3" else value
             for name, value in THIN.items()
             if name in spec.types and name not in values
@@ -291,7 +287,7 @@ def path_value(case: Case) -> Iterator[Compared]:
         wi[:, 2] = np.copysign(wi[:, 2], wo[:, 2])
     world = {"wo": wo @ TURNED, "wi": wi @ TURNED, "frame": TURNED}
     thin = isinstance(case.spec, SurfaceShaderSpec) and case.spec.node != "UsdPreviewSurface"
-    share = THIN["opacity"] if thin else 1.0
+    share = OPACITY if thin else 1.0
     opacity = 1.0 - 3.0 * MEAN_WEIGHT * (1.0 - share)
     batch, steep = Batch(wo, wi, {}), steepness(text.ask("pdf", **world)[:, :1])
     value = case.host.evaluate(shader, wo, wi, {}, "direct")
