@@ -124,12 +124,12 @@ def materials(gl):
 def leaves(material, mu, count, nodes=8, **options):
     """Standard deviations by which draws leave their density."""
     wo = view(mu)
-    drawn = material.ask("wi", wo, u=uniforms(count), **options)
-    if material.ask("opacity", wo)[0, 0] < 1.0:  # what passes straight on has no density
+    drawn = material.values("wi", wo, u=uniforms(count), **options)
+    if material.values("opacity", wo)[0, 0] < 1.0:  # what passes straight on has no density
         drawn = drawn * (np.linalg.norm(drawn + wo, axis=1, keepdims=True) >= 1e-6)
     return deviation(
         drawn,
-        lambda w: material.ask("pdf", wo, w, **options)[:, 0],
+        lambda w: material.values("pdf", wo, w, **options)[:, 0],
         refracted(wo, 1.0 / 1.5 if options else 1.5),
         wo * [-1.0, -1.0, 1.0],
         nodes,
@@ -148,9 +148,9 @@ def test_a_value_is_the_rasterizers(gl, materials, name):
     )  # light from behind is not the rasterizer's, if a lobe transmits
     alike |= not re.search(r"-9|-1[014]$|surface|pbr|Surface", name)
     value = gl.evaluate(shader, np.float32(wo), np.float32(wi), {}, "direct")
-    opacity = materials(name).ask("opacity", wo[:1])[0, 0]
+    opacity = materials(name).values("opacity", wo[:1])[0, 0]
     np.testing.assert_allclose(
-        materials(name).ask("evaluate", wo, wi)[alike], opacity * value[alike], 1e-5, 1e-6
+        materials(name).values("evaluate", wo, wi)[alike], opacity * value[alike], 1e-5, 1e-6
     )
 
 
@@ -188,8 +188,8 @@ def test_a_furnace_by_sampling_is_the_albedo(gl, materials, name):
     albedo = sum(
         gl.evaluate(shader, np.float32([wo]), np.float32([wo]), {}, each)[0] for each in branches
     )
-    opacity = materials(name).ask("opacity", wo)[0, 0]
-    weights = materials(name).ask("weight", wo, u=uniforms(1 << 16))
+    opacity = materials(name).values("opacity", wo)[0, 0]
+    weights = materials(name).values("weight", wo, u=uniforms(1 << 16))
     noise = 5.0 * weights.std(axis=0) / 2.0**8
     error = abs(weights.mean(axis=0) - (1.0 - opacity) - opacity * albedo)
     assert (error < noise + ALBEDO_ERRORS.get(name, 5e-3)).all()
@@ -199,11 +199,11 @@ def test_a_furnace_by_sampling_is_the_albedo(gl, materials, name):
 def test_no_answer_is_nan(materials, name):
     for mu in (1.0, 1e-3, 1e-7):
         for what in ("wi", "weight", "density"):
-            assert np.isfinite(materials(name).ask(what, view(mu), u=uniforms(2048))).all()
+            assert np.isfinite(materials(name).values(what, view(mu), u=uniforms(2048))).all()
         w = directions(np.random.default_rng(5), 2048)
         w[:2] = view(mu), -view(mu)
         for what in ("pdf", "evaluate", "emission"):
-            assert np.isfinite(materials(name).ask(what, view(mu), w)).all()
+            assert np.isfinite(materials(name).values(what, view(mu), w)).all()
 
 
 def test_no_edge_of_an_input_is_nan(gl):
@@ -217,7 +217,7 @@ def test_no_edge_of_an_input_is_nan(gl):
     for each in edges:
         material = paths(gl, material_text("dielectric_bsdf", {"scatter_mode": "RT"} | each))
         for what in ("wi", "weight", "density"):
-            assert np.isfinite(material.ask(what, view(0.5), u=uniforms(2048))).all()
+            assert np.isfinite(material.values(what, view(0.5), u=uniforms(2048))).all()
 
 
 MUTANTS = [each for each in read_table() if each.group == "Path tracing"]
@@ -229,11 +229,11 @@ def test_a_wrong_formula_is_noticed(gl, materials, mutant):
     with wrong_library(mutant) as library:
         wrong = paths(gl, DOCUMENTS[name], library)
     wo, u = view(0.3), uniforms(1 << 14)
-    wi, density, weight = (wrong.ask(what, wo, u=u) for what in ("wi", "density", "weight"))
-    albedo = materials(name).ask("weight", wo, u=u)
+    wi, density, weight = (wrong.values(what, wo, u=u) for what in ("wi", "density", "weight"))
+    albedo = materials(name).values("weight", wo, u=u)
     noise = 5.0 * (weight.std() + albedo.std() + 1e-3) / 2.0**7
     seen = density[:, 0] > 0.0
-    another_density = not np.allclose(wrong.ask("pdf", wo, wi)[seen], density[seen], 2e-3)
+    another_density = not np.allclose(wrong.values("pdf", wo, wi)[seen], density[seen], 2e-3)
     another_albedo = (abs(weight.mean(axis=0) - albedo.mean(axis=0)) > noise).any()
     assert another_density or another_albedo or leaves(wrong, 0.3, 1 << 16) > DEVIATION
 

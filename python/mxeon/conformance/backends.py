@@ -22,7 +22,17 @@ from mxeon.conformance import samples, tolerance
 from mxeon.conformance.cache import EVALUATIONS, Recent, contents, parts
 from mxeon.conformance.results import Claims
 from mxeon.conformance.results.quantities import Quantity
-from mxeon.conformance.samples import LOBE_RIM, RIM, Array, Batch, Counts, Mask, Values
+from mxeon.conformance.samples import (
+    BLACK,
+    LOBE_RIM,
+    RIM,
+    WHITE,
+    Array,
+    Batch,
+    Counts,
+    Mask,
+    Values,
+)
 from mxeon.conformance.spec import POWER, Ability, LobeSpec, Spec, ValueSpec, broadcast_inputs
 from mxeon.conformance.specs.diffuse import LOBE_VALUE, SurfaceLobe
 from mxeon.conformance.specs.lobes import PbrSpec, ScatteringSpec
@@ -42,7 +52,6 @@ from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, VIEW, Scene, local_d
 if TYPE_CHECKING:
     from mxeon.shaders.generation import Shader
 
-WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
 LINEAR, SRGB_COLOR = 'colorspace="lin_rec709" version="', 'name="color" colorspace="srgb_texture"'
 POWERS = 1 << 12  # colors whose powers are measured
 NO_IMPLEMENTATION = "Could not find a matching implementation"

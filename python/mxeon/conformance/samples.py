@@ -21,9 +21,10 @@ from mxeon.shaders.scene import Scene
 
 # Of `mxeon check`: verdicts must not depend on it, nor can a shader know it.
 SEED: ContextVar[int] = ContextVar("seed", default=1)
+WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
 GOLDEN_RATIO = 0.618  # its multiples are spread evenly over [0, 1)
 PAIRS = 1 << 16
-FEW = 1 << 14  # pairs of the checks that do not ask for all
+FEW = 1 << 14  # default number of pairs for expensive checks
 GRAZING = 1e-6  # smallest cosine of the random pairs
 RIM = 0.05  # smallest cosine judged in a picture: nearer to the rim a pixel's place is uncertain
 LOBE_RIM = 0.25  # of a lobe below others
@@ -41,7 +42,7 @@ class Counts:
     pairs: int = PAIRS  # random pairs, and those of them for what takes long
     few: int = FEW
     diagnosed: int = FEW  # pairs of each batch that a diagnosis looks at
-    albedos: int = 1 << 7  # views whose albedo is asked
+    albedos: int = 1 << 7  # views whose albedo is measured
     # Materials whose values are integrated or averaged, and nodes of a quadrature on each axis.
     materials: int = 64
     nodes: int = 48
@@ -156,7 +157,7 @@ HORIZON = 0.1  # least cosine of the other direction where one is at the horizon
 POLE = 0.99  # largest height of a normal in turned frames: a map of the sky ends at the poles
 TURNED = (0.25, 0.95)  # cosines in turned frames, where a cosine has roundings
 LEAST_SHEEN = 0.01  # roughness of the other lobes, which the Zeltner sheen has at least
-LEAST_COLOR82 = 0.5  # of a lobe whose albedo is asked; see docs/loading.md
+LEAST_COLOR82 = 0.5  # of a lobe whose albedo is measured; see docs/loading.md
 LEAST_TURNED = 0.1  # roughness of microfacets in turned frames
 WEIGHTS = (-0.5, 0.0, 1e-4, 0.01, 0.5)
 OCCLUSIONS = (0.0, 1e-3, 0.5)

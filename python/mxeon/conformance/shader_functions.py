@@ -42,7 +42,7 @@ PART = sum_in(Quantity.CONDITIONED, roundings(16))
 
 
 class FunctionCheck(NamedTuple):
-    """What is asked of some of the shader functions."""
+    """A check of some of the shader functions."""
 
     key: str  # one word, and a sentence
     claim: str

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a node is judged by: its inputs and their ranges, its models, its errors and the samples it needs.
 
-A family of nodes is one file under `specs`. How an engine is asked about it is a backend's business.
+A family of nodes is one file under `specs`. How an engine evaluates it is a backend's business.
 """
 
 from abc import ABC, abstractmethod
@@ -65,7 +65,7 @@ def materials(*inputs: Input) -> tuple[Values, ...]:
 def draw(
     rng: np.random.Generator, count: int, inputs: Sequence[Input], edged: bool = False
 ) -> dict[str, Array]:
-    """Random values of inputs in their ranges, by name; half of them on an edge if asked."""
+    """Random values of inputs in their ranges, by name; half of them on an edge if `edged`."""
     drawn = {}
     for each in inputs:
         low, high = np.asarray(each.low, np.float64), np.asarray(each.high, np.float64)
@@ -269,7 +269,7 @@ class LobeSpec(ValueSpec):
     def random_inputs(
         self, rng: np.random.Generator, count: int, edged: bool = False
     ) -> dict[str, Array]:
-        """Random values of the inputs, half of them on an edge if asked."""
+        """Random values of the inputs, half of them on an edge if `edged`."""
 
     @abstractmethod
     def edges(self, counts: Counts) -> Batch:

@@ -85,7 +85,7 @@ class Entry:
 
     @property
     def found_around(self) -> str:
-        """The model that a white environment shows, "" where that was not asked."""
+        """The model that a white environment shows, "" where that was not measured."""
         cell = self.cells.get("surroundings")
         return model_of(cell, self.form or self.claimed) if cell else ""
 

@@ -47,7 +47,7 @@ from mxeon.models.nodes.combinations import FACTOR
 from mxeon.models.nodes.lobes import FORMS, TILTED
 from mxeon.shaders.methods import Methods
 
-LEAST_LIGHT = 0.01  # of a uniform environment, where the place of an uneven one is asked
+LEAST_LIGHT = 0.01  # of a uniform environment where an uneven one is measured
 # Texels are pi / 128 high and wide, their middles are read, and engines keep filters' weights in eight bits.
 TEXEL = math.sqrt(2.0) * math.pi / samples.SKY_ROWS * 2.0**-8
 ARC_SINE = 4e-4  # largest error of an engine's arc sine: llvmpipe's, ten times that of others
@@ -103,7 +103,7 @@ def has_environment(spec: Spec, host: str) -> bool:
 
 def furnace(case: Case) -> Iterator[Compared]:
     for batch in case.views:
-        white = batch.altered(color=backends.WHITE, weight=1.0)
+        white = batch.altered(color=samples.WHITE, weight=1.0)
         yield Compared(white, case.albedo(white), np.ones((1, 3)))
 
 
@@ -121,7 +121,7 @@ def diagnose_surroundings(case: Case) -> Diagnosis:
 def surroundings(case: Case) -> Compared:
     batch = case.backend.turned
     if "color" in batch.inputs:
-        batch = batch.altered(color=backends.WHITE)
+        batch = batch.altered(color=samples.WHITE)
     level = case.albedo(batch)
     bright = level.min(axis=1) > LEAST_LIGHT
     if bright.any():  # or what is dark is wrong
@@ -217,8 +217,8 @@ def reads(name: str) -> Specs:
 def dip(case: Case) -> Iterator[Compared]:
     dipped = (samples.LEAST_COLOR82,) * 3
     white: Values = {
-        "color0": backends.WHITE,
-        "color90": backends.WHITE,
+        "color0": samples.WHITE,
+        "color90": samples.WHITE,
         "color82": dipped,
         "exponent": 5.0,
     }
@@ -227,7 +227,7 @@ def dip(case: Case) -> Iterator[Compared]:
 
 def denser(case: Case) -> Iterator[Compared]:
     for batch in case.views:
-        inverse = batch.altered(ior=1.0 / np.asarray(batch.inputs["ior"]), tint=backends.WHITE)
+        inverse = batch.altered(ior=1.0 / np.asarray(batch.inputs["ior"]), tint=samples.WHITE)
         yield _passed(case, inverse)
 
 

@@ -28,8 +28,8 @@ from mxeon.shaders.methods import GENERATED, Methods
 
 PAIRS = 1 << 12  # near the mirror direction
 LEAST_DIVIDED = 1.2  # index of a dielectric whose values are divided
-SKIES = 8  # lobes that are asked for the mean of an uneven sky
-LEAST_VALUE = 1e-3  # pi f cos of values whose ratio is asked
+SKIES = 8  # lobes whose mean of an uneven sky is measured
+LEAST_VALUE = 1e-3  # pi f cos of values whose ratio is measured
 
 
 FACETS = lobes.PLAIN & lobes.FACETS  # by themselves
@@ -152,7 +152,7 @@ SMOOTH_VIEWS = 1 << 9  # of smooth surfaces
 CHANGED_VIEWS = 1 << 6  # whose inputs are changed
 LEAST_SEEN = 0.05  # cosine of them
 CRITICAL = 0.05  # distance from the critical angle, in its cosine: F has an infinite slope there
-LEAST_PASSED = 0.01  # light of which the place is asked
+LEAST_PASSED = 0.01  # light whose place is measured
 # Slope of a refracted ray in a cosine, index^2 / cosine, above which errors count relative to it.
 BENT = 1000.0
 REFRACTED = lobes.SURROUNDINGS.plus(roundings(4 * BENT, "four of a cosine, times a slope of 1000"))

@@ -52,7 +52,7 @@ SCATTERED = """if (what < 0.5)
     return what < 2.5 ? wi : what < 3.5 ? weight : vec3(pdf);"""
 # Apart, since a driver copies the material to each call.
 PASSED = "return what < 5.5 ? vec3(material_shadow(p, wo)) : material_emitted(p, wo);"
-ASKED = ("evaluate", "pdf", "wi", "weight", "density", "opacity", "emission")
+FUNCTIONS = ("evaluate", "pdf", "wi", "weight", "density", "opacity", "emission")
 TARGETS = ("glsl", "essl", "vulkan", "slang")  # of mxeon.shaders.path_tracing
 DRAWS, WEIGHED, PAIRS = 1 << 16, 1 << 12, 1 << 12
 ANSWERS = Recent[Array](64)  # to what a check and its control ask
@@ -89,7 +89,7 @@ class Paths:
     host: Host
     text: str
 
-    def ask(
+    def values(
         self,
         what: str,
         wo: ArrayLike,
@@ -98,11 +98,11 @@ class Paths:
         inside: bool = False,
         frame: Array = UPRIGHT,
     ) -> Array:
-        """Answers (N, 3) of a function, one of ASKED; 0 where nothing is drawn.
+        """Answers (N, 3) of a function, one of FUNCTIONS; 0 where nothing is drawn.
 
         - `frame`: Tangent, bitangent and normal of the surface; directions are those of the world.
         """
-        number = ASKED.index(what)
+        number = FUNCTIONS.index(what)
         values = (float(number), wo, wi, u, float(inside), frame[2], frame[0])
         rows = [np.atleast_2d(each) for each in values]
         text = self.text + CALL.format(answer=SCATTERED if number < 5 else PASSED)
@@ -203,10 +203,10 @@ def scores(case: Case) -> Iterator[tuple[float, bool, Array]]:
                 def density(w: Array, text: Paths = text, inside: bool = inside) -> Array:
                     batch = Batch(np.broadcast_to(view, w.shape), w, {})  # noqa: B023
                     return case.measured(
-                        lambda each: text.ask("pdf", each.wo[:1], each.wi, inside=inside), batch
+                        lambda each: text.values("pdf", each.wo[:1], each.wi, inside=inside), batch
                     )[:, 0]
 
-                drawn = text.ask("wi", view, u=u, inside=inside)
+                drawn = text.values("wi", view, u=u, inside=inside)
                 straight = np.linalg.norm(drawn + view, axis=1, keepdims=True) < 1e-6
                 pole = refracted(view, 1.0 / 1.5 if inside else 1.5)
                 mirror = view * [-1.0, -1.0, 1.0]
@@ -225,14 +225,15 @@ def halves(case: Case) -> Iterator[tuple[bool, Compared, Compared]]:
         for inside in sides(case.spec):
             for view in VIEWS:
                 wi, weight, density = (
-                    text.ask(what, view, u=u, inside=inside) for what in ("wi", "weight", "density")
+                    text.values(what, view, u=u, inside=inside)
+                    for what in ("wi", "weight", "density")
                 )
                 kept = density[:, 0] > 0.0
                 if not kept.any():
                     continue
                 batch = Batch(np.broadcast_to(view, wi.shape), wi, {}).where(kept)
-                value = text.ask("evaluate", view, batch.wi, inside=inside)
-                stated = text.ask("pdf", view, batch.wi, inside=inside)[:, :1]
+                value = text.values("evaluate", view, batch.wi, inside=inside)
+                stated = text.values("pdf", view, batch.wi, inside=inside)[:, :1]
                 size = value.max(axis=1, keepdims=True)
                 size[size <= 0.0] = 1.0
                 steep = steepness(stated)
@@ -289,15 +290,15 @@ def path_value(case: Case) -> Iterator[Compared]:
     thin = isinstance(case.spec, SurfaceShaderSpec) and case.spec.node != "UsdPreviewSurface"
     share = OPACITY if thin else 1.0
     opacity = 1.0 - 3.0 * MEAN_WEIGHT * (1.0 - share)
-    batch, steep = Batch(wo, wi, {}), steepness(text.ask("pdf", **world)[:, :1])
+    batch, steep = Batch(wo, wi, {}), steepness(text.values("pdf", **world)[:, :1])
     value = case.host.evaluate(shader, wo, wi, {}, "direct")
-    found = case.outputs(batch, text.ask("evaluate", **world))
+    found = case.outputs(batch, text.values("evaluate", **world))
     yield Compared(batch, np.pi * found / steep, opacity * np.pi * value / steep)
-    yield Compared(batch, text.ask("opacity", **world), np.full((len(wo), 1), opacity))
+    yield Compared(batch, text.values("opacity", **world), np.full((len(wo), 1), opacity))
     emitted = np.zeros((len(wo), 3))
     if isinstance(case.spec, SurfaceShaderSpec):
         emitted = case.host.evaluate(shader, wo, wi, {}, "emission", output="radiance")
-    yield Compared(batch, text.ask("emission", **world), share * emitted)
+    yield Compared(batch, text.values("emission", **world), share * emitted)
 
 
 def path_inside(case: Case) -> Iterator[Compared]:
@@ -308,12 +309,12 @@ def path_inside(case: Case) -> Iterator[Compared]:
     )
     u = random(PAIRS, generator())
     for view in VIEWS:
-        wi = inverse.ask("wi", view, u=u)
+        wi = inverse.values("wi", view, u=u)
         batch = Batch(np.broadcast_to(view, wi.shape), wi, {}).where(np.any(wi != 0.0, axis=1))
-        steep = steepness(inverse.ask("pdf", view, batch.wi)[:, :1])
+        steep = steepness(inverse.values("pdf", view, batch.wi)[:, :1])
         for what in ("evaluate", "pdf"):
-            found = solid.ask(what, view, batch.wi, inside=True)
-            expected = inverse.ask(what, view, batch.wi)
+            found = solid.values(what, view, batch.wi, inside=True)
+            expected = inverse.values(what, view, batch.wi)
             scale = steep * np.maximum(1.0, expected.max(axis=1, keepdims=True))
             yield Compared(batch, case.outputs(batch, found) / scale, expected / scale)
 
@@ -323,7 +324,7 @@ def path_inside(case: Case) -> Iterator[Compared]:
 # Cells divide the angle from a pole, and the azimuth about it. The first ring is narrow, for a lobe that is
 # nearly a single direction: let the pole be that direction.
 CELLS = 32  # of the angle, and of the azimuth
-NODES = 8  # of the quadrature of a cell, on each axis
+CELL_NODES = 8  # of the quadrature of a cell, on each axis
 CONE = 0.02  # radian, the first ring
 LEAST = 1e-7  # radian, below which a density is constant
 RARE = 10.0  # expected draws, below which cells are put together
@@ -334,7 +335,7 @@ def deviation(
     density: Callable[[Array], Array],
     pole: Array,
     other: Array | None = None,
-    nodes: int = NODES,
+    nodes: int = CELL_NODES,
 ) -> float:
     """Standard deviations by which the counts of draws leave a density, 0 for any less than chance brings.
 

@@ -142,7 +142,7 @@ class Reference(base.Host):
         """Array of the document's lobes; see `mxeon.hosts.base.Host.evaluate`.
 
         The branch "opacity" is "transmission" by that method of MaterialX. Raise NotRun unless the response to a
-        light or to a uniform environment, or the share of that which is transmitted, is asked for.
+        light or to a uniform environment, or the share of that which is transmitted, is requested.
         """
         shader, wo, wi, inputs, branch, output, irradiance = query
         if (

@@ -174,13 +174,13 @@ class ShadingPoints:
     # Points with materials of their own whose albedos are integrated; more raise ManyMaterialsError.
     most: float = np.inf
     round: bool = False  # whether these are points of the unit sphere
-    behind: bool = False  # whether light that is transmitted is asked for, and no other
+    behind: bool = False  # whether only transmitted light counts
     opacity: bool = False  # whether lobes that only transmit pass all light, and their tops take what they reflect
 
     def lobe(
         self, node: PbrNode, inputs: Inputs, layered: bool, normal: Array, tangent: Array
     ) -> Bsdf:
-        """Lobe of weight one, and its throughput if it is asked for; see `directions`."""
+        """Lobe of weight one, and its throughput if `layered`; see `directions`."""
         own = np.array_equal(normal, self.normal) and np.array_equal(tangent, self.tangent)
         wo, wi = self.own if own else self.directions(normal, tangent)
 
@@ -497,30 +497,30 @@ def _when(compare: Callable[..., NDArray[np.bool_]]) -> Operation:
     return ("value1", "value2", "in1", "in2"), choose
 
 
-ONE, TWO = ("in",), ("in1", "in2")
+UNARY, BINARY = ("in",), ("in1", "in2")
 
 # Category -> its inputs, and the function of them.
 OPERATIONS: dict[str, Operation] = {
     "constant": (("value",), same),
-    "convert": (ONE, lambda value: np.asarray(value, np.float64)),
-    "dot": (ONE, same),
-    "add": (TWO, add),
-    "subtract": (TWO, sub),
-    "multiply": (TWO, mul),
-    "divide": (TWO, truediv),
-    "power": (TWO, pow),
-    "min": (TWO, np.minimum),
-    "max": (TWO, np.maximum),
+    "convert": (UNARY, lambda value: np.asarray(value, np.float64)),
+    "dot": (UNARY, same),
+    "add": (BINARY, add),
+    "subtract": (BINARY, sub),
+    "multiply": (BINARY, mul),
+    "divide": (BINARY, truediv),
+    "power": (BINARY, pow),
+    "min": (BINARY, np.minimum),
+    "max": (BINARY, np.maximum),
     "clamp": (("in", "low", "high"), lambda x, low, high: np.minimum(np.maximum(x, low), high)),
     "invert": (("amount", "in"), sub),
-    "absval": (ONE, np.abs),
-    "sign": (ONE, np.sign),
-    "sqrt": (ONE, np.sqrt),
-    "ln": (ONE, np.log),
-    "normalize": (ONE, _normalize),
+    "absval": (UNARY, np.abs),
+    "sign": (UNARY, np.sign),
+    "sqrt": (UNARY, np.sqrt),
+    "ln": (UNARY, np.log),
+    "normalize": (UNARY, _normalize),
     "rotate3d": (("in", "amount", "axis"), _rotate3d),
     "normalmap": (("in", "scale", "normal", "tangent", "bitangent"), _normalmap),
-    "combine2": (TWO, _combine),
+    "combine2": (BINARY, _combine),
     "combine3": (("in1", "in2", "in3"), _combine),
     "extract": (
         ("in", "index"),

@@ -122,7 +122,7 @@ def check(
             raise InputError(f"seed must be at least 0; got {seed}")
         check_timeout(timeout)
         check_timeout(wait, "waitForWorkers")
-        survey = plan.survey_documents(documents, loaded, policy, workers, timeout)
+        reading = plan.read_documents(documents, loaded, policy, workers, timeout)
         keep = folder is not None
         planned = make_plan(
             documents,
@@ -131,7 +131,7 @@ def check(
             policy,
             keep,
             categories,
-            survey,
+            reading,
             others,
             seed,
             methods or UNCHOSEN,

@@ -130,10 +130,10 @@ class Judge:
         host = self._host(task.host)
         host.choose(task.methods)
         if task.check == HOST:
-            asked = (
+            requested = (
                 "" if task.subject == plan.EVERY_NODE else f": {task.subject} with {task.library}"
             )
-            raise NotRun(f"{task.host}: this host judges nothing that was requested{asked}")
+            raise NotRun(f"{task.host}: this host judges nothing that was requested{requested}")
         return replace(self._on_host(task, host), hosts=(host.identity(),))
 
     def _on_host(self, task: Task, host: Engine) -> Findings:

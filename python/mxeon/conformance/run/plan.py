@@ -68,7 +68,7 @@ from mxeon.shaders.methods import GENERATED, UNCHOSEN, Methods
 Source = tuple[str, str]  # a file, and the library that it is read with
 
 
-class Survey(NamedTuple):
+class Reading(NamedTuple):
     """What the documents of a run contain; see `mxeon.conformance.results.Scope`."""
 
     contents: dict[str, tuple[str, ...]]
@@ -76,9 +76,9 @@ class Survey(NamedTuple):
     refused: dict[str, tuple[str, ...]]
 
 
-def survey_documents(
+def read_documents(
     files: Sequence[str], libraries: Sequence[str], policy: Policy, workers: int, timeout: float
-) -> Survey:
+) -> Reading:
     """Read documents with each library, in worker processes unless there are none.
 
     A document that ends its worker has no nodes; the task that draws it says why.
@@ -110,7 +110,7 @@ def survey_documents(
             refused[file] = tuple(dict.fromkeys((*refused.get(file, ()), *lines)))
         else:  # another library can read it
             refused[f"{file} with {library}"] = tuple(f"{line} (with {library})" for line in lines)
-    return Survey(
+    return Reading(
         {file: tuple(each) for file, each in titles.items()},
         {
             file: {title: tuple(sorted(each, key=repr)) for title, each in found.items() if each}
@@ -222,9 +222,9 @@ def _titles(*nodes: str) -> set[str]:
 
 
 def _selected(
-    tasks: Sequence[Task], files: Sequence[str], nodes: Sequence[str], survey: Survey
+    tasks: Sequence[Task], files: Sequence[str], nodes: Sequence[str], reading: Reading
 ) -> list[Task]:
-    """The tasks that are asked for, those of the user's documents first.
+    """The requested tasks, those of the user's documents first.
 
     Raise InputError if none of the nodes is judged.
     """
@@ -233,7 +233,7 @@ def _selected(
     audit = COMMON in nodes or not (nodes or files)
     by_name = {each.key for each in CHECKS if each.profile}
     if not nodes:
-        titles = {title for file in files for title in survey.contents.get(file, ())}
+        titles = {title for file in files for title in reading.contents.get(file, ())}
     chosen = [
         task
         for task in tasks
@@ -264,7 +264,7 @@ def _selected(
     )
 
 
-EMPTY = Survey({}, {}, {})
+EMPTY = Reading({}, {}, {})
 
 
 def make_plan(
@@ -274,7 +274,7 @@ def make_plan(
     policy: Policy = DEFAULT,
     resumable: bool = False,
     nodes: Sequence[str] = (),
-    survey: Survey = EMPTY,
+    reading: Reading = EMPTY,
     compared: Sequence[str] = (),
     seed: int = 1,
     methods: Methods = UNCHOSEN,
@@ -294,7 +294,7 @@ def make_plan(
     # What a document shows, and what libraries are compared in, is judged with each library.
     everywhere = bool(files and not nodes) or len(libraries) > 1
     for library in libraries:
-        unread = survey.refused.keys()  # with all libraries, or this one
+        unread = reading.refused.keys()  # with all libraries, or this one
         readable = [
             file for file in map(str, files) if unread.isdisjoint((file, f"{file} with {library}"))
         ]
@@ -309,7 +309,7 @@ def make_plan(
     for host in hosts:  # nodes of a renderer's own, which use no library of ours
         for spec in own_nodes(host):
             tasks += _checks_of(spec, host, RENDERER_NODES)
-    tasks = _selected(tasks, list(map(str, files)), nodes, survey)
+    tasks = _selected(tasks, list(map(str, files)), nodes, reading)
     # A host that measures nothing says so; the task of a document does, on a host that reads none.
     telling = {
         task.host for task in tasks if task.check != DOCUMENT or not host_row(task.host).target
@@ -329,9 +329,9 @@ def make_plan(
         software=_software(),
         tasks=tuple(replace(task, seed=seed, methods=methods) for task in tasks),
         documents=tuple(map(Path, dict.fromkeys(documents))),
-        contents={file: survey.contents.get(file, ()) for file in documents} if files else {},
-        unreached=survey.unreached if files and not nodes else {},
-        refused=survey.refused,
+        contents={file: reading.contents.get(file, ()) for file in documents} if files else {},
+        unreached=reading.unreached if files and not nodes else {},
+        refused=reading.refused,
         libraries={
             each: origins(each) | unjudged(each) for each in libraries if each not in LIBRARIES
         },

@@ -14,7 +14,7 @@ from mxeon.conformance.specs.surface_shaders import SURFACE_SHADERS
 from mxeon.conformance.specs.utilities import INVERSION_SPECS, UTILITY_SPECS
 
 PLAIN_LOBES = (BURLEY, TRANSLUCENT, CONTY_KULLA, ZELTNER, *FACET_SPECS)
-# Every run judges the common ones; the others are judged where they are asked for by name.
+# Every run judges the common ones; the others only if the user names them.
 COMMON: tuple[Spec, ...] = (*PLAIN_LOBES, *COMBINED_SPECS, *INVERSION_SPECS)
 PBRLIB: tuple[Spec, ...] = (
     *COMMON,

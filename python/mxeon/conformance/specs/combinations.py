@@ -53,17 +53,17 @@ def over(category: str, *lobes: str) -> Node:
 SHEEN = Node("sheen_bsdf", "BSDF", text=input_text("mode", "string", "zeltner"))
 LOBES = {"top": SHEEN, "base": SHEEN}
 SUM = {"sum": over("add", "top", "base")}
-WHITE = input_text("color", "color3", np.ones(3))
+WHITE_INPUT = input_text("color", "color3", np.ones(3))
 # Opaque lobes and shares of mixes that are connected, which MaterialX folds into the weights of the lobes.
 MASKED = {
-    **dict.fromkeys(("white", "other"), Node("oren_nayar_diffuse_bsdf", "BSDF", text=WHITE)),
+    **dict.fromkeys(("white", "other"), Node("oren_nayar_diffuse_bsdf", "BSDF", text=WHITE_INPUT)),
     **dict.fromkeys(("inner", "outer"), Node("multiply", "float")),
     "masked": over("mix", "white", "top")._replace(text=connection_text("mix", "float", "inner")),
     "both": over("mix", "masked", "other")._replace(text=connection_text("mix", "float", "outer")),
     "lobe": over("layer", "both", "base"),
 }
 # By the name of the row: its title, and the nodes over both lobes.
-NODES: dict[str, tuple[str, dict[str, Node]]] = {
+NETWORKS: dict[str, tuple[str, dict[str, Node]]] = {
     "layer": ("layer", {"lobe": over("layer", "top", "base")}),
     "mix": ("mix", {"lobe": over("mix", "top", "base")}),
     "add": ("add", {"lobe": over("add", "top", "base")}),
@@ -105,7 +105,7 @@ class CombinedSpec(PbrSpec):
         )
 
     def document(self, inputs: Values | None = None) -> str:
-        nodes = LOBES | NODES[self.model][1]
+        nodes = LOBES | NETWORKS[self.model][1]
         return document_text(network_text(nodes, ports(self.inputs, inputs)) + SURFACE)
 
 
@@ -120,7 +120,7 @@ def _spec(row: PbrNode) -> CombinedSpec:
     if row.name in SINGLE:  # the functions read the other lobe, too
         inputs[ROUGHNESS[1]] = replace(inputs[ROUGHNESS[1]], change=None)
     return CombinedSpec(
-        **named_mode(row, NODES[row.name][0]),
+        **named_mode(row, NETWORKS[row.name][0]),
         row=row,
         inputs=tuple(inputs[name] for name in row.inputs),
         errors={"value": NESTED_VALUE if row.name in combinations.NESTED else VALUE, **ERRORS},

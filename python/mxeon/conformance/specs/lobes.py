@@ -176,7 +176,7 @@ class PbrSpec(ScatteringSpec):
 
     @property
     def bounded(self) -> tuple[Input, ...]:
-        """The inputs of which values outside their ranges are asked, too."""
+        """The inputs that are also measured outside their ranges."""
         return tuple(each for each in self.drawn if each.beyond)
 
     @property

@@ -13,7 +13,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from mxeon.conformance import samples, spec
 from mxeon.conformance.results.quantities import Quantity
-from mxeon.conformance.samples import Array, Batch, Changes, Counts, Values, directions, generator
+from mxeon.conformance.samples import (
+    WHITE,
+    Array,
+    Batch,
+    Changes,
+    Counts,
+    Values,
+    directions,
+    generator,
+)
 from mxeon.conformance.spec import CHANGED_COLOR, Ability, Input, LobeSpec, ValueSpec, color, draw
 from mxeon.conformance.specs.lobes import LEAST_VIEW
 from mxeon.conformance.specs.microfacets import FILM_ERRORS, LOBE_FIT, reflected, sum_over
@@ -24,7 +33,7 @@ if TYPE_CHECKING:  # which load MaterialX
     from mxeon.conformance.reference.graph import Graphs
     from mxeon.shaders.generation import Shader
 
-# Inputs by the range that is asked of them, with values of a material in which every lobe takes part; a change is
+# Inputs by their range, with values of a material in which every lobe takes part; a change is
 # another value than any default.
 RANGES = {
     "color": color("", (0.5, 0.6, 0.7), edges=(1.0,)),
@@ -38,7 +47,6 @@ RANGES = {
 }
 # The mean free path below the surface, which shows on a curved one: an evaluation has a plane.
 FREE_PATHS = ("subsurface_radius", "subsurface_scale", "subsurface_radius_scale")
-WHITE = (1.0, 1.0, 1.0)
 TURNED_FRAME = {"normal": (0.48, 0.36, 0.8), "tangent": (0.6, 0.8, 0.0)}
 
 
@@ -95,7 +103,7 @@ class SurfaceShaderSpec(LobeSpec):
     plain = ("frame", "shape", "lobes", "inputs from an image")
 
     judged: tuple[Input, ...]  # those whose values have a reference
-    others: tuple[Input, ...]  # those of other lobes and of thin films, which are asked for energy
+    others: tuple[Input, ...]  # those of other lobes and of thin films, judged by energy
     # Inputs that change no value of rasterized targets; docs/upstream/
     # surface_inputs.md says why.
     without_effect: tuple[str, ...]
@@ -104,7 +112,7 @@ class SurfaceShaderSpec(LobeSpec):
     finish: tuple[str, ...]  # roughness and index of its interface
     # What else the material has where an input is changed.
     needs: Mapping[str, Values] = field(default_factory=dict)
-    # Inputs that are asked of no value: an opacity blends what lies behind with the whole surface, not with a lobe,
+    # Inputs without a judged value: an opacity blends what lies behind with the whole surface, not with a lobe,
     # and an occlusion is what an evaluation sets itself.
     unseen: tuple[str, ...] = ()
     library: str = "eonlib"  # whose document the reference evaluates
