@@ -321,7 +321,7 @@ def test_nothing_reads_a_sentence(stock, monkeypatch, tmp_path):
 def test_what_is_left_of_a_mended_defect_has_not_its_page():
     near = {"energy-preserving Oren-Nayar (EON)": 1e-6, CLAMPED_TITLE: 0.02}
     place = ("value", "", EON, "gl", "stock", FAILED)
-    left = (Result(*place, each, "", 1e-6, diagnosis=Diagnosis((), near)) for each in (1e-4, 0.3))
+    left = (Result(*place, each, None, 1e-6, diagnosis=Diagnosis((), near)) for each in (1e-4, 0.3))
     assert [with_pages(each).pages for each in left] == [(), ("genglsl_clamped_dot",)]
 
 

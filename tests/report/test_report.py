@@ -47,7 +47,7 @@ def made_result(verdict, **changes):
         library="eonlib",
         verdict=verdict,
         error=1.25e-7,
-        quantity=Quantity.VALUE,
+        quantity=Quantity.RADIANCE,
         tolerance=2e-6,
         derivation="Two roundings of 6e-8 each.",
         worst={"wo": [0.0, 0.6, 0.8], "roughness": [1.0]},
@@ -171,7 +171,7 @@ def test_page_has_unique_identifiers_and_no_loose_link(page):
     [
         "2 of 4 checks failed",
         "The shader returns the reference value.",
-        "Error and tolerance; unit: 1/pi",
+        "Error and tolerance; unit: radiance",
         "1.25e-7 ≤ 2e-6",
         "inf > 2e-6",
         "With eonlib on gl: differs from the reference by up to",
@@ -292,7 +292,7 @@ def test_junit_counts_and_explains(run):
     assert [suite.get("time") for suite in suites] == ["3.000", "1.500", "1.500"]
     assert suites[2].find("testcase/skipped").get("message") == "Blender is not here"
     failure = suites[1].find("testcase/failure")
-    assert failure.get("message").endswith("inf > 2e-06 1/pi")
+    assert failure.get("message").endswith("inf > 2e-06 radiance")
     assert failure.text == "best match: QON\nworst point: wo (0, 0.6, 0.8), roughness 1"
 
 
@@ -304,7 +304,7 @@ SYNTAX = {"error": None, "diagnosis": quoted("GLSL: no"), "worst": {}}
     "fields, kind, message, text",
     [
         (SYNTAX, "new", "reference value. GLSL: no", "GLSL: no"),
-        (KNOWN, "known", "1.25e-07 > 2e-08 1/pi", "see upstream/genglsl_clamped_dot.md"),
+        (KNOWN, "known", "1.25e-07 > 2e-08 radiance", "see upstream/genglsl_clamped_dot.md"),
     ],
 )
 def test_a_failure_in_junit_is_known_or_new_and_has_no_path(run, fields, kind, message, text):

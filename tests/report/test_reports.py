@@ -14,6 +14,7 @@ import pytest
 
 from mxeon.cli import main
 from mxeon.conformance.results import Cause, Diagnosis, Kind
+from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.results.records import make_converter
 from mxeon.models import table as reference
 from mxeon.report import to_json, write
@@ -330,7 +331,7 @@ def made(check, error, **changes):
     """A result of a check of EON's node on gl."""
     verdict = PASSED if error <= TOLERANCE else FAILED
     result = Result(
-        check, "claim.", EON, "gl", "stock", verdict, error, "pi f cos", TOLERANCE,
+        check, "claim.", EON, "gl", "stock", verdict, error, Quantity.DIFFERENCE, TOLERANCE,
         worst={"roughness": [0.875], "color": [0.2, 0.5, 0.8]}, control=Control("wrong", 1.0, True),
     )  # fmt: skip
     return replace(result, **changes)
