@@ -77,8 +77,7 @@ LAMBERT, BURLEY = of_model("lambert"), of_model("burley")
 LOBES = PLAIN | BURLEY | of_model("burley_lambert")
 MODES = of_model("eon", "eon_fitted", "qon")  # of a rough diffuse node
 ROUGH = MODES | of_model("fon")
-COATED = of_model("eon_coated", "eon_varnished", "openpbr_half_metal")  # which a renderer has
-VALUED = LOBES | FILMS | ROUGH | COATED  # one lobe of a node or of a renderer
+VALUED = LOBES | FILMS | ROUGH  # one lobe of a node or of a renderer
 
 
 def shows_exactly(spec: Spec, host: str) -> bool:
@@ -180,8 +179,11 @@ NOTHING = (*product(["throughput"], BRANCHES), *product(["response"], ["transmis
 def opaque_values(case: Case, output: str, branch: str) -> Iterator[Compared]:
     """An output of an opaque node, whose throughput is 1 - weight; hair has no weight."""
     for batch in case.few:
+        weight = np.array(np.broadcast_to(batch.inputs.get("weight", 1.0), len(batch.wo)))
+        if "weight" in batch.inputs:
+            weight[0] = 2.0  # above 1 a lobe is opaque, and no more
+            batch = batch.altered(weight=weight)
         values = case.evaluating.evaluate(case.inputs(batch), branch, output)
-        weight = np.broadcast_to(batch.inputs.get("weight", 1.0), len(batch.wo))
         left = 1.0 - np.clip(weight, 0.0, 1.0) if output == "throughput" else 0.0 * weight
         expected = np.repeat(left[:, np.newaxis], 3, axis=1)
         yield Compared(batch, case.throughputs(batch, values), expected)
@@ -400,12 +402,12 @@ ROWS = (
           applies=VALUED | LAMBERT, measure=ALBEDO, tolerance="albedo", control=controls.gray,
           explain=ALBEDO.diagnose, open=True, hosts=has_environment, methods=finds_albedo),
     Check(key="furnace", claim="A white surface disappears in a white environment.",
-          applies=of_model("eon", "eon_fitted") | COATED, measure=furnace, tolerance="albedo",
+          applies=of_model("eon", "eon_fitted"), measure=furnace, tolerance="albedo",
           control=controls.with_inputs("reflectance is 0.99", color=(0.99, 0.99, 0.99)),
           explain=ALBEDO.diagnose, hosts=has_environment, methods=finds_albedo),
     Check(key="black", claim="A black surface scatters nothing.",
           applies=PLAIN & family(PbrSpec, lambda spec: bool(spec.black))
-          | (ROUGH | LAMBERT | BURLEY) - BELOW - family(DiffuseModelSpec, lambda spec: spec.beside),
+          | (ROUGH | LAMBERT | BURLEY) - BELOW,
           measure=black, tolerance=ZERO, control=controls.offset, explain=VALUE.diagnose),
     Check(key="frame",
           claim="The value follows the surface's frame, with the normal turned toward the viewer.",
@@ -446,7 +448,7 @@ ROWS = (
           applies=MODES, measure=lambert, tolerance="lambert",
           control=controls.with_inputs("roughness is 0.1", roughness=0.1), explain=VALUE.diagnose),
     Check(key="inputs", claim="Every input of the node changes the value.",
-          applies=(LOBES | ROUGH | LAMBERT | COATED) - BELOW
+          applies=(LOBES | ROUGH | LAMBERT) - BELOW
           | COMBINED | family(EmissionSpec) | family(MediumSpec) | family(UtilitySpec),
           measure=lambda case: count_named(dead_inputs(case)), tolerance=count_of(Quantity.INPUTS),
           control=controls.drop_changes, explain=diagnosis.diagnose_inputs),
