@@ -2,9 +2,9 @@
 """Options of MaterialX's generators for rasterizers, also those without a Python binding.
 
 MaterialX 1.39.5 binds neither the transmission method, nor that of directional albedos, nor the number of Airy
-iterations. They are the three integers that follow `hwSpecularEnvironmentMethod` in the C++ object, whose place
-is found by changing that member through its binding. They are written only where all three hold their defaults,
-and `mxeon.shaders.methods.assert_generated` compares the generated text with what was chosen: another layout
+iterations. They are the three integers that follow `hwSpecularEnvironmentMethod` in the C++ object (two before 1.39.5,
+without Airy iterations), whose place is found by changing that member through its binding. They are written only where
+they hold their defaults, and `mxeon.shaders.methods.assert_generated` compares the generated text with what was chosen: another layout
 refuses the option instead of returning another shader.
 
 This module imports MaterialX alone; the worker of the host `materialx` loads it by its path.
@@ -42,15 +42,14 @@ def set_options(
         setattr(options, BOUND[name], value)
     values = [ALBEDOS.index(albedo), TRANSMISSIONS.index(transmission), airy]
     if values != DEFAULTS:
-        members = unbound_members(options)
-        for place, number in enumerate(values):
-            members[place] = number
+        count = len(values) - (airy == DEFAULTS[-1])
+        unbound_members(options, count)[:] = values[:count]
     method = mx_gen.HwSpecularEnvironmentMethod(ENVIRONMENTS.index(environment))
     options.hwSpecularEnvironmentMethod = method
 
 
-def unbound_members(options: mx_gen.GenOptions) -> "ctypes.Array[ctypes.c_int]":
-    """The members that follow hwSpecularEnvironmentMethod; LookupError unless they hold their defaults."""
+def unbound_members(options: mx_gen.GenOptions, count: int) -> "ctypes.Array[ctypes.c_int]":
+    """Members that follow hwSpecularEnvironmentMethod; LookupError unless they hold their defaults."""
     address = ctypes.c_void_p.from_address(id(options) + VALUE).value or 0
     memory = (ctypes.c_int * (SIZE // ctypes.sizeof(ctypes.c_int))).from_address(address)
     states = []
@@ -59,9 +58,9 @@ def unbound_members(options: mx_gen.GenOptions) -> "ctypes.Array[ctypes.c_int]":
         states.append(tuple(memory))
     places = [n for n, each in enumerate(zip(*states, strict=True)) if each == (0, 1, 2)]
     first = places[0] + 1 if len(places) == 1 else len(memory)
-    if list(memory[first : first + len(DEFAULTS)]) != DEFAULTS:
+    if list(memory[first : first + count]) != DEFAULTS[:count]:
         raise LookupError(
             f"MaterialX {mx.getVersionString()} keeps options without a Python binding elsewhere"
         )
     place = address + first * ctypes.sizeof(ctypes.c_int)
-    return (ctypes.c_int * len(DEFAULTS)).from_address(place)
+    return (ctypes.c_int * count).from_address(place)
