@@ -21,7 +21,7 @@ from mxeon.io.srgb import srgb_encoded
 from mxeon.models.microfacet import (
     DIELECTRIC,
     SCHLICK,
-    WHITE,
+    WHITE_CURVE,
     Lobe,
     Pair,
     ggx,
@@ -145,7 +145,7 @@ class Points:
         wh, cosine = ggx.half_vector(wo, wi)
         facets = self.curve.at(cosine, **material) * ggx.ndf(wh, self.roughness)
         average = self.curve.average(**material)
-        pair = Pair(wo, wi, self.roughness, cosine, WHITE, {})
+        pair = Pair(wo, wi, self.roughness, cosine, WHITE_CURVE, {})
         found = np.zeros((2, 3, len(lit)))
         for k, lobe in enumerate((JUNE, Lobe())):
             f = facets * lobe.visibility(pair) * (1.0 + average * self.missing[k][lit])
@@ -234,7 +234,7 @@ def white_albedo(lobe, wo, alpha, count=1024):
     cosine = np.sum(view * h, axis=0)
     wi = 2.0 * cosine * h - view
     above = wi[2] > 0.0
-    pair = Pair(view, wi, np.array(alpha)[:, None, None], cosine, WHITE, {"tint": np.ones(1)})
+    pair = Pair(view, wi, np.array(alpha)[:, None, None], cosine, WHITE_CURVE, {"tint": np.ones(1)})
     G1 = 2.0 * wo[2] / (wo[2] + np.linalg.norm(stretch[:, 0, 0] * wo))
     with np.errstate(all="ignore"):
         f = lobe.visibility(pair) * lobe.factor(pair) * 4.0 * wi[2] * wo[2] / G1
@@ -309,11 +309,11 @@ def page(text):
         cells = (f"{100 * off:.1f} %, {percent(*span)}" for off, *span in found[name])
         shown += f"| {name} | {' | '.join(cells)} |\n"
     white = (
-        "| alphas | view tilts | cosine | stock | June 2026 | eonlib | exact | stock, environment | "
-        "eonlib, environment |\n|---|---|---|---|---|---|---|---|---|\n"
+        "| alphas | view tilts | cosine | stock | eonlib | stock, environment | eonlib, environment |\n"
+        "|---|---|---|---|---|---|---|\n"
     ) + "".join(
-        f"| {a:g}, {b:g} | {name} | {mu:g} | {' | '.join(f'{each:.3f}' for each in values)} |\n"
-        for a, b, name, mu, *values in found["white"]["rows"]
+        f"| {a:g}, {b:g} | {name} | {mu:g} | {' | '.join(f'{each:.3f}' for each in (stock, own, *around))} |\n"
+        for a, b, name, mu, stock, _, own, _, *around in found["white"]["rows"]
     )
     white += (
         f"\n- In eonlib's direct light, white metal is within {100 * found['white']['fit']:.1f} % of exact where one "

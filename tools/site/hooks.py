@@ -30,6 +30,7 @@ def on_page_markdown(markdown, page, **_):
     is_outside = page.file.src_uri in OUTSIDE
     root = "" if is_outside else "../"
     for page_name, name in OUTSIDE.items():
+        markdown = markdown.replace(f"](../../{name}", f"](../{page_name}")  # on pages of docs/api
         markdown = markdown.replace(f"]({root}{name}", f"]({page_name}")
     return markdown.replace("](docs/", "](") if is_outside else markdown
 
