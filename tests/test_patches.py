@@ -9,17 +9,18 @@ from pathlib import Path
 import MaterialX as mx
 import pytest
 
+from mxeon.conformance.results.known_issues import issues
 from mxeon.errors import NotRun
 from mxeon.survey.browser import packages_folder
 from tests.hosts.test_cycles_kernel import kernel
 from tests.support.availability import available
 from tests.support.wheels import MAIN, git
 from tools.site import versions
-from tools.site.ledger import ROOT, entries, measure, measured, patches, patches_of
+from tools.site.ledger import ROOT, measure, measured, patches, patches_of
 
-ENTRIES = entries()
+ISSUES = issues()
 MATERIALX = patches("materialx")
-FILES = {page: files for page in ENTRIES if (files := patches_of(page))}
+FILES = {page: files for page in ISSUES if (files := patches_of(page))}
 INSTALLED = Path(mx.__file__).parent
 MODULES = packages_folder() / "node_modules"
 HOSTS = {"three.js": "three", "blender": "cycles"}  # that have the files of a project
@@ -57,7 +58,7 @@ def changed(*files):
 )
 def test_the_patches_of_a_project_are_from_pages_and_apply_to_its_release(project, tmp_path):
     found = patches(project)
-    assert set(found) <= set(ENTRIES)
+    assert set(found) <= set(ISSUES)
     with available(HOSTS.get(project, project if project.startswith("three") else "gl")):
         try:
             folder = repository(tmp_path, project, changed(*found.values()))
@@ -99,13 +100,13 @@ def test_main_is_upstreams(materialx):
 
 
 def test_all_patches_but_those_that_main_has_apply_to_it(materialx):
-    applied(materialx, "main", *(page for page in MATERIALX if not ENTRIES[page].pull))
+    applied(materialx, "main", *(page for page in MATERIALX if not ISSUES[page].pull))
 
 
 @pytest.mark.parametrize("page", MATERIALX)
 def test_a_patch_applies_alone(materialx, page):
     """To the release, and to main if that lacks it."""
-    for tag in ("release", "main")[: 1 if ENTRIES[page].pull else 2]:
+    for tag in ("release", "main")[: 1 if ISSUES[page].pull else 2]:
         applied(materialx, tag, page)
 
 
@@ -119,15 +120,14 @@ def test_a_message_has_a_figure_of_its_page(page):
 
 
 KNOWN = json.loads(versions.RECORD.read_text())
-OURS = {page: each for page, each in entries().items() if page in KNOWN["pages"]}
 
 
 def test_the_record_has_every_page_and_version():
-    issues = [each for each in measure.CHECKED if each.library == "stock"]
-    assert set(KNOWN["pages"]) == {each.page for each in issues if each.host in ("gl", "source")}
+    stock = [each for each in measure.CHECKED if each.library == "stock"]
+    assert set(KNOWN["pages"]) == {each.page for each in stock if each.host in ("gl", "source")}
     assert all(tuple(each) == versions.VERSIONS for each in KNOWN["pages"].values())
 
 
-@pytest.mark.parametrize("page", OURS)
+@pytest.mark.parametrize("page", KNOWN["pages"])
 def test_a_page_whose_checks_pass_in_main_names_what_repaired_it(page):
-    assert not KNOWN["pages"][page]["main"]["passed"] or OURS[page].pull
+    assert not KNOWN["pages"][page]["main"]["passed"] or ISSUES[page].pull

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Puts the pages on upstream defects into the wheel: answers and reports link to them."""
+"""Puts the ledger into the wheel: the package reads its rows, answers and reports link to its pages."""
 
 from pathlib import Path
 from typing import Any
@@ -8,10 +8,11 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 
 class Pages(BuildHookInterface):
-    """Adds each page."""
+    """Adds each page, and what was measured."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Add the pages to a wheel; an editable one finds them in the checkout."""
         if version == "standard":
-            for page in Path(self.root, "docs", "upstream").glob("*.md"):
-                build_data["force_include"][str(page)] = f"mxeon/data/upstream/{page.name}"
+            for file in Path(self.root, "docs", "upstream").iterdir():
+                if file.suffix in (".md", ".json"):
+                    build_data["force_include"][str(file)] = f"mxeon/data/upstream/{file.name}"

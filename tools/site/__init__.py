@@ -3,12 +3,12 @@
 
 | command | what it writes |
 |---|---|
-| `python -m tools.site` | OSL twins, explorer, ledger, and tables of pages that need no engine; a minute |
-| `... specification [HOST ...]` | table of results.md, from gl, and out/specification.json; some minutes |
+| `python -m tools.site` | OSL twins, explorer, the ledger's index, and tables of pages that need no engine; a minute |
+| `... specification` | table of results.md, from gl; some minutes |
 | `... field` | field.html, from every host that runs here |
-| `... versions` | versions.md and the ledger's lines on versions; a quarter of an hour |
+| `... versions` | versions.md and ledger/versions.json; a quarter of an hour |
 | `... gallery`, `... brushed`, `... explorer`, `... note` | pictures of these pages |
-| `... ledger`, `... ledger.measure [HOST ...]`, `... ledger.pictures` | docs/upstream; its tables; its pictures |
+| `... ledger.measure [HOST ...]`, `... ledger.pictures` | docs/upstream/measured.json; its pictures |
 """
 
 import re

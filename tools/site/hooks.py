@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Add the pages of the site that lie outside `docs/`, and fit others to the site."""
+"""Add the pages of the site that lie outside `docs/`, fit others to the site, and fill the ledger's figures in."""
 
 import re
 from pathlib import Path
 
 from mkdocs.structure.files import File
+
+from tools.site.ledger.pages import filled
 
 ROOT = Path(__file__).resolve().parents[2]
 # Page of the site -> file of the repository, whose links are relative to the root.
@@ -27,6 +29,8 @@ def on_page_markdown(markdown, page, **_):
     """Make links relative to `docs/`, and leave out the column of a section where there is none."""
     if page.parent is None:
         page.meta["hide"] = ["navigation"]
+    if page.file.src_uri.startswith("upstream/"):
+        markdown = filled(Path(page.file.src_uri).stem, markdown)
     is_outside = page.file.src_uri in OUTSIDE
     root = "" if is_outside else "../"
     for page_name, name in OUTSIDE.items():

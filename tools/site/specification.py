@@ -1,15 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measure the largest errors of stock and eonlib by the specification.
 
-python -m tools.site.specification [HOST ...]  judge both on these hosts (gl if none is named), and write
-                                         out/specification.json and the table of results.md
+`python -m tools.site.specification` judges both on gl, and writes the table of results.md.
 """
 
-import json
-import sys
 from contextlib import closing
-
-import MaterialX as mx
 
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import make_plan
@@ -18,7 +13,7 @@ from mxeon.conformance.specs.diffuse import DIFFUSE
 from mxeon.io.files import write_text
 from mxeon.shaders.document.policy import DEFAULT
 from tools.site import DOCS, with_block
-from tools.site.ledger import SPECIFICATION, figure
+from tools.site.ledger import figure
 
 PAGE = DOCS / "results.md"
 HOST, LIBRARIES = "gl", ("stock", "eonlib")  # the host of the table
@@ -49,29 +44,13 @@ SUMMARY_HEAD = (
 )
 
 
-def measured(host):
-    """Where a host ran, and its results of the nodes with both libraries, as rows of text."""
-    plans = [make_plan((), (host,), (library,), nodes=NODES) for library in LIBRARIES]
-    tasks = [task for plan in plans for task in plan.tasks]
+def measured():
+    """Results of the nodes on the host with both libraries."""
+    plans = [make_plan((), (HOST,), (library,), nodes=NODES) for library in LIBRARIES]
+    tasks = [task for plan in plans for task in plan.tasks if task.host == HOST]
     with closing(Judge(DEFAULT)) as judge:
-        findings = [
-            judge.work(t) for t in tasks if t.host == host and t.check not in ("curve", "host")
-        ]
-    [device] = findings[0].hosts
-    results = [
-        {
-            "check": each.check,
-            "subject": each.subject,
-            "library": each.library,
-            "verdict": each.verdict,
-            "error": "" if each.error is None else figure(each),
-            "allowed": "" if each.tolerance is None else f"{each.tolerance:.2g} {each.unit}",
-        }
-        for finding in findings
-        for each in finding.results
-    ]
-    place = f"{device.device}, {device.version}, MaterialX {mx.__version__}"
-    return {"place": place, "results": results}
+        findings = [judge.work(each) for each in tasks if each.check not in ("curve", "host")]
+    return [each for finding in findings for each in finding.results]
 
 
 def mode_of(subject):
@@ -84,7 +63,10 @@ def mode_of(subject):
 
 def summary(results):
     """A table of what stock computes instead of the specification."""
-    errors = {(r["check"], r["subject"], r["library"]): r["error"] for r in results}
+    errors = {
+        (each.check, each.subject, each.library): "" if each.error is None else figure(each)
+        for each in results
+    }
     lines = []
     for check, subject, words in SUMMARY:
         stock, eonlib = (errors.get((check, subject, each), "") for each in LIBRARIES)
@@ -94,17 +76,6 @@ def summary(results):
     return "\n" + SUMMARY_HEAD + "".join(lines)
 
 
-def main(words):
-    """Write the table, and the data that the ledger takes sizes from."""
-    data = json.loads(SPECIFICATION.read_text(encoding="utf-8")) if SPECIFICATION.exists() else {}
-    for host in words or (HOST,):
-        data[host] = measured(host)
-    SPECIFICATION.parent.mkdir(exist_ok=True)
-    write_text(SPECIFICATION, json.dumps(data))
-    if HOST in data:
-        table = summary(data[HOST]["results"])
-        write_text(PAGE, with_block(PAGE.read_text(encoding="utf-8"), "measured summary", table))
-
-
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    table = summary(measured())
+    write_text(PAGE, with_block(PAGE.read_text(encoding="utf-8"), "measured summary", table))

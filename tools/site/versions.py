@@ -2,18 +2,20 @@
 """Judge eonlib and stock with every version of MaterialX: `python -m tools.site.versions` writes the page.
 
 It runs `mxeon check --host gl --node all` with each version, 13 minutes of processor time in all, and keeps
-what the page shows in `ledger/versions.json`; `python -m tools.site` writes the page and the ledger's from that file.
+what the page shows in `ledger/versions.json`, from which `python -m tools.site` writes the page, and the site its
+lines on the ledger's pages.
 """
 
 import json
 from collections import Counter, defaultdict
 
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED
+from mxeon.conformance.results.known_issues import issues
 from mxeon.io.files import write_text
 from mxeon.shaders.library import TESTED
 from tests.support.wheels import MAIN, run, wheel
 from tools.site import DOCS, with_block
-from tools.site.ledger import dumped, entries, pages, pairs
+from tools.site.ledger import dumped, pages
 
 PAGE, RECORD = DOCS / "versions.md", pages.VERSIONS
 VERSIONS = (*TESTED, "main")
@@ -56,10 +58,10 @@ def record(versions):
         for library in LIBRARIES:
             found["nodes"][library][name] = dict(sorted(counts[library].items()))
         found["open"][name] = {check: sorted(each) for check, each in sorted(left.items())}
-        for entry in entries().values():
-            if entry.library == "stock" and entry.host in ("gl", "source") and entry.rows:
-                passed = all(stock[pair] == PASSED for pair in pairs(entry.rows))
-                found["pages"].setdefault(entry.page, {})[name] = {"passed": passed}
+        for issue in issues().values():
+            if issue.library == "stock" and issue.host in ("gl", "source") and issue.rows:
+                passed = all(stock[pair] == PASSED for pair in issue.rows)
+                found["pages"].setdefault(issue.page, {})[name] = {"passed": passed}
     return found
 
 
@@ -96,4 +98,3 @@ def page(text):
 if __name__ == "__main__":
     write_text(RECORD, dumped(record({name: judged(name) for name in VERSIONS}), 3) + "\n")
     write_text(PAGE, page(PAGE.read_text(encoding="utf-8")))
-    pages.main()

@@ -16,7 +16,7 @@ from mxeon.conformance.backends import Evaluating
 from mxeon.conformance.case import Case, make_case
 from mxeon.conformance.diagnosis import ALBEDO, INEXACT, VALUE
 from mxeon.conformance.results import FAILED, Result
-from mxeon.conformance.results.known_issues import ISSUES
+from mxeon.conformance.results.known_issues import issues
 from mxeon.conformance.specs.diffuse import DIFFUSE
 from mxeon.conformance.specs.diffuse import VALUE as VALUE_ERROR
 from mxeon.errors import NotRun
@@ -70,7 +70,7 @@ class ComparedMaterial:
         """Names of the pages on what MaterialX's own GLSL does wrong with it."""
         pages = [
             issue.page
-            for issue in ISSUES
+            for issue in issues().values()
             if "webgl" in (issue.host, *issue.also)
             and issue.library == "stock"
             and {subject for _, subject in (*issue.rows, *issue.implied)} & set(self.subjects)

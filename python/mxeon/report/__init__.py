@@ -25,7 +25,6 @@ from mxeon.conformance.results.records import StoredImage, images_of, make_conve
 from mxeon.errors import PackageError, install
 from mxeon.io.files import AnyPath, below, check_output, one_name, replacing, write_text
 from mxeon.io.images import without_threads, write_exr, write_png
-from mxeon.report.formats import page_file
 from mxeon.report.junit import to_junit
 
 PAGES = "upstream"  # folder beside the report with the pages on defects
@@ -167,8 +166,7 @@ def write(run: Run, folder: str | PathLike[str]) -> Path:
             pass
     # The pages on the defects, for a site that has no address.
     for issue in {each for one in run.results for each in issues_of(one)}:
-        text = page_file(issue).read_text(encoding="utf-8")
-        write_text(below(folder, f"{PAGES}/{issue.page}.md"), text)
+        write_text(below(folder, f"{PAGES}/{issue.page}.md"), issue.text)
     with (
         closing(html(run)) as pieces,
         replacing(below(folder, PAGE)) as beside,

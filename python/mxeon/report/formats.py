@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from mxeon.conformance import words
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Result
-from mxeon.conformance.results.known_issues import Issue, issues_of
+from mxeon.conformance.results.known_issues import Issue, folder, issues_of
 
 # CSS class of each verdict, and a sign for readers who cannot see the color.
 LOOKS = {
@@ -74,15 +74,8 @@ def link(issue: Issue) -> str:
     """Address of the page of an issue on the project's site; its file where the site has no address."""
     if _site():
         return page_address(issue)
-    file = page_file(issue)
+    file = folder().resolve() / f"{issue.page}.md"
     return str(file.relative_to(Path.cwd()) if file.is_relative_to(Path.cwd()) else file)
-
-
-def page_file(issue: Issue) -> Path:
-    """File of the page of an issue: inside an installed package, else in the checkout."""
-    package, checkout = (Path(__file__).resolve().parents[level] for level in (1, 3))
-    folder = package / "data" / "upstream"
-    return (folder if folder.is_dir() else checkout / "docs" / "upstream") / f"{issue.page}.md"
 
 
 @cache

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The ledger of upstream defects: its entries, what was measured of them, and the patches.
+"""The ledger of upstream defects: what was measured of its pages, and the patches.
 
-`known_issues.toml` of the package has an entry for each defect, `measured.json` beside it what the suite
-said of it last, and `patches/` the repairs as commits. A patch names its page in its message.
+`docs/upstream` has a page for each defect, `measured.json` beside them what the suite said of it last, and
+`patches/` the repairs as commits. A patch names its page in its message. The site fills the figures in.
 
-    python -m tools.site.ledger                     writes the pages docs/upstream/*.md from them
-    python -m tools.site.ledger.measure [HOST ...]  measures the tables anew, then writes the pages
-    python -m tools.site.ledger.pictures            draws the pictures anew, then writes the pages
+    python -m tools.site.ledger.measure [HOST ...]  measures the tables anew
+    python -m tools.site.ledger.pictures            draws the pictures anew
 """
 
 import json
@@ -14,67 +13,18 @@ import os
 import re
 import shutil
 import subprocess
-import tomllib
-from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import Any
 
-from mxeon.conformance.results import Result, known_issues
+from mxeon.conformance.results import Result
+from mxeon.conformance.results.known_issues import issues
 from mxeon.conformance.results.quantities import Quantity
+from mxeon.io.files import write_text
 from tools.site import DOCS, ROOT
 
 FOLDER, PATCHES = DOCS / "upstream", ROOT / "patches"
-ENTRIES = Path(known_issues.__file__).with_name("known_issues.toml")
-MEASURED = ENTRIES.with_name("measured.json")
-SPECIFICATION = ROOT / "out" / "specification.json"  # errors as measured here last, by host
-
-Subjects = dict[str, list[str]]  # by check
-
-
-@dataclass(frozen=True)
-class Entry:
-    """An entry of `known_issues.toml`, which says what each field is."""
-
-    page: str
-    title: str
-    group: str
-    defect: str
-    cause: str
-    repair: str
-    why_missed: str
-    host: str = ""
-    also: list[str] = field(default_factory=list)
-    library: str = "stock"
-    unavoidable: bool = False
-    differs: bool = False
-    rows: Subjects = field(default_factory=dict)
-    implied: Subjects = field(default_factory=dict)
-    repaired: Subjects = field(default_factory=dict)
-    remains: dict[str, Subjects] = field(default_factory=dict)
-    needs: list[str] = field(default_factory=list)
-    kind: str = ""
-    pull: int = 0
-    command: str = ""
-    quantities: str = ""
-    diff: str = ""
-
-
-def entries(text: str | None = None) -> dict[str, Entry]:
-    """The entries by their pages; of the package's file, or of another text.
-
-    Raises
-    ------
-    ValueError
-        If an entry has an unknown key, or lacks one.
-    """
-    tables = tomllib.loads(text or ENTRIES.read_text(encoding="utf-8"))
-    found = {}
-    for page, table in tables.items():
-        try:
-            found[page] = Entry(page, **table)
-        except TypeError as error:  # which names the key
-            raise ValueError(f"entry {page} of {ENTRIES.name}: {error}") from error
-    return found
+MEASURED = FOLDER / "measured.json"
 
 
 def measured() -> dict[str, Any]:
@@ -83,8 +33,8 @@ def measured() -> dict[str, Any]:
 
 
 def write_measured(found: dict[str, Any]) -> None:
-    """Write what was measured, a line for each page."""
-    MEASURED.write_text(dumped(dict(sorted(found.items())), 1) + "\n", encoding="utf-8")
+    """Write what was measured and what patches change, a line for each page."""
+    write_text(MEASURED, dumped(dict(sorted(with_patches(found).items())), 1) + "\n")
 
 
 def dumped(found: Any, depth: int) -> str:
@@ -95,38 +45,13 @@ def dumped(found: Any, depth: int) -> str:
     return "{\n" + ",\n".join(lines) + "\n}"
 
 
-def completed(found: dict[str, Any], known: dict[str, Entry]) -> dict[str, Any]:
-    """What was measured, with what the package wants of it to know what an entry explains.
-
-    That is the largest error of each result, `sizes`, and the shortest change of MaterialX by its patch. Where
-    tools/site/specification.py has not measured errors here, those known before stay.
-    """
+def with_patches(found: dict[str, Any]) -> dict[str, Any]:
+    """What was measured, with the shortest change of MaterialX by each page's patch, by which it is recognized."""
     files = patches("materialx")
-    hosts = json.loads(SPECIFICATION.read_text(encoding="utf-8")) if SPECIFICATION.exists() else {}
-    done = {page: dict(each) for page, each in found.items()}
-    for page, entry in known.items():
-        explained = {*pairs(entry.rows), *pairs(entry.implied)}
-        old: dict[str, dict[str, float]] = {} if hosts else found.get(page, {}).get("sizes", {})
-        sizes = {
-            check: {each: size for each, size in known.items() if (check, each) in explained}
-            for check, known in old.items()
-        }
-        errors = [(row[0], row[1], row[2]) for row in found.get(page, {}).get("rows", ())]
-        for host in (entry.host, *entry.also):
-            errors += [
-                (each["check"], each["subject"], each["error"])
-                for each in hosts.get(host, {"results": ()})["results"]
-                if each["library"] == "stock" and each["error"]
-            ]
-        for check, subject, error in errors:
-            if (check, subject) in explained:
-                shown = sizes.setdefault(check, {})
-                shown[subject] = max(float(error), shown.get(subject, 0.0))
-        if entry.host:
-            done.setdefault(page, {})["sizes"] = sizes
-            if page in files:
-                done[page]["patch"] = _shortest_change(files[page].read_bytes().decode())
-    return done
+    return found | {
+        page: found[page] | {"patch": _shortest_change(path.read_bytes().decode())}
+        for page, path in files.items()
+    }
 
 
 def _shortest_change(patch: str) -> tuple[str, str, str]:
@@ -149,14 +74,10 @@ def figure(result: Result) -> str:
     return f"{result.error:.0f}" if result.quantity is Quantity.VALUES else f"{result.error:.2g}"
 
 
-def pairs(subjects: Subjects) -> list[tuple[str, str]]:
-    """Check and subject of each result."""
-    return [(check, subject) for check, each in subjects.items() for subject in each]
-
-
 # --- patches ------------------------------------------------------------------------------------
 
 
+@cache
 def patches(project: str) -> dict[str, Path]:
     """The patches of a project in their order, by the page that each is from."""
     found = {}
@@ -172,10 +93,17 @@ def patches_of(page: str) -> list[Path]:
     return [found[page] for each in projects if page in (found := patches(each))]
 
 
-def needed(page: str, known: dict[str, Entry]) -> set[str]:
+def own_diff(page: str) -> str:
+    """The repair that a page shows itself, as a diff; "" where it is a patch."""
+    return "".join(
+        re.findall(r"^```diff\n(.*?)^```", issues()[page].text, re.DOTALL | re.MULTILINE)
+    )
+
+
+def needed(page: str) -> set[str]:
     """The page, and those whose patches its own needs, and theirs."""
     found = {page}
-    while more := {each for name in found for each in known[name].needs} - found:
+    while more := {each for name in found for each in issues()[name].needs} - found:
         found |= more
     return found
 

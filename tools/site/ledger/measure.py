@@ -1,35 +1,36 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measure the tables of the ledger's pages: `python -m tools.site.ledger.measure [HOST ...]`."""
 
-import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from contextlib import closing
+from dataclasses import asdict
 from typing import Any
 
 import MaterialX as mx
 
-from mxeon.conformance import words
-from mxeon.conformance.results import SOURCE, Cause, Result
-from mxeon.conformance.results.known_issues import ISSUES, RENDERERS, STOCK, Issue
+from mxeon.conformance.results import SOURCE, Cause, Kind, Result
+from mxeon.conformance.results.known_issues import RENDERERS, STOCK, Issue, Row, issues
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import ALL, make_plan
 from mxeon.errors import NotRun
 from mxeon.shaders.document.policy import DEFAULT
-from tools.site.ledger import figure, measured, pages, write_measured
+from tools.site.ledger import figure, measured, write_measured
 
-CHECKED = tuple(each for each in ISSUES if each.rows)  # issues whose pages have a table of checks
+CHECKED = [each for each in issues().values() if each.rows]  # their pages have a table of checks
 
 
-def judged(host: str) -> tuple[list[Result], str]:
-    """The results of the checks that show defects on a host or on "source", and device and versions.
+def judged(host: str, rows: Collection[Row] = ()) -> tuple[list[Result], str]:
+    """The results of some checks on a host or on "source", and device and versions.
+
+    Without `rows`, those of the tables of the pages whose host it is.
 
     Raises
     ------
     NotRun
         If the host cannot run here.
     """
-    rows = {row for issue in CHECKED if issue.host == host for row in issue.rows}
+    rows = rows or {row for issue in CHECKED if issue.host == host for row in issue.rows}
     tasks = make_plan((), () if host == SOURCE else (host,), (STOCK,), nodes=(ALL,)).tasks
     chosen = [
         each
@@ -49,50 +50,55 @@ def record(issue: Issue, results: Sequence[Result], place: str) -> dict[str, Any
     found = {(each.check, each.subject): each for each in results}
     shown = [found[row] for row in issue.rows]
     rows = [
-        [
-            each.check,
-            each.subject,
-            figure(each),
-            f"{each.tolerance:.2g}",
-            each.quantity and each.quantity.value,
-        ]
+        [each.check, each.subject, figure(each), f"{each.tolerance:.2g}", each.quantity.value]
         for each in shown
+        if each.quantity
     ]
-    # Without distances, which depend on the driver.
-    found_words = words.diagnosis(shown[0].diagnosis)
-    says = re.sub(r" \((?:rms )?\d[\d.e+-]*\)", "", found_words)
-    return {"rows": rows, "place": place, "says": says, "cause": identity(shown[0].diagnosis.first)}
+    diagnosis = shown[0].diagnosis
+    measures: dict[str, Any] = {"rows": rows, "place": place, "cause": fields(diagnosis.first)}
+    others = sorted((far, title) for title, far in diagnosis.distances.items())
+    nearest = [title for _, title in others if title != diagnosis.first.key]
+    if diagnosis.kind is Kind.MODEL and nearest:
+        measures["next"] = nearest[0]
+    return measures
 
 
-def identity(cause: Cause) -> dict[str, Any]:
-    """What `mxeon.conformance.results.known_issues` compares of a cause: its fields but the numbers."""
-    fields: dict[str, Any] = {"kind": cause.kind.value, "key": cause.key}
-    if cause.names:
-        fields["names"] = list(cause.names)
-    if cause.branch:
-        fields["branch"] = cause.branch
-    if place := cause.region:
-        channels = list(place.channels)
-        fields["region"] = {"name": place.name, "part": place.part, "channels": channels}
-    return fields
+def fields(cause: Cause) -> dict[str, Any]:
+    """The fields of a cause that depend on no driver, but for those that say nothing."""
+    found = asdict(cause) | {"kind": cause.kind.value}
+    if cause.region:
+        found["region"] = {
+            name: each for name, each in found["region"].items() if each not in (None, (), "")
+        }
+    left_out = ("values", "rms", "point", "text")
+    return {name: each for name, each in found.items() if each and name not in left_out}
 
 
-def main(hosts: Sequence[str]) -> None:
-    """Measure the pages that show on the hosts, on all of them if there are none, and write them."""
+def main(names: Sequence[str]) -> None:
+    """Measure what shows on some hosts; on all of them if there are none, and the largest errors anew."""
     found = measured()
-    for host in dict.fromkeys(each.host for each in CHECKED):
-        if hosts and host not in hosts:
-            continue
+    everywhere = [host for each in issues().values() for host in (each.host, *each.also) if host]
+    if not names:
+        found = {page: each | {"sizes": {}} for page, each in found.items()}
+    for host in names or dict.fromkeys(everywhere):
+        here = [each for each in issues().values() if host in (each.host, *each.also)]
         try:
-            results, place = judged(host)
+            results, place = judged(host, {row for e in here for row in (*e.rows, *e.implied)})
         except NotRun as reason:
             print(f"not run: {reason}", file=sys.stderr)
             continue
-        for issue in CHECKED:
-            if issue.host == host:
-                found[issue.page] = found.get(issue.page, {}) | record(issue, results, place)
+        errors = {(each.check, each.subject): each for each in results if each.error is not None}
+        for issue in here:
+            page = found.setdefault(issue.page, {})
+            if issue.rows and host == issue.host:
+                page.pop("next", None)
+                page |= record(issue, results, place)
+            sizes = page.setdefault("sizes", {})
+            for check, subject in (*issue.rows, *issue.implied):
+                if (check, subject) in errors:
+                    of, error = sizes.setdefault(check, {}), figure(errors[check, subject])
+                    of[subject] = max(float(error), of.get(subject, 0.0))
     write_measured(found)
-    pages.main()
 
 
 if __name__ == "__main__":

@@ -1,41 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Write the pages of the ledger and their index from its entries."""
+"""What the site adds to the pages of the ledger: figures, diffs of patches, versions; and the list of all pages."""
 
 import json
+import re
 from pathlib import Path
 from textwrap import fill
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
+from mxeon.conformance import words
+from mxeon.conformance.results import Diagnosis
+from mxeon.conformance.results.known_issues import Issue, issues
 from mxeon.conformance.results.quantities import Quantity
-from mxeon.conformance.words import counted
-from mxeon.io.files import write_text
-from tools.site.ledger import (
-    FOLDER,
-    PATCHES,
-    ROOT,
-    Entry,
-    completed,
-    entries,
-    measured,
-    pairs,
-    patches,
-    patches_of,
-    write_measured,
-)
+from tools.site import with_block
+from tools.site.ledger import FOLDER, ROOT, measured, patches, patches_of
 
 VERSIONS = Path(__file__).with_name("versions.json")
-INDEX = FOLDER / "README.md"
+PAGE = FOLDER / "README.md"
+PLACE = re.compile(r"<!-- patches (\S+) -->")  # where the index has the table of a project
 WHOLE = 20  # a diff of fewer lines is shown whole
 SHOWN = 8  # lines of a longer diff on a page, unless its first change is longer
-TEMPLATES = Environment(
-    loader=FileSystemLoader(Path(__file__).parent),
-    trim_blocks=True,
-    lstrip_blocks=True,
-    keep_trailing_newline=True,
-    undefined=StrictUndefined,
-)
 # The parts of the index: what stands above the pages of each.
 GROUPS = {
     "rough_diffuse": "`oren_nayar_diffuse_bsdf`",
@@ -59,52 +42,73 @@ GROUPS = {
 }
 
 
-def pages(known: dict[str, Entry] | None = None) -> dict[Path, str]:
-    """The text of each page and of the index, by path.
+def page(text: str) -> str:
+    """The index with its list of all pages.
 
-    Raises
-    ------
-    ValueError
-        If the group of an entry is none of the index.
+    Raises ValueError if the group of a page is none of the index.
     """
-    known, found = known or entries(), measured()
-    groups: dict[str, list[Entry]] = {name: [] for name in GROUPS}
-    for name, entry in known.items():
-        if entry.group not in groups:
+    groups: dict[str, list[str]] = {name: [] for name in GROUPS}
+    for issue in issues().values():
+        if issue.group not in groups:
             raise ValueError(
-                f"group of {name} must be one of {', '.join(GROUPS)}; got {entry.group}"
+                f"group of {issue.page} must be one of {', '.join(GROUPS)}; got {issue.group}"
             )
-        groups[entry.group].append(entry)
+        differs = " (*differs*)" * issue.differs
+        groups[issue.group].append(f"- [{issue.title}]({issue.page}.md){differs}\n")
+    parts = (f"{GROUPS[name]}:\n\n{''.join(lines)}" for name, lines in groups.items())
+    return with_block(text, "entries", "\n".join(parts))
+
+
+def filled(name: str, text: str) -> str:
+    """The Markdown of a page of the ledger, or of its index, with what the site adds."""
+    if name == PAGE.stem:
+        return PLACE.sub(lambda found: patch_table(found[1]), text)
+    issue = issues()[name]
+    diff, more = short_diff(name)
+    shown = f"```diff\n{diff}\n```" if diff else ""
+    numbers = {page: path.name[:4] for page, path in patches("materialx").items()}
+    files = _joined([f"`{path.relative_to(ROOT)}`" for path in patches_of(name)])
+    left = f"; the diff above leaves out {more} of its lines" if more else ""
     versions = json.loads(VERSIONS.read_text(encoding="utf-8"))
-    page, index = TEMPLATES.get_template("page.md.jinja"), TEMPLATES.get_template("index.md.jinja")
-    numbers = {name: path.name[:4] for name, path in patches("materialx").items()}
-    texts = {
-        FOLDER / f"{name}.md": page.render(
-            entry=entry,
-            measured=found.get(name, {}),
-            patches=_joined([f"`{path.relative_to(ROOT)}`" for path in patches_of(name)]),
-            outcome=outcome(entry, numbers),
-            diff=short_diff(entry)[0],
-            more=short_diff(entry)[1],
-            versions=seen(entry, versions),
-        )
-        for name, entry in known.items()
-    }
-    projects = [path.name for path in PATCHES.iterdir() if path.is_dir()]
-    text = index.render(
-        groups={GROUPS[name]: each for name, each in groups.items()},
-        tables={each: table(each, known, found) for each in projects},
+    ends = (outcome(issue, numbers), seen(issue, versions), files and f"Patch: {files}{left}.")
+    text = issue.text.replace("\n**Cause.**", f"\n{table(issue)}**Cause.**")
+    text, why, missed = text.partition("\n**Why tests miss it.**")
+    return (
+        "\n\n".join(each.strip("\n") for each in (text, shown, why + missed, *ends) if each) + "\n"
     )
-    return texts | {INDEX: text}
 
 
-def short_diff(entry: Entry) -> tuple[str, int]:
+def table(issue: Issue) -> str:
+    """What was measured of the rows of a page, and the diagnosis of the first; "" without rows."""
+    found = measured().get(issue.page, {})
+    if not issue.rows or not issue.cause:
+        return ""
+    lines = [
+        *(["Among other checks:", ""] if issue.implied else []),
+        "| check | subject | measured | tolerance | unit |",
+        "|---|---|---|---|---|",
+        *(f"| {' | '.join(row)} | {Quantity(key).unit} |" for *row, key in found["rows"]),
+        "",
+        f"Diagnosis{' (first row)' * bool(issue.rows[1:])}: {said(issue, found)}. Measured with {found['place']}.",
+    ]
+    return "\n".join(lines) + "\n\n"
+
+
+def said(issue: Issue, found: dict[str, Any]) -> str:
+    """The diagnosis in words: the cause, and for a model the next one."""
+    cause = words.diagnosis(Diagnosis((issue.cause,) if issue.cause else ()))
+    return f"{cause}, then {found['next']}" if "next" in found else cause
+
+
+def short_diff(page: str) -> tuple[str, int]:
     """A short repair, the first changes of a long one, or its shortest one, and how many lines that leaves out.
 
-    The repair is the entry's first patch, or its own diff.
+    The repair is the page's first patch; "" and 0 for a page without one.
     """
-    files = patches_of(entry.page)
-    text = files[0].read_text(encoding="utf-8").split("\n---\n", 1)[1] if files else entry.diff
+    files = patches_of(page)
+    if not files:
+        return "", 0
+    text = files[0].read_text(encoding="utf-8").split("\n---\n", 1)[1]
     changes: list[tuple[str, list[str]]] = []  # file and lines
     name, inside = "", False
     for line in text.splitlines():
@@ -130,83 +134,72 @@ def short_diff(entry: Entry) -> tuple[str, int]:
     return "\n".join(shown), left
 
 
-def outcome(entry: Entry, numbers: dict[str, str]) -> str:
-    """What the checks say with the patch of an entry, and with those that it needs."""
-    subjects: dict[tuple[str, str], list[str]] = {}
-    for words, rows in {"": entry.repaired, **entry.remains}.items():
-        for check, subject in pairs(rows):
-            if words and subject not in entry.rows.get(check, ()):
-                continue  # for another cause, which its own page has
-            subjects.setdefault((subject, words), []).append(f"`{check}`")
-    if not subjects:
-        return ""
+def outcome(issue: Issue, numbers: dict[str, str]) -> str:
+    """What the checks say with the patch of a page, and with those that it needs."""
+    subjects: dict[tuple[str, bool], list[str]] = {}
+    for check, subject in issue.repaired:
+        subjects.setdefault((subject, True), []).append(f"`{check}`")
+    for check, subject in issue.remains:
+        if (check, subject) in issue.rows:
+            subjects.setdefault((subject, False), []).append(f"`{check}`")
     parts = [
         f"{_joined(checks)} of {subject} "
-        + (f'still fail{s}, with the diagnosis "{words}"' if words else f"pass{'e' * bool(s)}{s}")
-        for (subject, words), checks in subjects.items()
-        for s in ["" if checks[1:] else "s"]
+        + (
+            f"pass{'es' * (not checks[1:])}"
+            if passes
+            else f"still fail{'s' * (not checks[1:])} for another cause"
+        )
+        for (subject, passes), checks in subjects.items()
     ]
-    needs = _joined(["this patch", *(f"[{numbers[each]}]({each}.md)" for each in entry.needs)])
+    if not parts:
+        return ""
+    needs = _joined(["this patch", *(f"[{numbers[each]}]({each}.md)" for each in issue.needs)])
     return fill(f"With {needs}: {'; '.join(parts)}.", 110, break_on_hyphens=False)
 
 
-def seen(entry: Entry, versions: dict[str, Any]) -> str:
+def seen(issue: Issue, versions: dict[str, Any]) -> str:
     """The line on the versions of MaterialX that have a defect; empty where no check of them shows it."""
-    if entry.page not in versions["pages"]:
+    if issue.page not in versions["pages"]:
         return ""
-    shown = versions["pages"][entry.page]
+    shown = versions["pages"][issue.page]
     names = {name: f"main of {versions['commit'][1]}" if name == "main" else name for name in shown}
-    gone = [name for name in shown if shown[name]["passed"] or (entry.pull and name == "main")]
+    gone = [name for name in shown if shown[name]["passed"] or (issue.pull and name == "main")]
     there = [names[name] for name in shown if name not in gone]
     text = f"Seen in MaterialX {there[0]} to {there[-1]}"
     text += f"; gone in {_joined([names[name] for name in gone])}" if gone else ""
-    return f"{text}, by pull request {entry.pull}." if entry.pull else f"{text}."
+    return f"{text}, by pull request {issue.pull}." if issue.pull else f"{text}."
 
 
 def _joined(names: list[str]) -> str:
     return " and ".join([", ".join(names[:-1]), names[-1]] if names[1:] else names)
 
 
-def table(project: str, known: dict[str, Entry], found: dict[str, Any]) -> list[tuple[str, ...]]:
-    """Rows of the table of a project's patches in the index."""
-    files = patches(project)
-    rows: list[tuple[str, ...]] = []
+def patch_table(project: str) -> str:
+    """The table of a project's patches in the index."""
+    files, found = patches(project), measured()
+    lines = ["| | patch | kind | measured | picture | needs |", "|---|---|---|---|---|---|"]
     for page, path in files.items():
-        entry = known[page]
+        issue = issues()[page]
         text = " ".join(path.read_text(encoding="utf-8").split("\n\n", 1)[0].split())
         picture = found.get(page, {}).get("picture")
         # The figure of the first row that the patch repairs.
-        repaired = [entry.repaired, *entry.remains.values()]
         measures = found.get(page, {}).get("rows", [])
-        chosen = [row for row in measures if any(row[1] in e.get(row[0], []) for e in repaired)]
+        chosen = [row for row in measures if (row[0], row[1]) in issue.mended]
         figures = [
-            counted(int(figure), quantity.unit.removesuffix("s"))
+            words.counted(int(figure), quantity.unit.removesuffix("s"))
             if quantity.counted
             else f"{figure} {quantity.unit}, tolerance {tolerance}"
             for _, _, figure, tolerance, key in (*chosen, *measures)
             for quantity in [Quantity(key)]
         ]
-        needs = ", ".join(sorted(files[each].name[:4] for each in entry.needs if each in files))
-        rows.append(
-            (
-                path.name[:4],
-                f"[{text.split('[PATCH] ')[1]}]({page}.md)",
-                f"in main, #{entry.pull}" if entry.pull else entry.kind,
-                figures[0] if figures else "",
-                f"{picture['mean']} of {picture['of']}; {picture['most']} at most"
-                if picture
-                else "",
-                needs,
-            )
+        needs = ", ".join(sorted(files[each].name[:4] for each in issue.needs if each in files))
+        cells = (
+            path.name[:4],
+            f"[{text.split('[PATCH] ')[1]}]({page}.md)",
+            f"in main, #{issue.pull}" if issue.pull else issue.kind,
+            figures[0] if figures else "",
+            f"{picture['mean']} of {picture['of']}; {picture['most']} at most" if picture else "",
+            needs,
         )
-    return rows
-
-
-def main() -> None:
-    """Complete what was measured, write the pages, and remove those without an entry."""
-    write_measured(completed(measured(), entries()))
-    texts = pages()
-    for path in set(FOLDER.glob("*.md")) - set(texts):
-        path.unlink()
-    for path, text in texts.items():
-        write_text(path, text)
+        lines.append(f"| {' | '.join(cells)} |")
+    return "\n".join(lines)

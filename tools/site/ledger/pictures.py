@@ -7,7 +7,7 @@ needs, and the difference of both.
 
 import sys
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -22,31 +22,12 @@ from mxeon.io.srgb import srgb_encoded
 from mxeon.shaders.nodes import SURFACE, document_text, input_text, lobe_text, node_text
 from mxeon.shaders.scene import SCENES
 from tests.support.wheels import run
-from tools.site.ledger import (
-    FOLDER,
-    apply,
-    entries,
-    linked,
-    measured,
-    needed,
-    pages,
-    patches,
-    write_measured,
-)
+from tools.site.ledger import FOLDER, apply, linked, measured, needed, patches, write_measured
 
 PICTURES = FOLDER / "pictures"
 SIZE, QUALITY, BACKGROUND, LINE = 192, 90, 30, 4
 WHITE = {"color": (1.0, 1.0, 1.0)}
 BASE = lobe_text("oren_nayar_diffuse_bsdf", WHITE, "base")
-
-
-@dataclass(frozen=True)
-class Shown:
-    """What a page's picture shows: a document, in a scene, in words."""
-
-    scene: str
-    words: str
-    document: str
 
 
 def _operator(category: str, name: str, **inputs: str) -> str:
@@ -100,59 +81,45 @@ def _hair(variance: float, scale: float) -> str:
     return _lobe("chiang_hair_bsdf", {**dict.fromkeys(LOBES, (variance, scale)), **clear})
 
 
+# The scene and the document that the picture of a page shows; the page says it in words.
 PAGES = {
-    "genglsl_clamped_dot": Shown(
-        "back", "EON of roughness 1, lit from behind", _lobe("oren_nayar_diffuse_bsdf", ROUGH)
-    ),
-    "genglsl_film_half": Shown(
+    "genglsl_clamped_dot": ("back", _lobe("oren_nayar_diffuse_bsdf", ROUGH)),
+    "genglsl_film_half": (
         "side",
-        "a film of 550 nm over a Schlick lobe of color0 0.9",
         _lobe("generalized_schlick_bsdf", FILM),
     ),
-    "openpbr_thin_walled_tint": Shown(
+    "openpbr_thin_walled_tint": (
         "front",
-        "a thin-walled OpenPBR surface of diffuse roughness 1",
         _surface("open_pbr_surface", THIN),
     ),
-    "genglsl_transmission_masking": Shown(
-        "furnace", "glass of alpha 0.8 in white surroundings", _lobe("dielectric_bsdf", GLASS)
-    ),
-    "genglsl_sheen_throughput": Shown(
+    "genglsl_transmission_masking": ("furnace", _lobe("dielectric_bsdf", GLASS)),
+    "genglsl_sheen_throughput": (
         "side",
-        "a red Zeltner sheen over white Oren-Nayar",
         _layered(
             lobe_text("sheen_bsdf", SHEEN, "top"),
             _operator("layer", "lobe", top="top", base="base"),
         ),
     ),
-    "genglsl_multiply_throughput": Shown(
+    "genglsl_multiply_throughput": (
         "side",
-        "a Zeltner sheen of roughness 1, multiplied by 0, over white Oren-Nayar",
         _layered(
             lobe_text("sheen_bsdf", FUZZ, "fuzz"),
             _operator("multiply", "top", in1="fuzz", in2="0.0"),
             _operator("layer", "lobe", top="top", base="base"),
         ),
     ),
-    "genglsl_translucent_side": Shown(
+    "genglsl_translucent_side": (
         "side",
-        "a translucent surface whose normal faces away, lit from the viewer's side",
         _lobe("translucent_bsdf", LEAF),
     ),
-    "genglsl_hair_uniform_lobe": Shown(
-        "side", "white hair of variance 0.1 and scale 0.3", _hair(0.1, 0.3)
-    ),
-    "genglsl_hair_roughness": Shown(
-        "side", "white hair of variance 20 and scale 5", _hair(20.0, 5.0)
-    ),
-    "openpbr_thin_walled": Shown(
+    "genglsl_hair_uniform_lobe": ("side", _hair(0.1, 0.3)),
+    "genglsl_hair_roughness": ("side", _hair(20.0, 5.0)),
+    "openpbr_thin_walled": (
         "front",
-        "a thin-walled OpenPBR surface of diffuse roughness 1 and white color",
         _surface("open_pbr_surface", {**THIN, "subsurface_color": ("color3", (1.0, 1.0, 1.0))}),
     ),
-    "genglsl_add_throughput": Shown(
+    "genglsl_add_throughput": (
         "furnace",
-        "two white Zeltner sheens of roughness 1, added, mixed half with nothing, over white",
         _layered(
             lobe_text("sheen_bsdf", FUZZ, "one"),
             lobe_text("sheen_bsdf", FUZZ, "two"),
@@ -170,9 +137,9 @@ def draw(folder: str, *pages: str) -> None:
     scenes = {each.name: each for each in SCENES}
     with open_host("gl") as host:
         for page in pages:
-            shown = PAGES[page]
-            [shader] = host.compile(shown.document, library="stock")
-            image = host.picture(shader, replace(scenes[shown.scene], size=SIZE))
+            scene, document = PAGES[page]
+            [shader] = host.compile(document, library="stock")
+            image = host.picture(shader, replace(scenes[scene], size=SIZE))
             np.save(Path(folder, f"{page}.npy"), image)
 
 
@@ -181,27 +148,24 @@ def measure(page: str) -> dict[str, str]:
     with TemporaryDirectory(prefix="mxeon-picture-") as base:
         stock, own = (_drawn(page, Path(base, name), name == "own") for name in ("stock", "own"))
     # Compare them where the sphere is.
-    shown, mask = PAGES[page], visible(SIZE, "sphere").mask
+    mask = visible(SIZE, "sphere").mask
     apart = np.where(mask[..., None], np.abs(stock - own), 0.0)
     # White surroundings are shown gray, so that more light than arrives is visible.
-    gain = 0.5 if shown.scene == "furnace" else 1.0
+    gain = 0.5 if PAGES[page][0] == "furnace" else 1.0
     codes = [srgb_encoded(each) for each in (gain * stock, gain * own, apart / apart.max())]
     codes = [np.where(mask[..., None], each, np.uint8(BACKGROUND)) for each in codes]
     line = np.full((SIZE, LINE, 3), 255, np.uint8)
     picture = np.hstack([codes[0], line, codes[1], line, codes[2]])
     Image.fromarray(picture).save(PICTURES / f"{page}.webp", quality=QUALITY, method=6)
     figures = {"mean": apart[mask].mean(), "of": own[mask].mean(), "most": apart.max()}
-    words = shown.words[0].upper() + shown.words[1:]
-    return {"shows": words, "scene": shown.scene} | {
-        name: f"{value:.2g}" for name, value in figures.items()
-    }
+    return {name: f"{value:.2g}" for name, value in figures.items()}
 
 
 def _drawn(page: str, folder: Path, repair: bool) -> np.typing.NDArray[np.float32]:
     """The picture of a page with MaterialX, or with the page's patch and those that it needs."""
     package = linked(Path(mx.__file__).parent, folder / "MaterialX")
     if repair:
-        names = needed(page, entries())
+        names = needed(page)
         apply(package, *(path for each, path in patches("materialx").items() if each in names))
     done = run(folder, "draw", str(folder), page, module="tools.site.ledger.pictures")
     if done.returncode:
@@ -215,7 +179,6 @@ def main() -> None:
     for page in PAGES:
         found[page] = found.get(page, {}) | {"picture": measure(page)}
     write_measured(found)
-    pages.main()
 
 
 if __name__ == "__main__":

@@ -1,101 +1,146 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The type of a known issue, and who may have one."""
+"""Known defects: the row at the head of each page of the ledger, and the results that it explains."""
 
 import json
 import math
+import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
-from itertools import chain
 from pathlib import Path
 from typing import Any
 
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED, Cause, Kind, Region, Result
 from mxeon.conformance.results.quantities import Quantity
+from mxeon.errors import CheckError
+from mxeon.shaders.library import data_folder
 
 STOCK = "stock"
 RENDERER_NODES = "its own nodes"  # in the place of a library
 Row = tuple[str, str]  # key of a check, and subject
+# A page begins with its row as TOML in a comment, then its title.
+PAGE = re.compile(r"<!--\n(?P<row>.*?)\n-->\n(?P<text># (?P<title>[^\n]*)\n.*)", re.DOTALL)
 
 
 @dataclass(frozen=True)
 class Issue:
-    """An issue upstream: its page, and the results that show it."""
+    """A defect: the row of its page, whose keys are these fields, and what `measured.json` says of it.
 
-    page: str  # its name without suffix
-    title: str  # its heading, which says what is wrong
-    host: str  # the host that shows it; "source" for generated text
-    rows: tuple[Row, ...]  # results that all fail
+    In a page, `rows`, `implied` and `repaired` are tables: the checks of each subject.
+    """
+
+    page: str  # the file without suffix
+    title: str  # the heading, which says what is wrong
+    text: str = field(repr=False)  # all of the page but the row
+    group: str  # a part of the index, see tools/site/ledger/pages.py
+    host: str = ""  # the host that shows it, "source" for generated text; "" where no check does
     also: tuple[str, ...] = ()  # other hosts that show it
-    implied: tuple[Row, ...] = ()  # other results that fail for it, on those hosts or in the text
     library: str = STOCK  # the library that has it; RENDERER_NODES for a renderer's own nodes
     unavoidable: bool = False  # each library has it: no text can repair it, or none of ours does
-    differs: bool = False  # the text leaves the choice
+    differs: bool = False  # the specification leaves the choice
+    rows: tuple[Row, ...] = ()  # results that all fail: the table of the page
+    implied: tuple[Row, ...] = ()  # others that fail for it, or may, on those hosts
+    repaired: tuple[
+        Row, ...
+    ] = ()  # results that pass with its patch: by default `rows`, but for `remains`
+    # Results that pass with its patch, or fail for one of these causes.
+    remains: Mapping[Row, tuple[Cause, ...]] = field(default_factory=dict, hash=False)
+    needs: tuple[str, ...] = ()  # pages whose patches its own needs for that
+    kind: str = ""  # of the patch: "choice", "NaN" or "compiles"
+    pull: int = 0  # the pull request that repairs it after the release
     cause: Cause | None = None  # the first one of the diagnosis of the first of `rows`
     patch: tuple[str, ...] = ()  # a file of MaterialX, and a text of it before and after
-    repaired: tuple[Row, ...] = ()  # results that it explains no longer once it is patched
     # The largest errors that were measured.
     sizes: Mapping[Row, float] = field(default_factory=dict, hash=False)
 
+    @property
+    def mended(self) -> set[Row]:
+        """Results that the defect no longer explains once it is patched."""
+        return {*self.repaired, *self.remains}
 
-def read_issues() -> tuple[Issue, ...]:
-    """The issues of `known_issues.toml` that a check shows, with what `measured.json` says of them."""
-    file, plain = Path(__file__), ("title", "host", "library", "unavoidable", "differs")
-    found = json.loads(file.with_name("measured.json").read_text("utf-8"))
-    text = file.with_name("known_issues.toml").read_text("utf-8")
-    return tuple(
-        Issue(
+
+def folder() -> Path:
+    """The folder of the pages: inside an installed package, else in the checkout."""
+    installed = data_folder() / "upstream"
+    return installed if installed.is_dir() else data_folder() / "docs" / "upstream"
+
+
+@cache
+def issues() -> Mapping[str, Issue]:
+    """The defects by their pages; read when something first fails."""
+    measured = json.loads((folder() / "measured.json").read_text("utf-8"))
+    pages = sorted(path for path in folder().glob("*.md") if path.stem != "README")
+    return {
+        path.stem: read_issue(path.stem, path.read_text("utf-8"), measured.get(path.stem, {}))
+        for path in pages
+    }
+
+
+def read_issue(page: str, text: str, measured: Mapping[str, Any]) -> Issue:
+    """The defect of a page, with what was measured of it.
+
+    Raises CheckError if the page has no row and title at its head, or the row an unknown key.
+    """
+    parts = PAGE.fullmatch(text)
+    if not parts:
+        raise CheckError(f"{page}.md must begin with a row in a comment, and a title")
+    row = tomllib.loads(parts["row"])
+    for name in ("rows", "implied", "repaired"):
+        row[name] = _pairs(row.get(name, {}))
+    for name in ("also", "needs"):
+        row[name] = tuple(row.get(name, ()))
+    remains: dict[Row, tuple[Cause, ...]] = {}
+    for entry in row.pop("remains", ()):
+        pairs = _pairs(entry.pop("rows"))
+        remains |= {pair: (*remains.get(pair, ()), _cause(entry)) for pair in pairs}
+    if "patch" in measured and not row["repaired"]:
+        row["repaired"] = tuple(pair for pair in row["rows"] if pair not in remains)
+    try:
+        return Issue(
             page,
-            **{name: entry[name] for name in plain if name in entry},
-            rows=_pairs(entry.get("rows", {})),
-            also=tuple(entry.get("also", ())),
-            implied=_pairs(entry.get("implied", {})),
-            repaired=_pairs(entry.get("repaired", {}), *entry.get("remains", {}).values()),
-            cause=cause_of(found.get(page, {}).get("cause")),
-            patch=tuple(found.get(page, {}).get("patch", ())),
+            parts["title"],
+            parts["text"],
+            **row,
+            remains=remains,
+            cause=_cause(measured["cause"]) if "cause" in measured else None,
+            patch=tuple(measured.get("patch", ())),
             sizes={
                 (check, subject): size
-                for check, subjects in found.get(page, {}).get("sizes", {}).items()
+                for check, subjects in measured.get("sizes", {}).items()
                 for subject, size in subjects.items()
             },
         )
-        for page, entry in tomllib.loads(text).items()
-        if "host" in entry
-    )
+    except TypeError as error:  # which names the key
+        raise CheckError(f"row of {page}.md: {error}") from error
 
 
-def cause_of(fields: Mapping[str, Any] | None) -> Cause | None:
-    """A cause of what `measured.json` has of it, its identity."""
-    if not fields:
-        return None
-    region, names = fields.get("region"), tuple(fields.get("names", ()))
-    place = Region(**region | {"channels": tuple(region["channels"])}) if region else None
-    kind, key, branch = Kind(fields["kind"]), fields["key"], fields.get("branch", "")
-    return Cause(kind, key, names, branch=branch, region=place)
+def _cause(fields: Mapping[str, Any]) -> Cause:
+    """A cause of its fields in a page or in `measured.json`."""
+    found = {"kind": Kind(fields["kind"]), "names": tuple(fields.get("names", ()))}
+    if region := fields.get("region"):
+        found["region"] = Region(**region | {"channels": tuple(region.get("channels", ()))})
+    return Cause(**dict(fields) | found)
 
 
-def _pairs(*groups: Mapping[str, Sequence[str]]) -> tuple[Row, ...]:
-    """Keys of checks with their subjects."""
-    rows = chain.from_iterable(each.items() for each in groups)
-    return tuple((check, subject) for check, subjects in rows for subject in subjects)
+def _pairs(checks: Mapping[str, Sequence[str]]) -> tuple[Row, ...]:
+    """The results of a table of the checks of each subject."""
+    return tuple((check, subject) for subject, each in checks.items() for check in each)
 
 
 RENDERERS = {
     "cycles": "this Blender",
     "three": "this three.js",
     "babylon": "this Babylon.js",
-    "luxcore": "this LuxCoreRender",
     "three-gpu-pathtracer": "this three-gpu-pathtracer",
 }
 LEFT = 30.0  # smaller errors of the right model have another cause than the issue
 SPREAD = 1.5  # by which engines, drivers and versions of MaterialX may exceed an issue's size
-ISSUES = read_issues()
 
 
 def issues_of(result: Result) -> tuple[Issue, ...]:
     """The known issues on whose pages the defects are that a result shows."""
-    return tuple({issue.page: issue for issue in ISSUES if issue.page in result.pages}.values())
+    return tuple(issues()[page] for page in result.pages if page in issues())
 
 
 def with_pages(result: Result, materialx: str = "") -> Result:
@@ -109,7 +154,7 @@ def with_pages(result: Result, materialx: str = "") -> Result:
     library = STOCK if materialx else result.library
     found = [
         issue
-        for issue in ISSUES
+        for issue in issues().values()
         if (library == issue.library or issue.unavoidable)
         and result.host in (issue.host, *issue.also)
         and (result.check, result.subject) in (*issue.rows, *issue.implied)
@@ -125,9 +170,12 @@ def repaired(results: Sequence[Result], software: Mapping[str, str]) -> tuple[tu
     verdicts = {
         (result.library, result.host, result.check, result.subject): result.verdict
         for result in results
+        if result.library in (STOCK, RENDERER_NODES)
     }
+    if not verdicts:
+        return ()
     notes = []
-    for issue in ISSUES:
+    for issue in issues().values():
         found = [verdicts.get((issue.library, issue.host, *row)) for row in issue.rows]
         if {*found} == {PASSED}:
             own = RENDERERS.get(issue.host)
@@ -152,7 +200,7 @@ def _explains(issue: Issue, result: Result, materialx: str) -> bool:
     own, *others = result.diagnosis.distances.values() or (math.inf,)
     if sized and own < min(others, default=own) and (result.error or 0.0) < size / LEFT:
         return False
-    gone = row in issue.repaired or set(issue.rows) <= set(issue.repaired)
+    gone = row in issue.mended or issue.mended.issuperset(issue.rows)
     if result.diagnosis.kind is Kind.FAULT or (gone and _is_repaired(issue, materialx)):
         return False
     first = result.host == issue.host and issue.rows[:1] == (row,)
