@@ -88,6 +88,13 @@ def test_stock_is_wrong_from_behind(host, judged):
     assert result.pages == ("genglsl_clamped_dot",)
 
 
+def test_albedos_of_stock_are_explained(host, judged):
+    """A diagnosis tries inputs on whole pictures."""
+    result = judged("environment", EON, host.name, "stock")
+    assert result.verdict in (PASSED, FAILED), result.reason
+    assert result.verdict == PASSED or "genglsl_albedo_acos" in result.pages
+
+
 GLASS = document_text(
     node_text(
         "open_pbr_surface",

@@ -235,7 +235,8 @@ def _cures(
     """Values of single inputs with which the worst values are right."""
     most = max(cases, key=lambda each: np.count_nonzero(tolerance.wrong(each)))
     worst = np.argsort(tolerance.metric(most.measured, most.expected))[-WORST:]
-    batch, found = most.batch.where(worst), {}
+    pairs = Ability.PAIRS in case.backend.abilities  # a picture has all of its points
+    batch, found = most.batch.where(worst) if pairs else most.batch, {}
     # An input that only darkens what should be dark cures nothing.
     light = np.maximum(np.abs(most.expected), np.abs(most.measured))[worst]
     least = SHOWN * min(float(light.mean()), 1.0)
