@@ -8,8 +8,6 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 
 class Pages(BuildHookInterface):
-    """Adds each page, and what was measured."""
-
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Add the pages to a wheel; an editable one finds them in the checkout."""
         if version == "standard":

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`mxeon check` as a user starts it: time and memory, with and without Mesa's cache of compiled shaders.
 
-The caches are folders of this benchmark alone, so that no row depends on what ran before it.
+This benchmark has its own cache folders, so that rows do not depend on earlier runs.
 """
 
 import json
@@ -22,7 +22,7 @@ from tools.benchmarks.rounds import Check, Group, figure
 from tools.site.field import DIFFUSE, EXAMPLE
 
 BOTH = ("--library", "eonlib", "--library", "stock")
-# The field as tools/site/field.py asks it: the diffuse nodes on hosts, and all common ones of renderers' own.
+# The checks of tools/site/field.py: the diffuse nodes on hosts, and the common nodes of renderers.
 FIELD = {
     "hosts": ([row.name for row in HOSTS if not row.needs], DIFFUSE),
     "renderers": ([row.name for row in ROWS], ("common",)),
@@ -30,8 +30,8 @@ FIELD = {
 LONGEST = 240.0  # seconds of each half of the field, which is stopped then
 CACHE, FOLDER = "MESA_SHADER_CACHE_DISABLE", "MESA_SHADER_CACHE_DIR"
 MEMORY = 600.0  # MiB
-# What starts the command, and writes the KiB of its largest process to a file: Linux counts what the process
-# that starts a program had in memory as the program's, and this one is small.
+# Starts the command, and writes the KiB of its largest process to a file. It must be small: Linux counts the memory of the
+# starting process as the program's.
 LAUNCHER = """
 import os, resource, signal, sys
 child = os.spawnv(os.P_NOWAIT, sys.argv[2], sys.argv[2:])
@@ -45,7 +45,7 @@ sys.exit(os.waitstatus_to_exitcode(status))
 
 @dataclass(frozen=True)
 class Job:
-    """One run: seconds, the MiB of its largest process, what did not pass, and whether it was stopped."""
+    """Seconds and MiB of one run, the number of failures, and whether it was stopped."""
 
     seconds: float
     memory: float
@@ -54,10 +54,7 @@ class Job:
 
 
 def job(*options, cache=None, longest=None):
-    """The command with options, in a process of its own; the driver's cache is a folder.
-
-    A run that takes longer than so many seconds is stopped.
-    """
+    """Run the command with options; `cache` is the driver's folder, and `longest` the seconds until it is stopped."""
     environment = {name: value for name, value in os.environ.items() if name != CACHE}
     environment |= {} if cache is None else {FOLDER: str(cache)}
     command = [sys.executable, "-P", "-m", "mxeon", "check", "--json", *options]
@@ -84,12 +81,11 @@ def job(*options, cache=None, longest=None):
 
 
 def memory(name, jobs, goal=None):
-    """Figure of the largest process of some runs."""
     return figure(f"{name}, largest process", "MiB", [max(each.memory for each in jobs)], goal)
 
 
 def parts(rounds, files, whole, cache):
-    """Figures and checks of the main job, and of the others if the whole is measured."""
+    """Figures and checks of the main job, and of further jobs if `whole`."""
     words = (*files, "--workers", "2")
     # The examples on gl, with an empty cache and again.
     jobs = [job(*words, cache=cache) for _ in range(rounds + 1)]
@@ -105,7 +101,7 @@ def parts(rounds, files, whole, cache):
     )
     if not whole:
         return
-    # A report, and the same run again, which finds it finished.
+    # A report, and the same run again with --resume.
     first, again = [], []
     for _ in range(rounds):
         with TemporaryDirectory() as folder:
@@ -141,11 +137,11 @@ def parts(rounds, files, whole, cache):
         ],
         [Check("gl, --node all", max(each.wrong for each in jobs), 0.0)],
     )
-    # All hosts that run here with both libraries, of which stock MaterialX fails.
+    # All hosts that run here with both libraries; stock MaterialX fails.
     jobs = []
     for hosts, nodes in FIELD.values():
-        asked = [*(f"--host={host}" for host in hosts), *(f"--node={node}" for node in nodes)]
-        last = (*asked, *BOTH, "--workers", "2", str(EXAMPLE))
+        chosen = [*(f"--host={host}" for host in hosts), *(f"--node={node}" for node in nodes)]
+        last = (*chosen, *BOTH, "--workers", "2", str(EXAMPLE))
         jobs.append(job(*last, cache=cache, longest=LONGEST))
     figures = [
         figure(f"field, {name}{', stopped' if each.stopped else ''}", "s", [each.seconds])
@@ -157,7 +153,7 @@ def parts(rounds, files, whole, cache):
 
 
 def measure(rounds=3, files=(), whole=True, keep: Callable[[Group], None] | None = None):
-    """The `Group` of all that, or of the main job alone; `keep` is handed it after each part."""
+    """The `Group` of all jobs, or only of the main one; `keep` is called after each part."""
     group = Group("check", "`mxeon check`, bundled examples")
     with TemporaryDirectory() as cache:
         for figures, checks in parts(rounds, files, whole, cache):

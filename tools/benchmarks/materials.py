@@ -24,9 +24,9 @@ from tools.benchmarks.rounds import Check, Group, clock_of, figure, interleave
 
 SIZE = 512
 FIRST = 8  # pixels along a side of a first frame
-FRAMES = 3  # of each library in a process, after one that is dropped
+FRAMES = 3  # frames of each library in a process, after a dropped one
 PROCESSES = 7  # in one of six, llvmpipe's code of one text takes a sixth to two fifths longer
-MESH = 128  # squares along a side of the mesh, few enough to cost nothing beside the pixels
+MESH = 128  # squares along a side of the mesh, whose cost is negligible
 LIBRARIES = ("eonlib", "stock")
 
 
@@ -117,14 +117,12 @@ class Frame:
         self._target = self._context.framebuffer([picture])
 
     def draw(self):
-        """Draw to the end."""
         self._target.use()
         self._target.clear()
         self._mesh.render()
         self._context.finish()
 
     def image(self):
-        """Pixels of the last picture."""
         width, height = self._target.size
         pixels = np.frombuffer(self._target.read(components=3, dtype="f4"), np.float32)
         return pixels.reshape(height, width, 3)[::-1]
@@ -151,8 +149,8 @@ def run(node, size, libraries):
         host.compile(document_text(NODES[name]), library=library)[0]
         for name, library in [("oren_nayar", "stock"), *((node, each) for each in libraries)]
     )
-    with host._context:  # which each verb of a host makes current, and frames do without
-        # Draw another material, or the first compilation is that of a driver that starts.
+    with host._context:  # frames are drawn directly, not by methods of the host
+        # Draw another material first, to exclude the driver's start from the first compilation.
         Frame(host, first, FIRST).draw()
         frames, compilation = {}, {}
         for library, generated in zip(libraries, shaders, strict=True):

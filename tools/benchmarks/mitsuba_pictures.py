@@ -3,10 +3,10 @@
 
     python -m tools.benchmarks.mitsuba_pictures
 
-Writes the tables of docs/mitsuba.md, a ball under an even sky with each BSDF, and of docs/sampling.md: scenes
-whose surfaces are all EON, with 50 bounces, lights and BSDF sampled by multiple importance sampling, with exact
-samples and with samples of the cosine. All in llvm_ad_rgb; times are processor time of a compiled kernel, the
-least of some pictures, and the variance is that of independent pictures, averaged over pixels and channels.
+Writes the tables of docs/mitsuba.md (a ball under an even sky with each BSDF) and of docs/sampling.md: EON scenes with 50
+bounces and multiple importance sampling, with exact samples and with cosine samples. Everything runs in llvm_ad_rgb.
+Times are the least processor time of a compiled kernel over some pictures; variances are measured over independent
+pictures, and averaged over pixels and channels.
 """
 
 import time
@@ -46,14 +46,12 @@ class EonByCosinePlugin(RoughDiffusePlugin):
 
 
 def sensor(mi, fov, origin, target, size):
-    """A camera and its square film."""
     look = mi.ScalarTransform4f().look_at(origin=origin, target=target, up=[0, 0, 1])
     film = {"type": "hdrfilm", "width": size, "height": size, "rfilter": {"type": "box"}}
     return {"type": "perspective", "fov": fov, "to_world": look, "film": film}
 
 
 def ball(mi, bsdf):
-    """A ball with a BSDF under an even sky."""
     return {
         "type": "scene",
         "integrator": {"type": "path", "max_depth": 8},
@@ -64,7 +62,6 @@ def ball(mi, bsdf):
 
 
 def eon(kind, color, roughness):
-    """A BSDF of Mitsuba."""
     reflectance = {"type": "rgb", "value": list(color)}
     return {"type": kind, "reflectance": reflectance, "roughness": roughness}
 
@@ -142,7 +139,6 @@ def noise_table(mi):
 
 
 def main():
-    """Write both tables."""
     mi = import_module("mitsuba")
     mi.set_variant("llvm_ad_rgb")
     register()

@@ -40,13 +40,13 @@ from tools.benchmarks.rounds import (
 VALUES = 1_000_000  # pairs of the values a second
 COLORS, R = np.array([0.2, 0.5, 0.8]), 0.7  # one material for all pairs
 GOLD = (0.183, 0.421, 1.373), (3.424, 2.346, 1.770)
-COMPENSATION = 1e-10  # of the table of E_ss
-PLUGIN = 3e-6  # of pi f cos in float32
+COMPENSATION = 1e-10  # tolerance of the table of E_ss
+PLUGIN = 3e-6  # tolerance of pi f cos in float32
 ONE, OWN = "one material", "a material each"
 LLVM, JIT = "Mitsuba, llvm", "jax.jit, float32"
 SECONDS = {ONE: 0.5, OWN: 3.0}  # goals of a million pairs of microfacets
-BARE = "Schlick without compensation"  # which Mitsuba has not; its rival is Schlick
-# Models, and Mitsuba's nodes beside them.
+BARE = "Schlick without compensation"  # compared with Mitsuba's Schlick
+# Mitsuba's nodes for each model.
 NODES = {
     "EON": {"type": "eon", "reflectance": {"type": "rgb", "value": [0.2, 0.5, 0.8]}, "roughness": 0.7},
     "Schlick": {"type": "principled", "roughness": 0.55, "metallic": 1.0},
@@ -54,7 +54,7 @@ NODES = {
     "conductor": {"type": "roughconductor", "distribution": "ggx", "alpha": 0.3, "material": "Au"},
     "dielectric": {"type": "roughdielectric", "distribution": "ggx", "alpha": 0.3},
 }  # fmt: skip
-RIVALED = ("EON", "Schlick", "sheen")  # whose goal is to be as fast
+RIVALED = ("EON", "Schlick", "sheen")  # must be as fast
 GOALS = {(name, ONE) for name in RIVALED}
 
 C1 = 0.5 - 2.0 / (3.0 * np.pi)
@@ -118,7 +118,6 @@ def compiled(wo, wi):
     dr.eval(view, light, si)
 
     def evaluated(way):
-        """Values in memory."""
         found = way()
         dr.eval(found)
         dr.sync_thread()
@@ -148,7 +147,6 @@ def traced(wo, wi):
     }
 
     def evaluated(function):
-        """Values in memory."""
         return function(view, light).block_until_ready()
 
     return {(name, JIT): partial(evaluated, jax.jit(each)) for name, each in functions.items()}
@@ -178,7 +176,7 @@ def values(rounds, pairs):
         for way, goal in SECONDS.items():
             million = 1e6 / pairs * seconds[name, way]
             figures.append(figure(f"{name}, {way}, a million pairs", "s", million, goal))
-    # The compensation is that of the quadrature, and the plugin's values are EON's.
+    # Compare the compensation with quadrature, and the plugin's values with EON.
     few = slice(0, 500)
     E = ggx_albedo_dir(wo[few, 2], 0.3)[:, np.newaxis]
     factor = 1.0 + fresnel_conductor_avg(*GOLD) * (1.0 - E) / E
@@ -217,7 +215,6 @@ def naive_eon_brdf(wo, wi, rho, r):
 
 
 def on_threads(count, *arguments):
-    """`eon_brdf` on so many threads."""
     with threads(count):
         return eon_brdf(*arguments)
 

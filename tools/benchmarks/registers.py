@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Registers, instructions and estimated cycles of materials on a GPU that is not here, eonlib / stock.
 
-Mesa's driver RADV compiles for a chip by name, `RADV_FORCE_FAMILY`, without the hardware, and says what
-its compiler made. Shaders are compiled for one light: of two libraries the compiler may write out
-the loop over lights of one, which then counts once, and several times with the other. The estimate of cycles
-counts the body of a loop eight times, so it is that of what runs without a film: no loop over a film's nodes.
+Mesa's driver RADV compiles for a chip by name, `RADV_FORCE_FAMILY`, without the hardware, and reports statistics of the
+code. Shaders are compiled for one light, since the compiler may unroll the loop over lights for only one of the
+libraries. The estimate of cycles counts the body of a loop eight times, so the loop over a film's nodes is removed.
 """
 
 import os
@@ -28,16 +27,13 @@ CHIP = "navi21"
 PROGRAM = Path(__file__).with_name("pipeline_statistics.c")
 DRIVERS = Path("/usr/share/vulkan/icd.d")
 PACKAGES = "gcc glslang-tools libvulkan-dev mesa-vulkan-drivers"
-STATISTICS = {
-    "VGPRs": "registers",
-    "Instructions": "instructions",
-    "Inverse Throughput": "cycles",
-}  # of the driver, and their units
+# The driver's statistics and their units.
+STATISTICS = {"VGPRs": "registers", "Instructions": "instructions", "Inverse Throughput": "cycles"}
 
-# The loop over lights of a generated shader, and what stands there for one light.
+# The loop over lights of a generated shader, and its replacement for one light.
 LIGHTS = "for (int activeLightIndex = 0; activeLightIndex < numLights; ++activeLightIndex)"
 LIGHT = "int activeLightIndex = 0;"
-# What does not run without a film.
+# Removes code that only films run.
 UNUSED = {"if (fd.airy)": "if (false)"}
 
 BINDING = re.compile(
@@ -71,7 +67,7 @@ def compiled(source, kind, file):
 
 
 def statistics(stages, program, driver):
-    """The driver's numbers of a material's fragment shader with its first light alone, by name."""
+    """The driver's statistics of a material's fragment shader with one light, by name."""
     before, loop, after = stages["pixel"].partition(LIGHTS)
     assert loop and LIGHTS not in after
     whole = before + LIGHT + after
@@ -85,7 +81,6 @@ def statistics(stages, program, driver):
 
 
 def _statistics(stages, program, driver):
-    """The driver's numbers of a fragment shader, by name."""
     files = [program.with_name("vert.spv"), program.with_name("frag.spv")]
     for stage, file in zip(("vertex", "pixel"), files, strict=True):
         compiled(stages[stage], file.stem, file)

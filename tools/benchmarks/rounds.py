@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What all benchmarks share: rounds in which rivals take turns, figures with goals, tables, and their record.
+"""Shared code of benchmarks: interleaved rounds, figures with goals, tables, and their record.
 
 Rivals take turns within a round, so that what else the machine does falls on all of them alike; a
 ratio is the median of the ratios of the rounds. Benchmark libraries time one function after the
@@ -56,8 +56,6 @@ class Check:
 
 @dataclass(frozen=True)
 class Group:
-    """One benchmark's findings."""
-
     name: str
     title: str
     figures: tuple = ()
@@ -86,8 +84,6 @@ def clock_of(device):
 def figure(name, unit, values, goal=None, at_least=False):
     """The `Figure` of one value per round.
 
-    Examples
-    --------
     >>> figure("value", "x", [3.0, 1.0, 2.0], goal=2.0).reached
     True
     """
@@ -106,7 +102,6 @@ def reset_memory():
 
 
 def peak_memory():
-    """Peak of this process's resident memory, MiB."""
     with open("/proc/self/status", encoding="ascii") as file:
         line = next(line for line in file if line.startswith("VmHWM"))
     return int(line.split()[1]) / 1024.0

@@ -5,13 +5,13 @@
     python -m tools.benchmarks.sampling                       the tables of docs/sampling.md
     python -m tools.benchmarks.sampling chi-square [SAMPLES]  samples of the exact sampler against its density
 
-Nothing in the tables is random: the variance of one sample is an integral over the hemisphere, here a
-Gauss-Legendre rule between the kinks of EON. That of LTC and CLTC alone does not exist: their density
-falls to 0 along a line on which EON does not.
+Nothing in the tables is random: the variance of one sample is an integral over the hemisphere, by a Gauss-Legendre rule
+between the kinks of EON. LTC and CLTC alone have no finite variance: their density falls to 0 along a line on which EON
+does not.
 
-Equal-noise time is the variance of a sample times the time of a path. The picture is a ball at REFLECTANCE
-under one light, one sample per pixel; the variance of each pixel is an integral over the light. For the scene
-of figure 1 it is that of independent pictures of the path tracer at 50 bounces.
+Equal-noise time is the variance of a sample times the time of a path. The picture is a ball at REFLECTANCE under one
+light, one sample per pixel; the variance of each pixel is an integral over the light. For the scene of figure 1, the
+variance is measured over independent pictures of the path tracer at 50 bounces.
 """
 
 import sys
@@ -70,7 +70,7 @@ def print_table(first, columns, rows):
 
 
 def print_throughput():
-    """Largest variance and weight over the polar angle, and the most that CLTC alone loses."""
+    """Largest variance and weight over the polar angle, and the largest loss of CLTC without uniform samples."""
 
     def over_cosines(name, roughness):
         return np.transpose([moments(name, mu, roughness) for mu in COSINES])
@@ -84,7 +84,7 @@ def print_throughput():
 
 
 def print_lighting(name):
-    """Variance of a sampler over that of the exact one, by light and view."""
+    """Variance of a sampler relative to the exact one, by light and view."""
     for r in (0.25, 1.0):
         rows = {}
         for title, light in RADIANCES.items():
@@ -138,7 +138,7 @@ def expected():
 
 
 def print_chi_square(samples=1_000_000_000):
-    """The statistic of many samples, and how often chance alone exceeds it; progress on stderr."""
+    """Chi-square of many samples, and the probability of a larger one; progress on stderr."""
     random, seen = np.random.default_rng(2025), np.zeros(ROWS * COLUMNS, np.int64)
     for done in range(0, samples, CHUNK):
         wi, _ = eon_sample(WO, random.random((min(CHUNK, samples - done), 2)), 1.0)
@@ -157,7 +157,7 @@ def print_chi_square(samples=1_000_000_000):
 # --- equal-noise time -----------------------------------------------------------------------------
 
 REFLECTANCE = 0.8
-ROUGHNESS = (0.25, 0.5, 1.0)  # of three balls whose variances are averaged
+ROUGHNESS = (0.25, 0.5, 1.0)  # average the variances of three balls
 SAMPLERS = {"cosine": "cosine", "CLTC": "eon_cltc", "exact": "eon"}  # the tracer's names
 SCENE = "figure 1, 50 bounces"
 STEPS = 64
@@ -255,7 +255,6 @@ def path_times(host, rounds, stills):
 
 
 def measure(rounds=15, size=128, pictures=48, spokes=20):
-    """The `Group` of all lights."""
     host = gl.GlHost()
     device = host.identity().device
     paths, bounces = (

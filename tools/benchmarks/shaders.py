@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Values and sampling of EON in a compute shader, nanoseconds per call on one invocation's share.
 
-Each invocation calls its function many times, with arguments that change from call to call in ways
-no compiler foresees, and stores the sum. A loop that adds up the arguments alone is subtracted. A
-loop of one pass gives the values of the first arguments, which are compared with float64. On a
-software device processor time is taken, which other work on the machine does not enter.
+Each invocation calls its function many times, with arguments that change unpredictably from call to call, and stores the
+sum. The time of a loop that only adds up the arguments is subtracted. A loop of one pass gives the values of the first
+arguments, which are compared with float64. Software devices are measured by processor time, which excludes other work.
 """
 
 import re
@@ -35,7 +34,7 @@ EXACT = 3e-4
 QUARTIC = 1.25e-3
 # Weights of samples: a random number stretched over a part, and its rounding with it, tenfold.
 WEIGHT = 2e-4
-# Samples beside a border between parts may fall to its other side.
+# Share of samples close to a border between parts, which may fall on its other side.
 SHARE = 2e-3
 # Largest weights but for that share, to scale the tolerances of values: cosine, and transformed.
 LARGEST, LARGEST_LTC = 20.0, 4.0
@@ -76,11 +75,9 @@ BASES = {
 
 @dataclass(frozen=True)
 class Rival:
-    """A function to time."""
-
     statement: str  # GLSL that adds to `sum`
     base: str  # key in BASES
-    exact: Callable[[Mapping[str, np.ndarray]], np.ndarray]  # of columns of arguments, (N, 3)
+    exact: Callable[[Mapping[str, np.ndarray]], np.ndarray]  # maps columns of arguments to (N, 3)
     tolerance: float
 
 
@@ -93,7 +90,6 @@ def directions(a):
 
 
 def value_of(a):
-    """EON at columns of arguments."""
     return eon_brdf(*directions(a), np.stack([a["r"], a["g"], a["b"]], -1), a["roughness"])
 
 
@@ -198,7 +194,6 @@ class Device:
 
 
 def measure(rounds=21, invocations=INVOCATIONS, calls=CALLS):
-    """The `Group` of all rivals."""
     device = Device(invocations)
     kernels = {name: device.kernel(each.statement) for name, each in RIVALS.items()}
     bases = {name: device.kernel(text) for name, text in BASES.items()}

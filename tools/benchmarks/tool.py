@@ -116,7 +116,6 @@ def growing(counts):
 
 
 def measure(rounds=5, counts=DOCUMENTS, documents=100):
-    """The `Group` of all that."""
     with unwarned():
         figures, checks = generating(rounds, documents)
     figures = starting(4 * rounds) + figures + growing(counts)

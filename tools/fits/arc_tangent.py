@@ -12,7 +12,7 @@ digits. Nearer than the branch points t^2 = -1 there is no singularity, so each 
 from tools.fits.minimax import mp, roots
 
 TWINS = {"terms": 5, "top": mp.sqrt(2) - 1}
-DIGITS = 17  # that tell any two float64 numbers apart
+DIGITS = 17  # enough to distinguish any two float64 numbers
 
 
 def coefficients(terms, top):

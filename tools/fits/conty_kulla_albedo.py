@@ -32,7 +32,7 @@ EIGHTHS = (
     *(170, 230, 320, 450, 640, 900, 1300, 2000, 3000, 5000, 8000, 13000, 20000, 40000),
 )
 TOP, LEAST = 1.02, 1e-4  # albedos of the fit: above 1 the shaders clamp it, below it is no matter
-NODES = 20  # of a half turn, twice
+NODES = 20  # nodes of each of two half turns
 
 
 def albedo(mu, eighths):
@@ -69,7 +69,6 @@ def variables(mu, roughness):
 
 
 def fitted(mu, roughness, coefficients):
-    """min(E, 1) from coefficients."""
     arguments, factor, exponent = variables(mu, roughness)
     return np.minimum(np.exp(exponent) * factor * FORM.value(arguments, coefficients), 1.0)
 
@@ -98,7 +97,7 @@ def fit():
 
 if __name__ == "__main__":
     found = fit()
-    mu, roughness, E = points(75)  # finer than those of the fit
+    mu, roughness, E = points(75)  # a finer grid than the fit's
     largest = np.max(np.abs(fitted(mu, roughness, found) - np.minimum(E, 1.0)))
     print(*defines(FORM, found, "CONTY_KULLA_ALBEDO"), sep="\n")
     print(f"largest absolute error {largest:.3g}")

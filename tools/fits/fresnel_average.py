@@ -24,12 +24,12 @@ from tools.fits.minimax import DIGITS, Form, defines, least_largest, mp, roots
 
 COUNT = 400  # points of the fit for dielectrics
 FORM = Form(above=tuple((k,) for k in range(5)), below=tuple((k,) for k in range(1, 4)))
-STEPS = 12  # of the reweighted fit, after which no printed digit changes
+STEPS = 12  # steps of the reweighted fit; further steps change no printed digit
 
 COSINES = (0.22, 0.58, 0.9)
 INDICES = tuple(mp.mpf(5) ** (mp.mpf(k) / 6 - 1) / 4 for k in range(0, 12)) + (mp.mpf(5),)
 EXTINCTIONS = (0.5, 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10)
-NODES = 24  # of the average over the hemisphere
+NODES = 24  # nodes of the average over the hemisphere
 
 
 def dielectric_average(n):

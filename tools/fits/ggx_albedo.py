@@ -97,7 +97,6 @@ def variables(mu, alpha):
 
 
 def fitted(mu, alpha, coefficients):
-    """E_ss from coefficients."""
     arguments, z2 = variables(mu, alpha)
     return 1.0 - z2 * FORM.value(arguments, coefficients)
 

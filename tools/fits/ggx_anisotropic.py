@@ -110,7 +110,6 @@ def largest_visible_error(ratios=RATIOS, ior=1.5):
 
 
 def main():
-    """Print the coefficients and the errors."""
     found, error = fit(*points())
     print("1 - E_ss:", *found.round(4), f"error {error:.3g}")
     for last in (4, 8):

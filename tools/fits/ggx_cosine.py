@@ -13,7 +13,7 @@ curves of Schlick, (1 - c)^q, the exponent 5 counts twice as much as the others.
 A third fit is for Hoffman's dip c (1 - c)^6, which is not monotone: its average is that at the
 cosine c of Schlick's curve of exponent 5 plus alpha^2 / (mu + alpha) N / D in mu and sqrt(alpha).
 
-The arithmetic is that of `ggx_albedo.py`.
+The arithmetic is as in `ggx_albedo.py`.
 
     python -m tools.fits.ggx_cosine
 """
@@ -42,7 +42,6 @@ def dielectric(c, ior):
 
 
 def schlick(c, exponent):
-    """(1 - c)^q for whole q."""
     m, power = 1.0 - c, 1.0
     for _ in range(exponent):
         power = power * m
@@ -50,37 +49,21 @@ def schlick(c, exponent):
 
 
 def dip(c):
-    """c (1 - c)^6."""
     return c * schlick(c, 6)
 
 
 @dataclass(frozen=True)
 class Curves:
-    """Fresnel curves of one kind, and the fit of their cosine.
+    """Fresnel curves of one kind, and the fit of their cosine."""
 
-    Attributes
-    ----------
-    prefix : str
-        Of the names of the coefficients.
-    reflectance : callable
-        F of cosine and parameter.
-    parameters, shapes, counts : tuple of float
-        Parameters of the curves, s of each, and how much each counts.
-    roots : int
-        y is the square root of alpha, taken so often.
-    form : Form
-    below : tuple of float
-        Coefficients of its denominator, from a search.
-    """
-
-    prefix: str
-    reflectance: Callable
-    parameters: tuple
-    shapes: tuple
-    counts: tuple
-    roots: int
+    prefix: str  # of the coefficients' names
+    reflectance: Callable  # F of cosine and parameter
+    parameters: tuple  # parameters of the curves
+    shapes: tuple  # s of each curve
+    counts: tuple  # weight of each curve
+    roots: int  # y is alpha to the power 2^-roots
     form: Form
-    below: tuple
+    below: tuple  # coefficients of the denominator, from a search
 
 
 def below(total, count):
@@ -126,7 +109,7 @@ DIP_BELOW = (
 
 
 def points(across=43, along=25):
-    """Cosines and roughnesses as those of `ggx_albedo.points`, alpha denser near 0."""
+    """Cosines and roughnesses as in `ggx_albedo.points`, with alpha denser near 0."""
     ends = [
         np.array([float((1 - mp.cos(mp.pi * k / (n - 1))) / 2) for k in range(n)])
         for n in (across, along)
@@ -211,7 +194,6 @@ def variables(curves, mu, alpha, shape):
 
 
 def cosine(curves, mu, alpha, shape, coefficients):
-    """c from coefficients."""
     arguments, factor = variables(curves, mu, alpha, shape)
     return mu + factor * curves.form.value(arguments, coefficients)
 

@@ -88,7 +88,6 @@ def errors(coefficients, mu, alpha, ess, albedos):
 
 
 def fit(sampled):
-    """Coefficients of a search."""
     found = np.zeros((6, 5))
     found[:, 0] = START
 
@@ -102,7 +101,6 @@ def fit(sampled):
 
 
 def shipped():
-    """Coefficients in the shader."""
     text = source_file("glsl", "fresnel_dielectric").read_text(encoding="utf-8")
     vectors = re.findall(r"vec3\(([-\d., ]+)\)", text.split("dielectric_inside(")[1])
     rows = np.array([each.split(",") for each in vectors], float)

@@ -80,8 +80,8 @@ def extrema(count):
 class Form:
     """Monomials of a rational function, as tuples of exponents."""
 
-    above: tuple  # of the numerator
-    below: tuple  # of the denominator, whose constant 1 is left out
+    above: tuple  # monomials of the numerator
+    below: tuple  # monomials of the denominator, without its constant 1
 
     def value(self, variables, coefficients):
         """Values at arrays of variables, numerator's coefficients first."""

@@ -67,7 +67,7 @@ def conductor_average(ior, extinction):
 
 
 def fitted_albedo(points, exact, node, wo, inputs):
-    """Albedo of a lobe that lies over others as the shader takes it; that of others is exact."""
+    """Albedo of a lobe: the shader's fit if the lobe lies over another, otherwise exact."""
     fit = LAYERED.get(node.name)
     if fit is None or exact is not node.albedo:
         return EXACT(points, exact, node, wo, inputs)
@@ -117,7 +117,7 @@ LAYERED = {"dielectric": _dielectric, "schlick": _schlick, "conty_kulla": _sheen
 
 @contextmanager
 def fits():
-    """The reference with the shader's fits in the place of quadratures."""
+    """The reference with the shader's fits instead of quadratures."""
     curve = microfacets.CONDUCTOR
     exact = curve.average
     with ExitStack() as stack:
@@ -130,7 +130,7 @@ def fits():
 
 
 def errors(shader, seed):
-    """Errors of one set, by name: of values and albedos the largest, and those of their means."""
+    """Errors of one set, by name: the largest of values and albedos, and the errors of their means."""
     token = SEED.set(seed)
     [batch] = batches = shader.batches(shader.counts)
     [views] = shader.views(batches, shader.counts)
@@ -155,7 +155,6 @@ def errors(shader, seed):
 
 
 def largest(shader, sets=SETS):
-    """The largest errors of sets, by name."""
     found, seeds = [], count(SEED.get() + 1)
     while len(found) < sets:
         with suppress(OutsideModel):  # a material that the layer equation does not have

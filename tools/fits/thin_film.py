@@ -25,7 +25,7 @@ CLEAR = {
     "index": (LEAST_OIL, 2.5),
 }
 DARK = 1e-3  # reflectance below which errors are no longer relative
-STEP = 1e-6  # of a thickness, relative, by which the slope of a curve is measured
+STEP = 1e-6  # relative change of a thickness to measure the slope of a curve
 # Of the shader, chosen by `thin_film_nodes.py`: three nodes for F_ss, their cosines, weights and widths; for
 # visible facets, polynomials of the mean of their cosines, of the reach of three nodes around it and of their
 # bend.
@@ -44,8 +44,11 @@ FACETS = (
 # reflectances of all channels, of a node of a rule this times the square of its width if that is more; each
 # counts as smaller than the one before it by a factor at least.
 VALUE_ORDER, WIDTH_ORDER, ORDER_RATIO = 8e-14, 1e-3, 0.6
-NARROWEST = min(film.GAUSSIANS, key=lambda gaussian: gaussian[3])  # of the sensitivities
-LEAST_PATH, LEAST_LOST = 1e-21, 1e-12  # of a path difference in m, and of light that is not trapped
+NARROWEST = min(film.GAUSSIANS, key=lambda gaussian: gaussian[3])  # narrowest sensitivity
+LEAST_PATH, LEAST_LOST = (
+    1e-21,
+    1e-12,
+)  # least path difference in m, and least share of escaping light
 
 
 def shader_curve(category, material, mu, width=0.0):
@@ -264,7 +267,6 @@ def search(name, category):
 
 
 def errors(names):
-    """Largest errors by name, each by category."""
     return {name: {category: search(name, category) for category in MIRRORS} for name in names}
 
 

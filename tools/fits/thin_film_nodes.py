@@ -16,7 +16,7 @@ from mxeon.models.thin_film import film_curve
 from tools.fits import thin_film as fit
 from tools.fits.thin_film_search import NUMBERS, filmed
 
-SEED, COUNT = 24, 400  # of the films
+SEED, COUNT = 24, 400  # of random films
 BARE, HEAVY = 100, 8.0  # substrates without a film, whose F_ss is to change least, and their weight
 START = ((0.2, 0.6, 0.9), (0.15, 0.4, 0.45), (0.15, 0.12, 0.09))  # cosines, weights and widths
 FACETS = 384  # films that coefficients for visible facets are fitted to
@@ -79,7 +79,7 @@ def facets():
     slopes = np.stack(
         [(errors(start + NEAR * axis) - left) / NEAR for axis in np.eye(len(start))], 1
     )
-    # Coefficients stay near the start where no film asks for others.
+    # Tie coefficients to the start where no film determines them.
     rows = TIE * _rows(*grid())
     change = np.linalg.lstsq(
         np.concatenate([slopes, rows]), np.append(-left, np.zeros(len(rows))), rcond=None

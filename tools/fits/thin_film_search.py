@@ -6,11 +6,11 @@ from scipy.optimize import differential_evolution
 
 SEED, COUNT, GENERATIONS = 1, 1 << 9, 100  # films of a step; steps of evolution
 KEPT, STEPS = 8, (0.1, 0.05, 0.02, 0.01)  # the worst of them; distances from these, of a range of 1
-NUMBERS = 10  # of a film, its substrate and its view
+NUMBERS = 10  # numbers that describe a film, its substrate and its view
 COLORED = 17  # with color82, color90 and the exponent of Schlick's curve as well
 FAR = (0.3, 0.1, 0.1, 0.05, 0.05, 0.02, 0.01)  # then: distances
 MOVED = 0.3  # and the part of the numbers that moves
-LEAST = 1e-3  # of numbers but roughness, cosine and extinction, since 0 reflects nothing
+LEAST = 1e-3  # least value of numbers except roughness, cosine and extinction: 0 reflects nothing
 # The worst films of longer searches, which random starts miss: of a metal with total reflection in the film,
 # and of glass at grazing, both with fringes of 1000 nm.
 GLASS = (0.0298, 0.001, 1.0, 0.0462, *[0.3587] * 6)

@@ -10,14 +10,7 @@ import numpy as np
 
 from mxeon.conformance.checks.microfacets import SMOOTH
 from mxeon.conformance.samples import SEED
-from mxeon.conformance.specs.microfacets import (
-    FILM_SPECS,
-    FRINGED,
-    GLOSSY,
-    ORDERED,
-    STEEP,
-    film_views,
-)
+from mxeon.conformance.specs import microfacets
 from mxeon.models.microfacet.ggx import ggx_albedo_dir
 from tools.fits import thin_film as fit
 
@@ -33,18 +26,18 @@ def smooth_errors(category, material, _, mu):
 
 # What is measured, by name: errors, and a set of films.
 MEASURED = {
-    "all orders": (fit.curve_errors, ORDERED),
-    "F_ss": (fit.average_errors, FRINGED),
-    "compensation of smooth lobes": (smooth_errors, FRINGED),
-    "visible facets": (fit.visible_errors, STEEP),
-    "visible facets that are much alike": (fit.visible_errors, GLOSSY),
+    "all orders": (fit.curve_errors, microfacets.ORDERED),
+    "F_ss": (fit.average_errors, microfacets.FRINGED),
+    "compensation of smooth lobes": (smooth_errors, microfacets.FRINGED),
+    "visible facets": (fit.visible_errors, microfacets.STEEP),
+    "visible facets that are much alike": (fit.visible_errors, microfacets.GLOSSY),
 }
 
 
 def films(spec, ranges, seed):
     """Category, material, roughness and cosine of the films that a check asks for, of another seed."""
     SEED.set(seed)
-    batch = film_views(spec, ranges)
+    batch = microfacets.film_views(spec, ranges)
     material = {
         name: np.moveaxis(batch.inputs[name], -1, 0)
         for name in batch.inputs
@@ -60,7 +53,7 @@ def largest(errors, ranges, sets=SETS):
             float(np.sqrt(np.mean(errors(*films(spec, ranges, seed)) ** 2)))
             for seed in range(2, 2 + sets)
         )
-        for spec in FILM_SPECS
+        for spec in microfacets.FILM_SPECS
     }
 
 

@@ -87,7 +87,6 @@ def walk(mu, roughness, alpha, ior, paths=PATHS):
 
 
 def view(mu):
-    """Direction to a viewer."""
     return np.array([np.sqrt(1.0 - mu * mu), 0.0, mu])
 
 
@@ -131,7 +130,6 @@ def rows(paths=PATHS):
 
 
 def span(values):
-    """Least and largest value, as printed."""
     return f"{values.min():.2f} to {values.max():.2f}"
 
 

@@ -7,17 +7,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike, NDArray
 
+from mxeon.models import diffuse
 from mxeon.models import diffuse as inversion
 from mxeon.models.core.quadrature import albedo_dir_quadrature
-from mxeon.models.diffuse import (
-    fon_albedo_avg,
-    fon_albedo_dir,
-    fon_albedo_dir_approx,
-    fon_brdf,
-    qon_albedo_avg,
-    qon_albedo_dir,
-    qon_brdf,
-)
 from mxeon.models.table import DIFFUSE_MODELS, diffuse_model
 from tools.paper.sheet import Sheet
 
@@ -37,7 +29,7 @@ SHORT = {
     "eon": "EON",
     "eon_approx": "EON, quartic",
 }
-# Its curve lies on that of EON.
+# This curve coincides with EON's.
 INDISTINGUISHABLE = "eon_approx"
 
 
@@ -87,9 +79,9 @@ def qon_albedos(sheet: Sheet) -> None:
     """Figure 6: directional and average albedo of QON; lines are closed forms, dots quadrature."""
     figure, (axes,) = sheet.axes(1, 2, 7.2, 3.2)
     names = [f"$\\sigma = {sigma:g}$" for sigma in SIGMA[:-1]] + ["$\\sigma = \\pi/2$"]
-    columns = _directional(axes[0], qon_albedo_dir, qon_brdf, SIGMA, names)
+    columns = _directional(axes[0], diffuse.qon_albedo_dir, diffuse.qon_brdf, SIGMA, names)
     sheet.table("figure_06_directional", columns)
-    columns = _average(axes[1], qon_albedo_avg, qon_brdf, np.pi / 2.0)
+    columns = _average(axes[1], diffuse.qon_albedo_avg, diffuse.qon_brdf, np.pi / 2.0)
     axes[1].set_xlabel("$\\sigma$ (radian)")
     sheet.table("figure_06_average", columns)
     sheet.plot("figure_06", figure)
@@ -99,14 +91,16 @@ def fon_albedos(sheet: Sheet) -> None:
     """Figure 7: the same for FON, and the error of the paper's quartic."""
     figure, (axes,) = sheet.axes(1, 3, 9.6, 3.2)
     names = [f"$r = {r:g}$" for r in ROUGHNESS]
-    columns = _directional(axes[0], fon_albedo_dir, fon_brdf, ROUGHNESS, names)
+    columns = _directional(axes[0], diffuse.fon_albedo_dir, diffuse.fon_brdf, ROUGHNESS, names)
     sheet.table("figure_07_directional", columns)
-    columns = _average(axes[1], fon_albedo_avg, fon_brdf, 1.0)
+    columns = _average(axes[1], diffuse.fon_albedo_avg, diffuse.fon_brdf, 1.0)
     axes[1].set_xlabel("$r$")
     sheet.table("figure_07_average", columns)
     columns = {"theta_o": DEGREES}
     for r in ROUGHNESS:
-        error = fon_albedo_dir(cosine(DEGREES), r) - fon_albedo_dir_approx(cosine(DEGREES), r)
+        error = diffuse.fon_albedo_dir(cosine(DEGREES), r) - diffuse.fon_albedo_dir_approx(
+            cosine(DEGREES), r
+        )
         columns[f"r={r:g}"] = error
         axes[2].plot(DEGREES, 100.0 * error)
     axes[2].set(title="exact $-$ quartic (%)", xlabel="$\\theta_o$ (degrees)", xticks=ANGLE_TICKS)

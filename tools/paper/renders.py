@@ -29,7 +29,7 @@ FURNACE = VIEW | {"bounces": 50, "environment": 1.0, "rho": (1.0, 1.0, 1.0)}
 # Seen along z and lit like this, QON has its dark ring in the middle of a ball.
 RING = {"light": _unit(-0.8, 0.6, 1.0), "opened": False, "bounces": 1, "half_width": 1.05}
 CLAY = (0.8, 0.38, 0.18)
-# The models of Figure 4: those of the paper, which all have a shader function to trace with.
+# The models of Figure 4, each with a shader function to trace with.
 GALLERY = {
     "a": ("lambert", "oren_nayar", "qon", "qon_footnote"),
     "b": ("qon_fujii", "fon", "eon", "eon_approx"),

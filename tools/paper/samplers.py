@@ -4,23 +4,8 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from mxeon.models import sampling
 from mxeon.models.core.arrays import Array
-from mxeon.models.sampling import (
-    cltc_pdf,
-    cltc_sample,
-    cosine_pdf,
-    cosine_sample,
-    eon_cltc_pdf,
-    eon_cltc_sample,
-    eon_pdf,
-    eon_sample,
-    ltc0_pdf,
-    ltc0_sample,
-    ltc_pdf,
-    ltc_sample,
-    uniform_pdf,
-    uniform_sample,
-)
 
 
 @dataclass(frozen=True)
@@ -42,19 +27,19 @@ class Sampler:
 SAMPLERS = (
     Sampler(
         "uniform",
-        lambda wo, u, roughness: uniform_sample(u),
-        lambda wo, wi, roughness: uniform_pdf(wi),
+        lambda wo, u, roughness: sampling.uniform_sample(u),
+        lambda wo, wi, roughness: sampling.uniform_pdf(wi),
         "uniform",
     ),
     Sampler(
         "cosine",
-        lambda wo, u, roughness: cosine_sample(u),
-        lambda wo, wi, roughness: cosine_pdf(wi),
+        lambda wo, u, roughness: sampling.cosine_sample(u),
+        lambda wo, wi, roughness: sampling.cosine_pdf(wi),
         "cosine",
     ),
-    Sampler("ltc0", ltc0_sample, ltc0_pdf, "LTC, d = 0"),
-    Sampler("ltc", ltc_sample, ltc_pdf, "LTC"),
-    Sampler("cltc", cltc_sample, cltc_pdf, "CLTC"),
-    Sampler("eon_cltc", eon_cltc_sample, eon_cltc_pdf, "CLTC + uniform"),
-    Sampler("eon", eon_sample, eon_pdf, "exact"),
+    Sampler("ltc0", sampling.ltc0_sample, sampling.ltc0_pdf, "LTC, d = 0"),
+    Sampler("ltc", sampling.ltc_sample, sampling.ltc_pdf, "LTC"),
+    Sampler("cltc", sampling.cltc_sample, sampling.cltc_pdf, "CLTC"),
+    Sampler("eon_cltc", sampling.eon_cltc_sample, sampling.eon_cltc_pdf, "CLTC + uniform"),
+    Sampler("eon", sampling.eon_sample, sampling.eon_pdf, "exact"),
 )

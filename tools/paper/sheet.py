@@ -71,7 +71,6 @@ class Sheet:
         write_text(self.folder / f"{name}.csv", "\n".join(lines) + "\n")
 
     def plot(self, name: str, figure: Figure, suffix: str = "svg") -> None:
-        """Write a figure of `axes`."""
         with replacing(self.folder / f"{name}.{suffix}") as path:
             figure.savefig(path, dpi=150, metadata=METADATA[suffix])
 

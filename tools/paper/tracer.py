@@ -49,20 +49,15 @@ class Trace:
     model: str  # key of `MODELS`
     sampler: str = "cosine"  # key of `SAMPLERS`
     rho: tuple[float, float, float] = (1.0, 1.0, 1.0)  # reflectance of the ball
-    parameter: float = (
-        1.0  # sigma or roughness; samplers take 2 sigma / pi as the roughness of a sigma
-    )
-    light: tuple[float, float, float] = (
-        0.0,
-        0.0,
-        0.0,
-    )  # towards a distant light of irradiance pi; zeros for none
-    environment: float = 0.0  # radiance of a uniform one
+    parameter: float = 1.0  # sigma or roughness; samplers use the roughness 2 sigma / pi
+    # Direction of a distant light of irradiance pi; zeros for none.
+    light: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    environment: float = 0.0  # radiance of a uniform environment
     bounces: int = 1  # reflections that a path may have
     opened: bool = True  # the ball is a shell, cut open around a core, on a foot
     floor: float = -1.0  # reflectance of a Lambertian floor; negative for none
     eye: tuple[float, float, float] = (0.0, 0.0, 1.0)  # towards the viewer, orthographic
-    height: float = 0.0  # of the center of the frame
+    height: float = 0.0  # height of the frame's center
     half_width: float = 1.0
     size: int = 256  # pixels on a side
     samples: int = 64  # paths per pixel
@@ -89,7 +84,6 @@ def program(model: str, sampler: str) -> str:
 def trace(
     host: GlHost, picture: Trace, progress: Callable[[range], Iterable[int]] = iter
 ) -> NDArray[np.float32]:
-    """Linear radiance that arrives at the viewer."""
     uniforms = {f"tracer_{name}": getattr(picture, name) for name in UNIFORMS}
     sigma = picture.model in SIGMA_MODELS
     uniforms["tracer_roughness"] = picture.parameter * (2.0 / np.pi if sigma else 1.0)

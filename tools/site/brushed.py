@@ -18,16 +18,7 @@ from scipy.interpolate import RectBivariateSpline
 from mxeon.conformance.reference import HostValues, Reference
 from mxeon.hosts import open_host
 from mxeon.io.srgb import srgb_encoded
-from mxeon.models.microfacet import (
-    DIELECTRIC,
-    SCHLICK,
-    WHITE_CURVE,
-    Lobe,
-    Pair,
-    ggx,
-    missing_of,
-    node_albedo,
-)
+from mxeon.models import microfacet
 from mxeon.models.microfacet.defects import FITTED, MICROFACET_DEFECTS
 from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.scene import FURNACE, SIDE, sphere, tangents
@@ -45,7 +36,7 @@ COLORS = {
     "vinyl": (0.08, 0.016, 0.012),
 }
 ALPHAS = {"aluminium": (0.1, 0.4), "steel": (0.06, 0.6), "vinyl": (0.12, 0.6)}
-INDEX = 1.54  # of vinyl
+INDEX = 1.54  # refractive index of vinyl
 COLUMNS = ("stock", "June 2026", "eonlib (July 2026)", "exact")
 SIZE = 256  # pixels of one sphere
 BLOCKS = (4, 4)  # rows and columns of the studio's picture for one light
@@ -101,14 +92,14 @@ class Points:
         self.roughness = np.array(ALPHAS[name])[:, None]
         self.color = np.array(COLORS[name])[:, None] * lines
         # (1 - E_ss) / E_ss, and the light that the base of vinyl receives, of June and exact.
-        self.missing = [self._spread(missing_of, mean) for mean in (True, False)]
+        self.missing = [self._spread(microfacet.missing_of, mean) for mean in (True, False)]
         if name == "vinyl":
-            self.curve = DIELECTRIC
+            self.curve = microfacet.DIELECTRIC
             self.material = {"ior": np.full(1, INDEX), "tint": np.ones((1, 1))}
             self.passed = [self._spread(self._passed, mean) for mean in (True, False)]
         else:
             one = np.ones((3, 1))
-            self.curve = SCHLICK
+            self.curve = microfacet.SCHLICK
             self.material = {
                 "color0": self.color,
                 "color82": one,
@@ -122,7 +113,7 @@ class Points:
         mu, phi = (each.ravel() for each in np.meshgrid(roots**2, azimuths, indexing="ij"))
         ring = np.sqrt(1.0 - mu * mu)
         own = np.broadcast_to(self.roughness, (2, mu.size))
-        alpha = np.broadcast_to(ggx.mean_alpha(own), own.shape) if mean else own
+        alpha = np.broadcast_to(microfacet.ggx.mean_alpha(own), own.shape) if mean else own
         values = of(np.stack([ring * np.cos(phi), ring * np.sin(phi), mu]), alpha)
         table = RectBivariateSpline(roots, azimuths, values.reshape(49, 25))
         x, y, z = np.abs(self.wo)  # lobes are symmetric
@@ -132,7 +123,7 @@ class Points:
     def _passed(wo, alpha):
         unit = wo / np.linalg.norm(wo, axis=0)
         inputs = {"tint": 1.0, "roughness": alpha.T, "ior": INDEX}
-        return 1.0 - node_albedo("dielectric_bsdf", unit.T, inputs)[..., 0]
+        return 1.0 - microfacet.node_albedo("dielectric_bsdf", unit.T, inputs)[..., 0]
 
     def value(self, direction):
         """pi f mu_i of June and exact, (2, 3, N)."""
@@ -142,12 +133,12 @@ class Points:
         material = self.material
         if self.name != "vinyl":
             material = material | {"color0": color}
-        wh, cosine = ggx.half_vector(wo, wi)
-        facets = self.curve.at(cosine, **material) * ggx.ndf(wh, self.roughness)
+        wh, cosine = microfacet.ggx.half_vector(wo, wi)
+        facets = self.curve.at(cosine, **material) * microfacet.ggx.ndf(wh, self.roughness)
         average = self.curve.average(**material)
-        pair = Pair(wo, wi, self.roughness, cosine, WHITE_CURVE, {})
+        pair = microfacet.Pair(wo, wi, self.roughness, cosine, microfacet.WHITE_CURVE, {})
         found = np.zeros((2, 3, len(lit)))
-        for k, lobe in enumerate((JUNE, Lobe())):
+        for k, lobe in enumerate((JUNE, microfacet.Lobe())):
             f = facets * lobe.visibility(pair) * (1.0 + average * self.missing[k][lit])
             if self.name == "vinyl":
                 f = f + self.passed[k][lit] * color / np.pi
@@ -162,7 +153,7 @@ def spheres(host, name):
     [lines] = [shaders[1].document.getNode("lines")]
     pattern = values(SIZE, [lines], "float")[..., 0]
     points = Points(name, pattern[sphere(SIZE).mask])
-    # The models of this file are those of the reference.
+    # Check that the models of this file equal the reference.
     expected = Reference().expected(shaders[1], replace(SIDE, size=SIZE), values=values, stride=16)
     judged = expected.judged[points.mask]
     own = points.value(np.array(SIDE.light))[1].T[judged]
@@ -234,7 +225,14 @@ def white_albedo(lobe, wo, alpha, count=1024):
     cosine = np.sum(view * h, axis=0)
     wi = 2.0 * cosine * h - view
     above = wi[2] > 0.0
-    pair = Pair(view, wi, np.array(alpha)[:, None, None], cosine, WHITE_CURVE, {"tint": np.ones(1)})
+    pair = microfacet.Pair(
+        view,
+        wi,
+        np.array(alpha)[:, None, None],
+        cosine,
+        microfacet.WHITE_CURVE,
+        {"tint": np.ones(1)},
+    )
     G1 = 2.0 * wo[2] / (wo[2] + np.linalg.norm(stretch[:, 0, 0] * wo))
     with np.errstate(all="ignore"):
         f = lobe.visibility(pair) * lobe.factor(pair) * 4.0 * wi[2] * wo[2] / G1
@@ -280,7 +278,6 @@ def white_rows(host, folder):
 
 
 def percent(low, high):
-    """A range of relative errors."""
     return f"{100 * low:+.1f} to {100 * high:+.1f} %"
 
 
@@ -302,7 +299,6 @@ def measure_material(host, name):
 
 
 def page(text):
-    """The page with its tables."""
     found = json.loads(FIGURES.read_text(encoding="utf-8"))
     shown = "| material | stock | June 2026 | eonlib |\n|---|---|---|---|\n"
     for name in COLORS:

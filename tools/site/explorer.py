@@ -8,12 +8,11 @@ from tools.site import DOCS
 
 PAGE = DOCS / "explore.html"
 PICTURE = DOCS / "images" / "explorer.png"
-PAGES = "upstream/{}.html"  # beside the page in the built site
+PAGES = "upstream/{}.html"  # relative to the page in the built site
 SIZE = {"width": 1280, "height": 900}
 
 
 def main() -> None:
-    """Write both files."""
     from playwright.sync_api import sync_playwright
 
     write_text(PAGE, page(page_data(pages=PAGES)))

@@ -26,7 +26,6 @@ TIMEOUT = 600.0
 
 
 def main(folder: str = "") -> None:
-    """Write the page."""
     if folder:
         write_field(read_field([folder]), PAGE, PAGES)
         return

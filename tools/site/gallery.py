@@ -31,8 +31,8 @@ EXAMPLES = DOCS.parent / "examples"
 PICTURES = DOCS / "images" / "gallery"
 DIFFERENCES = PICTURES / "differences.json"  # in sRGB codes, by material; null without stock
 SIZE = 512  # pixels
-QUALITY = 85  # of WebP
-ROWS = 64  # of the studio's picture
+QUALITY = 85  # WebP quality
+ROWS = 64  # rows of the studio's picture
 BOXES = (  # soft boxes of the studio: towards them, half of their width in radian, radiance
     ((-1.0, 1.0, 0.6), 0.45, (5.0, 4.8, 4.4)),
     ((1.2, 0.4, -0.4), 0.35, (4.0, 4.2, 5.0)),

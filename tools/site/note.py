@@ -4,17 +4,8 @@
 import numpy as np
 from matplotlib.figure import Figure
 
+from mxeon import models
 from mxeon.io.files import replacing
-from mxeon.models import (
-    burley_albedo_dir,
-    chiang_hair_attenuation,
-    conty_kulla_albedo_dir,
-    eon_brdf,
-    generalized_schlick_albedo_dir,
-    generalized_schlick_transmittance_dir,
-    ggx_albedo_dir,
-    ggx_albedo_dir_anisotropic,
-)
 from mxeon.models.core.quadrature import albedo_dir_quadrature
 from mxeon.models.diffuse import C1, FON_G, oren_nayar_brdf, qon_albedo_dir
 from mxeon.models.diffuse import fon_loss_mu as fon_loss
@@ -120,7 +111,7 @@ def variances(name, roughness, mu):
 
 def albedo_errors(mu, alpha):
     """Errors of E_ss: of MaterialX's fit and of that in z and alpha."""
-    exact = ggx_albedo_dir(mu, alpha)
+    exact = models.ggx_albedo_dir(mu, alpha)
     ours = albedo_fit.fitted(mu, alpha, shipped("ggx_albedo", "GGX_ALBEDO"))
     return fitted_albedo(mu, alpha, 1.0, 1.0) - exact, ours - exact
 
@@ -179,7 +170,7 @@ def energy_rows():
     """Equation, reading, and the least and the largest share of light that a white surface returns."""
     mu = VIEWS
     wo = np.stack([np.sqrt((1.0 - mu) * (1.0 + mu)), 0.0 * mu, mu], axis=-1)
-    E = ggx_albedo_dir(mu, 1.0)
+    E = models.ggx_albedo_dir(mu, 1.0)
     R, T = (
         function(wo, 1.0, ROUGH, GLASS)[:, 0]
         for function in (dielectric_albedo_dir, dielectric_transmittance_dir)
@@ -191,16 +182,16 @@ def energy_rows():
     yield (
         "alpha 0.001 and 1",
         "masking by direction, as corrected in July 2026",
-        ggx_albedo_dir_anisotropic(around, [0.001, 1.0]),
+        models.ggx_albedo_dir_anisotropic(around, [0.001, 1.0]),
     )
     yield "Microfacet BTDF, rough glass, alpha 1", "R compensated, T as printed", R + T
-    single = generalized_schlick_albedo_dir(wo, *SCHLICK, (0.0, 0.0), 5.0, compensate=False)
+    single = models.generalized_schlick_albedo_dir(wo, *SCHLICK, (0.0, 0.0), 5.0, compensate=False)
     for name, reading in READINGS.items():
-        passed = generalized_schlick_transmittance_dir(wo, *SCHLICK, (0.0, 0.0), 5.0, name)
+        passed = models.generalized_schlick_transmittance_dir(wo, *SCHLICK, (0.0, 0.0), 5.0, name)
         head = "Generalized Schlick BTDF, smooth" if name == "text" else ""
         yield head, reading.title, single + passed
-    yield "Burley, roughness 1", "as printed", burley_albedo_dir(mu, 1.0, 1.0)
-    yield "Conty-Kulla sheen, roughness 0.05", "as printed", conty_kulla_albedo_dir(mu, 0.05)
+    yield "Burley, roughness 1", "as printed", models.burley_albedo_dir(mu, 1.0, 1.0)
+    yield "Conty-Kulla sheen, roughness 0.05", "as printed", models.conty_kulla_albedo_dir(mu, 0.05)
     yield (
         "Oren-Nayar, sigma 0.3",
         "full model",
@@ -210,15 +201,14 @@ def energy_rows():
     yield (
         "EON, roughness 1",
         "with energy compensation",
-        albedo_dir_quadrature(eon_brdf, mu, 1.0, 1.0),
+        albedo_dir_quadrature(models.eon_brdf, mu, 1.0, 1.0),
     )
-    hair = chiang_hair_attenuation(wo, 1.55, 0.0).sum(axis=-1)
+    hair = models.chiang_hair_attenuation(wo, 1.55, 0.0).sum(axis=-1)
     yield "Chiang hair, white", "with the printed factor 1/pi", hair / np.pi
     yield "", "without it", hair
 
 
 def page(text):
-    """The page with its table as it is now."""
     lines = [
         f"| {name} | {reading} | {np.min(share):.3f} | {np.max(share):.3f} |\n"
         for name, reading, share in energy_rows()

@@ -11,7 +11,6 @@ PAGE = DOCS / "research.md"
 
 
 def blocks(text):
-    """Blocks of Python, in order."""
     return re.findall(r"```python\n(.*?)```", text, re.DOTALL)
 
 
@@ -23,5 +22,4 @@ def printed(text):
 
 
 def page(text):
-    """The page with that output as it is now."""
     return with_block(text, "fitted", f"```text\n{printed(text)}```\n")

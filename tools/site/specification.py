@@ -54,7 +54,7 @@ def measured():
 
 
 def mode_of(subject):
-    """The mode of a subject, without its node; "" where the node has one alone."""
+    """The mode of a subject, or "" if its node has only one."""
     node, _, mode = subject.partition(", ")
     if sum(row.node == node for row in JUDGED) == 1:
         return ""

@@ -33,7 +33,6 @@ def osl_text(stem: str) -> str:
 
 
 def path(stem: str) -> Path:
-    """The generated file."""
     return ROOT / "genosl" / f"{stem}.osl"
 
 

@@ -66,7 +66,6 @@ def record(versions):
 
 
 def page(text):
-    """The page with its tables from the record."""
     known = json.loads(RECORD.read_text(encoding="utf-8"))
     commit, date = known["commit"]
     nodes = [

@@ -32,7 +32,7 @@ COMMANDS = (check, generate, render, explore, library, invert, report, kit, doc)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command with these arguments; None for those of the process.
+    """Run the command with these arguments, by default the process's.
 
     Returns 0 all passed, 1 a check failed, 2 misuse, 3 something did not run; 128 plus the number of the
     signal that ended it.
@@ -46,7 +46,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def parser() -> argparse.ArgumentParser:
-    """The parser of the command; its result has the function to call as `run`."""
+    """The parser of the command; its result's `run` is the function to call."""
     root = Parser(prog="mxeon", description=DESCRIPTION, examples=EXAMPLES)
     root.add_argument("--version", action="version", version=f"mxeon {mxeon.__version__}")
     commands = root.add_subparsers(required=True, title="commands", metavar="COMMAND")
@@ -56,7 +56,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 def _run(arguments: Sequence[str]) -> int:
-    """The exit status of the command with these arguments; prints the reason unless it is 0."""
+    """Run the command; return its exit status, and print the reason unless it is 0."""
     try:
         _check_encoding(arguments)
         options = parser().parse_args(arguments)
@@ -65,11 +65,11 @@ def _run(arguments: Sequence[str]) -> int:
         with warnings.catch_warnings():
             warnings.showwarning = show_warning
             return int(options.run(options))
-    except SystemExit as end:  # of the parser, which has printed the reason
+    except SystemExit as end:  # the parser has printed the reason
         return int(end.code or 0)
     except BrokenPipeError:  # the reader of our output has closed it
         discard(sys.stdout)
-        return 141  # as of a program that SIGPIPE ended
+        return 141  # like a program ended by SIGPIPE
     except (MxeonError, OSError) as error:
         return fail(*status_of(error))
     except MemoryError:
@@ -98,7 +98,7 @@ def _check_encoding(arguments: Sequence[str]) -> None:
             argument.encode()
         except UnicodeEncodeError:
             raise InputError(f"arguments must be UTF-8, file names too; got {argument!r}") from None
-        if "\0" in argument:  # from Python alone: no shell passes it on
+        if "\0" in argument:  # only from Python; shells cannot pass it
             raise InputError(f"arguments must have no null character; got {argument!r}")
         if not argument or re.fullmatch("--[^=]+=", argument):
             raise InputError(f"arguments must not be empty; got {' '.join(map(repr, arguments))}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The answer of a run: how each material looks, which nodes are wrong, why, the remedy; and the exit status."""
+"""The summary that `mxeon check` prints: how materials look, which nodes are wrong, why, and the remedy."""
 
 from __future__ import annotations
 
@@ -24,27 +24,27 @@ from mxeon.report.formats import link
 from mxeon.shaders.library import eonlib_folder
 from mxeon.shaders.library_export import CLIENTS
 
-LINES = 10  # of the answer on one document
-MANY = 20  # documents; more are counted by cause
-LOOKS = 4  # lines on the materials of one document
-FEWEST = 3  # nodes and causes on several documents, and reasons why checks did not run
+LINES = 10  # maximum lines printed for one document
+MANY = 20  # with more documents, group them by cause
+LOOKS = 4  # maximum lines on the materials of one document
+FEWEST = 3  # minimum of nodes and causes for several documents; maximum of reasons why checks did not run
 UNBOUNDED = 1e3  # larger errors are described in words
-NOTICED = 0.01  # of white: a larger difference is told, even within a tolerance
+NOTICED = 0.01  # share of white; a larger difference is reported even within a tolerance
 AS_SPECIFIED = "looks as specified"
-LETTERS = re.compile(r"\(([A-Z]+)\)$")  # of a model, behind its name
+LETTERS = re.compile(r"\(([A-Z]+)\)$")  # abbreviation at the end of a model's title
 REFUSED = "refused"
-NO_REFERENCE = "no reference"  # whose pixels are numbers
-# The first decides about a document.
+NO_REFERENCE = "no reference"
+# The first state that applies decides about a document.
 STATES = (FAILED, NOT_RUN, REFUSED, DIFFERS, NO_REFERENCE, PASSED)
-QUOTED = re.compile(r"'[^']*/[^']*'|\"[^\"]*\"")  # names of one document in a reason
+QUOTED = re.compile(r"'[^']*/[^']*'|\"[^\"]*\"")  # a document's own names in a reason
 KEYS = ("picture", "finite", DOCUMENT_KEY)
 INDIRECT = ("environment", "layering", "transmission", "integral")  # checks in a white environment
 
 
 def show_run(run: Run, options: argparse.Namespace, said: Collection[str] = ()) -> int:
-    """Write the report of a run and print its answer; return the exit status.
+    """Write a run's report and print its summary; return the exit status.
 
-    Document errors in `said` are not printed again.
+    Document errors in `said` were printed before.
     """
     from mxeon import report
 
@@ -66,7 +66,7 @@ def show_run(run: Run, options: argparse.Namespace, said: Collection[str] = ()) 
 
 
 def _line(result: Result) -> str:
-    """A check with its error and tolerance, or why it did not pass."""
+    """A check with its error and tolerance, or the reason why it did not pass."""
     numbers = result.reason or words.explanation(result)
     if result.verdict == PASSED:
         error, tolerance = result.error or 0.0, result.tolerance or 0.0
@@ -76,7 +76,7 @@ def _line(result: Result) -> str:
 
 
 def answer(run: Run, full: bool = False) -> list[str]:
-    """The lines of a run's answer; unless it is full, at most LINES on one document."""
+    """The lines of the summary, at most LINES for one document unless it is `full`."""
     many = len(run.contents) + len(run.refused) > MANY
     looks = summary_by_cause(run) if many else list(map(one_line, _looks(run)))
     rows = {} if many else _rows(run)
@@ -84,7 +84,7 @@ def answer(run: Run, full: bool = False) -> list[str]:
     notes = [f"note: {note}" for note in run.notes]
     idle = _not_run(run, full, [] if many else looks)
     first = list(map(one_line, [*words.origins(run), *idle]))
-    # The verdict comes first if there are no documents, or something was not judged.
+    # The verdict comes first without documents, or if something was not judged.
     begins = run.refused or run.verdict == NOT_RUN or not run.contents
     alone = len(run.contents) == 1
     seen = max(1, LOOKS - len(first)) if alone and not full else len(looks)
@@ -94,12 +94,17 @@ def answer(run: Run, full: bool = False) -> list[str]:
     kept = max(least, room - 1 - min(2, len(failures) + len(notes)))
     kept = kept if rows and not full else len(rows)
     table = list(_table(run, rows, kept))
-    told = len(failures) if full else max(least, room - len(table) - bool(notes))
-    noted = len(notes) if full else max(1, room - len(table) - len(failures[:told]))
-    after = [*failures[:told], *notes[:noted]]
+    causes = len(failures) if full else max(least, room - len(table) - bool(notes))
+    noted = len(notes) if full else max(1, room - len(table) - len(failures[:causes]))
+    after = [*failures[:causes], *notes[:noted]]
     lines = [*first, *looks[:seen], *table, *map(one_line, after)]
     lines.insert(0 if begins else len(lines), one_line(run.summary))
-    counts = len(looks) - seen, len(rows) - kept, len(failures) - told, len(notes) - noted
+    counts = (
+        len(looks) - seen,
+        len(rows) - kept,
+        len(failures) - causes,
+        len(notes) - noted,
+    )
     cut = zip(("material", "node", "cause", "note"), counts, strict=True)
     if more := [counted(count, f"more {name}") for name, count in cut if count > 0]:
         lines.append(f"{', '.join(more)}: --full")
@@ -107,21 +112,24 @@ def answer(run: Run, full: bool = False) -> list[str]:
 
 
 class DocumentVerdict(NamedTuple):
-    """What a run says of one document."""
-
-    document: str  # its path
+    document: str  # path
     library: str
     verdict: str  # one of STATES
-    cause: str  # why, in words that documents share
+    cause: str  # worded alike for all documents
     referenced: bool  # whether all of its pictures have a reference
 
 
 def summary_by_cause(run: Run) -> list[str]:
-    """A line for each cause of a verdict: the number of documents, and the first one.
-
-    The worst verdicts come first, then the causes of most documents.
-    """
-    verdicts = [*_document_verdicts(run), *(_refused(*each) for each in run.refused.items())]
+    """A line for each cause with its number of documents and the first of them; the worst come first."""
+    verdicts = [*_document_verdicts(run)]
+    for document, lines in run.refused.items():
+        name = (
+            document if lines[0].startswith(f"{document}: ") else document.rpartition(" with ")[0]
+        )
+        reason = lines[0].removeprefix(f"{name}: ")
+        reason += f"; {counted(len(lines) - 1, 'more fault')}" if len(lines) > 1 else ""
+        cause = QUOTED.sub("...", reason)
+        verdicts.append(DocumentVerdict(document, "", REFUSED, cause, False))
     every = {each.document for each in verdicts}
     referenced = len(every - {each.document for each in verdicts if not each.referenced})
     lines = [f"{counted(len(every), 'document')}, {referenced} with reference pictures throughout"]
@@ -143,7 +151,7 @@ def summary_by_cause(run: Run) -> list[str]:
 
 
 def _document_verdicts(run: Run) -> Iterator[DocumentVerdict]:
-    """The verdict on each document on each host with each library, by the worst result of its pictures."""
+    """Verdicts by document, host and library: the worst result of its pictures."""
     for document in run.contents:
         groups: dict[tuple[str, str], list[Result]] = {}
         for each in run.results:
@@ -164,12 +172,12 @@ def _document_verdicts(run: Run) -> Iterator[DocumentVerdict]:
 
 
 def _cause(result: Result, measured: bool) -> str:
-    """Why a document has its verdict, by the result that decides."""
+    """Reason of a document's verdict, from the deciding result."""
     if result.verdict == PASSED and result.check == "picture":
         return f"matches the reference{', with inputs that the host computed' * measured}"
     if result.verdict == PASSED and result.check == DOCUMENT_KEY:
         return "shaders are generated"
-    # Without its size, which no two documents share.
+    # Leave out its size, which differs from document to document.
     if result.diagnosis.kind is Kind.PICTURE:
         return words.appearance(result.diagnosis.first)
     reason = result.reason or words.diagnosis(result.diagnosis)
@@ -177,22 +185,13 @@ def _cause(result: Result, measured: bool) -> str:
     return QUOTED.sub("...", reason) or words.excess(result)
 
 
-def _refused(document: str, lines: Sequence[str]) -> DocumentVerdict:
-    """The verdict on a document that could not be used, by the first line that says so."""
-    known = lines[0].startswith(f"{document}: ")
-    name = document if known else document.rpartition(" with ")[0]
-    reason = lines[0].removeprefix(f"{name}: ")
-    reason += f"; {counted(len(lines) - 1, 'more fault')}" if len(lines) > 1 else ""
-    return DocumentVerdict(document, "", REFUSED, QUOTED.sub("...", reason), False)
-
-
 def is_refused(run: Run, document: str, library: str) -> bool:
-    """Whether a document was refused, with a library at least."""
+    """Whether a document was refused, alone or with this library."""
     return not run.refused.keys().isdisjoint((document, f"{document} with {library}"))
 
 
 def _looks(run: Run) -> Iterator[str]:
-    """A sentence for each material, those that look worst first; materials that look alike share it."""
+    """Sentences on materials, worst first; materials that look alike share one."""
     hosts = {each.host for each in run.results if each.check in KEYS}
     alike: dict[str, list[str]] = {}
     ranks: dict[str, int] = {}
@@ -217,7 +216,7 @@ def _looks(run: Run) -> Iterator[str]:
 
 
 def _look(run: Run, document: str, results: Sequence[Result]) -> str:
-    """How a material looks on one host with each library."""
+    """Appearance of a material on one host with each library."""
     looks: dict[str, list[str]] = {}
     for each in results:
         looks.setdefault(_appearance(run, document, each), []).append(_title(run, each.library))
@@ -233,7 +232,6 @@ def _look(run: Run, document: str, results: Sequence[Result]) -> str:
 
 
 def _appearance(run: Run, document: str, result: Result) -> str:
-    """What a result says about a material."""
     if result.verdict == NOT_RUN:
         return f"not judged: {result.reason}"
     if result.verdict == FAILED:
@@ -291,7 +289,7 @@ def _rows(run: Run) -> Rows:
 
 
 def _rank(run: Run, result: Result) -> int:
-    """Whether a node is wrong in a document's picture, only for other inputs, or right."""
+    """Whether a node is wrong in a document's picture, wrong only for other inputs, or right."""
     if result.verdict != FAILED:
         return RIGHT
     if run.is_elsewhere(result):
@@ -310,7 +308,7 @@ def _rank(run: Run, result: Result) -> int:
 
 
 def _table(run: Run, rows: Rows, kept: int) -> Iterator[str]:
-    """A line for each of the first nodes, with a column for each library."""
+    """The first nodes, a line each, with a column for each library."""
     if not rows:
         return
     hosts = _unique(host for _, host in rows)
@@ -327,7 +325,7 @@ def _table(run: Run, rows: Rows, kept: int) -> Iterator[str]:
 
 
 def _cell(run: Run, results: Sequence[Result]) -> str:
-    """A node with one library: its model or what is wrong, the error, the tolerance."""
+    """A node with one library: its model or fault, error and tolerance."""
     if not results:
         return "not judged"
     rank = min(_rank(run, each) for each in results)
@@ -349,7 +347,7 @@ def _cell(run: Run, results: Sequence[Result]) -> str:
 
 
 def model_of(title: str) -> str:
-    """Name of the model that a node has to be, by its title; its letters where it has some."""
+    """Model that a node must be, by the node's title; abbreviated if the model has an abbreviation."""
     spec = next(row for row in ALL if row.title == title)
     own = spec.value_candidates if isinstance(spec, ValueSpec) else ()
     name = own[0].title if own else "as specified"
@@ -358,10 +356,7 @@ def model_of(title: str) -> str:
 
 
 def _not_run(run: Run, full: bool, looks: Sequence[str]) -> Iterator[str]:
-    """The first reasons that kept checks from running, or all, with their number.
-
-    Pictures whose reason is in a sentence on their material are left out.
-    """
+    """The first reasons (or all) why checks did not run, unless a material's sentence states them."""
     reasons = Counter(
         (each.location, each.reason)
         for each in run.results
@@ -376,7 +371,7 @@ def _not_run(run: Run, full: bool, looks: Sequence[str]) -> Iterator[str]:
 
 
 def _remedy(run: Run) -> Iterator[str]:
-    """What to do about the documents, where it is known: correct an input, load eonlib, or nothing."""
+    """Remedy for the documents if it is known: correct an input, load eonlib, or nothing."""
     shown = [each for each in run.results if each.check in KEYS]
     if not run.contents:
         return
@@ -392,7 +387,7 @@ def _remedy(run: Run) -> Iterator[str]:
         if each.check in KEYS or (each.library not in judged and not run.is_elsewhere(each))
     } | {each.library for each in shown if _difference(run, each) > NOTICED}
     libraries = {each.library for each in run.results}
-    # Defects with a page, which eonlib does not have.
+    # Defects with a page are not in eonlib.
     nodes = [issues_of(each) for each in failed if each.check not in KEYS]
     known = all(issues and not any(each.unavoidable for each in issues) for issues in nodes)
     if "stock" in wrong and (
@@ -417,8 +412,8 @@ def _remedy(run: Run) -> Iterator[str]:
 def _failures(run: Run) -> Iterator[str]:
     """A line for each page or diagnosis that explains failures.
 
-    Failures of a library that counts come first, then those at the documents' own inputs, then those
-    that no page explains, then those in the light in which the first picture is most wrong.
+    Compared libraries come last. Then failures at the documents' own inputs come first, then those without a page, then
+    those in the light in which the first picture is most wrong.
     """
     groups: dict[tuple[str, str], list[Result]] = {}
     failures = [each for each in run.results if each.verdict == FAILED]
@@ -446,7 +441,7 @@ def _failures(run: Run) -> Iterator[str]:
 
 
 def _sentence(results: Sequence[Result]) -> str:
-    """The nodes and checks that fail for one reason, and the reason with the link to its page."""
+    """The nodes and checks that fail for one reason, and the reason with its page."""
     subjects = list(dict.fromkeys(each.subject for each in results))
     nodes = _unique(each.partition(",")[0] for each in subjects)
     keys = ", ".join(_unique(each.check for each in results))

@@ -40,7 +40,7 @@ class _Format(argparse.RawDescriptionHelpFormatter):
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser whose help is one sentence, usage, options and examples, and whose errors are one line."""
+    """A parser with short help and one-line errors."""
 
     def __init__(self, *, examples: Sequence[str] = (), **options: Any) -> None:
         rows = [each.partition("  # ") for each in examples]
@@ -52,7 +52,7 @@ class Parser(argparse.ArgumentParser):
         super().__init__(epilog=epilog, formatter_class=_Format, **options)
 
     def format_help(self, limits: bool = False) -> str:
-        """The help without the options for untrusted documents, or only these."""
+        """The help without the options for untrusted documents, or only those options."""
         help = self._get_formatter()
         if not limits:
             help.add_text(textwrap.fill(self.description or "", 79))
@@ -71,7 +71,7 @@ class Parser(argparse.ArgumentParser):
     def parse_known_args(  # type: ignore[override]
         self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
     ) -> tuple[argparse.Namespace, list[str]]:
-        """Like argparse, but unknown options are reported first, and a missing command prints help."""
+        """Report unknown options first, and print help if the command is missing."""
         words = list(sys.argv[1:] if args is None else args)
         is_command = self.get_default("run") is not None  # no group of commands
         if not (words or is_command):
@@ -111,7 +111,7 @@ class _HelpLimits(argparse.Action):
 def add_command(
     commands: Commands, name: str, summary: str, run: Run | None, *examples: str
 ) -> argparse.ArgumentParser:
-    """Add a command, or an action of one, that the function `run` executes; None for a group of actions."""
+    """Add a command or an action of a command; a group of actions has no `run`."""
     sentence = f"{summary[0].upper()}{summary[1:]}."
     command: argparse.ArgumentParser = commands.add_parser(
         name, help=summary, description=sentence, examples=examples
@@ -121,7 +121,6 @@ def add_command(
 
 
 def _folder(name: str) -> str:
-    """The name of a folder that exists."""
     if not os.path.isdir(name):
         raise argparse.ArgumentTypeError(f"must name a folder that exists; got {name!r}")
     return name
@@ -172,7 +171,7 @@ def add_shared(command: argparse.ArgumentParser, *names: str) -> None:
 def use_materialx(folder: str | None) -> None:
     """Import MaterialX from a folder, here and in worker processes, unless it is None.
 
-    Raises InputError if it is not there or cannot be imported, or another one was imported before.
+    Raises InputError if it is missing, cannot be imported, or another MaterialX was imported before.
     """
     if folder is None:
         return
@@ -195,7 +194,7 @@ def use_materialx(folder: str | None) -> None:
 def inputs(
     options: argparse.Namespace, documents: Sequence[str] = (), *others: AnyPath | None
 ) -> Iterator[AnyPath]:
-    """Every file that a command may read, for `mxeon.io.files.check_output`."""
+    """Files that a command may read, for `mxeon.io.files.check_output`."""
     from mxeon.shaders.document.references import files_read
 
     yield from filter(None, others)
@@ -204,10 +203,7 @@ def inputs(
 
 
 def add_policy(command: argparse.ArgumentParser, runs_code: bool = False, **defaults: int) -> None:
-    """Add the options of `mxeon.shaders.document.policy`, with defaults of the command's own.
-
-    --allowCode is added where code would run.
-    """
+    """Add the options of `mxeon.shaders.document.policy`; --allowCode for commands that run shaders."""
     command.add_argument(
         "--path",
         action="append",
@@ -253,7 +249,7 @@ HELP = {
 
 
 def add_methods(command: argparse.ArgumentParser) -> None:
-    """Add the options of `mxeon.shaders.methods.Methods`; without them, each host has its own methods."""
+    """Add the options of `mxeon.shaders.methods.Methods`."""
     group = command.add_argument_group(METHODS)
     for name, choices in CHOICES.items():
         words = f"{HELP[name]}: {', '.join(choices)}"
@@ -269,12 +265,10 @@ def add_methods(command: argparse.ArgumentParser) -> None:
 
 
 def methods(options: argparse.Namespace) -> Methods:
-    """The methods that the options choose."""
     return Methods(**{each.name: getattr(options, each.name) for each in fields(Methods)})
 
 
 def policy(options: argparse.Namespace) -> Policy:
-    """The policy for documents that the options describe."""
     limits = {name: getattr(options, f"max{name.capitalize()}") for name in LIMITS}
     path = (*map(os.path.abspath, options.path), *environment_path())
     code = getattr(options, "allowCode", True)

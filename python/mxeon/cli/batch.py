@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Run generate and render jobs in worker processes, which a document may crash."""
+"""Run generate and render in worker processes, since a document may crash them."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 
 
 class WorkerCrashed(NotRun):
-    """A worker process that crashed or timed out."""
+    pass
 
 
 @dataclass(frozen=True)
 class BatchResult:
-    """Result of one job; `error` is the reason why there is no value."""
+    """Value of one job, or the error that prevented it."""
 
     value: Any
     warnings: tuple[str, ...] = ()
@@ -37,10 +37,9 @@ class BatchResult:
 def run_batch(
     work: Callable[[Any], Any], documents: Sequence[Any], workers: int, timeout: float
 ) -> Generator[BatchResult, None, None]:
-    """Results of `work` on each document, in their order; processes work until it is closed.
+    """Results of `work` on each document, in order; close it to stop the processes.
 
-    `work` can be imported by name. Raises InputError if `workers` is negative or `timeout`, seconds for
-    one document in a worker process, is out of range.
+    `work` must be importable by name. `timeout` limits the seconds for one document in a worker process.
     """
     if workers < 0:
         raise InputError(f"workers must be at least 0; got {workers}")
@@ -72,8 +71,6 @@ def _work(work: Callable[[Any], Any], document: Any) -> BatchResult:
 
 @dataclass(frozen=True)
 class Source:
-    """A document and a target to generate its shaders for."""
-
     file: str
     target: str
 
@@ -81,16 +78,16 @@ class Source:
         return f"{self.file}: {self.target}"
 
 
-ENDINGS = {"pixel": ".frag", "vertex": ".vert"}  # as generateshader has them
+ENDINGS = {"pixel": ".frag", "vertex": ".vert"}  # as in MaterialX's generateshader
 
 
 def stem(file: str) -> str:
-    """How the names of a document's shaders begin."""
+    """Beginning of the names of a document's shaders."""
     return " ".join(printable(Path(file).stem).split())
 
 
 def shader_texts(source: Source, element: str | None, **options: Any) -> dict[str, str]:
-    """Shader texts of a document by file name; options are those of `mxeon.generate`."""
+    """Shader texts of a document by file name; options as for `mxeon.generate`."""
     from mxeon.shaders.generation import generate
 
     return {
@@ -112,11 +109,11 @@ def picture(
     policy: Policy,
     paths: Paths,
 ) -> tuple[Any, dict[str, str]]:
-    """A picture of a document's one material, linear (size, size, 3), and what made it, as metadata.
+    """Picture of a document's only material, linear (size, size, 3), and its metadata.
 
-    Without a scene and an environment, a latitude-longitude image, it shows a shader ball in the studio;
-    on hosts that draw no images, a sphere lit from the side, with a warning. A LobeWarning reports lobes that a
-    picture cannot show correctly.
+    By default it shows a shader ball in the studio, or a sphere lit from the side on hosts that draw no images, with a
+    warning. `environment` is a latitude-longitude image. A LobeWarning reports lobes that the host cannot render
+    correctly.
     """
     from mxeon.conformance import reference
     from mxeon.hosts import open_host, path_tracer

@@ -122,7 +122,7 @@ def run(options: argparse.Namespace) -> int:
             nodes=options.node,
             progress=_importing(progress) if options.report else progress,
             refuse=refuse,
-            # Documents are judged as MaterialX ships them too, unless libraries are named.
+            # Documents are also judged with stock MaterialX unless libraries are named.
             compared="stock" if options.files and not options.library else (),
             seed=options.seed,
             methods=arguments.methods(options),
@@ -138,12 +138,12 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _importing(progress: Progress) -> Callable[[Iterable[T], int], Iterator[T]]:
-    """A progress that imports what makes the page of a report, while workers are at the next tasks."""
+    """A progress that imports the report's packages while the workers are busy."""
 
     def steps(outcomes: Iterable[T], total: int) -> Iterator[T]:
         for outcome in progress(outcomes, total):
             yield outcome
-            # Making the page says what is missing. An import would swallow a signal.
+            # A missing package is reported when the page is made. An import would swallow a signal.
             with block_signals(), suppress(ImportError):
                 import mxeon.report.page as _  # noqa: F401
 
@@ -151,7 +151,6 @@ def _importing(progress: Progress) -> Callable[[Iterable[T], int], Iterator[T]]:
 
 
 def _label(outcome: Any) -> str:
-    """What a finished task was about, by its findings."""
     _, findings = outcome
     for each in findings.results:
         return f"{each.check}, {each.subject}, {each.host}"

@@ -9,7 +9,7 @@ from mxeon.cli.batch import run_batch
 from mxeon.cli.output import fail, show, status_of, warn
 from mxeon.errors import PASSED
 
-MATERIALS = 300  # of a document: a page of 3 MB, in 10 s
+MATERIALS = 300  # limit per document: a page of 3 MB, in 10 s
 
 
 def add_parser(commands: arguments.Commands) -> None:

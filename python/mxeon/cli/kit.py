@@ -53,7 +53,7 @@ def add_parser(commands: arguments.Commands) -> None:
 
 
 def run_export(options: argparse.Namespace) -> int:
-    """Write the kit and print the path of its page; warn now about packages that `kit check` will lack."""
+    """Write the kit and print the path of its page; warn about packages that `kit check` will need."""
     from mxeon.kit.export import export_kit, kit_node
     from mxeon.kit.noise import student_quantile
 

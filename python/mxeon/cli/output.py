@@ -14,7 +14,7 @@ from mxeon.errors import MISUSE, DocumentError, one_line, printable
 
 
 def open_streams() -> None:
-    """Open missing standard streams: workers print to them.
+    """Open missing standard streams, to which workers print.
 
     A character that a stream cannot encode is printed as a backslash and its number.
     """
@@ -74,12 +74,11 @@ def show(name: object) -> None:
 
 
 def on_one_line(name: object) -> str:
-    """The name of an output, with U+FFFD for what ends a line or steers a terminal or a runner."""
+    """The name of an output; U+FFFD replaces line ends and control characters."""
     return re.sub(r"[\t\n\r]", "\ufffd", printable(str(name)))
 
 
 def warn(message: object) -> None:
-    """Print a warning."""
     _print_line(f"warning: {one_line(message)}")
 
 
@@ -97,16 +96,16 @@ def _print_line(line: str) -> None:
 
 
 class Progress:
-    """One line on a terminal that says what runs and how much is left; `label` names a step."""
+    """A progress line on a terminal; `label` names a step."""
 
-    visible = ""  # the line that stands there
+    visible = ""  # the current line
 
     def __init__(self, title: str, label: Callable[[Any], str] = str) -> None:
         self._title, self._label = title, label
         self._open = bool(sys.stderr) and sys.stderr.isatty()
 
     def show(self, text: str) -> None:
-        """Put a text in the line's place."""
+        """Replace the line."""
         if self._open:
             columns = shutil.get_terminal_size().columns - 1
             line = one_line(f"{self._title}: {text}")[:columns]
@@ -121,12 +120,14 @@ class Progress:
         return erase
 
     def __call__(self, steps: Iterable[Any], total: int | None = None) -> Iterator[Any]:
-        """The steps; each is shown when it is passed on."""
+        """The steps, shown one after the other."""
         total = len(steps) if total is None and isinstance(steps, Sized) else total
         begin = 0.0
         self.show(f"0 of {total}")
         for done, step in enumerate(steps, 1):
-            begin = begin or time.monotonic()  # the first step takes what all need
+            begin = (
+                begin or time.monotonic()
+            )  # after the first step, which includes the setup of all
             spent = (time.monotonic() - begin) / max(done - 1, 1)
             left = f", about {spent * ((total or done) - done):.0f} s left" if done > 2 else ""
             self.show(": ".join(filter(None, (f"{done} of {total}{left}", self._label(step)))))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`mxeon report`: write the report of a run, compare two, and show those of many renderers."""
+"""`mxeon report`: write the report of a run, compare two runs, and show many renderers."""
 
 import argparse
 import json

@@ -50,6 +50,7 @@ from mxeon.models.shading_model import ALONG, UP
 from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, VIEW, Scene, local_directions, sphere
 
 if TYPE_CHECKING:
+    from mxeon.hosts.osl import OslHost
     from mxeon.shaders.generation import Shader
 
 LINEAR, SRGB_COLOR = 'colorspace="lin_rec709" version="', 'name="color" colorspace="srgb_texture"'
@@ -417,7 +418,8 @@ class Closures(Evaluating):
                 left = {name: each for name, each in query.inputs.items() if name not in frame}
                 shader = self.implemented(self.spec.document(frame))
                 query = query._replace(shader=shader, inputs=left)
-        return evaluate(self.host, query)
+        trees = cast("OslHost", self.host).trees(query.shader, query.wo, query.inputs)
+        return evaluate(trees, query)
 
     def together(self, batch: Batch, irradiance: NDArray[np.float32] | None, two: bool) -> Array:
         return np.pi * self.evaluate(batch, "direct", shader=self.two if two else self.shader)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The explorer: one self-contained page that draws, compares and probes materials in a browser.
 
-Its program lies in `explorer/`, in TypeScript; what is built from it is `explorer.html` here.
+Its TypeScript program is in `explorer/`, which is built into `explorer.html` here.
 """
 
 import json
@@ -23,9 +23,9 @@ from mxeon.shaders.functions import source
 
 __all__ = ["document_sources", "page", "page_data"]
 
-TEXTS, PARAGRAPH = ("pixel", "paths", "document"), "\n\n"  # fields in the table of texts
+TEXTS, PARAGRAPH = ("pixel", "paths", "document"), "\n\n"  # fields stored in the table of texts
 MARK = "%DATA%"  # in the template, replaced by the data
-# Characters that could end the script element, or be read otherwise in HTML, as JSON writes them.
+# JSON escapes of characters with a meaning in HTML, which could end the script element.
 ESCAPES = str.maketrans({sign: f"\\u{ord(sign):04x}" for sign in "<>&\u2028\u2029"})
 
 
@@ -34,16 +34,19 @@ def page_data(
     results: Iterable[Result] = (),
     pages: str = "",
 ) -> PageData:
-    """The data of a page: what `document_sources` gives for each document, and results of a run.
+    """The data of a page from the `document_sources` of each document and the results of a run.
 
-    `pages` is the address of a page of `docs/upstream`, {} for its name; "" for none.
+    `pages` is the address of a page of `docs/upstream` with {} for its name, or "".
     """
     own = (
         replace(each, id=f"document/{position}/{each.id}")
         for position, group in enumerate(documents)
         for each in group
     )
-    shaders = map(_diagnosed, chain(node_sources(), own))
+    shaders = [*node_sources(), *own]
+    for index, each in enumerate(shaders):
+        if nodes := [node for node, models in MEANT.items() if models == each.meant]:
+            shaders[index] = replace(each, actual=measured_models(each.library, nodes[0]))
     return PageData(
         mxeon.__version__,
         mx.getVersionString(),
@@ -56,16 +59,10 @@ def page_data(
     )
 
 
-def _diagnosed(source: ShaderSource) -> ShaderSource:
-    """A source with the models that its node is, where it is one of the diffuse nodes."""
-    nodes = [node for node, models in MEANT.items() if models == source.meant]
-    return replace(source, actual=measured_models(source.library, nodes[0])) if nodes else source
-
-
 def page(data: PageData) -> str:
-    """The page with its data, as one HTML text that loads nothing.
+    """The page with its data, as one self-contained HTML text.
 
-    Text of documents stands in it as JSON without any character that HTML knows.
+    Text of documents is JSON in it, without characters that have a meaning in HTML.
 
         >>> "</b>" in page(PageData("1", "1", "</b>", ()))
         False
@@ -78,11 +75,7 @@ def page(data: PageData) -> str:
 
 
 def _with_texts(fields: dict[str, Any]) -> dict[str, Any]:
-    """The data with each paragraph, reference and image once; `explorer/src/texts.ts` undoes it.
-
-    Shaders share nearly all of their functions, and materials of one file the whole document; both
-    libraries share the reference and the images.
-    """
+    """The data with each paragraph, reference and image stored once; `explorer/src/texts.ts` undoes it."""
     places: dict[str, int] = {}
     references: list[object] = []
     images: dict[tuple[int, int, str], int] = {}

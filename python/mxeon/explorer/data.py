@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The data of a page, field for field the types of `explorer/src/data.ts`, which describes the fields."""
+"""The data of a page: the types of `explorer/src/data.ts`, which describes the fields."""
 
 from dataclasses import dataclass, field
 from typing import TypeAlias
@@ -11,7 +11,7 @@ Direction: TypeAlias = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Models:
-    """Names of the models that a node has with energy_compensation true and false."""
+    """Names of a node's models with energy_compensation true and false."""
 
     on: str
     off: str
@@ -19,8 +19,6 @@ class Models:
 
 @dataclass(frozen=True)
 class ModelSource:
-    """A material that is one model."""
-
     id: str
     title: str
     group: str
@@ -33,8 +31,6 @@ class ModelSource:
 
 @dataclass(frozen=True)
 class Texels:
-    """An image with 8 bits for each of red, green, blue and alpha."""
-
     width: int
     height: int
     rgba: str
@@ -42,8 +38,6 @@ class Texels:
 
 @dataclass(frozen=True)
 class ShaderInput:
-    """A public input of a shader."""
-
     name: str
     type: str
     value: Plain
@@ -66,7 +60,7 @@ class Controls:
 
 @dataclass(frozen=True)
 class ReferenceBounds:
-    """Largest errors that a shader may have, from the errors of a spec."""
+    """Tolerances of a shader."""
 
     direct: float
     white: float
@@ -74,7 +68,7 @@ class ReferenceBounds:
 
 @dataclass(frozen=True)
 class ShaderForm:
-    """Another function that a shader may have instead of a model."""
+    """A known function other than the model."""
 
     title: str
     permitted: bool
@@ -84,7 +78,7 @@ class ShaderForm:
 
 @dataclass(frozen=True)
 class ReferenceTable:
-    """What the models make of a material, in float64, rounded to the digits of `references.py`."""
+    """Float64 values of a material's models, rounded to the digits of `references.py`."""
 
     direct: tuple[float, ...]
     white: tuple[float, ...]
@@ -94,16 +88,14 @@ class ReferenceTable:
 
 @dataclass(frozen=True)
 class Checked:
-    """What `mxeon check` finds of a material that has no table: its pictures on gl against the reference's."""
+    """Verdict of `mxeon check` on gl for a material without a table."""
 
-    kind: str  # "correct", "wrong", or "unknown" where the reference has no model either
+    kind: str  # "correct", "wrong", or "unknown" without a reference
     text: str
 
 
 @dataclass(frozen=True)
 class ShaderSource:
-    """A material as generated ESSL."""
-
     id: str
     title: str
     group: str
@@ -124,16 +116,14 @@ class ShaderSource:
 
 @dataclass(frozen=True)
 class Still:
-    """A picture for browsers without WebGL2: its title, and a PNG as a data: address."""
+    """A picture for browsers without WebGL2."""
 
     title: str
-    picture: str
+    picture: str  # PNG as a data: address
 
 
 @dataclass(frozen=True)
 class PageData:
-    """Everything that a page holds beside its program."""
-
     version: str
     materialx: str
     functions: str
@@ -145,6 +135,6 @@ class PageData:
 
     @property
     def judged(self) -> bool:
-        """Whether every shader that is meant to be a model is known to be one, or another."""
+        """Whether the model of every shader that should have one is known."""
         shaders = (source for source in self.sources if isinstance(source, ShaderSource))
         return all(source.actual or not source.meant for source in shaders)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Documents as sources of a page: generated ESSL, and inputs with the ranges of their definitions."""
+"""Documents as sources of a page: generated ESSL, and inputs with their ranges."""
 
 import math
 import warnings
@@ -19,15 +19,7 @@ from mxeon.conformance.pictures import judge_document
 from mxeon.conformance.reference import Reference
 from mxeon.conformance.results import PASSED, Result
 from mxeon.errors import InterfaceError, MxeonError, printable
-from mxeon.explorer.data import (
-    Checked,
-    Controls,
-    Models,
-    ReferenceTable,
-    ShaderInput,
-    ShaderSource,
-    Texels,
-)
+from mxeon.explorer import data
 from mxeon.explorer.references import LOBES, lobes_of, reference_of
 from mxeon.hosts import open_host
 from mxeon.hosts.textures import check_images, image_files, read_texture
@@ -38,28 +30,29 @@ from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG, OREN_NAYAR
 
 LIBRARIES = ("eonlib", "stock")
 LAYOUT = ("comment", "newline")
-REFERENCES = 20  # materials of a document that are judged: some 0.1 s each, by pictures 2 s
+REFERENCES = 20  # judge at most this many materials of a document: 0.1 s each, 2 s with pictures
 LARGEST_IMAGE = 256  # texels on a side: a quarter of a mebibyte
-ALL_IMAGES = 64 * LARGEST_IMAGE**2  # texels of a document: 22 MB of a page; more are smaller
+ALL_IMAGES = (
+    64 * LARGEST_IMAGE**2
+)  # texels of a document, 22 MB of a page; more images are scaled down
 RANGE = (("uimin", "uisoftmin"), ("uimax", "uisoftmax"))
 
-# What the diffuse nodes are meant to be, with the flag and without.
-MEANT = {OREN_NAYAR: Models("eon", "qon"), EON: Models("eon", "eon")}
+# Intended models of the diffuse nodes, with the flag and without.
+MEANT = {OREN_NAYAR: data.Models("eon", "qon"), EON: data.Models("eon", "eon")}
 
 
 def document_sources(
     file: str, policy: Policy = DEFAULT, library: str = LIBRARIES[1]
-) -> tuple[ShaderSource, ...]:
-    """The materials of a document, each with eonlib and, where it can, with another library.
+) -> tuple[data.ShaderSource, ...]:
+    """The materials of a document, each with eonlib and, if possible, with `library`.
 
-    `library` is the other one; see `mxeon.shaders.library.load_library`. Raises DocumentError if no shader
-    can be generated from the document, ImageError if an image that it names is none.
+    Raises DocumentError if no shader can be generated from the document, ImageError for a bad image.
     """
     name = " ".join(printable(Path(file).name).split())
-    sources: list[ShaderSource] = []
-    # By element and by file, alike for both libraries.
-    references: dict[str, ReferenceTable | None] = {}
-    images: dict[str, Texels | None] = {}
+    sources: list[data.ShaderSource] = []
+    # By element and by file, the same for both libraries.
+    references: dict[str, data.ReferenceTable | None] = {}
+    images: dict[str, data.Texels | None] = {}
     for half, each in zip(LIBRARIES, (LIBRARIES[0], library), strict=True):
         try:
             shaders = generate(file, "essl", library=each, lights=True, policy=policy)
@@ -67,7 +60,7 @@ def document_sources(
             if half == LIBRARIES[0] or library != LIBRARIES[1]:
                 raise
             continue  # a node that stock MaterialX lacks
-        # Read each image once, as large as the page has room for all of them.
+        # Read each image once, at a size that leaves room for all of them.
         check_images(shaders, policy)
         names = image_files(shaders)
         side = min(LARGEST_IMAGE, math.isqrt(ALL_IMAGES // max(len(names), 1)))
@@ -90,47 +83,46 @@ def document_sources(
 
 
 def path_texts(document: str, policy: Policy = DEFAULT) -> dict[str, str]:
-    """What path tracers include of a document's materials with eonlib, by element; none of mixed surfaces."""
+    """Texts of a document's materials for path tracers, by element; none for mixed surfaces."""
     with warnings.catch_warnings(), suppress(InterfaceError):
-        warnings.simplefilter("ignore")  # generating has told of all of them
+        warnings.simplefilter("ignore")  # reported before
         made = generate(document, "essl", profile="path", uniforms=True, policy=policy)
         return {each.element: each.stages["pixel"] for each in made}
     return {}
 
 
-def _checked(file: str, library: str, policy: Policy) -> dict[str, Checked]:
-    """What `mxeon check` finds on gl, by element, of materials that vary or that no table covers."""
+def _checked(file: str, library: str, policy: Policy) -> dict[str, data.Checked]:
+    """Verdicts of `mxeon check` on gl by element."""
     try:
         with open_host("gl") as host, warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # generating has told of all of them
+            warnings.simplefilter("ignore")  # reported before
             results, _, _ = judge_document(Path(file), host, Reference(), library, policy)
-    except MxeonError:  # no gl; of the document generating has told
+    except MxeonError:  # no gl; errors of the document were reported before
         return {}
     return {each.subject.removeprefix(f"{Path(file).name}: "): _words(each) for each in results}
 
 
-def _words(result: Result) -> Checked:
-    """The outcome of a check of pictures, for readers."""
+def _words(result: Result) -> data.Checked:
     if result.check != "picture" or result.error is None:
         reason = (words.diagnosis(result.diagnosis) or result.reason).removeprefix("reference: ")
-        return Checked("unknown", f"No reference: {reason}.")
+        return data.Checked("unknown", f"No reference: {reason}.")
     error = f"{result.error:.2g}"
     judge = f"mxeon check, tolerance {result.tolerance:.2g}"
     if result.verdict == PASSED:
-        return Checked("correct", f"Within {error} of the reference ({judge}).")
+        return data.Checked("correct", f"Within {error} of the reference ({judge}).")
     place = "".join(f", {each}" for each in [words.diagnosis(result.diagnosis)] if each)
-    return Checked("wrong", f"Off by up to {error}{place} ({judge}).")
+    return data.Checked("wrong", f"Off by up to {error}{place} ({judge}).")
 
 
 def document_text(document: mx.Document) -> str:
-    """A document with all that it includes as XML; MaterialX's own writer leaves `<` in attributes as it is."""
+    """A document and its includes as XML; MaterialX's own writer does not escape `<` in attributes."""
     root = _tree(document)
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
 
 
 def _tree(element: mx.Element) -> ElementTree.Element:
-    """An element with its children, but for comments and empty lines."""
+    """An element with its children, without comments and empty lines."""
     named = {"name": element.getName()} if element.getName() else {}
     attributes = {name: element.getAttribute(name) for name in element.getAttributeNames()}
     tree = ElementTree.Element(element.getCategory(), named | attributes)
@@ -145,10 +137,10 @@ def shader_source(
     title: str,
     group: str,
     library: str,
-    images: Mapping[str, Texels | None] = MappingProxyType({}),
-) -> ShaderSource:
-    """A generated shader, ESSL with MaterialX's directional light, as a source of a page; images by file."""
-    source = ShaderSource(
+    images: Mapping[str, data.Texels | None] = MappingProxyType({}),
+) -> data.ShaderSource:
+    """A generated ESSL shader as a source of a page; `images` by file."""
+    source = data.ShaderSource(
         id=name,
         title=title,
         group=group,
@@ -156,7 +148,7 @@ def shader_source(
         library=library,
         pixel=shader.stages["pixel"],
         inputs=_by_effect(tuple(_ports(shader, images)), shader.document),
-        controls=Controls(),
+        controls=data.Controls(),
         document=document,
     )
     lobes = lobes_of(shader, (*LOBES, "EDF"))
@@ -168,11 +160,11 @@ def shader_source(
     color, roughness, flag = (
         names.get(f"{path}/{each}", "") for each in ("color", "roughness", FLAG)
     )
-    source = replace(source, controls=Controls(color, roughness, flag))
+    source = replace(source, controls=data.Controls(color, roughness, flag))
     connected = any(
         each.getConnectedOutput() or each.getConnectedNode() for each in node.getInputs()
     )
-    # Nothing weakens the lobe where its weight and its opacity are the number 1.
+    # The lobe is judged only with weight and opacity 1.
     factors = {port.path.rpartition("/")[2]: port.value for port in source.inputs}
     whole = factors.get("weight") == factors.get("opacity") == 1.0
     if connected or not (color and roughness and whole):
@@ -180,8 +172,8 @@ def shader_source(
     return replace(source, meant=MEANT[node.getCategory()])
 
 
-def _ports(shader: Shader, images: Mapping[str, Texels | None]) -> Iterator[ShaderInput]:
-    """The inputs of a shader that are numbers or images; members of structures one by one."""
+def _ports(shader: Shader, images: Mapping[str, data.Texels | None]) -> Iterator[data.ShaderInput]:
+    """Inputs that are numbers or images; members of structures are separate."""
     for port in shader.inputs:
         if port.type == "filename":
             if port.value:
@@ -191,16 +183,18 @@ def _ports(shader: Shader, images: Mapping[str, Texels | None]) -> Iterator[Shad
                 yield replace(_port(shader, port), name=name, type=kind, value=_short(value))
 
 
-def _by_effect(ports: tuple[ShaderInput, ...], document: mx.Document) -> tuple[ShaderInput, ...]:
-    """Inputs that a document sets, then defaults, then those without effect: of lobes of weight 0, of images."""
+def _by_effect(
+    ports: tuple[data.ShaderInput, ...], document: mx.Document
+) -> tuple[data.ShaderInput, ...]:
+    """Inputs set by the document, then defaults, then inputs without effect (weight 0, defaults of images)."""
     values = {port.path: port.value for port in ports}
 
-    def rank(port: ShaderInput) -> int:
+    def rank(port: data.ShaderInput) -> int:
         node, _, name = port.path.rpartition("/")
         words = name.split("_")
         stems = ["_".join(words[:count]) for count in range(1, len(words))]
         gates = {"weight", *stems, *(f"{stem}_weight" for stem in stems)} - {name}
-        unused = name == "default" and f"{node}/file" in values  # of an image that is there
+        unused = name == "default" and f"{node}/file" in values  # the image exists
         if unused or any(values.get(f"{node}/{gate}") == 0.0 for gate in gates):
             return 2
         return 0 if document.getDescendant(port.path) else 1
@@ -208,9 +202,9 @@ def _by_effect(ports: tuple[ShaderInput, ...], document: mx.Document) -> tuple[S
     return tuple(sorted(ports, key=rank))
 
 
-def _port(shader: Shader, port: Input) -> ShaderInput:
+def _port(shader: Shader, port: Input) -> data.ShaderInput:
     """An input without a value, with its label and range."""
-    # The elements that describe it: its own, and that of its node's definition.
+    # The input's own element, and the one in its node's definition.
     parent, _, name = port.path.rpartition("/")
     node = shader.document.getDescendant(parent) if parent else None
     definition = node.getNodeDef() if isinstance(node, mx.Node) else None
@@ -227,22 +221,14 @@ def _port(shader: Shader, port: Input) -> ShaderInput:
     if low and high and not math.isfinite(high[0] - low[0]):
         low = high = None  # a slider of such a length has no step
     label = words("uiname") or name.replace("_", " ")
-    # Words that choose from a list are numbers in the shader; frames of images do not move here.
+    # Enumerated words are numbers in the shader; frames of images do not change here.
     shown = not (words("enum") or port.type == "filename" or "frame" in port.path)
-    return ShaderInput(
-        port.name,
-        port.type,
-        None,
-        port.path,
-        label,
-        low and low[0],
-        high and high[0],
-        shown=shown,
-    )
+    limits = low and low[0], high and high[0]
+    return data.ShaderInput(port.name, port.type, None, port.path, label, *limits, shown=shown)
 
 
 def _least(text: str) -> tuple[float] | None:
-    """The first number of a text, in a tuple; None if it is none or not finite."""
+    """The first number of a text, in a tuple; None without a finite number."""
     try:
         value = float(text.split(",")[0])
     except ValueError:
@@ -257,7 +243,7 @@ def _short(value: Plain) -> Plain:
     return float(str(np.float32(value))) if isinstance(value, float) else value
 
 
-def _texels(path: str, side: int) -> Texels | None:
+def _texels(path: str, side: int) -> data.Texels | None:
     """An image of at most `side` texels on a side; None if there is no such file."""
     if not Path(path).is_file():
         return None
@@ -269,4 +255,4 @@ def _texels(path: str, side: int) -> Texels | None:
     rgba = np.ones((rows, columns, 4))
     rgba[..., : mean.shape[-1]] = mean
     codes = np.rint(255.0 * np.clip(np.nan_to_num(rgba), 0.0, 1.0)).astype(np.uint8)
-    return Texels(columns, rows, b64encode(codes.tobytes()).decode())
+    return data.Texels(columns, rows, b64encode(codes.tobytes()).decode())

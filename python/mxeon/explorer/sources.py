@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What every page has: the models, the renderers' variants, lobes of both libraries, and stills."""
+"""Contents of every page: the models, renderers' variants, lobes of both libraries, and stills."""
 
 from base64 import b64encode
 from collections.abc import Iterable
@@ -58,16 +58,14 @@ LACQUER = """    <input name="base_color" type="color3" value="0.55, 0.12, 0.08"
 
 @dataclass(frozen=True)
 class ComparedMaterial:
-    """A material that both libraries have."""
-
-    key: str  # its name in addresses
+    key: str  # name in addresses
     title: str
     text: str
-    subjects: tuple[str, ...] = field(default=())  # what checks call its nodes
+    subjects: tuple[str, ...] = field(default=())  # names of its nodes in checks
 
     @property
     def pages(self) -> tuple[str, ...]:
-        """Names of the pages on what MaterialX's own GLSL does wrong with it."""
+        """Pages on defects of this material in MaterialX's GLSL."""
         pages = [
             issue.page
             for issue in issues().values()
@@ -79,7 +77,7 @@ class ComparedMaterial:
 
 
 def _lobe(key: str, title: str, category: str, inputs: Inputs, *modes: str) -> ComparedMaterial:
-    """A material that is one BSDF node, which checks call by its category, or by it and each mode."""
+    """A material with one BSDF node, which checks name by its category and mode."""
     text = material_text(category, inputs, types=input_types(category))
     subjects = tuple(f"{category}, {mode}" for mode in modes) or (category,)
     return ComparedMaterial(key, title, text, subjects)
@@ -115,9 +113,9 @@ MATERIALS = (
 
 @lru_cache
 def measured_models(library: str, node: str) -> Models | None:
-    """The models that a node is with each state of its flag, as the gl host evaluates it.
+    """The nearest models of a node with its flag on and off, as gl evaluates it.
 
-    None where gl does not run here, or no known model is near.
+    None if gl does not run here, or no known model is near.
     """
     try:
         with open_host("gl") as host:
@@ -132,7 +130,7 @@ def measured_models(library: str, node: str) -> Models | None:
 
 
 def _nearest(case: Case) -> str:
-    """Name of the model nearest to a case's values, told by its albedo from others of its BRDF."""
+    """Name of the model nearest to a case's values; its albedo decides among models with the same BRDF."""
     rows = {row.title: row for row in KNOWN_DEFECTS + DIFFUSE_MODELS}
     value, albedo = (
         min(diagnosis.distances.items(), key=lambda item: item[1], default=("", float("inf")))
@@ -149,11 +147,10 @@ FAMILY = "Models, eonlib's functions"
 VARIANTS = "What renderers do instead"
 RUN = "What the run found"
 
-# The order in which models are offered: the two that the node can be come first.
+# These models are offered first: the node can be the first two.
 FIRST = ("eon", "qon", "fon", "lambert")
 
-# Renderers that do not have the model they should: title, the model they have, the one meant, and
-# the page of docs/upstream that shows it.
+# Renderers with a wrong model: title, actual model, intended model, and page of docs/upstream.
 RENDERERS = (
     ("MaterialX GLSL, flag on", "eon_clamped", "eon", "genglsl_clamped_dot"),
     ("MaterialX GLSL, flag off, in surroundings", "qon_fitted", "qon", "genglsl_qon_albedo_fit"),
@@ -167,13 +164,13 @@ RENDERERS = (
 
 
 def node_sources() -> tuple[ShaderSource, ...]:
-    """Each of MATERIALS with eonlib and with stock MaterialX."""
+    """MATERIALS with eonlib and with stock MaterialX."""
     return tuple(chain.from_iterable(map(_material_sources, MATERIALS)))
 
 
 @lru_cache
 def _material_sources(material: ComparedMaterial) -> tuple[ShaderSource, ...]:
-    """A material of every page with both libraries, and the pages on what stock's does wrong."""
+    """A material with both libraries."""
     shaders = {
         library: generate(material.text, "essl", library=library, lights=True)[0]
         for library in LIBRARIES
@@ -199,7 +196,7 @@ def _material_sources(material: ComparedMaterial) -> tuple[ShaderSource, ...]:
 
 
 def model_sources() -> tuple[ModelSource, ...]:
-    """Every model of the family, and every renderer's variant."""
+    """Models and renderers' variants."""
     names = [*FIRST, *(row.name for row in DIFFUSE_MODELS if row.name not in FIRST)]
     family = (
         ModelSource(f"model/{name}", diffuse_model(name).title, FAMILY, name, name)
@@ -220,7 +217,7 @@ def model_sources() -> tuple[ModelSource, ...]:
 
 
 def run_sources(results: Iterable[Result]) -> tuple[ModelSource, ...]:
-    """The model nearest to each failure of a run that a diagnosis explains."""
+    """The nearest models of failures in a run."""
     names = {row.title: row.name for row in KNOWN_DEFECTS + DIFFUSE_MODELS}
     sources: dict[tuple[str, str, str], ModelSource] = {}
     for result in results:
@@ -241,7 +238,7 @@ def run_sources(results: Iterable[Result]) -> tuple[ModelSource, ...]:
 
 
 def _meant(subject: str, name: str) -> str:
-    """The model that a subject of a run should be; the diagnosed one where it says nothing of it."""
+    """The intended model of a subject; without a flag in its name, by the diagnosed model."""
     if FLAG in subject:
         return "eon" if f"{FLAG} true" in subject else "qon"
     return {"eon_clamped": "eon", "eon_rho_cubed": "eon", "fon_white_lobe": "eon"}.get(name, name)

@@ -66,18 +66,18 @@ class Row:
     """
 
     name: str
-    target: str  # of its shaders; "" for a renderer that only has its own materials
-    way: str = ""  # its backends: a key of `mxeon.conformance.backends.BACKENDS`; "" for none
-    needs: str = ""  # what running it would take, where only its text is checked
+    target: str  # shading language; "" for a renderer that only has its own materials
+    way: str = ""  # key of `mxeon.conformance.backends.BACKENDS`, or ""
+    needs: str = ""  # requirement of a host that cannot run here, whose text is checked
     scenes: tuple[Scene, ...] = ()  # lights under which it renders the materials of documents
     surfaces: bool = False  # whether surface shaders are checked on it
-    rounding: float = 0.0  # relative, of its pixels, in addition to float32's
-    front_lit: tuple[str, ...] = ()  # models that it only has for s >= 0
+    rounding: float = 0.0  # relative rounding of its pixels, in addition to float32's
+    front_lit: tuple[str, ...] = ()  # models that it supports only for s >= 0
     start: Callable[[str], Engine] = start
     nodes: Callable[[str], Sequence[Any]] | None = None
 
 
-# A sum over the environment for each pixel: half as wide as the others, as all of it is smooth.
+# Every pixel sums over the environment, and the picture is smooth: half the usual width is enough.
 WHITE_LIGHT = replace(FURNACE, size=128)
 
 HOSTS = (

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The statements with which the main of a generated shader evaluates its BSDFs, EDFs or graph.
+"""Statements of a generated shader's main that evaluate its BSDFs, EDFs or graph.
 
-A host repeats the statements with its own arguments, in local variables that hide the shader's.
+A host repeats them with its own arguments, in local variables that hide the shader's.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ from mxeon.errors import InputError, InterfaceError
 from mxeon.hosts.base import Inputs, Query
 from mxeon.shaders.nodes import types_of
 
-if TYPE_CHECKING:  # which loads MaterialX
+if TYPE_CHECKING:  # the import would load MaterialX
     from mxeon.shaders.generation import Input, Shader
 
-# A function that fills in a surface shader, and its statements before those of the lights. Slang
-# hands the vertex data on as the first parameter.
+# Matches a function that fills in a surface shader, and its statements before the loop over lights. In Slang the first
+# parameter is the vertex data.
 FUNCTION = re.compile(
     r"^void \w+\(([^)]*)out surfaceshader \w+\)\n\{\n(.*?)^ *surfaceshader \w+ = ",
     re.MULTILINE | re.DOTALL,
 )
-# A property of the surface in world space, which an evaluation sets.
+# Matches a geometric property in world space, which an evaluation sets.
 GEOMETRY = re.compile(r"^ *\w+ (geomprop_\w+) = [^;]*;\n", re.MULTILINE)
 KINDS = {
     "float": "float",
@@ -44,7 +44,7 @@ KINDS = {
 @dataclass(frozen=True)
 class Prelude:
     statements: str
-    inputs: dict[str, str]  # types of what they read: parameters, and properties of the surface
+    inputs: dict[str, str]  # types of the parameters and geometric properties that they read
 
 
 @lru_cache(maxsize=16)  # the checks of a node share its shader
@@ -59,22 +59,22 @@ def prelude(text: str, end: int) -> Prelude | None:
     return Prelude(GEOMETRY.sub("", function[2]), inputs | properties)
 
 
-# By branch: the closure type of the repeated call, and the first step of its evaluation. A BSDF that only reflects
-# is only called in the first two branches.
+# Closure type of the repeated call and first step of its evaluation, by branch. BSDFs that only reflect are called only
+# in the first two branches.
 CLOSURES = {
     "direct": ("CLOSURE_TYPE_REFLECTION", 1),
     "environment": ("CLOSURE_TYPE_INDIRECT", 2),
     "transmission": ("CLOSURE_TYPE_REFLECTION", 3),
     "emission": ("CLOSURE_TYPE_REFLECTION", 4),
 }
-EMISSION = "CLOSURE_TYPE_EMISSION"  # of the call of an EDF, in every branch
-GRAPH = "graph"  # instead of a branch: the color that the shader gives to its uniform EDF
-LIT = "lit"  # instead of a branch: several lights, then an environment on both sides, in one pixel
-# Inputs of LIT: number of lights, up to 2, direction of the second in world space, and whether an environment follows.
+EMISSION = "CLOSURE_TYPE_EMISSION"  # calls EDFs in every branch
+GRAPH = "graph"  # branch: the color of the uniform EDF
+LIT = "lit"  # branch: several lights, then an environment on both sides, in one pixel
+# Inputs of LIT: number of lights (up to 2), direction of the second in world space, and whether an environment follows.
 LIGHTS, SECOND_LIGHT, SKY = "mxeon_lights", "mxeon_second", "mxeon_sky"
-# Steps 0 and 1 are lights, 2 an environment, 3 what it sends through. Every branch is the same program, which takes
-# a driver as long to compile as one branch for each.
-# The first, the one behind the last, and the irradiance of a light, or -1 where the throughput is asked.
+# Steps 0 and 1 are lights, 2 is the reflected and 3 the transmitted environment. All branches share one program, which
+# takes no longer to compile than a program for one branch. STEPS has the first step, the end, and the irradiance of a
+# light, or -1 for throughput.
 STEPS = "mxeon_steps"
 LOOP = """{type} mxeon_sum = {type}(0.0);
 for (int mxeon_step = int(mxeon_steps.x); mxeon_step < int(mxeon_steps.y); ++mxeon_step)
@@ -90,14 +90,14 @@ for (int mxeon_step = int(mxeon_steps.x); mxeon_step < int(mxeon_steps.y); ++mxe
     }}
 }}
 """
-OUTPUTS = ("response", "throughput", "radiance")  # the last is that of an EDF
+OUTPUTS = ("response", "throughput", "radiance")  # EDFs have radiance
 NORMAL, TANGENT = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
-FAR = (0.0, 0.0, 1e31)  # instead of a position: the host takes that of its pixel, on a plane
+FAR = (0.0, 0.0, 1e31)  # makes the host use the position of its pixel on a plane
 GIVEN = "P = P.z < 1e30 ? P : {};"
 FILES = ("filename", "string")  # types of inputs that an evaluation does not set
-# How each image lies in its texture, by the end of the variable's name.
+# Each image fills its texture; by the end of the variable's name.
 PLACED = {"_uv_scale": (1.0, 1.0), "_uv_offset": (0.0, 0.0)}
-# How MaterialX's text for WGSL, which has no booleans in memory, makes one of an integer.
+# MaterialX's text for WGSL converts integers, since WGSL has no booleans in memory.
 BOOLEAN = re.compile(r"^#define (\w+) bool\(\1\)$", re.MULTILINE)
 
 Arguments: TypeAlias = dict[str, tuple[str, ArrayLike]]  # type and values by name
@@ -105,15 +105,15 @@ Arguments: TypeAlias = dict[str, tuple[str, ArrayLike]]  # type and values by na
 
 @dataclass(frozen=True)
 class BsdfCall:
-    statements: str  # of the shader's main up to the call
+    statements: str  # the shader's main up to the call
     value: str  # a color
-    arguments: Arguments  # types and values of what both read
+    arguments: Arguments  # variables that both read
 
 
 def bsdf_call(query: Query) -> BsdfCall:
     """Call of a rasterized shader's BSDF.
 
-    InputError if it calls no BSDF or, for GRAPH, no uniform EDF, or branch or output is unknown.
+    InputError if it calls no BSDF (for GRAPH, no uniform EDF), or branch or output is unknown.
     """
     shader, wo, wi, inputs, branch, output, _ = query
     branches = (GRAPH, LIT, *CLOSURES)
@@ -145,12 +145,13 @@ def bsdf_call(query: Query) -> BsdfCall:
         ports = {port.path.rsplit("/", 1)[-1]: port for port in shader.inputs}
         own: Arguments = {}
         for name, kind in before.inputs.items():
-            default = _default(ports[name]) if name in ports else _argument(name, {}, {})[1]
-            own[name] = kind, inputs.get(name, default)
+            # The document's value is a number, a color or a vector.
+            default = ports[name].value if name in ports else _argument(name, {}, {})[1]
+            own[name] = kind, inputs.get(name, cast(ArrayLike, default))
         arguments = own | arguments
     else:
         ports = _ports(shader)
-        # What nodes compute for a closure, without properties of the surface.
+        # Values that nodes compute for a closure, without geometric properties.
         computed = GEOMETRY.sub("", _main(text) + "\n")
         if any(f" {name} = " in computed for name in names):
             names = [name for name in names if f" {name} = " not in computed]
@@ -169,11 +170,11 @@ def bsdf_call(query: Query) -> BsdfCall:
 
 @lru_cache(maxsize=16)  # the checks of a node share its shader
 def _find_calls(text: str, closure: str, element: str) -> tuple[int, str, str, list[str]]:
-    """Position and text of the statements that evaluate BSDFs, by closure type, result and arguments.
+    """Position and text of the statements that evaluate BSDFs of a closure type, their result and arguments.
 
-    The last call combines the results of the others, or is the only one.
+    The last call combines the other results, or is the only call.
     """
-    # MaterialX before 1.39.5 calls the constructor itself.
+    # MaterialX before 1.39.5 has no makeClosureData.
     constructor = r"(?:makeClosureData|ClosureData)"
     match = re.search(rf"ClosureData closureData = {constructor}\({closure}[^}}]*", text)
     block = match[0] if match else ""
@@ -191,7 +192,7 @@ def _find_calls(text: str, closure: str, element: str) -> tuple[int, str, str, l
 
 
 def _graph_call(shader: Shader, wo: ArrayLike, inputs: Inputs) -> BsdfCall:
-    """Call of a shader's graph: the statements before its surface, and the color of its uniform EDF."""
+    """The statements before a shader's surface, and the color of its uniform EDF."""
     text = shader.stages["pixel"]
     color = re.search(r"\bmx_uniform_edf\(closureData, (\w+), \w+\);", text)
     if not color:
@@ -207,9 +208,9 @@ def _graph_call(shader: Shader, wo: ArrayLike, inputs: Inputs) -> BsdfCall:
 
 @lru_cache(maxsize=16)
 def _main(text: str) -> str:
-    """The statements of a main before its surface."""
+    """Statements of a main before its surface."""
     before = re.split(r"\n *surfaceshader \w+ = ", text)[0]
-    # Slang's own main begins with its stage's inputs and outputs.
+    # In Slang, main begins with the stage's inputs and outputs.
     return re.split(r"\n\{\n|_vd;\n|float4 out1;\n", before)[-1]
 
 
@@ -217,13 +218,8 @@ def _words(text: str) -> list[str]:
     return list(dict.fromkeys(re.findall(r"\w+", text)))
 
 
-def _default(port: Input) -> ArrayLike:
-    """The document's value of an input that a closure reads: a number, a color or a vector."""
-    return cast(ArrayLike, port.value)
-
-
 def _ports(shader: Shader) -> dict[str, Input]:
-    """Inputs of a shader by name, with the booleans that its text makes of integers."""
+    """Inputs of a shader by name, with integers that its text turns into booleans."""
     ports = {port.name: port for port in shader.inputs}
     for name in booleans(shader.stages["pixel"]):
         if name in ports:
@@ -238,7 +234,7 @@ def booleans(text: str) -> list[str]:
 
 
 def _argument(name: str, ports: Mapping[str, Input], inputs: Inputs) -> tuple[str, ArrayLike]:
-    """Type and value of a BSDF's argument; if it is not an input of the shader, it belongs to the surface."""
+    """Type and value of a BSDF's argument: an input of the shader, or a vector of the surface."""
     port = ports.get(name)
     if port is None:
         tangent = "tangent" in name.lower() or "tworld" in name.lower()
@@ -250,4 +246,4 @@ def _argument(name: str, ports: Mapping[str, Input], inputs: Inputs) -> tuple[st
         raise InterfaceError(
             f"input {key} must have the type {required} to be evaluated; got {port.type}"
         )
-    return port.type, inputs.get(key, _default(port))
+    return port.type, inputs.get(key, cast(ArrayLike, port.value))

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Shared code of hosts that read documents and libraries themselves, each in its own process.
 
-They generate the shader again, and draw it with their own lights and uniforms on the quads of
-`mxeon.hosts.documents`.
+They generate the shader again, and draw it with their own lights and uniforms on quads.
 """
 
 from __future__ import annotations
@@ -27,18 +26,19 @@ from mxeon.shaders.generation import Shader
 from mxeon.shaders.methods import UNCHOSEN, Methods
 from mxeon.shaders.scene import Scene, sphere
 
-SPREAD = 1.0 / 64.0  # of the texture coordinates within a quad
+SPREAD = 1.0 / 64.0  # scales the change of texture coordinates within a quad
 CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
-STEEPEST = 0.05  # cosine of a tangent plane with the view: nearer to the rim it leaves the frame
+STEEPEST = (
+    0.05  # least cosine between normal and view: closer to the rim, tangent planes leave the frame
+)
 
 
 def quads(size: int, place: tuple[float, float] = (0.0, 0.0)) -> dict[str, NDArray[np.float32]]:
     """The quads of a picture of `size` x `size` pixels, four vertices each, counterclockwise.
 
-    Each has one normal, so every pixel is an exact point, at `place` in half widths from its center.
-    A quad lies in the tangent plane and covers the pixel: its derivatives of positions are those of the
-    sphere. Those of "texcoord" have the same directions but are smaller, so textures are read at full
-    size, as from a point. Row 0 at the top comes first.
+    Each has one normal, so every pixel is an exact point, at `place` in half widths from its center. A quad lies in the
+    tangent plane and covers the pixel, so derivatives of positions equal the sphere's. Derivatives of "texcoord" have
+    the same directions but are smaller, so textures are read at full size. Row 0, at the top, comes first.
     """
     points = sphere(size)
     normal = points.normal[points.mask][:, np.newaxis]
@@ -64,25 +64,24 @@ def quads(size: int, place: tuple[float, float] = (0.0, 0.0)) -> dict[str, NDArr
 
 
 def quad_file(folder: Path, size: int, place: tuple[float, float] = (0.0, 0.0)) -> Path:
-    """File of the quads of a picture, written by the first request; parameters as for `quads`."""
+    """File of the quads of a picture, written on the first request; parameters as for `quads`."""
     path = folder / f"quads{size}{place}.npz"
     if not path.exists():
         np.savez(path, **quads(size, place))  # type: ignore[arg-type]  # NumPy takes it for an option
     return path
 
 
-# Pixels along a quad where blocks of 2 x 2 have to lie in one of its two triangles, and the place of the
-# pixel that is read: right of the diagonal and below the middle.
+# Pixels along a quad if blocks of 2 x 2 must lie in one of its two triangles, and the place of the pixel that is read:
+# right of the diagonal and below the middle.
 PIXEL_BLOCK, PLACE = 4, (0.25, -0.25)
-PICTURES = 64  # to keep: the checks of a node request some of them again
+PICTURES = 64  # cached: the checks of a node request some again
 
 
 class DocumentHost(base.Host):
     """A renderer that reads documents, with one process at a time, for one library.
 
-    Next to the module of a host is `worker.py`. Its arguments are the folder whose `libraries` replace
-    MaterialX's own, or "", and the libraries to load before these. One picture, including the
-    compilation of its shader, may take `limit` seconds.
+    `worker.py` lies next to the module of a host. Its arguments are the folder whose `libraries` replace MaterialX's
+    own, or "", and the libraries to load before these. `limit` is in seconds per picture, with its shader's compilation.
     """
 
     target: ClassVar[str] = "glsl"
@@ -101,7 +100,7 @@ class DocumentHost(base.Host):
         return Identity(self.name, str(self.worker.version), self.worker.device)
 
     def picture(self, shader: Shader, scene: Scene) -> Array:
-        """Picture of the sphere with a document's material on it; the worker generates it again."""
+        """Picture of the sphere; the worker generates the shader again."""
         self.refuse_paths(scene)
         self.refuse_shape(scene)
         if isinstance(scene.environment, (str, Path)):
@@ -127,14 +126,14 @@ class DocumentHost(base.Host):
 
     @abstractmethod
     def _check(self, error: str, printed: Sequence[str]) -> None:
-        """Raise NotRun or ShaderError for a reply's error or what the renderer printed."""
+        """Raise NotRun or ShaderError for a reply's error or for printed lines."""
 
     def _document(self, shader: Shader) -> tuple[str, str]:
         """Text of a shader's document, and the name path of the element to show."""
         return mx.writeToXmlString(shader.document), shader.element
 
     def _needs_blocks(self, shader: Shader) -> bool:
-        """Whether one triangle has to cover the block of pixels around each pixel, which takes longer."""
+        """Whether one triangle must cover the block of pixels around each pixel, which takes longer."""
         return False
 
     def _worker(self) -> Worker:
@@ -151,7 +150,7 @@ class DocumentHost(base.Host):
         methods: Methods,
         card: bool,
     ) -> Array:
-        # Write the document under a new name: OpenUSD caches files.
+        # Each document needs its own name: OpenUSD caches files.
         folder = self.worker.folder
         document = folder / f"{sha256(text.encode()).hexdigest()}.mtlx"
         document.write_text(text, encoding="utf-8")

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fragment shaders that evaluate a function once per pixel, around source text left unchanged.
 
-Arguments arrive in float textures, one texel per pixel. A generated shader keeps every character:
-a macro renames its `main`, and a second `main` repeats the statements by which the first one calls
-its BSDF. There, local variables of the same names hide the shader's uniforms.
+Arguments arrive in float textures, one texel per pixel. The generated text is unchanged: a macro renames its `main`, and
+a second `main` repeats the first one's statements that call the BSDF, with local variables that hide the uniforms.
 """
 
 from __future__ import annotations
@@ -29,17 +28,17 @@ FETCH = {
 FETCH["vector3"] = FETCH["vec3"] = FETCH["color3"]
 FETCH["vector2"] = "vec2 {0} = {1}.xy;"
 FETCH["integer"] = "int {0} = int({1}.x);"
-# If a stage may not have enough textures, arguments share one with stacked layers.
+# Arguments that exceed the number of textures share one, in stacked layers.
 STACK = "mxeon_stack"
-MOST = 12  # textures of arguments; every device has 16, and the environment uses some
+MOST = 12  # textures for arguments; every device has 16, and the environment uses some
 LAYER = (
     f"texelFetch({STACK}, mxeon_pixel + ivec2(0, {{0}} * (textureSize({STACK}, 0).y / {{1}})), 0)"
 )
-COMPONENTS = {"float": 1, "boolean": 1, "integer": 1, "vector2": 2}  # 3 of every other type
-WIDTH = 1024  # most pixels in a row of an evaluation
-PART = 1 << 15  # elements of one frame of it
-# Columns and rows of a texture of arguments, in addition to its frame's even number: Mesa compiles a program
-# once for textures whose sides are powers of two, and once for others.
+COMPONENTS = {"float": 1, "boolean": 1, "integer": 1, "vector2": 2}  # all other types have 3
+WIDTH = 1024  # maximum pixels in a row of a frame
+PART = 1 << 15  # elements evaluated in one frame
+# One more column and row make the sides of argument textures odd: Mesa compiles a program once for textures whose sides
+# are powers of two, and once more for other sides.
 ODD = 1
 
 Columns: TypeAlias = dict[str, NDArray[np.float32]]  # rows of 1 to 3 values, or layers, by name
@@ -47,19 +46,19 @@ Columns: TypeAlias = dict[str, NDArray[np.float32]]  # rows of 1 to 3 values, or
 
 @dataclass(frozen=True)
 class Dialect:
-    """Text that a language of the GLSL family needs around a function."""
+    """Text around a function in a language of the GLSL family."""
 
     version: str  # first line of a stage
     prelude: str  # between the version and a generated text
-    output: str  # declares a pixel stage's output, for text that has none
-    sampler: str  # declares an argument's sampler, with its name and its number
-    vertex: str  # stage for text that reads nothing from one
+    output: str  # declaration of a pixel stage's output
+    sampler: str  # declaration of an argument's sampler, with its name and number
+    vertex: str  # vertex stage without outputs
 
 
 VERTEX = "in vec3 i_position;\nvoid main() { gl_Position = vec4(i_position, 1.0); }\n"
 
-# WebGPU's Vulkan has separate textures and samplers, the generated text has combined ones: here its
-# sampler2D is a texture that is always read through the same sampler.
+# WebGPU has separate textures and samplers, the generated text combined ones: define sampler2D as a texture that is
+# always read through the same sampler.
 SEPARATE = """#extension GL_EXT_samplerless_texture_functions : require
 layout (set = 1, binding = 0) uniform sampler mxeon_sampler;
 vec4 mxeon_lookup(texture2D t, vec2 uv) { return texture(sampler2D(t, mxeon_sampler), uv); }
@@ -103,7 +102,7 @@ def bsdf_evaluation(query: Query) -> tuple[str, Columns]:
     shader = query.shader
     dialect, call = DIALECTS[shader.target], bsdf_call(query)
     before, output = _before_main(shader.stages["pixel"], dialect)
-    # Subsurface scattering divides by what P changes from pixel to pixel.
+    # Subsurface scattering divides by the derivatives of P.
     body = [
         GIVEN.format("vec3(gl_FragCoord.xy, 0.0)"),
         call.statements,
@@ -116,7 +115,7 @@ def bsdf_evaluation(query: Query) -> tuple[str, Columns]:
 
 @lru_cache(maxsize=16)
 def _before_main(pixel: str, dialect: Dialect) -> tuple[str, str]:
-    """What comes before the main of an evaluation, and the name of the output of a generated text."""
+    """Text before the main of an evaluation, and the name of the generated text's output."""
     version, text = pixel.split("\n", 1)
     macros = "".join(f"#undef {name}\n" for name in ["main", *booleans(text)])
     before = f"{version}\n{dialect.prelude}{renamed(text)}{macros}"
@@ -124,7 +123,7 @@ def _before_main(pixel: str, dialect: Dialect) -> tuple[str, str]:
 
 
 def renamed(text: str) -> str:
-    """A generated text whose main has another name, by a macro that no function before it can ask for."""
+    """A generated text whose main is renamed by a macro that follows all of its functions."""
     functions, main = text.rsplit("void main", 1)
     return f"{functions}#define main mxeon_generated_main\nvoid main{main}"
 
@@ -147,9 +146,9 @@ def function_evaluation(
 
 
 def frame(arguments: Mapping[str, Array]) -> tuple[int, tuple[int, int]]:
-    """Number of elements of the longest argument, and the size of a frame for them.
+    """Length of the longest argument, and the size of a frame for it.
 
-    Width and height are even: a change from pixel to pixel is that within a square of 2 x 2.
+    Width and height are even: GPU derivatives are computed per 2 x 2 square.
     """
     count = max(each.shape[-2] for each in arguments.values())
     height = 2 * -(-count // (2 * WIDTH))
@@ -157,7 +156,7 @@ def frame(arguments: Mapping[str, Array]) -> tuple[int, tuple[int, int]]:
 
 
 def parts(arguments: Mapping[str, Array]) -> Iterator[dict[str, Array]]:
-    """Arguments of PART elements at a time: smaller textures and frames take less memory."""
+    """Arguments in parts of PART elements, to save memory."""
     count, _ = frame(arguments)
     for start in range(0, count, PART):
         yield {
@@ -167,9 +166,9 @@ def parts(arguments: Mapping[str, Array]) -> Iterator[dict[str, Array]]:
 
 
 def texels(values: Array, size: tuple[int, int], margin: int = 0) -> NDArray[np.float32]:
-    """Values, a row per element or one for all, or layers of them, laid out over a frame of `size`.
+    """Values (a row per element or a constant row), or layers of values, laid out over a frame of `size`.
 
-    A margin adds that many columns and rows to a layer.
+    A margin adds columns and rows to each layer.
     """
     width, height = size
     layers = values[np.newaxis] if values.ndim == 2 else values
@@ -200,7 +199,7 @@ def _main(
     body: Sequence[str],
     most: int = MOST,
 ) -> tuple[str, Columns]:
-    """A main that reads the arguments and then executes `body`, and the arguments' texels."""
+    """A main that reads the arguments and executes `body`, and the arguments' texels."""
     rows = columns(arguments)
     if len(rows) <= most:
         values = {f"mxeon_{name}": each for name, each in rows.items()}

@@ -19,10 +19,10 @@ from mxeon.hosts.raster import FragmentHost
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.scene import Scene
 
-PROGRAMS = 4  # to keep, of 10 MB each: a document's scenes and a node's checks share them
-ROWS = 256  # of a texture that are copied at a time
-CONSTANTS = 64  # textures of one value to keep: most inputs are the same for all pixels
-POINTS = 4  # textures of points to keep: most materials have the same vertex stage
+PROGRAMS = 4  # cached programs, 10 MB each: a document's scenes and a node's checks share them
+ROWS = 256  # rows of a texture to copy at a time
+CONSTANTS = 64  # cached textures of one value: most inputs are constant
+POINTS = 4  # cached textures of points: most materials have the same vertex stage
 REMEDIES = {
     "linux": "on Debian: apt-get install libegl1 libgl1-mesa-dri",
     "darwin": "macOS ends at OpenGL 4.1: use --host wgsl or --host webgl",
@@ -34,10 +34,10 @@ T = TypeVar("T")
 
 
 def _current(verb: Callable[Concatenate[GlHost, P], T]) -> Callable[Concatenate[GlHost, P], T]:
-    """Make the host's context current for a verb: other hosts of the process have their own.
+    """Make the host's context current for a method: other hosts of the process have their own.
 
-    An object of OpenGL is a number that each context counts itself. What Python drops at any
-    time is therefore deleted here, where its own context is current, and nowhere else.
+    Each context numbers its objects itself. Objects that Python has dropped are therefore deleted here, while their own
+    context is current.
     """
 
     @wraps(verb)
@@ -96,9 +96,9 @@ class GlHost(FragmentHost):
         passes: Iterable[int],
         textures: Mapping[str, Array] | None = None,
     ) -> NDArray[np.float32]:
-        """The sum of what a fragment shader draws, for each value of the uniform `tracer_pass` in `passes`.
+        """Sum of a fragment shader's frames over the values `passes` of its uniform `tracer_pass`.
 
-        Shape (height, width, 4), row 0 at the bottom. Uniforms that the shader does not use are left out.
+        Shape (height, width, 4), row 0 at the bottom. Unused uniforms are ignored.
         """
         context = self._context
         program = self._program(fragment.DIALECTS["glsl"].vertex, pixel)
@@ -163,10 +163,10 @@ class GlHost(FragmentHost):
         size: tuple[int, int],
         parts: Sequence[raster.Rectangle] = (),
     ) -> Array:
-        """One frame as float32 (height, width, 3), row 0 at the bottom; all of it or some parts."""
+        """One frame as float32 (height, width, 3), row 0 at the bottom, or only some parts of it."""
         context = self._context
         frame = context.framebuffer([context.renderbuffer(size, components=4, dtype="f4")])
-        # Mesa compiles a program twice, for whole tiles and for others, unless a component is left alone.
+        # Unless a component is masked, Mesa compiles a program twice, for whole and for partial tiles.
         frame.color_mask = True, True, True, False
         frame.use()
         frame.clear()
@@ -185,8 +185,8 @@ class GlHost(FragmentHost):
     ) -> dict[str, moderngl.Texture | moderngl.TextureArray]:
         """Textures for the samplers of a program; samplers of one array share a texture.
 
-        A map of the environment ends at its poles. The even one of a check repeats: clamping would
-        turn a coordinate that is not a number into one, and the check would see nothing.
+        A map of the environment ends at its poles. The uniform one of a check repeats: clamping would turn a NaN
+        coordinate into a number, and hide it from the check.
         """
         made: dict[tuple[int, bool], moderngl.Texture] = {}
         own: dict[str, moderngl.Texture | moderngl.TextureArray] = {}
@@ -208,7 +208,7 @@ class GlHost(FragmentHost):
         return self._texture(fragment.texels(row, size, fragment.ODD), mipmaps=False)
 
     def _texture(self, texels: Array, mipmaps: bool) -> moderngl.Texture:
-        if gray := not texels.strides[-1]:  # one channel that is repeated; see read_texture
+        if gray := not texels.strides[-1]:  # one repeated channel; see read_texture
             texels = texels[..., :1]
         height, width, components = texels.shape
         texture = self._context.texture((width, height), components, dtype="f4")

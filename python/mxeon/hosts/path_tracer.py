@@ -15,14 +15,14 @@ from mxeon.shaders.methods import UNCHOSEN
 from mxeon.shaders.scene import Scene
 from mxeon.shaders.shader_ball import BELT, OBJECT
 
-SAMPLES, BOUNCES = 64, 8  # of a pixel, and of a path, unless the scene says otherwise
+SAMPLES, BOUNCES = 64, 8  # default paths per pixel and bounces per path
 HEAD = (
     "#version 430\n#define texture(map, at) textureLod(map, at, 0.0)\n"  # paths have no derivatives
 )
 
 
 def by_light(sky: Array) -> tuple[Array, Array]:
-    """Numbers of texels in proportion to their light, 256 x 256, and the probability of each texel."""
+    """Indices of texels, sampled in proportion to their light, 256 x 256, and each texel's probability."""
     rows, columns, _ = sky.shape
     across = np.sin(np.pi * (np.arange(rows) + 0.5) / rows)[:, np.newaxis]
     share = np.cumsum(sky.mean(axis=-1) * across + 1e-6)
@@ -32,7 +32,7 @@ def by_light(sky: Array) -> tuple[Array, Array]:
 
 
 class NoiseNote(UserWarning):
-    """How far a picture is from a converged one."""
+    """Noise of a picture."""
 
 
 class PathTracerHost(gl.GlHost):

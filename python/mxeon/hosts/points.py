@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures in which every pixel is an exact point: the vertex stage runs once for each of them.
+"""Pictures in which every pixel is an exact point: the vertex stage runs once for each point.
 
-A mesh that is exact at each pixel needs two triangles per pixel, and drivers shade whole blocks of
-pixels for each triangle. Here a host runs a generated vertex stage for the points alone and captures
-its outputs. They reach the pixel stage in the layers of a texture, one texel per pixel, and one
-triangle covers the picture. Derivatives are differences between neighboring pixels, as ever.
+A mesh that is exact at each pixel needs two triangles per pixel, and drivers shade whole blocks of pixels for each
+triangle. Instead, a host runs a generated vertex stage for points and captures its outputs. They reach the pixel stage
+in the layers of a texture, one texel per pixel, and one triangle covers the picture. Derivatives are differences between
+neighboring pixels, as usual.
 
-Both texts keep every character: macros turn the inputs of the pixel stage into variables, and a second
-`main` fills these before it calls the first.
+Both texts are unchanged: macros turn the inputs of the pixel stage into variables, and a second `main` fills these
+before it calls the first one.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ from mxeon.shaders.generation import Shader
 from mxeon.shaders.scene import VisiblePoints, sphere, tangents
 from mxeon.shaders.shader_ball import shader_ball
 
-MARGIN = 1  # points beyond each edge, for the derivatives of the last row and column
+MARGIN = 1  # points beyond each edge, for derivatives at the edges
 SAMPLER = "mxeon_points"
 
-# Before a generated text: macros that make its inputs variables. GLSL has them in a block.
+# Macros that turn a text's inputs into variables. In GLSL they are in a block.
 VARIABLES = {
     "glsl": "#define VertexData mxeon_Inputs { float mxeon_unused; } mxeon_inputs; struct VertexData\n",
     "essl": "#define in\n",
@@ -79,7 +79,7 @@ def visible(size: int, shape: str, margin: int = 0) -> VisiblePoints:
 def vertices(size: int, shape: str) -> dict[str, NDArray[np.float32]]:
     """Attributes of the points of a picture, with a margin, in the rows of a frame, row 0 at the top.
 
-    A point beside the sphere has the normal of the nearest point of the rim.
+    Points off the sphere have the normal of the nearest point of the rim.
     """
     points = visible(size, shape, MARGIN)
     flat = points.normal.reshape(-1, 3)

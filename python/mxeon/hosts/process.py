@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A renderer's own process, which answers one request after the other.
+"""A renderer's own process, which answers requests in sequence.
 
 The other end of the pipe is `serve.py` with a script of the host. It reads one JSON object per line on standard
 input and answers each with one on standard output, the first one with its version. The process ends when standard

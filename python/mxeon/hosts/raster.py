@@ -26,13 +26,13 @@ Uniforms: TypeAlias = dict[str, Plain]  # values by name
 
 Rectangle: TypeAlias = tuple[int, int, int, int]  # left, lowest row, width, height
 
-BAND = 4  # rows of a picture that are drawn together, as wide as the shape
+BAND = 4  # rows of a picture in one rectangle, as wide as the shape
 VIEW_DISTANCE = 1e8  # makes normalize(u_viewPosition - positionWorld) the z axis, in float32
-# Not of one texel, which has no mipmaps: Mesa would compile a program once more for an uneven environment.
+# More than one texel, so that it has mipmaps: otherwise Mesa compiles programs again for other environments.
 WHITE_TEXELS = np.ones((2, 2, 3), dtype=np.float32)
 
-# Directions over which a shader of microfacets sums its environment: see docs/hosts.md for the error
-# of each number, and its cost. Of the environment's mipmaps they read the first alone.
+# Directions over which microfacets sum their environment: docs/hosts.md has the error and cost of each number. Only the
+# first mipmap of the environment is read.
 EVALUATION = {"u_envRadianceSamples": 1024, "u_envRadianceMips": 1}
 PICTURE = {"u_envRadianceSamples": 256, "u_envRadianceMips": 1}
 DARK = {"u_envRadianceSamples": 1, "u_envRadianceMips": 1}  # every sum is 0
@@ -41,7 +41,7 @@ TRIANGLE = {  # attributes of its three vertices
     "i_normal": np.array([[0, 0, 1]] * 3, dtype="f4"),
 }
 
-# What generated GLSL does instead of a lobe below the surface.
+# Approximations of lobes below the surface in generated GLSL.
 IN_PLACE = {
     SUBSURFACE: "subsurface_bsdf is rasterized: its direct light is blurred as on a sphere of the "
     "surface's curvature, and under an environment it is Lambert of its color",
@@ -52,14 +52,14 @@ IN_PLACE = {
 
 
 def approximations(shader: Shader) -> tuple[str, ...]:
-    """What generated GLSL does instead of a shader's lobes below the surface."""
+    """How generated GLSL approximates a shader's lobes below the surface."""
     return tuple(IN_PLACE[kind] for kind in inner_lobes(shader))
 
 
 def textures(shader: Shader, scene: Scene) -> dict[str, Array]:
-    """Texels by sampler: images of a shader's document and the environment, row 0 first in v.
+    """Texels by sampler: images of a shader's document and the environment, row 0 at v = 0.
 
-    Samplers of one file have the same array.
+    Samplers of the same file share an array.
     """
     radiance = read_latlong(scene.environment)
     return images(shader) | {"u_envRadiance": radiance, "u_envIrradiance": irradiance(radiance)}
@@ -85,8 +85,7 @@ def environment(irradiance: Array | None) -> dict[str, Array]:
 def inputs(shader: Shader) -> Uniforms:
     """Values of the uniforms for a shader's inputs, except images.
 
-    A matrix is a flat tuple, whose rows are the columns of the uniform; each member of a structure
-    is a separate uniform.
+    A matrix is a flat tuple whose rows are the uniform's columns; members of structures are separate uniforms.
     """
     return {
         name: value
@@ -99,7 +98,7 @@ def light(scene: Scene) -> Uniforms:
     """Values of the uniforms of the viewer and the distant light."""
     values: Uniforms = {"u_viewPosition": (0.0, 0.0, VIEW_DISTANCE)}
     values |= DARK if scene.environment is None else PICTURE
-    values["u_numActiveLightSources"] = 0  # or the program keeps the last scene's
+    values["u_numActiveLightSources"] = 0  # a program keeps the last scene's values
     if scene.light is not None:
         values |= {
             "u_numActiveLightSources": 1,
@@ -115,7 +114,7 @@ def light(scene: Scene) -> Uniforms:
 def bands(size: int, shape: str) -> tuple[Rectangle, ...]:
     """Rectangles that cover a shape in a frame whose row 0 is at the bottom; the rest stays empty.
 
-    Their edges are multiples of BAND, so that each pixel's neighbors are drawn with it.
+    Their edges are multiples of BAND, so that neighbors in a 2 x 2 square are drawn together.
     """
     mask = visible(size, shape).mask[::-1]
     parts = []
@@ -132,17 +131,14 @@ def picture(image: Array, scene: Scene) -> Array:
     return np.where(visible(scene.size, scene.shape).mask[..., None], image[::-1], np.float32(0.0))
 
 
-# Of two lights in the middle of an animation: an evaluation looks like any frame to its shader.
+# An evaluation looks like a frame with two lights in the middle of an animation.
 FRAME_UNIFORMS = (
     light(SIDE) | {"u_numActiveLightSources": 2, "u_frame": 24.0, "u_time": 1.0} | EVALUATION
 )
 
 
 class FragmentHost(base.Host):
-    """A host whose engine draws frames: an evaluation has one pixel per element.
-
-    It writes the pixel stage of an evaluation or of a call; its engine draws it.
-    """
+    """A host whose engine draws frames with one pixel per element of an evaluation or a call."""
 
     reads_images = True
     default = GENERATED

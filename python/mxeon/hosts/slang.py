@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Slang on a GPU or the CPU: generated Slang compiled by slangpy, in float32.
 
-The generated text is unchanged; a compute kernel after it repeats the statements with which
-the text calls its BSDF. Arguments arrive in buffers, one row per thread.
+The generated text is unchanged; a compute kernel after it repeats the text's statements that call the BSDF. Arguments
+arrive in buffers, one row per thread.
 """
 
 from __future__ import annotations
@@ -24,16 +24,13 @@ from mxeon.hosts.base import TURN, Array, Identity, Query
 from mxeon.shaders import functions
 from mxeon.shaders.methods import GENERATED
 
-Resource: TypeAlias = Any  # an object of slangpy, whose types are known where it is installed
+Resource: TypeAlias = Any  # an object of slangpy, whose types are unknown if it is not installed
 
 
 def _slangpy() -> Resource:
-    """slangpy; None where it is not installed.
-
-    It imports PyTorch if that is installed, which takes two seconds and is not needed here.
-    """
+    """slangpy, or None if it is not installed; without PyTorch, whose import takes two seconds."""
     modules = cast(dict[str, object], sys.modules)
-    unused = modules.setdefault("torch", None) is None  # as if it were not installed
+    unused = modules.setdefault("torch", None) is None  # hide it
     try:
         import slangpy
     except ImportError:
@@ -47,7 +44,7 @@ def _slangpy() -> Resource:
 slangpy = _slangpy()
 
 ENTRY = "mxeon_main"
-THREADS = 64  # in a group
+THREADS = 64  # threads in a group
 READ = {
     1: "{kind} {name} = {kind}(mxeon_{name}[mxeon_row]);",
     2: "float2 {name} = float2(mxeon_{name}[2 * mxeon_row], mxeon_{name}[2 * mxeon_row + 1]);",
@@ -76,15 +73,15 @@ void {entry}(uint3 mxeon_thread : SV_DispatchThreadID)
 }}
 """
 
-# GLSL's names that the shader functions use and Slang calls differently.
+# GLSL's names in the shader functions that differ in Slang.
 GLSL = """typealias vec3 = float3;
 #define mix lerp
 """
 KINDS = {"boolean": "bool", "integer": "int"}
 
-DEVICES = ("vulkan", "cpu")  # the first that works
+DEVICES = ("vulkan", "cpu")  # in order of preference
 
-# The CPU device fills no texture but from a kernel.
+# On the CPU, only a kernel can fill a texture.
 FILL = f"""RWTexture2D<float4> mxeon_texture;
 StructuredBuffer<float> mxeon_texels;
 uniform uint mxeon_width;
@@ -110,7 +107,7 @@ class SlangHost(base.Host):
     def __init__(self) -> None:
         if slangpy is None:
             raise NotRun(f"slang: slangpy is not installed; {install('slang')}")
-        slangpy.Logger.get().level = slangpy.LogLevel.error  # it warns of what a CPU lacks
+        slangpy.Logger.get().level = slangpy.LogLevel.error  # it warns of features that CPUs lack
         for device in DEVICES:
             self._kernels: dict[str, Resource] = {}
             self._names = itertools.count()
@@ -123,15 +120,16 @@ class SlangHost(base.Host):
         else:
             remedy = "without a GPU it needs a C++ compiler: on Debian: apt-get install g++"
             raise NotRun(f"slang: no kernel for the CPU; {'; '.join([*lines, remedy])}")
-        # Slang removes the files of the kernels that are released. A worker is ended by SIGTERM and, soon
-        # after, killed: it releases them before all else.
+        # Slang removes the files of released kernels. A worker receives SIGTERM and is killed soon after, so it must
+        # release them immediately.
         atexit.register(self._kernels.clear)
-        if multiprocessing.parent_process():
-            signal.signal(signal.SIGTERM, self._end)
 
-    def _end(self, *_: object) -> None:
-        self._kernels.clear()
-        sys.exit()
+        def end(*_: object) -> None:
+            self._kernels.clear()
+            sys.exit()
+
+        if multiprocessing.parent_process():
+            signal.signal(signal.SIGTERM, end)
 
     def identity(self) -> Identity:
         info = self._device.info
@@ -192,7 +190,7 @@ class SlangHost(base.Host):
     def _kernel(self, text: str) -> Resource:
         if text not in self._kernels:
             try:
-                name = f"mxeon_{next(self._names)}"  # a text that does not compile keeps its own
+                name = f"mxeon_{next(self._names)}"  # names of failed texts cannot be reused
                 module = self._device.load_module_from_source(name, text)
                 program = self._device.link_program([module], [module.entry_point(ENTRY)])
                 self._kernels[text] = self._device.create_compute_kernel(program)
@@ -221,12 +219,9 @@ class SlangHost(base.Host):
         return texture
 
     def _environment(self, irradiance: Array | None) -> dict[str, Resource]:
-        """Uniforms of an environment; a white one where there is no irradiance."""
-        sampler = self._device.create_sampler()
-        white = {"tex": self._white, "sampler": sampler}
-        tinted = white
-        if irradiance is not None:
-            tinted = {"tex": self._texture(irradiance), "sampler": sampler}
+        """Uniforms of an environment, white by default."""
+        texture = self._white if irradiance is None else self._texture(irradiance)
+        tinted = {"tex": texture, "sampler": self._device.create_sampler()}
         values = {"u_envRadiance": tinted, "u_envIrradiance": tinted, "u_envLightIntensity": 1.0}
         matrix = slangpy.float4x4(TURN.astype(np.float32))
         return {"pixelCB": {**values, **raster.EVALUATION, "u_envMatrix": matrix}}

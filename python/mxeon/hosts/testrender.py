@@ -14,17 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import testrender_scene as scenes
 from mxeon.hosts.base import Array, Identity, Inputs
+from mxeon.hosts.osl import points
 from mxeon.hosts.osl.engines import find_program, output, version
-from mxeon.hosts.osl.points import (
-    CALL,
-    IMAGE,
-    call_text,
-    columns_of,
-    side,
-    statements,
-    with_header,
-    with_variables,
-)
 from mxeon.hosts.pairs import LAMP, SKY, PairHost
 from mxeon.io.images import read_image
 from mxeon.jobs.signals import Temporary
@@ -35,7 +26,7 @@ HELPERS = {
     "mxeon_light": "shader mxeon_light() { Ci = emission(); }",
     "mxeon_sky": "shader mxeon_sky() { Ci = background(); }",
 }
-OPTIONS = ("--center", "-d", "float", CALL, "-o", "result")  # a function at every point of the grid
+OPTIONS = ("--center", "-d", "float", points.CALL, "-o", "result")
 
 
 class TestrenderHost(PairHost):
@@ -56,14 +47,14 @@ class TestrenderHost(PairHost):
     def _pixels(
         self, shader: Shader, wo: Array, wi: Array, inputs: Inputs, last: str, light: str
     ) -> NDArray[np.float64]:
-        """Radiance of pairs; the light of one point is too small to add to an emission."""
+        """Radiance of pairs; the lamp adds no visible light to an emission."""
         lit = light != SKY
         wo, wi = (np.asarray(each, np.float64) for each in (wo, wi))
-        scene = scenes.pair_scene(wo, wi, side(len(wo)))
-        columns = columns_of(shader, inputs, scene.turned)
-        block = statements(columns, self._folder / IMAGE, len(wo), scenes.PLACE)
-        text = with_variables(shader, block, lambda output: last.format(output=output))
-        for name, each in {shader.name: with_header(text, shader), **HELPERS}.items():
+        scene = scenes.pair_scene(wo, wi, points.side(len(wo)))
+        columns = points.columns_of(shader, inputs, scene.turned)
+        block = points.statements(columns, self._folder / points.IMAGE, len(wo), scenes.PLACE)
+        text = points.with_variables(shader, block, lambda output: last.format(output=output))
+        for name, each in {shader.name: points.with_header(text, shader), **HELPERS}.items():
             self._compile(name, each)
         for name, each in scene.files(shader.name, lit).items():
             (self._folder / name).write_text(each, encoding="utf-8")
@@ -74,10 +65,12 @@ class TestrenderHost(PairHost):
         return values / scene.irradiance[:, np.newaxis] if light == LAMP else values
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
-        place, last = (self._folder / IMAGE, scenes.PLACE), "result = {};"
-        text, count = call_text(source, function, arguments, *place, "output color result", last)
-        self._compile(CALL, text)
-        size = ["-t", "1", "--res", *[str(side(count))] * 2]
+        place, last = (self._folder / points.IMAGE, scenes.PLACE), "result = {};"
+        text, count = points.call_text(
+            source, function, arguments, *place, "output color result", last
+        )
+        self._compile(points.CALL, text)
+        size = ["-t", "1", "--res", *[str(points.side(count))] * 2]
         pixels = self._image([find_program("testshade"), *size, *OPTIONS])
         return pixels.reshape(-1, 3)[:count]
 
@@ -85,7 +78,7 @@ class TestrenderHost(PairHost):
         self._temporary.cleanup()
 
     def _compile(self, name: str, text: str) -> None:
-        """Compile a shader, unless its text is that of the last one of its name."""
+        """Compile a shader unless its text is unchanged."""
         if self._compiled.get(name) == text:
             return
         (self._folder / f"{name}.osl").write_text(text, encoding="utf-8")
@@ -93,7 +86,7 @@ class TestrenderHost(PairHost):
         self._compiled[name] = text
 
     def _image(self, command: list[str]) -> NDArray[np.float64]:
-        """Pixels that a program writes; TIFF, since its EXR files have half floats."""
+        """Pixels that a program writes as TIFF, since its EXR files have half floats."""
         picture = self._folder / "picture.tif"
         picture.unlink(missing_ok=True)
         output([*command, picture.name], self._folder)

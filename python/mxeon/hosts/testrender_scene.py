@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A scene in testrender's format in which each pixel shows its own pair of directions.
 
-The camera sees a small triangle in each pixel, and a small light lies outside the picture. Where a
-triangle lies on the ray of its pixel sets the angle between view and light. The frame of the
-shaded surface is turned into them: a shader gets its normal and tangent, whatever the triangle is.
+The camera sees a small triangle in each pixel, and a small light lies outside the picture. The place of a triangle on its
+pixel's ray sets the angle between view and light. The shaded frame is turned accordingly: shaders get their normal and
+tangent independently of the triangle.
 
     camera ------- d ------> P        wo = -d
                             /         angle of wo and wi: foot point of the light + distance cot(angle) d
@@ -22,14 +22,14 @@ from mxeon.hosts.pairs import CORNERS, TurnedPairs, Vectors, frames, unit
 
 SCENE, POINTS, LIGHT = "scene.xml", "points.obj", "light.obj"
 EYE = 40.0  # height of the camera above the light, which lies at the origin
-CENTER = 1.5  # of the picture, at the height of the light
-NEAREST = 0.5  # ray to the light
+NEAREST = 0.5  # distance from the light to a ray
+CENTER = 1.5  # x of the picture's center, at the height of the light
 FOV = 5.725  # degrees, of the whole frame, which is tan(FOV / 2) wide at distance 1
 LIGHT_RADIUS = 2.0**-18
-# Of a triangle, over its distance: the camera's rays are off by some 2^-24, and what is small hides no light.
+# Size of a triangle over its distance: above the camera's error of 2^-24, and too small to hide the light.
 TRIANGLE = 2e-5
-PLACE = "u, v"  # where a point reads an image
-# Paths of a pixel, squared: the light is a point as far as float32 can tell, the sky is not.
+PLACE = "u, v"  # coordinates at which a point reads an image
+# Square roots of the paths per pixel: the light is a point within float32, the sky is not.
 LIGHT_SAMPLES, SKY_SAMPLES = 1, 8
 
 WORLD = """<World>
@@ -49,7 +49,7 @@ LIGHT_GROUP = f"""  <ShaderGroup name="light" is_light="yes">
     shader mxeon_light light ;
   </ShaderGroup>
   <Model filename="{LIGHT}" />"""
-# Of resolution 0: no table of a sky that is uniform.
+# Resolution 0 omits the table of a uniform sky.
 SKY_GROUP = """  <ShaderGroup name="sky">
     shader mxeon_sky sky ;
   </ShaderGroup>
@@ -60,11 +60,11 @@ SKY_GROUP = """  <ShaderGroup name="sky">
 class PairScene(TurnedPairs):
     size: int  # pixels on a side of the picture
     rays: Vectors  # unit vectors (N, 3) from the camera through the pixels' centers, row 0 first
-    points: Vectors  # (N, 3), float32 numbers
+    points: Vectors  # (N, 3), rounded to float32
 
     @property
     def irradiance(self) -> NDArray[np.float64]:
-        """Irradiance of a surface that faces the light, of radiance 1, (N,)."""
+        """Irradiance on a facing surface for a light of radiance 1, (N,)."""
         area = 0.5 * np.cross(*np.diff(_light_corners(), axis=0))
         squared = (self.points**2).sum(axis=1)
         return np.asarray(np.abs(self.points @ area) / squared**1.5)
@@ -79,13 +79,13 @@ class PairScene(TurnedPairs):
         return texts | ({LIGHT: _model(_light_corners()[np.newaxis])} if lit else {})
 
     def _model(self) -> str:
-        """A triangle about each point, which the light sees from its edge and the camera from above."""
-        # Two axes in the plane of the triangle: towards the light, and across.
+        """A triangle around each point, seen edge-on by the light and face-on by the camera."""
+        # Axes in the plane of the triangle: towards the light, and perpendicular.
         toward = -unit(self.points)
-        across = unit(np.cross(toward, self.rays))  # whose normal faces the camera
+        across = unit(np.cross(toward, self.rays))  # the normal faces the camera
         reach = TRIANGLE * np.linalg.norm(self.points - [0.0, 0.0, EYE], axis=1)
         axes = np.stack([toward, across], axis=1) * reach[:, np.newaxis, np.newaxis]
-        # Points of the same pixel of an image.
+        # All points of a triangle read the same pixel of an image.
         column, row = np.arange(len(self.rays)) % self.size, np.arange(len(self.rays)) // self.size
         places = (np.stack([column, row], axis=1) + 0.5) / self.size
         corners = self.points[:, np.newaxis] + np.array(CORNERS) @ axes
@@ -94,38 +94,33 @@ class PairScene(TurnedPairs):
 
 def pair_scene(wo: Array, wi: Array, size: int) -> PairScene:
     """Scene of pairs (N, 3), N <= size^2, with a sine of at least LEAST_SINE between wo and wi."""
-    # Points at which the light appears at the angle.
-    rays = _rays(size)[: len(wo)]
+    # Directions of the camera's rays.
+    axis = (np.arange(size) + 0.5) / size - 0.5
+    x, y = (each.ravel()[: len(wo), np.newaxis] for each in np.meshgrid(axis, -axis))
+    ahead = unit(np.array([[CENTER, 0.0, -EYE]]))
+    right = unit(np.cross(ahead, [[0.0, 1.0, 0.0]]))
+    width = np.tan(np.radians(FOV) / 2.0)  # testrender's frame is half as wide as usual
+    rays = unit(ahead + width * (x * right + y * np.cross(right, ahead)))
+    # Points that see the light at the required angle.
     eye = np.array([0.0, 0.0, EYE])
     foot = eye - (rays @ eye)[:, np.newaxis] * rays
     across = np.cross(wo, wi)
     cotangent = (wo * wi).sum(axis=1) / np.linalg.norm(across, axis=1)
     points = foot + (np.linalg.norm(foot, axis=1) * cotangent)[:, np.newaxis] * rays
     points = points.astype(np.float32).astype(np.float64)
-    # The frames of both pairs, which have the view as their first axis.
+    # Frames of both pairs, with the view as their first axis.
     local = frames(wo, wi)
     world = frames(-rays, -unit(points))
     return PairScene(world @ np.swapaxes(local, 1, 2), size, rays, points)
 
 
-def _rays(size: int) -> Vectors:
-    """Directions of the camera's rays, (size^2, 3)."""
-    axis = (np.arange(size) + 0.5) / size - 0.5
-    x, y = (each.ravel()[:, np.newaxis] for each in np.meshgrid(axis, -axis))
-    ahead = unit(np.array([[CENTER, 0.0, -EYE]]))
-    right = unit(np.cross(ahead, [[0.0, 1.0, 0.0]]))
-    up = np.cross(right, ahead)
-    width = np.tan(np.radians(FOV) / 2.0)  # half the usual extent
-    return unit(ahead + width * (x * right + y * up))
-
-
 def _light_corners() -> Vectors:
-    """Corners of the light, which faces the middle of the picture."""
+    """Corners of the light, facing the middle of the picture."""
     return LIGHT_RADIUS * np.array([(0.0, x, y) for x, y in CORNERS])
 
 
 def _model(corners: NDArray[np.float64], places: Vectors | None = None) -> str:
-    """Triangles (N, 3, 3) as an OBJ file, with the place of each in an image."""
+    """Triangles (N, 3, 3) as an OBJ file, with their places in an image."""
     count = len(corners)
     rows = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in corners.reshape(-1, 3)]
     first = 3 * np.arange(count) + 1

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Images that shaders read: textures, environments and the irradiance of an environment.
 
-Read with OpenImageIO, as float32 arrays (height, width, channels), linear or as stored: color
-transforms are the shader's.
+They are float32 arrays (height, width, channels) as stored; shaders transform colors.
 """
 
 from __future__ import annotations
@@ -24,9 +23,9 @@ if TYPE_CHECKING:
     from mxeon.shaders.generation import Shader
 
 IRRADIANCE_SIZE = 32  # rows of an irradiance map: a cosine lobe has no finer detail
-FIRST_TILE = {"<UDIM>": "1001", "<UVTILE>": "u1_v1"}  # MaterialX's names of it
-FILES = 16  # images whose values at the points of a picture are kept
-RADIANCE_SIZE = 64  # rows and columns, or a few more, of the radiance that is summed
+FIRST_TILE = {"<UDIM>": "1001", "<UVTILE>": "u1_v1"}  # MaterialX's names of the first tile
+FILES = 16  # size of the cache of images' values at points
+RADIANCE_SIZE = 64  # least rows and columns to which radiance is reduced before it is summed
 
 
 def texels_of(path: str | Path) -> int:
@@ -40,9 +39,9 @@ def texels_of(path: str | Path) -> int:
 def read_texture(path: str | Path) -> NDArray[np.float32]:
     """Pixels of a texture, row 0 at the bottom, where MaterialX has v = 0.
 
-    For a set of textures, it is the one of [0, 1]^2, which contains all coordinates of a sphere. One channel
-    is repeated for all colors, as in MaterialX, by a view with a last stride of 0. More channels than
-    a color has raise ImageError; a value that is not finite warns.
+    For a set of textures, it is the tile [0, 1]^2, which contains all coordinates of a sphere. A single channel is
+    repeated for all colors, as in MaterialX, by a view with a last stride of 0. Raises ImageError for more than four
+    channels, and warns of non-finite values.
     """
     for token, word in FIRST_TILE.items():
         path = str(path).replace(token, word)
@@ -56,7 +55,7 @@ def read_texture(path: str | Path) -> NDArray[np.float32]:
 
 @lru_cache(maxsize=FILES)
 def texels_at(path: str, texcoord: bytes) -> NDArray[np.float64]:
-    """All channels of a texture at points, (N, channels), by its four nearest texels."""
+    """All channels of a texture at points, (N, channels), with bilinear interpolation."""
     texels = read_texture(path)
     height, width = texels.shape[:2]
     texel = np.frombuffer(texcoord).reshape(-1, 2) * [width, height] - 0.5
@@ -88,8 +87,8 @@ def read_latlong(environment: float | str | Path | None) -> NDArray[np.float32]:
 
 
 def _not_finite(pixels: NDArray[np.float32]) -> str:
-    """The first value that is not finite, and their number; empty if all are finite."""
-    if np.isfinite([pixels.min(), pixels.max()]).all():  # either is NaN if a value is
+    """The first non-finite value and the number of such values, or ""."""
+    if np.isfinite([pixels.min(), pixels.max()]).all():  # NaN propagates to both
         return ""
     finite = np.isfinite(pixels)
     place = np.unravel_index(finite.argmin(), finite.shape)
@@ -102,7 +101,7 @@ def irradiance(radiance: NDArray[np.float32]) -> NDArray[np.float32]:
 
         (1 / pi) integral of L(omega) max(0, n . omega) d omega
 
-    For a uniform environment, that is exactly its radiance.
+    For a uniform environment it equals the radiance exactly.
     """
     if radiance.shape[:2] == (1, 1):
         return radiance
@@ -130,17 +129,16 @@ def latlong_directions(rows: int, columns: int) -> tuple[NDArray[np.float64], ND
 
 
 def image_files(shaders: Iterable[Shader]) -> tuple[str, ...]:
-    """Names of the images that shaders read, each once."""
+    """Distinct names of the images that shaders read."""
     inputs = (port for shader in shaders for port in shader.inputs)
     names = (str(port.value) for port in inputs if port.type == "filename" and port.value)
     return tuple(dict.fromkeys(names))
 
 
 def check_images(shaders: Iterable[Shader], policy: Policy) -> None:
-    """Refuse images of a document that are too large in total, before any of them is read.
+    """Refuse images of a document that are too large in total, before reading any.
 
-    Raises DocumentError if they have more pixels than the policy permits; ImageError if one is no
-    image, or has more channels than a color.
+    Raises DocumentError if they have more pixels than the policy permits; ImageError for a bad image.
     """
     from mxeon.shaders.document.references import files
     from mxeon.shaders.document.values import label

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A Vulkan device without a window: generated Vulkan GLSL as SPIR-V, in float32.
 
-glslang makes the SPIR-V, wgpu passes it to the driver. wgpu rejects interface blocks, so the one that
-an evaluation leaves unused is removed from the SPIR-V, not from the text.
+glslang generates the SPIR-V, and wgpu passes it to the driver. wgpu rejects interface blocks, so the unused block of an
+evaluation is removed from the SPIR-V.
 """
 
 from __future__ import annotations
@@ -33,13 +33,13 @@ COMPILER = ("glslangValidator", "-V", "--quiet", "--stdin")
 REMOVER = ("spirv-opt", "--remove-unused-interface-variables")
 TIMEOUT = 60.0  # seconds for one of them
 
-# Kinds of bindings, in wgpu's words.
+# wgpu's kinds of bindings.
 FILTERED = {"texture": {"sample_type": "float"}}
 UNFILTERED = {"texture": {"sample_type": "unfilterable-float"}}
 SAMPLER = {"sampler": {"type": "filtering"}}
 UNIFORM_BINDING = {"buffer": {"type": "uniform"}}
 
-# Bindings of a generated text.
+# Matches bindings in a generated text.
 DECLARATION = re.compile(
     r"^layout \((?:std140, )?binding=(?P<number>\d+)\) uniform "
     r"(?:(?P<kind>sampler2D|texture2D|sampler) (?P<name>\w+);|\w+\s*\{(?P<block>[^}]*)\})",
@@ -53,14 +53,14 @@ STD140 = {"mat4": (16, 64), "vec4": (16, 16), "vec3": (16, 12), "vec2": (8, 8)}
 STD140 |= dict.fromkeys(("float", "int", "bool"), (4, 4))  # type -> alignment and size, in bytes
 BLOCK_SIZE = 1 << 14
 
-FORMATS = {"uint8": "rgba8unorm", "float16": "rgba16float"}  # which can be filtered
-FLOATS = {1: "r32float", 2: "rg32float", 4: "rgba32float"}  # components -> format
+FORMATS = {"uint8": "rgba8unorm", "float16": "rgba16float"}  # filterable formats
+FLOATS = {1: "r32float", 2: "rg32float", 4: "rgba32float"}  # by number of components
 WHITE_TEXEL = np.full((1, 1, 4), 255, dtype=np.uint8)
 
-PROGRAMS = 8  # to keep: the checks of a node evaluate one shader many times
+PROGRAMS = 8  # cached programs: the checks of a node evaluate one shader many times
 
-Resource: TypeAlias = Any  # an object of wgpu, whose types are known where it is installed
-Kind: TypeAlias = Mapping[str, object]  # of a resource, as wgpu wants it
+Resource: TypeAlias = Any  # an object of wgpu, whose types are unknown if it is not installed
+Kind: TypeAlias = Mapping[str, object]
 Bindings: TypeAlias = dict[int, tuple[Kind, Resource]]  # by number
 
 
@@ -69,9 +69,9 @@ class VulkanHost(FragmentHost):
 
     name = "vulkan"
     target = "vulkan"
-    path: ClassVar[str] = ""  # converter of a text for the device
+    path: ClassVar[str] = ""  # name of the converter
     programs: ClassVar[tuple[str, ...]] = (COMPILER[0], REMOVER[0])
-    interfaces: ClassVar[tuple[str, ...]] = ("Vulkan",)  # of the system's drivers, in wgpu's words
+    interfaces: ClassVar[tuple[str, ...]] = ("Vulkan",)  # wgpu's names of driver interfaces
 
     def __init__(self) -> None:
         if wgpu is None:
@@ -107,10 +107,7 @@ class VulkanHost(FragmentHost):
         arguments: Mapping[str, Array],
         textures: Mapping[str, Array],
     ) -> Array:
-        """Values, one pixel per element, as many as the longest argument has.
-
-        The vertex stage is that of the dialect: the pipeline has one block for both stages.
-        """
+        """Values of a pixel stage; the dialect's vertex stage is used, as both stages share one block."""
         count, size = fragment.frame(arguments)
         texels = [fragment.texels(rows, size, fragment.ODD) for rows in arguments.values()]
         sets: tuple[Bindings, ...] = (
@@ -131,7 +128,7 @@ class VulkanHost(FragmentHost):
     def _program(
         self, pixel: str, sets: Iterable[Bindings]
     ) -> tuple[tuple[Resource, ...], Resource]:
-        """Layouts of a text's bindings, and its pipeline; both are independent of the resources."""
+        """Layouts of a text's bindings, and its pipeline, independent of the resources."""
         if pixel not in self._programs:
             if len(self._programs) == PROGRAMS:
                 self._programs.clear()
@@ -196,30 +193,27 @@ class VulkanHost(FragmentHost):
         return _spirv(stage, text)
 
     def _generated(self, text: str, textures: Mapping[str, Array]) -> Bindings:
-        """Bindings that generated text declares: textures (white unless given) and blocks."""
+        """Bindings of a generated text: textures, white by default, and blocks."""
         unique = {id(texels): texels.astype(np.float16) for texels in textures.values()}
         halves = {name: unique[id(texels)] for name, texels in textures.items()}
-        return {
-            int(match["number"]): self._binding(match, halves)
-            for match in DECLARATION.finditer(text)
-        }
-
-    def _binding(
-        self, declaration: re.Match[str], textures: Mapping[str, Array]
-    ) -> tuple[Kind, Resource]:
-        """Kind and resource of a declaration; a separate texture's name ends in _texture."""
-        if declaration["block"] is not None:
-            data = _std140(declaration["block"])
-            return UNIFORM_BINDING, self._device.create_buffer_with_data(data=data, usage="UNIFORM")
-        if declaration["kind"] == "sampler":
-            return SAMPLER, self._device.create_sampler()
-        texels = textures.get(declaration["name"].removesuffix("_texture"), WHITE_TEXEL)
-        return FILTERED, self._texture(texels)
+        bindings: Bindings = {}
+        for match in DECLARATION.finditer(text):
+            number = int(match["number"])
+            if match["block"] is not None:
+                data = _std140(match["block"])
+                block = self._device.create_buffer_with_data(data=data, usage="UNIFORM")
+                bindings[number] = UNIFORM_BINDING, block
+            elif match["kind"] == "sampler":
+                bindings[number] = SAMPLER, self._device.create_sampler()
+            else:  # the name of a separate texture ends in _texture
+                texels = halves.get(match["name"].removesuffix("_texture"), WHITE_TEXEL)
+                bindings[number] = FILTERED, self._texture(texels)
+        return bindings
 
     def _texture(self, texels: Array) -> Resource:
         """A texture of 8-bit, float16 or float32 texels, of one to four components."""
         height, width, components = texels.shape
-        if components == 3:  # there are no textures of three
+        if components == 3:  # not supported
             texels = np.pad(texels, ((0, 0), (0, 0), (0, 1)))
         form = FORMATS.get(texels.dtype.name) or FLOATS[texels.shape[2]]
         size = (width, height, 1)
@@ -251,7 +245,7 @@ def _run(command: Sequence[str], text: str = "") -> None:
 
 
 def _std140(members: str) -> bytes:
-    """Bytes of a block: up to the first structure, after which none of UNIFORMS comes."""
+    """Bytes of a block up to its first structure; no UNIFORMS follow one."""
     data, offset = bytearray(BLOCK_SIZE), 0
     for kind, name in re.findall(r"(\w+) (\w+);", members):
         if kind not in STD140:

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """WebGL2 in a headless Chromium: generated ESSL as a browser runs it, in float32.
 
-Playwright drives the installed browser. The page, `webgl.js`, draws one frame per request. It
-reads arrays from a file, bit for bit, and returns pixels as text. No host name resolves in this
-browser, so nothing leaves the machine.
+Playwright drives the installed browser. The page, `webgl.js`, draws one frame per request. It reads arrays from a file
+and returns pixels as text. The browser resolves no host names, so nothing leaves the machine.
 """
 
 from __future__ import annotations
@@ -38,13 +37,13 @@ except ImportError:
     sync_api = None
 
 Page: TypeAlias = Any  # Playwright's types, which mypy skips
-Answer: TypeAlias = dict[str, str]  # of a page
+Answer: TypeAlias = dict[str, str]
 Layout: TypeAlias = dict[str, object]  # shape and offset in a file, by name
 
 PROGRAM = "MXEON_CHROMIUM"  # environment variable that names the browser
 FLAGS = (
     "--use-gl=angle",
-    "--use-angle=swiftshader",  # Chromium's own software driver, alike on every machine
+    "--use-angle=swiftshader",  # Chromium's own software driver, the same on every machine
     "--enable-unsafe-swiftshader",
     "--no-proxy-server",
     "--host-resolver-rules=MAP * ~NOTFOUND",
@@ -52,7 +51,7 @@ FLAGS = (
 PAGE = "<input type='file'><script>{}</script>"
 IDENTITY = np.eye(4).ravel().tolist()
 VERTEX = fragment.DIALECTS["essl"].vertex
-POINTS = 4  # points of pictures to keep: most materials have the same vertex stage
+POINTS = 4  # cached textures of points: most materials have the same vertex stage
 
 # ESSL gives uniforms no initial values.
 UNIFORMS = {
@@ -65,10 +64,10 @@ UNIFORMS = {
 
 
 class Chromium:
-    """A headless browser with a page, started by the first request and restarted after a crash.
+    """A headless browser with a page, started on demand and restarted after a crash.
 
-    Playwright needs one thread without an event loop, so it gets its own. A
-    request that takes `limit` seconds ends the browser.
+    Playwright needs one thread without an event loop, so it gets its own. A request that takes `limit` seconds ends the
+    browser.
     """
 
     flags: ClassVar[tuple[str, ...]] = FLAGS
@@ -88,7 +87,6 @@ class Chromium:
         self._thread.submit(self._stop).result()
 
     def _load(self) -> None:
-        """Load the page."""
         self._page.set_content(PAGE.format(Path(__file__).with_suffix(".js").read_text("utf-8")))
 
     def _ask(
@@ -103,7 +101,12 @@ class Chromium:
     def _answer(self, function: str, job: dict[str, object] | None, file: Path | None) -> Answer:
         try:
             if self._page is None:
-                self._start()
+                playwright = self._stack.enter_context(sync_api.sync_playwright())
+                browser = playwright.chromium.launch(
+                    executable_path=self._program, args=self.flags, chromium_sandbox=not is_root()
+                )
+                self._page = self._stack.enter_context(browser).new_page()
+                self._load()
             if file is not None:
                 self._page.set_input_files("input", file)
             handle = self._page.wait_for_function(function, arg=job, timeout=self._limit)
@@ -112,16 +115,6 @@ class Chromium:
         except sync_api.Error as error:
             self._stop()
             return {"failed": f"the browser fails; {error.message.splitlines()[0]}"}
-
-    def _start(self) -> None:
-        playwright = self._stack.enter_context(sync_api.sync_playwright())
-        browser = self._stack.enter_context(
-            playwright.chromium.launch(
-                executable_path=self._program, args=self.flags, chromium_sandbox=not is_root()
-            )
-        )
-        self._page = browser.new_page()
-        self._load()
 
     def _stop(self) -> None:
         self._page = None
@@ -209,7 +202,7 @@ class WebGlHost(Chromium, FragmentHost):
     def _bytes(
         self, function: str, job: Mapping[str, object], arrays: Mapping[str, Mapping[str, Array]]
     ) -> bytes:
-        """Bytes that a function of the page returns for a job and arrays."""
+        """Result of a function of the page for a job and arrays."""
         with Temporary("mxeon-webgl-") as folder:
             file = Path(folder, "arrays")
             answer = self._ask(function, {**job, **_write(file, arrays)}, file)
@@ -219,7 +212,7 @@ class WebGlHost(Chromium, FragmentHost):
 
 
 def is_root() -> bool:
-    """Whether the user is root, for whom Chromium has no sandbox; Windows has no such user."""
+    """Whether the user is root, for whom Chromium has no sandbox."""
     return sys.platform != "win32" and os.geteuid() == 0
 
 
@@ -238,7 +231,7 @@ def program(host: str = "webgl") -> str:
 def _write(path: Path, groups: Mapping[str, Mapping[str, Array]]) -> dict[str, Layout]:
     """Write each array once; return shapes and offsets in the file by group and name."""
     layout: dict[str, Layout] = {}
-    places: dict[int, object] = {}  # of the arrays that are written, by identity
+    places: dict[int, object] = {}  # of written arrays, by identity
     offset = 0
     with path.open("wb") as file:
         for group, arrays in groups.items():

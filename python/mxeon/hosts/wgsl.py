@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """WebGPU without a browser: MaterialX's text for its target WGSL, in float32.
 
-That text is GLSL for a converter. wgpu's converter, naga, reads it unchanged and compiles it as it
-compiles WGSL, without writing any WGSL.
+That text is GLSL for a converter. wgpu's converter, naga, compiles it directly, without writing WGSL.
 """
 
 from __future__ import annotations
@@ -24,10 +23,7 @@ class WgslHost(vulkan.VulkanHost):
     interfaces = ("Vulkan", "Metal", "D3D12")
 
     def _vertex(self, pixel: str) -> str:
-        """A vertex stage with the pixel stage's block, all 0.
-
-        naga keeps what an evaluation does not use, and wgpu requires it.
-        """
+        """A vertex stage with the pixel stage's block, all 0: wgpu requires it, even if it is unused."""
         head, rest = super()._vertex(pixel).split("\n", 1)
         outputs = [f"layout (location = 0) out {block}\n" for block in INPUT_BLOCK.findall(pixel)]
         return "".join([f"{head}\n", *outputs, rest])

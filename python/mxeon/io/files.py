@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files: only regular ones are read, and written ones appear whole or not at all."""
+"""Read only regular files, and write files atomically."""
 
 import errno
 import hashlib
@@ -22,7 +22,7 @@ TEMPORARY = ".mxeon-"  # prefix of files and folders that are not complete yet
 
 
 def one_name(parameter: str, given: object) -> str:
-    """A name or path as text; raise InputError for anything else, such as a list of them."""
+    """A name or path as text; raise InputError for anything else, such as a list."""
     name = os.fspath(given) if isinstance(given, str | os.PathLike) else given
     if not isinstance(name, str):
         raise InputError(f"{parameter} must be one name or path; got {given!r}")
@@ -30,7 +30,7 @@ def one_name(parameter: str, given: object) -> str:
 
 
 def names_of(parameter: str, given: object, least: int = 1) -> tuple[str, ...]:
-    """One name or path, or several, as texts: a str is one name, not its characters.
+    """One name or path, or several, as texts.
 
     >>> names_of("hosts", "gl"), names_of("files", [Path("a.mtlx"), "b.mtlx"])
     (('gl',), ('a.mtlx', 'b.mtlx'))
@@ -47,10 +47,7 @@ def names_of(parameter: str, given: object, least: int = 1) -> tuple[str, ...]:
 
 
 def below(folder: AnyPath, name: AnyPath) -> Path:
-    """Path of the file `name` in a folder that the user named, unless a link would lead out of it.
-
-    The folder itself may be a link.
-    """
+    """Path of the file `name` in a user's folder; refuse links below the folder, which may lead out of it."""
     path = Path(folder)
     for part in Path(name).parts:
         path /= part
@@ -68,9 +65,9 @@ def check_output(
 ) -> None:
     """Raise InputError or OSError unless an output can be written and replaces none of the inputs.
 
-    Files are compared by identity, so links and other spellings of a name count too. `inputs` is only
-    iterated if the output exists. An output with `replaced` is a folder in which files that match these
-    patterns are replaced; with `apart`, no input may lie in that folder at all.
+    Files are compared by identity, so links and other spellings of a name count too. `inputs` is only iterated if the
+    output exists. With `replaced`, the output is a folder in which files that match these patterns are replaced; with
+    `apart`, no input may lie in that folder.
     """
     place = Path(output)
     if not os.fspath(output):
@@ -102,7 +99,7 @@ def check_output(
 
 
 def _identity(path: AnyPath) -> tuple[int, int] | None:
-    """The identity of the file or folder that a path leads to, if there is one."""
+    """The identity of an existing file or folder."""
     try:
         status = os.stat(path)
     except (OSError, ValueError):
@@ -112,11 +109,10 @@ def _identity(path: AnyPath) -> tuple[int, int] | None:
 
 @contextmanager
 def replacing(path: AnyPath) -> Iterator[Path]:
-    """A new empty file next to `path`, moved onto it if the block ends without an error.
+    """A new empty file next to `path`, moved onto it if the block ends without an error, and deleted otherwise.
 
-    Its folder is created if needed. A link is followed: see `below` for names that the user did not
-    write. The new file has the same suffix, because image writers infer the format from it. After an
-    error, nothing half-written remains.
+    Its folder is created if needed. A link is followed: see `below` for names that the user did not write. The new file
+    has the same suffix, because image writers infer the format from it.
     """
     path = Path(os.path.realpath(path)) if os.path.islink(path) else Path(path)
     if not path.name:
@@ -124,7 +120,7 @@ def replacing(path: AnyPath) -> Iterator[Path]:
     if path.exists() and not path.is_file():  # replacing a device would destroy it
         raise OSError(errno.EINVAL, "not a regular file", str(path))
     path.parent.mkdir(parents=True, exist_ok=True)
-    # Nobody can guess the name, and no link or other writer has it.
+    # The name is unpredictable, so no link or other writer can have it.
     beside = path.with_name(f"{TEMPORARY}{token_hex(8)}{path.suffix}")
     with naming(path):
         os.close(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
@@ -134,13 +130,13 @@ def replacing(path: AnyPath) -> Iterator[Path]:
                 os.fsync(file.fileno())  # some file systems report a full disk only here
             os.replace(beside, path)
         finally:
-            with suppress(OSError):  # of a folder that is not writable: the first error reports it
+            with suppress(OSError):  # the folder is not writable, which the first error reports
                 beside.unlink(missing_ok=True)
 
 
 @contextmanager
 def naming(path: AnyPath) -> Iterator[None]:
-    """Make the system's errors name `path`; they name a temporary file, or none on a full disk."""
+    """Make system errors name `path` instead of a temporary file or nothing."""
     try:
         yield
     except OSError as error:
@@ -187,7 +183,7 @@ def assert_regular(path: AnyPath) -> None:
 
 
 def digest(path: AnyPath) -> str:
-    """SHA-256 of a file; "" for what is no regular file or cannot be read."""
+    """SHA-256 of a regular file; "" if it cannot be read."""
     with suppress(OSError), open(path, "rb", opener=regular) as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
     return ""

@@ -25,17 +25,17 @@ Floats = NDArray[np.float64]
 Pixels = NDArray[np.float32]
 
 PICTURES = (".exr", ".png")  # endings of files that `write_picture` writes
-LARGEST = 2**28  # values of an image: 1 GiB as float32, and the four channels of 8192 x 8192
+LARGEST = 2**28  # values of an image: 1 GiB as float32, or four channels of 8192 x 8192
 PNG_END = b"IEND\xaeB`\x82"  # the last chunk of a PNG file
-# Run lengths: 0.6 of the time of zip, and an eighth more bytes.
+# Run-length encoding takes 0.6 of the time of zip, and an eighth more bytes.
 FAST_EXR: dict[str, str | int] = {"oiio:ColorSpace": "lin_rec709_scene", "compression": "rle"}
-# Without filters (libpng's 8): a tenth of the time of the default, and a quarter more bytes.
+# No filter (libpng's 8) takes a tenth of the default's time, and a quarter more bytes.
 FAST_PNG: dict[str, str | int] = {
     "oiio:ColorSpace": "srgb_rec709_scene",
     "png:compressionLevel": 1,
     "png:filter": 8,
 }
-NO_THREADS = {"threads": 1, "exr_threads": -1}  # OpenImageIO's own, and those of OpenEXR
+NO_THREADS = {"threads": 1, "exr_threads": -1}  # of OpenImageIO and OpenEXR
 INCOMPLETE = "the file is incomplete; the disk may be full"
 
 
@@ -57,7 +57,7 @@ def difference(image: ArrayLike, reference: ArrayLike) -> Floats:
 
 
 def difference_scale(difference_map: ArrayLike) -> float:
-    """Full scale of a plot of a difference: the next of 1, 2, 5, 10, ... above nearly all values.
+    """Full scale of a plot of a difference: the next of 1, 2, 5, 10, ... above almost all values.
 
     It is based on the 99th percentile, because a few pixels at a rim must not darken the rest, and is at
     least 1e-9, so that equal images have a scale too. Values that are not finite are left out.
@@ -69,16 +69,16 @@ def difference_scale(difference_map: ArrayLike) -> float:
     positive = difference_map[np.isfinite(difference_map) & (difference_map > 0.0)]
     nearly_all = max(np.quantile(positive, 0.99) if positive.size else 0.0, 1e-9)
     decade = int(np.floor(np.log10(nearly_all)))
-    # Read as decimals, so that the steps are the printed numbers and not products of them.
+    # Parse decimals: products would differ from the printed numbers in the last digit.
     steps = [float(f"{digit}e{decade}") for digit in (1, 2, 5, 10)]
     return next((step for step in steps if nearly_all <= step), steps[-1])
 
 
 def read_image(path: AnyPath) -> Pixels:
-    """Pixels of an image file, row 0 at the top, as stored: no color is transformed.
+    """Pixels of an image file, row 0 at the top, without color transformation.
 
-    ImageError if it has more than LARGEST values, which even a small file can; ImageWarning for an image that
-    OpenImageIO reads with an error, such as a truncated JPEG.
+    ImageError for more than LARGEST values, which even a small file can have; ImageWarning if OpenImageIO reports an
+    error, such as a truncated JPEG.
     """
     import OpenImageIO as oiio
 
@@ -126,8 +126,8 @@ def words(message: Callable[[], str]) -> str:
 def write_image(path: AnyPath, pixels: Pixels | Codes, attributes: Mapping[str, str | int]) -> None:
     """Write pixels to an image file in the format of `path`'s suffix.
 
-    The last row is read back: OpenImageIO's PNG writer, and others whose last bytes wait in a buffer of
-    the C library, report no full disk.
+    The last row is read back, because OpenImageIO's PNG writer, and writers that leave the last bytes to a buffer of the
+    C library, do not report a full disk.
     """
     import OpenImageIO as oiio
 
@@ -152,17 +152,17 @@ def write_image(path: AnyPath, pixels: Pixels | Codes, attributes: Mapping[str, 
 
 
 def _is_whole(path: Path, pixels: Pixels | Codes) -> bool:
-    """Whether an image file that was written without an error holds these pixels to the last row."""
+    """Whether a written image file is complete: its last row equals that of the pixels."""
     import OpenImageIO as oiio
 
     if path.suffix.lower() == ".png" and not path.read_bytes().endswith(PNG_END):
-        return False  # before OpenImageIO reads it, as libpng would print a message
+        return False  # libpng would print a message if OpenImageIO read it
     height, _, channels = pixels.shape
     file = oiio.ImageInput.open(str(path))
     last: NDArray[Any] | None = None
     if file:
         last = file.read_scanlines(height - 1, height, 0, 0, channels, oiio.UNKNOWN)
-    words(oiio.geterror)  # else it is printed when Python ends
+    words(oiio.geterror)  # otherwise it is printed when Python ends
     return last is not None and last.tobytes() == pixels[-1].tobytes()
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Dataclasses as JSON and back; each value has to be of its type."""
+"""Dataclasses as JSON and back, with strict types."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -23,14 +23,14 @@ ERRORS = (
     cattrs.BaseValidationError,
 )
 T = TypeVar("T")
-Overrides: TypeAlias = dict[str, Any]  # by field; cattrs types the options beside them alone
+Overrides: TypeAlias = dict[str, Any]  # cattrs' overrides by field
 
 
 def strict_converter(fields: Mapping[Any, Overrides]) -> cattrs.Converter:
     """A converter between dataclasses and the types of JSON.
 
-    `fields` are those of a record that have other keys or types there. Numbers that are not finite are
-    written as the texts NOT_FINITE. `structure` raises some of ERRORS.
+    `fields` are a record's fields with other keys or types in JSON. Non-finite numbers are written as the texts
+    NOT_FINITE. `structure` raises some of ERRORS.
     """
     converter = cattrs.Converter(
         forbid_extra_keys=True, unstruct_collection_overrides={tuple: list}
@@ -50,10 +50,7 @@ def strict_converter(fields: Mapping[Any, Overrides]) -> cattrs.Converter:
 
 
 def read_strictly(converter: cattrs.Converter, value: object, kind: type[T]) -> T:
-    """An instance of a dataclass from JSON's types; every key has to be there.
-
-    Raise InputError for the first value that is wrong, with its path and the rule.
-    """
+    """An instance of a dataclass from JSON's types; InputError names the first wrong or missing value."""
 
     def reason(error: BaseException, kind: type | None) -> str:
         return f"lacks {error}" if isinstance(error, KeyError) else str(error)
@@ -69,7 +66,7 @@ def read_strictly(converter: cattrs.Converter, value: object, kind: type[T]) -> 
 
 
 def spelled(number: float) -> float | str:
-    """A number as JSON can hold it: one that is not finite as a text."""
+    """A number for JSON; non-finite numbers become texts."""
     if math.isfinite(number):
         return number
     return "NaN" if math.isnan(number) else "Infinity" if number > 0 else "-Infinity"

@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 Floats = NDArray[np.float64]
 Codes = NDArray[np.uint8]
 
-SLOPE = 2.4 / 1.055  # of the decoding, at 1, where it is steepest
-STEPS = 2**13  # of [0, 1]; at most two codes of sRGB meet in each
+SLOPE = 2.4 / 1.055  # largest slope of the decoding, at 1
+STEPS = 2**13  # steps in [0, 1], each with at most two codes of sRGB
 NOT_FINITE = (255, 0, 255)  # code values of a pixel that is not a finite number
 
 
@@ -50,9 +50,9 @@ def srgb_encoded(image: ArrayLike) -> Codes:
 
 @cache
 def _codes() -> tuple[NDArray[np.float32], Codes]:
-    """Linear values from which each code of sRGB ends, and the least code of each of STEPS steps.
+    """Linear values where each code of sRGB ends, and the least code of each of STEPS steps.
 
-    No step holds the ends of two codes: at 0, where they are closest, the curve has the slope 12.92.
+    No step has the ends of two codes: at 0, where they are closest, the curve has slope 12.92.
     """
     ends = srgb_decoded((np.arange(255) + 0.5) / 255.0).astype(np.float32)
     least = np.searchsorted(

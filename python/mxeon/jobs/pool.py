@@ -96,15 +96,13 @@ QUIET = "ignore::UserWarning:multiprocessing.resource_tracker"
 ATTEMPTS = 2
 BREAKS = 3  # pools that may break in a row before any item is done
 START = 60.0  # seconds that a process may take before it begins to work
-LOCK = 10.0  # seconds until workers take over the lock of a killed one
+LOCK = 10.0  # seconds until workers take over a killed worker's lock
 LAST = 4  # tasks left per worker below which none is scheduled ahead
-LAST_LINES = 4  # of a worker's output, in the reason
+LAST_LINES = 4  # quoted lines of a worker's output
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """Outcome of the work on one item."""
-
     value: Any  # what the work returned
     failure: str = ""  # why there is no value, in one line
     attempts: int = 1
@@ -215,9 +213,9 @@ def _start(pool: ProcessPool) -> bool:
     try:
         with block_signals(), safe_path():
             if QUIET not in sys.warnoptions:
-                sys.warnoptions.append(QUIET)  # which the tracker's process inherits
+                sys.warnoptions.append(QUIET)  # the tracker's process inherits it
             if sys.platform != "win32":
-                resource_tracker.ensure_running()  # else the first process does, and unblocks signals
+                resource_tracker.ensure_running()  # otherwise the first process starts it, and unblocks signals
         with block_signals():
             return bool(pool.active)
     except (OSError, RuntimeError) as error:
@@ -287,7 +285,7 @@ def _work_logged(work: Callable[[Any], Any], item: Any, log: str) -> Any:
     Temporary files are put next to it and deleted with it, whatever happens to this process.
     """
     tempfile.tempdir = os.path.dirname(log)
-    if sys.stdout:  # a daemon may have none
+    if sys.stdout:  # None in a daemon
         sys.stdout.flush()
     file = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
     os.dup2(file, 1)

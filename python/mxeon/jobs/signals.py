@@ -16,7 +16,6 @@ from types import FrameType
 
 
 def _existing(*names: str) -> tuple[signal.Signals, ...]:
-    """The signals that this platform has."""
     return tuple(signal.Signals[name] for name in names if hasattr(signal, name))
 
 
@@ -91,7 +90,7 @@ class Temporary(TemporaryDirectory[str]):
     """
 
     def __init__(self, prefix: str) -> None:
-        from filelock import FileLock  # which takes a tenth of the command's start
+        from filelock import FileLock  # the import takes a tenth of the command's start
 
         _remove_abandoned()
         super().__init__(prefix=prefix)

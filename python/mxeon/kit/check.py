@@ -30,7 +30,7 @@ from mxeon.models import table
 RENDERER = "renderer"
 LIBRARY = "its own library"
 SOFTWARE = ("numpy", "scipy", "OpenImageIO")
-# Not the scenes: the last digits of a direction are those of the machine that exported it.
+# Scenes are left out: the last digits of a direction depend on the machine that exported the kit.
 EXACT = ("camera", "sphere", "materials", "pictures")
 READABLE = "The picture is there, of the right size, linear float, and finite."
 
@@ -43,10 +43,10 @@ def check_kit(
 ) -> Run:
     """Run of the checks of a kit's pictures, which lie in its folder `renders/`.
 
-    `claims` is the one model that a renderer has, so that pictures of the others are not needed; "" for
-    both EON and QON. The run's notes name the nearest models, first the one that all pictures show.
+    `claims` is the only model of a renderer, so that pictures of other models are not needed; "" for EON
+    and QON. The run's notes name the nearest models; the one that all pictures show comes first.
     """
-    student_quantile()  # before any work
+    student_quantile()  # fail early without scipy
     if not renderer.strip() or not renderer.isprintable():
         raise InputError(f"renderer must be a name on one line; got {renderer!r}")
     folder = Path(folder)
@@ -62,14 +62,14 @@ def check_kit(
     # Answer the questions, in an order in which each needs the one before.
     notes, obstacle = [], Diagnosis()
     for question in progress(asked):
-        # If light or encoding are wrong, no model can be told.
+        # With a wrong light or encoding, models cannot be told apart.
         result, shown = answer(question, pictures, images, depth, place, obstacle)
         results.append(result)
         if question.key == "setup":
             obstacle = shown
         if shown.causes:
             notes.append(f"{question.title}: {words.diagnosis(shown)}")
-    # Where a model is another one, say whether all pictures show the same.
+    # If a model is wrong, find out whether all pictures show the same wrong one.
     wrong = any(each.check == "model" and each.verdict == FAILED for each in results)
     if wrong and (title := one_model(asked, pictures, images, depth)):
         notes.insert(0, f"every picture of a rough material shows one model: {title}")
@@ -92,7 +92,17 @@ def kit_files(folder: str | PathLike[str]) -> Iterator[Path]:
 
 def _size(folder: Path) -> int:
     file = folder / DESCRIPTION
-    kit = _description(file)
+    try:
+        with open(file, encoding="utf-8", opener=regular) as stream:
+            kit = json.load(stream)
+    except FileNotFoundError:
+        rule = f"folder must hold {DESCRIPTION}, which kit export writes"
+        raise InputError(f"{rule}; got {file.parent}") from None
+    except (OSError, ValueError, RecursionError) as error:
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise InputError(f"{file}: must be a kit's description; {reason}") from None
+    if not isinstance(kit, dict):
+        raise InputError(f"{file}: must be a kit's description; got {type(kit).__name__}")
     if type(kit.get("format")) is not int or kit["format"] != KIT_FORMAT:
         got = repr(kit.get("format"))
         raise InputError(f"{file}: format must be {KIT_FORMAT}; got {got}: export it again")
@@ -112,21 +122,6 @@ def _size(folder: Path) -> int:
         if kit.get(key) != exported[key]:
             raise InputError(f"{file}: {key} must be as kit export writes it: export it again")
     return size
-
-
-def _description(file: Path) -> dict[str, Any]:
-    try:
-        with open(file, encoding="utf-8", opener=regular) as stream:
-            kit = json.load(stream)
-    except FileNotFoundError:
-        rule = f"folder must hold {DESCRIPTION}, which kit export writes"
-        raise InputError(f"{rule}; got {file.parent}") from None
-    except (OSError, ValueError, RecursionError) as error:
-        reason = error.strerror if isinstance(error, OSError) else error
-        raise InputError(f"{file}: must be a kit's description; {reason}") from None
-    if not isinstance(kit, dict):
-        raise InputError(f"{file}: must be a kit's description; got {type(kit).__name__}")
-    return kit
 
 
 def _read(
@@ -151,7 +146,6 @@ def _pictures(
     place: dict[str, Any],
     claims: str,
 ) -> Iterator[Picture]:
-    """Pictures that could be read, each with the model's as its reference."""
     for view in pictures:
         if view.name in images:
             metadata = {"version": mxeon.__version__, "scene": view.scene.name}

@@ -12,16 +12,16 @@ from mxeon.io.srgb import srgb_decoded
 from mxeon.kit.expected import Expected
 from mxeon.kit.noise import tiles
 
-LIKENESS = 0.02  # largest rms error over rms value, without noise, at which a fault explains it
-SAME_SCALE = 0.005  # a factor nearer to 1 is noise or the depth of a mesh
+LIKENESS = 0.02  # a fault explains a picture up to this rms error over rms value, without noise
+SAME_SCALE = 0.005  # factors nearer to 1 are noise or come from the depth of a mesh
 
 
 def _tone_mapped_back(image: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The inverse of x / (1 + x); infinity for values of 1 and more, which it has not."""
+    """The inverse of x / (1 + x); infinity for values of 1 and more, which it never reaches."""
     return np.divide(image, 1.0 - image, out=np.full_like(image, np.inf), where=image < 1.0)
 
 
-# Each fault, by its row of `mxeon.conformance.words.DEFECTS`, and the function that undoes it.
+# Faults by their keys in `mxeon.conformance.words.DEFECTS`, each with the function that undoes it.
 FAULTS = (
     ("scaled", lambda image: image),
     ("srgb", lambda image: srgb_decoded(np.clip(image, 0.0, None))),
@@ -36,7 +36,7 @@ FAULTS = (
 def fault(
     name: str, image: NDArray[np.float64], model: Expected, mask: NDArray[np.bool_]
 ) -> Diagnosis:
-    """The fault that explains how a picture of a name differs from the model; none within LIKENESS."""
+    """The fault that explains how the picture `name` differs from the model; none within LIKENESS."""
 
     def found(key: str, *factors: float) -> Diagnosis:
         return Diagnosis((Cause(Kind.DEFECT, f"picture_{key}", (name,), factors),))

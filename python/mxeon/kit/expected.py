@@ -17,7 +17,8 @@ from mxeon.shaders.scene import VIEW, Scene, local_directions, sphere
 # depends on the position within a pixel. With 64 pixels or more, a whole pixel above the cut lies
 # on the sphere.
 CUT = 0.2
-HALF_ROUNDING = 2.0**-11  # of float16
+# Relative rounding of a half, which has 11 bits, and its smallest step.
+HALF_ROUNDING, HALF_STEP = 2.0**-11, 2.0**-24
 
 # Cosines at which an albedo is integrated. Between them, 1/128 apart, it is read linearly: its
 # second derivative is below 2 there, the error below 2e-5.
@@ -28,14 +29,11 @@ QUADRATURE_NODES = 16  # reaches 1e-9 on the models
 # The nodes of Gauss's rule of two points, in halves of a pixel: exact for cubics.
 GAUSS = 1.0 / np.sqrt(3.0)
 
-# A half has 11 bits: relative rounding 2^-11 at most; its smallest step is 2^-24.
-HALF_STEP = 2.0**-24
-
 
 @dataclass(frozen=True)
 class Expected:
     value: np.ndarray  # (N, 3), mean over each pixel
-    slack: np.ndarray  # (N, 3): pixel's center less mean, depth of the mesh, rounding to half
+    slack: np.ndarray  # (N, 3): pixel center minus mean, depth of the mesh, rounding to half
 
 
 @lru_cache(maxsize=16)
@@ -53,7 +51,7 @@ def expected(row: Model, view: View, depth: float) -> Expected:
     place = sphere(view.scene.size).normal[judged(view.scene)][:, :2]
     value = pixel_means(row, view)
     center = _values(row, view, place)
-    # A point of a triangle has the normal of its direction: that of a sphere point further out.
+    # The normal at a point of a triangle equals the normal of a sphere point further out.
     mesh = _values(row, view, place / (1.0 - depth))
     slack = np.abs(value - center) + np.abs(mesh - center) + HALF_ROUNDING * value + HALF_STEP
     return Expected(value, slack + (INTERPOLATION if view.scene.light is None else 0.0))
@@ -63,8 +61,7 @@ def pixel_means(row: Model, view: View) -> NDArray[np.float64]:
     place = sphere(view.scene.size).normal[judged(view.scene)][:, :2]
     step = GAUSS / view.scene.size
     offsets = [(x, y) for x in (-step, step) for y in (-step, step)]
-    means = np.mean([_values(row, view, place + offset) for offset in offsets], axis=0)
-    return np.asarray(means)
+    return np.asarray(np.mean([_values(row, view, place + offset) for offset in offsets], axis=0))
 
 
 def _values(row: Model, view: View, place: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -36,9 +36,9 @@ class KitNode:
     """The node that the materials of a kit are made of."""
 
     category: str = OREN_NAYAR
-    definition: str = f"ND_{OREN_NAYAR}"  # name of its nodedef
+    definition: str = f"ND_{OREN_NAYAR}"  # nodedef
     flagged: bool = True  # whether it has the input energy_compensation
-    folders: tuple[str, ...] = ()  # of the library and the definitions that it was read from
+    folders: tuple[str, ...] = ()  # library and definitions that define it
 
 
 def kit_node(category: str, definitions: tuple[str, ...] = (), library: str = "eonlib") -> KitNode:
@@ -64,8 +64,8 @@ def kit_node(category: str, definitions: tuple[str, ...] = (), library: str = "e
 def export_kit(folder: str | PathLike[str], size: int = USUAL, node: KitNode = KitNode()) -> Path:
     """Write the kit, return its README.md; replaces an earlier kit, and keeps submitted pictures.
 
-    InputError for a size out of range, or a folder that has no name, holds something else than a kit, or a
-    link under a name of the kit's files.
+    InputError for a size out of range, or a folder that has no name, holds something other than a kit, or has
+    a link in place of one of the kit's files.
     """
     read = files_read([], Policy(), node.folders).values()
     check_output(folder, read, replaced=["*", "*/*"], apart=True)
@@ -100,8 +100,8 @@ def export_kit(folder: str | PathLike[str], size: int = USUAL, node: KitNode = K
 def description(pictures: Sequence[View], size: int, node: str = OREN_NAYAR) -> dict[str, Any]:
     """The numbers of the kit, as kit.json holds them.
 
-    `format` rises when a key changes or goes. A distant light has `direction`, the unit vector towards it,
-    and `irradiance`; an environment its `radiance`.
+    `format` rises when a key changes or is removed. A distant light has `direction`, the unit vector towards
+    it, and `irradiance`; an environment has `radiance`.
     """
     scenes = {view.scene.name: view.scene for view in pictures}
     return {

@@ -8,11 +8,12 @@ a triangle has the direction of the point itself.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
 
-SUBDIVISIONS = 5  # 20 480 triangles of about two degrees; each more quarters the error
+SUBDIVISIONS = 5  # 20,480 triangles of about two degrees; one more quarters the error
 
 
 @dataclass(frozen=True)
@@ -38,34 +39,26 @@ def unit_sphere() -> Mesh:
     vertices = np.concatenate([np.roll(rectangle, shift, axis=1) for shift in range(3)])
     mesh = Mesh(_on_sphere(vertices), _faces(vertices))
     for _ in range(SUBDIVISIONS):
-        mesh = _split(mesh)
+        # Split each triangle in four, and lift the middles of its edges onto the sphere.
+        edges = mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]]
+        pairs, place = np.unique(np.sort(edges.reshape(-1, 2), axis=1), axis=0, return_inverse=True)
+        middles = _on_sphere(mesh.vertices[pairs].sum(axis=1))
+        (a, b, c), (d, e, f) = mesh.triangles.T, place.reshape(-1, 3).T + len(mesh.vertices)
+        parts = [[a, d, f], [d, b, e], [f, e, c], [d, e, f]]
+        triangles = np.concatenate([np.stack(part, axis=1) for part in parts])
+        mesh = Mesh(np.concatenate([mesh.vertices, middles]), triangles)
     return mesh
 
 
 def _faces(vertices: NDArray[np.float64]) -> NDArray[np.int64]:
     """Triangles of vertices that are 2 apart, facing outwards."""
     near = np.isclose(np.linalg.norm(vertices[:, None] - vertices, axis=-1), 2.0)
-    count = range(len(vertices))
-    faces = [
-        (a, b, c)
-        for a in count
-        for b in count[a:]
-        for c in count[b:]
-        if near[a, b] and near[b, c] and near[c, a]
-    ]
+    triples = combinations(range(len(vertices)), 3)
+    faces = np.array(
+        [each for each in triples if all(near[pair] for pair in combinations(each, 2))]
+    )
     outward = np.linalg.det(vertices[faces]) > 0.0
-    return np.where(outward[:, None], faces, np.array(faces)[:, ::-1])
-
-
-def _split(mesh: Mesh) -> Mesh:
-    """Each triangle in four, the middles of its edges lifted onto the sphere."""
-    edges = mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]]
-    pairs, place = np.unique(np.sort(edges.reshape(-1, 2), axis=1), axis=0, return_inverse=True)
-    middles = _on_sphere(mesh.vertices[pairs].sum(axis=1))
-    (a, b, c), (d, e, f) = mesh.triangles.T, place.reshape(-1, 3).T + len(mesh.vertices)
-    parts = [[a, d, f], [d, b, e], [f, e, c], [d, e, f]]
-    triangles = np.concatenate([np.stack(part, axis=1) for part in parts])
-    return Mesh(np.concatenate([mesh.vertices, middles]), triangles)
+    return np.where(outward[:, None], faces, faces[:, ::-1])
 
 
 def _on_sphere(points: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Separation of noise from bias: the mean error of each tile of a picture, and its distribution.
 
-A tile of 8 x 8 pixels has up to 16 squares of 2 x 2. A square's contrast, (a - b - c + d) / 2, has
-the variance of a pixel's noise and sees nothing of a smooth error; the tile's mean error sees all
-of it. Under normal noise the two are independent, so their quotient follows Student's t.
+A tile of 8 x 8 pixels has up to 16 squares of 2 x 2. A square's contrast, (a - b - c + d) / 2, has the
+variance of a pixel's noise and cancels a smooth error, which the tile's mean error keeps. Under normal noise the
+two are independent, so their quotient follows Student's t.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ CONFIDENCE = 0.999  # probability that a kit of correct pictures passes
 @dataclass(frozen=True)
 class Tiles:
     mean: NDArray[np.float64]  # (T, 3), error of a tile
-    deviation: NDArray[np.float64]  # (T, 3), estimated, of that mean
-    slack: NDArray[np.float64]  # (T, 3), mean of the pixels'
-    squares: NDArray[np.int64]  # (T,), the degrees of freedom
+    deviation: NDArray[np.float64]  # (T, 3), estimated standard deviation of the mean
+    slack: NDArray[np.float64]  # (T, 3), mean slack of the pixels
+    squares: NDArray[np.int64]  # (T,), degrees of freedom
 
     @property
     def pixel_noise(self) -> float:
@@ -44,7 +44,7 @@ def tiles(error: NDArray[np.float64], slack: NDArray[np.float64], mask: NDArray[
     kept = np.asarray(count >= FEWEST)
     count = count[kept]
     weight = whole[..., None]
-    # Average over each tile; a contrast whose weights sum to 0 is noise alone.
+    # Average over each tile; a contrast, whose weights sum to 0, contains only noise.
     mean = _sum(weight * square.mean(axis=-1))[kept] / count[:, None]
     variance = _sum(weight * contrast**2)[kept] / count[:, None]
     allowed = _sum(weight * _squares(_spread(slack, mask)).mean(axis=-1))[kept] / count[:, None]

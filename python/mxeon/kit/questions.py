@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The checks of a renderer's pictures, called questions, and the result of each.
+"""The checks of a renderer's pictures, called questions.
 
-A question passes if the pictures equal the model up to noise, pixel size and mesh, and if a wrong
-variant with the same noise fails.
+A question passes if the pictures equal the model up to noise, pixel size and mesh, and if a wrong variant with the
+same noise fails.
 """
 
 from __future__ import annotations
@@ -14,18 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.conformance import words
-from mxeon.conformance.results import (
-    FAILED,
-    NO_DIAGNOSIS,
-    NOT_RUN,
-    PASSED,
-    Cause,
-    Control,
-    Diagnosis,
-    Kind,
-    Result,
-)
+from mxeon.conformance import results, words
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.errors import assert_known
 from mxeon.kit.encoding import fault
@@ -35,7 +24,7 @@ from mxeon.kit.views import BLACK, FALSE, HALF, LAMBERT, TRUE, WHITE, Material, 
 from mxeon.models import table as reference
 from mxeon.shaders.nodes import FLAG
 
-# Models nearer to another one than a renderer's noise: EON's quartic is off by 1e-3 at most.
+# Models within a renderer's noise of another model: EON's quartic is off by at most 1e-3.
 TOO_NEAR = ("eon_approx",)
 
 
@@ -53,11 +42,15 @@ def candidates(pictures: Sequence[JudgedPicture], depth: float) -> list[ModelDis
     rows = reference.KNOWN_DEFECTS + reference.DIFFUSE_MODELS + reference.PARAMETRIZATIONS
     rows = tuple(row for row in rows if row.name not in TOO_NEAR)
     if all(case.view.scene.light for case in pictures):
-        rows = tuple({row.brdf: row for row in rows}.values())  # some differ in their albedo alone
-    ranking = sorted(
-        (_candidate(row, pictures, depth) for row in rows), key=lambda one: one.distance
-    )
-    # A roughness and its square are one at roughness 1, where the model has the first place.
+        rows = tuple({row.brdf: row for row in rows}.values())  # some differ only in their albedo
+    ranking = []
+    for row in rows:
+        models = [expected(row, case.view, depth) for case in pictures]
+        errors = _tiles(pictures, models)
+        rms = float(np.sqrt(np.mean(np.concatenate([each.mean for each in errors]) ** 2)))
+        ranking.append(ModelDistance(row.title, rms, ratio(errors)))
+    ranking.sort(key=lambda one: one.distance)
+    # At roughness 1, models in roughness and its square coincide; keep the first.
     return [
         one
         for one, before in zip(ranking, [None, *ranking], strict=False)
@@ -65,26 +58,15 @@ def candidates(pictures: Sequence[JudgedPicture], depth: float) -> list[ModelDis
     ]
 
 
-def _candidate(
-    row: reference.Model, pictures: Sequence[JudgedPicture], depth: float
-) -> ModelDistance:
-    errors = []
-    for case in pictures:
-        model = expected(row, case.view, depth)
-        errors.append(tiles(case.values - model.value, model.slack, case.mask))
-    means = np.concatenate([each.mean for each in errors])
-    return ModelDistance(row.title, float(np.sqrt(np.mean(means**2))), ratio(errors))
-
-
-def nearest(ranking: Sequence[ModelDistance]) -> Diagnosis:
-    """The nearest model, and those that the pictures cannot tell from it, at the confidence of `mxeon.kit.noise`."""
-    causes = [Cause(Kind.MODEL, ranking[0].title, rms=ranking[0].distance)]
+def nearest(ranking: Sequence[ModelDistance]) -> results.Diagnosis:
+    """The nearest model, and models that the pictures cannot tell from it."""
+    causes = [results.Cause(results.Kind.MODEL, ranking[0].title, rms=ranking[0].distance)]
     also = tuple(each.title for each in ranking[1:] if each.ratio <= 1.0)
     if ranking[0].ratio > 1.0:
-        causes.append(Cause(Kind.DEFECT, "neither_fits"))
+        causes.append(results.Cause(results.Kind.DEFECT, "neither_fits"))
     elif also:
-        causes.append(Cause(Kind.DEFECT, "cannot_be_told_from", also))
-    return Diagnosis(tuple(causes), {each.title: each.distance for each in ranking})
+        causes.append(results.Cause(results.Kind.DEFECT, "cannot_be_told_from", also))
+    return results.Diagnosis(tuple(causes), {each.title: each.distance for each in ranking})
 
 
 DERIVATION = (
@@ -104,7 +86,7 @@ class Question:
     lit: bool  # by the distant light, else by the environment: a rasterizer has a formula for each
     variant: str  # describes the negative control
     wrong: Callable[[View], NDArray[np.float64]]  # the control's values (N, 3)
-    model: str = ""  # of every material; "" for that of each material's node
+    model: str = ""  # the same for every material; "" for the model of each material's node
 
     @property
     def title(self) -> str:
@@ -147,11 +129,11 @@ QUESTIONS = (
     Question("white", WHITE_IS, (WHITE,), False, "the second lobe is dropped", _of("fon")),
 )
 
-CLAIMS = ("eon", "qon", "fon", "lambert")  # models of renderers that have one
+CLAIMS = ("eon", "qon", "fon", "lambert")
 
 
 def questions(claim: str = "") -> tuple[Question, ...]:
-    """The questions to a renderer that has the claimed model alone, or, for "", the flag."""
+    """The questions to a renderer with only the claimed model, or with the flag for ""."""
     if not claim:
         return QUESTIONS
     assert_known("claims", claim, CLAIMS)
@@ -175,7 +157,7 @@ def one_model(
     images: Mapping[str, NDArray[np.float64]],
     depth: float,
 ) -> str:
-    """Title of the one model that all pictures of rough materials show; "" if there is none."""
+    """Title of the model that all pictures of rough materials show; "" if there is none."""
     rough = [each for each in asked if each.key == "model"]
     chosen = [view for view in views if any(each.includes(view) for each in rough)]
     if any(view.name not in images for view in chosen):
@@ -190,18 +172,18 @@ def answer(
     images: Mapping[str, NDArray[np.float64]],
     depth: float,
     place: Mapping[str, Any],
-    obstacle: Diagnosis = NO_DIAGNOSIS,
-) -> tuple[Result, Diagnosis]:
-    """The result of a question, and the model or fault that the pictures show, if it determines one.
+    obstacle: results.Diagnosis = results.NO_DIAGNOSIS,
+) -> tuple[results.Result, results.Diagnosis]:
+    """The result of a question, and the model or fault that the pictures show.
 
-    `obstacle` is the cause why nothing can be judged, if there is one.
+    With an `obstacle`, nothing can be judged.
     """
     chosen = [view for view in views if question.includes(view)]
     place = {"check": question.key, "claim": question.claim, "subject": question.title, **place}
     missing = [view.name for view in chosen if view.name not in images]
     if obstacle.causes or missing:
         reason = words.diagnosis(obstacle) or f"no usable picture: {', '.join(missing)}"
-        return Result(**place, verdict=NOT_RUN, reason=reason), NO_DIAGNOSIS
+        return results.Result(**place, verdict=results.NOT_RUN, reason=reason), results.NO_DIAGNOSIS
     cases = _judged(chosen, images)
     models = [expected(question.row(view), view, depth) for view in chosen]
     errors = _tiles(cases, models)
@@ -214,22 +196,22 @@ def answer(
             f"too noisy to detect that {question.variant}: {noise:.2g} rms per pixel; "
             "render with more samples"
         )
-        return Result(**place, verdict=NOT_RUN, reason=reason), NO_DIAGNOSIS
+        return results.Result(**place, verdict=results.NOT_RUN, reason=reason), results.NO_DIAGNOSIS
     ranking = candidates(cases, depth) if question.key == "model" else []
-    shown = nearest(ranking) if ranking else Diagnosis()
+    shown = nearest(ranking) if ranking else results.Diagnosis()
     if question.key == "setup" and error > 1.0:
         name = cases[0].view.name
         shown = fault(name, images[name], models[0], cases[0].mask)
-    return Result(
+    return results.Result(
         **place,
-        verdict=PASSED if error <= 1.0 < wrong else FAILED,
+        verdict=results.PASSED if error <= 1.0 < wrong else results.FAILED,
         error=error,
         quantity=Quantity.KIT,
         tolerance=1.0,
         derivation=DERIVATION,
         worst={"noise of a pixel, rms": [noise]},
-        diagnosis=shown if error > 1.0 else Diagnosis(distances=shown.distances),
-        control=Control(question.variant, wrong, wrong > 1.0),
+        diagnosis=shown if error > 1.0 else results.Diagnosis(distances=shown.distances),
+        control=results.Control(question.variant, wrong, wrong > 1.0),
     ), shown
 
 
@@ -248,7 +230,7 @@ def _tiles(
     models: Sequence[Expected],
     wrong: Sequence[NDArray[np.float64]] | None = None,
 ) -> list[Tiles]:
-    """Tiles of the errors, or of those that a renderer with wrong values would have."""
+    """Tiles of the errors, or of the errors of a renderer with wrong values."""
     wrong = wrong or [model.value for model in models]
     return [
         tiles(case.values + other - 2.0 * model.value, model.slack, case.mask)

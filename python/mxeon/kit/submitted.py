@@ -20,7 +20,7 @@ from mxeon.shaders.scene import sphere
 COLUMNS = ["row", "column", "red", "green", "blue"]
 CHANNELS = "RGB"
 LEVELS = 255  # steps of an eight-bit value
-ROUNDED = LEVELS * 2.0**-12  # steps by which a half float of at most 1 may be rounded
+ROUNDED = LEVELS * 2.0**-12  # rounding of a half float up to 1, in steps
 FLOATS = ("half", "float", "double")
 # A smooth shading has as many values as pixels; eight bits leave far fewer than one in four.
 DISTINCT = 4
@@ -74,7 +74,7 @@ def _read_image(file: Path, size: int) -> NDArray[np.float64]:
         channels = _channels(file, spec.channelnames)
     except UnicodeDecodeError:
         raise Unusable(f"{file.name}: must have names of channels in UTF-8") from None
-    # One by one: a small file may have a thousand others.
+    # Read only these: a small file may have a thousand channels.
     read = [image.read_image(0, 0, each, each + 1, oiio.FLOAT) for each in channels]
     pixels = [each for each in read if each is not None]
     reason = words(image.geterror)
@@ -85,7 +85,7 @@ def _read_image(file: Path, size: int) -> NDArray[np.float64]:
 
 
 def _channels(file: Path, names: Sequence[str]) -> list[int]:
-    """Indices of red, green and blue: the plain ones, or those of the only layer that has them."""
+    """Indices of red, green and blue: unlayered, or in the only layer that has all three."""
     layers: dict[str, dict[str, int]] = {}
     for index, name in enumerate(names):
         layer, _, channel = name.rpartition(".")

@@ -116,7 +116,7 @@ def mesh_layer(mesh: Mesh) -> str:
 
 
 def scene_layer(view: View, node: str, flagged: bool) -> str:
-    """The scene of one picture with a material of a nodedef, flagged by energy_compensation or not."""
+    """The scene of one picture; `flagged` sets energy_compensation."""
     material, scene = view.material, view.scene
     if scene.light is None:
         light = DOME.format(radiance=scene.environment)

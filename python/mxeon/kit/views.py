@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 from mxeon.errors import InputError
 from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, Scene
 
-COLOR = (0.2, 0.5, 0.8)  # a wrong power of the color shows in each channel
+COLOR = (0.2, 0.5, 0.8)  # three channels reveal a wrong power of the color
 
-# Below, the points that bound a pixel may miss the sphere; above, nothing is gained.
+# Below SMALLEST, the points that bound a pixel may miss the sphere; above LARGEST, nothing is gained.
 SMALLEST, LARGEST = 64, 2048
 USUAL = 128
 
@@ -47,7 +47,7 @@ class View:
         return f"{self.material.name}_{self.scene.name}"
 
 
-# Lambert under a distant light: shows light, orientation and encoding, whatever the model.
+# Lambert under a distant light shows light, orientation and encoding, independently of the model.
 SETUP = View(LAMBERT, SIDE)
 PICTURES = (
     SETUP,

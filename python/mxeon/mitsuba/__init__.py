@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """EON, FON, QON, a dielectric over EON, EON under a varnish and OpenPBR's base as BSDF plugins of Mitsuba 3.
 
-The values are those of the formulas of `mxeon.models`, which Dr.Jit evaluates and differentiates.
+Dr.Jit evaluates and differentiates the formulas of `mxeon.models`.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ PLUGINS = {
 
 
 def register() -> None:
-    """Register the BSDFs of `PLUGINS`, such as `eon`, for the variant of Mitsuba that is set.
+    """Register the BSDFs of `PLUGINS`, such as `eon`, for Mitsuba's current variant.
 
-    `eon` and `fon` have the textures `reflectance` and `roughness`, `qon` has `reflectance` and `sigma`, in
-    radian. `varnished`, and `dielectric_over_eon`, MaterialX's `layer`, have those of `eon`, and the numbers
-    `alpha` and `ior`; `openpbr_base` has inputs of OpenPBR's base. All are in `mitsuba.traverse`, and can be
-    differentiated. `eon` is sampled by its value for the mean of its reflectance, a lobe under facets
-    with these, the others by the cosine. As Mitsuba's `diffuse` they reflect on the front alone.
+    `eon` and `fon` have the textures `reflectance` and `roughness`, `qon` has `reflectance` and `sigma`, in radian.
+    `varnished` and `dielectric_over_eon`, MaterialX's `layer`, also have `eon`'s textures, and the numbers `alpha` and
+    `ior`; `openpbr_base` has inputs of OpenPBR's base. All are in `mitsuba.traverse` and differentiable. `eon` is sampled
+    exactly for the mean of its reflectance, coated lobes with their facets, `fon` and `qon` by the cosine. Like Mitsuba's
+    `diffuse`, they reflect only on the front.
     """
     mi = mitsuba()
     for name, kind in PLUGINS.items():

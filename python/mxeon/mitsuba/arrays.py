@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Functions of Dr.Jit by the names of the array API standard, for the formulas of `mxeon.models`.
 
-A number of Dr.Jit stands for many; a direction is an `Array3f` of three, and its first axis is that of components.
+A Dr.Jit number is an array of values. A direction is an `Array3f`, with the components on its first axis.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from mxeon.models.core.arrays import FUNCTIONS, OTHERS, Array, Namespace
 
 
 def register_functions() -> None:
-    """Make the formulas take numbers of Dr.Jit."""
+    """Make the formulas accept Dr.Jit numbers."""
     drjit = import_module("drjit")
 
     def log1p(x: Array) -> Array:
-        u = 1.0 + x  # whose rounding the quotient undoes
+        u = 1.0 + x  # the quotient cancels its rounding
         rounded = drjit.log(u) * (x / drjit.select(u == 1.0, 1.0, u - 1.0))
         return cast(Array, drjit.select(u == 1.0, x, rounded))
 
@@ -31,7 +31,7 @@ def register_functions() -> None:
 
 
 def vector(parts: Sequence[Array]) -> Array:
-    """`Array2f`, `Array3f` or `Array4f` of numbers of Dr.Jit."""
+    """`Array2f`, `Array3f` or `Array4f` of Dr.Jit numbers."""
     kind = type(parts[0])
     name = f"Array{len(parts)}f{'64' * kind.__name__.endswith('64')}"
     return cast(Array, getattr(import_module(kind.__module__), name)(*parts))

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A dielectric over EON as a BSDF of Mitsuba; see `mxeon.models.coat`.
 
-What the dielectric reflects depends on a cosine alone: a cubic in each part of an octave, whose
-coefficients are computed in float64 whenever `alpha` or `ior` changes, with their derivatives where these
-are asked for.
+The dielectric's albedo depends only on a cosine: a cubic in each part of an octave, whose coefficients are computed in
+float64 whenever `alpha` or `ior` changes, with derivatives if they have gradients.
 """
 
 from __future__ import annotations
@@ -36,7 +35,7 @@ from mxeon.models.microfacet.fresnel import dielectric, dielectric_avg, schlick,
 from mxeon.models.sampling import visible_density, visible_normal
 
 ALPHAS, IORS = (RANGES[name][:2] for name in ("coat_alpha", "coat_ior"))
-STEP = 1e-4  # of the differences that stand for the derivatives of the coefficients
+STEP = 1e-4  # of finite differences of the coefficients
 
 
 class CoatPlugin(EonPlugin):
@@ -164,18 +163,18 @@ class CoatPlugin(EonPlugin):
         return type(color)(self.mi.Float(F))
 
     def _facets(self, view: Mitsuba, light: Mitsuba) -> tuple[Mitsuba, Mitsuba]:
-        """Value of facets that reflect everything, and their cosine with either direction."""
+        """Value of perfectly reflecting facets, and their cosine with either direction."""
         wh, c = ggx.half_vector(self._vector(view), self._vector(light))
         visibility = ggx.visibility(view.z, light.z, self._dielectric()[0])
         return ggx.ndf(wh, self._roughness()) * visibility, c
 
     def _at(self, mu: Mitsuba) -> tuple[Mitsuba, Mitsuba]:
-        """Light that facets miss, (1 - E_ss) / E_ss, and the albedo of the dielectric."""
+        """Missing energy of the facets, (1 - E_ss) / E_ss, and the albedo of the dielectric."""
         missing, reflected = self._curves(mu)
         return self.dr.maximum(missing, 0.0), self.dr.clip(reflected, 0.0, 1.0)
 
     def _curves(self, mu: Mitsuba) -> list[Mitsuba]:
-        """Curves of the interface at a cosine: sums of Chebyshev polynomials in scalar variants."""
+        """Curves of the interface at a cosine; scalar variants sum Chebyshev polynomials."""
         if not self._compiled:
             return list(self.coat.at(mu))
         cell, x = octave_cells(mu)
@@ -201,11 +200,11 @@ class CoatPlugin(EonPlugin):
         return self._inside("alpha"), self._inside("ior")
 
     def _inside(self, name: str) -> Mitsuba:
-        """A number within its range, which an optimizer may have left."""
+        """A number, clamped: an optimizer may have left the range."""
         return self.dr.clip(getattr(self, name), *self.numbers[name][1:])
 
     def _vector(self, w: Mitsuba) -> Mitsuba:
-        """Direction for the formulas, which in scalar variants is one of NumPy."""
+        """Direction for the formulas; scalar variants use NumPy."""
         return w if self._compiled else np.array([w.x, w.y, w.z])
 
     @property

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """EON, FON and QON as BSDFs of Mitsuba.
 
-In Mitsuba's words `si.wi` is the direction to the viewer and `wo` the one to the light: wo and wi here.
+Mitsuba's `si.wi` points to the viewer and `wo` to the light: wo and wi in this project.
 """
 
 from __future__ import annotations
@@ -17,21 +17,24 @@ from mxeon.mitsuba.arrays import register_functions
 from mxeon.models import diffuse as formulas
 from mxeon.models import sampling
 
-# Objects of Mitsuba and Dr.Jit, whose types are those of the variant.
+# Objects of Mitsuba and Dr.Jit, whose types depend on the variant.
 Mitsuba: TypeAlias = Any
 
-# LLVM 15 and older cannot compile what Dr.Jit 1.5 makes of a minimum; it ends the process.
+# LLVM 15 and older crash on the code of Dr.Jit 1.5 for a minimum.
 OLDEST_LLVM = (16, 0, 0)
 
 
 def register_plugin(mi: Mitsuba, name: str, kind: type) -> None:
-    """Register the BSDF of this name, which has the methods of a class, for the variant that is set."""
-    members = {"__init__": _initialize, "mi": mi, "dr": import_module("drjit")}
-    mi.register_bsdf(name, type(name, (mi.BSDF,), members | _members(kind)))
+    """Register a BSDF with the methods of a class for the current variant."""
+    members: dict[str, Any] = {"__init__": _initialize, "mi": mi, "dr": import_module("drjit")}
+    # A subclass of Mitsuba's classes must have only one base: copy the members.
+    for each in reversed(kind.__mro__):
+        members |= {n: member for n, member in vars(each).items() if not n.startswith("__")}
+    mi.register_bsdf(name, type(name, (mi.BSDF,), members))
 
 
 def mitsuba() -> Mitsuba:
-    """Mitsuba, with a variant that can run."""
+    """Mitsuba with a variant that runs here."""
     try:
         mi = import_module("mitsuba")
     except ModuleNotFoundError:
@@ -49,26 +52,20 @@ def mitsuba() -> Mitsuba:
     return mi
 
 
-def _members(kind: type) -> dict[str, object]:
-    """What a class and its bases define: a class of Mitsuba's must have one base alone."""
-    named = [item for each in reversed(kind.__mro__) for item in vars(each).items()]
-    return {name: member for name, member in named if not name.startswith("__")}
-
-
 def _initialize(self: Mitsuba, properties: Mitsuba) -> None:
     self.mi.BSDF.__init__(self, properties)
     self.configure(properties)
 
 
 class RoughDiffusePlugin:
-    """Methods of a BSDF of Mitsuba with a reflectance and one more parameter, in [0, `largest`]."""
+    """Methods of a Mitsuba BSDF with a reflectance and a parameter in [0, `largest`]."""
 
     mi: Mitsuba
     dr: Mitsuba
     color = "reflectance"
     parameter = "roughness"
     largest = 1.0
-    brdf: Callable[..., Mitsuba]  # of one channel, in 1/sr: mu_o, mu_i, s, rho, amount
+    brdf: Callable[..., Mitsuba]  # one channel, in 1/sr, of mu_o, mu_i, s, rho, amount
 
     def configure(self, properties: Mitsuba) -> None:
         if self.parameter in properties:
@@ -138,11 +135,11 @@ class RoughDiffusePlugin:
         return self.mi.Bool(active) & wanted & (view.z > 0.0) & (light.z > 0.0)
 
     def _clipped(self, amount: Mitsuba) -> Mitsuba:
-        """Parameter in its range, which an optimizer may have left."""
+        """The parameter, clamped: an optimizer may have left the range."""
         return self.dr.clip(amount, 0.0, self.largest)
 
     def _gray(self, si: Mitsuba, active: Mitsuba) -> tuple[Mitsuba, Mitsuba]:
-        """Reflectance for which the sampling is exact, and the parameter."""
+        """The reflectance for which sampling is exact, and the parameter."""
         rho = self.dr.mean(self.reflectance.eval(si, active))
         return self.dr.clip(rho, 0.0, 1.0), self._clipped(self.amount.eval_1(si, active))
 
@@ -202,7 +199,7 @@ class EonPlugin(RoughDiffusePlugin):
         mu_upper = number(sampling.eon_upper_cosine(v**0.4, mu_o, limit))
         mu_multiple = number(sampling.eon_multiple_cosine(dr.cbrt(v)))
         mu = dr.select(is_lower, mu_lower, dr.select(is_towards, mu_upper, mu_multiple))
-        # Draw an azimuth from that of wo: towards it, uniform, or by the chord of the disk.
+        # Draw an azimuth relative to wo: towards it, uniform, or by the chord of the disk.
         S, (sine, cosine) = dr.safe_sqrt((1.0 - mu) * (1.0 + mu)), dr.sincos(2.0 * dr.pi * u2)
         ahead = dr.select(is_towards, 2.0 * dr.safe_sqrt(u2 * (1.0 - u2)), cosine)
         aside = dr.select(is_towards, 2.0 * u2 - 1.0, sine)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Curves over a number in (0, 1] as cubics in the parts of octaves, for Dr.Jit.
+"""Curves over (0, 1] as cubics in parts of octaves, for Dr.Jit.
 
-The bits of a float32 tell the part without a logarithm. Octaves follow a curve that changes on any scale,
-such as what facets reflect, which changes with cosine / alpha.
+The bits of a float32 give the part without a logarithm. Octaves resolve curves at any scale, such as the albedo of
+facets, which depends on cosine / alpha.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from mxeon.models.core.arrays import Array
 from mxeon.models.core.chebyshev import chebyshev_nodes
 
 OCTAVES, PARTS = 126, 16  # down to the smallest normal float32; parts of each
-LOWER_BITS = 19  # of a float32, below those that tell octave and part
-MIDDLE = 1.5  # of an octave that starts at 1
+LOWER_BITS = 19  # bits of a float32 below octave and part
+MIDDLE = 1.5  # middle of the octave that starts at 1
 
 
 def octave_cells(x: Array) -> tuple[Array, Array]:
-    """Part of a number, counted from the smallest, and its distance from the octave's middle, over the octave."""
+    """Index of a number's part, and its distance from the octave's middle relative to the octave."""
     drjit = import_module("drjit")
     integer, single = drjit.uint32_array_t(type(x)), drjit.float32_array_t(type(x))
     x = drjit.maximum(x, 2.0**-OCTAVES)
@@ -43,7 +43,7 @@ def octave_cubics(curve: Callable[[Array], Array]) -> Array:
 
 
 def gather_cubic(table: Array, cell: Array, x: Array) -> Array:
-    """Sum of the cubic of a cell, whose four coefficients are rows of a table."""
+    """Value of a cell's cubic, whose four coefficients are rows of a table."""
     drjit = import_module("drjit")
     c = drjit.gather(type(vector([x] * 4)), table, cell)
     return cast(Array, drjit.fma(drjit.fma(drjit.fma(c.w, x, c.z), x, c.y), x, c.x))

@@ -27,7 +27,7 @@ from mxeon.io.files import AnyPath, below, check_output, one_name, replacing, wr
 from mxeon.io.images import without_threads, write_exr, write_png
 from mxeon.report.junit import to_junit
 
-PAGES = "upstream"  # folder beside the report with the pages on defects
+PAGES = "upstream"  # folder of the pages on defects, next to the report
 
 JSON_FORMAT = 3
 SCHEMA = f"urn:mxeon:results:{JSON_FORMAT}"  # identifies `mxeon.report.schema.schema()`
@@ -41,30 +41,28 @@ SHARED_METADATA = ("version", "library", "document", "element", "scene", "points
 def to_json(run: Run) -> str:
     """A run as JSON text: an object.
 
-    A number that is not finite is the string "NaN", "Infinity" or "-Infinity"; what is missing is null.
-    Keys:
+    `mxeon report schema` prints its JSON Schema. A number that is not finite is the string "NaN", "Infinity" or
+    "-Infinity"; missing values are null. Keys:
 
-    - $schema: the identifier of the JSON Schema, which `mxeon report schema` prints.
-    - format: this layout's number, raised when a key changes or goes.
-    - verdict: "passed", "failed" or "not run", and "differs" of a check where the
-      specification leaves the difference open; counts: the number of checks with each.
-    - passed: whether all that was requested ran and nothing failed; exit_status: of `mxeon check`.
-    - sentence: the verdict in words; seconds: that the run took, or null.
-    - missing: texts, the items that an interrupted run has not finished.
-    - refused: texts, the documents that were refused; errors: texts, their faults.
-    - compared: names of libraries judged for comparison, which verdict, counts and sentence ignore.
+    - $schema: identifier of the JSON Schema.
+    - format: version of this layout, raised when a key changes or is removed.
+    - verdict: "passed", "failed" or "not run", or "differs" for a check whose difference the specification
+      permits; counts: number of checks by verdict.
+    - passed: whether everything requested ran and nothing failed; exit_status: of `mxeon check`.
+    - sentence: the verdict in words; seconds: duration of the run, or null.
+    - missing: items that an interrupted run has not finished.
+    - refused: refused documents; errors: their faults.
+    - compared: libraries judged for comparison, which verdict, counts and sentence ignore.
     - version: of mxeon; software: name to version; documents: paths; notes: texts.
-    - libraries: by folder, its files under "folder", under "MaterialX" those that complete it, and
-      under "nodes without a model" the lobes that it adds.
+    - libraries: by folder, its own files ("folder"), the files that complete it ("MaterialX"), and the lobes that it
+      adds ("nodes without a model").
     - hosts: objects of name, version, device.
-    - results: objects with the fields of `mxeon.conformance.results.Result`; control is null or an
-      object of variant, error, caught; quantity is null where nothing was measured; diagnosis has causes, in the order of what they explain, and
-      distances to the known models. Scripts should compare kinds, keys and regions, not sentences.
-    - elsewhere: objects of document, check, subject, host, library: failures for inputs that the
-      document does not have.
-    - pictures: objects of document, element, host, library, scene; exr and png, paths
-      beside the JSON file; reference, that of the reference's EXR file, and largest_difference
-      from it, or null without one.
+    - results: objects with the fields of `mxeon.conformance.results.Result`; control is null or an object of variant,
+      error, caught; quantity is null if nothing was measured; diagnosis has causes, the most important first, and distances to the known models. Scripts should
+      compare kinds, keys and regions, not sentences.
+    - elsewhere: objects of document, check, subject, host, library: failures for inputs that the document does not use.
+    - pictures: objects of document, element, host, library, scene; exr, png and reference: paths relative to the JSON
+      file; largest_difference from the reference. The last two may be null.
     - curves: objects with the fields of `mxeon.conformance.results.AlbedoCurve`.
     """
     data = {
@@ -106,7 +104,11 @@ def _picture_fields(run: Run) -> list[dict[str, Any]]:
     pictures = _with_references(run.pictures)
     places = [(each.host, *_subject(each)) for each in pictures]
     stems = dict(zip(places, image_names(pictures), strict=True))
-    with in_threads(_largest_difference, run.pictures) as each:
+
+    def largest_difference(picture: Picture) -> float | None:
+        return None if picture.reference is None else float(np.nanmax(picture.difference()))
+
+    with in_threads(largest_difference, run.pictures) as each:
         differences = list(each)
     for picture, stem, largest in zip(
         run.pictures, image_names(run.pictures), differences, strict=True
@@ -122,35 +124,26 @@ def _picture_fields(run: Run) -> list[dict[str, Any]]:
 
 
 def image_names(pictures: Sequence[Picture]) -> tuple[str, ...]:
-    """File names for pictures, without suffix: ASCII, and different whatever the case."""
+    """File names for pictures, without suffix: ASCII, and distinct on file systems that ignore case."""
     names, uses = [], Counter[str]()
     for picture in pictures:
         document = Path(picture.document).stem
         words = (document, picture.element, picture.host, picture.library, picture.scene)
         name = "-".join(NOT_PLAIN.sub("_", word)[:40] for word in words)
         uses[name.lower()] += 1
-        # A counter is a sixth word, which no other name has.
+        # No other name has a sixth word.
         names.append(name if uses[name.lower()] == 1 else f"{name}-{uses[name.lower()]}")
     return tuple(names)
-
-
-def _largest_difference(picture: Picture) -> float | None:
-    """Largest difference of a picture from its reference where it was judged, if it has one."""
-    if picture.reference is None:
-        return None
-    return float(np.nanmax(picture.difference()))
 
 
 def write(run: Run, folder: str | PathLike[str]) -> Path:
     """Write report.html, results.json, junit.xml and pictures/ into `folder`.
 
-    The pictures are those of the run and their references, each as EXR and PNG; upstream/ has the pages
-    on defects that explain failures. Each file is written whole or not at all, the page last: if it
-    cannot be made, all other files exist.
+    Pictures and their references are EXR and PNG files; upstream/ has pages on the defects that explain failures. Each
+    file is written completely or not at all, the page last.
 
-    Returns the page, report.html. Raises InputError if it would replace a document, a library or the
-    journal of the run; OSError if a file cannot be written, and ImportError if jinja2 or matplotlib, the
-    `report` extra, is not installed.
+    Returns the page, report.html. Raises InputError if it would replace a document, a library or the journal of the run;
+    OSError if a file cannot be written; ImportError without the `report` extra, jinja2 and matplotlib.
     """
     folder = Path(one_name("folder", folder))
     check_output(folder, _inputs(run), replaced=REPORT)
@@ -164,7 +157,7 @@ def write(run: Run, folder: str | PathLike[str]) -> Path:
     ):
         for _ in written:
             pass
-    # The pages on the defects, for a site that has no address.
+    # The report links to these if the site is unknown.
     for issue in {each for one in run.results for each in issues_of(one)}:
         write_text(below(folder, f"{PAGES}/{issue.page}.md"), issue.text)
     with (
@@ -177,7 +170,7 @@ def write(run: Run, folder: str | PathLike[str]) -> Path:
 
 
 def _inputs(run: Run) -> Iterator[AnyPath]:
-    """The files that a run was made from: its documents, libraries and journal."""
+    """The run's documents, libraries and journal."""
     from mxeon.shaders.document.policy import Policy
     from mxeon.shaders.document.references import files_read
 
@@ -197,16 +190,16 @@ def _write_picture(folder: Path, place: tuple[Picture, str]) -> None:
 
 
 def require_extra(name: str) -> None:
-    """Raise PackageError unless the packages of the `report` extra, which `name` needs, are installed."""
+    """Raise PackageError unless the `report` extra, which `name` needs, is installed."""
     for package in ("jinja2", "matplotlib"):
         if find_spec(package) is None:
             raise PackageError(f"{name} needs {package}: {install('report')}")
 
 
 def html(run: Run) -> Generator[str, None, None]:
-    """A run as one self-contained HTML page, in pieces: few of its pictures are in memory at a time.
+    """A run as one self-contained HTML page, in pieces, so that few pictures are in memory at a time.
 
-    Threads draw the pictures until it is closed.
+    Close it to stop the threads that draw the pictures.
     """
     require_extra("report.html")
     from mxeon.report.page import render
@@ -218,7 +211,6 @@ def html(run: Run) -> Generator[str, None, None]:
 
 
 def _with_references(pictures: Iterable[Picture]) -> tuple[Picture, ...]:
-    """`pictures`, then the reference of each that has one, once for all hosts it is the same for."""
     shown = {_subject(picture) for picture in pictures if picture.host == REFERENCE}
     references = []
     for picture in pictures:
@@ -234,13 +226,12 @@ def _with_references(pictures: Iterable[Picture]) -> tuple[Picture, ...]:
 
 
 def _subject(picture: Picture) -> tuple[str, ...]:
-    """What pictures with one reference share; the points of a portrait are those of its host."""
+    """Identifies a picture's reference; portraits depend on the points of their host."""
     points = picture.metadata.get("points", "")
     return picture.document, picture.element, picture.library, picture.scene, points
 
 
-# --- threads: what encodes pictures runs without the interpreter's lock ----------------------------
-
+# Encoders run without the interpreter's lock.
 THREADS = 4  # each holds a picture or two, and often waits for a disk
 
 T = TypeVar("T")
@@ -249,23 +240,23 @@ R = TypeVar("R")
 
 @contextmanager
 def in_threads(work: Callable[[T], R], items: Iterable[T]) -> Iterator[Iterator[R]]:
-    """Results of `work` on every item, in their order; a few items ahead of the caller are begun.
+    """Results of `work` on every item, in order, computed a few items ahead of the caller.
 
     The first error ends the work, and is raised. The threads end with the block: if garbage collection
     ended them, it might run in one of them, which would then wait for itself.
     """
     begun = deque[Future[R]]()
     with ThreadPoolExecutor(THREADS) as pool:
+        futures = (pool.submit(work, item) for item in items)
+
+        def results() -> Iterator[R]:
+            begun.extend(islice(futures, 2 * THREADS))
+            while begun:
+                yield begun.popleft().result()
+                begun.extend(islice(futures, 1))
+
         try:
-            yield _results((pool.submit(work, item) for item in items), begun)
+            yield results()
         finally:
             for future in begun:
                 future.cancel()
-
-
-def _results(futures: Iterator[Future[R]], begun: deque[Future[R]]) -> Iterator[R]:
-    """Results of futures, which begin when they are taken, some ahead of the caller."""
-    begun.extend(islice(futures, 2 * THREADS))
-    while begun:
-        yield begun.popleft().result()
-        begun.extend(islice(futures, 1))

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Comparison of two reports: changes for the worse, for the better, and others."""
+"""Comparison of two reports."""
 
 import json
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 from os import PathLike
@@ -40,22 +40,23 @@ SHOWN = ("host", "library", "subject", "scene")
 
 @dataclass(frozen=True)
 class Change:
-    """One difference between two reports, with their values; "none" where one has no such entry.
+    """One difference between two reports; a missing entry has the value "none".
 
-    WORSE are a worse verdict, a new check that fails, a document that is refused now, and a check that
-    failed or differed before and has an error larger by SPREAD, which is what engines and drivers may add;
-    or, with another error, no longer the same cause. LOST is a check that does not run any longer, unless
-    documents were removed. An error within its tolerance is OTHER.
+    - WORSE: a worse verdict; a new check that fails; a newly refused document; a check that failed or differed before,
+      with an error more than SPREAD times larger (engines and drivers may add that much), or with a different error and
+      a different cause.
+    - LOST: a check that no longer runs, unless documents were removed.
+    - OTHER: anything else that is not BETTER, such as an error within its tolerance.
     """
 
     kind: str  # one of KINDS
-    host: str  # or "", as the library, for what is of none
+    host: str  # host and library are "" for documents and versions
     library: str
     subject: str
-    item: str  # key of a check, scene of a picture, or name of a version
+    item: str  # check, scene of a picture, document or software
     before: str
     after: str
-    growth: float = 1.0  # of the error; infinite from none, or to one that is not finite
+    growth: float = 1.0  # new error over old error; infinite for a first or non-finite error
     reason: str = ""
 
     @property
@@ -92,14 +93,14 @@ class ShownPicture:
 
     @property
     def subject(self) -> str:
-        """As that of a result: a document may lie in another folder."""
+        """The subject of the picture's results, without the document's folder."""
         is_node = self.document == PORTRAIT
         return self.element if is_node else f"{Path(self.document).name}: {self.element}"
 
 
 @dataclass(frozen=True)
 class Elsewhere:
-    """A failure for inputs that a document does not have."""
+    """A failure for inputs that a document does not use."""
 
     document: str
     check: str
@@ -110,7 +111,7 @@ class Elsewhere:
 
 @dataclass(frozen=True)
 class Report:
-    """Content of results.json but $schema; see `mxeon.report.to_json`."""
+    """Content of results.json without $schema; see `mxeon.report.to_json`."""
 
     format: int
     verdict: Verdict
@@ -142,9 +143,9 @@ class Report:
 
 
 def read_results(folder: str | PathLike[str]) -> Report:
-    """Content of a results.json, or of the one in a report's folder.
+    """Content of a results.json, given by its path or its report's folder.
 
-    Raises ValueError if it is missing or not of this format, which names the first wrong value.
+    Raises InputError if it is missing, or names its first wrong value.
     """
     path = Path(folder) / "results.json" if Path(folder).is_dir() else Path(folder)
     rule = f"{path}: must be the results.json of a report"
@@ -168,7 +169,7 @@ def read_results(folder: str | PathLike[str]) -> Report:
 
 
 def compare(before: Report, after: Report) -> tuple[Change, ...]:
-    """Changes from one report to another by kind, host and library, and subject; the largest first."""
+    """Changes between two reports by kind, host, library and subject; the largest first."""
     before = _renamed(before, _moved(list(before.libraries), list(after.libraries)))
     names = {Path(each).name for each in (*after.documents, *after.refused)}
     removed = {each for each in before.documents if Path(each).name not in names}
@@ -176,7 +177,12 @@ def compare(before: Report, after: Report) -> tuple[Change, ...]:
         *(Change(OTHER, "", "", "", each, "checked", "removed") for each in sorted(removed)),
         *_results(_by(PLACE, before.results), _by(PLACE, after.results), bool(removed)),
         *_pictures(before, after),
-        *_refusals(set(before.refused), set(after.refused)),
+        *(  # nothing else reports a refused document, which was not judged
+            Change(WORSE, "", "", "", each, "not refused", "refused")
+            if each in after.refused
+            else Change(BETTER, "", "", "", each, "refused", "not refused")
+            for each in sorted({*before.refused} ^ {*after.refused})
+        ),
         *_facts(before, after),
     ]
 
@@ -200,7 +206,7 @@ def _group(change: Change) -> tuple[str, str, str, str]:
 
 
 def lines(changes: Sequence[Change]) -> Iterator[str]:
-    """Sorted changes as text: each kind, host and library once, then each subject, and the numbers."""
+    """Sorted changes as text, grouped by kind, host and library, then by subject."""
     location: list[str] = []
     for group, rows in groupby(changes, key=_group):
         kind, host, library, subject = group
@@ -214,9 +220,9 @@ def lines(changes: Sequence[Change]) -> Iterator[str]:
 
 
 def _moved(before: Sequence[str], after: Sequence[str]) -> dict[str, str]:
-    """The folder in `after` that each library folder of `before` is, wherever it lies now.
+    """Maps library folders of `before` to the same folders in `after`, which may have moved.
 
-    It has the same path, or else the same name, or else the same place in `--library`.
+    Matches by path, then by name, then by position in `--library`.
     """
     same = {folder: folder for folder in before if folder in after}
     for by_name in (True, False):
@@ -230,8 +236,6 @@ def _moved(before: Sequence[str], after: Sequence[str]) -> dict[str, str]:
 
 
 def _renamed(report: Report, libraries: Mapping[str, str]) -> Report:
-    """A report whose results and pictures have other names of libraries."""
-
     def name(library: str) -> str:
         return libraries.get(library, library)
 
@@ -244,7 +248,7 @@ def _renamed(report: Report, libraries: Mapping[str, str]) -> Report:
 
 
 def _by(names: tuple[str, ...], records: Iterable[Any]) -> dict[tuple[str, ...], Any]:
-    """Records by the values of some attributes; records that share them are numbered."""
+    """Records by the values of some attributes; duplicates are numbered."""
     keyed: dict[tuple[str, ...], Any] = {}
     uses: Counter[tuple[str, ...]] = Counter()
     for record in records:
@@ -259,7 +263,7 @@ def _results(
     after: Mapping[tuple[str, ...], Result],
     fewer: bool,
 ) -> Iterator[Change]:
-    """Changes of results; a loss does not count where there are fewer documents."""
+    """Changes of results; with `fewer` documents, missing checks are not LOST."""
     for key in dict.fromkeys((*before, *after)):
         old, new = before.get(key), after.get(key)
         host, library, check, subject, *number = key
@@ -278,11 +282,11 @@ def _results(
 
 
 def _change(old: Result, new: Result) -> tuple[str, str]:
-    """The kind of a change of a result, and the reason where the values do not say it; "" for none."""
+    """Kind of a change of a result ("" for none), and the reason if the values do not show it."""
     if NOT_RUN in (old.verdict, new.verdict):
         if old.verdict == new.verdict:
             return "", ""
-        # The failure that keeps a check from running is compared itself.
+        # The failure that prevents this check is compared on its own.
         if old.follows or new.follows:
             return OTHER, old.reason or new.reason
         if new.verdict == NOT_RUN:
@@ -308,12 +312,12 @@ def _change(old: Result, new: Result) -> tuple[str, str]:
         kind, reason = WORSE, f"diagnosis was {was}, is {now}"
     elif found:
         kind, reason = BETTER, f"{words.listed(found)} explains it"
-    # The same failure in other words is neither.
+    # The same error with a new explanation is neither better nor worse.
     return OTHER if kind and _number(old.error) == _number(new.error) else kind, reason
 
 
 def _pictures(before: Report, after: Report) -> Iterator[Change]:
-    """Changes of pictures; those outside their tolerance are better or worse, the others only OTHER."""
+    """Changes of pictures; within the tolerance they are OTHER."""
     shown = [_by(SHOWN, each.pictures) for each in (before, after)]
     failed = [
         {
@@ -336,15 +340,8 @@ def _pictures(before: Report, after: Report) -> Iterator[Change]:
         yield Change(kind, host, library, subject, item, _number(old), _number(new), growth)
 
 
-def _refusals(before: Set[str], after: Set[str]) -> Iterator[Change]:
-    """A document that is refused was not judged, so nothing else here speaks of it."""
-    for document in sorted(before ^ after):
-        old, new = ("refused" if document in each else "not refused" for each in (before, after))
-        yield Change(WORSE if document in after else BETTER, "", "", "", document, old, new)
-
-
 def _facts(before: Report, after: Report) -> Iterator[Change]:
-    """Changes of the versions of mxeon, of packages and of hosts."""
+    """Changes of versions of mxeon, packages and hosts."""
     old, new = (
         {"mxeon": each.version}
         | each.software
@@ -358,7 +355,7 @@ def _facts(before: Report, after: Report) -> Iterator[Change]:
 
 
 def _growth(old: float | None, new: float | None) -> float:
-    """New error over old one; an error that is not a finite number is infinite."""
+    """New error over old error; missing and non-finite errors count as infinite."""
     small, large = (
         math.inf if each is None or not math.isfinite(each) else each for each in (old, new)
     )

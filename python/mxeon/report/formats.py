@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How pages of reports write numbers, verdicts and what explains them."""
+"""Numbers, verdicts and explanations on pages of reports."""
 
 import math
 import re
@@ -36,7 +36,7 @@ def share(result: Result) -> float:
 
 
 def number(value: float | None, digits: int = 3) -> str:
-    """A number as text without zeros in its exponent, or a dash for None."""
+    """A number as text without leading zeros in its exponent, or a dash for None."""
     return "–" if value is None else re.sub(r"e([+-])0*", r"e\1", f"{value:.{digits}g}")
 
 
@@ -55,7 +55,7 @@ def nearest(distances: Mapping[str, float], count: int = 5) -> list[tuple[str, f
 
 
 def linked(result: Result) -> Markup:
-    """What explains a result, as HTML: a control that passed, its diagnosis, and links to its known issues."""
+    """Explanation of a result as HTML: a passed control, the diagnosis, and links to known issues."""
     excess = words.excess(result) if result.within and result.verdict != PASSED else ""
     see = Markup('see <a href="{}">{}</a>')
     links = [see.format(page_address(issue), issue.title) for issue in issues_of(result)]
@@ -65,13 +65,13 @@ def linked(result: Result) -> Markup:
 
 
 def page_address(issue: Issue) -> str:
-    """Address of the page of an issue from a report: on the site, or beside the report."""
+    """Address of the page of an issue, on the site or next to the report."""
     site = _site()
     return f"{site}/upstream/{issue.page}.html" if site else f"upstream/{issue.page}.md"
 
 
 def link(issue: Issue) -> str:
-    """Address of the page of an issue on the project's site; its file where the site has no address."""
+    """Address of the page of an issue on the site, or its file if no site is known."""
     if _site():
         return page_address(issue)
     file = folder().resolve() / f"{issue.page}.md"

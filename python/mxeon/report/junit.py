@@ -3,7 +3,6 @@
 
 import re
 from collections import Counter
-from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
@@ -21,17 +20,16 @@ NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 def to_junit(run: Run) -> str:
     """A run as JUnit XML text: a suite for each host and library, a case for each result.
 
-    A failed check is a failure, whose type is "known" if a page describes the defect and else "new"; one
-    that did not run is skipped, and a refused document is an error in a separate suite, each with its
-    message. Failures of a compared library are skipped. The folder of a library is named without its
-    path, which differs between machines, unless two have that name.
+    A failed check is a failure of type "known" if a page describes the defect, otherwise "new". Checks that did not run
+    and failures of a compared library are skipped. Refused documents are errors in a separate suite. A library's folder
+    is named without its path, which differs between machines, unless two folders share the name.
     """
     root = ElementTree.Element("testsuites", name="mxeon")
     folders = {result.library for result in run.results}
     uses = Counter(Path(each).name for each in folders)
     names = {each: Path(each).name if uses[Path(each).name] == 1 else each for each in folders}
     for place in dict.fromkeys(result.location for result in run.results):
-        # What fails with a library that does not count was not run.
+        # Failures of a compared library count as not run.
         results = [
             replace(each, verdict=NOT_RUN, reason=f"for comparison: {words.explanation(each)}")
             if each.verdict == FAILED and each.library in run.compared
@@ -40,9 +38,8 @@ def to_junit(run: Run) -> str:
             if each.location == place
         ]
         counts = Counter(result.verdict for result in results)
-        totals = {"tests": len(results), "failures": counts[FAILED], "errors": 0}
-        totals["skipped"] = counts[NOT_RUN]
-        counted = {key: str(value) for key, value in totals.items()}
+        counted = {"tests": str(len(results)), "failures": str(counts[FAILED]), "errors": "0"}
+        counted["skipped"] = str(counts[NOT_RUN])
         counted["time"] = f"{sum(each.seconds or 0.0 for each in results):.3f}"
         host, library = results[0].host, names[results[0].library]
         name = _xml(f"{host} with {library}")
@@ -58,22 +55,18 @@ def to_junit(run: Run) -> str:
         for result in results:
             _add_case(suite, result, f"mxeon.{host}.{library}.{result.check}")
     if run.refused:
-        _add_errors(root, run.refused)
+        count = str(len(run.refused))
+        totals = {"tests": count, "failures": "0", "errors": count, "skipped": "0"}
+        suite = ElementTree.SubElement(root, "testsuite", {"name": "documents"} | totals)
+        for document, lines in run.refused.items():
+            named = {"classname": "mxeon.documents", "name": _xml(document)}
+            case = ElementTree.SubElement(suite, "testcase", named)
+            first = ElementTree.SubElement(case, "error", type="refused", message=_xml(lines[0]))
+            first.text = _xml("\n".join(lines))
     ElementTree.indent(root)
     text = ElementTree.tostring(root, encoding="unicode")
     # ElementTree would name the encoding of the system's locale.
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'
-
-
-def _add_errors(root: ElementTree.Element, refused: Mapping[str, Sequence[str]]) -> None:
-    count = str(len(refused))
-    totals = {"tests": count, "failures": "0", "errors": count, "skipped": "0"}
-    suite = ElementTree.SubElement(root, "testsuite", {"name": "documents"} | totals)
-    for document, lines in refused.items():
-        named = {"classname": "mxeon.documents", "name": _xml(document)}
-        case = ElementTree.SubElement(suite, "testcase", named)
-        first = ElementTree.SubElement(case, "error", type="refused", message=_xml(lines[0]))
-        first.text = _xml("\n".join(lines))
 
 
 def _add_case(suite: ElementTree.Element, result: Result, name: str) -> None:

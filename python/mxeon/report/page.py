@@ -39,13 +39,13 @@ from mxeon.report.plots import (
     picture_uri,
 )
 
-# Markers of hosts in plots, in order: matplotlib's name, and the character that looks like it.
+# Markers of hosts in plots: matplotlib's name, and a character that looks like it.
 MARKERS = (("o", "○"), ("s", "□"), ("^", "△"), ("D", "◇"))
-# Materials whose pictures are inside the page, about a megabyte each; others are linked.
+# Materials with pictures inside the page, about a megabyte each; further ones are linked.
 SHOWN_MATERIALS = 60
-OPEN_MATERIALS = 8  # the others wait for a click
-VISIBLE = 1e-3  # of white: about the smallest step of a display
-OPEN_ROWS = 20  # of failed checks; with more of them, each check waits for a click
+OPEN_MATERIALS = 8  # further materials open on a click
+VISIBLE = 1e-3  # share of white, about the smallest step of a display
+OPEN_ROWS = 20  # with more failed rows, checks open on a click
 WORST_FIRST = (FAILED, NOT_RUN, DIFFERS, PASSED)
 
 Place: TypeAlias = tuple[str, str]  # host and library
@@ -75,12 +75,11 @@ class CheckResults:
 
 
 def worst(results: Iterable[Result]) -> Verdict:
-    """The worst verdict."""
     return min((each.verdict for each in results), key=WORST_FIRST.index)
 
 
 def tally(results: Iterable[Result | CheckResults]) -> str:
-    """Numbers of verdicts in words, the worst first: "2 failed, 5 passed"."""
+    """Counts of verdicts, worst first: "2 failed, 5 passed"."""
     verdicts = [each.verdict for each in results]
     return ", ".join(f"{verdicts.count(each)} {each}" for each in WORST_FIRST if each in verdicts)
 
@@ -88,7 +87,7 @@ def tally(results: Iterable[Result | CheckResults]) -> str:
 def checks_by_place(
     results: Iterable[Result], prefix: str = "check"
 ) -> dict[Place, list[CheckResults]]:
-    """Checks by host and library, in order of appearance; the prefix is that of their anchors."""
+    """Checks by host and library, in order of appearance; anchors begin with the prefix."""
     places: dict[Place, dict[str, list[Result]]] = {}
     for result in results:
         place = places.setdefault((result.host, result.library), {})
@@ -105,14 +104,14 @@ def checks_by_place(
 def matrix(
     places: Mapping[Place, Sequence[CheckResults]],
 ) -> list[tuple[str, list[CheckResults | None]]]:
-    """Rows of the table of checks: the name, and the CheckResults of each host and library, or None."""
+    """Rows of the table of checks: key, and the CheckResults (or None) of each host and library."""
     columns = [{check.key: check for check in checks} for checks in places.values()]
     keys = dict.fromkeys(key for column in columns for key in column)
     return [(key, [column.get(key) for column in columns]) for key in keys]
 
 
 def reasons(results: Iterable[Result]) -> dict[str, list[Result]]:
-    """Results that did not run, by reason."""
+    """Results that did not run, grouped by reason."""
     stopped: dict[str, list[Result]] = {}
     for result in results:
         if result.verdict == NOT_RUN:
@@ -138,14 +137,14 @@ def materials(run: Run) -> tuple[list[list[Picture]], Verdicts]:
 
 
 def is_portrait(pictures: Sequence[Picture]) -> bool:
-    """Whether pictures show one material of a node, and no document of the user's."""
+    """Whether pictures show a node, not a user's document."""
     return pictures[0].document == PORTRAIT
 
 
 def material(verdicts: Verdicts, pictures: Sequence[Picture]) -> dict[str, Any]:
-    """A material as the page shows it: a sentence for each host and library, and rows of pictures."""
+    """A material of the page: a sentence for each host and library, and rows of pictures."""
     subject = f"{pictures[0].document}: {pictures[0].element}"
-    # Stock MaterialX first: what the user has without eonlib.
+    # Stock MaterialX, which users have without eonlib, comes first.
     by_row: dict[tuple[str, str], list[Picture]] = {}
     found: dict[Place, Result | None] = {}
     for one in sorted(pictures, key=lambda each: each.library != "stock"):
@@ -167,7 +166,7 @@ def material(verdicts: Verdicts, pictures: Sequence[Picture]) -> dict[str, Any]:
 
 
 def _sentence(result: Result | None, largest: Mapping[str, float]) -> str:
-    """How a material looks on one host with one library; `largest` by scene, where it has a reference."""
+    """Sentence on a material; `largest` has the largest difference from the reference by scene."""
     if not largest:
         reason = result and (result.reason or words.diagnosis(result.diagnosis))
         checked = result and result.check == "finite" and result.verdict == PASSED
@@ -187,16 +186,15 @@ def _sentence(result: Result | None, largest: Mapping[str, float]) -> str:
 
 
 def _row(pictures: Sequence[Picture], tolerance: float) -> dict[str, Any]:
-    """Pictures of one scene on one host: each library's, the reference, and the differences from it.
+    """Pictures of one scene on one host for each library, the reference, and the differences.
 
-    All differences have one scale, which ends at the tolerance or above it: what is right is dark. It
-    ends at the largest difference where that is less than twice as much.
+    All differences share a scale that ends at the tolerance or above, so correct pixels are dark.
     """
     shown: list[dict[str, Any]] = []
     apart: list[tuple[Picture, NDArray[np.float64]]] = []
     reference = None
     for one in pictures:
-        # Read it once: pixels of a run that is kept are in a file.
+        # Read it once: the pixels of a kept run are in a file.
         shown.append(_figure("image", title_of(one.library), "", srgb_encoded(one.image)))
         if one.reference is not None:
             reference = one.reference if reference is None else reference
@@ -221,7 +219,6 @@ def _row(pictures: Sequence[Picture], tolerance: float) -> dict[str, Any]:
 
 
 def title_of(library: str) -> str:
-    """What pictures with a library are called."""
     return "Stock MaterialX" if library == "stock" else f"With {library}"
 
 
@@ -249,17 +246,17 @@ def plots(curves: Sequence[AlbedoCurve]) -> list[dict[str, Any]]:
 
 
 def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, None]:
-    """Pieces of a run's page; `file_of` gives the file of a picture that the page links to.
+    """Pieces of a run's page; `file_of` returns the file of a picture.
 
-    A picture is read when its piece is due. The page loads nothing, runs only its own script, and is
-    complete without it. Text from documents, shaders and hosts is escaped.
+    Each picture is read when its piece is due. The page loads nothing, runs only its own script, and is complete without
+    it. Text from documents, shaders and hosts is escaped.
     """
-    asked: list[Result] = []
-    own: list[Result] = []  # of the library itself: its functions and its text
-    for each in sorted(run.results, key=run.is_elsewhere):  # last, what the documents do not reach
+    checked: list[Result] = []
+    own: list[Result] = []  # functions and source text of the library
+    for each in sorted(run.results, key=run.is_elsewhere):  # inputs that no document uses come last
         audits = each.host == SOURCE or each.subject == SHADER_FUNCTIONS
-        (own if audits else asked).append(each)
-    places, audit = checks_by_place(asked), checks_by_place(own, "audit")
+        (own if audits else checked).append(each)
+    places, audit = checks_by_place(checked), checks_by_place(own, "audit")
     every = [*places.items(), *audit.items()]
     failed_rows = sum(
         len(check.results) for _, checks in every for check in checks if check.verdict == FAILED
@@ -284,7 +281,7 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, 
             run=run,
             failed_rows=failed_rows,
             judged=list(
-                dict.fromkeys(each.library for each in asked if each.library not in run.compared)
+                dict.fromkeys(each.library for each in checked if each.library not in run.compared)
             ),
             every=every,
             located=checks_by_place(run.results),

@@ -24,7 +24,7 @@ from mxeon.io.srgb import NOT_FINITE
 from mxeon.models.lobe_plot import CHANNEL_COLORS
 from mxeon.report.formats import LOOKS, number, share
 
-# Larger pictures are shown by every second, third, ... pixel; the files hold them all.
+# Larger pictures show every second, third, ... pixel; the files have all pixels.
 SHOWN_SIZE = 256
 DIFFERENCE_COLORS = matplotlib.colormaps["inferno"]
 DIFFERENCE_CODES = DIFFERENCE_COLORS(np.arange(DIFFERENCE_COLORS.N), bytes=True)[:, :3]
@@ -55,7 +55,7 @@ STYLE = {
 def generate_page(
     package: str, name: str, filters: Mapping[str, Callable[..., Any]], **values: Any
 ) -> Generator[str, None, None]:
-    """Pieces of a page from a package's template and script, which is the only one that it runs."""
+    """Pieces of a page from a package's template and script; the page runs no other script."""
     environment = Environment(
         loader=ChoiceLoader([PackageLoader(package), PackageLoader("mxeon.report")]),
         autoescape=True,
@@ -82,7 +82,7 @@ def picture_uri(pixels: NDArray[np.uint8]) -> str:
 def difference_pixels(difference_map: NDArray[np.float64], scale: float) -> NDArray[np.uint8]:
     """A difference (size, size) in DIFFERENCE_COLORS, which span 0 to `scale`.
 
-    Infinity is magenta, and NaN, which stands for pixels that were not judged, gray.
+    Infinity is magenta. NaN marks pixels that were not judged and is gray.
     """
     finite = np.isfinite(difference_map)
     steps = np.where(finite, difference_map, 0.0) * (len(DIFFERENCE_CODES) / scale)
@@ -101,8 +101,8 @@ def difference_gradient() -> str:
 def albedo_plot(curves: Sequence[AlbedoCurve], markers: Sequence[str], prefix: str) -> str:
     """Directional albedo over the cosine as an <svg> element: lines expected, markers measured.
 
-    The curves are one quantity on different hosts, with matplotlib's name of each one's marker;
-    the expectation is the first one's. `prefix` opens every identifier, which a page has once.
+    The curves are the same quantity on several hosts, with one of matplotlib's markers each; the first one's
+    expectation is drawn. `prefix` makes identifiers unique in a page.
     """
     gray = len(set(curves[0].rho)) == 1
     buffer = io.StringIO()

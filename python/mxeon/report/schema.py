@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The JSON Schema of results.json, made of the dataclasses by which it is read."""
+"""The JSON Schema of results.json, generated from the dataclasses that read it."""
 
 from dataclasses import fields, is_dataclass
 from enum import Enum
@@ -31,8 +31,8 @@ SIMPLE: dict[Any, Schema] = {
 def schema() -> Schema:
     """The JSON Schema of results.json, of draft 2020-12.
 
-    It states keys and types. `read_results` also demands that counts are those of the results, that errors
-    have tolerances, that neither is negative, and that the rows of an array are equally long.
+    It states keys and types. `read_results` also requires that counts match the results, that errors have tolerances,
+    that neither is negative, and that the rows of an array have equal lengths.
     """
     records: dict[str, Schema] = {"Number": NUMBER, "Rows": ROWS}
     root = _record(Report, records)
@@ -43,7 +43,7 @@ def schema() -> Schema:
 
 
 def _record(kind: type, records: dict[str, Schema]) -> Schema:
-    """The schema of a dataclass; the dataclasses of its fields are added to `records`, by name."""
+    """The schema of a dataclass; dataclasses of its fields are added to `records`."""
     types = get_type_hints(kind)
     names = [each.name for each in fields(kind)]
     return {
@@ -55,7 +55,6 @@ def _record(kind: type, records: dict[str, Schema]) -> Schema:
 
 
 def _value(kind: Any, records: dict[str, Schema]) -> Schema:
-    """The schema of a type that a field has."""
     origin, inner = get_origin(kind), get_args(kind)
     if kind in SIMPLE:
         return SIMPLE[kind]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A renderer's own nodes, and how they are measured: by pictures, or for pairs."""
+"""Measurement of renderers' own nodes, by pictures or for pairs."""
 
 from __future__ import annotations
 
@@ -44,9 +44,11 @@ from mxeon.shaders.scene import FURNACE, Scene, sphere
 from mxeon.survey.facets import facet_points
 from mxeon.survey.specs import Material, RendererSpec
 
-FACET_PIXELS = 7169  # of a picture of the polyhedron that lie in one facet and are judged
-FEW_CALLS = Counts(1 << 13)  # a renderer's own function is called for each
-SHORTEST = 2.0**-10  # wo + wi of special pairs: Fresnel's formulas square its cosine, and round it
+FACET_PIXELS = 7169  # judged pixels of a picture of the polyhedron, each within one facet
+FEW_CALLS = Counts(1 << 13)  # calls of a renderer's own function
+SHORTEST = (
+    2.0**-10
+)  # least length of wo + wi of special pairs, whose cosine Fresnel's formulas square and round
 EXACT_INPUTS: tuple[Values, ...] = (  # from dark to white and from rough to smooth
     {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
     {"color": (0.02, 0.05, 0.1), "roughness": 1.0},
@@ -54,7 +56,7 @@ EXACT_INPUTS: tuple[Values, ...] = (  # from dark to white and from rough to smo
     {"color": (0.8, 0.4, 0.1), "roughness": 0.5},
     {"color": (0.5, 0.2, 1.0), "roughness": 0.1},
 )
-# EEVEE keeps light in 32 bits for three channels; blue has the fewest.
+# EEVEE stores light in 32 bits for three channels; blue has the fewest.
 COARSE_FACETS = sum_in(
     Quantity.VALUE_OR_ALBEDO,
     Term(2.0**-6, "five bits below the leading one, cut off"),
@@ -68,12 +70,12 @@ FACET_NOISE = sum_of(
     quantity=Quantity.MEAN_ALBEDO,
     metric=mean_error,
 )
-# Burley's two factors have a product of at most 25/4; the coats and facets that are judged have less.
+# The product of Burley's two factors is at most 25/4.
 FACET_PAIRS = sum_in(Quantity.DIFFERENCE, roundings(16 * 2.5**2, "of numbers up to 25/4"))
 
 
 class Renderer(Protocol):
-    """Operations of an engine on its own nodes; each engine has some of them."""
+    """Operations of an engine on its own nodes; engines support some of them."""
 
     def node(self, material: Material, scene: Scene) -> Array:
         """Picture of the sphere or the polyhedron with a material; see `Host.picture`."""
@@ -81,13 +83,13 @@ class Renderer(Protocol):
     def pairs(
         self, material: Material, wo: Array, wi: Array, color: Array, roughness: Array
     ) -> Array:
-        """f cos(theta_i), (N, 3) in 1/sr, for unit vectors with normal +z; the material contains the inputs."""
+        """f cos(theta_i), (N, 3) in 1/sr, for unit vectors with normal +z; the material has placeholders for inputs."""
 
     def sample(self, wo: Array, u: Array, roughness: Array) -> Array:
-        """Directions to the light (N, 3) that the renderer draws for EON from u (N, 2) in [0, 1)."""
+        """The renderer's samples (N, 3) for EON, from u (N, 2) in [0, 1)."""
 
     def density(self, wo: Array, wi: Array, roughness: Array) -> Array:
-        """Density in solid angle of the directions that `sample` draws, (N,)."""
+        """Density of `sample` in solid angle, (N,)."""
 
 
 class Native(CyclesPictures):
@@ -106,7 +108,7 @@ class Native(CyclesPictures):
 
     @property
     def claims(self) -> Claims:
-        """Titles of the model that the node claims, and of its form that is checked."""
+        """Titles of the claimed model and of the form that is checked."""
         claimed, *_ = self.node.forms or (self.node.model,)
         title, own = (reference.diffuse_model(name).title for name in (claimed, self.node.model))
         return {"claimed": title, "model": own}
@@ -142,7 +144,7 @@ class Exact(Native):
         return EXACT_INPUTS
 
     def judged(self) -> Spec:
-        """The spec of the published form of the model that is nearest to what is measured."""
+        """The spec of the published form nearest to the measured values."""
         if not self.node.forms:
             return self.node
         batch = self.batches[0]
@@ -181,7 +183,7 @@ class Facets(Exact):
 
 
 class CoarseFacets(Facets):
-    """A node on the polyhedron, by a renderer that keeps light in a few bits."""
+    """A node on the polyhedron in a renderer that stores light in few bits."""
 
     @classmethod
     def errors(cls, spec: Spec) -> Errors:

@@ -40,11 +40,11 @@ from mxeon.errors import InputError, assert_known
 from mxeon.hosts.base import Host, Identity
 from mxeon.models import table as reference
 
-# Checks of values alone: a function has no environment branch and no flag.
+# Checks of values only: a function has no environment branch and no flag.
 KEYS = ("value", "integral", "black", "reciprocity", "lambert", "inputs", "finite")
 LIBRARY = "callable"
 
-Brdf = Callable[[Array, Array, Array, Array], ArrayLike]  # of wo, wi, rho, roughness
+Brdf = Callable[[Array, Array, Array, Array], ArrayLike]  # arguments: wo, wi, rho, roughness
 
 
 class CallableHost(Host):
@@ -61,7 +61,7 @@ class CallableHost(Host):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ClaimedModel(DiffuseModelSpec):
-    """The model that a function claims to be; it stands for a node."""
+    """The model that a function claims to be, in place of a node."""
 
     def document(self, inputs: Values | None = None) -> str:
         return ""  # a function needs none
@@ -99,7 +99,7 @@ class Function(Backend):
         return Batch(wo, wi, {"color": rho, "roughness": roughness})
 
     def direct(self, batch: Batch) -> Array:
-        """pi f cos(theta_i), (N, 3); NaN in every channel where one is not finite."""
+        """pi f cos(theta_i), (N, 3); all channels are NaN if one is not finite."""
 
         def evaluated() -> Array:
             values = np.asarray(self.host.brdf(*_arguments(batch)), np.float64)
@@ -118,14 +118,13 @@ class Function(Backend):
 
 
 def _arguments(batch: Batch) -> tuple[Array, Array, Array, Array]:
-    """wo, wi, rho and roughness of each pair."""
     rho = np.broadcast_to(np.asarray(batch.inputs["color"], float), batch.wi.shape)
     roughness = np.broadcast_to(np.asarray(batch.inputs["roughness"], float), len(batch.wi))
     return batch.wo, batch.wi, rho, roughness
 
 
 def _finite_rows(found: Compared | Iterable[Compared]) -> Iterator[Compared]:
-    """Values without rows that are not finite, which `finite` reports; all values if no row is finite."""
+    """Values without non-finite rows, which `finite` reports; all values if no row is finite."""
     for each in [found] if isinstance(found, Compared) else found:
         expected = np.broadcast_to(each.expected, each.measured.shape)
         rows = np.asarray(np.isfinite(each.measured + expected).all(axis=1))
@@ -137,7 +136,7 @@ VALUE_OF_REST = replace(VALUE, compared=lambda case: _finite_rows(VALUE(case)))
 
 
 def _explain_not_finite(case: Case) -> Diagnosis:
-    """How many values are not finite, where, and the arguments of the first."""
+    """Number and region of non-finite values, and the arguments of the first."""
     found = unbounded(edge_values(case))
     wrong = correct_except([found], EXACT, smallest([found], EXACT))
     point = point_of(found.batch, int(EXACT.wrong(found).argmax()))
@@ -145,7 +144,7 @@ def _explain_not_finite(case: Case) -> Diagnosis:
 
 
 def _of_rest(check: Check) -> Check:
-    """A check of the finite values; "finite" reports where the others are."""
+    """A check of the finite values; `finite` reports the non-finite ones."""
     if check.key == "finite":
         return replace(check, explain=_explain_not_finite)
     if check.key == "inputs":
@@ -163,11 +162,11 @@ def check_brdf(brdf: Brdf, model: str = "eon", name: str | None = None) -> Run:
       and values (N, 3) in 1/sr, without the cosine. The directions leave the surface, in the local
       frame with the normal +z; roughness lies in [0, 1], or is sigma, in radian, in [0, pi/2] for
       models that have one: `mxeon.models.table`.
-    - `model`: The model that it has to be: a row of `mxeon.models.table.DIFFUSE_MODELS` with a parameter.
-    - `name`: Its name in the report; None for the function's own name.
+    - `model`: The required model: a row of `mxeon.models.table.DIFFUSE_MODELS` with a parameter.
+    - `name`: Its name in the report; by default the function's own name.
 
-    Values that are not finite fail one check; the others judge the rest. `mxeon.report.write` makes a
-    report of the run. Raises ValueError if there is no such model, or the values have another shape.
+    Non-finite values fail one check; the other checks judge the finite values. `mxeon.report.write` writes a report of
+    the run. Raises ValueError for an unknown model or values with a wrong shape.
 
         >>> from mxeon.models import eon_brdf
         >>> {result.verdict for result in check_brdf(eon_brdf).results}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of a renderer's own sampling: its density, and its directions against that."""
+"""Checks of a renderer's own sampling: its density, and its directions against the density."""
 
 from collections.abc import Iterator
 from typing import cast
@@ -20,13 +20,13 @@ from mxeon.models.sampling import eon_cltc_pdf
 from mxeon.survey.backends import Renderer
 from mxeon.survey.specs import RendererSpec
 
-# A right sampler exceeds them once in 3.5 million times.
+# A correct sampler exceeds this once in 3.5 million times.
 CHI_SQUARE = given(5.0, Quantity.DEVIATIONS, "five standard deviations")
-# The differences in the transformed direction, whose fourth power the density has, lose up to three bits.
+# Differences in the transformed direction, to the fourth power in the density, lose up to three bits.
 OWN_DENSITY = sum_of(
     roundings(48 * 2.0**3, "of a density, three bits of it lost"), quantity=Quantity.DENSITY
 )
-COSINES = (0.05, 0.3, 0.7, 0.99)  # of the viewer
+COSINES = (0.05, 0.3, 0.7, 0.99)  # view cosines
 SAMPLES = 1 << 15
 ROUGHNESS = 1.0
 

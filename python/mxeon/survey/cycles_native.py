@@ -8,8 +8,7 @@ from mxeon.hosts.base import Array, Engine, Identity
 from mxeon.shaders.scene import Scene
 from mxeon.survey.specs import Material, node
 
-# Title of a node -> Blender's type, its sockets for color and roughness, and what switches all
-# but its diffuse lobe off.
+# Blender's type and sockets of each node, with only its diffuse lobe.
 MATERIALS: dict[str, Material] = {
     "Diffuse BSDF": {
         "kind": "ShaderNodeBsdfDiffuse",

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A convex polyhedron with known normals, for renderers that spread their samples over a pixel.
 
-Every pixel inside a facet has one normal wherever its samples fall. No facet hides a light from
-another one that faces it, and none sees another one. Frame and camera are those of
-`mxeon.shaders.scene`.
+Every pixel inside a facet has one normal, wherever its samples fall. The shape is convex, so facets neither shadow nor
+light each other. Frame and camera are as in `mxeon.shaders.scene`.
 """
 
 from functools import lru_cache
@@ -14,7 +13,7 @@ from numpy.typing import NDArray
 
 RINGS, SECTORS = 20, 40  # facets from pole to pole, and around
 AXIS = (0.48, 0.6, 0.64)  # from pole to pole: tilted, so that facets differ in both cosines
-MARGIN = 1.05  # half width of the square that must lie in one facet, in half widths of a pixel
+MARGIN = 1.05  # half width of a square that must lie in one facet, in half widths of a pixel
 
 
 class Polyhedron(NamedTuple):
@@ -30,33 +29,36 @@ class Points(NamedTuple):
     """Normals at the pixels of a picture of the polyhedron."""
 
     normal: NDArray[np.float64]
-    mask: NDArray[np.bool_]  # where a pixel lies within one facet
+    mask: NDArray[np.bool_]  # pixels within one facet
 
 
 @lru_cache(maxsize=1)
 def polyhedron() -> Polyhedron:
     """The polyhedron whose vertices are a grid of angles around AXIS.
 
-    Its facets are trapezoids, which are flat, and triangles at the poles. The vertices are float32
-    numbers, as renderers read them.
+    Its facets are trapezoids, which are flat, and triangles at the poles. Vertices are rounded to float32.
     """
     polar, azimuth = np.linspace(0.0, np.pi, RINGS + 1), np.arange(SECTORS) * 2.0 * np.pi / SECTORS
     theta, phi = np.meshgrid(polar[1:-1], azimuth, indexing="ij")
     ring = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], -1)
     local = np.concatenate([[[0.0, 0.0, 1.0]], ring.reshape(-1, 3), [[0.0, 0.0, -1.0]]])
-    # From two axes across AXIS, and AXIS.
+    # Frame of AXIS and two perpendicular axes.
     axis = np.asarray(AXIS) / np.linalg.norm(AXIS)
     across = np.cross([0.0, 0.0, 1.0], axis)
     across /= np.linalg.norm(across)
     frame = np.stack([across, np.cross(axis, across), axis])
     vertices = (local @ frame).astype(np.float32).astype(np.float64)
-    quads = np.array([_quad(row, column) for row in range(RINGS) for column in range(SECTORS)])
+    # Corners of the facets; rings at the poles are one vertex.
+    row, column = np.meshgrid(np.arange(RINGS + 1), np.arange(SECTORS), indexing="ij")
+    index = np.clip(1 + (row - 1) * SECTORS + column, 0, 1 + (RINGS - 1) * SECTORS)
+    after = np.roll(index, -1, axis=1)
+    quads = np.stack([index[:-1], index[1:], after[1:], after[:-1]], axis=-1).reshape(-1, 4)
     triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
     corners = vertices[triangles]
     areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     triangles = triangles[np.linalg.norm(areas, axis=1) > 0.0]
     one, two, three, four = (vertices[quads[:, index]] for index in range(4))
-    normals = np.cross(three - one, four - two)  # of the diagonals: that of a triangle as well
+    normals = np.cross(three - one, four - two)  # diagonals also work for triangles
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     offsets = (normals * (one + two + three + four)).sum(axis=1) / 4.0
     return Polyhedron(vertices, triangles, normals, offsets)
@@ -94,15 +96,3 @@ def _facets(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.int64]
             else:
                 bottom = np.maximum(bottom, height)
     return np.where(top > bottom, first, -1)
-
-
-def _quad(row: int, column: int) -> tuple[int, int, int, int]:
-    """Indices of a facet's vertices; two are the same at a pole."""
-    after = (column + 1) % SECTORS
-
-    def vertex(ring: int, sector: int) -> int:
-        if ring == 0:
-            return 0
-        return 1 + (ring - 1) * SECTORS + sector if ring < RINGS else 1 + (RINGS - 1) * SECTORS
-
-    return vertex(row, column), vertex(row + 1, column), vertex(row + 1, after), vertex(row, after)

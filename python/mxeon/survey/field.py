@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the reports of any number of runs say about each renderer's nodes, side by side."""
+"""Comparison of renderers' nodes from any number of reports."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -33,7 +33,7 @@ from mxeon.survey.specs import RendererSpec
 Place: TypeAlias = tuple[str, str, str]  # host, library and node
 
 BACK = "back"
-# Column -> the checks that answer it, the first that a node has; `back` is a portrait's.
+# Checks by column, of which the first one that a node has counts; `back` comes from portraits.
 CHECKS = {
     "direct": DIRECT,
     "surroundings": ("environment",),
@@ -56,23 +56,22 @@ class Portrait:
 
 @dataclass(frozen=True)
 class Entry:
-    """A node of a renderer, as one run has judged it."""
+    """A node of a renderer in one run."""
 
     host: str
     library: str
     node: str
-    version: str  # "" where the host did not run, as is device
+    version: str  # version and device are "" if the host did not run
     device: str
-    claimed: str  # title of the model that the node claims
-    form: str  # title of its published form that was judged
+    claimed: str  # title of the claimed model
+    form: str  # title of the published form that was judged
     cells: Mapping[str, Result]  # by column of CHECKS
-    pages: tuple[str, ...]  # of docs/upstream, on its defects
+    pages: tuple[str, ...]  # pages of docs/upstream on its defects
     portraits: Mapping[str, Portrait]  # by scene
-    report: Path  # the folder of its report
+    report: Path  # folder of its report
 
     @property
     def verdict(self) -> Verdict:
-        """The worst verdict of the cells."""
         verdicts = [cell.verdict for cell in self.cells.values()]
         if FAILED in verdicts:
             return FAILED
@@ -80,18 +79,18 @@ class Entry:
 
     @property
     def found(self) -> str:
-        """The model that direct light shows, or why none is known."""
+        """The model in direct light, or the reason why none is known."""
         return model_of(self.cells["direct"], self.form or self.claimed)
 
     @property
     def found_around(self) -> str:
-        """The model that a white environment shows, "" where that was not measured."""
+        """The model in a white environment, or "" without that check."""
         cell = self.cells.get("surroundings")
         return model_of(cell, self.form or self.claimed) if cell else ""
 
 
 def model_of(result: Result, expected: str) -> str:
-    """The model that a result shows, or its first cause in words."""
+    """The model found by a check, or its first cause in words."""
     if result.verdict == PASSED:
         return expected
     if result.verdict == NOT_RUN:
@@ -102,17 +101,17 @@ def model_of(result: Result, expected: str) -> str:
 
 
 def reports_in(folder: AnyPath) -> list[Path]:
-    """A folder, if it is that of a report, or else the reports in it."""
+    """The folder of a report, or the folders of reports in a folder."""
     if Path(folder, RESULTS).is_file():
         return [Path(folder)]
     return sorted(path.parent for path in Path(folder).glob(f"*/{RESULTS}"))
 
 
 def read_field(folders: Sequence[str | PathLike[str]]) -> tuple[Entry, ...]:
-    """The nodes that claim a rough diffuse model, by the reports in some folders.
+    """Nodes that claim a rough diffuse model, from the reports in some folders.
 
-    A folder is a report, or holds reports; of two reports on one host, version, library and node the
-    later counts. Raises ValueError if a folder has no report, or no report has such a node.
+    A folder is a report, or contains reports; the last report on a host, version, library and node counts. Raises
+    InputError if a folder has no report, or no report has such a node.
     """
     entries = {}
     for folder in folders:
@@ -129,7 +128,6 @@ def read_field(folders: Sequence[str | PathLike[str]]) -> tuple[Entry, ...]:
 
 
 def _entries(report: Report, folder: Path) -> Iterator[Entry]:
-    """Entries of a report, in its order."""
     own = (spec for row in ROWS for spec in own_nodes(row.name))
     claims = {each.title: claim(each) for each in (*DIFFUSE, *SURFACE_LOBES, *own)}
     places: dict[Place, dict[str, Result]] = {}
@@ -146,7 +144,7 @@ def _entries(report: Report, folder: Path) -> Iterator[Entry]:
                 for column, keys in CHECKS.items()
                 if any(key in results for key in keys)
             }
-            # The largest error of the portrait in light from behind, judged as the check of values.
+            # Judge the largest error of the back-lit portrait with the tolerance of values.
             if BACK in portraits:
                 error, allowed = portraits[BACK].difference, direct.tolerance or 0.0
                 verdict: Verdict = PASSED if error <= allowed else FAILED
@@ -160,7 +158,7 @@ def _entries(report: Report, folder: Path) -> Iterator[Entry]:
 
 
 def claim(spec: Spec) -> str:
-    """Title of the model that a node claims: of its first published form, if there are several."""
+    """Title of the claimed model, or of its first published form."""
     forms = spec.forms if isinstance(spec, RendererSpec) else ()
     return reference.diffuse_model((*forms, spec.model)[0]).title
 
@@ -170,7 +168,7 @@ def _portraits(report: Report, place: Place, folder: Path) -> Iterator[Portrait]
         if (each.document, each.host, each.library, each.element) != (PORTRAIT, *place):
             continue
         if each.reference and each.largest_difference is not None:
-            # By their names alone: a report may come from anywhere.
+            # For security, only use their names: a report may come from anywhere.
             image, model = (
                 folder / "pictures" / Path(file).name for file in (each.exr, each.reference)
             )

@@ -20,7 +20,7 @@ from mxeon.report.formats import share, vector
 from mxeon.report.plots import difference_gradient, difference_pixels, generate_page, picture_uri
 from mxeon.survey.field import CHECKS, Entry
 
-# Column -> its heading, and what it tells.
+# Heading and meaning of each column.
 HEADINGS = {
     "direct": ("Direct light", "worst error of π f cos θ over all pairs of directions"),
     "surroundings": ("Surroundings", "worst error of the albedo in a uniform environment"),

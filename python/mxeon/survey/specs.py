@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How a renderer's own node is checked, and how its material is made."""
+"""Specs of renderers' own nodes, with their materials."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ PUBLISHED = ("eon", "eon_fitted")  # the paper prints EON with the exact albedo,
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RendererSpec(DiffuseModelSpec):
-    """A renderer's own node, and the model that its documentation claims.
+    """A renderer's own node and its documented model.
 
     In `material`, "{color}" and "{roughness}" stand for the inputs; nothing but the diffuse lobe may depend on
     them.
     """
 
     material: Material = field(default_factory=dict)
-    forms: tuple[str, ...] = ()  # published; the nearest to what is measured is judged
-    sampled: bool = False  # whether the function that draws its directions can be called
+    forms: tuple[str, ...] = ()  # published forms; the nearest one is judged
+    sampled: bool = False  # whether its sampling function can be called
 
     def of_model(self, model: str) -> Self:
         """The same node, judged as another model."""
@@ -66,7 +66,7 @@ def node(
 
 
 def _row(model: str, node: str) -> PbrNode:
-    """The row of a renderer's node; among its variants, Burley's has the albedo that the node has."""
+    """The row of a renderer's node; its variants include only one of both Burley models."""
     name = model if model.startswith("burley") else "burley"
     left_out = {"burley", "burley_lambert"} - {name}
     others = tuple(each for each in OTHERS if each.name not in left_out)

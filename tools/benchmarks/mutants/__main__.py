@@ -50,7 +50,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     trials: dict[str, Any] = json.loads(file.read_text()) if file.exists() else {}
     if options.resume:
         chosen = [each for each in chosen if trials.get(each.name, {}).get("digest") != each.digest]
-    together = {} if seed is None else schemata.trials(chosen)  # of the operators
+    together = {} if seed is None else schemata.trials(chosen)
     with closing(Judge(DEFAULT)) as judge:
         for mutant in tqdm(chosen, disable=None):
             check = together.get(mutant.name, schemata.UNWRITTEN)

@@ -15,7 +15,7 @@ from mxeon.shaders.functions import STEMS
 TABLE = Path(__file__).with_name("table")
 ROOT = Path(__file__).resolve().parents[3]
 TWINS = (*STEMS, "hair_parameters")  # files whose functions have one text in two languages
-FOLDERS = ("libraries", "genglsl", "genosl")  # that hold eonlib
+FOLDERS = ("libraries", "genglsl", "genosl")  # eonlib
 CONTROLS = "Negative controls"  # group of the mutants that change a comment
 COMMENT = "SPDX-License-Identifier"  # in the first comment of every file
 
@@ -33,8 +33,8 @@ class Mutant:
     host: str  # the cheapest that can see it; "text" where none is needed
     equivalent: bool  # the same function on the whole valid domain
     survives: bool  # no check notices it, for that reason
-    tests: tuple[str, ...] = ()  # files of tests that are asked first about a wrong reference
-    operator: str = ""  # that made it, and where in the file it found what it changes
+    tests: tuple[str, ...] = ()  # test files to run first on a wrong reference
+    operator: str = ""  # that made it, and its place in the file
     place: tuple[int, int] = (0, 0)
 
     def texts(self) -> dict[str, str]:
@@ -56,12 +56,11 @@ class Mutant:
 
     @property
     def control(self) -> bool:
-        """Whether it changes a comment alone."""
+        """Whether it changes only a comment."""
         return self.group == CONTROLS
 
     @property
     def digest(self) -> str:
-        """Digest of the mutated files."""
         return sha256("".join(self.texts().values()).encode()).hexdigest()[:16]
 
 

@@ -106,7 +106,7 @@ def mutants_of(file: str) -> Iterator[Mutant]:
             reason = f"{found.strip()!r} becomes {put.strip()!r}"
             place = operator, match.span()
             mutant = Mutant(name, GROUP, file, old, new, reason, "gl", False, False, (), *place)
-            match = pattern.search(code, match.start() + 1)  # which may overlap this one
+            match = pattern.search(code, match.start() + 1)  # matches may overlap
             try:
                 made = mutant.texts()[file]
             except ValueError:

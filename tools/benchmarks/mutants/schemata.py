@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All mutants of the operators in one program: a uniform chooses the one that is there.
+"""All mutants of the operators in one program, chosen by a uniform.
 
-Each place of a mutant becomes an expression that is the original unless the uniform `mutant` has its number: ` + `
-becomes ` + mutant_sign(mutant == 7) * `. So a node's shader compiles once for hundreds of mutants, each of which
-then takes the milliseconds of a check on its subset of samples. Mutants that cannot be written so, in constant
-expressions or of integers, are returned as such: each of them needs a separate library, as those of the table do.
+At each mutant's place, an expression equals the original unless the uniform `mutant` has the mutant's number: ` + `
+becomes ` + mutant_sign(mutant == 7) * `. So a node's shader compiles once for hundreds of mutants, and each mutant only
+takes the milliseconds of a check on a subset of samples. Mutants that cannot be written this way, in constant expressions
+or of integers, are reported as such, and need a separate library.
 """
 
 import re
@@ -63,7 +63,7 @@ ERROR = re.compile(r"\b\d+:(\d+)\(\d+\): error")
 
 @dataclass(frozen=True)
 class Edit:
-    """Text that comes before and after a part of a source, or in the place of a token."""
+    """Text before and after a part of a source, or instead of a token."""
 
     start: int
     end: int
@@ -73,7 +73,7 @@ class Edit:
 
 
 def edits(number: int, mutant: Mutant, code: str) -> list[Edit]:
-    """How a mutant is written; none where the operator's place has another form."""
+    """Edits that write a mutant; empty if it cannot be written."""
     operator, (start, end), on = mutant.operator, mutant.place, f"(mutant == {number})"
     found, put = code[start:end], operators.changed(mutant.operator, code[start:end])
 
@@ -118,7 +118,7 @@ def edits(number: int, mutant: Mutant, code: str) -> list[Edit]:
 
 
 def _operand(code: str, place: int) -> int:
-    """Where a name, a number, a call or a part in parentheses ends; 0 where there is none."""
+    """End of a name, a number, a call or a part in parentheses; 0 if there is none."""
     start, depth = place, 0
     for each in re.compile(r"-?[\w.]+|[(\[]|[)\]]|[^\w.()\[\]]+").finditer(code, place):
         depth += {"(": 1, "[": 1, ")": -1, "]": -1}.get(each[0], 0)
@@ -129,7 +129,7 @@ def _operand(code: str, place: int) -> int:
 
 
 def _end(code: str, place: int) -> int:
-    """Where the right side of a comparison ends."""
+    """End of the right side of a comparison."""
     depth = 0
     for each in re.compile(r"[()\[\]]|[;,?:]|&&|\|\|").finditer(code, place):
         depth += {"(": 1, "[": 1, ")": -1, "]": -1}.get(each[0], 0)
@@ -163,18 +163,18 @@ def instrumented(text: str, mutants: Mapping[int, Mutant]) -> str:
 
 
 class SchemataHost(gl.GlHost):
-    """The gl host, whose shaders have the mutants `alive`, of which `mutant` is there; 0 for none."""
+    """The gl host with the mutants `alive` in its shaders; `mutant` is the active one, or 0."""
 
     def __init__(self) -> None:
         super().__init__()
         self.alive: dict[int, Mutant] = {}
         self.mutant = 0
-        self.unwritten: set[int] = set()  # that no program can have
+        self.unwritten: set[int] = set()  # mutants that cannot be written
         self._made = lru_cache(maxsize=gl.PROGRAMS)(self._schema)
         self._program = self._chosen  # type: ignore[assignment]
 
     def take(self, mutants: dict[int, Mutant]) -> None:
-        """Have these mutants instead of the others."""
+        """Replace the mutants."""
         self.alive = mutants
         self._made.cache_clear()
 
@@ -217,7 +217,7 @@ class SchemataHost(gl.GlHost):
         return pixel.replace("/*mutants*/", helpers, 1)
 
     def numbers_in(self, pixel: str) -> list[int]:
-        """The mutants alive of the sources that a shader's text has."""
+        """Living mutants of the sources in a shader's text."""
         known = {
             file for file in {each.file for each in self.alive.values()} if chunk_of(file) in pixel
         }
@@ -235,12 +235,12 @@ def _numbers_at(text: str, error: str) -> set[int]:
 
 @cache
 def chunk_of(file: str) -> str:
-    """A source without its includes and the comments above them, as a shader's text has it."""
+    """A source as in a shader's text: without its includes and the comments above them."""
     text = (ROOT / file).read_text(encoding="utf-8")
     return re.split(r"^#include .*\n", text, flags=re.M)[-1].strip()
 
 
-# Checks that notice most, and that take long: the others are asked about what the first let pass, the last about the rest.
+# FIRST notice most mutants and LAST take longest, so these checks run first and last.
 FIRST = (
     *("value", "environment", "layering", "denser", "output", "radiance", "sphere_mean"),
     *("film_visible", "combination", "combined_throughput"),
@@ -249,16 +249,16 @@ LAST = (
     *("frame", "finite", "layer", "integral", "energy", "states", "lossless", "domain", "sky"),
     *("narrow_lobes", "tilted_lobes", "wide_lobes", "straight_views", "low_index", "each_lobe"),
 )
-COMPOSED = (CombinedSpec, SurfaceShaderSpec)  # of lobes that are judged alone
+COMPOSED = (CombinedSpec, SurfaceShaderSpec)  # consist of lobes that are also judged alone
 UNWRITTEN = "unwritten"
 OSL_TWINS = {
     source_file("osl", stem).relative_to(ROOT).as_posix()
     for stem in (*STEMS, "ggx_albedo", "conty_kulla_albedo")
 }
-# What no check of a node runs: text for path tracers, and functions that OSL alone calls.
+# Sources that no check of a node runs: text for path tracers, and functions that only OSL calls.
 APART = ("genglsl/path/", "genglsl/lib/hair_parameters.glsl")
-EACH = 8  # of so many points of a shader function, one
-GROUP = 1024  # mutants of a program: the driver takes longer the more there are
+EACH = 8  # stride of a shader function's points
+GROUP = 1024  # mutants of a program; more slow the driver down
 Asked = Callable[[], Iterator[tuple[str, bool]]]  # checks, and whether each failed
 Subject = tuple[str, bool, str, Asked]
 
@@ -285,14 +285,14 @@ def trials(mutants: Sequence[Mutant]) -> dict[str, str]:
 
 
 def is_another_text(mutant: Mutant) -> bool:
-    """Whether a mutant of OSL has a function or constant that is not that of GLSL, as the check `languages` reads them."""
+    """Whether a mutant of OSL has a function or constant that differs from GLSL, as in the check `languages`."""
     texts = (ROOT / mutant.file.replace("osl", "glsl")).read_text(), mutant.texts()[mutant.file]
     glsl, osl = (parts(operators.COMMENT.sub(" ", each)) for each in texts)
     return glsl != osl
 
 
 def noticed(host: SchemataHost, asked: Sequence[Subject]) -> Iterator[tuple[int, str]]:
-    """The numbers of mutants that are noticed, which are alive no more, and by what."""
+    """Numbers of noticed mutants, which are then removed, and the checks that noticed them."""
     seen: set[int] = set()
     for title, composed, text, ask in asked:
         own = [each for each in host.numbers_in(text) if not composed or each not in seen]
@@ -308,10 +308,10 @@ def noticed(host: SchemataHost, asked: Sequence[Subject]) -> Iterator[tuple[int,
 
 
 def subjects(host: SchemataHost) -> Iterator[Subject]:
-    """What has mutants: a title, whether it is composed of others, its text, and what asks its checks."""
+    """Subjects: title, whether it is composed, text, and a function that runs its checks."""
     functions = Functions(host)
     yield "functions", False, functions.text, functions
-    # Films before what transmits, which has their code without a film.
+    # Films come before transmission, which has the same code without a film.
     specs = dict.fromkeys((*DIFFUSE, *PLAIN_LOBES, *FILM_SPECS, *PBRLIB))
     cases = [_case(host, spec) for spec in specs if spec.title != "measured_edf"]
     for turn in range(3):
@@ -326,7 +326,7 @@ def _case(host: SchemataHost, spec: Spec) -> Case:
 
 
 def _rows(case: Case, turn: int) -> Callable[[], list[tuple[Check, Tolerance]]]:
-    """Checks of a turn with their tolerances, which are measured when they are first asked for."""
+    """Checks of a turn with their tolerances, measured on demand."""
 
     @cache
     def rows() -> list[tuple[Check, Tolerance]]:

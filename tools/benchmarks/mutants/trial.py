@@ -33,11 +33,11 @@ from tools.benchmarks.mutants.mutant import FOLDERS, ROOT, Mutant
 
 KILLED, SURVIVED = "killed", "survived"
 CRASHED = "crashed"  # a traceback in place of a verdict
-TEXT, TESTS = "text", "tests"  # in the place of a host
+TEXT, TESTS = "text", "tests"  # instead of a host
 
 # What Cycles cannot show exactly or at all, tests run in Blender's OSL.
 PROFILE, PROFILE_TESTS = "genosl/cycles/", ("tests/hosts/test_osl.py",)
-PATH, PATH_TESTS = "genglsl/path/", ("tests/shaders/test_path_tracing.py",)  # which no check runs
+PATH, PATH_TESTS = "genglsl/path/", ("tests/shaders/test_path_tracing.py",)  # run by no check
 NOISY = ("environment", "furnace")  # checks that take Cycles longest
 # Files that no shader for gl holds: there the gl host has nothing to see.
 ON_CYCLES = ("genosl/",)
@@ -79,7 +79,7 @@ def _on_hosts(mutant: Mutant, judge: Judge, every: bool) -> dict[str, Any]:
 
 
 def write_wrong(mutant: Mutant, base: str, *folders: str) -> None:
-    """Copy folders of the repository, with the mutant's files in the place of the right ones."""
+    """Copy folders of the repository with the mutant's files."""
     for name in folders:
         shutil.copytree(ROOT / name, Path(base, name))
     for file, text in mutant.texts().items():
@@ -101,7 +101,7 @@ def wrong_library(mutant: Mutant) -> Iterator[str]:
 def failures_of(
     tasks: Sequence[Task], judge: Judge, every: bool = True, clean: str = "eonlib"
 ) -> list[Result]:
-    """Results that pass with the library without a mutant alone: of all tasks, or of the first."""
+    """Results that pass only without the mutant: of all tasks, or of the first."""
     failures: list[Result] = []
     for task in tasks:
         found = _failed(task, judge)
@@ -287,8 +287,8 @@ def _entries(document: str, text: str) -> set[tuple[str, ...]]:
 MODEL_TESTS = "tests/models"
 OPTIONS = ("-x", "-q", "--tb=line", "-rfE", "-p", "no:cacheprovider", "--no-header")
 FAILED = re.compile(r"^(?:FAILED|ERROR) \S*?(\w+\.py)(?:::(\w+))?.*?(?: - (.*))?$", re.MULTILINE)
-WIDTH = {"COLUMNS": "200"}  # of pytest's lines, lest it cut the messages
-BLENDER = {"MXEON_CYCLES_PYTHON": f"{ROOT}/.venv-cycles/bin/python"}  # which a copy does not have
+WIDTH = {"COLUMNS": "200"}  # otherwise pytest truncates messages
+BLENDER = {"MXEON_CYCLES_PYTHON": f"{ROOT}/.venv-cycles/bin/python"}  # a copy has no environment
 GOOD, NO_TEST = 0, 5  # exit statuses of pytest
 
 
@@ -324,4 +324,4 @@ def _failure(package: str, tests: Sequence[str]) -> dict[str, str] | None:
     return {"check": test or "import", "excess": "", "host": TESTS, "diagnosis": diagnosis}
 
 
-_first_failure = cache(_failure)  # of the package without any change
+_first_failure = cache(_failure)  # for the unchanged package

@@ -27,7 +27,7 @@ TALLY = "{count} claims; verdicts: {holds} holds, {part} holds in part, {fails} 
 # A sentence with the numbers, and the values that are bounded.
 Measured = tuple[str, ArrayLike]
 Measure = Callable[[], Measured]
-ROUNDING = 1e-12  # by which a formula agrees with another form of itself
+ROUNDING = 1e-12  # agreement of two forms of a formula
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ class Section:
         least: float = -np.inf,
         most: float | None = None,
     ) -> Callable[[Measure], Measure]:
-        """Decorate a measurement: the claim that its values lie in [least, most]; alone, that they are roundings."""
+        """Decorate a measurement whose values must lie in [least, most]; by default they must be roundings."""
         if most is None:
             most = ROUNDING if least == -np.inf else np.inf
 
@@ -84,8 +84,6 @@ class Section:
 def verdict(values: ArrayLike, least: float, most: float) -> str:
     """HOLDS if all values lie in [least, most], IN_PART if some do, FAILS if none does.
 
-    Examples
-    --------
     >>> verdict([1.0, 3.0], 0.0, 2.0), verdict(float("nan"), 0.0, 2.0)
     ('holds in part', '**fails**')
     """

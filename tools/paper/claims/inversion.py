@@ -32,7 +32,6 @@ def _round_trip(back: np.ndarray) -> Measured:
 
 
 def _quadratic(r: float) -> tuple[float, np.ndarray]:
-    """A and B of Eq. (30)."""
     E, average = 1.0 / (1.0 + C1 * r), (1.0 + C2 * r) / (1.0 + C1 * r)
     return average - E, E + COLORS * (1.0 - average)
 

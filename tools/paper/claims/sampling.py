@@ -16,7 +16,6 @@ claim = SECTION.claim
 
 
 def at(degrees: float) -> float:
-    """Cosine of an angle in degrees."""
     return float(np.cos(np.radians(degrees)))
 
 
@@ -119,7 +118,7 @@ def mixture_mean() -> Measured:
     least=100.0,
 )
 def gain() -> Measured:
-    """The variance of cosine sampling over that of the mixture."""
+    """Variance of cosine sampling over the mixture's variance."""
     parts, ratios = [], []
     for degrees in (60.0, 85.0, 89.0, 89.9, 90.0 - np.degrees(1e-6)):
         cosine, mixture = (

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import TypeAlias
@@ -14,9 +14,9 @@ from numpy.typing import ArrayLike
 from mxeon.conformance.reference.nodes import DIFFUSE, NOTHING, ShadingPoints, albedo_at
 from mxeon.conformance.samples import Array
 from mxeon.errors import OutsideModel, ShaderError
-from mxeon.hosts.base import Host, Query
+from mxeon.hosts.base import Query
 from mxeon.hosts.osl.carriers import LAYER, MIX, OPERATIONS, SUM
-from mxeon.hosts.osl.trees import ClosureTree
+from mxeon.hosts.osl.trees import ClosureTree, TreeRows
 from mxeon.models import table
 from mxeon.models.core import layering
 from mxeon.models.core.layering import Bsdf
@@ -191,13 +191,13 @@ def column(values: ArrayLike) -> Array:
     return array if array.ndim == 2 else array.reshape(-1, 1)
 
 
-def evaluate(host: Host, query: Query) -> Array:
-    """Values of the closures that a host's shader makes, in a uniform environment; see `Host.evaluate`."""
-    shader, wo, wi, inputs, branch, output, _ = query
+def evaluate(trees: Iterable[TreeRows], query: Query) -> Array:
+    """Values of a shader's closures in a uniform environment; see `Host.evaluate`."""
+    _, wo, wi, inputs, branch, output, _ = query
     values = np.zeros((len(wo), 3))
     normal = np.broadcast_to(np.asarray(inputs.get("normal", UP), np.float64), wo.shape)
     occlusion = np.broadcast_to(column(inputs.get("occlusion", 1.0)), (len(wo), 1))
-    for points in host.trees(shader, wo, inputs):
+    for points in trees:
         rows = points.rows
         if output == "radiance" or branch == GRAPH:
             values[rows] = radiance(points.tree)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Blender's Cycles: OSL on the CPU, in its own process.
 
-Cycles is part of the Python module `bpy`, which needs its own environment. This half writes
-OSL files, `worker.py` renders them there, and this half reads the float32 pictures.
+Cycles is part of the Python module `bpy`, which needs its own environment. This half writes OSL files, `worker.py`
+renders them, and this half reads the float32 pictures.
 """
 
 from __future__ import annotations
@@ -41,11 +41,10 @@ from mxeon.shaders.scene import Scene, sphere
 
 Socket: TypeAlias = float | Sequence[float]  # value of a Blender node's input
 
-# Pictures to keep: the checks of a node request some of them again.
-PICTURES = 64
+PICTURES = 64  # cached: the checks of a node request some again
 
-# Cycles has no surface coordinates on a point cloud: a block that opens like this gives the globals
-# `u` and `v`, which a generated shader reads, the values of `mxeon.shaders.scene.sphere`.
+# Cycles has no surface coordinates on a point cloud: this block sets the globals `u` and `v` as in
+# `mxeon.shaders.scene.sphere`.
 TEXCOORD = """{
     float u = 0.5 + atan2(N[0], N[2]) / M_2PI;
     float v = 0.5 + atan2(N[1], hypot(N[0], N[2])) / M_PI;
@@ -53,16 +52,15 @@ TEXCOORD = """{
 
 
 SKY_SAMPLES = 64  # paths per pixel under a sky
-# The graph of a generated shader as a function: the functions before the shader stay as they are; one
-# more repeats the statements before the shader's uniform EDF, and returns its color.
+# Name of a function that repeats a shader's statements before its uniform EDF, and returns the EDF's color.
 GRAPH_FUNCTION = "mxeon_graph"
 
 
 class CyclesHost(PairHost):
     """Blender's Cycles, with its process and a temporary folder.
 
-    `sources` is the folder of the OSL files whose functions `call` executes, eonlib's unless given;
-    `limit` the seconds that one picture may take.
+    `sources` is the folder of the OSL files whose functions `call` executes, by default eonlib's; `limit` is in seconds
+    per picture.
     """
 
     name = "cycles"
@@ -84,9 +82,9 @@ class CyclesHost(PairHost):
     def picture(self, shader: Shader, scene: Scene) -> Array:
         """Picture of the sphere with an OSL shader, float32; the only environment is a uniform one.
 
-        Exact but for float32 under a distant light. Under an environment a pixel is a mean of
-        `process.ENVIRONMENT_SAMPLES` samples, always the same; at roughness 1 its error is 2e-3 rms, 0.1 at
-        the rim, and 2e-5 in the mean over the sphere. NotRun where Cycles lacks a closure.
+        Under a distant light it is exact up to float32. Under an environment a pixel is a mean of
+        `process.ENVIRONMENT_SAMPLES` samples with a fixed seed; at roughness 1 its error is 2e-3 rms, 0.1 at the rim,
+        and 2e-5 in the mean over the sphere. NotRun if Cycles lacks a closure.
         """
         self.refuse_shape(scene)
         if isinstance(scene.environment, (str, Path)):
@@ -127,7 +125,7 @@ class CyclesHost(PairHost):
         return values / (DISTANCE**2 * scene.irradiance) if light == LAMP else values
 
     def blender_node(self, kind: str, inputs: Mapping[str, Socket], scene: Scene) -> Array:
-        """Picture of the sphere with a Blender node; `inputs` go by the names of its sockets."""
+        """Picture of the sphere with a Blender node and `inputs` by socket."""
         return self._picture(scene, (), kind=kind, inputs=tuple(inputs.items()))
 
     def call(self, function: str, *arguments: ArrayLike) -> Array:
@@ -137,10 +135,7 @@ class CyclesHost(PairHost):
         raise InputError(f"function must be defined in {self._sources}; got {function!r}")
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
-        """Values of a function: a plane emits them, and its shader reads the arguments pixel by pixel.
-
-        It reads images by position and unfiltered, so every bit of a float32 survives.
-        """
+        """Values of a function: a plane emits them, and its shader reads the arguments from unfiltered pixels."""
         with self.worker.temporary() as name:
             place, output = (Path(name, IMAGE), process.PLACE), "output closure color out"
             last = "out = {} * emission();"
@@ -178,7 +173,7 @@ class CyclesHost(PairHost):
         if "error" in reply:
             errors = " | ".join(self.worker.printed()[:4])
             raise ShaderError(f"cycles: the shader does not compile: {errors}")
-        # A closure that Cycles lacks makes the whole shader black; this is the only sign.
+        # An unsupported closure makes the whole shader black, and prints an error.
         for line in self.worker.printed():
             if line.startswith("ERROR"):
                 raise NotRun(f"cycles: {line.partition(', called from')[0]}")
@@ -191,7 +186,7 @@ class CyclesHost(PairHost):
 def _graph_function(shader: Shader, inputs: Inputs) -> tuple[str, list[ArrayLike]]:
     """Text that defines GRAPH_FUNCTION, and the values of its arguments.
 
-    `inputs` has values by path or by name; others have the document's. InputError without a uniform EDF.
+    `inputs` override the document's values by path or name. InputError without a uniform EDF.
     """
     text = shader.stages["pixel"]
     head, _, body = text.rpartition("\n)\n{\n")
@@ -204,14 +199,14 @@ def _graph_function(shader: Shader, inputs: Inputs) -> tuple[str, list[ArrayLike
     before = head[: head.rindex("\nshader ")]
     words = set(re.findall(r"\w+", statements + call[1]))
     count = max([np.shape(value)[0] for value in inputs.values() if np.ndim(value)], default=1)
-    parameters, locals_ = ["float mxeon_row"], []  # of a graph that reads nothing
+    parameters, locals_ = ["float mxeon_row"], []  # a graph may read nothing
     arguments: list[ArrayLike] = [np.zeros(count)]
     for port in shader.inputs:
         if port.name not in words:
             continue
         key = port.path if port.path in inputs else port.path.rsplit("/", 1)[-1]
         value = np.asarray(inputs.get(key, port.value), np.float32)
-        if port.type == "vector2":  # which OSL's textures lack
+        if port.type == "vector2":  # not supported by OSL's textures
             parts = [f"{port.name}_{axis}" for axis in "xy"]
             parameters += [f"float {part}" for part in parts]
             locals_.append(f"    vector2 {port.name} = vector2({', '.join(parts)});")
@@ -220,14 +215,6 @@ def _graph_function(shader: Shader, inputs: Inputs) -> tuple[str, list[ArrayLike
             kind = {"color3": "color", "vector3": "vector"}.get(port.type, port.type)
             parameters.append(f"{kind} {port.name}")
             arguments.append(value)
-    lines = [
-        before,
-        f"color {GRAPH_FUNCTION}({', '.join(parameters)})",
-        "{",
-        *locals_,
-        statements,
-        f"    return {call[1]};",
-        "}",
-        "",
-    ]
+    head = f"color {GRAPH_FUNCTION}({', '.join(parameters)})"
+    lines = [before, head, "{", *locals_, statements, f"    return {call[1]};", "}", ""]
     return "\n".join(lines), arguments

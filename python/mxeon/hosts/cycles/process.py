@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Blender's process: its interpreter, and how Cycles samples a picture.
 
-A point cloud is an exact sphere, but Cycles finds no exit for paths inside it.
-So materials with lobes below the surface are shown on a mesh.
+A point cloud is an exact sphere, but Cycles finds no exit for paths inside it, so materials with lobes below the surface
+are rendered on a mesh.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from mxeon.shaders.inner_lobes import SUBSURFACE
 from mxeon.shaders.library import data_folder
 from mxeon.shaders.scene import Scene
 
-CHECKOUT = data_folder()  # in an installed package, a folder without environment
+CHECKOUT = data_folder()  # for an installed package, a folder without an environment
 
 
 def interpreter(name: str = "cycles") -> Path:
-    """Path of the Python that has `bpy`: MXEON_CYCLES_PYTHON, or in the checkout's `.venv-cycles`.
+    """Path of the Python with `bpy`: MXEON_CYCLES_PYTHON, or the checkout's `.venv-cycles`.
 
-    A `.venv-cycles` in the working folder is ignored: anyone may have put it there.
+    For security, a `.venv-cycles` in the working folder is ignored.
     """
     path = os.environ.get("MXEON_CYCLES_PYTHON")
     python = Path(path or Path(CHECKOUT, ".venv-cycles", "bin", "python"))
@@ -36,18 +36,16 @@ def interpreter(name: str = "cycles") -> Path:
     )
 
 
-# Samples of a pixel: 1 is enough under a distant light.
+# Samples of a pixel; 1 is enough under a distant light.
 ENVIRONMENT_SAMPLES = 256
 INNER_SAMPLES = 64
-# A random walk below the surface counts as one bounce, and on a convex body no second one follows.
-# Light that a body refracts is reflected inside. Under a uniform sky a sphere of dielectric_bsdf is as
-# bright with 6 bounces as with 16 in every digit of float32; with 2 it is darker by 1e-3.
+# A random walk below the surface counts as one bounce, and on a convex body no second bounce follows. Refracted light is
+# reflected inside: under a uniform sky a sphere of dielectric_bsdf is equally bright with 6 and 16 bounces in float32;
+# with 2 it is darker by 1e-3.
 SURFACE_BOUNCES, REFRACTED_BOUNCES = 1, 8
 
 
 class SceneParts(TypedDict):
-    """Parts of a scene that the worker needs; see `request`."""
-
     size: int
     samples: int
     bounces: int
@@ -57,13 +55,15 @@ class SceneParts(TypedDict):
     body: str
 
 
-DARK = Scene("dark")  # of emission, and of other lights than a scene has
-PLACE = "0.5 + 0.5 * P[0], 0.5 - 0.5 * P[1]"  # OSL of a point's place on the body "plane"
-FEWEST_SAMPLES = 16  # below the surface; with fewer, the picture is noise
+DARK = Scene("dark")  # without light, for emission or other lights
+PLACE = (
+    "0.5 + 0.5 * P[0], 0.5 - 0.5 * P[1]"  # OSL expressions of a point's place on the body "plane"
+)
+FEWEST_SAMPLES = 16  # lobes below the surface are noise with fewer
 
 
 def request(scene: Scene, lobes: Sequence[str]) -> SceneParts:
-    """Parts of a scene that the worker needs, for a material with these lobes below its surface."""
+    """The worker's parameters for a scene and a material with these lobes below its surface."""
     samples = ENVIRONMENT_SAMPLES if scene.environment is not None else 1
     return {
         "size": scene.size,
@@ -77,18 +77,18 @@ def request(scene: Scene, lobes: Sequence[str]) -> SceneParts:
 
 
 def approximations(scene: Scene, lobes: Sequence[str]) -> tuple[str, ...]:
-    """Why a picture of these lobes cannot be right: too few or too short paths."""
+    """Reasons why a picture of these lobes is wrong: too few or too short paths."""
     if not lobes:
         return ()
-    asked, reasons = request(scene, lobes), []
-    if asked["samples"] < FEWEST_SAMPLES:
+    paths, reasons = request(scene, lobes), []
+    if paths["samples"] < FEWEST_SAMPLES:
         reasons.append(
             f"{' and '.join(lobes)}: needs at least {FEWEST_SAMPLES} samples of a pixel; with "
-            f"{asked['samples']} the picture is noise"
+            f"{paths['samples']} the picture is noise"
         )
-    if asked["bounces"] < _bounces(lobes):
+    if paths["bounces"] < _bounces(lobes):
         reasons.append(
-            f"{' and '.join(lobes)}: needs {_bounces(lobes)} bounces; with {asked['bounces']} the "
+            f"{' and '.join(lobes)}: needs {_bounces(lobes)} bounces; with {paths['bounces']} the "
             "light of longer paths is missing"
         )
     return tuple(reasons)

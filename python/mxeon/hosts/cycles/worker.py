@@ -33,8 +33,7 @@ KINDS = ("objects", "cameras", "meshes", "pointclouds", "materials", "lights", "
 def unit_scene(distance: float) -> Blender:
     """An empty scene, the square [-1, 1]^2 seen orthographically from z = `distance`.
 
-    It removes the remains of earlier requests: reloading Blender's settings takes as long as a
-    picture under a distant light.
+    It removes the objects of earlier requests: reloading Blender's settings would take as long as a picture.
     """
     bpy.data.batch_remove([each for kind in KINDS for each in getattr(bpy.data, kind)])
     scene = bpy.context.scene
@@ -48,7 +47,7 @@ def unit_scene(distance: float) -> Blender:
 
 
 def set_output(scene: Blender, path: str, size: int) -> None:
-    """Make `scene` render to a linear float32 RGB file, black where nothing is hit."""
+    """Make `scene` render to a linear float32 RGB file with a black background."""
     render = scene.render
     render.filepath = path
     render.resolution_x = render.resolution_y = size
@@ -114,7 +113,7 @@ BODIES = {"points": add_sphere, "mesh": add_mesh, "plane": add_plane}
 
 
 def add_triangles(scene: Blender, width: float, corners: str, material: Blender) -> None:
-    """Add the triangles of a file, which neither shadow nor light each other."""
+    """Add the triangles of a file; they neither shadow nor light each other."""
     scene.camera.data.ortho_scale = width
     scene.camera.data.clip_end = 2.0 * scene.camera.location.z
     points = np.load(corners).reshape(-1, 3)

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """MaterialX's own renderer on OpenGL, `MaterialXRenderGlsl`: what MaterialXView shows.
 
-It generates the shader as `gl` does, and binds lights, environment and uniforms by itself. It needs an X
-display and ends the process if it finds none, so `worker.py` runs in its own process and starts Xvfb
-if DISPLAY names no display.
+It generates the same shader as `gl`, and binds lights, environment and uniforms itself. It needs an X display and ends
+the process without one, so `worker.py` runs in its own process and starts Xvfb if DISPLAY names no display.
 """
 
 from __future__ import annotations

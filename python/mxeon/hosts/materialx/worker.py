@@ -37,13 +37,13 @@ except ImportError as error:
     sys.exit(f"MaterialX's renderer does not load ({error}); {REMEDY}")
 
 Chosen: TypeAlias = tuple[tuple[str, str | int | bool], ...]
-FAR = 1e6  # of the camera; the shader computes the view from its position
+FAR = 1e6  # distance of the camera; the shader computes the view from its position
 DIRECTIONS = 256  # directions over which microfacet shaders sum the environment
-PICTURES = 8  # renderers to keep, each with the program of a document
+PICTURES = 8  # cached renderers, each with the program of a document
 ANISOTROPY = ("GL_ARB_texture_filter_anisotropic", "GL_EXT_texture_filter_anisotropic")
 SCREEN = ("-screen", "0", "64x64x24", "-nolisten", "tcp")
 DIES_WITH_PARENT = 1  # PR_SET_PDEATHSIG of prctl
-RENDERER = 0x1F01  # of glGetString
+RENDERER = 0x1F01  # argument of glGetString
 OPENGL = {
     "darwin": "/System/Library/Frameworks/OpenGL.framework/OpenGL",
     "win32": "opengl32",
@@ -165,7 +165,7 @@ def camera() -> mx_render.Camera:
 
 @lru_cache(maxsize=2)
 def geometry(path: str) -> mx_render.GeometryHandler:
-    """The quads in a NumPy file, shared by all documents: reading them takes longer than drawing."""
+    """The quads in a NumPy file, cached: reading them takes longer than drawing."""
     handler = mx_render.GeometryHandler.create()
     handler.addLoader(mx_render.TinyObjLoader.create())
     handler.loadGeometry(mx.FilePath(obj_file(path)), False)
@@ -196,7 +196,7 @@ def pixels(image: mx_render.Image) -> NDArray[np.float32]:
 
 def device(renderer: mx_render_glsl.GlslRenderer) -> str:
     """Name of the device, from the context of a renderer."""
-    renderer.setSize(1, 1)  # which makes it the current one
+    renderer.setSize(1, 1)  # make its context current
     function = ctypes.CDLL(OPENGL.get(sys.platform, "libGL.so.1")).glGetString
     function.restype = ctypes.c_char_p
     return str(function(RENDERER).decode())

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""OSL without a renderer: generated OSL is compiled and run by a real OSL, which prints its closures.
+"""OSL without a renderer: compile and run generated OSL, and print its closures.
 
     generated text --carriers--> labels instead of closures --Blender's OSL--> a line for each point
     --trees--> one tree of arrays --`mxeon.conformance.reference.closures`--> values by the models
 
-This checks MaterialX's text, whatever a renderer makes of it.
+This checks MaterialX's text independently of any renderer.
 """
 
 from __future__ import annotations
@@ -37,9 +37,9 @@ from mxeon.hosts.osl.points import (
 from mxeon.hosts.osl.trees import KeptTrees, TreeRows, keys_of, read_trees, whole_label, with_roots
 from mxeon.shaders.generation import Shader
 
-LINE = re.compile(r"^mxeon (\d+) (\S+) (.*)$")  # row of a point, label, and its text
+LINE = re.compile(r"^mxeon (\d+) (\S+) (.*)$")  # row of a point, label, text of the label
 VERSION = "float version(float x)\n{\n    return OSL_VERSION;\n}\n"
-# I points to the surface, as OSL has it; it is read by functions, which local variables do not reach.
+# OSL's I points to the surface. A macro replaces it, since functions that read it do not see local variables.
 VIEW = """
 vector mxeon_view()
 {{
@@ -49,12 +49,12 @@ vector mxeon_view()
 #define I mxeon_view()
 """
 ROOT = "root"
-SHADERS = 8  # with the names of their variables, whose closures are kept
+SHADERS = 8  # size of the cache of closures
 PRINT = f'printf("mxeon %d {ROOT} %s\\n", MXEON_ROW, mxeon_text({{0}}));'
 
 
 class OslHost(base.Host):
-    """Blender's OSL, or a build's testshade that MXEON_TESTSHADE names; with a temporary folder."""
+    """Blender's OSL, or the testshade that MXEON_TESTSHADE names."""
 
     name = "osl"
     target = "osl"
@@ -76,7 +76,11 @@ class OslHost(base.Host):
         return f"OSL {number // 10000}.{number // 100 % 100}.{number % 100}"
 
     def trees(self, shader: Shader, wo: Array, inputs: Inputs) -> tuple[TreeRows, ...]:
-        # Its inputs and its surface have values of each point.
+        """Trees of a shader's closures, with their arguments and weights.
+
+        `wo`, shape (N, 3), and `inputs` are as in `evaluate`. Points whose closures differ only in numbers share a tree.
+        ShaderError for a closure that OSL does not document.
+        """
         columns, view = columns_of(shader, inputs), Column("vector", wo)
         keys = keys_of(shader.stages["pixel"], columns, view, len(wo))
         kept = self._kept(shader.stages["pixel"], tuple(columns))
@@ -91,7 +95,7 @@ class OslHost(base.Host):
     def _run(
         self, shader: Shader, columns: Mapping[str, Column], view: Column, count: int
     ) -> tuple[TreeRows, ...]:
-        """The closures that a shader makes, for each value of its variables."""
+        """A shader's closures for each value of its variables."""
         with self._engine.folder() as name:
             folder, place = Path(name), self._engine.place
             block = statements(columns, folder / IMAGE, count, place)
@@ -112,7 +116,7 @@ class OslHost(base.Host):
         return np.array([row[ROOT].split() for row in rows], np.float32)
 
     def _printed(self, folder: Path, text: str, count: int) -> list[dict[str, str]]:
-        """The lines that a shader prints at each point, by their labels."""
+        """Lines that a shader prints at each point, by label."""
         rows: list[dict[str, str]] = [{} for _ in range(count)]
         engine = self._engine
         head = f"{row(count, engine.place)}{prelude(text, engine.carrier)}"

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""OSL text that goes before a generated shader and turns its closures into labels that can be printed.
+"""OSL text before a generated shader that turns its closures into printable labels.
 
-OSL prints closures with six digits, and only those that the renderer has. Here every closure of
-MaterialX, and every operation on closures, is a function that returns a closure of the engine whose
-label is its text, with nine digits, enough to restore a float32 exactly. The shader itself is unchanged.
+OSL prints closures with six digits, and only closures that the renderer supports. Here every closure of MaterialX, and
+every operation on closures, is a function that returns one of the engine's closures, labeled with its text. Nine digits
+restore a float32 exactly. The shader itself is unchanged.
 
     layer<mul<0.5|sheen_bsdf<0 0 1|1 1 1|0.300000012>>|burley_diffuse_bsdf<0 0 1|1 1 1|0>>
 """
@@ -15,16 +15,16 @@ from dataclasses import dataclass
 from itertools import product
 
 MULTIPLE, SUM, MIX, LAYER = OPERATIONS = ("mul", "add", "mix", "layer")
-PAIRS = 2  # keywords with which a closure may be called
+PAIRS = 2  # maximum number of keywords in a call of a closure
 
 
 @dataclass(frozen=True)
 class Signature:
     """Arguments of a closure, as OSL's stdosl.h documents them."""
 
-    arguments: Mapping[str, str]  # OSL types by name, in their order
-    keywords: tuple[str, ...] = ()  # besides `label`, which changes no light
-    kind: str = "float"  # of their values; OSL drops a keyword whose value has another type
+    arguments: Mapping[str, str]  # OSL types by name, in order
+    keywords: tuple[str, ...] = ()  # without `label`, which has no effect
+    kind: str = "float"  # type of the keywords' values; OSL drops a keyword with another type
 
 
 FRAME_TYPES = {"normal": "normal", "tangent": "vector"}
@@ -72,17 +72,17 @@ CLOSURES = {
 
 @dataclass(frozen=True)
 class Carrier:
-    """A closure that an engine has, which carries a label."""
+    """An engine's closure that carries a label."""
 
-    call: str  # OSL that makes it of the string `label`
-    before: str  # what the engine prints of it before the label
+    call: str  # OSL expression with the string `label`
+    before: str  # printed before the label
 
 
 HOLDOUT = Carrier('holdout("label", label)', '(1, 1, 1) * holdout ("label", "')
 DEBUG = Carrier("debug(label)", '(1, 1, 1) * debug ("')
 AFTER = '")'
-# OSL cuts what it formats of a closure after 1024 characters, and Blender a line. So each closure is
-# printed where it is made, and its label is the hash of its text.
+# OSL truncates formatted closures after 1024 characters, and Blender truncates lines. So each closure is printed where
+# it is made, and its label is the hash of its text.
 LABELS = """\
 closure color mxeon_label(string text)
 {{
@@ -106,7 +106,7 @@ string mxeon_text(closure color x)
 
 
 def prelude(text: str, carrier: Carrier) -> str:
-    """OSL that turns the closures of CLOSURES that a text names, and OPERATIONS on them, into labels."""
+    """OSL that turns a text's CLOSURES, and OPERATIONS on them, into labels."""
     start = len(carrier.before)
     labels = LABELS.format(
         call=carrier.call,
@@ -114,14 +114,14 @@ def prelude(text: str, carrier: Carrier) -> str:
         start=start,
         rest=start + len(AFTER),
     )
-    names = [name for name in CLOSURES if name in text]  # others take the compiler time
+    names = [name for name in CLOSURES if name in text]  # unused ones would cost compile time
     closure = "closure color"
     lines = [
         labels,
         _function("mxeon_layer", LAYER, closure, closure),
         _function("__operator__add__", SUM, closure, closure),
     ]
-    # Weights and shares; stdosl.h has a body for `mix`, which this one hides.
+    # Weights and shares; this `mix` hides the one of stdosl.h.
     for kind in ("float", "color"):
         lines += [
             "#pragma osl nowarn",
@@ -129,14 +129,14 @@ def prelude(text: str, carrier: Carrier) -> str:
             _function("__operator__mul__", MULTIPLE, closure, kind),
             _function("__operator__mul__", MULTIPLE, kind, closure),
         ]
-    # Closures, with many keywords, so that unknown ones are reported, too.
+    # Closures with any keywords, so that unknown ones are reported.
     for name in names:
         arguments = (*CLOSURES[name].arguments.values(),)
         for count in range(PAIRS + 1 if arguments else 1):
             for kinds in product((CLOSURES[name].kind, "string"), repeat=count):
                 pairs = (each for kind in kinds for each in ("string", kind))
                 lines.append(_function(f"mxeon_{name}", name, *arguments, *pairs))
-    # What is built in cannot be hidden, but renamed.
+    # Built-in functions cannot be hidden, only renamed.
     lines += [f"#define {name} mxeon_{name}" for name in (*names, "layer")]
     return "\n".join([*lines, ""])
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What runs OSL: the one inside Blender, once for each pixel of a plane, and the programs of OSL itself."""
+"""Engines of OSL: Blender, which runs it at each pixel of a plane, and OSL's own programs."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from mxeon.hosts.process import Worker
 from mxeon.jobs.signals import Temporary
 
 VARIABLES = {"oslc": "MXEON_OSLC", "testrender": "MXEON_TESTRENDER", "testshade": "MXEON_TESTSHADE"}
-TIMEOUT = 300.0  # seconds for one of them
-LINES = 4  # last ones of a program's output in a message
-# The first line of the help: oslc has no option for its version.
+TIMEOUT = 300.0  # seconds for one run
+LINES = 4  # quoted last lines of a program's output
+# The version is in the first line of the help: oslc has no option for it.
 TITLE = re.compile(r"^oslc -- (Open Shading Language) compiler (\S+)", re.MULTILINE)
 
 
@@ -42,7 +42,7 @@ def find_program(name: str, host: str = "testrender") -> str:
 
 
 def version(oslc: str) -> str:
-    """Name and version of the language that an oslc compiles, as its help states them."""
+    """Name and version of the language, from the help of oslc."""
     title = TITLE.search(output([oslc, "--help"]))
     if title is None:
         raise NotRun(f"testrender: {oslc} must be OSL's compiler; its help names no version")
@@ -55,10 +55,10 @@ def output(
     failure: type[MxeonError] = NotRun,
     host: str = "testrender",
 ) -> str:
-    """Standard output of a program; its warnings are passed on as `RendererWarning`.
+    """Standard output of a program; its warnings become `RendererWarning`.
 
-    `failure` is raised with the last lines of a program that fails, ShaderError for an error reported by
-    one that ends well: testrender goes on without the lobes that it has no room for.
+    Raises `failure` with the last lines of a failed program, ShaderError if a successful program reports an error:
+    testrender continues without lobes that exceed its memory.
     """
     try:
         process = subprocess.run(
@@ -80,12 +80,11 @@ def output(
     return process.stdout
 
 
-SECONDS = 300.0  # for one run
-TROUBLE = ("ERROR", "WARNING")  # the first words of the engine's messages
+TROUBLE = ("ERROR", "WARNING")  # first words of the engine's messages
 
 
 class Blender:
-    """A process of Blender, started by the first run."""
+    """A process of Blender, started on demand."""
 
     carrier = HOLDOUT
     rooted = False
@@ -93,7 +92,7 @@ class Blender:
 
     def __init__(self) -> None:
         script = Path(process.__file__).with_name("worker.py")
-        self._worker = Worker("osl", interpreter("osl"), script, SECONDS)
+        self._worker = Worker("osl", interpreter("osl"), script, TIMEOUT)
         self.folder = self._worker.temporary
 
     @property
@@ -119,7 +118,7 @@ class Blender:
 
 
 HOST = "osl"
-ROOTED = (1, 15, 2)  # the first OSL whose closure takes the root of Zeltner's roughness
+ROOTED = (1, 15, 2)  # first OSL whose sheen closure takes the root of Zeltner's roughness
 
 
 class Testshade:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values for each point of a run: images with a pixel for each, and OSL statements that read them."""
+"""Values for each point of a run: images with a pixel per point, and OSL statements that read them."""
 
 from __future__ import annotations
 
@@ -20,24 +20,24 @@ from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 
 LEAST_SIZE = 4  # Blender renders no smaller picture.
-# OSL's types by MaterialX's.
+# MaterialX's types in OSL.
 TYPES = {"color3": "color", "vector3": "vector", "boolean": "int", "integer": "int"}
 WIDTHS = {"color": 3, "vector": 3, "normal": 3, "vector2": 2}
-# The row of a point, from its place in the picture.
+# Computes the row of a point from its place in the picture.
 ROW = """#define MXEON_AT(x, y) ((int) floor({size} * (y)) * {size} + (int) floor({size} * (x)))
 #define MXEON_ROW MXEON_AT({place})
 """
 FILTER = '0.0, 0.0, 0.0, 0.0, "interp", "closest"'
 READ = f'texture("{{image}}", {{place}}, {FILTER}, "firstchannel", {{first}})'
-NO_WARNING = "#pragma osl nowarn"  # oslc warns if a surface shader sets a global of its point
-IMAGE = "points.tif"  # of a shader's variables; EXR sorts more than ten channels by their names
+NO_WARNING = "#pragma osl nowarn"  # oslc warns if a surface shader sets a global
+IMAGE = "points.tif"  # EXR would sort more than ten channels by their names
 
 
 @dataclass(frozen=True)
 class Column:
     kind: str  # OSL's type
-    values: ArrayLike  # one for each point, or one for all
-    declared: bool = True  # else assigned, to a variable of OSL that all functions read
+    values: ArrayLike  # one per point, or one for all
+    declared: bool = True  # otherwise assigned to a global variable of OSL
 
     @property
     def rows(self) -> NDArray[np.float32]:
@@ -49,19 +49,19 @@ class Column:
 
 
 def side(count: int) -> int:
-    """Pixels on a side of the square picture that has so many points."""
+    """Pixels on a side of the square picture for `count` points."""
     return max(LEAST_SIZE, math.isqrt(count - 1) + 1)
 
 
 def row(count: int, place: str) -> str:
-    """OSL that defines MXEON_ROW, the row of a point of so many, by its place in an image."""
+    """OSL that defines MXEON_ROW, the row of one of `count` points, by its place in an image."""
     return ROW.format(size=side(count), place=place)
 
 
 def statements(columns: Mapping[str, Column], image: Path, count: int, place: str) -> list[str]:
-    """OSL statements that give variables the values of a point, exactly, from a float32 image.
+    """OSL statements that read a point's variables exactly from a float32 image.
 
-    `place` is OSL for the two coordinates at which a point reads its pixel, without a filter.
+    `place` has the OSL expressions of the coordinates at which a point reads its pixel, unfiltered.
     """
     lines, values = [], [np.zeros((count, 0), np.float32)]
     for name, column in columns.items():
@@ -69,18 +69,17 @@ def statements(columns: Mapping[str, Column], image: Path, count: int, place: st
         first = sum(each.shape[1] for each in values)
         values.append(rows)
         x, y = (READ.format(image=image.as_posix(), place=place, first=first + n) for n in (0, 1))
-        # A vector2 and an int are made of floats, as textures have neither.
+        # Textures have no vector2 and int: make them from floats.
         if column.kind == "vector2":
             lines += [f"float {name}_x = {x};", f"float {name}_y = {y};"]
             lines += [f"vector2 {name} = vector2({name}_x, {name}_y);"]
         elif column.kind == "int":
             lines += [f"float {name}_float = {x};", f"int {name} = (int) {name}_float;"]
-        # A normal is read as a vector.
+        elif column.declared:
+            kind = "vector" if column.kind == "normal" else column.kind  # textures have no normals
+            lines.append(f"{kind} {name} = {x};")
         else:
-            kind = "vector" if column.kind == "normal" else column.kind
-            lines += (
-                [f"{kind} {name} = {x};"] if column.declared else [NO_WARNING, f"{name} = {x};"]
-            )
+            lines += [NO_WARNING, f"{name} = {x};"]
     if columns:
         size, channels = side(count), sum(each.shape[1] for each in values)
         pixels = np.zeros((size * size, channels), np.float32)
@@ -103,8 +102,8 @@ def call_text(
 ) -> tuple[str, int]:
     """Text of a shader that calls a function of `source` at each point, and the number of points.
 
-    `image` and `place` are those of `statements`; `output` declares the shader's output, and `last` is
-    its last statement, with {} for the value, a color.
+    `image` and `place` are as in `statements`; `output` declares the shader's output, and `last` is its last statement,
+    with {} for the value, a color.
     """
     parameters = functions.parameters(source, function)
     if len(parameters) != len(arguments):
@@ -119,8 +118,8 @@ def call_text(
     return f"{source}\nshader {CALL}({output} = 0)\n{{\n{body}}}\n", count
 
 
-OUTPUT = re.compile(r"\boutput MATERIAL (\w+) *=")  # of a shader
-# What a shader reads instead of the surface.
+OUTPUT = re.compile(r"\boutput MATERIAL (\w+) *=")
+# Types and default values of the surface's globals.
 SURFACE = {
     "N": ("normal", (0.0, 0.0, 1.0)),
     "dPdu": ("vector", (1.0, 0.0, 0.0)),
@@ -132,10 +131,7 @@ NAMES = {"N": "normal", "dPdu": "tangent", "dPdv": "bitangent"}
 def columns_of(
     shader: Shader, inputs: Inputs, turned: Callable[[Array], Array] = lambda rows: rows
 ) -> Mapping[str, Column]:
-    """Columns of the surface and of the inputs that a shader has, by the names of its variables.
-
-    Directions among them are turned.
-    """
+    """Columns of the surface and of a shader's inputs by variable name, with turned directions."""
     columns = {
         each: Column(kind, inputs.get(NAMES[each], value), declared=False)
         for each, (kind, value) in SURFACE.items()
@@ -151,10 +147,9 @@ def columns_of(
 
 
 def with_variables(shader: Shader, block: Iterable[str], last: Callable[[str], str]) -> str:
-    """Text of a shader whose body has statements before it, and one more at its end.
+    """Text of a shader with statements before its body, and one more at its end.
 
-    `block` is a nested scope, so its declarations hide the inputs; `last` takes the name of
-    the shader's output.
+    `block` begins a nested scope, so its declarations hide the inputs; `last` takes the name of the shader's output.
     """
     head, brace, body = shader.stages["pixel"].rpartition("\n)\n{\n")
     main, end, _ = body.rpartition("}")
@@ -167,7 +162,7 @@ def indented(lines: Iterable[str]) -> str:
 
 
 def with_header(text: str, shader: Shader) -> str:
-    """A generated text with the path of the file that it includes, of the shader's library."""
+    """A generated text with the full path of its include."""
     path = mx.FileSearchPath(shader.root) if shader.root else mx.getDefaultDataSearchPath()
     header = path.find("libraries/stdlib/genosl/include/mx_funcs.h").asString()
     return text.replace('"mx_funcs.h"', f'"{header}"')

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Printed labels of closures as trees: rows that only differ in numbers share one tree of arrays."""
+"""Printed labels of closures as trees; rows that differ only in numbers share a tree of arrays."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from mxeon.hosts.osl.points import Column
 Array: TypeAlias = NDArray[np.float64]
 Argument: TypeAlias = "Array | str | ClosureTree | None"  # None is the closure without light
 
-DEEPEST = 200  # closures inside each other
-LONGEST = 1 << 20  # characters of a label with all that it names
+DEEPEST = 200  # nesting of closures
+LONGEST = 1 << 20  # characters of an expanded label
 LABEL = re.compile(r"@-?\d+")
 NUMBER = re.compile(r"(?<=[<| ])-?(?:\d+(?:\.\d+)?(?:e[-+]?\d+)?|nan|inf)(?=[>| ])")
 TOKEN = re.compile(r"(\w+)<|(#(?: #)*)|'([^'<>|]*)'|([|>])")
@@ -30,22 +30,22 @@ TOKEN = re.compile(r"(\w+)<|(#(?: #)*)|'([^'<>|]*)'|([|>])")
 class ClosureTree:
     """A closure, or an operation on closures, at some points."""
 
-    name: str  # in CLOSURES or in OPERATIONS
-    parts: tuple[ClosureTree | None, ...] = ()  # what an operation combines
-    # By name, (N,) or (N, 3); of an operation its `factor` alone.
+    name: str  # in CLOSURES or OPERATIONS
+    parts: tuple[ClosureTree | None, ...] = ()  # operands of an operation
+    # By name, (N,) or (N, 3); an operation has only `factor`.
     arguments: Mapping[str, Array | str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class TreeRows:
-    """The points, by number, at which a shader makes closures of one shape."""
+    """Numbers of the points with the same shape of closures, and their tree."""
 
     rows: NDArray[np.intp]
     tree: ClosureTree | None
 
 
 def whole_label(texts: Mapping[str, str], root: str) -> str:
-    """Text of a label, with every label in it replaced by its own text."""
+    """Text of a label, with nested labels replaced by their texts."""
     text = texts[root]
     for _ in range(DEEPEST):
         text, labels = LABEL.subn(lambda match: texts[match[0]], text)
@@ -64,14 +64,14 @@ def read_trees(labels: Sequence[str]) -> tuple[TreeRows, ...]:
         shapes.setdefault(NUMBER.sub("#", label), []).append(row)
         numbers.append(NUMBER.findall(label))
     return tuple(
-        # Nine digits are a float32.
+        # Nine digits restore a float32.
         TreeRows(np.array(rows), _tree(shape, np.array([numbers[row] for row in rows], np.float32)))
         for shape, rows in shapes.items()
     )
 
 
 def with_roots(tree: ClosureTree | None) -> ClosureTree | None:
-    """A tree whose Zeltner sheens have the root of their roughness, a float32 as the closure takes it."""
+    """A tree with the root of the roughness in Zeltner sheens, rounded to float32 like the closure's."""
     if tree is None:
         return None
     arguments = dict(tree.arguments)
@@ -106,7 +106,7 @@ def _tree(shape: str, numbers: Array) -> ClosureTree | None:
         elif text is not None:
             stack[-1][1].append(text)
             expected = ""
-        # An argument that is empty is the closure without light.
+        # An empty argument is the closure without light.
         elif (
             mark
             and expected
@@ -125,8 +125,6 @@ def _tree(shape: str, numbers: Array) -> ClosureTree | None:
 
 
 def _closure(name: str, values: Iterable[Argument]) -> ClosureTree:
-    """ClosureTree or operation with its arguments by name."""
-    # An operation and what it combines.
     values = list(values)
     if name in OPERATIONS:
         factor = [each for each in values if isinstance(each, np.ndarray)]
@@ -135,7 +133,7 @@ def _closure(name: str, values: Iterable[Argument]) -> ClosureTree:
         return ClosureTree(name, parts, {"factor": factor[0]} if factor else {})
     if name not in CLOSURES:
         raise ShaderError(_unreadable(name))
-    # A closure: its arguments in their order, then pairs of keywords and values.
+    # The arguments of a closure come in order, then pairs of keywords and values.
     signature = CLOSURES[name]
     plain = [each for each in values if isinstance(each, (np.ndarray, str))]
     arguments = dict(zip(signature.arguments, plain, strict=False))
@@ -153,24 +151,24 @@ def _unreadable(text: str) -> str:
     return f"osl: closure must be one of {', '.join(CLOSURES)}; got {text[:60]!r}"
 
 
-VIEWED = re.compile(r"\bI\b")  # a text that reads the view
-MOST = 1 << 16  # points of a shader
+VIEWED = re.compile(r"\bI\b")  # matches texts that read the view
+MOST = 1 << 16  # cached points of a shader
 
 
 class KeptTrees:
-    """A cache of the closures that one shader makes, by the values of all variables of a point.
+    """A cache of one shader's closures by the values of a point's variables.
 
-    Light does not change which closures a shader makes, and most texts do not read the view either. So a
-    check of other lights, or of some of the points of another check, runs nothing.
+    Closures do not depend on the light, and mostly not on the view. So checks of other lights, or of the same points,
+    run nothing.
     """
 
     def __init__(self) -> None:
-        self._trees: dict[str, ClosureTree | None] = {}  # one of each shape
-        self._counts: dict[str, int] = {}  # of their points
-        self._places: dict[bytes, tuple[str, int]] = {}  # shape of a point's tree, and row in it
+        self._trees: dict[str, ClosureTree | None] = {}  # by shape
+        self._counts: dict[str, int] = {}  # points by shape
+        self._places: dict[bytes, tuple[str, int]] = {}  # shape of a point's tree, and its row
 
     def missing(self, keys: Sequence[bytes]) -> NDArray[np.intp]:
-        """Rows of the points that are not cached, one of each kind; a full cache is emptied first."""
+        """Rows of distinct points that are not cached; empties a full cache."""
         if len(self._places) > MOST:
             for each in (self._trees, self._counts, self._places):
                 each.clear()
@@ -199,14 +197,14 @@ class KeptTrees:
 
 
 def keys_of(text: str, columns: Mapping[str, Column], view: Column, count: int) -> list[bytes]:
-    """What the closures of each point depend on: the values of all variables, and the view if it is read."""
+    """Keys of each point: the values of all variables, and of the view if the text reads it."""
     read = [*columns.values(), *([view] if VIEWED.search(text) else [])]
     values = [np.broadcast_to(each.rows, (count, each.rows.shape[1])) for each in read]
     return [row.tobytes() for row in np.concatenate(values, axis=1)]
 
 
 def _shape(tree: ClosureTree | None) -> str:
-    """What trees must have in common to be merged: everything but their numbers."""
+    """A tree without its numbers, as text; trees of one shape can be merged."""
     if tree is None:
         return ""
     arguments = (f"{k}={v}" if isinstance(v, str) else k for k, v in tree.arguments.items())

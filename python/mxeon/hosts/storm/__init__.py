@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Hydra Storm, USD's own renderer.
 
-It comes with Blender's package, which has its own versions of OpenUSD and MaterialX. This half writes
-the document, and `worker.py` draws it there.
+Blender's package contains it, with its own versions of OpenUSD and MaterialX. This half writes the document, and
+`worker.py` draws it.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from mxeon.shaders.methods import STORM
 from mxeon.shaders.scene import Scene
 
 REPORT = re.compile(r"^(?:Warning|Error)\b.*? in file .* : (.*)|^(?:Warning|Error)\b.*? -- (.*)")
-COMPILE = "Failed to compile shader"  # the beginning of such a report
+COMPILE = "Failed to compile shader"  # begins a report
 PREFILTER = "genglsl/prefilter"  # eonlib's lookup of a prefiltered environment
 CLOSURES = ("BSDF", "EDF", "VDF")
 
@@ -37,7 +37,7 @@ class StormHost(DocumentHost):
     default, fixed = STORM, True
 
     def transmitted(self, shader: Shader, size: int) -> Array:
-        """Share of a white card's light that passes the sphere of a picture, row 0 at the top."""
+        """Share of a white card's light that passes the sphere, row 0 at the top."""
         dark = Scene("dark", size=size)
         return np.asarray(self._shown(shader, dark, card=True) - self._shown(shader, dark))
 
@@ -56,9 +56,9 @@ class StormHost(DocumentHost):
         return interpreter(self.name)
 
     def _needs_blocks(self, shader: Shader) -> bool:
-        """Whether it has textures: next to a triangle, llvmpipe reads Storm's buffers as 0.
+        """Whether it has textures: outside a triangle, llvmpipe reads Storm's buffers as 0.
 
-        The derivative of a texture coordinate is then wrong, and the texture is read at the wrong size.
+        The derivatives of texture coordinates are then wrong, and textures are read at the wrong size.
         """
         return any(each.type == "filename" and each.value for each in shader.inputs)
 

@@ -21,16 +21,16 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-Foreign: TypeAlias = Any  # an object of OpenUSD, or what a function of a library returns
+Foreign: TypeAlias = Any  # an object of OpenUSD, or the result of a library function
 Pixels: TypeAlias = NDArray[np.float32]
-Type: TypeAlias = type[c_void_p | c_uint | c_char_p] | None  # of a function of EGL or OpenGL
+Type: TypeAlias = type[c_void_p | c_uint | c_char_p] | None  # result of a function of EGL or OpenGL
 
 INSTALL, DEBIAN = "pip install bpy==5.0.1", "apt-get install libegl1 libgl1-mesa-dri"
 MODULES = ("Gf", "Sdf", "Tf", "Usd", "UsdGeom", "UsdImagingGL", "UsdLux", "UsdShade", "Vt")
-FAR = 1e6  # of the camera: Storm computes the view from its position, even for an orthographic one
+FAR = 1e6  # distance of the camera: Storm computes the view from its position, even if it is orthographic
 ANGLE = 0.1  # degrees, of the distant light: with 0 it is black
-# Storm sums a dome's irradiance over a right angle in 64 steps. 64 of them in float32 add up to less
-# than the angle, so it takes a 65th and divides by 65: a white dome gives this much light.
+# Storm sums a dome's irradiance over a right angle in 64 steps. In float32 they add up to less than the angle, so it adds
+# a 65th and divides by 65: a white dome gives this irradiance.
 WHITE_DOME = math.pi / 130.0 / math.tan(math.pi / 128.0)
 CARD = 2.0  # distance of a white card that emits, behind the picture
 # A white pixel in Radiance's format: a dome without a texture is black.
@@ -48,11 +48,11 @@ usd: Foreign = None  # OpenUSD, imported by `start`
 
 
 class Handle(c_void_p):
-    """An object of EGL."""
+    pass
 
 
 class Canvas:
-    """Float32 pixels that OpenGL 4.5 draws without a window, through EGL."""
+    """Float32 pixels, drawn by OpenGL 4.5 without a window, through EGL."""
 
     def __init__(self) -> None:
         self._size, self._name = 0, c_uint()
@@ -70,7 +70,7 @@ class Canvas:
         self.device = self._call("glGetString", c_char_p, RENDERER).decode()
 
     def clear(self, size: int) -> None:
-        """Make it black and `size` pixels wide and high; what is drawn next appears in it."""
+        """Make it black, `size` pixels wide and high, and the target of drawing."""
         if size != self._size:
             self._allocate(size)
         self._call("glBindFramebuffer", None, FRAME, self._name)
@@ -206,14 +206,14 @@ class Stage:
 
 
 def import_usd(root: str, libraries: str) -> Foreign:
-    """OpenUSD of Blender's package, with libraries before MaterialX's own or those of a root."""
+    """OpenUSD of Blender's package, with libraries in addition to MaterialX's own or those in `root`."""
     # Find it without importing Blender.
     found = find_spec("bpy")
     if found is None or not found.submodule_search_locations:
         raise ImportError("no package bpy")
     package = Path(found.submodule_search_locations[0])
     sys.path += map(str, package.glob("*/python/lib/python*/site-packages"))
-    # Tell it where its plugins and libraries lie, before it looks.
+    # OpenUSD reads these variables when it is imported.
     os.environ["PXR_PLUGINPATH_NAME"] = str(package / "lib" / "usd")
     standard = Path(root or package / "lib" / "materialx", "libraries")
     os.environ["PXR_MTLX_STDLIB_SEARCH_PATHS"] = str(standard)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Renderers from npm in a headless Chromium, each as a page that draws one picture per request.
 
-The page is an ES module beside this file. It imports the renderer from `node_modules`, which a route
-inside the browser serves: nothing is bundled, and nothing leaves the machine.
+The page is an ES module next to this file. It imports the renderer from `node_modules` through a route inside the
+browser: nothing is bundled, and nothing leaves the machine.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from mxeon.shaders.scene import Scene
 from mxeon.survey.specs import Material
 
 MODULES = "MXEON_NODE_MODULES"  # environment variable that names another node_modules
-ORIGIN = "https://renderers.invalid/"  # a secure origin, without which there is no WebGPU
+ORIGIN = "https://renderers.invalid/"  # WebGPU needs a secure origin
 HTML = """<!doctype html><script type="importmap">{imports}</script>
 <script type="module">
 import * as page from "/page.js";
@@ -42,8 +42,8 @@ window.answer = async (job) => {{
 }};
 </script>"""
 SHARED = {"Access-Control-Allow-Origin": "*"}
-PICTURES = 64  # that are kept: the checks of a node ask for some of them again
-LIMIT = 60.0  # seconds that a picture may take, the renderer's start included
+PICTURES = 64  # cached: the checks of a node request some again
+LIMIT = 60.0  # seconds for a picture, including the renderer's start
 TYPES = {".js": "text/javascript", ".mjs": "text/javascript", ".json": "application/json"}
 
 
@@ -54,7 +54,7 @@ def packages_folder() -> Path:
 
 
 def modules_folder(package: str, host: str) -> Path:
-    """The node_modules that holds a package: MXEON_NODE_MODULES, or that beside the lock file."""
+    """The node_modules with a package: MXEON_NODE_MODULES, or the folder next to the lock file."""
     folder = Path(os.environ.get(MODULES) or packages_folder() / "node_modules")
     if not (folder / package / "package.json").is_file():
         raise NotRun(
@@ -75,15 +75,14 @@ def material(backend: str, **more: str) -> Material:
 
 
 class PackageHost(webgl.Chromium, Engine):
-    """The materials of an npm package, drawn by the page beside a host's module, each in `limit` seconds.
+    """The materials of an npm package, drawn by the page next to a host's module, each in `limit` seconds.
 
-    The page is an ES module that exports `draw(job)`, whose answer has `pixels` or `failed`. `imports`
-    maps names in the page to paths in the folder node_modules; `assets` are PNG files that the renderer
-    would load from the network, by address.
+    The page is an ES module that exports `draw(job)`, which returns `pixels` or `failed`. `imports` maps names in the
+    page to paths in node_modules; `assets` are PNG files by address, which the renderer would load from the network.
     """
 
     flags = (*webgl.FLAGS, "--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader")
-    title: ClassVar[str]  # of the package, in the version
+    title: ClassVar[str]
     package: ClassVar[str]
     imports: ClassVar[Mapping[str, str]]
     assets: ClassVar[Mapping[str, bytes]] = {}

@@ -12,14 +12,14 @@ PACKAGE = "@babylonjs/core"
 IMPORTS = {"@babylonjs/core/": "@babylonjs/core/"}
 BACKENDS = {"WebGL2": "webgl", "WebGPU": "webgpu"}
 
-# OpenPBRMaterial loads blue noise for effects that are off here; one gray texel takes its place.
+# OpenPBRMaterial loads blue noise for effects that are off here; one gray texel replaces it.
 ASSETS = {
     "https://assets.babylonjs.com/core/blue_noise/blue_noise_rgb.png": base64.b64decode(
         "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR42mNoaGgAAAMEAYF1LgG8AAAAAElFTkSuQmCC"
     )
 }
 
-# Material, its diffuse model in Babylon.js (OpenPBRMaterial has only one); ours, its inputs and forms.
+# Title, Babylon.js's diffuse model (OpenPBRMaterial has only one), our model, inputs and forms.
 MATERIALS = (
     ("PBRMaterial E_OREN_NAYAR", "E_OREN_NAYAR", "eon", BOTH, PUBLISHED),
     ("OpenPBRMaterial", "", "eon", BOTH, PUBLISHED),

@@ -23,8 +23,10 @@ PACKAGE = "three-gpu-pathtracer"
 IMPORTS = {**three.IMPORTS, f"{PACKAGE}/": f"{PACKAGE}/"}
 
 LOBE = "WebGLPathTracer, diffuseEval"
-SHORTER = 1.0 - 2.0**-22  # a half vector whose product with wo exceeds 1 by no rounding
-# A function of the WGSL that WebGPUPathTracer has, or the length of the half vector for that of the GLSL.
+SHORTER = (
+    1.0 - 2.0**-22
+)  # length of a half vector whose product with wo is at most 1 after rounding
+# Materials name a function of WebGPUPathTracer's WGSL, or the length of the half vector for the GLSL.
 NODES = (
     node("WebGPUPathTracer, eonBrdf", "eon", {"call": "eon"}, forms=PUBLISHED, sampled=True),
     node("WebGPUPathTracer, fonBrdf", "fon", {"call": "fon"}),
@@ -33,7 +35,7 @@ NODES = (
 )
 
 PI = "#define PI 3.141592653589793"
-# Without refraction nothing of the light is lost above the diffuse lobe.
+# Without refraction, no light is lost above the diffuse lobe.
 GLSL = """
 vec3 diffuse_value(vec3 wo, vec3 wi, vec3 rho, float roughness, float scale)
 {
@@ -91,7 +93,7 @@ class GpuPathTracerHost(browser.PackageHost):
         """Values of a WGSL function for rows of arguments, (N, 3)."""
         table = np.column_stack([np.asarray(each, np.float32) for each in columns])
         count = len(table)
-        size = math.isqrt(count - 1) + 1  # the answer comes as a square
+        size = math.isqrt(count - 1) + 1  # the answer is a square
         rows = np.zeros((size * size, table.shape[1]), np.float32)
         rows[:count] = table
         answer = self.ask({"call": call, "rows": base64.b64encode(rows.tobytes()).decode()})
@@ -111,7 +113,7 @@ class GpuPathTracerHost(browser.PackageHost):
 
 
 def _template(path: Path) -> str:
-    """The text of the one template string of a module."""
+    """The template string in a module."""
     try:
         return path.read_text("utf-8").split("`")[1]
     except (OSError, IndexError):

@@ -19,12 +19,12 @@ IMPORTS = {
     "three/addons/": "three/examples/jsm/",
 }
 
-# Category -> its inputs for color and roughness, and what switches all but its diffuse lobe off.
+# Inputs by category: color, roughness, and the weight of all lobes except the diffuse one.
 INPUTS = {
     "open_pbr_surface": ("base_color", "base_diffuse_roughness", "specular_weight"),
     "standard_surface": ("base_color", "diffuse_roughness", "specular"),
 }
-# OpenPBR asks for EON, Standard Surface for Oren-Nayar.
+# OpenPBR specifies EON, Standard Surface Oren-Nayar.
 NODES = (
     node("MeshPhysicalMaterial, WebGLRenderer", "eon", browser.material("webgl"), forms=PUBLISHED),
     node(
@@ -55,7 +55,7 @@ class ThreeHost(browser.PackageHost):
 
 
 def document(category: str, color: Sequence[float], roughness: float, backend: str) -> str:
-    """MaterialX text of a material of a category with its diffuse lobe alone."""
+    """MaterialX text of a material with only its diffuse lobe."""
     color_input, roughness_input, others = INPUTS[category]
     text = input_text(color_input, "color3", color)
     text += input_text(roughness_input, "float", roughness)

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Renderers with a Python package, which render their own nodes on the polyhedron.
 
-Each runs in its own process: a worker renders, `<name>.py` asks it. The samples of
-these renderers spread over a pixel, so they show `mxeon.survey.facets` instead of a sphere.
+Each runs in its own process. Their samples spread over a pixel, so they render `mxeon.survey.facets` instead of a sphere.
 """
 
 from __future__ import annotations
@@ -23,21 +22,17 @@ from mxeon.shaders.scene import Scene
 from mxeon.survey.facets import polyhedron
 from mxeon.survey.specs import Material
 
-PICTURES = 64  # that are kept: the checks of a node ask for some of them again
+PICTURES = 64  # cached: the checks of a node request some again
 MESH = "polyhedron.npz"
 
 
 class PolyhedronHost(Engine):
-    """A renderer that shows its own nodes on the polyhedron, with a process.
+    """A renderer of its own nodes on the polyhedron, in its own process; `limit` is in seconds per request."""
 
-    `samples` are those per pixel under an environment; one is enough under a distant light. A request
-    may take `limit` seconds.
-    """
-
-    samples: ClassVar[int]
-    script: ClassVar[Path]  # of the worker
+    samples: ClassVar[int]  # per pixel under an environment; a distant light needs one
+    script: ClassVar[Path]  # worker
     device: ClassVar[str]
-    missing: ClassVar[str] = ""  # what to do where the renderer is not installed
+    missing: ClassVar[str] = ""  # message if the renderer is not installed
 
     def __init__(self, limit: float = 120.0) -> None:
         self.worker = Worker(self.name, self._interpreter(), self.script, limit)
@@ -80,7 +75,7 @@ class PolyhedronHost(Engine):
         return values
 
     def _interpreter(self) -> Path:
-        """Path of the Python that has the renderer: a variable names it, or this one."""
+        """Path of the Python with the renderer: named by a variable, or this one."""
         path = os.environ.get(f"MXEON_{self.name.upper()}_PYTHON")
         python = Path(path or sys.executable)
         if not (python.is_file() and os.access(python, os.X_OK)):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Mitsuba's own BSDFs, in its scalar variant, and those of `mxeon.mitsuba`, compiled by LLVM."""
+"""Mitsuba's own BSDFs in a scalar variant, and the BSDFs of `mxeon.mitsuba`, compiled by LLVM."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from mxeon.hosts.base import Array
 from mxeon.survey.polyhedron import PolyhedronHost
 from mxeon.survey.specs import COLOR, Material, node
 
-# Without specular reflection nothing but the diffuse lobe is left of the principled BSDF.
+# Without specular reflection, the principled BSDF has only its diffuse lobe.
 PRINCIPLED = {
     "type": "principled",
     "base_color": "{color}",

@@ -25,7 +25,7 @@ mi.set_log_level(mi.LogLevel.Warn)
 
 
 def bsdf(material: JsonObject, **inputs: object) -> JsonObject:
-    """A material's properties in Mitsuba's form; text in braces stands for one of the inputs."""
+    """A material's properties for Mitsuba; names of inputs in braces are replaced."""
     values = {name: inputs.get(str(value).strip("{}"), value) for name, value in material.items()}
     return {
         name: {"type": "rgb", "value": list(value)} if isinstance(value, (list, tuple)) else value
@@ -35,7 +35,6 @@ def bsdf(material: JsonObject, **inputs: object) -> JsonObject:
 
 def evaluate(material: JsonObject, pairs: str) -> Mitsuba:
     """f cos(theta_i) of a BSDF for the pairs in a file, (N, 3)."""
-    # Evaluate all at once where that can be compiled.
     columns = np.load(pairs)
     if mi.variant() == COMPILED:
         return evaluate_at_once(material, columns)
@@ -45,13 +44,13 @@ def evaluate(material: JsonObject, pairs: str) -> Mitsuba:
     names = ("wo", "wi", "color", "roughness")
     for wo, wi, color, roughness in zip(*(columns[name].tolist() for name in names), strict=True):
         made = mi.load_dict(bsdf(material, color=color, roughness=roughness))
-        point.wi = wo  # towards the viewer, in Mitsuba's words
+        point.wi = wo  # Mitsuba's wi points to the viewer
         rows.append(np.array(made.eval(context, point, wi)))
     return np.array(rows)
 
 
 def evaluate_at_once(material: JsonObject, columns: JsonObject) -> Mitsuba:
-    """The same for all pairs together, with inputs as texels."""
+    """`evaluate` for all pairs at once, with inputs as texels."""
     inputs = {
         name: {
             "type": "bitmap",
@@ -101,10 +100,8 @@ def render(
 
 
 def integrator(distant: bool) -> JsonObject:
-    """One bounce: the light is sampled where it is distant, else the BSDF."""
-    samples = {"emitter_samples": 1, "bsdf_samples": 0}
-    if not distant:
-        samples = {"emitter_samples": 0, "bsdf_samples": 1}
+    """One bounce; samples a distant light, otherwise the BSDF."""
+    samples = {"emitter_samples": int(distant), "bsdf_samples": int(not distant)}
     return {"type": "direct", "hide_emitters": True, **samples}
 
 
