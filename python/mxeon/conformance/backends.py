@@ -79,6 +79,7 @@ class Backend(ABC):
     plain: ClassVar[tuple[str, ...]] = ()
     whole: ClassVar[bool] = False  # whether controls and what takes long get all samples
     fewer: ClassVar[Counts | None] = None  # counts of samples where a spec has more
+    own_errors: ClassVar[Errors | None] = None  # instead of the spec's
 
     def __init__(self, host: Host, spec: Spec, library: str) -> None:
         self.host, self.spec, self.library = host, spec, library
@@ -95,7 +96,7 @@ class Backend(ABC):
     @classmethod
     def errors(cls, spec: Spec) -> Errors:
         """The largest error of each quantity, engine functions apart."""
-        return spec.errors
+        return spec.errors if cls.own_errors is None else cls.own_errors
 
     @property
     def prefiltered(self) -> bool:
@@ -776,10 +777,11 @@ class CyclesPictures(Spheres):
     """Cycles's pictures of a rough diffuse node, whose closure is its own."""
 
     abilities = Ability.DIFFUSE | Ability.LIGHT
-
-    @classmethod
-    def errors(cls, spec: Spec) -> Errors:
-        return {"value": CYCLES_RAY, "albedo": CYCLES_NOISE, "lambert": CYCLES_RAY}
+    own_errors: ClassVar[Errors] = {
+        "value": CYCLES_RAY,
+        "albedo": CYCLES_NOISE,
+        "lambert": CYCLES_RAY,
+    }
 
     def points(self, scene: Scene) -> Pairs:
         """The points for which the host has a closure that can be the model."""
@@ -860,10 +862,7 @@ class EmissionPictures(Spheres):
 
     abilities = Ability.EMISSION | Ability.LIGHT
     scenes = (Scene("dark"),)
-
-    @classmethod
-    def errors(cls, spec: Spec) -> Errors:
-        return {"value": PICTURE_RADIANCE}
+    own_errors: ClassVar[Errors] = {"value": PICTURE_RADIANCE}
 
     def shader_of(self, inputs: Values) -> Shader:
         return self.implemented(self.spec.document(inputs))

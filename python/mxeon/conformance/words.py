@@ -303,7 +303,9 @@ def diagnosis(found: Diagnosis) -> str:
 
 def _cause(cause: Cause, distances: Mapping[str, float]) -> str:
     place = f"branch {cause.branch}: " * bool(cause.branch and cause.key != "passes_other_light")
-    return place + SENTENCES[cause.kind](cause, distances)
+    if cause.kind is Kind.MODEL:
+        return place + _model(cause, distances)
+    return place + SENTENCES[cause.kind](cause)
 
 
 def _rms(cause: Cause) -> str:
@@ -323,15 +325,7 @@ def _model(cause: Cause, distances: Mapping[str, float]) -> str:
     return f"best match: {cause.key}{_rms(cause)}{then}{''.join(flags)}"
 
 
-def _fault(cause: Cause, distances: Mapping[str, float]) -> str:
-    return f"fault: {_filled(FAULTS[cause.key], cause)}{_rms(cause)}"
-
-
-def _accuracy(cause: Cause, distances: Mapping[str, float]) -> str:
-    return f"right model, {cause.key}{_rms(cause)}, but not accurate enough"
-
-
-def _region(cause: Cause, distances: Mapping[str, float]) -> str:
+def _region(cause: Cause) -> str:
     """How many pairs are wrong, and their region or the worst of them."""
     begins = "wrong for" if cause.key == "wrong" else "correct except for"
     wrong, count = cause.wrong or 0, cause.of or 1
@@ -351,7 +345,7 @@ def _point(point: Mapping[str, Sequence[float]]) -> str:
     return f"with {', '.join(numbers)}"
 
 
-def _not_finite(cause: Cause, distances: Mapping[str, float]) -> str:
+def _not_finite(cause: Cause) -> str:
     place = region(cause.region) if cause.region else ""
     if cause.wrong is None:
         return f"NaN or infinity {place}".rstrip()
@@ -361,19 +355,14 @@ def _not_finite(cause: Cause, distances: Mapping[str, float]) -> str:
     return f"{share}{place and f', all {place}'}{first}"
 
 
-def _cure(cause: Cause, distances: Mapping[str, float]) -> str:
+def _cure(cause: Cause) -> str:
     if cause.key == "beside_equal_pixels":
         return "the worst are right beside pixels with the same inputs"
     pairs = (f"{name} {x:g}" for name, x in zip(cause.names, cause.values, strict=True))
     return f"the worst are right with {' or '.join(pairs)}"
 
 
-def _unknown(cause: Cause, distances: Mapping[str, float]) -> str:
-    near = (f", the closest is {name}{_rms(cause)}" for name in cause.names)
-    return f"{UNKNOWN[cause.key]}{''.join(near)}"
-
-
-def _picture(cause: Cause, distances: Mapping[str, float]) -> str:
+def _picture(cause: Cause) -> str:
     apart = abs(cause.values[0])
     return f"{of_white(apart)} " * math.isfinite(apart) + appearance(cause)
 
@@ -384,10 +373,6 @@ def appearance(cause: Cause) -> str:
     if not math.isfinite(apart):
         return f"has pixels that are infinite or not a number in {light}"
     return f"too {'bright' if apart > 0.0 else 'dark'} in {light}"
-
-
-def _defect(cause: Cause, distances: Mapping[str, float]) -> str:
-    return _filled(DEFECTS[cause.key], cause)
 
 
 def _filled(text: str, cause: Cause) -> str:
@@ -423,22 +408,22 @@ def _differences(names: Sequence[str]) -> str:
     return f"{', '.join(parts[:PARTS_SHOWN])}{more}"
 
 
-SENTENCES: Mapping[Kind, Callable[[Cause, Mapping[str, float]], str]] = {
-    Kind.MODEL: _model,
-    Kind.FAULT: _fault,
-    Kind.ACCURACY: _accuracy,
+SENTENCES: Mapping[Kind, Callable[[Cause], str]] = {
+    Kind.FAULT: lambda cause: f"fault: {_filled(FAULTS[cause.key], cause)}{_rms(cause)}",
+    Kind.ACCURACY: lambda cause: f"right model, {cause.key}{_rms(cause)}, but not accurate enough",
     Kind.REGION: _region,
     Kind.NOT_FINITE: _not_finite,
     Kind.CURE: _cure,
-    Kind.DEFECT: _defect,
-    Kind.UNKNOWN: _unknown,
-    Kind.PICTURE: _picture,
-    Kind.TEXT: lambda cause, distances: cause.text,
-    Kind.CONTROL: lambda cause, distances: (
-        "inconclusive: the values are right, but the control passed too"
+    Kind.DEFECT: lambda cause: _filled(DEFECTS[cause.key], cause),
+    Kind.UNKNOWN: lambda cause: (
+        UNKNOWN[cause.key]
+        + "".join(f", the closest is {name}{_rms(cause)}" for name in cause.names)
     ),
+    Kind.PICTURE: _picture,
+    Kind.TEXT: lambda cause: cause.text,
+    Kind.CONTROL: lambda cause: "inconclusive: the values are right, but the control passed too",
     # The reason of a result that was not run says it.
-    **dict.fromkeys((Kind.NONE, Kind.FOLLOWS, Kind.INPUT), lambda cause, distances: ""),
+    **dict.fromkeys((Kind.NONE, Kind.FOLLOWS, Kind.INPUT), lambda cause: ""),
 }
 
 # --- results ---------------------------------------------------------------------------------------

@@ -7,7 +7,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property, lru_cache
-from typing import Protocol, cast
+from typing import ClassVar, Protocol, cast
 
 import numpy as np
 
@@ -126,9 +126,7 @@ class Native(CyclesPictures):
 class Exact(Native):
     """A node on a sphere whose points and light are exact up to rounding."""
 
-    @classmethod
-    def errors(cls, spec: Spec) -> Errors:
-        return {"value": EXACT, "albedo": EXACT_ALBEDO, "lambert": EXACT}
+    own_errors: ClassVar[Errors] = {"value": EXACT, "albedo": EXACT_ALBEDO, "lambert": EXACT}
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
@@ -185,17 +183,17 @@ class Facets(Exact):
 class CoarseFacets(Facets):
     """A node on the polyhedron in a renderer that stores light in few bits."""
 
-    @classmethod
-    def errors(cls, spec: Spec) -> Errors:
-        return {"value": COARSE_FACETS, "albedo": COARSE_FACETS}
+    own_errors: ClassVar[Errors] = {"value": COARSE_FACETS, "albedo": COARSE_FACETS}
 
 
 class FacetPairs(Facets):
     """A node that its renderer evaluates for any pairs; the polyhedron shows its environment."""
 
-    @classmethod
-    def errors(cls, spec: Spec) -> Errors:
-        return {"value": FACET_PAIRS, "albedo": FACET_NOISE, "reciprocity": FACET_PAIRS}
+    own_errors: ClassVar[Errors] = {
+        "value": FACET_PAIRS,
+        "albedo": FACET_NOISE,
+        "reciprocity": FACET_PAIRS,
+    }
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:

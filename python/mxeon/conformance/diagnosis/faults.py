@@ -60,63 +60,60 @@ def _column(name: str) -> Callable[[Batch], Array]:
     return lambda batch: np.asarray(batch.inputs.get(name, 1.0))
 
 
-def _of_colors() -> Iterator[Fault]:
-    for order in permutations(range(3)):
-        yield Fault(
+COLOR_FAULTS = (
+    *(
+        Fault(
             "channels_exchanged",
             _input("color", itemgetter((..., list(order)))),
             names=tuple(CHANNELS[channel] for channel in order),
         )
-    for channel, name in enumerate(CHANNELS):
-        take = itemgetter((..., [channel] * 3))
-        yield Fault("one_channel", _input("color", take), names=(name,))
-    yield Fault(
+        for order in permutations(range(3))
+    ),
+    *(
+        Fault("one_channel", _input("color", itemgetter((..., [channel] * 3))), names=(name,))
+        for channel, name in enumerate(CHANNELS)
+    ),
+    Fault(
         "mean_color", _input("color", lambda color: color.mean(axis=-1, keepdims=True) * np.ones(3))
-    )
-    gray = _input("color", lambda color: np.full_like(color, 0.18))
-    yield Fault("color_ignored", gray, numbers=(0.18,))
-    yield Fault("color_clamped", _input("color", lambda color: np.minimum(color, 1.0)))
-    yield Fault("color_squared", _input("color", np.square))
-    yield Fault("color_square_root", _input("color", np.sqrt))
-
-
-def _of_roughness() -> Iterator[Fault]:
-    yield Fault("roughness_squared", _input("roughness", np.square))
-    yield Fault("roughness_square_root", _input("roughness", np.sqrt))
-    yield Fault(
+    ),
+    Fault(
+        "color_ignored", _input("color", partial(np.full_like, fill_value=0.18)), numbers=(0.18,)
+    ),
+    Fault("color_clamped", _input("color", lambda color: np.minimum(color, 1.0))),
+    Fault("color_squared", _input("color", np.square)),
+    Fault("color_square_root", _input("color", np.sqrt)),
+)
+NO_WEIGHT = _input("weight", np.ones_like)
+POSITIVE_WEIGHT = _input("weight", lambda weight: np.where(weight > 0.0, 1.0, 0.0))
+NO_OCCLUSION = _input("occlusion", np.ones_like)
+INPUT_FAULTS = (
+    Fault("weight_ignored", NO_WEIGHT),
+    Fault("occlusion_and_weight_ignored", lambda batch: NO_WEIGHT(NO_OCCLUSION(batch))),
+    Fault("weight_ignored_above_0", POSITIVE_WEIGHT),
+    Fault(
+        "occlusion_and_weight_ignored_above_0", lambda batch: POSITIVE_WEIGHT(NO_OCCLUSION(batch))
+    ),
+    Fault("weight_twice", values=_scaled(_column("weight"))),
+    *COLOR_FAULTS,
+    Fault("roughness_squared", _input("roughness", np.square)),
+    Fault("roughness_square_root", _input("roughness", np.sqrt)),
+    Fault(
         "tangents_exchanged",
-        _input(
-            "roughness", lambda roughness: roughness[:, ::-1] if roughness.ndim > 1 else roughness
-        ),
-    )
-    yield Fault("roughness_halved", _input("roughness", lambda roughness: 0.5 * roughness))
-    for constant in CONSTANTS:
-        change = partial(np.full_like, fill_value=constant)
-        yield Fault("roughness_ignored", _input("roughness", change), numbers=(constant,))
-
-
-def _of_weight() -> Iterator[Fault]:
-    occlusion = _input("occlusion", np.ones_like)
-    ways: tuple[tuple[str, Callable[[Array], Array]], ...] = (
-        ("weight_ignored", np.ones_like),
-        ("weight_ignored_above_0", lambda weight: np.where(weight > 0.0, 1.0, 0.0)),
-    )
-    for key, change in ways:
-        weight = _input("weight", change)
-        yield Fault(key, weight)
-        yield Fault(
-            f"occlusion_and_{key}",
-            lambda batch, weight=weight: weight(occlusion(batch)),  # type: ignore[misc]
+        _input("roughness", lambda alpha: alpha[:, ::-1] if alpha.ndim > 1 else alpha),
+    ),
+    Fault("roughness_halved", _input("roughness", lambda roughness: 0.5 * roughness)),
+    *(
+        Fault(
+            "roughness_ignored",
+            _input("roughness", partial(np.full_like, fill_value=each)),
+            numbers=(each,),
         )
-    yield Fault("weight_twice", values=_scaled(_column("weight")))
-
-
-COLOR_FAULTS = tuple(_of_colors())
-INPUT_FAULTS = (*_of_weight(), *COLOR_FAULTS, *_of_roughness())
-
+        for each in CONSTANTS
+    ),
+)
 DIRECT_FAULTS = (
     *INPUT_FAULTS,
-    Fault("occlusion_ignored", _input("occlusion", np.ones_like)),
+    Fault("occlusion_ignored", NO_OCCLUSION),
     Fault("occlusion_twice", values=_scaled(_column("occlusion"))),
     Fault("cosine_missing", values=_scaled(lambda batch: 1.0 / batch.wi[:, 2])),
     Fault("cosine_twice", values=_scaled(lambda batch: batch.wi[:, 2])),
