@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,10 +23,19 @@ from mxeon.conformance.samples import (
     directions,
     generator,
 )
-from mxeon.conformance.spec import CHANGED_COLOR, Ability, Input, LobeSpec, ValueSpec, color, draw
+from mxeon.conformance.spec import (
+    CHANGED_COLOR,
+    Ability,
+    Input,
+    LobeSpec,
+    Names,
+    ValueSpec,
+    color,
+    draw,
+)
 from mxeon.conformance.specs.lobes import LEAST_VIEW
 from mxeon.conformance.specs.microfacets import FILM_ERRORS, LOBE_FIT, reflected, sum_over
-from mxeon.conformance.tolerance import Term, mean_scaled, roundings, sum_in, sum_of
+from mxeon.conformance.tolerance import Term, Tolerance, mean_scaled, roundings, sum_in, sum_of
 from mxeon.shaders.nodes import document_text, input_text, node_text
 
 if TYPE_CHECKING:  # which load MaterialX
@@ -91,8 +100,17 @@ GLASS = sum_in(
     Term(2.0 * LOBE_FIT, "the fit of a lobe's albedo, which what passes it has twice"),
     Term(2.0 * sum_over(1024).value, "two sums over 1024 directions"),
 )
-FILM = sum_of(VALUE.term("all lobes of a material"), FILM_ERRORS["value"].term("a film"))
-STATES = sum_of(roundings(32, "of the same parts in two programs"))
+COUNTS = Counts(256, albedos=64, materials=1 << 11)  # a material a pair
+ERRORS = {
+    "value": VALUE,
+    "albedo": ALBEDO,
+    "lobes_mean": MEAN,
+    "glass": GLASS,
+    "states": sum_of(roundings(32, "of the same parts in two programs")),
+    "lobes_film": sum_of(
+        VALUE.term("all lobes of a material"), FILM_ERRORS["value"].term("a film")
+    ),
+}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -112,6 +130,8 @@ class SurfaceShaderSpec(LobeSpec):
     finish: tuple[str, ...]  # roughness and index of its interface
     # What else the material has where an input is changed.
     needs: Mapping[str, Values] = field(default_factory=dict)
+    errors: Mapping[str, Tolerance] = field(default_factory=lambda: ERRORS)
+    counts: Counts = COUNTS
     # Inputs without a judged value: an opacity blends what lies behind with the whole surface, not with a lobe,
     # and an occlusion is what an evaluation sets itself.
     unseen: tuple[str, ...] = ()
@@ -302,39 +322,21 @@ def _isotropic(batch: Batch) -> Batch:
     return batch.altered(**{name: np.zeros(len(batch.wo)) for name in _stretching(batch)})
 
 
-def _spec(
-    node: str, judged: tuple[Input, ...], others: tuple[Input, ...], **rest: Any
-) -> SurfaceShaderSpec:
-    return SurfaceShaderSpec(
-        title=f"{node}, every lobe",
-        node=node,
-        model=node,
-        judged=judged,
-        others=others,
-        errors={
-            "value": VALUE,
-            "albedo": ALBEDO,
-            "lobes_mean": MEAN,
-            "glass": GLASS,
-            "states": STATES,
-            "lobes_film": FILM,
-        },
-        counts=Counts(256, albedos=64, materials=1 << 11),  # a material a pair
-        **rest,
-    )
+def _names(node: str) -> Names:
+    return {"title": f"{node}, every lobe", "node": node, "model": node}
 
 
 SURFACE_SHADERS = (
-    _spec(
-        "standard_surface",
-        _ports(
+    SurfaceShaderSpec(
+        **_names("standard_surface"),
+        judged=_ports(
             share="base diffuse_roughness metalness specular specular_anisotropy specular_rotation sheen coat coat_anisotropy coat_rotation coat_affect_color coat_affect_roughness",
             color="base_color specular_color sheen_color coat_color",
             rough="specular_roughness coat_roughness",
             index="specular_IOR coat_IOR",
             sheen_rough="sheen_roughness",
         ),
-        _ports(
+        others=_ports(
             share="transmission transmission_extra_roughness subsurface subsurface_scale",
             color="transmission_color subsurface_color subsurface_radius",
             thickness="thin_film_thickness",
@@ -353,16 +355,16 @@ SURFACE_SHADERS = (
         finish=("specular_roughness", "specular_IOR"),
         white={**_whole("base base_color sheen coat"), "specular_roughness": 0.4},
     ),
-    _spec(
-        "open_pbr_surface",
-        _ports(
+    SurfaceShaderSpec(
+        **_names("open_pbr_surface"),
+        judged=_ports(
             share="base_weight base_diffuse_roughness base_metalness specular_weight specular_roughness_anisotropy coat_weight coat_roughness_anisotropy coat_darkening fuzz_weight",
             color="base_color specular_color coat_color fuzz_color",
             rough="specular_roughness coat_roughness",
             index="specular_ior coat_ior",
             sheen_rough="fuzz_roughness",
         ),
-        _ports(
+        others=_ports(
             share="transmission_weight subsurface_weight subsurface_radius thin_film_weight thin_film_thickness",
             color="transmission_color subsurface_color subsurface_radius_scale",
             index="thin_film_ior",
@@ -388,16 +390,16 @@ SURFACE_SHADERS = (
             "coat_darkening": 0.0,
         },
     ),
-    _spec(
-        "gltf_pbr",
-        _ports(
+    SurfaceShaderSpec(
+        **_names("gltf_pbr"),
+        judged=_ports(
             color="base_color specular_color sheen_color",
             share="metallic specular anisotropy_strength anisotropy_rotation clearcoat",
             rough="roughness clearcoat_roughness",
             index="ior",
             fuzz_rough="sheen_roughness",
         ),
-        _ports(
+        others=_ports(
             share="transmission iridescence", index="iridescence_ior", film="iridescence_thickness"
         ),
         without_effect=("thickness", "attenuation_distance", "attenuation_color", "dispersion"),
@@ -413,15 +415,15 @@ SURFACE_SHADERS = (
             "clearcoat_roughness": 0.4,
         },
     ),
-    _spec(
-        "UsdPreviewSurface",
-        _ports(
+    SurfaceShaderSpec(
+        **_names("UsdPreviewSurface"),
+        judged=_ports(
             color="diffuseColor specularColor",
             share="metallic clearcoat",
             rough="roughness clearcoatRoughness",
             index="ior",
         ),
-        _ports(share="opacity"),
+        others=_ports(share="opacity"),
         without_effect=("displacement",),
         glass={"opacity": 0.0, "diffuseColor": WHITE},
         finish=("roughness", "ior"),
