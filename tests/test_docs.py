@@ -6,7 +6,6 @@ import re
 import shlex
 import subprocess
 import sys
-import tomllib
 from importlib.util import find_spec
 from itertools import pairwise
 from pathlib import Path
@@ -153,13 +152,3 @@ def test_a_command_line_of_the_pages_is_one_that_mxeon_takes(tmp_path, monkeypat
             Path(folder, "MaterialX").mkdir(parents=True, exist_ok=True)
             Path(folder, "MaterialX", "__init__.py").touch()
     assert parser().parse_args(words).run
-
-
-def test_the_container_of_the_page_has_a_python_and_an_extra_that_mxeon_has():
-    page = (ROOT / "docs" / "ci.md").read_text(encoding="utf-8")
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    [image] = re.findall(r"^FROM python:([\d.]+)-slim$", page, re.MULTILINE)
-    [extra] = re.findall(r"^RUN pip install '/mxeon\[(\w+)\]'$", page, re.MULTILINE)
-    least = project["requires-python"].removeprefix(">=")
-    assert [int(part) for part in image.split(".")] >= [int(part) for part in least.split(".")]
-    assert extra in project["optional-dependencies"]

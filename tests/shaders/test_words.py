@@ -8,7 +8,6 @@ import pytest
 
 from mxeon.errors import DocumentError
 from mxeon.shaders import generation
-from mxeon.shaders.document import words
 from mxeon.shaders.document.reading import read_document
 from tests.fuzz import reach
 from tests.support.documents import lobe, material
@@ -70,19 +69,6 @@ def test_text_that_reaches_source_where_it_does_not_belong_is_words(materials):
     root, _ = materials
     found = reach.reached(root, reach.absent(root), SOME)
     assert reach.unjudged(root, found, SOME) == []
-
-
-def test_the_search_sees_what_is_known_to_reach_source(materials):
-    known = {("geompropdef", "index"), ("geompropdef", "space"), ("surfacematerial", "namespace")}
-    assert known | {("input", "value"), ("typedef", "name")} <= named(*materials)
-
-
-@pytest.mark.parametrize("name", ["index", "space", "namespace"])
-def test_the_search_notices_what_is_not_judged(materials, monkeypatch, name):
-    monkeypatch.setattr(words, "NAMES", words.NAMES - {name})
-    root, found = materials
-    places = {place: ways for place, ways in found.items() if place.attribute == name}
-    assert reach.unjudged(root, places, SOME)
 
 
 REFUSED = {
