@@ -8,7 +8,7 @@ from mxeon.errors import InputError
 from mxeon.hosts import HOSTS
 from mxeon.shaders.nodes import INVERSIONS
 from tests.support.plans import keep_checks
-from tests.support.sharing import EXAMPLES
+from tests.support.sharing import DRAWN, EXAMPLES
 from tests.support.verdicts import NOT_RUN, PASSED, SHADER_FUNCTIONS
 
 
@@ -82,8 +82,7 @@ def test_two_libraries_are_asked_the_same(run, stock):
         for each in (stock, run)
     ]
     own = {"eon_diffuse_bsdf", SHADER_FUNCTIONS, *INVERSIONS}
-    drawn = ("pdf", "sample", "path_value", "path_inside")  # by the text for path tracers
-    eonlib = {each for each in asked[1] if each[1] not in own and each[0] not in drawn}
+    eonlib = {each for each in asked[1] if each[1] not in own and each[0] not in DRAWN}
     assert eonlib < asked[0]
     assert {check for check, _ in asked[0] - eonlib} == {"implemented", "lobe", "opacity"}
 
