@@ -12,8 +12,8 @@ import pytest
 
 import tests.support.osl as osl
 from mxeon.errors import NotRun, ShaderError
+from mxeon.hosts import testrender
 from mxeon.hosts.osl import engines as programs
-from mxeon.hosts.testrender import TestrenderHost
 from mxeon.models import eon_brdf
 from tests.support.verdicts import FAILED, PASSED, has
 
@@ -34,7 +34,7 @@ def replay(tmp_path, monkeypatch):
 
 @pytest.fixture
 def host(replay):
-    with TestrenderHost() as host:
+    with testrender.TestrenderHost() as host:
         yield host
 
 
@@ -44,7 +44,7 @@ def test_a_missing_program_is_not_run_and_names_the_remedy(replay, monkeypatch, 
     monkeypatch.delenv(variable)
     monkeypatch.setenv("PATH", str(tmp_path / "nothing"))
     with pytest.raises(NotRun, match=f"no program '{name}'; build Open Shading .* in {variable}"):
-        TestrenderHost()
+        testrender.TestrenderHost()
 
 
 @pytest.mark.parametrize("line", ("ERROR: lobes are lost", "a.h:7: Assertion 'ok' failed"))

@@ -9,7 +9,7 @@ With t = 1000 K / T, X and Z are quotients N / D of polynomials in t, from 800 K
 import numpy as np
 
 from mxeon.models.core.colorimetry import CIE_1931, WAVELENGTHS
-from mxeon.models.media import BOLTZMANN, LIGHT, PLANCK
+from mxeon.models.media import SECOND
 from tools.fits.minimax import Form, defines, mp, refined, roots
 
 COLDEST, HOTTEST = 800, 25000  # K
@@ -26,7 +26,7 @@ STARTS = {
 def sampled(count):
     """Points of t, dense at both ends, with X and Z of a black body with Y = 1."""
     low, high = mp.mpf(1000) / HOTTEST, mp.mpf(1000) / COLDEST
-    second = mp.mpf(PLANCK) * mp.mpf(LIGHT) / mp.mpf(BOLTZMANN) * 10**6  # nm times 1000 K
+    second = mp.mpf(SECOND) * 10**6  # nm times 1000 K
     points, quotients = [low + (high - low) * x for x in roots(count)], []
     for t in points:
         totals = [mp.zero] * 3
