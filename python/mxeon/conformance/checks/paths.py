@@ -410,7 +410,7 @@ def quadrature(pole: tuple[float, ...], nodes: int) -> tuple[Array, Array, NDArr
 # fmt: off
 ROWS = (
     Check(key="pdf",
-          claim="What a path tracer draws has the density that it is told, which integrates to the share of draws kept.",
+          claim="A path tracer draws by the density that it states, which integrates to the share of draws it keeps.",
           applies=Specs(is_drawn), measure=pdf,
           tolerance=given(
               6.0, Quantity.DEVIATIONS, "chance reaches 6 once in 10^7 draws of a chi-square"),
