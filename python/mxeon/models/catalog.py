@@ -7,6 +7,7 @@ Inputs have MaterialX's names, order, units and defaults, whatever the functions
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from typing import Literal, TypeAlias, cast, overload
 
 import numpy as np
@@ -16,9 +17,9 @@ from mxeon.models.core.arguments import checked_choice, checked_directions
 from mxeon.models.core.arrays import Array, any_array, array_namespace, cosine, library
 from mxeon.models.media import hg_pdf, hg_sample
 from mxeon.models.nodes import NODES
-from mxeon.models.nodes.emissions import EMISSIONS, Emission
+from mxeon.models.nodes.emissions import EMISSIONS
 from mxeon.models.nodes.lobes import HAIR_NODE, SUBSURFACE_NODE
-from mxeon.models.nodes.media import MEDIA, Medium
+from mxeon.models.nodes.media import MEDIA
 from mxeon.models.nodes.microfacets import FILM_NODES, TRANSMISSION_NODES, TRANSMISSIONS
 from mxeon.models.nodes.node import (
     BY_NAME,
@@ -157,22 +158,12 @@ def _inputs(category: str, names: Iterable[str] = ()) -> tuple[Parameter, ...]:
     return tuple(parameter(category, name) for name in names or DEFAULTS[category])
 
 
-def _about(row: Emission | Medium) -> tuple[str, str, str, tuple[Parameter, ...]]:
-    """Name, title, category and inputs of a node that goes by its category."""
-    return row.category, row.title, row.category, _inputs(row.category)
-
-
 def _of_node(row: PbrNode) -> ShadingModel:
     """The model of a row of the tables."""
     lights = "back" if row.transmits else "front"
     return ShadingModel(
-        row.name,
-        row.title,
-        row.category,
+        row,
         row.parameters or _inputs(row.category, row.inputs),
-        row.value,
-        row.integral or row.albedo,
-        row.average,
         sampler=SAMPLERS.get(row.name, COSINE),
         lights="all sides" if row is HAIR_NODE else lights,
         by_name=BY_NAME.get(row.category, ("weight", "normal")),
@@ -200,11 +191,12 @@ def _of_transmission(row: PbrNode) -> ShadingModel:
         passed: Array = passing.passed(wo, inputs, True) / ior**2
         return passed if mode == "T" else passed + reflected(wo, inputs)
 
-    inputs = _inputs(row.category, row.inputs)
-    lights = "back" if mode == "T" else "all sides"
-    title, frame = f"{row.title}, scatter mode {mode}", NAMED_INPUTS[:-1]
+    title = f"{row.title}, scatter mode {mode}"
     return ShadingModel(
-        row.name, title, row.category, inputs, value, albedo, lights=lights, by_name=frame
+        replace(row, title=title, value=value, albedo=albedo, integral=None),
+        _inputs(row.category, row.inputs),
+        lights="back" if mode == "T" else "all sides",
+        by_name=NAMED_INPUTS[:-1],
     )
 
 
@@ -220,20 +212,21 @@ def _over_eon(name: str, title: str) -> ShadingModel:
         getattr(coat, f"{name}_{each}")
         for each in ("brdf", "albedo_dir", "albedo_avg", "sample", "pdf")
     )
-    return ShadingModel(
+    row = PbrNode(
         name,
         title,
         "layer_bsdf",
-        inputs,
+        tuple(each.name for each in inputs),
         lambda wo, wi, i: _per_coat(brdf, i, wo, wi)[0],
         lambda wo, i: _per_coat(albedo_dir, i, cosine(wo[:, 2]))[0],
-        lambda i: _per_coat(albedo_avg, i)[0],
-        ModelSampler(
-            lambda wo, u, i: _per_coat(sample, i, wo, u),
-            lambda wo, wi, i: _per_coat(pdf, i, wo, wi)[0],
-            side=None,
-        ),
+        average=lambda i: _per_coat(albedo_avg, i)[0],
     )
+    sampler = ModelSampler(
+        lambda wo, u, i: _per_coat(sample, i, wo, u),
+        lambda wo, wi, i: _per_coat(pdf, i, wo, wi)[0],
+        side=None,
+    )
+    return ShadingModel(row, inputs, sampler)
 
 
 def _of_openpbr() -> ShadingModel:
@@ -254,15 +247,15 @@ def _of_openpbr() -> ShadingModel:
 
         return _per_coat(own, inputs, *vectors.values())[0]
 
-    return ShadingModel(
+    row = PbrNode(
         "openpbr_base",
         "OpenPBR's base",
         "open_pbr_surface",
-        parameters,
+        tuple(each.name for each in parameters),
         lambda wo, wi, i: called(coat.openpbr_base_brdf, i, wo=wo, wi=wi),
         lambda wo, i: called(coat.openpbr_base_albedo_dir, i, mu=cosine(wo[:, 2])),
-        sampler=COSINE,
     )
+    return ShadingModel(row, parameters, COSINE)
 
 
 def _per_coat(
@@ -305,7 +298,7 @@ MODELS: dict[str, NodeModel] = {
         _of_openpbr(),
         *map(_of_node, (*NODES, *FILM_NODES, SUBSURFACE_NODE, HAIR_NODE)),
         *map(_of_transmission, TRANSMISSION_NODES),
-        *(EmissionModel(*_about(row), row.value, row.exitance) for row in EMISSIONS),
-        *(MediumModel(*_about(row)) for row in MEDIA),
+        *(EmissionModel(replace(e, name=e.category), _inputs(e.category)) for e in EMISSIONS),
+        *(MediumModel(replace(e, name=e.category), _inputs(e.category)) for e in MEDIA),
     )
 }

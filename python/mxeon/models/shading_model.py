@@ -9,7 +9,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -37,7 +37,8 @@ from mxeon.models.core.arrays import (
     root,
 )
 from mxeon.models.media import hg_pdf, hg_phase, hg_sample, transmittance
-from mxeon.models.nodes.node import WEIGHT, Inputs, Parameter
+from mxeon.models.nodes.emissions import Emission
+from mxeon.models.nodes.node import WEIGHT, Inputs, Node, Parameter, PbrNode
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -214,12 +215,25 @@ class ModelSampler:
 
 @dataclass(frozen=True, repr=False)
 class NodeModel(ABC):
-    """What the models of all nodes have: a name, inputs, and a list of functions."""
+    """What the models of all nodes have: a row, inputs, and a list of functions."""
 
-    name: str
-    title: str  # the name in print
-    node: str  # category of the node whose inputs it has
+    row: Node[Any]
     parameters: tuple[Parameter, ...]  # its inputs: name, default, interval, unit
+
+    @property
+    def name(self) -> str:
+        """The name by which `mxeon.model` knows it."""
+        return self.row.name
+
+    @property
+    def title(self) -> str:
+        """The name in print."""
+        return self.row.title
+
+    @property
+    def node(self) -> str:
+        """Category of the node whose inputs it has."""
+        return self.row.category
 
     @property
     @abstractmethod
@@ -288,9 +302,7 @@ class ShadingModel(NodeModel):
     the model does not have the function; TypeError if an input is unknown or is there twice.
     """
 
-    value: Callable[[Array, Array, Inputs], Array]  # (N, C)
-    albedo: Callable[[Array, Inputs], Array]  # (N, C)
-    average: Callable[[Inputs], Array] | None = None
+    row: PbrNode
     sampler: ModelSampler | None = None
     lights: str = "front"  # from where it scatters light: "front", "back" or "all sides"
     by_name: tuple[str, ...] = ("weight", "normal")  # the other inputs of the node
@@ -303,7 +315,7 @@ class ShadingModel(NodeModel):
     def functions(self) -> tuple[str, ...]:
         """Names of the functions that it has."""
         value = ("brdf", "bsdf") if self.lights == "front" else ("bsdf",)
-        average = ("albedo_avg",) if self.average else ()
+        average = ("albedo_avg",) if self.row.average else ()
         samples = ("sample", "pdf") if self.sampler else ()
         return (*value, "albedo_dir", *average, *samples, "plot")
 
@@ -322,7 +334,7 @@ class ShadingModel(NodeModel):
     def bsdf(self, wo: ArrayLike, wi: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
         """Value of any model, as `brdf`; 0 where wi is not where its light comes from."""
         call = self._rows({"wo": wo, "wi": wi}, inputs, named)
-        return call.colors(_on_side(SIDES.get(self.lights), self.value, call))
+        return call.colors(_on_side(SIDES.get(self.lights), self.row.value, call))
 
     def albedo_dir(
         self, mu: ArrayLike, *inputs: ArrayLike, azimuth: ArrayLike = 0.0, **named: ArrayLike
@@ -334,14 +346,15 @@ class ShadingModel(NodeModel):
           anisotropic.
         """
         call = self._rows({"view": views(mu, azimuth)}, inputs, named)
-        return call.colors(self.albedo(call.vectors[0], call.inputs))
+        integral = self.row.integral or self.row.albedo
+        return call.colors(integral(call.vectors[0], call.inputs))
 
     def albedo_avg(self, *inputs: ArrayLike, **named: ArrayLike) -> Array:
         """Average albedo, of light from all sides alike, where a closed form is known."""
         self._need("albedo_avg")
-        assert self.average is not None
+        assert self.row.average is not None
         call = self._rows({}, inputs, named)
-        return call.colors(self.average(call.inputs))
+        return call.colors(self.row.average(call.inputs))
 
     def sample(
         self, wo: ArrayLike, u: ArrayLike, *inputs: ArrayLike, **named: ArrayLike
@@ -434,8 +447,7 @@ class EmissionModel(NodeModel):
         np.float64(1.251183)
     """
 
-    value: Callable[[Array, Inputs], Array]  # of wo, (N, C)
-    power: Callable[[Inputs], Array]  # (N, C)
+    row: Emission
 
     @property
     def functions(self) -> tuple[str, ...]:
@@ -445,12 +457,12 @@ class EmissionModel(NodeModel):
     def edf(self, wo: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
         """Radiance towards `wo`, shape (..., C) or (...); below the horizon that of the back."""
         call = self._bound({"wo": wo}, inputs, named)
-        return call.colors(self.value(call.vectors[0], call.inputs))
+        return call.colors(self.row.value(call.vectors[0], call.inputs))
 
     def exitance(self, *inputs: ArrayLike, **named: ArrayLike) -> Array:
         """Integral of the radiance times the cosine over the hemisphere."""
         call = self._bound({}, inputs, named)
-        return call.colors(self.power(call.inputs))
+        return call.colors(self.row.exitance(call.inputs))
 
 
 @dataclass(frozen=True, repr=False)
