@@ -138,7 +138,7 @@ def _nearest(case: Case) -> str:
     )
     if value[1] > INEXACT * VALUE_ERROR.value:
         return ""
-    same = albedo[0] and rows[albedo[0]].brdf is rows[value[0]].brdf
+    same = albedo[0] and rows[albedo[0]].brdf_of == rows[value[0]].brdf_of
     return rows[albedo[0] if same else value[0]].name
 
 
