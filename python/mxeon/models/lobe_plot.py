@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Protocol, cast
 
 import numpy as np
 
@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.projections.polar import PolarAxes
 
-    from mxeon.models.shading_model import ShadingModel
-
 VIEWS = (0.0, 30.0, 60.0)  # polar angles of the viewer, degrees
 VIEW_COLORS = ("#6a4c93", "#c9811b", "#1b8f8f")  # none of them a channel's
 CHANNEL_COLORS = ("#d8505f", "#2f9e63", "#3f7fd1")
@@ -25,7 +23,23 @@ FIBER = "chiang_hair_bsdf"
 STYLE = {"axes.grid": True, "grid.alpha": 0.3, "font.size": 9, "axes.titlesize": 10}
 
 
-def draw(model: ShadingModel, inputs: Mapping[str, ArrayLike], path: str | None = None) -> Figure:
+class Drawn(Protocol):
+    """A model that can be drawn, as `mxeon.models.shading_model.ShadingModel`."""
+
+    @property
+    def lights(self) -> str: ...
+    @property
+    def title(self) -> str: ...
+    @property
+    def node(self) -> str: ...
+    @property
+    def functions(self) -> tuple[str, ...]: ...
+    def bsdf(self, wo: ArrayLike, wi: ArrayLike, /, **inputs: ArrayLike) -> Array: ...
+    def albedo_dir(self, mu: ArrayLike, /, **inputs: ArrayLike) -> Array: ...
+    def pdf(self, wo: ArrayLike, wi: ArrayLike, /, **inputs: ArrayLike) -> Array: ...
+
+
+def draw(model: Drawn, inputs: Mapping[str, ArrayLike], path: str | None = None) -> Figure:
     """The figure of a model with these inputs, one material; written to `path` if there is one."""
     # Load matplotlib, which the models do without.
     try:
@@ -56,7 +70,7 @@ def _plane(angles: ArrayLike) -> Array:
     return np.stack([np.sin(angle), np.zeros_like(angle), np.cos(angle)], axis=-1)
 
 
-def _lobes(model: ShadingModel, inputs: Mapping[str, ArrayLike]) -> tuple[Array, list[Array]]:
+def _lobes(model: Drawn, inputs: Mapping[str, ArrayLike]) -> tuple[Array, list[Array]]:
     """Angles of lights, and for each view the value times |cosine|, averaged over the channels.
 
     The value of a fiber has no cosine beside it.
@@ -73,7 +87,7 @@ def _lobes(model: ShadingModel, inputs: Mapping[str, ArrayLike]) -> tuple[Array,
     return angles, lobes
 
 
-def _draw_lobe(axes: PolarAxes, model: ShadingModel, inputs: Mapping[str, ArrayLike]) -> None:
+def _draw_lobe(axes: PolarAxes, model: Drawn, inputs: Mapping[str, ArrayLike]) -> None:
     """Value times cosine over the angle of the light, for some views, which are marked."""
     angles, lobes = _lobes(model, inputs)
     for view, color, lobe in zip(VIEWS, VIEW_COLORS, lobes, strict=True):
@@ -95,7 +109,7 @@ def _draw_lobe(axes: PolarAxes, model: ShadingModel, inputs: Mapping[str, ArrayL
     axes.legend(loc="upper center", bbox_to_anchor=below, ncols=3, fontsize=7, frameon=False)
 
 
-def _draw_albedo(axes: Axes, model: ShadingModel, inputs: Mapping[str, ArrayLike]) -> None:
+def _draw_albedo(axes: Axes, model: Drawn, inputs: Mapping[str, ArrayLike]) -> None:
     """Directional albedo over the angle of the viewer."""
     degrees = np.linspace(0.0, 89.5, 60)
     albedo = model.albedo_dir(np.cos(np.radians(degrees)), **inputs)
@@ -113,7 +127,7 @@ def _draw_albedo(axes: Axes, model: ShadingModel, inputs: Mapping[str, ArrayLike
     axes.set_xticks(range(0, 91, 15))
 
 
-def _draw_density(axes: Axes, model: ShadingModel, inputs: Mapping[str, ArrayLike]) -> None:
+def _draw_density(axes: Axes, model: Drawn, inputs: Mapping[str, ArrayLike]) -> None:
     """Density of samples over the angle of the light, and what it would be without any noise."""
     axes.set(title="density of samples, 1/sr", xlabel="light's angle, degrees")
     angles, lobes = _lobes(model, inputs)

@@ -6,13 +6,10 @@
 
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import Any
 
 from mxeon.hosts import Row
 from mxeon.hosts.base import Engine
-
-if TYPE_CHECKING:
-    from mxeon.survey.specs import RendererSpec
 
 
 def start(name: str) -> Engine:
@@ -44,7 +41,7 @@ def start(name: str) -> Engine:
             return EeveeHost()
 
 
-def nodes(name: str) -> Sequence["RendererSpec"]:
+def nodes(name: str) -> Sequence[Any]:
     """The nodes of a renderer that are judged; the checks and backends of renderers are imported."""
     from mxeon.survey import checks as checks
     from mxeon.survey import cycles_native
