@@ -14,6 +14,10 @@
 import re
 from pathlib import Path
 
+from mxeon import survey
+from mxeon.hosts import register
+
+register(*survey.ROWS)
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
 
