@@ -67,6 +67,7 @@ PLUMBING = (
     ),
     "mxeon.models.core.evaluation",
     "mxeon.models.lobe_plot",
+    "mxeon.models.microfacet.lobe_albedo",
     "mxeon.models.microfacet.node_",
     "mxeon.models.shading_model",
 )  # beginnings of names of functions that have no arguments of their own
