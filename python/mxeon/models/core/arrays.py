@@ -224,7 +224,7 @@ def within(x: Array, low: float = 0.0, high: float = 1.0) -> Array:
 
 
 def except_where(
-    edge: Array, value: Array | float, formula: Callable[[Array], Array], x: Array, inside: float
+    edge: Numbers, value: Array | float, formula: Callable[[Array], Array], x: Array, inside: float
 ) -> Array:
     """formula(x), and `value` with derivative 0 on the edge, where the formula takes `inside` instead of x."""
     where = array_namespace(x).where
