@@ -42,9 +42,8 @@ def candidates(pictures: Sequence[JudgedPicture], depth: float) -> list[ModelDis
     rows = reference.KNOWN_DEFECTS + reference.DIFFUSE_MODELS + reference.PARAMETRIZATIONS
     rows = tuple(row for row in rows if row.name not in TOO_NEAR)
     if all(case.view.scene.light for case in pictures):
-        rows = tuple(
-            {row.brdf_of: row for row in rows}.values()
-        )  # some differ only in their albedo
+        # Some differ only in their albedo.
+        rows = tuple({row.brdf_of: row for row in rows}.values())
     ranking = []
     for row in rows:
         models = [expected(row, case.view, depth) for case in pictures]

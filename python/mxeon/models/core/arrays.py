@@ -250,8 +250,8 @@ def arcsine(x: Array) -> Array:
     xp = array_namespace(x)
     if xp is NUMPY:
         return xp.asin(xp.minimum(xp.maximum(x, -1.0), 1.0))
-    end = 0.5 * np.pi * xp.sign(x)
-    return except_where(~(xp.abs(x) < 1.0), end, xp.asin, x, 0.0)
+    end = like(np.asarray(0.5 * np.pi), x)
+    return except_where(~(xp.abs(x) < 1.0), xp.where(x < 0.0, -end, end), xp.asin, x, 0.0)
 
 
 def arccosine(x: Array) -> Array:
