@@ -21,6 +21,7 @@ A claim *holds* if all of its measured values meet its limit, holds *in part* if
 does; NaN meets no limit. The tables have the claims that do not hold, with the limit in the column *required*.
 The last section is about MaterialX's text, not the paper.
 """
+LARGEST = "largest difference "  # begins the sentence of a claim that holds up to roundings
 TALLY = "{count} claims; verdicts: {holds} holds, {part} holds in part, {fails} fails."
 
 
@@ -109,8 +110,15 @@ def page(sections: Sequence[Section]) -> str:
         wrong = [row for row in rows if row[-1] != HOLDS]
         lines = [f"| {' | '.join(cells)} |" for cells in (COLUMNS, *wrong)]
         lines.insert(1, "|---" * len(COLUMNS) + "|")
+        right = [row for row in rows if row[-1] == HOLDS]
+        exact = [row for row in right if row[2].startswith(LARGEST)]
         lines += ["", "These hold:", ""]
-        lines += [f"- {row[0]}: {row[1]} ({row[2]})." for row in rows if row[-1] == HOLDS]
+        lines += [f"- {row[0]}: {row[1]} ({row[2]})." for row in right if row not in exact]
+        if exact:
+            largest = max(float(row[2].removeprefix(LARGEST)) for row in exact)
+            lines += [
+                f"- Up to roundings ({largest:.1e}): {'; '.join(f'{a}, {b}' for a, b, *_ in exact)}."
+            ]
         remark = [section.remark, ""] if section.remark else []
         parts.append("\n".join([f"## {section.heading}", "", tally, "", *lines, "", *remark]))
     return "\n".join(parts)
