@@ -89,9 +89,11 @@ def shows_exactly(spec: Spec, host: str) -> bool:
 def finds_albedo(spec: Spec, methods: Methods) -> bool:
     """Whether the environment branch returns an albedo that is known.
 
-    With a prefiltered environment films and surface shaders carry the errors of MaterialX's fit.
+    With a prefiltered environment films and surface shaders carry the errors of MaterialX's fit, and microfacets
+    those of its 64 samples where these replace the fit.
     """
-    fitted = isinstance(spec, (FilmSpec, SurfaceShaderSpec))
+    sampled = isinstance(spec, FacetSpec) and methods.albedo != "analytic"
+    fitted = sampled or isinstance(spec, (FilmSpec, SurfaceShaderSpec))
     return methods.environment == "fis" or (methods.environment == "prefilter" and not fitted)
 
 
