@@ -6,10 +6,11 @@ import pytest
 from mxeon import check
 from mxeon.errors import InputError
 from mxeon.hosts import HOSTS
+from mxeon.shaders.methods import Methods
 from mxeon.shaders.nodes import INVERSIONS
 from tests.support.plans import keep_checks
 from tests.support.sharing import DRAWN, EXAMPLES
-from tests.support.verdicts import NOT_RUN, PASSED, SHADER_FUNCTIONS
+from tests.support.verdicts import FAILED, NOT_RUN, PASSED, SHADER_FUNCTIONS
 
 
 def test_a_named_node_is_judged_alone_and_with_its_draws():
@@ -95,3 +96,21 @@ def test_misuse_loses_nothing_of_an_earlier_run(tmp_path, monkeypatch):
         with pytest.raises(ValueError, match=r"^(workers|timeout|scheduler) must be "):
             check(EXAMPLES[:1], ["msl"], folder=tmp_path, **wrong)
     assert {path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()} == before
+
+
+@pytest.mark.parametrize("check", ["transmitted", "transmitted_inputs", "states"])
+@pytest.mark.parametrize(
+    "methods",
+    [
+        Methods("fis", "opacity"),
+        Methods("prefilter", "opacity"),
+        Methods("prefilter", "refraction"),
+        Methods("none", "opacity"),
+    ],
+    ids=str,
+)
+def test_glass_passes_by_every_method_and_as_stock_has_it_does_not(judged, check, methods):
+    glass = "dielectric_bsdf, scatter_mode RT"
+    assert judged(check, glass, methods=methods).verdict == PASSED
+    if check == "transmitted":
+        assert judged(check, glass, library="stock", methods=methods).verdict == FAILED

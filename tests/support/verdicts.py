@@ -19,14 +19,14 @@ class Verdicts:
     def __init__(self, hosts=open_engine):
         self._judge = Judge(DEFAULT, hosts)
 
-    def __call__(self, check, subject, host="gl", library="eonlib", seed=1):
+    def __call__(self, check, subject, host="gl", library="eonlib", **task):
         """The result of a check of a node, by its title."""
-        [result] = self.all(check, subject, host, library, seed)
+        [result] = self.all(check, subject, host, library, **task)
         return result
 
-    def all(self, check, subject, host="gl", library="eonlib", seed=1):
+    def all(self, check, subject, host="gl", library="eonlib", **task):
         """Results of a task: those of texts and functions are several."""
-        return self._work(check, subject, host, library, seed).results
+        return self._work(check, subject, host, library, **task).results
 
     def texts(self, check, library):
         """Results of the checks of texts that have this key, by their subject."""
@@ -38,8 +38,8 @@ class Verdicts:
         """Results, pictures and notes of a document, and why it cannot be read."""
         return self._work("picture", str(path), host, library)
 
-    def _work(self, check, subject, host, library, seed=1):
-        return self._judge.work(Task(check, subject, host, library, seed))
+    def _work(self, check, subject, host, library, **task):
+        return self._judge.work(Task(check, subject, host, library, **task))
 
 
 def has(result, *wanted):

@@ -42,8 +42,9 @@ def set_options(
         setattr(options, BOUND[name], value)
     values = [ALBEDOS.index(albedo), TRANSMISSIONS.index(transmission), airy]
     if values != DEFAULTS:
-        count = len(values) - (airy == DEFAULTS[-1])
-        unbound_members(options, count)[:] = values[:count]
+        members = unbound_members(options, len(values) - (airy == DEFAULTS[-1]))
+        for place in range(len(members)):
+            members[place] = values[place]
     method = mx_gen.HwSpecularEnvironmentMethod(ENVIRONMENTS.index(environment))
     options.hwSpecularEnvironmentMethod = method
 
