@@ -19,6 +19,17 @@ void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior
     F.average = vec3(eonlib_fresnel_dielectric_avg(ior));
     F.visible = vec3(eonlib_fresnel_dielectric_visible(lobe.visible.x, lobe.visible.y, ior));
     microfacet_film(lobe, fd, F);
+    if (ior < 1.0 && scatter_mode != 0 && !fd.airy)
+    {
+        // What does not pass returns, the rest by facets that reflect everything.
+        float passing = eonlib_dielectric_passing(lobe.visible.x, lobe.visible.y, ior);
+        vec3 rest = max((1.0 - passing) / lobe.albedo - F.visible, 0.0);
+        F.value += rest;
+        F.visible += rest;
+        F.average = vec3(0.0);
+        F.outside = F.visible;
+        fd.ior = vec3(lobe.closure == CLOSURE_TYPE_INDIRECT ? MICROFACET_MIRROR_INDEX : ior);
+    }
     microfacet_bsdf(closureData, lobe, fd, F, max(tint, 0.0), weight, distribution, scatter_mode,
                     bsdf);
 }

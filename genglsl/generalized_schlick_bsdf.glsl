@@ -10,7 +10,7 @@ vec3 generalized_schlick_visible(MicrofacetLobe lobe, FresnelData fd, vec3 dip)
     float m = 1.0 - ggx_cosine_schlick(lobe.visible.x, lobe.visible.y, fd.exponent);
     vec3 average = mix(fd.F0, fd.F90, pow(m, fd.exponent));
     bool dips = dot(abs(dip), vec3(1.0)) > 0.0;
-    return dips ? average - dip * ggx_dip(lobe.visible.x, lobe.visible.y) : average;
+    return dips ? max(average - dip * ggx_dip(lobe.visible.x, lobe.visible.y), 0.0) : average;
 }
 
 void generalized_schlick_bsdf(ClosureData closureData, float weight, vec3 color0, vec3 color82,
@@ -28,8 +28,9 @@ void generalized_schlick_bsdf(ClosureData closureData, float weight, vec3 color0
     fd.ior = vec3(mx_f0_to_ior(dot(fd.F0, vec3(1.0 / 3.0))));  // which transmission refracts by
     vec3 dip = eonlib_fresnel_schlick_dip(fd.F0, fd.F82, fd.F90, exponent);
     MicrofacetFresnel F;
-    F.value = mx_fresnel_hoffman_schlick(lobe.mu_h, fd);
-    F.average = eonlib_fresnel_schlick_avg(fd.F0, fd.F90, exponent, dip);
+    // The printed curve of dark colors and a small color82 falls below 0.
+    F.value = max(mx_fresnel_hoffman_schlick(lobe.mu_h, fd), 0.0);
+    F.average = max(eonlib_fresnel_schlick_avg(fd.F0, fd.F90, exponent, dip), 0.0);
     F.visible = generalized_schlick_visible(lobe, fd, dip);
     microfacet_film(lobe, fd, F);
     microfacet_bsdf(closureData, lobe, fd, F, vec3(1.0), weight, distribution, scatter_mode, bsdf);

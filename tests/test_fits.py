@@ -145,6 +145,18 @@ def test_the_albedo_of_an_index_below_1_has_the_error_that_its_tolerance_states(
     assert wrong > microfacets.INSIDE_FIT
 
 
+def test_the_share_that_passes_from_inside_has_the_error_that_its_tolerance_states():
+    mu, alpha, n = (
+        np.array([0.07, 0.97, 0.11, 0.65, 0.5, 1.0]),
+        [0.69, 0.98, 0.34, 0.13, 0.01, 0.05],
+        [0.96, 0.4, 0.89, 0.82, 0.9, 0.67],
+    )
+    coefficients = ggx_inside.shipped("dielectric_passing(")
+    fitted = ggx_inside.passing(mu, np.array(alpha), np.array(n), coefficients)
+    error = np.abs(fitted - ggx_inside.passed(mu, alpha, n)).max()
+    assert 0.9 * microfacets.PASSING_FIT < error <= microfacets.PASSING_FIT
+
+
 def test_the_quadrature_of_the_fit_is_that_of_the_models():
     mu, alpha = ggx_albedo.points(11, 9)
     exact = ggx_albedo_dir(mu, alpha)

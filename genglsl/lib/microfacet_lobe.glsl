@@ -124,7 +124,7 @@ FresnelData microfacet_environment_curve(FresnelData fd)
 vec3 microfacet_environment(MicrofacetLobe lobe, int distribution, FresnelData fd)
 {
     FresnelData curve = microfacet_environment_curve(fd);
-    return mx_environment_radiance(lobe.N, lobe.wo, lobe.X, lobe.roughness, distribution, curve);
+    return max(mx_environment_radiance(lobe.N, lobe.wo, lobe.X, lobe.roughness, distribution, curve), 0.0);
 }
 
 // A Fresnel curve by which each of MaterialX's sums over a refracted environment, whose cosine with the

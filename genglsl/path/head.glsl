@@ -23,6 +23,8 @@ bool path_inside;
 bool path_thin;
 float path_eta; // index of the lobe below relative to that above
 vec3 path_facet; // of the lobe: the one that is drawn, or that joins both directions
+vec3 path_inner; // of the view from the denser side: share that a dielectric passes, E_ss, mean F of visible facets
+float path_reversed; // G_1 outside over that inside; 0 where the facet lets nothing pass
 vec3 path_root; // answer of the closure called last, which is that of the material
 
 #define u_numActiveLightSources 1

@@ -4,11 +4,18 @@
 //
 // A facet is drawn first, and then reflects or refracts in proportion to what it would return by either, so no draw
 // weighs much more than the lobe's albedo. Transmission: the light that is not reflected passes the visible facets,
-// refracted by the index, each alike as in MaterialX's own transmission of an environment. Into a thinner medium some
-// reflect totally, and F tells them apart.
+// refracted by the index, each alike as in MaterialX's own transmission of an environment.
+//
+// Into a thinner medium light takes the paths of light that comes from there, reversed. If P is the share that passes
+// from outside and p the density of refracted directions, then n^2 mu_i T(wi, wo) = P(wo) p(wo, wi) mu_o, and p by
+// visible normals turns this into
+//   T(wi, wo) = P(wo) G_1(wo) / G_1(wi) p(wi, wo).
+// What does not pass is reflected: once by facets with the curve as from outside, and F = 1 beyond the critical angle;
+// the rest by facets that reflect everything.
 
 #include "lib/questions.glsl"
 #include "../lib/microfacet_film.glsl"
+#include "../lib/fresnel_dielectric.glsl"
 
 // Narrower lobes are lost in the rounding of directions: a smooth surface has this alpha.
 #define PATH_LEAST_ALPHA 1e-4
@@ -19,7 +26,7 @@
 // The index below relative to that above.
 float path_eta_of(float ior)
 {
-    float n = path_inside ? 1.0 / max(ior, PATH_LEAST_BEND) : ior;
+    float n = path_inside && !path_thin ? 1.0 / max(ior, PATH_LEAST_BEND) : ior;
     return abs(n - 1.0) < PATH_LEAST_BEND ? 1.0 + PATH_LEAST_BEND : max(n, PATH_LEAST_BEND);
 }
 
@@ -46,6 +53,44 @@ vec3 path_facet_between(vec3 wo, vec3 wi, vec3 N)
     return normalize(wo + (through ? path_mirrored(wi, N) : wi));
 }
 
+// Where the facet H refracts wo to; N where it reflects totally.
+vec3 path_refracted(vec3 wo, vec3 H, vec3 N)
+{
+    float cosine = dot(wo, H);
+    float squared = 1.0 - (1.0 - cosine) * (1.0 + cosine) / (path_eta * path_eta);
+    return squared > 0.0 ? (cosine / path_eta - sqrt(squared)) * H - wo / path_eta : N;
+}
+
+bool path_is_denser()
+{
+    return path_eta < 1.0 && !path_thin;
+}
+
+// From the denser side a lobe has the averages of the direction outside to which its facet refracts. Values of
+// reflection have none: any tells how a curve differs from that of a dielectric, here the one that a smooth surface
+// refracts to, of a cosine of at least 0.5.
+void path_turn_outside(ClosureData closureData, inout MicrofacetLobe lobe)
+{
+    bool below = dot(lobe.N, lobe.wi) < 0.0;
+    vec3 end = below && path_asked != PATH_DRAW ? lobe.wi : path_refracted(lobe.wo, path_facet, lobe.N);
+    lobe.mu_h = max(-dot(end, path_facet), 0.0);
+    bool leaves = dot(lobe.N, end) < 0.0 && (below || path_asked != PATH_VALUE);
+    if (!leaves)
+    {
+        float mu = sqrt(max(1.0 - (1.0 - lobe.mu_o * lobe.mu_o) / (path_eta * path_eta), 0.25));
+        vec3 side = lobe.wo - dot(lobe.wo, lobe.N) * lobe.N;
+        end = -mu * lobe.N + sqrt(1.0 - mu * mu) * side / max(length(side), M_FLOAT_EPS);
+    }
+    closureData.V = path_mirrored(normalize(end), lobe.N);
+    MicrofacetLobe outer = microfacet_lobe(closureData, lobe.N, lobe.X, lobe.roughness, false);
+    float masking = 1.0 + microfacet_stretched(lobe, lobe.wo) / lobe.mu_o;
+    path_reversed = leaves ? masking / (1.0 + microfacet_stretched(outer, outer.wo) / outer.mu_o) : 0.0;
+    path_inner = vec3(eonlib_dielectric_passing(lobe.visible.x, lobe.visible.y, path_eta), lobe.albedo,
+                      eonlib_fresnel_dielectric_inside(lobe.visible.x, lobe.visible.y, path_eta));
+    lobe.visible = outer.visible;
+    lobe.albedo = outer.albedo;
+}
+
 MicrofacetLobe path_microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec2 roughness, bool retroreflective)
 {
     roughness = max(roughness, vec2(PATH_LEAST_ALPHA));
@@ -63,6 +108,10 @@ MicrofacetLobe path_microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec
         path_facet = path_world(mx_ggx_importance_sample_VNDF(path_u.xy, wo, lobe.roughness), lobe.X, lobe.N);
     }
     lobe.mu_h = clamp(dot(lobe.wo, path_facet), M_FLOAT_EPS, 1.0);
+    if (path_is_denser())
+    {
+        path_turn_outside(closureData, lobe);
+    }
     return lobe;
 }
 
@@ -94,16 +143,10 @@ float path_facet_pdf(MicrofacetLobe lobe, bool through)
 vec2 path_facet_draw(MicrofacetLobe lobe, bool through, bool retroreflective)
 {
     vec3 H = path_facet;
-    float cosine = dot(lobe.wo, H);
-    vec3 wi = 2.0 * cosine * H - lobe.wo;
-    if (through && path_thin)
+    vec3 wi = 2.0 * dot(lobe.wo, H) * H - lobe.wo;
+    if (through)
     {
-        wi = path_mirrored(wi, lobe.N);
-    }
-    else if (through)
-    {
-        float squared = 1.0 - (1.0 - cosine) * (1.0 + cosine) / (path_eta * path_eta);
-        wi = squared > 0.0 ? (cosine / path_eta - sqrt(squared)) * H - lobe.wo / path_eta : lobe.N;
+        wi = path_thin ? path_mirrored(wi, lobe.N) : path_refracted(lobe.wo, H, lobe.N);
     }
     bool below = dot(lobe.N, wi) < 0.0;
     wi = below && retroreflective ? path_turned(wi, lobe.N) : wi;
@@ -116,30 +159,52 @@ void path_microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelD
     // 0: reflection, 1: transmission, 2: both. A lobe that transmits alone also draws what its facets reflect, since
     // it lies below one that reflects; else such draws weigh nothing.
     vec3 scale = tint * weight;
-    vec3 compensation = 1.0 + F.average * ((1.0 - lobe.albedo) / lobe.albedo);
-    vec3 albedo = lobe.albedo * F.visible * compensation;
-    vec3 passed = scatter_mode == 0 ? vec3(0.0) : max(1.0 - albedo, 0.0);
-    vec3 share = path_eta < 1.0 ? max(1.0 - F.value, 0.0) / max(1.0 - F.visible, 1e-6) : vec3(1.0);
+    vec3 factor = 1.0 + F.average * ((1.0 - lobe.albedo) / lobe.albedo);
+    vec3 albedo = lobe.albedo * F.visible * factor;
+    vec3 through = max(1.0 - albedo, 0.0);
+    bool below = dot(lobe.N, lobe.wi) < 0.0;
+    bool valued = path_asked == PATH_VALUE;
+    if (path_is_denser())
+    {
+        vec3 curve = vec3(1.0); // what passes over that of a dielectric
+        if (valued && !below)
+        {
+            float n = 1.0 / path_eta;
+            float lost = eonlib_fresnel_dielectric_avg(n) * (1.0 - lobe.albedo);
+            curve = through / (1.0 - (lobe.albedo + lost)
+                                     * eonlib_fresnel_dielectric_visible(lobe.visible.x, lobe.visible.y, n));
+        }
+        F.value = lobe.mu_h > 0.0 ? F.value : vec3(1.0);
+        vec3 returned = max(1.0 - path_inner.x * curve, 0.0);
+        F.value += max(returned / path_inner.y - (1.0 - (1.0 - path_inner.z) * curve), 0.0);
+        factor = vec3(1.0);
+        through *= path_reversed;
+        albedo = valued && below ? albedo : returned;
+    }
     if (scatter_mode != 1)
     {
-        microfacet_bsdf(closureData, lobe, fd, F, tint, weight, distribution, 0, bsdf);
+        // A lobe below draws facets that reflect, too: few may refract the view, and those have to be drawn.
+        bsdf.throughput = path_is_denser() && !valued ? vec3(1.0) : max(1.0 - albedo * scale, 0.0);
+        bsdf.response = microfacet_lossless(lobe) * F.value * factor * scale;
     }
-    if (path_asked == PATH_VALUE)
+    through *= scatter_mode == 0 ? 0.0 : 1.0;
+    if (valued)
     {
-        bsdf.response += passed * share * scale * path_facet_pdf(lobe, true);
+        bsdf.response += through * scale * path_facet_pdf(lobe, true);
     }
     else
     {
-        float reflects = path_mean(F.value * compensation * scale);
-        float refracts = path_mean(passed * share * scale);
+        float reflects = path_mean(F.value * factor * scale);
+        float refracts = path_mean(through * scale);
         reflects = refracts > 0.0 ? reflects / (reflects + refracts) : 1.0;
         bool drawn = path_asked == PATH_DRAW;
-        bool through = drawn ? path_u.z >= reflects : dot(lobe.N, lobe.wi) < 0.0;
-        float part = through ? 1.0 - reflects : reflects;
-        path_u.z = drawn ? (through ? path_u.z - reflects : path_u.z) / part : path_u.z;
-        bsdf.response = path_answer(path_mean((albedo + passed) * scale),
-                                    drawn ? path_facet_draw(lobe, through, distance(lobe.wo, closureData.V) > 0.0) : PATH_WASTED,
-                                    part * path_facet_pdf(lobe, through));
+        below = drawn ? path_u.z >= reflects : below;
+        float part = below ? 1.0 - reflects : reflects;
+        path_u.z = drawn ? (below ? path_u.z - reflects : path_u.z) / part : path_u.z;
+        bool turned = distance(lobe.wo, closureData.V) > 0.0;
+        bsdf.response = path_answer(path_mean((scatter_mode == 0 ? albedo : vec3(1.0)) * scale),
+                                    drawn ? path_facet_draw(lobe, below, turned) : PATH_WASTED,
+                                    part * path_facet_pdf(lobe, below));
     }
 }
 
@@ -166,8 +231,9 @@ void path_dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, floa
     if (path_is_asked(closureData))
     {
         path_eta = path_eta_of(ior);
-        dielectric_bsdf(path_question_in_direct_light(closureData), weight, tint, path_inside ? path_eta : ior, roughness,
-                        retroreflective, thinfilm_thickness, thinfilm_ior, N, X, distribution, scatter_mode, bsdf);
+        dielectric_bsdf(path_question_in_direct_light(closureData), weight, tint,
+                        path_is_denser() ? 1.0 / path_eta : ior, roughness, retroreflective,
+                         thinfilm_thickness, thinfilm_ior, N, X, distribution, scatter_mode, bsdf);
         path_end(bsdf);
     }
 }
@@ -178,6 +244,7 @@ void path_conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 e
 {
     if (path_is_asked(closureData))
     {
+        path_eta = 1.0; // nothing lies below
         conductor_bsdf(path_question(closureData), weight, ior, extinction, roughness, retroreflective,
                        thinfilm_thickness, thinfilm_ior, N, X, distribution, bsdf);
         path_end(bsdf);

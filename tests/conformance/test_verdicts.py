@@ -115,7 +115,7 @@ STOCK = {
         "anisotropic_albedo": (), "anisotropic_value": MEAN,
     },
     "generalized_schlick_bsdf, scatter_mode R": {
-        **OPEN, **dict.fromkeys(("layering", "transmission", "layer", "dip"), AVERAGED),
+        **OPEN, **dict.fromkeys(("layering", "transmission", "layer", "dip"), AVERAGED), "dark": ("curve_below_0",),
         **dict.fromkeys(("lossless", "energy"), HALF), "finite": OPPOSITE,
         "anisotropic_albedo": (), "anisotropic_value": MEAN, "anisotropic_throughput": (),
     },
@@ -154,7 +154,7 @@ STOCK = {
     **{
         f"{node}_bsdf, scatter_mode {mode}": PASSED_THROUGH
         | ({"clear": UNSHADOWED} if mode == "RT" else {})
-        | ({"critical": NAN} if node == "generalized_schlick" else {})
+        | ({"critical": NAN} if node == "generalized_schlick" else {"inside": UNSHADOWED})
         for node in ("dielectric", "generalized_schlick") for mode in ("T", "RT")
     },
     "subsurface_bsdf": {
@@ -179,6 +179,7 @@ FREE = {
     *(("generalized_schlick_bsdf, thin film", key) for key in ("film_average", "film_smooth")),
     *((title, "combined_throughput") for title in STOCK if title.startswith("multiply, ")),
     *((title, "anisotropic_value") for title in STOCK if "anisotropic_value" in STOCK[title]),
+    ("generalized_schlick_bsdf, scatter_mode R", "dark"),
 }  # fmt: skip
 
 

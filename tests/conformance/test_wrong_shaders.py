@@ -124,6 +124,8 @@ WRONG = {
         (FACETS, "mirrored ? reflect(-closureData.V, N) :", "", "retroreflection", ()),
     ),
     "generalized_schlick_bsdf, scatter_mode R": (
+        ("genglsl/generalized_schlick_bsdf.glsl", "max(mx_fresnel_hoffman_schlick(lobe.mu_h, fd), 0.0)",
+         "mx_fresnel_hoffman_schlick(lobe.mu_h, fd)", "dark", ("curve_below_0",), "differs"),
         ("mx_generalized_schlick_bsdf.glsl", "clamp(roughness, M_FLOAT_EPS, 1.0)",
          "clamp(roughness * roughness, M_FLOAT_EPS, 1.0)", "shape",
          ("model", "roughness squared once more, and MaterialX's compensation")),
@@ -251,6 +253,7 @@ WRONG = {
         ("genglsl/mix_vdf.glsl", "vec3(1.0 - share)", "vec3(share)", "transmittance", ()),
     ),
     "dielectric_bsdf, scatter_mode T": (
+        ("genglsl/dielectric_bsdf.glsl", "ior < 1.0 && scatter_mode != 0", "false", "inside", ()),
         (FACETS, "* (below ? vec3(1.0) : passed) * weight;", "OLD\n        bsdf.response *= weight;", "transmitted", ("weight_not_1",)),
         ("mx_dielectric_bsdf.glsl", "scatter_mode == 1)", "scatter_mode == 7)", "kept", ()),
         ("mx_dielectric_bsdf.glsl", "mx_surface_transmission(N, V, X, safeAlpha, distribution, fd, safeTint)",
@@ -343,8 +346,9 @@ ASKED, PATH = "genglsl/path/interface.glsl", "genglsl/path/microfacets.glsl"
 QUESTIONS = "genglsl/path/lib/questions.glsl"
 RT, GLASS = "dielectric_bsdf, scatter_mode RT", "open_pbr_surface, every lobe"
 STANDARD = "standard_surface, every lobe"
-INSIDE = ("inside_is_not_outside",)
-SHARE = "path_eta < 1.0 ? max(1.0 - F.value, 0.0) / max(1.0 - F.visible, 1e-6) : vec3(1.0)"
+INSIDE, LOST = ("inside_is_not_outside",), ("light_from_inside",)
+SCHLICK = "generalized_schlick_bsdf, scatter_mode RT"
+INDEX = "path_inside && !path_thin ? 1.0 / max(ior, PATH_LEAST_BEND) : ior"
 # Of the text for path tracers: the title, and a row as above.
 PATHS = (
     (RT, ASKED, "pdf = path_root.y * path_out.a;", "pdf = 3.0 * path_root.y * path_out.a;", "sample",
@@ -352,10 +356,13 @@ PATHS = (
     (RT, ASKED, "weight = path_root", "weight = 1.0015 * path_root", "sample",
      ("drawn_weight", "outside")),
     (STANDARD, ASKED, "weight = path_root", "weight = 1.0015 * path_root", "sample", ("drawn_weight",)),
-    (RT, PATH, "path_inside ? 1.0 / max(ior, PATH_LEAST_BEND) : ior", "ior", "path_inside", INSIDE),
-    (GLASS, PATH, "path_inside ? 1.0 / max(ior, PATH_LEAST_BEND) : ior", "ior", "path_inside", INSIDE),
-    (RT, PATH, SHARE, "vec3(path_inside ? 3.0 : 1.0)", "path_inside", INSIDE),
-    (RT, PATH, "scatter_mode == 0 ? vec3(0.0)", "scatter_mode == 0 || path_inside ? vec3(0.0)", "path_inside", INSIDE),
+    (RT, PATH, INDEX, "ior", "path_inside", INSIDE),
+    (GLASS, PATH, INDEX, "ior", "path_inside", INSIDE),
+    (RT, PATH, "through *= path_reversed;", "through *= path_inside ? 3.0 : path_reversed;", "path_inside", INSIDE),
+    (RT, PATH, "scatter_mode == 0 ? 0.0", "scatter_mode == 0 || path_inside ? 0.0", "path_inside", INSIDE),
+    (RT, PATH, "through *= path_reversed;", "", "path_energy", LOST),
+    (SCHLICK, PATH, "F.value = lobe.mu_h > 0.0 ? F.value : vec3(1.0);", "", "path_energy", LOST),
+    (SCHLICK, PATH, "F.value += max(", "F.value += 0.5 * max(", "path_energy", LOST),
     (RT, PATH, "below && retroreflective", "false", "pdf", ("drawn_density", "outside")),
     ("conductor_bsdf", PATH, "wo.z = lobe.mu_o;", "wo = path_local(closureData.V, lobe.X, lobe.N);\n        OLD", "pdf", ()),
     ("conductor_bsdf", ASKED, "path_wi = ", "if (wi.z > 0.9) wi = p.normal;\n    OLD", "path_value", ("other_path_value",)),

@@ -58,7 +58,7 @@ def fresnel_exact(name, c, channel):
         r0, t, r90 = (mp.mpf(color[channel]) for color in COLORS)
         m = mp.mpf(1) / 7
         a = (r0 + (r90 - r0) * (1 - m) ** 5) * (1 - t) / (m * (1 - m) ** 6)
-        return r0 + (r90 - r0) * (1 - c) ** 5 - a * c * (1 - c) ** 6
+        return max(r0 + (r90 - r0) * (1 - c) ** 5 - a * c * (1 - c) ** 6, 0)  # as OpenPBR has it
     if name == "dielectric_bsdf":
         g = mp.sqrt(mp.mpf(1.5) ** 2 + c * c - 1)
         ratio = (c * (g + c) - 1) / (c * (g - c) + 1)
@@ -112,7 +112,7 @@ def test_compensation_is_that_of_the_albedo(name, equal):
     F_ss = {
         "dielectric_bsdf": fresnel_dielectric_avg(1.5),
         "conductor_bsdf": fresnel_conductor_avg(*GOLD),
-        "generalized_schlick_bsdf": fresnel_schlick_avg(*COLORS, 5.0),
+        "generalized_schlick_bsdf": np.maximum(fresnel_schlick_avg(*COLORS, 5.0), 0.0),
     }[name]
     E = ggx_albedo_dir(wo[:, 2], alpha[:, 0]) if equal else ggx_albedo_dir_anisotropic(wo, alpha)
     E = E[:, None]
@@ -177,7 +177,8 @@ def test_a_known_defect_differs_from_the_specification(defect, name):
     wo, wi, alpha = pairs(20)
     value = node_brdf(name, wo, wi, INPUTS[name] | {"roughness": alpha}, defect.lobe)
     assert value.shape == (20, 3)
-    assert np.max(np.abs(value / BRDFS[name](wo, wi, alpha) - 1.0)) > 1e-3
+    right = BRDFS[name](wo, wi, alpha)
+    assert np.max(np.abs(value - right) / np.where(right > 0.0, right, 1.0)) > 1e-3
 
 
 COMPENSATIONS = (

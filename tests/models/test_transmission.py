@@ -14,6 +14,7 @@ from mxeon.models.transmission import (
     generalized_schlick_btdf,
     generalized_schlick_transmittance_dir,
     refraction_direction,
+    reversed_transmittance,
     schlick_ior,
     transmission_half_vector,
 )
@@ -126,6 +127,22 @@ def test_the_transmittance_below_index_1_is_a_sum_over_the_critical_cone(mu, alp
     found = dielectric_transmittance_dir(wo, 1.0, alpha, ior, shadow=shadow)[0]
     assert wh[..., 2].min() > 0.1 and wi[..., 2].max() < 0.0
     assert found == pytest.approx(expected, abs=tolerances.TRANSMITTANCE_CRITICAL)
+
+
+@pytest.mark.parametrize("alpha", [0.1, 0.4, 1.0])
+def test_as_much_light_leaves_a_solid_as_enters(alpha):
+    # n^2 times the cosine-weighted average from inside is that from outside, by paths and by all light.
+    n, (x, w) = 1.5, np.polynomial.legendre.leggauss(32)
+    mu, weight = 0.5 * (x + 1.0), 0.5 * w * (x + 1.0)
+
+    def reflected(cosines):
+        views = np.stack([np.sqrt(1.0 - cosines**2), 0.0 * cosines, cosines], axis=-1)
+        return dielectric_albedo_dir(views, 1.0, [alpha, alpha], n)
+
+    left = reversed_transmittance(mu, alpha, 1.0 / n, reflected)
+    entered = 1.0 - reflected(mu)
+    assert n**2 * weight @ left == pytest.approx(weight @ entered, abs=tolerances.REVERSED)
+    assert (left >= 0.0).all() and (left <= 1.0).all()
 
 
 @pytest.mark.parametrize("ior", INDICES)

@@ -215,6 +215,9 @@ REFRACTED_GRID = 1e-3
 # Transmittance from the denser side, as its docstring promises.
 TRANSMITTANCE_CRITICAL = 1e-8
 
+# Averages over 32 Gauss nodes of the cosine, on both sides of the surface.
+REVERSED = 5e-5
+
 # Mitsuba's values are float32: 64 roundings, the fourth power of D by alpha 0.3 among them.
 MITSUBA_BTDF = 64 * 2.0**-24 / 0.3
 

@@ -20,6 +20,9 @@ and logarithms of a, b, k_0, k_1, p and g are sums of 1, x = mu / (mu + alpha), 
 y = sqrt(alpha) and x y. What is least is the largest error of the albedo with its compensation. The search
 is in float64 and need not be repeatable; the errors are those of the coefficients in the shader.
 
+The share of light that passes by the paths from outside, reversed (`mxeon.models.transmission`), has the form
+S (1 - F(tau)) of other coefficients. Facets that send light up again are what differs: fewer pass at grazing.
+
     python -m tools.fits.ggx_inside
 """
 
@@ -29,6 +32,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from mxeon.models import dielectric_albedo_dir, fresnel_dielectric, fresnel_dielectric_avg
+from mxeon.models.transmission import reversed_transmittance
 from mxeon.shaders.functions import source_file
 
 SEED, COUNT = 5, 3000  # of the views
@@ -60,8 +64,8 @@ def albedo(mu, alpha, ior):
     return np.ravel(dielectric_albedo_dir(wo, 1.0, roughness, ior, compensate=False))
 
 
-def reflectance(mu, alpha, ior, coefficients):
-    """Mean reflectance of the visible facets, from 30 coefficients: five of each logarithm."""
+def passing(mu, alpha, ior, coefficients):
+    """S (1 - F), from 30 coefficients: five of each logarithm."""
     s = np.sqrt(1.0 - mu * mu)
     x, y = mu / (mu + alpha), np.sqrt(alpha)
     terms = np.stack([np.ones_like(x), x, s / (s + alpha), y, x * y])
@@ -72,7 +76,39 @@ def reflectance(mu, alpha, ior, coefficients):
     t = 1.0 + np.exp(np.minimum(g * np.arcsinh(k * np.log(critical2 / median2)), 60.0))
     v = np.sinh(np.clip(np.log(t * REST ** (-1.0 / p) - 1.0) / g, -40.0, 40.0)) / k
     c = 1.0 / np.sqrt(1.0 + np.exp(-np.clip(v, -40.0, 40.0)) / median2)
-    return 1.0 - t**-p * (1.0 - fresnel_dielectric(c, ior))
+    return t**-p * (1.0 - fresnel_dielectric(c, ior))
+
+
+def reflectance(mu, alpha, ior, coefficients):
+    """Mean reflectance of the visible facets."""
+    return 1.0 - passing(mu, alpha, ior, coefficients)
+
+
+def passed(mu, alpha, ior):
+    """Exact shares of reversed paths, one view each."""
+
+    def albedos(a, n):
+        return lambda mu: dielectric_albedo_dir(
+            np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=-1), 1.0, [a, a], 1.0 / n
+        )
+
+    rows = zip(mu, alpha, ior, strict=True)
+    return np.array(
+        [reversed_transmittance(np.array([m]), a, n, albedos(a, n)).item() for m, a, n in rows]
+    )
+
+
+def fit_passed(mu, alpha, ior, exact):
+    """Coefficients of the share that passes, from those of the reflectance on."""
+    found = shipped()
+
+    def powers(coefficients, power):
+        error = SCALE * (passing(mu, alpha, ior, coefficients) - exact)
+        return np.sign(error) * np.abs(error) ** power
+
+    for power in POWERS[:-2]:
+        found = least_squares(powers, found, args=(power,), max_nfev=80, x_scale=0.1).x
+    return found
 
 
 def sample(mu, alpha):
@@ -100,19 +136,22 @@ def fit(sampled):
     return found
 
 
-def shipped():
+def shipped(function="dielectric_inside("):
+    """Coefficients in the shader."""
     text = source_file("glsl", "fresnel_dielectric").read_text(encoding="utf-8")
-    vectors = re.findall(r"vec3\(([-\d., ]+)\)", text.split("dielectric_inside(")[1])
-    rows = np.array([each.split(",") for each in vectors], float)
+    vectors = re.findall(r"vec3\(([-\d., ]+)\)", text.split(function)[1])
+    rows = np.array([each.split(",") for each in vectors[:10]], float)
     return rows.reshape(2, 5, 3).transpose(0, 2, 1).ravel()
 
 
 def main():
     """Print the vectors of a search, and the error of those in the shader on other views."""
     mu, alpha = points()
-    found = fit((mu, alpha, *sample(mu, alpha)))
-    for row in np.reshape(found, (2, 3, 5)).transpose(0, 2, 1).reshape(10, 3):
-        print(f"vec3({', '.join(f'{x:.{DIGITS}g}' for x in row)})")
+    ior = np.random.default_rng(SEED).uniform(INDICES[0], INDICES[-1], len(mu))
+    reversed_paths = fit_passed(mu, alpha, ior, passed(mu, alpha, ior))
+    for found in (fit((mu, alpha, *sample(mu, alpha))), reversed_paths):
+        for row in np.reshape(found, (2, 3, 5)).transpose(0, 2, 1).reshape(10, 3):
+            print(f"vec3({', '.join(f'{x:.{DIGITS}g}' for x in row)})")
     mu, alpha = points(SEED + 2)
     for n, row in zip(
         INDICES, np.abs(errors(shipped(), mu, alpha, *sample(mu, alpha))), strict=True

@@ -215,6 +215,8 @@ DEFECTS = {
     "sampled_density": "the density of material_sample is not material_pdf's, from {0}",
     "other_path_value": "a path tracer gets another value than a rasterizer",
     "inside_is_not_outside": "light inside a solid is not that outside of one of the inverse index",
+    "curve_below_0": "the curve is not clamped: values are below 0",
+    "light_from_inside": "from inside, light is gained or lost, or other light leaves than enters",
     "density_differs": "the density differs from the paper's listings",
     "samples_differ": "the samples do not follow the density",
     "lookup_opposite": "the environment is looked up opposite to the normal",

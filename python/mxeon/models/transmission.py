@@ -64,6 +64,7 @@ from mxeon.models.core.arrays import (
     trimmed,
     within,
 )
+from mxeon.models.core.chebyshev import chebyshev_coefficients, chebyshev_nodes, chebyshev_sum
 from mxeon.models.core.evaluation import evaluate_material
 from mxeon.models.microfacet import DIELECTRIC, fresnel, ggx
 from mxeon.models.microfacet.slopes import refracting_nodes
@@ -310,6 +311,36 @@ def _nodes(axes: int) -> tuple[Array, Array, Array]:
     weight = np.repeat(0.5 * w / CAP_NODES, CAP_NODES)
     shape = (-1, *(1,) * (axes - 1))
     return height.reshape(shape), turn.reshape(shape), weight.reshape(shape)
+
+
+PASSED_NODES = 40  # of the share that passes from outside, in the cube root of mu / (mu + alpha)
+
+
+def reversed_transmittance(
+    mu: Array, alpha: float, ior: float, reflected: Callable[[Array], Array]
+) -> Array:
+    """Share of the light from the denser side that passes where all paths are those from outside, reversed, (N, C).
+
+        n^2 mu_i T(wi, wo) = P(wo) p(wo, wi) mu_o,  p(wo, wi) = G1(wo) D |wo . wh| / mu_o |d wh / d wi|
+
+    Then T(wi, wo) = P(wo) G1(wo) / G1(wi) p(wi, wo), and the share is the mean of P G1(wo) / G1(wi) over the facets
+    that wi sees. Its cosine-weighted average over wi times n^2 is that of P.
+
+    - `mu` (N,): Cosines on the denser side.
+    - `ior`: Index of the far side relative to that of the view, below 1.
+    - `reflected`: Albedo from outside, 1 - P, of cosines (M,), (M, C).
+    """
+    s = chebyshev_nodes(PASSED_NODES) ** 3
+    passed = 1.0 - reflected(s * alpha / (1.0 + alpha - s))
+    wo, roughness = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu]), np.full((2, len(mu)), alpha)
+    squared = np.full(len(mu), (1.0 - ior) * (1.0 + ior))
+    _, mu_t, length, weight = refracting_nodes(wo, roughness, squared)
+    x = np.cbrt(np.minimum(mu_t * (1.0 + alpha) / (mu_t + alpha), 1.0))
+    stretched = ggx.stretched_length(wo, roughness)
+    weight = weight * mu_t * (mu + stretched) / (mu * (mu_t + length))
+    axes = tuple(range(weight.ndim - 1))
+    rows = [chebyshev_sum(row, x) for row in chebyshev_coefficients(passed).T]
+    return np.stack([np.sum(weight * row, axis=axes) for row in rows], axis=-1)
 
 
 DARKEST, BRIGHTEST = 0.01, 0.99  # reflectances along the normal that MaterialX's inversion takes

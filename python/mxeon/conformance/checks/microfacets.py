@@ -16,7 +16,16 @@ from mxeon.conformance.checks.lobes import FILMS, TRANSMITTING
 from mxeon.conformance.diagnosis import ALBEDO, NEAR, UNKNOWN, UNMASKED, VALUE, defect, not_finite
 from mxeon.conformance.results import Cause, Diagnosis, Kind
 from mxeon.conformance.results.quantities import Quantity
-from mxeon.conformance.samples import LEAST_COLOR82, Array, Batch, aimed, rounded, sky, sky_map
+from mxeon.conformance.samples import (
+    LEAST_COLOR82,
+    Array,
+    Batch,
+    aimed,
+    directions_at,
+    rounded,
+    sky,
+    sky_map,
+)
 from mxeon.conformance.spec import Ability, Spec
 from mxeon.conformance.specs import microfacets
 from mxeon.conformance.specs.lobes import PbrSpec
@@ -62,6 +71,12 @@ def shape(case: Case) -> Compared:
         measured = case.direct(batch) * second / scale
         expected = case.direct(other) * first / scale
     return Compared(batch, measured, expected).where(lit)
+
+
+def dark(case: Case) -> Compared:
+    batch = case.few[-1].altered(color0=(0.0, 0.0, 0.0), color82=(0.0, 0.0, 0.0), color90=ONE[0])
+    batch = batch.where(microfacets.is_below_0(batch))
+    return Compared(batch, case.direct(batch), np.zeros((1, 3)))
 
 
 def _clear(batch: Batch, index: float = LEAST_DIVIDED, least_82: float = LEAST_COLOR82) -> Batch:
@@ -199,7 +214,7 @@ def transmitted(case: Case) -> Iterator[Compared]:
 
     One is what the BTDF passes, without compensation; the other all that is not reflected, with tint and
     weight. The first is the larger for some colors of Schlick's curve, of which the text compensates too
-    much; and the most exceeds 1 where the node's own curve is below 0. As opacity, a lobe that only transmits
+    much. As opacity, a lobe that only transmits
     passes its tint: a layer over it takes away what it reflects.
     """
     spec = case.of(TransmissionSpec)
@@ -289,6 +304,26 @@ def critical(case: Case) -> Compared:
     batch, mu = batch.where(away), mu[away]
     passed = functions.tint(batch.inputs) * (1.0 - functions.fresnel(mu, batch.inputs))
     return Compared(batch, case.transmitted(batch), batch.strength * passed)
+
+
+# Indices, alphas and cosines of views from the denser side.
+DENSE, VIEWED = ((1.5, 0.4), (2.0, 1.0)), np.array([0.05, 0.2, 0.5, 0.75, 1.0])
+
+
+def inside(case: Case) -> Iterator[Compared]:
+    """Light that passes is in balance: its average over all views, times the index squared, is that from outside."""
+    spec, views = case.of(TransmissionSpec), directions_at(VIEWED, 0.5)
+    for index, alpha in DENSE:
+        rows = case.views[0].first(len(VIEWED))
+        batch = replace(rows, wo=views, wi=views).altered(
+            ior=1.0 / index, roughness=(alpha, alpha), tint=(1.0, 1.0, 1.0), weight=1.0
+        )
+        outside = {"ior": np.array([index]), "tint": ONE}
+        expected = spec.reversed(VIEWED, alpha, index, outside)[:, np.newaxis] * ONE
+        passed = case.transmitted(batch)
+        yield Compared(batch, passed, expected)
+        if spec.reflects:
+            yield Compared(batch, case.albedo(batch) + passed, ONE)
 
 
 def refraction(case: Case) -> Compared:
@@ -501,6 +536,12 @@ ROWS = (
     Check(key="lossless", claim="A lossless lobe returns all light at every roughness.",
           applies=FACETS, measure=lossless, tolerance="integral",
           control=controls.scale("values are 2 % too large", 1.02), explain=VALUE.diagnose),
+    Check(key="dark",
+          claim="Where the printed curve of dark colors is below 0, nothing is reflected.",
+          applies=FACETS & family(FacetSpec, lambda spec: "color82" in spec.row.inputs), measure=dark,
+          tolerance="value", control=controls.with_inputs("color82 is 1", color82=(1.0, 1.0, 1.0)),
+          explain=always(replace(defect("curve_below_0"), permitted=True)), requires=Ability.PAIRS,
+          open=True),
     Check(key="shape",
           claim="For one view, the values for two lights have the same ratio as the products D F G2.",
           applies=FACETS, measure=shape, tolerance="shape", control=rougher, explain=VALUE.diagnose,
@@ -557,6 +598,12 @@ ROWS = (
           applies=TRANSMITTING, measure=critical, tolerance="critical", control=DENSER,
           explain=diagnose_transmitted,
           methods=lambda spec, methods: methods.transmission == "refraction" or by_itself(spec)),
+    Check(key="inside",
+          claim="From a denser medium passes what enters by the same paths; all other light is reflected.",
+          applies=family(TransmissionSpec, lambda spec: "ior" in spec.row.inputs), measure=inside,
+          tolerance="inside",
+          control=controls.with_inputs("the index is that of the denser side", ior=1.5),
+          explain=diagnose_transmitted, methods=lambda spec, methods: methods == GENERATED),
     Check(key="refraction",
           claim="An uneven environment is looked up along the ray that a solid sphere refracts.",
           applies=TRANSMITTING, measure=refraction, tolerance=REFRACTED, control=DENSER,

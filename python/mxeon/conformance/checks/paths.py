@@ -15,16 +15,16 @@ from numpy.typing import ArrayLike, NDArray
 from mxeon.conformance import controls
 from mxeon.conformance.cache import Recent, contents
 from mxeon.conformance.case import Case
-from mxeon.conformance.check import Check, Specs, always
+from mxeon.conformance.check import Check, Specs, always, family
 from mxeon.conformance.diagnosis import defect
 from mxeon.conformance.results import Cause, Diagnosis, Kind
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Values, float32, generator
 from mxeon.conformance.spec import Ability, LobeSpec, Spec, materials
 from mxeon.conformance.specs.diffuse import SurfaceLobe
-from mxeon.conformance.specs.microfacets import LEAST_TANGENT_COSINE, TransmissionSpec
+from mxeon.conformance.specs.microfacets import LEAST_TANGENT_COSINE, PASSING, TransmissionSpec
 from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
-from mxeon.conformance.tolerance import Compared, Measurement, given, roundings, sum_of
+from mxeon.conformance.tolerance import Compared, Measurement, Term, given, roundings, sum_of
 from mxeon.hosts import host_row
 from mxeon.hosts.base import Host
 
@@ -74,12 +74,31 @@ THIN: dict[str, float | str] = {
 
 # Glass, and the name of its index of refraction.
 GLASS: dict[str, tuple[str, Values]] = {
-    "dielectric_bsdf": ("ior", {"tint": (0.9, 0.8, 0.7), "roughness": (0.3, 0.2)}),
+    "dielectric_bsdf": ("ior", {"tint": (0.9, 0.8, 0.7), "roughness": (0.4, 0.4)}),
     "standard_surface": ("specular_IOR", {"transmission": 1.0, "specular_roughness": 0.5}),
     "open_pbr_surface": ("specular_ior", {"transmission_weight": 1.0, "specular_roughness": 0.5}),
     "UsdPreviewSurface": ("ior", {"opacity": 0.0, "roughness": 0.5}),
 }
 INDEX = 2.0  # whose inverse is exact
+# Glass of that index, a tint, and its curve from outside.
+SOLIDS: dict[str, tuple[Values, Values, dict[str, Array]]] = {
+    "dielectric_bsdf": (
+        {**GLASS["dielectric_bsdf"][1], "ior": INDEX},
+        {"tint": (0.9, 0.8, 0.7)},
+        {"ior": np.array([INDEX]), "tint": np.ones((1, 3))},
+    ),
+    "generalized_schlick_bsdf": (
+        {"color0": (1.0 / 9.0,) * 3, "roughness": (0.4, 0.4)},
+        {},
+        {
+            "color0": np.full((1, 3), 1.0 / 9.0),
+            "color82": np.ones((1, 3)),
+            "color90": np.ones((1, 3)),
+            "exponent": np.array([5.0]),
+        },
+    ),
+}
+GRID = 16  # draws along each of three random numbers
 
 
 @dataclass(frozen=True)
@@ -319,6 +338,24 @@ def path_inside(case: Case) -> Iterator[Compared]:
             yield Compared(batch, case.outputs(batch, found) / scale, expected / scale)
 
 
+def path_energy(case: Case) -> Iterator[Compared]:
+    spec = case.of(TransmissionSpec)
+    values, tint, curve = SOLIDS[spec.node]
+    text = paths(case.host, spec.document(values), case.library)
+    middles = (np.arange(GRID) + 0.5) / GRID
+    u = np.stack(np.meshgrid(middles, middles, middles), axis=-1).reshape(-1, 3)
+    alpha = float(np.ravel(values["roughness"])[0])
+    passed = spec.reversed(VIEWS[:, 2], alpha, INDEX, curve)
+    for view, expected in zip(VIEWS, passed, strict=True):
+        wi, weight = (text.values(what, view, u=u, inside=True) for what in ("wi", "weight"))
+        batch = Batch(view[np.newaxis], view[np.newaxis], {})
+        weight = weight / np.asarray(tint.get("tint", 1.0))
+        left = (weight * (wi[:, 2:] < 0.0)).mean(axis=0, keepdims=True)
+        total = weight.mean(axis=0, keepdims=True)
+        yield Compared(batch, case.outputs(batch, left), np.full((1, 3), expected))
+        yield Compared(batch, case.outputs(batch, total), np.ones((1, 3)))
+
+
 # --- directions against a density: a chi-square test on the sphere -------------------------------
 
 # Cells divide the angle from a pole, and the azimuth about it. The first ring is narrow, for a lobe that is
@@ -441,6 +478,13 @@ ROWS = (
               256, "of an index that OpenPBR takes from its reflectance, near a critical angle")),
           control=controls.scale("values are 0.1 % too large", 1.001),
           explain=always(defect("inside_is_not_outside")), requires=Ability.PAIRS, profile="path",
+          hosts=has_paths),
+    Check(key="path_energy",
+          claim="From inside a clear solid, draws carry all light, and those that leave it what enters by the same paths.",
+          applies=family(TransmissionSpec, lambda spec: spec.reflects), measure=path_energy,
+          tolerance=PASSING.plus(Term(5e-3, "draws on a grid of 16 x 16 x 16")),
+          control=controls.scale("values are 10 % too large", 1.1),
+          explain=always(defect("light_from_inside")), requires=Ability.PAIRS, profile="path",
           hosts=has_paths),
 )
 # fmt: on

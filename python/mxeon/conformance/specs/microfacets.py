@@ -25,10 +25,12 @@ from mxeon.conformance.specs.sheen import FIT_COSINE
 from mxeon.conformance.tolerance import Term, Tolerance, given, largest, roundings, sum_in, sum_of
 from mxeon.models.microfacet import Lobe, node_albedo, uncompensated
 from mxeon.models.microfacet.defects import MEAN_ALPHA
+from mxeon.models.microfacet.fresnel import fresnel_schlick
 from mxeon.models.microfacet.ggx import smith_g1, smith_g2, smith_g2_anisotropic
 from mxeon.models.nodes import microfacets
 from mxeon.models.nodes.microfacets import FILM_NODES, LOBES, MICROFACET_NODES, TRANSMISSION_NODES
 from mxeon.models.sampling import ggx_pdf, ggx_sample
+from mxeon.models.transmission import reversed_transmittance
 
 COUNTS = replace(PbrSpec.counts, diagnosed=1 << 8)  # references take long
 LEAST_ALPHA = 1e-3  # of random pairs
@@ -144,6 +146,7 @@ METAL_FIT = 4.6e-4  # fresnel_average.py: F_ss of a metal
 COMPENSATED = 0.6
 LOBE_FIT = 3.2e-3  # ggx_cosine.py: albedo of GGX with a Fresnel curve
 INSIDE_FIT = 2.8e-2  # ggx_inside.py: albedo of a dielectric of index below 1
+PASSING_FIT = 3.6e-2  # ggx_inside.py: share of light from the denser side that passes
 DIP_FIT = 5.9e-3  # ggx_cosine.py: what a full dip at 82 degrees adds to it
 LEAST_ESS = 1.0 - math.log(2.0)  # E_ss at alpha 1 along the normal
 
@@ -166,6 +169,9 @@ ESS = Term(ESS_FIT / LEAST_ESS, "the fit of E_ss over the least, 0.31")
 COMPENSATION = (ESS, Term(METAL_FIT * (1.0 - LEAST_ESS), "the fit of F_ss, times 1 - E_ss"))
 LOBE = Term(LOBE_FIT, "the fit of the lobe's albedo")
 INSIDE = Term(INSIDE_FIT, "the fit of the albedo of an index below 1")
+PASSING = sum_in(
+    Quantity.ALBEDO, Term(PASSING_FIT, "the fit of the share that passes from the denser side")
+)
 HALF_DIP = Term((1.0 - samples.LEAST_COLOR82) * DIP_FIT, "half of the fit of the dip at 82 degrees")
 
 
@@ -422,13 +428,22 @@ def _has_curve(batch: Batch) -> samples.Mask:
     Lengths of directions differ from 1 by a rounding, and the cosines of both with the half vector by that
     over |wo + wi|: where they are nearly opposite, a right shader's curve may be at either. At grazing only
     color90 remains, and where that is dark, a curve that rises from 0 has few digits; and shaders take a
-    cosine of GRAZING at least.
+    cosine of GRAZING at least. Where a printed curve is below 0, the text does not say what is reflected.
     """
     half = np.linalg.norm(batch.wo + batch.wi, axis=1)
     apart = np.abs((batch.wo**2).sum(axis=1) - (batch.wi**2).sum(axis=1))
     bright = np.max(batch.inputs.get("color90", np.ones((1, 3))), axis=1) >= RIM_COLOR
     known = (apart <= COSINE_STEP * half) & (half >= 2.0 * samples.GRAZING)
-    return np.asarray(known & (bright | (half >= RIM_COLOR)))
+    return np.asarray(known & (bright | (half >= RIM_COLOR)) & ~is_below_0(batch))
+
+
+def is_below_0(batch: Batch) -> samples.Mask:
+    """Pairs for which a printed curve is below 0 in some channel, which dark colors with a small color82 have."""
+    if "color82" not in batch.inputs:
+        return np.zeros(len(batch.wo), bool)
+    cosine = np.minimum(0.5 * np.linalg.norm(batch.wo + batch.wi, axis=1), 1.0)
+    colors = (batch.inputs[name] for name in ("color0", "color82", "color90"))
+    return np.any(fresnel_schlick(cosine, *colors, batch.inputs["exponent"]) < 0.0, axis=1)
 
 
 def reflected(wo: Array, alpha: Array, height: Array, around: Array) -> Array:
@@ -463,6 +478,7 @@ def transmission_errors(passed: Tolerance) -> dict[str, Tolerance]:
             Quantity.LIGHT, ENVIRONMENT.term("a reflected albedo"), passed.term("light that passes")
         ),
         "kept": BURLEY_VALUE,  # one function of the same numbers
+        "inside": PASSING.plus(sum_over(1024)),
         "states": sum_of(roundings(32, "of the same parts in two programs")),
         "critical": sum_in(
             Quantity.ALBEDO,
@@ -489,6 +505,18 @@ class TransmissionSpec(FacetSpec):
     def reflects(self) -> bool:
         """Whether it reflects as well."""
         return self.row.fixed["scatter_mode"] == "RT"
+
+    def reversed(self, mu: Array, alpha: float, index: float, inputs: Mapping[str, Array]) -> Array:
+        """Share of the light from the denser side of that index that passes, a mean over the channels, (N,)."""
+
+        def reflected(cosines: Array) -> Array:
+            views = samples.directions_at(cosines, 0.0)
+            whole = {name: np.repeat(each, len(views), axis=0) for name, each in inputs.items()}
+            return self.functions.reflected(
+                views, {**whole, "roughness": np.full((len(views), 2), alpha)}
+            )
+
+        return reversed_transmittance(mu, alpha, 1.0 / index, reflected).mean(axis=1)
 
     @property
     def reflection(self) -> FacetSpec:

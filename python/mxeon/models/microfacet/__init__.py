@@ -80,7 +80,10 @@ DIELECTRIC = Curve(
     lambda ior, tint: (1.0 - ior) * (1.0 + ior),
 )
 CONDUCTOR = Curve(fresnel.conductor, fresnel.conductor_avg)
-SCHLICK = Curve(fresnel.schlick, fresnel.schlick_avg)
+SCHLICK = Curve(
+    lambda c, **material: at_least_0(fresnel.schlick(c, **material)),
+    lambda **material: at_least_0(fresnel.schlick_avg(**material)),
+)
 WHITE_CURVE = Curve(lambda c, tint: 1.0 + 0.0 * c[np.newaxis], lambda tint: np.ones(1))
 
 
@@ -363,8 +366,8 @@ def generalized_schlick_brdf(
 
         f = D F G2 / (4 mu_o mu_i) (1 + F_ss (1 - E_ss) / E_ss)
 
-    Below 0 where the curve is: the specification does not clamp it, and neither does this function; see
-    `mxeon.models.fresnel_schlick`. [MaterialX2026], Microfacet BRDF; generalized_schlick_bsdf.
+    Where the printed curve is below 0 (see `mxeon.models.fresnel_schlick`), F is 0, as in OpenPBR; so is F_ss where its
+    closed form is below 0. [MaterialX2026], Microfacet BRDF; generalized_schlick_bsdf.
 
         >>> wo, wi = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
         >>> generalized_schlick_brdf(wo, wi, [0.9, 0.2], 0.5, 1.0, [0.3, 0.3], 5.0).round(6)
