@@ -442,8 +442,9 @@ def is_below_0(batch: Batch) -> samples.Mask:
     if "color82" not in batch.inputs:
         return np.zeros(len(batch.wo), bool)
     cosine = np.minimum(0.5 * np.linalg.norm(batch.wo + batch.wi, axis=1), 1.0)
-    colors = (batch.inputs[name] for name in ("color0", "color82", "color90"))
-    return np.any(fresnel_schlick(cosine, *colors, batch.inputs["exponent"]) < 0.0, axis=1)
+    color0, color82, color90 = (batch.inputs[name] for name in ("color0", "color82", "color90"))
+    F = fresnel_schlick(cosine, color0, color82, color90, batch.inputs["exponent"])
+    return np.asarray((F < 0.0).any(axis=1))
 
 
 def reflected(wo: Array, alpha: Array, height: Array, around: Array) -> Array:
@@ -516,7 +517,8 @@ class TransmissionSpec(FacetSpec):
                 views, {**whole, "roughness": np.full((len(views), 2), alpha)}
             )
 
-        return reversed_transmittance(mu, alpha, 1.0 / index, reflected).mean(axis=1)
+        passed = reversed_transmittance(mu, alpha, 1.0 / index, reflected)
+        return np.asarray(passed.mean(axis=1))
 
     @property
     def reflection(self) -> FacetSpec:
