@@ -7,13 +7,14 @@ _WHITE = "1 is a white, matte surface that faces the light"
 _LARGE = f"{_WHITE}; errors of values above 1 are divided by the value"
 _RIM = "weighted by the cosine of the viewing angle, so the rim counts less"
 _ALL = "an albedo of 1 returns all light"
+_SCALED = "pi f cos, relative above 1"
 
 
 class Quantity(Enum):
     """A quantity: its key in results.json, its unit, and the meaning of the unit; "" where it says all itself."""
 
     # Values in direct light.
-    VALUE = "value", "pi f cos, relative above 1", _LARGE
+    VALUE = "value", _SCALED, _LARGE
     DIFFERENCE = "difference", "pi f cos", _WHITE
     RELATIVE = "relative", "relative"
     MEAN = "mean", "pi f cos, mean", _WHITE
@@ -21,21 +22,13 @@ class Quantity(Enum):
     FULL_SPHERE = "full_sphere", "pi f, relative above 1"
     SLOPES = "slopes", "pi f and its slopes"
     PICTURE = "picture", "pi f cos, times cos(theta_o)", f"{_WHITE}; {_RIM}"
-    FITTED_PICTURE = (
-        "fitted_picture",
-        "pi f cos, relative above 1, times cos(theta_o)",
-        f"{_LARGE}; {_RIM}",
-    )
+    FITTED_PICTURE = "fitted_picture", f"{_SCALED}, times cos(theta_o)", f"{_LARGE}; {_RIM}"
     KIT = "kit", "times what noise, pixels and the mesh allow"
     # What a view alone sees.
     ALBEDO = "albedo", "albedo", _ALL
     MEAN_ALBEDO = "mean_albedo", "mean albedo", _ALL
     VALUE_OR_ALBEDO = "value_or_albedo", "pi f cos or albedo", f"{_WHITE}; {_ALL}"
-    MATERIAL_MEAN = (
-        "material_mean",
-        "pi f cos, relative above 1, or albedo, mean",
-        f"{_LARGE}; {_ALL}",
-    )
+    MATERIAL_MEAN = "material_mean", f"{_SCALED}, or albedo, mean", f"{_LARGE}; {_ALL}"
     REFLECTANCE = "reflectance", "reflectance"
     REFLECTANCE_RMS = "reflectance_rms", "reflectance, rms"
     # Light that passes, arrives or is emitted.
