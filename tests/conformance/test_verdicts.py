@@ -282,7 +282,7 @@ def test_a_failure_has_the_pages_that_explain_it(
     check, subject, host, library, verdict, error, diagnosis, pages
 ):
     result = Result(
-        check, "", subject, host, library, verdict, error, "", 1e-6, diagnosis=diagnosis
+        check, "", subject, host, library, verdict, error, None, 1e-6, diagnosis=diagnosis
     )
     assert {*with_pages(result).pages} == pages
 
