@@ -8,13 +8,12 @@ import numpy as np
 
 from mxeon.conformance import controls
 from mxeon.conformance.case import Case
-from mxeon.conformance.check import Check, Specs, always
+from mxeon.conformance.check import Check, always, family
 from mxeon.conformance.checks import CHECKS
 from mxeon.conformance.checks.paths import deviation
 from mxeon.conformance.diagnosis import defect
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, generator
-from mxeon.conformance.spec import Spec
 from mxeon.conformance.tolerance import Compared, Measurement, given, roundings, sum_of
 from mxeon.models.sampling import eon_cltc_pdf
 from mxeon.survey.backends import Renderer
@@ -31,10 +30,8 @@ SAMPLES = 1 << 15
 ROUGHNESS = 1.0
 
 
-def is_sampled(spec: Spec) -> bool:
-    """Whether a renderer's own sampling of the node can be called."""
-    own = isinstance(spec, RendererSpec) and spec.sampled
-    return own and spec.model in ("eon", "eon_fitted")
+# Nodes for which a renderer's own sampling can be called.
+SAMPLED = family(RendererSpec, lambda spec: spec.sampled and spec.model in ("eon", "eon_fitted"))
 
 
 def density(case: Case) -> Iterator[Compared]:
@@ -77,11 +74,11 @@ def _deviation(case: Case, mu: float) -> float:
 # fmt: off
 CHECKS += (
     Check(key="density", claim="The sampling density is the paper's.",
-          applies=Specs(is_sampled), measure=density, tolerance=OWN_DENSITY,
+          applies=SAMPLED, measure=density, tolerance=OWN_DENSITY,
           control=controls.with_inputs("roughness is dropped", roughness=0.0),
           explain=always(defect("density_differs"))),
     Check(key="samples", claim="Samples follow the density that is returned with them.",
-          applies=Specs(is_sampled), measure=samples, tolerance=CHI_SQUARE,
+          applies=SAMPLED, measure=samples, tolerance=CHI_SQUARE,
           control=controls.with_inputs("the density is that of roughness 0", roughness=0.0),
           explain=always(defect("samples_differ"))),
 )

@@ -68,6 +68,8 @@ def of_model(*names: str) -> Specs:
 
 # Sets of nodes that rows apply to.
 FILMS, TRANSMITTING = family(FilmSpec), family(TransmissionSpec)
+CLEAR = family(TransmissionSpec, lambda spec: spec.reflects)  # which reflect as well
+DARK = TRANSMITTING - CLEAR  # which reflect nothing
 COMBINED, SUBSURFACE = family(CombinedSpec), family(SubsurfaceSpec)
 FACETS, BELOW = family(FacetSpec), family(SurfaceLobe)
 PLAIN = family(PbrSpec) - COMBINED - FILMS - TRANSMITTING  # one lobe of pbrlib by itself
@@ -82,7 +84,7 @@ VALUED = LOBES | FILMS | ROUGH  # one lobe of a node or of a renderer
 
 def shows_exactly(spec: Spec, host: str) -> bool:
     """Whether a host has directions to the last bit, those on the horizon too; closures have no film of index 0."""
-    others = ("rendered", "pictures", *["closures"] * isinstance(spec, FilmSpec))
+    others = ("rendered", "pictures", *["closures"] * (Ability.FILM in spec.requires))
     return all(row.way not in others for row in HOSTS if row.name == host)
 
 

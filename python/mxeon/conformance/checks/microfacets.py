@@ -12,7 +12,7 @@ from mxeon.conformance import controls, diagnosis, samples
 from mxeon.conformance.case import SCATTERING, Case, dead_inputs
 from mxeon.conformance.check import Check, always, family
 from mxeon.conformance.checks import lobes
-from mxeon.conformance.checks.lobes import FILMS, TRANSMITTING
+from mxeon.conformance.checks.lobes import CLEAR, FILMS, TRANSMITTING
 from mxeon.conformance.diagnosis import ALBEDO, NEAR, UNKNOWN, UNMASKED, VALUE, defect, not_finite
 from mxeon.conformance.results import Cause, Diagnosis, Kind
 from mxeon.conformance.results.quantities import Quantity
@@ -173,11 +173,6 @@ BENT = 1000.0
 REFRACTED = lobes.SURROUNDINGS.plus(roundings(4 * BENT, "four of a cosine, times a slope of 1000"))
 NORMAL = (0.0, 0.0, 1.0)
 ONE = np.ones((1, 3))
-
-
-def by_itself(spec: Spec) -> bool:
-    """Whether a lobe reflects what it does not transmit: no layer over it does."""
-    return isinstance(spec, TransmissionSpec) and spec.reflects
 
 
 def with_directions(spec: Spec, methods: Methods) -> bool:
@@ -381,7 +376,7 @@ def wrong_inputs(case: Case) -> list[str]:
     batch = case.few[0].first(CHANGED_VIEWS)
     dead = dead_inputs(case, batch, lambda each: case.transmitted(each, sky_map()))
     unread = {"retroreflective"}
-    if case.opaque and not by_itself(case.spec):
+    if case.opaque and not CLEAR(case.spec):
         unread |= case.changes.keys() - {"weight", "tint"}
     return [each for each in case.changes if (each in dead) != (each in unread)]
 
@@ -579,7 +574,7 @@ ROWS = (
           control=controls.scale("values are twice as large", 2.0), explain=diagnose_transmitted),
     Check(key="clear",
           claim="A white lobe that reflects and transmits returns all light of a uniform environment.",
-          applies=family(TransmissionSpec, lambda spec: spec.reflects), measure=clear,
+          applies=CLEAR, measure=clear,
           tolerance="light", control=controls.scale("values are 5 % too large", 1.05),
           explain=diagnose_transmitted, methods=with_directions),
     Check(key="methods",
@@ -597,7 +592,7 @@ ROWS = (
           claim="A smooth surface transmits 1 - F, and nothing beyond the critical angle.",
           applies=TRANSMITTING, measure=critical, tolerance="critical", control=DENSER,
           explain=diagnose_transmitted,
-          methods=lambda spec, methods: methods.transmission == "refraction" or by_itself(spec)),
+          methods=lambda spec, methods: methods.transmission == "refraction" or CLEAR(spec)),
     Check(key="inside",
           claim="From a denser medium passes what enters by the same paths; all other light is reflected.",
           applies=family(TransmissionSpec, lambda spec: "ior" in spec.row.inputs), measure=inside,

@@ -16,12 +16,13 @@ from mxeon.conformance import controls
 from mxeon.conformance.cache import Recent, contents
 from mxeon.conformance.case import Case
 from mxeon.conformance.check import Check, Specs, always, family
+from mxeon.conformance.checks.lobes import BELOW, CLEAR, DARK, TRANSMITTING
+from mxeon.conformance.checks.surface_shaders import MATERIALS
 from mxeon.conformance.diagnosis import defect
 from mxeon.conformance.results import Cause, Diagnosis, Kind
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Values, float32, generator
 from mxeon.conformance.spec import Ability, LobeSpec, Spec, materials
-from mxeon.conformance.specs.diffuse import SurfaceLobe
 from mxeon.conformance.specs.microfacets import LEAST_TANGENT_COSINE, PASSING, TransmissionSpec
 from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
 from mxeon.conformance.tolerance import Compared, Measurement, Term, given, roundings, sum_of
@@ -80,6 +81,8 @@ GLASS: dict[str, tuple[str, Values]] = {
     "UsdPreviewSurface": ("ior", {"opacity": 0.0, "roughness": 0.5}),
 }
 INDEX = 2.0  # whose inverse is exact
+DRAWN = family(LobeSpec) - BELOW
+GLASSY = TRANSMITTING | MATERIALS  # which let light into a solid, and out of it
 # Glass of that index, a tint, and its curve from outside.
 SOLIDS: dict[str, tuple[Values, Values, dict[str, Array]]] = {
     "dielectric_bsdf": (
@@ -168,7 +171,7 @@ def texts_of(case: Case) -> Iterator[Paths]:
 
 def sides(spec: Spec) -> tuple[bool, ...]:
     """Whether a view is inside a solid: of what transmits there are both."""
-    return (False, True) if is_glass(spec) else (False,)
+    return (False, True) if GLASSY(spec) else (False,)
 
 
 def random(count: int, rng: np.random.Generator) -> Array:
@@ -180,20 +183,6 @@ def refracted(wo: Array, index: float = 1.5) -> Array:
     """Where the smooth transmission of UsdPreviewSurface goes; straight on beyond the critical angle."""
     x, y, _ = -wo / index
     return np.array([x, y, -np.sqrt(1.0 - x * x - y * y)]) if x * x + y * y < 1.0 else -wo
-
-
-def is_drawn(spec: Spec) -> bool:
-    return isinstance(spec, LobeSpec) and not isinstance(spec, SurfaceLobe)
-
-
-def reflects(spec: Spec) -> bool:
-    """Whether it returns light to the side of the view."""
-    return is_drawn(spec) and not (isinstance(spec, TransmissionSpec) and not spec.reflects)
-
-
-def is_glass(spec: Spec) -> bool:
-    """Whether it lets light into a solid, and out of it."""
-    return isinstance(spec, (TransmissionSpec, SurfaceShaderSpec))
 
 
 def has_paths(spec: Spec, host: str) -> bool:
@@ -303,7 +292,7 @@ def path_value(case: Case) -> Iterator[Compared]:
     high = np.minimum(abs(wo[:, 2]), abs(wi[:, 2])) > LEAST_TANGENT_COSINE
     wo, wi = wo[high], wi[high]
     wi[:8] = wo[:8]
-    if is_glass(case.spec):  # light from behind is not the rasterizer's
+    if GLASSY(case.spec):  # light from behind is not the rasterizer's
         wi[:, 2] = np.copysign(wi[:, 2], wo[:, 2])
     world = {"wo": wo @ TURNED, "wi": wi @ TURNED, "frame": TURNED}
     thin = isinstance(case.spec, SurfaceShaderSpec) and case.spec.node != "UsdPreviewSurface"
@@ -448,7 +437,7 @@ def quadrature(pole: tuple[float, ...], nodes: int) -> tuple[Array, Array, NDArr
 ROWS = (
     Check(key="pdf",
           claim="A path tracer draws by the density that it states, which integrates to the share of draws it keeps.",
-          applies=Specs(is_drawn), measure=pdf,
+          applies=DRAWN, measure=pdf,
           tolerance=given(
               6.0, Quantity.DEVIATIONS, "chance reaches 6 once in 10^7 draws of a chi-square"),
           control=controls.with_values(
@@ -460,12 +449,12 @@ ROWS = (
           requires=Ability.PAIRS, profile="path", hosts=has_paths),
     Check(key="sample",
           claim="A draw's weight times its density is the value in its direction, and its density that of material_pdf.",
-          applies=Specs(is_drawn), measure=sample, tolerance=SAMPLE,
+          applies=DRAWN, measure=sample, tolerance=SAMPLE,
           control=controls.scale("weights are 0.01 % too large", 1.0001), explain=_wrong_half,
           requires=Ability.PAIRS, profile="path", hosts=has_paths),
     Check(key="path_value",
           claim="A path tracer's value, opacity and emission are the rasterizer's, in any frame.",
-          applies=Specs(reflects), measure=path_value,
+          applies=DRAWN - DARK, measure=path_value,
           tolerance=sum_of(roundings(
               64, "of two directions and their frame, times 1 + the inverse of the lobe's own alpha")),
           control=controls.scale("values are 0.1 % too large", 1.001),
@@ -473,7 +462,7 @@ ROWS = (
           hosts=has_paths),
     Check(key="path_inside",
           claim="Light inside a solid is reflected and refracted as outside of one of the inverse index.",
-          applies=Specs(lambda spec: spec.node in GLASS and is_glass(spec)), measure=path_inside,
+          applies=GLASSY & Specs(lambda spec: spec.node in GLASS), measure=path_inside,
           tolerance=sum_of(roundings(
               256, "of an index that OpenPBR takes from its reflectance, near a critical angle")),
           control=controls.scale("values are 0.1 % too large", 1.001),
@@ -481,7 +470,7 @@ ROWS = (
           hosts=has_paths),
     Check(key="path_energy",
           claim="From inside a clear solid, draws carry all light, and those that leave it what enters by the same paths.",
-          applies=family(TransmissionSpec, lambda spec: spec.reflects), measure=path_energy,
+          applies=CLEAR, measure=path_energy,
           tolerance=PASSING.plus(Term(5e-3, "draws on a grid of 16 x 16 x 16")),
           control=controls.scale("values are 10 % too large", 1.1),
           explain=always(defect("light_from_inside")), requires=Ability.PAIRS, profile="path",

@@ -19,11 +19,11 @@ from mxeon.conformance import controls, samples
 from mxeon.conformance.backends import joined
 from mxeon.conformance.case import Case
 from mxeon.conformance.check import Check, family
+from mxeon.conformance.checks.lobes import DARK
 from mxeon.conformance.diagnosis import not_finite
 from mxeon.conformance.results import Cause, Diagnosis, Kind
 from mxeon.conformance.samples import Array, Batch, Mask, Values, aimed, float32, rounded, sky_map
 from mxeon.conformance.spec import Ability, LobeSpec, broadcast_inputs
-from mxeon.conformance.specs.microfacets import TransmissionSpec
 from mxeon.conformance.tolerance import Compared
 from mxeon.hosts.calls import LIGHTS, LIT, NORMAL, SECOND_LIGHT, SKY, TANGENT
 from mxeon.io.images import FAST_EXR, write_image
@@ -441,8 +441,6 @@ ROWS = (
           applies=family(LobeSpec), measure=states, tolerance="states", control=exchanged,
           explain=diagnose, requires=Ability.PAIRS,
           # As opacity, such a lobe is its tint: no control could show a wrong view.
-          methods=lambda spec, methods: (
-              not isinstance(spec, TransmissionSpec)
-              or spec.reflects or methods.transmission != "opacity")),
+          methods=lambda spec, methods: methods.transmission != "opacity" or not DARK(spec)),
 )
 # fmt: on

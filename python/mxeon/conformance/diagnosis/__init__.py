@@ -37,7 +37,6 @@ from mxeon.conformance.samples import Array, Batch, Candidate, sky
 from mxeon.conformance.spec import COMPONENTS, Ability
 from mxeon.conformance.specs.diffuse import DIFFUSE
 from mxeon.conformance.specs.emission import EmissionSpec, MediumSpec
-from mxeon.conformance.specs.utilities import UtilitySpec
 from mxeon.conformance.tolerance import (
     Compared,
     Tolerance,
@@ -52,7 +51,7 @@ from mxeon.models.shading_model import UP
 
 Measure: TypeAlias = Callable[[Case], Iterable[Compared]]
 
-PLACELESS = (MediumSpec, UtilitySpec)  # nodes without a view and a light
+PLACELESS = Ability.MEDIUM | Ability.OUTPUT  # nodes without a view and a light
 # Causes after which the values of the check itself are searched for a range of an input.
 SINGLY_RIGHT, UNKNOWN, OTHER_AVERAGE, UNMASKED = UNTOLD = tuple(
     Cause(Kind.UNKNOWN, key) for key in ("singly_right", "unknown", "other_average", "unmasked")
@@ -203,9 +202,9 @@ def _model(
         if not any(tolerance.wrong(each).any() for each in same):
             return replace(share, key="wrong"), Cause(Kind.CURE, "beside_equal_pixels")
     point = point_of(batch, row)
-    if isinstance(case.spec, PLACELESS):
+    if case.spec.requires & PLACELESS:
         point = {port.name: point[port.name] for port in case.spec.inputs if port.name in point}
-    elif tolerance.quantity.of_views or isinstance(case.spec, EmissionSpec):
+    elif tolerance.quantity.of_views or Ability.EMISSION in case.spec.requires:
         point = {"wo": point["wo"]}
     else:
         point = {name: point[name] for name in ("wo", "wi")}
