@@ -257,7 +257,12 @@ class Evaluating(Backend):
 
     @cached_property
     def shader(self) -> Shader:
-        return self.implemented(self.spec.document())
+        shader = self.implemented(self.spec.document())
+        if self.host.active.distributed and Ability.COMBINATION in self.spec.requires:
+            varied = {name for row in self.spec.changes.values() for each in row for name in each}
+            if lost := sorted(varied - {each.path for each in shader.inputs}):
+                raise NotRun(f"{self.host.name}: distributing layers renames {', '.join(lost)}")
+        return shader
 
     def direct(self, batch: Batch) -> Array:
         branch, output, factor = self.spec.evaluated

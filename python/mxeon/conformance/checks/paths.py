@@ -459,7 +459,8 @@ ROWS = (
               64, "of two directions and their frame, times 1 + the inverse of the lobe's own alpha")),
           control=controls.scale("values are 0.1 % too large", 1.001),
           explain=always(defect("other_path_value")), requires=Ability.PAIRS, profile="path",
-          hosts=has_paths),
+          hosts=has_paths,
+          methods=lambda spec, methods: not methods.distributed),  # which changes sums above 1
     Check(key="path_inside",
           claim="Light inside a solid is reflected and refracted as outside of one of the inverse index.",
           applies=GLASSY & Specs(lambda spec: spec.node in GLASS), measure=path_inside,
