@@ -68,6 +68,12 @@ def test_each_defect_is_still_there_and_as_its_page_says(judged, issue):
     same_record(measure.record(issue, results, place), written)
 
 
+def test_every_failure_of_stock_on_gl_has_a_page_that_explains_its_size(judged):
+    results, _ = judged("gl")
+    failed = [each for each in results if each.verdict == "failed" and ".mtlx" not in each.subject]
+    assert {(each.check, each.subject) for each in failed if not each.pages} == set()
+
+
 def same_record(found, written):
     """Assert that what is measured here is what a page shows, its figures as near as they are printed."""
     figures, others = zip(*map(_parted, (found, written)), strict=True)

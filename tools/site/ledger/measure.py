@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measure the tables of the ledger's pages: `python -m tools.site.ledger.measure [HOST ...]`."""
 
+import json
 import sys
 from collections.abc import Collection, Sequence
 from contextlib import closing
@@ -60,7 +61,7 @@ def record(issue: Issue, results: Sequence[Result], place: str) -> dict[str, Any
     nearest = [title for _, title in others if title != diagnosis.first.key]
     if diagnosis.kind is Kind.MODEL and nearest:
         measures["next"] = nearest[0]
-    return measures
+    return dict(json.loads(json.dumps(measures)))  # as it is read
 
 
 def fields(cause: Cause) -> dict[str, Any]:
