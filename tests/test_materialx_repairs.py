@@ -86,7 +86,7 @@ def failing(tmp_path_factory):
 
 
 ROWS = {"release": rows_of(PATCHES), "main": rows_of(ON_MAIN)}
-CASES = [(version, row) for version, rows in ROWS.items() for row in rows]
+CASES = [(version, row) for version, rows in ROWS.items() for row in sorted(rows)]
 
 
 @pytest.fixture(scope="module")
