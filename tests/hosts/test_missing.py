@@ -6,6 +6,8 @@ import sys
 
 import pytest
 
+import mxeon
+from mxeon.conformance.results import NOT_RUN
 from mxeon.errors import NotRun
 from mxeon.hosts import open_engine
 from mxeon.survey import browser
@@ -106,3 +108,12 @@ def test_a_missing_driver_is_named_with_its_remedy(hosts, monkeypatch):
     hosts("storm")
     monkeypatch.setenv("__EGL_VENDOR_LIBRARY_FILENAMES", os.devnull)
     assert_not_run("storm", "no OpenGL 4.5 through EGL .*; on Debian: apt-get")
+
+
+@pytest.mark.parametrize("workers", [0, 1])
+def test_checks_of_a_missing_renderer_are_not_run(monkeypatch, workers):
+    """Those that it adds itself are named alike, in this process and in a worker."""
+    monkeypatch.setenv("MXEON_CHROMIUM", "none")
+    run = mxeon.check(None, "three-gpu-pathtracer", "stock", nodes="common", workers=workers)
+    own = [each for each in run.results if each.check in ("density", "samples")]
+    assert len(own) == 2 and {each.verdict for each in own} == {NOT_RUN}

@@ -55,7 +55,7 @@ from mxeon.shaders.methods import Methods
 
 CURVE_COLOR, CURVE_ROUGHNESS = (0.8, 0.4, 0.1), 1.0
 CURVE_COSINES = np.linspace(0.05, 1.0, 20)
-CLAIMS = {check.key: check.claim for check in CHECKS} | {
+CLAIMS = {
     HOST: "The host runs on this machine.",
     DEFINITION: "The nodes are defined as specified.",
     SOURCE: "The generated text was checked.",
@@ -70,7 +70,10 @@ def one_result(
     task: Task, verdict: Verdict, reason: str = "", diagnosis: Diagnosis = NO_DIAGNOSIS
 ) -> Findings:
     """Findings of a task that measured nothing, by the reason or the diagnosis."""
-    place = (task.check, CLAIMS[task.check], task.subject, task.host, task.library)
+    if not (claim := CLAIMS.get(task.check)):
+        own_nodes(task.host)  # adds the checks of a renderer
+        claim = next(each.claim for each in CHECKS if each.key == task.check)
+    place = (task.check, claim, task.subject, task.host, task.library)
     return Findings((Result(*place, verdict, reason=reason, diagnosis=diagnosis),))
 
 
