@@ -122,12 +122,12 @@ class DocumentVerdict(NamedTuple):
 def summary_by_cause(run: Run) -> list[str]:
     """A line for each cause with its number of documents and the first of them; the worst come first."""
     verdicts = [*_document_verdicts(run)]
-    for document, lines in run.refused.items():
+    for document, faults in run.refused.items():
         name = (
-            document if lines[0].startswith(f"{document}: ") else document.rpartition(" with ")[0]
+            document if faults[0].startswith(f"{document}: ") else document.rpartition(" with ")[0]
         )
-        reason = lines[0].removeprefix(f"{name}: ")
-        reason += f"; {counted(len(lines) - 1, 'more fault')}" if len(lines) > 1 else ""
+        reason = faults[0].removeprefix(f"{name}: ")
+        reason += f"; {counted(len(faults) - 1, 'more fault')}" if len(faults) > 1 else ""
         cause = QUOTED.sub("...", reason)
         verdicts.append(DocumentVerdict(document, "", REFUSED, cause, False))
     every = {each.document for each in verdicts}
