@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mxeon.hosts.base import Array, Query
 from mxeon.hosts.calls import GIVEN, booleans, bsdf_call
+from mxeon.shaders import functions
 
 TEXEL = "texelFetch(mxeon_{}, mxeon_pixel, 0)"
 FETCH = {
@@ -129,14 +130,10 @@ def renamed(text: str) -> str:
 
 
 def function_evaluation(
-    source: str,
-    function: str,
-    parameters: Sequence[tuple[str, str]],
-    arguments: Sequence[ArrayLike],
-    target: str = "glsl",
+    source: str, function: str, arguments: Sequence[ArrayLike], target: str
 ) -> tuple[str, Columns]:
     """A pixel stage that evaluates a function of `source`, and its texels as in `bsdf_evaluation`."""
-    dialect = DIALECTS[target]
+    dialect, parameters = DIALECTS[target], functions.parameters(source, function)
     values = {
         name: (kind, value) for (kind, name), value in zip(parameters, arguments, strict=True)
     }

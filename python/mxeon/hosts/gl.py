@@ -139,22 +139,14 @@ class GlHost(FragmentHost):
         program = self._program(vertex, pixel)
         _set(program, raster.FRAME_UNIFORMS)
         own = self._textures(program, textures)
-        parts = fragment.parts(arguments)
-        return np.concatenate([self._part(program, each, own) for each in parts])
-
-    def _part(
-        self,
-        program: moderngl.Program,
-        arguments: Mapping[str, Array],
-        textures: Mapping[str, moderngl.Texture | moderngl.TextureArray],
-    ) -> Array:
-        count, size = fragment.frame(arguments)
-        values = {
-            name: self._argument(rows, size)
-            for name, rows in arguments.items()
-            if program.get(name, None)
-        }
-        return self._draw(program, {**values, **textures}, size).reshape(-1, 3)[:count]
+        values = []
+        for part in fragment.parts(arguments):
+            count, size = fragment.frame(part)
+            used = {
+                n: self._argument(rows, size) for n, rows in part.items() if program.get(n, None)
+            }
+            values.append(self._draw(program, {**used, **own}, size).reshape(-1, 3)[:count])
+        return np.concatenate(values)
 
     def _draw(
         self,

@@ -15,7 +15,6 @@ from mxeon.hosts import base, fragment
 from mxeon.hosts.base import Array, Query
 from mxeon.hosts.points import visible
 from mxeon.hosts.textures import image_files, irradiance, read_latlong, read_texture
-from mxeon.shaders import functions
 from mxeon.shaders.document.values import Plain, flat
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import SUBSURFACE, TRANSMISSION, VOLUME, inner_lobes
@@ -152,13 +151,9 @@ class FragmentHost(base.Host):
         return self._evaluate(query.shader.stages["vertex"], pixel, arguments, textures)
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
-        parameters = functions.parameters(source, function)
-        pixel, texels = fragment.function_evaluation(
-            source, function, parameters, arguments, self.target
-        )
-        return self._evaluate(
-            fragment.DIALECTS[self.target].vertex, pixel, texels, environment(None)
-        )
+        pixel, texels = fragment.function_evaluation(source, function, arguments, self.target)
+        vertex = fragment.DIALECTS[self.target].vertex
+        return self._evaluate(vertex, pixel, texels, environment(None))
 
     @abstractmethod
     def _evaluate(

@@ -24,7 +24,7 @@ from mxeon.kit.mesh import unit_sphere
 from mxeon.kit.noise import student_quantile
 from mxeon.kit.questions import Question, answer, one_model, questions
 from mxeon.kit.submitted import Missing, Unusable, read_render
-from mxeon.kit.views import LAMBERT, MATERIALS, View, views
+from mxeon.kit.views import LAMBERT, MATERIALS, views
 from mxeon.models import table
 
 RENDERER = "renderer"
@@ -53,7 +53,34 @@ def check_kit(
     asked, depth = questions(claims), unit_sphere().depth
     pictures = [view for view in views(_size(folder)) if any(each.includes(view) for each in asked)]
     place: dict[str, Any] = {"host": renderer, "library": LIBRARY}
-    images, results = _read(folder / RENDERS, pictures, place)
+    images: dict[str, NDArray[np.float64]] = {}  # usable pictures
+    results: list[Result] = []
+    shown_pictures: list[Picture] = []
+    for view in pictures:
+        about = {"check": "file", "claim": READABLE, "subject": view.name, **place}
+        try:
+            image = images[view.name] = read_render(folder / RENDERS, view)
+        except Missing as error:
+            results.append(Result(**about, verdict=NOT_RUN, reason=str(error)))
+            continue
+        except Unusable as error:
+            results.append(Result(**about, verdict=FAILED, diagnosis=quoted(str(error))))
+            continue
+        mask = judged(view.scene)
+        reference = np.zeros((*mask.shape, 3))
+        reference[mask] = pixel_means(table.diffuse_model(claims or view.material.model), view)
+        metadata = {"version": mxeon.__version__, "scene": view.scene.name} | place
+        shown_pictures.append(
+            Picture(
+                document=f"{view.material.name}.mtlx",
+                element=view.material.name,
+                **place,
+                scene=view.scene.name,
+                image=image.astype(np.float32) * mask[..., None],
+                reference=reference,
+                metadata=metadata,
+            )
+        )
     if all(each.verdict == NOT_RUN for each in results) and not images:
         raise NotRun(
             f"{folder / RENDERS}: none of the {len(pictures)} pictures is there: make them as "
@@ -78,7 +105,7 @@ def check_kit(
         software={"Python": platform.python_version()} | {name: version(name) for name in SOFTWARE},
         hosts=(Identity(renderer, "version not given", "device not given"),),
         results=tuple(results),
-        pictures=tuple(_pictures(pictures, images, place, claims)),
+        pictures=tuple(shown_pictures),
         notes=tuple(notes),
         documents=tuple(folder / "materials" / f"{each.name}.mtlx" for each in MATERIALS),
     )
@@ -122,42 +149,3 @@ def _size(folder: Path) -> int:
         if kit.get(key) != exported[key]:
             raise InputError(f"{file}: {key} must be as kit export writes it: export it again")
     return size
-
-
-def _read(
-    folder: Path, pictures: Sequence[View], place: dict[str, Any]
-) -> tuple[dict[str, NDArray[np.float64]], list[Result]]:
-    """Usable images by name, and a result for each file that is missing or unusable."""
-    images, results = {}, []
-    for view in pictures:
-        about = {"check": "file", "claim": READABLE, "subject": view.name, **place}
-        try:
-            images[view.name] = read_render(folder, view)
-        except Missing as error:
-            results.append(Result(**about, verdict=NOT_RUN, reason=str(error)))
-        except Unusable as error:
-            results.append(Result(**about, verdict=FAILED, diagnosis=quoted(str(error))))
-    return images, results
-
-
-def _pictures(
-    pictures: Sequence[View],
-    images: dict[str, NDArray[np.float64]],
-    place: dict[str, Any],
-    claims: str,
-) -> Iterator[Picture]:
-    for view in pictures:
-        if view.name in images:
-            metadata = {"version": mxeon.__version__, "scene": view.scene.name}
-            mask = judged(view.scene)
-            reference = np.zeros((*mask.shape, 3))
-            reference[mask] = pixel_means(table.diffuse_model(claims or view.material.model), view)
-            yield Picture(
-                document=f"{view.material.name}.mtlx",
-                element=view.material.name,
-                **place,
-                scene=view.scene.name,
-                image=images[view.name].astype(np.float32) * mask[..., None],
-                reference=reference,
-                metadata=metadata | place,
-            )
