@@ -159,27 +159,14 @@ def write(file, group, kind="", start=None):
     file.write_text(json.dumps({"groups": kept}, indent=1) + "\n", encoding="utf-8")
 
 
-def read(file):
-    """Pairs of a group and the machine it was measured on."""
-    return [
-        (
-            Group(
-                each["name"],
-                each["title"],
-                tuple(Figure(**figure) for figure in each["figures"]),
-                tuple(Check(**check) for check in each["checks"]),
-            ),
-            each["machine"],
-        )
-        for each in json.loads(file.read_text(encoding="utf-8"))["groups"].values()
-    ]
-
-
 def page(file):
     """How many goals each group reaches and which it misses, and the tables of all groups, in Markdown."""
     goals = ["## Goals", "", "| group | reached | missed |", "|---|---|---|"]
     tables = []
-    for group, setting in read(file):
+    for each in json.loads(file.read_text(encoding="utf-8"))["groups"].values():
+        figures = tuple(Figure(**figure) for figure in each["figures"])
+        checks = tuple(Check(**check) for check in each["checks"])
+        group, setting = Group(each["name"], each["title"], figures, checks), each["machine"]
         aims = [each for each in group.figures if each.goal is not None]
         missed = [
             f"{each.name} ({each.median:.3g} {each.unit}, goal {each.goal:g})"
