@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What makes coefficients, figures and pages; nothing that users install."""
+"""Scripts for coefficients, figures and pages; users install none of them."""

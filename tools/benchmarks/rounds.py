@@ -42,7 +42,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Check:
-    """Whether what was timed gave right values, in the same run."""
+    """Largest error of the values that were timed."""
 
     name: str
     error: float
@@ -160,7 +160,7 @@ def write(file, group, kind="", start=None):
 
 
 def page(file):
-    """How many goals each group reaches and which it misses, and the tables of all groups, in Markdown."""
+    """Reached and missed goals and the tables of all groups, in Markdown."""
     goals = ["## Goals", "", "| group | reached | missed |", "|---|---|---|"]
     tables = []
     for each in json.loads(file.read_text(encoding="utf-8"))["groups"].values():

@@ -94,7 +94,7 @@ def grid():
 
 
 def _rows(mu, alpha):
-    """What each coefficient adds to the mean, the reach and the bend at views and roughness."""
+    """Contribution of each coefficient to mean, reach and bend at views and roughness."""
     factors = alpha * alpha / (mu + alpha), alpha / np.sqrt(mu + alpha), np.ones_like(mu)
     terms = fit.monomials(mu, alpha)
     blocks = np.zeros((3, mu.size, 3, len(terms)))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What makes the pages of docs/. What is measured has a command of its own.
+"""Scripts for the pages of docs/; each measured page has its own command.
 
 | command | what it writes |
 |---|---|

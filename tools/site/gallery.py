@@ -174,7 +174,7 @@ def trace(folder):
 
 
 def words(difference):
-    """What to look for, by the difference of the pictures."""
+    """Caption for a difference of the pictures."""
     if difference is None:
         return "stock MaterialX cannot generate its nodes"
     if difference < SEEN:

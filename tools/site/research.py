@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the first example of the page for researchers prints."""
+"""Output of the first example on the page for researchers."""
 
 import contextlib
 import io
@@ -15,7 +15,7 @@ def blocks(text):
 
 
 def printed(text):
-    """What the first block prints."""
+    """Output of the first block."""
     with contextlib.redirect_stdout(io.StringIO()) as output:
         exec(blocks(text)[0], {})
     return output.getvalue()

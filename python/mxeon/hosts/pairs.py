@@ -91,7 +91,7 @@ def perpendicular(vectors: Array) -> Vectors:
 
 
 def visible(wo: Array, wi: Array) -> NDArray[np.bool_]:
-    """Which pairs of directions a scene can show, (N,)."""
+    """Mask of the pairs of directions that a scene can show, (N,)."""
     return np.asarray(np.linalg.norm(np.cross(wo, wi), axis=1) >= LEAST_SINE)
 
 

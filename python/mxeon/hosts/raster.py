@@ -51,7 +51,7 @@ IN_PLACE = {
 
 
 def approximations(shader: Shader) -> tuple[str, ...]:
-    """How generated GLSL approximates a shader's lobes below the surface."""
+    """Approximations of a shader's lobes below the surface in generated GLSL."""
     return tuple(IN_PLACE[kind] for kind in inner_lobes(shader))
 
 

@@ -122,7 +122,7 @@ def code_of(text: str) -> str:
 
 
 def changed(operator: str, code: str) -> str:
-    """What an operator puts instead of the code that it found; nothing for a dropped part."""
+    """An operator's replacement for the code that it found; "" for a dropped part."""
     if operator == "constant":
         return f"{RAISED * float(code) or 0.1:.9g}"
     if operator in ("yes", "no"):
