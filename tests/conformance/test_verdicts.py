@@ -66,7 +66,7 @@ def film(choices):
     """What a film is named by, whose curve and compensation are these."""
     return {
         **dict.fromkeys(
-            ("value", "film_curve", "film_orders"),
+            ("value", "anisotropic_value", "film_curve", "film_orders"),
             ("model", f"{choices}, with MaterialX's compensation"),
         ),
         "film_limit": ("model", choices),
@@ -161,9 +161,11 @@ STOCK = {
         **dict.fromkeys(("value", "integral", "energy"), ("model", BLUR.format(100))),
         **dict.fromkeys(("sphere", "sphere_mean"), ("model", BLUR.format(1))), **HIDING,
     },
-    "dielectric_bsdf, thin film": film(CHOICES) | {"layering": ("model", f"{CHOICES}: {BARE}")},
+    "dielectric_bsdf, thin film": film(CHOICES)
+    | {"layering": ("model", f"{CHOICES}: {BARE}"), "anisotropic_throughput": ()},
     "conductor_bsdf, thin film": film(CHOICES),
-    "generalized_schlick_bsdf, thin film": film(SUBSTRATE) | {"layering": ("model", f"{SUBSTRATE}: {BARE}")},
+    "generalized_schlick_bsdf, thin film": film(SUBSTRATE)
+    | {"layering": ("model", f"{SUBSTRATE}: {BARE}"), "anisotropic_throughput": ()},
     "blackbody": {"output": ("model", "Kang's cubic, extrapolated below 1667 K")},
     "deon_hair_absorption_from_melanin": {"output_finite": NAN},
     **{
@@ -178,7 +180,8 @@ FREE = {
     *((title, key) for title in ("dielectric_bsdf, thin film", "conductor_bsdf, thin film") for key in film("")),
     *(("generalized_schlick_bsdf, thin film", key) for key in ("film_average", "film_smooth")),
     *((title, "combined_throughput") for title in STOCK if title.startswith("multiply, ")),
-    *((title, "anisotropic_value") for title in STOCK if "anisotropic_value" in STOCK[title]),
+    *((f"{name}_bsdf{mode}", "anisotropic_value") for name, mode in (
+        ("conductor", ""), ("dielectric", ", scatter_mode R"), ("generalized_schlick", ", scatter_mode R"))),
     ("generalized_schlick_bsdf, scatter_mode R", "dark"),
 }  # fmt: skip
 

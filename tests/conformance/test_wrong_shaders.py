@@ -224,6 +224,8 @@ WRONG = {
          ("two lobes that differ in ior",)),
     ),
     "dielectric_bsdf, thin film": (
+        ("genglsl/lib/microfacet_film.glsl", "microfacet_film_facets(lobe.visible.x, lobe.visible.y)",
+         "microfacet_film_facets(lobe.mu_o, lobe.alpha)", "anisotropic_throughput", ()),
         (FILM, "M_PI * fd.tf_thickness", "M_PI * min(fd.tf_thickness, 2000.0)", "domain",
          ("value_outside", "thinfilm_thickness", 2500.0, 3000.0, 6000.0, 100000.0)),
         (FILM, "max(fd.tf_ior, 1.0)", "max(fd.tf_ior, 1.005)", "film_limit", ()),
@@ -361,7 +363,7 @@ PATHS = (
     (RT, PATH, "through *= path_reversed;", "through *= path_inside ? 3.0 : path_reversed;", "path_inside", INSIDE),
     (RT, PATH, "scatter_mode == 0 ? 0.0", "scatter_mode == 0 || path_inside ? 0.0", "path_inside", INSIDE),
     (RT, PATH, "through *= path_reversed;", "", "path_energy", LOST),
-    (SCHLICK, PATH, "F.value = lobe.mu_h > 0.0 ? F.value : vec3(1.0);", "", "path_energy", LOST),
+    (SCHLICK, PATH, "lobe.mu_h = max(-dot(end, path_facet), 0.0);", "", "path_energy", LOST),
     (SCHLICK, PATH, "F.value += max(", "F.value += 0.5 * max(", "path_energy", LOST),
     (RT, PATH, "below && retroreflective", "false", "pdf", ("drawn_density", "outside")),
     ("conductor_bsdf", PATH, "wo.z = lobe.mu_o;", "wo = path_local(closureData.V, lobe.X, lobe.N);\n        OLD", "pdf", ()),

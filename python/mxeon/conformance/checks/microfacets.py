@@ -561,7 +561,7 @@ ROWS = (
           control=isotropic, explain=always(Diagnosis((UNKNOWN,))),
           requires=Ability.PAIRS | Ability.LIGHT, methods=with_directions),
     Check(key="anisotropic_value", claim="The value of a lobe with two alphas matches the model.",
-          applies=FACETS, measure=STRETCHED, tolerance="anisotropic_value", control=isotropic,
+          applies=FACETS | FILMS, measure=STRETCHED, tolerance="anisotropic_value", control=isotropic,
           explain=STRETCHED.diagnose, requires=Ability.PAIRS, open=True),
     Check(key="anisotropic_throughput",
           claim="A lobe with two alphas passes to its base what it does not reflect.",

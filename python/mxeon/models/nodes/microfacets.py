@@ -329,7 +329,7 @@ def _filmed(row: PbrNode) -> PbrNode:
         title=f"{row.title} under a thin film",
         inputs=(*row.inputs, *FILM),
         value=partial(_value, row.category, TEXT, None),
-        albedo=lambda wo, inputs: film_albedo_dir(row.category, wo, isotropic(inputs)),
+        albedo=partial(film_albedo_dir, row.category),
         integral=partial(film_albedo_dir, row.category),
         variants=_film_variants(row),
     )
