@@ -6,7 +6,7 @@ The amplitudes of both interfaces and the phase of one passage give the sum of a
 
 import numpy as np
 
-from mxeon.models.core.colorimetry import matching_functions
+from mxeon.models.core.colorimetry import CIE_1931, WAVELENGTHS
 
 VISIBLE = np.arange(360.0, 831.0)  # nm
 
@@ -26,7 +26,7 @@ def film_spectrum(wavelength, mu, thickness, n2, n, k):
 def film_spectrum_xyz(*film):
     """Color of a thin film in CIE XYZ under light of equal energy, by a sum in steps of 1 nm."""
     spectrum = film_spectrum(VISIBLE, *(np.asarray(each)[..., np.newaxis] for each in film))
-    weights = matching_functions(VISIBLE)
+    weights = np.stack([np.interp(VISIBLE, WAVELENGTHS, each) for each in CIE_1931.T], axis=-1)
     return spectrum @ (weights / weights.sum(axis=0))
 
 

@@ -5,9 +5,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from mxeon.models.core.arguments import checked_numbers
-from mxeon.models.core.arrays import Array, ArrayLike
-
 WAVELENGTHS = np.arange(360.0, 835.0, 5.0)  # nm
 # Color-matching functions of the CIE 1931 2-degree standard observer at WAVELENGTHS, by ISO/CIE 11664-1.
 CIE_1931 = np.array(
@@ -125,15 +122,3 @@ XYZ_TO_REC709_E = np.array(
         [0.0635978, -0.2145965, 1.1509987],
     ]
 )
-
-
-def matching_functions(wavelength: ArrayLike) -> Array:
-    """Color-matching functions of the CIE 1931 standard observer.
-
-    - `wavelength` (N,): In nm, in [1, 1e9].
-
-    Result (N, 3): x, y and z, interpolated linearly in a table of 5 nm; 0 outside [360, 830].
-    """
-    (at,) = checked_numbers(wavelength=wavelength)
-    columns = [np.interp(at, WAVELENGTHS, column, 0.0, 0.0) for column in CIE_1931.T]
-    return np.stack(columns, axis=-1)
