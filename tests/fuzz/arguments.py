@@ -42,7 +42,7 @@ VALID = {
     "u": (0.5, (0.5, 0.25)),
     **dict.fromkeys(("eumelanin_color", "pheomelanin_color", "hair_color"), COLOR),
     **dict.fromkeys(("ior", "specular_ior", "extinction", "exponent", "film_ior"), (1.5,)),
-    **dict.fromkeys(("temperature", "wavelength"), (500.0,)),
+    "temperature": (500.0,),
     **dict.fromkeys(("fg", "bg", "in1"), BSDF),
     "form": (PRINTED,),
     "category": ("dielectric_bsdf",),

@@ -95,13 +95,13 @@ COMPENSATED = ("dielectric_brdf", "conductor_brdf", "generalized_schlick_brdf")
 LOW = (
     dict.fromkeys(("eumelanin_color", "pheomelanin_color", "hair_color"), 0.05)
     | dict.fromkeys(("separation", "radius", "reach"), 0.2)
-    | {"temperature": 500.0, "wavelength": 300.0, "melanin_concentration": 0.0}
+    | {"temperature": 500.0, "melanin_concentration": 0.0}
 )
 HIGH = (
-    {"temperature": 9000.0, "wavelength": 900.0, "melanin_concentration": 0.9, "u": 0.99}
+    {"temperature": 9000.0, "melanin_concentration": 0.9, "u": 0.99}
     | dict.fromkeys(("emission", "scattered", "behind", "intensity", "exposure", "albedo"), 3.0)
     | dict.fromkeys(("separation", "radius", "reach", "scale_tt", "scale_trt"), 2.0)
-    | dict.fromkeys(("single_scatter", "scatter_anisotropy"), 0.95)
+    | {"scatter_anisotropy": 0.95}
 ) | (
     {"exponent": 8.0, "ior": 3.0, "g": 0.99, "reflectivity": 0.99}
     | dict.fromkeys(("extinction", "radiance", "base", "absorption", "scattering", "distance"), 4.0)

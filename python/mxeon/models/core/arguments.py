@@ -53,7 +53,7 @@ RANGES = Ranges(
         **_each("rho color color0 color82 color90 tint tint_R tint_TT tint_TRT edge_color", _SHARE),
         **_each("roughness alpha anisotropy glossiness longitudinal azimuthal", _SHARE),
         **_each("azimuthal_roughness cuticle_angle amount opacity melanin_redness", _SHARE),
-        **_each("reflectance transmittance single_scatter lobe_weight metalness", _SHARE),
+        **_each("reflectance transmittance lobe_weight metalness", _SHARE),
         **_each("u reflectivity melanin_concentration", (0.0, _BELOW_ONE, "[0, 1)")),
         **_each("eumelanin_color pheomelanin_color hair_color", (_ABOVE_ZERO, 1.0, "(0, 1]")),
         **_each("exponent ior extinction absorption scattering absorption_coefficient", _POSITIVE),
@@ -64,7 +64,7 @@ RANGES = Ranges(
         **_each("coat_ior specular_ior", (1.0, 4.0, "[1, 4]")),
         **_each("thinfilm_ior film_ior", (1.0, 1e50, "[1, 1e50]")),
         **_each("thinfilm_thickness thickness", (0.0, 1e9, "[0, 1e9]")),  # nm
-        **_each("temperature wavelength", (1.0, 1e9, "[1, 1e9]")),
+        **_each("temperature", (1.0, 1e9, "[1, 1e9]")),
         **_each("variance scale roughness_R roughness_TT roughness_TRT", _WIDTH),
         **_each("separation radius reach", _LENGTH),
         **_each("weight x", (0.0, _LARGEST, "[0, inf)")),
