@@ -22,13 +22,13 @@ void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior
     if (ior < 1.0 && scatter_mode != 0 && !fd.airy)
     {
         // What does not pass returns, the rest by facets that reflect everything.
-        float passing = eonlib_dielectric_passing(lobe.visible.x, lobe.visible.y, ior);
-        vec3 rest = max((1.0 - passing) / lobe.albedo - F.visible, 0.0);
+        float rest = (1.0 - eonlib_dielectric_passing(lobe.visible.x, lobe.visible.y, ior, 1.0)) / lobe.albedo;
+        rest = max(rest - F.visible.x, 0.0);
         F.value += rest;
         F.visible += rest;
         F.average = vec3(0.0);
         F.outside = F.visible;
-        fd.ior = vec3(lobe.closure == CLOSURE_TYPE_INDIRECT ? MICROFACET_MIRROR_INDEX : ior);
+        fd.airy = true;  // an environment is summed over facets that reflect everything, as under a film
     }
     microfacet_bsdf(closureData, lobe, fd, F, max(tint, 0.0), weight, distribution, scatter_mode,
                     bsdf);

@@ -67,8 +67,7 @@ float eonlib_fresnel_dielectric_avg(float ior)
     float t = ior > 1.0 ? 1.0 / ior : ior;
     float N = FRESNEL_AVG_N0 + t * (FRESNEL_AVG_N1 + t * (FRESNEL_AVG_N2
               + t * (FRESNEL_AVG_N3 + t * FRESNEL_AVG_N4)));
-    float D = 1.0 + t * (FRESNEL_AVG_D1 + t * (FRESNEL_AVG_D2 + t * FRESNEL_AVG_D3));
-    float lost = t * N / D;
+    float lost = t * N / (1.0 + t * (FRESNEL_AVG_D1 + t * (FRESNEL_AVG_D2 + t * FRESNEL_AVG_D3)));
     return 1.0 - (ior > 1.0 ? lost : ior * ior * lost);
 }
 
@@ -79,21 +78,20 @@ float ggx_cosine_dielectric(float mu, float alpha, float ior)
     float x = mu / (mu + alpha);
     float y = sqrt(sqrt(alpha));
     float s = sqrt((n - 1.0) / (n + 1.0));
-    float N0 = GGX_DIELECTRIC_N000
-               + s * (GGX_DIELECTRIC_N001 + s * (GGX_DIELECTRIC_N002 + s * GGX_DIELECTRIC_N003))
-               + y * (GGX_DIELECTRIC_N010 + s * (GGX_DIELECTRIC_N011 + s * GGX_DIELECTRIC_N012)
-                      + y * (GGX_DIELECTRIC_N020 + s * GGX_DIELECTRIC_N021
-                             + y * GGX_DIELECTRIC_N030));
-    float N1 = GGX_DIELECTRIC_N100 + s * (GGX_DIELECTRIC_N101 + s * GGX_DIELECTRIC_N102)
-               + y * (GGX_DIELECTRIC_N110 + s * GGX_DIELECTRIC_N111 + y * GGX_DIELECTRIC_N120);
-    float N2 = GGX_DIELECTRIC_N200 + s * GGX_DIELECTRIC_N201 + y * GGX_DIELECTRIC_N210;
-    float N = N0 + x * (N1 + x * (N2 + x * GGX_DIELECTRIC_N300));
-    float D0 = 1.0 + s * (GGX_DIELECTRIC_D001 + s * GGX_DIELECTRIC_D002)
-               + y * (GGX_DIELECTRIC_D010 + s * GGX_DIELECTRIC_D011 + y * GGX_DIELECTRIC_D020);
-    float D1 = GGX_DIELECTRIC_D100 + s * GGX_DIELECTRIC_D101
-               + y * (GGX_DIELECTRIC_D110 + y * GGX_DIELECTRIC_D120);
-    float D2 = GGX_DIELECTRIC_D200 + y * GGX_DIELECTRIC_D210;
-    float D = D0 + x * (D1 + x * D2);
+    float N = GGX_DIELECTRIC_N000
+        + s * (GGX_DIELECTRIC_N001 + s * (GGX_DIELECTRIC_N002 + s * GGX_DIELECTRIC_N003))
+        + y * (GGX_DIELECTRIC_N010 + s * (GGX_DIELECTRIC_N011 + s * GGX_DIELECTRIC_N012)
+        + y * (GGX_DIELECTRIC_N020 + s * GGX_DIELECTRIC_N021
+        + y * GGX_DIELECTRIC_N030))
+        + x * (GGX_DIELECTRIC_N100 + s * (GGX_DIELECTRIC_N101 + s * GGX_DIELECTRIC_N102)
+        + y * (GGX_DIELECTRIC_N110 + s * GGX_DIELECTRIC_N111 + y * GGX_DIELECTRIC_N120)
+        + x * (GGX_DIELECTRIC_N200 + s * GGX_DIELECTRIC_N201 + y * GGX_DIELECTRIC_N210
+        + x * GGX_DIELECTRIC_N300));
+    float D = 1.0 + s * (GGX_DIELECTRIC_D001 + s * GGX_DIELECTRIC_D002)
+        + y * (GGX_DIELECTRIC_D010 + s * GGX_DIELECTRIC_D011 + y * GGX_DIELECTRIC_D020)
+        + x * (GGX_DIELECTRIC_D100 + s * GGX_DIELECTRIC_D101
+        + y * (GGX_DIELECTRIC_D110 + y * GGX_DIELECTRIC_D120)
+        + x * (GGX_DIELECTRIC_D200 + y * GGX_DIELECTRIC_D210));
     return clamp(mu + alpha * (1.0 - x) * N / D, 0.0, 1.0);
 }
 
@@ -105,62 +103,36 @@ float eonlib_asinh(float x)
     return sign(x) * (u < 0.1 ? u * (1.0 - u2 * (1.0 / 6.0 - 0.075 * u2)) : log(u + sqrt(u2 + 1.0)));
 }
 
-// Share of facets below the critical angle for an index n below 1, times 1 - F; those beyond reflect everything. With
-// tau the cotangent of the angle between view and facet, tau_c the critical one, and tau_m one near their median:
+// What passes to the thinner side, of index n below 1: the mean of 1 - F over the visible facets; reversed (1), the
+// share of light by the paths of light from there: path/microfacets.glsl. With tau the cotangent of the angle between view and facet, tau_c the critical one, and tau_m one near their median:
 //   share below the critical angle: t^-p, t = 1 + exp(g asinh(k ln(tau_c^2 / tau_m^2)))
 //   their reflectance: F(tau), the tau above which 0.7213 of them are: 1 / 0.7213 = exp(0.326707)
-//   tau_m^2 = (mu^2 + a alpha^2) / (s^2 + b alpha^2), k^2 = k0 + k1 mu^2 s^2 / alpha^2, s^2 = 1 - mu^2
-// Logarithms of a, b, k0, k1, p and g are linear in x, y, z and x y. Source and derivation: tools/fits/ggx_inside.py.
-float ggx_passing(float mu, float alpha, float ior, vec3 a_b_k0, vec3 k1_p_g)
+// Source and derivation: tools/fits/ggx_inside.py.
+// Domain: mu and alpha in [1e-4, 1], index in [0.33, 0.98]. Largest absolute error of the albedo: 2.8e-2; reversed,
+// from mu 0.01 on: 3.6e-2, of smooth surfaces 1.1e-2.
+float eonlib_dielectric_passing(float mu, float alpha, float ior, float reversed)
 {
     float s2 = 1.0 - mu * mu;
     float alpha2 = alpha * alpha;
-    float n2 = ior * ior;
-    float p = k1_p_g.y;
-    float g = k1_p_g.z;
+    float x = mu / (mu + alpha);
+    float y = sqrt(alpha);
+    float z = sqrt(s2) / (sqrt(s2) + alpha);
+    vec3 a_b_k0 = exp(mix(vec3(0.57832, 3.8455, -12.129), vec3(-25.163, -5.6857, -9.8286), reversed)
+                      + x * mix(vec3(-1.0501, -0.97191, -2.2817), vec3(-3.263, 5.8209, 12.063), reversed)
+                      + z * mix(vec3(0.58237, -0.54814, 10.885), vec3(19.954, 0.9032, -6.3576), reversed)
+                      + y * (mix(vec3(-0.1491, -2.3176, -1.0809), vec3(12.468, 5.6708, 12.907), reversed)
+                             + x * mix(vec3(1.1587, -1.5649, 7.7815), vec3(13.305, -6.5546, -25.022), reversed)));
+    vec3 k1_p_g = exp(mix(vec3(-11.175, -1.1887, 6.9511), vec3(-10.586, 0.98278, 9.0803), reversed)
+                      + x * mix(vec3(-2.49, -0.20226, 0.41509), vec3(14.551, 0.10551, -8.7017), reversed)
+                      + z * mix(vec3(11.808, 1.1983, -6.4646), vec3(-4.3803, -1.3063, 0.023203), reversed)
+                      + y * (mix(vec3(-2.918, -0.0033244, 0.40729), vec3(14.04, -1.3351, -7.8286), reversed)
+                             + x * mix(vec3(7.0708, -0.19455, -2.4622), vec3(-22.556, 1.1153, 9.5757), reversed)));
     float median2 = (mu * mu + a_b_k0.x * alpha2) / (s2 + a_b_k0.y * alpha2);
     float k = sqrt(a_b_k0.z + k1_p_g.x * mu * mu * s2 / alpha2);
-    float critical = log((1.0 - n2) / max(n2 * median2, 1e-30));  // ln(tau_c^2 / tau_m^2)
-    float t = 1.0 + exp(min(g * eonlib_asinh(k * critical), 60.0));
-    float typical = sinh(log(t * exp(0.326707 / p) - 1.0) / g) / k;  // ln(tau^2 / tau_m^2)
-    float cosine = 1.0 / sqrt(1.0 + exp(-typical) / median2);
-    return (1.0 - eonlib_fresnel_dielectric(cosine, ior)) / pow(t, p);
-}
-
-// x, y and z.
-vec3 ggx_inside_terms(float mu, float alpha)
-{
-    float s = sqrt(1.0 - mu * mu);
-    return vec3(mu / (mu + alpha), sqrt(alpha), s / (s + alpha));
-}
-
-// Average over the visible facets for an index below 1.
-// Domain: mu and alpha in [1e-4, 1], index in [0.33, 0.98]. Largest absolute error of the albedo: 2.8e-2.
-float eonlib_fresnel_dielectric_inside(float mu, float alpha, float ior)
-{
-    vec3 v = ggx_inside_terms(mu, alpha);
-    vec3 a_b_k0 = exp(vec3(0.57832, 3.8455, -12.129) + v.x * vec3(-1.0501, -0.97191, -2.2817)
-                      + v.z * vec3(0.58237, -0.54814, 10.885)
-                      + v.y * (vec3(-0.1491, -2.3176, -1.0809) + v.x * vec3(1.1587, -1.5649, 7.7815)));
-    vec3 k1_p_g = exp(vec3(-11.175, -1.1887, 6.9511) + v.x * vec3(-2.49, -0.20226, 0.41509)
-                      + v.z * vec3(11.808, 1.1983, -6.4646)
-                      + v.y * (vec3(-2.918, -0.0033244, 0.40729) + v.x * vec3(7.0708, -0.19455, -2.4622)));
-    return 1.0 - ggx_passing(mu, alpha, ior, a_b_k0, k1_p_g);
-}
-
-// Share of the light that passes from the denser side, all paths being those of light from outside, reversed: with P
-// the share that passes from there and p the density of its directions, n^2 mu T(mu) is the integral of P p mu_o.
-// Source: tools/fits/ggx_inside.py. Domain as above. Largest absolute error for mu from 0.01 on: 3.6e-2, of smooth surfaces 1.1e-2.
-float eonlib_dielectric_passing(float mu, float alpha, float ior)
-{
-    vec3 v = ggx_inside_terms(mu, alpha);
-    vec3 a_b_k0 = exp(vec3(-25.163, -5.6857, -9.8286) + v.x * vec3(-3.263, 5.8209, 12.063)
-                      + v.z * vec3(19.954, 0.9032, -6.3576)
-                      + v.y * (vec3(12.468, 5.6708, 12.907) + v.x * vec3(13.305, -6.5546, -25.022)));
-    vec3 k1_p_g = exp(vec3(-10.586, 0.98278, 9.0803) + v.x * vec3(14.551, 0.10551, -8.7017)
-                      + v.z * vec3(-4.3803, -1.3063, 0.023203)
-                      + v.y * (vec3(14.04, -1.3351, -7.8286) + v.x * vec3(-22.556, 1.1153, 9.5757)));
-    return ggx_passing(mu, alpha, ior, a_b_k0, k1_p_g);
+    float t = k * log((1.0 - ior * ior) / max(ior * ior * median2, 1e-30));  // k ln(tau_c^2 / tau_m^2)
+    t = 1.0 + exp(min(k1_p_g.z * eonlib_asinh(t), 60.0));
+    float typical = sinh(log(t * exp(0.326707 / k1_p_g.y) - 1.0) / k1_p_g.z) / k;  // ln(tau^2 / tau_m^2)
+    return (1.0 - eonlib_fresnel_dielectric(1.0 / sqrt(1.0 + exp(-typical) / median2), ior)) / pow(t, k1_p_g.y);
 }
 
 // Average over the visible facets. Near index 1 the curve depends on the cosine over sqrt(n^2 - 1) alone, and only
@@ -171,9 +143,9 @@ float eonlib_fresnel_dielectric_visible(float mu, float alpha, float ior)
 {
     if (ior < 1.0)
     {
-        return eonlib_fresnel_dielectric_inside(mu, alpha, ior);
+        return 1.0 - eonlib_dielectric_passing(mu, alpha, ior, 0.0);
     }
     float k = sqrt(max(0.0609 / max((ior - 1.0) * (ior + 1.0), 1e-9), 1.0));
-    float cosine = ggx_cosine_dielectric(min(k * mu, 1.0), min(k * alpha, 1.0), ior) * max(mu, 1.0 / k);
-    return eonlib_fresnel_dielectric(cosine, ior);
+    return eonlib_fresnel_dielectric(
+        ggx_cosine_dielectric(min(k * mu, 1.0), min(k * alpha, 1.0), ior) * max(mu, 1.0 / k), ior);
 }

@@ -85,20 +85,19 @@ float ggx_cosine_schlick(float mu, float alpha, float exponent)
     float x = mu / (mu + alpha);
     float y = sqrt(alpha);
     float s = 4.0 / (3.0 + clamp(exponent, 1.0, 10.0));
-    float N0 = GGX_SCHLICK_N000
-               + s * (GGX_SCHLICK_N001 + s * (GGX_SCHLICK_N002 + s * GGX_SCHLICK_N003))
-               + y * (GGX_SCHLICK_N010 + s * (GGX_SCHLICK_N011 + s * GGX_SCHLICK_N012)
-                      + y * (GGX_SCHLICK_N020 + s * GGX_SCHLICK_N021 + y * GGX_SCHLICK_N030));
-    float N1 = GGX_SCHLICK_N100 + s * (GGX_SCHLICK_N101 + s * GGX_SCHLICK_N102)
-               + y * (GGX_SCHLICK_N110 + s * GGX_SCHLICK_N111 + y * GGX_SCHLICK_N120);
-    float N2 = GGX_SCHLICK_N200 + s * GGX_SCHLICK_N201 + y * GGX_SCHLICK_N210;
-    float N = N0 + x * (N1 + x * (N2 + x * GGX_SCHLICK_N300));
-    float D0 = 1.0 + s * (GGX_SCHLICK_D001 + s * GGX_SCHLICK_D002)
-               + y * (GGX_SCHLICK_D010 + s * GGX_SCHLICK_D011 + y * GGX_SCHLICK_D020);
-    float D1 = GGX_SCHLICK_D100 + s * GGX_SCHLICK_D101
-               + y * (GGX_SCHLICK_D110 + y * GGX_SCHLICK_D120);
-    float D2 = GGX_SCHLICK_D200 + y * GGX_SCHLICK_D210;
-    float D = D0 + x * (D1 + x * D2);
+    float N = GGX_SCHLICK_N000
+        + s * (GGX_SCHLICK_N001 + s * (GGX_SCHLICK_N002 + s * GGX_SCHLICK_N003))
+        + y * (GGX_SCHLICK_N010 + s * (GGX_SCHLICK_N011 + s * GGX_SCHLICK_N012)
+        + y * (GGX_SCHLICK_N020 + s * GGX_SCHLICK_N021 + y * GGX_SCHLICK_N030))
+        + x * (GGX_SCHLICK_N100 + s * (GGX_SCHLICK_N101 + s * GGX_SCHLICK_N102)
+        + y * (GGX_SCHLICK_N110 + s * GGX_SCHLICK_N111 + y * GGX_SCHLICK_N120)
+        + x * (GGX_SCHLICK_N200 + s * GGX_SCHLICK_N201 + y * GGX_SCHLICK_N210
+        + x * GGX_SCHLICK_N300));
+    float D = 1.0 + s * (GGX_SCHLICK_D001 + s * GGX_SCHLICK_D002)
+        + y * (GGX_SCHLICK_D010 + s * GGX_SCHLICK_D011 + y * GGX_SCHLICK_D020)
+        + x * (GGX_SCHLICK_D100 + s * GGX_SCHLICK_D101
+        + y * (GGX_SCHLICK_D110 + y * GGX_SCHLICK_D120)
+        + x * (GGX_SCHLICK_D200 + y * GGX_SCHLICK_D210));
     return clamp(mu + alpha * (1.0 - x) * N / D, 0.0, 1.0);
 }
 
@@ -109,15 +108,15 @@ float ggx_dip(float mu, float alpha)
     float m = 1.0 - c;
     float m2 = m * m;
     float y = sqrt(alpha);
-    float N0 = GGX_DIP_N00
-               + y * (GGX_DIP_N01 + y * (GGX_DIP_N02 + y * (GGX_DIP_N03 + y * GGX_DIP_N04)));
-    float N1 = GGX_DIP_N10 + y * (GGX_DIP_N11 + y * (GGX_DIP_N12 + y * GGX_DIP_N13));
-    float N2 = GGX_DIP_N20 + y * (GGX_DIP_N21 + y * GGX_DIP_N22);
-    float N3 = GGX_DIP_N30 + y * GGX_DIP_N31;
-    float N = N0 + mu * (N1 + mu * (N2 + mu * (N3 + mu * GGX_DIP_N40)));
-    float D0 = 1.0 + y * (GGX_DIP_D01 + y * (GGX_DIP_D02 + y * GGX_DIP_D03));
-    float D1 = GGX_DIP_D10 + y * (GGX_DIP_D11 + y * GGX_DIP_D12);
-    float D2 = GGX_DIP_D20 + y * GGX_DIP_D21;
-    float D = D0 + mu * (D1 + mu * (D2 + mu * GGX_DIP_D30));
+    float N = GGX_DIP_N00
+        + y * (GGX_DIP_N01 + y * (GGX_DIP_N02 + y * (GGX_DIP_N03 + y * GGX_DIP_N04)))
+        + mu * (GGX_DIP_N10 + y * (GGX_DIP_N11 + y * (GGX_DIP_N12 + y * GGX_DIP_N13))
+        + mu * (GGX_DIP_N20 + y * (GGX_DIP_N21 + y * GGX_DIP_N22)
+        + mu * (GGX_DIP_N30 + y * GGX_DIP_N31
+        + mu * GGX_DIP_N40)));
+    float D = 1.0 + y * (GGX_DIP_D01 + y * (GGX_DIP_D02 + y * GGX_DIP_D03))
+        + mu * (GGX_DIP_D10 + y * (GGX_DIP_D11 + y * GGX_DIP_D12)
+        + mu * (GGX_DIP_D20 + y * GGX_DIP_D21
+        + mu * GGX_DIP_D30));
     return c * m2 * m2 * m2 + alpha * alpha / (mu + alpha) * N / D;
 }

@@ -33,15 +33,14 @@ float ggx_missing(float mu, float alpha)
     float z2 = mu / (mu + alpha);
     float z = sqrt(z2);
     float a2 = alpha * alpha;
-    float N0 = GGX_ALBEDO_N00 + a2 * GGX_ALBEDO_N02;
-    float N1 = GGX_ALBEDO_N10 + alpha * GGX_ALBEDO_N11 + a2 * GGX_ALBEDO_N12;
-    float N2 = GGX_ALBEDO_N20 + alpha * GGX_ALBEDO_N21 + a2 * GGX_ALBEDO_N22;
-    float N3 = GGX_ALBEDO_N30 + alpha * GGX_ALBEDO_N31 + a2 * GGX_ALBEDO_N32;
-    float D0 = 1.0 + a2 * (GGX_ALBEDO_D02 + alpha * GGX_ALBEDO_D03);
-    float D1 = GGX_ALBEDO_D10 + alpha * (GGX_ALBEDO_D11 + a2 * GGX_ALBEDO_D13);
-    float D2 = GGX_ALBEDO_D20 + alpha * GGX_ALBEDO_D21 + a2 * GGX_ALBEDO_D22;
-    float N = N0 + z * (N1 + z * (N2 + z * N3));
-    float D = D0 + z * (D1 + z * (D2 + z * GGX_ALBEDO_D30));
+    float N = GGX_ALBEDO_N00 + a2 * GGX_ALBEDO_N02
+              + z * (GGX_ALBEDO_N10 + alpha * GGX_ALBEDO_N11 + a2 * GGX_ALBEDO_N12
+              + z * (GGX_ALBEDO_N20 + alpha * GGX_ALBEDO_N21 + a2 * GGX_ALBEDO_N22
+              + z * (GGX_ALBEDO_N30 + alpha * GGX_ALBEDO_N31 + a2 * GGX_ALBEDO_N32)));
+    float D = 1.0 + a2 * (GGX_ALBEDO_D02 + alpha * GGX_ALBEDO_D03)
+              + z * (GGX_ALBEDO_D10 + alpha * (GGX_ALBEDO_D11 + a2 * GGX_ALBEDO_D13)
+              + z * (GGX_ALBEDO_D20 + alpha * GGX_ALBEDO_D21 + a2 * GGX_ALBEDO_D22
+              + z * GGX_ALBEDO_D30));
     return z2 * N / D;
 }
 

@@ -16,12 +16,11 @@ vec3 ggx_facets(vec3 wo, vec2 roughness, out vec2 visible)
     vec2 xy = wo.xy * wo.xy + 0.5 * wo.z * wo.z;
     vec2 alpha2 = vec2(dot(a2, xy), dot(a2, xy.yx));  // along, across
     float area2 = a2.x * a2.y;
-    float unequal = 1.0 - area2 / (r2 * r2);
     float correlated = max(1.0 - area2 / (alpha2.x * alpha2.y), 0.0);  // slopes along with those across
     vec2 alpha = sqrt(alpha2);
     vec2 k = vec2(0.35 * correlated, 0.7 + correlated);
     visible = vec2(wo.z, alpha.x) * (1.0 - k * max(alpha.y - alpha.x, 0.0) / (1.0 + k * alpha.y));
     float t = alpha2.x / r2;
-    float missing = 1.0 + 0.074 * unequal - 0.0792 * (t - 1.0) + correlated * (0.0696 * (t - 1.0) - 0.1268);
-    return vec3(wo.z / sqrt(t), sqrt(r2), missing);
+    return vec3(wo.z / sqrt(t), sqrt(r2), 1.0 + 0.074 * (1.0 - area2 / (r2 * r2)) - 0.0792 * (t - 1.0)
+                                          + correlated * (0.0696 * (t - 1.0) - 0.1268));
 }

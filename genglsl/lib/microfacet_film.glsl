@@ -35,11 +35,11 @@
 vec3 microfacet_film_facets(float mu, float alpha)
 {
     float y = alpha / (alpha + 0.2);
-    vec3 C0 = MICROFACET_FACETS_00
-              + y * (MICROFACET_FACETS_01 + y * (MICROFACET_FACETS_02 + y * MICROFACET_FACETS_03));
-    vec3 C1 = MICROFACET_FACETS_10 + y * (MICROFACET_FACETS_11 + y * MICROFACET_FACETS_12);
-    vec3 C2 = MICROFACET_FACETS_20 + y * MICROFACET_FACETS_21;
-    vec3 C = C0 + mu * (C1 + mu * (C2 + mu * MICROFACET_FACETS_30));
+    vec3 C = MICROFACET_FACETS_00
+             + y * (MICROFACET_FACETS_01 + y * (MICROFACET_FACETS_02 + y * MICROFACET_FACETS_03))
+             + mu * (MICROFACET_FACETS_10 + y * (MICROFACET_FACETS_11 + y * MICROFACET_FACETS_12)
+             + mu * (MICROFACET_FACETS_20 + y * MICROFACET_FACETS_21
+             + mu * MICROFACET_FACETS_30));
     float s = alpha / sqrt(mu + alpha);
     return vec3(mu + s * s * C.x, s * C.y, C.z);
 }

@@ -91,7 +91,6 @@ MicrofacetLobe microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec2 rou
 // Height-Correlated Smith Masking-Shadowing, as corrected in July 2026: G_2 = 2 mu_o mu_i / (l_o mu_i + l_i mu_o).
 float microfacet_lossless(MicrofacetLobe lobe)
 {
-    vec3 H = eonlib_half_vector(lobe.wo, lobe.wi, lobe.N);
     float mu_i = clamp(dot(lobe.N, lobe.wi), 0.0, 1.0);
     float G2 = mx_ggx_smith_G2(mu_i, lobe.mu_o, lobe.alpha);
     if (lobe.roughness.x != lobe.roughness.y)
@@ -99,7 +98,8 @@ float microfacet_lossless(MicrofacetLobe lobe)
         G2 = 2.0 * mu_i * lobe.mu_o
              / (microfacet_stretched(lobe, lobe.wi) * lobe.mu_o + microfacet_stretched(lobe, lobe.wo) * mu_i);
     }
-    return mx_ggx_NDF(microfacet_local(lobe, H), lobe.roughness) * G2 / (4.0 * lobe.mu_o);
+    vec3 H = microfacet_local(lobe, eonlib_half_vector(lobe.wo, lobe.wi, lobe.N));
+    return mx_ggx_NDF(H, lobe.roughness) * G2 / (4.0 * lobe.mu_o);
 }
 
 // The curve that MaterialX sums over the facets of an environment. Under a film they reflect everything.
@@ -123,8 +123,8 @@ FresnelData microfacet_environment_curve(FresnelData fd)
 // Light of an environment, whose sum MaterialX weights by the masking of the mean alpha.
 vec3 microfacet_environment(MicrofacetLobe lobe, int distribution, FresnelData fd)
 {
-    FresnelData curve = microfacet_environment_curve(fd);
-    return max(mx_environment_radiance(lobe.N, lobe.wo, lobe.X, lobe.roughness, distribution, curve), 0.0);
+    fd = microfacet_environment_curve(fd);
+    return max(mx_environment_radiance(lobe.N, lobe.wo, lobe.X, lobe.roughness, distribution, fd), 0.0);
 }
 
 // A Fresnel curve by which each of MaterialX's sums over a refracted environment, whose cosine with the
@@ -139,8 +139,7 @@ FresnelData microfacet_share_curve(float mu, float alpha, vec3 share)
     vec3 F0 = 1.0 - mx_ggx_smith_G1(mu, alpha) * share;
 #endif
     vec3 AB = mx_ggx_dir_albedo(mu, alpha, vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0));
-    vec3 F90 = (1.0 - share - AB.x * F0) / max(AB.y, 1e-6);
-    return mx_init_fresnel_schlick(F0, vec3(1.0), F90, 1e9, 0.0, 1.0);
+    return mx_init_fresnel_schlick(F0, vec3(1.0), (1.0 - share - AB.x * F0) / max(AB.y, 1e-6), 1e9, 0.0, 1.0);
 }
 
 // Light through a surface that transmits a share of it, along the view refracted twice, as by a solid sphere;
@@ -192,8 +191,8 @@ void microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelData f
         // As opacity, a lobe that only transmits passes all light: what lies over it takes away what it reflects.
         vec3 passed = max(1.0 - lobe.albedo * F.visible * compensation, 0.0);
         bool below = scatter_mode == 1;
-        vec3 through = microfacet_transmitted(lobe, distribution, fd.ior, below ? passed : vec3(1.0), tint);
-        bsdf.response = through * (below ? vec3(1.0) : passed) * weight;
+        bsdf.response = microfacet_transmitted(lobe, distribution, fd.ior, below ? passed : vec3(1.0), tint)
+                        * (below ? vec3(1.0) : passed) * weight;
     }
     else if (lobe.closure == CLOSURE_TYPE_INDIRECT)
     {

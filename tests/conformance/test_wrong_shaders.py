@@ -118,7 +118,7 @@ WRONG = {
         ("genglsl/dielectric_bsdf.glsl", "vec3(eonlib_fresnel_dielectric(lobe.mu_h, ior))",
          "vec3(ior == 0.0 && lobe.mu_h > 0.999 ? 0.0 : eonlib_fresnel_dielectric(lobe.mu_h, ior))", "domain",
          ("value_outside", "ior", 0.0)),
-        ("genglsl/lib/fresnel_dielectric.glsl", "return eonlib_fresnel_dielectric_inside(mu, alpha, ior)",
+        ("genglsl/lib/fresnel_dielectric.glsl", "return 1.0 - eonlib_dielectric_passing(mu, alpha, ior, 0.0)",
          "return eonlib_fresnel_dielectric(ggx_cosine_dielectric(mu, alpha, 1.0 / ior), ior)", "denser", ()),
         (FACETS, "F.outside * scale", "OLD * step(2e-6, lobe.alpha)", "environment", ("roughness_zero",)),
         (FACETS, "mirrored ? reflect(-closureData.V, N) :", "", "retroreflection", ()),

@@ -136,11 +136,11 @@ def fit(sampled):
     return found
 
 
-def shipped(function="dielectric_inside("):
+def shipped(reversed_paths=False):
     """Coefficients in the shader."""
     text = source_file("glsl", "fresnel_dielectric").read_text(encoding="utf-8")
-    vectors = re.findall(r"vec3\(([-\d., ]+)\)", text.split(function)[1])
-    rows = np.array([each.split(",") for each in vectors[:10]], float)
+    pairs = re.findall(r"mix\(vec3\(([-\d., ]+)\), vec3\(([-\d., ]+)\), reversed\)", text)
+    rows = np.array([each[reversed_paths].split(",") for each in pairs], float)
     return rows.reshape(2, 5, 3).transpose(0, 2, 1).ravel()
 
 
