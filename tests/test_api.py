@@ -217,4 +217,5 @@ def test_a_type_checker_passes_the_gate_and_finds_mistakes_in_it(tmp_path):
     environment = {"MYPYPATH": str(ROOT / "python"), "PATH": ""}
     done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
     found = re.findall(r"^(.*?):\d+: error: .*\[(.*)\]$", done.stdout, re.MULTILINE)
-    assert {*found} == {("wrong.py", code) for _, code in MISTAKES.values()}, done.stdout
+    assert {file for file, _ in found} == {"wrong.py"}, done.stdout
+    assert {code for _, code in found} >= {code for _, code in MISTAKES.values()}, done.stdout
