@@ -296,6 +296,7 @@ def critical(case: Case) -> Compared:
     functions = case.of(TransmissionSpec).functions
     index, mu = functions.ior(batch.inputs), np.minimum(batch.wo[:, 2], 1.0)
     away = np.abs(mu - np.sqrt(np.maximum(1.0 - index * index, 0.0))) > CRITICAL
+    away &= ~microfacets.falls_below_0(batch)
     batch, mu = batch.where(away), mu[away]
     passed = functions.tint(batch.inputs) * (1.0 - functions.fresnel(mu, batch.inputs))
     return Compared(batch, case.transmitted(batch), batch.strength * passed)

@@ -321,11 +321,12 @@ class FacetSpec(PbrSpec):
         return *super().few(batches, counts), batches[-1].first(counts.few)
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        """Views whose smoothest lobes are mirrors, which have an albedo, but no values."""
+        """Views whose smoothest lobes are mirrors, which have an albedo, but no values; no curve falls below 0."""
         rows = [(batch, simple(batch.inputs)) for batch in super().views(batches, counts)]
         for _, inputs in rows:
             inputs["roughness"][inputs["roughness"] < LEAST_ALPHA] = 0.0
-        return tuple(replace(batch, inputs=inputs) for batch, inputs in rows)
+        changed = (replace(batch, inputs=inputs) for batch, inputs in rows)
+        return tuple(batch.where(~falls_below_0(batch)) for batch in changed)
 
     def mirrored(self, counts: Counts) -> tuple[Batch, Batch]:
         """Two lights near the mirror direction of each view, by normals that the view sees."""
@@ -439,9 +440,19 @@ def _has_curve(batch: Batch) -> samples.Mask:
 
 def is_below_0(batch: Batch) -> samples.Mask:
     """Pairs for which a printed curve is below 0 in some channel, which dark colors with a small color82 have."""
+    return _below_0(batch, np.minimum(0.5 * np.linalg.norm(batch.wo + batch.wi, axis=1), 1.0))
+
+
+def falls_below_0(batch: Batch) -> samples.Mask:
+    """Materials whose printed curve is below 0 at some cosine."""
+    cosines = np.linspace(0.0, 1.0, 65)
+    found = (_below_0(batch, np.full(len(batch.wo), each)) for each in cosines)
+    return np.asarray(np.any([*found], axis=0))
+
+
+def _below_0(batch: Batch, cosine: Array) -> samples.Mask:
     if "color82" not in batch.inputs:
         return np.zeros(len(batch.wo), bool)
-    cosine = np.minimum(0.5 * np.linalg.norm(batch.wo + batch.wi, axis=1), 1.0)
     color0, color82, color90 = (batch.inputs[name] for name in ("color0", "color82", "color90"))
     F = fresnel_schlick(cosine, color0, color82, color90, batch.inputs["exponent"])
     return np.asarray((F < 0.0).any(axis=1))
