@@ -387,6 +387,6 @@ def test_a_method_that_the_text_does_not_have_is_refused(monkeypatch):
 
 def test_options_of_another_layout_are_refused():
     context = mx_gen.GenContext(mx_glsl.GlslShaderGenerator.create())
-    unbound_members(context.getOptions())[2] = 3
+    unbound_members(context.getOptions(), 3)[2] = 3
     with pytest.raises(LookupError, match="keeps options without a Python binding elsewhere"):
-        unbound_members(context.getOptions())
+        unbound_members(context.getOptions(), 3)
