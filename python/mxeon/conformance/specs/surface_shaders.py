@@ -34,7 +34,13 @@ from mxeon.conformance.spec import (
     draw,
 )
 from mxeon.conformance.specs.lobes import LEAST_VIEW
-from mxeon.conformance.specs.microfacets import FILM_ERRORS, LOBE_FIT, reflected, sum_over
+from mxeon.conformance.specs.microfacets import (
+    FILM_ERRORS,
+    LOBE_FIT,
+    falls_below_0,
+    reflected,
+    sum_over,
+)
 from mxeon.conformance.tolerance import Term, Tolerance, mean_scaled, roundings, sum_in, sum_of
 from mxeon.shaders.nodes import document_text, input_text, node_text
 
@@ -262,7 +268,14 @@ class SurfaceShaderSpec(LobeSpec):
     few = ValueSpec.few
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        return (_isotropic(batches[0].first(counts.albedos)),)
+        """Views of isotropic materials; a metal's curve stays above 0, which MaterialX's sum does not clamp."""
+        batch = _isotropic(batches[0].first(counts.albedos))
+        if "base_metalness" in self.names:  # OpenPBR's, the one with a color at 82 degrees
+            color0 = batch.inputs["base_color"] * batch.inputs["base_weight"][:, np.newaxis]
+            color82, color90 = batch.inputs["specular_color"], np.ones((1, 3))
+            curve = {"color0": color0, "color82": color82, "color90": color90, "exponent": 5.0}
+            batch = batch.where(~falls_below_0(replace(batch, inputs=curve)))
+        return (batch,)
 
     def edges(self, counts: Counts) -> Batch:
         """Views of materials in which every lobe takes part."""
