@@ -73,12 +73,12 @@ THIN: dict[str, float | str] = {
     "alpha_mode": "2",
 }
 
-# Glass, and the name of its index of refraction.
+# Glass, and the name of its index of refraction. UsdPreviewSurface reflects by Schlick's curve, which has no index of
+# a denser side.
 GLASS: dict[str, tuple[str, Values]] = {
     "dielectric_bsdf": ("ior", {"tint": (0.9, 0.8, 0.7), "roughness": (0.4, 0.4)}),
     "standard_surface": ("specular_IOR", {"transmission": 1.0, "specular_roughness": 0.5}),
     "open_pbr_surface": ("specular_ior", {"transmission_weight": 1.0, "specular_roughness": 0.5}),
-    "UsdPreviewSurface": ("ior", {"opacity": 0.0, "roughness": 0.5}),
 }
 INDEX = 2.0  # whose inverse is exact
 DRAWN = family(LobeSpec) - BELOW
