@@ -114,3 +114,12 @@ def test_glass_passes_by_every_method_and_as_stock_has_it_does_not(judged, check
     assert judged(check, glass, methods=methods).verdict == PASSED
     if check == "transmitted":
         assert judged(check, glass, library="stock", methods=methods).verdict == FAILED
+
+
+def test_microfacets_of_a_prefiltered_environment_have_materialx_s_fit(judged):
+    """Stock has no compensation by the exact average."""
+    found = [
+        judged("environment", "conductor_bsdf", library=each, methods=Methods("prefilter"))
+        for each in ("eonlib", "stock")
+    ]
+    assert [each.verdict for each in found] == [PASSED, FAILED]

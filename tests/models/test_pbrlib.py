@@ -12,7 +12,7 @@ from mxeon.models.microfacet import defects as materialx_fits
 from mxeon.models.microfacet.ggx import ggx_albedo_dir
 from mxeon.models.nodes import NODES, node
 from mxeon.models.nodes.combinations import COMBINATIONS, NESTED, ROUGHNESS
-from mxeon.models.nodes.microfacets import MICROFACET_NODES
+from mxeon.models.nodes.microfacets import LOBES, MICROFACET_NODES
 from mxeon.models.sheen import conty_kulla_albedo_dir, zeltner_albedo_dir, zeltner_brdf
 
 COUNT = 6
@@ -95,11 +95,15 @@ def test_each_variant_has_another_value_or_another_albedo(row):
 
 
 @pytest.mark.parametrize("row", MICROFACET_NODES, ids=lambda row: row.name)
-def test_a_mirror_reflects_all_light(row):
+def test_a_mirror_reflects_all_light_and_prefiltered_what_the_fit_says(row):
     wo, values = directions(), inputs(row)
     for name, value in row.mirror.items():
         values[name] = np.broadcast_to(value, values[name].shape)
     np.testing.assert_allclose(row.albedo(wo, values), 1.0, atol=1e-5)
+    mu, alpha = wo[:, 2], values["roughness"][:, 0]
+    share = materialx_fits.fitted_albedo(mu, alpha, 1.0, 1.0) / ggx_albedo_dir(mu, alpha)
+    found = LOBES[row.category].prefiltered(wo, values)
+    np.testing.assert_allclose(found, np.stack([share] * 3, -1), atol=1e-5)
 
 
 def test_a_layer_is_the_algebra_of_two_sheens():

@@ -14,8 +14,12 @@ from tools.benchmarks.mutants.mutant import ROOT, Mutant, read_table
 GROUP = "Operators"
 SURVIVORS = Path(__file__).with_name("survivors.toml")  # lines => wrong ones that nothing notices
 FOLDERS = ("genglsl", "genosl")
+# No host of a trial compiles these: a client does that searches the folder, and MaterialX with patch 0009.
+PREFILTER = "genglsl/prefilter/"
+UNCOMPILED = r"^#ifdef (?:EONLIB_PREFILTERED|MX_REFRACTION_UNMASKED)\b.*?(?=^#e)"
 COMMENT = re.compile(
-    r"//[^\n]*|/\*.*?\*/|^[ \t]*#(?:include|if|el|end|pragma|undef)[^\n]*", re.M | re.S
+    rf"{UNCOMPILED}|//[^\n]*|/\*.*?\*/|^[ \t]*#(?:include|if|el|end|pragma|undef)[^\n]*",
+    re.M | re.S,
 )
 RAISED = 1.1  # a constant; 0 becomes 0.1
 SWAPPED = {
@@ -85,9 +89,10 @@ def every() -> tuple[Mutant, ...]:
 
 @cache
 def files() -> tuple[str, ...]:
-    """Shaders of eonlib, by their paths from the root."""
-    found = [path for folder in FOLDERS for path in (ROOT / folder).rglob("*.*sl")]
-    return tuple(sorted(path.relative_to(ROOT).as_posix() for path in found))
+    """Shaders of eonlib that a trial compiles, by their paths from the root."""
+    paths = [path for folder in FOLDERS for path in (ROOT / folder).rglob("*.*sl")]
+    found = sorted(path.relative_to(ROOT).as_posix() for path in paths)
+    return tuple(each for each in found if not each.startswith(PREFILTER))
 
 
 def mutants_of(file: str) -> Iterator[Mutant]:
@@ -117,7 +122,7 @@ def mutants_of(file: str) -> Iterator[Mutant]:
 
 
 def code_of(text: str) -> str:
-    """A source with blanks instead of comments and includes."""
+    """A source with blanks instead of comments, includes and what is not compiled."""
     return COMMENT.sub(lambda match: re.sub(r"\S", " ", match[0]), text)
 
 

@@ -29,6 +29,7 @@ from mxeon.conformance.specs.combinations import COMBINED_SPECS
 from mxeon.errors import MxeonError
 from mxeon.shaders import generators, library
 from mxeon.shaders.nodes import EON, OREN_NAYAR
+from tools.benchmarks.mutants import operators
 from tools.benchmarks.mutants.mutant import FOLDERS, ROOT, Mutant
 
 KILLED, SURVIVED = "killed", "survived"
@@ -38,6 +39,10 @@ TEXT, TESTS = "text", "tests"  # instead of a host
 # What Cycles cannot show exactly or at all, tests run in Blender's OSL.
 PROFILE, PROFILE_TESTS = "genosl/cycles/", ("tests/hosts/test_osl.py",)
 PATH, PATH_TESTS = "genglsl/path/", ("tests/shaders/test_path_tracing.py",)  # run by no check
+PREFILTER_TESTS = (  # the host storm searches that folder
+    "tests/hosts/test_document_hosts.py::"
+    "test_microfacets_in_the_dome_of_storm_are_as_bright_as_their_albedo",
+)
 NOISY = ("environment", "furnace")  # checks that take Cycles longest
 # Files that no shader for gl holds: there the gl host has nothing to see.
 ON_CYCLES = ("genosl/",)
@@ -53,6 +58,8 @@ def trial(mutant: Mutant, judge: Judge, every: bool = False) -> dict[str, Any]:
         return by_tests(mutant, (named,) if mutant.equivalent else (named, (MODEL_TESTS,)))
     if mutant.file.startswith(PATH):
         return by_tests(mutant, (PATH_TESTS,))
+    if mutant.file.startswith(operators.PREFILTER):
+        return by_tests(mutant, (PREFILTER_TESTS,))
     found = _on_hosts(mutant, judge, every)
     if found["verdict"] == SURVIVED and mutant.file.startswith(PROFILE):
         return by_tests(mutant, (PROFILE_TESTS,))

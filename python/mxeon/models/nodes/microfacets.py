@@ -76,9 +76,6 @@ class MicrofacetLobe:
         function = film_albedo_dir if _has_film(inputs) else node_albedo
         return function(self.category, wo, inputs, compensate=compensate)
 
-    def isotropic_albedo(self, wo: Array, inputs: Inputs) -> Array:
-        return self.albedo(wo, isotropic(inputs))
-
     def ends(self, wo: Array, inputs: Inputs) -> tuple[Array, Array | float]:
         """F along the normal and at grazing."""
         return self.fresnel(np.ones(len(wo)), inputs), inputs[self.edge] if self.edge else 1.0
@@ -89,11 +86,8 @@ class MicrofacetLobe:
 
     def prefiltered(self, wo: Array, inputs: Inputs) -> Array:
         """Albedo by MaterialX's fit, as its prefiltered environment has it, with the exact compensation."""
-        single = self.albedo(wo, isotropic(inputs), compensate=False)
-        lit = single > 0.0
-        ratio = np.divide(
-            self.isotropic_albedo(wo, inputs), single, out=np.ones(single.shape), where=lit
-        )
+        whole, single = (self.albedo(wo, isotropic(inputs), each) for each in (True, False))
+        ratio = np.divide(whole, single, out=np.ones(single.shape), where=single > 0.0)
         fit = layer_albedo(wo, inputs, *self.ends(wo, inputs), np.zeros(3))
         return np.asarray(fit * ratio * inputs.get("tint", np.ones(3)))
 
