@@ -66,8 +66,12 @@ def film(choices):
     """What a film is named by, whose curve and compensation are these."""
     return {
         **dict.fromkeys(
-            ("value", "anisotropic_value", "film_curve", "film_orders"),
+            ("value", "film_curve", "film_orders"),
             ("model", f"{choices}, with MaterialX's compensation"),
+        ),
+        "anisotropic_value": (
+            "model",
+            f"Smith at the geometric mean, and {choices}, with MaterialX's compensation",
         ),
         "film_limit": ("model", choices),
         **dict.fromkeys(

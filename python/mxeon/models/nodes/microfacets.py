@@ -21,6 +21,7 @@ from mxeon.models.microfacet.defects import (
     AVERAGED,
     FITTED,
     FITTED_DEFECTS,
+    MEAN_ALPHA,
     MICROFACET_DEFECTS,
     averaged_channels,
     fitted_compensation,
@@ -284,7 +285,7 @@ def _fitted(lobe: MicrofacetLobe, form: Form, wo: Array, inputs: Inputs) -> Arra
 
 
 def _film_variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
-    """Other films that a shader may have, each with either compensation."""
+    """Other films that a shader may have, each with either compensation; MaterialX's with its masking, too."""
     variants: list[Variant[Scattering]] = [
         Variant("no film", lambda wo, wi, inputs: row.value(wo, wi, _bare(inputs))),
         Variant(
@@ -292,7 +293,7 @@ def _film_variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
         ),
         Variant(
             "MaterialX's compensation",
-            partial(_value, row.category, TEXT, FITTED),
+            partial(_value, row.category, TEXT, Lobe(FITTED.factor)),
             permitted=True,
         ),
     ]
@@ -308,10 +309,15 @@ def _film_variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
         one = form == MIXED and row.category == "dielectric_bsdf"  # index of all channels
         if one or (form.share != 1.0 and not schlick):
             continue
+        lobes: list[tuple[str, Lobe | None]] = [(title, None)]
         later = ((", with F averaged from F0 and F90", AVERAGED),) if form == STOCK else ()
-        for words, terms in (("", None), (", with MaterialX's compensation", FITTED), *later):
-            value = partial(_value, row.category, form, terms)
-            variants.append(Variant(f"{title}{words}", value, permitted=permitted))
+        for words, terms in ((", with MaterialX's compensation", FITTED), *later):
+            lobes.append((f"{title}{words}", Lobe(terms.factor)))
+            if form in (STOCK, MATERIALX):
+                lobes.append((f"{MEAN_ALPHA}, and {title}{words}", terms))
+        for name, lobe_terms in lobes:
+            value = partial(_value, row.category, form, lobe_terms)
+            variants.append(Variant(name, value, permitted=permitted))
     return tuple(variants)
 
 
