@@ -67,7 +67,7 @@ class Check:
     tolerance: str | Tolerance  # an error of the spec, by its name, or the same for all
     control: Control
     explain: Explain
-    requires: Ability = NO_ABILITY  # of a backend, beside the node's values
+    requires: Ability = NO_ABILITY  # what a backend must support to be judged
     # Profile of the generated text, if not the rasterizer's; only for nodes that the user names.
     profile: str = ""
     # Whether an error differs, and does not fail, where a permitted function explains it.

@@ -240,7 +240,7 @@ def _albedo(albedo: Callable[[Array, Inputs], Array], batch: Batch) -> Array:
 BURLEY_VALUE = sum_of(
     roundings(2 * 17 + 7, "of the value or 1: 17 in each factor, 7 in the products")
 )
-# Burley's, as a closed form; that of others is their color.
+# Burley's albedo has a closed form; the other flat lobes reflect their color.
 FLAT_ALBEDO = sum_of(roundings(32, "of the albedo or 1"), quantity=Quantity.ALBEDO)
 FLAT_ERRORS = lobe_errors(BURLEY_VALUE, FLAT_ALBEDO, FLAT_ALBEDO, FLAT_FRAME, quadrature=1e-8)
 
