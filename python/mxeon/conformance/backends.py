@@ -22,17 +22,7 @@ from mxeon.conformance import samples, tolerance
 from mxeon.conformance.cache import EVALUATIONS, Recent, contents, parts
 from mxeon.conformance.results import Claims
 from mxeon.conformance.results.quantities import Quantity
-from mxeon.conformance.samples import (
-    BLACK,
-    LOBE_RIM,
-    RIM,
-    WHITE,
-    Array,
-    Batch,
-    Counts,
-    Mask,
-    Values,
-)
+from mxeon.conformance.samples import RIM, Array, Batch, Counts, Mask, Values
 from mxeon.conformance.spec import POWER, Ability, LobeSpec, Spec, ValueSpec, broadcast_inputs
 from mxeon.conformance.specs.diffuse import LOBE_VALUE, SurfaceLobe
 from mxeon.conformance.specs.lobes import PbrSpec, ScatteringSpec
@@ -287,7 +277,7 @@ class Evaluating(Backend):
     @cached_property
     def decoded(self) -> Shader:
         """The shader of a color in sRGB."""
-        text = self.spec.document({"color": WHITE}).replace('name="color"', SRGB_COLOR)
+        text = self.spec.document({"color": samples.WHITE}).replace('name="color"', SRGB_COLOR)
         return self.host.compile(text.replace('version="', LINEAR), library=self.library)[0]
 
     def together(self, batch: Batch, irradiance: NDArray[np.float32] | None, two: bool) -> Array:
@@ -600,7 +590,7 @@ class LobesBelow(Shown):
         inputs = self.taken(self.lobe.random_inputs(rng, count))
         wo, wi = samples.directions(rng, count), samples.directions(rng, count)
         batch = Batch(wo, wi, inputs)
-        return (batch.where(_is_shown(batch, LOBE_RIM)),)
+        return (batch.where(_is_shown(batch, samples.LOBE_RIM)),)
 
     def direct(self, batch: Batch) -> Array:
         ports = cast(SurfaceLobe, self.spec).ports
@@ -622,8 +612,8 @@ class RenderedLobes(LobesBelow):
 
 def diffuse_alone(show: Callable[[Batch], Array], batch: Batch) -> Array:
     """Values of the diffuse lobe of what is shown, without those over it; see SurfaceLobe."""
-    others = show(batch.altered(color=BLACK))
-    lambert = show(batch.altered(color=WHITE, roughness=0.0)) - others
+    others = show(batch.altered(color=samples.BLACK))
+    lambert = show(batch.altered(color=samples.WHITE, roughness=0.0)) - others
     with np.errstate(divide="ignore", invalid="ignore"):  # a shader that stays black has no value
         return (show(batch) - others) / lambert * batch.wi[:, 2:]
 
@@ -659,7 +649,9 @@ HALF_ALBEDO = sum_in(
     exact=True,
 )
 DRAWN_LOBE = LOBE_VALUE.plus(
-    roundings(16 / LOBE_RIM**2, "of a pixel's point, over the square of the least cosine, 1/4")
+    roundings(
+        16 / samples.LOBE_RIM**2, "of a pixel's point, over the square of the least cosine, 1/4"
+    )
 )
 HALF_FOUR = "half floats in four pictures, 48 times as large, half of them alike"
 HALF_LOBE = sum_in(

@@ -71,29 +71,16 @@ import numpy as np
 from numpy.polynomial.chebyshev import chebint, chebval
 
 from mxeon.models import diffuse as formulas
-from mxeon.models.core.arguments import (
-    checked,
-    checked_all,
-    checked_color,
-    checked_colors,
-    checked_directions,
-    checked_sphere,
-    checked_triples,
-    lead_shape,
-)
+from mxeon.models import sampling
+from mxeon.models.core import arguments, arrays
+from mxeon.models.core.arguments import checked_color, checked_colors, checked_directions
 from mxeon.models.core.arrays import (
     Array,
     ArrayLike,
-    Numbers,
     any_array,
     array_namespace,
-    at_least_0,
-    at_most,
     cosine,
-    fractional_power,
-    library,
     like,
-    magnitude,
     root,
 )
 from mxeon.models.core.chebyshev import chebyshev_coefficients, chebyshev_nodes, chebyshev_sum
@@ -103,16 +90,7 @@ from mxeon.models.diffuse import C1, C2, eon_albedo, eon_albedo_dir, eon_brdf, f
 from mxeon.models.microfacet import dielectric_brdf, generalized_schlick_brdf
 from mxeon.models.microfacet.fresnel import dielectric, dielectric_avg, fresnel_schlick_avg
 from mxeon.models.microfacet.slopes import slope_nodes
-from mxeon.models.sampling import (
-    around,
-    cosine_pdf,
-    eon_pdf,
-    eon_sample,
-    ggx_pdf,
-    ggx_sample,
-    stretched,
-    unpack_uniforms,
-)
+from mxeon.models.sampling import unpack_uniforms
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -139,7 +117,7 @@ class Coat:
     def at(self, mu: Array) -> tuple[Array, Array]:
         """(1 - E_ss) / E_ss, and E_r, both not below 0."""
         missing, reflected = self._sums(mu, self.missing, self.reflected)
-        return missing, at_most(reflected, 1.0)
+        return missing, arrays.at_most(reflected, 1.0)
 
     def edge_at(self, mu: Array) -> Array:
         """The facets' mean of (1 - c)^5."""
@@ -149,7 +127,7 @@ class Coat:
     def _sums(self, mu: Array, *curves: list[float] | Array) -> list[Array]:
         """Curves at these cosines, not below 0."""
         x = scaled_cosine(mu, self.alpha)
-        return [at_least_0(chebyshev_sum(cast(Array, each), x)) for each in curves]
+        return [arrays.at_least_0(chebyshev_sum(cast(Array, each), x)) for each in curves]
 
 
 def scaled_cosine(mu: Array, alpha: float | Array) -> Array:
@@ -158,7 +136,7 @@ def scaled_cosine(mu: Array, alpha: float | Array) -> Array:
     The cube root spreads terms like mu log(mu) at 0.
     """
     extent = array_namespace(alpha).asinh(1.0 / alpha)
-    return fractional_power(array_namespace(mu, alpha).asinh(mu / alpha) / extent, 1.0 / 3.0)
+    return arrays.fractional_power(array_namespace(mu, alpha).asinh(mu / alpha) / extent, 1.0 / 3.0)
 
 
 def coat_curves(alpha: Array, ior: Array) -> Array:
@@ -193,15 +171,15 @@ def constant_coat(alpha: float, ior: float) -> Coat:
 def coat_of(alpha: float, ior: float) -> Coat:
     """Curves of a dielectric, checked; for arrays of other libraries with gradients, and anew each time."""
     numbers = checked_scalar("alpha", alpha, "coat_alpha"), checked_scalar("ior", ior, "coat_ior")
-    if not library(numbers[0]):
+    if not arrays.library(numbers[0]):
         return constant_coat(*map(float, numbers))
     rows = coat_curves(*numbers)
     return Coat(numbers[0], dielectric_avg(numbers[1]), rows[:, 0], rows[:, 1], rows[:, 2])
 
 
-def checked_scalar(name: str, value: ArrayLike, quantity: str = "") -> Numbers:
+def checked_scalar(name: str, value: ArrayLike, quantity: str = "") -> arrays.Numbers:
     """Argument that is one number for all pairs, checked."""
-    number = checked(name, value, quantity)
+    number = arguments.checked(name, value, quantity)
     if number.ndim:
         raise ValueError(
             f"{name} must be one number, for all pairs; got shape {tuple(number.shape)}"
@@ -221,7 +199,7 @@ def of_one_coat(function: Callable[P, R]) -> Callable[P, R]:
     @wraps(function)
     def wrapper(*args: P.args, **kwargs: P.kwargs) -> R:
         call = parameters.bind(*args, **kwargs).arguments
-        plain = {name: call.pop(name) for name in own if not library(call[name])}
+        plain = {name: call.pop(name) for name in own if not arrays.library(call[name])}
         brought = dict(zip(call, any_array(lambda *each: each)(*call.values()), strict=True))
         return cast(Callable[..., R], function)(**brought, **plain)
 
@@ -231,7 +209,7 @@ def of_one_coat(function: Callable[P, R]) -> Callable[P, R]:
 @any_array
 def unpack_cosine(wo: ArrayLike) -> Array:
     """Cosine of directions to the viewer, checked."""
-    return cosine(at_least_0(checked_directions("wo", wo)[..., 2]))
+    return cosine(arrays.at_least_0(checked_directions("wo", wo)[..., 2]))
 
 
 AVERAGED = 32  # nodes of the average over the viewer's cosine
@@ -273,8 +251,8 @@ def dielectric_over_eon_albedo_dir(
            [0.68356, 1.     ]])
     """
     base = eon_albedo_dir(mu, rho, roughness)
-    height = cast(Array, mu) if library(mu) else np.asarray(mu, np.float64)
-    reflected = coat_of(alpha, ior).at(cosine(at_least_0(height)))[1][..., np.newaxis]
+    height = cast(Array, mu) if arrays.library(mu) else np.asarray(mu, np.float64)
+    reflected = coat_of(alpha, ior).at(cosine(arrays.at_least_0(height)))[1][..., np.newaxis]
     return reflected + (1.0 - reflected) * base
 
 
@@ -293,7 +271,7 @@ def dielectric_over_eon_albedo_avg(
     coat = coat_of(alpha, ior)
     number = coat.alpha
     xp, (x, weight) = array_namespace(number), unit_rule(AVERAGED)
-    if library(number):
+    if arrays.library(number):
         x, weight = like(x, cast(Array, number)), like(weight, cast(Array, number))
     mu, step = cosine_at(cast(Array, number), x)
     weight = weight * 2.0 * mu * step
@@ -379,8 +357,8 @@ def _metal_share(
 ) -> Array:
     """Share of the metal, (..., 1); raise ValueError unless all arguments broadcast."""
     vectors = {"wo": checked_directions("wo", wo), "wi": checked_directions("wi", wi)}
-    numbers = checked_all({"roughness": roughness, "metalness": metalness})
-    lead_shape(vectors | {"rho": checked_color("rho", rho)}, numbers)
+    numbers = arguments.checked_all({"roughness": roughness, "metalness": metalness})
+    arguments.lead_shape(vectors | {"rho": checked_color("rho", rho)}, numbers)
     return numbers["metalness"][..., np.newaxis]
 
 
@@ -391,7 +369,7 @@ def _albedo_inputs(
     """The viewer's cosine, the color, and the share of the metal, checked, with an axis for channels."""
     numbers = {"mu": mu, "roughness": roughness, "metalness": metalness}
     (color,), (height, _, share) = checked_colors({"rho": rho}, **numbers)
-    return cosine(at_least_0(height)), color, share
+    return cosine(arrays.at_least_0(height)), color, share
 
 
 @any_array
@@ -405,9 +383,9 @@ def mixed_sample(
     xp = array_namespace(share)
     u1, u2 = unpack_uniforms(u)
     zero = 0.0 * share
-    stretches = stretched(u1, zero, share), stretched(u1, share, zero + 1.0)
+    stretches = sampling.stretched(u1, zero, share), sampling.stretched(u1, share, zero + 1.0)
     first, second = (xp.stack([each, u2 + zero * each], axis=-1) for each in stretches)
-    reflected = ggx_sample(wo, first, alpha)[0]
+    reflected = sampling.ggx_sample(wo, first, alpha)[0]
     return xp.where((u1 < share)[..., np.newaxis], reflected, base(second))
 
 
@@ -416,11 +394,11 @@ def mixed_pdf(
     wo: ArrayLike, wi: ArrayLike, alpha: float, share: Array, base_pdf: Callable[[Array], Array]
 ) -> Array:
     """Density of `mixed_sample`."""
-    light = checked_triples("wi", wi)
+    light = arguments.checked_triples("wi", wi)
     xp, z = array_namespace(light), light[..., 2]
-    upper = xp.stack([light[..., 0], light[..., 1], magnitude(z)], axis=-1)
+    upper = xp.stack([light[..., 0], light[..., 1], arrays.magnitude(z)], axis=-1)
     base = base_pdf(upper)
-    mixed = share * ggx_pdf(wo, wi, alpha) + xp.where(z < 0.0, 0.0, (1.0 - share) * base)
+    mixed = share * sampling.ggx_pdf(wo, wi, alpha) + xp.where(z < 0.0, 0.0, (1.0 - share) * base)
     return mixed[()]
 
 
@@ -435,12 +413,13 @@ def checked_draws(
     """Raise ValueError unless the arguments broadcast."""
     vectors = {"wo": checked_directions("wo", wo)}
     if wi is not None:
-        vectors["wi"] = checked_sphere("wi", wi)
+        vectors["wi"] = arguments.checked_sphere("wi", wi)
     if u is not None:
         u1, u2 = unpack_uniforms(u)
         vectors["u"] = array_namespace(u1).stack([u1, u2], axis=-1)
-    lead_shape(
-        vectors | {"rho": checked_color("rho", rho)}, {"roughness": checked("roughness", roughness)}
+    arguments.lead_shape(
+        vectors | {"rho": checked_color("rho", rho)},
+        {"roughness": arguments.checked("roughness", roughness)},
     )
 
 
@@ -474,8 +453,12 @@ def dielectric_over_eon_sample(
     """
     checked_draws(wo, rho, roughness, u=u)
     share, mean = _facet_share(wo, rho, roughness, coat_of(alpha, ior)), checked_mean(rho)
-    wi = mixed_sample(wo, u, alpha, share, lambda u: eon_sample(wo, u, roughness, rho=mean)[0])
-    return wi, mixed_pdf(wo, wi, alpha, share, lambda wi: eon_pdf(wo, wi, roughness, rho=mean))
+    wi = mixed_sample(
+        wo, u, alpha, share, lambda u: sampling.eon_sample(wo, u, roughness, rho=mean)[0]
+    )
+    return wi, mixed_pdf(
+        wo, wi, alpha, share, lambda wi: sampling.eon_pdf(wo, wi, roughness, rho=mean)
+    )
 
 
 @of_one_coat
@@ -494,7 +477,7 @@ def dielectric_over_eon_pdf(
     """
     checked_draws(wo, rho, roughness, wi=wi)
     share, mean = _facet_share(wo, rho, roughness, coat_of(alpha, ior)), checked_mean(rho)
-    return mixed_pdf(wo, wi, alpha, share, lambda wi: eon_pdf(wo, wi, roughness, rho=mean))
+    return mixed_pdf(wo, wi, alpha, share, lambda wi: sampling.eon_pdf(wo, wi, roughness, rho=mean))
 
 
 def _facet_share(wo: ArrayLike, rho: ArrayLike, roughness: ArrayLike, of: Coat) -> Array:
@@ -531,7 +514,7 @@ class Varnish:
 def nonnegative(curves: Sequence[Array]) -> tuple[Array, Array, Array]:
     """Curves of `Varnish.at` with E_single and D not below 0."""
     single, several, turned = curves
-    return at_least_0(single), at_least_0(several), turned
+    return arrays.at_least_0(single), arrays.at_least_0(several), turned
 
 
 def refracted_cosine(mu: Array, ior: float | Array) -> Array:
@@ -626,7 +609,7 @@ def cosine_at(alpha: Array, x: Array) -> tuple[Array, Array]:
     """The inverse of `scaled_cosine`, mu = alpha sinh(x^3 asinh(1 / alpha)), and its derivative."""
     xp = array_namespace(alpha)
     extent = xp.asinh(1.0 / alpha)
-    mu = at_most(alpha * xp.sinh(extent * x**3), 1.0)
+    mu = arrays.at_most(alpha * xp.sinh(extent * x**3), 1.0)
     return mu, alpha * xp.cosh(extent * x**3) * (3.0 * x * x * extent)
 
 
@@ -659,7 +642,7 @@ def varnish_curves(alpha: Array, ior: Array) -> tuple[list[Array], Array]:
 
     # What they return: E_r 2 mu' dmu' at the nodes of integrals, and the part beyond the critical angle.
     fine, step = cosine_at(alpha, places)
-    single, several = (at_least_0(chebyshev_sum(each, places)) for each in facets)
+    single, several = (arrays.at_least_0(chebyshev_sum(each, places)) for each in facets)
     area = 2.0 * fine * step * slope
     share, m = (single + several) * area / ior**2, refracted_cosine(fine, ior)
     total = to_nodes[-1]
@@ -704,7 +687,7 @@ def constant_varnish(alpha: float, ior: float) -> Varnish:
 def varnish_of(alpha: float, ior: float) -> Varnish:
     """An interface, checked; for arrays of other libraries with gradients, and anew each time."""
     coat_of(alpha, ior)
-    if not library(alpha):
+    if not arrays.library(alpha):
         return constant_varnish(float(alpha), float(ior))
     curves, means = varnish_curves(cast(Array, alpha), cast(Array, ior))
     return Varnish(alpha, ior, curves, list(means))
@@ -793,7 +776,7 @@ def varnished_sample(
     checked_draws(wo, rho, roughness, u=u)
     share = _share(wo, rho, roughness, alpha, ior)
     wi = mixed_sample(wo, u, alpha, share, lambda _: _by_cosine(u, share))
-    return wi, mixed_pdf(wo, wi, alpha, share, cosine_pdf)
+    return wi, mixed_pdf(wo, wi, alpha, share, sampling.cosine_pdf)
 
 
 @of_one_coat
@@ -809,15 +792,15 @@ def varnished_pdf(
     0.32231
     """
     checked_draws(wo, rho, roughness, wi=wi)
-    return mixed_pdf(wo, wi, alpha, _share(wo, rho, roughness, alpha, ior), cosine_pdf)
+    return mixed_pdf(wo, wi, alpha, _share(wo, rho, roughness, alpha, ior), sampling.cosine_pdf)
 
 
 @any_array
 def _by_cosine(u: ArrayLike, share: Array) -> Array:
     """Direction drawn by the cosine with what u1 leaves: 1 - u1 over 1 - share has all digits at u1 near 1."""
     u1, u2 = unpack_uniforms(u)
-    rest = at_most((1.0 - u1) / nonzero(1.0 - share), 1.0)
-    return around(root(rest), root(1.0 - rest), u2)
+    rest = arrays.at_most((1.0 - u1) / nonzero(1.0 - share), 1.0)
+    return sampling.around(root(rest), root(1.0 - rest), u2)
 
 
 @any_array

@@ -30,28 +30,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from mxeon.models.core.arguments import (
-    checked,
-    checked_colors,
-    checked_numbers,
-    checked_transmitted,
-    checked_triples,
-)
-from mxeon.models.core.arrays import (
-    Array,
-    ArrayLike,
-    Number,
-    any_array,
-    array_namespace,
-    at_least_0,
-    at_most,
-    cosine,
-    except_at_1,
-    hypot,
-    least_normal,
-    root,
-    trimmed,
-)
+from mxeon.models.core import arguments, arrays
+from mxeon.models.core.arguments import checked_colors, checked_numbers
+from mxeon.models.core.arrays import Array, ArrayLike, Number, any_array, array_namespace
 from mxeon.models.core.evaluation import evaluate
 
 # FON loses r c1 / (1 + c1 r) at normal incidence and r (c1 - c2) / (1 + c1 r) on average:
@@ -72,7 +53,7 @@ def cosines(wo: Array, wi: Array) -> tuple[Array, Array, Array]:
     (...): In [-1, 1] up to rounding; signed, never clamped. [Portsmouth2025], below Eq. (3).
     """
     s = wo[..., 0] * wi[..., 0] + wo[..., 1] * wi[..., 1]
-    return cosine(wo[..., 2]), cosine(wi[..., 2]), s
+    return arrays.cosine(wo[..., 2]), arrays.cosine(wi[..., 2]), s
 
 
 def of_cosines(formula: Callable[..., Array]) -> Callable[..., Array]:
@@ -89,7 +70,7 @@ def fon_loss_mu(mu: Array) -> Array:
     With theta_o = pi / 2 - 2 atan(t) and 1 - S = mu t nothing divides by mu and nothing cancels.
     Near the normal H is c1 + O(S^3).
     """
-    return except_at_1(_fon_loss, mu, C1)
+    return arrays.except_at_1(_fon_loss, mu, C1)
 
 
 def _fon_loss(mu: Array) -> Array:
@@ -149,7 +130,7 @@ def oren_nayar_quotient(value: Array, divisor: Array) -> Array:
     A divisor below the smallest normal number counts as 0, for the quotient might overflow.
     """
     xp = array_namespace(value, divisor)
-    return value / xp.where(divisor < least_normal(divisor), np.inf, divisor)
+    return value / xp.where(divisor < arrays.least_normal(divisor), np.inf, divisor)
 
 
 def qon_quotient(mu_o: Array, mu_i: Array, s: Array) -> Array:
@@ -209,7 +190,7 @@ def oren_nayar_behind_slope(mu_o: Array, mu_i: Array, S_o: Array, S_i: Array) ->
     q = oren_nayar_angle(high, xp.minimum(S_o, S_i))
     rise = q * (3.0 - 3.0 * q + q**2) - low**2 / (1.0 + xp.maximum(S_o, S_i))
     slope = oren_nayar_quotient(rise, high)
-    return xp.where(high < least_normal(high), 6.0 / np.pi, slope)
+    return xp.where(high < arrays.least_normal(high), 6.0 / np.pi, slope)
 
 
 def oren_nayar_interreflection(rho: Array, sigma: Array) -> Array:
@@ -221,7 +202,7 @@ def oren_nayar_formula(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:
     """The equation of `oren_nayar_brdf`, with alpha and beta as fractions of a right angle."""
     xp = array_namespace(wo, wi)
     mu_o, mu_i, s = cosines(wo, wi)
-    S_o, S_i = hypot(wo[..., 0], wo[..., 1]), hypot(wi[..., 0], wi[..., 1])
+    S_o, S_i = arrays.hypot(wo[..., 0], wo[..., 1]), arrays.hypot(wi[..., 0], wi[..., 1])
     elevation_o, elevation_i = oren_nayar_angle(mu_o, S_o), oren_nayar_angle(mu_i, S_i)
     alpha = 1.0 - xp.minimum(elevation_o, elevation_i)
     beta = 1.0 - xp.maximum(elevation_o, elevation_i)
@@ -241,7 +222,7 @@ def oren_nayar_formula(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:
 
 def eon_brdf_approx_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
     """EON with the quartic for H, which is kept from falling below 0 where mu < 0.0014."""
-    losses = at_least_0(fon_loss_approx(mu_o)) * at_least_0(fon_loss_approx(mu_i))
+    losses = arrays.at_least_0(fon_loss_approx(mu_o)) * arrays.at_least_0(fon_loss_approx(mu_i))
     single_scatter = 1.0 + roughness * fon_quotient(mu_o, mu_i, s)
     multi_scatter = eon_multiple_ratio(rho, roughness) * losses
     return fon_lambert(rho, roughness) * (single_scatter + multi_scatter)
@@ -424,7 +405,7 @@ def translucent_btdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike) -> Array:
         >>> translucent_btdf([0.6, 0.0, 0.8], [0.8, 0.0, -0.6], [0.2, 0.8]).round(6)
         array([0.063662, 0.254648])
     """
-    light = checked_transmitted("wi", checked_triples("wi", wi))
+    light = arguments.checked_transmitted("wi", arguments.checked_triples("wi", wi))
     xp = array_namespace(light)
     mirrored = xp.stack([light[..., 0], light[..., 1], -light[..., 2]], axis=-1)
     return evaluate(lambda wo, wi, rho: rho / np.pi, wo, mirrored, rho)
@@ -560,7 +541,7 @@ def qon_albedo_dir(mu: ArrayLike, sigma: ArrayLike) -> Array:
         array([0.949924, 0.784483])
     """
     mu, sigma = checked_numbers(mu=mu, sigma=sigma)
-    g_over_pi = C1 - fon_loss_mu(mu) + 2.0 / (3.0 * np.pi) * root((1.0 - mu) * (1.0 + mu))
+    g_over_pi = C1 - fon_loss_mu(mu) + 2.0 / (3.0 * np.pi) * arrays.root((1.0 - mu) * (1.0 + mu))
     return qon_aq(sigma) + qon_bq(sigma) * g_over_pi
 
 
@@ -603,7 +584,7 @@ def eon_rho_from_albedo_normal(color: ArrayLike, roughness: ArrayLike) -> Array:
     sqrt = array_namespace(color, r).sqrt
     rho = 2.0 * color * d / (b + sqrt(b * b + 4.0 * C2 * r * d * color))
     # A color of 1 may be rounded to 1 + 2^-52, which no model takes.
-    return trimmed(rho, 1.0)
+    return arrays.trimmed(rho, 1.0)
 
 
 @any_array
@@ -756,7 +737,7 @@ def qon_tinted_twice_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: A
 
     OpenPBR's thin-walled lobe in MaterialX 1.39.5, issue 3027 of MaterialX.
     """
-    value: Array = checked("rho", rho) * qon_brdf(wo, wi, rho, sigma)
+    value: Array = arguments.checked("rho", rho) * qon_brdf(wo, wi, rho, sigma)
     return value
 
 
@@ -791,4 +772,4 @@ def qon_fitted_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Ar
     (color,), (m, s) = checked_colors({"rho": rho}, mu=mu, sigma=sigma)
     over = 1.0 - 0.4297 * s - 0.7632 * m * s + 1.4385 * s**2
     under = 1.0 - 0.6076 * s - 0.4993 * m * s + 2.0315 * s**2
-    return at_most(over / under, 1.0) * color
+    return arrays.at_most(over / under, 1.0) * color

@@ -21,35 +21,9 @@ from typing import Any
 
 import numpy as np
 
-from mxeon.models.core.arguments import (
-    channel_count,
-    checked,
-    checked_all,
-    checked_color,
-    checked_directions,
-    checked_numbers,
-    checked_pairs,
-    checked_sphere,
-    checked_triples,
-    checked_vector,
-    lead_shape,
-)
-from mxeon.models.core.arrays import (
-    Array,
-    ArrayLike,
-    Numbers,
-    angle,
-    any_array,
-    arcsine,
-    array_namespace,
-    at_most,
-    guarded,
-    hypot,
-    least_normal,
-    library,
-    like,
-    root,
-)
+from mxeon.models.core import arguments, arrays
+from mxeon.models.core.arguments import checked, lead_shape
+from mxeon.models.core.arrays import Array, ArrayLike, any_array, array_namespace, guarded
 from mxeon.models.core.evaluation import evaluate_material
 from mxeon.models.microfacet import fresnel as fresnel_formulas
 
@@ -162,28 +136,33 @@ def section(wo: Array, ior: Array) -> tuple[Section, Array]:
     of the point whose normal is +z. A view along the fiber has none, and counts as h = 0. Below
     index 1, where no ray enters, F is 1 and gamma_t has no effect.
     """
-    xp, least = array_namespace(wo, ior), max(LEAST_DIVISOR, least_normal(wo))
-    sin_o, cos_o = wo[0], hypot(wo[1], wo[2])
-    inside = root(xp.maximum(xp.square(ior) - xp.square(sin_o), 0.0))
+    xp, least = array_namespace(wo, ior), max(LEAST_DIVISOR, arrays.least_normal(wo))
+    sin_o, cos_o = wo[0], arrays.hypot(wo[1], wo[2])
+    inside = arrays.root(xp.maximum(xp.square(ior) - xp.square(sin_o), 0.0))
     effective = inside / xp.maximum(guarded(cos_o, cos_o > least, 1.0), LEAST_DIVISOR)
-    gamma_o = angle(-wo[1], xp.where(cos_o > 0.0, wo[2], 1.0))
+    gamma_o = arrays.angle(-wo[1], xp.where(cos_o > 0.0, wo[2], 1.0))
     sin_t = -wo[1] / xp.maximum(guarded(inside, inside > least, 1.0), LEAST_DIVISOR)
-    return Section(sin_o, cos_o, gamma_o, arcsine(sin_t)), effective
+    return Section(sin_o, cos_o, gamma_o, arrays.arcsine(sin_t)), effective
 
 
 def attenuations(
     view: Section, effective: Array, ior: Array, absorption: Array, form: HairForm
 ) -> Array:
     """A_p of a view, (4, C, ...), of absorptions (C, ...)."""
-    xp, least = array_namespace(view.sin_o, ior, absorption), max(LEAST_DIVISOR, least_normal(ior))
+    xp, least = (
+        array_namespace(view.sin_o, ior, absorption),
+        max(LEAST_DIVISOR, arrays.least_normal(ior)),
+    )
     cos_gamma = xp.cos(view.gamma_o)
     if form.effective:
         F = fresnel_formulas.dielectric(cos_gamma, xp.minimum(effective, 1e50))
     else:
         F = fresnel_formulas.dielectric(view.cos_o * cos_gamma, ior)
     bends = ior > least
-    sin_t = at_most(xp.abs(view.sin_o) / xp.maximum(guarded(ior, bends, least), LEAST_DIVISOR), 1.0)
-    cos_t = root((1.0 - sin_t) * (1.0 + sin_t))
+    sin_t = arrays.at_most(
+        xp.abs(view.sin_o) / xp.maximum(guarded(ior, bends, least), LEAST_DIVISOR), 1.0
+    )
+    cos_t = arrays.root((1.0 - sin_t) * (1.0 + sin_t))
     passes, path = cos_t > least, 2.0 * xp.cos(view.gamma_t)
     path = xp.where(
         passes, path / xp.maximum(guarded(cos_t, passes, 1.0), LEAST_DIVISOR), path / least
@@ -203,7 +182,7 @@ def distribution(
     """M_p N_p of a lobe of roughness (2, ...), v and s: Cuticle Tilt, Longitudinal Scattering, Azimuthal Scattering."""
     xp, (low, high) = array_namespace(wo, wi, alpha), form.limits
     v, s = (xp.minimum(xp.maximum(each, low), high) for each in roughness)
-    inclined = [(wi[0], hypot(wi[1], wi[2])), (view.sin_o, view.cos_o)]
+    inclined = [(wi[0], arrays.hypot(wi[1], wi[2])), (view.sin_o, view.cos_o)]
     if lobe < 3:
         tilt = (2.0 - 3.0 * lobe) * alpha
         sine, cosine = inclined[not form.tilts_light]
@@ -217,7 +196,7 @@ def distribution(
     if lobe == 3:
         return M * form.uniform
     exit_angle = 2.0 * lobe * view.gamma_t - 2.0 * view.gamma_o + lobe * np.pi
-    phi = angle(wi[2] * wo[1] - wo[2] * wi[1], wi[1] * wo[1] + wi[2] * wo[2])
+    phi = arrays.angle(wi[2] * wo[1] - wo[2] * wi[1], wi[1] * wo[1] + wi[2] * wo[2])
     return M * azimuthal(phi - exit_angle, s)
 
 
@@ -247,7 +226,10 @@ def chiang_hair_bcsdf(wo: ArrayLike, wi: ArrayLike, **inputs: Any) -> Array:
         array([0.137704, 0.137704, 0.137704])
     """
     form: HairForm = inputs.pop("form", TEXT)
-    vectors = {"wo": checked_directions("wo", wo), "wi": checked_sphere("wi", wi)}
+    vectors = {
+        "wo": arguments.checked_directions("wo", wo),
+        "wi": arguments.checked_sphere("wi", wi),
+    }
     values = _checked(inputs, vectors["wo"])
     numbers = {name: values.pop(name) for name in ("ior", "cuticle_angle")}
     colors = {name: values[name] for name in (*TINTS, "absorption_coefficient")}
@@ -264,7 +246,9 @@ def chiang_hair_bcsdf(wo: ArrayLike, wi: ArrayLike, **inputs: Any) -> Array:
         ]
         return form.factor * sum(lobes[1:], lobes[0])
 
-    return evaluate_material(formula, vectors | values, numbers, channel_count(colors), HAIR_BLOCK)
+    return evaluate_material(
+        formula, vectors | values, numbers, arguments.channel_count(colors), HAIR_BLOCK
+    )
 
 
 @any_array
@@ -282,8 +266,8 @@ def chiang_hair_attenuation(
         >>> chiang_hair_attenuation([0.0, 0.0, 1.0], 1.55, 0.0).round(6)
         array([[0.046521, 0.909123, 0.042293, 0.002063]])
     """
-    absorption = checked_color("absorption_coefficient", absorption_coefficient)
-    vectors = {"wo": checked_directions("wo", wo), "absorption_coefficient": absorption}
+    absorption = arguments.checked_color("absorption_coefficient", absorption_coefficient)
+    vectors = {"wo": arguments.checked_directions("wo", wo), "absorption_coefficient": absorption}
     channels = absorption.shape[-1]
 
     def formula(wo: Array, absorption_coefficient: Array, ior: Array) -> Array:
@@ -312,7 +296,7 @@ def hair_longitudinal(theta_i: ArrayLike, theta_o: ArrayLike, variance: ArrayLik
         >>> round(float(hair_longitudinal(0.3, -0.3, 0.01)), 6)
         4.18169
     """
-    i, o, v = checked_numbers(theta_i=theta_i, theta_o=theta_o, variance=variance)
+    i, o, v = arguments.checked_numbers(theta_i=theta_i, theta_o=theta_o, variance=variance)
     xp = array_namespace(i, o, v)
     inclined = xp.sin(i), xp.cos(i), xp.sin(o), xp.cos(o)
     return longitudinal(*inclined, v)
@@ -331,7 +315,7 @@ def hair_azimuthal(phi: ArrayLike, scale: ArrayLike) -> Array:
         >>> round(float(hair_azimuthal(0.5, 0.3)), 6)
         0.325121
     """
-    return azimuthal(*checked_numbers(phi=phi, scale=scale))
+    return azimuthal(*arguments.checked_numbers(phi=phi, scale=scale))
 
 
 DEFAULTS: dict[str, float | tuple[float, ...]] = {
@@ -345,7 +329,7 @@ DEFAULTS: dict[str, float | tuple[float, ...]] = {
 }
 
 
-def _checked(inputs: dict[str, ArrayLike], wo: Numbers) -> dict[str, Array]:
+def _checked(inputs: dict[str, ArrayLike], wo: arrays.Numbers) -> dict[str, Array]:
     """Values of all ports of the node, as arrays of wo's library; those of colors (..., C)."""
     unknown = set(inputs) - set(DEFAULTS)
     if unknown:
@@ -353,11 +337,11 @@ def _checked(inputs: dict[str, ArrayLike], wo: Numbers) -> dict[str, Array]:
         raise TypeError(f"inputs must be among {known}; got {', '.join(sorted(unknown))}")
     values = {}
     for name, value in {**DEFAULTS, **inputs}.items():
-        check = checked_pairs if name in ROUGHNESSES else checked
+        check = arguments.checked_pairs if name in ROUGHNESSES else checked
         array = check(name, value)
-        values[name] = array if library(array) else like(array, wo)
+        values[name] = array if arrays.library(array) else arrays.like(array, wo)
     for name in (*TINTS, "absorption_coefficient"):
-        values[name] = checked_vector(name, values[name])
+        values[name] = arguments.checked_vector(name, values[name])
     return values
 
 
@@ -388,7 +372,7 @@ def chiang_hair_roughness(
         (array([0.006516, 0.10076 ]), array([0.001629, 0.10076 ]), array([0.026063, 0.10076 ]))
     """
     scales = {"scale_tt": scale_tt, "scale_trt": scale_trt}
-    numbers = checked_all({"longitudinal": longitudinal, "azimuthal": azimuthal} | scales)
+    numbers = arguments.checked_all({"longitudinal": longitudinal, "azimuthal": azimuthal} | scales)
     shape, xp = lead_shape({}, numbers), array_namespace(*numbers.values())
     long, azim, *factors = (xp.broadcast_to(value, shape) for value in numbers.values())
     v = xp.square(0.726 * long + 0.812 * long**2 + 3.7 * long**20)
@@ -421,7 +405,7 @@ def deon_hair_absorption_from_melanin(
     """
     colors = {"eumelanin_color": eumelanin_color, "pheomelanin_color": pheomelanin_color}
     mixed = {"melanin_concentration": melanin_concentration, "melanin_redness": melanin_redness}
-    numbers = checked_all(mixed)
+    numbers = arguments.checked_all(mixed)
     vectors = {name: _color(name, value) for name, value in colors.items()}
     lead_shape(vectors, numbers)
     concentration, redness = (value[..., np.newaxis] for value in numbers.values())
@@ -455,6 +439,6 @@ def chiang_hair_absorption_from_color(
     return xp.square(xp.log(color) / fit)
 
 
-def _color(name: str, value: ArrayLike) -> Numbers:
+def _color(name: str, value: ArrayLike) -> arrays.Numbers:
     """A color of the range that its name has."""
-    return checked_triples(name, checked(name, value))
+    return arguments.checked_triples(name, checked(name, value))

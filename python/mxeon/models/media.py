@@ -29,6 +29,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from mxeon.models.core import arrays
 from mxeon.models.core.arguments import (
     broadcastable,
     checked,
@@ -38,18 +39,7 @@ from mxeon.models.core.arguments import (
     checked_sphere,
     lead_shape,
 )
-from mxeon.models.core.arrays import (
-    Array,
-    ArrayLike,
-    any_array,
-    arccosine,
-    array_namespace,
-    at_least_0,
-    at_most,
-    like,
-    power,
-    root,
-)
+from mxeon.models.core.arrays import Array, ArrayLike, any_array, array_namespace, at_least_0, like
 from mxeon.models.core.colorimetry import CIE_1931, WAVELENGTHS, XYZ_TO_REC709
 from mxeon.models.core.quadrature import unit_rule
 
@@ -107,7 +97,7 @@ def conical_falloff(mu: Array, inner: Array, outer: Array) -> Array:
     xp = array_namespace(mu, inner, outer)
     soft = outer > inner
     width = xp.where(soft, cone_width(inner, outer), 1.0)
-    t = at_most(at_least_0((mu - cone_cosine(outer)) / width), 1.0)
+    t = arrays.at_most(at_least_0((mu - cone_cosine(outer)) / width), 1.0)
     return xp.where(soft, t * t * (3.0 - 2.0 * t), xp.where(mu >= cone_cosine(inner), 1.0, 0.0))
 
 
@@ -132,7 +122,7 @@ def conical_exitance(radiance: ArrayLike, inner_angle: ArrayLike, outer_angle: A
     xp = array_namespace(inner, outer)
     h = xp.where(outer > inner, cone_width(inner, outer), 0.0)
     start = xp.where(h > 0.0, -a / xp.where(h > 0.0, h, 1.0), 1.0)
-    start = at_most(at_least_0(start), 1.0)
+    start = arrays.at_most(at_least_0(start), 1.0)
 
     def antiderivative(t: Array | float) -> Array:
         return h * (a * t**3 * (1.0 - 0.5 * t) + h * t**4 * (0.75 - 0.4 * t))
@@ -161,7 +151,7 @@ def generalized_schlick_edf(
     mu, (c, r0, r90), (q,) = _checked(wo, colors, exponent=exponent)
     mu = mu[..., np.newaxis]
     height = array_namespace(mu).where(mu < 0.0, -mu, mu)
-    return c * (r0 + (r90 - r0) * power(at_least_0(1.0 - height), q))
+    return c * (r0 + (r90 - r0) * arrays.power(at_least_0(1.0 - height), q))
 
 
 @any_array
@@ -205,7 +195,7 @@ def _checked(
     plain = {name: value[..., 0] for name, value in zip(numbers, values, strict=True)}
     broadcastable({"wo": directions} | parts, plain)
     (mu,) = broadcastable({}, {"mu": directions[..., 2]})
-    return -at_most(-at_most(mu, 1.0), 1.0), vectors, values
+    return -arrays.at_most(-arrays.at_most(mu, 1.0), 1.0), vectors, values
 
 
 @any_array
@@ -294,7 +284,7 @@ def hg_sample(wo: ArrayLike, u: ArrayLike, g: ArrayLike) -> tuple[Array, Array]:
     square = 2.0 * (1.0 + mean * x) ** 2
     less = (1.0 - mean) ** 2 * (1.0 - x) * (2.0 + mean * (1.0 + x)) / square  # 1 - cos
     more = (1.0 + mean) ** 2 * (1.0 + x) * (2.0 - mean * (1.0 - x)) / square  # 1 + cos
-    sine = root(at_least_0(less * more))
+    sine = arrays.root(at_least_0(less * more))
     local = sine * xp.cos(azimuth), sine * xp.sin(azimuth), 0.5 * (more - less)
     parts = _around([-views[..., k] for k in range(3)], local)
     wi = xp.stack([xp.broadcast_to(each, shape) for each in parts], axis=-1)
@@ -337,7 +327,7 @@ def _cross(a: Sequence[Array], b: Sequence[Array]) -> list[Array]:
 
 def _unit(w: Sequence[Array]) -> list[Array]:
     """Components of a vector over its length."""
-    length = root(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
+    length = arrays.root(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
     return [each / length for each in w]
 
 
@@ -523,9 +513,9 @@ def _exponential(mu: Array, reach: Array) -> tuple[Array, Array]:
     # The mean of max(cos(theta), 0) over the circle at this distance from a point of the unit sphere.
     mu, squared = mu[..., np.newaxis], distance * distance
     along = mu * (1.0 - 0.5 * squared)
-    across = root(at_least_0((1.0 - mu * mu) * squared * (1.0 - 0.25 * squared)))
-    lit = arccosine(-along / xp.maximum(across, 1e-300))
-    circle = (along * lit + root(at_least_0(across**2 - along**2))) / np.pi
+    across = arrays.root(at_least_0((1.0 - mu * mu) * squared * (1.0 - 0.25 * squared)))
+    lit = arrays.arccosine(-along / xp.maximum(across, 1e-300))
+    circle = (along * lit + arrays.root(at_least_0(across**2 - along**2))) / np.pi
     return xp.sum(weights * circle, axis=-1), share[..., 0]
 
 

@@ -50,15 +50,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from mxeon.models.core.arguments import (
-    broadcastable,
-    checked_all,
-    checked_directions,
-    checked_pairs,
-    checked_roughness,
-    checked_sphere,
-    lead_shape,
-)
+from mxeon.models.core import arguments
+from mxeon.models.core.arguments import broadcastable, checked_directions
 from mxeon.models.core.arrays import (
     Array,
     ArrayLike,
@@ -125,19 +118,19 @@ def cosine_pdf(wi: ArrayLike) -> Array:
 
 def checked_draw(wo: ArrayLike, u: ArrayLike, **numbers: ArrayLike) -> list[Array]:
     """Checked arguments of a sampler, in this order, as float64 arrays whose shapes broadcast."""
-    vectors = {"wo": checked_directions("wo", wo), "u": checked_pairs("u", u)}
-    return broadcastable(vectors, checked_all(numbers))
+    vectors = {"wo": checked_directions("wo", wo), "u": arguments.checked_pairs("u", u)}
+    return broadcastable(vectors, arguments.checked_all(numbers))
 
 
 def checked_pdf(wo: ArrayLike, wi: ArrayLike, **numbers: ArrayLike) -> list[Array]:
     """Checked arguments of a density, in this order, as float64 arrays whose shapes broadcast."""
     vectors = {"wo": checked_directions("wo", wo), "wi": checked_directions("wi", wi)}
-    return broadcastable(vectors, checked_all(numbers))
+    return broadcastable(vectors, arguments.checked_all(numbers))
 
 
 def unpack_uniforms(u: ArrayLike) -> tuple[Array, Array]:
     """The two random numbers of each pair, checked, as float64 arrays of shape (...)."""
-    u = checked_pairs("u", u)
+    u = arguments.checked_pairs("u", u)
     return u[..., 0], u[..., 1]
 
 
@@ -621,7 +614,9 @@ def ggx_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array
     u1, u2 = unpack_uniforms(u)
     stacked = array_namespace(u1).stack([u1, u2], axis=-1)
     vectors = {"wo": checked_directions("wo", wo), "u": stacked}
-    view, (u1, u2), alpha = _components(vectors | {"roughness": checked_roughness(roughness)})
+    view, (u1, u2), alpha = _components(
+        vectors | {"roughness": arguments.checked_roughness(roughness)}
+    )
     wh = visible_normal(view, u1, u2, alpha)
     wi = stack_xyz(*(2.0 * array_namespace(wh).sum(view * wh, axis=0) * wh - view))
     return wi, visible_density(view, wh, alpha)
@@ -638,8 +633,8 @@ def ggx_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
         >>> round(float(ggx_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], [0.5, 0.25])), 6)
         0.455389
     """
-    vectors = {"wo": checked_directions("wo", wo), "wi": checked_sphere("wi", wi)}
-    vectors["roughness"] = checked_roughness(roughness)
+    vectors = {"wo": checked_directions("wo", wo), "wi": arguments.checked_sphere("wi", wi)}
+    vectors["roughness"] = arguments.checked_roughness(roughness)
     view, light, alpha = _components(vectors)
     wh, cosine = ggx.half_vector(view, light)
     below = (wh[2] < 0.0) | ((cosine == 0.0) & (light[2] < 0.0))
@@ -648,7 +643,7 @@ def ggx_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
 
 def _components(vectors: dict[str, Numbers]) -> list[Array]:
     """Vectors, broadcast against each other, as float64 arrays with the components first."""
-    lead = lead_shape(vectors, {})
+    lead = arguments.lead_shape(vectors, {})
     arrays = broadcastable(vectors, {})
     xp, order = array_namespace(*arrays), (len(lead), *range(len(lead)))
     spread = [xp.broadcast_to(v, (*lead, *v.shape[-1:])) for v in arrays]

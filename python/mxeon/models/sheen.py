@@ -28,30 +28,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from mxeon.models.core.arguments import (
-    checked,
-    checked_all,
-    checked_numbers,
-    checked_triples,
-    checked_vector,
-    lead_shape,
-)
-from mxeon.models.core.arrays import (
-    NUMPY,
-    Array,
-    ArrayLike,
-    angle,
-    any_array,
-    arcsine,
-    array_namespace,
-    at_least_0,
-    at_most,
-    guarded,
-    largest,
-    least_normal,
-    like,
-    root,
-)
+from mxeon.models.core import arguments, arrays
+from mxeon.models.core.arrays import Array, ArrayLike, any_array, array_namespace, guarded, root
 from mxeon.models.core.evaluation import evaluate, evaluate_number
 from mxeon.models.diffuse import cosines
 
@@ -110,7 +88,7 @@ def zeltner_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
         >>> round(float(zeltner_albedo_dir(0.3, 0.5)), 6)
         0.315212
     """
-    return _zeltner_albedo(*checked_numbers(mu=mu, roughness=roughness))
+    return _zeltner_albedo(*arguments.checked_numbers(mu=mu, roughness=roughness))
 
 
 def zeltner_matrix(mu: Array, roughness: Array) -> tuple[Array, Array]:
@@ -129,16 +107,20 @@ def _tinted(
     roughness: ArrayLike,
 ) -> Array:
     """Values of a lobe over broadcast arguments, times the tint."""
-    color = checked_vector("color", color)
-    vectors = {"wo": checked_triples("wo", wo), "wi": checked_triples("wi", wi), "color": color}
-    lead_shape(vectors, {"roughness": checked("roughness", roughness)})
+    color = arguments.checked_vector("color", color)
+    vectors = {
+        "wo": arguments.checked_triples("wo", wo),
+        "wi": arguments.checked_triples("wi", wi),
+        "color": color,
+    }
+    arguments.lead_shape(vectors, {"roughness": arguments.checked("roughness", roughness)})
     return evaluate(lobe, wo, wi, color, roughness=roughness)
 
 
 def _conty_kulla_formula(wo: Array, wi: Array, tint: Array, roughness: Array) -> Array:
     """Conty and Kulla's lobe, (C, ...), on valid arrays."""
     xp = array_namespace(wo, wi, roughness)
-    least = max(LEAST_DIVISOR, least_normal(wo))  # that of float32 is larger
+    least = max(LEAST_DIVISOR, arrays.least_normal(wo))  # that of float32 is larger
     mu_o, mu_i, _ = cosines(wo, wi)
     flat = xp.square(wo[..., 0] + wi[..., 0]) + xp.square(wo[..., 1] + wi[..., 1])
     upright = xp.square(mu_o + mu_i)
@@ -158,8 +140,8 @@ def _conty_kulla_formula(wo: Array, wi: Array, tint: Array, roughness: Array) ->
         above = guarded(upright / xp.maximum(total, least), ~small, 0.5)
         log_sine = xp.where(small, xp.log(ratio), xp.log1p(-above))
         lobe = (1.0 + shape) * xp.exp(shape * log_sine) / (4.0 * np.pi * xp.maximum(divisor, least))
-    counted = smooth if xp is not NUMPY else counted
-    return tint * xp.where(counted, at_most(lobe, largest(wo)), 0.0)
+    counted = smooth if xp is not arrays.NUMPY else counted
+    return tint * xp.where(counted, arrays.at_most(lobe, arrays.largest(wo)), 0.0)
 
 
 def _zeltner_formula(wo: Array, wi: Array, tint: Array, roughness: Array) -> Array:
@@ -210,14 +192,14 @@ def conty_kulla_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
         0.083333333333
     """
     return evaluate_number(
-        _albedo, {}, checked_all({"mu": mu, "roughness": roughness}), SHEEN_BLOCK
+        _albedo, {}, arguments.checked_all({"mu": mu, "roughness": roughness}), SHEEN_BLOCK
     )
 
 
 def _albedo(mu: Array, roughness: Array) -> Array:
     """Albedo of a block."""
     xp = array_namespace(mu, roughness)
-    if xp is NUMPY:
+    if xp is arrays.NUMPY:
         mu, roughness = np.broadcast_arrays(mu, roughness)
         albedo = np.zeros(mu.shape)
         for steep in (False, True):
@@ -236,8 +218,8 @@ def _albedo(mu: Array, roughness: Array) -> Array:
 
 def _integral(mu: Array, roughness: Array, steep: bool) -> Array:
     """Albedo for cosines on one side of `STEEP`, roughness above 0."""
-    xp, delta = array_namespace(mu, roughness), 0.5 * arcsine(mu)
-    x, weight = (like(each, mu) for each in _rule())
+    xp, delta = array_namespace(mu, roughness), 0.5 * arrays.arcsine(mu)
+    x, weight = (arrays.like(each, mu) for each in _rule())
     p = 0.5 / roughness
     albedo = 0.0 * mu
     for partial, low, span in (
@@ -247,7 +229,7 @@ def _integral(mu: Array, roughness: Array, steep: bool) -> Array:
         # Beyond 10 sqrt(roughness) the density falls below exp(-50) of its largest value.
         width = xp.minimum(span, 10.0 * xp.sqrt(roughness))
         above = width[..., np.newaxis] * x  # latitude above the lower end, and below the upper one
-        below = width[..., np.newaxis] * (1.0 - x if xp is not NUMPY else x[::-1])
+        below = width[..., np.newaxis] * (1.0 - x if xp is not arrays.NUMPY else x[::-1])
         below = below + (span - width)[..., np.newaxis]
         latitude = low[..., np.newaxis] + above
         inner = _azimuths(mu[..., np.newaxis], latitude, above, below, partial, steep)
@@ -272,7 +254,7 @@ def _azimuths(
         rise, fall = root(xp.sin(2.0 * above)), root(xp.sin(2.0 * below))
     else:
         rise, fall = 0.0 * a + 1.0, 0.0 * a
-    phi = 2.0 * angle(rise, fall)
+    phi = 2.0 * arrays.angle(rise, fall)
     return (
         _azimuths_gauss(mu, c, a, b, phi)
         if steep
@@ -285,7 +267,7 @@ def _azimuths_gauss(mu: Array, c: Array, a: Array, b: Array, phi: Array) -> Arra
     cos, total = array_namespace(phi).cos, 0.0 * a
     for x, weight in zip(*np.polynomial.legendre.leggauss(24), strict=True):
         w = a + b * cos(0.5 * phi * (1.0 + float(x)))
-        mu_i = at_least_0(2.0 * c * w - mu)
+        mu_i = arrays.at_least_0(2.0 * c * w - mu)
         total = total + float(weight) * w * mu_i / (mu_i + mu - mu_i * mu)
     return 0.5 * phi * total
 
@@ -305,8 +287,8 @@ def _azimuths_closed(
     near, far = rise * root(xp.abs(q - r)), fall * root(q + r)
     ends, ahead = far > 0.0, q > r
     ratio = xp.where(ends, near / xp.where(ends, far, 1.0), np.inf)
-    small, below = ratio < 1e-8, xp.where(ahead, 0.0, at_most(ratio, 1.0 - 1e-16))
-    turn = xp.where(ahead, angle(near, far), xp.atanh(below))
+    small, below = ratio < 1e-8, xp.where(ahead, 0.0, arrays.at_most(ratio, 1.0 - 1e-16))
+    turn = xp.where(ahead, arrays.angle(near, far), xp.atanh(below))
     limit = rise / xp.where(small, fall * (q + r), 1.0)
     pole = xp.where(small, limit, turn / xp.where(small, 1.0, root(xp.abs((q - r) * (q + r)))))
     rest = (a * phi + b * xp.sin(phi) - mu / k * phi) / (1.0 - mu)

@@ -42,28 +42,8 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 from numpy.polynomial import legendre
 
-from mxeon.models.core.arguments import (
-    checked,
-    checked_all,
-    checked_choice,
-    checked_directions,
-    checked_rgb,
-    lead_shape,
-)
-from mxeon.models.core.arrays import (
-    NUMPY,
-    Array,
-    ArrayLike,
-    Numbers,
-    any_array,
-    array_namespace,
-    at_least_0,
-    guarded,
-    like,
-    magnitude,
-    root,
-    within,
-)
+from mxeon.models.core import arguments, arrays
+from mxeon.models.core.arrays import NUMPY, Array, ArrayLike, any_array, array_namespace, like, root
 from mxeon.models.core.chebyshev import chebyshev_coefficients, chebyshev_nodes, chebyshev_sum
 from mxeon.models.core.colorimetry import XYZ_TO_REC709, XYZ_TO_REC709_E
 from mxeon.models.core.evaluation import evaluate_material
@@ -137,7 +117,7 @@ def over_index(
     c, S2 = film_ior * refracted(mu, film_ior), (1.0 - mu) * (1.0 + mu)
     # W = U + iV, of which U V = ior extinction gives the smaller part without a cancellation.
     Q, A = ior * extinction, (ior - extinction) * (ior + extinction) - S2
-    larger = root(0.5 * (fresnel.modulus(A, 2.0 * Q) + magnitude(A)))
+    larger = root(0.5 * (fresnel.modulus(A, 2.0 * Q) + arrays.magnitude(A)))
     smaller = Q / xp.where(larger > 0.0, larger, 1.0)
     U, V = xp.where(A >= 0.0, larger, smaller), xp.where(A >= 0.0, smaller, larger)
     gap = (ior - film_ior) * (ior + film_ior) - extinction * extinction, 2.0 * Q
@@ -156,7 +136,7 @@ def over_schlick(
     are the same: within SAME they count as that, since color0 0.04 below a film of 1.5 is 2e-8 off in float32.
     """
     xp = array_namespace(mu, film_ior, F)
-    F = at_least_0(F)
+    F = arrays.at_least_0(F)
     second = xp.where(index_of(color0) < film_ior * (1.0 - SAME), -1.0, 1.0) * root(F)
     p, s = (Interface(r, (second, 0.0 * second), F) for r in first_amplitudes(mu, film_ior))
     return p, s
@@ -200,7 +180,7 @@ def tristimulus(interface: Interface, opd: Array, orders: int | None = None) -> 
         sums = _orders(x, y, phi, orders or DAMPED_ORDERS)
         if orders is None:
             thick = phi * float(SPREADS.min()) >= THIN_SPREAD
-            sums = xp.where(thick, sums, _integrated(x, y, guarded(phi, ~thick, 0.0)))
+            sums = xp.where(thick, sums, _integrated(x, y, arrays.guarded(phi, ~thick, 0.0)))
     return dc + 2.0 * (dc - R12 - passed) * xp.tensordot(like(WEIGHTS, sums), sums, axes=1)
 
 
@@ -351,7 +331,7 @@ def film_curve(category: str, form: Form = TEXT) -> Curve:
             film = thinfilm_thickness, thinfilm_ior
             curve = _fine(category, replace(form, clamped=False), film, material)
             # Clamp it there, and sum.
-            kept = within(curve) if form.clamped else curve
+            kept = arrays.within(curve) if form.clamped else curve
             return array_namespace(curve).tensordot(like(_rule()[2], curve), kept, axes=1)
 
         return _where_coated(thinfilm_thickness, coated, bare.average(**material))
@@ -405,7 +385,7 @@ def _airy(
     p, s = SUBSTRATES[category](mu, film_ior, form, **inputs)
     xyz = tristimulus(p, opd, form.orders) + tristimulus(s, opd, form.orders)
     rgb = to_rgb(0.5 * xyz, form)
-    return within(rgb) if form.clamped else rgb
+    return arrays.within(rgb) if form.clamped else rgb
 
 
 def to_rgb(xyz: Array, form: Form) -> Array:
@@ -537,9 +517,9 @@ def _reflectance(
             material["tint"] = like(np.ones(1), mu)  # which the curve leaves alone
         return curve.at(mu, **material)
 
-    vectors = {name: checked_rgb(name, value) for name, value in colors.items()}
-    values = checked_all(numbers)
-    lead_shape(vectors, values)
+    vectors = {name: arguments.checked_rgb(name, value) for name, value in colors.items()}
+    values = arguments.checked_all(numbers)
+    arguments.lead_shape(vectors, values)
     ports = {PORTS.get(name, name): value for name, value in values.items()}
     return evaluate_material(at, vectors, ports, 3)
 
@@ -597,21 +577,21 @@ def film_albedo_dir(
 
 def _material(
     category: str, inputs: Mapping[str, ArrayLike], wo: ArrayLike
-) -> tuple[dict[str, Numbers], dict[str, Numbers]]:
+) -> tuple[dict[str, arrays.Numbers], dict[str, arrays.Numbers]]:
     """Checked inputs with channels and without."""
-    _, colors, numbers = CATEGORIES[checked_choice("category", category, CATEGORIES)]
+    _, colors, numbers = CATEGORIES[arguments.checked_choice("category", category, CATEGORIES)]
     if not isinstance(inputs, Mapping):
         raise ValueError(f"inputs must be a mapping of names to values; got {inputs!r}")
     if missing := {"roughness", *colors, *numbers, *FILM} - set(inputs):
         raise ValueError(f"inputs must have {', '.join(sorted(missing))}")
-    wo = checked_directions("wo", wo)
+    wo = arguments.checked_directions("wo", wo)
     return (
-        {name: _short(checked_rgb(name, inputs[name]), 1, wo) for name in colors},
-        {name: _short(checked(name, inputs[name]), 0, wo) for name in (*numbers, *FILM)},
+        {name: _short(arguments.checked_rgb(name, inputs[name]), 1, wo) for name in colors},
+        {name: _short(arguments.checked(name, inputs[name]), 0, wo) for name in (*numbers, *FILM)},
     )
 
 
-def _short(values: Numbers, channels: int, wo: ArrayLike) -> Numbers:
+def _short(values: arrays.Numbers, channels: int, wo: ArrayLike) -> arrays.Numbers:
     """Values as one row if there is one for each of many `wo`, and all are the same.
 
     F_ss of a film is an integral, which would be taken for each point of a picture.
@@ -639,7 +619,7 @@ class PolynomialCurve:
         sampled = self._curve(like(cosines, mu), **material)
         matrix = like(chebyshev_coefficients(np.eye(DEGREE + 1)), mu)
         series = xp.tensordot(matrix, sampled, axes=((1,), (1,)))
-        F = within(chebyshev_sum(series[:, :, np.newaxis, ...], mu))
+        F = arrays.within(chebyshev_sum(series[:, :, np.newaxis, ...], mu))
         if xp is NUMPY and film.all():
             return F
         return xp.where(film, F, self._bare(mu, **bare))

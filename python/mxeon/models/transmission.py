@@ -37,6 +37,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from mxeon.models.core import arrays
 from mxeon.models.core.arguments import (
     channel_count,
     checked,
@@ -49,21 +50,7 @@ from mxeon.models.core.arguments import (
     checked_vector,
     lead_shape,
 )
-from mxeon.models.core.arrays import (
-    Array,
-    ArrayLike,
-    Numbers,
-    any_array,
-    array_namespace,
-    at_least_0,
-    guarded,
-    least_normal,
-    library,
-    like,
-    root,
-    trimmed,
-    within,
-)
+from mxeon.models.core.arrays import Array, ArrayLike, Numbers, any_array, array_namespace, within
 from mxeon.models.core.chebyshev import chebyshev_coefficients, chebyshev_nodes, chebyshev_sum
 from mxeon.models.core.evaluation import evaluate_material
 from mxeon.models.microfacet import DIELECTRIC, fresnel, ggx
@@ -114,12 +101,12 @@ def transmission_half_vector(wo: ArrayLike, wi: ArrayLike, ior: ArrayLike) -> Ar
 def refracted(wo: Array, normal: Array, ior: Array) -> Array:
     """`refraction_direction` on float64 arrays, components first."""
     xp = array_namespace(wo, normal, ior)
-    bends = ior > max(LEAST_IOR, least_normal(wo))
-    inverse = 1.0 / guarded(xp.maximum(ior, LEAST_IOR), bends, 1.0)
+    bends = ior > max(LEAST_IOR, arrays.least_normal(wo))
+    inverse = 1.0 / arrays.guarded(xp.maximum(ior, LEAST_IOR), bends, 1.0)
     cosine = xp.sum(wo * normal, axis=0)
     squared = 1.0 - inverse * inverse * (1.0 - cosine) * (1.0 + cosine)
     passes = (squared > 0.0) & (cosine > 0.0) & bends
-    scale = inverse * cosine - root(xp.maximum(squared, 0.0))
+    scale = inverse * cosine - arrays.root(xp.maximum(squared, 0.0))
     wi = scale * normal - inverse * wo
     return xp.where(passes, wi, 0.0)
 
@@ -138,12 +125,14 @@ class Facet:
         """The facet between wo and wi: |wo + n wi|^2 (d wh / d wi) = n^2 |wi . wh|, [Walter2007], Eq. (17)."""
         xp = array_namespace(wo, wi, ior)
         total = wo + ior * wi
-        length = root(xp.sum(total * total, axis=0))
+        length = arrays.root(xp.sum(total * total, axis=0))
         side_o, side_i = xp.sum(wo * total, axis=0), xp.sum(wi * total, axis=0)
         real = (length > 0.0) & (side_o * side_i < 0.0) & (side_o * total[2] > 0.0)
         scale = xp.where(real, 1.0, 0.0) / xp.where(length > 0.0, length, 1.0)
         normal = total * (scale * xp.where(total[2] < 0.0, -1.0, 1.0))
-        cosine_o, cosine_i = (trimmed(xp.abs(side) * scale, 1.0) for side in (side_o, side_i))
+        cosine_o, cosine_i = (
+            arrays.trimmed(xp.abs(side) * scale, 1.0) for side in (side_o, side_i)
+        )
         return cls(normal, cosine_o, cosine_i, (ior * scale) ** 2 * cosine_i)
 
 
@@ -199,8 +188,10 @@ def evaluate_btdf(
         G2 = ggx.visibility_anisotropic(wo, above, roughness)
         lobe = ggx.ndf(facet.normal, roughness) * G2
         if radiance:
-            bends = ior > max(LEAST_IOR, least_normal(wo))  # nothing passes an index of 0
-            lobe = lobe / guarded(array_namespace(ior).maximum(ior, LEAST_IOR), bends, 1.0) ** 2
+            bends = ior > max(LEAST_IOR, arrays.least_normal(wo))  # nothing passes an index of 0
+            lobe = (
+                lobe / arrays.guarded(array_namespace(ior).maximum(ior, LEAST_IOR), bends, 1.0) ** 2
+            )
         f = (1.0 - F) * (4.0 * lobe * facet.cosine_o * facet.jacobian)
         return f * material["tint"] if "tint" in material else f
 
@@ -281,7 +272,7 @@ def evaluate_transmittance(
         wo, roughness = wo + 0.0 * roughness[:1], roughness + 0.0 * wo[:1]
         ior = material["ior"]
         T = total(wo, roughness, material, _visible(wo, roughness, ior), 1)
-        if library(ior) or np.any(ior < 1.0):
+        if arrays.library(ior) or np.any(ior < 1.0):
             squared = within((1.0 - ior) * (1.0 + ior), 0.0, MOST_SQUARED)
             split = refracting_nodes(wo, roughness, squared)
             T = array_namespace(T).where(ior < 1.0, total(wo, roughness, material, split, 2), T)
@@ -293,7 +284,10 @@ def evaluate_transmittance(
 
 def _visible(wo: Array, roughness: Array, ior: Array) -> Nodes:
     """Nodes of visible facets, drawn; those whose light does not reach the far side weigh nothing."""
-    xp, (height, turn, weight) = array_namespace(wo), (like(each, wo) for each in _nodes(wo.ndim))
+    xp, (height, turn, weight) = (
+        array_namespace(wo),
+        (arrays.like(each, wo) for each in _nodes(wo.ndim)),
+    )
     view = wo[:, np.newaxis]
     wh = visible_normal(view, height, turn, roughness[:, np.newaxis])
     wi = refracted(view, wh, ior)
@@ -364,7 +358,7 @@ class Reading:
         xp = array_namespace(cosine, ior)
         squared = 1.0 - (1.0 - cosine) * (1.0 + cosine) / xp.maximum(ior, 1e-50) ** 2
         inside = ior < 1.0
-        F = self.curve(xp.where(inside, root(at_least_0(squared)), cosine), **inputs)
+        F = self.curve(xp.where(inside, arrays.root(arrays.at_least_0(squared)), cosine), **inputs)
         return xp.where(inside & (squared <= 0.0), 1.0, F)
 
 
@@ -417,7 +411,7 @@ def schlick_ior(color0: ArrayLike, reading: str = "text") -> Array:
 
 def index_of(reflectance: Array, least: float) -> Array:
     """Index of a reflectance along the normal, kept in [least, 0.99]."""
-    amplitude = root(within(reflectance, least, BRIGHTEST))
+    amplitude = arrays.root(within(reflectance, least, BRIGHTEST))
     return (1.0 + amplitude) / (1.0 - amplitude)
 
 

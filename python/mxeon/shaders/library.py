@@ -21,21 +21,8 @@ import mxeon
 from mxeon.errors import InputError, LibraryError, PackageError, assert_known
 from mxeon.io.files import AnyPath, Names, names_of, one_name
 from mxeon.names import meant
-from mxeon.shaders.library_tree import (
-    DOCUMENT,
-    FILES,
-    LIBRARIES,
-    OVERLAY,
-    PART,
-    check_definitions,
-    check_files,
-    check_sources,
-    in_words,
-    read_options,
-    root,
-    search_path,
-    tree,
-)
+from mxeon.shaders import library_tree
+from mxeon.shaders.library_tree import LIBRARIES, OVERLAY, check_files, root, tree
 
 SOURCE_FOLDERS = ("genglsl", "genosl")
 
@@ -92,7 +79,7 @@ def kind_of(library: str) -> str:
         return library
     if tree(library).kind != OVERLAY:
         return "stock"
-    own = {Path(path).name for path in tree(library).own if path.endswith(DOCUMENT)}
+    own = {Path(path).name for path in tree(library).own if path.endswith(library_tree.DOCUMENT)}
     for name in ("eonlib", "diffuse"):
         if own == {path.name for path in documents_folder(name).rglob("*.mtlx")}:
             return name
@@ -162,7 +149,7 @@ def library_name(library: str | os.PathLike[str]) -> str:
             path
             for folder in library_folders(library)[1:]
             for path in sorted(folder.rglob("*.*"))
-            if path.suffix in FILES and not path.is_dir()
+            if path.suffix in library_tree.FILES and not path.is_dir()
         ]
         rule = (
             f"library {library}: must hold MaterialX documents, or files named as MaterialX's own"
@@ -213,7 +200,7 @@ def read_library(library: str, profile: str | None, definitions: tuple[str, ...]
     document = mx.createDocument()
     for folder in definitions:
         check_files(_documents(folder, f"definitions {folder}: must hold MaterialX documents"))
-    path, options = search_path(library), read_options()
+    path, options = library_tree.search_path(library), library_tree.read_options()
     try:
         if definitions:  # for none MaterialX loads everything
             mx.loadLibraries(list(definitions), path, document, readOptions=options)
@@ -222,12 +209,12 @@ def read_library(library: str, profile: str | None, definitions: tuple[str, ...]
         folders = [*own_folders(library), *mx.getDefaultDataLibraryFolders()]
         mx.loadLibraries(folders, path, document, readOptions=options)
     except (mx.Exception, mx.ExceptionParseError, LookupError) as error:
-        reason = in_words(library, str(error))
+        reason = library_tree.in_words(library, str(error))
         raise InputError(f"{' '.join(('library', library, *definitions))}: {reason}") from None
     if library not in LIBRARIES:
-        check_sources(document, root(library) or library, path)
+        library_tree.check_sources(document, root(library) or library, path)
     if definitions:
-        check_definitions(document, load_library(library, profile), definitions, path)
+        library_tree.check_definitions(document, load_library(library, profile), definitions, path)
     if library in ("eonlib", "diffuse"):
         assert_ours(document, library, profile)
     return document
@@ -237,10 +224,10 @@ def _first(library: str, profile: str | None) -> list[Path]:
     """Documents of a profile, or of a part in the tree that it is loaded from."""
     if profile and has_profile(library, profile):
         return profile_documents(library, profile)
-    if library in LIBRARIES or tree(library).kind != PART:
+    if library in LIBRARIES or tree(library).kind != library_tree.PART:
         return []
     home = Path(root(library), "libraries", tree(library).place)
-    return [home / each for each in tree(library).own if each.endswith(DOCUMENT)]
+    return [home / each for each in tree(library).own if each.endswith(library_tree.DOCUMENT)]
 
 
 def _documents(folder: AnyPath, rule: str) -> list[Path]:

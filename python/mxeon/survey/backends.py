@@ -11,31 +11,11 @@ from typing import ClassVar, Protocol, cast
 
 import numpy as np
 
-from mxeon.conformance.backends import (
-    BACKENDS,
-    EXACT,
-    EXACT_ALBEDO,
-    PICTURE_SIZE,
-    Backend,
-    CyclesPictures,
-    Errors,
-    Pairs,
-    lit_pairs,
-    scene_of,
-)
+from mxeon.conformance import backends, samples
+from mxeon.conformance.backends import BACKENDS, Errors
 from mxeon.conformance.results import Claims
 from mxeon.conformance.results.quantities import Quantity
-from mxeon.conformance.samples import (
-    Array,
-    Batch,
-    Counts,
-    Mask,
-    Values,
-    directions,
-    generator,
-    outside_directions,
-    special_directions,
-)
+from mxeon.conformance.samples import Array, Batch, Mask
 from mxeon.conformance.spec import Ability, Spec
 from mxeon.conformance.specs.diffuse import PICTURE_INPUTS
 from mxeon.conformance.tolerance import Term, mean_error, roundings, sum_in, sum_of
@@ -45,11 +25,11 @@ from mxeon.survey.facets import facet_points
 from mxeon.survey.specs import Material, RendererSpec
 
 FACET_PIXELS = 7169  # judged pixels of a picture of the polyhedron, each within one facet
-FEW_CALLS = Counts(1 << 13)  # calls of a renderer's own function
+FEW_CALLS = samples.Counts(1 << 13)  # calls of a renderer's own function
 SHORTEST = (
     2.0**-10
 )  # least length of wo + wi of special pairs, whose cosine Fresnel's formulas square and round
-EXACT_INPUTS: tuple[Values, ...] = (  # from dark to white and from rough to smooth
+EXACT_INPUTS: tuple[samples.Values, ...] = (  # from dark to white and from rough to smooth
     {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
     {"color": (0.02, 0.05, 0.1), "roughness": 1.0},
     {"color": (1.0, 0.8, 0.0), "roughness": 0.75},
@@ -92,7 +72,7 @@ class Renderer(Protocol):
         """Density of `sample` in solid angle, (N,)."""
 
 
-class Native(CyclesPictures):
+class Native(backends.CyclesPictures):
     """A renderer's own node, on a sphere."""
 
     abilities = Ability.OWN | Ability.LIGHT
@@ -114,7 +94,7 @@ class Native(CyclesPictures):
         return {"claimed": title, "model": own}
 
     def picture(self, batch: Batch) -> Array:
-        scene, inputs = scene_of(batch), batch.inputs
+        scene, inputs = backends.scene_of(batch), batch.inputs
         material = self.node.made(inputs["color"], inputs["roughness"])
         image = self.renderer.node(material, scene)
         return image[self.seen(scene)][self.points(scene)[2]].astype(np.float64)
@@ -126,7 +106,11 @@ class Native(CyclesPictures):
 class Exact(Native):
     """A node on a sphere whose points and light are exact up to rounding."""
 
-    own_errors: ClassVar[Errors] = {"value": EXACT, "albedo": EXACT_ALBEDO, "lambert": EXACT}
+    own_errors: ClassVar[Errors] = {
+        "value": backends.EXACT,
+        "albedo": backends.EXACT_ALBEDO,
+        "lambert": backends.EXACT,
+    }
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
@@ -135,10 +119,10 @@ class Exact(Native):
 
     @property
     def size(self) -> int:
-        return PICTURE_SIZE // 2
+        return backends.PICTURE_SIZE // 2
 
     @property
-    def materials(self) -> Sequence[Values]:
+    def materials(self) -> Sequence[samples.Values]:
         return EXACT_INPUTS
 
     def judged(self) -> Spec:
@@ -168,9 +152,9 @@ class Facets(Exact):
 
     @property
     def size(self) -> int:
-        return PICTURE_SIZE
+        return backends.PICTURE_SIZE
 
-    def points(self, scene: Scene) -> Pairs:
+    def points(self, scene: Scene) -> backends.Pairs:
         return facet_pairs(scene)
 
     def seen(self, scene: Scene) -> Mask:
@@ -198,12 +182,12 @@ class FacetPairs(Facets):
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
         """Random pairs, a quarter of each direction grazing; special ones; and outside ones."""
-        rng, spec, count = generator(), self.node, FEW_CALLS.pairs
-        random = directions(rng, count), directions(rng, count)
-        special = Batch(*special_directions(rng), {})
+        rng, spec, count = samples.generator(), self.node, FEW_CALLS.pairs
+        random = samples.directions(rng, count), samples.directions(rng, count)
+        special = Batch(*samples.special_directions(rng), {})
         half = np.linalg.norm(special.wo + special.wi, axis=1)
         special = special.where((special.wo[:, 2] > 0.0) & (half >= SHORTEST))
-        outside = Batch(*outside_directions(rng), {})
+        outside = Batch(*samples.outside_directions(rng), {})
         return (
             Batch(*random, spec.random_inputs(rng, count)),
             special.altered(**spec.random_inputs(rng, len(special.wo), edged=True)),
@@ -215,7 +199,7 @@ class FacetPairs(Facets):
         return self.batches[:2]
 
     def portrait(self, scene: Scene) -> tuple[Array, Array, Mask, Mask]:
-        return Backend.portrait(self, scene)
+        return backends.Backend.portrait(self, scene)
 
     def direct(self, batch: Batch) -> Array:
         count = len(batch.wo)
@@ -226,10 +210,10 @@ class FacetPairs(Facets):
 
 
 @lru_cache(maxsize=8)
-def facet_pairs(scene: Scene) -> Pairs:
+def facet_pairs(scene: Scene) -> backends.Pairs:
     """The pixels within a facet of the polyhedron, as pairs."""
     points = facet_points(scene.size)
-    return lit_pairs(points.normal[points.mask], scene)
+    return backends.lit_pairs(points.normal[points.mask], scene)
 
 
 BACKENDS |= {

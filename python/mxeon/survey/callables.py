@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import mxeon
-from mxeon.conformance import words
+from mxeon.conformance import samples, words
 from mxeon.conformance.backends import Backend
 from mxeon.conformance.cache import parts
 from mxeon.conformance.case import Case, edge_values
@@ -23,16 +23,7 @@ from mxeon.conformance.checks import CHECKS
 from mxeon.conformance.diagnosis import VALUE
 from mxeon.conformance.diagnosis.regions import EXACT, correct_except, smallest, unbounded
 from mxeon.conformance.results import PASSED, Diagnosis, Kind, Run
-from mxeon.conformance.samples import (
-    PAIRS,
-    Array,
-    Batch,
-    Counts,
-    Values,
-    directions,
-    generator,
-    special_directions,
-)
+from mxeon.conformance.samples import PAIRS, Array, Batch
 from mxeon.conformance.spec import Ability
 from mxeon.conformance.specs.diffuse import ERRORS, DiffuseModelSpec, inputs_of, model_row
 from mxeon.conformance.tolerance import Compared, absolute, point_of
@@ -63,13 +54,13 @@ class CallableHost(Host):
 class ClaimedModel(DiffuseModelSpec):
     """The model that a function claims to be, in place of a node."""
 
-    def document(self, inputs: Values | None = None) -> str:
+    def document(self, inputs: samples.Values | None = None) -> str:
         return ""  # a function needs none
 
-    def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        rng = generator()
-        wo, wi = directions(rng, PAIRS), directions(rng, PAIRS)
-        exact = special_directions(rng)
+    def batches(self, counts: samples.Counts) -> tuple[Batch, ...]:
+        rng = samples.generator()
+        wo, wi = samples.directions(rng, PAIRS), samples.directions(rng, PAIRS)
+        exact = samples.special_directions(rng)
         special = Batch(*exact, self.random_inputs(rng, len(exact[0]), edged=True))
         return Batch(wo, wi, self.random_inputs(rng, PAIRS)), special
 

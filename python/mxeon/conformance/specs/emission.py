@@ -8,16 +8,7 @@ import numpy as np
 from mxeon.conformance import samples, spec
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Counts, Values, directions, float32, generator
-from mxeon.conformance.spec import (
-    ARGUMENTS,
-    Ability,
-    EngineError,
-    Input,
-    RowSpec,
-    color,
-    named,
-    ports,
-)
+from mxeon.conformance.spec import ARGUMENTS, Ability, EngineError, Input, color
 from mxeon.conformance.tolerance import Compared, roundings, sum_of
 from mxeon.models.media import cone_cosine, cone_width, surface_radiance
 from mxeon.models.nodes import emissions
@@ -138,7 +129,7 @@ power_error = spec.POWER.error(_powers)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class EmissionSpec(RowSpec[emissions.Value]):
+class EmissionSpec(spec.RowSpec[emissions.Value]):
     """A row of `mxeon.models.nodes.emissions`."""
 
     requires = Ability.EMISSION
@@ -153,7 +144,7 @@ class EmissionSpec(RowSpec[emissions.Value]):
             axis = vector_text("axis", (inputs or {})["normal"])
             turned = connection_text("normal", "vector3", "axis")
         nodes = chained(self.row, "EDF", "uniform_edf", "emission", turned)
-        text = axis + network_text(nodes, ports(self.drawn, inputs)) + EMITTING_TEXT
+        text = axis + network_text(nodes, spec.ports(self.drawn, inputs)) + EMITTING_TEXT
         return document_text(text, "look")
 
     def values(self, function: emissions.Value, batch: Batch) -> Array:
@@ -307,7 +298,7 @@ def _spec(row: Emission) -> EmissionSpec:
     drawn, cone = inputs_of(row), row.name == "conical"
     power = (EngineError("the engine's pow()", power_error),)
     return (ConeSpec if cone else EmissionSpec)(
-        **named(row, title_of(row, "EDF")),
+        **spec.named(row, title_of(row, "EDF")),
         row=row,
         inputs=(*drawn, NORMAL) if cone else drawn,
         errors={"value": ERRORS.get(row.name, UNIFORM)},
@@ -336,7 +327,7 @@ PORTS = connection_text("top", "BSDF", "top") + connection_text("base", "VDF", "
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class MediumSpec(RowSpec[Transmittance]):
+class MediumSpec(spec.RowSpec[Transmittance]):
     """A row of `mxeon.models.nodes.media`."""
 
     requires = Ability.MEDIUM
@@ -345,7 +336,7 @@ class MediumSpec(RowSpec[Transmittance]):
 
     def document(self, inputs: Values | None = None) -> str:
         nodes = chained(self.row, "VDF", "anisotropic_vdf", "medium")
-        media = network_text(nodes, ports(self.inputs, inputs))
+        media = network_text(nodes, spec.ports(self.inputs, inputs))
         layer = node_text("layer", "BSDF", "lobe", PORTS)
         return document_text(INTERFACE + media + layer + SURFACE)
 
@@ -379,7 +370,7 @@ ANISOTROPY = Input("anisotropy", low=-0.9, high=0.9, default=0.5)
 def _medium_spec(row: Medium) -> MediumSpec:
     inputs, combined = inputs_of(row), row in COMBINED_MEDIA
     return MediumSpec(
-        **named(row, title_of(row, "VDF")),
+        **spec.named(row, title_of(row, "VDF")),
         row=row,
         inputs=(*inputs, ANISOTROPY) if row.category == "anisotropic_vdf" else inputs,
         errors={"value": TRANSMITTANCE},

@@ -11,17 +11,7 @@ import numpy as np
 from mxeon.conformance import samples, spec
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import TURNED, Array, Batch, Candidate, Counts, Values, directions_at
-from mxeon.conformance.spec import (
-    ZERO,
-    Ability,
-    Input,
-    LobeSpec,
-    Names,
-    RowSpec,
-    broadcast_inputs,
-    color,
-    named,
-)
+from mxeon.conformance.spec import ZERO, Input
 from mxeon.conformance.tolerance import Term, Tolerance, roundings, sum_in, sum_of
 from mxeon.models.hair import TINTS
 from mxeon.models.nodes import node
@@ -36,7 +26,7 @@ WEIGHT = Input("weight", change=0.5, materials=(1.0, 0.5))
 ROUGHNESS = Input(
     "roughness", low=samples.LEAST_SHEEN, edges=(0.01, 0.05, 1.0), change=0.3, materials=(0.8, 0.4)
 )
-COLOR = color("color", (0.2, 0.5, 0.8), (0.8, 0.4, 0.1))
+COLOR = spec.color("color", (0.2, 0.5, 0.8), (0.8, 0.4, 0.1))
 NORMAL = Input("normal", "vector3", change=(0.0, 0.6, 0.8))
 
 # Five roundings in each of three cosines, over the least of them.
@@ -68,7 +58,7 @@ EXTINCTIONS = (("extinction", 0, 6), ("extinction", 1, 6))  # edges without and 
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class ScatteringSpec(RowSpec[Scattering], LobeSpec):
+class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
     """A node that scatters light as a row says."""
 
     row: PbrNode
@@ -95,7 +85,9 @@ class ScatteringSpec(RowSpec[Scattering], LobeSpec):
         occlusion = np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))
         factor = batch.strength * (1.0 if self.row.transmits else occlusion)
         lit = np.where(side < 0.0, 0.0, np.clip(np.abs(wi[:, 2:]), 0.0, 1.0))
-        return np.asarray(np.pi * function(batch.wo, wi, broadcast_inputs(batch)) * lit * factor)
+        return np.asarray(
+            np.pi * function(batch.wo, wi, spec.broadcast_inputs(batch)) * lit * factor
+        )
 
     def albedo(self, batch: Batch) -> Array:
         return _albedo(self.row.albedo, batch)
@@ -157,17 +149,17 @@ class ScatteringSpec(RowSpec[Scattering], LobeSpec):
         """Directions (M, K, 3) and weights (M, K) of a quadrature over each view's hemisphere."""
 
 
-def named_mode(row: PbrNode, title: str = "") -> Names:
+def named_mode(row: PbrNode, title: str = "") -> spec.Names:
     """The names of a mode, whose title has the inputs that select it."""
     words = [row.category, *(f"{name} {value}" for name, value in row.fixed.items())]
-    return named(row, title or ", ".join(words))
+    return spec.named(row, title or ", ".join(words))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PbrSpec(ScatteringSpec):
     """A mode of a BSDF node: a row of `mxeon.models.nodes`."""
 
-    requires = Ability.LOBE
+    requires = spec.Ability.LOBE
     coarse = 2
 
     counts: Counts = COUNTS
@@ -233,7 +225,7 @@ class PbrSpec(ScatteringSpec):
 
 def _albedo(albedo: Callable[[Array, Inputs], Array], batch: Batch) -> Array:
     """A directional albedo with weight, (N, 3)."""
-    return batch.strength * albedo(batch.wo, broadcast_inputs(batch))
+    return batch.strength * albedo(batch.wo, spec.broadcast_inputs(batch))
 
 
 # 17 in each factor of Burley's, ten of them in the cosine of the half vector, and seven in the products.

@@ -13,14 +13,8 @@ from mxeon.conformance import samples, tolerance
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Counts, Values, directions, generator, rounded
 from mxeon.conformance.spec import ARGUMENTS, WAVE, Ability, EngineError, Input, ValueSpec, color
-from mxeon.conformance.specs.lobes import (
-    BURLEY_VALUE,
-    NORMAL,
-    WEIGHT,
-    PbrSpec,
-    lobe_errors,
-    named_mode,
-)
+from mxeon.conformance.specs import lobes
+from mxeon.conformance.specs.lobes import BURLEY_VALUE, WEIGHT, PbrSpec, named_mode
 from mxeon.conformance.specs.sheen import FIT_COSINE
 from mxeon.conformance.tolerance import Term, Tolerance, given, largest, roundings, sum_in, sum_of
 from mxeon.models.microfacet import Lobe, node_albedo, uncompensated
@@ -93,7 +87,7 @@ FACETS = (
         beyond=(0.5, 3.0, 5.0),
         ends=(1.0, np.inf),
     ),
-    NORMAL,
+    lobes.NORMAL,
     Input("tangent", "vector3", change=(0.6, 0.8, 0.0), needs={"roughness": (0.1, 0.4)}),
 )
 INPUTS = {
@@ -258,7 +252,7 @@ def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
     light = sum_in(
         Quantity.LIGHT, *throughput.terms[1:], Term(QUADRATURE, "the quadrature on the equations")
     )
-    own = lobe_errors(MEAN, ENVIRONMENT, throughput, FRAME, QUADRATURE)
+    own = lobes.lobe_errors(MEAN, ENVIRONMENT, throughput, FRAME, QUADRATURE)
     seen = sum_in(
         Quantity.IRRADIANCE,
         Term(

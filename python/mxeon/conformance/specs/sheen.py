@@ -9,21 +9,17 @@ from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import LEAST_SHEEN, float32, generator
 from mxeon.conformance.spec import ARGUMENTS, POWER, EngineError
 from mxeon.conformance.specs import lobes
-from mxeon.conformance.specs.lobes import (
-    COLOR,
-    FLAT_FRAME,
-    NORMAL,
-    ROUGHNESS,
-    PbrSpec,
-    lobe_errors,
-    named_mode,
-)
 from mxeon.conformance.tolerance import ROUNDING, Term, Tolerance, roundings, sum_in, sum_of
 from mxeon.hosts.base import Host
 from mxeon.models.nodes import node
 
 INPUTS, ZELTNER_INPUTS = (
-    (lobes.WEIGHT, COLOR, replace(ROUGHNESS, beyond=beyond, ends=(least, 1.0)), NORMAL)
+    (
+        lobes.WEIGHT,
+        lobes.COLOR,
+        replace(lobes.ROUGHNESS, beyond=beyond, ends=(least, 1.0)),
+        lobes.NORMAL,
+    )
     for beyond, least in (((1e-3, 1e-4, 2.0), 1e-4), ((0.0, 1e-3, 2.0), 0.01))
 )
 FIT_COSINE = 1e-4  # least cosine of the domain of the fits
@@ -68,25 +64,25 @@ def power_error(host: Host) -> float:
     return max(float(error) + (EXPONENT - LOGARITHM) * ROUNDING, 0.0)
 
 
-ZELTNER = PbrSpec(
-    **named_mode(node("zeltner")),
+ZELTNER = lobes.PbrSpec(
+    **lobes.named_mode(node("zeltner")),
     row=node("zeltner"),
     inputs=ZELTNER_INPUTS,
-    errors=lobe_errors(
-        ZELTNER_VALUE, ZELTNER_ALBEDO, ZELTNER_THROUGHPUT, FLAT_FRAME, quadrature=1e-8
+    errors=lobes.lobe_errors(
+        ZELTNER_VALUE, ZELTNER_ALBEDO, ZELTNER_THROUGHPUT, lobes.FLAT_FRAME, quadrature=1e-8
     ),
     along=0.03,
 )
-CONTY_KULLA = PbrSpec(
-    **named_mode(node("conty_kulla")),
+CONTY_KULLA = lobes.PbrSpec(
+    **lobes.named_mode(node("conty_kulla")),
     row=node("conty_kulla"),
     inputs=INPUTS,
     errors={
-        **lobe_errors(
+        **lobes.lobe_errors(
             conty_kulla_value(LOGARITHM),
             CONTY_KULLA_ALBEDO,
             CONTY_KULLA_THROUGHPUT,
-            FLAT_FRAME,
+            lobes.FLAT_FRAME,
             quadrature=2e-4,
         ),
         # The half vector has the same digits, and so has its power.

@@ -13,34 +13,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from mxeon.conformance import samples, spec
 from mxeon.conformance.results.quantities import Quantity
-from mxeon.conformance.samples import (
-    WHITE,
-    Array,
-    Batch,
-    Changes,
-    Counts,
-    Values,
-    directions,
-    generator,
-)
-from mxeon.conformance.spec import (
-    CHANGED_COLOR,
-    Ability,
-    Input,
-    LobeSpec,
-    Names,
-    ValueSpec,
-    color,
-    draw,
-)
+from mxeon.conformance.samples import WHITE, Array, Batch, Counts, Values, generator
+from mxeon.conformance.spec import CHANGED_COLOR, Input, draw
+from mxeon.conformance.specs import microfacets
 from mxeon.conformance.specs.lobes import LEAST_VIEW
-from mxeon.conformance.specs.microfacets import (
-    FILM_ERRORS,
-    LOBE_FIT,
-    falls_below_0,
-    reflected,
-    sum_over,
-)
+from mxeon.conformance.specs.microfacets import sum_over
 from mxeon.conformance.tolerance import Term, Tolerance, mean_scaled, roundings, sum_in, sum_of
 from mxeon.shaders.nodes import document_text, input_text, node_text
 
@@ -51,7 +28,7 @@ if TYPE_CHECKING:  # which load MaterialX
 # Inputs by their range, with values of a material in which every lobe takes part; a change is
 # another value than any default.
 RANGES = {
-    "color": color("", (0.5, 0.6, 0.7), edges=(1.0,)),
+    "color": spec.color("", (0.5, 0.6, 0.7), edges=(1.0,)),
     "share": Input("", edges=(0.0, 1.0), change=0.7, materials=(0.5,)),
     "rough": Input("", low=0.1, change=0.73, materials=(0.4,)),
     "sheen_rough": Input("", low=0.15, change=0.745, materials=(0.5,)),
@@ -103,7 +80,7 @@ MEAN = sum_of(
 # Of R over T, whose light is (1 - E)^2: slopes by E of at most 2 in what passes, and of 1 in the sum.
 GLASS = sum_in(
     Quantity.ALBEDO,
-    Term(2.0 * LOBE_FIT, "the fit of a lobe's albedo, which what passes it has twice"),
+    Term(2.0 * microfacets.LOBE_FIT, "the fit of a lobe's albedo, which what passes it has twice"),
     Term(2.0 * sum_over(1024).value, "two sums over 1024 directions"),
 )
 COUNTS = Counts(256, albedos=64, materials=1 << 11)  # a material a pair
@@ -114,16 +91,16 @@ ERRORS = {
     "glass": GLASS,
     "states": sum_of(roundings(32, "of the same parts in two programs")),
     "lobes_film": sum_of(
-        VALUE.term("all lobes of a material"), FILM_ERRORS["value"].term("a film")
+        VALUE.term("all lobes of a material"), microfacets.FILM_ERRORS["value"].term("a film")
     ),
 }
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class SurfaceShaderSpec(LobeSpec):
+class SurfaceShaderSpec(spec.LobeSpec):
     """A surface shader with every lobe on."""
 
-    requires = Ability.MATERIAL
+    requires = spec.Ability.MATERIAL
     plain = ("frame", "shape", "lobes", "inputs from an image")
 
     judged: tuple[Input, ...]  # those whose values have a reference
@@ -180,7 +157,7 @@ class SurfaceShaderSpec(LobeSpec):
         return tuple(self.changed_inputs)
 
     @property
-    def changes(self) -> Mapping[str, Changes]:
+    def changes(self) -> Mapping[str, samples.Changes]:
         """Of the material with every lobe."""
         seen, _ = spec.materials(*self.judged, *self.others)
         wholes = {name: {**seen, **self.needs.get(name, {})} for name in self.names}
@@ -252,9 +229,9 @@ class SurfaceShaderSpec(LobeSpec):
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         """Random pairs, half of them near the mirror direction, with random materials."""
         rng, count = generator(), counts.pairs
-        wo, wi = _views(rng, count), directions(rng, count)
+        wo, wi = _views(rng, count), samples.directions(rng, count)
         alpha = np.full((count, 2), SPREAD)
-        near = reflected(wo, alpha, rng.random(count), rng.random(count))
+        near = microfacets.reflected(wo, alpha, rng.random(count), rng.random(count))
         kept = (np.arange(count) % 2 == 0) & (near[:, 2] > 0.0)
         wi = np.where(kept[:, np.newaxis], near, wi)
         batch = Batch(wo, wi, self.random_inputs(rng, count))
@@ -265,7 +242,7 @@ class SurfaceShaderSpec(LobeSpec):
             ),
         )
 
-    few = ValueSpec.few
+    few = spec.ValueSpec.few
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
         """Views of isotropic materials; a metal's curve stays above 0, which MaterialX's sum does not clamp."""
@@ -274,7 +251,7 @@ class SurfaceShaderSpec(LobeSpec):
             color0 = batch.inputs["base_color"] * batch.inputs["base_weight"][:, np.newaxis]
             color82, color90 = batch.inputs["specular_color"], np.ones((1, 3))
             curve = {"color0": color0, "color82": color82, "color90": color90, "exponent": 5.0}
-            batch = batch.where(~falls_below_0(replace(batch, inputs=curve)))
+            batch = batch.where(~microfacets.falls_below_0(replace(batch, inputs=curve)))
         return (batch,)
 
     def edges(self, counts: Counts) -> Batch:
@@ -313,7 +290,7 @@ class SurfaceShaderSpec(LobeSpec):
 
 def _views(rng: np.random.Generator, count: int) -> Array:
     """Random directions, none so grazing that a sheen's own equations gain energy, and one that just is not."""
-    wo = directions(rng, count)
+    wo = samples.directions(rng, count)
     wo = samples.float32(np.where(wo[:, 2:] < LEAST_VIEW, [0.6, 0.0, 0.8], wo))
     wo[0] = samples.directions_at(LEAST_VIEW, 0.0)
     return wo
@@ -335,7 +312,7 @@ def _isotropic(batch: Batch) -> Batch:
     return batch.altered(**{name: np.zeros(len(batch.wo)) for name in _stretching(batch)})
 
 
-def _names(node: str) -> Names:
+def _names(node: str) -> spec.Names:
     return {"title": f"{node}, every lobe", "node": node, "model": node}
 
 

@@ -16,16 +16,7 @@ from numpy.typing import ArrayLike
 from mxeon.conformance import spec, tolerance
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Counts, Values, float32, generator
-from mxeon.conformance.spec import (
-    COMPONENTS,
-    LOGARITHM,
-    POWER,
-    Ability,
-    EngineError,
-    Input,
-    draw,
-    named,
-)
+from mxeon.conformance.spec import EngineError, Input
 from mxeon.conformance.tolerance import Compared, Term, Tolerance, given, roundings, sum_in, sum_of
 from mxeon.hosts.calls import GRAPH
 from mxeon.models import diffuse
@@ -112,8 +103,10 @@ def _shares() -> Array:
 
 
 # The 20th and 22nd power in [0, 1], and the logarithm of numbers below 1.
-_power_error = POWER.error(lambda: (_shares(), np.resize([22.0, 20.0], FEWER + 1)), 0.0)
-_logarithm_error = LOGARITHM.error(lambda: [float32(LEAST_LOGARITHM ** (1.0 - _shares()))], 0.0)
+_power_error = spec.POWER.error(lambda: (_shares(), np.resize([22.0, 20.0], FEWER + 1)), 0.0)
+_logarithm_error = spec.LOGARITHM.error(
+    lambda: [float32(LEAST_LOGARITHM ** (1.0 - _shares()))], 0.0
+)
 # What an engine's function adds, by node: times the other factor of a product, or a slope.
 ENGINE = {
     "chiang_hair_roughness": EngineError(
@@ -134,7 +127,7 @@ ENGINE = {
 class UtilitySpec(spec.RowSpec[Outputs]):
     """An output of a node of `mxeon.models.nodes.utilities`."""
 
-    requires = Ability.OUTPUT
+    requires = spec.Ability.OUTPUT
 
     row: UtilityNode
     output: str
@@ -163,14 +156,16 @@ class UtilitySpec(spec.RowSpec[Outputs]):
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
         rng, count = generator(), counts.pairs
-        return _batch(draw(rng, count, self.inputs)), _batch(
-            draw(rng, count, self.inputs, edged=True)
+        return _batch(spec.draw(rng, count, self.inputs)), _batch(
+            spec.draw(rng, count, self.inputs, edged=True)
         )
 
     def outside(self, counts: Counts) -> Batch:
         """Values at the ends of the ranges and beyond them."""
         rng, count = generator(), counts.pairs
-        beyond = (rng.choice(each.beyond, (count, *COMPONENTS[each.type])) for each in self.inputs)
+        beyond = (
+            rng.choice(each.beyond, (count, *spec.COMPONENTS[each.type])) for each in self.inputs
+        )
         return _batch({each.name: values for each, values in zip(self.inputs, beyond, strict=True)})
 
     def values(self, function: Outputs, batch: Batch) -> Array:
@@ -225,7 +220,7 @@ def _spec(row: UtilityNode, output: str, *libraries: str) -> UtilitySpec:
     title = row.category if len(row.outputs) == 1 else f"{row.category}, {output}"
 
     def filled(each: Input, value: ArrayLike | None) -> ArrayLike:
-        return np.full(COMPONENTS[each.type], value)
+        return np.full(spec.COMPONENTS[each.type], value)
 
     rows = [
         INPUTS.get(name)
@@ -238,7 +233,7 @@ def _spec(row: UtilityNode, output: str, *libraries: str) -> UtilitySpec:
         for each in rows
     )
     return UtilitySpec(
-        **named(row, title),
+        **spec.named(row, title),
         row=row,
         inputs=inputs,
         errors={"value": VALUES.get(title) or VALUES[row.category], **OTHERS.get(title, {})},

@@ -21,15 +21,8 @@ from mxeon.hosts.base import Array, Identity, Inputs, Query
 from mxeon.hosts.calls import GRAPH
 from mxeon.hosts.cycles import process
 from mxeon.hosts.cycles.process import interpreter
-from mxeon.hosts.osl.points import (
-    IMAGE,
-    call_text,
-    columns_of,
-    side,
-    statements,
-    with_header,
-    with_variables,
-)
+from mxeon.hosts.osl import points
+from mxeon.hosts.osl.points import side, statements, with_header
 from mxeon.hosts.pairs import DISTANCE, HEIGHT, LAMP, SKY, PairHost, tilted_triangles
 from mxeon.hosts.process import Worker
 from mxeon.io.images import read_image
@@ -107,11 +100,11 @@ class CyclesHost(PairHost):
         self, shader: Shader, wo: Array, wi: Array, inputs: Inputs, last: str, light: str
     ) -> NDArray[np.float64]:
         scene = tilted_triangles(wo, wi, side(len(wo)))
-        columns = columns_of(shader, inputs, scene.turned)
+        columns = points.columns_of(shader, inputs, scene.turned)
         with self.worker.temporary() as name:
             folder = Path(name)
-            block = statements(columns, folder / IMAGE, len(wo), scene.place)
-            text = with_variables(shader, block, lambda output: last.format(output=output))
+            block = statements(columns, folder / points.IMAGE, len(wo), scene.place)
+            text = points.with_variables(shader, block, lambda output: last.format(output=output))
             corners = folder / "triangles.npy"
             np.save(corners, scene.corners.astype(np.float32))
             frame: dict[str, object] = {**process.request(process.DARK, ()), "size": side(len(wo))}
@@ -137,9 +130,9 @@ class CyclesHost(PairHost):
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
         """Values of a function: a plane emits them, and its shader reads the arguments from unfiltered pixels."""
         with self.worker.temporary() as name:
-            place, output = (Path(name, IMAGE), process.PLACE), "output closure color out"
+            place, output = (Path(name, points.IMAGE), process.PLACE), "output closure color out"
             last = "out = {} * emission();"
-            text, count = call_text(source, function, arguments, *place, output, last)
+            text, count = points.call_text(source, function, arguments, *place, output, last)
             frame = {**process.request(process.DARK, ()), "body": "plane", "size": side(count)}
             return self._render(Path(name), text, **frame).reshape(-1, 3)[:count]
 

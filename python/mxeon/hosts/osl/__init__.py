@@ -22,18 +22,10 @@ from numpy.typing import ArrayLike
 from mxeon.errors import NotRun
 from mxeon.hosts import base
 from mxeon.hosts.base import Array, Identity, Inputs
+from mxeon.hosts.osl import points
 from mxeon.hosts.osl.carriers import prelude
 from mxeon.hosts.osl.engines import VARIABLES, Blender, Testshade
-from mxeon.hosts.osl.points import (
-    IMAGE,
-    Column,
-    call_text,
-    columns_of,
-    row,
-    statements,
-    with_header,
-    with_variables,
-)
+from mxeon.hosts.osl.points import Column, row
 from mxeon.hosts.osl.trees import KeptTrees, TreeRows, keys_of, read_trees, whole_label, with_roots
 from mxeon.shaders.generation import Shader
 
@@ -81,7 +73,7 @@ class OslHost(base.Host):
         `wo`, shape (N, 3), and `inputs` are as in `evaluate`. Points whose closures differ only in numbers share a tree.
         ShaderError for a closure that OSL does not document.
         """
-        columns, view = columns_of(shader, inputs), Column("vector", wo)
+        columns, view = points.columns_of(shader, inputs), Column("vector", wo)
         keys = keys_of(shader.stages["pixel"], columns, view, len(wo))
         kept = self._kept(shader.stages["pixel"], tuple(columns))
         rows = kept.missing(keys)
@@ -98,10 +90,10 @@ class OslHost(base.Host):
         """A shader's closures for each value of its variables."""
         with self._engine.folder() as name:
             folder, place = Path(name), self._engine.place
-            block = statements(columns, folder / IMAGE, count, place)
-            [read] = statements({"view": view}, folder / "view.tif", count, place)
-            shown = with_variables(shader, block, f"    {PRINT}\n    {{0}} = 0;\n".format)
-            text = VIEW.format(read=read) + with_header(shown, shader)
+            block = points.statements(columns, folder / points.IMAGE, count, place)
+            [read] = points.statements({"view": view}, folder / "view.tif", count, place)
+            shown = points.with_variables(shader, block, f"    {PRINT}\n    {{0}} = 0;\n".format)
+            text = VIEW.format(read=read) + points.with_header(shown, shader)
             rows = self._printed(folder, text, count)
         found = read_trees([whole_label(each, ROOT) for each in rows])
         if not self._engine.rooted:
@@ -110,8 +102,11 @@ class OslHost(base.Host):
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
         with self._engine.folder() as name:
-            place, output = (Path(name, IMAGE), self._engine.place), "output closure color out"
-            text, count = call_text(source, function, arguments, *place, output, PRINT)
+            place, output = (
+                (Path(name, points.IMAGE), self._engine.place),
+                "output closure color out",
+            )
+            text, count = points.call_text(source, function, arguments, *place, output, PRINT)
             rows = self._printed(Path(name), text, count)
         return np.array([row[ROOT].split() for row in rows], np.float32)
 

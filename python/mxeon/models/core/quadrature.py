@@ -9,27 +9,11 @@ from typing import cast
 
 import numpy as np
 
-from mxeon.models.core.arguments import (
-    checked,
-    checked_count,
-    checked_real,
-    checked_vector,
-    lead_shape,
-)
-from mxeon.models.core.arrays import (
-    NUMPY,
-    Array,
-    ArrayLike,
-    any_array,
-    arccosine,
-    array_namespace,
-    library,
-    like,
-    root,
-)
+from mxeon.models.core import arguments, arrays
+from mxeon.models.core.arrays import Array, ArrayLike, array_namespace
 
 
-@any_array
+@arrays.any_array
 def albedo_dir_quadrature(
     brdf: Callable[..., Array],
     mu: ArrayLike,
@@ -53,14 +37,16 @@ def albedo_dir_quadrature(
         >>> albedo_dir_quadrature(eon_brdf, 0.3, [0.5, 1.0], 1.0).round(12)
         array([0.47804055, 1.        ])
     """
-    checked_count("nodes", nodes)
-    mu, rho = checked("mu", mu), checked_vector("rho", rho)
-    parameters = [checked_real(f"parameter {k}", value) for k, value in enumerate(parameter)]
+    arguments.checked_count("nodes", nodes)
+    mu, rho = arguments.checked("mu", mu), arguments.checked_vector("rho", rho)
+    parameters = [
+        arguments.checked_real(f"parameter {k}", value) for k, value in enumerate(parameter)
+    ]
     numbers = {"mu": mu} | {f"parameter {k}": value for k, value in enumerate(parameters)}
-    lead, xp = lead_shape({"rho": rho}, numbers), array_namespace(mu, rho, *parameters)
+    lead, xp = arguments.lead_shape({"rho": rho}, numbers), array_namespace(mu, rho, *parameters)
     mu, *parameters = (xp.broadcast_to(value, lead) for value in (mu, *parameters))
     rho = xp.broadcast_to(rho, (*lead, rho.shape[-1]))
-    if xp is not NUMPY:
+    if xp is not arrays.NUMPY:
         return _integral(brdf, mu, rho, parameters, nodes)
     albedo = np.empty(rho.shape)
     for index in np.ndindex(lead):
@@ -81,9 +67,9 @@ def _integral(
 
 def hemisphere_nodes(mu: Array | float, nodes: int) -> tuple[Array, Array, Array]:
     """wo at azimuth 0, wi in half the hemisphere (..., N, 3), and their weights, which sum to pi."""
-    mu = cast(Array, mu) if library(mu) else np.asarray(mu, np.float64)
-    xp, (x, weight) = array_namespace(mu), (like(each, mu) for each in unit_rule(nodes))
-    theta_o = arccosine(mu)[..., np.newaxis]
+    mu = cast(Array, mu) if arrays.library(mu) else np.asarray(mu, np.float64)
+    xp, (x, weight) = array_namespace(mu), (arrays.like(each, mu) for each in unit_rule(nodes))
+    theta_o = arrays.arccosine(mu)[..., np.newaxis]
     rest = 0.5 * np.pi - theta_o
     theta = xp.concat([theta_o * (1.0 - x**5), theta_o + rest * x], axis=-1)
     d_theta = xp.concat([theta_o * 5.0 * x**4 * weight, rest * weight], axis=-1)
@@ -91,7 +77,7 @@ def hemisphere_nodes(mu: Array | float, nodes: int) -> tuple[Array, Array, Array
     d_phi = 0.5 * np.pi * xp.concat([weight, weight])
     sine, cosine = xp.sin(theta)[..., np.newaxis], xp.cos(theta)[..., np.newaxis]
     parts = sine * xp.cos(phi), sine * xp.sin(phi), cosine + 0.0 * phi
-    wo = xp.stack([root((1.0 - mu) * (1.0 + mu)), 0.0 * mu, mu], axis=-1)
+    wo = xp.stack([arrays.root((1.0 - mu) * (1.0 + mu)), 0.0 * mu, mu], axis=-1)
     weights = 2.0 * d_theta[..., np.newaxis] * d_phi * sine * cosine
     flat = (*mu.shape, 4 * nodes * nodes)
     return wo, xp.reshape(xp.stack(parts, axis=-1), (*flat, 3)), xp.reshape(weights, flat)

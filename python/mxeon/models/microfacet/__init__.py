@@ -32,6 +32,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from mxeon.models.core import arrays
 from mxeon.models.core.arguments import (
     channel_count,
     checked_all,
@@ -42,17 +43,7 @@ from mxeon.models.core.arguments import (
     lead_shape,
     refuse_ambiguous,
 )
-from mxeon.models.core.arrays import (
-    NUMPY,
-    Array,
-    ArrayLike,
-    Numbers,
-    any_array,
-    array_namespace,
-    at_least_0,
-    library,
-    like,
-)
+from mxeon.models.core.arrays import Array, ArrayLike, Numbers, any_array, array_namespace
 from mxeon.models.core.chebyshev import chebyshev_coefficients, chebyshev_nodes, chebyshev_sum
 from mxeon.models.core.evaluation import evaluate_material, evaluate_number
 from mxeon.models.microfacet import fresnel, ggx
@@ -81,8 +72,8 @@ DIELECTRIC = Curve(
 )
 CONDUCTOR = Curve(fresnel.conductor, fresnel.conductor_avg)
 SCHLICK = Curve(
-    lambda c, **material: at_least_0(fresnel.schlick(c, **material)),
-    lambda **material: at_least_0(fresnel.schlick_avg(**material)),
+    lambda c, **material: arrays.at_least_0(fresnel.schlick(c, **material)),
+    lambda **material: arrays.at_least_0(fresnel.schlick_avg(**material)),
 )
 WHITE_CURVE = Curve(lambda c, tint: 1.0 + 0.0 * c[np.newaxis], lambda tint: np.ones(1))
 
@@ -177,7 +168,7 @@ def _of_unlike(rows: Array) -> Array:
 def missing_of(wo: Array, roughness: Array) -> Array:
     """(1 - E_ss) / E_ss on valid float64 arrays, components first."""
     isotropic = missing_light(wo[2], ggx.mean_alpha(roughness))
-    if array_namespace(wo, roughness) is NUMPY:
+    if array_namespace(wo, roughness) is arrays.NUMPY:
         unequal = roughness[0] != roughness[1]
         if not np.any(unequal):
             return isotropic
@@ -459,9 +450,9 @@ def ggx_albedo_dir_anisotropic(wo: ArrayLike, roughness: ArrayLike) -> Array:
     """
     wo, roughness = checked_directions("wo", wo), checked_roughness(roughness)
     lead_shape({"wo": wo, "roughness": roughness}, {})
-    return lobe_albedo(WHITE_CURVE, wo, roughness, {"tint": like(np.ones(1), wo)}, {}, False)[
-        ..., 0
-    ][()]
+    return lobe_albedo(
+        WHITE_CURVE, wo, roughness, {"tint": arrays.like(np.ones(1), wo)}, {}, False
+    )[..., 0][()]
 
 
 def lobe_albedo(
@@ -487,11 +478,11 @@ def lobe_albedo(
         xp = array_namespace(c)
         E = xp.sum(curve.at(c, **spread) * weight, axis=(1, 2))
         squared = curve.critical(**material)
-        if not summed and (library(squared) or np.any(squared > 0.0)):
+        if not summed and (arrays.library(squared) or np.any(squared > 0.0)):
             # All light, but what passes above the critical angle.
             alpha, isotropic = 0.5 * (roughness[0] + roughness[1]), roughness[0] == roughness[1]
             lossless = xp.where(isotropic, albedo(wo[2], alpha), xp.sum(weight, axis=(0, 1)))
-            c, weight = transmitting_nodes(wo, roughness, at_least_0(squared))
+            c, weight = transmitting_nodes(wo, roughness, arrays.at_least_0(squared))
             lost = xp.sum((1.0 - curve.at(c, **spread)) * weight, axis=(1, 2))
             E = xp.where(squared > 0.0, lossless - lost, E)
         if compensate:

@@ -8,16 +8,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from mxeon.models import microfacet
 from mxeon.models.core.arrays import Array
-from mxeon.models.microfacet import (
-    Lobe,
-    Pair,
-    compensation,
-    ggx,
-    missing,
-    uncompensated,
-    visibility,
-)
+from mxeon.models.microfacet import Lobe, Pair, ggx
 from mxeon.models.microfacet.ggx import missing_light
 
 # MaterialX 1.39.5, rational fit of the GGX albedo A F0 + B F90 in x = mu, y = alpha; up to 0.14 off
@@ -103,7 +96,7 @@ def _missing_by_fit(pair: Pair) -> Array:
 
 
 def _compensated(
-    F: Callable[[Pair], Array], lost: Callable[[Pair], Array] = missing
+    F: Callable[[Pair], Array], lost: Callable[[Pair], Array] = microfacet.missing
 ) -> Callable[[Pair], Array]:
     """Compensation with F instead of its average F_ss, and (1 - E_ss) / E_ss."""
     return lambda pair: 1.0 + F(pair) * lost(pair)
@@ -134,7 +127,7 @@ def _june(pair: Pair) -> Array:
 
 MEAN_ALPHA = "Smith at the geometric mean"
 MICROFACET_DEFECTS = (
-    MicrofacetDefect("no_compensation", "no energy compensation", Lobe(uncompensated)),
+    MicrofacetDefect("no_compensation", "no energy compensation", Lobe(microfacet.uncompensated)),
     MicrofacetDefect(
         "compensation_half",
         "compensation with F at the half vector",
@@ -200,12 +193,12 @@ FITTED_DEFECTS = (
                 each.lobe,
                 factor=fitted_half,
                 visibility=_at_the_mean
-                if each.lobe.visibility is visibility
+                if each.lobe.visibility is microfacet.visibility
                 else each.lobe.visibility,
             ),
         )
         for each in MICROFACET_DEFECTS
-        if each.lobe.factor is compensation
+        if each.lobe.factor is microfacet.compensation
     ),
 )
 # Of OSL's own renderer, which its closures are compared with alone: E_ss is at the arithmetic mean of both alphas.
@@ -223,7 +216,7 @@ BSDL = MicrofacetDefect(
 SINGLE = MicrofacetDefect(
     "single",
     "single scattering alone",
-    Lobe(uncompensated),
+    Lobe(microfacet.uncompensated),
 )
 
 

@@ -20,22 +20,9 @@ from collections.abc import Callable
 
 import numpy as np
 
+from mxeon.models.core import arrays
 from mxeon.models.core.arguments import channel_count, checked_all, checked_numbers, checked_vectors
-from mxeon.models.core.arrays import (
-    NUMPY,
-    Array,
-    ArrayLike,
-    any_array,
-    array_namespace,
-    at_least_0,
-    at_most,
-    hypot,
-    like,
-    magnitude,
-    power,
-    root,
-    trimmed,
-)
+from mxeon.models.core.arrays import Array, ArrayLike, any_array, array_namespace, hypot, root
 from mxeon.models.core.evaluation import evaluate_material, evaluate_number
 from mxeon.models.core.quadrature import unit_rule
 
@@ -75,7 +62,7 @@ def dielectric(mu: Array, ior: Array) -> Array:
     minus = mu * g - (1.0 - mu) * (1.0 + mu)
     ratio = minus / xp.where(plus > 0.0, plus, 1.0)
     F = 0.5 * amplitude**2 * (1.0 + ratio**2)
-    return xp.where((g2 > 0.0) | (gap == 0.0), trimmed(F, 1.0), 1.0)
+    return xp.where((g2 > 0.0) | (gap == 0.0), arrays.trimmed(F, 1.0), 1.0)
 
 
 def conductor(mu: Array, ior: Array, extinction: Array) -> Array:
@@ -91,7 +78,7 @@ def _gap(ior: Array, extinction: Array) -> Array:
 def _conductor(mu: Array, ior: Array, extinction: Array, gap: Array) -> Array:
     """`conductor` from |n^2 - 1|."""
     Rp, Rs = polarized(mu, ior, extinction, gap)
-    return trimmed(0.5 * (Rs + Rp), 1.0)
+    return arrays.trimmed(0.5 * (Rs + Rp), 1.0)
 
 
 def polarized(mu: Array, ior: Array, extinction: Array, gap: Array) -> tuple[Array, Array]:
@@ -112,11 +99,11 @@ def polarized(mu: Array, ior: Array, extinction: Array, gap: Array) -> tuple[Arr
     S2 = (1.0 - mu) * (1.0 + mu)
     real = (ior - 1.0) * (ior + 1.0) + mu * mu - extinction * extinction
     size = modulus(real, 2.0 * ior * extinction)
-    larger = root(0.5 * (size + magnitude(real)))
+    larger = root(0.5 * (size + arrays.magnitude(real)))
     smaller = ior * extinction / xp.where(larger > 0.0, larger, 1.0)
     a, b = xp.where(real >= 0.0, larger, smaller), xp.where(real >= 0.0, smaller, larger)
     total = (a + mu) ** 2 + b * b
-    Rs = trimmed((gap / xp.where(total > 0.0, total, 1.0)) ** 2, 1.0)
+    Rs = arrays.trimmed((gap / xp.where(total > 0.0, total, 1.0)) ** 2, 1.0)
     minus, plus = ((mu * a + sign * S2) ** 2 + (mu * b) ** 2 for sign in (-1.0, 1.0))
     Rp = Rs * xp.where(plus > 0.0, minus / xp.where(plus > 0.0, plus, 1.0), 1.0)
     return Rp, Rs
@@ -124,7 +111,7 @@ def polarized(mu: Array, ior: Array, extinction: Array, gap: Array) -> tuple[Arr
 
 def modulus(real: Array, imaginary: Array) -> Array:
     """Length of complex numbers: `hypot` where a square overflows, which takes ten times as long."""
-    if array_namespace(real, imaginary) is not NUMPY:
+    if array_namespace(real, imaginary) is not arrays.NUMPY:
         return hypot(real, imaginary)
     with np.errstate(over="ignore"):
         size: Array = np.sqrt(real * real + imaginary * imaginary)
@@ -135,7 +122,7 @@ def schlick(mu: Array, color0: Array, color82: Array, color90: Array, exponent: 
     """F_theta: [MaterialX2026], Generalized Schlick Equations; 0^0 counts as 1."""
     a = _schlick_a(color0, color82, color90, exponent)
     m = 1.0 - mu
-    return color0 + (color90 - color0) * power(m, exponent) - a * mu * m**6
+    return color0 + (color90 - color0) * arrays.power(m, exponent) - a * mu * m**6
 
 
 def dielectric_avg(ior: Array) -> Array:
@@ -158,7 +145,7 @@ def conductor_avg(ior: Array, extinction: Array) -> Array:
     strong ones, a pole as near to grazing as 1 / |n|.
     """
     # Take the split rule for all arrays that cannot be written into.
-    if array_namespace(ior, extinction) is not NUMPY:
+    if array_namespace(ior, extinction) is not arrays.NUMPY:
         return _split_avg(ior, extinction)
     ior, extinction = np.broadcast_arrays(ior, extinction)
     n2 = (ior + 1j * extinction) ** 2
@@ -212,18 +199,18 @@ def _split_avg(ior: Array, extinction: Array) -> Array:
     xp = array_namespace(ior, extinction)
     real = extinction * extinction - (ior - 1.0) * (ior + 1.0)
     size = hypot(real, 2.0 * ior * extinction)
-    split = at_most(root(xp.maximum(0.5 * (size + real), 0.0)), 1.0)
+    split = arrays.at_most(root(xp.maximum(0.5 * (size + real), 0.0)), 1.0)
     t = STEP * np.arange(-STEPS, STEPS + 1)
     X = np.exp(np.pi * np.sinh(t))
     shape = (-1, *(1,) * split.ndim)
-    x = like((X / (1.0 + X)).reshape(shape), ior)
-    weight = like((STEP * np.pi * np.cosh(t) * X / (1.0 + X) ** 2).reshape(shape), ior)
+    x = arrays.like((X / (1.0 + X)).reshape(shape), ior)
+    weight = arrays.like((STEP * np.pi * np.cosh(t) * X / (1.0 + X) ** 2).reshape(shape), ior)
     gap = _gap(ior, extinction)
     total = 0.0 * split
     for low, length in ((0.0, split), (split, 1.0 - split)):
-        mu = at_most(low + length * x, 1.0)
+        mu = arrays.at_most(low + length * x, 1.0)
         total = total + length * xp.sum(weight * mu * _conductor(mu, ior, extinction, gap), axis=0)
-    return trimmed(2.0 * total, 1.0)
+    return arrays.trimmed(2.0 * total, 1.0)
 
 
 def schlick_avg(color0: Array, color82: Array, color90: Array, exponent: Array) -> Array:
@@ -412,7 +399,7 @@ def artistic_ior(reflectivity: ArrayLike, edge_color: ArrayLike) -> tuple[Array,
     n_min, n_max = (1.0 - r) / (1.0 + r), (1.0 + root(r)) ** 2 / (1.0 - r)
     ior = g * n_min + (1.0 - g) * n_max
     square = g * (n_max - n_min) * ((ior - n_min) + (n_min - 1.0 / n_max))
-    return ior, root(at_least_0(square))
+    return ior, root(arrays.at_least_0(square))
 
 
 def normal_reflectance(ior: Array, extinction: Array) -> Array:

@@ -24,37 +24,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from mxeon.models.core.arguments import (
-    broadcastable,
-    checked,
-    checked_all,
-    checked_directions,
-    checked_numbers,
-    checked_pairs,
-    checked_roughness,
-)
-from mxeon.models.core.arrays import (
-    NUMPY,
-    Array,
-    ArrayLike,
-    any_array,
-    arcsine,
-    array_namespace,
-    at_most,
-    fractional_power,
-    hypot,
-    least_normal,
-    like,
-    root,
-    trimmed,
-)
-from mxeon.models.core.chebyshev import (
-    cell_cubics,
-    chebyshev_coefficients,
-    chebyshev_nodes,
-    chebyshev_polynomials,
-    chebyshev_sum,
-)
+from mxeon.models.core import arguments, arrays, chebyshev
+from mxeon.models.core.arguments import checked_directions, checked_roughness
+from mxeon.models.core.arrays import NUMPY, Array, ArrayLike, any_array, array_namespace, like, root
 from mxeon.models.core.evaluation import evaluate_number
 
 # Sums of cosines below count as 0: D alone is at most 1e162.
@@ -97,7 +69,7 @@ def visibility(mu_o: Array, mu_i: Array, alpha: Array) -> Array:
 
 def stretched_length(w: Array, roughness: Array) -> Array:
     """Length of (alpha_x x, alpha_y y, z)."""
-    return hypot(hypot(roughness[0] * w[0], roughness[1] * w[1]), w[2])
+    return arrays.hypot(arrays.hypot(roughness[0] * w[0], roughness[1] * w[1]), w[2])
 
 
 def visibility_anisotropic(wo: Array, wi: Array, roughness: Array) -> Array:
@@ -114,13 +86,13 @@ def half_vector(wo: Array, wi: Array) -> tuple[Array, Array]:
     opposite = size == 0.0
     wh = total / xp.where(opposite, 1.0, size)
     z = xp.where(opposite, 1.0, wh[2])
-    return xp.stack([wh[0], wh[1], z]), at_most(0.5 * size, 1.0)
+    return xp.stack([wh[0], wh[1], z]), arrays.at_most(0.5 * size, 1.0)
 
 
 def reciprocal(x: Array) -> Array:
     """1 / x, and 0 where x is so small that a product with D could overflow."""
     xp = array_namespace(x)
-    large = x > max(LEAST_DIVISOR, least_normal(x))  # that of float32 is larger
+    large = x > max(LEAST_DIVISOR, arrays.least_normal(x))  # that of float32 is larger
     return xp.where(large, 1.0 / xp.where(large, x, 1.0), 0.0)
 
 
@@ -181,7 +153,9 @@ def smith_g2(mu_o: ArrayLike, mu_i: ArrayLike, alpha: ArrayLike) -> Array:
     def value(mu_o: Array, mu_i: Array, alpha: Array) -> Array:
         return 4.0 * mu_o * mu_i * visibility(mu_o, mu_i, alpha)
 
-    return evaluate_number(value, {}, checked_all({"mu_o": mu_o, "mu_i": mu_i, "alpha": alpha}))
+    return evaluate_number(
+        value, {}, arguments.checked_all({"mu_o": mu_o, "mu_i": mu_i, "alpha": alpha})
+    )
 
 
 @any_array
@@ -222,14 +196,14 @@ def roughness_anisotropy(roughness: ArrayLike, anisotropy: ArrayLike) -> Array:
         array([[0.25 , 0.25 ],
                [0.5  , 0.125]])
     """
-    return _stretched(*checked_numbers(roughness=roughness, anisotropy=anisotropy))
+    return _stretched(*arguments.checked_numbers(roughness=roughness, anisotropy=anisotropy))
 
 
 def _stretched(r: Array, a: Array) -> Array:
     """`roughness_anisotropy` on valid arrays."""
     xp = array_namespace(r, a)
-    aspect = xp.sqrt(1.0 - at_most(a, LARGEST_ANISOTROPY))
-    return xp.stack([at_most(r * r / aspect, 1.0), r * r * aspect], axis=-1)
+    aspect = xp.sqrt(1.0 - arrays.at_most(a, LARGEST_ANISOTROPY))
+    return xp.stack([arrays.at_most(r * r / aspect, 1.0), r * r * aspect], axis=-1)
 
 
 @any_array
@@ -243,7 +217,9 @@ def roughness_dual(roughness: ArrayLike) -> Array:
         >>> roughness_dual([0.5, 1.0])
         array([0.25, 1.  ])
     """
-    (pairs,) = broadcastable({"roughness": checked_pairs("roughness", roughness)}, {})
+    (pairs,) = arguments.broadcastable(
+        {"roughness": arguments.checked_pairs("roughness", roughness)}, {}
+    )
     return pairs * pairs
 
 
@@ -256,7 +232,7 @@ def glossiness_anisotropy(glossiness: ArrayLike, anisotropy: ArrayLike) -> Array
         >>> glossiness_anisotropy(0.5, 0.75)
         array([0.5  , 0.125])
     """
-    g, a = checked_numbers(glossiness=glossiness, anisotropy=anisotropy)
+    g, a = arguments.checked_numbers(glossiness=glossiness, anisotropy=anisotropy)
     return _stretched(1.0 - g, a)
 
 
@@ -294,7 +270,7 @@ def ggx_albedo_dir(mu: ArrayLike, alpha: ArrayLike) -> Array:
         >>> ggx_albedo_dir([1.0, 0.1], [1.0, 0.01]).round(9)
         array([0.30685282, 0.99412395])
     """
-    return _in_blocks(checked("mu", mu), checked("alpha", alpha))
+    return _in_blocks(arguments.checked("mu", mu), arguments.checked("alpha", alpha))
 
 
 def albedo(mu: Array, alpha: Array) -> Array:
@@ -335,7 +311,7 @@ def quadrature(mu: Array, alpha: Array, refined: int = 1) -> Array:
     rough = xp.maximum(alpha, LEAST_ALPHA)
     least, lowest = (1e-300, LEAST_ELEVATION) if xp is NUMPY else (LEAST_SQUARED, LEAST_SQUARED)
     scaled = xp.minimum(mu * (rough / xp.maximum(alpha, least)), 1.0)
-    elevation = xp.maximum(arcsine(scaled), lowest)
+    elevation = xp.maximum(arrays.arcsine(scaled), lowest)
     graded = 2.0 * xp.minimum(rough, xp.maximum(elevation, LEAST_SCALE))
     total = like(np.zeros(np.broadcast_shapes(tuple(mu.shape), tuple(rough.shape))), rough)
     # From wo to the normal, from wo to half its elevation, and from there to the horizon.
@@ -345,7 +321,7 @@ def quadrature(mu: Array, alpha: Array, refined: int = 1) -> Array:
         total = total + xp.sum(weight * _density(elevation, elevation - d, d, rough), axis=0)
     for e, weight in _graded(rough, 0.5 * elevation, refined):
         total = total + xp.sum(weight * _density(elevation, e, elevation - e, rough), axis=0)
-    return xp.where(alpha > 0.0, trimmed(total, 1.0), 1.0)
+    return xp.where(alpha > 0.0, arrays.trimmed(total, 1.0), 1.0)
 
 
 def _graded(scale: Array, length: Array, panels: int) -> list[tuple[Array, Array]]:
@@ -406,14 +382,16 @@ def _interpolated(mu: Array, alpha: Array) -> Array:
     """Sum of the table's polynomials, those of alpha first."""
     xp = array_namespace(mu, alpha)
     table = _table()
-    powers = chebyshev_polynomials(root(alpha), table.shape[1])
+    powers = chebyshev.chebyshev_polynomials(root(alpha), table.shape[1])
     if xp is NUMPY:
         rows = np.einsum("ij,j...->i...", table, powers)
     else:
         rows = xp.tensordot(like(table, powers), powers, axes=1)
     rough = alpha > 0.0
     s = mu / xp.where(rough, mu + alpha, 1.0) * (1.0 + alpha)
-    value = chebyshev_sum(rows, fractional_power(at_most(s, 1.0), 1.0 / 3.0))
+    value = chebyshev.chebyshev_sum(
+        rows, arrays.fractional_power(arrays.at_most(s, 1.0), 1.0 / 3.0)
+    )
     return xp.where(rough, xp.maximum(value, 0.0), 0.0)  # a mirror misses nothing
 
 
@@ -437,18 +415,20 @@ def _of_one_alpha(mu: Array, alpha: float) -> Array:
 @lru_cache(maxsize=KEPT)
 def _cubics(alpha: float) -> Array:
     """Coefficients of the cubics through four points of each cell, shape (4, CELLS + 1)."""
-    powers = chebyshev_polynomials(np.sqrt(alpha), NODES_ALPHA)
+    powers = chebyshev.chebyshev_polynomials(np.sqrt(alpha), NODES_ALPHA)
     rows = np.einsum("ij,j->i", _table(), powers)
-    cubics = cell_cubics(rows, CELLS)
+    cubics = chebyshev.cell_cubics(rows, CELLS)
     # The end of the last cell is a cell of its own, of which only the beginning counts.
-    end = [chebyshev_sum(rows, np.ones(1))[0], 0.0, 0.0, 0.0]
+    end = [chebyshev.chebyshev_sum(rows, np.ones(1))[0], 0.0, 0.0, 0.0]
     return np.concatenate([cubics, np.reshape(end, (4, 1))], axis=1)
 
 
 @lru_cache(maxsize=1)
 def _table() -> Array:
     """Coefficients of both polynomials, shape (NODES_S, NODES_ALPHA)."""
-    alpha = chebyshev_nodes(NODES_ALPHA) ** 2
-    s = chebyshev_nodes(NODES_S)[:, np.newaxis] ** 3
+    alpha = chebyshev.chebyshev_nodes(NODES_ALPHA) ** 2
+    s = chebyshev.chebyshev_nodes(NODES_S)[:, np.newaxis] ** 3
     E_ss = quadrature(s * alpha / (1.0 + alpha - s), alpha, REFINED)
-    return chebyshev_coefficients(chebyshev_coefficients((1.0 - E_ss) / E_ss).T).T
+    return chebyshev.chebyshev_coefficients(
+        chebyshev.chebyshev_coefficients((1.0 - E_ss) / E_ss).T
+    ).T

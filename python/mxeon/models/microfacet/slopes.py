@@ -16,20 +16,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from mxeon.models.core.arrays import (
-    NUMPY,
-    Array,
-    angle,
-    arccosine,
-    array_namespace,
-    at_least_0,
-    at_most,
-    guarded,
-    hypot,
-    like,
-    root,
-    within,
-)
+from mxeon.models.core import arrays
+from mxeon.models.core.arrays import Array, array_namespace, at_least_0, at_most, hypot, like, root
 from mxeon.models.core.quadrature import unit_rule
 from mxeon.models.microfacet.ggx import mean_alpha, smith_lambda
 
@@ -82,7 +70,7 @@ class Slopes:
     @property
     def isotropic(self) -> bool:
         """Whether both halves of every surface are alike; of another library's arrays it is not known."""
-        known = array_namespace(self.roughness) is NUMPY
+        known = array_namespace(self.roughness) is arrays.NUMPY
         return known and bool(np.all(self.roughness[0] == self.roughness[1]))
 
     def rays(self, omega: Array) -> tuple[Array, Array, tuple[Array, Array]]:
@@ -189,7 +177,7 @@ def transmitting_nodes(wo: Array, roughness: Array, squared: Array) -> tuple[Arr
     steep = root(at_least_0(4.0 * squared / mu_o**2 - 1.0))
     length = root((1.0 - mu_o) * (1.0 + mu_o)) * steep
     cosine = (2.0 * squared / mu_o - mu_o) / xp.where(length > 0.0, length, 1.0)
-    meeting = arccosine(xp.where(length > 0.0, cosine, 0.0))
+    meeting = arrays.arccosine(xp.where(length > 0.0, cosine, 0.0))
     omega, weight_omega = _split_azimuths(slopes, wo, squared, meeting)
     B, limit, slope = slopes.rays(omega)
     low, high = _transmitting(mu_o, B, _squared(slope), squared)
@@ -225,10 +213,10 @@ def refracting_nodes(
     lean, stretch = at_least_0(B * r + mu_o), 1.0 + g * r * r
     cosine = at_most(lean / xp.sqrt(stretch), 1.0)
     total = cosine + root(at_least_0(cosine * cosine - squared))
-    length = squared / guarded(total, total > 0.0, 1.0)
+    length = squared / arrays.guarded(total, total > 0.0, 1.0)
     inverse = 1.0 / xp.sqrt(1.0 - squared)
     vertical = length / xp.sqrt(stretch)
-    mu_i = within((mu_o - vertical) * inverse)
+    mu_i = arrays.within((mu_o - vertical) * inverse)
     along, across = (
         (alpha * vertical * r * each - of_wo) * inverse
         for alpha, each, of_wo in zip(roughness, slope, slopes.stretched, strict=True)
@@ -285,7 +273,7 @@ def _split_azimuths(
 def _cone_azimuth(mu_o: Array, squared: Array) -> Array:
     """Azimuth from wo whose cosine is the root of `squared` over the sine of wo."""
     xp, sine = array_namespace(mu_o, squared), root((1.0 - mu_o) * (1.0 + mu_o))
-    return arccosine(root(at_least_0(squared)) / xp.where(sine > 0.0, sine, 1.0))
+    return arrays.arccosine(root(at_least_0(squared)) / xp.where(sine > 0.0, sine, 1.0))
 
 
 def _omega(slopes: Slopes, wo: Array, azimuth: Array) -> Array:
@@ -296,7 +284,7 @@ def _omega(slopes: Slopes, wo: Array, azimuth: Array) -> Array:
     across = (x * cosine - y * sine) * slopes.roughness[1]
     along = (y * cosine + x * sine) * slopes.roughness[0]
     cos_0, sin_0 = slopes.axis
-    omega = angle(cos_0 * along - sin_0 * across, cos_0 * across + sin_0 * along)
+    omega = arrays.angle(cos_0 * along - sin_0 * across, cos_0 * across + sin_0 * along)
     return xp.where(hypot(across, along) > 0.0, omega, azimuth)
 
 

@@ -13,15 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mxeon.models import media
 from mxeon.models.core.arrays import Array
-from mxeon.models.media import (
-    conical_edf,
-    conical_exitance,
-    generalized_schlick_edf,
-    generalized_schlick_exitance,
-    uniform_edf,
-    uniform_exitance,
-)
 from mxeon.models.nodes.node import Inputs, Node, Variant, linear_nodes
 
 BASE = "base/color"  # of the uniform emission below a Schlick curve
@@ -52,18 +45,18 @@ def _radiance(inputs: Inputs) -> Array:
 
 def _schlick(wo: Array, inputs: Inputs) -> Array:
     curve = inputs["color0"], inputs["color90"], inputs["exponent"]
-    return generalized_schlick_edf(wo, _radiance(inputs), *curve)
+    return media.generalized_schlick_edf(wo, _radiance(inputs), *curve)
 
 
 def _uniform(wo: Array, inputs: Inputs) -> Array:
-    return uniform_edf(wo, inputs["color"])
+    return media.uniform_edf(wo, inputs["color"])
 
 
 def _halves(wo: Array, inputs: Inputs) -> Array:
     """A cone whose angles count from the axis."""
     names = "inner_angle", "outer_angle"
     angles = (np.minimum(2.0 * np.asarray(inputs[name]), 360.0) for name in names)
-    return conical_edf(wo, inputs["color"], *angles)
+    return media.conical_edf(wo, inputs["color"], *angles)
 
 
 ONE_SIDE = "emission from the front alone"
@@ -74,7 +67,7 @@ EMISSIONS = (
         "uniform_edf",
         ("color",),
         _uniform,
-        lambda inputs: uniform_exitance(inputs["color"]),
+        lambda inputs: media.uniform_exitance(inputs["color"]),
         variants=(
             Variant(ONE_SIDE, front_only(_uniform), permitted=True),
             Variant("the color as an exitance, over pi", lambda wo, i: _uniform(wo, i) / np.pi),
@@ -85,8 +78,8 @@ EMISSIONS = (
         "conical emission",
         "conical_edf",
         ("color", "inner_angle", "outer_angle"),
-        lambda wo, i: conical_edf(wo, i["color"], i["inner_angle"], i["outer_angle"]),
-        lambda inputs: conical_exitance(
+        lambda wo, i: media.conical_edf(wo, i["color"], i["inner_angle"], i["outer_angle"]),
+        lambda inputs: media.conical_exitance(
             inputs["color"], inputs["inner_angle"], inputs["outer_angle"]
         ),
         variants=(
@@ -100,7 +93,7 @@ EMISSIONS = (
         "generalized_schlick_edf",
         ("color0", "color90", "exponent", BASE),
         _schlick,
-        lambda inputs: generalized_schlick_exitance(
+        lambda inputs: media.generalized_schlick_exitance(
             _radiance(inputs), inputs["color0"], inputs["color90"], inputs["exponent"]
         ),
         variants=(
@@ -124,8 +117,8 @@ def _combined(
         title,
         category,
         inputs,
-        lambda wo, inputs: uniform_edf(wo, color(inputs)),
-        lambda inputs: uniform_exitance(color(inputs)),
+        lambda wo, inputs: media.uniform_edf(wo, color(inputs)),
+        lambda inputs: media.uniform_exitance(color(inputs)),
     )
 
 

@@ -13,25 +13,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from mxeon.models import hair, sheen
 from mxeon.models.core.arrays import Array, array_namespace, at_most, cosine
 from mxeon.models.diffuse import burley_albedo_dir, burley_brdf, lambert_brdf, translucent_btdf
-from mxeon.models.hair import (
-    DEFAULTS,
-    ROUGHNESSES,
-    TEXT,
-    TINTS,
-    HairForm,
-    chiang_hair_attenuation,
-    chiang_hair_bcsdf,
-)
+from mxeon.models.hair import TEXT, TINTS, HairForm
 from mxeon.models.microfacet import defects, dielectric_albedo_dir
 from mxeon.models.nodes.node import Inputs, PbrNode, Variant
-from mxeon.models.sheen import (
-    conty_kulla_albedo_dir,
-    conty_kulla_brdf,
-    zeltner_albedo_dir,
-    zeltner_brdf,
-)
+from mxeon.models.sheen import conty_kulla_albedo_dir, zeltner_albedo_dir
 
 # The series of I_0 has so many terms, and above the limit a logarithm takes its place.
 TERMS, LIMIT, NARROW = 10, 12.0, 0.1
@@ -144,14 +132,14 @@ LOBE_NODES = (
         "Conty-Kulla sheen",
         "sheen_bsdf",
         COLOR_ROUGHNESS,
-        _sheen(conty_kulla_brdf),
+        _sheen(sheen.conty_kulla_brdf),
         _tinted(_bounded(conty_kulla_albedo_dir)),
         _tinted(conty_kulla_albedo_dir),
         fixed={"mode": "conty_kulla"},
         layerable=True,
         fitted=True,
         variants=(
-            Variant("Zeltner sheen", _sheen(zeltner_brdf), _tinted(zeltner_albedo_dir)),
+            Variant("Zeltner sheen", _sheen(sheen.zeltner_brdf), _tinted(zeltner_albedo_dir)),
             Variant(
                 "its albedo without the color", albedo=untinted(_bounded(conty_kulla_albedo_dir))
             ),
@@ -172,7 +160,7 @@ LOBE_NODES = (
         "Zeltner sheen",
         "sheen_bsdf",
         COLOR_ROUGHNESS,
-        _sheen(zeltner_brdf),
+        _sheen(sheen.zeltner_brdf),
         _tinted(zeltner_albedo_dir),
         fixed={"mode": "zeltner"},
         layerable=True,
@@ -180,7 +168,7 @@ LOBE_NODES = (
         variants=(
             Variant(
                 "Conty-Kulla sheen",
-                _sheen(conty_kulla_brdf),
+                _sheen(sheen.conty_kulla_brdf),
                 _tinted(_bounded(conty_kulla_albedo_dir)),
             ),
             Variant("its albedo without the color", albedo=untinted(zeltner_albedo_dir)),
@@ -193,22 +181,22 @@ def _value(form: HairForm = TEXT) -> Callable[[Array, Array, Inputs], Array]:
     """Values in a form of the model."""
 
     def value(wo: Array, wi: Array, inputs: Inputs) -> Array:
-        named = {name: inputs[name] for name in DEFAULTS if name in inputs}
-        return chiang_hair_bcsdf(wo, wi, **named, form=form)
+        named = {name: inputs[name] for name in hair.DEFAULTS if name in inputs}
+        return hair.chiang_hair_bcsdf(wo, wi, **named, form=form)
 
     return value
 
 
 def _albedo(wo: Array, inputs: Inputs) -> Array:
     """Integral of the values over all lights, for a cuticle without tilt: sum of t_p A_p, over pi."""
-    factors = chiang_hair_attenuation(wo, inputs["ior"], inputs["absorption_coefficient"])
+    factors = hair.chiang_hair_attenuation(wo, inputs["ior"], inputs["absorption_coefficient"])
     tints = array_namespace(factors).stack([inputs[n] for n in (*TINTS, TINTS[-1])], axis=-1)
     return array_namespace(factors).sum(factors * tints, axis=-1) / np.pi
 
 
 def _ggx(wo: Array, inputs: Inputs) -> Array:
     """Albedo of a GGX lobe of the mean roughness and tint: the environment of MaterialX's GLSL."""
-    alpha = np.mean([inputs[name] for name in ROUGHNESSES], axis=0)
+    alpha = np.mean([inputs[name] for name in hair.ROUGHNESSES], axis=0)
     alpha = np.sqrt(np.clip(alpha, 1e-6, 1.0).prod(axis=-1, keepdims=True))
     tint = np.mean([inputs[name] for name in TINTS], axis=0)
     albedo = dielectric_albedo_dir(wo, 1.0, np.repeat(alpha, 2, axis=-1), inputs["ior"])
@@ -219,7 +207,7 @@ HAIR_NODE = PbrNode(
     "hair",
     "Chiang hair",
     "chiang_hair_bsdf",
-    tuple(DEFAULTS),
+    tuple(hair.DEFAULTS),
     _value(),
     _albedo,
     reciprocal=False,

@@ -14,41 +14,14 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike
 
+from mxeon.models import thin_film, transmission
 from mxeon.models.core.arrays import Array, library
 from mxeon.models.core.colorimetry import XYZ_TO_REC709
-from mxeon.models.microfacet import CATEGORIES, Lobe, node_albedo, node_brdf
-from mxeon.models.microfacet.defects import (
-    AVERAGED,
-    FITTED,
-    FITTED_DEFECTS,
-    MEAN_ALPHA,
-    MICROFACET_DEFECTS,
-    averaged_channels,
-    fitted_compensation,
-    layer_albedo,
-    schlick_average,
-)
+from mxeon.models.microfacet import CATEGORIES, Lobe, defects, node_albedo, node_brdf
+from mxeon.models.microfacet.defects import averaged_channels, layer_albedo
 from mxeon.models.microfacet.fresnel import fresnel_conductor, fresnel_dielectric, fresnel_schlick
 from mxeon.models.nodes.node import Inputs, PbrNode, Scattering, Variant
-from mxeon.models.thin_film import (
-    CIE_RGB,
-    FILM,
-    MATERIALX,
-    TEXT,
-    Form,
-    film_albedo_dir,
-    film_brdf,
-    film_conductor,
-    film_dielectric,
-    film_schlick,
-)
-from mxeon.models.transmission import (
-    dielectric_btdf,
-    dielectric_transmittance_dir,
-    generalized_schlick_btdf,
-    generalized_schlick_transmittance_dir,
-    schlick_ior,
-)
+from mxeon.models.thin_film import FILM, Form, film_albedo_dir
 
 # Forms of the energy compensation, which the text leaves open, and MaterialX's masking of anisotropic facets, of which
 # an implementation note of the text speaks since July 2026.
@@ -70,7 +43,7 @@ class MicrofacetLobe:
     def value(self, wo: Array, wi: Array, inputs: Inputs, terms: Lobe | None = None) -> Array:
         """With other terms than the specification's there is no film."""
         if terms is None and _has_film(inputs):
-            return film_brdf(self.category, wo, wi, inputs)
+            return thin_film.film_brdf(self.category, wo, wi, inputs)
         return node_brdf(self.category, wo, wi, inputs, terms)
 
     def albedo(self, wo: Array, inputs: Inputs, compensate: bool = True) -> Array:
@@ -98,11 +71,11 @@ class MicrofacetLobe:
 
     def averaged(self, wo: Array, inputs: Inputs) -> Array:
         """The same with the average of F by its ends, as in MaterialX after 1.39.5."""
-        return self._compensated(wo, inputs, schlick_average(*self.ends(wo, inputs)))
+        return self._compensated(wo, inputs, defects.schlick_average(*self.ends(wo, inputs)))
 
     def _compensated(self, wo: Array, inputs: Inputs, F: Array) -> Array:
         single = self.albedo(wo, isotropic(inputs), compensate=False)
-        return np.asarray(single * fitted_compensation(wo, inputs, F))
+        return np.asarray(single * defects.fitted_compensation(wo, inputs, F))
 
     def _at_view(self, wo: Array, inputs: Inputs) -> Array:
         return self.fresnel(np.minimum(wo[:, 2], 1.0), inputs)
@@ -164,7 +137,7 @@ def _row(
             partial(lobe.value, terms=each.lobe),
             permitted=each.name in OPEN,
         )
-        for each in (*MICROFACET_DEFECTS, *FITTED_DEFECTS)
+        for each in (*defects.MICROFACET_DEFECTS, *defects.FITTED_DEFECTS)
     )
     return PbrNode(
         name,
@@ -234,14 +207,14 @@ MICROFACET_NODES = (
 
 OWN_MATRIX = Form(tuple(map(tuple, XYZ_TO_REC709.tolist())))
 STOCK = Form(
-    CIE_RGB, 2, True, 1.0, 0.01
+    thin_film.CIE_RGB, 2, True, 1.0, 0.01
 )  # MaterialX's choices, with all of a Schlick substrate's reflectance
 MIXED = Form(mixed=True)
 # Title, form, and whether the text leaves it open.
 FORMS = (
     ("MaterialX's matrix, orders and mixed channels", STOCK, True),
-    ("half of the substrate's reflectance, and MaterialX's choices", MATERIALX, False),
-    ("MaterialX's matrix, of CIE RGB", Form(CIE_RGB), True),
+    ("half of the substrate's reflectance, and MaterialX's choices", thin_film.MATERIALX, False),
+    ("MaterialX's matrix, of CIE RGB", Form(thin_film.CIE_RGB), True),
     ("the text's matrix, without an adaptation to white", OWN_MATRIX, True),
     ("two orders", Form(orders=2), True),
     ("the index of RGB channel k in XYZ value k", MIXED, True),
@@ -251,7 +224,7 @@ FORMS = (
 def _value(
     category: str, form: Form, lobe: Lobe | None, wo: Array, wi: Array, inputs: Inputs
 ) -> Array:
-    return film_brdf(category, wo, wi, inputs, form, lobe)
+    return thin_film.film_brdf(category, wo, wi, inputs, form, lobe)
 
 
 def _bare(inputs: Inputs) -> dict[str, Array]:
@@ -264,17 +237,19 @@ def _reflectance(category: str, form: Form, wo: Array, inputs: Inputs) -> Array:
     mu = np.minimum(wo[:, 2], 1.0)
     thickness, index = (inputs[name] for name in FILM)
     if category == "dielectric_bsdf":
-        return film_dielectric(mu, thickness, index, inputs["ior"], form)
+        return thin_film.film_dielectric(mu, thickness, index, inputs["ior"], form)
     if category == "conductor_bsdf":
-        return film_conductor(mu, thickness, index, inputs["ior"], inputs["extinction"], form)
-    return film_schlick(mu, thickness, index, *_schlick(inputs), inputs["exponent"], form)
+        return thin_film.film_conductor(
+            mu, thickness, index, inputs["ior"], inputs["extinction"], form
+        )
+    return thin_film.film_schlick(mu, thickness, index, *_schlick(inputs), inputs["exponent"], form)
 
 
 def _environment(category: str, form: Form, wo: Array, inputs: Inputs) -> Array:
     """Albedo of MaterialX's environment branch: F of the film at the view in the compensation."""
     F = _reflectance(category, form, wo, inputs)
     single = film_albedo_dir(category, wo, isotropic(inputs), form, compensate=False)
-    return np.asarray(single * fitted_compensation(wo, inputs, F))
+    return np.asarray(single * defects.fitted_compensation(wo, inputs, F))
 
 
 def _fitted(lobe: MicrofacetLobe, form: Form, wo: Array, inputs: Inputs) -> Array:
@@ -293,7 +268,7 @@ def _film_variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
         ),
         Variant(
             "MaterialX's compensation",
-            partial(_value, row.category, TEXT, Lobe(FITTED.factor)),
+            partial(_value, row.category, thin_film.TEXT, Lobe(defects.FITTED.factor)),
             permitted=True,
         ),
     ]
@@ -310,11 +285,11 @@ def _film_variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
         if one or (form.share != 1.0 and not schlick):
             continue
         lobes: list[tuple[str, Lobe | None]] = [(title, None)]
-        later = ((", with F averaged from F0 and F90", AVERAGED),) if form == STOCK else ()
-        for words, terms in ((", with MaterialX's compensation", FITTED), *later):
+        later = ((", with F averaged from F0 and F90", defects.AVERAGED),) if form == STOCK else ()
+        for words, terms in ((", with MaterialX's compensation", defects.FITTED), *later):
             lobes.append((f"{title}{words}", Lobe(terms.factor)))
-            if form in (STOCK, MATERIALX):
-                lobes.append((f"{MEAN_ALPHA}, and {title}{words}", terms))
+            if form in (STOCK, thin_film.MATERIALX):
+                lobes.append((f"{defects.MEAN_ALPHA}, and {title}{words}", terms))
         for name, lobe_terms in lobes:
             value = partial(_value, row.category, form, lobe_terms)
             variants.append(Variant(name, value, permitted=permitted))
@@ -328,7 +303,7 @@ def _filmed(row: PbrNode) -> PbrNode:
         name=f"{row.name}_film",
         title=f"{row.title} under a thin film",
         inputs=(*row.inputs, *FILM),
-        value=partial(_value, row.category, TEXT, None),
+        value=partial(_value, row.category, thin_film.TEXT, None),
         albedo=partial(film_albedo_dir, row.category),
         integral=partial(film_albedo_dir, row.category),
         variants=_film_variants(row),
@@ -361,8 +336,8 @@ class Transmission:
 
 TRANSMISSIONS = {
     DIELECTRIC.category: Transmission(
-        lambda wo, wi, i: dielectric_btdf(wo, wi, i["tint"], i["roughness"], i["ior"]),
-        lambda wo, i, shadow: dielectric_transmittance_dir(
+        lambda wo, wi, i: transmission.dielectric_btdf(wo, wi, i["tint"], i["roughness"], i["ior"]),
+        lambda wo, i, shadow: transmission.dielectric_transmittance_dir(
             wo, i["tint"], i["roughness"], i["ior"], shadow
         ),
         lambda wo, i: DIELECTRIC.albedo(wo, white(i)),
@@ -371,16 +346,16 @@ TRANSMISSIONS = {
         lambda i: i["ior"],
     ),
     SCHLICK.category: Transmission(
-        lambda wo, wi, i: generalized_schlick_btdf(
+        lambda wo, wi, i: transmission.generalized_schlick_btdf(
             wo, wi, *_schlick(i), i["roughness"], i["exponent"]
         ),
-        lambda wo, i, shadow: generalized_schlick_transmittance_dir(
+        lambda wo, i, shadow: transmission.generalized_schlick_transmittance_dir(
             wo, *_schlick(i), i["roughness"], i["exponent"], shadow=shadow
         ),
         SCHLICK.albedo,
         lambda i: 0.0 * i["color0"] + 1.0,
         SCHLICK.fresnel,
-        lambda i: schlick_ior(i["color0"])[..., 0],
+        lambda i: transmission.schlick_ior(i["color0"])[..., 0],
     ),
 }
 

@@ -11,16 +11,9 @@ import numpy as np
 from mxeon.models.core.arrays import Array
 from mxeon.models.microfacet.defects import BSDL, SINGLE, conty_kulla_albedo
 from mxeon.models.microfacet.ggx import missing_light
+from mxeon.models.nodes import microfacets
 from mxeon.models.nodes.lobes import untinted
-from mxeon.models.nodes.microfacets import (
-    CONDUCTOR,
-    DIELECTRIC,
-    SCHLICK,
-    MicrofacetLobe,
-    isotropic,
-    undipped,
-    white,
-)
+from mxeon.models.nodes.microfacets import CONDUCTOR, DIELECTRIC, SCHLICK, undipped
 from mxeon.models.nodes.node import Inputs, Scattering, Variant
 from mxeon.models.sheen import zeltner_albedo_dir
 
@@ -36,7 +29,7 @@ def _dielectric_albedo(wo: Array, inputs: Inputs) -> Array:
     """Albedo of a dielectric without its tint, at the arithmetic mean of both alphas."""
     mean = inputs["roughness"].mean(axis=-1, keepdims=True)
     alphas = np.repeat(mean, 2, axis=-1)
-    return DIELECTRIC.albedo(wo, {**white(_indexed(inputs)), "roughness": alphas})
+    return DIELECTRIC.albedo(wo, {**microfacets.white(_indexed(inputs)), "roughness": alphas})
 
 
 def _schlick_albedo(wo: Array, inputs: Inputs) -> Array:
@@ -94,9 +87,9 @@ BSDL_VARIANTS: Mapping[str, tuple[Variant[Scattering], ...]] = {
 LOSSLESS = "the largest channel of the albedo of facets that lose no light"
 
 
-def _single(lobe: MicrofacetLobe, wo: Array, inputs: Inputs) -> Array:
+def _single(lobe: microfacets.MicrofacetLobe, wo: Array, inputs: Inputs) -> Array:
     """Albedo of single scattering, at the geometric mean of both alphas."""
-    return np.asarray(lobe.albedo(wo, isotropic(inputs), compensate=False))
+    return np.asarray(lobe.albedo(wo, microfacets.isotropic(inputs), compensate=False))
 
 
 def _largest(albedo: Array) -> Array:
@@ -104,9 +97,9 @@ def _largest(albedo: Array) -> Array:
     return np.broadcast_to(albedo.max(axis=-1, keepdims=True), albedo.shape)
 
 
-def _lossless(lobe: MicrofacetLobe, wo: Array, inputs: Inputs) -> Array:
+def _lossless(lobe: microfacets.MicrofacetLobe, wo: Array, inputs: Inputs) -> Array:
     """Albedo of single scattering over that of facets that reflect everything."""
-    alpha = isotropic(inputs)["roughness"][:, 0]
+    alpha = microfacets.isotropic(inputs)["roughness"][:, 0]
     missing = missing_light(wo[:, 2], alpha)[:, np.newaxis]
     return _largest(_single(lobe, wo, inputs) * (1.0 + missing))
 

@@ -13,16 +13,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from mxeon.models import hair
 from mxeon.models.core.arguments import checked_choice
 from mxeon.models.core.arrays import Array
 from mxeon.models.core.colorimetry import XYZ_TO_REC709
-from mxeon.models.hair import (
-    EUMELANIN,
-    PHEOMELANIN,
-    chiang_hair_absorption_from_color,
-    chiang_hair_roughness,
-    deon_hair_absorption_from_melanin,
-)
 from mxeon.models.media import LUMINANCE, blackbody, kang_xyz
 from mxeon.models.microfacet.fresnel import artistic_ior
 from mxeon.models.microfacet.ggx import glossiness_anisotropy, roughness_anisotropy, roughness_dual
@@ -133,7 +127,7 @@ def _blackbody(inputs: Inputs) -> dict[str, Array]:
 def _hair_roughness(inputs: Inputs) -> dict[str, Array]:
     numbers = [_share(inputs, name, LEAST_HAIR) for name in ("longitudinal", "azimuthal")]
     scales = [np.abs(np.asarray(inputs[name], np.float64)) for name in ("scale_TT", "scale_TRT")]
-    pairs = chiang_hair_roughness(*numbers, *scales)
+    pairs = hair.chiang_hair_roughness(*numbers, *scales)
     return dict(zip(("roughness_R", "roughness_TT", "roughness_TRT"), pairs, strict=True))
 
 
@@ -151,7 +145,7 @@ def _melanin(inputs: Inputs) -> dict[str, Array]:
     ]
     concentration = _share(inputs, "melanin_concentration", 0.0, LARGEST_MELANIN)
     redness = _share(inputs, "melanin_redness")
-    return {"absorption": deon_hair_absorption_from_melanin(concentration, redness, *colors)}
+    return {"absorption": hair.deon_hair_absorption_from_melanin(concentration, redness, *colors)}
 
 
 def constant(category: str, value: float) -> Variant[Outputs]:
@@ -238,8 +232,8 @@ UTILITIES = (
         {
             "melanin_concentration": 0.25,
             "melanin_redness": 0.5,
-            "eumelanin_color": tuple(np.exp(-np.array(EUMELANIN)).round(6).tolist()),
-            "pheomelanin_color": tuple(np.exp(-np.array(PHEOMELANIN)).round(6).tolist()),
+            "eumelanin_color": tuple(np.exp(-np.array(hair.EUMELANIN)).round(6).tolist()),
+            "pheomelanin_color": tuple(np.exp(-np.array(hair.PHEOMELANIN)).round(6).tolist()),
         },
         {"absorption": "vector3"},
         _melanin,
@@ -256,7 +250,7 @@ UTILITIES = (
         {"color": (1.0, 1.0, 1.0), "azimuthal_roughness": 0.2},
         {"absorption": "vector3"},
         lambda i: {
-            "absorption": chiang_hair_absorption_from_color(
+            "absorption": hair.chiang_hair_absorption_from_color(
                 _share(i, "color", LEAST_HAIR), _share(i, "azimuthal_roughness")
             )
         },

@@ -19,12 +19,7 @@ import MaterialX.PyMaterialXGenShader as mx_gen
 from mxeon.errors import DocumentError
 from mxeon.io.files import AnyPath
 from mxeon.names import meant
-from mxeon.shaders.document.graphs import (
-    check_inheritance,
-    check_interfaces,
-    check_shaders,
-    upstream,
-)
+from mxeon.shaders.document import graphs
 from mxeon.shaders.document.notes import DocumentWarning, numbers, warn_of_elements
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.document.references import (
@@ -96,12 +91,12 @@ def read_document(
     _resolve_files(content, elements, [folder(content), *map(Path, policy.path)])
     content.setDataLibrary(data)
     _check_version(content, label(content))
-    check_inheritance(content, policy)
-    check_interfaces(content, elements, policy)
+    graphs.check_inheritance(content, policy)
+    graphs.check_interfaces(content, elements, policy)
     _raise([*code_faults(content, policy), *word_faults(content, elements), *_types(content)])
     faults = list(_faults(content, elements, policy))
     renderables = _renderables(content)
-    shown = upstream(content, elements, renderables)
+    shown = graphs.upstream(content, elements, renderables)
     faults += _undefined(content, shown)
     missing = tuple(_missing(shown, policy))
     _raise([*faults, *missing] if faults else [])
@@ -110,7 +105,7 @@ def read_document(
             f"{label(content)}: must contain a renderable element (a surfacematerial, a surface "
             "shader or an output of one); there is none"
         )
-    nodes = check_shaders(content, renderables, policy)
+    nodes = graphs.check_shaders(content, renderables, policy)
     warn_of_elements(content, elements)
     return Document(content, renderables, nodes, missing)
 
