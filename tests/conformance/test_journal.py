@@ -46,11 +46,9 @@ def test_findings_come_back_as_they_were(tmp_path):
     kept(tmp_path, 1)
     plan, found = read_journal(tmp_path)
     assert plan == PLAN and list(found) == [1]
-    (picture,), (curve,) = found[1].pictures, found[1].curves
+    (picture,) = found[1].pictures
     assert np.array_equal(picture.image, PIXELS) and picture.reference is None
-    assert np.array_equal(curve.measured, PIXELS[0]) and curve.rho == (1.0, 0.5, 0.0)
-    plain = {"pictures": (), "curves": ()}
-    assert replace(found[1], **plain) == replace(FINDINGS, **plain)
+    assert replace(found[1], pictures=()) == replace(FINDINGS, pictures=())
     assert to_run(plan, found).missing == (str(TASKS[0]), str(TASKS[2]))
 
 
@@ -177,7 +175,7 @@ def test_a_full_disk_loses_nothing_that_was_finished(tmp_path):
     assert list(read_journal(tmp_path)[1]) == [0, 1]
 
 
-KEPT = ("value", "reciprocity", "curve", "picture")
+KEPT = ("value", "reciprocity", "picture")
 SHORT = f"""import builtins, sys
 from mxeon.__main__ import main
 from tests.support.plans import keep_checks

@@ -351,9 +351,3 @@ def test_a_portrait_of_each_diffuse_node_is_its_model(run):
     }
     for each in found.values():
         assert np.abs(each.image - each.reference).max() <= 2e-6 < 0.02 < each.reference.max()
-
-
-def test_a_curve_follows_its_closed_form(run):
-    assert {curve.subject for curve in run.curves} == {EON, QON, "eon_diffuse_bsdf"}
-    for curve in run.curves:
-        assert np.abs(curve.measured - curve.expected).max() <= 2e-6

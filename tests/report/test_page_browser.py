@@ -23,7 +23,7 @@ EXAMPLE = examples_folder() / "plaster.mtlx"
 def address(tmp_path_factory):
     folder = tmp_path_factory.mktemp("page")
     with pytest.MonkeyPatch.context() as patch:
-        keep_checks(patch, "host", "source", "value", "environment", "curve", "picture")
+        keep_checks(patch, "host", "source", "value", "environment", "picture")
         run = check([EXAMPLE], ["gl", "msl"], ["eonlib", "stock"], nodes=["common"])
     return write(run, folder).as_uri()
 

@@ -22,16 +22,7 @@ from mxeon.io.srgb import srgb_encoded
 from mxeon.models import eon_brdf
 from mxeon.report import html, to_json, to_junit, write
 from mxeon.shaders.scene import sphere
-from tests.support.results import (
-    AlbedoCurve,
-    Control,
-    Identity,
-    Picture,
-    Result,
-    Run,
-    caused,
-    quoted,
-)
+from tests.support.results import Control, Identity, Picture, Result, Run, caused, quoted
 from tests.support.verdicts import FAILED, NOT_RUN, PASSED
 
 HOSTILE = "<script>alert('\x08')</script>\"><img src=x onerror=y>&{{ 7 * 7 }}$"
@@ -76,12 +67,6 @@ def made_picture(element, host="gl", **changes):
     return replace(made, **changes)
 
 
-def made_curve(rho):
-    mu = np.linspace(0.0, 1.0, 5)
-    expected = np.outer(1.0 - 0.1 * mu, rho)
-    return AlbedoCurve(HOSTILE, "gl", "eonlib", rho, 1.0, mu, expected + 0.001, expected)
-
-
 @pytest.fixture(scope="module")
 def run():
     return Run(
@@ -94,7 +79,6 @@ def run():
             made_picture("Clay"),
             made_picture(HOSTILE, reference=None, metadata={"element": HOSTILE}),
         ),
-        curves=(made_curve((0.5, 0.5, 0.5)), made_curve((0.8, 0.5, 0.2))),
         notes=(HOSTILE, "cycles cannot express QON"),
         documents=(Path("a/clay.mtlx"),),
         refused={"a.mtlx": (f"a.mtlx: {HOSTILE}", "a.mtlx: 2")},
@@ -135,12 +119,6 @@ def folder(run, tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
     write(run, folder)
     return folder
-
-
-def test_no_date_of_the_environment_is_in_a_page(run, monkeypatch):
-    page = page_of(run)
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", "abc")  # no number, which stops matplotlib's savefig
-    assert page_of(run) == page
 
 
 def test_page_runs_its_own_script_alone_and_escapes_what_it_was_given(page, run):
@@ -185,7 +163,6 @@ def test_page_has_unique_identifiers_and_no_loose_link(page):
         "cycles cannot express QON",
         "llvmpipe",
         "1.39.5",
-        "rho (0.8, 0.5, 0.2), roughness 1",
     ],
 )
 def test_page_says(page, words):

@@ -21,16 +21,7 @@ from mxeon.report import to_json, write
 from mxeon.report.diff import BETTER, LOST, OTHER, WORSE, compare, read_results
 from mxeon.survey.field import read_field
 from tests.support.availability import package
-from tests.support.results import (
-    AlbedoCurve,
-    Control,
-    Identity,
-    Picture,
-    Region,
-    Result,
-    Run,
-    caused,
-)
+from tests.support.results import Control, Identity, Picture, Region, Result, Run, caused
 from tests.support.verdicts import DIFFERS, FAILED, NOT_RUN, PASSED
 
 PLACE = "gl, eonlib, value, clay"
@@ -190,9 +181,9 @@ def test_lines_name_host_and_library_once_and_come_largest_first(tmp_path, capsy
     [
         ("[", "must be the results.json of a report; "),
         ("{}", "must be the results.json of a report; lacks 'format'"),
-        ('{"format": 3}', "must be the results.json of a report; lacks "),
-        ('{"format": 1}', "format must be 3; got 1; run the check again with this mxeon"),
-        ('{"format": 3, "$schema": "x"}', "$schema must be urn:mxeon:results:3; got 'x'"),
+        ('{"format": 4}', "must be the results.json of a report; lacks "),
+        ('{"format": 1}', "format must be 4; got 1; run the check again with this mxeon"),
+        ('{"format": 4, "$schema": "x"}', "$schema must be urn:mxeon:results:4; got 'x'"),
         ("[]", "must be the results.json of a report; it must be an object"),
     ],
 )
@@ -233,8 +224,7 @@ def test_the_schema_and_the_reader_accept_the_same_reports(tmp_path, capsys, mon
     fields = {"worst": {"a": [math.nan]}, "measured": ("a",), "pages": ("a",), "seconds": 1.0}
     diagnosis = Diagnosis((replace(cause, rms=math.inf, point={"a": [1.0]}),), {"a": 0.5})
     run = made_run(FAILED, diagnosis=diagnosis, control=Control("a", 1.0, True), **fields)
-    curve = AlbedoCurve("a", "gl", "eonlib", (1.0, 1.0, 1.0), 0.5, *np.ones((3, 2)))
-    run = replace(run, curves=(curve,), libraries={"a": {"folder": ("b",)}}, seconds=1.0)
+    run = replace(run, libraries={"a": {"folder": ("b",)}}, seconds=1.0)
     content = json.loads(to_json(run))
     content["elsewhere"] = [dict.fromkeys(("document", "check", "subject", "host", "library"), "a")]
     monkeypatch.setattr("mxeon.report.diff.make_converter", cache(make_converter))

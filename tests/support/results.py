@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 
 from mxeon.conformance.results import (
-    AlbedoCurve,
     Cause,
     Control,
     Diagnosis,
@@ -25,7 +24,7 @@ from mxeon.conformance.run.plan import Findings, Plan, Task
 from mxeon.hosts.base import Identity
 from tests.support.verdicts import FAILED
 
-__all__ = ["AlbedoCurve", "Control", "Identity", "Picture", "Region", "Result", "Run", "quoted"]
+__all__ = ["Control", "Identity", "Picture", "Region", "Result", "Run", "quoted"]
 __all__ += ["JOURNAL", "LOCK", "PREVIOUS", "read_journal", "read_run", "to_run"]
 
 TASKS = tuple(Task("value", name, "gl", "eonlib") for name in "abc")
@@ -48,11 +47,6 @@ FINDINGS = Findings(
         ),
     ),
     pictures=(Picture("d", "e", "gl", "eonlib", "side", PIXELS, None, {"version": "1"}),),
-    curves=(
-        AlbedoCurve(
-            "a", "gl", "eonlib", (1.0, 0.5, 0.0), 0.5, np.arange(2.0), PIXELS[0], PIXELS[1]
-        ),
-    ),
     notes=(("text", "place"),),
     errors=("broken",),
     hosts=(Identity("gl", "4.5", "device"),),

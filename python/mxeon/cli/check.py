@@ -152,6 +152,4 @@ def _importing(progress: Progress) -> Callable[[Iterable[T], int], Iterator[T]]:
 
 def _label(outcome: Any) -> str:
     _, findings = outcome
-    for each in findings.results:
-        return f"{each.check}, {each.subject}, {each.host}"
-    return ", ".join(f"albedo, {each.subject}, {each.host}" for each in findings.curves[:1])
+    return ", ".join(f"{each.check}, {each.subject}, {each.host}" for each in findings.results[:1])

@@ -29,7 +29,7 @@ from mxeon.report.junit import to_junit
 
 PAGES = "upstream"  # folder of the pages on defects, next to the report
 
-JSON_FORMAT = 3
+JSON_FORMAT = 4
 SCHEMA = f"urn:mxeon:results:{JSON_FORMAT}"  # identifies `mxeon.report.schema.schema()`
 
 NOT_PLAIN = re.compile("[^A-Za-z0-9]+")
@@ -63,7 +63,6 @@ def to_json(run: Run) -> str:
     - elsewhere: objects of document, check, subject, host, library: failures for inputs that the document does not use.
     - pictures: objects of document, element, host, library, scene; exr, png and reference: paths relative to the JSON
       file; largest_difference from the reference. The last two may be null.
-    - curves: objects with the fields of `mxeon.conformance.results.AlbedoCurve`.
     """
     data = {
         "$schema": SCHEMA,
@@ -93,7 +92,6 @@ def to_json(run: Run) -> str:
             if run.is_elsewhere(each, document)
         ],
         "pictures": _picture_fields(run),
-        "curves": run.curves,
     }
     return json.dumps(make_converter().unstructure(data), indent=1, allow_nan=False) + "\n"
 

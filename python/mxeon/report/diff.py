@@ -19,7 +19,6 @@ from mxeon.conformance.results import (
     PASSED,
     PORTRAIT,
     VERDICTS,
-    AlbedoCurve,
     Diagnosis,
     Result,
     Verdict,
@@ -128,7 +127,6 @@ class Report:
     hosts: tuple[Identity, ...]
     results: tuple[Result, ...]
     pictures: tuple[ShownPicture, ...]
-    curves: tuple[AlbedoCurve, ...]
     refused: tuple[str, ...]
     elsewhere: tuple[Elsewhere, ...]
     libraries: dict[str, dict[str, tuple[str, ...]]]

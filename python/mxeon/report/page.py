@@ -20,7 +20,6 @@ from mxeon.conformance.results import (
     PORTRAIT,
     SHADER_FUNCTIONS,
     SOURCE,
-    AlbedoCurve,
     Picture,
     Result,
     Run,
@@ -31,16 +30,9 @@ from mxeon.io.images import difference_scale
 from mxeon.io.srgb import srgb_encoded
 from mxeon.report import in_threads
 from mxeon.report.formats import linked, nearest, of_white, vector
-from mxeon.report.plots import (
-    albedo_plot,
-    difference_gradient,
-    difference_pixels,
-    generate_page,
-    picture_uri,
-)
+from mxeon.report.plots import difference_gradient, difference_pixels, generate_page, picture_uri
 
 # Markers of hosts in plots: matplotlib's name, and a character that looks like it.
-MARKERS = (("o", "○"), ("s", "□"), ("^", "△"), ("D", "◇"))
 # Materials with pictures inside the page, about a megabyte each; further ones are linked.
 SHOWN_MATERIALS = 60
 OPEN_MATERIALS = 8  # further materials open on a click
@@ -226,25 +218,6 @@ def _figure(kind: str, title: str, note: str, pixels: NDArray[np.uint8]) -> dict
     return {"kind": kind, "title": title, "note": note, "image": picture_uri(pixels)}
 
 
-def plots(curves: Sequence[AlbedoCurve]) -> list[dict[str, Any]]:
-    """One plot with all hosts for each subject, library, rho and roughness."""
-    hosts = list(dict.fromkeys(curve.host for curve in curves))
-    marks = {host: MARKERS[row % len(MARKERS)] for row, host in enumerate(hosts)}
-    groups: dict[tuple[Any, ...], list[AlbedoCurve]] = {}
-    for curve in curves:
-        key = (curve.subject, curve.library, tuple(curve.rho), curve.roughness)
-        groups.setdefault(key, []).append(curve)
-    found = []
-    for row, members in enumerate(groups.values()):
-        svg = albedo_plot(members, [marks[curve.host][0] for curve in members], f"plot-{row}-")
-        legend = [
-            (marks[curve.host][1], curve.host, np.abs(curve.measured - curve.expected).max())
-            for curve in members
-        ]
-        found.append({"curve": members[0], "svg": Markup(svg), "legend": legend})
-    return found
-
-
 def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, None]:
     """Pieces of a run's page; `file_of` returns the file of a picture.
 
@@ -304,7 +277,6 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, 
             counted=words.counted,
             sentences=words,
             gradient=Markup(difference_gradient()),
-            plots=plots(run.curves),
             FAILED=FAILED,
             PASSED=PASSED,
             DIFFERS=DIFFERS,

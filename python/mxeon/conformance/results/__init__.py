@@ -319,20 +319,6 @@ class Picture:
         return np.where(judged, apart, np.nan)[np.ix_(*nearest)]
 
 
-@dataclass(frozen=True)
-class AlbedoCurve:
-    """Directional albedo over the cosine `mu`, (N, 3), measured on a host beside its closed form."""
-
-    subject: str
-    host: str
-    library: str
-    rho: tuple[float, float, float]
-    roughness: float
-    mu: NDArray[np.float64] = field(repr=False)
-    measured: NDArray[np.float64] = field(repr=False)
-    expected: NDArray[np.float64] = field(repr=False)
-
-
 def report_files(folder: AnyPath) -> Iterator[Path]:
     """The files of the report in a folder, and of its journal."""
     for pattern in (*REPORT, "journal/*"):
@@ -379,7 +365,6 @@ class Run(Scope):
     hosts: tuple[Identity, ...]
     results: tuple[Result, ...]
     pictures: tuple[Picture, ...] = ()
-    curves: tuple[AlbedoCurve, ...] = ()
     notes: tuple[str, ...] = ()
     missing: tuple[str, ...] = ()
     seconds: float | None = field(default=None, compare=False)

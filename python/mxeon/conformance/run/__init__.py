@@ -243,7 +243,6 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
         hosts=tuple(dict.fromkeys(host for part in done for host in part.hosts)),
         results=results,
         pictures=tuple(picture for part in done for picture in part.pictures),
-        curves=tuple(curve for part in done for curve in part.curves),
         notes=tuple(
             ": ".join(filter(None, (text, ", ".join(each for each in listed if each not in text))))
             for text, listed in places.items()

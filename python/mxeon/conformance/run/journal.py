@@ -29,7 +29,7 @@ from mxeon.errors import InputError
 from mxeon.io.files import BINARY, below, regular, replacing, sync
 from mxeon.io.records import ERRORS
 
-FORMAT = 8
+FORMAT = 9
 JOURNAL = "journal/items.jsonl"
 PREVIOUS, LOCK = "previous_run", ".journal.lock"
 TASK = re.compile(rb'\{"task": (\d+),.*\n')

@@ -9,12 +9,9 @@ from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
-import numpy as np
-
 from mxeon.conformance.backends import backend_of, own_nodes
 from mxeon.conformance.case import Case, make_case
 from mxeon.conformance.checks import CHECKS
-from mxeon.conformance.checks.lobes import summed
 from mxeon.conformance.pictures import (
     DOCUMENT_CLAIM,
     MATCH,
@@ -29,7 +26,6 @@ from mxeon.conformance.results import (
     NO_DIAGNOSIS,
     NOT_RUN,
     SOURCE,
-    AlbedoCurve,
     Cause,
     Diagnosis,
     Kind,
@@ -39,11 +35,10 @@ from mxeon.conformance.results import (
 )
 from mxeon.conformance.results.known_issues import with_pages
 from mxeon.conformance.run import plan
-from mxeon.conformance.run.plan import CURVE, DEFINITION, DOCUMENT, FUNCTIONS, HOST, Findings, Task
-from mxeon.conformance.samples import SEED, Batch, directions_at
+from mxeon.conformance.run.plan import DEFINITION, DOCUMENT, FUNCTIONS, HOST, Findings, Task
+from mxeon.conformance.samples import SEED
 from mxeon.conformance.shader_functions import judge_functions
 from mxeon.conformance.specs import ALL
-from mxeon.conformance.specs.diffuse import DiffuseSpec
 from mxeon.conformance.text import check_definitions, check_texts
 from mxeon.errors import DocumentError, ImageError, InterfaceError, NotRun, ShaderError
 from mxeon.hosts import open_engine
@@ -53,15 +48,12 @@ from mxeon.shaders.library import examples_folder
 from mxeon.shaders.library_tree import root
 from mxeon.shaders.methods import Methods
 
-CURVE_COLOR, CURVE_ROUGHNESS = (0.8, 0.4, 0.1), 1.0
-CURVE_COSINES = np.linspace(0.05, 1.0, 20)
 CLAIMS = {
     HOST: "The host runs on this machine.",
     DEFINITION: "The nodes are defined as specified.",
     SOURCE: "The generated text was checked.",
     DOCUMENT: DOCUMENT_CLAIM,
     FUNCTIONS: "The shader functions match NumPy's.",
-    CURVE: "The albedo was measured over the cosine.",
     plan.PICTURE: MATCH,
 }
 
@@ -146,14 +138,6 @@ class Judge:
             if task.check == FUNCTIONS:
                 return Findings(judge_functions(host, task.library))
         case = self._case(host, task.subject, task.library, task.seed, task.methods)
-        if task.check == CURVE:
-            wo = directions_at(CURVE_COSINES, 0.0)
-            views = Batch(wo, wo, {"color": CURVE_COLOR, "roughness": CURVE_ROUGHNESS})
-            pairs = case.of(DiffuseSpec).lit(views, case.backend.counts.nodes)
-            views, measured = summed(case, *pairs)
-            place, expected = (task.subject, task.host, task.library), case.expected_albedo(views)
-            inputs = CURVE_COLOR, CURVE_ROUGHNESS, CURVE_COSINES
-            return Findings(curves=(AlbedoCurve(*place, *inputs, measured, expected),))
         check = next(each for each in CHECKS if each.key == task.check)
         results = (check.judge(case),)
         pictures: tuple[Picture, ...] = ()

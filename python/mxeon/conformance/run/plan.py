@@ -24,14 +24,13 @@ import OpenImageIO as oiio
 
 import mxeon
 from mxeon.conformance import shader_functions as functions
-from mxeon.conformance.backends import Evaluating, backend_of, own_nodes, ways_of
+from mxeon.conformance.backends import backend_of, own_nodes, ways_of
 from mxeon.conformance.checks import CHECKS
 from mxeon.conformance.diagnosis.regions import unreached
 from mxeon.conformance.results import (
     SHADER_FUNCTIONS,
     SOURCE,
     UNJUDGED,
-    AlbedoCurve,
     Picture,
     Region,
     Result,
@@ -144,7 +143,7 @@ def _modes() -> tuple[tuple[Spec, ShownNode], ...]:
 # --- the tasks of a run ---------------------------------------------------------------------------
 
 HOST, DEFINITION = "host", "definition"
-CURVE, PICTURE = "curve", "picture"
+PICTURE = "picture"
 FUNCTIONS, DOCUMENT = "twins", "document"
 EVERY_NODE = "every node"
 
@@ -153,7 +152,7 @@ EVERY_NODE = "every node"
 class Task:
     """One independent piece of a run: a check of one subject on one host with one library."""
 
-    # Key of a row of `mxeon.conformance.checks`, or HOST, DEFINITION, SOURCE, CURVE, PICTURE,
+    # Key of a row of `mxeon.conformance.checks`, or HOST, DEFINITION, SOURCE, PICTURE,
     # FUNCTIONS or DOCUMENT.
     check: str
     subject: str  # title of a node, path of a document, or SHADER_FUNCTIONS
@@ -184,15 +183,13 @@ class Findings:
 
     results: tuple[Result, ...] = ()
     pictures: tuple[Picture, ...] = ()
-    curves: tuple[AlbedoCurve, ...] = ()
     notes: tuple[tuple[str, str], ...] = ()
     errors: tuple[str, ...] = ()
     hosts: tuple[Identity, ...] = ()
 
     def answer(self, task: Task) -> bool:
         """Whether these are findings of a task: there are some, and all are of its host."""
-        records: list[Result | Picture | AlbedoCurve]
-        records = [*self.results, *self.pictures, *self.curves]
+        records: list[Result | Picture] = [*self.results, *self.pictures]
         location = (task.host, task.library)
         return bool(records or self.errors) and all(
             (record.host, record.library) == location for record in records
@@ -373,15 +370,13 @@ def _on_host(
         yield Task(HOST, EVERY_NODE, host, library)
     if not ways or not row.target:
         return
-    evaluates, kind = ways[0] is Evaluating, kind_of(library)
+    kind = kind_of(library)
     if row.way in functions.KINDS and has_functions(
         library, "osl" if row.target == "osl" else "glsl"
     ):
         yield Task(FUNCTIONS, SHADER_FUNCTIONS, host, library)
     for spec in diffuse_specs(library):
         yield from _checks_of(spec, host, library, methods)
-        if evaluates:
-            yield Task(CURVE, spec.title, host, library)
     defines = load_library(library).getMatchingNodeDefs
     for each in PBRLIB:
         # Where pictures show a renderer's own closures, they are judged with the stock library alone.
