@@ -11,9 +11,10 @@ void subsurface_bsdf(ClosureData closureData, float weight, vec3 color, vec3 rad
 {
     bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // opaque, where it is
 
-    // The normal as it comes: turned to the viewer, it would jump where the surface turns away. Where nothing
-    // changes from pixel to pixel, the surface is flat. Derivatives are defined where all pixels come along.
-    float curvature = length(fwidth(N)) / max(length(fwidth(closureData.P)), 1e-30);
+    // The curvature is the surface's: R(r) counts distances between its points, which a normal of the node does not
+    // move. Where nothing changes from pixel to pixel, the surface is flat. Derivatives are defined where all pixels
+    // come along.
+    float curvature = length(fwidth(closureData.N)) / max(length(fwidth(closureData.P)), 1e-30);
 
     // A lobe that is switched off costs nothing; a negative weight, never valid, counts as 0.
     if (weight <= 0.0)

@@ -79,6 +79,7 @@ WRONG = {
     ),
     "subsurface_bsdf": (
         ("genglsl/subsurface_bsdf.glsl", "fwidth(", "dFdx(", "states", ("a surface that bends",)),
+        ("genglsl/subsurface_bsdf.glsl", "fwidth(closureData.N)", "fwidth(N)", "frame", ("direct", "beside_equal_pixels")),
         ("genglsl/subsurface_bsdf.glsl", "curvature * max(radius, vec3(0.0))",
          "curvature * vec3(0.5) * step(0.0, radius.x + 1.0)", "sphere",
          ("model", "the profile of a mean free path of 0.5, whatever the radius")),

@@ -8,7 +8,7 @@ from functools import reduce
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Mask, Values
@@ -25,7 +25,7 @@ class Compared(NamedTuple):
     measured: Array
     expected: Array
 
-    def where(self, rows: Mask) -> "Compared":
+    def where(self, rows: Mask | NDArray[np.integer]) -> "Compared":
         return Compared(self.batch.where(rows), self.measured[rows], self.expected[rows])
 
     def over(self, scale: Array) -> "Compared":

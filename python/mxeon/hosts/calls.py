@@ -92,6 +92,7 @@ for (int mxeon_step = int(mxeon_steps.x); mxeon_step < int(mxeon_steps.y); ++mxe
 """
 OUTPUTS = ("response", "throughput", "radiance")  # EDFs have radiance
 NORMAL, TANGENT = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
+SURFACE = "surface_normal"  # the geometric normal, which is not that of a node
 FAR = (0.0, 0.0, 1e31)  # makes the host use the position of its pixel on a plane
 GIVEN = "P = P.z < 1e30 ? P : {};"
 FILES = ("filename", "string")  # types of inputs that an evaluation does not set
@@ -127,7 +128,8 @@ def bsdf_call(query: Query) -> BsdfCall:
     called = EMISSION if emitted else called
     text = shader.stages["pixel"]
     start, statements, value, names = _find_calls(text, called, shader.element)
-    arguments: Arguments = {"V": ("vector3", wo), "L": ("vector3", wi), "N": ("vector3", NORMAL)}
+    arguments: Arguments = {"V": ("vector3", wo), "L": ("vector3", wi)}
+    arguments["N"] = ("vector3", inputs.get(SURFACE, NORMAL))
     arguments["occlusion"] = ("float", inputs.get("occlusion", 1.0))
     arguments["P"] = ("vector3", inputs.get("position", FAR))
     if not emitted:

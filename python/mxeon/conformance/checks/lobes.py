@@ -415,7 +415,7 @@ ROWS = (
           measure=black, tolerance=ZERO, control=controls.offset, explain=VALUE.diagnose),
     Check(key="frame",
           claim="The value follows the surface's frame, with the normal turned toward the viewer.",
-          applies=(LOBES - SUBSURFACE) | MODES, measure=frames, tolerance="frame",
+          applies=LOBES | MODES, measure=frames, tolerance="frame",
           control=controls.drop_normal, explain=diagnosis.diagnose_frame),
     Check(key="surroundings",
           claim="An uneven environment is looked up along the viewer-facing normal, or along its opposite for translucent nodes.",

@@ -25,7 +25,7 @@ from mxeon.conformance.results import Cause, Diagnosis, Kind
 from mxeon.conformance.samples import Array, Batch, Mask, Values, aimed, float32, rounded, sky_map
 from mxeon.conformance.spec import Ability, LobeSpec, broadcast_inputs
 from mxeon.conformance.tolerance import Compared
-from mxeon.hosts.calls import LIGHTS, LIT, NORMAL, SECOND_LIGHT, SKY, TANGENT
+from mxeon.hosts.calls import LIGHTS, LIT, NORMAL, SECOND_LIGHT, SKY, SURFACE, TANGENT
 from mxeon.io.images import FAST_EXR, write_image
 from mxeon.jobs.signals import Temporary
 from mxeon.shaders.document.policy import Policy
@@ -36,7 +36,7 @@ if TYPE_CHECKING:  # which loads MaterialX
 
 EACH = 12  # pixels of a combination of states: three squares of 2 x 2 of a frame of two rows
 STEP = 0.05  # radian from pixel to pixel of a surface that bends, whose radius is 1
-FRAME = ("normal", "tangent", "position")
+FRAME = ("normal", "tangent", "position", SURFACE)
 WEIGHTS = (0.0, 0.3, 1.0, 1.0)
 FEW = 6  # combinations that a control measures
 CLEARER = 0.7  # share of the pixels of one state that those of two may have to be named instead
@@ -124,7 +124,13 @@ def bent(pixels: Pixels, rng: Random, columns: float = 0.0, rows: float = 0.0) -
         (frame[:, :, :3] @ each[:, :, np.newaxis])[:, :, 0] for each in (local, local + flat)
     )
     frame = aimed(frame, frame[:, :, 2], up)
-    inputs = dict(zip(FRAME, map(float32, (frame[:, :, 3], frame[:, :, 4], place)), strict=True))
+    inputs = dict(
+        zip(
+            FRAME,
+            map(float32, (frame[:, :, 3], frame[:, :, 4], place, frame[:, :, 3])),
+            strict=True,
+        )
+    )
     return replace(pixels, batch=replace(batch.altered(**inputs), frame=frame[:, :, :3]))
 
 
@@ -373,7 +379,7 @@ def sums(case: Case, groups: Sequence[Pixels]) -> list[Array]:
                 continue
             own = flat = replace(pixels.batch, inputs=inputs)
             if not curved:
-                axes = dict(zip(FRAME, (NORMAL, TANGENT, (0.0, 0.0, 0.0)), strict=True))
+                axes = dict(zip(FRAME, (NORMAL, TANGENT, (0.0, 0.0, 0.0), NORMAL), strict=True))
                 flat = replace(own.altered(**axes), frame=None)
             for light in (own.wi, pixels.light)[: pixels.lights]:
                 parts.setdefault("light", []).append((number, replace(flat, wi=light)))

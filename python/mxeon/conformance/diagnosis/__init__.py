@@ -398,9 +398,19 @@ def diagnose_frame(case: Case) -> Diagnosis:
             causes = not_finite([compared]) or _region([compared], tolerance)
             axes = ("normal", "tangent", "curve_direction")
             dead = (found for name in axes for found in without_effect(case, name))
-            causes = causes or tuple(dead)[:1] or (UNKNOWN,)
+            causes = causes or tuple(dead)[:1] or _beside_equal(case, compared, branch)
+            causes = causes or (UNKNOWN,)
         return Diagnosis((replace(causes[0], branch=branch),))
     return Diagnosis((UNKNOWN,))
+
+
+def _beside_equal(case: Case, compared: Compared, branch: str) -> tuple[Cause, ...]:
+    """That the worst pair of turned frames is right in pixels that all have its inputs; none if it is not."""
+    tolerance, output = case.tolerance("frame"), case.direct if branch == "direct" else case.albedo
+    worst = np.full(4, tolerance.metric(compared.measured, compared.expected).argmax())
+    same = compared.where(worst)
+    same = same._replace(measured=output(same.batch))
+    return () if tolerance.wrong(same).any() else (Cause(Kind.CURE, "beside_equal_pixels"),)
 
 
 def _region(cases: Sequence[Compared], tolerance: Tolerance) -> tuple[Cause, ...]:

@@ -22,7 +22,13 @@ ABOUT = {
     "cuticle": ("cuticle_angle",),
     "color": COLORS,
 }
-FRAME = ("normal", "tangent", "curve_direction", "position")  # inputs whose ranges say nothing
+FRAME = (
+    "normal",
+    "tangent",
+    "curve_direction",
+    "position",
+    "surface_normal",
+)  # inputs whose ranges say nothing
 USUAL = {"weight": 1.0, "occlusion": 1.0}  # where a batch has none
 CHANNELS = "red", "green", "blue"
 EXACT = count_of(Quantity.VALUES)

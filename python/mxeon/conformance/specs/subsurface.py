@@ -47,10 +47,6 @@ class SubsurfaceSpec(PbrSpec):
         """Zero, and what MaterialX has in its place."""
         return ZERO, Candidate("MaterialX's blur along a circle of radius 100", _blurred)
 
-    def turned(self, counts: Counts) -> Batch:
-        """Pairs in frames of their own, which no light leaves elsewhere: such a surface is not flat."""
-        return super().turned(counts).altered(radius=(0.0, 0.0, 0.0))
-
     def spheres(self, counts: Counts) -> tuple[Batch, ...]:
         """Points of a sphere under each light, for some materials."""
         return tuple(_points(scene, inputs) for scene in SCENES for inputs in MATERIALS)
