@@ -7,7 +7,7 @@ from mxeon import check
 from mxeon.shaders.nodes import EON, INVERSIONS
 from tests.support.plans import keep_checks
 from tests.support.verdicts import FAILED, NOT_RUN, PASSED, SHADER_FUNCTIONS, has, said
-from tests.support.wrong_libraries import copy_of_eonlib, place_of, replace_text
+from tests.support.wrong_libraries import copy_of_eonlib, copy_of_stock, place_of, replace_text
 
 ON, OFF = (f"oren_nayar_diffuse_bsdf, energy_compensation {flag}" for flag in ("true", "false"))
 MDL = "libraries/diffuse/eonlib_genmdl_impl.mtlx"
@@ -52,6 +52,25 @@ def test_a_wrong_definition_is_told_from_the_specification(judged, copy, old, ne
     results = judged.texts("definition", copy(DEFINITIONS, old, new))
     found = results["oren_nayar_diffuse_bsdf, definition"]
     assert found.verdict == FAILED and words in said(found)
+
+
+@pytest.mark.parametrize(
+    "title, check, old, new, cause",
+    [
+        ("dielectric_bsdf, scatter_mode R", "sky", '"tangent" type="vector3" defaultgeomprop="Tworld"',
+         '"tangent" type="vector3" defaultgeomprop="Bworld"', ("default of tangent of dielectric_bsdf", "Bworld", "Tworld")),
+        ("standard_surface, every lobe", "lobes", '"thinfilm_thickness" type="float" value="0"',
+         '"thinfilm_thickness" type="float" value="300"', ("default of thinfilm_thickness of dielectric_bsdf", "300")),
+        ("dielectric_bsdf, scatter_mode R", "value", '"tangent" type="vector3" defaultgeomprop="Tworld"',
+         '"tangent" type="vector3" defaultgeomprop="Tobject"', ()),
+    ],
+)  # fmt: skip
+def test_a_wrong_default_is_the_cause_of_failures(judged, tmp_path, title, check, old, new, cause):
+    file = "pbrlib/pbrlib_defs.mtlx"
+    replace_text(copy_of_stock(tmp_path, file), old, new, file)
+    result = judged(check, title, library=str(tmp_path))
+    assert result.verdict == (FAILED if cause else NOT_RUN)
+    assert has(result, *cause) and (cause or "Tobject" in result.reason)
 
 
 def test_an_input_of_another_type_is_not_run_and_says_so(judged, copy):

@@ -27,6 +27,7 @@ from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import HOSTS
 from mxeon.models import diffuse as formulas
 from mxeon.shaders.closure_calls import COMMENT
+from mxeon.shaders.document.graphs import inner_nodes
 from mxeon.shaders.expressions import Array, evaluate
 from mxeon.shaders.functions import LANGUAGES, has_functions, parts, twins
 from mxeon.shaders.generation import TARGETS, ApproximationWarning, generate
@@ -157,6 +158,27 @@ def check_definitions(library: str) -> tuple[Result, ...]:
                 )
             )
     return tuple(results)
+
+
+def redefined(
+    document: mx.Document, library: str, keys: Iterable[str] = ("value", "defaultgeomprop")
+) -> tuple[Cause, ...]:
+    """Defaults that a library gives to the nodes of a document, and MaterialX does not."""
+    found: dict[Cause, None] = {}
+    for node in inner_nodes(document):
+        definition = node.getNodeDef(target="", allowRoughMatch=True) if node.isA(mx.Node) else None
+        right = definition and load_library("stock").getNodeDef(definition.getName())
+        for port in definition.getActiveInputs() if right else ():
+            name, other = port.getName(), right.getActiveInput(port.getName())
+            for key in keys if other and not node.getInput(name) else ():
+                says = [each.getAttribute(key) for each in (port, other)]
+                if _plain(says[0]) != _plain(says[1]):
+                    default = f"default of {name} of {node.getCategory()}"
+                    own, released = (each or "none" for each in says)
+                    found[
+                        Cause(Kind.DEFECT, "definition", (default, own, "MaterialX", released))
+                    ] = None
+    return tuple(found)
 
 
 def _definition_faults(definition: mx.NodeDef, specification: mx.NodeDef) -> Faults:

@@ -239,8 +239,15 @@ def _argument(name: str, ports: Mapping[str, Input], inputs: Inputs) -> tuple[st
     """Type and value of a BSDF's argument: an input of the shader, or a vector of the surface."""
     port = ports.get(name)
     if port is None:
-        tangent = "tangent" in name.lower() or "tworld" in name.lower()
-        return "vector3", inputs.get(*(("tangent", TANGENT) if tangent else ("normal", NORMAL)))
+        normal, tangent = inputs.get("normal", NORMAL), inputs.get("tangent", TANGENT)
+        name = name.lower().removeprefix("geomprop_")
+        if name.startswith("bworld"):
+            return "vector3", np.cross(normal, tangent)
+        if name[:1] in "tnb" and name[1:].startswith("object"):
+            raise InterfaceError(
+                f"an input's default is {name[0].upper()}object, which no pair of directions has"
+            )
+        return "vector3", tangent if "tangent" in name or "tworld" in name else normal
     key = port.path if port.path in inputs else port.path.rsplit("/", 1)[-1]
     types = types_of(key.rsplit("/", 1)[-1])
     if key in inputs and types and port.type not in types:

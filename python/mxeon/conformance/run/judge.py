@@ -9,7 +9,7 @@ from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
-from mxeon.conformance.backends import backend_of, own_nodes
+from mxeon.conformance.backends import Evaluating, backend_of, own_nodes
 from mxeon.conformance.case import Case, make_case
 from mxeon.conformance.checks import CHECKS
 from mxeon.conformance.pictures import (
@@ -39,7 +39,8 @@ from mxeon.conformance.run.plan import DEFINITION, DOCUMENT, FUNCTIONS, HOST, Fi
 from mxeon.conformance.samples import SEED
 from mxeon.conformance.shader_functions import judge_functions
 from mxeon.conformance.specs import ALL
-from mxeon.conformance.text import check_definitions, check_texts
+from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
+from mxeon.conformance.text import check_definitions, check_texts, redefined
 from mxeon.errors import DocumentError, ImageError, InterfaceError, NotRun, ShaderError
 from mxeon.hosts import open_engine
 from mxeon.hosts.base import Engine, Host
@@ -87,8 +88,7 @@ class Judge:
         begin = time.monotonic()
         try:
             findings = self._findings(task)
-            # The folder whose `libraries` take the place of MaterialX's, if the library has one.
-            copy = root(task.library) if os.path.isabs(task.library) else ""
+            copy = _copy(task)
             share = round((time.monotonic() - begin) / max(1, len(findings.results)), 3)
             results = (replace(with_pages(each, copy), seconds=share) for each in findings.results)
             return replace(findings, results=tuple(results))
@@ -139,7 +139,17 @@ class Judge:
                 return Findings(judge_functions(host, task.library))
         case = self._case(host, task.subject, task.library, task.seed, task.methods)
         check = next(each for each in CHECKS if each.key == task.check)
-        results = (check.judge(case),)
+        result = check.judge(case)
+        surface = isinstance(case.spec, SurfaceShaderSpec)
+        known = not surface and with_pages(result, _copy(task)).pages
+        if result.verdict == FAILED and not known and isinstance(case.backend, Evaluating):
+            # Checks of a lobe set all of its inputs but the surface's own vectors.
+            keys = ("value", "defaultgeomprop")[not surface :]
+            if causes := redefined(case.evaluating.shader.document, task.library, keys):
+                told = (each for each in result.diagnosis.causes if each.kind is not Kind.UNKNOWN)
+                own = () if surface else tuple(told)
+                result = replace(result, diagnosis=replace(result.diagnosis, causes=causes + own))
+        results = (result,)
         pictures: tuple[Picture, ...] = ()
         if task.check in DIRECT:
             with suppress(NotRun, ShaderError):  # the check's result says so
@@ -163,6 +173,11 @@ class Judge:
                 raise
             return Findings(errors=error.args)
         return Findings(results, pictures, notes=notes)
+
+
+def _copy(task: Task) -> str:
+    """The folder whose `libraries` take the place of MaterialX's, if the library of a task has one."""
+    return root(task.library) if os.path.isabs(task.library) else ""
 
 
 def _case(host: Engine, title: str, library: str, seed: int, methods: Methods) -> Case:
