@@ -89,8 +89,9 @@ WRONG = {
          ("model", "a far exponential of 1.5 mean free paths instead of 3")),
     ),
     "conical_edf": (
+        ("genglsl/conical_edf.glsl", "max(inner - outer, 1e-8)", "max(inner - outer, 1e-4)", "radiance", ()),
         ("genglsl/conical_edf.glsl", "w / 42.0 * tail", "w / 42.0", "radiance", ("region",)),
-        ("genglsl/conical_edf.glsl", "u = angle", "u = max(angle, 1.6)", "radiance", ("value", "inner_angle", 1.6)),
+        ("genglsl/conical_edf.glsl", "u = angle", "u = max(angle, 6.4)", "radiance", ("value", "inner_angle", 6.4)),
         ("genglsl/conical_edf.glsl", "u = angle", "u = min(2.0 * angle, 360.0)", "radiance",
          ("model", "a cone whose angles count from its axis")),
         ("genglsl/conical_edf.glsl", "float mu = max(", "color = min(color, 1.0);\n        OLD", "radiance",

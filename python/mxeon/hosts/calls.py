@@ -242,7 +242,7 @@ def _argument(name: str, ports: Mapping[str, Input], inputs: Inputs) -> tuple[st
         normal, tangent = inputs.get("normal", NORMAL), inputs.get("tangent", TANGENT)
         name = name.lower().removeprefix("geomprop_")
         if name.startswith("bworld"):
-            return "vector3", np.cross(normal, tangent)
+            return "vector3", np.cross(np.asarray(normal), np.asarray(tangent))
         if name[:1] in "tnb" and name[1:].startswith("object"):
             raise InterfaceError(
                 f"an input's default is {name[0].upper()}object, which no pair of directions has"

@@ -9,7 +9,7 @@ from mxeon.conformance import samples, spec
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Counts, Values, directions, float32, generator
 from mxeon.conformance.spec import ARGUMENTS, Ability, EngineError, Input, color
-from mxeon.conformance.tolerance import Compared, roundings, sum_of
+from mxeon.conformance.tolerance import ROUNDING, Compared, roundings, sum_of
 from mxeon.models.media import cone_cosine, cone_width, surface_radiance
 from mxeon.models.nodes import emissions
 from mxeon.models.nodes.emissions import AMOUNT, BASE, COMBINED_EMISSIONS, FACTOR, FIRST, Emission
@@ -60,7 +60,7 @@ EMITTED = connection_text("edf", "EDF", "emission")
 EMITTING_TEXT = node_text("surface", "surfaceshader", "shading", EMITTED)
 SURFACE_COLOR = (0.2, 0.5, 2.0)  # radiance of a surface
 BLACK_LOBE = '  <oren_nayar_diffuse_bsdf name="lobe" type="BSDF" />\n'
-LEAST_FALLOFF = 1.0  # degrees of full angle between the cones
+LEAST_FALLOFF = 0.01  # degrees of full angle between the cones
 LEAST_CONE = 1e-3  # least share of a full turn
 EXPONENTS = (0.5, 20.0)
 BLUE, ORANGE = (0.2, 0.5, 0.8), (2.0, 0.4, 0.1)  # radiances of the materials in pictures
@@ -103,11 +103,12 @@ SMALL = Scene("dark", size=8)
 OPACITIES = (0.0, 0.25, 1.0)
 
 
+# Ten of 1 - cos of both angles, of which a view takes 1 - mu in all, and two of differences.
+CONE_ROUNDINGS = 12
 # By name of the row.
 ERRORS = {
-    # Ten roundings of 1 - cos of both angles, of which a view takes 1 - mu in all, and two of differences.
     "conical": sum_of(
-        roundings(2 * 12, "relative to 1 and the slope, of colors up to 2"),
+        roundings(2 * CONE_ROUNDINGS, "relative to 1 and the slope, of colors up to 2"),
         quantity=Quantity.RADIANCE_SLOPE,
     ),
     "schlick_emission": sum_of(
@@ -187,12 +188,15 @@ class ConeSpec(EmissionSpec):
         return inputs | {INNER: float32(inner), OUTER: float32(outer)}
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Those of any emission; views a little inside and outside of the cones; and views of turned axes."""
+        """Those of any emission; views in falloffs, or a little inside and outside of the cones; and turned axes."""
         rng, count = generator(), counts.few
         inputs = self.random_inputs(rng, count)
         angle = np.where(np.arange(count) % 2, inputs[INNER], inputs[OUTER])
         step = np.where(rng.random(count) < 0.5, -2.0, 2.0) * _edge(angle)
-        wo = samples.directions_at(np.clip(cone_cosine(angle) + step, 0.0, 1.0), 0.0)
+        mu, low = cone_cosine(angle) + step, cone_cosine(inputs[OUTER])
+        falloff = low + rng.random(count) * (cone_cosine(inputs[INNER]) - low)
+        soft = (inputs[OUTER] > inputs[INNER]) & (rng.random(count) < 0.5)
+        wo = samples.directions_at(np.clip(np.where(soft, falloff, mu), 0.0, 1.0), 0.0)
         frames = samples.turned_frames(rng, count)
         view = samples.turned_directions(rng, len(frames))
         axes = self.random_inputs(rng, len(frames)) | {"normal": samples.rounded(frames[:, :, 2].T)}
@@ -200,11 +204,13 @@ class ConeSpec(EmissionSpec):
         return *super().batches(counts), _away(near), _away(turned)
 
     def alike(self, compared: Compared) -> Compared:
-        """Values over 1 and the slope of the falloff in the cosine."""
+        """Values over 1 and the largest slope of the falloff in the cosines to which a view may round."""
         batch = compared.batch
         inner, outer = (batch.inputs[name] for name in (INNER, OUTER))
         width = np.where(outer > inner, cone_width(inner, outer), np.inf)
-        t = np.clip((np.maximum(batch.wo[:, 2], 0.0) - cone_cosine(outer)) / width, 0.0, 1.0)
+        t = (np.maximum(batch.wo[:, 2], 0.0) - cone_cosine(outer)) / width
+        reach = CONE_ROUNDINGS * ROUNDING / width
+        t = np.clip(np.clip(0.5, t - reach, t + reach), 0.0, 1.0)
         return compared.over((1.0 + 6.0 * t * (1.0 - t) / width)[:, np.newaxis])
 
     def views(self, rng: np.random.Generator, wo: Array) -> Batch:
