@@ -22,6 +22,7 @@ from tests.support.documents import connected, material
 from tests.support.plans import keep_checks
 from tests.support.results import Identity, Picture, Region, Result, Run, caused, quoted
 from tests.support.verdicts import DIFFERS, FAILED, NOT_RUN, PASSED
+from tests.support.wrong_libraries import copy_of_eonlib, copy_of_stock
 
 EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
 NAME = "genglsl_clamped_dot"
@@ -148,6 +149,15 @@ def test_what_fails_for_other_inputs_than_the_documents_comes_last():
     assert [each in line for each, line in zip(expected, causes, strict=True)] == [True] * 3
 
 
+def test_a_copy_of_eonlib_is_not_referred_to_eonlib(tmp_path):
+    stock, own = copy_of_stock(tmp_path / "stock", "pbrlib"), copy_of_eonlib(tmp_path / "own")
+    for library, referred in ((str(stock), True), (str(own), False)):
+        shown = replace(PICTURE, library=library, verdict=FAILED, diagnosis=SEEN)
+        files = {library: {"folder": ()}}
+        lines = answer(made_run(made(FAILED, library=library), shown, libraries=files))
+        assert lines[-1].endswith("check with --library eonlib") == referred
+
+
 def test_every_document_appears_those_that_look_wrong_first():
     documents = [f"{number}.mtlx" for number in range(20)]
     pictures = [replace(PICTURE, subject=f"{each}: look{each[0]}") for each in documents[:-1]]
@@ -164,6 +174,11 @@ def test_every_document_appears_those_that_look_wrong_first():
         ([], NOT_RUN, "No check ran."),
         ([made(NOT_RUN)], NOT_RUN, "No check ran."),
         ([made()], PASSED, "The check passed on gl with eonlib."),
+        (
+            [made(), made(host="osl"), made(host="webgl")],
+            PASSED,
+            "All 3 checks passed on gl, osl and webgl with eonlib.",
+        ),
         (
             [made(), made(DIFFERS)],
             PASSED,

@@ -21,7 +21,7 @@ from mxeon.conformance.specs import ALL
 from mxeon.conformance.words import counted, listed, of_white
 from mxeon.errors import as_output, one_line, printable
 from mxeon.report.formats import link
-from mxeon.shaders.library import eonlib_folder
+from mxeon.shaders.library import eonlib_folder, kind_of
 from mxeon.shaders.library_export import CLIENTS
 
 LINES = 10  # maximum lines printed for one document
@@ -397,7 +397,7 @@ def _remedy(run: Run) -> Iterator[str]:
             f"To fix it, load {eonlib_folder()} before MaterialX's own libraries; `mxeon library` "
             f"prints the line for {', '.join(CLIENTS)}"
         )
-    elif wrong and "eonlib" not in libraries:
+    elif wrong and "eonlib" not in libraries | {kind_of(each) for each in run.libraries}:
         yield "To find out whether eonlib fixes it, check with --library eonlib"
     elif (
         shown

@@ -56,6 +56,16 @@ def listed(names: Sequence[str]) -> str:
     return ", ".join(names[:NAMED]) + more
 
 
+def enumerated(names: Sequence[str]) -> str:
+    """All names of a list that is not empty.
+
+    >>> enumerated(["a"]), enumerated(["a", "b", "c"])
+    ('a', 'a, b and c')
+    """
+    *first, last = names
+    return f"{', '.join(first)} and {last}" if first else last
+
+
 def counted(count: int, noun: str) -> str:
     """A number of things.
 
@@ -458,7 +468,12 @@ def sentence(run: Run) -> str:
     """The verdict on the results of all libraries that are not judged for comparison."""
     results, counts = run.judged, run.counts
     total = counted(len(results), "check")
-    hosts = " and ".join(dict.fromkeys(result.location for result in results))
+    groups: dict[str, dict[str, None]] = {}  # hosts by library
+    for result in results:
+        groups.setdefault(result.library, {})[result.host] = None
+    hosts = " and ".join(
+        f"{enumerated(list(names))} with {library}" for library, names in groups.items()
+    )
     differ = ""
     if counts[DIFFERS]:
         verb = "differs" if counts[DIFFERS] == 1 else "differ"
