@@ -158,6 +158,19 @@ def test_a_copy_of_eonlib_is_not_referred_to_eonlib(tmp_path):
         assert lines[-1].endswith("check with --library eonlib") == referred
 
 
+def test_a_failing_picture_is_printed_by_itself_or_with_the_lobe_that_fails():
+    lobe = made(FAILED, subject="sheen_bsdf, mode zeltner")
+    look = (caused("picture", "back", values=(-0.05,)).causes[0],)
+    follows = caused("follows", "", "sheen_bsdf").causes
+    pictures = [
+        replace(PICTURE, verdict=FAILED, diagnosis=replace(SEEN, causes=look + near))
+        for near in (follows, caused("defect", "other_node", "normalmap", "bump").causes)
+    ]
+    lines = answer(replace(made_run(lobe, *pictures), contents={}))
+    assert any("1 picture of sheen_bsdf: clay.mtlx: terracotta" in line for line in lines)
+    assert any("up to 5 % of white too dark" in line and "normalmap" in line for line in lines)
+
+
 def test_every_document_appears_those_that_look_wrong_first():
     documents = [f"{number}.mtlx" for number in range(20)]
     pictures = [replace(PICTURE, subject=f"{each}: look{each[0]}") for each in documents[:-1]]

@@ -13,7 +13,7 @@ from mxeon.shaders.nodes import EON, SURFACE, document_text
 from mxeon.shaders.scene import FRONT, FURNACE, SIDE, Scene, sphere
 from tests.support.documents import lobe, material
 from tests.support.verdicts import has
-from tests.support.wrong_libraries import wrong_copy
+from tests.support.wrong_libraries import copy_of_stock, replace_text, wrong_copy
 
 
 @pytest.fixture
@@ -225,6 +225,20 @@ def test_a_zeltner_sheen_has_no_tolerance_of_microfacets(shown, tmp_path):
     old, new = "bsdf.response = lobe * color", "bsdf.response = 1.001 * lobe * color"
     wrong, *_ = shown(text, wrong_copy(tmp_path, old, new, "genglsl/sheen_bsdf.glsl"))
     assert (right.verdict, wrong.verdict) == ("passed", "failed") and right.tolerance < 2e-5
+
+
+def test_the_first_wrong_node_of_a_pattern_is_named(shown, tmp_path):
+    text = material(
+        """<normalmap name="bump" type="vector3"><input name="in" type="vector3" value="0.6, 0.5, 0.9"/>
+        <input name="scale" type="float" value="0.4"/></normalmap>
+        <burley_diffuse_bsdf name="lobe" type="BSDF"><input name="normal" type="vector3" nodename="bump"/>
+        </burley_diffuse_bsdf>"""
+    )
+    file = "stdlib/genglsl/mx_normalmap.glsl"
+    library = copy_of_stock(tmp_path / "library", file)
+    replace_text(library, "value.x * normal_scale.x", "value.x", file)
+    result, *_ = shown(text, str(library))
+    assert result.verdict == "failed" and has(result, "other_node", "normalmap", "bump")
 
 
 # --- what the models do not cover --------------------------------------------------------------

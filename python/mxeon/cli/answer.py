@@ -432,12 +432,24 @@ def _failures(run: Run) -> Iterator[str]:
         other = ", for inputs that no document uses" * run.is_elsewhere(each)
         place = f"{kind}: {each.location}{other}"
         groups.setdefault((place, " ".join(each.pages) or words.explanation(each)), []).append(each)
-    # Nodes explain pictures.
-    of_nodes = {key for key, row in groups.items() if any(each.check not in KEYS for each in row)}
-    places = {place for place, _ in of_nodes}
-    for key, results in groups.items():
-        if key in of_nodes or key[0] not in places:
-            yield f"{key[0]}: {_sentence(results)}"
+    # Nodes explain the pictures that show them. A document's own sentence has its picture.
+    nodes = {(each.location, each.subject.partition(",")[0]) for each in failures}
+    shown: dict[str, list[Result]] = {}
+    for (place, _), results in groups.items():
+        if explained := [each for each in results if nodes & _lobes(each)]:
+            shown.setdefault(place, []).extend(explained)
+        else:
+            yield f"{place}: {_sentence(results)}"
+    for place, results in shown.items() if not run.contents else ():
+        names = _unique(name for each in results for _, name in sorted(nodes & _lobes(each)))
+        subjects = listed([each.subject for each in results])
+        yield f"{place}: {counted(len(results), 'picture')} of {listed(names)}: {subjects}"
+
+
+def _lobes(result: Result) -> set[tuple[str, str]]:
+    """The lobes that a failing picture shows, each with the place of the result."""
+    causes = (each for each in result.diagnosis.causes if each.kind is Kind.FOLLOWS)
+    return {(result.location, name) for cause in causes for name in cause.names}
 
 
 def _sentence(results: Sequence[Result]) -> str:

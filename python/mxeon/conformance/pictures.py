@@ -273,7 +273,13 @@ def _judge_material(
         if host.active.environment == "prefilter" and _stretched(lobes):  # its maps have one alpha
             cases = [each for each in cases if each[0].environment is None]
         result = _judge_match(place, cases, tolerance_of(shader, lobes, host))
-        if result.verdict == FAILED and (known := _known(shader)):
+        if result.verdict == FAILED:
+            near = (
+                Cause(Kind.DEFECT, "other_node", names)
+                if (names := judge.other_node(shader, values))
+                else Cause(Kind.FOLLOWS, names=tuple({lobe.category: None for lobe in lobes}))
+            )
+            known = _known(shader) or Diagnosis((*result.diagnosis.causes, near))
             result = replace(result, diagnosis=known)
     identity = host.identity()
     names = (file.name, shader.element, host.name, library)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from itertools import islice
 
 import MaterialX as mx
 import numpy as np
@@ -25,6 +26,11 @@ from mxeon.shaders.scene import VIEW, Scene, sphere, tangents
 
 SCENES = 4  # whose points are kept: the pictures of a run have as many
 
+FEW, PATTERNS_DRAWN = (
+    32,
+    16,
+)  # size of pictures of patterns, and how many are drawn to find a wrong one
+OTHER = 0.01  # difference of a pattern that is named, more than filters and powers of engines make
 ROWS = 32  # and columns of pixels that are judged where each has a material of its own
 MOST = 2000  # pixels of which all are judged then: an integral takes about a millisecond
 
@@ -137,6 +143,24 @@ class Reference(base.Host):
         middle = (np.arange(scene.size) // stride * stride + stride // 2).clip(max=scene.size - 1)
         image = image[np.ix_(middle, middle)]
         return ExpectedPicture(image, chosen, tuple(graph.measured), tuple(graph.lobes))
+
+    def other_node(self, shader: Shader, values: HostValues) -> tuple[str, ...]:
+        """Category and name of the first node of a pattern that a host evaluates otherwise; none without one."""
+        scene = Scene(NAME, VIEW, size=FEW)
+        mask = sphere(scene.size).mask
+
+        def drawn(elements: Elements, kind: str, output: str) -> NDArray[np.float64]:
+            return values(scene.size, elements, kind, output)[mask]
+
+        nodes = Graph(shader.document, _shown(scene, 1, np.inf), measure=drawn)
+        try:
+            for elements, right in islice(nodes.patterns(shader.element), PATTERNS_DRAWN):
+                own = drawn(elements, elements[-1].getType(), "")
+                if np.abs(own - right).max() > OTHER * max(1.0, np.abs(right).max()):
+                    return elements[-1].getCategory(), elements[-1].getName()
+        except NotRun:  # nothing is known about such a node
+            pass
+        return ()
 
     def _values(self, query: Query) -> NDArray[np.float64]:
         """Array of the document's lobes; see `mxeon.hosts.base.Host.evaluate`.

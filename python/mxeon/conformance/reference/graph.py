@@ -9,7 +9,7 @@ NotRun, with its name, unless a mix leaves it out.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cached_property, partial
 from graphlib import TopologicalSorter
 from math import prod
@@ -83,16 +83,25 @@ class Graph(Nodes):
 
         Raise NotRun if the graph holds a node that is none of the above.
         """
-        element = self._document.getDescendant(name_path)
-        graph = element.getParent()
-        around = self.path((), graph) if graph.isA(mx.NodeGraph) else ()
         # Ignore what is not finite: another node may leave it out.
         with np.errstate(divide="ignore", invalid="ignore"):
-            find = self._connected if element.isA(mx.Output) else self.path
-            path = find(around, element)
+            path = self._root(name_path)
             self._parts([path])
             self._hiding.update(self._parts(self._tops))
             return np.asarray(nodes.fitted("color3", self._evaluate(path)), np.float64)
+
+    def patterns(self, name_path: str) -> Iterator[tuple[list[mx.Element], Array]]:
+        """Nodes that a renderable element depends on and that can be drawn, sources first, with their values."""
+        order = TopologicalSorter(self._parts([self._root(name_path)])).static_order()
+        for path in [each for each in order if each in self.elements]:
+            if self.elements[path].isA(mx.Node) and self.elements[path].getType() in DRAWN:
+                yield self._along(path), np.asarray(self._evaluate(path))
+
+    def _root(self, name_path: str) -> Path:
+        element = self._document.getDescendant(name_path)
+        graph = element.getParent()
+        around = self.path((), graph) if graph.isA(mx.NodeGraph) else ()
+        return (self._connected if element.isA(mx.Output) else self.path)(around, element)
 
     def _parts(self, roots: Iterable[Path]) -> dict[Path, tuple[Path, ...]]:
         return reachable(roots, lambda path: self._step(path)[1])
