@@ -168,16 +168,16 @@ def redefined(
     for node in inner_nodes(document):
         definition = node.getNodeDef(target="", allowRoughMatch=True) if node.isA(mx.Node) else None
         right = definition and load_library("stock").getNodeDef(definition.getName())
-        for port in definition.getActiveInputs() if right else ():
-            name, other = port.getName(), right.getActiveInput(port.getName())
-            for key in keys if other and not node.getInput(name) else ():
-                says = [each.getAttribute(key) for each in (port, other)]
-                if _plain(says[0]) != _plain(says[1]):
+        for port in definition.getActiveInputs() if definition and right else ():
+            name, other = port.getName(), right and right.getActiveInput(port.getName())
+            if not other or node.getInput(name):
+                continue
+            for key in keys:
+                own, released = port.getAttribute(key), other.getAttribute(key)
+                if _plain(own) != _plain(released):
                     default = f"default of {name} of {node.getCategory()}"
-                    own, released = (each or "none" for each in says)
-                    found[
-                        Cause(Kind.DEFECT, "definition", (default, own, "MaterialX", released))
-                    ] = None
+                    names = default, own or "none", "MaterialX", released or "none"
+                    found[Cause(Kind.DEFECT, "definition", names)] = None
     return tuple(found)
 
 
