@@ -86,7 +86,7 @@ def test_a_task_whose_picture_is_damaged_is_done_again(tmp_path, content):
 
 def refused(folder):
     """The one line that refuses a journal."""
-    with pytest.raises(ValueError, match=f"{JOURNAL}: must be a journal of format 8") as error:
+    with pytest.raises(ValueError, match=f"{JOURNAL}: must be a journal of format 9") as error:
         read_run(folder)
     with pytest.raises(ValueError, match="as mxeon wrote it; .*; run again without --resume$"):
         journal(folder, resume=True).__enter__()
@@ -94,7 +94,7 @@ def refused(folder):
     return str(error.value)
 
 
-@pytest.mark.parametrize("text", ["", "{}\n", "[]\n", '{"format": 0}\n', "\0\n", '{"format": 8}\n'])
+@pytest.mark.parametrize("text", ["", "{}\n", "[]\n", '{"format": 0}\n', "\0\n", '{"format": 9}\n'])
 def test_what_is_no_journal_is_refused(tmp_path, text):
     (tmp_path / JOURNAL).parent.mkdir()
     (tmp_path / JOURNAL).write_text(text)
