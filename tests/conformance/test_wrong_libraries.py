@@ -4,9 +4,19 @@
 import pytest
 
 from mxeon import check
+from mxeon.cli.answer import answer
 from mxeon.shaders.nodes import EON, INVERSIONS
-from tests.support.plans import keep_checks
-from tests.support.verdicts import FAILED, NOT_RUN, PASSED, SHADER_FUNCTIONS, has, said
+from tests.support.plans import keep, keep_checks
+from tests.support.verdicts import (
+    DIFFERS,
+    EVERY_NODE,
+    FAILED,
+    NOT_RUN,
+    PASSED,
+    SHADER_FUNCTIONS,
+    has,
+    said,
+)
 from tests.support.wrong_libraries import copy_of_eonlib, copy_of_stock, place_of, replace_text
 
 ON, OFF = (f"oren_nayar_diffuse_bsdf, energy_compensation {flag}" for flag in ("true", "false"))
@@ -210,3 +220,117 @@ def test_a_definition_that_the_documents_do_not_fit_is_named_before_they_are_ref
     assert wrong[0].check == "definition"
     assert "normal, energy_compensaton; pbrlib says" in said(wrong[0])
     assert any(has(row, "own_document_refused") for row in wrong[1:])
+
+
+# --- MaterialX's libraries against the release ----------------------------------------------------
+
+BXDF, STDLIB = "bxdf", "stdlib/genglsl"
+SWITCH = '<input name="{}" type="color3" nodename="artistic_ior" output="ior" />\n      <input name="{}" type="color3" nodename="convert_ior" />'
+COAT = '<input name="in" type="float" interfacename="{}" />\n    </invert>\n    <convert name="coat_roughness_vector"'
+UV = '<output name="r" type="float" nodename="image_bias_separate" output="{}" />\n    <output name="g" type="float" nodename="image_bias_separate" output="{}" />'
+TOP = '<input name="top" type="BSDF" nodename="coat_{}" />'
+HALVED = (
+    TOP.format("half")
+    + '\n<input name="base" type="BSDF" nodename="metallic_mix" /></layer><multiply name="coat_half" type="BSDF"><input name="in1" type="BSDF" nodename="coat_bsdf" /><input name="in2" type="float" value="{}" /></multiply><layer name="unused" type="BSDF">'
+)
+# A file, its text and the one in its place, and the node that is wrong, its part, and the released and the other value.
+CHANGED = {
+    "mode of LamaConductor": (f"{BXDF}/lama/lama_conductor.mtlx", SWITCH.format("in1", "in2"), SWITCH.format("in2", "in1"), "LamaConductor", "in1 of eta_switch", "convert_ior"),
+    "coat of Disney": (f"{BXDF}/disney_principled.mtlx", COAT.format("clearcoatGloss"), COAT.format("clearcoat"), "disney_principled", "in of coat_roughness", "the input clearcoat", "the input clearcoatGloss"),
+    "halved lobe": (f"{BXDF}/disney_principled.mtlx", TOP.format("bsdf"), HALVED.format("0.5"), "disney_principled", "top of coat_layer"),
+    "translation": (f"{BXDF}/translation/standard_surface_to_gltf_pbr.mtlx", '"in1" type="float" interfacename="sheen_roughness"', '"in1" type="float" interfacename="sheen"', "standard_surface_to_gltf_pbr", "in1 of sheen_roughness"),
+    "channels": (f"{BXDF}/usd_preview_surface.mtlx", UV.format("outr", "outg"), UV.format("outg", "outr"), "UsdUVTexture", "output r of IMP_UsdUVTexture_22"),
+    "default": ("pbrlib/pbrlib_defs.mtlx", "0.183, 0.421, 1.373", "0.193, 0.421, 1.373", "the default of ior of ND_conductor_bsdf", "0.193, 0.421, 1.373", "0.183, 0.421, 1.373"),
+    "unit": ("stdlib/stdlib_defs.mtlx", '"centimeter" scale="0.01"', '"centimeter" scale="0.1"', "scale of unit centimeter", "0.1", "0.01"),
+    "color space": ("cmlib/cmlib_ng.mtlx", "1.705050992658, -0.130256417507", "1.705050992658, 0.130256417507", "acescg_to_lin_rec709", "value of mat"),
+    "pattern": (f"{STDLIB}/mx_smoothstep_float.glsl", "smoothstep(low, high, val)", "smoothstep(low, high, val * val)", "smoothstep"),
+    "shared text": (f"{STDLIB}/lib/mx_noise.glsl", "6.0 - 15.0) + 10.0", "6.0 - 15.0) + 10.1", "noise2d"),
+    "code": (f"{STDLIB}/stdlib_genglsl_impl.mtlx", '"{{outlow}} + ({{in}} - {{inlow}})', '"{{outlow}} + ({{in}} - {{outlow}})', "remap"),
+}  # fmt: skip
+SQUARES = (
+    '<multiply name="roughness_anisotropic_squared" type="vector2">',
+    '<input name="in2" type="vector2" nodename="roughness_linear" />\n    </multiply>',
+)
+POWERS = (
+    '<power name="roughness_anisotropic_squared" type="vector2">',
+    '<input name="in2" type="float" value="2" />\n    </power>',
+)
+HARMLESS = {
+    f"{BXDF}/lama/lama_conductor.mtlx": dict(zip(POWERS, SQUARES, strict=True)),
+    f"{BXDF}/disney_principled.mtlx": {"coat_roughness_vector": "rough", TOP.format("bsdf"): HALVED.format("1.0")},
+    f"{STDLIB}/mx_smoothstep_float.glsl": {"result = 1.0;": "result = 0.5 + 0.5; // the upper end"},
+    "cmlib/cmlib_ng.mtlx": {'value="1.8"': 'value="1.80"'},
+    "pbrlib/pbrlib_defs.mtlx": {'uimin="0.0"': 'uimin="0.00" uifolder="lobe"'},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CHANGED)
+def test_what_differs_from_the_release_is_named_with_its_size(judged, tmp_path, name):
+    file, old, new, *wanted = CHANGED[name]
+    replace_text(copy_of_stock(tmp_path, file), old, new, file)
+    result = judged("release", EVERY_NODE, library=str(tmp_path))
+    assert result.verdict == FAILED and result.control.caught
+    assert has(result, "release", *wanted)
+    assert all(each.values[0] > 0.005 for each in result.diagnosis.causes if each.names[0])
+
+
+def test_what_is_written_differently_and_has_the_released_values_passes(judged, tmp_path):
+    for file, texts in HARMLESS.items():
+        copy_of_stock(tmp_path, file)
+        for old, new in texts.items():
+            replace_text(tmp_path, old, new, file)
+    assert judged("release", EVERY_NODE, library=str(tmp_path)).verdict == PASSED
+
+
+def test_an_older_library_and_text_that_nothing_evaluates_are_said_not_to_be_judged(
+    judged, tmp_path
+):
+    file = "pbrlib/genglsl/mx_displacement_float.glsl"
+    old = tmp_path / "old"
+    replace_text(copy_of_stock(tmp_path / "new", file), "vec3(disp)", "vec3(-disp)", file)
+    definitions = "stdlib/stdlib_defs.mtlx"
+    replace_text(copy_of_stock(old, definitions), "ND_flake2d", "ND_flake", definitions)
+    assert judged("release", EVERY_NODE, library=str(tmp_path / "new")).verdict == PASSED
+    assert "genglsl of ND_displacement_float" in judged.unjudged("release", str(tmp_path / "new"))
+    assert not judged.all("release", EVERY_NODE, "gl", str(old))
+    assert any("definitions" in each for each in judged.unjudged("release", str(old)))
+
+
+def test_differences_of_a_newer_library_are_permitted(judged, tmp_path):
+    file, distance = "stdlib/stdlib_defs.mtlx", '<unittypedef name="distance" />'
+    new = f'<nodedef name="ND_new" node="new" />{distance}'
+    replace_text(copy_of_stock(tmp_path, file), distance, new, file)
+    replace_text(tmp_path, 'scale="0.01"', 'scale="0.1"', file)
+    result = judged("release", EVERY_NODE, library=str(tmp_path))
+    assert result.verdict == DIFFERS and has(result, "newer", "new")
+
+
+@pytest.mark.parametrize("guarded", [False, True])
+def test_two_nodes_that_define_one_function_are_named(judged, copy, guarded):
+    helper = "float mxeon_helper(float x)\n{\n    return x;\n}\n"
+    if guarded:
+        helper = f"#ifndef HELPER\n#define HELPER\n{helper}#endif\n"
+    for name in ("sheen_bsdf", "translucent_bsdf"):
+        library = copy(f"genglsl/{name}.glsl", f"void {name}(", f"{helper}void {name}(")
+    result = judged.texts("clash", library)["every two nodes"]
+    assert result.verdict == (PASSED if guarded else FAILED) and result.control.caught
+    wanted = "ND_sheen_bsdf", "ND_translucent_bsdf", "mxeon_helper"
+    assert guarded or has(result, "clash", *wanted)
+
+
+def test_exchanged_arguments_of_a_call_in_mdl_are_named(judged, tmp_path):
+    file = "pbrlib/genmdl/pbrlib_genmdl_impl.mtlx"
+    old, new = "0:{{color0}}, mxp_color90:{{color90}}", "0:{{color90}}, mxp_color90:{{color0}}"
+    replace_text(copy_of_stock(tmp_path, file), old, new, file)
+    result = judged.texts("arguments", str(tmp_path))["every node, mdl"]
+    assert result.verdict == FAILED and result.control.caught
+    assert has(result, "other_argument", "generalized_schlick_edf", "mxp_color0", "{{color90}}")
+
+
+def test_a_run_says_which_texts_and_states_it_does_not_judge(monkeypatch):
+    keep(monkeypatch, lambda task: task.check in ("source", "release"))
+    run = check(None, ["gl"], "eonlib")
+    assert run.passed and not run.sentence.startswith("All")
+    unjudged = dict(run.unjudged)
+    assert {"osl", "msl", "mdl"} <= unjudged.keys() and "glsl" not in unjudged
+    assert any(each.startswith("not judged here: ") and "Metal" in each for each in answer(run))

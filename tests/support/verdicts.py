@@ -34,6 +34,10 @@ class Verdicts:
         results = self.all(task, EVERY_NODE, SOURCE, library)
         return {each.subject: each for each in results if each.check == check}
 
+    def unjudged(self, check, library, host="gl"):
+        """What a task of a whole library does not judge, and the reasons."""
+        return dict(self._work(check, EVERY_NODE, host, library).unjudged)
+
     def document(self, path, host="gl", library="eonlib"):
         """Results, pictures and notes of a document, and why it cannot be read."""
         return self._work("picture", str(path), host, library)

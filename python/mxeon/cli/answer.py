@@ -83,7 +83,7 @@ def answer(run: Run, full: bool = False) -> list[str]:
     remedy, failures = [one_line(line) for line in _remedy(run)], list(_failures(run))
     notes = [f"note: {note}" for note in run.notes]
     idle = _not_run(run, full, [] if many else looks)
-    first = list(map(one_line, [*words.origins(run), *idle]))
+    first = list(map(one_line, [*words.origins(run), *idle, *words.not_judged(run)]))
     # The verdict comes first without documents, or if something was not judged.
     begins = run.refused or run.verdict == NOT_RUN or not run.contents
     alone = len(run.contents) == 1

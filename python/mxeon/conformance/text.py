@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mxeon.conformance.check import judge, not_measured
+from mxeon.conformance.release import released
 from mxeon.conformance.results import NOT_RUN, SOURCE, Cause, Diagnosis, Kind, Result
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import generator
@@ -26,12 +27,14 @@ from mxeon.conformance.tolerance import Measurement, count_of
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import HOSTS
 from mxeon.models import diffuse as formulas
+from mxeon.shaders import texts
 from mxeon.shaders.closure_calls import COMMENT
 from mxeon.shaders.document.graphs import inner_nodes
 from mxeon.shaders.expressions import Array, evaluate
 from mxeon.shaders.functions import LANGUAGES, has_functions, parts, twins
 from mxeon.shaders.generation import TARGETS, ApproximationWarning, generate
 from mxeon.shaders.library import load_library
+from mxeon.shaders.library_tree import search_path
 from mxeon.shaders.nodes import EON, FLAG, INVERSIONS, OREN_NAYAR
 
 # --- checks --------------------------------------------------------------------------------------
@@ -54,6 +57,16 @@ CLAIMS = {
         "The generated source passes every input of the node to the function it calls.",
         Quantity.INPUTS,
         "each input in turn is 0",
+    ),
+    "clash": (
+        "No two nodes define one name, so a shader can have any two of them.",
+        Quantity.FUNCTIONS,
+        "the source of one node is included by another",
+    ),
+    "arguments": (
+        "The text for MDL passes every input to the argument that it has in MaterialX's release.",
+        Quantity.INPUTS,
+        "two arguments are exchanged",
     ),
     "closure": (
         "The generated source calls the node's closure, with the right arguments and value.",
@@ -83,6 +96,11 @@ def check_texts(subjects: Iterable[DiffuseSpec], library: str) -> tuple[Result, 
         )
         title = "shader twins, osl"
         results.append(_judged("languages", title, library, lambda: (found, len(control))))
+    if library != "stock":
+        results.append(_judged("clash", "every two nodes", library, partial(_clashes, library)))
+        if release := released(library):
+            faults = partial(_arguments, library, release)
+            results.append(_judged("arguments", "every node, mdl", library, faults))
     return (
         *results,
         *(
@@ -224,8 +242,57 @@ def _plain(text: str) -> tuple[object, ...]:
         return tuple(parts)
 
 
+# --- sources of all nodes -------------------------------------------------------------------------
+
+
+def _clashes(library: str) -> Faults:
+    """Names that two nodes of a library define, except for those of MaterialX as it is installed."""
+
+    def found(name: str, target: str, twice: bool = False) -> dict[texts.Clash, str]:
+        search = search_path(name)
+        clashes = texts.clashes(load_library(name), target, search, twice)
+        return dict.fromkeys(clashes, target)
+
+    own: dict[texts.Clash, str] = {}
+    for target in SOURCES:
+        known = found("stock", target)
+        new = {each: target for each in found(library, target) if each not in known}
+        own = new | own
+    causes = [
+        Cause(Kind.DEFECT, "clash", (*each.nodes, each.name, target))
+        for each, target in own.items()
+    ]
+    return causes, len(found(library, SOURCES[0], twice=True))
+
+
+def _arguments(library: str, release: mx.Document) -> Faults:
+    """Arguments of calls in MDL that have another value than in a release."""
+
+    def faults(exchanged: bool) -> Iterator[Cause]:
+        for definition in release.getNodeDefs():
+            own = load_library(library).getNodeDef(definition.getName())
+            codes = (each.getImplementation("genmdl") for each in (own, definition))
+            calls = [
+                texts.arguments(each.getAttribute("sourcecode") if each else "") for each in codes
+            ]
+            (callee, given), (other, right) = calls
+            if callee != other or len(right) < 2:
+                continue
+            if exchanged:
+                first, second, *_ = given
+                given[first], given[second] = given[second], given[first]
+                exchanged = False
+            for name, value in right.items():
+                if given.get(name) != value:
+                    row = definition.getNodeString(), name, given.get(name, "missing"), value
+                    yield Cause(Kind.DEFECT, "other_argument", row)
+
+    return list(faults(False)), len(list(faults(True)))
+
+
 # --- generated sources ----------------------------------------------------------------------------
 
+SOURCES = ("genglsl", "genslang", "genmsl", "genosl")  # targets whose nodes have files
 TEXT_ONLY = tuple(row.target for row in HOSTS if row.needs)  # targets that no host runs
 # The call of a function that fills a node's lobe, or the expression that the lobe is.
 FILLED = re.compile(r"\b(\w+\([^;]*), lobe_out\);")

@@ -10,7 +10,6 @@ from mxeon.conformance.results import (
     FAILED,
     NOT_RUN,
     PASSED,
-    UNJUDGED,
     Cause,
     Diagnosis,
     Kind,
@@ -219,6 +218,10 @@ DEFECTS = {
     "sum_of_lobes": "see the checks of each lobe and of `layer`",
     "graph_of_release": "the graph of MaterialX {any}",
     "graph_of_version": "the graph of version {0} of the node, where version {1} is installed",
+    "release": "{released}",
+    "newer": "it has {all}, which the installed MaterialX lacks, and may be of a newer version",
+    "clash": "{0} and {1} both define {2} in {3}, so a shader with both does not compile",
+    "other_argument": "{1} of {0} is {2}; MaterialX released {3}",
     "graph_differs": "it differs from the graph that is installed: {differences}",
     "drawn_density": "what is drawn has another density than that of material_pdf, from {any}",
     "drawn_weight": "the weight times density is not material_evaluate's value, from {0}",
@@ -402,6 +405,7 @@ def _filled(text: str, cause: Cause) -> str:
         "place": f" {region(cause.region)}" if cause.region else "",
         "instead": "".join(f", but {each:.3g}" for each in cause.values[1:]),
         "differences": _differences(cause.names),
+        "released": _released(cause),
         "share": f"{cause.wrong} of {cause.of}",
         "states": f", all with {STATES.get(cause.key, '').join(cause.names)}" * bool(cause.names),
         "constant": f"{cause.values[0]:.3g}" if cause.values else "not 0",
@@ -409,6 +413,19 @@ def _filled(text: str, cause: Cause) -> str:
         "also": f" and {times} times as bright" * bool(times),
     }
     return text.format(*cause.names, x=factor, text=cause.text, branch=cause.branch, **several)
+
+
+def _released(cause: Cause) -> str:
+    """A node, where it differs from the released one, and by how much."""
+    node, *rows = cause.names or ("",)
+    size = (
+        f", off by up to {in_words(cause.values[0])}"
+        if cause.values and rows and math.isfinite(cause.values[0])
+        else ""
+    )
+    others = (cause.of or 1) - 1
+    more = f", and {others} more with this text" * bool(others)
+    return f"{node}: " * bool(node) + _differences(rows) + size + more
 
 
 def _differences(names: Sequence[str]) -> str:
@@ -495,7 +512,8 @@ def sentence(run: Run) -> str:
         text = f"{counts[PASSED]} of {total} passed on {hosts}{differ}."
     else:
         passed = "The check" if len(results) == 1 else f"All {len(results)} checks"
-        text = f"{passed} passed on {hosts}."
+        some = f"{len(results)} checks passed and none failed on {hosts}."
+        text = some if run.unjudged else f"{passed} passed on {hosts}."
     if elsewhere := sum(map(run.is_elsewhere, results)):
         text += f" {elsewhere} of them for inputs that no document uses."
     if run.missing:
@@ -521,11 +539,19 @@ def summary(run: Run) -> str:
 
 
 def origins(run: Run) -> tuple[str, ...]:
-    """For each folder judged as a library: its files, MaterialX's, and the lobes that have no model."""
+    """For each folder judged as a library: its files, and MaterialX's."""
     return tuple(
         f"library {folder}: {counted(len(files['folder']), 'file')} from the folder, "
         + (f"{len(files['MaterialX']) or 'none'} from" if "MaterialX" in files else "loaded before")
         + f" MaterialX {run.software['MaterialX']}"
-        + (f"; no model judges its {listed(files[UNJUDGED])}" if UNJUDGED in files else "")
         for folder, files in run.libraries.items()
     )
+
+
+def not_judged(run: Run) -> tuple[str, ...]:
+    """One line on what no check judges, with the reasons; none if nothing was left out."""
+    reasons: dict[str, list[str]] = {}
+    for what, reason in run.unjudged:
+        reasons.setdefault(reason, []).append(what)
+    parts = (f"{', '.join(names)} ({reason})" for reason, names in reasons.items())
+    return (f"not judged here: {'; '.join(parts)}",) if reasons else ()

@@ -7,7 +7,7 @@ A host repeats them with its own arguments, in local variables that hide the sha
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, TypeAlias, cast
@@ -159,12 +159,7 @@ def bsdf_call(query: Query) -> BsdfCall:
             names = [name for name in names if f" {name} = " not in computed]
             words = _words(computed)
             names += [each for each in words if each in ports and ports[each].type not in FILES]
-            arguments |= {
-                each: ("vector2", value)
-                for each in words
-                for end, value in PLACED.items()
-                if each.endswith(end)
-            }
+            arguments |= _placed(words)
             statements = computed + statements
         arguments |= {name: _argument(name, ports, inputs) for name in names}
     return BsdfCall(statements, value, arguments)
@@ -204,8 +199,21 @@ def _graph_call(shader: Shader, wo: ArrayLike, inputs: Inputs) -> BsdfCall:
     statements, ports = _main(text), _ports(shader)
     words = _words(statements + color[1])
     arguments: Arguments = {"V": ("vector3", wo), "P": ("vector3", FAR)}
-    arguments |= {name: _argument(name, ports, inputs) for name in words if name in ports}
+    # A value of four components keeps its uniform.
+    unset = (*FILES, "color4", "vector4", "matrix33", "matrix44")
+    own = [name for name in words if name in ports and ports[name].type not in unset]
+    arguments |= {name: _argument(name, ports, inputs) for name in own} | _placed(words)
     return BsdfCall(statements, color[1], arguments)
+
+
+def _placed(words: Iterable[str]) -> Arguments:
+    """The places of images in their textures, among the words of a text."""
+    return {
+        each: ("vector2", value)
+        for each in words
+        for end, value in PLACED.items()
+        if each.endswith(end)
+    }
 
 
 @lru_cache(maxsize=16)

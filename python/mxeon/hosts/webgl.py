@@ -12,7 +12,7 @@ import os
 import re
 import shutil
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from functools import lru_cache
@@ -29,7 +29,7 @@ from mxeon.hosts.calls import PLACED
 from mxeon.hosts.raster import FragmentHost
 from mxeon.jobs.signals import Temporary
 from mxeon.shaders.generation import Shader
-from mxeon.shaders.scene import Scene, VisiblePoints
+from mxeon.shaders.scene import Scene
 
 try:
     from playwright import sync_api
@@ -142,14 +142,9 @@ class WebGlHost(Chromium, FragmentHost):
         answer = self._ask("identify")
         return Identity(self.name, f"Chromium {answer['browser']}, WebGL2", answer["device"])
 
-    def shade(
-        self,
-        shader: Shader,
-        scene: Scene,
-        seen: VisiblePoints,
-        parts: Sequence[raster.Rectangle] = (),
-    ) -> Array:
-        captured, frame = points.outputs(shader), points.frame(seen)
+    def picture(self, shader: Shader, scene: Scene) -> Array:
+        self.refuse_paths(scene)
+        captured, frame = points.outputs(shader), (scene.size, scene.size)
         stages = {"vertex": VERTEX, "pixel": points.pixel_stage(shader)}
         pattern = r"^uniform vec2 (\w+(_uv_scale|_uv_offset));"
         images = re.findall(pattern, shader.stages["pixel"], re.MULTILINE)
@@ -157,8 +152,10 @@ class WebGlHost(Chromium, FragmentHost):
         uniforms |= raster.inputs(shader) | raster.light(scene)
         textures = raster.textures(shader, scene)
         if captured:
-            textures[points.SAMPLER] = self._points(shader.stages["vertex"], captured, seen)
-        return self._draw(stages, uniforms, textures, frame)[::-1]
+            textures[points.SAMPLER] = self._points(
+                shader.stages["vertex"], captured, scene.size, scene.shape
+            )
+        return raster.picture(self._draw(stages, uniforms, textures, frame), scene)
 
     def _evaluate(
         self,
@@ -187,10 +184,10 @@ class WebGlHost(Chromium, FragmentHost):
         return pixels.reshape(size[1], size[0], 4)[..., :3]
 
     def _capture(
-        self, vertex: str, captured: tuple[points.Output, ...], seen: VisiblePoints
+        self, vertex: str, captured: tuple[points.Output, ...], size: int, shape: str
     ) -> NDArray[np.float32]:
         """Texels of a vertex stage's outputs at the points of a picture."""
-        attributes = points.vertices(seen)
+        attributes = points.vertices(size, shape)
         job = {
             "vertex": vertex,
             "outputs": [each.name for each in captured],
@@ -198,8 +195,9 @@ class WebGlHost(Chromium, FragmentHost):
             "stride": points.stride(captured),
             "uniforms": UNIFORMS,
         }
-        buffer = self._bytes("capture", job, {"attributes": attributes})
-        return points.texels(buffer, captured, seen)
+        return points.texels(
+            self._bytes("capture", job, {"attributes": attributes}), captured, size
+        )
 
     def _bytes(
         self, function: str, job: Mapping[str, object], arrays: Mapping[str, Mapping[str, Array]]

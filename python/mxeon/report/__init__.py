@@ -54,8 +54,8 @@ def to_json(run: Run) -> str:
     - refused: refused documents; errors: their faults.
     - compared: libraries judged for comparison, which verdict, counts and sentence ignore.
     - version: of mxeon; software: name to version; documents: paths; notes: texts.
-    - libraries: by folder, its own files ("folder"), the files that complete it ("MaterialX"), and the lobes that it
-      adds ("nodes without a model").
+    - libraries: by folder, its own files ("folder"), the files that complete it ("MaterialX").
+    - unjudged: pairs of what no check judges and the reason.
     - hosts: objects of name, version, device.
     - results: objects with the fields of `mxeon.conformance.results.Result`; control is null or an object of variant,
       error, caught; quantity is null if nothing was measured; diagnosis has causes, the most important first, and distances to the known models. Scripts should
@@ -75,6 +75,7 @@ def to_json(run: Run) -> str:
         "seconds": run.seconds,
         "missing": run.missing,
         "compared": run.compared,
+        "unjudged": run.unjudged,
         "refused": tuple(run.refused),
         "errors": run.errors,
         "version": run.version,

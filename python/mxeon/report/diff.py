@@ -131,6 +131,7 @@ class Report:
     elsewhere: tuple[Elsewhere, ...]
     libraries: dict[str, dict[str, tuple[str, ...]]]
     compared: tuple[str, ...]
+    unjudged: tuple[tuple[str, str], ...]
     seconds: float | None
 
     def __post_init__(self) -> None:

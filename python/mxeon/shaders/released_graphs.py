@@ -46,26 +46,39 @@ def said(node: mx.Node, known: Container[str]) -> dict[str, str]:
     ports, graph = node.getNodeDef().getActiveInputs(), node.getImplementation()
     if not (graph and graph.isA(mx.NodeGraph)):
         raise NotRun(f"reference: the library has no graph of {node.getCategory()}")
-    defaults = {f"the default of {each.getName()}": _source(each) for each in ports}
+    defaults = {f"the default of {each.getName()}": port_text(each) for each in ports}
     return defaults | dict(_inside(graph, known, {graph.getName()}))
+
+
+def facts(graph: mx.NodeGraph) -> Iterator[tuple[str, str]]:
+    """The nodes, inputs and outputs of a graph."""
+    for node in graph.getNodes():
+        name = node.getName()
+        yield f"node {name}", node.getCategory()
+        yield from ((f"{each.getName()} of {name}", port_text(each)) for each in node.getInputs())
+    for each in graph.getOutputs():
+        yield f"output {each.getName()} of {graph.getName()}", port_text(each)
+
+
+def ports_of(node: mx.Node) -> dict[str, mx.Input]:
+    """The inputs of a node by name, those of its definition where it has none of its own."""
+    definition = node.getNodeDef()
+    ports = definition.getActiveInputs() if definition else ()
+    return {each.getName(): each for each in (*ports, *node.getInputs())}
 
 
 def _inside(
     graph: mx.NodeGraph, known: Container[str], seen: set[str]
 ) -> Iterator[tuple[str, str]]:
+    yield from facts(graph)
     for node in graph.getNodes():
-        name = node.getName()
-        yield f"node {name}", node.getCategory()
-        yield from ((f"{each.getName()} of {name}", _source(each)) for each in node.getInputs())
         inner = None if node.getCategory() in known else node.getImplementation()
         if inner and inner.isA(mx.NodeGraph) and inner.getName() not in seen:
             seen.add(inner.getName())
             yield from _inside(inner, known, seen)
-    for each in graph.getOutputs():
-        yield f"output {each.getName()} of {graph.getName()}", _source(each)
 
 
-def _source(port: mx.PortElement) -> str:
+def port_text(port: mx.PortElement) -> str:
     """What an input or output is connected to, or its value."""
     if node := port.getNodeName():
         return " ".join(filter(None, (node, port.getOutputString())))

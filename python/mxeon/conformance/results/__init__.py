@@ -34,7 +34,6 @@ VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 STATUSES = {PASSED: errors.PASSED, FAILED: errors.FAILED, NOT_RUN: errors.NOT_RUN}  # of a run
 # In the place of a document: one material of each node, as every host shows it.
 PORTRAIT = "portrait"
-UNJUDGED = "nodes without a model"  # beside the files of a library
 SOURCE = "source"  # in the place of a host, for what none has to run
 SHADER_FUNCTIONS = "shader twins"  # in the place of a node, for the functions of a library
 RESULTS, JUNIT, PAGE = "results.json", "junit.xml", "report.html"
@@ -337,6 +336,7 @@ class Scope:
     - `libraries`: By folder that was judged as a library: its files, under "folder", and those of
       MaterialX that complete it, under "MaterialX", unless it is loaded before all of them.
     - `compared`: Libraries judged for comparison; the verdict ignores their failures.
+    - `unjudged`: What no check judges, each with the reason.
     - `seconds`: Time from the first document to the last result; None for a run that is read.
     """
 
@@ -349,6 +349,7 @@ class Scope:
     refused: dict[str, tuple[str, ...]] = field(default_factory=dict)
     libraries: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
     compared: tuple[str, ...] = ()
+    unjudged: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager, nullcontext
 from dataclasses import fields, replace
 from functools import lru_cache, partial
@@ -237,10 +237,17 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
     places: dict[str, list[str]] = {}  # of each note
     for text, place in dict.fromkeys(notes):
         places.setdefault(text, []).append(place)
+    hosts = tuple(dict.fromkeys(host for part in done for host in part.hosts))
+    audited = any(map(plan.audits, planned.tasks))
+    unjudged = (
+        *(texts_not_run({host.name for host in hosts}) if audited else ()),
+        *planned.unjudged,
+        *(row for part in done for row in part.unjudged),
+    )
     shared = {each.name: getattr(planned, each.name) for each in fields(Scope)}
     return Run(
-        **shared | {"refused": refused},
-        hosts=tuple(dict.fromkeys(host for part in done for host in part.hosts)),
+        **shared | {"refused": refused, "unjudged": tuple(dict.fromkeys(unjudged))},
+        hosts=hosts,
         results=results,
         pictures=tuple(picture for part in done for picture in part.pictures),
         notes=tuple(
@@ -251,6 +258,15 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
             str(task) for number, task in enumerate(planned.tasks) if number not in findings
         ),
     )
+
+
+def texts_not_run(hosts: Container[str]) -> Iterator[tuple[str, str]]:
+    """The languages of a library's texts that none of these hosts compiles, each with the reason."""
+    targets = {row.target for row in HOSTS if row.name in hosts}
+    for row in HOSTS:
+        if row.target and row.target not in targets:
+            targets.add(row.target)
+            yield row.target, f"needs {row.needs}" if row.needs else "no host of it ran"
 
 
 @contextmanager

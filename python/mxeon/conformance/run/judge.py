@@ -20,6 +20,7 @@ from mxeon.conformance.pictures import (
     judge_document,
 )
 from mxeon.conformance.reference import Reference
+from mxeon.conformance.release import CLAIM, check_release
 from mxeon.conformance.results import (
     DIRECT,
     FAILED,
@@ -55,6 +56,7 @@ CLAIMS = {
     SOURCE: "The generated text was checked.",
     DOCUMENT: DOCUMENT_CLAIM,
     FUNCTIONS: "The shader functions match NumPy's.",
+    plan.RELEASE: CLAIM,
     plan.PICTURE: MATCH,
 }
 
@@ -135,6 +137,9 @@ class Judge:
         if isinstance(host, Host):
             if task.check == plan.PICTURE:
                 return self._document(task, host)
+            if task.check == plan.RELEASE:
+                results, unjudged = check_release(host, task.library)
+                return Findings(results, unjudged=unjudged)
             if task.check == FUNCTIONS:
                 return Findings(judge_functions(host, task.library))
         case = self._case(host, task.subject, task.library, task.seed, task.methods)

@@ -27,15 +27,7 @@ from mxeon.conformance import shader_functions as functions
 from mxeon.conformance.backends import backend_of, own_nodes, ways_of
 from mxeon.conformance.checks import CHECKS
 from mxeon.conformance.diagnosis.regions import unreached
-from mxeon.conformance.results import (
-    SHADER_FUNCTIONS,
-    SOURCE,
-    UNJUDGED,
-    Picture,
-    Region,
-    Result,
-    Scope,
-)
+from mxeon.conformance.results import SHADER_FUNCTIONS, SOURCE, Picture, Region, Result, Scope
 from mxeon.conformance.results.known_issues import RENDERER_NODES
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs import ALL as ALL_SPECS
@@ -63,6 +55,7 @@ from mxeon.shaders.library import (
 )
 from mxeon.shaders.library_tree import LIBRARIES, OVERLAY, origins
 from mxeon.shaders.methods import GENERATED, UNCHOSEN, Methods
+from mxeon.shaders.released_graphs import installed
 
 Source = tuple[str, str]  # a file, and the library that it is read with
 
@@ -145,6 +138,7 @@ def _modes() -> tuple[tuple[Spec, ShownNode], ...]:
 HOST, DEFINITION = "host", "definition"
 PICTURE = "picture"
 FUNCTIONS, DOCUMENT = "twins", "document"
+RELEASE = "release"
 EVERY_NODE = "every node"
 
 
@@ -153,7 +147,7 @@ class Task:
     """One independent piece of a run: a check of one subject on one host with one library."""
 
     # Key of a row of `mxeon.conformance.checks`, or HOST, DEFINITION, SOURCE, PICTURE,
-    # FUNCTIONS or DOCUMENT.
+    # FUNCTIONS, RELEASE or DOCUMENT.
     check: str
     subject: str  # title of a node, path of a document, or SHADER_FUNCTIONS
     host: str
@@ -186,12 +180,13 @@ class Findings:
     notes: tuple[tuple[str, str], ...] = ()
     errors: tuple[str, ...] = ()
     hosts: tuple[Identity, ...] = ()
+    unjudged: tuple[tuple[str, str], ...] = ()
 
     def answer(self, task: Task) -> bool:
         """Whether these are findings of a task: there are some, and all are of its host."""
         records: list[Result | Picture] = [*self.results, *self.pictures]
         location = (task.host, task.library)
-        return bool(records or self.errors) and all(
+        return bool(records or self.errors or self.unjudged) and all(
             (record.host, record.library) == location for record in records
         )
 
@@ -329,10 +324,12 @@ def make_plan(
         contents={file: reading.contents.get(file, ()) for file in documents} if files else {},
         unreached=reading.unreached if files and not nodes else {},
         refused=reading.refused,
-        libraries={
-            each: origins(each) | unjudged(each) for each in libraries if each not in LIBRARIES
-        },
+        libraries={each: origins(each) for each in libraries if each not in LIBRARIES},
         compared=tuple(compared),
+        unjudged=(
+            *(UNJUDGED if any(map(audits, tasks)) else ()),
+            *(row for each in libraries for row in unjudged(each)),
+        ),
         options=policy.options | {"--seed": str(seed)} | methods.options,
         files=digests(dict.fromkeys(documents), policy, (*libraries, *policy.definitions))
         if resumable
@@ -340,7 +337,22 @@ def make_plan(
     )
 
 
-def unjudged(library: str) -> dict[str, tuple[str, ...]]:
+# What no check judges in any library, each with the reason.
+UNJUDGED = (
+    ("displacement, volume shaders and backsurfaceshader", "no host draws them"),
+    (
+        "patterns and images of stdlib",
+        "they are only compared with the MaterialX that is installed",
+    ),
+)
+
+
+def audits(task: Task) -> bool:
+    """Whether a task judges the texts of a whole library."""
+    return task.check == SOURCE
+
+
+def unjudged(library: str) -> tuple[tuple[str, str], ...]:
     """The nodes that scatter or emit light which a library adds to MaterialX's, and which have no model."""
     added = {
         each.getNodeString()
@@ -349,7 +361,7 @@ def unjudged(library: str) -> dict[str, tuple[str, ...]]:
     }
     known = {each.getNodeString() for each in load_library("stock").getNodeDefs()}
     names = added - known - set(node_names())
-    return {UNJUDGED: tuple(sorted(names))} if names else {}
+    return tuple((name, f"no model of a node that {library} adds") for name in sorted(names))
 
 
 def diffuse_specs(library: str) -> list[DiffuseSpec]:
@@ -370,7 +382,9 @@ def _on_host(
         yield Task(HOST, EVERY_NODE, host, library)
     if not ways or not row.target:
         return
-    kind = kind_of(library)
+    kind, itself = kind_of(library), library == "stock" and installed() is load_library("stock")
+    if row.way == "pairs" and not itself:
+        yield Task(RELEASE, EVERY_NODE, host, library)
     if row.way in functions.KINDS and has_functions(
         library, "osl" if row.target == "osl" else "glsl"
     ):

@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Sources of a library's nodes as text: what they define, and nodes that cannot be in one shader.
+
+A generator writes the source of a node once, and each included file once, but the source of a node again where it
+is included. So two files that define one function do not compile together.
+"""
+
+import os
+import re
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple, TypeAlias
+
+import MaterialX as mx
+
+from mxeon.shaders.closure_calls import COMMENT
+from mxeon.shaders.library_tree import included
+
+Definition: TypeAlias = tuple[
+    str, ...
+]  # a name, and for a function "(" and the types of its parameters
+Source: TypeAlias = tuple[str, Path]  # the function of a node, and its file
+
+TOKEN = re.compile(r"^[ \t]*#(?:[^\n]*\\\n)*[^\n]*$|[{};]", re.MULTILINE)
+FUNCTION = re.compile(r"(\w+)\s*\(([^(){}]*)\)\s*$")
+MACRO = re.compile(r"\s*#\s*define\s+(\w+)")
+CONSTANT = re.compile(r"(\w+)\s*(?:\[[^\]]*\]\s*)*=")
+QUALIFIERS = {"const", "in", "out", "inout", "output", "thread", "constant", "highp", "static"}
+ARGUMENT = re.compile(r"\s*(?:(\w+)\s*:(?!:))?(.*)", re.DOTALL)
+
+
+class Clash(NamedTuple):
+    """A name that two sources define, and definitions of nodes that have them."""
+
+    name: str
+    nodes: tuple[str, str]
+
+
+@cache
+def text_of(path: Path) -> str:
+    """Text of a source without its comments; "" for a file that cannot be read."""
+    try:
+        return COMMENT.sub(" ", path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError):
+        return ""
+
+
+@cache
+def definitions(path: Path) -> Mapping[Definition, str]:
+    """What a file defines, outside of conditions, by name; of a macro or a constant, its text."""
+    text, found = text_of(path), dict[Definition, str]()
+    start = depth = conditions = 0
+    for token in TOKEN.finditer(text):
+        if "#" in token[0]:
+            if depth == 0:
+                start = token.end()
+            conditions += bool(re.match(r"\s*#\s*if", token[0])) - ("#endif" in token[0])
+            if not conditions and (macro := MACRO.match(token[0])):
+                found[(macro[1],)] = " ".join(token[0].split())
+            continue
+        depth += (token[0] == "{") - (token[0] == "}")
+        if depth or token[0] == "{":
+            continue
+        chunk = text[start : token.end()]
+        head, body, _ = chunk.partition("{")
+        function = FUNCTION.search(head) if body else None
+        if function is None and token[0] == "}":
+            continue  # a structure or a list of numbers, which ends with ;
+        start = token.end()
+        if conditions:
+            continue
+        if function:
+            kinds = (each.split() for each in function[2].split(",") if each.strip())
+            types = (" ".join(w for w in words[:-1] if w not in QUALIFIERS) for words in kinds)
+            found[(function[1], "(", *types)] = " ".join(chunk.split())
+        elif constant := CONSTANT.search(head + body):
+            found[(constant[1],)] = " ".join(chunk.split())
+        elif body and (name := re.search(r"\bstruct\s+(\w+)", head)):
+            found[(name[1],)] = " ".join(chunk.split())
+    return found
+
+
+def files(path: Path, search: mx.FileSearchPath) -> tuple[Path, ...]:
+    """A source and all that it includes, each once; includes that a generator fills in are left out."""
+    return _files(path, search.asString())
+
+
+@cache
+def _files(path: Path, search: str) -> tuple[Path, ...]:
+    seen: dict[Path, None] = {}
+    waiting = [path]
+    while waiting:
+        if (file := waiting.pop()) not in seen:
+            seen[file] = None
+            for name in filter(None, map(included, text_of(file).split("\n"))):
+                folders = mx.FileSearchPath(str(file.parent))
+                folders.append(mx.FileSearchPath(search))
+                place = Path(folders.find(name).getNormalized().asString())
+                waiting += [Path(os.path.normpath(place))] * place.is_file()
+    return tuple(seen)
+
+
+def source_of(element: mx.Element | None) -> Source | None:
+    """The function and the file of an implementation; None if it has no file."""
+    if element is None or not element.isA(mx.Implementation) or not element.hasFile():
+        return None
+    # Links stay: what a linked file includes lies next to the link.
+    path = Path(element.getActiveSourceUri()).parent / element.getFile()
+    return element.getFunction(), Path(os.path.normpath(path))
+
+
+def whole(element: mx.Implementation, search: mx.FileSearchPath) -> tuple[str, ...]:
+    """An implementation with the texts of all its files."""
+    names = sorted(
+        f"{each.getName()} {each.getImplementationName()}" for each in element.getInputs()
+    )
+    code = "".join(element.getAttribute("sourcecode").split())
+    source = source_of(element)
+    texts = map(text_of, files(source[1], search)) if source else ()
+    return (code, *names, element.getFunction(), *texts)
+
+
+def said(element: mx.Implementation, search: mx.FileSearchPath) -> tuple[str, ...]:
+    """An implementation with the functions and constants that its function uses."""
+    if (source := source_of(element)) is None:
+        return whole(element, search)
+    known: dict[str, list[str]] = defaultdict(list)
+    for file in files(source[1], search):
+        for definition, text in definitions(file).items():
+            known[definition[0]].append("".join(text.split()))
+            known[definition[0]].append(" ".join(re.findall(r"\w+", text)))
+    reached, waiting = set[str](), [source[0]]
+    while waiting:
+        if (name := waiting.pop()) not in reached:
+            reached.add(name)
+            words = {word for text in known[name][1::2] for word in text.split()}
+            waiting += words & known.keys()
+    return source[0], *sorted(text for name in reached for text in known[name][::2])
+
+
+def clashes(
+    document: mx.Document, target: str, search: mx.FileSearchPath, twice: bool = False
+) -> Iterator[Clash]:
+    """Names that two nodes define which may be in one shader of a target.
+
+    As a control, the source of one node is also included if `twice`.
+    """
+    nodes: dict[Path, str] = {}
+    for each in document.getNodeDefs():
+        if source := source_of(each.getImplementation(target)):
+            nodes.setdefault(source[1], each.getName())
+    # Owners of a definition: a file, whether it is included, and a node that has it.
+    owners: dict[Definition, dict[tuple[Path, bool], str]] = defaultdict(dict)
+    for path, node in nodes.items():
+        for file in files(path, search):
+            for definition in definitions(file):
+                owners[definition].setdefault((file, file != path), node)
+                if twice and file == path:
+                    owners[definition].setdefault((file, True), node)
+        twice = False
+    for definition, sources in owners.items():
+        texts = {definitions(file)[definition] for file, _ in sources}
+        if len(sources) > 1 and (len(texts) > 1 or not texts.pop().lstrip().startswith("#")):
+            first, second, *_ = sources.values()
+            yield Clash(definition[0], (first, second))
+
+
+def arguments(code: str) -> tuple[str, dict[str, str]]:
+    """The function that a call in MDL names, and its arguments by name, or by number where they have none.
+
+    >>> arguments("m::f(mxp_a:{{a}}, 2.0)")
+    ('m::f', {'mxp_a': '{{a}}', '1': '2.0'})
+    """
+    callee, _, rest = code.partition("(")
+    parts, depth = [""], 0
+    for sign in rest.rpartition(")")[0]:
+        depth += (sign in "([{") - (sign in ")]}")
+        if sign == "," and depth == 0:
+            parts.append("")
+        else:
+            parts[-1] += sign
+    matches = (ARGUMENT.fullmatch(part) for part in parts)
+    return callee.strip(), {
+        match[1] or str(number): "".join(match[2].split())
+        for number, match in enumerate(matches)
+        if match
+    }
