@@ -135,10 +135,6 @@ class Backend(ABC):
     def lobe(self) -> LobeSpec:
         return cast(LobeSpec, self.spec)
 
-    @property
-    def facets(self) -> FacetSpec:
-        return cast(FacetSpec, self.spec)
-
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
         return self.valued.batches(self.counts)
@@ -163,7 +159,7 @@ class Backend(ABC):
 
     @cached_property
     def mirrored(self) -> tuple[Batch, Batch]:
-        return self.facets.mirrored(self.counts)
+        return cast(FacetSpec, self.spec).mirrored(self.counts)
 
     @cached_property
     def integrated(self) -> tuple[Batch, Array]:
@@ -801,10 +797,8 @@ class Drawn(Spheres):
             return {"value": cls.lobe_error}
         if Ability.DIFFUSE in spec.requires:
             return cls.exact
-        return {
-            name: cls.drawn(spec.errors.get(f"picture {name}", spec.errors[name]))
-            for name in ("value", "albedo")
-        }
+        albedo = spec.errors.get("picture_albedo", spec.errors["albedo"])
+        return {"value": cls.drawn(spec.errors["value"]), "albedo": cls.drawn(albedo)}
 
     @classmethod
     def drawn(cls, error: Tolerance) -> Tolerance:
@@ -878,8 +872,7 @@ class UtilityOsl(Evaluating):
 
     @classmethod
     def errors(cls, spec: Spec) -> Errors:
-        osl = spec.errors.get("value in OSL")
-        return {**spec.errors, "value": osl} if osl else spec.errors
+        return {**spec.errors, "value": spec.errors.get("osl_value", spec.errors["value"])}
 
 
 # By the word of a host's row for how it is evaluated; the first that supports a spec evaluates it. `mxeon.survey`

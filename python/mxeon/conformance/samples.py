@@ -234,14 +234,6 @@ def turned_directions(rng: np.random.Generator, count: int) -> Array:
     return directions_at(low + (high - low) * rng.random(count), 2.0 * np.pi * rng.random(count))
 
 
-def node_inputs(rng: np.random.Generator, count: int) -> dict[str, Array]:
-    """Random weights and occlusions: 1 for half of the pairs, an edge for many others."""
-    return {
-        name: np.where(rng.random(count) < 0.5, 1.0, with_edges(rng, rng.random(count), edges))
-        for name, edges in (("weight", WEIGHTS), ("occlusion", OCCLUSIONS))
-    }
-
-
 def with_edges(rng: np.random.Generator, values: Array, edges: ArrayLike) -> Array:
     """Values of which half are replaced by random edges, as float32 numbers."""
     picked = rng.choice(np.asarray(edges, np.float64), np.shape(values))

@@ -154,6 +154,8 @@ class Spec(ABC):
     model: str = ""  # name of the model that it has to be; "" for none
     inputs: tuple[Input, ...] = ()  # all but those that select the mode
     errors: Mapping[str, Tolerance] = field(default_factory=dict)  # of a right shader, by quantity
+    # Errors outside the usual range of an input: by quantity, input and value.
+    outside_errors: Mapping[tuple[str, str, float], Tolerance] = field(default_factory=dict)
     libraries: tuple[str, ...] = ()  # with which it is judged; () for all
     closure: bool = True  # whether eonlib leaves it to a renderer's own closures, in OSL
     counts: Counts = USUAL
@@ -316,7 +318,10 @@ class LobeSpec(ValueSpec):
     ) -> Batch:
         """Pairs with random inputs, weights and occlusions, lit from the side that it scatters."""
         wo, wi = pairs
-        inputs = {**self.random_inputs(rng, len(wo), edged), **samples.node_inputs(rng, len(wo))}
+        inputs, count = self.random_inputs(rng, len(wo), edged), len(wo)
+        for name, edges in (("weight", samples.WEIGHTS), ("occlusion", samples.OCCLUSIONS)):
+            whole = rng.random(count) < 0.5
+            inputs[name] = np.where(whole, 1.0, samples.with_edges(rng, rng.random(count), edges))
         return Batch(wo, wi * [1.0, 1.0, self.side], inputs)
 
 

@@ -374,7 +374,9 @@ def outside(case: Case) -> Iterator[tuple[str, str, float, Compared]]:
             )
             for name, compared in quantities(case, lit, right):
                 if name not in wrong:
-                    tolerance = case.tolerance(f"{name} with {each.name} {value:g}", name)
+                    tolerance = spec.outside_errors.get((name, each.name, value)) or case.tolerance(
+                        name
+                    )
                     scale = tolerance.value * tolerance.scale(compared.expected)
                     yield name, each.name, value, compared.over(scale)
 

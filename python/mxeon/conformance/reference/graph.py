@@ -208,7 +208,12 @@ class Graph(Nodes):
             if node.getNodeDef().getActiveInput("base").getType() != "BSDF":
                 if not (self._points.behind or self._marked):
                     return same, self._sources(path, ("top",))
-                return _over_volume, self._sources(path, ports)
+
+                def dimmed(top: Bsdf, medium: Array | None) -> Bsdf:
+                    passed = 1.0 if medium is None else medium
+                    return Bsdf(top.value * passed, top.throughput * passed)
+
+                return dimmed, self._sources(path, ports)
 
         def combined(*values: Bsdf | Array) -> Bsdf:
             try:
@@ -340,11 +345,6 @@ class Graph(Nodes):
             )
         read = values[:, :channels]
         return _linear(file, read) if channels == 3 else read
-
-
-def _over_volume(top: Bsdf, medium: Array | None) -> Bsdf:
-    passed = 1.0 if medium is None else medium
-    return Bsdf(top.value * passed, top.throughput * passed)
 
 
 def _marks(node: mx.Node, names: tuple[str, ...], *values: Value) -> Array:

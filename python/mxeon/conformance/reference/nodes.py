@@ -275,16 +275,12 @@ class ShadingPoints:
             raise OutsideModel(f"reference: normal must have the length 1; got {wrong[0]:g}")
         if np.all(normal == UP) and np.all(tangent == ALONG) and np.all(self.wo[:, 2] >= 0.0):
             return self.wo, self.wi
-        side = np.where((self.wo * normal).sum(axis=-1, keepdims=True) < 0.0, -1.0, 1.0)
-        axes = self._axes(side * normal, tangent)
-        return _within(axes, self.wo), None if self.wi is None else _within(axes, self.wi)
-
-    def _axes(self, z: Array, tangent: Array) -> Array:
-        """Axes of a frame, orthogonal unit vectors, as rows (N, 3, 3)."""
+        z = np.where((self.wo * normal).sum(axis=-1, keepdims=True) < 0.0, -1.0, 1.0) * normal
         x = tangent - (tangent * z).sum(axis=-1, keepdims=True) * z
         axes = np.stack(np.broadcast_arrays(x, np.cross(z, x), z), axis=1)
         with np.errstate(invalid="ignore"):  # a tangent along the normal shows in the values
-            return np.asarray(axes / np.linalg.norm(axes, axis=2, keepdims=True))
+            axes = np.asarray(axes / np.linalg.norm(axes, axis=2, keepdims=True))
+        return _within(axes, self.wo), None if self.wi is None else _within(axes, self.wi)
 
 
 def at(inputs: Inputs, points: NDArray[np.intp]) -> dict[str, Array]:
@@ -349,7 +345,14 @@ def node_lobe(
     uniform = points.wi is None and row.name in LET_THROUGH
     if row in INNER_NODES and not (points.round or uniform):
         raise NotRun(f"reference: there is no model for this mode of node {node.getCategory()!r}")
-    _assert_known(node, row, inputs)
+    # An input that the model does not have must be its default.
+    known = {"weight", "normal", "tangent", "curve_direction", FLAG, *FILM, *row.inputs, *row.fixed}
+    for port, value in inputs.items():
+        default = node.getNodeDef().getActiveInput(port).getValue()
+        if port not in known and not np.array_equal(value, np.asarray(plain(default))):
+            raise NotRun(
+                f"reference: there is no model for input {port!r} of node {node.getCategory()!r}"
+            )
     film = FILM if np.any(inputs.get(FILM[0], 0.0)) else ()
     arguments = {port: _argument(node, port, inputs[port], weight) for port in (*row.inputs, *film)}
     if row.name == "qon":
@@ -383,18 +386,6 @@ def _row(node: mx.Node, inputs: Mapping[str, Array]) -> PbrNode:
         if all(value_text(inputs[port]) == value for port, value in row.fixed.items()):
             return row
     raise NotRun(f"reference: there is no model for this mode of node {category!r}")
-
-
-def _assert_known(node: mx.Node, row: PbrNode, inputs: Mapping[str, Array]) -> None:
-    """Raise NotRun if an input that the model does not have differs from its default."""
-    frame = ("normal", "tangent", "curve_direction")
-    known = {"weight", *frame, FLAG, *FILM, *row.inputs, *row.fixed}
-    for port, value in inputs.items():
-        default = node.getNodeDef().getActiveInput(port).getValue()
-        if port not in known and not np.array_equal(value, np.asarray(plain(default))):
-            raise NotRun(
-                f"reference: there is no model for input {port!r} of node {node.getCategory()!r}"
-            )
 
 
 def _argument(node: mx.Node, port: str, value: Array, weight: Array) -> Array:

@@ -11,14 +11,9 @@ from mxeon.conformance.samples import Array, Batch, Counts, Values, directions, 
 from mxeon.conformance.spec import ARGUMENTS, Ability, EngineError, Input, color
 from mxeon.conformance.tolerance import ROUNDING, Compared, roundings, sum_of
 from mxeon.models.media import cone_cosine, cone_width, surface_radiance
-from mxeon.models.nodes import emissions
-from mxeon.models.nodes.emissions import AMOUNT, BASE, COMBINED_EMISSIONS, FACTOR, FIRST, Emission
-from mxeon.models.nodes.media import AMOUNT as MEDIUM_AMOUNT
-from mxeon.models.nodes.media import COMBINED_MEDIA, MEDIA, Medium
-from mxeon.models.nodes.media import FACTOR as MEDIUM_FACTOR
-from mxeon.models.nodes.media import FIRST as MEDIUM_FIRST
-from mxeon.models.nodes.media import SECOND as MEDIUM_SECOND
-from mxeon.models.nodes.media import Value as Transmittance
+from mxeon.models.nodes import emissions, media
+from mxeon.models.nodes.emissions import Emission
+from mxeon.models.nodes.media import Medium
 from mxeon.shaders.nodes import (
     SURFACE,
     Node,
@@ -72,10 +67,10 @@ INPUTS = {
     for each in (
         *(
             replace(color(name, BLUE, ORANGE, edges=()), high=2.0)
-            for name in ("color", BASE, FIRST)
+            for name in ("color", emissions.BASE, emissions.FIRST)
         ),
         color(emissions.SECOND, (0.9, 0.1, 0.3), (0.1, 0.2, 0.3), edges=()),
-        Input(AMOUNT, change=0.3, materials=(0.25, 0.75), default=0.5),
+        Input(emissions.AMOUNT, change=0.3, materials=(0.25, 0.75), default=0.5),
         color("color0", (0.1, 0.4, 0.9), (0.8, 0.5, 0.2), edges=()),
         color("color90", (0.9, 0.8, 0.6), (1.0, 1.0, 1.0), edges=()),
         Input("exponent", "float", *EXPONENTS, change=2.0, materials=(5.0, 2.0), default=5.0),
@@ -84,17 +79,19 @@ INPUTS = {
         # Of a medium: from one that hardly shows to one that hides nearly all.
         *(
             Input(name, "vector3", LEAST, LARGEST, change=spec.CHANGED_COLOR, logarithmic=True)
-            for name in ("absorption", "scattering", MEDIUM_FIRST, MEDIUM_SECOND)
+            for name in ("absorption", "scattering", media.FIRST, media.SECOND)
         ),
-        Input(MEDIUM_AMOUNT, change=0.3, default=0.5),
+        Input(media.AMOUNT, change=0.3, default=0.5),
     )
 }
 NORMAL = Input("normal", "vector3", change=(0.0, 0.6, 0.8))
 FACTORS = {
-    (FACTOR, "float"): Input(FACTOR, change=0.3, materials=(0.9, 0.5)),
-    (FACTOR, "color3"): color(FACTOR, (0.9, 0.6, 0.3), (0.5, 0.5, 0.5), edges=()),
-    (MEDIUM_FACTOR, "float"): Input(MEDIUM_FACTOR, high=3.0, change=0.3),
-    (MEDIUM_FACTOR, "color3"): replace(color(MEDIUM_FACTOR, edges=()), high=3.0),
+    (emissions.FACTOR, "float"): Input(emissions.FACTOR, change=0.3, materials=(0.9, 0.5)),
+    (emissions.FACTOR, "color3"): color(
+        emissions.FACTOR, (0.9, 0.6, 0.3), (0.5, 0.5, 0.5), edges=()
+    ),
+    (media.FACTOR, "float"): Input(media.FACTOR, high=3.0, change=0.3),
+    (media.FACTOR, "color3"): replace(color(media.FACTOR, edges=()), high=3.0),
 }
 
 # Cosine from a hard edge within which the engine's own cosine decides; of narrow cones, half of 1 - cos.
@@ -316,7 +313,7 @@ def _spec(row: Emission) -> EmissionSpec:
     )
 
 
-EMISSION_SPECS = tuple(map(_spec, (*emissions.EMISSIONS, *COMBINED_EMISSIONS)))
+EMISSION_SPECS = tuple(map(_spec, (*emissions.EMISSIONS, *emissions.COMBINED_EMISSIONS)))
 
 
 # --- media: the VDF nodes, below a surface that lets light through --------------------------------
@@ -333,7 +330,7 @@ PORTS = connection_text("top", "BSDF", "top") + connection_text("base", "VDF", "
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class MediumSpec(spec.RowSpec[Transmittance]):
+class MediumSpec(spec.RowSpec[media.Value]):
     """A row of `mxeon.models.nodes.media`."""
 
     requires = Ability.MEDIUM
@@ -360,7 +357,7 @@ class MediumSpec(spec.RowSpec[Transmittance]):
                 inputs[each.name][::8] = 0.0
         return inputs
 
-    def values(self, function: Transmittance, batch: Batch) -> Array:
+    def values(self, function: media.Value, batch: Batch) -> Array:
         return np.asarray(function(spec.broadcast_inputs(batch)))
 
 
@@ -374,7 +371,7 @@ ANISOTROPY = Input("anisotropy", low=-0.9, high=0.9, default=0.5)
 
 
 def _medium_spec(row: Medium) -> MediumSpec:
-    inputs, combined = inputs_of(row), row in COMBINED_MEDIA
+    inputs, combined = inputs_of(row), row in media.COMBINED_MEDIA
     return MediumSpec(
         **spec.named(row, title_of(row, "VDF")),
         row=row,
@@ -388,4 +385,4 @@ def _medium_spec(row: Medium) -> MediumSpec:
     )
 
 
-MEDIUM_SPECS = tuple(map(_medium_spec, (*MEDIA, *COMBINED_MEDIA)))
+MEDIUM_SPECS = tuple(map(_medium_spec, (*media.MEDIA, *media.COMBINED_MEDIA)))

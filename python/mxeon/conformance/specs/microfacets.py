@@ -3,7 +3,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import NamedTuple
 
@@ -219,8 +219,14 @@ BEYOND: tuple[tuple[str, str, float, float, str], ...] = (
     ("albedo", "extinction", 0.0, 0.07, f"{THREE_COSINES} which miss total reflection"),
     ("albedo", "ior", 0.2, 7e-3, "a sum over 1024 directions, across a critical angle"),
 )
+OUTSIDE_ERRORS = {
+    (quantity, name, value): compensated(error, words)
+    if quantity == "value"
+    else given(error, Quantity.ALBEDO, words)
+    for quantity, name, value, error, words in BEYOND
+}
 ERRORS = {
-    "picture albedo": sum_in(Quantity.ALBEDO, *COMPENSATION, sum_over(256)),
+    "picture_albedo": sum_in(Quantity.ALBEDO, *COMPENSATION, sum_over(256)),
     "anisotropic_albedo": sum_of(
         *COMPENSATION, ANISOTROPIC, sum_over(1024), quantity=Quantity.ALBEDO
     ),
@@ -235,12 +241,6 @@ ERRORS = {
             "of two directions, two each, over twice the least cosine and the least alpha",
         )
     ),
-    **{
-        f"{quantity} with {name} {value:g}": compensated(error, words)
-        if quantity == "value"
-        else given(error, Quantity.ALBEDO, words)
-        for quantity, name, value, error, words in BEYOND
-    },
     "dip": sum_in(Quantity.ALBEDO, HALF_DIP),
     "denser": sum_in(Quantity.ALBEDO, INSIDE, ESS),
 }
@@ -281,8 +281,10 @@ class FacetSpec(PbrSpec):
     """A node of microfacets, whose values are large near the mirror direction."""
 
     counts: Counts = COUNTS
-
     least_cosine: float = FIT_COSINE
+    outside_errors: Mapping[tuple[str, str, float], Tolerance] = field(
+        default_factory=lambda: OUTSIDE_ERRORS
+    )
 
     def prefiltered(self, batch: Batch) -> Array:
         """Albedo in a prefiltered environment, which has MaterialX's fit, (N, 3)."""

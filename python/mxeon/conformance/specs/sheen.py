@@ -87,10 +87,9 @@ CONTY_KULLA = lobes.PbrSpec(
         ),
         # The half vector has the same digits, and so has its power.
         "reciprocity": sum_of(roundings(32)),
-        **{
-            f"value with roughness {least:g}": conty_kulla_value(2.0 / least)
-            for least in (1e-3, 1e-4)
-        },
+    },
+    outside_errors={
+        ("value", "roughness", least): conty_kulla_value(2.0 / least) for least in (1e-3, 1e-4)
     },
     engines={"value": (EngineError("the engine's pow()", power_error),)},
     least_cosine=FIT_COSINE,

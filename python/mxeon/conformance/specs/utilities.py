@@ -85,7 +85,7 @@ VALUES: Mapping[str, Tolerance] = {
 }
 OTHERS: Mapping[str, dict[str, Tolerance]] = {
     "blackbody": {
-        "value in OSL": given(
+        "osl_value": given(
             4e-3,
             Quantity.OUTPUT,
             "OSL's blackbody() has an observer from 380 nm to 780 nm, its own table and primaries",
