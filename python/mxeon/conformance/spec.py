@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Flag, auto
 from functools import lru_cache, partial
-from typing import ClassVar, Generic, NamedTuple, Protocol, TypedDict, TypeVar
+from typing import ClassVar, Generic, NamedTuple, TypedDict, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,7 +18,7 @@ from mxeon.conformance import samples
 from mxeon.conformance.samples import Array, Batch, Candidate, Counts, Values, directions, generator
 from mxeon.conformance.tolerance import ROUNDING, Compared, Term, Tolerance
 from mxeon.hosts.base import Host
-from mxeon.models.nodes.node import Function, Variant
+from mxeon.models.nodes.node import Node as NodeRow
 from mxeon.shaders.nodes import SURFACE, Node, document_text, input_types, lobe_text, network_text
 
 COMPONENTS = {"float": (), "vector2": (2,), "vector3": (3,), "color3": (3,)}  # shape by type
@@ -325,23 +325,6 @@ class LobeSpec(ValueSpec):
         return Batch(wo, wi * [1.0, 1.0, self.side], inputs)
 
 
-class Row(Protocol[Function]):
-    """A row of `mxeon.models.nodes`."""
-
-    @property
-    def name(self) -> str: ...
-    @property
-    def title(self) -> str: ...
-    @property
-    def category(self) -> str: ...
-    @property
-    def inputs(self) -> Iterable[str]: ...
-    @property
-    def value(self) -> Function: ...
-    @property
-    def variants(self) -> tuple[Variant[Function], ...]: ...
-
-
 class Names(TypedDict):
     """What a spec takes from its row by name."""
 
@@ -350,7 +333,7 @@ class Names(TypedDict):
     model: str
 
 
-def named(row: Row[object], title: str = "") -> Names:
+def named(row: NodeRow[object], title: str = "") -> Names:
     return {"title": title or row.category, "node": row.category, "model": row.name}
 
 
@@ -358,7 +341,7 @@ def named(row: Row[object], title: str = "") -> Names:
 class RowSpec(ValueSpec, Generic[F]):
     """A node whose functions are those of a row."""
 
-    row: Row[F]
+    row: NodeRow[F]
 
     @property
     def drawn(self) -> tuple[Input, ...]:

@@ -31,7 +31,7 @@ from mxeon.shaders.scene import VIEW, Scene, local_directions, sphere
 def title_of(row: Emission | Medium, kind: str) -> str:
     """A node that combines others has its name in common with those of other types."""
     factor = f", in2 {row.name.rpartition('_')[2]}" if row.category == "multiply" else ""
-    return f"{row.category}, {kind}{factor}" if "/" in row.inputs[0] else row.category
+    return f"{row.category}, {kind}{factor}" if "/" in next(iter(row.inputs)) else row.category
 
 
 def inputs_of(row: Emission | Medium) -> tuple[Input, ...]:

@@ -21,7 +21,13 @@ from mxeon.conformance.tolerance import Compared, Term, Tolerance, given, roundi
 from mxeon.hosts.calls import GRAPH
 from mxeon.models import diffuse
 from mxeon.models.nodes.node import Variant
-from mxeon.models.nodes.utilities import LARGEST_REFLECTIVITY, UTILITIES, Outputs, UtilityNode
+from mxeon.models.nodes.utilities import (
+    LARGEST_REFLECTIVITY,
+    UTILITIES,
+    Outputs,
+    UtilityNode,
+    utility,
+)
 from mxeon.shaders import nodes
 from mxeon.shaders.nodes import INVERSIONS, Node, connection_text, document_text, node_text
 
@@ -213,7 +219,7 @@ def _inversion(node: str) -> UtilityNode:
     ]
     inputs: dict[str, float | tuple[float, ...]]
     inputs = {"color": (0.18, 0.18, 0.18), "roughness": 0.0}
-    return UtilityNode(node, inputs, {"out": "color3"}, output(node), tuple(variants))
+    return utility(node, inputs, {"out": "color3"}, output(node), tuple(variants))
 
 
 def _spec(row: UtilityNode, output: str, *libraries: str) -> UtilitySpec:

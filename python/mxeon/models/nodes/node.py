@@ -7,7 +7,7 @@ node's `weight` is left to the caller, since every node has it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Generic, TypeAlias, TypeVar
 
@@ -130,7 +130,7 @@ class Node(Generic[Function]):
     name: str
     title: str
     category: str
-    inputs: tuple[str, ...]  # names or paths of the inputs that the functions read
+    inputs: Collection[str]  # names or paths of the inputs that the functions read
     value: Function  # its values from these inputs
     variants: tuple[Variant[Function], ...] = field(default=(), kw_only=True)
 

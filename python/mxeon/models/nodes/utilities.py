@@ -20,7 +20,7 @@ from mxeon.models.core.colorimetry import XYZ_TO_REC709
 from mxeon.models.media import LUMINANCE, blackbody, kang_xyz
 from mxeon.models.microfacet.fresnel import artistic_ior
 from mxeon.models.microfacet.ggx import glossiness_anisotropy, roughness_anisotropy, roughness_dual
-from mxeon.models.nodes.node import Inputs, Variant
+from mxeon.models.nodes.node import Inputs, Node, Variant
 
 LARGEST_REFLECTIVITY = 0.99  # of artistic_ior; its n is infinite at 1
 LEAST_HAIR = 1e-3  # roughnesses and colors of hair: below, a lobe has no width
@@ -32,27 +32,27 @@ Outputs = Callable[[Inputs], dict[str, Array]]
 
 
 @dataclass(frozen=True)
-class UtilityNode:
+class UtilityNode(Node[Outputs]):
     """A utility node, by [MaterialX2026].
 
     - `inputs`: The default of each input, a number or a tuple, by name.
+    - `value`: Every output by name; needs all inputs.
     """
 
-    category: str
     inputs: Mapping[str, float | tuple[float, ...]] = field(hash=False)
     outputs: Mapping[str, str] = field(hash=False)  # the type of each output, by name
-    value: Outputs  # every output by name; needs all inputs
-    variants: tuple[Variant[Outputs], ...] = ()
 
-    @property
-    def name(self) -> str:
-        """Its category: it has one mode."""
-        return self.category
 
-    @property
-    def title(self) -> str:
-        """Its equations, in print."""
-        return f"the equations of {self.category}"
+def utility(
+    category: str,
+    inputs: Mapping[str, float | tuple[float, ...]],
+    outputs: Mapping[str, str],
+    value: Outputs,
+    variants: tuple[Variant[Outputs], ...] = (),
+) -> UtilityNode:
+    """A utility node, which has one mode."""
+    title = f"the equations of {category}"
+    return UtilityNode(category, title, category, inputs, value, outputs, variants=variants)
 
 
 def _share(inputs: Inputs, name: str, least: float = 0.0, largest: float = 1.0) -> Array:
@@ -165,24 +165,22 @@ ASPECTS = (
     Variant("a roughness that is not squared", _without_square),
 )
 UTILITIES = (
-    UtilityNode(
+    utility(
         "roughness_anisotropy",
         {"roughness": 0.0, "anisotropy": 0.0},
         {"out": "vector2"},
         _anisotropy,
         ASPECTS,
     ),
-    UtilityNode(
-        "roughness_dual", {"roughness": (0.0, 0.0)}, {"out": "vector2"}, _dual, ASPECTS[2:]
-    ),
-    UtilityNode(
+    utility("roughness_dual", {"roughness": (0.0, 0.0)}, {"out": "vector2"}, _dual, ASPECTS[2:]),
+    utility(
         "glossiness_anisotropy",
         {"glossiness": 1.0, "anisotropy": 0.0},
         {"out": "vector2"},
         _glossiness,
         ASPECTS,
     ),
-    UtilityNode(
+    utility(
         "artistic_ior",
         {"reflectivity": (0.944, 0.776, 0.373), "edge_color": (0.998, 0.981, 0.751)},
         {"ior": "color3", "extinction": "color3"},
@@ -194,7 +192,7 @@ UTILITIES = (
             ),
         ),
     ),
-    UtilityNode(
+    utility(
         "blackbody",
         {"temperature": 5000.0},
         {"out": "color3"},
@@ -211,7 +209,7 @@ UTILITIES = (
             ),
         ),
     ),
-    UtilityNode(
+    utility(
         "chiang_hair_roughness",
         {"longitudinal": 0.1, "azimuthal": 0.2, "scale_TT": 0.5, "scale_TRT": 2.0},
         {name: "vector2" for name in ("roughness_R", "roughness_TT", "roughness_TRT")},
@@ -227,7 +225,7 @@ UTILITIES = (
             Variant("a deviation instead of the variance", _unsquared_variance),
         ),
     ),
-    UtilityNode(
+    utility(
         "deon_hair_absorption_from_melanin",
         {
             "melanin_concentration": 0.25,
@@ -245,7 +243,7 @@ UTILITIES = (
             ),
         ),
     ),
-    UtilityNode(
+    utility(
         "chiang_hair_absorption_from_color",
         {"color": (1.0, 1.0, 1.0), "azimuthal_roughness": 0.2},
         {"absorption": "vector3"},
