@@ -313,7 +313,7 @@ def test_pictures_are_float_exr_and_eight_bit_png_that_say_what_made_them(run, f
 
 @pytest.mark.parametrize("library", ["jinja2", "matplotlib"])
 def test_without_the_report_extra_all_but_the_page_is_written(run, tmp_path, monkeypatch, library):
-    for name in ("mxeon.report.page", "mxeon.report.plots"):
+    for name in ("mxeon.report.page", "mxeon.report.pieces"):
         monkeypatch.delitem(sys.modules, name, raising=False)
     monkeypatch.setitem(sys.modules, library, None)
     with pytest.raises(ImportError, match=rf"{library}: pip install '\.\[report\]'"):

@@ -30,7 +30,7 @@ from mxeon.io.images import difference_scale
 from mxeon.io.srgb import srgb_encoded
 from mxeon.report import in_threads
 from mxeon.report.formats import linked, nearest, of_white, vector
-from mxeon.report.plots import difference_gradient, difference_pixels, generate_page, picture_uri
+from mxeon.report.pieces import difference_gradient, difference_pixels, generate_page, picture_uri
 
 # Markers of hosts in plots: matplotlib's name, and a character that looks like it.
 # Materials with pictures inside the page, about a megabyte each; further ones are linked.

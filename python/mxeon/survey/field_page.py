@@ -17,7 +17,7 @@ from mxeon.io.files import check_output, replacing
 from mxeon.io.images import difference, difference_scale, read_image
 from mxeon.io.srgb import srgb_encoded
 from mxeon.report.formats import share, vector
-from mxeon.report.plots import difference_gradient, difference_pixels, generate_page, picture_uri
+from mxeon.report.pieces import difference_gradient, difference_pixels, generate_page, picture_uri
 from mxeon.survey.field import CHECKS, Entry
 
 # Heading and meaning of each column.
