@@ -42,7 +42,7 @@ def run_of(folder, *named):
 @pytest.fixture
 def run(tmp_path, monkeypatch):
     """A run of two tasks, whose document names a texture."""
-    keep_checks(monkeypatch, "picture")
+    keep_checks(monkeypatch, "lambert", "picture")
     (tmp_path / "grid.png").write_bytes(b"pixels")
     return run_of(tmp_path, TOKEN)
 
