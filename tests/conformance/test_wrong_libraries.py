@@ -240,6 +240,8 @@ CHANGED = {
     "halved lobe": (f"{BXDF}/disney_principled.mtlx", TOP.format("bsdf"), HALVED.format("0.5"), "disney_principled", "top of coat_layer"),
     "translation": (f"{BXDF}/translation/standard_surface_to_gltf_pbr.mtlx", '"in1" type="float" interfacename="sheen_roughness"', '"in1" type="float" interfacename="sheen"', "standard_surface_to_gltf_pbr", "in1 of sheen_roughness"),
     "channels": (f"{BXDF}/usd_preview_surface.mtlx", UV.format("outr", "outg"), UV.format("outg", "outr"), "UsdUVTexture", "output r of IMP_UsdUVTexture_22"),
+    "opacity of LamaSurface": (f"{BXDF}/lama/lama_surface.mtlx", 'interfacename="presence"', 'value="0.9"', "LamaSurface", "opacity of front"),
+    "place of an image": (f"{STDLIB}/lib/mx_transform_uv.glsl", "uv * uv_scale", "uv * 0.5 * uv_scale", "image"),
     "default": ("pbrlib/pbrlib_defs.mtlx", "0.183, 0.421, 1.373", "0.193, 0.421, 1.373", "the default of ior of ND_conductor_bsdf", "0.193, 0.421, 1.373", "0.183, 0.421, 1.373"),
     "unit": ("stdlib/stdlib_defs.mtlx", '"centimeter" scale="0.01"', '"centimeter" scale="0.1"', "scale of unit centimeter", "0.1", "0.01"),
     "color space": ("cmlib/cmlib_ng.mtlx", "1.705050992658, -0.130256417507", "1.705050992658, 0.130256417507", "acescg_to_lin_rec709", "value of mat"),

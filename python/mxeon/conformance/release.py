@@ -27,7 +27,7 @@ from mxeon.conformance.spec import POWER
 from mxeon.conformance.specs import ALL
 from mxeon.conformance.specs.utilities import UtilitySpec
 from mxeon.conformance.tolerance import Measurement, Term, Tolerance, count_of, roundings, sum_of
-from mxeon.errors import MxeonError
+from mxeon.errors import DocumentError, MxeonError, NotRun, ShaderError
 from mxeon.hosts.base import Host
 from mxeon.hosts.calls import GRAPH
 from mxeon.io.images import write_exr
@@ -76,6 +76,10 @@ ZEROS = {
 PROBE = "mxeon_probe"
 MODELLED = {(each.node, isinstance(each, UtilitySpec)) for each in ALL}
 Place: TypeAlias = tuple[mx.GraphElement, mx.PortElement]  # a port of a graph
+# A definition in a library, its output's name and type, and a port in its graph instead of an output.
+Subject: TypeAlias = (
+    "tuple[mx.NodeDef, str, tuple[str, str]] | tuple[mx.NodeDef, str, tuple[str, str], Place]"
+)
 
 
 def released(library: str) -> mx.Document | None:
@@ -223,7 +227,15 @@ class Comparison:
             if not left:
                 break
             name, *others = left.pop(0)
-            if causes := list(self._evaluated(name)):
+            try:
+                causes = list(self._evaluated(name))
+            except (NotRun, ShaderError, DocumentError) as error:
+                causes = []
+                if isinstance(error, NotRun):
+                    self.unjudged.append((f"{self._target} of {name}", str(error)))
+                else:
+                    causes = [Cause(Kind.TEXT, text=f"{name}: {error}")]
+            if causes:
                 found += [replace(each, of=1 + len(others)) for each in causes]
             elif others:
                 left.append(others)
@@ -297,11 +309,8 @@ class Comparison:
         error = 0.0
         for output in right.getActiveOutputs():
             port = (output.getName() if len(right.getActiveOutputs()) > 1 else "", output.getType())
-            values = (
-                self._values(definition, library, port)
-                for definition, library in ((own, self._library), (right, "stock"))
-            )
-            error = max(error, distance(*values))
+            sides = (own, self._library, port), (right, "stock", port)
+            error = max(error, self._distance(*sides))
         if error > self.tolerance.value:
             yield Cause(Kind.DEFECT, RELEASE, (right.getNodeString(), *rows), (error,))
 
@@ -310,10 +319,16 @@ class Comparison:
         kind = right[1].getType()
         if kind not in (*COMPONENTS, *JOINED) or own[1].getType() != kind:
             return np.inf
-        port = "", kind
-        return distance(
-            *(self._values(definition, self._library, port, place) for place in (own, right))
-        )
+        sides = ((definition, self._library, ("", kind), place) for place in (own, right))
+        return self._distance(*sides)
+
+    def _distance(self, own: Subject, right: Subject) -> float:
+        """The largest difference of the values of two subjects; NotRun if the released one does not compile."""
+        try:
+            expected = self._values(*right)
+        except (DocumentError, ShaderError) as error:
+            raise NotRun(f"the released one cannot be evaluated: {error}") from None
+        return distance(self._values(*own), expected)
 
     def _values(
         self,
@@ -443,7 +458,8 @@ def instance(
 ) -> mx.Node:
     """A node of a definition, or of a port in its graph, whose inputs are nodes of their own."""
     category, name = definition.getNodeString(), definition.getName()
-    ports = [each for each in definition.getActiveInputs() if each.getType() != "VDF"]
+    left_out = ("VDF",) if kind in CLOSURES else CLOSURES
+    ports = [each for each in definition.getActiveInputs() if each.getType() not in left_out]
     if place:
         category, name = PROBE, f"ND_{PROBE}"
         probe = document.addNodeDef(name, kind, category)
@@ -453,10 +469,16 @@ def instance(
         graph.copyContentFrom(place[0])
         for output in graph.getOutputs():
             graph.removeOutput(output.getName())
+        for each in graph.getNodes():  # a number depends on no lobe
+            if each.getType() in CLOSURES and kind not in CLOSURES:
+                graph.removeNode(each.getName())
         graph.setNodeDefString(name)
-        target = graph.addNode("dot", PROBE, kind)
-        target.addInput("in", kind).copyContentFrom(source)
-        graph.addOutput("out", kind).setNodeName(PROBE)
+        result = graph.addOutput("out", kind)
+        if source.isA(mx.Output):
+            result.copyContentFrom(source)
+        else:
+            graph.addNode("dot", PROBE, kind).addInput("in", kind).copyContentFrom(source)
+            result.setNodeName(PROBE)
     single = place or len(definition.getActiveOutputs()) == 1
     node = document.addNode(category, "node", kind if single else "multioutput")
     node.setNodeDefString(name)

@@ -28,6 +28,8 @@ FUNCTION = re.compile(r"(\w+)\s*\(([^(){}]*)\)\s*$")
 MACRO = re.compile(r"\s*#\s*define\s+(\w+)")
 CONSTANT = re.compile(r"(\w+)\s*(?:\[[^\]]*\]\s*)*=")
 QUALIFIERS = {"const", "in", "out", "inout", "output", "thread", "constant", "highp", "static"}
+PLACED = "$fileTransformUv", "mx_transform_uv.glsl"  # an include that a generator fills in
+MATH = "libraries/stdlib/genglsl/lib/mx_math.glsl"
 ARGUMENT = re.compile(r"\s*(?:(\w+)\s*:(?!:))?(.*)", re.DOTALL)
 
 
@@ -83,8 +85,13 @@ def definitions(path: Path) -> Mapping[Definition, str]:
 
 
 def files(path: Path, search: mx.FileSearchPath) -> tuple[Path, ...]:
-    """A source and all that it includes, each once; includes that a generator fills in are left out."""
+    """A source and all that it includes, each once."""
     return _files(path, search.asString())
+
+
+def _reached(path: Path, search: mx.FileSearchPath) -> tuple[Path, ...]:
+    """The same, and the functions that a generator adds to all nodes of the GLSL family."""
+    return *files(path, search), Path(search.find(MATH).asString())
 
 
 @cache
@@ -97,7 +104,7 @@ def _files(path: Path, search: str) -> tuple[Path, ...]:
             for name in filter(None, map(included, text_of(file).split("\n"))):
                 folders = mx.FileSearchPath(str(file.parent))
                 folders.append(mx.FileSearchPath(search))
-                place = Path(folders.find(name).getNormalized().asString())
+                place = Path(folders.find(name.replace(*PLACED)).getNormalized().asString())
                 waiting += [Path(os.path.normpath(place))] * place.is_file()
     return tuple(seen)
 
@@ -118,7 +125,7 @@ def whole(element: mx.Implementation, search: mx.FileSearchPath) -> tuple[str, .
     )
     code = "".join(element.getAttribute("sourcecode").split())
     source = source_of(element)
-    texts = map(text_of, files(source[1], search)) if source else ()
+    texts = map(text_of, _reached(source[1], search)) if source else ()
     return (code, *names, element.getFunction(), *texts)
 
 
@@ -127,7 +134,7 @@ def said(element: mx.Implementation, search: mx.FileSearchPath) -> tuple[str, ..
     if (source := source_of(element)) is None:
         return whole(element, search)
     known: dict[str, list[str]] = defaultdict(list)
-    for file in files(source[1], search):
+    for file in _reached(source[1], search):
         for definition, text in definitions(file).items():
             known[definition[0]].append("".join(text.split()))
             known[definition[0]].append(" ".join(re.findall(r"\w+", text)))
