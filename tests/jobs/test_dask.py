@@ -171,6 +171,6 @@ def test_an_address_without_an_answer_is_one_line(address, wait, words):
 
 
 def test_a_farm_finds_what_one_machine_finds(pair, tmp_path, monkeypatch):
-    keep_checks(monkeypatch, "value", "reciprocity", "curve", "picture")
+    keep_checks(monkeypatch, "value", "reciprocity", "picture")
     found = check([EXAMPLE], scheduler=pair, folder=tmp_path)
     assert found.results == check([EXAMPLE]).results and not found.missing
