@@ -215,6 +215,8 @@ WRONG = {
          "retroreflective ? 0.0 : OLD", "retroreflection", ()),
         (FILMED, "F.average += node.w * F.value;", "F.average = thin_film_fresnel(2.0 / 3.0, 0.0, fd);",
          "film_average", ("average_at_two_thirds",)),
+        (FACETS, "1.0 + F.average * ((1.0 - lobe.albedo) / lobe.albedo)", "vec3(1.0)", "film_average",
+         ("model", "no energy compensation")),
         (FILM, "r21_s * r23_s.im)", "-r21_s * r23_s.im)", "value", ()),
         (FILM, "4.3278e9, 4.5282e9", "4.3728e9, 4.5282e9", "film_curve", ()),
         (FILM, "THIN_FILM_ORDER_RATIO 0.6", "THIN_FILM_ORDER_RATIO 0.006", "film_orders", ()),

@@ -31,6 +31,7 @@ from mxeon.conformance.specs import microfacets
 from mxeon.conformance.specs.lobes import PbrSpec
 from mxeon.conformance.specs.microfacets import FacetSpec, FilmSpec, TransmissionSpec, film_views
 from mxeon.conformance.tolerance import Compared, count_named, count_not_finite, count_of, roundings
+from mxeon.models.microfacet.defects import UNCOMPENSATED
 from mxeon.models.microfacet.ggx import smith_g1, smith_lambda
 from mxeon.models.transmission import refraction_direction
 from mxeon.shaders.methods import GENERATED, Methods
@@ -442,8 +443,12 @@ def film_energy(case: Case) -> list[Compared]:
 
 
 def diagnose_average(case: Case) -> Diagnosis:
-    """Whether F at one cosine stands in the place of its average."""
+    """Whether F at one cosine stands in the place of its average, or nothing is compensated."""
     batch, measured, expected = film_average(case)
+    rough = batch.altered(roughness=(max(ROUGHNESSES),) * 2)
+    lost, most = (_parts(case, each, rough)[1].max() for each in (case.direct, case.expected))
+    if lost < NEAR * most:
+        return Diagnosis((Cause(Kind.MODEL, UNCOMPENSATED),))
     view = np.broadcast_to([np.sqrt(1.0 - SLANT * SLANT), 0.0, SLANT], batch.wo.shape)
     slanted = replace(batch, wo=view, wi=view * MIRRORED)
     others = {

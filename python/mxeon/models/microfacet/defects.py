@@ -125,9 +125,10 @@ def _june(pair: Pair) -> Array:
     return 1.0 + pair.curve.average(**pair.material) * lost
 
 
+UNCOMPENSATED = "no energy compensation"
 MEAN_ALPHA = "Smith at the geometric mean"
 MICROFACET_DEFECTS = (
-    MicrofacetDefect("no_compensation", "no energy compensation", Lobe(microfacet.uncompensated)),
+    MicrofacetDefect("no_compensation", UNCOMPENSATED, Lobe(microfacet.uncompensated)),
     MicrofacetDefect(
         "compensation_half",
         "compensation with F at the half vector",

@@ -17,8 +17,8 @@ from numpy.typing import ArrayLike
 from mxeon.models import thin_film, transmission
 from mxeon.models.core.arrays import Array, library
 from mxeon.models.core.colorimetry import XYZ_TO_REC709
-from mxeon.models.microfacet import CATEGORIES, Lobe, defects, node_albedo, node_brdf
-from mxeon.models.microfacet.defects import averaged_channels, layer_albedo
+from mxeon.models.microfacet import CATEGORIES, Lobe, defects, node_albedo, node_brdf, uncompensated
+from mxeon.models.microfacet.defects import UNCOMPENSATED, averaged_channels, layer_albedo
 from mxeon.models.microfacet.fresnel import fresnel_conductor, fresnel_dielectric, fresnel_schlick
 from mxeon.models.nodes.node import Inputs, PbrNode, Scattering, Variant
 from mxeon.models.thin_film import FILM, Form, film_albedo_dir
@@ -135,6 +135,7 @@ def _row(
         Variant(
             each.title,
             partial(lobe.value, terms=each.lobe),
+            partial(lobe.albedo, compensate=False) if each.title == UNCOMPENSATED else None,
             permitted=each.name in OPEN,
         )
         for each in (*defects.MICROFACET_DEFECTS, *defects.FITTED_DEFECTS)
@@ -265,6 +266,11 @@ def _film_variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
         Variant("no film", lambda wo, wi, inputs: row.value(wo, wi, _bare(inputs))),
         Variant(
             "its albedo without the film", albedo=lambda wo, inputs: row.albedo(wo, _bare(inputs))
+        ),
+        Variant(
+            UNCOMPENSATED,
+            partial(_value, row.category, thin_film.TEXT, Lobe(uncompensated)),
+            partial(film_albedo_dir, row.category, compensate=False),
         ),
         Variant(
             "MaterialX's compensation",
