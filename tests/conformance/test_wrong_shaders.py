@@ -155,6 +155,9 @@ WRONG = {
         (FACETS, "vec3 X = normalize(lobe.X - dot(lobe.X, lobe.N) * lobe.N);",
          "vec3 X = lobe.X - dot(lobe.X, lobe.N) * lobe.N;", "states",
          ("a tangent that leans and is not of length 1",)),
+        ("genglsl/lib/ggx_albedo.glsl", "float ggx_missing(float mu, float alpha)\n{",
+         "vec2 kept = vec2(-1.0);\nOLD\n    kept = kept.x == alpha ? kept : vec2(alpha, mu);\n    mu = kept.y;", "states",
+         ("two lobes that differ in normal",)),
         (FACETS, "    return vec3(dot(w, X), dot(w, cross(lobe.N, X))", "    if (lobe.N.z < -0.9999) X = lobe.N.yzx;\nOLD", "states",
          ("the normal on an axis",)),
         ("genglsl/conductor_bsdf.glsl", "MicrofacetLobe lobe = microfacet_lobe(",
@@ -228,6 +231,8 @@ WRONG = {
          ("two lobes that differ in ior",)),
     ),
     "dielectric_bsdf, thin film": (
+        ("genglsl/dielectric_bsdf.glsl", "(ior, thinfilm_thickness, thinfilm_ior)", "(ior, thinfilm_ior, thinfilm_thickness)",
+         "value", ("fault", "inputs_exchanged", "thinfilm_thickness", "thinfilm_ior")),
         ("genglsl/lib/microfacet_film.glsl", "microfacet_film_facets(lobe.visible.x, lobe.visible.y)",
          "microfacet_film_facets(lobe.mu_o, lobe.alpha)", "anisotropic_throughput", ()),
         (FILM, "M_PI * fd.tf_thickness", "M_PI * min(fd.tf_thickness, 2000.0)", "domain",

@@ -18,8 +18,17 @@ from mxeon.conformance import samples
 from mxeon.conformance.samples import Array, Batch, Candidate, Counts, Values, directions, generator
 from mxeon.conformance.tolerance import ROUNDING, Compared, Term, Tolerance
 from mxeon.hosts.base import Host
+from mxeon.hosts.calls import NORMAL, TANGENT
 from mxeon.models.nodes.node import Node as NodeRow
-from mxeon.shaders.nodes import SURFACE, Node, document_text, input_types, lobe_text, network_text
+from mxeon.shaders.nodes import (
+    FRAME_INPUTS,
+    SURFACE,
+    Node,
+    document_text,
+    input_types,
+    lobe_text,
+    network_text,
+)
 
 COMPONENTS = {"float": (), "vector2": (2,), "vector3": (3,), "color3": (3,)}  # shape by type
 CHANGED_COLOR = (0.9, 0.1, 0.6)
@@ -253,8 +262,11 @@ class LobeSpec(ValueSpec):
         return {**input_types(self.node), **{each.name: each.type for each in self.inputs}}
 
     def two_lobes(self) -> str:
-        """MaterialX text of a material of two such lobes, `first` and `second`."""
-        lobes = (lobe_text(self.node, self.mode, name, self.types) for name in ("first", "second"))
+        """MaterialX text of a material of two such lobes, `first` and `second`, which has a frame of its own."""
+        own = [name for name in FRAME_INPUTS if name in input_types(self.node)]
+        frame = {name: NORMAL if name == "normal" else TANGENT for name in own}
+        modes = {"first": self.mode, "second": {**self.mode, **frame}}
+        lobes = (lobe_text(self.node, mode, name, self.types) for name, mode in modes.items())
         total = network_text({"lobe": Node("add", "BSDF", ("first", "second"))})
         return document_text("".join(lobes) + total + SURFACE)
 

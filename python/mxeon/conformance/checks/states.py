@@ -29,7 +29,7 @@ from mxeon.hosts.calls import LIGHTS, LIT, NORMAL, SECOND_LIGHT, SKY, SURFACE, T
 from mxeon.io.images import FAST_EXR, write_image
 from mxeon.jobs.signals import Temporary
 from mxeon.shaders.document.policy import Policy
-from mxeon.shaders.nodes import with_images
+from mxeon.shaders.nodes import FRAME_INPUTS, with_images
 
 if TYPE_CHECKING:  # which loads MaterialX
     from mxeon.shaders.generation import Shader
@@ -53,6 +53,7 @@ class Pixels:
     states: tuple[str, ...]
     light: Array  # direction of a second light, in the local frame
     second: Inputs | None = None  # inputs of another lobe beside that of the batch
+    aside: Array | None = None  # its frame, if that is not the batch's
     differ: tuple[str, ...] = ()  # the input in which the lobes of each pixel differ
     lights: int = 1
     sky: str = ""  # "uniform" or "uneven"
@@ -134,14 +135,12 @@ def bent(pixels: Pixels, rng: Random, columns: float = 0.0, rows: float = 0.0) -
     return replace(pixels, batch=replace(batch.altered(**inputs), frame=frame[:, :, :3]))
 
 
-def doubled(
-    pixels: Pixels, rng: Random, component: bool = False, differ: bool = True, swapped: bool = False
-) -> Pixels:
+def doubled(pixels: Pixels, rng: Random, component: bool = False, swapped: bool = False) -> Pixels:
     """Another lobe, which differs in one input of each pixel, or in one component of it."""
     first = broadcast_inputs(pixels.batch)
     second, words = dict(first), [""] * EACH
     names = [name for name in first if name not in FRAME]
-    for row in range(EACH) if differ else ():
+    for row in range(EACH):
         name = words[row] = names[(row + rng.integers(2)) % len(names)]
         values = second[name] = np.array(second[name])
         parts = rng.integers(values.shape[-1]) if component and values.ndim == 2 else ...
@@ -149,6 +148,23 @@ def doubled(
     inputs, second = (second, first) if swapped else (first, second)
     batch = replace(pixels.batch, inputs=inputs)
     return replace(pixels, batch=batch, second=second, differ=tuple(words))
+
+
+def leaning(pixels: Pixels, rng: Random) -> Pixels:
+    """Another lobe with the same inputs, and the same normal in a square or one halfway to the viewer."""
+    batch = pixels.batch
+    assert batch.frame is not None
+    normal = batch.frame[:, :, 2]
+    middle = batch.world(batch.wo) * (np.arange(EACH) >= EACH // 3)[:, np.newaxis] + normal
+    aside = aimed(batch.frame, normal, middle / np.linalg.norm(middle, axis=1, keepdims=True))
+    axes = {"normal": rounded(aside[:, :, 2].T), "tangent": rounded(aside[:, :, 0].T)}
+    second = broadcast_inputs(batch) | axes
+    return replace(
+        pixels,
+        second=second,
+        aside=aside,
+        differ=("",) * (EACH // 3) + ("normal",) * (EACH - EACH // 3),
+    )
 
 
 def changed(pixels: Pixels, change: Callable[[Array], Array]) -> Pixels:
@@ -204,7 +220,7 @@ AXES: dict[str, dict[str, Build]] = {
     },
     "lobes": {
         "one lobe": same,
-        "two lobes: equal": partial(doubled, differ=False),
+        "two lobes: equal inputs": leaning,
         "two lobes: another input": doubled,
         "two lobes: another input: exchanged": partial(doubled, swapped=True),
         "two lobes: another component": partial(doubled, component=True),
@@ -359,6 +375,11 @@ def batch_of(pixels: Pixels) -> Batch:
             for name, each in (pixels.second or {}).items()
             if name not in FRAME
         },
+        **{
+            f"second_{name}/value": pixels.second[name.replace("curve_direction", "tangent")]
+            for name in FRAME_INPUTS
+            if pixels.second
+        },
     }
     return batch.altered(**inputs)
 
@@ -374,14 +395,20 @@ def sums(case: Case, groups: Sequence[Pixels]) -> list[Array]:
     found = [np.zeros_like(pixels.batch.wo) for pixels in groups]
     parts: dict[str, list[tuple[int, Batch]]] = {}
     for number, pixels in enumerate(groups):
-        for inputs in (pixels.batch.inputs, pixels.second):
+        batch = pixels.batch
+        for inputs, aside in ((batch.inputs, None), (pixels.second, pixels.aside)):
             if inputs is None:
                 continue
-            own = flat = replace(pixels.batch, inputs=inputs)
+            wo, *lights = (
+                each if aside is None else np.einsum("nij,ni->nj", aside, batch.world(each))
+                for each in (batch.wo, batch.wi, pixels.light)
+            )
+            frame = batch.frame if aside is None else aside
+            own = flat = replace(batch, inputs=inputs, wo=wo, wi=lights[0], frame=frame)
             if not curved:
                 axes = dict(zip(FRAME, (NORMAL, TANGENT, (0.0, 0.0, 0.0), NORMAL), strict=True))
                 flat = replace(own.altered(**axes), frame=None)
-            for light in (own.wi, pixels.light)[: pixels.lights]:
+            for light in lights[: pixels.lights]:
                 parts.setdefault("light", []).append((number, replace(flat, wi=light)))
             if pixels.sky:
                 part = own if pixels.sky == "uneven" else flat
