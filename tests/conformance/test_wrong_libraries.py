@@ -83,6 +83,23 @@ def test_a_wrong_default_is_the_cause_of_failures(judged, tmp_path, title, check
     assert has(result, *cause) and (cause or "Tobject" in result.reason)
 
 
+def test_an_implementation_with_the_function_of_another_node_fails_on_its_target_alone(
+    judged, copy
+):
+    row = (
+        '<implementation name="IM_burley_diffuse_bsdf_genmsl" nodedef="ND_burley_diffuse_bsdf" '
+        'file="../../genglsl/translucent_bsdf.glsl" function="translucent_bsdf" target="genmsl" />'
+    )
+    library = copy(
+        "libraries/pbrlib/eonlib_pbrlib_genglsl_impl.mtlx", "</materialx>", f"{row}</materialx>"
+    )
+    assert judged("value", "translucent_bsdf", library=library).verdict == PASSED
+    found = judged.texts("source", library)
+    [wrong] = (each for each in found.values() if each.verdict != PASSED)
+    assert (wrong.subject, wrong.verdict) == ("burley_diffuse_bsdf, msl", FAILED)
+    assert "translucent_bsdf" in said(wrong)
+
+
 def test_an_input_of_another_type_is_not_run_and_says_so(judged, copy):
     narrow = 'name="weight" type="float" value="1.0" uimin="0.0" uimax="1.0"'
     wide = narrow.replace("float", "color3").replace('.0"', '.0, 0.0, 0.0"')

@@ -16,8 +16,9 @@ from pathlib import Path
 import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
 
-from mxeon.errors import InterfaceError
-from mxeon.shaders.generators import context_of, generated, generator_of
+from mxeon.errors import InterfaceError, ShaderError
+from mxeon.shaders.document.graphs import inner_nodes
+from mxeon.shaders.generators import GENERATORS, context_of, generated, generator_of
 from mxeon.shaders.library import load_library
 from mxeon.shaders.library_tree import root, standard_folders
 
@@ -29,15 +30,33 @@ CLOSURES = {"BSDF": "bsdf", "EDF": "edf"}  # inputs of a surface, which calls wh
 
 
 def check_closure_calls(
-    stage: mx_gen.ShaderStage, target: str, library: str, profile: str | None
+    stage: mx_gen.ShaderStage,
+    target: str,
+    library: str,
+    profile: str | None,
+    document: mx.Document,
 ) -> None:
-    """Raise InterfaceError unless a generated stage calls the functions of a library as they are defined."""
-    known = _functions(library, profile)
+    """Raise InterfaceError unless a generated stage calls the functions of a library as they are defined.
+
+    Raise ShaderError where the implementation of a node that the document has names the function of another node.
+    """
+    known = _functions(library, profile, target)
     for file in stage.getSourceDependencies():
         for nodedef, function in known.get(file, ()):
             signatures = _signatures(file, function)
             call = _call(target, library, profile, nodedef, function)
             if signatures and len(call) not in map(len, signatures):
+                if others := [
+                    each for each, name in known[file] if name == function and each != nodedef
+                ]:
+                    nodes = (each for each in inner_nodes(document) if each.isA(mx.Node))
+                    if nodedef not in {
+                        each.getNodeDef().getName() for each in nodes if each.getNodeDef()
+                    }:
+                        continue
+                    raise ShaderError(
+                        f"the implementation of {nodedef} names {function}, the function of {others[0]}"
+                    )
                 raise InterfaceError(
                     f"{target}: MaterialX {mx.getVersionString()} does not call eonlib's function "
                     f"{function}({', '.join(signatures[0])}); use --library stock"
@@ -51,13 +70,19 @@ def leftover(text: str) -> str:
 
 
 @cache
-def _functions(library: str, profile: str | None) -> Mapping[str, list[tuple[str, str]]]:
-    """Nodedefs and functions of each source of a library, except MaterialX's own and their replacements."""
+def _functions(
+    library: str, profile: str | None, target: str
+) -> Mapping[str, list[tuple[str, str]]]:
+    """Nodedefs and functions of each source of a library for a target, except MaterialX's own and their replacements."""
     functions: dict[str, list[tuple[str, str]]] = defaultdict(list)
     if root(library):
         return functions
-    for each in load_library(library, profile).getImplementations():
+    document = load_library(library, profile)
+    targets = {GENERATORS[target].create().getTarget(), "genglsl"}  # from which most inherit
+    for each in document.getImplementations():
         uri = each.getActiveSourceUri()
+        if each.getTarget() not in targets:
+            continue
         if each.hasFile() and each.hasFunction() and not _is_standard(uri):
             file = os.path.normpath(Path(uri).parent / each.getFile())
             functions[file].append((each.getNodeDefString(), each.getFunction()))

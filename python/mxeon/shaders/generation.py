@@ -201,7 +201,7 @@ def generate(
                 raise DocumentError(
                     f'{label(content)}: element "{path}" must give {target}; {reason}'
                 ) from None
-            check_closure_calls(source.getStage("pixel"), target, library, profile)
+            check_closure_calls(source.getStage("pixel"), target, library, profile, content)
             stages = MappingProxyType(
                 {stage: source.getSourceCode(stage) for stage in STAGES if source.hasStage(stage)}
             )
