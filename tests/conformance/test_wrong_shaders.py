@@ -305,7 +305,7 @@ WRONG = {
     "chiang_hair_roughness, roughness_TRT": (
         ("mx_chiang_hair_bsdf.glsl", "v * scale_TRT * scale_TRT", "v * 4.0", "inputs",
          ("inputs_without_effect", "scale_TRT")),
-        ("mx_chiang_hair_bsdf.glsl", "v = v * v;", "", "output", ("scale_TRT",)),
+        ("mx_chiang_hair_bsdf.glsl", "v = v * v;", "", "output", ("no_model",)),
     ),
     "deon_hair_absorption_from_melanin": (
         ("mx_chiang_hair_bsdf.glsl", "eumelanin * -log(eumelanin_color) + pheomelanin * -log(pheomelanin_color)",

@@ -51,6 +51,7 @@ from mxeon.models.shading_model import UP
 
 Measure: TypeAlias = Callable[[Case], Iterable[Compared]]
 
+EXCHANGES = (NO_FAULT,)  # no fault but exchanged inputs and a factor
 PLACELESS = Ability.MEDIUM | Ability.OUTPUT  # nodes without a view and a light
 # Causes after which the values of the check itself are searched for a range of an input.
 SINGLY_RIGHT, UNKNOWN, OTHER_AVERAGE, UNMASKED = UNTOLD = tuple(
@@ -63,6 +64,7 @@ SHOWN = 0.1  # share of the light that has to be left where another input is cha
 # Share of the distance to any other explanation up to which one explains all, and up to which it is
 # called the nearest.
 SAME, NEAR = 0.03, 0.3
+FAR = 0.1  # share of the distance to the claimed model from which another model is no match
 NAMED = 0.5  # share of the values' own size up to which the closest model is named
 INEXACT = 30.0  # tolerances up to which the right model is called inexact, and not another one
 LEAST_LIGHT = 1e-3  # cosine of the light up to which factors of it cannot be told apart
@@ -177,7 +179,7 @@ def _model(
     if place := smallest(cases, tolerance):
         return (correct_except(cases, tolerance, place),)
     place, mostly = span(cases, tolerance), wrong.mean() < 0.5
-    if first != own and least <= NEAR * rival:
+    if first != own and least <= min(NEAR * rival, FAR * dict(ranking)[own]):
         part = (correct_except(cases, tolerance, place),) if place and mostly else ()
         return *part, Cause(Kind.MODEL, first, rms=least)
     cures: dict[str, float] = {}
@@ -212,7 +214,8 @@ def _model(
         return (replace(share, point=point),)
     # What is off by as much as black would be resembles nothing.
     black = Candidate("", lambda batch: np.zeros((len(batch.wo), 1)))
-    near = least < NAMED * _distance(cases, black, NO_FAULT, tolerance)
+    far = _distance(cases, black, NO_FAULT, tolerance)
+    near = least < NAMED * (far if first == own else min(far, dict(ranking)[own]))
     unlike = Cause(Kind.UNKNOWN, "no_model")
     if near:
         unlike = replace(unlike, names=(first,), rms=least)
@@ -333,8 +336,10 @@ VALUES, ALBEDOS = attrgetter("valued.value_candidates"), attrgetter("albedo_cand
 VALUE = Comparison("value", values, VALUES, DIRECT_FAULTS)
 ALBEDO = Comparison("albedo", albedos, ALBEDOS, ENVIRONMENT_FAULTS)
 # Of a layer, for light from above, and for light through the base.
-THROUGHPUT = Comparison("throughput", lambda case: throughputs(case, *LIGHT), _rests)
-TRANSMISSION = Comparison("throughput", lambda case: throughputs(case, "transmission"), _rests)
+THROUGHPUT = Comparison("throughput", lambda case: throughputs(case, *LIGHT), _rests, EXCHANGES)
+TRANSMISSION = Comparison(
+    "throughput", lambda case: throughputs(case, "transmission"), _rests, EXCHANGES
+)
 # Of a utility node, or of an emission from the front.
 OUTPUT = Comparison(
     "value", lambda case: map(case.valued.alike, values(case)), _alike, COLOR_FAULTS

@@ -11,6 +11,7 @@ import numpy as np
 
 from mxeon.conformance.results import Cause, Kind
 from mxeon.conformance.samples import Array, Batch
+from mxeon.models.core.arguments import RANGES
 
 CHANNELS = ("red", "green", "blue")
 CONSTANTS = (0.1, 0.25, 0.3, 0.5, 0.75, 1.0)  # roughness that may be wired in
@@ -142,12 +143,14 @@ def exchanges(names: Iterable[str]) -> Iterator[Fault]:
 
 
 def _exchanged(one: str, other: str, batch: Batch) -> Batch:
+    """A batch with two inputs exchanged; what one of them cannot be is the nearest that it can."""
     changes, inputs = {}, batch.inputs
     for name in inputs:
         node, *port = name.split("/")
         there = "/".join([{one: other, other: one}.get(node, node), *port])
         if there in inputs and np.shape(inputs[there]) == np.shape(inputs[name]):
-            changes[name] = inputs[there]
+            low, high, _ = RANGES.get(name.split("/")[-1], (-np.inf, np.inf, ""))
+            changes[name] = np.clip(inputs[there], low, high)
     return batch.altered(**changes)
 
 

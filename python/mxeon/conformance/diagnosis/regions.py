@@ -37,7 +37,7 @@ EXACT = count_of(Quantity.VALUES)
 RIGHT, WEAK = 0.4, 0.7
 CLEARER = 0.5  # of it, in a range with two ends that is named instead of one with a single end
 CHANCE = 12.0  # least logarithm of the odds against finding a range by chance
-LARGEST = 0.6  # share of the pairs that a region may have to be worth its name
+LARGEST = 0.6  # share of the pairs, or of their values, that a region may have to be worth its name
 DENSITY = 0.1  # least share of a region's pairs that have to be wrong
 UPRIGHT = 1e-3  # tangent of a half vector along the normal: its cosine rounds to about 1
 COSINES = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1)
@@ -111,6 +111,8 @@ def span(cases: Sequence[Compared], tolerance: Tolerance, most: float = RIGHT) -
                 (low, high, (low <= values) & (values <= high)),
             ]
             for first, last, mask in ranges[2:] if low == high else ranges:
+                if mask.mean() > LARGEST:
+                    continue
                 share, least = float(mask[~bad].mean()), most
                 if low < high and first == low and last == high:
                     least *= CLEARER
