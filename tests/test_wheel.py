@@ -87,7 +87,7 @@ def test_the_wheel_holds_the_package_with_the_data_of_the_checkout_and_nothing_e
     assert not parts & {"tests", "__pycache__"}
     # Elsewhere a folder of that name would hide MaterialX's libraries.
     libraries = {name.split("/libraries/")[0] for name in names if "/libraries/" in name}
-    assert libraries == {"mxeon/data/eonlib/genglsl/prefilter"}
+    assert libraries == {"mxeon/data/eonlib/genglsl/environment"}
     assert {name.split("/")[0] for name in names} == {
         *("mxeon", f"mxeon-{mxeon.__version__}.dist-info")
     }

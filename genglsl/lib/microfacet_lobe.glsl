@@ -196,7 +196,7 @@ void microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelData f
     }
     else if (lobe.closure == CLOSURE_TYPE_INDIRECT)
     {
-#ifdef EONLIB_PREFILTERED  // the file in genglsl/prefilter
+#ifdef EONLIB_PREFILTERED  // the file in genglsl/environment
         vec3 mean = eonlib_prefiltered_light(lobe.N, lobe.wo, lobe.roughness, fd);
         bsdf.response = mean * lobe.albedo * F.visible * scale;
 #else

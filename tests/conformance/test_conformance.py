@@ -116,6 +116,23 @@ def test_glass_passes_by_every_method_and_as_stock_has_it_does_not(judged, check
         assert judged(check, glass, library="stock", methods=methods).verdict == FAILED
 
 
+@pytest.mark.parametrize("environment", ["fis", "prefilter"])
+def test_other_lobes_are_lit_alike_by_eonlib_s_lookups(judged, environment):
+    methods = Methods(environment, searched=True)
+    assert judged("environment", "burley_diffuse_bsdf", methods=methods).verdict == PASSED
+
+
+def test_a_sum_that_masks_by_the_direction_returns_the_integral_of_two_alphas(judged):
+    """MaterialX's own sum does not, and stock has no folder to search."""
+    methods = Methods("fis", searched=True)
+    found = [
+        judged("anisotropic_albedo", "conductor_bsdf", library=each, methods=methods)
+        for each in ("eonlib", "stock")
+    ]
+    assert [each.verdict for each in found] == [PASSED, NOT_RUN]
+    assert found[1].reason == "library stock: has no genglsl/environment to search"
+
+
 def test_microfacets_of_a_prefiltered_environment_have_materialx_s_fit(judged):
     """Stock has no compensation by the exact average."""
     found = [

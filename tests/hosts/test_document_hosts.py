@@ -153,8 +153,8 @@ CONDUCTOR = """<conductor_bsdf name="lobe" type="BSDF">
 </conductor_bsdf>"""
 
 
-# Lines that are compiled with `genglsl/prefilter` alone, so that no check of another host notices wrong ones.
-PREFILTER = "genglsl/prefilter/libraries/pbrlib/genglsl/lib/mx_environment_prefilter.glsl"
+# Lines that are compiled with `genglsl/environment` alone, so that no check of another host notices wrong ones.
+PREFILTER = "genglsl/environment/libraries/pbrlib/genglsl/lib/mx_environment_prefilter.glsl"
 DIM = (
     "$envRadiance) * $envLightIntensity",
     "$envRadiance) * 0.8 * $envLightIntensity",

@@ -371,6 +371,8 @@ def test_the_methods_of_a_client_are_those_of_the_text(target):
     default = generate(glass, target)[0].stages["pixel"]
     assert "transparency +=" not in default
     assert generate(glass, target, methods=Methods("fis"))[0].stages["pixel"] == default
+    searched = generate(glass, target, methods=Methods(searched=True))[0].stages["pixel"]
+    assert "#define MX_REFRACTION_UNMASKED" in searched and "define MX_REF" not in default
     with pytest.raises(NotRun, match="reads .*refractionTwoSided, which it does not declare"):
         generate(glass, target, methods=Methods("none"))
 

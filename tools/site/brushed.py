@@ -16,12 +16,14 @@ from PIL import Image, ImageDraw, ImageFont
 from scipy.interpolate import RectBivariateSpline
 
 from mxeon.conformance.reference import HostValues, Reference
+from mxeon.conformance.samples import directions_at
 from mxeon.hosts import open_host
 from mxeon.io.srgb import srgb_encoded
 from mxeon.models import microfacet
 from mxeon.models.microfacet.defects import FITTED, MICROFACET_DEFECTS
 from mxeon.shaders.document.policy import DEFAULT
-from mxeon.shaders.scene import FURNACE, SIDE, sphere, tangents
+from mxeon.shaders.methods import UNCHOSEN, Methods
+from mxeon.shaders.scene import SIDE, sphere, tangents
 from tools.fits import ggx_anisotropic
 from tools.site import DOCS, with_block
 from tools.site.gallery import BACKGROUND, QUALITY, studio
@@ -56,7 +58,8 @@ WHITE_METAL = """<?xml version="1.0"?>
 </materialx>
 """
 COSINES = (0.5, 0.2, 0.05)
-WHITE_SIZE = 799  # its last pixel center in the middle row has the cosine 0.05
+# Libraries whose environments are measured; the last one searches `genglsl/environment`.
+SURROUNDED = (("stock", UNCHOSEN), ("eonlib", UNCHOSEN), ("eonlib", Methods(searched=True)))
 
 
 def lights():
@@ -248,31 +251,30 @@ def eonlib_white(wo, alpha):
 
 
 def white_rows(host, folder):
-    """White metal's albedos, and the ranges of errors in an environment over all views."""
+    """White metal's albedos, and the ranges of errors in an environment over all views of a cosine of 0.05 and more."""
     rows, ranges = [], []
-    middle = WHITE_SIZE // 2
-    seen = sphere(WHITE_SIZE)
+    mu, phi = np.meshgrid(np.linspace(0.05, 1.0, 96), np.linspace(0.0, 0.5 * np.pi, 33))
+    grid = directions_at(mu.ravel(), phi.ravel())
+    document = folder / "white.mtlx"
     for alpha in WHITE_ALPHAS:
-        drawn = []
-        document = folder / "white.mtlx"
         document.write_text(WHITE_METAL.format(*alpha), encoding="utf-8")
-        for library in ("stock", "eonlib"):
-            [shader] = host.compile(document, library=library)
-            drawn.append(host.picture(shader, replace(FURNACE, size=WHITE_SIZE))[..., 0])
-        near = seen.mask & (seen.normal[..., 2] >= 0.05)
-        ranges.append([[float(f(each[near])) - 1.0 for f in (np.min, np.max)] for each in drawn])
-        x = (2.0 * np.arange(middle, WHITE_SIZE) + 1.0) / WHITE_SIZE - 1.0
-        for name, axis in (("along", 0), ("across", 1)):
+        shaders = [
+            host.compile(document, library=library, methods=methods)[0]
+            for library, methods in SURROUNDED
+        ]
+
+        def surrounded(views, shaders=shaders):
+            return [host.evaluate(each, views, views, {}, "environment")[:, 0] for each in shaders]
+
+        ranges.append(
+            [[float(f(each)) - 1.0 for f in (np.min, np.max)] for each in surrounded(grid)]
+        )
+        for name, turn in (("along", 0.0), ("across", 0.5 * np.pi)):
             for mu in COSINES:
-                wo = np.array([0.0, 0.0, mu])
-                wo[axis] = np.sqrt(1.0 - mu * mu)
+                [wo] = directions_at(np.array([mu]), turn)
                 direct = [white_albedo(FITTED, wo, alpha), white_albedo(JUNE, wo, alpha)]
-                lines = [
-                    each[middle, middle:] if axis == 0 else each[: middle + 1, middle][::-1]
-                    for each in drawn
-                ]
-                surrounded = [np.interp(wo[axis], x, each) for each in lines]
-                values = [*direct, eonlib_white(wo, alpha), 1.0, *surrounded]
+                around = [each[0] for each in surrounded(wo[np.newaxis])]
+                values = [*direct, eonlib_white(wo, alpha), 1.0, *around]
                 rows.append((*alpha, name, mu, *map(float, values)))
     return rows, ranges
 
@@ -305,8 +307,9 @@ def page(text):
         cells = (f"{100 * off:.1f} %, {percent(*span)}" for off, *span in found[name])
         shown += f"| {name} | {' | '.join(cells)} |\n"
     white = (
-        "| alphas | view tilts | cosine | stock | eonlib | stock, environment | eonlib, environment |\n"
-        "|---|---|---|---|---|---|---|\n"
+        "| alphas | view tilts | cosine | stock | eonlib | stock, environment | eonlib, environment "
+        "| with `genglsl/environment` |\n"
+        "|---|---|---|---|---|---|---|---|\n"
     ) + "".join(
         f"| {a:g}, {b:g} | {name} | {mu:g} | {' | '.join(f'{each:.3f}' for each in (stock, own, *around))} |\n"
         for a, b, name, mu, stock, _, own, _, *around in found["white"]["rows"]
@@ -315,10 +318,10 @@ def page(text):
         f"\n- In eonlib's direct light, white metal is within {100 * found['white']['fit']:.1f} % of exact where one "
         "alpha is up to 50 times the other, at cosines from 0.01.\n"
     )
-    for (a, b), (stock, own) in zip(WHITE_ALPHAS, found["white"]["ranges"], strict=True):
+    for (a, b), (stock, own, searched) in zip(WHITE_ALPHAS, found["white"]["ranges"], strict=True):
         white += (
             f"- In a white environment, alphas {a:g} and {b:g}, all views with a cosine of at least 0.05: stock is "
-            f"{percent(*stock)} off, eonlib {percent(*own)}.\n"
+            f"{percent(*stock)} off, eonlib {percent(*own)}, with `genglsl/environment` {percent(*searched)}.\n"
         )
     return with_block(with_block(text, "pictures", f"\n{shown}\n"), "white", f"\n{white}\n")
 

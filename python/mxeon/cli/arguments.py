@@ -259,6 +259,7 @@ def add_methods(command: argparse.ArgumentParser) -> None:
     for name, words in (
         ("premultiplied", "whether mix folds its weight into those of its lobes"),
         ("distributed", "whether layer is distributed over mix"),
+        ("searched", "whether sources are found in the library's genglsl/environment first"),
     ):
         action = argparse.BooleanOptionalAction
         group.add_argument(OPTIONS[name], action=action, help=words, dest=name)

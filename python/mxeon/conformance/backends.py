@@ -90,7 +90,13 @@ class Backend(ABC):
 
     @property
     def prefiltered(self) -> bool:
-        return self.host.active.environment == "prefilter"
+        """Whether microfacets reflect MaterialX's fit of their albedo."""
+        return self.host.active.environment == "prefilter" and not self.searched
+
+    @property
+    def searched(self) -> bool:
+        """Whether the library's own lookups of an environment replace MaterialX's."""
+        return bool(self.host.active.searched)
 
     def implemented(self, text: str) -> Shader:
         """Shader of a document; NotRun where the target has no implementation of an optional node."""

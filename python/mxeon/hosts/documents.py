@@ -163,7 +163,7 @@ class DocumentHost(base.Host):
             size=scene.size * (PIXEL_BLOCK if blocks else 1),
             light=scene.light,
             environment=scene.environment,
-            **({"methods": dict(methods.chosen())} if methods != UNCHOSEN else {}),
+            **({"methods": methods.settings} if methods != UNCHOSEN else {}),
             **({"card": True} if card else {}),
         )
         self._check(reply.get("error", ""), self.worker.printed())

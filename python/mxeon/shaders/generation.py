@@ -12,7 +12,7 @@ from types import MappingProxyType
 import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
 
-from mxeon.errors import DocumentError, InputError, InterfaceError, assert_known
+from mxeon.errors import DocumentError, InputError, InterfaceError, NotRun, assert_known
 from mxeon.io.files import AnyPath, one_name
 from mxeon.shaders import path_tracing
 from mxeon.shaders.closure_calls import check_closure_calls, leftover
@@ -30,7 +30,13 @@ from mxeon.shaders.generators import (
     generator_of,
     tokens_of,
 )
-from mxeon.shaders.library import has_profile, library_name, load_library, own_folders
+from mxeon.shaders.library import (
+    environment_folders,
+    has_profile,
+    library_name,
+    load_library,
+    own_folders,
+)
 from mxeon.shaders.library_tree import in_words, root
 from mxeon.shaders.methods import UNCHOSEN, Methods, assert_generated
 
@@ -167,6 +173,8 @@ def generate(
         check_generator(library, target)
     if methods != UNCHOSEN and (target not in HARDWARE or profile):
         raise InputError(f"{target}: only rasterized targets have methods; got {methods}")
+    if methods.searched and not environment_folders(library):
+        raise NotRun(f"library {library}: has no genglsl/environment to search")
     if profile == "path":
         assert_known("target of the profile path", target, path_tracing.TARGETS)
         if not has_profile(library_name(library), profile):
@@ -186,7 +194,8 @@ def generate(
         if not elements:
             assert_known("element", element, paths)
     tokens = partial(tokens_of, target, library, profile)
-    folders = (*policy.definitions, *own_folders(library))
+    searched = map(str, environment_folders(library) if methods.searched else ())
+    folders = (*policy.definitions, *own_folders(library), *searched)
     shaders = []
     with copied_sources(content, context, policy, tokens) as sources:
         sources.check_limit(len(elements), checked.nodes)

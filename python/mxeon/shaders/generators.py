@@ -13,7 +13,7 @@ import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
 
 from mxeon.errors import NotRun
-from mxeon.shaders.library import LOADED, load_library
+from mxeon.shaders.library import LOADED, environment_folders, load_library
 from mxeon.shaders.library_tree import search_path
 from mxeon.shaders.methods import UNCHOSEN, Methods
 from mxeon.shaders.options import set_options
@@ -86,6 +86,8 @@ def context_of(
     folders of source files, after those of the library.
     """
     context = mx_gen.GenContext(generator)
+    for each in environment_folders(library) if methods.searched else ():
+        context.registerSourceCodeSearchPath(mx.FilePath(str(each)))
     context.registerSourceCodeSearchPath(search_path(library))
     for folder in path:
         context.registerSourceCodeSearchPath(mx.FilePath(folder))
@@ -102,7 +104,7 @@ def context_of(
             )
     if methods != UNCHOSEN:
         try:
-            set_options(context.getOptions(), **dict(methods.chosen()))  # type: ignore[arg-type]
+            set_options(context.getOptions(), **methods.settings)  # type: ignore[arg-type]
         except LookupError as error:
             raise NotRun(str(error)) from None
     if lights and isinstance(generator, mx_gen.HwShaderGenerator):

@@ -95,6 +95,12 @@ def source_folder(library: str) -> Path:
     )
 
 
+def environment_folders(library: str) -> list[Path]:
+    """Folder of a library's own lookups of an environment, to be searched before MaterialX's data, if it has one."""
+    folder = source_folder(library) / "genglsl" / "environment"
+    return [folder] if library != "stock" and folder.is_dir() else []
+
+
 def library_folders(library: str) -> list[Path]:
     """A folder to load as a library, and those from which it may take sources."""
     sources = (source_folder(library) / name for name in SOURCE_FOLDERS)

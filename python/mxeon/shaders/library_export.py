@@ -31,7 +31,7 @@ CLIENTS = {
     "C++": 'mx::loadLibraries({{"{}", "libraries"}}, mx::getDefaultDataSearchPath(), library);',
     "generateshader": "generateshader --library {} --target glsl FILE",
     "MaterialX's viewer": "MaterialXView --library {}",
-    "USD": "export PXR_MTLX_PLUGIN_SEARCH_PATHS={0}:{1}/genglsl/prefilter",
+    "USD": "export PXR_MTLX_PLUGIN_SEARCH_PATHS={0}:{1}/genglsl/environment",
     "Blender's Cycles": "mxeon generate --library {} --profile cycles --target osl --outputPath DIR FILE",
 }
 

@@ -21,6 +21,7 @@ OPTIONS = {
     "airy": "--airyIterations",
     "premultiplied": "--premultipliedAdd",
     "distributed": "--distributeLayers",
+    "searched": "--searchEnvironment",
 }
 
 
@@ -34,6 +35,7 @@ class Methods:
     - `airy`: Iterations of MaterialX's own thin films.
     - `premultiplied`: Whether `mix` folds its weight into its lobes' weights (premultipliedBsdfAdd).
     - `distributed`: Whether `layer` is distributed over `mix` (distributeLayerOverBsdfMix).
+    - `searched`: Whether shader sources are looked up in the library's `genglsl/environment` before MaterialX's data.
     """
 
     environment: str = ""
@@ -42,6 +44,7 @@ class Methods:
     airy: int = 0
     premultiplied: bool | None = None
     distributed: bool | None = None
+    searched: bool | None = None
 
     def __post_init__(self) -> None:
         for name, known in CHOICES.items():
@@ -60,6 +63,11 @@ class Methods:
             value = getattr(self, each.name)
             if value is not None and (value or isinstance(value, bool)):
                 yield each.name, value
+
+    @property
+    def settings(self) -> dict[str, str | int | bool]:
+        """What is chosen of the generator's options."""
+        return {name: value for name, value in self.chosen() if name != "searched"}
 
     @property
     def options(self) -> dict[str, str]:

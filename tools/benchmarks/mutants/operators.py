@@ -14,8 +14,8 @@ from tools.benchmarks.mutants.mutant import ROOT, Mutant, read_table
 GROUP = "Operators"
 SURVIVORS = Path(__file__).with_name("survivors.toml")  # lines => wrong ones that nothing notices
 FOLDERS = ("genglsl", "genosl")
-# No host of a trial compiles these: a client does that searches the folder, and MaterialX with patch 0009.
-PREFILTER = "genglsl/prefilter/"
+# Shared programs compile neither these nor the lines that they define: `table` has their mutants.
+ENVIRONMENT = "genglsl/environment/"
 UNCOMPILED = r"^#ifdef (?:EONLIB_PREFILTERED|MX_REFRACTION_UNMASKED)\b.*?(?=^#e)"
 COMMENT = re.compile(
     rf"{UNCOMPILED}|//[^\n]*|/\*.*?\*/|^[ \t]*#(?:include|if|el|end|pragma|undef)[^\n]*",
@@ -89,10 +89,10 @@ def every() -> tuple[Mutant, ...]:
 
 @cache
 def files() -> tuple[str, ...]:
-    """Shaders of eonlib that a trial compiles, by their paths from the root."""
+    """Shaders of eonlib that shared programs compile, by their paths from the root."""
     paths = [path for folder in FOLDERS for path in (ROOT / folder).rglob("*.*sl")]
     found = sorted(path.relative_to(ROOT).as_posix() for path in paths)
-    return tuple(each for each in found if not each.startswith(PREFILTER))
+    return tuple(each for each in found if not each.startswith(ENVIRONMENT))
 
 
 def mutants_of(file: str) -> Iterator[Mutant]:

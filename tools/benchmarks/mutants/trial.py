@@ -39,7 +39,11 @@ TEXT, TESTS = "text", "tests"  # instead of a host
 # What Cycles cannot show exactly or at all, tests run in Blender's OSL.
 PROFILE, PROFILE_TESTS = "genosl/cycles/", ("tests/hosts/test_osl.py",)
 PATH, PATH_TESTS = "genglsl/path/", ("tests/shaders/test_path_tracing.py",)  # run by no check
-PREFILTER_TESTS = (  # the host storm searches that folder
+LOBE = (
+    "genglsl/lib/microfacet_lobe.glsl"  # calls lookups of an environment, which no source includes
+)
+ENVIRONMENT_TESTS = (
+    "tests/conformance/test_conformance.py::test_other_lobes_are_lit_alike_by_eonlib_s_lookups",
     "tests/hosts/test_document_hosts.py::"
     "test_microfacets_in_the_dome_of_storm_are_as_bright_as_their_albedo",
 )
@@ -58,11 +62,11 @@ def trial(mutant: Mutant, judge: Judge, every: bool = False) -> dict[str, Any]:
         return by_tests(mutant, (named,) if mutant.equivalent else (named, (MODEL_TESTS,)))
     if mutant.file.startswith(PATH):
         return by_tests(mutant, (PATH_TESTS,))
-    if mutant.file.startswith(operators.PREFILTER):
-        return by_tests(mutant, (PREFILTER_TESTS,))
     found = _on_hosts(mutant, judge, every)
     if found["verdict"] == SURVIVED and mutant.file.startswith(PROFILE):
         return by_tests(mutant, (PROFILE_TESTS,))
+    if found["verdict"] == SURVIVED and mutant.file.startswith(operators.ENVIRONMENT):
+        return by_tests(mutant, (ENVIRONMENT_TESTS,))
     return found
 
 
@@ -206,6 +210,7 @@ LATE = ("inputs", "transmitted_inputs", "integral", "energy")
 def changed_nodes(mutant: Mutant) -> set[tuple[str, str]]:
     """Target and title of each subject whose implementation a mutant changes."""
     texts = mutant.texts()
+    changed = {LOBE if each.startswith(operators.ENVIRONMENT) else each for each in texts}
     entries: set[tuple[str, ...]] = set()
     for document in DOCUMENTS:
         before = _entries(document, (ROOT / document).read_text(encoding="utf-8"))
@@ -213,7 +218,7 @@ def changed_nodes(mutant: Mutant) -> set[tuple[str, str]]:
         entries |= before ^ after
         if mutant.control and document in texts:
             entries |= before
-        entries |= {entry for entry in before if not texts.keys().isdisjoint(_sources(entry[2]))}
+        entries |= {entry for entry in before if not changed.isdisjoint(_sources(entry[2]))}
     return {(target, title) for nodedef, target, *_ in entries for title in _titles(nodedef)}
 
 

@@ -92,9 +92,11 @@ def finds_albedo(spec: Spec, methods: Methods) -> bool:
     """Whether the environment branch returns an albedo that is known.
 
     With a prefiltered environment films and surface shaders carry the errors of MaterialX's fit, and microfacets
-    those of its 64 samples where these replace the fit.
+    those of its 64 samples where these replace the fit, or of eonlib's fits of their curves.
     """
-    sampled = isinstance(spec, FacetSpec) and methods.albedo != "analytic"
+    sampled = isinstance(spec, FacetSpec) and (
+        methods.albedo != "analytic" or bool(methods.searched)
+    )
     fitted = sampled or isinstance(spec, (FilmSpec, SurfaceShaderSpec))
     return methods.environment == "fis" or (methods.environment == "prefilter" and not fitted)
 

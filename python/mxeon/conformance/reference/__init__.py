@@ -117,6 +117,8 @@ class Reference(base.Host):
         mask = sphere(scene.size).mask
         chosen = mask & _lattice(scene.size, stride)
         points = _shown(scene, stride, MOST if values and stride == 1 else np.inf)
+        if shader.methods.searched:
+            points = replace(points, searched=True)
 
         def measure(elements: Elements, kind: str, output: str) -> NDArray[np.float64]:
             assert values

@@ -176,6 +176,7 @@ class ShadingPoints:
     round: bool = False  # whether these are points of the unit sphere
     behind: bool = False  # whether only transmitted light counts
     opacity: bool = False  # whether lobes that only transmit pass all light, and their tops take what they reflect
+    searched: bool = False  # whether eonlib's sum of an environment masks both alphas
 
     def lobe(
         self, node: PbrNode, inputs: Inputs, layered: bool, normal: Array, tangent: Array
@@ -206,7 +207,8 @@ class ShadingPoints:
             share = LET_THROUGH.get(node.name) if self.behind else node.integral or node.albedo
             if self.opacity and node.fixed.get("scatter_mode") == "T":
                 return np.broadcast_to(inputs.get("tint", np.ones(3)), wo.shape)
-            if node in MICROFACET_NODES and np.ptp(inputs["roughness"], axis=-1).any():
+            two = node in MICROFACET_NODES and np.ptp(inputs["roughness"], axis=-1).any()
+            if two and not self.searched:
                 share = SUMS[node.category]
             return self._albedo(share, node, wo, inputs) if share else np.zeros(wo.shape)
         if node in AROUND:

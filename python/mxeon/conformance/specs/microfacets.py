@@ -338,16 +338,17 @@ class FacetSpec(PbrSpec):
         return batches[0].where(known), batches[1].where(known)
 
     def stretched(self, counts: Counts) -> tuple[Batch, Array]:
-        """Views of materials whose roughness has a direction, and the sums of their values over an environment.
-
-        MaterialX's sum over visible normals masks by the geometric mean of the alphas: G_2 / G_1 of it is in the place
-        of that of the lobe.
-        """
+        """Views of materials whose roughness has a direction, and their albedos."""
         rng, count = generator(), counts.materials
         inputs = simple(self.random_inputs(rng, count))
         inputs["roughness"] = rounded(LEAST_STRETCHED ** rng.random((2, count)))
         batch = Batch(directions(rng, count), directions(rng, count), inputs)
         batch = batch.where(batch.wo[:, 2] >= LEAST_STRETCHED)
+        return batch, self.integral(batch)
+
+    def stretched_sums(self, counts: Counts) -> tuple[Batch, Array]:
+        """The same views with MaterialX's sums over visible normals, whose masking G_2 / G_1 has the mean alpha."""
+        batch, _ = self.stretched(counts)
         albedo = node_albedo(self.node, batch.wo, batch.inputs, summed=True)
         return batch, batch.strength * albedo
 

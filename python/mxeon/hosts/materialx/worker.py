@@ -213,6 +213,8 @@ def start(
         SEARCH_PATH = mx.FileSearchPath(root)
     library = mx.createDocument()
     mx.loadLibraries([*folders, *mx.getDefaultDataLibraryFolders()], SEARCH_PATH, library)
+    first_sources = [*folders, SEARCH_PATH.asString()]
+    SEARCH_PATH = mx.FileSearchPath(mx.PATH_LIST_SEPARATOR.join(first_sources))
     first = open_renderer()
     picture = lru_cache(maxsize=PICTURES)(partial(ShownElement, library))
 

@@ -20,13 +20,12 @@ from mxeon.hosts.base import Array
 from mxeon.hosts.cycles.process import interpreter
 from mxeon.hosts.documents import DocumentHost
 from mxeon.shaders.generation import Shader
-from mxeon.shaders.library import source_folder
+from mxeon.shaders.library import environment_folders
 from mxeon.shaders.methods import STORM
 from mxeon.shaders.scene import Scene
 
 REPORT = re.compile(r"^(?:Warning|Error)\b.*? in file .* : (.*)|^(?:Warning|Error)\b.*? -- (.*)")
 COMPILE = "Failed to compile shader"  # begins a report
-PREFILTER = "genglsl/prefilter"  # eonlib's lookup of a prefiltered environment
 CLOSURES = ("BSDF", "EDF", "VDF")
 
 
@@ -42,8 +41,8 @@ class StormHost(DocumentHost):
         return np.asarray(self._shown(shader, dark, card=True) - self._shown(shader, dark))
 
     def _shown(self, shader: Shader, scene: Scene, card: bool = False) -> Array:
-        own = [source_folder(each) / PREFILTER for each in shader.folders]
-        folders = (*shader.folders, *(str(each) for each in own if each.is_dir()))
+        own = (str(folder) for each in shader.folders for folder in environment_folders(each))
+        folders = (*shader.folders, *own)
         return super()._shown(replace(shader, folders=folders), scene, card)
 
     def unread(self, shader: Shader) -> str:
