@@ -27,7 +27,7 @@ void conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 extinc
                     / mx_ggx_dir_albedo(lobe.mu_o, lobe.alpha, vec3(1.0), vec3(1.0));
 #endif
         microfacet_film(lobe, fd, F);
-        microfacet_bsdf(closureData, lobe, fd, F, vec3(1.0), weight, distribution, 0, bsdf);
+        microfacet_bsdf(closureData, lobe, fd, F, vec3(1.0), weight, distribution, bsdf);
     }
     bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // opaque, where it is
 }

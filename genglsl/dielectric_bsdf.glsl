@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Entry point of the node dielectric_bsdf. With ior 0 it reflects everything.
 
-#include "lib/microfacet_film.glsl"
+#include "lib/microfacet_transmission.glsl"
 #include "lib/fresnel_dielectric.glsl"
 
 void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior, vec2 roughness,

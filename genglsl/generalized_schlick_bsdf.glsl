@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Entry point of the node generalized_schlick_bsdf.
 
-#include "lib/microfacet_film.glsl"
+#include "lib/microfacet_transmission.glsl"
 #include "lib/fresnel_schlick.glsl"
 
 // Average of the Fresnel curve over the visible facets; a color82 of 1 has no dip.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fresnel reflectance of a dielectric; F_ss, its cosine-weighted average over the hemisphere; and its average over
-// the visible facets of GGX: from an index of 1 on, at the cosine at which the curve has that average, below 1 by a fit
-// of its own. mu is the cosine of wo with the normal.
+// Fresnel reflectance of a dielectric; F_ss, its cosine-weighted average over the hemisphere; and its average over the
+// visible facets of GGX. mu is the cosine of wo with the normal.
 
 // 1 - F_ss of a dielectric is t N / D, t = 1 / ior. Source: tools/fits/fresnel_average.py.
 // Domain: ior >= 1. Largest absolute error: 5.3e-5.
@@ -18,37 +17,37 @@
 // x = mu / (mu + alpha).
 // Source: tools/fits/ggx_cosine.py. Domain: mu and alpha in [1e-4, 1], index of refraction in [1.03, 3].
 // Largest absolute error of the albedo: 0.003, in [1.05, 2.5] 0.0017.
-#define GGX_DIELECTRIC_N000 121.31539
-#define GGX_DIELECTRIC_N001 695.29722
-#define GGX_DIELECTRIC_N002 -852.70243
-#define GGX_DIELECTRIC_N003 0.95958787
-#define GGX_DIELECTRIC_N010 -79.111812
-#define GGX_DIELECTRIC_N011 -404.20459
-#define GGX_DIELECTRIC_N012 719.38075
-#define GGX_DIELECTRIC_N020 -87.272915
-#define GGX_DIELECTRIC_N021 -153.03073
-#define GGX_DIELECTRIC_N030 79.441552
-#define GGX_DIELECTRIC_N100 -107.09138
-#define GGX_DIELECTRIC_N101 -328.78907
-#define GGX_DIELECTRIC_N102 356.88066
-#define GGX_DIELECTRIC_N110 -2.5500696
-#define GGX_DIELECTRIC_N111 -40.596539
-#define GGX_DIELECTRIC_N120 68.03638
-#define GGX_DIELECTRIC_N200 10.033399
-#define GGX_DIELECTRIC_N201 16.886608
-#define GGX_DIELECTRIC_N210 -50.014696
-#define GGX_DIELECTRIC_N300 -7.2080572
-#define GGX_DIELECTRIC_D001 57.90553
-#define GGX_DIELECTRIC_D002 -67.41115
-#define GGX_DIELECTRIC_D010 181.8611
-#define GGX_DIELECTRIC_D011 -7.478896
-#define GGX_DIELECTRIC_D020 -50.38694
-#define GGX_DIELECTRIC_D100 3.325208
-#define GGX_DIELECTRIC_D101 0.0942464
-#define GGX_DIELECTRIC_D110 -261.2011
-#define GGX_DIELECTRIC_D200 -4.144666
-#define GGX_DIELECTRIC_D120 -6.590822
-#define GGX_DIELECTRIC_D210 107.1744
+#define DIELECTRIC_N000 121.31539
+#define DIELECTRIC_N001 695.29722
+#define DIELECTRIC_N002 -852.70243
+#define DIELECTRIC_N003 0.95958787
+#define DIELECTRIC_N010 -79.111812
+#define DIELECTRIC_N011 -404.20459
+#define DIELECTRIC_N012 719.38075
+#define DIELECTRIC_N020 -87.272915
+#define DIELECTRIC_N021 -153.03073
+#define DIELECTRIC_N030 79.441552
+#define DIELECTRIC_N100 -107.09138
+#define DIELECTRIC_N101 -328.78907
+#define DIELECTRIC_N102 356.88066
+#define DIELECTRIC_N110 -2.5500696
+#define DIELECTRIC_N111 -40.596539
+#define DIELECTRIC_N120 68.03638
+#define DIELECTRIC_N200 10.033399
+#define DIELECTRIC_N201 16.886608
+#define DIELECTRIC_N210 -50.014696
+#define DIELECTRIC_N300 -7.2080572
+#define DIELECTRIC_D001 57.90553
+#define DIELECTRIC_D002 -67.41115
+#define DIELECTRIC_D010 181.8611
+#define DIELECTRIC_D011 -7.478896
+#define DIELECTRIC_D020 -50.38694
+#define DIELECTRIC_D100 3.325208
+#define DIELECTRIC_D101 0.0942464
+#define DIELECTRIC_D110 -261.2011
+#define DIELECTRIC_D200 -4.144666
+#define DIELECTRIC_D120 -6.590822
+#define DIELECTRIC_D210 107.1744
 
 // [MaterialX2026], Dielectric Fresnel Equations, from the amplitudes: no quotient of 0 at ior 0.
 float eonlib_fresnel_dielectric(float mu, float ior)
@@ -71,27 +70,27 @@ float eonlib_fresnel_dielectric_avg(float ior)
     return 1.0 - (ior > 1.0 ? lost : ior * ior * lost);
 }
 
-// Cosine at which the curve has its average over the visible facets. Indices beyond the domain have that of its end.
+// That cosine. Indices beyond the domain have that of its end.
 float ggx_cosine_dielectric(float mu, float alpha, float ior)
 {
     float n = clamp(ior, 1.03, 3.0);
     float x = mu / (mu + alpha);
     float y = sqrt(sqrt(alpha));
     float s = sqrt((n - 1.0) / (n + 1.0));
-    float N = GGX_DIELECTRIC_N000
-        + s * (GGX_DIELECTRIC_N001 + s * (GGX_DIELECTRIC_N002 + s * GGX_DIELECTRIC_N003))
-        + y * (GGX_DIELECTRIC_N010 + s * (GGX_DIELECTRIC_N011 + s * GGX_DIELECTRIC_N012)
-        + y * (GGX_DIELECTRIC_N020 + s * GGX_DIELECTRIC_N021
-        + y * GGX_DIELECTRIC_N030))
-        + x * (GGX_DIELECTRIC_N100 + s * (GGX_DIELECTRIC_N101 + s * GGX_DIELECTRIC_N102)
-        + y * (GGX_DIELECTRIC_N110 + s * GGX_DIELECTRIC_N111 + y * GGX_DIELECTRIC_N120)
-        + x * (GGX_DIELECTRIC_N200 + s * GGX_DIELECTRIC_N201 + y * GGX_DIELECTRIC_N210
-        + x * GGX_DIELECTRIC_N300));
-    float D = 1.0 + s * (GGX_DIELECTRIC_D001 + s * GGX_DIELECTRIC_D002)
-        + y * (GGX_DIELECTRIC_D010 + s * GGX_DIELECTRIC_D011 + y * GGX_DIELECTRIC_D020)
-        + x * (GGX_DIELECTRIC_D100 + s * GGX_DIELECTRIC_D101
-        + y * (GGX_DIELECTRIC_D110 + y * GGX_DIELECTRIC_D120)
-        + x * (GGX_DIELECTRIC_D200 + y * GGX_DIELECTRIC_D210));
+    float N = DIELECTRIC_N000
+        + s * (DIELECTRIC_N001 + s * (DIELECTRIC_N002 + s * DIELECTRIC_N003))
+        + y * (DIELECTRIC_N010 + s * (DIELECTRIC_N011 + s * DIELECTRIC_N012)
+        + y * (DIELECTRIC_N020 + s * DIELECTRIC_N021
+        + y * DIELECTRIC_N030))
+        + x * (DIELECTRIC_N100 + s * (DIELECTRIC_N101 + s * DIELECTRIC_N102)
+        + y * (DIELECTRIC_N110 + s * DIELECTRIC_N111 + y * DIELECTRIC_N120)
+        + x * (DIELECTRIC_N200 + s * DIELECTRIC_N201 + y * DIELECTRIC_N210
+        + x * DIELECTRIC_N300));
+    float D = 1.0 + s * (DIELECTRIC_D001 + s * DIELECTRIC_D002)
+        + y * (DIELECTRIC_D010 + s * DIELECTRIC_D011 + y * DIELECTRIC_D020)
+        + x * (DIELECTRIC_D100 + s * DIELECTRIC_D101
+        + y * (DIELECTRIC_D110 + y * DIELECTRIC_D120)
+        + x * (DIELECTRIC_D200 + y * DIELECTRIC_D210));
     return clamp(mu + alpha * (1.0 - x) * N / D, 0.0, 1.0);
 }
 
@@ -103,13 +102,14 @@ float eonlib_asinh(float x)
     return sign(x) * (u < 0.1 ? u * (1.0 - u2 * (1.0 / 6.0 - 0.075 * u2)) : log(u + sqrt(u2 + 1.0)));
 }
 
-// What passes to the thinner side, of index n below 1: the mean of 1 - F over the visible facets; reversed (1), the
-// share of light by the paths of light from there: path/microfacets.glsl. With tau the cotangent of the angle between view and facet, tau_c the critical one, and tau_m one near their median:
+// What passes to the thinner side, of index below 1: the mean of 1 - F over the visible facets; reversed (1), the share
+// by the paths of light from there. tau, cotangent of the angle to a facet, is tau_c at the critical one, and tau_m
+// near the median:
 //   share below the critical angle: t^-p, t = 1 + exp(g asinh(k ln(tau_c^2 / tau_m^2)))
 //   their reflectance: F(tau), the tau above which 0.7213 of them are: 1 / 0.7213 = exp(0.326707)
 // Source and derivation: tools/fits/ggx_inside.py.
-// Domain: mu and alpha in [1e-4, 1], index in [0.33, 0.98]. Largest absolute error of the albedo: 2.8e-2; reversed,
-// from mu 0.01 on: 3.6e-2, of smooth surfaces 1.1e-2.
+// Domain: mu and alpha in [1e-4, 1], index in [0.33, 0.98]. Largest absolute error of the albedo: 2.8e-2; reversed, from
+// mu 0.01 on: 3.6e-2.
 float eonlib_dielectric_passing(float mu, float alpha, float ior, float reversed)
 {
     float s2 = 1.0 - mu * mu;
@@ -135,9 +135,8 @@ float eonlib_dielectric_passing(float mu, float alpha, float ior, float reversed
     return (1.0 - eonlib_fresnel_dielectric(1.0 / sqrt(1.0 + exp(-typical) / median2), ior)) / pow(t, k1_p_g.y);
 }
 
-// Average over the visible facets. Near index 1 the curve depends on the cosine over sqrt(n^2 - 1) alone, and only
-// grazing facets reflect: an index below 1.03 has the average of 1.03 for k times mu and alpha, at most 1. Where k mu
-// exceeds 1, the cosine grows with mu, and a smooth surface has that of the view.
+// Average over the visible facets. Near index 1 the curve depends on the cosine over sqrt(n^2 - 1) alone: an index below
+// 1.03 has the average of 1.03 for k times mu and alpha, at most 1. Where k mu exceeds 1, the cosine grows with mu.
 // Largest absolute error of the albedo below index 1.03, where k alpha exceeds 1: 9.3e-3.
 float eonlib_fresnel_dielectric_visible(float mu, float alpha, float ior)
 {

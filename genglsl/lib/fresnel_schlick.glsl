@@ -5,37 +5,37 @@
 // That cosine is mu + alpha^2 / (mu + alpha) N / D, x = mu / (mu + alpha).
 // Source: tools/fits/ggx_cosine.py. Domain: mu and alpha in [1e-4, 1], exponent 1 to 10. Largest absolute
 // error of the albedo: 0.0032, at exponent 5 0.0019.
-#define GGX_SCHLICK_N000 5.211763
-#define GGX_SCHLICK_N001 42.311725
-#define GGX_SCHLICK_N002 -10.177434
-#define GGX_SCHLICK_N003 9.0471791
-#define GGX_SCHLICK_N010 25.522575
-#define GGX_SCHLICK_N011 7.80178
-#define GGX_SCHLICK_N012 -19.109862
-#define GGX_SCHLICK_N020 -51.576518
-#define GGX_SCHLICK_N021 -1.9211355
-#define GGX_SCHLICK_N030 22.933263
-#define GGX_SCHLICK_N100 -9.6045313
-#define GGX_SCHLICK_N101 -35.962843
-#define GGX_SCHLICK_N102 -7.363016
-#define GGX_SCHLICK_N110 -17.683059
-#define GGX_SCHLICK_N111 20.252399
-#define GGX_SCHLICK_N120 -6.4714124
-#define GGX_SCHLICK_N200 -4.1751567
-#define GGX_SCHLICK_N201 3.2087931
-#define GGX_SCHLICK_N210 -18.218307
-#define GGX_SCHLICK_N300 7.9395461
-#define GGX_SCHLICK_D001 5.765519
-#define GGX_SCHLICK_D002 -1.515595
-#define GGX_SCHLICK_D010 42.67342
-#define GGX_SCHLICK_D011 -0.008712644
-#define GGX_SCHLICK_D020 -2.671278
-#define GGX_SCHLICK_D100 -2.909114
-#define GGX_SCHLICK_D101 -3.69908
-#define GGX_SCHLICK_D110 -69.11994
-#define GGX_SCHLICK_D200 1.541857
-#define GGX_SCHLICK_D120 -6.01911
-#define GGX_SCHLICK_D210 28.88318
+#define SCHLICK_N000 5.211763
+#define SCHLICK_N001 42.311725
+#define SCHLICK_N002 -10.177434
+#define SCHLICK_N003 9.0471791
+#define SCHLICK_N010 25.522575
+#define SCHLICK_N011 7.80178
+#define SCHLICK_N012 -19.109862
+#define SCHLICK_N020 -51.576518
+#define SCHLICK_N021 -1.9211355
+#define SCHLICK_N030 22.933263
+#define SCHLICK_N100 -9.6045313
+#define SCHLICK_N101 -35.962843
+#define SCHLICK_N102 -7.363016
+#define SCHLICK_N110 -17.683059
+#define SCHLICK_N111 20.252399
+#define SCHLICK_N120 -6.4714124
+#define SCHLICK_N200 -4.1751567
+#define SCHLICK_N201 3.2087931
+#define SCHLICK_N210 -18.218307
+#define SCHLICK_N300 7.9395461
+#define SCHLICK_D001 5.765519
+#define SCHLICK_D002 -1.515595
+#define SCHLICK_D010 42.67342
+#define SCHLICK_D011 -0.008712644
+#define SCHLICK_D020 -2.671278
+#define SCHLICK_D100 -2.909114
+#define SCHLICK_D101 -3.69908
+#define SCHLICK_D110 -69.11994
+#define SCHLICK_D200 1.541857
+#define SCHLICK_D120 -6.01911
+#define SCHLICK_D210 28.88318
 
 // Source: tools/fits/ggx_cosine.py. Domain: mu and alpha in [1e-4, 1]. Largest absolute error of the
 // albedo: 0.0059 for a dip from 1 to 0.
@@ -85,19 +85,19 @@ float ggx_cosine_schlick(float mu, float alpha, float exponent)
     float x = mu / (mu + alpha);
     float y = sqrt(alpha);
     float s = 4.0 / (3.0 + clamp(exponent, 1.0, 10.0));
-    float N = GGX_SCHLICK_N000
-        + s * (GGX_SCHLICK_N001 + s * (GGX_SCHLICK_N002 + s * GGX_SCHLICK_N003))
-        + y * (GGX_SCHLICK_N010 + s * (GGX_SCHLICK_N011 + s * GGX_SCHLICK_N012)
-        + y * (GGX_SCHLICK_N020 + s * GGX_SCHLICK_N021 + y * GGX_SCHLICK_N030))
-        + x * (GGX_SCHLICK_N100 + s * (GGX_SCHLICK_N101 + s * GGX_SCHLICK_N102)
-        + y * (GGX_SCHLICK_N110 + s * GGX_SCHLICK_N111 + y * GGX_SCHLICK_N120)
-        + x * (GGX_SCHLICK_N200 + s * GGX_SCHLICK_N201 + y * GGX_SCHLICK_N210
-        + x * GGX_SCHLICK_N300));
-    float D = 1.0 + s * (GGX_SCHLICK_D001 + s * GGX_SCHLICK_D002)
-        + y * (GGX_SCHLICK_D010 + s * GGX_SCHLICK_D011 + y * GGX_SCHLICK_D020)
-        + x * (GGX_SCHLICK_D100 + s * GGX_SCHLICK_D101
-        + y * (GGX_SCHLICK_D110 + y * GGX_SCHLICK_D120)
-        + x * (GGX_SCHLICK_D200 + y * GGX_SCHLICK_D210));
+    float N = SCHLICK_N000
+        + s * (SCHLICK_N001 + s * (SCHLICK_N002 + s * SCHLICK_N003))
+        + y * (SCHLICK_N010 + s * (SCHLICK_N011 + s * SCHLICK_N012)
+        + y * (SCHLICK_N020 + s * SCHLICK_N021 + y * SCHLICK_N030))
+        + x * (SCHLICK_N100 + s * (SCHLICK_N101 + s * SCHLICK_N102)
+        + y * (SCHLICK_N110 + s * SCHLICK_N111 + y * SCHLICK_N120)
+        + x * (SCHLICK_N200 + s * SCHLICK_N201 + y * SCHLICK_N210
+        + x * SCHLICK_N300));
+    float D = 1.0 + s * (SCHLICK_D001 + s * SCHLICK_D002)
+        + y * (SCHLICK_D010 + s * SCHLICK_D011 + y * SCHLICK_D020)
+        + x * (SCHLICK_D100 + s * SCHLICK_D101
+        + y * (SCHLICK_D110 + y * SCHLICK_D120)
+        + x * (SCHLICK_D200 + y * SCHLICK_D210));
     return clamp(mu + alpha * (1.0 - x) * N / D, 0.0, 1.0);
 }
 

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Isotropic GGX facets that stand for anisotropic ones in fits. wo is in the frame of tangent, bitangent and normal.
-//
-// With r^2 = (alpha_x^2 + alpha_y^2) / 2, squared roughness along the azimuth of wo is (alpha_x x)^2 + (alpha_y y)^2
-// + (r z)^2, across it 2 r^2 less that. Source: tools/fits/ggx_anisotropic.py. Domain: alphas in [1e-3, 1], one up to
-// 50 times the other, cosines from 0.01. Largest relative error of E_ss: 2.5e-2; of the albedo of a dielectric,
-// absolute: 3.4e-2, up to 4 times 2e-2.
+// Source and equations: tools/fits/ggx_anisotropic.py. Domain: alphas in [1e-3, 1], one up to 50 times the other,
+// cosines from 0.01. Largest relative error of E_ss: 2.5e-2; of a dielectric's albedo, absolute: 3.4e-2.
 
 #include "ggx_albedo.glsl"
 

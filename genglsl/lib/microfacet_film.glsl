@@ -1,71 +1,64 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reflectances of a microfacet lobe under a thin film: F_airy at the half vector, its average F_ss over the
-// hemisphere, for the factor 1 + F_ss (1 - E_ss) / E_ss of [MaterialX2026], Energy Compensation, and its average
-// over the visible facets, which times E_ss and that factor is the albedo. Each average is a sum over three nodes.
-// A node stands for a width of cosines, whose waves fade.
+// Reflectances of a microfacet lobe under a thin film: F_airy at the half vector, its average F_ss over the hemisphere,
+// and its average over the visible facets. Each average is a sum over three nodes, whose waves fade over a width.
 
 #include "microfacet_lobe.glsl"
 #include "thin_film.glsl"
 
 // F_ss: cosine, weight and width of its nodes. Source: tools/fits/thin_film_nodes.py. Domain: films up to 1000 nm
 // of indices in [1, 2.5]. Largest error: 3.61e-2, of a film that vanishes 4.4e-3.
-#define MICROFACET_AVERAGE_1 vec3(0.17999, 0.10982, 0.19938)
-#define MICROFACET_AVERAGE_2 vec3(0.55701, 0.43737, 0.13743)
-#define MICROFACET_AVERAGE_3 vec3(0.88292, 0.4528, 0.088681)
+#define FILM_AVERAGE_1 vec3(0.17999, 0.10982, 0.19938)
+#define FILM_AVERAGE_2 vec3(0.55701, 0.43737, 0.13743)
+#define FILM_AVERAGE_3 vec3(0.88292, 0.4528, 0.088681)
 
 // Visible facets: mean of the nodes' cosines, their reach and their bend, coefficients of mu^i y^j with
 // y = alpha / (alpha + 0.2). Source and films as above. Domain: mu in [0.1, 1], alpha in [0.01, 1]. Largest error:
-// 7.7e-2, of a film of index 1.16 in which a metal of a lower index reflects totally. Below, 0.14.
-#define MICROFACET_FACETS_00 vec3(3.252, 0.32298, 0.14542)
-#define MICROFACET_FACETS_01 vec3(-0.91173, 3.3428, 0.030955)
-#define MICROFACET_FACETS_02 vec3(-4.1529, -4.255, -0.22576)
-#define MICROFACET_FACETS_03 vec3(1.7917, 0.51298, -0.22374)
-#define MICROFACET_FACETS_10 vec3(-0.12447, 3.6133, 1.0328)
-#define MICROFACET_FACETS_11 vec3(2.405, -7.43, -1.4779)
-#define MICROFACET_FACETS_12 vec3(-2.6953, 3.3391, 0.16285)
-#define MICROFACET_FACETS_20 vec3(-7.6708, -2.597, -1.7185)
-#define MICROFACET_FACETS_21 vec3(8.1838, 3.5172, 2.1385)
-#define MICROFACET_FACETS_30 vec3(0.0010818, -0.34239, 0.018052)
+// 7.7e-2, of index 1.16 over a metal of a lower index, which reflects totally. Below, 0.14.
+#define FILM_FACETS_00 vec3(3.252, 0.32298, 0.14542)
+#define FILM_FACETS_01 vec3(-0.91173, 3.3428, 0.030955)
+#define FILM_FACETS_02 vec3(-4.1529, -4.255, -0.22576)
+#define FILM_FACETS_03 vec3(1.7917, 0.51298, -0.22374)
+#define FILM_FACETS_10 vec3(-0.12447, 3.6133, 1.0328)
+#define FILM_FACETS_11 vec3(2.405, -7.43, -1.4779)
+#define FILM_FACETS_12 vec3(-2.6953, 3.3391, 0.16285)
+#define FILM_FACETS_20 vec3(-7.6708, -2.597, -1.7185)
+#define FILM_FACETS_21 vec3(8.1838, 3.5172, 2.1385)
+#define FILM_FACETS_30 vec3(0.0010818, -0.34239, 0.018052)
 
-// Outer of the three nodes x, 0 and -x of Gauss's rule for a semicircle over [-1, 1], whose weights are
-// (1 - x^2) / 2. Each stands for a third of the reach to both sides.
-#define MICROFACET_OUTER 0.70710678
+// Nodes x, 0 and -x of Gauss's rule for a semicircle over [-1, 1], of weights (1 - x^2) / 2. Each stands for a third of
+// the reach to both sides.
+#define FILM_OUTER 0.70710678
 
-// Mean of the cosines of wo with the visible facets, reach of the nodes around it, and their bend.
-vec3 microfacet_film_facets(float mu, float alpha)
-{
-    float y = alpha / (alpha + 0.2);
-    vec3 C = MICROFACET_FACETS_00
-             + y * (MICROFACET_FACETS_01 + y * (MICROFACET_FACETS_02 + y * MICROFACET_FACETS_03))
-             + mu * (MICROFACET_FACETS_10 + y * (MICROFACET_FACETS_11 + y * MICROFACET_FACETS_12)
-             + mu * (MICROFACET_FACETS_20 + y * MICROFACET_FACETS_21
-             + mu * MICROFACET_FACETS_30));
-    float s = alpha / sqrt(mu + alpha);
-    return vec3(mu + s * s * C.x, s * C.y, C.z);
-}
-
-// Cosine and width of node i, and its weights in the averages: 0 to 2 are of the visible facets, 3 to 5 of F_ss,
-// 6 is the half vector.
+// Cosine and width of a node, and its weights: 0 to 2 are of the visible facets, 3 to 5 of F_ss, 6 is the half vector.
 vec4 microfacet_film_node(int i, float mu_h, vec3 facets)
 {
-    float x = MICROFACET_OUTER * float(i - 1);
+    float x = FILM_OUTER * float(i - 1);
     float mu = facets.x + facets.y * (x + facets.z * (4.0 * x * x - 1.0));  // a bend keeps the mean
-    vec3 average = i < 4 ? MICROFACET_AVERAGE_1 : MICROFACET_AVERAGE_2;
-    average = i == 5 ? MICROFACET_AVERAGE_3 : average;
+    vec3 average = i < 4 ? FILM_AVERAGE_1 : FILM_AVERAGE_2;
+    average = i == 5 ? FILM_AVERAGE_3 : average;
 
     vec4 node = vec4(clamp(mu, 0.0, 1.0), facets.y / 3.0, 0.5 - 0.5 * x * x, 0.0);
     node = i > 2 ? vec4(average.x, average.z, 0.0, average.y) : node;
     return i > 5 ? vec4(mu_h, 0.0, 0.0, 0.0) : node;
 }
 
-// Reflectances under a film, that is where its thickness is above 0. Left out is what no closure needs: the value in
-// an environment, and the visible facets of a metal in a light, since nothing lies below it.
+// Reflectances under a film, but for the value in an environment and a metal's visible facets in a light: nothing lies
+// below it.
 void microfacet_film(MicrofacetLobe lobe, FresnelData fd, inout MicrofacetFresnel F)
 {
     F.outside = vec3(1.0);
     if (fd.airy)
     {
-        vec3 facets = microfacet_film_facets(lobe.visible.x, lobe.visible.y);
+        float mu = lobe.visible.x;
+        float alpha = lobe.visible.y;
+        float y = alpha / (alpha + 0.2);
+        vec3 C = FILM_FACETS_00
+                 + y * (FILM_FACETS_01 + y * (FILM_FACETS_02 + y * FILM_FACETS_03))
+                 + mu * (FILM_FACETS_10 + y * (FILM_FACETS_11 + y * FILM_FACETS_12)
+                 + mu * (FILM_FACETS_20 + y * FILM_FACETS_21
+                 + mu * FILM_FACETS_30));
+        float s = alpha / sqrt(mu + alpha);
+        vec3 facets = vec3(mu + s * s * C.x, s * C.y, C.z);  // mean of the cosines, reach of the nodes, their bend
         bool is_lit = lobe.closure == CLOSURE_TYPE_REFLECTION;
         int i = is_lit && fd.model == FRESNEL_MODEL_CONDUCTOR ? 3 : 0;
         int end = is_lit ? 7 : 6;

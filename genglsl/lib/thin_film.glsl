@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// F_airy of [MaterialX2026], Thin-Film Iridescence Model: what vacuum (1), a film (2) and a substrate (3) reflect
-// together, in linear Rec. 709. Comments name the section of each equation. Each color channel has its own
-// substrate and its own sum over CIE XYZ. Amplitudes are complex, so no phase needs an arctangent: with z = r_21 r_23,
-// the text's r_123^m cos(mu_k phi m + m (phi_21 + phi_23)) is the real part of z^m exp(i mu_k phi m).
+// F_airy of [MaterialX2026], Thin-Film Iridescence Model, whose sections comments name: what vacuum (1), a film (2) and
+// a substrate (3) reflect, in linear Rec. 709. Each channel has its own substrate and sum over CIE XYZ. Amplitudes are
+// complex: with z = r_21 r_23, r_123^m cos(mu_k phi m + m (phi_21 + phi_23)) is the real part of z^m exp(i mu_k phi m).
 
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
 
@@ -15,12 +14,11 @@
 #define THIN_FILM_COLOR_Y vec3(-1.666124, 1.9557635, -0.2145965)
 #define THIN_FILM_COLOR_Z vec3(-0.4801271, 0.0397715, 1.1509987)
 
-// Divisors that vanish: a root of 0, and full reflection at grazing.
-#define THIN_FILM_LEAST 1e-12
+#define THIN_FILM_LEAST 1e-12  // divisors that vanish: a root of 0, full reflection at grazing
 
-// Orders are summed while the square of one exceeds both VALUE times the squared mean reflectances and WIDTH times
-// the squared width. Each square counts as at most RATIO of the one before, which ends slow sums: after COUNT orders it
-// is below VALUE times the square of a mean of 1e-3, ln(VALUE 1e-6) / ln(RATIO) = 86.1.
+// Orders are summed while the square of one exceeds VALUE times the squared mean reflectances and WIDTH times the
+// squared width, and counts as at most RATIO of the one before: COUNT = ln(VALUE 1e-6) / ln(RATIO), 86.1, reach a mean
+// of 1e-3.
 // Source: tools/fits/thin_film.py. Largest relative error of a film that reflects 1e-3 or more: 8e-4.
 #define THIN_FILM_ORDER_VALUE 8e-14
 #define THIN_FILM_ORDER_WIDTH 1e-3
@@ -34,39 +32,24 @@ struct ThinFilmComplex
     vec3 im;
 };
 
-ThinFilmComplex thin_film_complex(vec3 re, vec3 im)
-{
-    ThinFilmComplex z;  // Metal constructs no structure by a call
-    z.re = re;
-    z.im = im;
-    return z;
-}
-
 ThinFilmComplex thin_film_product(ThinFilmComplex a, ThinFilmComplex b)
 {
-    return thin_film_complex(a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re);
+    ThinFilmComplex z;  // Metal constructs no structure by a call
+    z.re = a.re * b.re - a.im * b.im;
+    z.im = a.re * b.im + a.im * b.re;
+    return z;
 }
 
 // (a - b) / (a + b)
 ThinFilmComplex thin_film_interface(ThinFilmComplex a, ThinFilmComplex b)
 {
-    vec3 re = a.re + b.re;
-    vec3 im = a.im + b.im;
-    vec3 inverse = 1.0 / max(re * re + im * im, THIN_FILM_LEAST);
-    return thin_film_complex((a.re * a.re + a.im * a.im - b.re * b.re - b.im * b.im) * inverse,
-                             2.0 * (a.im * b.re - a.re * b.im) * inverse);
-}
-
-// U + i V of Second Interface Phase, the root of (eta_3 + i kappa_3)^2 - sin^2(theta). The smaller part is a
-// quotient, since as a difference it cancels.
-ThinFilmComplex thin_film_root(vec3 ior, vec3 extinction, float sin2)
-{
-    vec3 A = ior * ior - extinction * extinction - sin2;
-    vec3 Q = ior * extinction;
-    vec3 larger = sqrt(0.5 * (sqrt(A * A + 4.0 * Q * Q) + abs(A)));
-    vec3 smaller = Q / max(larger, THIN_FILM_LEAST);
-    vec3 positive = step(vec3(0.0), A);
-    return thin_film_complex(mix(smaller, larger, positive), mix(larger, smaller, positive));
+    ThinFilmComplex z;
+    z.re = a.re + b.re;
+    z.im = a.im + b.im;
+    vec3 inverse = 1.0 / max(z.re * z.re + z.im * z.im, THIN_FILM_LEAST);
+    z.re = (a.re * a.re + a.im * a.im - b.re * b.re - b.im * b.im) * inverse;
+    z.im = 2.0 * (a.im * b.re - a.re * b.im) * inverse;
+    return z;
 }
 
 // Second Interface: r_23 of both polarizations, below a film of index n, at a cosine mu_t in it.
@@ -78,17 +61,32 @@ void thin_film_substrate(float n, float mu_t, float sin2, FresnelData fd, out Th
         // The phase is pi below a denser film, whose F0 may round. A negative curve has no amplitude.
         float F0 = (1.0 - 1e-6) * mx_ior_to_f0(n);
         vec3 r = sqrt(max(mx_fresnel_hoffman_schlick(mu_t, fd), 0.0));
-        r23_p = thin_film_complex(r * (2.0 * step(vec3(F0), fd.F0) - 1.0), vec3(0.0));
-        r23_s = thin_film_complex(-r23_p.re, vec3(0.0));
+        r23_p.re = r * (2.0 * step(vec3(F0), fd.F0) - 1.0);
+        r23_p.im = vec3(0.0);
+        r23_s.re = -r23_p.re;
+        r23_s.im = r23_p.im;
     }
     else
     {
+        // Second Interface Phase: U + i V, the root of (eta_3 + i kappa_3)^2 - sin^2(theta). The smaller part is a
+        // quotient, since as a difference it cancels.
         vec3 n2 = fd.ior * fd.ior - fd.extinction * fd.extinction;
-        vec3 k2 = 2.0 * fd.ior * fd.extinction;
-        ThinFilmComplex root = thin_film_root(fd.ior, fd.extinction, sin2);
-        r23_s = thin_film_interface(thin_film_complex(vec3(n * mu_t), vec3(0.0)), root);
-        r23_p = thin_film_interface(thin_film_complex(n2 * mu_t, k2 * mu_t),
-                                    thin_film_complex(n * root.re, n * root.im));
+        vec3 Q = fd.ior * fd.extinction;
+        vec3 A = n2 - sin2;
+        vec3 larger = sqrt(0.5 * (sqrt(A * A + 4.0 * Q * Q) + abs(A)));
+        vec3 smaller = Q / max(larger, THIN_FILM_LEAST);
+        vec3 positive = step(vec3(0.0), A);
+        ThinFilmComplex root, incident;
+        root.re = mix(smaller, larger, positive);
+        root.im = mix(larger, smaller, positive);
+        incident.re = vec3(n * mu_t);
+        incident.im = vec3(0.0);
+        r23_s = thin_film_interface(incident, root);
+        incident.re = n2 * mu_t;
+        incident.im = 2.0 * Q * mu_t;
+        root.re *= n;
+        root.im *= n;
+        r23_p = thin_film_interface(incident, root);
     }
 }
 
@@ -108,8 +106,7 @@ vec3 thin_film_rec709(vec4 S)
 
 // Airy Summation, higher-order terms: the sum of C_m S_m / 2 over m and both polarizations, C_m = C_0 z^m, S_m / 2 =
 // fade^(m^2) exp(i mu_k phi m), fade = exp(-sigma_k^2 phi^2). Real z need no sine: S_(m + 1) + fade^(4 m) S_(m - 1) =
-// fade^(2 m) Re(S_1) S_m. A mean's nodes, over which phi varies by `spread`, add up slow waves well; fast ones have
-// to fade. The fourth power is a choice, as is m^2 for the order m, which keeps the recurrence.
+// fade^(2 m) Re(S_1) S_m. Fast waves of a node, over which phi varies by `spread`, fade: by its fourth power, a choice.
 vec3 thin_film_orders(vec3 C0_s, ThinFilmComplex z_s, vec3 C0_p, ThinFilmComplex z_p, float phi, float spread,
                       float limit, bool is_real)
 {
@@ -131,8 +128,11 @@ vec3 thin_film_orders(vec3 C0_s, ThinFilmComplex z_s, vec3 C0_p, ThinFilmComplex
     float ratio2 = min(max(R.x, max(R.y, R.z)) * fade2.x * fade2.x * fade2.x, THIN_FILM_ORDER_RATIO);
 
     vec3 sum = vec3(0.0);
-    ThinFilmComplex C_s = thin_film_complex(C0_s * z_s.re, C0_s * z_s.im);
-    ThinFilmComplex C_p = thin_film_complex(C0_p * z_p.re, C0_p * z_p.im);
+    ThinFilmComplex C_s, C_p;
+    C_s.re = C0_s * z_s.re;
+    C_s.im = C0_s * z_s.im;
+    C_p.re = C0_p * z_p.re;
+    C_p.im = C0_p * z_p.im;
     for (int m = 0; m < THIN_FILM_ORDER_COUNT; m++)
     {
         sum += (C_s.re + C_p.re) * thin_film_rec709(S_re);
@@ -164,7 +164,7 @@ vec3 thin_film_orders(vec3 C0_s, ThinFilmComplex z_s, vec3 C0_p, ThinFilmComplex
     return sum;
 }
 
-// F_airy at a cosine mu, or its mean over cosines of a width around mu. A film of an index below 1 is none.
+// F_airy at a cosine mu, or its mean over a width of cosines. A film of an index below 1 is none.
 vec3 thin_film_fresnel(float mu, float width, FresnelData fd)
 {
     // Three-Layer Geometry: g = n mu_t, whose square loses no digits of a grazing mu.
@@ -175,12 +175,14 @@ vec3 thin_film_fresnel(float mu, float width, FresnelData fd)
     float r21_s = (g - mu) / max(g + mu, THIN_FILM_LEAST);
     float r21_p = (g - n * n * mu) / max(g + n * n * mu, THIN_FILM_LEAST);
 
-    ThinFilmComplex r23_s, r23_p;
-    thin_film_substrate(n, g / n, (1.0 - mu) * (1.0 + mu), fd, r23_s, r23_p);
-    ThinFilmComplex z_s = thin_film_complex(r21_s * r23_s.re, r21_s * r23_s.im);
-    ThinFilmComplex z_p = thin_film_complex(r21_p * r23_p.re, r21_p * r23_p.im);
-    vec3 C0_s = thin_film_c0(r21_s, r23_s);
-    vec3 C0_p = thin_film_c0(r21_p, r23_p);
+    ThinFilmComplex z_s, z_p;  // r_23, then r_21 r_23
+    thin_film_substrate(n, g / n, (1.0 - mu) * (1.0 + mu), fd, z_s, z_p);
+    vec3 C0_s = thin_film_c0(r21_s, z_s);
+    vec3 C0_p = thin_film_c0(r21_p, z_p);
+    z_s.re *= r21_s;
+    z_s.im *= r21_s;
+    z_p.re *= r21_p;
+    z_p.im *= r21_p;
 
     // Optical Path Difference: phi = 2 pi Delta = 4 pi d g, whose slope in mu is 4 pi d mu / g.
     float scale = 4.0e-9 * M_PI * fd.tf_thickness;

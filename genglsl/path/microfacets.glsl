@@ -14,7 +14,7 @@
 // the rest by facets that reflect everything.
 
 #include "lib/questions.glsl"
-#include "../lib/microfacet_film.glsl"
+#include "../lib/microfacet_transmission.glsl"
 #include "../lib/fresnel_dielectric.glsl"
 
 // Narrower lobes are lost in the rounding of directions: a smooth surface has this alpha.
@@ -95,7 +95,6 @@ MicrofacetLobe path_microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec
 {
     roughness = max(roughness, vec2(PATH_LEAST_ALPHA));
     MicrofacetLobe lobe = microfacet_lobe(closureData, N, X, roughness, retroreflective);
-    lobe.X = normalize(X - dot(X, lobe.N) * lobe.N);
     if (retroreflective && dot(lobe.N, lobe.wi) < 0.0)
     {
         lobe.wi = path_turned(lobe.wi, lobe.N);  // transmission has the view itself
@@ -206,6 +205,12 @@ void path_microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelD
                                     drawn ? path_facet_draw(lobe, below, turned) : PATH_WASTED,
                                     part * path_facet_pdf(lobe, below));
     }
+}
+
+void path_microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelData fd, MicrofacetFresnel F, vec3 tint,
+                          float weight, int distribution, inout BSDF bsdf)
+{
+    path_microfacet_bsdf(closureData, lobe, fd, F, tint, weight, distribution, 0, bsdf);
 }
 
 // Nothing is off because of the question alone.

@@ -108,7 +108,7 @@ GLASS = document_text(
 BELOW = (
     "bool below = scatter_mode == 1;",
     "bool below = false;",
-    "genglsl/lib/microfacet_lobe.glsl",
+    "genglsl/lib/microfacet_transmission.glsl",
 )
 
 

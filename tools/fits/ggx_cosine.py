@@ -76,7 +76,7 @@ IORS = (1.03, 1.05, 1.08, 1.12, 1.2, 1.3, 1.45, 1.7, 2.0, 2.5, 3.0)
 EXPONENTS = (1, 2, 3, 4, 5, 6, 8, 10)
 
 DIELECTRIC = Curves(
-    prefix="GGX_DIELECTRIC",
+    prefix="DIELECTRIC",
     reflectance=dielectric,
     parameters=IORS,
     shapes=tuple(float(mp.sqrt((mp.mpf(n) - 1) / (mp.mpf(n) + 1))) for n in IORS),
@@ -89,7 +89,7 @@ DIELECTRIC = Curves(
     ),
 )
 SCHLICK = Curves(
-    prefix="GGX_SCHLICK",
+    prefix="SCHLICK",
     reflectance=schlick,
     parameters=EXPONENTS,
     shapes=tuple(4.0 / (3.0 + q) for q in EXPONENTS),

@@ -26,8 +26,8 @@ SETS = 32
 LEAST = 1e-6  # cosine and roughness from which on shaders take their fits
 EXACT = nodes.ShadingPoints._albedo
 
-DIELECTRIC = shipped("fresnel_dielectric", "GGX_DIELECTRIC")
-SCHLICK = shipped("fresnel_schlick", "GGX_SCHLICK")
+DIELECTRIC = shipped("fresnel_dielectric", "DIELECTRIC")
+SCHLICK = shipped("fresnel_schlick", "SCHLICK")
 SHEEN = shipped("conty_kulla_albedo", "CONTY_KULLA_ALBEDO")
 AVERAGE = shipped("fresnel_dielectric", "FRESNEL_AVG")
 COSINES, WEIGHTS = (shipped("fresnel_conductor", "FRESNEL_AVG", kind) for kind in "CW")
