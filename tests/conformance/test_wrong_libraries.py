@@ -353,3 +353,47 @@ def test_a_run_says_which_texts_and_states_it_does_not_judge(monkeypatch):
     unjudged = dict(run.unjudged)
     assert {"osl", "msl", "mdl"} <= unjudged.keys() and "glsl" not in unjudged
     assert any(each.startswith("not judged here: ") and "Metal" in each for each in answer(run))
+
+
+# --- what a client binds --------------------------------------------------------------------------
+
+FRAME, STATES = ("client", "surface, a client's frame"), "states"
+LIB = "pbrlib/genglsl/lib/"
+CLEAR, MIRROR = "dielectric_bsdf, scatter_mode T", "generalized_schlick_bsdf, scatter_mode R"
+
+
+@pytest.mark.parametrize(
+    "part, old, new, check, title, words",
+    [
+        ("lights/genglsl/mx_point_light.glsl", "pow(distance + 1.0,", "pow(distance,", *FRAME, ("a point light", "three lights")),
+        ("lights/genglsl/mx_spot_light.glsl", "smoothstep(low, high,", "smoothstep(high, low,", *FRAME, ("a spot light", "three lights")),
+        ("lights/genglsl/mx_directional_light.glsl", "-light.direction", "light.direction", *FRAME, ("a directional light", "three lights")),
+        (f"{LIB}mx_shadow.glsl", "variance + mx_square(d)", "variance + d", *FRAME, ("a shadow map",)),
+        (f"{LIB}mx_environment_fis.glsl", "Li * $envLightIntensity", "Li", *FRAME, ("another intensity of the environment",)),
+        (f"{LIB}mx_environment_none.glsl", "irradiance(vec3 N)\n{\n    return vec3(0.0)", "irradiance(vec3 N)\n{\n    return vec3(0.01)", *FRAME,
+         ("premultiplied mixes without an environment",)),
+        ("stdlib/genglsl/mx_mix_surfaceshader.glsl", "mix(bg.transparency, fg.transparency, w)", "mix(fg.transparency, bg.transparency, w)", *FRAME,
+         ("an opacity below 1",)),
+        ("stdlib/genglsl/mx_mix_surfaceshader.glsl", "mix(bg.color, fg.color, w)", "bg.color", *FRAME, ()),
+        (f"{LIB}mx_microfacet_specular.glsl", "mx_matrix_mul(transform, vec4(dir,0.0))", "mx_matrix_mul(vec4(dir,0.0), transform)", *FRAME,
+         ("an environment: turned",)),
+        (f"{LIB}mx_microfacet_specular.glsl", "mx_matrix_mul(transform, vec4(dir,0.0))", "mx_matrix_mul(vec4(dir,0.0), transform)", STATES, "conductor_bsdf",
+         ("an environment: turned",)),
+        (f"{LIB}mx_environment_fis.glsl", "radiance) * $envLightIntensity", "radiance)", STATES, CLEAR, ("an environment: dim and two-sided",)),
+        (f"{LIB}mx_environment_prefilter.glsl", "Li * FG * $envLightIntensity", "Li * FG", "methods", MIRROR, ("environment prefilter",)),
+        (f"{LIB}mx_microfacet_specular.glsl", "    // Return the final directional albedo.", "    AB *= 0.5;", "methods", MIRROR, ("albedo montecarlo",)),
+        (f"{LIB}mx_transmission_refract.glsl", "tint = mx_square(tint);", "", STATES, CLEAR, ("an environment: dim and two-sided",)),
+    ],
+)  # fmt: skip
+def test_a_wrong_library_is_told_by_what_a_client_binds(
+    judged, tmp_path, part, old, new, check, title, words
+):
+    replace_text(copy_of_stock(tmp_path, part), old, new, part)
+    result = judged(check, title, "gl", str(tmp_path))
+    assert result.verdict == FAILED and has(result, *words)
+
+
+@pytest.mark.parametrize("library", ["eonlib", "stock"])
+def test_a_frame_shows_what_a_client_binds(judged, library):
+    result = judged(*FRAME, "gl", library)
+    assert result.verdict == PASSED and result.control.caught

@@ -37,7 +37,18 @@ from mxeon.hosts.testrender_scene import EYE, NEAREST
 from mxeon.models.nodes.node import Scattering, Variant
 from mxeon.models.nodes.renderers import BSDL_VARIANTS, CYCLES_VARIANTS
 from mxeon.models.shading_model import ALONG, UP
-from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, VIEW, Scene, local_directions, sphere
+from mxeon.shaders.scene import (
+    BACK,
+    CLIENT,
+    FRONT,
+    FURNACE,
+    SIDE,
+    VIEW,
+    Client,
+    Scene,
+    local_directions,
+    sphere,
+)
 
 if TYPE_CHECKING:
     from mxeon.hosts.osl import OslHost
@@ -216,7 +227,7 @@ def isotropic(batch: Batch) -> Batch:
 class Evaluating(Backend):
     """An engine that runs the generated shader for any pairs."""
 
-    abilities = ~(Ability.BELOW | Ability.SURFACE)
+    abilities = ~(Ability.BELOW | Ability.SURFACE | Ability.FRAME)
 
     @classmethod
     def errors(cls, spec: Spec) -> Errors:
@@ -282,14 +293,17 @@ class Evaluating(Backend):
         text = self.spec.document({"color": samples.WHITE}).replace('name="color"', SRGB_COLOR)
         return self.host.compile(text.replace('version="', LINEAR), library=self.library)[0]
 
-    def together(self, batch: Batch, irradiance: NDArray[np.float32] | None, two: bool) -> Array:
+    def together(
+        self, batch: Batch, irradiance: NDArray[np.float32] | None, client: Client, two: bool
+    ) -> Array:
         """Light of several lights and of an environment in one pixel, from one lobe or from two."""
         shader = self.two if two else self.shader
-        return self.evaluate(batch, LIT, irradiance=irradiance, shader=shader)
+        return self.evaluate(batch, LIT, irradiance=irradiance, shader=shader, client=client)
 
     def answer(self, query: Query) -> Array:
         """The host's values for a query."""
-        return self.host.evaluate(*query[:5], output=query.output, irradiance=query.irradiance)
+        pairs, (output, irradiance, client) = query[:5], query[5:]
+        return self.host.evaluate(*pairs, output=output, irradiance=irradiance, client=client)
 
     def evaluate(
         self,
@@ -298,15 +312,17 @@ class Evaluating(Backend):
         output: str = "response",
         irradiance: NDArray[np.float32] | None = None,
         shader: Shader | None = None,
+        client: Client = CLIENT,
     ) -> Array:
         def evaluated() -> Array:
             inputs = {**self.spec.fixed, **batch.inputs}
             pairs = batch.world(batch.wo), batch.world(batch.wi)
-            query = Query(shader or self.shader, *pairs, inputs, branch, output, irradiance)
+            light = irradiance, client
+            query = Query(shader or self.shader, *pairs, inputs, branch, output, *light)
             return self.answer(query).astype(np.float64)
 
         which = shader and (shader.element, shader.methods)
-        rest = branch, output, which, contents(irradiance)
+        rest = branch, output, which, contents(irradiance), client
         return self._evaluations.value((*parts(batch), *rest), evaluated)
 
 
@@ -419,7 +435,9 @@ class Closures(Evaluating):
         trees = cast("OslHost", self.host).trees(query.shader, query.wo, query.inputs)
         return evaluate(trees, query)
 
-    def together(self, batch: Batch, irradiance: NDArray[np.float32] | None, two: bool) -> Array:
+    def together(
+        self, batch: Batch, irradiance: NDArray[np.float32] | None, client: Client, two: bool
+    ) -> Array:
         return np.pi * self.evaluate(batch, "direct", shader=self.two if two else self.shader)
 
     @property
@@ -854,6 +872,12 @@ class DarkPictures(Pictures):
     abilities = Ability.SURFACE | Ability.LIGHT
 
 
+class Frames(Pictures):
+    """A whole main, drawn under what a client binds."""
+
+    abilities = Ability.FRAME | Ability.LIGHT
+
+
 class EmissionPictures(Spheres):
     """An EDF node on a sphere in the dark."""
 
@@ -884,7 +908,7 @@ class UtilityOsl(Evaluating):
 # By the word of a host's row for how it is evaluated; the first that supports a spec evaluates it. `mxeon.survey`
 # adds those of renderers with materials of their own.
 BACKENDS: dict[str, tuple[type[Backend], ...]] = {
-    "pairs": (Evaluating, LobesBelow, DarkPictures),
+    "pairs": (Evaluating, LobesBelow, DarkPictures, Frames),
     "closures": (Closures,),
     "rendered": (Rendered, RenderedLobes),
     "pictures": (CyclesPictures, Traced, EmissionPictures, InTheDark, DarkPictures, UtilityOsl),

@@ -126,6 +126,7 @@ class Ability(Flag):
     IMPLEMENTATION = auto()  # of nodes without values
     OUTPUT = auto()
     # For checks: pairs at the edges of the domain, too; how light is found, summed or let through.
+    FRAME = auto()  # the whole main under what a client binds
     PAIRS = auto()
     LIGHT = auto()
 

@@ -182,8 +182,9 @@ FAULTS = {
     "pi_missing": "the factor 1/pi is missing",
     "pi_twice": "the factor 1/pi is applied twice",
 }
-# How the states of pixels are joined that all wrong sums have.
+# How the states of pixels are joined that all wrong sums have, and those of frames.
 STATES = {"state": "", "both_states": " and ", "either_state": " or "}
+FRAMES = {f"{key}_of_frames": word for key, word in STATES.items()}
 SUMS = "each part is right by itself, but {share} sums are wrong{states}"
 # Other defects, with what `_filled` has in braces.
 DEFECTS = {
@@ -205,6 +206,7 @@ DEFECTS = {
     "input_ignored": "{0} is ignored",
     "not_zero": "{0} {constant}{place} (branches: {rest})",
     **dict.fromkeys(STATES, SUMS),
+    **dict.fromkeys(FRAMES, "{share} frames are wrong{states}"),
     "changes_nothing": "{all} changes nothing",
     "changes_something": "{all} changes something",
     "normal_of_surface": "the node's normal is ignored; the surface's is used instead",
@@ -407,7 +409,8 @@ def _filled(text: str, cause: Cause) -> str:
         "differences": _differences(cause.names),
         "released": _released(cause),
         "share": f"{cause.wrong} of {cause.of}",
-        "states": f", all with {STATES.get(cause.key, '').join(cause.names)}" * bool(cause.names),
+        "states": f", all with {(STATES | FRAMES).get(cause.key, '').join(cause.names)}"
+        * bool(cause.names),
         "constant": f"{cause.values[0]:.3g}" if cause.values else "not 0",
         "times": times,
         "also": f" and {times} times as bright" * bool(times),

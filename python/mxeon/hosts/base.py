@@ -13,9 +13,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import InputError, NotRun, Unsupported
 from mxeon.hosts.textures import check_images
+from mxeon.shaders import scene
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.methods import UNCHOSEN, Methods
-from mxeon.shaders.scene import Paths, Scene
+from mxeon.shaders.scene import CLIENT, Client, Paths, Scene
 
 if TYPE_CHECKING:
     import MaterialX as mx
@@ -30,7 +31,7 @@ Inputs: TypeAlias = Mapping[
 
 # Generated shaders turn a direction by this matrix before they look it up in an environment, so the middle of a
 # latitude-longitude map faces the viewer.
-TURN = np.diag([-1.0, 1.0, -1.0, 1.0])
+TURN = np.reshape(scene.TURN, (4, 4))
 
 
 class RendererWarning(UserWarning):
@@ -106,6 +107,7 @@ class Query(NamedTuple):
     branch: str
     output: str
     irradiance: Array | None
+    client: Client = CLIENT
 
 
 class Host(Engine):
@@ -130,6 +132,7 @@ class Host(Engine):
         library: str = "eonlib",
         methods: Methods = UNCHOSEN,
         policy: Policy = DEFAULT,
+        client: bool = False,
     ) -> tuple[Shader, ...]:
         """Shaders of a document for this host; arguments and errors as for `mxeon.generate`.
 
@@ -147,6 +150,7 @@ class Host(Engine):
             lights=True,
             methods=UNCHOSEN if self.fixed else methods.over(self.methods),
             policy=policy,
+            client=client,
         )
         check_images(shaders, policy)
         return shaders
@@ -190,6 +194,7 @@ class Host(Engine):
         *,
         output: str = "response",
         irradiance: Array | None = None,
+        client: Client = CLIENT,
     ) -> Array:
         """Values of a shader's BSDF for pairs of directions, shape (N, 3).
 
@@ -205,10 +210,11 @@ class Host(Engine):
         - `irradiance`: (rows, columns, 3). Irradiance over pi of the environment for every normal, as a
           latitude-longitude map with row 0 upwards (+y) and its middle towards +z, also used for lookups of radiance.
           None for a uniform environment of radiance 1.
+        - `client`: How the environment is turned and scaled, and whether refraction is two-sided.
 
         Raises ValueError if the shader calls no BSDF, or branch or output is unknown.
         """
-        return self._values(Query(shader, wo, wi, inputs, branch, output, irradiance))
+        return self._values(Query(shader, wo, wi, inputs, branch, output, irradiance, client))
 
     def _values(self, query: Query) -> Array:
         raise self._unsupported("values for pairs of directions", "gl")

@@ -116,7 +116,7 @@ def bsdf_call(query: Query) -> BsdfCall:
 
     InputError if it calls no BSDF (for GRAPH, no uniform EDF), or branch or output is unknown.
     """
-    shader, wo, wi, inputs, branch, output, _ = query
+    shader, wo, wi, inputs, branch, output, *_ = query
     branches = (GRAPH, LIT, *CLOSURES)
     for rule, word, known in (("branch", branch, branches), ("output", output, OUTPUTS)):
         if word not in known:

@@ -135,9 +135,10 @@ class GlHost(FragmentHost):
         pixel: str,
         arguments: Mapping[str, Array],
         textures: Mapping[str, Array],
+        uniforms: raster.Uniforms,
     ) -> Array:
         program = self._program(vertex, pixel)
-        _set(program, raster.FRAME_UNIFORMS)
+        _set(program, uniforms)
         own = self._textures(program, textures)
         values = []
         for part in fragment.parts(arguments):

@@ -37,7 +37,7 @@ class PairHost(base.Host):
         The throughput is the visible part of white emission below the surface. The environment is sampled with noise,
         and includes transmitted light. InputError if a pair under the lamp is not `visible`.
         """
-        shader, wo, wi, inputs, branch, output, irradiance = query
+        shader, wo, wi, inputs, branch, output, irradiance, _ = query
         through = output == "throughput"
         if irradiance is not None or (branch == TRANSMITTED and not through):
             raise self._unsupported("uneven environment, and none below alone", "gl")

@@ -26,6 +26,7 @@ from mxeon.shaders.shader_ball import shader_ball
 
 MARGIN = 1  # points beyond each edge, for derivatives at the edges
 SAMPLER = "mxeon_points"
+ALPHA = "mxeon_alpha"  # uniform: whether a pixel shows its alpha
 
 # Macros that turn a text's inputs into variables. In GLSL they are in a block.
 VARIABLES = {
@@ -63,11 +64,12 @@ def pixel_stage(shader: Shader) -> str:
         f"    {each.variable} = {each.kind}(texelFetch({SAMPLER}, ivec3(pixel, {layer}), 0));\n"
         for layer, each in enumerate(outputs(shader))
     ]
+    [output] = re.findall(r"\bout vec4 (\w+);", text)
     return (
         f"{version}\n#define flat\n{VARIABLES[shader.target]}{renamed(text)}#undef main\n"
-        f"uniform highp sampler2DArray {SAMPLER};\nvoid main()\n{{\n"
+        f"uniform highp sampler2DArray {SAMPLER};\nuniform bool {ALPHA};\nvoid main()\n{{\n"
         f"    ivec2 pixel = ivec2(gl_FragCoord.xy) + {MARGIN};\n{''.join(reads)}"
-        "    mxeon_generated_main();\n}\n"
+        f"    mxeon_generated_main();\n    if ({ALPHA}) {output} = {output}.aaaa;\n}}\n"
     )
 
 

@@ -11,7 +11,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.hosts import base, fragment
+from mxeon.hosts import base, fragment, points
 from mxeon.hosts.base import Array, Query
 from mxeon.hosts.points import visible
 from mxeon.hosts.textures import image_files, irradiance, read_latlong, read_texture
@@ -19,13 +19,14 @@ from mxeon.shaders.document.values import Plain, flat
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import SUBSURFACE, TRANSMISSION, VOLUME, inner_lobes
 from mxeon.shaders.methods import GENERATED
-from mxeon.shaders.scene import SIDE, Scene
+from mxeon.shaders.scene import SIDE, Client, Lamp, Scene
 
 Uniforms: TypeAlias = dict[str, Plain]  # values by name
 
 Rectangle: TypeAlias = tuple[int, int, int, int]  # left, lowest row, width, height
 
 BAND = 4  # rows of a picture in one rectangle, as wide as the shape
+ALPHA_THRESHOLD = 1e-3  # below which MaterialX's text discards a pixel
 VIEW_DISTANCE = 1e8  # makes normalize(u_viewPosition - positionWorld) the z axis, in float32
 # More than one texel, so that it has mipmaps: otherwise Mesa compiles programs again for other environments.
 WHITE_TEXELS = np.ones((2, 2, 3), dtype=np.float32)
@@ -60,8 +61,13 @@ def textures(shader: Shader, scene: Scene) -> dict[str, Array]:
 
     Samplers of the same file share an array.
     """
-    radiance = read_latlong(scene.environment)
-    return images(shader) | {"u_envRadiance": radiance, "u_envIrradiance": irradiance(radiance)}
+    client, radiance = scene.client, read_latlong(scene.environment)
+    return images(shader) | {
+        "u_envRadiance": radiance if client.radiance is None else client.radiance,
+        "u_envIrradiance": irradiance(radiance) if client.irradiance is None else client.irradiance,
+        "u_shadowMap": np.full((2, 2, 3), (*client.moments, 0.0), np.float32),
+        "u_ambOccMap": np.full((2, 2, 3), client.ambient, np.float32),
+    }
 
 
 def images(shader: Shader) -> dict[str, Array]:
@@ -94,19 +100,35 @@ def inputs(shader: Shader) -> Uniforms:
 
 
 def light(scene: Scene) -> Uniforms:
-    """Values of the uniforms of the viewer and the distant light."""
-    values: Uniforms = {"u_viewPosition": (0.0, 0.0, VIEW_DISTANCE)}
-    values |= DARK if scene.environment is None else PICTURE
-    values["u_numActiveLightSources"] = 0  # a program keeps the last scene's values
+    """Values of the uniforms of the viewer, of all lights and of what else a client sets."""
+    client = scene.client
+    values: Uniforms = {
+        **surroundings(client),
+        "u_viewPosition": (0.0, 0.0, VIEW_DISTANCE),
+        "u_shadowMatrix": client.shadow,
+        "u_ambOccGain": client.gain,
+        "u_alphaThreshold": ALPHA_THRESHOLD,
+        points.ALPHA: client.alpha,
+    }
+    values |= DARK if scene.environment is None and client.radiance is None else PICTURE
+    lamps = client.lamps
     if scene.light is not None:
-        values |= {
-            "u_numActiveLightSources": 1,
-            "u_lightData[0].type": 1,
-            "u_lightData[0].direction": tuple(-x for x in scene.light),
-            "u_lightData[0].color": (1.0, 1.0, 1.0),
-            "u_lightData[0].intensity": np.pi,
-        }
+        x, y, z = scene.light
+        lamps = (Lamp(direction=(-x, -y, -z)), *lamps)
+    values["u_numActiveLightSources"] = len(lamps)  # a program keeps the last scene's values
+    for number, lamp in enumerate(lamps):
+        for name, value in vars(lamp).items():
+            values[f"u_lightData[{number}].{name}"] = value
     return values
+
+
+def surroundings(client: Client) -> Uniforms:
+    """Values of the uniforms of an environment."""
+    return {
+        "u_envMatrix": client.turn,
+        "u_envLightIntensity": client.intensity,
+        "u_refractionTwoSided": client.two_sided,
+    }
 
 
 @lru_cache(maxsize=8)
@@ -148,12 +170,13 @@ class FragmentHost(base.Host):
     def _values(self, query: Query) -> Array:
         pixel, arguments = fragment.bsdf_evaluation(query)
         textures = environment(query.irradiance) | images(query.shader)
-        return self._evaluate(query.shader.stages["vertex"], pixel, arguments, textures)
+        uniforms = FRAME_UNIFORMS | surroundings(query.client)
+        return self._evaluate(query.shader.stages["vertex"], pixel, arguments, textures, uniforms)
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
         pixel, texels = fragment.function_evaluation(source, function, arguments, self.target)
         vertex = fragment.DIALECTS[self.target].vertex
-        return self._evaluate(vertex, pixel, texels, environment(None))
+        return self._evaluate(vertex, pixel, texels, environment(None), FRAME_UNIFORMS)
 
     @abstractmethod
     def _evaluate(
@@ -162,5 +185,6 @@ class FragmentHost(base.Host):
         pixel: str,
         arguments: Mapping[str, Array],
         textures: Mapping[str, Array],
+        uniforms: Uniforms,
     ) -> Array:
         """Values of a pixel stage, one pixel per element, as many as the longest argument has."""

@@ -20,9 +20,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import NotRun, install, refused
 from mxeon.hosts import base, calls, fragment, raster
-from mxeon.hosts.base import TURN, Array, Identity, Query
+from mxeon.hosts.base import Array, Identity, Query
 from mxeon.shaders import functions
 from mxeon.shaders.methods import GENERATED
+from mxeon.shaders.scene import Client
 
 Resource: TypeAlias = Any  # an object of slangpy, whose types are unknown if it is not installed
 
@@ -144,7 +145,7 @@ class SlangHost(base.Host):
         call = calls.bsdf_call(query)
         position = calls.GIVEN.format("float3(0.0)")
         body = [position, call.statements, f"float3 mxeon_value = {call.value};"]
-        environment = self._environment(query.irradiance)
+        environment = self._environment(query.irradiance, query.client)
         return self._evaluate(text, call.arguments, body, environment)
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
@@ -218,10 +219,10 @@ class SlangHost(base.Host):
         self._kernel(FILL).dispatch(thread_count=[width, height, 1], vars=values)
         return texture
 
-    def _environment(self, irradiance: Array | None) -> dict[str, Resource]:
+    def _environment(self, irradiance: Array | None, client: Client) -> dict[str, Resource]:
         """Uniforms of an environment, white by default."""
         texture = self._white if irradiance is None else self._texture(irradiance)
         tinted = {"tex": texture, "sampler": self._device.create_sampler()}
-        values = {"u_envRadiance": tinted, "u_envIrradiance": tinted, "u_envLightIntensity": 1.0}
-        matrix = slangpy.float4x4(TURN.astype(np.float32))
+        matrix = slangpy.float4x4(np.reshape(client.turn, (4, 4)).astype(np.float32))
+        values = {"u_envRadiance": tinted, "u_envIrradiance": tinted, **raster.surroundings(client)}
         return {"pixelCB": {**values, **raster.EVALUATION, "u_envMatrix": matrix}}

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import re
 import shutil
-import struct
 import subprocess
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
@@ -20,7 +19,7 @@ import numpy as np
 
 from mxeon.errors import NotRun, install, refused
 from mxeon.hosts import fragment, raster
-from mxeon.hosts.base import TURN, Array, Identity
+from mxeon.hosts.base import Array, Identity
 from mxeon.hosts.raster import FragmentHost
 from mxeon.jobs.signals import Temporary
 
@@ -46,9 +45,6 @@ DECLARATION = re.compile(
     re.MULTILINE,
 )
 
-# Values of block members that must not be 0.
-UNIFORMS = {"u_envMatrix": tuple(TURN.ravel()), "u_envLightIntensity": (1.0,)}
-UNIFORMS |= {name: (number,) for name, number in raster.EVALUATION.items()}
 STD140 = {"mat4": (16, 64), "vec4": (16, 16), "vec3": (16, 12), "vec2": (8, 8)}
 STD140 |= dict.fromkeys(("float", "int", "bool"), (4, 4))  # type -> alignment and size, in bytes
 BLOCK_SIZE = 1 << 14
@@ -106,12 +102,13 @@ class VulkanHost(FragmentHost):
         pixel: str,
         arguments: Mapping[str, Array],
         textures: Mapping[str, Array],
+        uniforms: raster.Uniforms,
     ) -> Array:
         """Values of a pixel stage; the dialect's vertex stage is used, as both stages share one block."""
         count, size = fragment.frame(arguments)
         texels = [fragment.texels(rows, size, fragment.ODD) for rows in arguments.values()]
         sets: tuple[Bindings, ...] = (
-            self._generated(pixel, textures),
+            self._generated(pixel, textures, uniforms),
             {0: (SAMPLER, self._device.create_sampler())},
             {number: (UNFILTERED, self._texture(rows)) for number, rows in enumerate(texels)},
         )
@@ -192,7 +189,9 @@ class VulkanHost(FragmentHost):
     def _code(self, stage: str, text: str) -> bytes | str:
         return _spirv(stage, text)
 
-    def _generated(self, text: str, textures: Mapping[str, Array]) -> Bindings:
+    def _generated(
+        self, text: str, textures: Mapping[str, Array], uniforms: raster.Uniforms
+    ) -> Bindings:
         """Bindings of a generated text: textures, white by default, and blocks."""
         unique = {id(texels): texels.astype(np.float16) for texels in textures.values()}
         halves = {name: unique[id(texels)] for name, texels in textures.items()}
@@ -200,7 +199,7 @@ class VulkanHost(FragmentHost):
         for match in DECLARATION.finditer(text):
             number = int(match["number"])
             if match["block"] is not None:
-                data = _std140(match["block"])
+                data = _std140(match["block"], uniforms)
                 block = self._device.create_buffer_with_data(data=data, usage="UNIFORM")
                 bindings[number] = UNIFORM_BINDING, block
             elif match["kind"] == "sampler":
@@ -244,16 +243,17 @@ def _run(command: Sequence[str], text: str = "") -> None:
         raise refused("vulkan", process.stdout + process.stderr, text)
 
 
-def _std140(members: str) -> bytes:
-    """Bytes of a block up to its first structure; no UNIFORMS follow one."""
+def _std140(members: str, uniforms: raster.Uniforms) -> bytes:
+    """Bytes of a block up to its first structure; no uniforms follow one."""
     data, offset = bytearray(BLOCK_SIZE), 0
     for kind, name in re.findall(r"(\w+) (\w+);", members):
         if kind not in STD140:
             break
         alignment, size = STD140[kind]
         offset = -(-offset // alignment) * alignment
-        values = UNIFORMS.get(name, ())
-        form = "i" if kind == "int" else "f"
-        struct.pack_into(f"<{len(values)}{form}", data, offset, *values)
+        if name in uniforms:
+            form = "<i4" if kind in ("int", "bool") else "<f4"
+            values = np.asarray(uniforms[name], form).tobytes()
+            data[offset : offset + len(values)] = values
         offset += size
     return bytes(data)

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from mxeon.errors import NotRun, install, refused
 from mxeon.hosts import fragment, points, raster
-from mxeon.hosts.base import TURN, Array, Identity
+from mxeon.hosts.base import Array, Identity
 from mxeon.hosts.calls import PLACED
 from mxeon.hosts.raster import FragmentHost
 from mxeon.jobs.signals import Temporary
@@ -54,12 +54,10 @@ VERTEX = fragment.DIALECTS["essl"].vertex
 POINTS = 4  # cached textures of points: most materials have the same vertex stage
 
 # ESSL gives uniforms no initial values.
-UNIFORMS = {
+UNIFORMS: dict[str, object] = {
     "u_worldMatrix": IDENTITY,
     "u_viewProjectionMatrix": IDENTITY,
     "u_worldInverseTransposeMatrix": IDENTITY,
-    "u_envMatrix": TURN.ravel().tolist(),
-    "u_envLightIntensity": 1.0,
 }
 
 
@@ -163,11 +161,12 @@ class WebGlHost(Chromium, FragmentHost):
         pixel: str,
         arguments: Mapping[str, Array],
         textures: Mapping[str, Array],
+        uniforms: raster.Uniforms,
     ) -> Array:
         count, size = fragment.frame(arguments)
         own = {name: fragment.texels(rows, size) for name, rows in arguments.items()}
         stages = {"vertex": vertex, "pixel": pixel}
-        frame = self._draw(stages, UNIFORMS | raster.FRAME_UNIFORMS, {**own, **textures}, size)
+        frame = self._draw(stages, UNIFORMS | uniforms, {**own, **textures}, size)
         return frame.reshape(-1, 3)[:count]
 
     def _draw(

@@ -128,6 +128,7 @@ def generate(
     uniforms: bool = False,
     methods: Methods | None = None,
     policy: Policy | None = None,
+    client: bool = False,
 ) -> tuple[Shader, ...]:
     """Shaders of a document, one for each renderable element.
 
@@ -143,6 +144,8 @@ def generate(
     - `uniforms`: Whether inputs stay uniforms with the profile "path", whose text has literals.
     - `methods`: How a shader of a rasterized target finds light; None for MaterialX's defaults.
     - `policy`: Permissions, limits and search path; None for `Policy()`.
+    - `client`: Whether it also gets point and spot lights, as types 2 and 3, a shadow map, ambient
+      occlusion and transparency.
 
     Raises ValueError if the target, the library, the profile or the element is unknown; DocumentError if
     no shader can be generated from the document; InterfaceError if this MaterialX calls closures in
@@ -185,7 +188,7 @@ def generate(
     content, names = checked.content, shader_names(checked.renderables)
     generator = generator_of(content, target, library, profile, policy.definitions)
     context = context_of(
-        content, target, generator, library, lights, policy.path, profile, uniforms, methods
+        content, target, generator, library, lights, policy.path, profile, uniforms, methods, client
     )
     elements: Sequence[mx.TypedElement] = checked.renderables
     if element is not None:

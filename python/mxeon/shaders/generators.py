@@ -28,6 +28,8 @@ HARDWARE = tuple(
     target for target, each in GENERATORS.items() if issubclass(each, mx_gen.HwShaderGenerator)
 )
 
+LIGHTS = ("directional", "point", "spot")  # light types 1, 2 and 3
+CLIENT_OPTIONS = ("hwShadowMap", "hwAmbientOcclusion", "hwTransparency")
 BOOLEANS = "WGSL does not allow boolean types"  # printed for each, though the text has an integer
 
 
@@ -79,11 +81,13 @@ def context_of(
     profile: str | None = None,
     uniforms: bool = False,
     methods: Methods = UNCHOSEN,
+    client: bool = False,
 ) -> mx_gen.GenContext:
     """A context for one document only, as it keeps implementations by name.
 
-    With `lights` MaterialX's directional light is bound, as light type 1, if the target has lights. `path` has
-    folders of source files, after those of the library.
+    With `lights` MaterialX's directional light is bound, as light type 1, if the target has lights. With `client`
+    also all else that a client may bind; see `mxeon.shaders.scene.Client`. `path` has folders of source files,
+    after those of the library.
     """
     context = mx_gen.GenContext(generator)
     for each in environment_folders(library) if methods.searched else ():
@@ -108,8 +112,11 @@ def context_of(
         except LookupError as error:
             raise NotRun(str(error)) from None
     if lights and isinstance(generator, mx_gen.HwShaderGenerator):
-        light = document.getNodeDef("ND_directional_light")
-        mx_gen.HwShaderGenerator.bindLightShader(light, 1, context)
+        for number, name in enumerate(LIGHTS if client else LIGHTS[:1], start=1):
+            light = document.getNodeDef(f"ND_{name}_light")
+            mx_gen.HwShaderGenerator.bindLightShader(light, number, context)
+    for name in CLIENT_OPTIONS if client else ():
+        setattr(context.getOptions(), name, True)
     return context
 
 

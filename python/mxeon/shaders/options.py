@@ -27,6 +27,11 @@ SIZE = 512  # bytes in which the members are searched; the options are part of a
 VALUE = 2 * ctypes.sizeof(ctypes.c_void_p)  # place of pybind11's pointer in a Python object
 
 
+def offers(name: str) -> bool:
+    """Whether this MaterialX has an option of BOUND."""
+    return hasattr(mx_gen.GenOptions, BOUND[name])
+
+
 def set_options(
     options: mx_gen.GenOptions,
     environment: str = "fis",
@@ -37,7 +42,7 @@ def set_options(
 ) -> None:
     """Set the options of `mxeon.shaders.methods.Methods`; LookupError if this MaterialX lacks one."""
     for name, value in bound.items():
-        if not hasattr(options, BOUND[name]):
+        if not offers(name):
             raise LookupError(f"MaterialX {mx.getVersionString()} has no option {BOUND[name]}")
         setattr(options, BOUND[name], value)
     values = [ALBEDOS.index(albedo), TRANSMISSIONS.index(transmission), airy]

@@ -8,6 +8,7 @@ World frame: x to the right, y up, z towards the viewer. The frame of the pictur
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,6 +41,48 @@ class Paths:
 
 
 @dataclass(frozen=True)
+class Lamp:
+    """One of MaterialX's lights. It reads the angles of a spot light as cosines."""
+
+    type: int = 1  # as the generator binds them: 1 directional, 2 point, 3 spot
+    color: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    intensity: float = np.pi
+    direction: tuple[float, float, float] = (0.0, 0.0, -1.0)  # in which its light travels
+    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    decay_rate: float = 2.0
+    inner_angle: float = 0.0
+    outer_angle: float = 0.0
+
+
+Matrix: TypeAlias = tuple[float, ...]  # 16 numbers, column after column
+ONE: Matrix = tuple(np.eye(4).ravel().tolist())
+TURN: Matrix = tuple(np.diag([-1.0, 1.0, -1.0, 1.0]).ravel().tolist())
+
+
+@dataclass(frozen=True, eq=False)
+class Client:
+    """What a client binds beside a scene; the defaults are the generator's."""
+
+    lamps: tuple[Lamp, ...] = ()
+    turn: Matrix = TURN  # from the world to the environment
+    intensity: float = 1.0  # of the environment
+    radiance: NDArray[np.float32] | None = None  # maps of the environment instead of the scene's
+    irradiance: NDArray[np.float32] | None = None
+    two_sided: bool = False  # whether light is tinted twice where it enters and leaves
+    shadow: Matrix = ONE  # from the world to the shadow map, in [-1, 1]
+    moments: tuple[float, float] = (
+        1.0,
+        1.0,
+    )  # of the depths in the shadow map, the same everywhere
+    ambient: float = 1.0  # what the map of ambient occlusion holds
+    gain: float = 1.0  # of the ambient occlusion
+    alpha: bool = False  # whether a picture shows alpha instead of the color
+
+
+CLIENT = Client()
+
+
+@dataclass(frozen=True)
 class Scene:
     """A shape and a light on it."""
 
@@ -53,6 +96,7 @@ class Scene:
     paths: Paths = Paths()  # for cycles and cycles-native; other hosts refuse any but the default
     # one of SHAPES: the unit sphere, or the shader ball, which gl and webgl draw
     shape: str = "sphere"
+    client: Client = CLIENT  # gl and webgl alone draw others
 
     def __post_init__(self) -> None:
         if not 1 <= self.size <= LARGEST:

@@ -2,12 +2,21 @@
 """All checks, in the order in which they are made: rows of a table in each module."""
 
 from mxeon.conformance.check import Check
-from mxeon.conformance.checks import lobes, microfacets, other_nodes, paths, states, surface_shaders
+from mxeon.conformance.checks import (
+    clients,
+    lobes,
+    microfacets,
+    other_nodes,
+    paths,
+    states,
+    surface_shaders,
+)
 
 # `mxeon.survey.checks` adds those of renderers' own samplers.
 CHECKS: list[Check] = [
     *lobes.ROWS,
     *states.ROWS,
+    *clients.ROWS,
     *microfacets.ROWS,
     *other_nodes.ROWS,
     *surface_shaders.ROWS,

@@ -8,11 +8,12 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.conformance import controls, diagnosis, samples
+from mxeon.conformance import backends, controls, diagnosis, samples
 from mxeon.conformance.case import SCATTERING, Case, dead_inputs
 from mxeon.conformance.check import Check, always, family
 from mxeon.conformance.checks import lobes
 from mxeon.conformance.checks.lobes import CLEAR, FILMS, TRANSMITTING
+from mxeon.conformance.checks.states import TURNING, in_turn
 from mxeon.conformance.diagnosis import ALBEDO, NEAR, UNKNOWN, UNMASKED, VALUE, defect, not_finite
 from mxeon.conformance.results import Cause, Diagnosis, Kind
 from mxeon.conformance.results.quantities import Quantity
@@ -38,6 +39,7 @@ from mxeon.models.transmission import refraction_direction
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.library import environment_folders
 from mxeon.shaders.methods import GENERATED, Methods
+from mxeon.shaders.scene import Client
 
 PAIRS = 1 << 12  # near the mirror direction
 LEAST_DIVIDED = 1.2  # index of a dielectric whose values are divided
@@ -209,6 +211,7 @@ def anisotropic_throughput(case: Case) -> Iterator[Compared]:
 
 # --- light that is transmitted, in the branch that looks up an environment ------------------------
 
+SEEN = 64  # views in a turned environment
 SUMMED = 1e-3  # rms by which a sum over the normals of an engine differs from it
 SMOOTH_VIEWS = 1 << 9  # of smooth surfaces
 CHANGED_VIEWS = 1 << 6  # whose inputs are changed
@@ -281,8 +284,12 @@ def clear(case: Case) -> Iterator[Compared]:
         yield Compared(white, case.albedo(white) + case.transmitted(white), ONE)
 
 
-# Methods of clients: Storm's, and a prefiltered environment with refraction, as MaterialXView has it.
+# Methods of clients: Storm's, and a prefiltered environment with refraction, as MaterialXView has it; for a mirror with
+# albedos by samples. An environment is dim, turned for what reflects it, and tinted twice for what refracts it.
 OTHERS = (Methods("prefilter", "opacity"), Methods("prefilter", "refraction"))
+SAMPLED = (Methods("prefilter", "refraction", "monteCarlo"),)
+BOUND = Client(turn=TURNING, intensity=0.5, two_sided=True)
+MIRROR = family(FacetSpec, lambda spec: spec.model == "schlick")
 
 
 def others(case: Case) -> Iterator[Methods]:
@@ -291,21 +298,53 @@ def others(case: Case) -> Iterator[Methods]:
         yield from searching(case, Methods("fis"), Methods("prefilter"))
 
 
-def shares(case: Case, methods: Methods) -> Iterator[Compared]:
-    """Light through the surface with a client's methods, against the nearest value inside the limits."""
-    spec, shader = case.of(TransmissionSpec), generated(case, methods)
+def with_methods(case: Case) -> Iterator[tuple[Methods, Compared]]:
+    """Light with a client's methods against what a node has by any, with the methods."""
+    transmits = TRANSMITTING(case.spec)
+    for methods in others(case) if transmits else SAMPLED:
+        ask = partial(case.evaluating.evaluate, shader=generated(case, methods))
+        found = shares(case, ask, methods) if transmits else mirrored(case, ask)
+        yield from ((methods, each) for each in found)
+
+
+def shares(case: Case, ask: Callable[..., Array], methods: Methods) -> Iterator[Compared]:
+    """Light through the surface, against the nearest value inside the limits."""
+    opaque = methods.transmission == "opacity"
     for batch in case.views:
-        found = case.evaluating.evaluate(case.inputs(batch), "transmission", shader=shader)
-        yield limited(spec, batch, case.outputs(batch, found), methods.transmission == "opacity")
+        found = case.outputs(batch, ask(case.inputs(batch), "transmission", client=BOUND))
+        if not opaque:
+            found = found / BOUND.intensity
+        tinted = batch
+        if "tint" in batch.inputs and not opaque:
+            tinted = batch.altered(tint=np.square(batch.inputs["tint"]))
+        yield limited(case.of(TransmissionSpec), tinted, found, opaque)
+
+
+def mirrored(case: Case, ask: Callable[..., Array]) -> Iterator[Compared]:
+    """What passes a mirror by default, what a white one reflects, and what it shows of turned surroundings.
+
+    A white mirror reflects all, or what MaterialX's fit of that has over the albedo.
+    """
+    white = {name: np.ones(3) for name in ("color0", "color82", "color90")}
+    for batch in case.views:
+        views = case.inputs(batch)
+        passed = case.throughputs(batch, ask(views, "direct", "throughput"))
+        yield Compared(batch, passed, case.throughput(batch, "direct"))
+        plain, seen = (backends.isotropic(each).altered(**white) for each in (batch, views))
+        found = case.outputs(plain, ask(seen, "environment", client=BOUND)) / BOUND.intensity
+        ends = plain.strength * ONE, case.of(FacetSpec).prefiltered(plain)
+        yield Compared(plain, found, np.clip(found, np.minimum(*ends), np.maximum(*ends)))
+        seen = seen.first(SEEN)
+        found = ask(seen, "environment", irradiance=sky_map(), client=BOUND) / BOUND.intensity
+        turned = ask(in_turn(seen, BOUND), "environment", irradiance=sky_map())
+        yield Compared(seen, found, turned)
 
 
 def diagnose_methods(case: Case) -> Diagnosis:
     tolerance = case.tolerance("methods")
-    wrong = [
-        str(methods)
-        for methods in others(case)
-        if any(tolerance.wrong(each).any() for each in shares(case, methods))
-    ]
+    wrong = dict.fromkeys(
+        str(methods) for methods, each in with_methods(case) if tolerance.wrong(each).any()
+    )
     return defect("wrong_with_methods", *wrong) if wrong else Diagnosis((UNKNOWN,))
 
 
@@ -636,9 +675,9 @@ ROWS = (
           tolerance="light", control=controls.scale("values are 5 % too large", 1.05),
           explain=diagnose_transmitted, methods=with_directions),
     Check(key="methods",
-          claim="With a prefiltered environment, and as opacity, the light that passes lies between the same limits.",
-          applies=TRANSMITTING,
-          measure=lambda case: (each for other in others(case) for each in shares(case, other)),
+          claim="With a prefiltered environment, and as opacity, the same light passes, and a mirror reflects it.",
+          applies=TRANSMITTING | MIRROR & lobes.PLAIN,
+          measure=lambda case: (each for _, each in with_methods(case)),
           tolerance="methods", control=controls.scale("values are 10 % too large", 1.1),
           explain=diagnose_methods, requires=Ability.PAIRS | Ability.LIGHT,
           methods=lambda spec, methods: methods == GENERATED),

@@ -5,7 +5,7 @@ AXES lists the states, one line each. Every two states of different axes meet in
 values of the parts are the expected ones, so a wrong model passes, and a failure has one reason.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache, partial
 from itertools import combinations, product
@@ -22,14 +22,26 @@ from mxeon.conformance.check import Check, family
 from mxeon.conformance.checks.lobes import DARK
 from mxeon.conformance.diagnosis import not_finite
 from mxeon.conformance.results import Cause, Diagnosis, Kind
-from mxeon.conformance.samples import Array, Batch, Mask, Values, aimed, float32, rounded, sky_map
+from mxeon.conformance.samples import (
+    SKY_ROWS,
+    Array,
+    Batch,
+    Mask,
+    Values,
+    aimed,
+    float32,
+    rounded,
+    sky_map,
+)
 from mxeon.conformance.spec import Ability, LobeSpec, broadcast_inputs
 from mxeon.conformance.tolerance import Compared
+from mxeon.hosts.base import TURN
 from mxeon.hosts.calls import LIGHTS, LIT, NORMAL, SECOND_LIGHT, SKY, SURFACE, TANGENT
 from mxeon.io.images import FAST_EXR, write_image
 from mxeon.jobs.signals import Temporary
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.nodes import FRAME_INPUTS, with_images
+from mxeon.shaders.scene import CLIENT, Client
 
 if TYPE_CHECKING:  # which loads MaterialX
     from mxeon.shaders.generation import Shader
@@ -37,6 +49,7 @@ if TYPE_CHECKING:  # which loads MaterialX
 EACH = 12  # pixels of a combination of states: three squares of 2 x 2 of a frame of two rows
 STEP = 0.05  # radian from pixel to pixel of a surface that bends, whose radius is 1
 FRAME = ("normal", "tangent", "position", SURFACE)
+FLAT = NORMAL, TANGENT, (0.0, 0.0, 0.0), NORMAL
 WEIGHTS = (0.0, 0.3, 1.0, 1.0)
 FEW = 6  # combinations that a control measures
 CLEARER = 0.7  # share of the pixels of one state that those of two may have to be named instead
@@ -57,6 +70,7 @@ class Pixels:
     differ: tuple[str, ...] = ()  # the input in which the lobes of each pixel differ
     lights: int = 1
     sky: str = ""  # "uniform" or "uneven"
+    client: Client = CLIENT  # how the environment is turned and scaled
     image: bool = False  # whether the inputs of its last lobe are texels of an image
 
 
@@ -75,8 +89,8 @@ def lit(pixels: Pixels, rng: Random, count: int, first: float = 1.0, second: flo
     return replace(pixels, batch=batch, lights=count, light=light)
 
 
-def under(pixels: Pixels, rng: Random, sky: str) -> Pixels:
-    return replace(pixels, sky=sky)
+def under(pixels: Pixels, rng: Random, sky: str, client: Client = CLIENT) -> Pixels:
+    return replace(pixels, sky=sky, client=client)
 
 
 def framed(
@@ -96,7 +110,10 @@ def framed(
         tangent = length * (tangent + rng.uniform(-0.5, 0.5, (len(frame), 1)) * normal)
     axes = {"normal": rounded(normal.T), "tangent": rounded(tangent.T)}
     wo = np.broadcast_to(NORMAL, batch.wo.shape) if along else batch.wo
-    return replace(pixels, batch=replace(batch.altered(**axes), wo=wo, frame=frame))
+    # An axis may be a pole of the environment, from which azimuths count from roundings once it is turned.
+    client = CLIENT if make is on_axes and pixels.sky == "uneven" else pixels.client
+    batch = replace(batch.altered(**axes), wo=wo, frame=frame)
+    return replace(pixels, batch=batch, client=client)
 
 
 def upright(frames: Array, rng: Random) -> Array:
@@ -190,6 +207,12 @@ def in_image(pixels: Pixels, rng: Random) -> Pixels:
     return replace(halves, image=True)
 
 
+TWO_SIDED, TURNED_SKY = "an environment: dim and two-sided", "an environment: turned"
+# A turn about y that takes the middles of texels of the sky to others.
+ANGLE = 37.0 * np.pi / SKY_ROWS
+COSINE, SINE = np.cos(ANGLE), np.sin(ANGLE)
+ROTATION = np.array([[COSINE, 0.0, SINE], [0.0, 1.0, 0.0], [-SINE, 0.0, COSINE]])
+TURNING = tuple((TURN @ np.pad(ROTATION, (0, 1))).T.ravel().tolist())
 # The first state of each axis is that of every other check. States whose words are the same up to a colon are
 # diagnosed together, too.
 AXES: dict[str, dict[str, Build]] = {
@@ -204,6 +227,8 @@ AXES: dict[str, dict[str, Build]] = {
         "no environment": same,
         "an environment: uniform": partial(under, sky="uniform"),
         "an environment: uneven": partial(under, sky="uneven"),
+        TWO_SIDED: partial(under, sky="uniform", client=Client(intensity=0.5, two_sided=True)),
+        TURNED_SKY: partial(under, sky="uneven", client=Client(turn=TURNING)),
     },
     "frame": {
         "the surface's frame": partial(framed, make=upright),
@@ -262,6 +287,10 @@ def pixels_of(case: Case) -> list[Pixels]:
     rng, plain = samples.generator(), {*case.lobe.plain, *case.backend.plain}
     if not case.host.reads_images:
         plain.add("inputs from an image")
+    if "frame" in plain:
+        plain.add(TURNED_SKY)
+    if Ability.MATERIAL in case.spec.requires:  # whose tints are inside
+        plain.add(TWO_SIDED)
     axes = tuple(
         tuple(state for n, state in enumerate(each) if not n or not {name, state} & plain)
         for name, each in AXES.items()
@@ -294,20 +323,23 @@ def states(case: Case) -> Iterator[Compared]:
     groups = pixels_of(case)
     if case.control:
         groups = [each for each in groups if not each.image][:FEW]
-    frames: dict[tuple[bool, str, bool, int], list[int]] = {}  # constant inputs by themselves
+    # Constant inputs by themselves.
+    frames: dict[tuple[bool, str, Client, bool, int], list[int]] = {}
     for number, pixels in enumerate(groups):
         alone = number if "constant inputs" in pixels.states else -1
-        key = pixels.second is not None, "uneven" * (pixels.sky == "uneven"), pixels.image, alone
+        uneven, two = "uneven" * (pixels.sky == "uneven"), pixels.second is not None
+        key = two, uneven, pixels.client, pixels.image, alone
         frames.setdefault(key, []).append(number)
     measured: dict[int, Array] = {}
     with Temporary("mxeon-states-") as folder:
         file = Path(folder, "inputs.exr")
         from_image = partial(imaged, case, cache(partial(compile_imaged, case, file)), file)
-        for (two, uneven, image, _), numbers in frames.items():
+        for (two, uneven, client, image, _), numbers in frames.items():
             batch = joined([batch_of(groups[number]) for number in numbers])
             ask = partial(
                 from_image if image else case.evaluating.together,
                 irradiance=sky_map() if uneven else None,
+                client=client,
                 two=two,
             )
             values = case.outputs(batch, drawn(case.inputs(batch), ask, SQUARES))
@@ -335,6 +367,7 @@ def imaged(
     file: Path,
     batch: Batch,
     irradiance: NDArray[np.float32] | None,
+    client: Client,
     two: bool,
 ) -> Array:
     """Light in pixels whose last lobe has texels of an image as inputs, each a square of 2 x 2 equal ones."""
@@ -351,7 +384,8 @@ def imaged(
     left = batch.inputs.keys() - {own[name] for name in names}
     batch = replace(batch, inputs={name: batch.inputs[name] for name in left} | places)
     shader = compiled(two, last, tuple(names))
-    return case.evaluating.evaluate(batch, LIT, irradiance=irradiance, shader=shader)
+    shown = partial(case.evaluating.evaluate, shader=shader, client=client)
+    return shown(batch, LIT, irradiance=irradiance)
 
 
 def compile_imaged(
@@ -406,12 +440,12 @@ def sums(case: Case, groups: Sequence[Pixels]) -> list[Array]:
             frame = batch.frame if aside is None else aside
             own = flat = replace(batch, inputs=inputs, wo=wo, wi=lights[0], frame=frame)
             if not curved:
-                axes = dict(zip(FRAME, (NORMAL, TANGENT, (0.0, 0.0, 0.0), NORMAL), strict=True))
+                axes = dict(zip(FRAME, FLAT, strict=True))
                 flat = replace(own.altered(**axes), frame=None)
             for light in lights[: pixels.lights]:
                 parts.setdefault("light", []).append((number, replace(flat, wi=light)))
             if pixels.sky:
-                part = own if pixels.sky == "uneven" else flat
+                part = in_turn(own if pixels.sky == "uneven" else flat, pixels.client)
                 parts.setdefault(pixels.sky, []).append((number, part))
     for kind, rows in parts.items():
         batch = joined([each for _, each in rows])
@@ -420,17 +454,41 @@ def sums(case: Case, groups: Sequence[Pixels]) -> list[Array]:
         else:
             sky = sky_map() if kind == "uneven" else None
             values = drawn(batch, partial(case.backend.albedo, irradiance=sky), layout)
-            values += drawn(batch, partial(case.evaluating.transmitted, radiance=sky), layout)
+            tinted = batch
+            if "tint" in batch.inputs and not case.opaque:
+                twice = np.concatenate([np.full(EACH, groups[n].client.two_sided) for n, _ in rows])
+                tint = batch.inputs["tint"]
+                tinted = batch.altered(tint=np.where(twice[:, np.newaxis], tint * tint, tint))
+            values += drawn(tinted, partial(case.evaluating.transmitted, radiance=sky), layout)
         for (number, _), each in zip(rows, np.split(values, len(rows)), strict=True):
-            found[number] += each
+            found[number] += each * (1.0 if kind == "light" else groups[number].client.intensity)
     return found
 
 
+def in_turn(batch: Batch, client: Client) -> Batch:
+    """The same where the surface turns instead of the environment."""
+    if client.turn == CLIENT.turn:
+        return batch
+    frame = (
+        np.broadcast_to(np.eye(3), (len(batch.wo), 3, 3)) if batch.frame is None else batch.frame
+    )
+    axes = {
+        name: float32(np.broadcast_to(batch.inputs.get(name, first), batch.wo.shape) @ ROTATION.T)
+        for name, first in zip(FRAME, FLAT, strict=True)
+    }
+    return replace(batch.altered(**axes), frame=ROTATION @ frame)
+
+
 def diagnose(case: Case) -> Diagnosis:
-    """The states in which all wrong pixels are: one, two that meet in them, or either of two."""
+    """The states in which all wrong pixels are."""
     tolerance, compared = case.tolerance("states"), list(states(case))
     bad = np.concatenate(list(map(tolerance.wrong, compared)))
     pixels = [words for each in pixels_of(case) for words in _words(each)]
+    return Diagnosis((shared(bad, pixels), *not_finite(compared)))
+
+
+def shared(bad: Mask, pixels: Sequence[set[str]]) -> Cause:
+    """The states that all wrong pixels have: one, two that meet in them, or either of two."""
     names = sorted(set().union(*pixels))
     found: dict[tuple[str, ...], Mask] = {
         (name,): np.array([name in each for each in pixels]) for name in names
@@ -454,17 +512,21 @@ def diagnose(case: Case) -> Diagnosis:
         key, common = "both_states", both[1]
     elif either < one:
         key, common = "either_state", either[1]
-    sums = Cause(Kind.DEFECT, key, common, wrong=int(bad.sum()), of=len(bad))
-    return Diagnosis((sums, *not_finite(compared)))
+    return Cause(Kind.DEFECT, key, common, wrong=int(bad.sum()), of=len(bad))
 
 
 def _words(pixels: Pixels) -> Iterator[set[str]]:
     """The states of each pixel but the first ones, in the words of a diagnosis."""
-    first = {next(iter(each)) for each in AXES.values()}
-    parts = [words.split(":") for words in pixels.states if words not in first]
-    common = {":".join(each[: count + 1]) for each in parts for count in range(len(each))}
+    common = named(pixels.states, AXES)
     for name in pixels.differ or ("",) * EACH:
         yield common | ({f"two lobes that differ in {name}"} if name else set())
+
+
+def named(states: Iterable[str], axes: Mapping[str, Mapping[str, object]]) -> set[str]:
+    """States that are not the first of their axes, and what their words have before each colon."""
+    first = {next(iter(each)) for each in axes.values()}
+    parts = [words.split(":") for words in states if words not in first]
+    return {":".join(each[: count + 1]) for each in parts for count in range(len(each))}
 
 
 # fmt: off

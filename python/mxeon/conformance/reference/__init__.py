@@ -170,7 +170,7 @@ class Reference(base.Host):
         The branch "opacity" is "transmission" by that method of MaterialX. Raise NotRun unless the response to a
         light or to a uniform environment, or the share of that which is transmitted, is requested.
         """
-        shader, wo, wi, inputs, branch, output, irradiance = query
+        shader, wo, wi, inputs, branch, output, irradiance, _ = query
         if (
             output != "response"
             or irradiance is not None

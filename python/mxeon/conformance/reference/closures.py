@@ -193,7 +193,7 @@ def column(values: ArrayLike) -> Array:
 
 def evaluate(trees: Iterable[TreeRows], query: Query) -> Array:
     """Values of a shader's closures in a uniform environment; see `Host.evaluate`."""
-    _, wo, wi, inputs, branch, output, _ = query
+    _, wo, wi, inputs, branch, output, *_ = query
     values = np.zeros((len(wo), 3))
     normal = np.broadcast_to(np.asarray(inputs.get("normal", UP), np.float64), wo.shape)
     occlusion = np.broadcast_to(column(inputs.get("occlusion", 1.0)), (len(wo), 1))

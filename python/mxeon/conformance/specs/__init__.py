@@ -2,6 +2,7 @@
 """All nodes that are judged, a family a file."""
 
 from mxeon.conformance.spec import Spec
+from mxeon.conformance.specs.clients import CLIENT_FRAME
 from mxeon.conformance.specs.combinations import COMBINED_SPECS
 from mxeon.conformance.specs.diffuse import DIFFUSE, SURFACE_LOBES
 from mxeon.conformance.specs.emission import ABSENT, EMISSION_SPECS, EMITTING_SURFACES, MEDIUM_SPECS
@@ -15,7 +16,7 @@ from mxeon.conformance.specs.utilities import INVERSION_SPECS, UTILITY_SPECS
 
 PLAIN_LOBES = (BURLEY, TRANSLUCENT, CONTY_KULLA, ZELTNER, *FACET_SPECS)
 # Every run judges the common ones; the others only if the user names them.
-COMMON: tuple[Spec, ...] = (*PLAIN_LOBES, *COMBINED_SPECS, *INVERSION_SPECS)
+COMMON: tuple[Spec, ...] = (*PLAIN_LOBES, *COMBINED_SPECS, *INVERSION_SPECS, CLIENT_FRAME)
 PBRLIB: tuple[Spec, ...] = (
     *COMMON,
     HAIR,

@@ -247,6 +247,10 @@ ERRORS = {
 QUADRATURE = 6e-4  # on the equations
 
 
+# Where MaterialX's fit B is 0, no curve moves its prefiltered sum, and its fit A is this far below 1.
+PREFILTERED = Term(5.06e-2, "MaterialX's fit of prefiltered light")
+
+
 def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
     # The fit of E_ss takes from a throughput what it adds to values.
     light = sum_in(
@@ -272,6 +276,7 @@ def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
         "anisotropic_throughput": throughput.plus(ANISOTROPIC, ANISOTROPIC_LOBE),
         "light": light,
         "lossless": own["integral"],
+        "methods": ENVIRONMENT.plus(PREFILTERED, sum_over(64)),
         "sky": seen,
     }
 
@@ -473,10 +478,6 @@ FACET_SPECS = tuple(
 
 # Largest slope of a Fresnel curve in the cosine, 0.05 from a critical angle: at index 1.02, cosine 0.05.
 FRESNEL_SLOPE = 7.3
-
-
-# Where MaterialX's fit B is 0, no curve moves its prefiltered sum, and its fit A is this far below 1.
-PREFILTERED = Term(5.06e-2, "MaterialX's fit of prefiltered light")
 
 
 def transmission_errors(passed: Tolerance) -> dict[str, Tolerance]:

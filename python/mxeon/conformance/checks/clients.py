@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a client binds to a generated shader beside the material: lights, an environment, shadows, and blending.
+
+The whole generated main is drawn, with point and spot lights, a shadow map, ambient occlusion and transparency.
+AXES lists the states; every two states of different axes meet in some frame.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from mxeon.conformance.case import Case
+from mxeon.conformance.check import Check, family
+from mxeon.conformance.checks.states import covering, named, shared
+from mxeon.conformance.controls import scale
+from mxeon.conformance.diagnosis import not_finite
+from mxeon.conformance.reference.clients import alpha_of, light
+from mxeon.conformance.results import Diagnosis
+from mxeon.conformance.samples import RIM, Batch, sky_map
+from mxeon.conformance.specs.clients import BACK, FRONT, INTENSITY, FrameSpec
+from mxeon.conformance.tolerance import Compared
+from mxeon.hosts import host_row
+from mxeon.hosts.base import TURN
+from mxeon.shaders.methods import GENERATED, UNCHOSEN, Methods
+from mxeon.shaders.options import offers
+from mxeon.shaders.scene import VIEW, Client, Lamp, Matrix, Scene, sphere
+
+if TYPE_CHECKING:  # which loads MaterialX
+    from mxeon.shaders.generation import Shader
+
+SIZE = 16  # pixels on a side of a frame
+POLE = 0.999  # height from which an uneven environment has no neighbors to filter
+EVERY = 6  # a control draws one of so many frames
+WHITE = np.ones((1, 1, 3), np.float32)
+NAMES = {"shading/mix": "mix", "front/opacity": "front", "back/opacity": "back"}
+# MaterialX before 1.39.5 folds no mixes.
+FOLDED = Methods("none", "opacity", premultiplied=offers("premultiplied") or None)
+# Depths of the sphere lie within [0.2, 0.7] in this map, and its w is not 1.
+SHADOW: Matrix = (1.2, 0.1, 0.3, 0.0, 0.2, 1.1, 0.2, 0.0, 0.1, 0.3, -0.6, 0.0, 0.0, 0.0, 0.0, 1.5)
+
+
+class Frame(NamedTuple):
+    """A frame: what a client binds, the generator's methods, and inputs of the material."""
+
+    client: Client = Client()
+    methods: Methods = UNCHOSEN
+    inputs: Mapping[str, float] = {}
+
+
+Build = Callable[[Frame], Frame]
+
+
+def same(frame: Frame) -> Frame:
+    return frame
+
+
+def bound(**values: Any) -> Build:
+    """What sets members of `Client`."""
+    return lambda frame: frame._replace(client=replace(frame.client, **values))
+
+
+def lit(*lamps: Lamp) -> Build:
+    return bound(lamps=lamps)
+
+
+def given(**inputs: float) -> Build:
+    """What sets inputs of the material: `mix`, and the opacities `front` and `back`."""
+    return lambda frame: frame._replace(inputs={**frame.inputs, **inputs})
+
+
+def _turned() -> Matrix:
+    """A turn of the environment that is not its own inverse, nor about an axis."""
+    (cos, sin), (low, high) = ((np.cos(x), np.sin(x)) for x in (0.7, 0.4))
+    about_y = np.array([[cos, 0.0, sin], [0.0, 1.0, 0.0], [-sin, 0.0, cos]])
+    about_x = np.array([[1.0, 0.0, 0.0], [0.0, low, -high], [0.0, high, low]])
+    matrix = np.array(TURN)
+    matrix[:3, :3] = TURN[:3, :3] @ about_y @ about_x
+    return tuple(matrix.T.ravel().tolist())
+
+
+SUN = Lamp(direction=(0.6, 0.0, -0.8), color=(1.0, 0.5, 0.2))
+BULB = Lamp(type=2, position=(1.0, 2.0, 1.5), color=(0.5, 1.0, 0.2), intensity=20.0)
+SPOT = Lamp(
+    type=3,
+    position=(0.0, 1.0, 2.5),
+    direction=(0.0, -0.6, -0.8),
+    color=(0.2, 0.5, 1.0),
+    intensity=30.0,
+    inner_angle=0.95,
+    outer_angle=0.8,
+)
+# The first state of each axis is that of other checks. States whose words are the same up to a colon are diagnosed
+# together, too.
+AXES: dict[str, dict[str, Build]] = {
+    "methods": {
+        "the default methods": same,
+        "premultiplied mixes without an environment": lambda frame: frame._replace(methods=FOLDED),
+    },
+    "lights": {
+        "no light": same,
+        "a directional light": lit(SUN),
+        "a point light": lit(BULB),
+        "a point light: without decay": lit(replace(BULB, decay_rate=0.0)),
+        "a spot light": lit(SPOT),
+        "three lights": lit(BULB, SPOT, SUN),
+        "three lights: in another order": lit(SUN, BULB, SPOT),
+    },
+    "environment": {
+        "no environment": same,
+        "an environment": bound(radiance=WHITE, irradiance=WHITE),
+        "an environment: uneven": bound(radiance=sky_map(), irradiance=sky_map()),
+        "an environment: turned": bound(radiance=sky_map(), irradiance=sky_map(), turn=_turned()),
+    },
+    "bound": {
+        "what the generator sets": same,
+        "another intensity of the environment": bound(intensity=INTENSITY),
+        "a shadow map": bound(shadow=SHADOW, moments=(0.4, 0.18)),
+        "ambient occlusion": bound(ambient=0.4, gain=0.75),
+    },
+    "opacity": {
+        "opaque surfaces": same,
+        "an opacity below 1": given(front=0.6, back=0.75),
+        "an opacity below 1: 0": given(front=0.0, back=0.75),
+    },
+    "surfaces": {
+        "one surface": same,
+        "the other of two surfaces": given(mix=0.0),
+        "a mix of surfaces": given(mix=0.3),
+    },
+}
+
+
+@lru_cache(maxsize=1)
+def frames() -> tuple[tuple[set[str], Frame], ...]:
+    """The frames with the words of their states, those of a program one after the other."""
+    found = []
+    for states in covering(tuple(map(tuple, AXES.values()))):
+        frame = Frame()
+        for axis, words in zip(AXES.values(), states, strict=True):
+            frame = axis[words](frame)
+        found.append((named(states, AXES), frame))
+    return tuple(sorted(found, key=lambda each: str(each[1].methods)))
+
+
+def drawn(case: Case) -> Iterator[tuple[set[str], Compared]]:
+    """Colors and alphas of each frame beside those of the equations, with the words of its states."""
+    points = sphere(SIZE)
+    normal = points.normal[points.mask]
+    view = np.broadcast_to(VIEW, normal.shape)
+    batch = Batch(view, view, {"normal": normal})
+    shaders: dict[Methods, Shader] = {}
+    for words, (client, methods, inputs) in frames()[:: EVERY if case.control else 1]:
+        if methods not in shaders:
+            text, library = case.spec.document(), case.library
+            [shaders[methods]] = case.host.compile(
+                text, library=library, methods=methods, client=True
+            )
+        ports = (
+            replace(each, value=inputs.get(NAMES.get(each.path, ""), each.value))
+            for each in shaders[methods].inputs
+        )
+        shader = replace(shaders[methods], inputs=tuple(ports))
+        share, front, back = (inputs.get(name, 1.0) for name in NAMES.values())
+        front, back = share * front, (1.0 - share) * back
+        color = (front * FRONT + back * BACK) * light(client, methods.over(GENERATED), normal)
+        turned = normal @ np.reshape(client.turn, (4, 4))[:3, :3]
+        judged = (normal[:, 2] >= RIM) & (np.abs(turned[:, 1]) <= POLE)
+        for alpha in (False, True):
+            scene = Scene("client", size=SIZE, client=replace(client, alpha=alpha))
+            measured = case.host.picture(shader, scene)[points.mask].astype(np.float64)
+            expected = np.full_like(color, alpha_of(front + back)) if alpha else color
+            found = Compared(batch, case.outputs(batch, measured), expected).where(judged)
+            yield words | {"alpha"} if alpha else words, found
+
+
+def diagnose(case: Case) -> Diagnosis:
+    """The states that all wrong frames have."""
+    tolerance, rows = case.tolerance("frame"), list(drawn(case))
+    bad = np.array([tolerance.wrong(each).any() for _, each in rows])
+    compared = [each for _, each in rows]
+    common = shared(bad, [words for words, _ in rows])
+    common = replace(common, key=f"{common.key}_of_frames")
+    return Diagnosis((common, *not_finite(compared)))
+
+
+# fmt: off
+ROWS = (
+    Check(key="client",
+          claim="A whole frame shows every light, the environment, shadow and occlusion that a client binds, and alpha.",
+          applies=family(FrameSpec), measure=lambda case: (each for _, each in drawn(case)),
+          tolerance="frame", control=scale("values are 1 % too large", 1.01), explain=diagnose,
+          hosts=lambda spec, host: bool(host_row(host).scenes),
+          methods=lambda spec, methods: methods == GENERATED),
+)
+# fmt: on

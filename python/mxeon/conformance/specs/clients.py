@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A material for a client's frame: a mix of two matte surfaces with opacities, one of them a mix of two lobes."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mxeon.conformance.samples import SKY_ROWS, SLOPE, Values
+from mxeon.conformance.spec import Ability, Spec
+from mxeon.conformance.tolerance import Term, roundings, sum_of
+from mxeon.shaders.nodes import (
+    Node,
+    connection_text,
+    document_text,
+    input_text,
+    lobe_text,
+    network_text,
+    node_text,
+)
+
+LOBES = {"first": (0.9, 0.3, 0.1), "second": (0.2, 0.5, 0.8), "behind": (0.3, 0.8, 0.4)}
+SHARE = 0.25  # of the first lobe in the mix of both
+FRONT = SHARE * np.array(LOBES["first"]) + (1.0 - SHARE) * np.array(LOBES["second"])
+BACK = np.array(LOBES["behind"])
+INTENSITY = 1.75  # of an environment
+# Uneven light bends with the cosine of a direction between its texels, and filters have weights of 8 bits.
+TEXEL = np.pi / SKY_ROWS
+FILTERED = Term(
+    INTENSITY * SLOPE * 2.0 * (TEXEL**2 / 8.0 + TEXEL / 512.0),
+    f"a filter of an uneven environment, times {INTENSITY}",
+)
+FRAME = sum_of(roundings(64, "of directions, distances and powers, four lights in all"), FILTERED)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class FrameSpec(Spec):
+    """The node `surface` with all that a client binds."""
+
+    requires = Ability.FRAME
+
+    def document(self, inputs: Values | None = None) -> str:
+        """The front surface has the opacity `front/opacity`, and the share `shading/mix` before the other."""
+        lobes = (
+            lobe_text("oren_nayar_diffuse_bsdf", {"color": each}, name)
+            for name, each in LOBES.items()
+        )
+        mixed = Node("mix", "BSDF", ("first", "second"), input_text("mix", "float", SHARE))
+        opacity = input_text("opacity", "float", 1.0)
+        surfaces = (
+            node_text(
+                "surface", "surfaceshader", name, connection_text("bsdf", "BSDF", lobe) + opacity
+            )
+            for name, lobe in (("front", "lobe"), ("back", "behind"))
+        )
+        share = input_text("mix", "float", 1.0)
+        shading = {"shading": Node("mix", "surfaceshader", ("front", "back"), share)}
+        texts = *lobes, network_text({"lobe": mixed}), *surfaces, network_text(shading)
+        return document_text("".join(texts))
+
+
+CLIENT_FRAME = FrameSpec(title="surface, a client's frame", node="surface", errors={"frame": FRAME})
