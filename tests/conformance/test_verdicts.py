@@ -86,7 +86,7 @@ HIDING = {"throughput": ("not_zero", "throughput", 0.0, "weight_not_1", "direct"
 SURFACE = dict.fromkeys(
     ("lobes_albedo", "lobes_mean", "lobes_furnace", "lobes_energy", "glass"), LOBES
 )
-SURFACE |= {"lobes": ("no_single_lobe",)}
+SURFACE |= {"lobes": ("throughput_of_lobes",)}
 FILMS = {"lobes_film": LOBES}
 SPHERE = {"states": ("a surface that bends: a sphere",)}  # Zeltner's lobe, seen along the normal
 PASSED_THROUGH = {"transmitted": UNSHADOWED, "transmitted_finite": NAN, "methods": ()}
@@ -164,6 +164,7 @@ STOCK = {
     "subsurface_bsdf": {
         **dict.fromkeys(("value", "integral", "energy"), ("model", BLUR.format(100))),
         **dict.fromkeys(("sphere", "sphere_mean"), ("model", BLUR.format(1))), **HIDING,
+        "frame": ("direct", "beside_equal_pixels"),
     },
     "dielectric_bsdf, thin film": film(CHOICES)
     | {"layering": ("model", f"{CHOICES}: {BARE}"), "anisotropic_throughput": ()},

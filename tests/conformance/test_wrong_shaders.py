@@ -347,6 +347,9 @@ WRONG = {
     ),
     "standard_surface, every lobe": (
         (FACETS, "vec3(lobe.roughness, 1.0)", "vec3(lobe.alpha, lobe.alpha, 1.0)", "lobes", ()),
+        ("genglsl/dielectric_bsdf.glsl", "                    bsdf);\n}\n\n",
+         "                    bsdf);\n    bsdf.throughput = mix(bsdf.throughput, vec3(1.0), 0.3);\n}\n\n", "lobes",
+         ("throughput_of_lobes", "dielectric_bsdf, scatter_mode R")),
     ),
     "UsdPreviewSurface, every lobe": (
         (FACETS, "bsdf.throughput = max(1.0 - lobe.albedo", "bsdf.throughput = max(1.002 - lobe.albedo", "lobes_mean",

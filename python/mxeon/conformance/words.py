@@ -216,6 +216,7 @@ DEFECTS = {
     "albedo_outside": "the albedo is wrong with {0} {numbers}",
     "throughput_outside": "the throughput is wrong with {0} {numbers}",
     "right_without": "the layer equation holds without the {0}",
+    "throughput_of_lobes": "by itself, what passes {all} is wrong",
     "no_single_lobe": "no single lobe explains it; the error is smallest without {0} and {1}",
     "sum_of_lobes": "see the checks of each lobe and of `layer`",
     "graph_of_release": "the graph of MaterialX {any}",

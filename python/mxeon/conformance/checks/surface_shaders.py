@@ -11,16 +11,18 @@ from mxeon.conformance import controls, tolerance
 from mxeon.conformance.backends import joined
 from mxeon.conformance.case import SCATTERING, Case
 from mxeon.conformance.check import Check, always, family
-from mxeon.conformance.checks.lobes import finds_albedo
-from mxeon.conformance.diagnosis import ALBEDO, defect
+from mxeon.conformance.checks.lobes import LAYERS, finds_albedo
+from mxeon.conformance.diagnosis import ALBEDO, THROUGHPUT, defect
 from mxeon.conformance.results import Cause, Diagnosis, Kind
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.spec import Ability
+from mxeon.conformance.specs import PLAIN_LOBES
 from mxeon.conformance.specs.surface_shaders import STRETCHED_FIT, SurfaceShaderSpec, stretched
 from mxeon.conformance.specs.surface_shaders import VALUE as VALUE_ERROR
 from mxeon.conformance.tolerance import Compared, Measurement, count_named, count_of, scaled, sum_of
 from mxeon.errors import NotRun
 from mxeon.hosts.calls import NORMAL, TANGENT
+from mxeon.shaders.document.graphs import categories, inner_nodes
 
 WORST = 32  # pairs that are looked at
 CHANGED = 8  # pairs that a change of an input has to show in
@@ -50,7 +52,20 @@ def diagnose_lobes(case: Case) -> Diagnosis:
     lobe = min(errors, key=errors.__getitem__)
     if errors[lobe] <= VALUE_ERROR.value:
         return defect("right_without", lobe)
+    if layers := wrong_layers(case):
+        return defect("throughput_of_lobes", *layers)
     return defect("no_single_lobe", *sorted(errors, key=errors.__getitem__)[:2])
+
+
+def wrong_layers(case: Case) -> list[str]:
+    """Lobes of a material that let through what they should not, or the reverse, each by itself."""
+    used, found = categories(inner_nodes(case.evaluating.shader.document)), []
+    for spec in filter(LAYERS, PLAIN_LOBES):
+        if spec.node in used:
+            lobe = case.another(spec)
+            if any(lobe.tolerance("throughput").wrong(each).any() for each in THROUGHPUT(lobe)):
+                found.append(spec.title)
+    return found
 
 
 MATERIALS, SUM = family(SurfaceShaderSpec), always(defect("sum_of_lobes"))

@@ -64,7 +64,7 @@ SHOWN = 0.1  # share of the light that has to be left where another input is cha
 # Share of the distance to any other explanation up to which one explains all, and up to which it is
 # called the nearest.
 SAME, NEAR = 0.03, 0.3
-FAR = 0.1  # share of the distance to the claimed model from which another model is no match
+FAR = 0.2  # share of the distance to the claimed model from which another model is no match
 NAMED = 0.5  # share of the values' own size up to which the closest model is named
 INEXACT = 30.0  # tolerances up to which the right model is called inexact, and not another one
 LEAST_LIGHT = 1e-3  # cosine of the light up to which factors of it cannot be told apart
