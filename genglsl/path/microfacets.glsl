@@ -237,7 +237,7 @@ void path_dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, floa
     {
         path_eta = path_eta_of(ior);
         dielectric_bsdf(path_question_in_direct_light(closureData), weight, tint,
-                        path_is_denser() ? 1.0 / path_eta : ior, roughness, retroreflective,
+                        path_is_denser() ? 1.0 / path_eta : path_inside ? path_eta : ior, roughness, retroreflective,
                          thinfilm_thickness, thinfilm_ior, N, X, distribution, scatter_mode, bsdf);
         path_end(bsdf);
     }
