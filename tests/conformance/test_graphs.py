@@ -59,6 +59,7 @@ WRONG = {
     "UsdPreviewSurface": (
         ('<input name="mix" type="float" nodename="use_specular_workflow_float" />', '<input name="mix" type="float" value="1.0" />',
          "mix of diffuse_bsdf_weight is 1 instead of use_specular_workflow_float"),
+        ("ifgreatereq", "ifgreater", "cutout_opacity is ifgreater instead of ifgreatereq"),
     ),
 }  # fmt: skip
 ROWS = [

@@ -79,6 +79,7 @@ def film(choices):
             ("model", f"{choices}, under an environment"),
         ),
         **dict.fromkeys(("film_average", "film_smooth"), AVERAGE),
+        "film_brushed": (),
     }
 
 

@@ -33,7 +33,7 @@ def shared(factory, name, make):
 
 
 # Checks of the text for path tracers, whose program of a surface shader takes a driver seconds.
-DRAWN = ("pdf", "sample", "path_value", "path_inside", "path_energy")
+DRAWN = ("pdf", "sample", "path_value", "path_inside", "path_energy", "path_leaving", "path_albedo")
 
 
 def every_node(factory, library):

@@ -17,7 +17,7 @@ from mxeon.conformance.diagnosis.faults import DIRECT_FAULTS
 from mxeon.conformance.results import Cause, Diagnosis, Kind
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Candidate, Values
-from mxeon.conformance.spec import Ability, Spec
+from mxeon.conformance.spec import Ability, LobeSpec, Spec
 from mxeon.conformance.specs.combinations import SINGLE, CombinedSpec
 from mxeon.conformance.specs.diffuse import DiffuseModelSpec, SurfaceLobe
 from mxeon.conformance.specs.emission import EmissionSpec, MediumSpec
@@ -38,11 +38,13 @@ from mxeon.conformance.tolerance import (
     roundings,
     scaled,
     sum_in,
+    sum_of,
 )
 from mxeon.errors import Implied
 from mxeon.hosts import HOSTS, front_lit_only
 from mxeon.hosts.calls import NORMAL
 from mxeon.io.srgb import srgb_decoded
+from mxeon.models.diffuse import fon_albedo_avg
 from mxeon.models.nodes.combinations import FACTOR
 from mxeon.models.nodes.lobes import FORMS, TILTED
 from mxeon.shaders.methods import Methods
@@ -77,6 +79,7 @@ LAYERS = PLAIN & family(PbrSpec, lambda spec: spec.row.layerable)  # which let 1
 RECIPROCAL = PLAIN & family(PbrSpec, lambda spec: spec.row.reciprocal)
 LAMBERT, BURLEY = of_model("lambert"), of_model("burley")
 LOBES = PLAIN | BURLEY | of_model("burley_lambert")
+EON = of_model("eon", "eon_fitted")
 MODES = of_model("eon", "eon_fitted", "qon")  # of a rough diffuse node
 ROUGH = MODES | of_model("fon")
 VALUED = LOBES | FILMS | ROUGH  # one lobe of a node or of a renderer
@@ -397,6 +400,59 @@ def diagnose_domain(case: Case) -> Diagnosis:
     )
 
 
+# --- negative colors, as MaterialX's own text takes them -------------------------------------------
+
+CLAMPED = FACETS | COMBINED | family(HairSpec)  # whose negative colors count as 0
+NEGATIVE = 64  # pairs
+LEAST_NEGATIVE = 0.1
+
+
+def colored(spec: LobeSpec) -> list[str]:
+    """Inputs that are reflectances or factors; a color of a lobe under combinations belongs to that lobe."""
+    words = (FACTOR,) if COMBINED(spec) else ("color", "tint")
+    return [
+        each.name for each in spec.inputs if each.type == "color3" and each.name.startswith(words)
+    ]
+
+
+def unsigned(batch: Batch) -> Batch:
+    return batch.altered(
+        **{name: np.abs(each) for name, each in batch.inputs.items() if np.ndim(each) == 2}
+    )
+
+
+def negative(case: Case) -> Iterator[Compared]:
+    """Light with a negative red, against that of red 0, or of the positive red with the other sign.
+
+    That of EON is a rho + b rho^2 / (1 - rho (1 - <E>)), whose a and b follow from rho and half of it.
+    """
+    asks = [(case.backend.direct, case.direct)]
+    if not family(HairSpec)(case.spec):  # whose albedo MaterialX takes of the tint as it is
+        asks.append((case.backend.albedo, case.albedo))
+    if TRANSMITTING(case.spec):
+        asks.append((case.evaluating.transmitted, case.transmitted))
+    batch, red = case.few[0].first(NEGATIVE).altered(weight=1.0), np.array([1.0, 0.0, 0.0])
+    for name in colored(case.lobe):
+        rho = np.maximum(batch.inputs[name], LEAST_NEGATIVE) * red
+        rest = batch.inputs[name] * (1.0 - red)
+        low, none, half, whole = (
+            batch.altered(**{name: rest + share * rho}) for share in (-1.0, 0.0, 0.5, 1.0)
+        )
+        for known, ask in asks:
+            if CLAMPED(case.spec):
+                expected = known(none)
+            elif EON(case.spec):
+                rough = np.reshape(batch.inputs["roughness"], (-1, 1))
+                lost = rho * (1.0 - fon_albedo_avg(rough))
+                least, middle, most = (1.0 / (1.0 - share * lost) for share in (-1.0, 0.5, 1.0))
+                second = (known(whole) - 2.0 * known(half)) / (most - 0.5 * middle)  # b rho^2
+                expected = known(whole) + red * (second * (least + most) - 2.0 * known(whole))
+            else:
+                expected = known(whole) * (1.0 - 2.0 * red)
+            finite = np.asarray(np.isfinite(expected).all(axis=1))  # others fail other checks
+            yield Compared(low, ask(low), expected).where(finite)
+
+
 # fmt: off
 ROWS = (
     Check(key="value",
@@ -461,6 +517,12 @@ ROWS = (
           | COMBINED | family(EmissionSpec) | family(MediumSpec) | family(UtilitySpec),
           measure=lambda case: count_named(dead_inputs(case)), tolerance=count_of(Quantity.INPUTS),
           control=controls.drop_changes, explain=diagnosis.diagnose_inputs),
+    Check(key="negative",
+          claim="A negative color counts as 0, or takes light away, as in MaterialX's own text.",
+          applies=(VALUED | COMBINED | TRANSMITTING) & family(LobeSpec, lambda spec: bool(colored(spec))),
+          measure=negative, tolerance=sum_of(roundings(64, "of two values")),
+          control=controls.with_batch("signs are dropped", unsigned),
+          explain=always(defect("negative_color")), requires=Ability.PAIRS | Ability.LIGHT),
     Check(key="finite", claim="Every value at the edges of the domain is finite.",
           applies=LOBES | MODES | FILMS, measure=lambda case: count_not_finite(edge_values(case)),
           tolerance=count_of(Quantity.VALUES),

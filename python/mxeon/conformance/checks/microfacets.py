@@ -35,6 +35,7 @@ from mxeon.conformance.specs.microfacets import FacetSpec, FilmSpec, Transmissio
 from mxeon.conformance.tolerance import Compared, count_named, count_not_finite, count_of, roundings
 from mxeon.models.microfacet.defects import UNCOMPENSATED
 from mxeon.models.microfacet.ggx import smith_g1, smith_lambda
+from mxeon.models.sampling import ggx_sample
 from mxeon.models.transmission import refraction_direction
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.library import environment_folders
@@ -217,11 +218,14 @@ SMOOTH_VIEWS = 1 << 9  # of smooth surfaces
 CHANGED_VIEWS = 1 << 6  # whose inputs are changed
 LEAST_SEEN = 0.05  # cosine of them
 CRITICAL = 0.05  # distance from the critical angle, in its cosine: F has an infinite slope there
+ROUGH_VIEWS, FACETS_SEEN = 1 << 6, 32  # facets along each of two random numbers
+ROUGH = 0.1  # least alpha of rough glass
 LEAST_PASSED = 0.01  # light whose place is measured
 # Slope of a refracted ray in a cosine, index^2 / cosine, above which errors count relative to it.
 BENT = 1000.0
 REFRACTED = lobes.SURROUNDINGS.plus(roundings(4 * BENT, "four of a cosine, times a slope of 1000"))
 NORMAL = (0.0, 0.0, 1.0)
+UPWARD = np.array(NORMAL)
 ONE = np.ones((1, 3))
 
 
@@ -430,13 +434,48 @@ def refraction(case: Case) -> Compared:
     return Compared(batch, measured / condition, sky(place) / condition).where(bright)
 
 
-def through_sphere(wo: Array, index: Array) -> Array:
-    """Direction of a view that a solid sphere has refracted twice, (N, 3).
+def rough_refraction(case: Case) -> Compared:
+    """Light of an uneven sky through lobes of two alphas over that of a uniform one, against a mean of the sky.
+
+    Each visible facet passes the same share, into the direction in which a solid sphere refracts the view.
+    """
+    functions, rng = case.of(TransmissionSpec).functions, samples.generator()
+    batch = case.few[0].first(ROUGH_VIEWS)
+    count = len(batch.wo)
+    wo, alpha = samples.turned_directions(rng, count), rounded(ROUGH ** rng.random((2, count)))
+    if "color0" in batch.inputs:
+        color = (
+            0.2 * batch.inputs["color0"]
+        )  # without a curve, by which facets may weigh differently
+        batch = batch.altered(color0=color, color82=(1.0, 1.0, 1.0), color90=color)
+    else:
+        batch = batch.altered(ior=1.2 + 0.8 * rng.random(count))
+    turn = 2.0 * np.pi * rng.random(count)
+    tangent = rounded([np.cos(turn), np.sin(turn), 0.0 * turn])
+    batch = replace(batch.altered(weight=1.0, roughness=alpha, tangent=tangent), wo=wo)
+    level = case.transmitted(batch)
+    bright = np.asarray(level.min(axis=1) > LEAST_PASSED)
+    measured = case.transmitted(batch, sky_map()) / np.where(bright[:, np.newaxis], level, 1.0)
+    axes = np.stack([tangent, np.cross(NORMAL, tangent), 0.0 * wo + NORMAL], axis=1)
+    middles = (np.arange(FACETS_SEEN) + 0.5) / FACETS_SEEN
+    u = np.stack(np.meshgrid(middles, middles), axis=-1).reshape(-1, 2)
+    view, index, alpha = (
+        np.repeat(each, len(u), axis=0)
+        for each in ((axes @ wo[:, :, np.newaxis])[:, :, 0], functions.ior(batch.inputs), alpha)
+    )
+    facets = ggx_sample(view, np.tile(u, (count, 1)), alpha)[0] + view
+    facets /= np.linalg.norm(facets, axis=1, keepdims=True)
+    out = through_sphere(view, index, facets).reshape(count, len(u), 3).mean(axis=1)
+    return Compared(batch, measured, sky((out[:, np.newaxis] @ axes)[:, 0])).where(bright)
+
+
+def through_sphere(wo: Array, index: Array, facet: Array = UPWARD) -> Array:
+    """Direction of a view that a solid sphere has refracted twice, (N, 3), at its normal or at a facet.
 
     At the far side the ray meets the surface at the same angle: it turns twice by the same amount.
     """
-    inner = refraction_direction(wo, NORMAL, index)
-    far = inner * (2.0 * inner[:, 2:]) - np.array(NORMAL)  # towards the inside
+    inner = refraction_direction(wo, facet, index)
+    far = inner * 2.0 * np.sum(inner * facet, axis=-1, keepdims=True) - facet  # towards the inside
     cosine = -np.sum(inner * far, axis=1, keepdims=True)
     n = index[:, np.newaxis]
     out = np.sqrt(np.maximum(1.0 - n * n * (1.0 - cosine * cosine), 0.0))
@@ -597,6 +636,11 @@ def visible(films: microfacets.Films, case: Case) -> Compared:
     return Compared(batch, measured, expected).where(F.min(axis=1) > LEAST_F)
 
 
+def film_brushed(case: Case) -> Compared:
+    batch, expected = case.backend.take(case.of(FilmSpec).stretched)
+    return Compared(batch, case.albedo(batch) / case.albedo(_mirror(case, batch)), expected)
+
+
 def _averages(case: Case, direct: Function, batch: Batch) -> tuple[Array, Array]:
     """F at the half vector of mirrored lights, and F_ss, (N, 3) each, from values at two roughnesses.
 
@@ -701,6 +745,11 @@ ROWS = (
           applies=TRANSMITTING, measure=refraction, tolerance=REFRACTED, control=DENSER,
           explain=always(Diagnosis((UNKNOWN,))), requires=Ability.LIGHT,
           methods=lambda spec, methods: methods.transmission == "refraction"),
+    Check(key="rough_refraction",
+          claim="Rough glass of two alphas looks an uneven environment up where its visible facets refract to.",
+          applies=TRANSMITTING, measure=rough_refraction, tolerance="rough_refraction", control=isotropic,
+          explain=always(defect("other_refraction")), requires=Ability.PAIRS | Ability.LIGHT,
+          methods=lambda spec, methods: methods == GENERATED),
     Check(key="transmitted_finite",
           claim="All light through the surface is finite at the edges of the domain.",
           applies=TRANSMITTING, measure=lambda case: count_not_finite(_edges(case)),
@@ -739,6 +788,10 @@ ROWS = (
           claim="The albedo averages the film's reflectance over the visible, lit facets.",
           applies=FILMS, measure=partial(visible, microfacets.STEEP), tolerance="film_visible", control=dropped,
           explain=diagnose_visible, requires=Ability.LIGHT, open=True, methods=with_directions),
+    Check(key="film_brushed",
+          claim="In an environment, a lobe of two alphas under a film reflects the film's share of what a mirror does.",
+          applies=FILMS, measure=film_brushed, tolerance="anisotropic_throughput", control=dropped,
+          explain=always(Diagnosis((UNKNOWN,))), requires=Ability.PAIRS | Ability.LIGHT, methods=with_directions),
     Check(key="film_glossy",
           claim="On glossy lobes, too, the albedo averages the film's reflectance over the visible facets.",
           applies=FILMS, measure=partial(visible, microfacets.GLOSSY), tolerance="film_glossy", control=dropped,

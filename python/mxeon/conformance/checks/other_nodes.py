@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of the nodes that scatter nothing: those that emit light, media, and utility nodes."""
 
+from collections.abc import Iterator
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 
 from mxeon.conformance import controls
 from mxeon.conformance.backends import implementation
-from mxeon.conformance.case import Case
+from mxeon.conformance.case import LIGHT, Case
 from mxeon.conformance.check import Check, family
 from mxeon.conformance.diagnosis import BACK, OUTPUT, TRANSMITTANCE, VALUE, defect
 from mxeon.conformance.diagnosis.regions import EXACT, correct_except, span, unbounded
@@ -37,6 +39,12 @@ def diagnose_opacity(case: Case) -> Diagnosis:
         for each in VALUE(case)
     )
     return defect("input_ignored", "opacity") if full <= OPACITY.value else Diagnosis()
+
+
+def above(case: Case) -> Iterator[Compared]:
+    for batch, branch in product(case.batches, LIGHT):
+        passed = case.throughput(batch, branch)
+        yield Compared(batch, passed, np.ones_like(passed))
 
 
 # --- utility nodes, in units in which the roundings of their values are alike ---------------------
@@ -76,6 +84,13 @@ ROWS = (
           claim="Over one meter, a medium transmits what its coefficients give.",
           applies=MEDIA, measure=TRANSMITTANCE, tolerance="value", control=controls.shifted,
           explain=TRANSMITTANCE.diagnose),
+    Check(key="above",
+          claim="A medium takes nothing of the light that is reflected above it.",
+          applies=MEDIA, measure=above, tolerance="value",
+          control=controls.Control(
+              "a medium takes a tenth",
+              lambda case: replace(case, throughputs=lambda batch, values: 0.9 * values)),
+          explain=lambda case: defect("medium_in_reflection"), requires=Ability.PAIRS | Ability.LIGHT),
     Check(key="opacity", claim="The light that a surface emits is scaled by its opacity.",
           applies=family(emission.EmittingSurface), measure=VALUE, tolerance="value",
           control=controls.with_inputs("the opacity is 1", opacity=1.0), explain=diagnose_opacity),

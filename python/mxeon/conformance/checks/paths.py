@@ -5,9 +5,12 @@ Views are from both sides of the surface. What smooth transmission draws is near
 counted; and so is what it reflects.
 """
 
+import re
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from functools import lru_cache
+from dataclasses import dataclass, replace
+from functools import lru_cache, partial
+from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,23 +20,32 @@ from mxeon.conformance.cache import Recent, contents
 from mxeon.conformance.case import Case
 from mxeon.conformance.check import Check, Specs, always, family
 from mxeon.conformance.checks.lobes import BELOW, CLEAR, DARK, TRANSMITTING
+from mxeon.conformance.checks.microfacets import with_directions
 from mxeon.conformance.checks.surface_shaders import MATERIALS
 from mxeon.conformance.diagnosis import defect
 from mxeon.conformance.results import Cause, Diagnosis, Kind
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.samples import Array, Batch, Values, float32, generator
-from mxeon.conformance.spec import Ability, LobeSpec, Spec, materials
-from mxeon.conformance.specs.microfacets import LEAST_TANGENT_COSINE, PASSING, TransmissionSpec
-from mxeon.conformance.specs.surface_shaders import SurfaceShaderSpec
+from mxeon.conformance.spec import Ability, LobeSpec, Spec, draw, materials
+from mxeon.conformance.specs.combinations import CombinedSpec
+from mxeon.conformance.specs.microfacets import PASSING, THROUGHPUT, FacetSpec, TransmissionSpec
+from mxeon.conformance.specs.surface_shaders import ALBEDO, SurfaceShaderSpec
 from mxeon.conformance.tolerance import Compared, Measurement, Term, given, roundings, sum_of
 from mxeon.hosts import host_row
 from mxeon.hosts.base import Host
+from mxeon.hosts.calls import NORMAL, TANGENT
 
+if TYPE_CHECKING:  # which loads MaterialX
+    from mxeon.shaders.generation import Input as Port
+
+POINT = "struct Point\n"
+NO_INPUTS: Values = MappingProxyType({})
 CALL = """
-vec3 path_tracer(float what, vec3 wo, vec3 wi, vec3 u, float inside, vec3 normal, vec3 tangent)
+vec3 path_tracer(float what, vec3 wo, vec3 wi, vec3 u, float inside, vec3 normal, vec3 tangent{parameters})
 {{
+    {assignments}
     Point p;
-    p.position = vec3(0.0);
+    p.position = vec3(0.25, -0.5, 1.0);
     p.normal = normal;
     p.tangent = tangent;
     p.texcoord = vec3(0.3, 0.4, 0.0).xy;
@@ -55,15 +67,19 @@ SCATTERED = """if (what < 0.5)
 PASSED = "return what < 5.5 ? vec3(material_shadow(p, wo)) : material_emitted(p, wo);"
 FUNCTIONS = ("evaluate", "pdf", "wi", "weight", "density", "opacity", "emission")
 TARGETS = ("glsl", "essl", "vulkan", "slang")  # of mxeon.shaders.path_tracing
-DRAWS, WEIGHED, PAIRS = 1 << 15, 1 << 12, 1 << 12
+DRAWS = 1 << 15
 ANSWERS = Recent[Array](64)  # to what a check and its control ask
 # Two views whose facets below the critical angle are many and few, and one from which a smooth solid lets no light out.
 VIEWS = np.array([[0.7642691, 0.2364137, 0.6], [-0.19, 0.25, 0.9495], [0.3, -0.9367497, 0.18]])
 VIEWS /= np.linalg.norm(VIEWS, axis=1, keepdims=True)
-UPRIGHT = np.eye(3)
-TURNED = np.array(
-    [[0.6, 0.64, -0.48], [-0.8, 0.48, -0.36], [0.0, 0.6, 0.8]]
-)  # tangent, bitangent, normal
+MATERIALS_DRAWN = 6  # materials whose draws are counted, each at a view of its own
+LEAST_LIGHT = (
+    1e-5  # value that a draw must find: a sheen's fit of its albedo may be 0 where 3e-6 is left
+)
+LEAST_COUNTED = 0.2  # least roughness of the lobes whose draws are counted: the cells are coarse
+# An input as a parameter gives it, a float or a vector of three numbers.
+GIVEN = {"boolean": "{} > 0.5", "integer": "int({})", "vector2": "{}.xy"}
+VECTORS = ("vector2", "vector3", "color3")
 # Of the all-lobes materials: alpha below 1, and an emission.
 MEAN_WEIGHT = 0.3333  # of a channel in the mean by which MaterialX turns a transparency into alpha
 OPACITY, EMISSION = 0.6, 0.3
@@ -72,6 +88,7 @@ THIN: dict[str, float | str] = {
     **dict.fromkeys(("emission", "emission_luminance", "emissive", "emissiveColor"), EMISSION),
     "alpha_mode": "2",
 }
+WALLS = ("thin_walled", "geometry_thin_walled")
 
 # Glass, and the name of its index of refraction. UsdPreviewSurface reflects by Schlick's curve, which has no index of
 # a denser side.
@@ -83,6 +100,12 @@ GLASS: dict[str, tuple[str, Values]] = {
 INDEX = 2.0  # whose inverse is exact
 DRAWN = family(LobeSpec) - BELOW
 GLASSY = TRANSMITTING | MATERIALS  # which let light into a solid, and out of it
+# Lobes that reflect by an index, which light inside finds inverted.
+UNLIKE_INSIDE = (
+    GLASSY
+    | family(CombinedSpec)
+    | family(FacetSpec, lambda spec: "ior" not in spec.types or spec.types["ior"] == "float")
+)
 # Glass of that index, a tint, and its curve from outside.
 SOLIDS: dict[str, tuple[Values, Values, dict[str, Array]]] = {
     "dielectric_bsdf": (
@@ -101,7 +124,8 @@ SOLIDS: dict[str, tuple[Values, Values, dict[str, Array]]] = {
         },
     ),
 }
-GRID = 16  # draws along each of three random numbers
+SUMMED = 1 << 12  # draws whose weights are added up
+DRAWN_SUM = Term(5e-3, "a sum of 4096 draws")
 
 
 @dataclass(frozen=True)
@@ -110,24 +134,44 @@ class Paths:
 
     host: Host
     text: str
+    ports: "tuple[Port, ...]" = ()  # inputs that are variables, which each row sets
 
     def values(
         self,
         what: str,
         wo: ArrayLike,
-        wi: ArrayLike = (0.0, 0.0, 1.0),
+        wi: ArrayLike = NORMAL,
         u: ArrayLike = (0.0, 0.0, 0.0),
-        inside: bool = False,
-        frame: Array = UPRIGHT,
+        inside: ArrayLike = False,
+        inputs: Values = NO_INPUTS,
     ) -> Array:
         """Answers (N, 3) of a function, one of FUNCTIONS; 0 where nothing is drawn.
 
-        - `frame`: Tangent, bitangent and normal of the surface; directions are those of the world.
+        - `inputs`: Those of the material, by name or path, and "normal" and "tangent" of the surface.
         """
         number = FUNCTIONS.index(what)
-        values = (float(number), wo, wi, u, float(inside), frame[2], frame[0])
-        rows = [np.atleast_2d(each) for each in values]
-        text = self.text + CALL.format(answer=SCATTERED if number < 5 else PASSED)
+        given: list[Array] = []
+        for port in self.ports:
+            own = inputs.get(port.path, inputs.get(port.path.rpartition("/")[2], port.value))
+            value = np.asarray(own, np.float64)
+            wide = [(0, 0)] * (value.ndim - 1) + [(0, 1)]
+            given.append(np.pad(value, wide) if port.type == "vector2" else value)
+        frame = inputs.get("normal", NORMAL), inputs.get("tangent", TANGENT)
+        rows = [
+            np.atleast_2d(np.asarray(each, np.float64))
+            for each in (float(number), wo, wi, u, inside, *frame, *given)
+        ]
+        text = self.text + CALL.format(
+            parameters="".join(
+                f", {'vec3' if port.type in VECTORS else 'float'} given_{port.name}"
+                for port in self.ports
+            ),
+            assignments="\n    ".join(
+                f"{port.name} = {GIVEN.get(port.type, '{}').format(f'given_{port.name}')};"
+                for port in self.ports
+            ),
+            answer=SCATTERED if number < 5 else PASSED,
+        )
         return ANSWERS.value(
             (self, *map(contents, rows)),
             lambda: self.host.execute(text, "path_tracer", *rows).astype(np.float64),
@@ -135,18 +179,39 @@ class Paths:
 
 
 @lru_cache(maxsize=4)
-def paths(host: Host, document: str, library: str = "eonlib") -> Paths:
+def paths(
+    host: Host, document: str, library: str = "eonlib", varied: tuple[str, ...] = ()
+) -> Paths:
+    """The text of a document; the inputs of these names or paths are variables, and the others constants."""
     from mxeon.shaders.generation import generate
 
-    [shader] = generate(document, host.target, profile="path", library=library)
-    return Paths(host, shader.stages["pixel"])
+    [shader] = generate(
+        document, host.target, profile="path", library=library, uniforms=bool(varied)
+    )
+    text, ports = shader.stages["pixel"], []
+    static = "static " if host.target == "slang" else ""
+    for port in shader.inputs if varied else ():
+        declared = rf"^ *(?:uniform )?(\w+) {port.name}(?: = [^;]*)?;\n"
+        found = re.search(declared, text, re.MULTILINE)
+        assert found
+        kind, value = found[1], np.ravel(np.asarray(port.value)).tolist()
+        literal = f"{kind}({', '.join(str(each).lower() for each in value)})"
+        line = f"{static}const {kind} {port.name} = {literal};\n"
+        if {port.path, port.path.rpartition("/")[2]} & {*varied}:
+            ports.append(port)
+            line = f"{static}{kind} {port.name};\n"
+        text = text.replace(found[0], "", 1).replace(POINT, line + POINT, 1)
+    return Paths(host, text, tuple(ports))
 
 
-def documents(spec: LobeSpec) -> tuple[str, ...]:
-    """Materials that have another value than the default in each input; all lobes of a surface shader.
+def subjects(case: Case, *walls: bool) -> Iterator[tuple[Paths, Batch]]:
+    """Materials, with pairs in frames of their own: of a node random ones, of a surface shader all of its lobes.
 
-    Of a node there are two: one with a normal and a tangent of its own, one with switches.
+    A node has a normal and a tangent of its own, which are not those of the surface. `walls` says for a surface
+    shader that can be a thin wall whether it is one.
     """
+    spec, batch = case.lobe, case.backend.turned
+    rng, count = generator(), len(batch.wo)
     if isinstance(spec, SurfaceShaderSpec):
         values, _ = materials(*spec.judged, *spec.others)
         thin: dict[str, ArrayLike] = {
@@ -154,19 +219,35 @@ def documents(spec: LobeSpec) -> tuple[str, ...]:
             for name, value in THIN.items()
             if name in spec.types and name not in values
         }
-        return (spec.document({**values, **thin}),)
-    changed = [(each, each.change) for each in spec.inputs if each.change is not None]
-    own = {each.name: change for each, change in changed if each.type != "boolean"}
-    switched = {
-        each.name: change
-        for each, change in changed
-        if each.type != "vector3" and each.name not in spec.mode
+        axes = {name: batch.inputs[name] for name in ("normal", "tangent")}
+        for wall in walls or (False,):
+            named = [name for name in WALLS if name in spec.types]
+            if wall and not named:
+                continue
+            solid: Values = {**values, **thin, **dict.fromkeys(named * wall, True)}
+            numbers = {name: np.asarray(each, np.float64) for name, each in solid.items()}
+            text = paths(case.host, spec.document(solid), case.library)
+            yield text, replace(batch, inputs={**numbers, **axes})
+        return
+    own: Values = {each.name: NORMAL for each in spec.inputs if each.type == "vector3"}
+    rest = [
+        each
+        for each in spec.inputs
+        if each.type != "boolean" and each.name not in {*batch.inputs, *own}
+    ]
+    drawn: dict[str, ArrayLike] = {
+        each.name: np.arange(count) % 2
+        for each in spec.inputs
+        if each.type == "boolean" and each.name not in spec.mode
     }
-    return spec.document(own), spec.document(switched)
-
-
-def texts_of(case: Case) -> Iterator[Paths]:
-    return (paths(case.host, each, case.library) for each in documents(case.lobe))
+    axes = {"normal": batch.inputs["normal"], "tangent": batch.inputs["tangent"]}
+    if own:
+        drawn |= {
+            f"lobe_{name}/value": axes["normal" if name == "normal" else "tangent"] for name in own
+        }
+        drawn |= {name: np.roll(each, 1, axis=0) for name, each in axes.items()}
+    batch = batch.altered(**draw(rng, count, rest), **drawn)
+    yield paths(case.host, spec.document(own), case.library, tuple(batch.inputs)), batch
 
 
 def sides(spec: Spec) -> tuple[bool, ...]:
@@ -177,6 +258,12 @@ def sides(spec: Spec) -> tuple[bool, ...]:
 def random(count: int, rng: np.random.Generator) -> Array:
     """Numbers in [0, 1) with the 24 bits that a shader's generator gives, (N, 3)."""
     return rng.integers(0, 1 << 24, (count, 3)).astype(np.float64) * 2.0**-24
+
+
+def lattice(count: int) -> Array:
+    """Numbers that fill the unit cube evenly, multiples of the powers of a root of x^4 = x + 1, (count, 3)."""
+    steps = 1.2207440846057596 ** -np.arange(1.0, 4.0)
+    return float32((0.5 + np.arange(count)[:, np.newaxis] * steps) % 1.0 * (1.0 - 2.0**-24))
 
 
 def refracted(wo: Array, index: float = 1.5) -> Array:
@@ -201,64 +288,81 @@ def place(inside: bool) -> str:
     return "inside" if inside else "outside"
 
 
-def scores(case: Case) -> Iterator[tuple[float, bool, Array]]:
-    """Standard deviations by which draws leave their density, at each view; at one for a control.
+def scores(case: Case) -> Iterator[tuple[float, bool, Batch]]:
+    """Standard deviations by which draws leave their density, in materials at views; in three for a control.
 
     A coarse quadrature takes an eighth of the time: what it finds few is few.
     """
     u = random(DRAWS, generator())
-    for text in texts_of(case):
-        for inside in sides(case.spec):
-            for view in VIEWS[:1] if case.control else VIEWS:
+    for text, batch in subjects(case, False, True):
+        rough = {
+            name: np.maximum(each, LEAST_COUNTED)
+            for name, each in batch.inputs.items()
+            if "roughness" in name
+        }
+        if "cuticle_angle" in batch.inputs:  # a steep one leaves a pole along the fiber
+            rough["cuticle_angle"] = np.clip(batch.inputs["cuticle_angle"], 0.45, 0.55)
+        batch = batch.altered(**rough)
+        for row in range(3 if case.control else MATERIALS_DRAWN):
+            one = batch.where(np.arange(row, row + 1))
+            assert one.frame is not None
+            view, axes = one.wo[0], one.frame[0]
+            for inside in sides(case.spec) if GLASSY(case.spec) else (row % 2 == 1,):
+                ask = partial(text.values, wo=one.world(one.wo), inside=inside, inputs=one.inputs)
 
-                def density(w: Array, text: Paths = text, inside: bool = inside) -> Array:
-                    batch = Batch(np.broadcast_to(view, w.shape), w, {})  # noqa: B023
-                    return case.measured(
-                        lambda each: text.values("pdf", each.wo[:1], each.wi, inside=inside), batch
-                    )[:, 0]
+                def density(w: Array, ask: Callable[..., Array] = ask, axes: Array = axes) -> Array:
+                    return case.outputs(Batch(w, w, {}), ask("pdf", wi=w @ axes.T))[:, 0]
 
-                drawn = text.values("wi", view, u=u, inside=inside)
+                drawn = ask("wi", u=u) @ axes
                 straight = np.linalg.norm(drawn + view, axis=1, keepdims=True) < 1e-6
                 pole = refracted(view, 1.0 / 1.5 if inside else 1.5)
                 mirror = view * [-1.0, -1.0, 1.0]
                 score = deviation(drawn * ~straight, density, pole, mirror, COARSE)
                 if score > SUSPECT and not case.control:
                     score = deviation(drawn * ~straight, density, pole, mirror)
-                yield score, inside, view
+                yield score, inside, one
 
 
 def pdf(case: Case) -> Measurement:
     score, inside, view = max(scores(case), key=lambda each: each[0])
-    return Measurement(score, {"wo": view.tolist(), "inside": [float(inside)]})
+    return Measurement(score, {"wo": view.wo[0].tolist(), "inside": [float(inside)]})
 
 
-def halves(case: Case) -> Iterator[tuple[bool, Compared, Compared]]:
-    """Weights times densities against values, and densities against those of material_pdf, over what each is."""
-    u = random(WEIGHED, generator())
-    for text in texts_of(case):
-        for inside in sides(case.spec):
-            for view in VIEWS:
-                wi, weight, density = (
-                    text.values(what, view, u=u, inside=inside)
-                    for what in ("wi", "weight", "density")
-                )
-                kept = density[:, 0] > 0.0
-                if not kept.any():
-                    continue
-                batch = Batch(np.broadcast_to(view, wi.shape), wi, {}).where(kept)
-                value = text.values("evaluate", view, batch.wi, inside=inside)
-                stated = text.values("pdf", view, batch.wi, inside=inside)[:, :1]
-                size = value.max(axis=1, keepdims=True)
-                size[size <= 0.0] = 1.0
-                steep = steepness(stated)
-                found = case.outputs(batch, (weight * density)[kept]) / size
-                right, one = value / size, np.ones_like(stated)
-                ratio = density[kept, :1] / np.maximum(stated, 1e-30)
-                yield (
-                    inside,
-                    Compared(batch, right + (found - right) / steep, right),
-                    Compared(batch, one + (ratio - one) / steep, one),
-                )
+def parts(case: Case) -> Iterator[tuple[str, bool, Compared]]:
+    """Weights times densities against values, densities against those of material_pdf, and values where that is 0.
+
+    The first two are over what each is.
+    """
+    for text, batch in subjects(case, False, True):
+        u, wo = random(len(batch.wo), generator()), batch.world(batch.wo)
+        for inside in (False, True):
+            ask = partial(text.values, inside=inside)
+            value, stated = (
+                ask(what, wo, batch.world(batch.wi), inputs=batch.inputs)
+                for what in ("evaluate", "pdf")
+            )
+            missed = value * ((stated <= 0.0) & (value > LEAST_LIGHT))
+            yield "undrawn_light", inside, Compared(batch, missed, np.zeros_like(missed))
+            wi, weight, density = (
+                ask(what, wo, u=u, inputs=batch.inputs) for what in ("wi", "weight", "density")
+            )
+            kept = density[:, 0] > 0.0
+            if not kept.any():
+                continue
+            rows = replace(batch.where(kept), wi=wi[kept])
+            value, stated = (
+                ask(what, wo[kept], rows.wi, inputs=rows.inputs) for what in ("evaluate", "pdf")
+            )
+            stated = stated[:, :1]
+            size = value.max(axis=1, keepdims=True)
+            size[size <= 0.0] = 1.0
+            steep = steepness(stated)
+            found = case.outputs(rows, (weight * density)[kept]) / size
+            right, one = value / size, np.ones_like(stated)
+            ratio = density[kept, :1] / np.maximum(stated, 1e-30)
+            weights = Compared(rows, right + (found - right) / steep, right)
+            yield "drawn_weight", inside, weights
+            yield "sampled_density", inside, Compared(rows, one + (ratio - one) / steep, one)
 
 
 SAMPLE = sum_of(
@@ -267,88 +371,115 @@ SAMPLE = sum_of(
 )
 
 
-def _wrong_half(case: Case) -> Diagnosis:
-    """Which of the two is wrong, and from where."""
-    causes: dict[Cause, None] = {}
-    for inside, weights, densities in halves(case):
-        for key, compared in (("drawn_weight", weights), ("sampled_density", densities)):
-            if SAMPLE.wrong(compared).any():
-                causes[Cause(Kind.DEFECT, key, (place(inside),))] = None
-    return Diagnosis(tuple(causes))
+def _wrong_part(case: Case) -> Diagnosis:
+    """Which of them is wrong, and from where."""
+    wrong = {
+        Cause(Kind.DEFECT, key, (place(inside),)): None
+        for key, inside, compared in parts(case)
+        if SAMPLE.wrong(compared).any()
+    }
+    return Diagnosis(tuple(wrong))
 
 
 def sample(case: Case) -> Iterator[Compared]:
-    for _, weights, densities in halves(case):
-        yield weights
-        yield densities
-
-
-def random_directions(rng: np.random.Generator, count: int) -> Array:
-    w = rng.normal(size=(count, 3))
-    return float32(w / np.linalg.norm(w, axis=1, keepdims=True))
+    return (compared for _, _, compared in parts(case))
 
 
 def path_value(case: Case) -> Iterator[Compared]:
-    document, rng = documents(case.lobe)[-1], generator()
-    text, [shader] = (
-        paths(case.host, document, case.library),
-        case.host.compile(document, library=case.library),
-    )
-    wo, wi = random_directions(rng, PAIRS), random_directions(rng, PAIRS)
-    high = np.minimum(abs(wo[:, 2]), abs(wi[:, 2])) > LEAST_TANGENT_COSINE
-    wo, wi = wo[high], wi[high]
-    wi[:8] = wo[:8]
-    if GLASSY(case.spec):  # light from behind is not the rasterizer's
-        wi[:, 2] = np.copysign(wi[:, 2], wo[:, 2])
-    world = {"wo": wo @ TURNED, "wi": wi @ TURNED, "frame": TURNED}
-    thin = isinstance(case.spec, SurfaceShaderSpec) and case.spec.node != "UsdPreviewSurface"
-    share = OPACITY if thin else 1.0
-    opacity = 1.0 - 3.0 * MEAN_WEIGHT * (1.0 - share)
-    batch, steep = Batch(wo, wi, {}), steepness(text.values("pdf", **world)[:, :1])
-    value = case.host.evaluate(shader, wo, wi, {}, "direct")
-    found = case.outputs(batch, text.values("evaluate", **world))
-    yield Compared(batch, np.pi * found / steep, opacity * np.pi * value / steep)
-    yield Compared(batch, text.values("opacity", **world), np.full((len(wo), 1), opacity))
-    emitted = np.zeros((len(wo), 3))
-    if isinstance(case.spec, SurfaceShaderSpec):
-        emitted = case.host.evaluate(shader, wo, wi, {}, "emission", output="radiance")
-    yield Compared(batch, text.values("emission", **world), share * emitted)
+    for text, batch in subjects(case):
+        glassy = GLASSY(case.spec)
+        sign = np.where(np.arange(len(batch.wo)) % 4 == 0, -1.0, 1.0)
+        wi = batch.wi if glassy else batch.wi * np.stack([0.0 * sign + 1.0] * 2 + [sign], axis=1)
+        wi[:8] = batch.wo[:8]
+        batch = replace(batch, wi=wi)
+        local = replace(batch.altered(normal=NORMAL, tangent=TANGENT), frame=None)
+        # Light from behind is not the rasterizer's, nor is there an inside of what reflects by an index.
+        inside = np.arange(len(wi)) % 2 * (not UNLIKE_INSIDE(case.spec))
+        ask = partial(
+            text.values,
+            wo=batch.world(batch.wo),
+            wi=batch.world(wi),
+            inside=inside,
+            inputs=batch.inputs,
+        )
+        thin = isinstance(case.spec, SurfaceShaderSpec) and case.spec.node != "UsdPreviewSurface"
+        share = OPACITY if thin else 1.0
+        opacity = 1.0 - 3.0 * MEAN_WEIGHT * (1.0 - share)
+        steep = steepness(ask("pdf")[:, :1])
+        found = case.outputs(batch, ask("evaluate"))
+        value = case.evaluating.evaluate(local, "direct")
+        yield Compared(batch, np.pi * found / steep, opacity * np.pi * value / steep)
+        yield Compared(batch, ask("opacity"), np.full((len(wi), 1), opacity))
+        emitted = np.zeros((len(wi), 3))
+        if isinstance(case.spec, SurfaceShaderSpec):
+            emitted = case.evaluating.evaluate(local, "emission", "radiance")
+        yield Compared(batch, ask("emission"), share * emitted)
 
 
 def path_inside(case: Case) -> Iterator[Compared]:
     name, values = GLASS[case.spec.node]
-    solid, inverse = (
-        paths(case.host, case.spec.document({**values, name: index}), case.library)
-        for index in (INDEX, 1.0 / INDEX)
-    )
-    u = random(PAIRS, generator())
+    if isinstance(case.spec, SurfaceShaderSpec):
+        text = paths(case.host, case.spec.document({**values, name: INDEX}), case.library, (name,))
+        batch = case.backend.turned
+        batch = replace(batch, inputs={each: batch.inputs[each] for each in ("normal", "tangent")})
+    else:
+        [(text, batch)] = subjects(case)
+    index = INDEX ** (np.arange(len(batch.wo)) // 2 % 2 * 2.0 - 1.0)
+    inner, outer = ({**batch.inputs, name: each} for each in (index, 1.0 / index))
+    wo, u = batch.world(batch.wo), random(len(batch.wo), generator())
+    wi = text.values("wi", wo, u=u, inputs=outer)
+    wi = np.where(np.any(wi != 0.0, axis=1, keepdims=True), wi, wo)
+    steep = steepness(text.values("pdf", wo, wi, inputs=outer)[:, :1])
+    for what in ("evaluate", "pdf"):
+        found = text.values(what, wo, wi, inside=True, inputs=inner)
+        expected = text.values(what, wo, wi, inputs=outer)
+        scale = steep * np.maximum(1.0, expected.max(axis=1, keepdims=True))
+        yield Compared(batch, case.outputs(batch, found) / scale, expected / scale)
+
+
+def clear_draws(case: Case, inside: bool) -> Iterator[tuple[Batch, Array, Array]]:
+    """Directions and weights of draws in a clear solid, at each view."""
+    values, tint, _ = SOLIDS[case.spec.node]
+    [(text, _)] = subjects(case)
+    inputs = {**values, "lobe_normal/value": NORMAL, "lobe_tangent/value": TANGENT}
     for view in VIEWS:
-        wi = inverse.values("wi", view, u=u)
-        batch = Batch(np.broadcast_to(view, wi.shape), wi, {}).where(np.any(wi != 0.0, axis=1))
-        steep = steepness(inverse.values("pdf", view, batch.wi)[:, :1])
-        for what in ("evaluate", "pdf"):
-            found = solid.values(what, view, batch.wi, inside=True)
-            expected = inverse.values(what, view, batch.wi)
-            scale = steep * np.maximum(1.0, expected.max(axis=1, keepdims=True))
-            yield Compared(batch, case.outputs(batch, found) / scale, expected / scale)
+        wi, weight = (
+            text.values(what, view, u=lattice(SUMMED), inside=inside, inputs=inputs)
+            for what in ("wi", "weight")
+        )
+        yield (
+            Batch(view[np.newaxis], view[np.newaxis], {}),
+            wi,
+            weight / np.asarray(tint.get("tint", 1.0)),
+        )
 
 
 def path_energy(case: Case) -> Iterator[Compared]:
+    for inside in (False, True):
+        for batch, _, weight in clear_draws(case, inside):
+            total = weight.mean(axis=0, keepdims=True)
+            yield Compared(batch, case.outputs(batch, total), np.ones((1, 3)))
+
+
+def path_leaving(case: Case) -> Iterator[Compared]:
     spec = case.of(TransmissionSpec)
-    values, tint, curve = SOLIDS[spec.node]
-    text = paths(case.host, spec.document(values), case.library)
-    middles = (np.arange(GRID) + 0.5) / GRID
-    u = np.stack(np.meshgrid(middles, middles, middles), axis=-1).reshape(-1, 3)
+    values, _, curve = SOLIDS[spec.node]
     alpha = float(np.ravel(values["roughness"])[0])
     passed = spec.reversed(VIEWS[:, 2], alpha, INDEX, curve)
-    for view, expected in zip(VIEWS, passed, strict=True):
-        wi, weight = (text.values(what, view, u=u, inside=True) for what in ("wi", "weight"))
-        batch = Batch(view[np.newaxis], view[np.newaxis], {})
-        weight = weight / np.asarray(tint.get("tint", 1.0))
+    for (batch, wi, weight), expected in zip(clear_draws(case, True), passed, strict=True):
         left = (weight * (wi[:, 2:] < 0.0)).mean(axis=0, keepdims=True)
-        total = weight.mean(axis=0, keepdims=True)
         yield Compared(batch, case.outputs(batch, left), np.full((1, 3), expected))
-        yield Compared(batch, case.outputs(batch, total), np.ones((1, 3)))
+
+
+def path_albedo(case: Case) -> Iterator[Compared]:
+    [(text, batch)] = subjects(case)
+    for view in VIEWS:
+        one = Batch(view[np.newaxis], view[np.newaxis], batch.inputs)
+        one = one.altered(normal=NORMAL, tangent=TANGENT)
+        drawn = text.values("weight", view, u=lattice(DRAWS)).mean(axis=0, keepdims=True)
+        seen = case.evaluating.albedo(one) + case.evaluating.transmitted(one)
+        opacity = text.values("opacity", view)
+        yield Compared(one, case.outputs(one, drawn), 1.0 - opacity + opacity * seen)
 
 
 # --- directions against a density: a chi-square test on the sphere -------------------------------
@@ -460,7 +591,7 @@ ROWS = (
     Check(key="sample",
           claim="A draw's weight times its density is the value in its direction, and its density that of material_pdf.",
           applies=DRAWN, measure=sample, tolerance=SAMPLE,
-          control=controls.scale("weights are 0.01 % too large", 1.0001), explain=_wrong_half,
+          control=controls.scale("weights are 0.01 % too large", 1.0001), explain=_wrong_part,
           requires=Ability.PAIRS, profile="path", hosts=has_paths),
     Check(key="path_value",
           claim="A path tracer's value, opacity and emission are the rasterizer's, in any frame.",
@@ -479,10 +610,22 @@ ROWS = (
           control=controls.scale("values are 0.1 % too large", 1.001),
           explain=always(defect("inside_is_not_outside")), requires=Ability.PAIRS, profile="path",
           hosts=has_paths),
+    Check(key="path_albedo",
+          claim="Draws from outside carry the light that a rasterizer reflects and transmits.",
+          applies=MATERIALS, measure=path_albedo,
+          tolerance=ALBEDO.plus(Term(5e-3, "a sum of 32768 draws")),
+          control=controls.scale("values are 10 % too large", 1.1),
+          explain=always(defect("other_path_albedo")), requires=Ability.PAIRS, profile="path",
+          hosts=has_paths, methods=with_directions),
     Check(key="path_energy",
-          claim="From inside a clear solid, draws carry all light, and those that leave it what enters by the same paths.",
-          applies=CLEAR, measure=path_energy,
-          tolerance=PASSING.plus(Term(5e-3, "draws on a grid of 16 x 16 x 16")),
+          claim="Draws at a clear solid carry all light, from outside and from inside.",
+          applies=CLEAR, measure=path_energy, tolerance=PASSING.plus(DRAWN_SUM),
+          control=controls.scale("values are 10 % too large", 1.1),
+          explain=always(defect("light_from_inside")), requires=Ability.PAIRS, profile="path",
+          hosts=has_paths),
+    Check(key="path_leaving",
+          claim="From inside a clear solid, draws that leave it carry what enters by the same paths.",
+          applies=CLEAR, measure=path_leaving, tolerance=THROUGHPUT.plus(DRAWN_SUM),
           control=controls.scale("values are 10 % too large", 1.1),
           explain=always(defect("light_from_inside")), requires=Ability.PAIRS, profile="path",
           hosts=has_paths),

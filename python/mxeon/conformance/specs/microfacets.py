@@ -154,6 +154,11 @@ def sum_over(directions: int) -> Term:
     return Term(1.7 / directions, f"a sum over {directions} directions of an environment")
 
 
+TEXEL = Term(
+    samples.SLOPE * math.sqrt(2.0) * math.pi / (2 * samples.SKY_ROWS),
+    "the nearest texel, half of one away",
+)
+
 # ggx_anisotropic.py: E_ss, relative, and a dielectric's albedo, where one alpha is up to LARGEST_RATIO times the other.
 ANISOTROPIC_FIT, ANISOTROPIC_LOBE_FIT = 2.5e-2, 3.4e-2
 LARGEST_RATIO, LEAST_ANISOTROPIC_COSINE = 50.0, 0.01
@@ -264,10 +269,7 @@ def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
             "the quadrature on the equations, of a value and of its share of the sky",
         ),
         sum_over(1024),
-        Term(
-            samples.SLOPE * math.sqrt(2.0) * math.pi / (2 * samples.SKY_ROWS),
-            "the nearest texel, half of one away",
-        ),
+        TEXEL,
     )
     return {
         **ERRORS,
@@ -489,6 +491,7 @@ def transmission_errors(passed: Tolerance) -> dict[str, Tolerance]:
         ),
         "kept": BURLEY_VALUE,  # one function of the same numbers
         "inside": PASSING.plus(sum_over(1024)),
+        "rough_refraction": sum_in(Quantity.IRRADIANCE, sum_over(1024), TEXEL),
         "states": sum_of(roundings(32, "of the same parts in two programs")),
         "critical": sum_in(
             Quantity.ALBEDO,

@@ -57,6 +57,7 @@ def _whole(names: str) -> Values:
 GRAPHS = 64  # pairs by which a graph is compared with another
 LEAST, LARGEST = 0.05, 2.0  # of their inputs: no transmittance is 0, and no emission hides the rest
 OFTEN, SELDOM = 0.75, 0.5  # shares of them that set an input, and one of `further`
+TIED = 3  # every third of them ties inputs that the graph compares
 SPREAD = 0.3  # alpha of the lobe in which half of the lights lie about the mirror direction
 STRETCHED = "anisotropy"  # in the names of inputs: an environment is summed too coarsely for them
 # Largest errors by the fits of all lobes of a material, of 32 sets of the size that a check asks for, with
@@ -280,7 +281,31 @@ class SurfaceShaderSpec(spec.LobeSpec):
             inputs[name] = np.floor(3.0 * share) if name == "alpha_mode" else share
         for name, values in inputs.items():
             values[rng.random(count) > (SELDOM if name in self.further else OFTEN)] = np.nan
+        for one, other in self.compared:
+            inputs[one][::TIED] = inputs[other][::TIED] = rng.random(len(inputs[one][::TIED]))
         return replace(pairs, inputs=inputs)
+
+    @cached_property
+    def compared(self) -> set[tuple[str, str]]:
+        """Inputs that the released graph compares with each other."""
+        from mxeon.shaders.library import load_library
+
+        names = [
+            graph.getChildren()
+            for graph in load_library("stock").getNodeGraphs()
+            if graph.getNodeDefString().startswith(f"ND_{self.node}")
+        ]
+        ends = [
+            tuple(
+                port.getInterfaceName()
+                for name in ("value1", "value2")
+                if (port := node.getInput(name))
+            )
+            for nodes in names
+            for node in nodes
+            if node.getCategory().startswith("if")
+        ]
+        return {(one, other) for one, other in ends if one and other}
 
     def films(self, counts: Counts) -> Batch:
         """Some of the pairs, of lobes with one alpha, under random films."""
